@@ -67,6 +67,7 @@
 #define CSCD_H
 
 #include <cscd/context.h>
+#include <cscd/curve_changes.h>
 #include <cscd/detector.h>
 #include <cscd/intersections.h>
 #include <cscd/live.h>

@@ -187,6 +187,14 @@ class detector : public detail::owner<cscd_detector, cscd_detector_destroy> {
             return cscd_detector_contact_parts(get(), items.data(), items.size(), out);
         });
     }
+    /* Points of curves that come or go from x0 to x1 at contacts of a list. */
+    curve_changes find_curve_changes(const positions &x0, const positions &x1,
+                                     span<const cscd_contact> items) {
+        const cscd_view *from = covering(x0), *to = covering(x1);
+        return find<curve_changes>([&](curve_changes *out) {
+            return cscd_detector_curve_changes(get(), from, to, items.data(), items.size(), out);
+        });
+    }
     proximities find_near(const positions &x, double distance, cscd_near_form form = CSCD_NEAR_UNIQUE) {
         const cscd_view *at = covering(x);
         return find<proximities>(

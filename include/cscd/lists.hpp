@@ -3,6 +3,7 @@
 #define CSCD_LISTS_HPP
 
 #include <cscd/context.hpp>
+#include <cscd/curve_changes.h>
 #include <cscd/intersections.h>
 #include <cscd/solver.h>
 #include <cscd/view.hpp>
@@ -44,6 +45,7 @@ using intersections = list<cscd_intersections>;
 using intersection_pairs = list<cscd_intersection_pairs>;
 using proximities = list<cscd_proximities>;
 using contact_part_pairs = list<cscd_contact_part_pairs>;
+using curve_changes = list<cscd_curve_changes>;
 
 /* What cscd_detector_find_intersections finds beside pairs, where the options ask for it; else empty. */
 inline span<const cscd_curve> curves(const cscd_intersection_pairs &found) noexcept {
@@ -77,6 +79,17 @@ inline span<const cscd_depth> depths(const cscd_intersection_pairs &found) noexc
 inline span<const cscd_part_pair> parts(const cscd_intersection_pairs &found) noexcept {
     if (found.parts == nullptr) return {};
     return {found.parts->items, found.parts->count};
+}
+
+/* The contacts at which a point of a curve comes or goes, as places in the given list; and the changes of a contact. */
+inline span<const std::size_t> causes(const cscd_curve_changes &changes,
+                                      const cscd_curve_change &change) noexcept {
+    return {changes.causes + change.first_cause, change.cause_count};
+}
+inline span<const std::size_t> changes_of_contact(const cscd_curve_changes &changes,
+                                                  std::size_t contact) noexcept {
+    const std::size_t first = changes.contact_first[contact];
+    return {changes.of_contacts + first, changes.contact_first[contact + 1] - first};
 }
 
 /* The lists beside bounds and truncations. */

@@ -10,6 +10,7 @@
 #include "runtime/detector/result_buffer.h"
 #include "runtime/detector/rollback.h"
 #include "runtime/detector/search_space.h"
+#include "runtime/intersections/curve_changes.h"
 #include "runtime/intersections/part_sums.h"
 #include "runtime/intersections/static_check.h"
 #include "runtime/narrow_phase/exclusions.h"
@@ -71,6 +72,7 @@ struct cscd_detector {
     part_summer part_sums;
     cscd_part_pairs part_pairs; /* what these have found last */
     result_buffer contact_parts;
+    change_finder changes;
     edge_rest rest;      /* see cscd_detector_set_rest */
     double *unpacked[2]; /* x0 and x1 of views that are not packed doubles; NULL before the first */
     double *reached;     /* the positions that cscd_detector_max_step tries; NULL before its first call */

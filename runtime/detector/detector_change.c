@@ -186,6 +186,7 @@ static void exchange_parts(cscd_detector *a, cscd_detector *b) {
     EXCHANGE(answers);
     EXCHANGE(parts);
     EXCHANGE(part_sums);
+    EXCHANGE(changes);
     EXCHANGE(rest);
     EXCHANGE(unpacked[0]);
     EXCHANGE(unpacked[1]);

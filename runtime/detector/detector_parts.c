@@ -1,5 +1,6 @@
 /* The parts of a live detector, and contacts summed up by pair of parts. */
 #include "runtime/detector/detector.h"
+#include "runtime/detector/given_contacts.h"
 #include "src/core/sort.h"
 #include "src/core/struct_size.h"
 
@@ -42,32 +43,6 @@ typedef struct contact_part_key {
     uint64_t parts, place;
 } contact_part_key;
 
-static bool has_vertex(const cscd_mesh *mesh, uint32_t vertex) {
-    return vertex < mesh->vertex_count;
-}
-
-static bool has_edge(const cscd_mesh *mesh, uint32_t edge) {
-    return edge < mesh->edge_count;
-}
-
-/* Are both features of the mesh? */
-static bool is_of_mesh(const cscd_mesh *mesh, const cscd_contact *c) {
-    switch (c->kind) {
-    case CSCD_CONTACT_VF:
-        return has_vertex(mesh, c->a) && c->b < mesh->triangle_count;
-    case CSCD_CONTACT_EE:
-        return has_edge(mesh, c->a) && has_edge(mesh, c->b);
-    case CSCD_CONTACT_VV:
-        return has_vertex(mesh, c->a) && has_vertex(mesh, c->b);
-    case CSCD_CONTACT_EV:
-        return has_edge(mesh, c->a) && has_vertex(mesh, c->b);
-    case CSCD_CONTACT_VH:
-        return has_vertex(mesh, c->a) && c->b < mesh->object_count;
-    default:
-        return false;
-    }
-}
-
 static uint64_t parts_of_contact(const cscd_detector *d, const cscd_contact *c) {
     const part_labels *labels = &d->parts;
     const cscd_mesh *mesh = d->mesh;
@@ -82,19 +57,6 @@ static uint64_t parts_of_contact(const cscd_detector *d, const cscd_contact *c) 
     else
         b = part_of_vertex(labels, mesh, c->b);
     return key_of_parts(a, b);
-}
-
-static cscd_status check_contacts(const cscd_detector *d, const cscd_contact *contacts, size_t count) {
-    if (contacts == NULL && count > 0)
-        return context_fail(d->context, CSCD_INVALID_ARGUMENT,
-                            "cscd_detector_contact_parts: contacts is NULL, but there are to be %zu", count);
-    for (size_t i = 0; i < count; i++) {
-        if (is_of_mesh(d->mesh, &contacts[i])) continue;
-        return context_fail(d->context, CSCD_INVALID_ARGUMENT,
-                            "contact %zu (kind %d, features %u and %u) is not of the detector's mesh", i,
-                            (int)contacts[i].kind, contacts[i].a, contacts[i].b);
-    }
-    return CSCD_OK;
 }
 
 static void add_contact(const cscd_contact *contacts, size_t place, cscd_contact_part_pair *out) {
@@ -122,7 +84,8 @@ static cscd_status contact_parts(cscd_detector *d, const cscd_contact *contacts,
                                  cscd_contact_part_pairs *out, size_t size) {
     if (out == NULL)
         return context_fail(d->context, CSCD_INVALID_ARGUMENT, "cscd_detector_contact_parts: out is NULL");
-    cscd_status status = check_contacts(d, contacts, count);
+    cscd_status status =
+        given_contacts_check(d->context, d->mesh, "cscd_detector_contact_parts", contacts, count);
     if (status != CSCD_OK) return status;
     result_buffer *buffer = &d->contact_parts;
     status = result_buffer_reserve(d->context, buffer, count, sizeof(cscd_contact_part_pair),

@@ -18,15 +18,19 @@ static bool load_corners(const named_surface *s, uint32_t triangle, pair_corners
     return p[0].name != p[1].name && p[1].name != p[2].name && p[2].name != p[0].name;
 }
 
-/* How edge i of one triangle passes through the other: 1 towards the side of its normal, -1 the other way, 0 not.
- * from and to are the sides on which its ends lie. */
-static int edge_passes(const pair_corners *t, int i, int from, int to, const pair_corners *face) {
+/* How the edge (p, q) passes through the triangle: 1 towards the side of its normal, -1 the other way, 0 not. from and to
+ * are the sides on which p and q lie. */
+static int ends_pass(symbolic_point p, symbolic_point q, int from, int to, const pair_corners *face) {
     const symbolic_point *f = face->points;
     if (from == to) return 0;
-    symbolic_point p = t->points[i], q = t->points[(i + 1) % 3];
     int turn = symbolic_orient3d(p, q, f[0], f[1]);
     if (symbolic_orient3d(p, q, f[1], f[2]) != turn || symbolic_orient3d(p, q, f[2], f[0]) != turn) return 0;
     return to;
+}
+
+/* The same of edge i of another triangle. */
+static int edge_passes(const pair_corners *t, int i, int from, int to, const pair_corners *face) {
+    return ends_pass(t->points[i], t->points[(i + 1) % 3], from, to, face);
 }
 
 /* Lemma 2: an edge of a that passes towards the normal of b begins the piece, one of b towards that of a ends it. */
@@ -100,4 +104,29 @@ bool curve_piece_of_pair(const named_surface *s, uint32_t a, uint32_t b, curve_p
     out->b = b;
     if (shared == 0) return piece_of_strangers(s, &of_a, &of_b, out);
     return shared == 1 && piece_at_vertex(s, &of_a, at_a, &of_b, at_b, out);
+}
+
+/* ---- one event ------------------------------------------------------------------------------------------- */
+
+/* Does the edge have a triangle whose corners are different vertices? Others have no pieces. */
+static bool edge_has_sheet(const named_surface *s, uint32_t edge) {
+    const cscd_mesh *mesh = s->mesh;
+    pair_corners corners;
+    for (uint32_t i = mesh->edge_star_offsets[edge]; i < mesh->edge_star_offsets[edge + 1]; i++) {
+        if (load_corners(s, mesh->edge_stars[i], &corners)) return true;
+    }
+    return false;
+}
+
+bool surface_event_happens(const named_surface *s, surface_event event) {
+    pair_corners face;
+    if (!load_corners(s, event.triangle, &face) || !edge_has_sheet(s, event.edge)) return false;
+    const symbolic_point *f = face.points;
+    const uint32_t *vertices = s->mesh->edges[event.edge];
+    symbolic_point p = surface_point(s, vertices[0]), q = surface_point(s, vertices[1]);
+    for (int i = 0; i < 3; i++) {
+        if (f[i].name == p.name || f[i].name == q.name) return false;
+    }
+    int from = symbolic_orient3d(f[0], f[1], f[2], p), to = symbolic_orient3d(f[0], f[1], f[2], q);
+    return ends_pass(p, q, from, to, &face) != 0;
 }

@@ -38,3 +38,6 @@ typedef struct curve_piece {
 
 /* Finds the piece of two different triangles, if there is one: docs/theory/curves.md. */
 bool curve_piece_of_pair(const named_surface *s, uint32_t a, uint32_t b, curve_piece *out);
+
+/* Does it happen, and is it an end of pieces? Events at vertices are not asked for. */
+bool surface_event_happens(const named_surface *s, surface_event event);

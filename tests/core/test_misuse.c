@@ -212,6 +212,7 @@ static void objects_that_are_null(void **state) {
     expect_null_object(cscd_detector_set_rest(NULL, AT_START));
     expect_null_object(cscd_detector_set_parts(NULL, NULL, 0));
     expect_null_object(cscd_detector_contact_parts(NULL, NULL, 0, NULL));
+    expect_null_object(cscd_detector_curve_changes(NULL, AT_START, AT_END, NULL, 0, NULL));
     expect_null_object(cscd_detector_set_rules(NULL, NULL, 0, NULL, 0));
     expect_null_object(
         cscd_detector_displacement_bounds(NULL, AT_START, 1.0, CSCD_SCALAR_DOUBLE, NULL, 0, &bounds));

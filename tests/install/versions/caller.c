@@ -189,6 +189,14 @@ static void ask_detector(caller_state *s) {
     EXPECT_FILLED(cscd_contact_part_pairs, sums);
     expect_that(sums.value.count == 1 && sums.value.items[0].count == contacts.value.count,
                 "cscd_contact_part_pairs", "its values");
+    GUARDED(cscd_curve_changes, changes);
+    expect_ok(s,
+              cscd_detector_curve_changes(s->detector, x0, x1, contacts.value.items, contacts.value.count,
+                                          &changes.value),
+              "cscd_detector_curve_changes");
+    EXPECT_FILLED(cscd_curve_changes, changes);
+    expect_that(changes.value.contact_first[contacts.value.count] == changes.value.cause_count,
+                "cscd_curve_changes", "its values");
     GUARDED(cscd_timings, timings);
     cscd_detector_timings_sized(s->detector, &timings.value, sizeof timings.value);
     EXPECT_FILLED(cscd_timings, timings);
