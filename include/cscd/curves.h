@@ -6,7 +6,12 @@
  * (Simulation of Simplicity, Edelsbrunner and Muecke 1990), so that nothing only touches: each two surfaces cross or are
  * apart. All is decided exactly, and points are those to which the curves go as the amounts go to 0. Vertices that seams
  * unite are one as long as they are at one place; where they are apart, they are two, for curves, patches, overlaps and
- * depths alike, and the surfaces go where their triangles go. Theory: docs/theory/curves.md. */
+ * depths alike, and the surfaces go where their triangles go. Theory: docs/theory/curves.md.
+ *
+ * Degenerate meshes have curves, too. Of the moved surface every triangle has an area, no two triangles lie in one plane, and
+ * different vertices are at different places; so triangles without area, duplicates and vertices at equal positions need no
+ * rule of their own. Where an edge has three triangles or more, or one, curves end (cscd_curve_end). A triangle of
+ * which seams unite two corners at one place is a line, and has no curve. */
 #ifndef CSCD_CURVES_API_H
 #define CSCD_CURVES_API_H
 
