@@ -38,13 +38,18 @@ static const uint32_t (*triangles_of(const check_work *work))[3] {
     return (const uint32_t(*)[3])work->check->mesh->triangles;
 }
 
-static bool make_room(cscd_context *context, intersection_lane *lane) {
-    size_t capacity = lane->capacity == 0 ? 256 : lane->capacity * 2;
+enum { ROOM_LEAST = 256, EVEN_ROOM_MOST = 1 << 16 };
+
+static bool grow_items(cscd_context *context, intersection_lane *lane, size_t capacity) {
     found_pair *grown = context_grow(context, lane->items, lane->count, capacity, sizeof *lane->items);
     if (grown == NULL) return false;
     lane->items = grown;
     lane->capacity = capacity;
     return true;
+}
+
+static bool make_room(cscd_context *context, intersection_lane *lane) {
+    return grow_items(context, lane, lane->capacity == 0 ? ROOM_LEAST : 2 * lane->capacity);
 }
 
 static bool make_room_for_notes(cscd_context *context, intersection_lane *lane) {
@@ -70,6 +75,23 @@ static void add_noted_pair(cscd_context *context, intersection_lane *lane, trian
         add_pair(context, lane, t);
     else
         lane->out_of_memory = true;
+}
+
+/* Which lane finds what depends on when threads come for work, so that a lane might need more room in any call. Once a call
+ * has found its pairs, each lane has room for all of them or, if they are very many, for as many as any lane. */
+static bool even_out_room(static_check *c) {
+    size_t total = 0, room = ROOM_LEAST;
+    for (uint32_t i = 0; i < c->lane_count; i++) total += c->lanes[i].count;
+    for (uint32_t i = 0; i < c->lane_count && total > EVEN_ROOM_MOST; i++)
+        room = c->lanes[i].capacity > room ? c->lanes[i].capacity : room;
+    while (room < total && total <= EVEN_ROOM_MOST) room *= 2;
+    for (uint32_t i = 0; i < c->lane_count && total > 0; i++) {
+        intersection_lane *lane = &c->lanes[i];
+        if (lane->capacity < room && !grow_items(c->mesh->context, lane, room)) return false;
+        if (c->kinds && lane->note_capacity < lane->capacity && !make_room_for_notes(c->mesh->context, lane))
+            return false;
+    }
+    return true;
 }
 
 static bool same_triangle(const uint32_t a[3], const uint32_t b[3]) {
@@ -220,6 +242,7 @@ static cscd_status compare_triangles(check_work *work, bvh *f, traversal_pass pa
         }
         spill_pairs(check);
     }
+    if (!even_out_room(check)) return CSCD_OUT_OF_MEMORY;
     return context_progress_status(context); /* before the caller believes that nothing more was found */
 }
 
