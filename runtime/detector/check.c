@@ -65,8 +65,6 @@ static cscd_status answer_question(cscd_detector *d, const double *positions,
     return status == CSCD_OK ? context_progress_status(d->context) : status;
 }
 
-/* States and positions belong together, so both are written when all is found. If the call is cancelled even now, or the
- * host's loop leaves out a task, the states may be those of other positions, and nothing is known. */
 /* Inactive triangles have been compared with active ones only, so nothing is known of those that do not cross them. */
 static void unmark_inactive(const cscd_detector *d, bool *triangles) {
     const bool *active = d->space.active.triangles;
@@ -74,6 +72,8 @@ static void unmark_inactive(const cscd_detector *d, bool *triangles) {
         triangles[t] = active[t] || d->check.crossing[t];
 }
 
+/* States and positions belong together, so both are written when all is found. If the call is cancelled even now, or the
+ * host's loop leaves out a task, the states may be those of other positions, and nothing is known. */
 static cscd_status keep_states(cscd_detector *d, const double *positions) {
     if (!start_states_hold(&d->starts, positions)) start_states_begin(&d->starts, positions);
     unmark_inactive(d, d->check.unproven);

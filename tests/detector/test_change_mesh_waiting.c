@@ -154,14 +154,18 @@ static void see_positions(void) {
     assert_int_equal(contacts.count, 0);
 }
 
+static void begin_seen_panels(const cscd_detector_options *options) {
+    begin_panels(options, false);
+    see_positions();
+}
+
 /* The second vertex is sewn to nothing, and touches what the first one is sewn to, and its neighbours there. */
 static void a_sewn_vertex_tears(void **state) {
     (void)state;
     cscd_detector_options options = cscd_detector_defaults();
     options.seams = p.seams[0];
     options.seam_count = PANEL;
-    begin_panels(&options, false);
-    see_positions();
+    begin_seen_panels(&options);
     change_panels();
     uint32_t seams[PANEL][2];
     for (uint32_t v = 0; v < PANEL; v++) {
@@ -174,16 +178,19 @@ static void a_sewn_vertex_tears(void **state) {
 
 /* ---- uncovered before the change, and not seen since ------------------------------------------------------- */
 
+static void expect_remembered(void) {
+    change_panels();
+    expect_waiting(new_detector(NULL));
+}
+
 static void opened_seams_are_remembered(void **state) {
     (void)state;
     cscd_detector_options options = cscd_detector_defaults();
     options.seams = p.seams[0];
     options.seam_count = PANEL;
-    begin_panels(&options, false);
-    see_positions();
+    begin_seen_panels(&options);
     assert_int_equal(cscd_detector_set_seams(p.detector, NULL, 0), CSCD_OK);
-    change_panels();
-    expect_waiting(new_detector(NULL));
+    expect_remembered();
 }
 
 static void ignored_pairs_are_remembered(void **state) {
@@ -191,11 +198,9 @@ static void ignored_pairs_are_remembered(void **state) {
     cscd_detector_options options = cscd_detector_defaults();
     options.ignored = p.ignored[0];
     options.ignored_count = TRIANGLES * TRIANGLES;
-    begin_panels(&options, false);
-    see_positions();
+    begin_seen_panels(&options);
     assert_int_equal(cscd_detector_set_ignored(p.detector, NULL, 0), CSCD_OK);
-    change_panels();
-    expect_waiting(new_detector(NULL));
+    expect_remembered();
 }
 
 static void rules_are_remembered(void **state) {
@@ -207,11 +212,9 @@ static void rules_are_remembered(void **state) {
     rules[2].mask = ~(uint64_t)2;
     options.rules = rules;
     options.rule_count = 3;
-    begin_panels(&options, false);
-    see_positions();
+    begin_seen_panels(&options);
     assert_int_equal(cscd_detector_set_rules(p.detector, NULL, 0, NULL, 0), CSCD_OK);
-    change_panels();
-    expect_waiting(new_detector(NULL));
+    expect_remembered();
 }
 
 /* The first panel is an obstacle no more. */

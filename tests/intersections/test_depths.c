@@ -16,11 +16,6 @@ enum { ROUNDS = 20, SAMPLES = 30 };
 
 static body_rig rig; /* large; one test at a time */
 
-static void find_all(void) {
-    body_rig_create(&rig, NULL, 2);
-    body_rig_find(&rig);
-}
-
 static void add_box(double x, double y, double z, double width, double depth, double height) {
     const double low[3] = {x, y, z}, size[3] = {width, depth, height};
     body_rig_add_box(&rig, low, size);
@@ -41,7 +36,7 @@ static void a_box_sunk_into_a_slab(void **state) {
     body_rig_begin(&rig);
     add_box(0, 0, -2, 10, 10, 2);
     add_box(3, 4, -0.125, 1, 1, 1);
-    find_all();
+    body_rig_find_all(&rig);
     assert_int_equal(rig.found.depths->count, 4);
     for (size_t i = 0; i < 4; i++) {
         const cscd_depth *d = &rig.found.depths->items[i];
@@ -60,7 +55,7 @@ static void a_bar_through_a_wall(void **state) {
     body_rig_begin(&rig);
     add_box(-3, 0.1, 0.2, 6, 0.5, 0.25);
     add_box(0.3, -2, 0.1, 0.5, 5, 2);
-    find_all();
+    body_rig_find_all(&rig);
     double deepest = 0.0;
     assert_int_equal(rig.found.depths->vertex_count, 0);
     for (size_t i = 0; i < rig.found.depths->count; i++) {
@@ -83,7 +78,7 @@ static void a_box_on_a_table(void **state) {
     add_box(0, 0, -2, 10, 10, 2);
     add_box(3, 4, 0, 1, 1, 1);
     add_box(6, 4, 0, 1, 1, 1);
-    find_all();
+    body_rig_find_all(&rig);
     assert_true(rig.found.curves->count > 0);
     for (size_t i = 0; i < rig.found.curves->count; i++) assert_true(rig.found.curves->items[i].touching);
     for (size_t i = 0; i < rig.found.depths->count; i++) assert_true(rig.found.depths->items[i].depth == 0.0);
@@ -106,7 +101,7 @@ static void an_equator_in_a_face(void **state) {
     memcpy(rig.all.x0 + (size_t)first * 3, corners, sizeof corners);
     rig.all.vertex_count += 6;
     body_rig_end_body(&rig);
-    find_all();
+    body_rig_find_all(&rig);
     assert_int_equal(rig.found.curves->count, 1);
     assert_true(rig.found.curves->items[0].closed && !rig.found.curves->items[0].touching);
     assert_int_equal(rig.found.crossing, 0);
@@ -144,7 +139,7 @@ static void balls_in_rings(void **state) {
         body_rig_end_body(&rig);
         scene_add_sphere(&rig.all, centre, 0.6, 9, 14);
         body_rig_end_body(&rig);
-        find_all();
+        body_rig_find_all(&rig);
         for (size_t i = 0; i < rig.found.depths->count; i++) {
             const cscd_depth *d = &rig.found.depths->items[i];
             double there[3];
@@ -201,7 +196,7 @@ static void a_snake_in_its_own_tail(void **state) {
     body_rig_begin(&rig);
     body_rig_add_snake(&rig);
     body_rig_end_body(&rig);
-    find_all();
+    body_rig_find_all(&rig);
     assert_true(rig.found.depths->vertex_count > 20);
     for (size_t i = 0; i < rig.found.depths->count; i++) {
         const cscd_depth *d = &rig.found.depths->items[i];

@@ -15,11 +15,6 @@ enum { LINES = 200, ROUNDS = 8 };
 
 static body_rig rig; /* large; one test at a time */
 
-static void find_all(void) {
-    body_rig_create(&rig, NULL, 2);
-    body_rig_find(&rig);
-}
-
 static void add_cube(double x, double y, double z, double size) {
     const double low[3] = {x, y, z}, sizes[3] = {size, size, size};
     body_rig_add_box(&rig, low, sizes);
@@ -38,7 +33,7 @@ static void corners_of_two_boxes(void **state) {
     body_rig_begin(&rig);
     add_cube(0, 0, 0, 2);
     add_cube(1.25, 1.5, 1.125, 2);
-    find_all();
+    body_rig_find_all(&rig);
     double x = 0.75, y = 0.5, z = 0.875, faces = x * y + y * z + z * x;
     expect_overlap(0, 1, faces, faces, x * y * z);
     assert_int_equal(rig.found.overlaps->count, 1);
@@ -55,7 +50,7 @@ static void bars_across_each_other(void **state) {
     body_rig_end_body(&rig);
     body_rig_add_box(&rig, across, other);
     body_rig_end_body(&rig);
-    find_all();
+    body_rig_find_all(&rig);
     expect_overlap(0, 1, 0.5 * 2 * (0.5 + 0.25), 2 * 0.5 * 0.25, 0.5 * 0.5 * 0.25);
     body_rig_free(&rig);
 }
@@ -67,7 +62,7 @@ static void boxes_within_each_other(void **state) {
     add_cube(0, 0, 0, 4);
     add_cube(1, 1, 1, 2);
     add_cube(1.5, 1.5, 1.5, 1);
-    find_all();
+    body_rig_find_all(&rig);
     expect_overlap(0, 1, 0.0, 24.0, 8.0);
     expect_overlap(0, 2, 0.0, 6.0, 1.0);
     expect_overlap(1, 2, 0.0, 6.0, 1.0);
@@ -95,7 +90,7 @@ static void a_cavity_is_outside(void **state) {
     body_rig_end_body(&rig);
     add_cube(1.5, 1.5, 1.5, 1);
     add_cube(0.5, 1.5, 1.5, 1); /* half of it in the wall */
-    find_all();
+    body_rig_find_all(&rig);
     expect_overlap(0, 1, 0.0, 0.0, 0.0);
     expect_overlap(0, 2, 1.0, 1.0 + 4 * 0.5, 0.5);
     expect_overlap(0, 0, 0.0, 0.0, 0.0);
@@ -110,7 +105,7 @@ static void a_body_that_is_inside_out(void **state) {
     turn_inside_out(0, 12);
     body_rig_end_body(&rig);
     add_cube(0.5, 0.5, 0.5, 1);
-    find_all();
+    body_rig_find_all(&rig);
     expect_overlap(0, 0, 0.0, 24.0, 0.0);
     expect_overlap(0, 1, 0.0, 0.0, 0.0);
     body_rig_free(&rig);
@@ -125,7 +120,7 @@ static void two_bodies_of_one_object(void **state) {
     body_rig_add_box(&rig, second, size);
     body_rig_end_body(&rig);
     add_cube(0.5, 0.5, 0.5, 1);
-    find_all();
+    body_rig_find_all(&rig);
     expect_overlap(0, 0, 6.0, 0.0, 1.0);
     expect_overlap(0, 1, 3 * 0.25, 6.0, 1.0);
     body_rig_free(&rig);
@@ -151,7 +146,7 @@ static void bars_that_cross_in_a_face(void **state) {
         }
     }
     body_rig_end_body(&rig);
-    find_all();
+    body_rig_find_all(&rig);
     double area = 6 * 0.4 + 6 * 0.6 - 0.4 * 0.6 / sin(angle);
     assert_true(fabs(body_rig_overlap(&rig, 0, 1).area_a - area) < 1e-9);
     body_rig_free(&rig);
@@ -169,7 +164,7 @@ static void far_from_everything_else(void **state) {
     body_rig_end_body(&rig);
     add_cube(0.3, 0.7, -0.0011, 0.0037);
     add_cube(0.3, 0.7, -0.7, 0.0037);
-    find_all();
+    body_rig_find_all(&rig);
     double within = body_rig_overlap(&rig, 0, 2).volume, edge = 0.0037;
     assert_true(fabs(body_rig_overlap(&rig, 0, 1).volume / (edge * edge * 0.0011) - 1.0) < 1e-12);
     assert_true(fabs(within / (edge * edge * edge) - 1.0) < 1e-12);
@@ -227,7 +222,7 @@ static void balls_and_rings(void **state) {
         body_rig_end_body(&rig);
         scene_add_sphere(&rig.all, centre, 0.6, 9, 14);
         body_rig_end_body(&rig);
-        find_all();
+        body_rig_find_all(&rig);
         column_body a = column_of(1), b = column_of(0);
         compare_volume("ball in ring", body_rig_overlap(&rig, 0, 1).volume, column_volume(&a, &b, 1, LINES),
                        0.9);
@@ -241,7 +236,7 @@ static void a_body_in_itself(void **state) {
     body_rig_begin(&rig);
     body_rig_add_snake(&rig);
     body_rig_end_body(&rig);
-    find_all();
+    body_rig_find_all(&rig);
     column_body a = column_of(0);
     double truth = column_volume(&a, NULL, 2, 2 * LINES);
     compare_volume("snake in itself", body_rig_overlap(&rig, 0, 0).volume, truth, 1.0);
@@ -262,7 +257,7 @@ static void balls_that_overlap_by_less_than_an_edge(void **state) {
         x[1] = y * cos(0.7) - x[2] * sin(0.7);
         x[2] = y * sin(0.7) + x[2] * cos(0.7);
     }
-    find_all();
+    body_rig_find_all(&rig);
     column_body a = column_of(0), b = column_of(1);
     double truth = column_volume(&a, &b, 1, 3 * LINES);
     compare_volume("two balls", body_rig_overlap(&rig, 0, 1).volume, truth, 0.0);

@@ -215,8 +215,8 @@ static void sway_ball(int steps) {
     }
 }
 
-#ifdef __SANITIZE_ADDRESS__
-enum { STEADY_RUNS = 3 };
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+enum { STEADY_RUNS = 2 };
 #else
 enum { STEADY_RUNS = 5 };
 #endif

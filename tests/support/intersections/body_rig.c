@@ -74,6 +74,11 @@ void body_rig_find(body_rig *r) {
     assert_int_equal(body_rig_try(r), CSCD_OK);
 }
 
+void body_rig_find_all(body_rig *r) {
+    body_rig_create(r, NULL, 2);
+    body_rig_find(r);
+}
+
 void body_rig_free(body_rig *r) {
     cscd_detector_destroy(r->detector);
     cscd_mesh_destroy(r->mesh);

@@ -44,5 +44,8 @@ void body_rig_find(body_rig *r);
 cscd_status body_rig_try(body_rig *r);
 void body_rig_free(body_rig *r);
 
+/* Creates a detector with the default options in a context of two threads, and finds everything. */
+void body_rig_find_all(body_rig *r);
+
 /* The overlap of two objects, 0 if they have none. */
 cscd_overlap body_rig_overlap(const body_rig *r, uint32_t a, uint32_t b);
