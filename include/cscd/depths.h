@@ -35,6 +35,13 @@ typedef struct cscd_patch_depth {
     size_t deepest; /* in the list of all depths */
 } cscd_patch_depth;
 
+/* A triangle of which an object may contain something, and how deep: no point of the triangle that the object contains is
+ * deeper than the bound, which is found from the depths of its corners alone and rounded up. It never grows. */
+typedef struct cscd_triangle_depth {
+    uint32_t triangle, object;
+    double bound;
+} cscd_triangle_depth;
+
 /* All vertices that an object contains, sorted by (vertex, object), each once for each of these objects; then, sorted by
  * (edge, object), the deepest points of edges that an object contains between two of its curves, so that none of the
  * edge's vertices tells of it. These are the deepest to a millionth of the edge. The lists belong to the detector and
@@ -45,6 +52,12 @@ typedef struct cscd_depths {
     size_t vertex_count;             /* so many of them are of vertices */
     const cscd_patch_depth *patches; /* sorted by (patch, object) */
     size_t patch_count;
+
+    /* Only where depth_bounds were asked for, else NULL and 0: all triangles with a corner that an object contains, or with a
+     * piece of a curve of one of its closed components, sorted by (triangle, object). Objects contain nothing of any other
+     * triangle. */
+    const cscd_triangle_depth *triangles;
+    size_t triangle_count;
 } cscd_depths;
 
 #ifdef __cplusplus

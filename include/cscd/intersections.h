@@ -79,7 +79,11 @@ typedef struct cscd_intersection_options {
     /* What is found summed up by pair of parts: cscd/parts.h. Needs the answer LIST, of any pairs; INVALID_ARGUMENT with
      * another one. false by default. */
     bool parts;
-    uint8_t reserved[3];
+
+    bool
+        depth_bounds; /* how deep whole triangles may be: cscd/depths.h. Needs depths, which are then given, too. false by
+                        * default */
+    uint8_t reserved[2];
 } cscd_intersection_options;
 
 /* The default options. */

@@ -76,6 +76,10 @@ inline span<const cscd_depth> depths(const cscd_intersection_pairs &found) noexc
     if (found.depths == nullptr) return {};
     return {found.depths->items, found.depths->count};
 }
+inline span<const cscd_triangle_depth> depth_bounds(const cscd_intersection_pairs &found) noexcept {
+    if (found.depths == nullptr) return {};
+    return {found.depths->triangles, found.depths->triangle_count};
+}
 inline span<const cscd_part_pair> parts(const cscd_intersection_pairs &found) noexcept {
     if (found.parts == nullptr) return {};
     return {found.parts->items, found.parts->count};

@@ -10,6 +10,7 @@ const char *cscd_curve_end_name(cscd_curve_end end) {
 
 void surface_answers_free(cscd_context *context, surface_answers *a) {
     if (a == NULL) return;
+    depth_bounder_free(&a->depth_bounder);
     depth_finder_free(&a->depth_finder);
     overlap_finder_free(&a->overlap_finder);
     patch_finder_free(&a->patch_finder);
@@ -20,7 +21,8 @@ void surface_answers_free(cscd_context *context, surface_answers *a) {
 }
 
 bool surface_answers_wanted(const cscd_intersection_options *options) {
-    return options->curves || options->patches || options->overlaps || options->depths;
+    return options->curves || options->patches || options->overlaps || options->depths ||
+           options->depth_bounds;
 }
 
 /* Returns the detector's answers, made if need be; NULL: no memory. */
@@ -32,6 +34,7 @@ static surface_answers *make_answers(cscd_detector *d) {
     a->names.context = a->left_out.context = a->joiner.context = context;
     a->overlap_finder =
         (overlap_finder){.context = context, .cuts = {.context = context}, .gaps = {.context = context}};
+    a->depth_bounder.context = context;
     a->depth_finder.context = a->depth_finder.outer.context = a->depth_finder.outer.cuts.context = context;
     if (patch_finder_create(d->mesh, d->space.traversal.lane_count, &a->patch_finder) != CSCD_OK) {
         context_free(context, a);
@@ -57,11 +60,12 @@ static cscd_status find_patches(cscd_detector *d, const named_surface *surface) 
                             &a->patches);
 }
 
-static cscd_status find_depths(cscd_detector *d, const surface_cuts *cuts,
+static cscd_status find_depths(cscd_detector *d, const surface_cuts *cuts, bool bounds,
                                const cscd_intersection_pairs *found) {
     surface_answers *a = d->answers;
     progress_stage(&d->context->progress, "depths", 0.9, 1.0);
     cscd_status status = depth_finder_run(&a->depth_finder, cuts, &d->space.bvh, &a->depths);
+    if (status == CSCD_OK && bounds) status = depth_bounder_run(&a->depth_bounder, cuts, &a->depths);
     if (status == CSCD_OK) touching_curves_mark(&a->joiner, d->mesh, found->items, &a->patches, &a->depths);
     return status;
 }
@@ -78,7 +82,8 @@ cscd_status surface_answers_find(cscd_detector *d, const double *positions,
     cscd_status status = curve_joiner_run(&a->joiner, &surface, found->items, found->count, &a->curves);
     if (status != CSCD_OK) return status;
     found->curves = &a->curves;
-    if (!options->patches && !options->overlaps && !options->depths) return CSCD_OK;
+    bool depths = options->depths || options->depth_bounds;
+    if (!options->patches && !options->overlaps && !depths) return CSCD_OK;
     status = find_patches(d, &surface);
     if (status != CSCD_OK) return status;
     found->patches = &a->patches;
@@ -87,8 +92,8 @@ cscd_status surface_answers_find(cscd_detector *d, const double *positions,
         if (status != CSCD_OK) return status;
         found->overlaps = &a->overlaps;
     }
-    if (options->depths) {
-        status = find_depths(d, &cuts, found);
+    if (depths) {
+        status = find_depths(d, &cuts, options->depth_bounds, found);
         if (status != CSCD_OK) return status;
         found->depths = &a->depths;
     }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "runtime/detector/detector.h"
-#include "runtime/intersections/depths.h"
+#include "runtime/intersections/depth_bounds.h"
 #include "runtime/intersections/overlaps.h"
 #include "runtime/intersections/placed_names.h"
 
@@ -16,6 +16,7 @@ typedef struct surface_answers {
     patch_finder patch_finder;
     overlap_finder overlap_finder;
     depth_finder depth_finder;
+    depth_bounder depth_bounder;
     cscd_curves curves;
     cscd_patches patches;
     cscd_overlaps overlaps;

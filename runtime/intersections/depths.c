@@ -289,6 +289,6 @@ cscd_status depth_finder_run(depth_finder *d, const surface_cuts *found, const b
     parallel_run(d->context->threads, (uint32_t)((count + QUESTIONS_A_TASK - 1) / QUESTIONS_A_TASK),
                  answer_some, &work);
     size_t patches = list_patches(d, vertices);
-    *out = (cscd_depths){d->depths, count, vertices, d->patches, patches};
+    *out = (cscd_depths){d->depths, count, vertices, d->patches, patches, NULL, 0};
     return context_progress_status(d->context);
 }

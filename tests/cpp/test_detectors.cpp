@@ -41,7 +41,7 @@ void kinds(void **) {
     }
     const std::size_t all = t.ours.find_intersections(lower).size();
     options = cscd_intersection_defaults();
-    options.overlaps = options.depths = true;
+    options.overlaps = options.depth_bounds = true;
     const cscd::intersection_pairs answered = t.ours.find_intersections(lower, options);
     std::size_t pieces = 0, numbers = 0;
     for (const cscd_curve &curve : cscd::curves(answered)) {
@@ -53,6 +53,7 @@ void kinds(void **) {
     assert_int_equal(numbers, answered.patches->winding_count);
     assert_int_equal(cscd::overlaps(answered).size(), answered.overlaps->count);
     assert_int_equal(cscd::depths(answered).size(), answered.depths->count);
+    assert_int_equal(cscd::depth_bounds(answered).size(), answered.depths->triangle_count);
     options = cscd_intersection_defaults();
     options.answer = CSCD_ANSWER_COUNT;
     const cscd::intersection_pairs counted = t.ours.find_intersections(lower, options);

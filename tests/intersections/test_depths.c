@@ -1,7 +1,6 @@
 /* Depths: by hand where one sees them, else no less and no more than the distance from a body's outer surface. */
-#include "runtime/ccd/closest.h"
 #include "src/core/vec3.h"
-#include "tests/support/intersections/body_rig.h"
+#include "tests/support/intersections/body_measures.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/test.h"
 
@@ -116,16 +115,6 @@ static const double *corner_of(uint32_t triangle, uint32_t i) {
     return rig.all.x0 + (size_t)rig.all.triangles[triangle * 3 + i] * 3;
 }
 
-static double distance_from_body(uint32_t body, const double x[3]) {
-    double least = INFINITY, u, v;
-    for (uint32_t i = 0; i < rig.bodies[body].triangle_count; i++) {
-        uint32_t t = rig.bodies[body].first_triangle + i;
-        least =
-            fmin(least, closest_point_triangle(x, corner_of(t, 0), corner_of(t, 1), corner_of(t, 2), &u, &v));
-    }
-    return sqrt(least);
-}
-
 static void balls_in_rings(void **state) {
     (void)state;
     static const double origin[3] = {0, 0, 0};
@@ -144,8 +133,8 @@ static void balls_in_rings(void **state) {
             const cscd_depth *d = &rig.found.depths->items[i];
             double there[3];
             for (int k = 0; k < 3; k++) there[k] = d->x[k] + d->depth * d->direction[k];
-            assert_true(fabs(d->depth - distance_from_body(d->object, d->x)) < 1e-12);
-            assert_true(distance_from_body(d->object, there) < 1e-12);
+            assert_true(fabs(d->depth - body_distance(&rig, d->object, d->x)) < 1e-12);
+            assert_true(body_distance(&rig, d->object, there) < 1e-12);
             compared++;
         }
         body_rig_free(&rig);
@@ -155,23 +144,6 @@ static void balls_in_rings(void **state) {
 }
 
 /* ---- a body in itself ---------------------------------------------------------------------------------- */
-
-/* The winding number of the first body around a generic point. */
-static int number_at(const double x[3]) {
-    double sum = 0.0; /* of solid angles: van Oosterom and Strackee 1983 */
-    for (uint32_t t = 0; t < rig.bodies[0].triangle_count; t++) {
-        double p[3][3], length[3], cross[3];
-        for (uint32_t i = 0; i < 3; i++) {
-            vec3_subtract(corner_of(t, i), x, p[i]);
-            length[i] = sqrt(vec3_dot(p[i], p[i]));
-        }
-        vec3_cross(p[1], p[2], cross);
-        double bottom = length[0] * length[1] * length[2] + vec3_dot(p[0], p[1]) * length[2] +
-                        vec3_dot(p[1], p[2]) * length[0] + vec3_dot(p[2], p[0]) * length[1];
-        sum += 2.0 * atan2(vec3_dot(p[0], cross), bottom);
-    }
-    return (int)lround(sum / (4.0 * acos(-1.0)));
-}
 
 /* No sample of the outer surface is nearer than the depth says. */
 static void sample_outer_surface(random_stream *random, const cscd_depth *depth) {
@@ -186,7 +158,7 @@ static void sample_outer_surface(random_stream *random, const cscd_depth *depth)
         for (int k = 0; k < 3; k++) x[k] = a[k] + u * ab[k] + v * ac[k];
         if (vec3_squared_distance(x, depth->x) >= depth->depth * depth->depth - 1e-9) continue;
         vec3_add_scaled(x, 1e-7 / sqrt(vec3_dot(normal, normal)), normal, x);
-        assert_true(number_at(x) >= 1);
+        assert_true(body_number(&rig, 0, x) >= 1);
     }
 }
 
@@ -202,7 +174,7 @@ static void a_snake_in_its_own_tail(void **state) {
         const cscd_depth *d = &rig.found.depths->items[i];
         double beyond[3];
         vec3_add_scaled(d->x, d->depth + 1e-6, d->direction, beyond);
-        assert_int_equal(number_at(beyond), 0);
+        assert_int_equal(body_number(&rig, 0, beyond), 0);
         for (int k = 0; k < SAMPLES; k++) sample_outer_surface(&random, d);
     }
     body_rig_free(&rig);

@@ -53,6 +53,8 @@ static void compare_answers(const cscd_intersection_pairs *a, const cscd_interse
                   sizeof *a->depths->items);
     compare_bytes(a->depths->patches, a->depths->patch_count, b->depths->patches, b->depths->patch_count,
                   sizeof *a->depths->patches);
+    compare_bytes(a->depths->triangles, a->depths->triangle_count, b->depths->triangles,
+                  b->depths->triangle_count, sizeof *a->depths->triangles);
 }
 
 static void methods_and_threads_agree(void **state) {
@@ -147,7 +149,8 @@ static void the_list_of_all_pairs_is_needed(void **state) {
         *(i == 0   ? &options.curves
           : i == 1 ? &options.patches
           : i == 2 ? &options.overlaps
-                   : &options.depths) = true;
+          : i == 3 ? &options.depths
+                   : &options.depth_bounds) = true;
         if (i % 2 == 0) options.answer = i == 0 ? CSCD_ANSWER_COUNT : CSCD_ANSWER_ANY;
         if (i == 1) options.kinds = cscd_intersection_set(CSCD_INTERSECTION_CROSSING);
         if (i == 3) options.stop_after = 5;
@@ -163,17 +166,21 @@ static void only_what_is_asked_for(void **state) {
     (void)state;
     add_scene(&rig);
     body_rig_create(&rig, NULL, 1);
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 5; i++) {
         cscd_intersection_options options = cscd_intersection_defaults();
         options.curves = i == 1;
         options.patches = i == 2;
+        options.depths = i == 3;
+        options.depth_bounds = i == 4;
         assert_int_equal(cscd_detector_find_intersections(rig.detector,
                                                           CSCD_DOUBLES(rig.all.x0, rig.all.vertex_count),
                                                           &options, &rig.found),
                          CSCD_OK);
         assert_int_equal(rig.found.curves != NULL, i > 0);
-        assert_int_equal(rig.found.patches != NULL, i == 2);
-        assert_true(rig.found.overlaps == NULL && rig.found.depths == NULL);
+        assert_int_equal(rig.found.patches != NULL, i >= 2);
+        assert_int_equal(rig.found.depths != NULL, i >= 3);
+        assert_true(rig.found.overlaps == NULL);
+        if (i >= 3) assert_true((rig.found.depths->triangles != NULL) == (i == 4));
     }
     body_rig_free(&rig);
 }
