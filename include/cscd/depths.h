@@ -12,7 +12,8 @@ extern "C" {
 /* A point of the mesh that an object contains, and the nearest point of that object's outer surface, which is all of its
  * closed components but what the object contains itself. So the surface under the intruder counts: a ball that is sunk
  * 0.1 into a slab has depth 0.1. Where a vertex is buried in its own object, the nearest point may lie on the vertex's own
- * limb. The depth is not how far the bodies have to move until they are apart, which is more. It never grows. */
+ * limb. The depth is not how far the bodies have to move until they are apart, which may be much more. It never
+ * grows. */
 typedef struct cscd_depth {
     uint32_t vertex;   /* UINT32_MAX: the point is on an edge */
     uint32_t edge;     /* UINT32_MAX: the point is a vertex */
