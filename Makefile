@@ -150,7 +150,7 @@ BENCHMARKS := $(filter-out %/embree,$(patsubst benchmarks/%.c,$(BUILD)/benchmark
 
 COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 
-.PHONY: all programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-embree bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines benchmarks template lint format examples clean help fuzz-elementary FORCE
+.PHONY: all programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-embree referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines benchmarks template lint format examples clean help fuzz-elementary FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -283,6 +283,18 @@ bench-embree:
 	@$(MAKE) --no-print-directory $(BUILD)/benchmarks/embree
 	@$(BUILD)/benchmarks/embree $(EMBREE)
 
+# Our pairs of triangles beside those of CGAL, tetgen and MeshLab, which nothing else needs: docs/referee.md. REFEREE: options of
+# benchmarks/referee/compare.py, such as --quick.
+referee:
+	@GSL=$(GSL) CHARGE=$(CHARGE) .ci/packages referee
+	@$(MAKE) --no-print-directory $(BUILD)/benchmarks/referee $(BUILD)/benchmarks/cgal_pairs
+	@PYTHONDONTWRITEBYTECODE=1 benchmarks/referee/compare.py --build $(BUILD) $(REFEREE)
+
+$(BUILD)/benchmarks/cgal_pairs: benchmarks/referee/cgal_pairs.cpp
+	@mkdir -p $(@D)
+	$(say) '  CXX $<'
+	$(Q)$(CXX) -std=c++17 -O3 -DNDEBUG -frounding-math $(CXXFLAGS) -o $@ $< -lmpfr -lgmp
+
 # The charts of docs/measurements.md, from the last make bench.
 bench-plot:
 	@.ci/packages plots
@@ -323,6 +335,7 @@ help:
 	@echo 'make performance   machine limits, cost per triangle by size, threads, bulk motion, cloth, new meshes (PERFORMANCE=--quick)'
 	@echo 'make benchmarks   build all programs that print tables: docs/measurements.md'
 	@echo 'make bench-embree   the broad phase beside that of Embree (installs libembree-dev)'
+	@echo 'make referee   pairs of triangles beside those of CGAL, tetgen and MeshLab (installs these; REFEREE=--quick)'
 	@echo 'make fuzz-elementary   elementary tests against exact answers, [SECONDS=60] [QUERIES=0] [SEED=1] [KIND=both]'
 	@echo 'make template  bundle the page of the reports, after changes in src/tool/report/web (needs node and npm)'
 	@echo 'make lint      format, file sizes, rooms, names, exported symbols'
