@@ -150,7 +150,7 @@ BENCHMARKS := $(filter-out %/embree,$(patsubst benchmarks/%.c,$(BUILD)/benchmark
 
 COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 
-.PHONY: all programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-embree referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines benchmarks template lint format examples clean help fuzz-elementary FORCE
+.PHONY: all programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-embree referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -258,6 +258,12 @@ fuzz-elementary: packages
 	@$(MAKE) --no-print-directory $(BUILD)/tests/ccd/fuzz_elementary
 	@$(BUILD)/tests/ccd/fuzz_elementary $(SECONDS) $(QUERIES) $(SEED) $(KIND)
 
+# Curves, patches and winding numbers of random small scenes against the exact oracle.
+SCENES ?= 1000000
+fuzz-surfaces: packages
+	@$(MAKE) --no-print-directory $(BUILD)/tests/intersections/fuzz_surfaces
+	@$(BUILD)/tests/intersections/fuzz_surfaces $(SCENES) $(SEED)
+
 benchmarks: packages
 	@$(MAKE) --no-print-directory $(BENCHMARKS)
 
@@ -337,6 +343,7 @@ help:
 	@echo 'make bench-embree   the broad phase beside that of Embree (installs libembree-dev)'
 	@echo 'make referee   pairs of triangles beside those of CGAL, tetgen and MeshLab (installs these; REFEREE=--quick)'
 	@echo 'make fuzz-elementary   elementary tests against exact answers, [SECONDS=60] [QUERIES=0] [SEED=1] [KIND=both]'
+	@echo 'make fuzz-surfaces   curves, patches and winding numbers against exact answers, [SCENES=1000000] [SEED=1]'
 	@echo 'make template  bundle the page of the reports, after changes in src/tool/report/web (needs node and npm)'
 	@echo 'make lint      format, file sizes, rooms, names, exported symbols'
 	@echo 'make examples  compile and run the examples of README and docs'
