@@ -1,7 +1,7 @@
 /* Changes of curves, of the public API: which contacts let a curve's points come and go. */
 #include "runtime/detector/detector.h"
-#include "runtime/detector/given_contacts.h"
 #include "src/core/struct_size.h"
+#include "src/mesh/given_contacts.h"
 #include "src/mesh/positions.h"
 #include "src/mesh/views.h"
 

@@ -25,8 +25,3 @@ void part_sums_free(cscd_context *context, part_summer *s);
 /* Sums up what was found. *out lives until the next call. OUT_OF_MEMORY has no sentence. */
 cscd_status part_sums_run(part_summer *s, const cscd_mesh *mesh, const part_labels *labels,
                           const cscd_intersection_pairs *found, cscd_part_pairs *out);
-
-/* The key of two parts. */
-static inline uint64_t key_of_parts(uint32_t p, uint32_t q) {
-    return p < q ? (uint64_t)p << 32 | q : (uint64_t)q << 32 | p;
-}

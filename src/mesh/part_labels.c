@@ -31,6 +31,22 @@ static void count_sizes(const cscd_mesh *mesh, part_labels *p) {
     for (uint32_t t = 0; t < mesh->triangle_count; t++) ++*size_of(p, p->triangles[t]);
 }
 
+cscd_status part_labels_check(const cscd_mesh *mesh, const uint32_t *labels, uint32_t part_count,
+                              const char *name) {
+    if ((labels == NULL) != (part_count == 0))
+        return context_fail(mesh->context, CSCD_INVALID_ARGUMENT,
+                            "%s: %s: give labels and the number of parts, or NULL and 0", name,
+                            labels == NULL ? "labels is NULL" : "part_count is 0");
+    for (uint32_t t = 0; labels != NULL && t < mesh->triangle_count; t++) {
+        if (labels[t] < part_count || labels[t] == UINT32_MAX) continue;
+        return context_fail(mesh->context, CSCD_INVALID_ARGUMENT,
+                            "triangle %u has the label %u, but there are %u parts: a label is below that, or "
+                            "UINT32_MAX for none",
+                            t, labels[t], part_count);
+    }
+    return CSCD_OK;
+}
+
 cscd_status part_labels_set(const cscd_mesh *mesh, const uint32_t *labels, uint32_t part_count,
                             part_labels *p) {
     part_labels fresh = {.triangles = NULL};

@@ -11,6 +11,10 @@ typedef struct part_labels {
     uint32_t part_count;
 } part_labels;
 
+/* INVALID_ARGUMENT: the sentence begins with `name`, or names the first triangle whose label is too large. */
+cscd_status part_labels_check(const cscd_mesh *mesh, const uint32_t *labels, uint32_t part_count,
+                              const char *name);
+
 /* Takes checked labels in place of those before; NULL: none. OUT_OF_MEMORY: nothing has changed, and there is no
  * sentence. */
 cscd_status part_labels_set(const cscd_mesh *mesh, const uint32_t *labels, uint32_t part_count,
@@ -32,3 +36,8 @@ uint32_t part_size(const part_labels *p, const cscd_mesh *mesh, uint32_t part);
 uint32_t part_of_triangle(const part_labels *p, const cscd_mesh *mesh, uint32_t triangle);
 uint32_t part_of_vertex(const part_labels *p, const cscd_mesh *mesh, uint32_t vertex);
 uint32_t part_of_edge(const part_labels *p, const cscd_mesh *mesh, uint32_t edge);
+
+/* The key of two parts: the smaller one in the upper half. */
+static inline uint64_t key_of_parts(uint32_t p, uint32_t q) {
+    return p < q ? (uint64_t)p << 32 | q : (uint64_t)q << 32 | p;
+}

@@ -1,7 +1,5 @@
-/* Lists of contacts that a caller gives back. */
-#include "runtime/detector/given_contacts.h"
-
-#include "src/core/context.h"
+/* Lists of contacts that a caller gives back, and the parts that they are of. */
+#include "src/mesh/given_contacts.h"
 
 static bool has_vertex(const cscd_mesh *mesh, uint32_t vertex) {
     return vertex < mesh->vertex_count;
@@ -37,8 +35,22 @@ cscd_status given_contacts_check(cscd_context *context, const cscd_mesh *mesh, c
     for (size_t i = 0; i < count; i++) {
         if (is_of_mesh(mesh, &contacts[i])) continue;
         return context_fail(context, CSCD_INVALID_ARGUMENT,
-                            "contact %zu (kind %d, features %u and %u) is not of the detector's mesh", i,
+                            "contact %zu (kind %d, features %u and %u) is not of the mesh", i,
                             (int)contacts[i].kind, contacts[i].a, contacts[i].b);
     }
     return CSCD_OK;
+}
+
+uint64_t parts_of_contact(const part_labels *labels, const cscd_mesh *mesh, const cscd_contact *c) {
+    bool edge_a = c->kind == CSCD_CONTACT_EE || c->kind == CSCD_CONTACT_EV;
+    uint32_t a = edge_a ? part_of_edge(labels, mesh, c->a) : part_of_vertex(labels, mesh, c->a), b;
+    if (c->kind == CSCD_CONTACT_VF)
+        b = part_of_triangle(labels, mesh, c->b);
+    else if (c->kind == CSCD_CONTACT_EE)
+        b = part_of_edge(labels, mesh, c->b);
+    else if (c->kind == CSCD_CONTACT_VH)
+        b = labels->triangles == NULL ? c->b : UINT32_MAX;
+    else
+        b = part_of_vertex(labels, mesh, c->b);
+    return key_of_parts(a, b);
 }
