@@ -69,6 +69,7 @@
 #include <cscd/context.h>
 #include <cscd/curve_changes.h>
 #include <cscd/detector.h>
+#include <cscd/events.h>
 #include <cscd/intersections.h>
 #include <cscd/live.h>
 #include <cscd/mesh.h>

@@ -211,6 +211,14 @@ static void objects_that_are_null(void **state) {
     expect_null_object(cscd_detector_set_separation(NULL, 1.0, 0.0));
     expect_null_object(cscd_detector_set_rest(NULL, AT_START));
     expect_null_object(cscd_detector_set_parts(NULL, NULL, 0));
+    expect_null_object(cscd_event_tracker_create(context, NULL, NULL, NULL));
+    expect_null_object(cscd_event_tracker_add_contacts(NULL, NULL, 0));
+    expect_null_object(cscd_event_tracker_add_frame(NULL, 0, NULL));
+    expect_null_object(cscd_event_tracker_take(NULL, NULL));
+    expect_null_object(cscd_event_tracker_finish(NULL, NULL));
+    expect_null_object(cscd_event_tracker_merge(NULL, NULL));
+    expect_null_object(cscd_event_tracker_save(NULL, NULL, NULL));
+    expect_null_object(cscd_event_tracker_load(NULL, NULL, 0));
     expect_null_object(cscd_detector_contact_parts(NULL, NULL, 0, NULL));
     expect_null_object(cscd_detector_curve_changes(NULL, AT_START, AT_END, NULL, 0, NULL));
     expect_null_object(cscd_detector_set_rules(NULL, NULL, 0, NULL, 0));

@@ -239,6 +239,32 @@ static void ask_solver(caller_state *s) {
     expect_that(close.value.count == near.value.count, "cscd_proximities", "their number");
 }
 
+static void track_events(caller_state *s) {
+    cscd_event_tracker *tracker = NULL;
+    OPTIONS(cscd_event_options, cscd_event_defaults_sized, options);
+    expect_that(options.value.rings == 2, "cscd_event_options", "the default of rings");
+    REFUSE(cscd_event_options, options.value,
+           cscd_event_tracker_create(s->context, s->mesh, &options.value, &tracker),
+           cscd_context_detail(s->context));
+    expect_ok(s, cscd_event_tracker_create(s->context, s->mesh, &options.value, &tracker), "tracker");
+    GUARDED(cscd_intersection_pairs, found);
+    expect_ok(
+        s, cscd_detector_find_intersections(s->detector, CSCD_DOUBLES(end, VERTEX_COUNT), NULL, &found.value),
+        "cscd_detector_find_intersections");
+    REFUSE(cscd_intersection_pairs, found.value, cscd_event_tracker_add_frame(tracker, 1, &found.value),
+           cscd_context_detail(s->context));
+    expect_ok(s, cscd_event_tracker_add_frame(tracker, 1, &found.value), "cscd_event_tracker_add_frame");
+    GUARDED(cscd_events, taken);
+    expect_ok(s, cscd_event_tracker_take(tracker, &taken.value), "cscd_event_tracker_take");
+    EXPECT_FILLED(cscd_events, taken);
+    expect_that(taken.value.open == (found.value.count > 0), "cscd_events", "its values");
+    GUARDED(cscd_events, events);
+    expect_ok(s, cscd_event_tracker_finish(tracker, &events.value), "cscd_event_tracker_finish");
+    expect_guard(events.guard, "cscd_events");
+    expect_that(events.value.count == taken.value.open, "cscd_events", "their number");
+    cscd_event_tracker_destroy(tracker);
+}
+
 static void ask_bounds(caller_state *s) {
     const cscd_view *x0 = CSCD_DOUBLES(start, VERTEX_COUNT), *x1 = CSCD_DOUBLES(end, VERTEX_COUNT);
     double reached[VERTEX_COUNT * 3], lengths[VERTEX_COUNT];
@@ -304,6 +330,7 @@ int main(void) {
     create_plan_from_parts(&s);
     create_detector(&s);
     ask_detector(&s);
+    track_events(&s);
     ask_solver(&s);
     ask_bounds(&s);
     create_sensors(&s);

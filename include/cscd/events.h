@@ -1,0 +1,183 @@
+/* Events: what intersects or touches somewhere for some time, followed through the frames of a recording. Part of
+ * cscd/cscd.h, which says what holds for every function.
+ *
+ * An *event* is what two parts have to do with each other at one place: it begins in one frame of a recording and ends in
+ * a later one or in the same. (In docs/theory/curves.md the word stands for an edge that passes through a face.) A tracker
+ * is given what a detector finds, frame by frame, and gives out the events. Four things make one up:
+ *   pairs      of triangles that intersect or touch in a frame, of any kind
+ *   curves     each piece, in the parts of its two triangles
+ *   depths     each point, in the part that it is in and the part that has its nearest point
+ *   contacts   of the interval that ends in a frame. They count for this frame
+ * Each has some triangles: a pair and a piece their two, a depth those at its vertex or edge, a contact those of its two
+ * features. A vertex of a wire, or a point, counts like a triangle, and a half-space has none. Two things belong to one
+ * event if they are of the same pair of parts, not more than `gap` frames were given between theirs, and a triangle of
+ * one is within `rings` rings of a triangle of the other; so do things that are joined by others. Triangles are within 0
+ * rings if they are the same, within 1 if they share a vertex, and within k if between a vertex of one and a vertex of the
+ * other lie at most k - 1 edges of the mesh. Vertices that seams unite are one.
+ *
+ * So events that meet are one from their beginnings on, and one that splits stays one while its pieces last. Nothing
+ * depends on when a thing became known: chunks of a recording may be tracked apart and merged, in any order, and give
+ * the same events, bit for bit. Where depths are asked for, what is buried joins the curves around it, and a body that
+ * is wholly inside another one stays an event.
+ *
+ * A tracker needs memory for what is open and for events that nobody has taken yet, not for the recording. It holds one
+ * mesh: where a mesh changes, the events end with cscd_event_tracker_finish, and another tracker goes on. */
+#ifndef CSCD_EVENTS_API_H
+#define CSCD_EVENTS_API_H
+
+#include <cscd/intersections.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Follows events through the frames of a recording. */
+typedef struct cscd_event_tracker cscd_event_tracker;
+
+/* Options of a tracker; start from cscd_event_defaults. Arrays are copied. */
+typedef struct cscd_event_options {
+    uint32_t struct_size; /* set by cscd_event_defaults */
+    uint32_t rings;       /* 2 by default */
+    uint32_t gap;         /* so many frames without it do not end an event; 0 by default */
+
+    /* Labels of triangles, as for cscd_detector_set_parts; NULL and 0, the default: objects are the parts. */
+    uint32_t part_count;
+    const uint32_t *labels;
+
+    /* Pairs of vertices that count as one, as for a detector; none by default. */
+    const uint32_t *seams;
+    size_t seam_count;
+
+    /* This is a later chunk of a recording: another tracker has the frames before, and this one is to be merged into it.
+     * What may go on from there is given out only then, or by cscd_event_tracker_finish. false by default. */
+    bool later_chunk;
+    uint8_t reserved[7];
+} cscd_event_options;
+
+/* The default options. */
+CSCD_API void cscd_event_defaults_sized(cscd_event_options *out, size_t size);
+static inline cscd_event_options cscd_event_defaults(void) {
+    cscd_event_options options;
+    cscd_event_defaults_sized(&options, sizeof options);
+    return options;
+}
+
+/* Creates a tracker that has no frames yet, and keeps the mesh. options may be NULL. INVALID_ARGUMENT: a label is too
+ * large, or a seam names a vertex that there is not. */
+CSCD_API cscd_status cscd_event_tracker_create(cscd_context *context, const cscd_mesh *mesh,
+                                               const cscd_event_options *options, cscd_event_tracker **out);
+
+/* Gives the tracker back, and its lists. */
+CSCD_API void cscd_event_tracker_destroy(cscd_event_tracker *tracker);
+
+/* ---- what goes in --------------------------------------------------------------------------------------- */
+
+/* Adds contacts of the interval that ends in the next frame: a list of a step, or any part of it. The list is copied, so
+ * the detector may be asked for the intersections of that frame afterwards. INVALID_ARGUMENT: a contact is not of this
+ * mesh. */
+CSCD_API cscd_status cscd_event_tracker_add_contacts(cscd_event_tracker *tracker,
+                                                     const cscd_contact *contacts, size_t contact_count);
+
+/* Adds a frame, whose number is larger than that of the frame before, and what was found in it; NULL: nothing was looked
+ * for. Which events there are follows from pairs, depths and contacts; without curves or depths lengths or depths
+ * are 0. INVALID_ARGUMENT: the number is not larger, *found has no list, or it is not of this mesh. */
+CSCD_API cscd_status cscd_event_tracker_add_frame_sized(cscd_event_tracker *tracker, uint64_t frame,
+                                                        const cscd_intersection_pairs *found, size_t size);
+static inline cscd_status cscd_event_tracker_add_frame(cscd_event_tracker *tracker, uint64_t frame,
+                                                       const cscd_intersection_pairs *found) {
+    return cscd_event_tracker_add_frame_sized(tracker, frame, found, sizeof *found);
+}
+
+/* ---- what comes out ------------------------------------------------------------------------------------- */
+
+/* An event. What it has in one frame may be in several places; those that are joined within the frame are a *group*. The
+ * worst group has the greatest depth; of several the greatest length, then the most pairs, then the most contacts, then
+ * the first frame. It never grows. */
+typedef struct cscd_event {
+    uint32_t a, b;        /* parts; a <= b */
+    uint64_t first_frame; /* the number of the first frame that has something of it, */
+    uint64_t last_frame;  /* of the last one, */
+    uint64_t worst_frame; /* and of the one that has its worst group */
+    uint64_t kinds;       /* of all its pairs: a set of cscd_intersection_kind */
+    uint64_t pairs;       /* so many, all frames together */
+    uint64_t depths;      /* the same of points with a depth */
+    uint64_t contacts;    /* and of contacts */
+    double depth;         /* the greatest; 0: none is known */
+    double length;        /* the greatest length of the curves of a group, up to rounding */
+
+    /* A place to look at in the worst frame: the deepest point, else one of the first curve, else the earliest contact,
+     * else none: NaN, since pairs alone have no positions. The triangle is there; UINT32_MAX: a contact of loose
+     * features. */
+    double x[3];
+    uint32_t triangle;
+
+    /* The least one of the first frame; UINT32_MAX: loose features alone. With the first frame and the parts it tells events
+     * apart. */
+    uint32_t first_triangle;
+} cscd_event;
+
+/* Events, sorted by (first_frame, a, b, first_triangle). The list belongs to the tracker and lives until its next call. */
+typedef struct cscd_events {
+    const cscd_event *items;
+    size_t count;
+    size_t open; /* so many events may go on, and are not in the list */
+} cscd_events;
+
+/* Gives out the events that have ended since the last call. What is never taken comes with cscd_event_tracker_finish. */
+CSCD_API cscd_status cscd_event_tracker_take_sized(cscd_event_tracker *tracker, cscd_events *out,
+                                                   size_t size);
+static inline cscd_status cscd_event_tracker_take(cscd_event_tracker *tracker, cscd_events *out) {
+    return cscd_event_tracker_take_sized(tracker, out, sizeof *out);
+}
+
+/* The recording has ended: gives out all events that are left, those that may go on included. The tracker then has no
+ * frames, and may follow another recording of the mesh. INVALID_ARGUMENT: contacts wait for the frame that ends their
+ * interval. An example, the upper sheet on its way down through the lower one, which prints "1 event, frames 6 to 8":
+ *
+ *     cscd_event_tracker *tracker = NULL;
+ *     cscd_intersection_pairs found;
+ *     cscd_events events = {0};
+ *     cscd_status status = cscd_event_tracker_create(context, mesh, NULL, &tracker);
+ *     for (uint32_t frame = 0; status == CSCD_OK && frame < 12; frame++) {
+ *         for (uint32_t v = SHEET; v < n; v++) x1[3 * v + 2] = 0.55 - 0.1 * frame + 0.1 * (v % SIDE);
+ *         status = cscd_detector_find_intersections(detector, CSCD_DOUBLES(x1, n), NULL, &found);
+ *         if (status == CSCD_OK) status = cscd_event_tracker_add_frame(tracker, frame, &found);
+ *     }
+ *     if (status == CSCD_OK) status = cscd_event_tracker_finish(tracker, &events);
+ *     for (size_t i = 0; i < events.count; i++)
+ *         printf("%d event, frames %d to %d", (int)events.count, (int)events.items[i].first_frame,
+ *                (int)events.items[i].last_frame);
+ *     cscd_event_tracker_destroy(tracker);
+ */
+CSCD_API cscd_status cscd_event_tracker_finish_sized(cscd_event_tracker *tracker, cscd_events *out,
+                                                     size_t size);
+static inline cscd_status cscd_event_tracker_finish(cscd_event_tracker *tracker, cscd_events *out) {
+    return cscd_event_tracker_finish_sized(tracker, out, sizeof *out);
+}
+
+/* ---- chunks --------------------------------------------------------------------------------------------- */
+
+/* Adds all that `next` has, a tracker of the frames that follow, made with later_chunk and else with the same options,
+ * for the same mesh, in the same context. Contacts of the interval between the two go to `next`, before its first frame.
+ * next stays as it is; what was taken from it before is not given out again. INVALID_ARGUMENT: they do not fit together, or
+ * contacts wait for a frame. Merging trackers in any order, and grouped in any way, gives the same as one tracker of
+ * all frames. */
+CSCD_API cscd_status cscd_event_tracker_merge(cscd_event_tracker *tracker, const cscd_event_tracker *next);
+
+/* Writes all that the tracker has as bytes, the same on every machine, for a file or another process; nothing is taken
+ * from it. They belong to the tracker and live until its next call. Trackers with the same frames have the same bytes,
+ * however they were merged, unless events were taken. INVALID_ARGUMENT: contacts wait for a frame. */
+CSCD_API cscd_status cscd_event_tracker_save(cscd_event_tracker *tracker, const uint8_t **bytes,
+                                             size_t *byte_count);
+
+/* Replaces what the tracker has by what was saved from another one of the same mesh and options. Contacts that wait are
+ * gone. INVALID_ARGUMENT: the bytes are not whole, or are of another mesh or other options; the tracker then stays as
+ * it was. */
+CSCD_API cscd_status cscd_event_tracker_load(cscd_event_tracker *tracker, const uint8_t *bytes,
+                                             size_t byte_count);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

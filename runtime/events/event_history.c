@@ -1,0 +1,213 @@
+/* The events of a row of frames, and how two rows that follow each other become one. */
+#include "runtime/events/event_history.h"
+
+#include <assert.h>
+#include <string.h>
+
+/* ---- memory --------------------------------------------------------------------------------------------- */
+
+static bool reserve_events(cscd_context *context, event_history *h, size_t more) {
+    if (more <= h->event_capacity - h->event_count) return true;
+    size_t capacity = room_with_spare(h->event_count + more);
+    if (capacity >= NO_EVENT) return false;
+    tracked_event *events = context_reserve(context, capacity, sizeof *events);
+    uint32_t *parents = context_reserve(context, capacity, sizeof *parents);
+    if (events == NULL || parents == NULL) {
+        context_free(context, events);
+        context_free(context, parents);
+        return false;
+    }
+    if (h->event_count > 0) {
+        memcpy(events, h->events, h->event_count * sizeof *events);
+        memcpy(parents, h->parents, h->event_count * sizeof *parents);
+    }
+    context_free(context, h->events);
+    context_free(context, h->parents);
+    h->events = events;
+    h->parents = parents;
+    h->event_capacity = capacity;
+    return true;
+}
+
+bool event_history_reserve(cscd_context *context, event_history *h, size_t events, size_t closed) {
+    if (!reserve_events(context, h, events)) return false;
+    if (closed <= h->closed_capacity - h->closed_count) return true;
+    size_t capacity = room_with_spare(h->closed_count + closed);
+    tracked_event *grown = context_grow(context, h->closed, h->closed_count, capacity, sizeof *grown);
+    if (grown == NULL) return false;
+    h->closed = grown;
+    h->closed_capacity = capacity;
+    return true;
+}
+
+void event_history_clear(event_history *h) {
+    h->frame_count = h->first_frame = h->last_frame = 0;
+    h->event_count = h->open_count = h->closed_count = 0;
+    stamp_table_clear(&h->first);
+    stamp_table_clear(&h->last);
+}
+
+void event_history_free(cscd_context *context, event_history *h) {
+    context_free(context, h->events);
+    context_free(context, h->parents);
+    context_free(context, h->closed);
+    stamp_table_free(context, &h->first);
+    stamp_table_free(context, &h->last);
+    *h = (event_history){.gap = h->gap, .keeps_first = h->keeps_first};
+}
+
+/* ---- events that are no longer needed ------------------------------------------------------------------- */
+
+static uint32_t halve_path(event_history *h, uint32_t event) {
+    uint32_t *parents = h->parents;
+    while (parents[event] != event) {
+        parents[event] = parents[parents[event]];
+        event = parents[event];
+    }
+    return event;
+}
+
+/* Takes stamps out that are too old, and makes the events that have it all their owners. */
+static void renew_stamps(event_history *h) {
+    stamp *kept = h->last.stamps;
+    for (size_t i = 0; i < h->last.count; i++) {
+        stamp s = h->last.stamps[i];
+        if (!frame_is_last(h, s.frame)) continue;
+        s.owner = halve_path(h, s.owner);
+        *kept++ = s;
+    }
+    if (h->last.count > 0) stamp_table_shrink(&h->last, (size_t)(kept - h->last.stamps));
+    for (size_t i = 0; i < h->first.count; i++)
+        h->first.stamps[i].owner = halve_path(h, h->first.stamps[i].owner);
+}
+
+/* Moves the events that are their own parents together, in their order; parents say where to, meanwhile. */
+static void compact_events(event_history *h) {
+    renew_stamps(h);
+    uint32_t count = 0;
+    for (uint32_t e = 0; e < h->event_count; e++) {
+        if (h->parents[e] != e) continue;
+        h->events[count] = h->events[e];
+        h->parents[e] = count++;
+    }
+    for (size_t i = 0; i < h->last.count; i++) h->last.stamps[i].owner = h->parents[h->last.stamps[i].owner];
+    for (size_t i = 0; i < h->first.count; i++)
+        h->first.stamps[i].owner = h->parents[h->first.stamps[i].owner];
+    for (uint32_t e = 0; e < count; e++) h->parents[e] = e;
+    h->event_count = count;
+}
+
+static void close_event(event_history *h, uint32_t event) {
+    assert(h->closed_count < h->closed_capacity);
+    h->closed[h->closed_count++] = h->events[event];
+    h->parents[event] = NO_EVENT;
+    h->open_count--;
+}
+
+void event_history_close(event_history *h) {
+    for (uint32_t e = 0; e < h->event_count; e++) {
+        if (h->parents[e] == e) close_event(h, e);
+    }
+}
+
+static void close_old_events(event_history *h) {
+    for (uint32_t e = 0; e < h->event_count; e++) {
+        const tracked_event *event = &h->events[e];
+        if (h->parents[e] == e && !frame_is_last(h, event->last) && !frame_is_first(h, event->first))
+            close_event(h, e);
+    }
+}
+
+/* ---- two rows ------------------------------------------------------------------------------------------- */
+
+static void shift_event(tracked_event *event, uint64_t frames) {
+    event->first += frames;
+    event->last += frames;
+    event->worst.index += frames;
+}
+
+static void add_events(event_history *h, const event_history *next) {
+    uint32_t offset = (uint32_t)h->event_count;
+    for (size_t i = 0; i < next->event_count; i++) {
+        uint32_t parent = next->parents[i];
+        h->events[offset + i] = next->events[i];
+        shift_event(&h->events[offset + i], h->frame_count);
+        h->parents[offset + i] = parent != NO_EVENT ? offset + parent : NO_EVENT;
+    }
+    h->event_count += next->event_count;
+    h->open_count += next->open_count;
+    for (size_t i = 0; i < next->closed_count; i++) {
+        tracked_event *closed = &h->closed[h->closed_count++];
+        *closed = next->closed[i];
+        shift_event(closed, h->frame_count);
+    }
+}
+
+/* The events of both stamps are one if the frames are near enough to each other. */
+static void join_stamps(event_history *h, const stamp *before, const stamp *after) {
+    if (before == NULL || after->frame - before->frame > (uint64_t)h->gap + 1) return;
+    uint32_t a = halve_path(h, before->owner), b = halve_path(h, after->owner);
+    if (a == b) return;
+    tracked_event_join(&h->events[a], &h->events[b]);
+    h->parents[b] = a;
+    h->open_count--;
+}
+
+static stamp moved_stamp(const stamp *s, uint64_t frames, size_t events) {
+    return (stamp){s->parts, s->frame + frames, s->element, s->owner + (uint32_t)events};
+}
+
+/* Joins what the next row has first to what this one has last. */
+static void join_rows(event_history *h, const mesh_rings *rings, const event_history *next, size_t offset) {
+    for (size_t i = 0; i < next->first.count; i++) {
+        const stamp s = moved_stamp(&next->first.stamps[i], h->frame_count, offset);
+        join_stamps(h, stamp_table_find(&h->last, s.parts, s.element), &s);
+        for (size_t n = rings->odd ? rings->offsets[s.element] : 0;
+             rings->odd && n < rings->offsets[s.element + 1]; n++)
+            join_stamps(h, stamp_table_find(&h->last, s.parts, rings->neighbours[n]), &s);
+    }
+}
+
+static void add_stamps(event_history *h, const event_history *next, size_t offset) {
+    for (size_t i = 0; i < next->last.count; i++) {
+        const stamp *s = &next->last.stamps[i];
+        if (!frame_is_last(next, s->frame)) continue;
+        const stamp moved = moved_stamp(s, h->frame_count, offset);
+        stamp *known = stamp_table_find(&h->last, s->parts, s->element);
+        if (known != NULL)
+            *known = moved;
+        else
+            stamp_table_add(&h->last, moved);
+    }
+    for (size_t i = 0; i < next->first.count && h->keeps_first; i++) {
+        const stamp moved = moved_stamp(&next->first.stamps[i], h->frame_count, offset);
+        if (moved.frame > h->gap || stamp_table_find(&h->first, moved.parts, moved.element) != NULL) continue;
+        stamp_table_add(&h->first, moved);
+    }
+}
+
+static bool make_room(cscd_context *context, event_history *h, const event_history *next) {
+    if (h->event_count > 2 * h->open_count + h->last.count / 16 + 16 ||
+        next->last.count > h->last.capacity - h->last.count)
+        compact_events(h);
+    size_t events = h->event_count + next->event_count;
+    bool early = h->keeps_first && h->frame_count <= h->gap;
+    return event_history_reserve(context, h, next->event_count, events + next->closed_count) &&
+           stamp_table_reserve(context, &h->last, next->last.count) &&
+           (!early || stamp_table_reserve(context, &h->first, next->first.count));
+}
+
+cscd_status event_history_append(cscd_context *context, event_history *h, const mesh_rings *rings,
+                                 const event_history *next) {
+    if (next->frame_count == 0) return CSCD_OK;
+    if (!make_room(context, h, next)) return CSCD_OUT_OF_MEMORY;
+    size_t offset = h->event_count;
+    add_events(h, next);
+    join_rows(h, rings, next, offset);
+    add_stamps(h, next, offset);
+    if (h->frame_count == 0) h->first_frame = next->first_frame;
+    h->last_frame = next->last_frame;
+    h->frame_count += next->frame_count;
+    close_old_events(h);
+    return CSCD_OK;
+}

@@ -1,0 +1,347 @@
+/* The tracker of the public API: options, frames, events that have ended, chunks. */
+#include "runtime/events/event_tracker.h"
+
+#include "src/core/sort.h"
+#include "src/core/struct_size.h"
+
+#include <string.h>
+
+static const cscd_event_options default_options = {.struct_size = sizeof default_options, .rings = 2};
+
+void cscd_event_defaults_sized(cscd_event_options *out, size_t size) {
+    struct_give_options(out, size, &default_options, sizeof default_options);
+}
+
+/* ---- options -------------------------------------------------------------------------------------------- */
+
+static cscd_status check_seams(const cscd_mesh *mesh, const cscd_event_options *options) {
+    if (options->seams == NULL && options->seam_count > 0)
+        return context_fail(mesh->context, CSCD_INVALID_ARGUMENT, "seams is NULL, but there are to be %zu",
+                            options->seam_count);
+    for (size_t i = 0; i < 2 * options->seam_count; i++) {
+        if (options->seams[i] < mesh->vertex_count) continue;
+        return context_fail(mesh->context, CSCD_INVALID_ARGUMENT,
+                            "pair %zu of seams names vertex %u, but the mesh has %u", i / 2,
+                            options->seams[i], mesh->vertex_count);
+    }
+    return CSCD_OK;
+}
+
+static cscd_status check_options(const cscd_mesh *mesh, const cscd_event_options *options) {
+    cscd_status status = part_labels_check(mesh, options->labels, options->part_count, "cscd_event_options");
+    if (status == CSCD_OK) status = check_seams(mesh, options);
+    uint64_t elements = (uint64_t)mesh->triangle_count + mesh->vertex_count;
+    if (status == CSCD_OK && options->rings == 0 && elements > UINT32_MAX)
+        return context_fail(mesh->context, CSCD_INVALID_ARGUMENT,
+                            "rings is 0, but the mesh has more than 2^32 vertices and triangles together; "
+                            "set rings to 1 or more");
+    return status;
+}
+
+static uint64_t hash_number(uint64_t hash, uint64_t number) {
+    for (int shift = 0; shift < 64; shift += 8) hash = (hash ^ (number >> shift & 0xff)) * 0x100000001b3u;
+    return hash;
+}
+
+/* Trackers fit together if their frames are joined by the same rules. Seams count by what they unite. */
+static uint64_t hash_options(const cscd_event_tracker *t, uint64_t mesh_hash) {
+    const cscd_mesh *mesh = &t->mesh;
+    uint64_t hash = hash_number(hash_number(mesh_hash, t->rings_wanted), t->history.gap);
+    for (uint32_t v = 0; v < mesh->vertex_count && !t->rings.same; v++)
+        hash = hash_number(hash, t->rings.names[v]);
+    if (t->parts.triangles == NULL) return hash;
+    hash = hash_number(hash, t->parts.part_count);
+    for (uint32_t i = 0; i < mesh->triangle_count; i++) hash = hash_number(hash, t->parts.triangles[i]);
+    return hash;
+}
+
+/* ---- creation ------------------------------------------------------------------------------------------- */
+
+static void free_memory(cscd_event_tracker *t) {
+    cscd_context *context = t->context;
+    part_labels_free(context, &t->parts);
+    mesh_rings_free(context, &t->rings);
+    event_history_free(context, &t->history);
+    frame_groups_free(context, &t->groups);
+    context_free(context, t->contacts);
+    context_free(context, t->given);
+    context_free(context, t->spare_closed);
+    context_free(context, t->bytes);
+    context_free(context, t);
+}
+
+static void free_tracker(reference_count *references) {
+    cscd_event_tracker *t = (cscd_event_tracker *)references;
+    cscd_context *context = t->context;
+    cscd_mesh mesh = t->mesh;
+    if (!context_broken(context)) free_memory(t);
+    mesh_release(&mesh);
+    context_release(context);
+}
+
+static const char *validate_listed(const reference_count *object) {
+    const cscd_event_tracker *t = (const cscd_event_tracker *)object;
+    const event_history *h = &t->history;
+    size_t open = 0;
+    for (size_t e = 0; e < h->event_count; e++) {
+        if (h->parents[e] != NO_EVENT && h->parents[e] >= h->event_count)
+            return "an event of a tracker became one that there is not";
+        open += h->parents[e] == e;
+    }
+    if (open != h->open_count) return "a tracker has not counted its open events";
+    return part_labels_validate(&t->parts, &t->mesh);
+}
+
+static cscd_status create_parts(cscd_event_tracker *t, const cscd_event_options *options) {
+    t->rings_wanted = options->rings;
+    t->history.gap = options->gap;
+    t->history.keeps_first = options->later_chunk;
+    cscd_status status = part_labels_set(&t->mesh, options->labels, options->part_count, &t->parts);
+    if (status == CSCD_OK)
+        status = mesh_rings_create(&t->mesh, options->rings, options->seams, options->seam_count, &t->rings);
+    if (status == CSCD_OK) t->options_hash = hash_options(t, cscd_mesh_hash(&t->mesh));
+    return status;
+}
+
+static cscd_status create_tracker(cscd_context *context, const cscd_mesh *mesh,
+                                  const cscd_event_options *options, cscd_event_tracker **out) {
+    if (out == NULL)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_event_tracker_create: out is NULL");
+    cscd_event_options chosen = default_options;
+    cscd_mesh seen = mesh_seen_from(context, mesh);
+    cscd_status status = CSCD_OK;
+    if (options != NULL)
+        status = struct_take_options(context, &chosen, sizeof chosen, LEAST_SIZE(cscd_event_options), options,
+                                     "cscd_event_defaults");
+    if (status == CSCD_OK) status = check_options(&seen, &chosen);
+    if (status != CSCD_OK) return status;
+
+    cscd_event_tracker *t = context_allocate(context, 1, sizeof *t);
+    if (t == NULL) return context_out_of_memory(context);
+    t->context = context;
+    t->mesh = seen;
+    mesh_hold(mesh);
+    context_add_object(context, &t->references, free_tracker);
+    if (create_parts(t, &chosen) != CSCD_OK) {
+        cscd_event_tracker_destroy(t);
+        return context_out_of_memory(context);
+    }
+    context_list_object(context, &t->references, validate_listed);
+    *out = t;
+    return CSCD_OK;
+}
+
+cscd_status cscd_event_tracker_create(cscd_context *context, const cscd_mesh *mesh,
+                                      const cscd_event_options *options, cscd_event_tracker **out) {
+    if (context == NULL || mesh == NULL) return CSCD_NULL_OBJECT;
+    context_entry entry;
+    if (!context_enter(context, &entry)) return entry.status;
+    return context_leave(&entry, create_tracker(context, mesh, options, out));
+}
+
+void cscd_event_tracker_destroy(cscd_event_tracker *t) {
+    if (t != NULL) context_destroy_object(t->context, &t->references);
+}
+
+/* ---- frames --------------------------------------------------------------------------------------------- */
+
+static cscd_status add_contacts(cscd_event_tracker *t, const cscd_contact *contacts, size_t count) {
+    cscd_status status =
+        given_contacts_check(t->context, &t->mesh, "cscd_event_tracker_add_contacts", contacts, count);
+    if (status != CSCD_OK || count == 0) return status;
+    size_t before = t->contact_count;
+    if (count > t->contact_capacity - before) {
+        size_t capacity = room_with_spare(before + count);
+        cscd_contact *grown = context_grow(t->context, t->contacts, before, capacity, sizeof *grown);
+        if (grown == NULL) return context_out_of_memory(t->context);
+        t->contacts = grown;
+        t->contact_capacity = capacity;
+    }
+    memcpy(t->contacts + before, contacts, count * sizeof *contacts);
+    t->contact_count += count;
+    return CSCD_OK;
+}
+
+cscd_status cscd_event_tracker_add_contacts(cscd_event_tracker *tracker, const cscd_contact *contacts,
+                                            size_t contact_count) {
+    if (tracker == NULL) return CSCD_NULL_OBJECT;
+    context_entry entry;
+    if (!object_enter(tracker, &entry)) return entry.status;
+    return context_leave(&entry, add_contacts(tracker, contacts, contact_count));
+}
+
+static cscd_status take_found(cscd_event_tracker *t, uint64_t frame, const cscd_intersection_pairs *found,
+                              size_t size, cscd_intersection_pairs *out) {
+    const event_history *h = &t->history;
+    if (h->frame_count > 0 && frame <= h->last_frame)
+        return context_fail(t->context, CSCD_INVALID_ARGUMENT,
+                            "frame %llu does not come after frame %llu; frames go in by ascending numbers",
+                            (unsigned long long)frame, (unsigned long long)h->last_frame);
+    if (found == NULL) return CSCD_OK;
+    cscd_status status = struct_take(t->context, out, sizeof *out, LEAST_SIZE(cscd_intersection_pairs), found,
+                                     size, "cscd_intersection_pairs");
+    return status == CSCD_OK ? frame_input_check(&t->mesh, out) : status;
+}
+
+static cscd_status add_frame(cscd_event_tracker *t, uint64_t frame, const cscd_intersection_pairs *found,
+                             size_t size) {
+    cscd_intersection_pairs taken = {.items = NULL};
+    cscd_status status = take_found(t, frame, found, size, &taken);
+    if (status != CSCD_OK) return status;
+    const frame_input input = {found != NULL ? &taken : NULL, t->contacts, t->contact_count, frame};
+    event_history row;
+    status = frame_groups_find(&t->groups, &t->mesh, &t->parts, &t->rings, &input, &row);
+    if (status == CSCD_OK) status = event_history_append(t->context, &t->history, &t->rings, &row);
+    if (status == CSCD_OK) t->contact_count = 0;
+    return context_explain(t->context, status);
+}
+
+cscd_status cscd_event_tracker_add_frame_sized(cscd_event_tracker *tracker, uint64_t frame,
+                                               const cscd_intersection_pairs *found, size_t size) {
+    if (tracker == NULL) return CSCD_NULL_OBJECT;
+    context_entry entry;
+    if (!object_enter(tracker, &entry)) return entry.status;
+    return context_leave(&entry, add_frame(tracker, frame, found, size));
+}
+
+/* ---- events that have ended ----------------------------------------------------------------------------- */
+
+static bool reserve_given(cscd_event_tracker *t, size_t count) {
+    const array_list list = {
+        {ARRAY(t->given, room_with_spare(count)), ARRAY(t->spare_closed, room_with_spare(count))}};
+    return context_renew_all(t->context, list, &t->given_capacity, count);
+}
+
+/* There is room. */
+static cscd_events give_closed(cscd_event_tracker *t) {
+    event_history *h = &t->history;
+    sort_items(h->closed, t->spare_closed, h->closed_count, sizeof *h->closed, tracked_event_compare);
+    for (size_t i = 0; i < h->closed_count; i++) t->given[i] = tracked_event_describe(&h->closed[i]);
+    const cscd_events events = {t->given, h->closed_count, h->open_count};
+    h->closed_count = 0;
+    return events;
+}
+
+static cscd_status take_events(cscd_event_tracker *t, cscd_events *out, size_t size) {
+    if (out == NULL)
+        return context_fail(t->context, CSCD_INVALID_ARGUMENT, "cscd_event_tracker_take: out is NULL");
+    if (!reserve_given(t, t->history.closed_count)) return context_out_of_memory(t->context);
+    const cscd_events events = give_closed(t);
+    struct_give(out, size, &events, sizeof events);
+    return CSCD_OK;
+}
+
+cscd_status cscd_event_tracker_take_sized(cscd_event_tracker *tracker, cscd_events *out, size_t size) {
+    if (tracker == NULL) return CSCD_NULL_OBJECT;
+    context_entry entry;
+    if (!object_enter(tracker, &entry)) return entry.status;
+    return context_leave(&entry, take_events(tracker, out, size));
+}
+
+static cscd_status check_no_contacts(const cscd_event_tracker *t, const char *who) {
+    if (t->contact_count == 0) return CSCD_OK;
+    return context_fail(t->context, CSCD_INVALID_ARGUMENT,
+                        "%s: %zu contacts wait for the frame that ends their interval; add it first", who,
+                        t->contact_count);
+}
+
+static cscd_status finish_events(cscd_event_tracker *t, cscd_events *out, size_t size) {
+    event_history *h = &t->history;
+    if (out == NULL)
+        return context_fail(t->context, CSCD_INVALID_ARGUMENT, "cscd_event_tracker_finish: out is NULL");
+    cscd_status status = check_no_contacts(t, "cscd_event_tracker_finish");
+    if (status != CSCD_OK) return status;
+    if (!event_history_reserve(t->context, h, 0, h->open_count) ||
+        !reserve_given(t, h->closed_count + h->open_count))
+        return context_out_of_memory(t->context);
+    event_history_close(h);
+    const cscd_events events = give_closed(t);
+    event_history_clear(h);
+    struct_give(out, size, &events, sizeof events);
+    return CSCD_OK;
+}
+
+cscd_status cscd_event_tracker_finish_sized(cscd_event_tracker *tracker, cscd_events *out, size_t size) {
+    if (tracker == NULL) return CSCD_NULL_OBJECT;
+    context_entry entry;
+    if (!object_enter(tracker, &entry)) return entry.status;
+    return context_leave(&entry, finish_events(tracker, out, size));
+}
+
+/* ---- chunks --------------------------------------------------------------------------------------------- */
+
+static cscd_status check_chunks(const cscd_event_tracker *t, const cscd_event_tracker *next) {
+    const event_history *h = &t->history, *n = &next->history;
+    cscd_context *context = t->context;
+    if (next->context != context || next == t)
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            next == t ? "a tracker cannot be merged with itself"
+                                      : "the trackers are of two contexts; save the one and load it in the "
+                                        "context of the other");
+    if (next->options_hash != t->options_hash)
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "the trackers have different meshes, rings, gaps, labels or seams");
+    if (!n->keeps_first)
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "the second tracker was made without later_chunk, so what may go on from the "
+                            "first one is not known");
+    if (h->frame_count > 0 && n->frame_count > 0 && n->first_frame <= h->last_frame)
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "the second tracker begins with frame %llu, which does not come after frame "
+                            "%llu, the last one of the first",
+                            (unsigned long long)n->first_frame, (unsigned long long)h->last_frame);
+    cscd_status status = check_no_contacts(t, "cscd_event_tracker_merge");
+    return status == CSCD_OK ? check_no_contacts(next, "cscd_event_tracker_merge") : status;
+}
+
+static cscd_status merge_chunks(cscd_event_tracker *t, const cscd_event_tracker *next) {
+    cscd_status status = check_chunks(t, next);
+    if (status == CSCD_OK) status = event_history_append(t->context, &t->history, &t->rings, &next->history);
+    return context_explain(t->context, status);
+}
+
+cscd_status cscd_event_tracker_merge(cscd_event_tracker *tracker, const cscd_event_tracker *next) {
+    if (tracker == NULL || next == NULL) return CSCD_NULL_OBJECT;
+    context_entry entry;
+    if (!object_enter(tracker, &entry)) return entry.status;
+    return context_leave(&entry, merge_chunks(tracker, next));
+}
+
+static cscd_status save_state(cscd_event_tracker *t, const uint8_t **bytes, size_t *byte_count) {
+    if (bytes == NULL || byte_count == NULL)
+        return context_fail(t->context, CSCD_INVALID_ARGUMENT, "cscd_event_tracker_save: %s is NULL",
+                            bytes == NULL ? "bytes" : "byte_count");
+    cscd_status status = check_no_contacts(t, "cscd_event_tracker_save");
+    size_t count = 0;
+    if (status == CSCD_OK) status = event_state_write(t, &count);
+    if (status != CSCD_OK) return context_explain(t->context, status);
+    *bytes = t->bytes;
+    *byte_count = count;
+    return CSCD_OK;
+}
+
+cscd_status cscd_event_tracker_save(cscd_event_tracker *tracker, const uint8_t **bytes, size_t *byte_count) {
+    if (tracker == NULL) return CSCD_NULL_OBJECT;
+    context_entry entry;
+    if (!object_enter(tracker, &entry)) return entry.status;
+    return context_leave(&entry, save_state(tracker, bytes, byte_count));
+}
+
+static cscd_status load_state(cscd_event_tracker *t, const uint8_t *bytes, size_t byte_count) {
+    if (bytes == NULL)
+        return context_fail(t->context, CSCD_INVALID_ARGUMENT, "cscd_event_tracker_load: bytes is NULL");
+    event_history loaded;
+    cscd_status status = event_state_read(t, bytes, byte_count, &loaded);
+    if (status != CSCD_OK) return context_explain(t->context, status);
+    event_history_free(t->context, &t->history);
+    t->history = loaded;
+    t->contact_count = 0;
+    return CSCD_OK;
+}
+
+cscd_status cscd_event_tracker_load(cscd_event_tracker *tracker, const uint8_t *bytes, size_t byte_count) {
+    if (tracker == NULL) return CSCD_NULL_OBJECT;
+    context_entry entry;
+    if (!object_enter(tracker, &entry)) return entry.status;
+    return context_leave(&entry, load_state(tracker, bytes, byte_count));
+}

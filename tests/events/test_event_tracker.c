@@ -1,0 +1,221 @@
+/* Events of random recordings are those of comparing everything with everything, whether the recording goes in at once,
+ * is cut into chunks that are merged in any order, or is saved and loaded on the way. */
+#include "tests/support/events/recorded_frames.h"
+#include "tests/support/events/recording_oracle.h"
+#include "tests/support/random.h"
+#include "tests/support/test.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#ifdef __SANITIZE_ADDRESS__
+enum { RECORDINGS = 60 };
+#else
+enum { RECORDINGS = 600 };
+#endif
+
+static void print_events(const char *name, const cscd_event *events, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        const cscd_event *e = &events[i];
+        printf(
+            "%s: parts %d %d frames %d..%d worst %d kinds %d pairs %d depths %d contacts %d depth %g length "
+            "%.17g x %g %g %g triangle %d first %d\n",
+            name, (int)e->a, (int)e->b, (int)e->first_frame, (int)e->last_frame, (int)e->worst_frame,
+            (int)e->kinds, (int)e->pairs, (int)e->depths, (int)e->contacts, e->depth, e->length, e->x[0],
+            e->x[1], e->x[2], (int)e->triangle, (int)e->first_triangle);
+    }
+}
+
+static void expect_events(const cscd_event *found, size_t found_count, const cscd_event *expected,
+                          size_t count) {
+    if (found_count == count && (count == 0 || memcmp(found, expected, count * sizeof *found) == 0)) return;
+    print_events("found", found, found_count);
+    print_events("expected", expected, count);
+    fail_msg("%zu events, expected %zu, or others", found_count, count);
+}
+
+static void expect_oracle(const recorded_frames *r, cscd_event_tracker *tracker) {
+    size_t count;
+    cscd_event *expected = recording_oracle(r, &count);
+    cscd_events found;
+    assert_int_equal(cscd_event_tracker_finish(tracker, &found), CSCD_OK);
+    assert_int_equal(found.open, 0);
+    expect_events(found.items, found.count, expected, count);
+    free(expected);
+}
+
+static void events_are_those_of_the_oracle(void **state) {
+    (void)state;
+    size_t long_ones = 0, joined = 0;
+    for (uint64_t seed = 0; seed < RECORDINGS; seed++) {
+        recorded_frames r;
+        random_seed(seed);
+        recorded_frames_create(&r, NULL, (uint32_t)random_integer(0, 12));
+        cscd_event_tracker *tracker = recorded_tracker(&r, random_integer(0, 1) == 0);
+        for (int again = 0; again < 2; again++) {
+            recorded_frames_add(&r, tracker, 0, r.frame_count);
+            expect_oracle(&r, tracker);
+        }
+        cscd_event_tracker_destroy(tracker);
+        size_t count;
+        cscd_event *expected = recording_oracle(&r, &count);
+        for (size_t i = 0; i < count; i++) {
+            long_ones += expected[i].last_frame > expected[i].first_frame;
+            joined += expected[i].contacts > 0 && expected[i].pairs > 0 && expected[i].depths > 0;
+        }
+        free(expected);
+        recorded_frames_free(&r);
+    }
+    assert_true(long_ones > RECORDINGS / 2 && joined > RECORDINGS / 8);
+}
+
+static int compare_events(const void *left, const void *right) {
+    const cscd_event *s = left, *t = right;
+    if (s->first_frame != t->first_frame) return s->first_frame < t->first_frame ? -1 : 1;
+    if (s->a != t->a) return s->a < t->a ? -1 : 1;
+    if (s->b != t->b) return s->b < t->b ? -1 : 1;
+    return s->first_triangle < t->first_triangle ? -1 : s->first_triangle > t->first_triangle;
+}
+
+/* What is taken on the way has ended, and together it is everything. Events of loose features alone may have equal keys. */
+static void what_is_taken_is_everything(void **state) {
+    (void)state;
+    for (uint64_t seed = 0; seed < RECORDINGS; seed++) {
+        recorded_frames r;
+        random_seed(seed);
+        recorded_frames_create(&r, NULL, 12);
+        cscd_event_tracker *tracker = recorded_tracker(&r, false);
+        cscd_event *taken = calloc(1000, sizeof *taken);
+        size_t taken_count = 0, count;
+        cscd_events events;
+        assert_non_null(taken);
+        for (uint32_t f = 0; f <= r.frame_count; f++) {
+            if (f < r.frame_count) recorded_frames_add(&r, tracker, f, f + 1);
+            cscd_status status = f < r.frame_count ? cscd_event_tracker_take(tracker, &events)
+                                                   : cscd_event_tracker_finish(tracker, &events);
+            assert_int_equal(status, CSCD_OK);
+            for (size_t i = 0; i < events.count; i++) {
+                taken[taken_count++] = events.items[i];
+                uint32_t last = 0;
+                while (r.frames[last].number != events.items[i].last_frame) last++;
+                if (f < r.frame_count) assert_int_equal(last + r.options.gap + 1, f);
+            }
+        }
+        cscd_event *expected = recording_oracle(&r, &count);
+        qsort(taken, taken_count, sizeof *taken, compare_events);
+        assert_int_equal(taken_count, count);
+        for (size_t i = 0; i < count; i++) assert_int_equal(compare_events(&taken[i], &expected[i]), 0);
+        free(expected);
+        free(taken);
+        cscd_event_tracker_destroy(tracker);
+        recorded_frames_free(&r);
+    }
+}
+
+/* ---- chunks --------------------------------------------------------------------------------------------- */
+
+static cscd_event_tracker *saved_and_loaded(const recorded_frames *r, cscd_event_tracker *tracker,
+                                            bool later) {
+    const uint8_t *bytes, *again;
+    size_t size, size_again;
+    cscd_event_tracker *loaded = recorded_tracker(r, later);
+    assert_int_equal(cscd_event_tracker_save(tracker, &bytes, &size), CSCD_OK);
+    assert_int_equal(cscd_event_tracker_load(loaded, bytes, size), CSCD_OK);
+    assert_int_equal(cscd_event_tracker_save(loaded, &again, &size_again), CSCD_OK);
+    assert_int_equal(size, size_again);
+    assert_memory_equal(bytes, again, size);
+    cscd_event_tracker_destroy(tracker);
+    return loaded;
+}
+
+/* A tree of random shape. */
+static cscd_event_tracker *track_chunk(const recorded_frames *r, uint32_t begin, uint32_t end, bool later) {
+    cscd_event_tracker *tracker;
+    if (end - begin < 2 || random_integer(0, 3) == 0) {
+        tracker = recorded_tracker(r, later);
+        recorded_frames_add(r, tracker, begin, end);
+    } else {
+        uint32_t middle = (uint32_t)random_integer((int)begin, (int)end);
+        tracker = track_chunk(r, begin, middle, later);
+        cscd_event_tracker *next = track_chunk(r, middle, end, true);
+        if (random_integer(0, 1) == 0) {
+            /* The other way to the same: the second chunk grows further after the merge of its first half. */
+            assert_int_equal(cscd_event_tracker_merge(tracker, next), CSCD_OK);
+        } else {
+            cscd_event_tracker *copy = saved_and_loaded(r, next, true);
+            assert_int_equal(cscd_event_tracker_merge(tracker, copy), CSCD_OK);
+            next = copy;
+        }
+        cscd_event_tracker_destroy(next);
+    }
+    return random_integer(0, 3) == 0 ? saved_and_loaded(r, tracker, later) : tracker;
+}
+
+static void expect_same_bytes(cscd_event_tracker *a, cscd_event_tracker *b) {
+    const uint8_t *bytes_a, *bytes_b;
+    size_t size_a, size_b;
+    assert_int_equal(cscd_event_tracker_save(a, &bytes_a, &size_a), CSCD_OK);
+    assert_int_equal(cscd_event_tracker_save(b, &bytes_b, &size_b), CSCD_OK);
+    assert_int_equal(size_a, size_b);
+    assert_memory_equal(bytes_a, bytes_b, size_a);
+}
+
+static void chunks_give_the_same(void **state) {
+    (void)state;
+    for (uint64_t seed = 0; seed < RECORDINGS; seed++) {
+        recorded_frames r;
+        random_seed(seed);
+        recorded_frames_create(&r, NULL, (uint32_t)random_integer(1, 14));
+        bool later = random_integer(0, 1) == 0;
+        cscd_event_tracker *whole = recorded_tracker(&r, later);
+        recorded_frames_add(&r, whole, 0, r.frame_count);
+        for (int i = 0; i < 3; i++) {
+            cscd_event_tracker *merged = track_chunk(&r, 0, r.frame_count, later);
+            expect_same_bytes(whole, merged);
+            expect_oracle(&r, merged);
+            cscd_event_tracker_destroy(merged);
+        }
+        expect_oracle(&r, whole);
+        cscd_event_tracker_destroy(whole);
+        recorded_frames_free(&r);
+    }
+}
+
+/* All 2^(n-1) ways to cut, merged from the left. */
+static void every_way_to_cut(void **state) {
+    (void)state;
+    enum { FRAMES = 7 };
+    for (uint64_t seed = 0; seed < RECORDINGS / 20; seed++) {
+        recorded_frames r;
+        random_seed(seed + 5000);
+        recorded_frames_create(&r, NULL, FRAMES);
+        cscd_event_tracker *whole = recorded_tracker(&r, false);
+        recorded_frames_add(&r, whole, 0, FRAMES);
+        for (unsigned cuts = 0; cuts < 1u << (FRAMES - 1); cuts++) {
+            cscd_event_tracker *merged = recorded_tracker(&r, false);
+            for (uint32_t begin = 0, end = 1; end <= FRAMES; end++) {
+                if (end < FRAMES && (cuts >> (end - 1) & 1) == 0) continue;
+                cscd_event_tracker *next = recorded_tracker(&r, true);
+                recorded_frames_add(&r, next, begin, end);
+                assert_int_equal(cscd_event_tracker_merge(merged, next), CSCD_OK);
+                cscd_event_tracker_destroy(next);
+                begin = end;
+            }
+            expect_same_bytes(whole, merged);
+            cscd_event_tracker_destroy(merged);
+        }
+        cscd_event_tracker_destroy(whole);
+        recorded_frames_free(&r);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(events_are_those_of_the_oracle),
+        cmocka_unit_test(what_is_taken_is_everything),
+        cmocka_unit_test(chunks_give_the_same),
+        cmocka_unit_test(every_way_to_cut),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
