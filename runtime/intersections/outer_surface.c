@@ -11,7 +11,8 @@
 /* ---- memory -------------------------------------------------------------------------------------------- */
 
 static array_list list_of_cuts(outer_surface *o, size_t count) {
-    return (array_list){{ARRAY(o->cut_triangles, count), ARRAY(o->part_begins, count + 1)}};
+    return (array_list){
+        {ARRAY(o->cut_triangles, count), ARRAY(o->part_begins, count + 1), ARRAY(o->boxes, count)}};
 }
 
 void outer_surface_free(outer_surface *o) {
@@ -32,6 +33,33 @@ typedef struct part_taker {
     cut_part waiting; /* a part that may go on upwards */
     bool waits, out_of_memory;
 } part_taker;
+
+static outer_box box_of_part(const outer_part *part) {
+    const double(*p)[3] = part->corners;
+    outer_box box;
+    for (int k = 0; k < 3; k++) {
+        double low = p[0][k] < p[1][k] ? p[0][k] : p[1][k], high = p[0][k] < p[1][k] ? p[1][k] : p[0][k];
+        box.low[k] = p[2][k] < low ? p[2][k] : low;
+        box.high[k] = p[2][k] > high ? p[2][k] : high;
+    }
+    return box;
+}
+
+static outer_box empty_box(void) {
+    const double most = (double)INFINITY;
+    return (outer_box){{most, most, most}, {-most, -most, -most}};
+}
+
+static void box_parts(outer_box *box, const outer_part *parts, size_t count) {
+    *box = empty_box();
+    for (size_t i = 0; i < count; i++) {
+        outer_box part = box_of_part(&parts[i]);
+        for (int k = 0; k < 3; k++) {
+            box->low[k] = part.low[k] < box->low[k] ? part.low[k] : box->low[k];
+            box->high[k] = part.high[k] > box->high[k] ? part.high[k] : box->high[k];
+        }
+    }
+}
 
 static bool add_part(outer_surface *o, const outer_part *part) {
     if (o->part_count == o->part_capacity) {
@@ -118,6 +146,8 @@ static bool divide_triangle(outer_surface *o, const surface_cuts *found, loaded_
     o->part_begins[o->cut_count++] = o->part_count;
     if (!cut_triangle_divide(o->context, &cut->cut, &o->cuts.memory, take_part, &taker)) return false;
     add_waiting(&taker);
+    size_t first = o->part_begins[o->cut_count - 1];
+    box_parts(&o->boxes[o->cut_count - 1], o->parts + first, o->part_count - first);
     return !taker.out_of_memory;
 }
 
@@ -161,16 +191,13 @@ static size_t find_cut(const outer_surface *o, uint32_t triangle) {
     return low < o->cut_count && o->cut_triangles[low] == triangle ? low : o->cut_count;
 }
 
-/* Is the part's box further away than what was found? Computed distances from points of a triangle are off by less than
- * 2^-47 of the sum of the distance and the triangle's size, which the margins cover, so that nothing is left out that
- * would be nearer as computed. */
-static bool part_is_far(const nearest_search *s, const outer_part *part) {
-    const double(*p)[3] = part->corners;
+/* Is the box further away than what was found? Computed distances from points of a triangle are off by less than 2^-47 of
+ * the sum of the distance and the triangle's size, which the margins cover, so that nothing is left out that would be
+ * nearer as computed. If a box is far, so is each that lies in it. */
+static bool box_is_far(const nearest_search *s, const outer_box *box) {
     double squared = 0.0, size = 0.0;
     for (int k = 0; k < 3; k++) {
-        double low = p[0][k] < p[1][k] ? p[0][k] : p[1][k], high = p[0][k] < p[1][k] ? p[1][k] : p[0][k];
-        low = p[2][k] < low ? p[2][k] : low;
-        high = p[2][k] > high ? p[2][k] : high;
+        double low = box->low[k], high = box->high[k];
         double gap = low > s->x[k] ? low - s->x[k] : s->x[k] > high ? s->x[k] - high : 0.0;
         squared += gap * gap;
         size += (high - low) * (high - low);
@@ -181,7 +208,8 @@ static bool part_is_far(const nearest_search *s, const outer_part *part) {
 static void try_part(nearest_search *s, uint32_t triangle, const outer_part *part) {
     double u, v;
     const double(*p)[3] = part->corners;
-    if (part_is_far(s, part)) return;
+    const outer_box box = box_of_part(part);
+    if (box_is_far(s, &box)) return;
     double squared = closest_point_triangle(s->x, p[0], p[1], p[2], &u, &v);
     if (!(squared < s->best.squared)) return;
     s->best.squared = squared;
@@ -190,19 +218,26 @@ static void try_part(nearest_search *s, uint32_t triangle, const outer_part *par
     for (int k = 0; k < 3; k++) s->best.x[k] = p[0][k] + u * (p[1][k] - p[0][k]) + v * (p[2][k] - p[0][k]);
 }
 
+static void try_parts(nearest_search *s, uint32_t triangle, size_t cut) {
+    const outer_surface *o = s->outer;
+    if (o->part_begins[cut] == o->part_begins[cut + 1] || box_is_far(s, &o->boxes[cut])) return;
+    for (size_t i = o->part_begins[cut]; i < o->part_begins[cut + 1]; i++)
+        try_part(s, triangle, &o->parts[i]);
+}
+
 static void try_triangle(void *data, uint32_t triangle) {
     nearest_search *s = data;
     const named_surface *surface = s->found->surface;
     const cscd_mesh *mesh = surface->mesh;
     const patch_finder *p = s->found->patches;
+    uint32_t patch = p->triangle_patches[triangle];
+    if (patch != UINT32_MAX && p->patches[patch].own >= 1) return;
     if (cscd_mesh_vertex_object(mesh, mesh->triangles[triangle][0]) != s->object ||
         !mesh->components[mesh->triangle_components[triangle]].closed_manifold)
         return;
-    size_t cut =
-        p->triangle_patches[triangle] == UINT32_MAX ? find_cut(s->outer, triangle) : s->outer->cut_count;
+    size_t cut = patch == UINT32_MAX ? find_cut(s->outer, triangle) : s->outer->cut_count;
     if (cut < s->outer->cut_count) {
-        for (size_t i = s->outer->part_begins[cut]; i < s->outer->part_begins[cut + 1]; i++)
-            try_part(s, triangle, &s->outer->parts[i]);
+        try_parts(s, triangle, cut);
         return;
     }
     if (p->patches[p->corner_patches[(size_t)triangle * 3]].own >= 1) return;

@@ -9,6 +9,11 @@ typedef struct outer_part {
     double corners[3][3];
 } outer_part;
 
+/* Has all parts of a triangle; scaled. */
+typedef struct outer_box {
+    double low[3], high[3];
+} outer_box;
+
 /* The memory of all calls; begins with the context, also of cuts, and nothing else set. The triangles that their own object
  * cuts have parts; all others are outer as a whole, or not at all. */
 typedef struct outer_surface {
@@ -19,6 +24,7 @@ typedef struct outer_surface {
     size_t part_count, part_capacity;
     uint32_t *cut_triangles; /* ascending: those with parts, or none of them outer */
     size_t *part_begins;     /* per cut triangle and one more: where its parts begin */
+    outer_box *boxes;        /* per cut triangle: of its parts; without parts low is above high */
     size_t cut_count, cut_capacity;
 } outer_surface;
 
