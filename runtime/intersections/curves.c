@@ -51,6 +51,7 @@ static void find_some_pieces(void *data, uint32_t task) {
     const curve_work *work = data;
     curve_joiner *j = work->joiner;
     size_t begin = (size_t)task * PAIRS_A_TASK, end = begin + PAIRS_A_TASK;
+    if (!progress_go_on(&j->context->progress, 0.5 * (double)begin / (double)work->pair_count)) end = begin;
     for (size_t i = begin; i < end && i < work->pair_count; i++) {
         bool has = curve_piece_of_pair(work->surface, work->pairs[i].a, work->pairs[i].b, &j->found[i]);
         j->pair_pieces[i] = has ? 0 : UINT32_MAX;
@@ -171,6 +172,7 @@ static void find_some_points(void *data, uint32_t task) {
     const curve_work *work = data;
     curve_joiner *j = work->joiner;
     size_t begin = (size_t)task * POINTS_A_TASK, end = begin + POINTS_A_TASK;
+    if (!progress_go_on(&j->context->progress, 0.5 + 0.5 * (double)begin / (double)j->point_count)) return;
     for (size_t i = begin; i < end && i < j->point_count; i++) {
         event_point at;
         event_point_find(work->surface, j->events[i], &at);
@@ -200,6 +202,7 @@ cscd_status curve_joiner_run(curve_joiner *j, const named_surface *s, const cscd
     if (pair_count > LINKS_MAX / 2 || !reserve_pairs(j, pair_count)) return CSCD_OUT_OF_MEMORY;
     j->pair_count = pair_count;
     find_pieces(&work);
+    if (progress_cancelled(&j->context->progress)) return CSCD_CANCELLED;
     if (!reserve_pieces(j, j->piece_count)) return CSCD_OUT_OF_MEMORY;
     curve_links_find(s, j->found, j->piece_count, j->keys, j->spare_keys, j->links);
     trace_curves(&work);

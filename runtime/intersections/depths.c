@@ -234,6 +234,7 @@ static void answer_some(void *data, uint32_t task) {
     const depth_finder *d = work->finder;
     size_t first = (size_t)task * QUESTIONS_A_TASK, end = first + QUESTIONS_A_TASK;
     outer_point last;
+    if (!progress_go_on(&d->context->progress, (double)first / (double)d->question_count)) return;
     for (size_t i = first; i < end && i < d->question_count; i++) {
         const depth_question *q = &d->questions[i];
         const outer_point *near = i > first && q[-1].object == q->object ? &last : NULL;
@@ -288,6 +289,7 @@ cscd_status depth_finder_run(depth_finder *d, const surface_cuts *found, const b
                    compare_questions);
     parallel_run(d->context->threads, (uint32_t)((count + QUESTIONS_A_TASK - 1) / QUESTIONS_A_TASK),
                  answer_some, &work);
+    if (progress_cancelled(&d->context->progress)) return CSCD_CANCELLED;
     size_t patches = list_patches(d, vertices);
     *out = (cscd_depths){d->depths, count, vertices, d->patches, patches, NULL, 0};
     return context_progress_status(d->context);

@@ -274,8 +274,11 @@ static void number_patches(void *data, uint32_t index) {
     size_t end = p->patch_count * (index + 1) / p->lane_count;
     lane->count = 0;
     lane->out_of_memory = false;
-    for (size_t i = begin; i < end && !lane->out_of_memory; i++)
+    for (size_t i = begin; i < end && !lane->out_of_memory; i++) {
+        double share = (double)(i - begin) / (double)(end - begin);
+        if (!progress_go_on(&p->mesh->context->progress, share)) return;
         lane->out_of_memory = !number_patch(work, lane, &p->patches[i]);
+    }
 }
 
 static bool join_numbers(patch_finder *p) {
@@ -308,6 +311,7 @@ cscd_status patch_finder_run(patch_finder *p, const named_surface *s, const bvh 
     connect_nodes(p);
     if (!name_patches(&work)) return CSCD_OUT_OF_MEMORY;
     parallel_run(p->mesh->context->threads, p->lane_count, number_patches, &work);
+    if (progress_cancelled(&p->mesh->context->progress)) return CSCD_CANCELLED;
     if (!join_numbers(p)) return CSCD_OUT_OF_MEMORY;
     *out = (cscd_patches){p->patches,        p->patch_count,      p->windings,      p->winding_count,
                           p->vertex_patches, p->triangle_patches, p->corner_patches};
