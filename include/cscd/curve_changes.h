@@ -3,7 +3,7 @@
  *
  * A curve (cscd/curves.h) has its points where an edge passes through a triangle. Such a point comes or goes only at a
  * contact: of a vertex of the edge with the triangle, or of the edge with an edge of the triangle. So the contacts of an
- * interval are the causes of the curves that are there at its end. Theory: docs/theory/curves.md, Lemma 9. */
+ * interval are the causes of the curves that are there at its end. Theory: docs/theory/curves.md, Lemma 10. */
 #ifndef CSCD_CURVE_CHANGES_API_H
 #define CSCD_CURVE_CHANGES_API_H
 

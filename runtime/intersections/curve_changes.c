@@ -1,5 +1,5 @@
 /* The points of intersection curves that come or go in an interval, found at its contacts: docs/theory/curves.md,
- * Lemma 9. */
+ * Lemma 10. */
 #include "runtime/intersections/curve_changes.h"
 
 #include "src/core/context.h"

@@ -1,4 +1,4 @@
-/* How deep the points of whole triangles may be: docs/theory/curves.md, lemma 10. */
+/* How deep the points of whole triangles may be: docs/theory/curves.md, Lemma 9. */
 #include "runtime/intersections/depth_bounds.h"
 
 #include "src/core/sort.h"

@@ -1,4 +1,4 @@
-/* How deep the points of whole triangles may be: docs/theory/curves.md, lemma 10. */
+/* How deep the points of whole triangles may be: docs/theory/curves.md, Lemma 9. */
 #pragma once
 
 #include "runtime/intersections/depths.h"
