@@ -23,6 +23,7 @@
 #ifndef CSCD_INTERSECTIONS_API_H
 #define CSCD_INTERSECTIONS_API_H
 
+#include <cscd/cut_offs.h>
 #include <cscd/depths.h>
 #include <cscd/parts.h>
 
@@ -80,10 +81,12 @@ typedef struct cscd_intersection_options {
      * another one. false by default. */
     bool parts;
 
+    /* false by default, too. */
     bool
-        depth_bounds; /* how deep whole triangles may be: cscd/depths.h. Needs depths, which are then given, too. false by
-                        * default */
-    uint8_t reserved[2];
+        depth_bounds; /* how deep whole triangles may be: cscd/depths.h. Needs depths, which are then given, too */
+    bool
+        cut_offs; /* what curves cut off of open surfaces: cscd/cut_offs.h. Needs patches, which are then given, too */
+    uint8_t reserved[1];
 } cscd_intersection_options;
 
 /* The default options. */
@@ -119,6 +122,7 @@ typedef struct cscd_intersection_pairs {
     const cscd_patches *patches;
     const cscd_overlaps *overlaps;
     const cscd_depths *depths;
+    const cscd_cut_offs *cut_offs;
     const cscd_part_pairs *parts;
 } cscd_intersection_pairs;
 

@@ -80,6 +80,14 @@ inline span<const cscd_triangle_depth> depth_bounds(const cscd_intersection_pair
     if (found.depths == nullptr) return {};
     return {found.depths->triangles, found.depths->triangle_count};
 }
+inline span<const cscd_cut_off> cut_offs(const cscd_intersection_pairs &found) noexcept {
+    if (found.cut_offs == nullptr) return {};
+    return {found.cut_offs->items, found.cut_offs->count};
+}
+inline span<const std::uint32_t> patches(const cscd_intersection_pairs &found,
+                                         const cscd_cut_off &cut_off) noexcept {
+    return {found.cut_offs->patches + cut_off.first_patch, cut_off.patch_count};
+}
 inline span<const cscd_part_pair> parts(const cscd_intersection_pairs &found) noexcept {
     if (found.parts == nullptr) return {};
     return {found.parts->items, found.parts->count};

@@ -45,7 +45,7 @@ static cscd_status take_options(cscd_context *context, const cscd_intersection_o
     if (surface_answers_wanted(out) && !all)
         return context_fail(
             context, CSCD_INVALID_ARGUMENT,
-            "curves, patches, overlaps and depths need the list of all pairs: answer LIST, every kind, and "
+            "curves, patches, overlaps, cut-offs and depths need the list of all pairs: answer LIST, every kind, and "
             "stop_after 0");
     if (out->parts && out->answer != CSCD_ANSWER_LIST)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "parts need a list of pairs: answer LIST");

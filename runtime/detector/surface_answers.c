@@ -13,6 +13,7 @@ void surface_answers_free(cscd_context *context, surface_answers *a) {
     depth_bounder_free(&a->depth_bounder);
     depth_finder_free(&a->depth_finder);
     overlap_finder_free(&a->overlap_finder);
+    cut_off_finder_free(&a->cut_off_finder);
     patch_finder_free(&a->patch_finder);
     placed_names_free(&a->names);
     left_out_pairs_free(&a->left_out);
@@ -22,7 +23,7 @@ void surface_answers_free(cscd_context *context, surface_answers *a) {
 
 bool surface_answers_wanted(const cscd_intersection_options *options) {
     return options->curves || options->patches || options->overlaps || options->depths ||
-           options->depth_bounds;
+           options->depth_bounds || options->cut_offs;
 }
 
 /* Returns the detector's answers, made if need be; NULL: no memory. */
@@ -32,6 +33,7 @@ static surface_answers *make_answers(cscd_detector *d) {
     surface_answers *a = context_allocate(context, 1, sizeof *a);
     if (a == NULL) return NULL;
     a->names.context = a->left_out.context = a->joiner.context = context;
+    a->cut_off_finder = (cut_off_finder){.context = context, .links = {.context = context}};
     a->overlap_finder =
         (overlap_finder){.context = context, .cuts = {.context = context}, .gaps = {.context = context}};
     a->depth_bounder.context = context;
@@ -83,7 +85,7 @@ cscd_status surface_answers_find(cscd_detector *d, const double *positions,
     if (status != CSCD_OK) return status;
     found->curves = &a->curves;
     bool depths = options->depths || options->depth_bounds;
-    if (!options->patches && !options->overlaps && !depths) return CSCD_OK;
+    if (!options->patches && !options->overlaps && !options->cut_offs && !depths) return CSCD_OK;
     status = find_patches(d, &surface);
     if (status != CSCD_OK) return status;
     found->patches = &a->patches;
@@ -91,6 +93,11 @@ cscd_status surface_answers_find(cscd_detector *d, const double *positions,
         status = overlap_finder_run(&a->overlap_finder, &cuts, &a->left_out, &a->overlaps);
         if (status != CSCD_OK) return status;
         found->overlaps = &a->overlaps;
+    }
+    if (options->cut_offs) {
+        status = cut_off_finder_run(&a->cut_off_finder, &cuts, &a->cut_offs);
+        if (status != CSCD_OK) return status;
+        found->cut_offs = &a->cut_offs;
     }
     if (depths) {
         status = find_depths(d, &cuts, options->depth_bounds, found);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/detector/detector.h"
+#include "runtime/intersections/cut_offs.h"
 #include "runtime/intersections/depth_bounds.h"
 #include "runtime/intersections/overlaps.h"
 #include "runtime/intersections/placed_names.h"
@@ -15,11 +16,13 @@ typedef struct surface_answers {
     curve_joiner joiner;
     patch_finder patch_finder;
     overlap_finder overlap_finder;
+    cut_off_finder cut_off_finder;
     depth_finder depth_finder;
     depth_bounder depth_bounder;
     cscd_curves curves;
     cscd_patches patches;
     cscd_overlaps overlaps;
+    cscd_cut_offs cut_offs;
     cscd_depths depths;
 } surface_answers;
 

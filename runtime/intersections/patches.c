@@ -121,6 +121,10 @@ static uint32_t node_at(const patch_finder *p, uint32_t edge, uint32_t vertex) {
     return p->mesh->vertex_count + 2 * edge + (p->mesh->edges[edge][1] == vertex);
 }
 
+uint32_t patch_node(const patch_finder *p, uint32_t edge, uint32_t vertex) {
+    return set_root(p->parents, node_at(p, edge, vertex));
+}
+
 static void begin_nodes(patch_finder *p, uint32_t triangle) {
     for (int i = 0; i < 3; i++) {
         uint32_t from = p->mesh->triangles[triangle][i], to = p->mesh->triangles[triangle][(i + 1) % 3];

@@ -47,5 +47,8 @@ void patch_finder_free(patch_finder *p);
 cscd_status patch_finder_run(patch_finder *p, const named_surface *s, const bvh *f, const curve_piece *pieces,
                              size_t piece_count, cscd_patches *out);
 
+/* The node that an edge has at its vertex: the same number for what no curve parts. */
+uint32_t patch_node(const patch_finder *p, uint32_t edge, uint32_t vertex);
+
 /* Are two objects, or an object and itself, looked at with each other? */
 bool patch_objects_look(const patch_finder *p, uint32_t a, uint32_t b);

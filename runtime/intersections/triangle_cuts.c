@@ -78,7 +78,7 @@ static uint32_t object_of(const cscd_mesh *mesh, uint32_t triangle) {
     return cscd_mesh_vertex_object(mesh, mesh->triangles[triangle][0]);
 }
 
-static void project_point(const loaded_cut *cut, const double x[3], double out[2]) {
+void loaded_cut_point(const loaded_cut *cut, const double x[3], double out[2]) {
     out[0] = x[cut->x];
     out[1] = cut->turn * x[cut->y];
 }
@@ -105,6 +105,10 @@ static int compare_borders(const void *a, const void *b) {
     return (p->s > q->s) - (p->s < q->s);
 }
 
+void loaded_cut_sort_borders(loaded_cut *cut, cut_border *spare) {
+    sort_items(cut->cut.borders, spare, cut->cut.border_count, sizeof *spare, compare_borders);
+}
+
 /* Seen from outside, the inside of b is to the left of a piece on a, and the inside of a to the right of it on b. Open
  * components have no inside. */
 static void add_piece(cut_load *load, const curve_key *key) {
@@ -118,8 +122,8 @@ static void add_piece(cut_load *load, const curve_key *key) {
     cut_line line = {.slot = slot_of(load, object_of(mesh, other)),
                      .rise = is_b ? -1 : 1,
                      .number = (uint32_t)cut->line_count};
-    project_point(load->out, j->points[j->end_points[2 * number]].x, line.from);
-    project_point(load->out, j->points[j->end_points[2 * number + 1]].x, line.to);
+    loaded_cut_point(load->out, j->points[j->end_points[2 * number]].x, line.from);
+    loaded_cut_point(load->out, j->points[j->end_points[2 * number + 1]].x, line.to);
     load->cuts->line_pieces[cut->line_count] = (uint32_t)number;
     cut->lines[cut->line_count++] = line;
     for (int end = 0; end < 2; end++) add_border(load, number, is_b, end, line.slot);
@@ -177,21 +181,21 @@ static double sum_reaches(const cut_load *load, size_t first, size_t end, int k)
     return sum / (high - low);
 }
 
-static void choose_projection(const cut_load *load, const double normal[3], size_t first, size_t end) {
-    const named_surface *s = load->found->surface;
-    loaded_cut *out = load->out;
+void loaded_cut_project(const named_surface *s, const double normal[3], bool exchanged, loaded_cut *out) {
     int axis = 0;
     for (int k = 1; k < 3; k++) axis = fabs(normal[k]) > fabs(normal[axis]) ? k : axis;
-    out->x = (axis + 1) % 3;
-    out->y = (axis + 2) % 3;
-    out->turn = normal[axis] > 0.0 ? 1.0 : -1.0;
-    if (sum_reaches(load, first, end, out->y) < sum_reaches(load, first, end, out->x)) {
-        out->x = (axis + 2) % 3;
-        out->y = (axis + 1) % 3;
-        out->turn = -out->turn;
-    }
+    out->x = (axis + (exchanged ? 2 : 1)) % 3;
+    out->y = (axis + (exchanged ? 1 : 2)) % 3;
+    out->turn = (normal[axis] > 0.0) != exchanged ? 1.0 : -1.0;
     for (uint32_t i = 0; i < 3; i++)
-        project_point(out, surface_corner(s->mesh, s->positions, out->triangle, i), out->cut.corners[i]);
+        loaded_cut_point(out, surface_corner(s->mesh, s->positions, out->triangle, i), out->cut.corners[i]);
+}
+
+static void choose_projection(const cut_load *load, const double normal[3], size_t first, size_t end) {
+    loaded_cut *out = load->out;
+    loaded_cut_project(load->found->surface, normal, false, out);
+    if (sum_reaches(load, first, end, out->y) < sum_reaches(load, first, end, out->x))
+        loaded_cut_project(load->found->surface, normal, true, out);
 }
 
 bool triangle_cuts_load(triangle_cuts *c, const surface_cuts *found, size_t first, size_t end,
@@ -213,7 +217,7 @@ bool triangle_cuts_load(triangle_cuts *c, const surface_cuts *found, size_t firs
     choose_projection(&load, normal, first, end);
     slot_of(&load, object_of(mesh, out->triangle));
     for (size_t i = first; i < end; i++) add_piece(&load, &c->keys[i]);
-    sort_items(c->borders, c->spare_borders, out->cut.border_count, sizeof *c->borders, compare_borders);
+    loaded_cut_sort_borders(out, c->spare_borders);
     number_corners(&load);
     return true;
 }

@@ -44,6 +44,15 @@ bool triangle_cuts_sort(triangle_cuts *c, const curve_joiner *curves);
 /* The keys of a triangle: from *first to before the returned one. */
 size_t triangle_cuts_of(const triangle_cuts *c, uint32_t triangle, size_t *first);
 
+/* Sets the projection of a triangle with this normal, and its corners. exchanged: x for y. */
+void loaded_cut_project(const named_surface *s, const double normal[3], bool exchanged, loaded_cut *out);
+
+/* A point in that projection. */
+void loaded_cut_point(const loaded_cut *cut, const double x[3], double out[2]);
+
+/* Sorts the borders as cut_triangle.h asks; spare has room for as many. */
+void loaded_cut_sort_borders(loaded_cut *cut, cut_border *spare);
+
 /* Loads the triangle of these keys, which lives until the next one is loaded. A triangle without area has stretch 0, and
  * nothing else of it is set. */
 bool triangle_cuts_load(triangle_cuts *c, const surface_cuts *found, size_t first, size_t end,

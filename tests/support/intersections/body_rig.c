@@ -4,6 +4,7 @@
 #include "tests/support/test.h"
 
 #include <math.h>
+#include <string.h>
 
 void body_rig_begin(body_rig *r) {
     scene_clear(&r->all);
@@ -47,6 +48,29 @@ void body_rig_add_snake(body_rig *r) {
         x[1] += 0.02 * angle;
         x[0] = radius * cos(angle);
         x[2] = radius * sin(angle);
+    }
+}
+
+void body_rig_add_sheet(body_rig *r, const double corner[3], const double along[3], const double up[3],
+                        uint32_t columns, uint32_t rows, bool hole) {
+    scene *s = &r->all;
+    uint32_t first = s->vertex_count;
+    for (uint32_t i = 0; i <= rows; i++) {
+        for (uint32_t j = 0; j <= columns; j++) {
+            for (int k = 0; k < 3; k++)
+                s->x0[s->vertex_count * 3 + (uint32_t)k] =
+                    corner[k] + along[k] * j / (double)columns + up[k] * i / (double)rows;
+            s->vertex_count++;
+        }
+    }
+    for (uint32_t i = 0; i < rows; i++) {
+        for (uint32_t j = 0; j < columns; j++) {
+            if (hole && i == rows / 2 && j == columns / 2) continue;
+            uint32_t a = first + i * (columns + 1) + j, b = a + 1, c = a + columns + 1, d = c + 1;
+            const uint32_t corners[6] = {a, b, d, a, d, c};
+            memcpy(&s->triangles[(size_t)s->triangle_count * 3], corners, sizeof corners);
+            s->triangle_count += 2;
+        }
     }
 }
 

@@ -33,6 +33,11 @@ void body_rig_end_body(body_rig *r);
 /* Adds an axis-aligned box to what will be a body. */
 void body_rig_add_box(body_rig *r, const double low[3], const double size[3]);
 
+/* Adds a sheet, open and flat, of so many cells along two edges from a corner; with a hole, the cell in the middle is left
+ * out. */
+void body_rig_add_sheet(body_rig *r, const double corner[3], const double along[3], const double up[3],
+                        uint32_t columns, uint32_t rows, bool hole);
+
 /* A long body that bends into a ring and swallows its tail; without a change before, it lies about the origin. */
 void body_rig_add_snake(body_rig *r);
 

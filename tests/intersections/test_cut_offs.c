@@ -1,0 +1,210 @@
+/* What curves cut off of open surfaces: areas by hand, and by what closed bodies bury of sheets. */
+#include "tests/support/intersections/body_rig.h"
+#include "tests/support/test.h"
+
+#include <math.h>
+#include <string.h>
+
+static body_rig rig; /* large; one test at a time */
+static cscd_intersection_pairs found;
+
+static void find_cut_offs(void) {
+    cscd_intersection_options options = cscd_intersection_defaults();
+    options.cut_offs = options.overlaps = true;
+    body_rig_create(&rig, NULL, 1);
+    assert_int_equal(cscd_detector_find_intersections(
+                         rig.detector, CSCD_DOUBLES(rig.all.x0, rig.all.vertex_count), &options, &found),
+                     CSCD_OK);
+    assert_non_null(found.cut_offs);
+}
+
+static const cscd_cut_off *cut_off_of(uint32_t object) {
+    const cscd_cut_off *item = NULL;
+    for (size_t i = 0; i < found.cut_offs->count; i++) {
+        if (found.cut_offs->items[i].object != object) continue;
+        assert_null(item);
+        item = &found.cut_offs->items[i];
+    }
+    return item;
+}
+
+static void expect_cut_off(uint32_t object, double area, double rest) {
+    const cscd_cut_off *c = cut_off_of(object);
+    assert_non_null(c);
+    assert_true(fabs(c->area - area) <= 1e-12);
+    assert_true(fabs(c->rest - rest) <= 1e-12);
+}
+
+static const double X4[3] = {4, 0, 0}, Y4[3] = {0, 4, 0}, Z4[3] = {0, 0, 4}, ORIGIN[3] = {0, 0, 0};
+
+/* A post through a sheet: over many triangles, and within one. */
+static void a_post_through_a_sheet(void **state) {
+    (void)state;
+    static const double corners[2][3] = {{0.3, 0.4, -1}, {2.26, 2.05, -1}};
+    static const double sizes[2][3] = {{2, 1.5, 2}, {0.02, 0.03, 2}};
+    for (int i = 0; i < 2; i++) {
+        body_rig_begin(&rig);
+        body_rig_add_sheet(&rig, ORIGIN, X4, Y4, 7, 9, false);
+        body_rig_end_body(&rig);
+        body_rig_add_box(&rig, corners[i], sizes[i]);
+        body_rig_end_body(&rig);
+        find_cut_offs();
+        double area = sizes[i][0] * sizes[i][1];
+        assert_int_equal(found.cut_offs->count, 1);
+        expect_cut_off(0, area, 16 - area);
+        assert_int_equal(cut_off_of(0)->patch_count > 0, i == 0);
+        body_rig_free(&rig);
+    }
+}
+
+/* Most of the sheet is in the box, so what is outside is cut off. */
+static void the_smaller_part_is_outside(void **state) {
+    (void)state;
+    static const double corner[3] = {-1, -1, -1}, size[3] = {4.5, 6, 2};
+    body_rig_begin(&rig);
+    body_rig_add_sheet(&rig, ORIGIN, X4, Y4, 7, 9, false);
+    body_rig_end_body(&rig);
+    body_rig_add_box(&rig, corner, size);
+    body_rig_end_body(&rig);
+    find_cut_offs();
+    expect_cut_off(0, 0.5 * 4, 3.5 * 4);
+    body_rig_free(&rig);
+}
+
+/* From border to border on both sheets; then one of them ends within the other. */
+static void sheets_cross(void **state) {
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        const double corner[3] = {1.1, i == 0 ? -0.5 : 1.5, -1.3}, along[3] = {0, 5, 0};
+        body_rig_begin(&rig);
+        body_rig_add_sheet(&rig, ORIGIN, X4, Y4, 7, 9, false);
+        body_rig_end_body(&rig);
+        body_rig_add_sheet(&rig, corner, along, Z4, 8, 6, false);
+        body_rig_end_body(&rig);
+        find_cut_offs();
+        assert_int_equal(found.curves->count, 1);
+        if (i == 0) {
+            assert_int_equal(found.cut_offs->count, 1); /* the upright sheet is wider, so it is not divided */
+            expect_cut_off(0, 1.1 * 4, 2.9 * 4);
+        } else {
+            assert_int_equal(found.cut_offs->count, 0); /* each ends within the other */
+        }
+        body_rig_free(&rig);
+    }
+}
+
+/* A narrow upright sheet ends within the flat one: the flat one is not divided, the upright one is. */
+static void a_narrow_sheet_is_divided(void **state) {
+    (void)state;
+    static const double corner[3] = {1.1, 1.5, -1.3}, along[3] = {0, 1, 0};
+    body_rig_begin(&rig);
+    body_rig_add_sheet(&rig, ORIGIN, X4, Y4, 7, 9, false);
+    body_rig_end_body(&rig);
+    body_rig_add_sheet(&rig, corner, along, Z4, 3, 6, false);
+    body_rig_end_body(&rig);
+    find_cut_offs();
+    assert_int_equal(found.cut_offs->count, 1);
+    expect_cut_off(1, 1.3, 2.7);
+    body_rig_free(&rig);
+}
+
+/* From the border of a sheet to its hole: one may still walk around the hole. */
+static void a_cut_to_a_hole_divides_nothing(void **state) {
+    (void)state;
+    static const double corner[3] = {2.0, -0.5, -1.3};
+    for (int i = 0; i < 2; i++) {
+        const double along[3] = {0, i == 0 ? 2.5 : 5, 0};
+        body_rig_begin(&rig);
+        body_rig_add_sheet(&rig, ORIGIN, X4, Y4, 7, 7, true);
+        body_rig_end_body(&rig);
+        body_rig_add_sheet(&rig, corner, along, Z4, 8, 6, false);
+        body_rig_end_body(&rig);
+        find_cut_offs();
+        assert_int_equal(found.curves->count, 1 + i); /* all the way, the second one from the hole on */
+        assert_int_equal(found.cut_offs->count, 0);
+        body_rig_free(&rig);
+    }
+}
+
+/* Balls in a sheet that is bent: what they bury of it is what their curves cut off, or the rest. */
+static void balls_in_bent_sheets(void **state) {
+    (void)state;
+    uint32_t divided = 0;
+    for (int i = 0; i < 40; i++) {
+        const double centre[3] = {1.0 + 0.05 * i, 2.0 - 0.03 * i, 0.02 * (i % 11)};
+        body_rig_begin(&rig);
+        body_rig_add_sheet(&rig, ORIGIN, X4, Y4, 9, 8, false);
+        for (uint32_t v = 0; v < rig.all.vertex_count; v++) {
+            double *x = &rig.all.x0[v * 3];
+            x[2] = 0.3 * sin(1.3 * x[0] + 0.7 * x[1] + i);
+        }
+        body_rig_end_body(&rig);
+        scene_add_sphere(&rig.all, centre, 0.5 + 0.01 * i, 9, 14);
+        body_rig_end_body(&rig);
+        find_cut_offs();
+        const cscd_cut_off *c = found.curves->count == 1 ? cut_off_of(0) : NULL;
+        if (c != NULL) {
+            double buried = found.overlaps->items[0].area_a;
+            assert_true(fabs(c->area - buried) <= 1e-12 || fabs(c->rest - buried) <= 1e-12);
+            assert_true(c->area <= c->rest);
+            divided++;
+        }
+        body_rig_free(&rig);
+    }
+    assert_true(divided > 20);
+}
+
+/* ---- calls ----------------------------------------------------------------------------------------------- */
+
+static void add_post(void) {
+    static const double corner[3] = {0.3, 0.4, -1}, size[3] = {2, 1.5, 2};
+    body_rig_begin(&rig);
+    body_rig_add_sheet(&rig, ORIGIN, X4, Y4, 7, 9, false);
+    body_rig_end_body(&rig);
+    body_rig_add_box(&rig, corner, size);
+    body_rig_end_body(&rig);
+}
+
+static cscd_status try_cut_offs(void) {
+    cscd_intersection_options options = cscd_intersection_defaults();
+    options.cut_offs = true;
+    return cscd_detector_find_intersections(rig.detector, CSCD_DOUBLES(rig.all.x0, rig.all.vertex_count),
+                                            &options, &found);
+}
+
+static void every_allocation_may_fail(void **state) {
+    (void)state;
+    size_t failed = 0;
+    for (size_t n = 0, done = 0; done == 0; n++) {
+        counting_allocator counter = counting_allocator_start();
+        add_post();
+        rig.counter = &counter;
+        body_rig_create(&rig, NULL, 1);
+        counter.fail_at = counter.calls + n;
+        cscd_status status = try_cut_offs();
+        done = status == CSCD_OK;
+        failed += status == CSCD_OUT_OF_MEMORY;
+        assert_true(done || status == CSCD_OUT_OF_MEMORY);
+        counter.fail_at = SIZE_MAX;
+        assert_int_equal(try_cut_offs(), CSCD_OK);
+        expect_cut_off(0, 3, 13);
+        size_t calls = counter.calls;
+        assert_int_equal(try_cut_offs(), CSCD_OK);
+        assert_int_equal(counter.calls, calls);
+        body_rig_free(&rig);
+        assert_int_equal(counter.live, 0);
+    }
+    assert_true(failed > 20);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_post_through_a_sheet),
+                                       cmocka_unit_test(the_smaller_part_is_outside),
+                                       cmocka_unit_test(sheets_cross),
+                                       cmocka_unit_test(a_narrow_sheet_is_divided),
+                                       cmocka_unit_test(a_cut_to_a_hole_divides_nothing),
+                                       cmocka_unit_test(balls_in_bent_sheets),
+
+                                       cmocka_unit_test(every_allocation_may_fail)};
+    return cmocka_run_group_tests_name("cut_offs", tests, NULL, NULL);
+}
