@@ -126,8 +126,8 @@ static bool open_recording(const char *model, const char *frames, culled_recordi
     if (!mesh_file_read(model, &r.model, &error)) return print_failure(error.text);
     cscd_object_desc desc =
         cscd_object_of_triangles(r.model.vertex_count, r.model.triangle_count, r.model.triangles);
-    bool opened =
-        animation_open(&frames, 1, r.model.vertex_count, &r.frames, &error) || print_failure(error.text);
+    bool opened = animation_open(&frames, 1, r.model.vertex_count, NULL, &r.frames, &error) ||
+                  print_failure(error.text);
     if (opened && (cscd_context_create(NULL, &r.context) != CSCD_OK ||
                    cscd_mesh_create(r.context, &desc, 1, &r.mesh) != CSCD_OK))
         opened = print_failure("the mesh could not be made");

@@ -48,7 +48,7 @@ static bool make_recording(const char *model, const char *frames, const char *na
 static bool read_frames(recording_data *r, const char *path, io_error *error) {
     animation *frames;
     size_t size = (size_t)r->model.vertex_count * 3;
-    if (!animation_open(&path, 1, r->model.vertex_count, &frames, error)) return false;
+    if (!animation_open(&path, 1, r->model.vertex_count, NULL, &frames, error)) return false;
     r->frame_count = animation_frame_count(frames);
     bool read = r->frame_count > 1 ||
                 io_fail(error, "%s: %u frames, at least two were expected", path, r->frame_count);

@@ -11,15 +11,19 @@
 #include <string.h>
 #include <sys/stat.h>
 
-typedef struct path_list {
+typedef struct animation_source {
     const char *const *paths;
     size_t count;
-} path_list;
+    uint32_t vertex_count;
+    animation_options options;
+} animation_source;
 
 /* Reads frames that are recorded in one way; source is the handle of the open reader. */
 typedef struct animation_reader {
-    bool (*open)(path_list list, uint32_t vertex_count, void **source, io_error *error);
+    bool (*open)(const animation_source *from, void **source, io_error *error);
     uint32_t (*frame_count)(const void *source);
+    int32_t (*number)(const void *source, uint32_t frame);
+    const char *(*note)(const void *source); /* NULL: never says anything */
     bool (*read)(void *source, uint32_t frame, double *positions, io_error *error);
     void (*close)(void *source);
 } animation_reader;
@@ -32,15 +36,19 @@ struct animation {
 
 /* ---- the readers, as the table wants them ------------------------------------------------------------ */
 
-static bool open_cache(path_list list, uint32_t vertex_count, void **source, io_error *error) {
+static bool open_cache(const animation_source *from, void **source, io_error *error) {
     point_cache *cache;
-    if (!point_cache_open(list.paths[0], vertex_count, &cache, error)) return false;
+    if (!point_cache_open(from->paths[0], from->vertex_count, &cache, error)) return false;
     *source = cache;
     return true;
 }
 
 static uint32_t count_cache(const void *source) {
     return point_cache_frame_count(source);
+}
+
+static int32_t number_in_cache(const void *source, uint32_t frame) {
+    return point_cache_frame_number(source, frame);
 }
 
 static bool read_cache(void *source, uint32_t frame, double *positions, io_error *error) {
@@ -51,29 +59,42 @@ static void close_cache(void *source) {
     point_cache_close(source);
 }
 
-static bool open_pattern(path_list list, uint32_t vertex_count, void **source, io_error *error) {
+static bool open_pattern(const animation_source *from, void **source, io_error *error) {
     frame_files *files;
-    if (!frame_files_open_pattern(list.paths[0], vertex_count, &files, error)) return false;
+    if (!frame_files_open_pattern(from->paths[0], from->options.allow_gaps, from->vertex_count, &files,
+                                  error))
+        return false;
     *source = files;
     return true;
 }
 
-static bool open_folder(path_list list, uint32_t vertex_count, void **source, io_error *error) {
+static bool open_folder(const animation_source *from, void **source, io_error *error) {
     frame_files *files;
-    if (!frame_files_open_folder(list.paths[0], vertex_count, &files, error)) return false;
+    if (!frame_files_open_folder(from->paths[0], from->options.allow_gaps, from->vertex_count, &files, error))
+        return false;
     *source = files;
     return true;
 }
 
-static bool open_list(path_list list, uint32_t vertex_count, void **source, io_error *error) {
+static bool open_list(const animation_source *from, void **source, io_error *error) {
     frame_files *files;
-    if (!frame_files_open_list(list.paths, list.count, vertex_count, &files, error)) return false;
+    if (!frame_files_open_list(from->paths, from->count, from->options.model_path, from->options.allow_gaps,
+                               from->vertex_count, &files, error))
+        return false;
     *source = files;
     return true;
 }
 
 static uint32_t count_files(const void *source) {
     return frame_files_frame_count(source);
+}
+
+static int32_t number_of_file(const void *source, uint32_t frame) {
+    return frame_files_number(source, frame);
+}
+
+static const char *note_on_files(const void *source) {
+    return frame_files_note(source);
 }
 
 static bool read_files(void *source, uint32_t frame, double *positions, io_error *error) {
@@ -87,23 +108,23 @@ static void close_files(void *source) {
 enum { POINT_CACHE, FILE_PATTERN, FILE_FOLDER, FILE_LIST };
 
 static const animation_reader readers[] = {
-    [POINT_CACHE] = {open_cache, count_cache, read_cache, close_cache},
-    [FILE_PATTERN] = {open_pattern, count_files, read_files, close_files},
-    [FILE_FOLDER] = {open_folder, count_files, read_files, close_files},
-    [FILE_LIST] = {open_list, count_files, read_files, close_files},
+    [POINT_CACHE] = {open_cache, count_cache, number_in_cache, NULL, read_cache, close_cache},
+    [FILE_PATTERN] = {open_pattern, count_files, number_of_file, note_on_files, read_files, close_files},
+    [FILE_FOLDER] = {open_folder, count_files, number_of_file, note_on_files, read_files, close_files},
+    [FILE_LIST] = {open_list, count_files, number_of_file, note_on_files, read_files, close_files},
 };
 
 /* ---- the interface ----------------------------------------------------------------------------------- */
 
 /* NULL after an error. A path that exists is taken as it is, even if it holds a percent sign. */
-static const animation_reader *choose_reader(path_list list, io_error *error) {
-    if (list.count == 0) {
+static const animation_reader *choose_reader(const animation_source *from, io_error *error) {
+    if (from->count == 0) {
         io_fail(error, "no animation given: expected a .pc2 or .mdd file, a pattern such as f_%%04d.obj, "
                        "a folder, or mesh files");
         return NULL;
     }
-    if (list.count > 1) return &readers[FILE_LIST];
-    const char *path = list.paths[0];
+    if (from->count > 1) return &readers[FILE_LIST];
+    const char *path = from->paths[0];
     struct stat status;
     if (stat(path, &status) != 0) {
         if (strchr(path, '%') != NULL) return &readers[FILE_PATTERN];
@@ -114,10 +135,11 @@ static const animation_reader *choose_reader(path_list list, io_error *error) {
     return &readers[S_ISREG(status.st_mode) && point_cache_recognise(path) ? POINT_CACHE : FILE_LIST];
 }
 
-bool animation_open(const char *const *paths, size_t path_count, uint32_t vertex_count, animation **out,
-                    io_error *error) {
-    const path_list list = {paths, path_count};
-    const animation_reader *chosen = choose_reader(list, error);
+bool animation_open(const char *const *paths, size_t path_count, uint32_t vertex_count,
+                    const animation_options *options, animation **out, io_error *error) {
+    animation_source from = {paths, path_count, vertex_count, {NULL}};
+    if (options != NULL) from.options = *options;
+    const animation_reader *chosen = choose_reader(&from, error);
     if (chosen == NULL) return false;
     if (vertex_count == 0)
         return io_fail(error, "%s: the model has no vertices, expected at least 1", paths[0]);
@@ -126,7 +148,7 @@ bool animation_open(const char *const *paths, size_t path_count, uint32_t vertex
     if (opened == NULL) return io_fail(error, "%s: out of memory", paths[0]);
     opened->reader = chosen;
     memcpy(opened->name, paths[0], name_size);
-    if (!chosen->open(list, vertex_count, &opened->source, error)) {
+    if (!chosen->open(&from, &opened->source, error)) {
         free(opened);
         return false;
     }
@@ -142,6 +164,14 @@ void animation_close(animation *opened) {
 
 uint32_t animation_frame_count(const animation *opened) {
     return opened->reader->frame_count(opened->source);
+}
+
+int32_t animation_frame_number(const animation *opened, uint32_t frame) {
+    return opened->reader->number(opened->source, frame);
+}
+
+const char *animation_note(const animation *opened) {
+    return opened->reader->note != NULL ? opened->reader->note(opened->source) : NULL;
 }
 
 bool animation_read(animation *opened, uint32_t frame, double *positions, io_error *error) {

@@ -9,15 +9,28 @@
 
 typedef struct animation animation;
 
+typedef struct animation_options {
+    const char
+        *model_path; /* joins the mesh files that are listed if its name belongs to their series; NULL: no */
+    bool allow_gaps; /* of a series of mesh files, some may be missing */
+} animation_options;
+
 /* paths: one .pc2 or .mdd file; one printf pattern (f_%04d.obj); one folder; or a list of mesh files, one a frame.
  * Only headers (and, of a folder, names) are read here; the size of a point cache is checked at once. Every frame
- * must have vertex_count vertices. On false *out is untouched. */
-bool animation_open(const char *const *paths, size_t path_count, uint32_t vertex_count, animation **out,
-                    io_error *error);
+ * must have vertex_count vertices. options NULL: none. On false *out is untouched. */
+bool animation_open(const char *const *paths, size_t path_count, uint32_t vertex_count,
+                    const animation_options *options, animation **out, io_error *error);
 void animation_close(animation *animation);
 
 uint32_t animation_frame_count(const animation *animation);
 
-/* Reads frame (0-based) into positions, vertex_count * 3. The memory in use does not grow with the frames
+/* What the artist calls a frame: its file's number, or that of its sample by the start and rate of a PC2 header; where
+ * there is none, its index. Numbers ascend. */
+int32_t animation_frame_number(const animation *animation, uint32_t frame);
+
+/* A sentence about the order of listed files, if there is something to say; else NULL. */
+const char *animation_note(const animation *animation);
+
+/* Reads a frame, by its index from 0, into positions, vertex_count * 3. The memory in use does not grow with the frames
  * read. On false *error names the frame; positions are then undefined. */
 bool animation_read(animation *animation, uint32_t frame, double *positions, io_error *error);

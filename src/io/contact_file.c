@@ -64,7 +64,7 @@ bool contact_file_open(const char *path, bool with_bounded, contact_file **out, 
 }
 
 static void write_csv(FILE *file, const contact_record *r, bool with_bounded) {
-    fprintf(file, "%" PRIu32 ",%s,%.17g,", r->frame, cscd_contact_kind_name(r->kind), r->toi);
+    fprintf(file, "%" PRId32 ",%s,%.17g,", r->frame, cscd_contact_kind_name(r->kind), r->toi);
     if (r->kind == CSCD_CONTACT_VF)
         fprintf(file, "%" PRIu32 ",,%" PRIu32 ",%" PRIu32 ",%" PRIu32, r->a[0], r->b[0], r->b[1], r->b[2]);
     else
@@ -92,7 +92,7 @@ static void write_json_line(FILE *file, const contact_record *r, bool with_bound
     json out = {.file = file};
     bool vf = r->kind == CSCD_CONTACT_VF;
     json_begin_object(&out, NULL);
-    json_integer(&out, "frame", r->frame);
+    json_signed(&out, "frame", r->frame);
     json_string(&out, "kind", cscd_contact_kind_name(r->kind));
     json_number(&out, "toi", r->toi);
     write_indices(&out, "a", r->a, vf ? 1 : 2);

@@ -7,7 +7,7 @@
 /* A contact in terms of the mesh file's own vertices. VF: a[0] touches the triangle b. EE: the edge a[0] a[1]
  * touches the edge b[0] b[1]. */
 typedef struct contact_record {
-    uint32_t frame; /* the interval from this frame to the next */
+    int32_t frame; /* the interval from this frame to the next, by the name that the recording gives it */
     cscd_contact_kind kind;
     uint32_t a[2], b[3];
     double toi, u, v;

@@ -4,6 +4,7 @@
 #include "src/io/frame_folder.h"
 #include "src/io/frame_names.h"
 #include "src/io/frame_pattern.h"
+#include "src/io/frame_series.h"
 #include "src/io/growable.h"
 #include "src/io/mesh_file.h"
 #include "src/io/point_cache.h"
@@ -22,6 +23,7 @@ struct frame_files {
     frame_names list;
     char *path; /* room for the folder and the longest name */
     size_t path_size;
+    const char *note;
     bool faces_seen; /* of the first frame read: */
     uint64_t faces_hash;
     uint32_t faces_frame;
@@ -58,11 +60,11 @@ static bool finish_files(frame_files *files, const char *source, frame_files **o
     return finished;
 }
 
-bool frame_files_open_pattern(const char *pattern, uint32_t vertex_count, frame_files **out,
+bool frame_files_open_pattern(const char *pattern, bool allow_gaps, uint32_t vertex_count, frame_files **out,
                               io_error *error) {
     frame_files *files = create_files(pattern, vertex_count, error);
     if (files == NULL) return false;
-    if (!frame_pattern_find(pattern, &files->folder, &files->list, error)) {
+    if (!frame_pattern_find(pattern, allow_gaps, &files->folder, &files->list, error)) {
         frame_files_close(files);
         return false;
     }
@@ -77,7 +79,8 @@ static char *with_slash(const char *folder) {
     return copy;
 }
 
-bool frame_files_open_folder(const char *folder, uint32_t vertex_count, frame_files **out, io_error *error) {
+bool frame_files_open_folder(const char *folder, bool allow_gaps, uint32_t vertex_count, frame_files **out,
+                             io_error *error) {
     frame_files *files = create_files(folder, vertex_count, error);
     if (files == NULL) return false;
     files->folder = with_slash(folder);
@@ -85,7 +88,7 @@ bool frame_files_open_folder(const char *folder, uint32_t vertex_count, frame_fi
         frame_files_close(files);
         return io_fail(error, "%s: out of memory", folder);
     }
-    if (!frame_folder_find(folder, &files->list, error)) {
+    if (!frame_folder_find(folder, files->folder, allow_gaps, &files->list, error)) {
         frame_files_close(files);
         return false;
     }
@@ -117,11 +120,61 @@ static bool add_listed(frame_files *files, const char *const *paths, size_t path
     return true;
 }
 
-bool frame_files_open_list(const char *const *paths, size_t path_count, uint32_t vertex_count,
-                           frame_files **out, io_error *error) {
+static bool lists_path(const frame_names *list, const char *path) {
+    for (size_t i = 0; i < frame_names_count(list); i++)
+        if (strcmp(frame_names_at(list, i), path) == 0) return true;
+    return false;
+}
+
+/* Copies a list, with one more name unless it is NULL, in natural order; false when out of memory. */
+static bool copy_sorted(const frame_names *list, const char *name, frame_names *copy) {
+    bool copied = name == NULL || frame_names_add(copy, name);
+    for (size_t i = 0; i < frame_names_count(list) && copied; i++)
+        copied = frame_names_add(copy, frame_names_at(list, i));
+    if (copied) frame_names_sort(copy);
+    return copied;
+}
+
+/* If the list, with the model unless that is NULL, is a series, it becomes the list in its order, and *number the one
+ * that counts the frames. */
+static bool take_series(frame_files *files, const char *model_path, bool *is_series, size_t *number,
+                        io_error *error) {
+    frame_names unused = frame_names_none();
+    const bool copied = copy_sorted(&files->list, model_path, &unused);
+    *is_series = copied && frame_series_find(&unused, number);
+    if (*is_series) {
+        const frame_names series = unused;
+        unused = files->list;
+        files->list = series;
+    }
+    frame_names_free(&unused);
+    return copied || io_fail(error, "%s: out of memory", frame_names_at(&files->list, 0));
+}
+
+/* Finds the order of the frames, and their numbers. */
+static bool order_list(frame_files *files, const char *model_path, bool allow_gaps, io_error *error) {
+    frame_names *list = &files->list;
+    const bool joins = model_path != NULL && frame_names_is_mesh(model_path) && !lists_path(list, model_path);
+    const bool sorted = frame_names_are_sorted(list);
+    bool is_series = false;
+    size_t number = SIZE_MAX;
+    if (joins && !take_series(files, model_path, &is_series, &number, error)) return false;
+    if (!is_series && !take_series(files, NULL, &is_series, &number, error)) return false;
+    if (!is_series && frame_names_count(list) > 1) {
+        files->note =
+            "the frames are taken in the order given, because their names differ in more than one number";
+        return true;
+    }
+    if (is_series && !sorted) files->note = "the frames are taken in the order of their numbers";
+    if (!frame_series_read(list, number, &list->numbers)) list->numbers.count = 0;
+    return allow_gaps || frame_series_is_complete("", list, number, error);
+}
+
+bool frame_files_open_list(const char *const *paths, size_t path_count, const char *model_path,
+                           bool allow_gaps, uint32_t vertex_count, frame_files **out, io_error *error) {
     frame_files *files = create_files(paths[0], vertex_count, error);
     if (files == NULL) return false;
-    if (!add_listed(files, paths, path_count, error)) {
+    if (!add_listed(files, paths, path_count, error) || !order_list(files, model_path, allow_gaps, error)) {
         frame_files_close(files);
         return false;
     }
@@ -140,19 +193,28 @@ uint32_t frame_files_frame_count(const frame_files *files) {
     return (uint32_t)frame_names_count(&files->list);
 }
 
-static bool copy_positions(const frame_files *files, uint32_t frame, const mesh_file *mesh, double *positions,
+int32_t frame_files_number(const frame_files *files, uint32_t frame) {
+    const growable *numbers = &files->list.numbers;
+    return numbers->count > 0 ? ((const int32_t *)numbers->data)[frame] : (int32_t)frame;
+}
+
+const char *frame_files_note(const frame_files *files) {
+    return files->note;
+}
+
+static bool copy_positions(const frame_files *files, const mesh_file *mesh, double *positions,
                            io_error *error) {
     if (mesh->vertex_count != files->vertex_count)
         return io_fail(error,
-                       "%s: frame %" PRIu32 " holds %" PRIu32 " vertices, the model has %" PRIu32
+                       "%s: holds %" PRIu32 " vertices, the model has %" PRIu32
                        " vertices: it was exported from another mesh",
-                       files->path, frame, mesh->vertex_count, files->vertex_count);
+                       files->path, mesh->vertex_count, files->vertex_count);
     const size_t count = (size_t)mesh->vertex_count * 3;
     for (size_t i = 0; i < count; i++) {
         const double value = mesh->positions[i];
         if (!isfinite(value))
-            return io_fail(error, "%s: frame %" PRIu32 ", vertex %zu, %c is %f, expected a finite number",
-                           files->path, frame, i / 3, "xyz"[i % 3], value);
+            return io_fail(error, "%s: vertex %zu, %c is %f, expected a finite number", files->path, i / 3,
+                           "xyz"[i % 3], value);
         positions[i] = value;
     }
     return true;
@@ -166,9 +228,8 @@ static bool same_faces(frame_files *files, uint32_t frame, const mesh_file *mesh
     for (size_t i = 0; i < size; i++) hash = (hash ^ bytes[i]) * 0x100000001b3u;
     if (files->faces_seen && hash != files->faces_hash)
         return io_fail(error,
-                       "%s: frame %" PRIu32 " has other faces than frame %" PRIu32
-                       ": expected frames of one mesh, vertices in one order",
-                       files->path, frame, files->faces_frame);
+                       "%s: has other faces than %s: expected frames of one mesh, vertices in one order",
+                       files->path, frame_names_at(&files->list, files->faces_frame));
     if (!files->faces_seen) files->faces_frame = frame;
     files->faces_seen = true;
     files->faces_hash = hash;
@@ -178,11 +239,9 @@ static bool same_faces(frame_files *files, uint32_t frame, const mesh_file *mesh
 bool frame_files_read(frame_files *files, uint32_t frame, double *positions, io_error *error) {
     snprintf(files->path, files->path_size, "%s%s", files->folder, frame_names_at(&files->list, frame));
     mesh_file mesh = {0};
-    io_error cause;
-    if (!mesh_file_read(files->path, &mesh, &cause))
-        return io_fail(error, "frame %" PRIu32 ": %s", frame, cause.text);
+    if (!mesh_file_read(files->path, &mesh, error)) return false;
     const bool copied =
-        copy_positions(files, frame, &mesh, positions, error) && same_faces(files, frame, &mesh, error);
+        copy_positions(files, &mesh, positions, error) && same_faces(files, frame, &mesh, error);
     mesh_file_free(&mesh);
     return copied;
 }

@@ -4,13 +4,14 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
 
 frame_names frame_names_none(void) {
-    return (frame_names){growable_of(sizeof(char *))};
+    return (frame_names){growable_of(sizeof(char *)), growable_of(sizeof(int32_t))};
 }
 
 size_t frame_names_count(const frame_names *list) {
@@ -45,6 +46,7 @@ void frame_names_free(frame_names *list) {
     char **names = list->names.data;
     for (size_t i = 0; i < list->names.count; i++) free(names[i]);
     growable_free(&list->names);
+    growable_free(&list->numbers);
 }
 
 /* A path that cannot be examined counts as no folder: it stays in the list, and reading it says what is
@@ -109,6 +111,13 @@ static int compare_names(const void *left, const void *right) {
 
 void frame_names_sort(frame_names *list) {
     if (list->names.count > 1) qsort(list->names.data, list->names.count, sizeof(char *), compare_names);
+}
+
+bool frame_names_are_sorted(const frame_names *list) {
+    char *const *names = list->names.data;
+    for (size_t i = 1; i < list->names.count; i++)
+        if (compare_names(names + i - 1, names + i) > 0) return false;
+    return true;
 }
 
 bool frame_names_is_mesh(const char *name) {

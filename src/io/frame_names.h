@@ -8,7 +8,8 @@
 #include <stddef.h>
 
 typedef struct frame_names {
-    growable names; /* of char *, each owned */
+    growable names;   /* of char *, each owned */
+    growable numbers; /* of int32_t: what the artist calls each frame; empty when the names do not say it */
 } frame_names;
 
 frame_names frame_names_none(void);
@@ -28,8 +29,10 @@ bool frame_names_read_folder(frame_names *list, const char *folder,
                              bool (*keep)(const char *name, const void *context), const void *context,
                              io_error *error);
 
-/* Natural order: runs of digits compare as numbers of any length, so f2 comes before f10. */
+/* Natural order: runs of digits compare as numbers of any length, so f2 comes before f10. Numbers must not be there
+ * yet. */
 void frame_names_sort(frame_names *list);
+bool frame_names_are_sorted(const frame_names *list);
 
 /* Ends in .obj, .ply or .off, in any case. */
 bool frame_names_is_mesh(const char *name);

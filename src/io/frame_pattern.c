@@ -1,6 +1,7 @@
 /* Finds the files that a pattern such as f_%04d.obj stands for; the pattern never reaches printf. */
 #include "src/io/frame_pattern.h"
 
+#include "src/io/frame_series.h"
 #include "src/io/growable.h"
 #include "src/io/path_name.h"
 
@@ -91,23 +92,30 @@ static bool keep_match(const char *name, const void *context) {
     return matches_name(context, name, &number);
 }
 
-/* The names ascend by number, because the same text surrounds the number in all of them. */
-static bool check_gaps(const frame_pattern *pattern, const frame_names *list, io_error *error) {
-    uint32_t first, number;
-    matches_name(pattern, frame_names_at(list, 0), &first);
-    for (size_t i = 1; i < frame_names_count(list); i++) {
-        const uint64_t expected = (uint64_t)first + i;
-        if (matches_name(pattern, frame_names_at(list, i), &number) && number == expected) continue;
-        return io_fail(error, "%.*s%0*" PRIu64 "%s: missing, expected all frames from %s to %s",
-                       (int)pattern->number_start, pattern->text, (int)pattern->width, expected,
-                       pattern->text + pattern->number_start, frame_names_at(list, 0),
-                       frame_names_at(list, frame_names_count(list) - 1));
+static bool read_numbers(const frame_pattern *pattern, frame_names *list) {
+    for (size_t i = 0; i < frame_names_count(list); i++) {
+        int32_t *number = growable_push(&list->numbers);
+        uint32_t value = 0;
+        if (number == NULL) return false;
+        matches_name(pattern, frame_names_at(list, i), &value);
+        *number = (int32_t)value;
     }
     return true;
 }
 
-static bool find_files(frame_pattern *pattern, const char *source, char **folder, frame_names *list,
+/* The names ascend by number, because the same text surrounds the number in all of them. */
+static bool check_gaps(const frame_pattern *pattern, const char *folder, const frame_names *list,
                        io_error *error) {
+    frame_gap gap;
+    if (!frame_series_find_gap(&list->numbers, &gap)) return true;
+    const char *name = frame_names_at(list, gap.before), *suffix = pattern->text + pattern->number_start;
+    number_place place = {.start = pattern->number_start - pattern->name_start, .width = (int)pattern->width};
+    place.length = strlen(name) - place.start - strlen(suffix);
+    return frame_series_fail(folder, list, &gap, place, error);
+}
+
+static bool find_files(frame_pattern *pattern, const char *source, bool allow_gaps, char **folder,
+                       frame_names *list, io_error *error) {
     if (!parse_pattern(pattern, source, error)) return false;
     if (!frame_names_is_mesh(pattern->text + pattern->number_start))
         return io_fail(error, "%s: unknown extension, a pattern is expected to end in .obj, .ply or .off",
@@ -119,7 +127,8 @@ static bool find_files(frame_pattern *pattern, const char *source, char **folder
         complete = io_fail(error, "%s: no such file, and no file matches it as a pattern", source);
     if (complete) {
         frame_names_sort(list);
-        complete = check_gaps(pattern, list, error);
+        complete = read_numbers(pattern, list) || io_fail(error, "%s: out of memory", source);
+        complete = complete && (allow_gaps || check_gaps(pattern, found, list, error));
     }
     if (complete)
         *folder = found;
@@ -128,10 +137,11 @@ static bool find_files(frame_pattern *pattern, const char *source, char **folder
     return complete;
 }
 
-bool frame_pattern_find(const char *pattern, char **folder, frame_names *list, io_error *error) {
+bool frame_pattern_find(const char *pattern, bool allow_gaps, char **folder, frame_names *list,
+                        io_error *error) {
     frame_pattern parsed = {.text = io_realloc(NULL, strlen(pattern) + 1)};
     if (parsed.text == NULL) return io_fail(error, "%s: out of memory", pattern);
-    const bool found = find_files(&parsed, pattern, folder, list, error);
+    const bool found = find_files(&parsed, pattern, allow_gaps, folder, list, error);
     free(parsed.text);
     return found;
 }

@@ -86,6 +86,11 @@ void json_integer(json *out, const char *key, uint64_t value) {
     fprintf(out->file, "%" PRIu64, value);
 }
 
+void json_signed(json *out, const char *key, int64_t value) {
+    begin_value(out, key);
+    fprintf(out->file, "%" PRId64, value);
+}
+
 void json_number(json *out, const char *key, double value) {
     begin_value(out, key);
     if (isfinite(value))

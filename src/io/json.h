@@ -23,6 +23,7 @@ void json_end_array(json *out);
 /* Invalid UTF-8 bytes (file names) are written as U+FFFD. */
 void json_string(json *out, const char *key, const char *value);
 void json_integer(json *out, const char *key, uint64_t value);
+void json_signed(json *out, const char *key, int64_t value);
 /* Writes 17 significant digits, so that the same double comes back. NaN and infinity become null. */
 void json_number(json *out, const char *key, double value);
 void json_boolean(json *out, const char *key, bool value);

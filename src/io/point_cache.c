@@ -23,6 +23,7 @@ struct point_cache {
     int file;
     bool big_endian;
     uint32_t vertex_count, frame_count;
+    int32_t first_number, number_step;
     int64_t file_size;
     int64_t data_start; /* byte offset of frame 0 */
     unsigned char chunk[CHUNK_VERTICES * POINT_CACHE_VERTEX_SIZE];
@@ -100,6 +101,17 @@ static bool check_magic(const char *path, const unsigned char *header, size_t si
                    POINT_CACHE_PC2_MAGIC);
 }
 
+/* What frames are called, by the header's start and rate. */
+static void number_frames(point_cache *cache, double start, double rate) {
+    cache->first_number = 0;
+    cache->number_step = 1;
+    const double last = start + rate * (cache->frame_count - 1.0);
+    const bool whole = start == floor(start) && rate == floor(rate) && rate >= 1.0;
+    if (!whole || start < INT32_MIN || last > INT32_MAX) return;
+    cache->first_number = (int32_t)start;
+    cache->number_step = (int32_t)rate;
+}
+
 static bool parse_pc2_header(point_cache *cache, const unsigned char *header, size_t size, io_error *error) {
     if (!check_magic(cache->path, header, size, error)) return false;
     if (size < POINT_CACHE_PC2_HEADER_SIZE)
@@ -114,6 +126,7 @@ static bool parse_pc2_header(point_cache *cache, const unsigned char *header, si
     cache->big_endian = false;
     cache->frame_count = (uint32_t)samples;
     cache->data_start = POINT_CACHE_PC2_HEADER_SIZE;
+    number_frames(cache, (double)load_float(header + 20, false), (double)load_float(header + 24, false));
     return true;
 }
 
@@ -126,6 +139,7 @@ static bool parse_mdd_header(point_cache *cache, const unsigned char *header, si
     if (!check_counts(cache, points, frames, error)) return false;
     cache->big_endian = true;
     cache->frame_count = (uint32_t)frames;
+    number_frames(cache, 0.0, 1.0);
     cache->data_start = POINT_CACHE_MDD_HEADER_SIZE + (int64_t)frames * (int64_t)sizeof(float);
     return true;
 }
@@ -198,6 +212,10 @@ void point_cache_close(point_cache *cache) {
     free(cache);
 }
 
+int32_t point_cache_frame_number(const point_cache *cache, uint32_t frame) {
+    return (int32_t)(cache->first_number + (int64_t)cache->number_step * frame);
+}
+
 uint32_t point_cache_frame_count(const point_cache *cache) {
     return cache->frame_count;
 }
@@ -209,7 +227,7 @@ static bool decode_chunk(const point_cache *cache, uint32_t frame, uint32_t firs
         const float value = load_float(cache->chunk + i * sizeof value, cache->big_endian);
         if (!isfinite(value))
             return io_fail(error,
-                           "%s: frame %" PRIu32 ", vertex %zu, %c at byte %" PRId64
+                           "%s: sample %" PRIu32 ", vertex %zu, %c at byte %" PRId64
                            " is %f, expected a finite number",
                            cache->path, frame, first + i / 3, "xyz"[i % 3],
                            offset + (int64_t)(i * sizeof value), (double)value);
@@ -227,7 +245,7 @@ bool point_cache_read(point_cache *cache, uint32_t frame, double *positions, io_
         const int64_t offset = frame_start + (int64_t)first * POINT_CACHE_VERTEX_SIZE;
         const int64_t got = read_at(cache->file, cache->chunk, (size_t)size, offset);
         if (got < 0)
-            return io_fail(error, "%s: frame %" PRIu32 ": cannot read at byte %" PRId64 ": %s", cache->path,
+            return io_fail(error, "%s: sample %" PRIu32 ": cannot read at byte %" PRId64 ": %s", cache->path,
                            frame, offset, strerror(errno));
         if (got < size)
             return io_fail(error,

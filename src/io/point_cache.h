@@ -9,7 +9,9 @@
 /* PC2: 32 bytes, little endian: "POINTCACHE2" with its NUL, int32 version (1), int32 points, float32 start,
  * float32 rate, int32 samples; then for each sample x,y,z float32 of every point.
  * MDD: big endian: int32 frames, int32 points, float32 time of every frame; then for each frame x,y,z float32
- * of every point. The times (start, rate, MDD's list) are not used: frames are taken in the file's order. */
+ * of every point. Frames are taken in the file's order. A PC2 header says what they are called: the first is number start,
+ * and the others follow in steps of rate, if both are whole numbers and rate is at least 1. MDD's times, in seconds, are
+ * not used. */
 #define POINT_CACHE_PC2_MAGIC "POINTCACHE2"
 enum {
     POINT_CACHE_PC2_MAGIC_SIZE = sizeof POINT_CACHE_PC2_MAGIC,
@@ -29,6 +31,9 @@ bool point_cache_open(const char *path, uint32_t vertex_count, point_cache **out
 void point_cache_close(point_cache *cache);
 
 uint32_t point_cache_frame_count(const point_cache *cache);
+
+/* What the header calls a frame; its index where it does not say so. */
+int32_t point_cache_frame_number(const point_cache *cache, uint32_t frame);
 
 /* frame is below the count; positions takes vertex_count * 3 and is undefined on false. */
 bool point_cache_read(point_cache *cache, uint32_t frame, double *positions, io_error *error);

@@ -25,5 +25,4 @@ void weld_free(weld *w);
 
 /* Welded positions are those of the first file vertex. False, with the vertices and their distance, when two
  * that were welded lie farther apart than epsilon in this frame (frame: for the message). */
-bool weld_positions(const weld *w, const double *file_positions, uint32_t frame, double *out,
-                    io_error *error);
+bool weld_positions(const weld *w, const double *file_positions, int32_t frame, double *out, io_error *error);

@@ -26,6 +26,10 @@ static const option_row rows[] = {
      "write the pairs of every frame (triangles as in MODEL, from 0)"},
     {"frames", "A:B[:STEP]", read_frames, offsetof(check_options, frames),
      "only the frames A to B, both included, or every STEP-th of them"},
+    {"first-frame", "N", read_frame_number, offsetof(check_options, source.first_frame),
+     "what the first frame is called (default: the number in its file's name, or 0)"},
+    {"allow-gaps", NULL, read_flag, offsetof(check_options, source.allow_gaps),
+     "of numbered files, some may be missing"},
     {"weld", "exact|EPS", read_weld, offsetof(check_options, source),
      "join vertices that coincide, or lie within EPS, in the first frame"},
     {"ignore", "LIST", read_text, offsetof(check_options, ignore_path),
@@ -56,7 +60,7 @@ typedef struct check_run {
     double *positions;
     json out; /* file NULL when not asked for */
     terminal_progress progress;
-    frame_range frames;
+    frame_choice frames;
     uint32_t frames_checked;
     frame_list intersecting;
 } check_run;
@@ -66,7 +70,7 @@ static void write_frame(check_run *c, uint32_t frame, const cscd_intersections *
     json *out = &c->out;
     json_break_line(out);
     json_begin_object(out, NULL);
-    json_integer(out, "frame", frame);
+    json_signed(out, "frame", c->recording.frame_numbers[frame]);
     json_boolean(out, "crossing", found->count > 0);
     json_integer(out, "zero_area_triangles", found->zero_area_triangles);
     json_begin_array(out, "pairs");
@@ -87,11 +91,13 @@ static bool check_frame(check_run *c, uint32_t frame, io_error *error) {
     if (cscd_detector_check(c->detector,
                             CSCD_DOUBLES(c->positions, cscd_mesh_vertex_count(c->recording.mesh)),
                             &found) != CSCD_OK)
-        return io_fail(error, "frame %u: %s", frame, cscd_context_detail(c->recording.context));
+        return io_fail(error, "frame %d: %s", c->recording.frame_numbers[frame],
+                       cscd_context_detail(c->recording.context));
     c->frames_checked++;
     if (found.count > 0 && !frame_list_add(&c->intersecting, frame)) return io_fail(error, "out of memory");
     if (found.count > 0 && !c->options->quiet)
-        printf("frame %u: %zu triangle pairs intersect or touch, the first %u and %u\n", frame, found.count,
+        printf("frame %d: %zu triangle pairs intersect or touch, the first %u and %u\n",
+               c->recording.frame_numbers[frame], found.count,
                recording_file_triangle(&c->recording, found.items[0].a),
                recording_file_triangle(&c->recording, found.items[0].b));
     if (c->out.file != NULL) write_frame(c, frame, &found);
@@ -100,8 +106,9 @@ static bool check_frame(check_run *c, uint32_t frame, io_error *error) {
 
 static bool prepare_check(check_run *c, io_error *error) {
     const check_options *o = c->options;
-    c->frames = o->frames;
-    if (!frame_range_close(&c->frames, c->recording.frame_count, error)) return false;
+    if (!frame_range_choose(&o->frames, c->recording.frame_numbers, c->recording.frame_count, &c->frames,
+                            error))
+        return false;
     cscd_detector_options options = cscd_detector_defaults();
     c->ignored.mesh = c->recording.mesh;
     if (o->ignore_path != NULL && !ignore_pairs_read(&c->ignored, &c->recording, o->ignore_path, error))
@@ -122,7 +129,7 @@ static bool prepare_check(check_run *c, io_error *error) {
 }
 
 static bool check_frames(check_run *c, io_error *error) {
-    uint32_t count = frame_range_count(&c->frames);
+    uint32_t count = frame_choice_count(&c->frames);
     for (uint32_t i = 0; i < count && !interrupted(); i++) {
         terminal_progress_update(&c->progress, i, count, "check");
         if (!check_frame(c, c->frames.first + i * c->frames.step, error)) return false;
@@ -157,7 +164,7 @@ static int run_check(const check_options *options) {
     if (c.frames_checked > 0 && !options->quiet) {
         printf("%s: %u of %u frames intersect or touch themselves", options->source.model_path,
                frame_list_frames(&c.intersecting), c.frames_checked);
-        frame_list_print(&c.intersecting, ": ");
+        frame_list_print(&c.intersecting, c.recording.frame_numbers, ": ");
     }
     int code = !ran                                                   ? fail_input("%s", error.text)
                : !closed                                              ? fail_input("%s", close_error.text)

@@ -124,16 +124,16 @@ static bool check_interval(json_object *interval, size_t index, io_error *error)
            elements_have(find_member(interval, "guarantee"), of_guarantee, where, error);
 }
 
-/* Frames must follow each other, because the page has a place for each between the first and the last. */
+/* Frames ascend, by the numbers that their recording gives them. */
 static bool check_intervals(json_object *intervals, io_error *error) {
-    int64_t first = 0;
+    int64_t before = 0;
     for (size_t i = 0; i < json_object_array_length(intervals); i++) {
         json_object *interval = json_object_array_get_idx(intervals, i);
         if (!check_interval(interval, i, error)) return false;
         int64_t frame = json_object_get_int64(find_member(interval, "frame"));
-        if (i == 0) first = frame;
-        if (frame < 0 || frame >= UINT32_MAX || frame - first != (int64_t)i)
+        if (frame < INT32_MIN || frame > INT32_MAX || (i > 0 && frame <= before))
             return io_fail(error, "interval %zu of the file: 'frame' is not what cscd writes there", i);
+        before = frame;
     }
     return true;
 }

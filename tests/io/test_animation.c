@@ -216,7 +216,7 @@ static void refuses_values_that_are_not_finite(void **state) {
             const temp_path path = write_cache(mdd, &bytes);
             animation *opened = frame_fixture_open(path.text, VERTICES);
             char place[64];
-            snprintf(place, sizeof place, "frame 2, vertex 3, y at byte %zu is ", offset);
+            snprintf(place, sizeof place, "sample 2, vertex 3, y at byte %zu is ", offset);
             io_error error;
             frame_fixture_read_fails(opened, VERTICES, 2, &error);
             frame_fixture_check_error(&error, path.text, place, i == 0 ? "nan" : "inf", "finite", NULL);
@@ -268,7 +268,7 @@ static void reads_frames_of_many_vertices(void **state) {
     assert_int_equal(fwrite("\xff\xff\xff\xff", 4, 1, file), 1);
     assert_int_equal(fclose(file), 0);
     frame_fixture_read_fails(opened, MANY, 1, &error);
-    frame_fixture_check_error(&error, "frame 1, vertex 9000, z at byte 216052", NULL);
+    frame_fixture_check_error(&error, "sample 1, vertex 9000, z at byte 216052", NULL);
     animation_close(opened);
 }
 
@@ -276,7 +276,7 @@ static void refuses_what_is_no_animation(void **state) {
     (void)state;
     io_error error;
     animation *opened = NULL;
-    assert_false(animation_open(NULL, 0, VERTICES, &opened, &error));
+    assert_false(animation_open(NULL, 0, VERTICES, NULL, &opened, &error));
     frame_fixture_check_error(&error, "no animation given", "f_%04d.obj", NULL);
 
     const temp_path missing = temp_file_path(&frame_fixture_folder, "missing.pc2");

@@ -42,7 +42,7 @@ static void fail_every_allocation(const char *const *paths, size_t path_count, l
     for (;; successes++) {
         io_error error = {""};
         allocations_left = successes;
-        const bool done = animation_open(paths, path_count, VERTICES, &opened, &error);
+        const bool done = animation_open(paths, path_count, VERTICES, NULL, &opened, &error);
         allocations_left = -1;
         if (done) break;
         assert_null(opened);
@@ -87,7 +87,7 @@ static void reading_survives_failed_allocations(void **state) {
         const bool done = animation_read(opened, 0, positions, &error);
         allocations_left = -1;
         if (done) break;
-        frame_fixture_check_error(&error, "frame 0: ", path.text, NULL);
+        frame_fixture_check_error(&error, path.text, NULL);
     }
     assert_true(successes > 0);
     frame_fixture_check(opened, VERTICES, 0, 0);
@@ -129,8 +129,8 @@ static long peak_of_reading(const char *path, uint32_t frame_count) {
     assert_true(child >= 0);
     if (child == 0) {
         animation *opened;
-        bool done =
-            animation_open(&path, 1, LARGE, &opened, NULL) && animation_frame_count(opened) == frame_count;
+        bool done = animation_open(&path, 1, LARGE, NULL, &opened, NULL) &&
+                    animation_frame_count(opened) == frame_count;
         for (uint32_t frame = 0; done && frame < frame_count; frame++)
             done = animation_read(opened, frame, large_frame, NULL);
         _exit(done ? 0 : 1);

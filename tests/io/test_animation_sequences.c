@@ -210,7 +210,7 @@ static void list_keeps_the_order_given(void **state) {
     const char *const paths[] = {b.text, a.text, c.text, b.text};
     animation *opened;
     io_error error;
-    assert_true(animation_open(paths, 4, VERTICES, &opened, &error));
+    assert_true(animation_open(paths, 4, VERTICES, NULL, &opened, &error));
     assert_int_equal(animation_frame_count(opened), 4);
     static const uint32_t expected[] = {1, 2, 3, 1};
     for (uint32_t frame = 0; frame < 4; frame++)
@@ -223,7 +223,7 @@ static void check_list_fails(const char *second, const char *part) {
     const char *const paths[] = {first.text, second};
     animation *opened = NULL;
     io_error error;
-    assert_false(animation_open(paths, 2, VERTICES, &opened, &error));
+    assert_false(animation_open(paths, 2, VERTICES, NULL, &opened, &error));
     assert_null(opened);
     frame_fixture_check_error(&error, second, part, NULL);
 }
@@ -275,12 +275,12 @@ static void bad_frames_are_named(void **state) {
     assert_int_equal(unlink(gone.text), 0);
     io_error error;
     frame_fixture_read_fails(opened, VERTICES, 1, &error);
-    frame_fixture_check_error(&error, other.text, "frame 1 holds 5 vertices, the model has 4 vertices",
+    frame_fixture_check_error(&error, other.text, "holds 5 vertices, the model has 4 vertices",
                               "exported from another mesh", NULL);
     frame_fixture_read_fails(opened, VERTICES, 2, &error);
-    frame_fixture_check_error(&error, "frame 2: ", garbage.text, "line 1", NULL);
+    frame_fixture_check_error(&error, garbage.text, "line 1", NULL);
     frame_fixture_read_fails(opened, VERTICES, 3, &error);
-    frame_fixture_check_error(&error, "frame 3: ", gone.text, "No such file", NULL);
+    frame_fixture_check_error(&error, gone.text, "No such file", NULL);
     frame_fixture_read_fails(opened, VERTICES, 5, &error);
     frame_fixture_check_error(&error, frame_fixture_folder.path, "no frame 5", NULL);
     frame_fixture_check(opened, VERTICES, 4, 4);
@@ -298,7 +298,7 @@ static void values_that_are_not_finite_are_refused(void **state) {
         animation *opened = frame_fixture_open(path.text, 3);
         io_error error;
         frame_fixture_read_fails(opened, 3, 0, &error);
-        frame_fixture_check_error(&error, path.text, "frame 0", NULL);
+        frame_fixture_check_error(&error, path.text, "line 2", NULL);
         animation_close(opened);
     }
 }

@@ -39,7 +39,7 @@ static void check_files(const char *obj, const char *pc2, uint32_t frame_count) 
     animation *frames;
     io_error error;
     if (!mesh_file_read(obj, &mesh, &error)) fail_msg("%s", error.text);
-    if (!animation_open(&(const char *){pc2}, 1, mesh.vertex_count, &frames, &error))
+    if (!animation_open(&(const char *){pc2}, 1, mesh.vertex_count, NULL, &frames, &error))
         fail_msg("%s", error.text);
     assert_int_equal(animation_frame_count(frames), frame_count);
     double *positions = malloc(mesh.vertex_count * 3 * sizeof *positions);

@@ -79,7 +79,7 @@ static void files_hold_the_recording(void **state) {
     assert_non_null(positions);
     assert_memory_equal(mesh.positions, r.shape.positions, bytes);
     assert_memory_equal(mesh.triangles, r.shape.triangles, mesh.triangle_count * 3 * sizeof *mesh.triangles);
-    if (!animation_open(&(const char *){frames.text}, 1, mesh.vertex_count, &cache, &error))
+    if (!animation_open(&(const char *){frames.text}, 1, mesh.vertex_count, NULL, &cache, &error))
         fail_msg("%s", error.text);
     assert_int_equal(animation_frame_count(cache), 150);
     for (uint32_t k = 0; k < 2; k++) {

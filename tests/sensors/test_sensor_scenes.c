@@ -205,7 +205,7 @@ static void the_program_writes_model_and_frames(void **state) {
     assert_non_null(strstr(run.out, "within objects in 0"));
     tool_run_free(&run);
     if (!mesh_file_read(obj.text, &mesh, &error)) fail_msg("%s", error.text);
-    if (!animation_open(&(const char *){pc2.text}, 1, mesh.vertex_count, &frames, &error))
+    if (!animation_open(&(const char *){pc2.text}, 1, mesh.vertex_count, NULL, &frames, &error))
         fail_msg("%s", error.text);
     assert_int_equal(animation_frame_count(frames), 90);
     object_stage s = stage_of("two-spheres-unequal");

@@ -65,7 +65,7 @@ static void first_contact_is_where_the_formula_says(void **state) {
     assert_true(rows.count > 0);
     assert_int_equal(rows.items[0].frame, expected);
     assert_in_range(expected, 1, 58);
-    for (size_t i = 0; i < rows.count; i++) assert_true(rows.items[i].frame >= expected);
+    for (size_t i = 0; i < rows.count; i++) assert_true(rows.items[i].frame >= (int32_t)expected);
 }
 
 /* Brute force over all feature pairs of the first interval with contacts gives the same list, number for
@@ -78,7 +78,7 @@ static void brute_force_finds_the_same(void **state) {
     EXPECT_TOOL(0, "replay", model.text, frames.text, "--frames", range, "--method", "brute", "--no-check",
                 "--quiet", "--contacts", brute_csv.text);
     contact_rows brute = contact_rows_read_csv(brute_csv.text), first = rows;
-    for (first.count = 0; first.count < rows.count && rows.items[first.count].frame == expected;)
+    for (first.count = 0; first.count < rows.count && rows.items[first.count].frame == (int32_t)expected;)
         first.count++;
     contact_rows_assert_equal(&first, &brute);
     contact_rows_free(&brute);
@@ -90,8 +90,8 @@ static void csv_json_and_table_agree(void **state) {
     size_t totals[2] = {0, 0}, with_contact = 0;
     assert_int_equal(intervals->count, 59);
     assert_int_equal(json_node_member(json, "frames")->count, 60);
-    for (uint32_t i = 0; i < 59; i++) {
-        const json_node *interval = json_node_item(intervals, i);
+    for (int32_t i = 0; i < 59; i++) {
+        const json_node *interval = json_node_item(intervals, (size_t)i);
         size_t vf = contact_rows_of(&rows, i, CSCD_CONTACT_VF),
                ee = contact_rows_of(&rows, i, CSCD_CONTACT_EE);
         assert_true(json_node_number(interval, "frame") == i);

@@ -84,7 +84,7 @@ static void refuses_unfit_values(void **state) {
     static const char *const unfit[][2] = {
         {"--frames", "a:b"},       {"--frames", "3:1"},
         {"--frames", ":"},         {"--frames", ""},
-        {"--frames", "1:2:0"},     {"--frames", "-1:2"},
+        {"--frames", "1:2:0"},     {"--frames", "-:2"},
         {"--method", "icc"},       {"--mode", "some"},
         {"--threads", "-1"},       {"--threads", "257"},
         {"--threads", "two"},      {"--weld", "-1"},

@@ -74,7 +74,7 @@ static void named_points(const recorded *r, const contact_record *c, double a[3]
     bool vf = c->kind == CSCD_CONTACT_VF;
     for (int i = 0; i < 4; i++) {
         uint32_t vertex = vf ? (i == 0 ? c->a[0] : c->b[i - 1]) : (i < 2 ? c->a[i] : c->b[i - 2]);
-        place_at(r, c->frame, vertex, c->toi, p[i]);
+        place_at(r, (uint32_t)c->frame, vertex, c->toi, p[i]);
     }
     for (int k = 0; k < 3; k++) {
         a[k] = vf ? p[0][k] : (1.0 - c->u) * p[0][k] + c->u * p[1][k];
@@ -137,7 +137,7 @@ static void check_guarantees(const json_node *interval, size_t component_count) 
     }
 }
 
-static void check_interval(const json_node *interval, uint32_t frame, const contact_rows *rows) {
+static void check_interval(const json_node *interval, int32_t frame, const contact_rows *rows) {
     size_t vf = contact_rows_of(rows, frame, CSCD_CONTACT_VF),
            ee = contact_rows_of(rows, frame, CSCD_CONTACT_EE);
     assert_true(json_node_number(interval, "frame") == frame);
@@ -210,7 +210,7 @@ static void json_csv_and_table_agree(void **state) {
                     *frames = json_node_member(root, "frames");
     assert_int_equal(intervals->count, FOLD_FRAMES - 1);
     for (uint32_t k = 0; k < FOLD_FRAMES - 1; k++) {
-        check_interval(json_node_item(intervals, k), k, &rows);
+        check_interval(json_node_item(intervals, k), (int32_t)k, &rows);
         check_guarantees(json_node_item(intervals, k), 1);
     }
     assert_int_equal(frames->count, FOLD_FRAMES);

@@ -157,10 +157,10 @@ static void a_changed_summary_is_refused(void **state) {
     static const struct {
         const char *part, *instead, *reasons[2];
     } cases[] = {
-        {"\"frame\":3", "\"frame\":4", {"interval 3 of the file: 'frame'", NULL}},
-        {"\"frame\":0", "\"frame\":-1", {"interval 0 of the file: 'frame'", NULL}},
+        {"\"frame\":3", "\"frame\":2", {"interval 3 of the file: 'frame'", NULL}},
+        {"\"frame\":0", "\"frame\":-2147483649", {"interval 0 of the file: 'frame'", NULL}},
         {"\"frame\":0", "\"frame\":1e300", {"interval 0 of the file: 'frame'", NULL}},
-        {"\"frame\":0", "\"frame\":4294967295", {"interval 0 of the file: 'frame'", NULL}},
+        {"\"frame\":0", "\"frame\":2147483648", {"interval 0 of the file: 'frame'", NULL}},
         {"\"state\":\"clean\"", "\"state\":\"tidy\"", {"'state' is not what cscd writes there", NULL}},
         {"\"processors\"", "\"possessors\"", {"the machine has no member 'processors'", NULL}},
         {"\"release\":", "\"release\":7,\"was\":", {"the machine: 'release' is not", NULL}},

@@ -198,7 +198,7 @@ static void unfit_options_are_refused(void **state) {
                                          {"--reff", "1e301"}, {"--cells", "x"},    {"--particles", "0"},
                                          {"--seed", "-1"},    {"--method", "lbg"}, {"--size", "1"},
                                          {"--view", "3"},     {"--up", "x"},       {"--threads", "257"},
-                                         {"--frame", "-1"},   {"--frames", "a:b"}};
+                                         {"--frame", "-"},    {"--frames", "a:b"}};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         char words[80];
         snprintf(words, sizeof words, "%s cannot be '%s'", bad[i][0], bad[i][1]);

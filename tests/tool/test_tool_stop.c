@@ -53,7 +53,7 @@ static void expect_stopped(size_t interval_count, size_t frame_count, const char
     assert_true(json_node_number(total, "vf") + json_node_number(total, "ee") == (double)rows.count);
     for (size_t k = 0; k < interval_count; k++)
         assert_true(json_node_number(json_node_item(intervals, k), "frame") == (double)k);
-    for (size_t i = 0; i < rows.count; i++) assert_true(rows.items[i].frame < interval_count);
+    for (size_t i = 0; i < rows.count; i++) assert_true(rows.items[i].frame < (int32_t)interval_count);
     contact_rows_free(&rows);
     json_node_free(root);
 }

@@ -59,6 +59,17 @@ bool parse_unsigned(const char *text, uint32_t *out) {
     return true;
 }
 
+bool parse_integer(const char *text, int32_t *out) {
+    const char *digits = text[0] == '-' ? text + 1 : text;
+    if (digits[0] < '0' || digits[0] > '9') return false;
+    char *end = NULL;
+    errno = 0;
+    long long value = strtoll(text, &end, 10);
+    if (errno != 0 || *end != '\0' || value < INT32_MIN || value > INT32_MAX) return false;
+    *out = (int32_t)value;
+    return true;
+}
+
 bool parse_double(const char *text, double *out) {
     char *end = NULL;
     double value = strtod(text, &end);

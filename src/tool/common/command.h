@@ -32,4 +32,5 @@ void warn(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 /* Both read whole strings only. When they return false, *out is untouched. */
 bool parse_unsigned(const char *text, uint32_t *out);
+bool parse_integer(const char *text, int32_t *out);
 bool parse_double(const char *text, double *out);

@@ -1,4 +1,4 @@
-/* A growing list of frames, printed as ranges. */
+/* A growing list of frames, by their indices, printed as ranges of their numbers. */
 #include "src/tool/common/frame_list.h"
 
 #include <assert.h>
@@ -28,11 +28,11 @@ uint32_t frame_list_frames(const frame_list *list) {
     return sum;
 }
 
-void frame_list_print(const frame_list *list, const char *prefix) {
+void frame_list_print(const frame_list *list, const int32_t *numbers, const char *prefix) {
     for (uint32_t i = 0; i < list->count; i++) {
         fputs(i == 0 ? prefix : ", ", stdout);
-        printf("%u", list->spans[i].first);
-        if (list->spans[i].last > list->spans[i].first) printf("-%u", list->spans[i].last);
+        printf("%d", numbers[list->spans[i].first]);
+        if (list->spans[i].last > list->spans[i].first) printf("-%d", numbers[list->spans[i].last]);
     }
     putchar('\n');
 }

@@ -43,6 +43,12 @@ bool read_threads(const char *text, void *place) {
     return parse_unsigned(text, out) && *out <= 256;
 }
 
+bool read_frame_number(const char *text, void *place) {
+    frame_number *out = place;
+    out->given = parse_integer(text, &out->value);
+    return out->given;
+}
+
 bool read_frames(const char *text, void *place) {
     return frame_range_parse(text, place);
 }

@@ -12,6 +12,7 @@ bool read_unsigned(const char *text, void *place);     /* uint32_t */
 bool read_positive(const char *text, void *place);     /* uint32_t, 1 or more */
 bool read_length(const char *text, void *place);       /* double: 0, or from 2^-300 to 2^300 */
 bool read_threads(const char *text, void *place);      /* uint32_t, 256 at most */
+bool read_frame_number(const char *text, void *place); /* frame_number */
 bool read_frames(const char *text, void *place);       /* frame_range: A:B[:STEP] */
 bool read_weld(const char *text, void *place);         /* recording_options: exact|EPS */
 bool read_report_up(const char *text, void *place);    /* int, report_request.up_axis: y|z */

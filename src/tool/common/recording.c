@@ -15,21 +15,43 @@ void recording_options_take(recording_options *options, const given_options *giv
     options->frame_path_count = given->input_count - 1;
 }
 
+/* The numbers of the frames' files, or of the first one, if that was given, on in their steps. */
+static bool number_frames(const recording_options *options, recording *r, io_error *error) {
+    r->frame_numbers = malloc((size_t)r->frame_count * sizeof *r->frame_numbers);
+    if (r->frame_numbers == NULL) return io_fail(error, "out of memory for %u frames", r->frame_count);
+    for (uint32_t i = 0; i < r->frame_count; i++)
+        r->frame_numbers[i] = r->frames != NULL ? animation_frame_number(r->frames, i) : (int32_t)i;
+    if (!options->first_frame.given) return true;
+    const int64_t shift = (int64_t)options->first_frame.value - r->frame_numbers[0];
+    if (r->frame_numbers[r->frame_count - 1] + shift > INT32_MAX)
+        return io_fail(error, "--first-frame %d: the last frame would be number %lld, expected at most %d",
+                       options->first_frame.value, (long long)(r->frame_numbers[r->frame_count - 1] + shift),
+                       INT32_MAX);
+    for (uint32_t i = 0; i < r->frame_count; i++)
+        r->frame_numbers[i] = (int32_t)(r->frame_numbers[i] + shift);
+    return true;
+}
+
 static bool open_frames(const recording_options *options, recording *r, io_error *error) {
     r->frame_count = 1;
     r->file_positions = malloc((size_t)r->file.vertex_count * 3 * sizeof *r->file_positions);
     if (r->file_positions == NULL) return io_fail(error, "%s: out of memory", options->model_path);
-    if (options->frame_path_count == 0) return true;
-    if (!animation_open(options->frame_paths, options->frame_path_count, r->file.vertex_count, &r->frames,
-                        error))
-        return false;
-    r->frame_count = animation_frame_count(r->frames);
-    return true;
+    const animation_options frames = {.model_path = options->model_path, .allow_gaps = options->allow_gaps};
+    if (options->frame_path_count > 0) {
+        if (!animation_open(options->frame_paths, options->frame_path_count, r->file.vertex_count, &frames,
+                            &r->frames, error))
+            return false;
+        r->frame_count = animation_frame_count(r->frames);
+    }
+    return number_frames(options, r, error);
 }
 
 /* Reads the file's own positions of a frame into file_positions. */
 static bool read_file_positions(recording *r, uint32_t frame, io_error *error) {
-    if (r->frames != NULL) return animation_read(r->frames, frame, r->file_positions, error);
+    io_error reason;
+    if (r->frames != NULL)
+        return animation_read(r->frames, frame, r->file_positions, &reason) ||
+               io_fail(error, "frame %d: %s", r->frame_numbers[frame], reason.text);
     memcpy(r->file_positions, r->file.positions,
            (size_t)r->file.vertex_count * 3 * sizeof *r->file_positions);
     return true;
@@ -129,6 +151,7 @@ void recording_close(recording *r) {
     weld_free(&r->weld);
     free(r->edge_file_vertices);
     free(r->file_positions);
+    free(r->frame_numbers);
     mesh_file_free(&r->file);
     *r = (recording){0};
 }
@@ -139,8 +162,8 @@ static bool check_range(const recording *r, uint32_t frame, io_error *error) {
         double x = r->file_positions[i], magnitude = fabs(x);
         if (x == 0.0 || (magnitude >= 0x1p-300 && magnitude <= 0x1p300)) continue;
         return io_fail(error,
-                       "frame %u: vertex %zu has %c = %g, expected 0 or a magnitude from 2^-300 to 2^300",
-                       frame, i / 3, "xyz"[i % 3], x);
+                       "frame %d: vertex %zu has %c = %g, expected 0 or a magnitude from 2^-300 to 2^300",
+                       r->frame_numbers[frame], i / 3, "xyz"[i % 3], x);
     }
     return true;
 }
@@ -153,7 +176,8 @@ void recording_hash_frame(recording *r) {
 bool recording_read(recording *r, uint32_t frame, double *positions, io_error *error) {
     if (!read_file_positions(r, frame, error) || !check_range(r, frame, error)) return false;
     size_t size = (size_t)r->file.vertex_count * 3 * sizeof *positions;
-    if (r->welded) return weld_positions(&r->weld, r->file_positions, frame, positions, error);
+    if (r->welded)
+        return weld_positions(&r->weld, r->file_positions, r->frame_numbers[frame], positions, error);
     memcpy(positions, r->file_positions, size);
     return true;
 }
@@ -177,7 +201,7 @@ static void edge_vertices(const recording *r, uint32_t edge, uint32_t vertices[2
 }
 
 contact_record recording_contact(const recording *r, uint32_t frame, const cscd_contact *contact) {
-    contact_record record = {.frame = frame,
+    contact_record record = {.frame = r->frame_numbers[frame],
                              .kind = contact->kind,
                              .toi = contact->toi,
                              .u = contact->u,

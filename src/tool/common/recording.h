@@ -9,10 +9,18 @@
 #include "src/io/weld.h"
 #include "src/tool/common/option_table.h"
 
+/* A number that may not be given. */
+typedef struct frame_number {
+    bool given;
+    int32_t value;
+} frame_number;
+
 typedef struct recording_options {
     const char *model_path;
     const char *const *frame_paths; /* none: the model is the only frame */
     size_t frame_path_count;
+    bool allow_gaps;          /* of a series of mesh files, some may be missing */
+    frame_number first_frame; /* what the first frame is called; not given: what its file says */
     bool weld;
     double weld_epsilon;
     uint32_t thread_count;
@@ -29,6 +37,7 @@ typedef struct recording {
     mesh_file file;
     animation *frames; /* NULL: the model is the only frame */
     uint32_t frame_count;
+    int32_t *frame_numbers; /* frame_count, ascending: what the artist calls each frame */
     bool welded;
     weld weld;
     double *file_positions;            /* of the frame read last */
@@ -40,7 +49,7 @@ typedef struct recording {
 bool recording_open(const recording_options *options, recording *out, io_error *error);
 void recording_close(recording *r);
 
-/* Reads a frame. positions: cscd_mesh_vertex_count(mesh) * 3. The error names the frame, and vertices as
+/* Reads a frame, by its index from 0. positions: cscd_mesh_vertex_count(mesh) * 3. The error names the frame, and vertices as
  * the file numbers them. */
 bool recording_read(recording *r, uint32_t frame, double *positions, io_error *error);
 

@@ -61,6 +61,7 @@ static bool welding_closes(recording *r) {
 }
 
 void recording_warn(recording *r) {
+    if (r->frames != NULL && animation_note(r->frames) != NULL) warn("%s", animation_note(r->frames));
     if (r->welded && r->weld.collapsed_triangles > 0)
         warn("welding collapsed %u triangle%s, left out from here on", r->weld.collapsed_triangles,
              r->weld.collapsed_triangles == 1 ? "" : "s");

@@ -5,7 +5,7 @@
 
 static bool open_frames(const char *frames_path, uint32_t frame_count, scenery *s, io_error *error) {
     io_error reason;
-    if (!animation_open(&frames_path, 1, s->file.vertex_count, &s->frames, &reason))
+    if (!animation_open(&frames_path, 1, s->file.vertex_count, NULL, &s->frames, &reason))
         return io_fail(error, "--scenery-frames: %s", reason.text);
     s->frame_count = animation_frame_count(s->frames);
     if (s->frame_count == 1 || s->frame_count == frame_count) return true;
@@ -31,9 +31,9 @@ static bool check_range(const scenery *s, uint32_t frame, io_error *error) {
     const double *x = s->file.positions;
     for (size_t i = 0; i < (size_t)s->file.vertex_count * 3; i++)
         if (!(fabs(x[i]) <= 0x1p300))
-            return io_fail(error,
-                           "%s: frame %u: vertex %zu has %c = %g, expected a magnitude of 2^300 at most",
-                           s->path, frame, i / 3, "xyz"[i % 3], x[i]);
+            return io_fail(
+                error, "%s: frame %u of it: vertex %zu has %c = %g, expected a magnitude of 2^300 at most",
+                s->path, frame, i / 3, "xyz"[i % 3], x[i]);
     return true;
 }
 

@@ -86,12 +86,13 @@ static bool mark_contacts(contact_picture *p, recording *r, uint32_t frame, io_e
     if (!create_detector(p, r, error) || !recording_read(r, frame + 1, p->end, error)) return false;
     if (cscd_detector_step(p->detector, CSCD_DOUBLES(p->positions, cscd_mesh_vertex_count(r->mesh)),
                            CSCD_DOUBLES(p->end, cscd_mesh_vertex_count(r->mesh)), &contacts) != CSCD_OK)
-        return io_fail(error, "frame %u: %s", frame, cscd_context_detail(r->context));
+        return io_fail(error, "frame %d: %s", r->frame_numbers[frame], cscd_context_detail(r->context));
     cscd_counters counters = cscd_detector_counters(p->detector);
     p->vf_count = counters.vf;
     p->ee_count = counters.ee;
-    snprintf(p->caption, sizeof p->caption, "frame %u to %u: %llu VF and %llu EE contacts", frame, frame + 1,
-             (unsigned long long)p->vf_count, (unsigned long long)p->ee_count);
+    snprintf(p->caption, sizeof p->caption, "frame %d to %d: %llu VF and %llu EE contacts",
+             r->frame_numbers[frame], r->frame_numbers[frame + 1], (unsigned long long)p->vf_count,
+             (unsigned long long)p->ee_count);
     p->scene.legend = legend;
     p->scene.legend_count = sizeof legend / sizeof *legend;
     return colour_features(p, r->mesh, &contacts, error) && place_markers(p, &contacts, error);
@@ -99,7 +100,7 @@ static bool mark_contacts(contact_picture *p, recording *r, uint32_t frame, io_e
 
 bool contact_picture_show(contact_picture *p, recording *r, uint32_t frame, bool contacts, io_error *error) {
     if (!recording_read(r, frame, p->positions, error)) return false;
-    snprintf(p->caption, sizeof p->caption, "frame %u", frame);
+    snprintf(p->caption, sizeof p->caption, "frame %d", r->frame_numbers[frame]);
     if (!contacts) return true;
     contact_picture_clear(p);
     return mark_contacts(p, r, frame, error);

@@ -30,14 +30,15 @@ static bool paint_plan(const render_options *o, const recording *r, contact_pict
 static bool draw_frame(const render_options *o, recording *r, contact_picture *picture, scenery *beside,
                        io_error *error) {
     bool contacts = o->colouring == COLOUR_CONTACTS;
-    uint32_t needed = contacts ? o->frame + 1 : o->frame;
-    if (needed >= r->frame_count)
-        return io_fail(error, "--frame %u%s: there are the frames 0 to %u", o->frame,
-                       contacts ? " with its contacts needs the next one" : "", r->frame_count - 1);
+    uint32_t frame = 0;
+    if (o->frame.given && !frame_range_find(o->frame.value, r->frame_numbers, r->frame_count, &frame, error))
+        return false;
+    if (contacts && frame + 1 >= r->frame_count)
+        return io_fail(error, "--frame %d with its contacts needs the next one, and it is the last",
+                       r->frame_numbers[frame]);
     plan_legend legend;
-    if (!contact_picture_show(picture, r, o->frame, contacts, error) ||
-        (beside != NULL && !scenery_read(beside, o->frame, error)) ||
-        !paint_plan(o, r, picture, &legend, error))
+    if (!contact_picture_show(picture, r, frame, contacts, error) ||
+        (beside != NULL && !scenery_read(beside, frame, error)) || !paint_plan(o, r, picture, &legend, error))
         return false;
     picture_options options = o->picture;
     if (o->zoom) contact_picture_focus(picture, &options);

@@ -16,7 +16,7 @@ static bool read_colour(const char *text, void *place) {
 static const option_row rows[] = {
     {"o", "OUT.png", read_text, offsetof(render_options, output_path), NULL},
     {"output", "OUT.png", read_text, offsetof(render_options, output_path), NULL},
-    {"frame", "K", read_unsigned, offsetof(render_options, frame), "one frame (default 0)"},
+    {"frame", "K", read_frame_number, offsetof(render_options, frame), "one frame (default: the first)"},
     {"frames", "A:B[:STEP]", read_frames, offsetof(render_options, frames),
      "a strip: the frames A to B, both included, or every STEP-th of them (A: and :B are open ends), each as "
      "a tile with its number in the corner; one camera for all of them that holds the whole motion"},
@@ -26,6 +26,10 @@ static const option_row rows[] = {
      "move the camera with the body, which stays in the middle of its tile"},
     {"scenery", "MODEL", read_text, offsetof(render_options, scenery_path),
      "another mesh beside the body (ground, stairs, a ball): only drawn, where it is in view, and never tested"},
+    {"first-frame", "N", read_frame_number, offsetof(render_options, source.first_frame),
+     "what the first frame is called (default: the number in its file's name, the start of a PC2, or 0)"},
+    {"allow-gaps", NULL, read_flag, offsetof(render_options, source.allow_gaps),
+     "of numbered files, some may be missing"},
     {"scenery-frames", "FRAMES", read_text, offsetof(render_options, scenery_frames_path),
      "how it moves: a point cache or a pattern, of as many frames, or of one"},
     {"colour", "plain", read_colour, offsetof(render_options, colouring), "one colour (default)"},

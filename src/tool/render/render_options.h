@@ -11,7 +11,7 @@ typedef struct render_options {
     recording_options source;
     const char *output_path, *plan_path;            /* NULL: not given */
     const char *scenery_path, *scenery_frames_path; /* NULL: not given */
-    uint32_t frame;                                 /* of a single picture */
+    frame_number frame;                             /* of a single picture; not given: the first */
     bool strip;                                     /* several frames in one picture: */
     frame_range frames;
     uint32_t columns; /* 0: not given */

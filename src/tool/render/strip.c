@@ -12,7 +12,7 @@ typedef struct strip {
     recording *recording;
     contact_picture *picture;
     scenery *beside; /* or NULL */
-    frame_range frames;
+    frame_choice frames;
     uint32_t count;
     picture_camera camera; /* following: of a body whose middle is the origin */
     picture_sheet sheet;
@@ -64,7 +64,7 @@ enum { LABEL_LINES = 2 };
 static const double label_scale = 1.5;
 
 /* The frame's number, and below it how many contacts of a kind there are, with the colour of their dots. */
-static void label_tile(contact_picture *picture, uint32_t frame, picture_legend lines[LABEL_LINES],
+static void label_tile(contact_picture *picture, int32_t frame, picture_legend lines[LABEL_LINES],
                        char texts[LABEL_LINES][32]) {
     const uint64_t counts[LABEL_LINES] = {picture->vf_count, picture->ee_count};
     const char *const names[LABEL_LINES] = {"VF", "EE"};
@@ -76,7 +76,7 @@ static void label_tile(contact_picture *picture, uint32_t frame, picture_legend 
         lines[used].text = texts[used];
         used++;
     }
-    snprintf(picture->caption, sizeof picture->caption, "%u", frame);
+    snprintf(picture->caption, sizeof picture->caption, "%d", frame);
     picture->scene.legend = lines;
     picture->scene.legend_count = used;
 }
@@ -91,7 +91,7 @@ static bool draw_tile(strip *s, uint32_t tile, io_error *error) {
         return false;
     picture_legend lines[LABEL_LINES];
     char texts[LABEL_LINES][32];
-    label_tile(s->picture, frame, lines, texts);
+    label_tile(s->picture, s->recording->frame_numbers[frame], lines, texts);
     picture_options options = s->options->picture;
     picture_camera camera = s->camera;
     double middle[3];
@@ -115,10 +115,10 @@ static uint32_t default_columns(uint32_t count) {
 
 bool strip_draw(const render_options *options, recording *r, contact_picture *picture, scenery *beside,
                 io_error *error) {
-    strip s = {
-        .options = options, .recording = r, .picture = picture, .beside = beside, .frames = options->frames};
-    if (!frame_range_close(&s.frames, r->frame_count, error)) return false;
-    s.count = frame_range_count(&s.frames);
+    strip s = {.options = options, .recording = r, .picture = picture, .beside = beside};
+    if (!frame_range_choose(&options->frames, r->frame_numbers, r->frame_count, &s.frames, error))
+        return false;
+    s.count = frame_choice_count(&s.frames);
     uint32_t columns = options->columns > 0 ? options->columns : default_columns(s.count);
     if (columns > s.count) columns = s.count;
     if (!picture_sheet_create(s.count, columns, options->picture.width, options->picture.height, &s.sheet,

@@ -33,17 +33,20 @@ typedef struct replay {
 } replay;
 
 static bool api_failed(const replay *r, uint32_t frame, io_error *error) {
-    return io_fail(error, "frame %u: %s", frame, cscd_context_detail(r->recording.context));
+    return io_fail(error, "frame %d: %s", r->recording.frame_numbers[frame],
+                   cscd_context_detail(r->recording.context));
 }
 
 static bool choose_frames(replay *r, io_error *error) {
-    frame_range frames = r->options->frames;
-    if (!frame_range_close(&frames, r->recording.frame_count, error)) return false;
+    const int32_t *numbers = r->recording.frame_numbers;
+    frame_choice frames;
+    if (!frame_range_choose(&r->options->frames, numbers, r->recording.frame_count, &frames, error))
+        return false;
     r->first = frames.first;
     r->last = frames.last;
     if (r->first >= r->last)
-        return io_fail(error, "an interval needs two frames, and %u to %u leave one; the recording has %u",
-                       r->first, r->last, r->recording.frame_count);
+        return io_fail(error, "an interval needs two frames, and %d to %d leave one; the recording has %u",
+                       numbers[r->first], numbers[r->last], r->recording.frame_count);
     return true;
 }
 
@@ -56,8 +59,8 @@ static bool prepare_ignored(replay *r, io_error *error) {
     size_t listed = r->ignored.triangle_count;
     if (!ignore_pairs_add_rest(&r->ignored, &r->recording, error)) return false;
     if (!r->options->quiet)
-        printf("%zu triangle pairs that intersect or touch in frame 0 are left out\n",
-               r->ignored.triangle_count - listed);
+        printf("%zu triangle pairs that intersect or touch in frame %d are left out\n",
+               r->ignored.triangle_count - listed, r->recording.frame_numbers[0]);
     return true;
 }
 
@@ -137,10 +140,11 @@ static bool check_frame(replay *r, uint32_t frame, const double *positions, fram
         if (found.count > 0 && !frame_list_add(&r->crossing_frames, frame))
             return io_fail(error, "out of memory");
         if (frame == r->first && found.zero_area_triangles > 0 && !r->options->quiet)
-            warn("frame %u has %u triangles of zero area (the first is %u)", frame, found.zero_area_triangles,
+            warn("frame %d has %u triangles of zero area (the first is %u)",
+                 r->recording.frame_numbers[frame], found.zero_area_triangles,
                  recording_file_triangle(&r->recording, found.first_zero_area));
     }
-    return summary_add_frame(r->summary, frame, *state, error);
+    return summary_add_frame(r->summary, r->recording.frame_numbers[frame], *state, error);
 }
 
 static interval_state state_of(const replay *r, size_t contact_count) {
@@ -156,9 +160,10 @@ static void alarm_contradiction(replay *r, const interval_result *result) {
     if (ignores || result->state != INTERVAL_CLEAN || r->end_state != FRAME_CROSSING) return;
     r->totals.contradictions++;
     if (method_facts_of(r->plan.method).loses_contacts) return; /* which such a method may have */
-    warn("interval %u starts free of intersections and ends with one, but no contact was found: a "
-         "contact was lost, please report this recording",
-         result->frame);
+    warn(
+        "the interval from frame %d starts free of intersections and ends with one, but no contact was found: a "
+        "contact was lost, please report this recording",
+        result->frame);
 }
 
 static bool write_contacts(replay *r, uint32_t frame, const cscd_contacts *contacts, io_error *error) {
@@ -179,7 +184,7 @@ static bool run_interval(replay *r, uint32_t k, io_error *error) {
                            CSCD_DOUBLES(r->x1, cscd_mesh_vertex_count(r->recording.mesh)),
                            &contacts) != CSCD_OK)
         return api_failed(r, k, error);
-    interval_result result = {.frame = k,
+    interval_result result = {.frame = r->recording.frame_numbers[k],
                               .contact_count = contacts.count,
                               .earliest_toi = contacts.count > 0 ? contacts.items[0].toi : 0.0,
                               .detector = r->detector,
@@ -213,19 +218,21 @@ static bool run_intervals(replay *r, io_error *error) {
 
 static void print_results(const replay *r) {
     const replay_totals *t = &r->totals;
-    printf("%s: %u vertices, %u triangles, %u component%s; frames %u to %u\n", r->options->source.model_path,
+    const int32_t *numbers = r->recording.frame_numbers;
+    printf("%s: %u vertices, %u triangles, %u component%s; frames %d to %d\n", r->options->source.model_path,
            cscd_mesh_vertex_count(r->recording.mesh), cscd_mesh_triangle_count(r->recording.mesh),
            cscd_mesh_component_count(r->recording.mesh),
-           cscd_mesh_component_count(r->recording.mesh) == 1 ? "" : "s", r->first, r->first + t->intervals);
+           cscd_mesh_component_count(r->recording.mesh) == 1 ? "" : "s", numbers[r->first],
+           numbers[r->first + t->intervals]);
     printf("contacts: %llu VF and %llu EE in %u of %u intervals", (unsigned long long)t->counter_sum.vf,
            (unsigned long long)t->counter_sum.ee, t->intervals_with_contact, t->intervals);
-    frame_list_print(&r->contact_frames, "; from frame ");
+    frame_list_print(&r->contact_frames, numbers, "; from frame ");
     if (r->options->min_separation > 0.0)
         printf("minimum separation: %g; contacts whose time is a bound only: %llu\n",
                r->options->min_separation, (unsigned long long)t->counter_sum.bounded);
     if (t->frames_checked > 0) {
         printf("intersecting or touching: %u of %u frames", t->frames_crossing, t->frames_checked);
-        frame_list_print(&r->crossing_frames, "; ");
+        frame_list_print(&r->crossing_frames, numbers, "; ");
     }
     printf("intervals: %u clean, %u with contact, %u intersecting, %u unknown\n", t->states[INTERVAL_CLEAN],
            t->states[INTERVAL_CONTACT], t->states[INTERVAL_PENETRATING], t->states[INTERVAL_UNKNOWN]);

@@ -31,6 +31,7 @@ bool replay_report_open(replay_report *out, const report_request *request, const
                               .generator = out->generator,
                               .mesh = r->mesh,
                               .plan = plan,
+                              .frame_numbers = r->frame_numbers,
                               .first = first,
                               .last = last,
                               .oriented = cscd_detector_region_count(detector) > 0,

@@ -1,11 +1,17 @@
 /* The JSON summary of a replay, written interval by interval. */
 #include "src/tool/replay/summary.h"
 
+#include "src/io/growable.h"
 #include "src/tool/common/provenance.h"
 
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+
+typedef struct checked_frame {
+    int32_t frame;
+    frame_state state;
+} checked_frame;
 
 struct summary_writer {
     FILE *file; /* NULL: nothing is written */
@@ -17,8 +23,7 @@ struct summary_writer {
     size_t forwarded; /* bytes of it that the file has */
     const cscd_mesh *mesh;
     json out;
-    uint32_t first_frame, frame_count, frame_capacity;
-    unsigned char *frames; /* frame_state, one byte each: the list comes after the intervals */
+    growable frames; /* checked_frame: their list comes after the intervals */
 };
 
 static bool write_failed(const summary_writer *w, io_error *error) {
@@ -29,7 +34,7 @@ static void free_summary(summary_writer *w) {
     if (w->memory != NULL) fclose(w->memory);
     free(w->text);
     free(w->path);
-    free(w->frames);
+    growable_free(&w->frames);
     free(w);
 }
 
@@ -52,6 +57,7 @@ bool summary_open(const char *path, bool keep_text, const cscd_mesh *mesh, summa
         return false;
     }
     w->mesh = mesh;
+    w->frames = growable_of(sizeof(checked_frame));
     w->keeps_text = keep_text;
     w->out.file = w->memory;
     json_begin_object(&w->out, NULL);
@@ -103,7 +109,7 @@ bool summary_add_interval(summary_writer *w, const interval_result *result, io_e
     json *out = &w->out;
     json_break_line(out);
     json_begin_object(out, NULL);
-    json_integer(out, "frame", result->frame);
+    json_signed(out, "frame", result->frame);
     write_counters(out, &result->counters, true);
     if (result->contact_count > 0)
         json_number(out, "earliest_toi", result->earliest_toi);
@@ -117,29 +123,24 @@ bool summary_add_interval(summary_writer *w, const interval_result *result, io_e
     return forward_text(w, error);
 }
 
-bool summary_add_frame(summary_writer *w, uint32_t frame, frame_state state, io_error *error) {
-    if (w->frame_count == w->frame_capacity) {
-        uint32_t capacity = w->frame_capacity == 0 ? 1024 : w->frame_capacity * 2;
-        unsigned char *grown = realloc(w->frames, capacity);
-        if (grown == NULL) return io_fail(error, "out of memory");
-        w->frames = grown;
-        w->frame_capacity = capacity;
-    }
-    if (w->frame_count == 0) w->first_frame = frame;
-    w->frames[w->frame_count++] = (unsigned char)state;
+bool summary_add_frame(summary_writer *w, int32_t frame, frame_state state, io_error *error) {
+    checked_frame *added = growable_push(&w->frames);
+    if (added == NULL) return io_fail(error, "out of memory");
+    *added = (checked_frame){frame, state};
     return true;
 }
 
 static void write_frames(summary_writer *w) {
+    const checked_frame *frames = w->frames.data;
     json_begin_array(&w->out, "frames");
-    for (uint32_t i = 0; i < w->frame_count; i++) {
+    for (size_t i = 0; i < w->frames.count; i++) {
         json_break_line(&w->out);
         json_begin_object(&w->out, NULL);
-        json_integer(&w->out, "frame", w->first_frame + i);
-        if (w->frames[i] == FRAME_UNCHECKED)
+        json_signed(&w->out, "frame", frames[i].frame);
+        if (frames[i].state == FRAME_UNCHECKED)
             json_null(&w->out, "crossing");
         else
-            json_boolean(&w->out, "crossing", w->frames[i] == FRAME_CROSSING);
+            json_boolean(&w->out, "crossing", frames[i].state == FRAME_CROSSING);
         json_end_object(&w->out);
     }
     json_end_array(&w->out);
@@ -214,7 +215,7 @@ static void write_summary(summary_writer *w, const summary_ending *e) {
     json_integer(out, "frames_checked", t->frames_checked);
     json_integer(out, "frames_crossing", t->frames_crossing);
     if (t->intervals_with_contact > 0)
-        json_integer(out, "first_contact_frame", t->first_contact_frame);
+        json_signed(out, "first_contact_frame", t->first_contact_frame);
     else
         json_null(out, "first_contact_frame");
     json_integer(out, "contradictions", t->contradictions);

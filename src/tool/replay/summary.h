@@ -13,7 +13,7 @@ bool summary_open(const char *path, bool keep_text, const cscd_mesh *mesh, summa
                   io_error *error);
 /* Writes an interval, which is handed to the system at once. */
 bool summary_add_interval(summary_writer *w, const interval_result *result, io_error *error);
-bool summary_add_frame(summary_writer *w, uint32_t frame, frame_state state, io_error *error);
+bool summary_add_frame(summary_writer *w, int32_t frame, frame_state state, io_error *error);
 
 typedef struct summary_ending {
     const replay_totals *totals;

@@ -7,7 +7,7 @@
 
 /* One interval's results, as the summary and the table need them. */
 typedef struct interval_result {
-    uint32_t frame;
+    int32_t frame; /* its number */
     interval_state state;
     size_t contact_count;
     double earliest_toi;           /* of the contacts, where there are any */
@@ -19,7 +19,8 @@ typedef struct interval_result {
 /* Sums over the intervals so far, and the largest value in an interval. */
 typedef struct replay_totals {
     uint32_t intervals, intervals_with_contact, states[INTERVAL_STATES];
-    uint32_t frames_checked, frames_crossing, first_contact_frame;
+    uint32_t frames_checked, frames_crossing;
+    int32_t first_contact_frame;
     uint32_t contradictions;     /* clean intervals that end in an intersection: contacts that were lost */
     uint32_t intervals_complete; /* every component's contacts are complete */
     cscd_timings time_sum, time_max;

@@ -25,11 +25,12 @@ typedef struct report_scenery {
 typedef struct report_options {
     report_kind kind;
     const char *title, *generator;
-    const cscd_mesh *mesh; /* NULL for REPORT_COMPARE, which shows no surface */
-    const cscd_plan *plan; /* NULL: none */
-    uint32_t first, last;  /* the frames to come; what is kept follows from them; of a preprocess 0, 0 */
-    bool oriented;         /* the detector's method has detector points and orientations */
-    int up_axis;           /* of the picture: 1: y, 2: z; 0 stands for z */
+    const cscd_mesh *mesh;        /* NULL for REPORT_COMPARE, which shows no surface */
+    const cscd_plan *plan;        /* NULL: none */
+    const int32_t *frame_numbers; /* what frames are called, by index; NULL: their indices */
+    uint32_t first, last; /* the frames to come; what is kept follows from them; of a preprocess 0, 0 */
+    bool oriented;        /* the detector's method has detector points and orientations */
+    int up_axis;          /* of the picture: 1: y, 2: z; 0 stands for z */
     report_scenery scenery;
 
     /* The vertices of a contact as the model file numbers them. VF: the vertex, the face's three; EE: those

@@ -11,10 +11,15 @@
 
 /* ---- what the page is told --------------------------------------------------------------------------- */
 
+static int64_t frame_number_of(const report *r, uint32_t frame) {
+    if (r->options.frame_numbers == NULL) return frame;
+    return r->options.frame_numbers[frame];
+}
+
 static void write_frames(json *out, const report *r, bool all) {
     json_begin_array(out, "frames");
     for (uint32_t i = 0; i < (all ? report_frame_count(r) : 1); i++)
-        json_integer(out, NULL, report_frame(r, i));
+        json_signed(out, NULL, frame_number_of(r, report_frame(r, i)));
     json_end_array(out);
 }
 
@@ -102,8 +107,8 @@ static void write_scene(json *out, const report *r, const page_arrays *arrays) {
     json_integer(out, "components", cscd_mesh_component_count(mesh));
     json_number(out, "unit", r->unit);
     json_string(out, "up", r->options.up_axis == 1 ? "y" : "z");
-    json_integer(out, "first", r->options.first);
-    json_integer(out, "last", r->last);
+    json_signed(out, "first", frame_number_of(r, r->options.first));
+    json_signed(out, "last", frame_number_of(r, r->last));
     write_frames(out, r, true);
     json_number(out, "max_error", r->frames.max_error);
     json_number(out, "relative_error", r->frames.relative_error);

@@ -39,18 +39,21 @@ static sense_subject subject_of(const sense *s) {
 }
 
 static bool choose_frames(sense *s, io_error *error) {
-    frame_range frames = s->options->frames;
-    if (!frame_range_close(&frames, s->recording.frame_count, error)) return false;
+    const int32_t *numbers = s->recording.frame_numbers;
+    frame_choice frames;
+    if (!frame_range_choose(&s->options->frames, numbers, s->recording.frame_count, &frames, error))
+        return false;
     s->first = frames.first;
     s->last = frames.last;
     if (s->first >= s->last)
-        return io_fail(error, "an interval needs two frames, and %u to %u leave one; the recording has %u",
-                       s->first, s->last, s->recording.frame_count);
-    s->shown = s->options->frame == UINT32_MAX ? s->last : s->options->frame;
-    if (s->options->picture_path == NULL)
-        s->shown = UINT32_MAX;
-    else if (s->shown < s->first || s->shown > s->last)
-        return io_fail(error, "--frame %u: there are the frames %u to %u", s->shown, s->first, s->last);
+        return io_fail(error, "an interval needs two frames, and %d to %d leave one; the recording has %u",
+                       numbers[s->first], numbers[s->last], s->recording.frame_count);
+    s->shown = s->options->picture_path == NULL ? UINT32_MAX : s->last;
+    if (s->options->picture_path == NULL || !s->options->frame.given) return true;
+    uint32_t shown;
+    if (!frame_range_find(s->options->frame.value, numbers + s->first, s->last - s->first + 1, &shown, error))
+        return false;
+    s->shown = s->first + shown;
     return true;
 }
 
@@ -112,7 +115,7 @@ static bool read_frame(sense *s, uint32_t frame, double *positions, io_error *er
 }
 
 /* Finds the detector's contacts in the same interval, and counts the pairs that both have found. */
-static bool compare_with_detector(sense *s, sense_interval *interval, io_error *error) {
+static bool compare_with_detector(sense *s, uint32_t frame, sense_interval *interval, io_error *error) {
     cscd_contacts contacts;
     if (s->detector == NULL) return true;
     if (cscd_detector_step(s->detector, CSCD_DOUBLES(s->x0, cscd_mesh_vertex_count(s->recording.mesh)),
@@ -127,28 +130,29 @@ static bool compare_with_detector(sense *s, sense_interval *interval, io_error *
     interval->pairs.found = object_pairs_common(&s->touching, &s->warned);
     interval->pairs.confirmed_found = object_pairs_common(&s->touching, &s->confirmed);
     if (interval->pairs.found == interval->pairs.touching) return true;
-    return frame_list_add(&s->missed_frames, interval->frame) || io_fail(error, "out of memory");
+    return frame_list_add(&s->missed_frames, frame) || io_fail(error, "out of memory");
 }
 
 /* Warns once: new cells would not shorten an edge. */
-static void tell_edge(sense *s, uint32_t frame, uint32_t part) {
+static void tell_edge(sense *s, int32_t frame, uint32_t part) {
     if (!s->edge_told && !s->options->quiet)
-        warn("frame %u: part %u has an edge longer than --mu, so contacts there may be missed", frame, part);
+        warn("frame %d: part %u has an edge longer than --mu, so contacts there may be missed", frame, part);
     s->edge_told = true;
 }
 
-/* Makes new cells for the parts that need them, at the end of the interval. */
-static bool renew_cells(sense *s, sense_interval *interval, io_error *error) {
+/* Makes new cells for the parts that need them, at the frame that ends the interval. */
+static bool renew_cells(sense *s, uint32_t frame, sense_interval *interval, io_error *error) {
+    int32_t number = s->recording.frame_numbers[frame];
     for (uint32_t p = 0; interval->warnings->renewals_due > 0 && p < cscd_partition_part_count(s->partition);
          p++) {
         cscd_renewal why = cscd_sensors_renewal(s->sensors, p);
-        if (why == CSCD_RENEWAL_EDGE) tell_edge(s, interval->frame + 1, p);
+        if (why == CSCD_RENEWAL_EDGE) tell_edge(s, number, p);
         if (why == CSCD_RENEWAL_NONE || why == CSCD_RENEWAL_EDGE) continue;
         if (cscd_partition_renew(s->partition, CSCD_DOUBLES(s->x1, cscd_mesh_vertex_count(s->recording.mesh)),
                                  p) != CSCD_OK)
             return api_failed(s, error);
         if (!s->options->quiet)
-            printf("frame %u: part %u has new cells, %u now (%s)\n", interval->frame + 1, p,
+            printf("frame %d: part %u has new cells, %u now (%s)\n", number, p,
                    cscd_partition_part(s->partition, p).cell_count, sense_renewal_name(why));
         interval->renewed++;
     }
@@ -159,7 +163,9 @@ static bool renew_cells(sense *s, sense_interval *interval, io_error *error) {
 static bool draw_if_shown(const sense *s, const double *positions, uint32_t frame,
                           const cscd_warnings *warnings, io_error *error) {
     if (frame != s->shown) return true;
-    sense_view view = {&s->recording, s->partition, s->sensors, &s->paths, positions, frame, warnings};
+    sense_view view = {&s->recording, s->partition, s->sensors,
+                       &s->paths,     positions,    s->recording.frame_numbers[frame],
+                       warnings};
     return sense_picture_draw(&view, s->options, error);
 }
 
@@ -181,15 +187,17 @@ static bool run_interval(sense *s, uint32_t k, io_error *error) {
     if (cscd_sensors_step(s->sensors, CSCD_DOUBLES(s->x0, cscd_mesh_vertex_count(s->recording.mesh)),
                           CSCD_DOUBLES(s->x1, cscd_mesh_vertex_count(s->recording.mesh)),
                           &warnings) != CSCD_OK)
-        return io_fail(error, "frame %u: %s", k, cscd_context_detail(s->recording.context));
-    sense_interval interval = {.frame = k,
+        return io_fail(error, "frame %d: %s", s->recording.frame_numbers[k],
+                       cscd_context_detail(s->recording.context));
+    sense_interval interval = {.frame = s->recording.frame_numbers[k],
                                .warnings = &warnings,
                                .timings = cscd_sensors_timings(s->sensors),
                                .counters = cscd_sensors_counters(s->sensors)};
     sense_subject subject = subject_of(s);
-    if (!count_warnings(s, &interval, error) || !compare_with_detector(s, &interval, error)) return false;
+    if (!count_warnings(s, &interval, error) || !compare_with_detector(s, k, &interval, error)) return false;
     if (!sense_paths_follow(&s->paths, s->sensors)) return io_fail(error, "out of memory");
-    if (!draw_if_shown(s, s->x1, k + 1, &warnings, error) || !renew_cells(s, &interval, error)) return false;
+    if (!draw_if_shown(s, s->x1, k + 1, &warnings, error) || !renew_cells(s, k + 1, &interval, error))
+        return false;
     sense_totals_add(&s->totals, &interval);
     if (!s->options->quiet) sense_print_row(&interval, s->options->compare);
     return sense_files_add(&s->files, &subject, &interval, error);
@@ -213,7 +221,8 @@ static void print_results(const sense *s) {
     sense_subject subject = subject_of(s);
     sense_print_totals(&subject, &s->totals);
     if (frame_list_frames(&s->missed_frames) > 0)
-        frame_list_print(&s->missed_frames, "pairs were missed in the intervals from frame ");
+        frame_list_print(&s->missed_frames, s->recording.frame_numbers,
+                         "pairs were missed in the intervals from frame ");
 }
 
 static void end_sense(sense *s) {

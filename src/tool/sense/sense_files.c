@@ -33,7 +33,7 @@ static uint32_t file_vertex(const recording *r, uint32_t vertex) {
 static void write_warnings(FILE *csv, const sense_subject *subject, const sense_interval *interval) {
     for (size_t i = 0; i < interval->warnings->count; i++) {
         const cscd_warning *w = &interval->warnings->items[i];
-        fprintf(csv, "%u,%u,%u,%u,%u,%u,%u,%.17g,%.17g,", interval->frame, w->part_a, w->part_b, w->object_a,
+        fprintf(csv, "%d,%u,%u,%u,%u,%u,%u,%.17g,%.17g,", interval->frame, w->part_a, w->part_b, w->object_a,
                 w->object_b, file_vertex(subject->recording, w->vertex_a),
                 file_vertex(subject->recording, w->vertex_b), w->distance, w->time);
         if (!subject->options->sensors.exact)
@@ -61,7 +61,7 @@ static void write_pairs(json *out, const pair_counts *p, bool compare) {
 static void write_interval(json *out, const sense_options *o, const sense_interval *interval) {
     json_break_line(out);
     json_begin_object(out, NULL);
-    json_integer(out, "frame", interval->frame);
+    json_signed(out, "frame", interval->frame);
     json_integer(out, "warnings", interval->warnings->count);
     json_integer(out, "confirmed", interval->confirmed);
     json_integer(out, "renewed", interval->renewed);

@@ -15,7 +15,7 @@ typedef struct sense_options {
     bool no_plan;
     bool compare, quiet;
     const char *json_path, *csv_path, *picture_path; /* NULL: not given */
-    uint32_t frame;                                  /* of the picture; UINT32_MAX: the last */
+    frame_number frame;                              /* of the picture; not given: the last */
     picture_options picture;
     int argument_count; /* the command line, for the provenance */
     char **arguments;

@@ -138,7 +138,7 @@ static void set_texts(canvas *c, const sense_view *view) {
         memcpy(c->legend[i].colour, colours[i], 3);
         c->legend[i].text = texts[i];
     }
-    int used = snprintf(c->caption, sizeof c->caption, "frame %u: %u cells", view->frame,
+    int used = snprintf(c->caption, sizeof c->caption, "frame %d: %u cells", view->frame,
                         cscd_partition_cell_count(view->partition));
     if (view->warnings != NULL)
         snprintf(c->caption + used, sizeof c->caption - (size_t)used, ", %zu warning%s",

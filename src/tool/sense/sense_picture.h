@@ -27,7 +27,7 @@ typedef struct sense_view {
     const cscd_sensors *sensors;
     const sense_paths *paths;
     const double *positions; /* of the frame */
-    uint32_t frame;
+    int32_t frame;
     const cscd_warnings *warnings; /* of the interval that ends there; NULL: there is none */
 } sense_view;
 

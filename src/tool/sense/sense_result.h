@@ -15,7 +15,7 @@ typedef struct pair_counts {
 } pair_counts;
 
 typedef struct sense_interval {
-    uint32_t frame;
+    int32_t frame;
     const cscd_warnings *warnings;
     uint32_t confirmed; /* warnings whose exact check has found a contact */
     uint32_t renewed;   /* parts that got new cells after it */

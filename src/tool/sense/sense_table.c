@@ -103,7 +103,7 @@ void sense_print_head(bool compare) {
 
 void sense_print_row(const sense_interval *i, bool compare) {
     const pair_counts *p = &i->pairs;
-    printf("%7u %9zu %9u %7u %7llu %9llu %8llu %8u %10.3f", i->frame, i->warnings->count, i->confirmed,
+    printf("%7d %9zu %9u %7u %7llu %9llu %8llu %8u %10.3f", i->frame, i->warnings->count, i->confirmed,
            i->renewed, (unsigned long long)i->counters.rounds, (unsigned long long)i->counters.vertices,
            (unsigned long long)i->counters.tests, p->warned, i->timings.total_ms);
     if (compare)

@@ -109,7 +109,7 @@ temp_path frame_fixture_write_mesh(const temp_folder *folder, const char *name, 
 animation *frame_fixture_open(const char *path, uint32_t vertex_count) {
     animation *opened = NULL;
     io_error error = {""};
-    if (!animation_open(&path, 1, vertex_count, &opened, &error)) fail_msg("%s", error.text);
+    if (!animation_open(&path, 1, vertex_count, NULL, &opened, &error)) fail_msg("%s", error.text);
     assert_non_null(opened);
     return opened;
 }
@@ -139,10 +139,10 @@ void frame_fixture_check_error(const io_error *error, ...) {
 void frame_fixture_open_fails(const char *path, uint32_t vertex_count, io_error *error) {
     animation *untouched = (animation *)(void *)error, *opened = untouched;
     error->text[0] = '\0';
-    assert_false(animation_open(&path, 1, vertex_count, &opened, error));
+    assert_false(animation_open(&path, 1, vertex_count, NULL, &opened, error));
     assert_ptr_equal(opened, untouched);
     frame_fixture_check_error(error, NULL);
-    assert_false(animation_open(&path, 1, vertex_count, &opened, NULL));
+    assert_false(animation_open(&path, 1, vertex_count, NULL, &opened, NULL));
 }
 
 void frame_fixture_read_fails(animation *opened, uint32_t vertex_count, uint32_t frame, io_error *error) {

@@ -53,7 +53,7 @@ static cscd_contact_kind kind_of(const char *name) {
 
 static contact_record row_of(char *fields[FIELDS]) {
     contact_record r = {
-        .frame = index_of(fields[0]), .kind = kind_of(fields[1]), .toi = number_of(fields[2])};
+        .frame = (int32_t)index_of(fields[0]), .kind = kind_of(fields[1]), .toi = number_of(fields[2])};
     bool vf = r.kind == CSCD_CONTACT_VF;
     r.a[0] = index_of(fields[3]);
     assert_true(!vf || *fields[4] == '\0'); /* a1 of a vertex and b2 of an edge are empty */
@@ -105,7 +105,7 @@ static void read_vector(const json_node *line, const char *key, double out[3]) {
 }
 
 static contact_record line_of(const json_node *line) {
-    contact_record r = {.frame = (uint32_t)json_node_number(line, "frame"),
+    contact_record r = {.frame = (int32_t)json_node_number(line, "frame"),
                         .kind = kind_of(json_node_string(line, "kind")),
                         .toi = json_node_number(line, "toi"),
                         .u = json_node_number(line, "u"),
@@ -138,7 +138,7 @@ void contact_rows_free(contact_rows *rows) {
     *rows = (contact_rows){0};
 }
 
-size_t contact_rows_of(const contact_rows *rows, uint32_t frame, cscd_contact_kind kind) {
+size_t contact_rows_of(const contact_rows *rows, int32_t frame, cscd_contact_kind kind) {
     size_t count = 0;
     for (size_t i = 0; i < rows->count; i++)
         count += rows->items[i].frame == frame && rows->items[i].kind == kind;

@@ -15,7 +15,7 @@ contact_rows contact_rows_read_csv(const char *path);
 contact_rows contact_rows_read_jsonl(const char *path);
 void contact_rows_free(contact_rows *rows);
 
-size_t contact_rows_of(const contact_rows *rows, uint32_t frame, cscd_contact_kind kind);
+size_t contact_rows_of(const contact_rows *rows, int32_t frame, cscd_contact_kind kind);
 
 /* Asserts that every number is the same, bit for bit. */
 void contact_rows_assert_equal(const contact_rows *a, const contact_rows *b);
