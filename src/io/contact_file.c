@@ -14,7 +14,8 @@
 struct contact_file {
     FILE *file;
     char *path;
-    bool csv, with_bounded;
+    bool csv;
+    contact_columns columns;
 };
 
 static bool write_failed(const contact_file *file, io_error *error) {
@@ -31,12 +32,13 @@ bool contact_file_names_format(const char *path) {
 }
 
 static bool write_header(const contact_file *file) {
-    const char *last = file->with_bounded ? ",bounded" : "";
-    return !file->csv ||
-           fprintf(file->file, "frame,kind,toi,a0,a1,b0,b1,b2,u,v,x,y,z,nx,ny,nz%s\n", last) >= 0;
+    const char *bounded = file->columns.bounded ? ",bounded" : "";
+    const char *objects = file->columns.object_names != NULL ? ",object_a,object_b" : "";
+    return !file->csv || fprintf(file->file, "frame,kind,toi,a0,a1,b0,b1,b2,u,v,x,y,z,nx,ny,nz%s%s\n",
+                                 bounded, objects) >= 0;
 }
 
-bool contact_file_open(const char *path, bool with_bounded, contact_file **out, io_error *error) {
+bool contact_file_open(const char *path, contact_columns columns, contact_file **out, io_error *error) {
     bool csv = path_has_extension(path, ".csv");
     if (!contact_file_names_format(path))
         return io_fail(error, "%s: contacts are written as .csv or .jsonl", path);
@@ -46,7 +48,7 @@ bool contact_file_open(const char *path, bool with_bounded, contact_file **out, 
         return io_fail(error, "%s: out of memory", path);
     }
     file->csv = csv;
-    file->with_bounded = with_bounded;
+    file->columns = columns;
     file->file = fopen(path, "w");
     if (file->file == NULL) {
         write_failed(file, error);
@@ -63,7 +65,17 @@ bool contact_file_open(const char *path, bool with_bounded, contact_file **out, 
     return true;
 }
 
-static void write_csv(FILE *file, const contact_record *r, bool with_bounded) {
+/* In quotes, with those of the name doubled, so that any name is one field. */
+static void write_quoted(FILE *file, const char *name) {
+    fputs(",\"", file);
+    for (; *name != '\0'; name++) {
+        if (*name == '"') fputc('"', file);
+        fputc(*name, file);
+    }
+    fputc('"', file);
+}
+
+static void write_csv(FILE *file, const contact_record *r, const contact_columns *columns) {
     fprintf(file, "%" PRId32 ",%s,%.17g,", r->frame, cscd_contact_kind_name(r->kind), r->toi);
     if (r->kind == CSCD_CONTACT_VF)
         fprintf(file, "%" PRIu32 ",,%" PRIu32 ",%" PRIu32 ",%" PRIu32, r->a[0], r->b[0], r->b[1], r->b[2]);
@@ -72,7 +84,9 @@ static void write_csv(FILE *file, const contact_record *r, bool with_bounded) {
     fprintf(file, ",%.17g,%.17g", r->u, r->v);
     for (int k = 0; k < 3; k++) fprintf(file, ",%.17g", r->point[k]);
     for (int k = 0; k < 3; k++) fprintf(file, ",%.17g", r->normal[k]);
-    if (with_bounded) fprintf(file, ",%d", r->bounded);
+    if (columns->bounded) fprintf(file, ",%d", r->bounded);
+    for (int i = 0; i < 2 && columns->object_names != NULL; i++)
+        write_quoted(file, columns->object_names[r->objects[i]]);
     fputc('\n', file);
 }
 
@@ -88,7 +102,7 @@ static void write_vector(json *out, const char *key, const double vector[3]) {
     json_end_array(out);
 }
 
-static void write_json_line(FILE *file, const contact_record *r, bool with_bounded) {
+static void write_json_line(FILE *file, const contact_record *r, const contact_columns *columns) {
     json out = {.file = file};
     bool vf = r->kind == CSCD_CONTACT_VF;
     json_begin_object(&out, NULL);
@@ -101,16 +115,21 @@ static void write_json_line(FILE *file, const contact_record *r, bool with_bound
     json_number(&out, "v", r->v);
     write_vector(&out, "point", r->point);
     write_vector(&out, "normal", r->normal);
-    if (with_bounded) json_boolean(&out, "bounded", r->bounded);
+    if (columns->bounded) json_boolean(&out, "bounded", r->bounded);
+    if (columns->object_names != NULL) {
+        json_begin_array(&out, "objects");
+        for (int i = 0; i < 2; i++) json_string(&out, NULL, columns->object_names[r->objects[i]]);
+        json_end_array(&out);
+    }
     json_end_object(&out);
     fputc('\n', file);
 }
 
 bool contact_file_write(contact_file *file, const contact_record *record, io_error *error) {
     if (file->csv)
-        write_csv(file->file, record, file->with_bounded);
+        write_csv(file->file, record, &file->columns);
     else
-        write_json_line(file->file, record, file->with_bounded);
+        write_json_line(file->file, record, &file->columns);
     return !ferror(file->file) || write_failed(file, error);
 }
 

@@ -130,8 +130,7 @@ void weld_free(weld *w) {
     *w = (weld){0};
 }
 
-bool weld_positions(const weld *w, const double *file_positions, int32_t frame, double *out,
-                    io_error *error) {
+bool weld_positions(const weld *w, const double *file_positions, double *out, io_error *error) {
     for (uint32_t v = 0; v < w->vertex_count; v++)
         memcpy(out + (size_t)v * 3, file_positions + (size_t)w->file_vertex[v] * 3, 3 * sizeof *out);
     for (uint32_t v = 0; v < w->file_vertex_count; v++) {
@@ -139,9 +138,9 @@ bool weld_positions(const weld *w, const double *file_positions, int32_t frame, 
         double apart = distance_between(file_positions + (size_t)v * 3, file_positions + (size_t)first * 3);
         if (apart <= w->epsilon) continue;
         return io_fail(error,
-                       "frame %d: vertices %u and %u were welded but lie %g apart, expected at most %g; "
+                       "vertices %u and %u were welded but lie %g apart, expected at most %g; "
                        "weld with a larger distance, or not at all",
-                       frame, first, v, apart, w->epsilon);
+                       first, v, apart, w->epsilon);
     }
     return true;
 }

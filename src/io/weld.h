@@ -24,5 +24,5 @@ bool weld_create(const double *positions, uint32_t vertex_count, const uint32_t 
 void weld_free(weld *w);
 
 /* Welded positions are those of the first file vertex. False, with the vertices and their distance, when two
- * that were welded lie farther apart than epsilon in this frame (frame: for the message). */
-bool weld_positions(const weld *w, const double *file_positions, int32_t frame, double *out, io_error *error);
+ * that were welded lie farther apart than epsilon in this frame. */
+bool weld_positions(const weld *w, const double *file_positions, double *out, io_error *error);

@@ -26,11 +26,17 @@ static const option_row rows[] = {
      "write the pairs of every frame (triangles as in MODEL, from 0)"},
     {"frames", "A:B[:STEP]", read_frames, offsetof(check_options, frames),
      "only the frames A to B, both included, or every STEP-th of them"},
+    {"object", "NAME=MODEL", read_named_path, offsetof(check_options, source.objects),
+     "another object, as often as needed: body and shirt, prop and hand"},
+    {"obstacle", "NAME=MODEL", read_obstacle, offsetof(check_options, source.objects),
+     "the same, of something that is not looked at with itself and with other obstacles: ground, walls"},
+    {"frames-of", "NAME=FRAMES", read_named_path, offsetof(check_options, source.frames_of),
+     "how that object moves: a point cache, a pattern or a folder, of as many frames; without it, it rests"},
     {"first-frame", "N", read_frame_number, offsetof(check_options, source.first_frame),
      "what the first frame is called (default: the number in its file's name, or 0)"},
     {"allow-gaps", NULL, read_flag, offsetof(check_options, source.allow_gaps),
      "of numbered files, some may be missing"},
-    {"weld", "exact|EPS", read_weld, offsetof(check_options, source),
+    {"weld", "exact|none|EPS", read_weld, offsetof(check_options, source.weld),
      "join vertices that coincide, or lie within EPS, in the first frame"},
     {"ignore", "LIST", read_text, offsetof(check_options, ignore_path),
      "leave out the pairs of a file: lines 'A B' (triangles) or 'components A B'"},
@@ -162,7 +168,7 @@ static int run_check(const check_options *options) {
     terminal_progress_end(&c.progress);
     bool closed = close_json(&c, ran ? (interrupted() ? "interrupted" : NULL) : error.text, &close_error);
     if (c.frames_checked > 0 && !options->quiet) {
-        printf("%s: %u of %u frames intersect or touch themselves", options->source.model_path,
+        printf("%s: %u of %u frames intersect or touch themselves", recording_options_path(&options->source),
                frame_list_frames(&c.intersecting), c.frames_checked);
         frame_list_print(&c.intersecting, c.recording.frame_numbers, ": ");
     }
@@ -184,7 +190,8 @@ int command_check(int argument_count, char **arguments) {
     given_options given;
     int code;
     if (!option_table_read(&table, argument_count, arguments, &options, &given, &code)) return code;
-    if (given.input_count < 1) return fail_usage("check", "no MODEL given");
+    if (given.input_count < 1 && options.source.objects.count == 0)
+        return fail_usage("check", "no MODEL given");
     io_error error;
     if (!output_path_is_safe(options.json_path, given.inputs, given.input_count, &error) ||
         !output_path_is_safe(options.json_path, &options.ignore_path, 1, &error))

@@ -8,17 +8,19 @@
 #include <stdlib.h>
 
 static const option_row rows[] = {
-    {"weld", "exact|EPS", read_weld, 0, "join vertices that coincide, or lie within EPS"},
+    {"weld", "exact|none|EPS", read_weld, offsetof(recording_options, weld),
+     "join vertices that coincide, or lie within EPS"},
 };
 
 static const option_table table = {
-    "info", "MODEL [--weld exact|EPS]",
+    "info", "MODEL [--weld exact|none|EPS]",
     "Prints counts, components, closedness (open edges, non-manifold places), genus and bounds of a mesh.",
     rows, sizeof rows / sizeof *rows};
 
 enum { COMPONENTS_LISTED = 50 };
 
-static void print_bounds(const mesh_file *file) {
+static void print_bounds(const recording *r) {
+    const mesh_file *file = &r->objects[0].file;
     double low[3], high[3];
     for (int k = 0; k < 3; k++) low[k] = high[k] = file->positions[k];
     for (uint32_t v = 1; v < file->vertex_count; v++) {
@@ -53,7 +55,7 @@ static void print_mesh(const recording *r) {
         printf(" (%u of them in no triangle)", cscd_mesh_vertex_count(r->mesh) - surface_vertices);
     printf("\nedges       %u\ntriangles   %u\n", cscd_mesh_edge_count(r->mesh),
            cscd_mesh_triangle_count(r->mesh));
-    print_bounds(&r->file);
+    print_bounds(r);
     printf("components  %u\n", components);
     for (uint32_t i = 0; i < components && i < COMPONENTS_LISTED; i++) print_component(r->mesh, i);
     if (components > COMPONENTS_LISTED) printf("  and %u more\n", components - COMPONENTS_LISTED);

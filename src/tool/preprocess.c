@@ -58,7 +58,7 @@ static const option_row rows[] = {
      "charge: the share of the triangles that cuts start from (default 0.1)"},
     {"published", NULL, read_flag, offsetof(preprocess_options, published),
      "charge: equalize with 256 bins, as published, instead of exact ranks"},
-    {"weld", "exact|EPS", read_weld, offsetof(preprocess_options, source),
+    {"weld", "exact|none|EPS", read_weld, offsetof(preprocess_options, source.weld),
      "join vertices that coincide, or lie within EPS; replay needs the same"},
     {"threads", "N", read_threads, offsetof(preprocess_options, source.thread_count),
      "default 0: one per processor"},

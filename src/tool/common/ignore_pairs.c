@@ -30,33 +30,59 @@ static void sort_triangles(ignore_pairs *pairs) {
         qsort(pairs->triangles, pairs->triangle_count, sizeof *pairs->triangles, compare_pairs);
 }
 
-/* The mesh's number of a triangle of the file; UINT32_MAX when welding dropped it. */
-static uint32_t mesh_triangle(const recording *r, uint32_t file_triangle) {
-    if (!r->welded) return file_triangle;
-    uint32_t low = 0, high = r->weld.triangle_count;
-    while (low < high) {
-        uint32_t middle = low + (high - low) / 2;
-        if (r->weld.file_triangle[middle] < file_triangle)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < r->weld.triangle_count && r->weld.file_triangle[low] == file_triangle ? low : UINT32_MAX;
+/* What a line speaks of. */
+typedef enum listed_kind { LISTED_TRIANGLES, LISTED_COMPONENTS } listed_kind;
+
+/* Takes an object's name and its ':' off the text, if they are there: object_count when no object has that name. */
+static uint32_t take_object(const recording *r, char **text) {
+    char *colon = strchr(*text, ':');
+    if (colon == NULL || colon > *text + strcspn(*text, " \t,")) return 0;
+    *colon = '\0';
+    uint32_t object = recording_find_object(r, *text);
+    *text = colon + 1;
+    return object != UINT32_MAX ? object : r->object_count;
 }
 
-/* Reads two numbers below limit; false if there is anything else in the text. */
-static bool parse_pair(const char *text, uint32_t limit, uint32_t pair[2]) {
+/* Reads a number below limit and moves *text behind it. */
+static bool take_number(char **text, uint32_t limit, uint32_t *number) {
     char *end = NULL;
+    if (**text < '0' || **text > '9') return false;
+    errno = 0;
+    unsigned long long value = strtoull(*text, &end, 10);
+    if (errno != 0 || value >= limit) return false;
+    *number = (uint32_t)value;
+    *text = end;
+    return true;
+}
+
+/* Reads two numbers, of triangles of the mesh or of components; UINT32_MAX for a triangle that welding has dropped.
+ * False if there is anything else in the text. */
+static bool parse_pair(const recording *r, char *text, listed_kind kind, uint32_t pair[2]) {
     for (int i = 0; i < 2; i++) {
         text += strspn(text, " \t,");
-        if (*text < '0' || *text > '9') return false;
-        errno = 0;
-        unsigned long long value = strtoull(text, &end, 10);
-        if (errno != 0 || value >= limit) return false;
-        pair[i] = (uint32_t)value;
-        text = end;
+        if (kind == LISTED_COMPONENTS) {
+            if (!take_number(&text, cscd_mesh_component_count(r->mesh), &pair[i])) return false;
+            continue;
+        }
+        uint32_t index = take_object(r, &text);
+        if (index == r->object_count) return false;
+        const recorded_object *object = &r->objects[index];
+        if (!take_number(&text, object->file.triangle_count, &pair[i])) return false;
+        pair[i] = recorded_object_find_triangle(object, pair[i]);
+        if (pair[i] != UINT32_MAX) pair[i] += object->first_triangle;
     }
     return text[strspn(text, " \t\r\n")] == '\0';
+}
+
+static bool fail_line(const recording *r, listed_kind kind, const char *path, int number, io_error *error) {
+    if (kind == LISTED_COMPONENTS)
+        return io_fail(error, "%s:%d: expected 'components A B' with A and B below %u", path, number,
+                       cscd_mesh_component_count(r->mesh));
+    if (r->object_count > 1)
+        return io_fail(error, "%s:%d: expected 'NAME:A NAME:B', objects and triangles of their files", path,
+                       number);
+    return io_fail(error, "%s:%d: expected 'A B' with A and B below %u", path, number,
+                   r->objects[0].file.triangle_count);
 }
 
 static bool read_line(ignore_pairs *pairs, const recording *r, char *line, const char *path, int number,
@@ -65,19 +91,17 @@ static bool read_line(ignore_pairs *pairs, const recording *r, char *line, const
     char *text = line + strspn(line, " \t\r\n");
     if (*text == '\0') return true;
     bool components = strncmp(text, "components", 10) == 0 && (text[10] == ' ' || text[10] == '\t');
-    uint32_t limit = components ? cscd_mesh_component_count(r->mesh) : r->file.triangle_count, pair[2];
-    if (!parse_pair(components ? text + 10 : text, limit, pair))
-        return io_fail(error, "%s:%d: expected '%sA B' with A and B below %u", path, number,
-                       components ? "components " : "", limit);
+    listed_kind kind = components ? LISTED_COMPONENTS : LISTED_TRIANGLES;
+    uint32_t pair[2];
+    if (!parse_pair(r, components ? text + 10 : text, kind, pair))
+        return fail_line(r, kind, path, number, error);
     bool added = true;
-    if (components) {
+    if (components)
         added = append_pair(&pairs->components, &pairs->component_count, &pairs->component_capacity, pair[0],
                             pair[1]);
-    } else {
-        uint32_t a = mesh_triangle(r, pair[0]), b = mesh_triangle(r, pair[1]);
-        if (a != UINT32_MAX && b != UINT32_MAX)
-            added = append_pair(&pairs->triangles, &pairs->triangle_count, &pairs->triangle_capacity, a, b);
-    }
+    else if (pair[0] != UINT32_MAX && pair[1] != UINT32_MAX)
+        added = append_pair(&pairs->triangles, &pairs->triangle_count, &pairs->triangle_capacity, pair[0],
+                            pair[1]);
     return added || io_fail(error, "%s:%d: out of memory", path, number);
 }
 
@@ -119,7 +143,7 @@ bool ignore_pairs_add_rest(ignore_pairs *pairs, recording *r, io_error *error) {
     added = added && recording_read(r, 0, positions, error);
     if (added && (cscd_detector_create(r->context, r->mesh, NULL, NULL, &detector) != CSCD_OK ||
                   !add_intersections(pairs, detector, positions)))
-        added = io_fail(error, "frame 0: %s", cscd_context_detail(r->context));
+        added = io_fail(error, "frame %d: %s", r->frame_numbers[0], cscd_context_detail(r->context));
     cscd_detector_destroy(detector);
     free(positions);
     sort_triangles(pairs);

@@ -13,11 +13,12 @@ typedef struct ignore_pairs {
 } ignore_pairs;
 
 /* Each line of a list file is `A B` (two triangles), `components A B` (all pairs between two components, or
- * within one), blank, or a comment from # on. Triangles are numbered from 0 in the order of the model file, a
- * polygon's fan counting as many; components as `cscd info` lists them. */
+ * within one), blank, or a comment from # on. Triangles are numbered from 0 in the order of the model file, a polygon
+ * counting as many as it is cut into; with several objects they are `NAME:A`, of the first one `A` as well. Components
+ * are numbered as `cscd info` lists them. */
 bool ignore_pairs_read(ignore_pairs *pairs, const recording *r, const char *path, io_error *error);
 
-/* Adds the pairs that intersect or touch in frame 0. */
+/* Adds the pairs that intersect or touch in the first frame. */
 bool ignore_pairs_add_rest(ignore_pairs *pairs, recording *r, io_error *error);
 
 /* Makes a detector leave out the pairs, which live until it has been destroyed. */

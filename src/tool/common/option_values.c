@@ -54,11 +54,33 @@ bool read_frames(const char *text, void *place) {
 }
 
 bool read_weld(const char *text, void *place) {
-    recording_options *source = place;
-    source->weld = true;
-    source->weld_epsilon = 0.0;
-    return strcmp(text, "exact") == 0 ||
-           (parse_double(text, &source->weld_epsilon) && source->weld_epsilon > 0.0);
+    weld_choice *choice = place;
+    *choice = (weld_choice){.rule = strcmp(text, "none") == 0 ? WELD_NOTHING : WELD_WITHIN};
+    return choice->rule == WELD_NOTHING || strcmp(text, "exact") == 0 ||
+           (parse_double(text, &choice->epsilon) && choice->epsilon > 0.0);
+}
+
+bool read_named_path(const char *text, void *place) {
+    named_paths *list = place;
+    const char *equals = strchr(text, '=');
+    if (equals == NULL || equals == text || equals[1] == '\0' || list->count == RECORDING_OBJECTS_MAX)
+        return false;
+    named_path *named = &list->items[list->count];
+    const size_t length = (size_t)(equals - text);
+    if (length >= sizeof named->name || memchr(text, ':', length) != NULL ||
+        memchr(text, ',', length) != NULL)
+        return false;
+    *named = (named_path){.path = equals + 1};
+    memcpy(named->name, text, length);
+    list->count++;
+    return true;
+}
+
+bool read_obstacle(const char *text, void *place) {
+    named_paths *list = place;
+    if (!read_named_path(text, place)) return false;
+    list->items[list->count - 1].obstacle = true;
+    return true;
 }
 
 bool read_report_up(const char *text, void *place) {

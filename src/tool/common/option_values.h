@@ -14,8 +14,11 @@ bool read_length(const char *text, void *place);       /* double: 0, or from 2^-
 bool read_threads(const char *text, void *place);      /* uint32_t, 256 at most */
 bool read_frame_number(const char *text, void *place); /* frame_number */
 bool read_frames(const char *text, void *place);       /* frame_range: A:B[:STEP] */
-bool read_weld(const char *text, void *place);         /* recording_options: exact|EPS */
-bool read_report_up(const char *text, void *place);    /* int, report_request.up_axis: y|z */
+bool read_weld(const char *text, void *place);         /* weld_choice: exact|none|EPS */
+bool read_named_path(const char *text,
+                     void *place);                  /* named_paths: NAME=PATH; a name has no ':' and no ',' */
+bool read_obstacle(const char *text, void *place);  /* the same, of an obstacle */
+bool read_report_up(const char *text, void *place); /* int, report_request.up_axis: y|z */
 bool read_picture_size(const char *text, void *place); /* picture_options: WxH */
 bool read_picture_view(const char *text, void *place); /* picture_options: AZ,EL */
 bool read_picture_up(const char *text, void *place);   /* picture_options: y|z */

@@ -36,7 +36,8 @@ static bool same_file(const char *a, const char *b) {
 }
 
 static bool named_like_input(const char *path) {
-    static const char *const endings[] = {".obj", ".ply", ".off", ".pc2", ".mdd"};
+    static const char *const endings[] = {".obj", ".ply", ".off",  ".stl", ".gii",
+                                          ".pc2", ".mdd", ".gltf", ".glb"};
     for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
         if (path_has_extension(path, endings[i])) return true;
     }

@@ -1,63 +1,130 @@
-/* A model file and its recorded frames, welded if the user asks for it, as a mesh and an array of
- * positions for each frame. */
+/* Puts the objects of a recording together: one mesh, one array of positions, one series of frames. */
 #include "src/tool/common/recording.h"
 
-#include "src/tool/common/provenance.h"
+#include "src/io/path_name.h"
+#include "src/tool/common/command.h"
 
 #include <assert.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 void recording_options_take(recording_options *options, const given_options *given) {
+    if (given->input_count == 0) return;
     options->model_path = given->inputs[0];
     options->frame_paths = given->inputs + 1;
     options->frame_path_count = given->input_count - 1;
 }
 
+const char *recording_options_path(const recording_options *options) {
+    return options->model_path != NULL ? options->model_path : options->objects.items[0].path;
+}
+
+/* ---- objects ----------------------------------------------------------------------------------------- */
+
+static char *name_of_model(const char *path) {
+    const char *name = path_file_name(path), *dot = strrchr(name, '.');
+    return strndup(name, dot != NULL && dot > name ? (size_t)(dot - name) : strlen(name));
+}
+
+/* The frames that --frames-of names for an object, unless it has some already. */
+static bool find_frames(const recording_options *options, recorded_source *source, io_error *error) {
+    for (uint32_t i = 0; i < options->frames_of.count; i++) {
+        const named_path *frames = &options->frames_of.items[i];
+        if (strcmp(frames->name, source->name) != 0) continue;
+        if (source->frame_path_count > 0)
+            return io_fail(error, "--frames-of %s: it has frames already, %s", source->name,
+                           source->frame_paths[0]);
+        source->frame_paths = &frames->path;
+        source->frame_path_count = 1;
+    }
+    return true;
+}
+
+static bool open_object(const recording_options *options, recorded_source source, recording *r,
+                        io_error *error) {
+    if (!find_frames(options, &source, error)) return false;
+    if (recording_find_object(r, source.name) != UINT32_MAX)
+        return io_fail(error, "two objects are called %s", source.name);
+    recorded_object *object = &r->objects[r->object_count];
+    if (!recorded_object_open(&source, options->weld, options->allow_gaps, object, error)) return false;
+    if (r->object_count > 0) {
+        const recorded_object *before = object - 1;
+        object->first_vertex = before->first_vertex + before->vertex_count;
+        object->first_triangle = before->first_triangle + before->triangle_count;
+    }
+    r->object_count++;
+    return true;
+}
+
+/* All that --frames-of names must be there. */
+static bool check_named(const recording_options *options, const recording *r, io_error *error) {
+    for (uint32_t i = 0; i < options->frames_of.count; i++)
+        if (recording_find_object(r, options->frames_of.items[i].name) == UINT32_MAX)
+            return io_fail(error, "--frames-of %s: there is no object of that name, see --object",
+                           options->frames_of.items[i].name);
+    return true;
+}
+
+static bool open_objects(const recording_options *options, recording *r, io_error *error) {
+    r->objects = calloc(options->objects.count + 1, sizeof *r->objects);
+    if (options->model_path != NULL) r->model_name = name_of_model(options->model_path);
+    if (r->objects == NULL || (options->model_path != NULL && r->model_name == NULL))
+        return io_fail(error, "out of memory");
+    recorded_source model = {.name = r->model_name,
+                             .model_path = options->model_path,
+                             .frame_paths = options->frame_paths,
+                             .frame_path_count = options->frame_path_count};
+    if (options->model_path != NULL && !open_object(options, model, r, error)) return false;
+    for (uint32_t i = 0; i < options->objects.count; i++) {
+        const named_path *named = &options->objects.items[i];
+        recorded_source source = {
+            .name = named->name, .model_path = named->path, .obstacle = named->obstacle};
+        if (!open_object(options, source, r, error)) return false;
+    }
+    return check_named(options, r, error);
+}
+
+/* ---- frames ------------------------------------------------------------------------------------------ */
+
+/* All objects with frames must have as many; the first of them says what they are called. */
+static bool count_frames(recording *r, const recorded_object **first, io_error *error) {
+    *first = NULL;
+    for (uint32_t i = 0; i < r->object_count; i++) {
+        const recorded_object *object = &r->objects[i];
+        if (object->frames == NULL) continue;
+        if (*first == NULL) *first = object;
+        uint32_t own = recorded_object_frame_count(object), others = recorded_object_frame_count(*first);
+        if (own != others)
+            return io_fail(error, "%s has %u frames (%s), and %s has %u (%s): expected as many",
+                           (*first)->source.name, others, (*first)->source.frame_paths[0],
+                           object->source.name, own, object->source.frame_paths[0]);
+    }
+    r->frame_count = *first != NULL ? recorded_object_frame_count(*first) : 1;
+    return true;
+}
+
 /* The numbers of the frames' files, or of the first one, if that was given, on in their steps. */
 static bool number_frames(const recording_options *options, recording *r, io_error *error) {
+    const recorded_object *first;
+    if (!count_frames(r, &first, error)) return false;
     r->frame_numbers = malloc((size_t)r->frame_count * sizeof *r->frame_numbers);
     if (r->frame_numbers == NULL) return io_fail(error, "out of memory for %u frames", r->frame_count);
     for (uint32_t i = 0; i < r->frame_count; i++)
-        r->frame_numbers[i] = r->frames != NULL ? animation_frame_number(r->frames, i) : (int32_t)i;
+        r->frame_numbers[i] = first != NULL ? animation_frame_number(first->frames, i) : (int32_t)i;
     if (!options->first_frame.given) return true;
     const int64_t shift = (int64_t)options->first_frame.value - r->frame_numbers[0];
-    if (r->frame_numbers[r->frame_count - 1] + shift > INT32_MAX)
+    const int64_t last = r->frame_numbers[r->frame_count - 1] + shift;
+    if (last > INT32_MAX)
         return io_fail(error, "--first-frame %d: the last frame would be number %lld, expected at most %d",
-                       options->first_frame.value, (long long)(r->frame_numbers[r->frame_count - 1] + shift),
-                       INT32_MAX);
+                       options->first_frame.value, (long long)last, INT32_MAX);
     for (uint32_t i = 0; i < r->frame_count; i++)
         r->frame_numbers[i] = (int32_t)(r->frame_numbers[i] + shift);
     return true;
 }
 
-static bool open_frames(const recording_options *options, recording *r, io_error *error) {
-    r->frame_count = 1;
-    r->file_positions = malloc((size_t)r->file.vertex_count * 3 * sizeof *r->file_positions);
-    if (r->file_positions == NULL) return io_fail(error, "%s: out of memory", options->model_path);
-    const animation_options frames = {.model_path = options->model_path, .allow_gaps = options->allow_gaps};
-    if (options->frame_path_count > 0) {
-        if (!animation_open(options->frame_paths, options->frame_path_count, r->file.vertex_count, &frames,
-                            &r->frames, error))
-            return false;
-        r->frame_count = animation_frame_count(r->frames);
-    }
-    return number_frames(options, r, error);
-}
+/* ---- mesh -------------------------------------------------------------------------------------------- */
 
-/* Reads the file's own positions of a frame into file_positions. */
-static bool read_file_positions(recording *r, uint32_t frame, io_error *error) {
-    io_error reason;
-    if (r->frames != NULL)
-        return animation_read(r->frames, frame, r->file_positions, &reason) ||
-               io_fail(error, "frame %d: %s", r->frame_numbers[frame], reason.text);
-    memcpy(r->file_positions, r->file.positions,
-           (size_t)r->file.vertex_count * 3 * sizeof *r->file_positions);
-    return true;
-}
-
-static bool create_mesh(const recording_options *options, recording *r, io_error *error) {
+static bool create_context(const recording_options *options, recording *r, io_error *error) {
     cscd_context_options context_options = cscd_context_defaults();
     context_options.thread_count = options->thread_count;
     context_options.simd = options->simd;
@@ -69,14 +136,19 @@ static bool create_mesh(const recording_options *options, recording *r, io_error
     if (status == CSCD_INVALID_ARGUMENT)
         return io_fail(error, "this processor does not have %s; leave --simd at auto",
                        cscd_simd_name(options->simd));
-    if (status != CSCD_OK) return io_fail(error, "%s", cscd_status_string(status));
-    cscd_object_desc desc =
-        cscd_object_of_triangles(r->file.vertex_count, r->file.triangle_count, r->file.triangles);
-    if (r->welded)
-        desc = cscd_object_of_triangles(r->weld.vertex_count, r->weld.triangle_count, r->weld.triangles);
-    status = cscd_mesh_create(r->context, &desc, 1, &r->mesh);
-    if (status == CSCD_OK) return true;
-    return io_fail(error, "%s: %s", options->model_path, cscd_context_detail(r->context));
+    return status == CSCD_OK || io_fail(error, "%s", cscd_status_string(status));
+}
+
+static bool create_mesh(recording *r, io_error *error) {
+    cscd_object_desc descs[RECORDING_OBJECTS_MAX + 1];
+    for (uint32_t i = 0; i < r->object_count; i++) {
+        const recorded_object *object = &r->objects[i];
+        descs[i] = cscd_object_of_triangles(object->vertex_count, object->triangle_count,
+                                            recorded_object_triangles(object));
+        descs[i].obstacle = object->source.obstacle;
+    }
+    if (cscd_mesh_create(r->context, descs, r->object_count, &r->mesh) == CSCD_OK) return true;
+    return io_fail(error, "%s: %s", r->objects[0].source.model_path, cscd_context_detail(r->context));
 }
 
 /* The mesh's edges are sorted by their vertices. */
@@ -97,49 +169,42 @@ uint32_t recording_find_edge(const cscd_mesh *mesh, uint32_t a, uint32_t b) {
     return low;
 }
 
+static bool any_welded(const recording *r) {
+    for (uint32_t i = 0; i < r->object_count; i++)
+        if (r->objects[i].welded) return true;
+    return false;
+}
+
 /* An edge is named by the file's vertices in the first triangle that contains it. */
 static bool map_edges(recording *r, io_error *error) {
+    if (!any_welded(r)) return true;
     uint32_t edge_count = cscd_mesh_edge_count(r->mesh);
     r->edge_file_vertices = malloc((size_t)edge_count * sizeof *r->edge_file_vertices);
     if (r->edge_file_vertices == NULL) return io_fail(error, "out of memory for %u edges", edge_count);
-    for (uint32_t t = r->weld.triangle_count; t-- > 0;) {
-        const uint32_t *welded = r->weld.triangles + (size_t)t * 3;
-        const uint32_t *own = r->file.triangles + (size_t)r->weld.file_triangle[t] * 3;
+    for (uint32_t t = cscd_mesh_triangle_count(r->mesh); t-- > 0;) {
+        const recorded_object *object = &r->objects[recording_object_of_triangle(r, t)];
+        const uint32_t *own = object->file.triangles + (size_t)recording_file_triangle(r, t) * 3;
+        uint32_t corners[3];
+        cscd_mesh_triangle(r->mesh, t, corners);
         for (int i = 0; i < 3; i++) {
             int j = (i + 1) % 3;
-            uint32_t *names = r->edge_file_vertices[recording_find_edge(r->mesh, welded[i], welded[j])];
-            names[0] = own[welded[i] < welded[j] ? i : j];
-            names[1] = own[welded[i] < welded[j] ? j : i];
+            uint32_t *names = r->edge_file_vertices[recording_find_edge(r->mesh, corners[i], corners[j])];
+            names[0] = own[corners[i] < corners[j] ? i : j];
+            names[1] = own[corners[i] < corners[j] ? j : i];
         }
     }
     return true;
 }
 
-static bool weld_first_frame(const recording_options *options, recording *r, io_error *error) {
-    if (!read_file_positions(r, 0, error)) return false;
-    if (!weld_create(r->file_positions, r->file.vertex_count, r->file.triangles, r->file.triangle_count,
-                     options->weld_epsilon, &r->weld, error))
-        return false;
-    r->welded = true;
-    return true;
-}
-
-static uint64_t hash_model(const mesh_file *file) {
-    uint64_t hash = provenance_hash(PROVENANCE_HASH_START, file->triangles,
-                                    (size_t)file->triangle_count * 3 * sizeof *file->triangles);
-    return provenance_hash(hash, file->positions, (size_t)file->vertex_count * 3 * sizeof *file->positions);
-}
+/* ---- the interface ----------------------------------------------------------------------------------- */
 
 bool recording_open(const recording_options *options, recording *out, io_error *error) {
-    recording r = {.frames_hash = PROVENANCE_HASH_START};
-    bool opened = mesh_file_read(options->model_path, &r.file, error) && open_frames(options, &r, error) &&
-                  (!options->weld || weld_first_frame(options, &r, error)) &&
-                  create_mesh(options, &r, error) && (!options->weld || map_edges(&r, error));
-    if (!opened) {
+    recording r = {NULL};
+    if (!open_objects(options, &r, error) || !number_frames(options, &r, error) ||
+        !create_context(options, &r, error) || !create_mesh(&r, error) || !map_edges(&r, error)) {
         recording_close(&r);
         return false;
     }
-    r.model_hash = hash_model(&r.file);
     *out = r;
     return true;
 }
@@ -147,57 +212,83 @@ bool recording_open(const recording_options *options, recording *out, io_error *
 void recording_close(recording *r) {
     cscd_mesh_destroy(r->mesh);
     cscd_context_destroy(r->context);
-    animation_close(r->frames);
-    weld_free(&r->weld);
+    for (uint32_t i = 0; i < r->object_count; i++) recorded_object_close(&r->objects[i]);
+    free(r->objects);
+    free(r->model_name);
     free(r->edge_file_vertices);
-    free(r->file_positions);
     free(r->frame_numbers);
-    mesh_file_free(&r->file);
     *r = (recording){0};
 }
 
-/* Checks the range that the library accepts, so that the error can name vertices as the file numbers them. */
-static bool check_range(const recording *r, uint32_t frame, io_error *error) {
-    for (size_t i = 0; i < (size_t)r->file.vertex_count * 3; i++) {
-        double x = r->file_positions[i], magnitude = fabs(x);
-        if (x == 0.0 || (magnitude >= 0x1p-300 && magnitude <= 0x1p300)) continue;
-        return io_fail(error,
-                       "frame %d: vertex %zu has %c = %g, expected 0 or a magnitude from 2^-300 to 2^300",
-                       r->frame_numbers[frame], i / 3, "xyz"[i % 3], x);
-    }
-    return true;
-}
-
-void recording_hash_frame(recording *r) {
-    size_t size = (size_t)r->file.vertex_count * 3 * sizeof *r->file_positions;
-    r->frames_hash = provenance_hash(r->frames_hash, r->file_positions, size);
-}
-
 bool recording_read(recording *r, uint32_t frame, double *positions, io_error *error) {
-    if (!read_file_positions(r, frame, error) || !check_range(r, frame, error)) return false;
-    size_t size = (size_t)r->file.vertex_count * 3 * sizeof *positions;
-    if (r->welded)
-        return weld_positions(&r->weld, r->file_positions, r->frame_numbers[frame], positions, error);
-    memcpy(positions, r->file_positions, size);
+    for (uint32_t i = 0; i < r->object_count; i++) {
+        recorded_object *object = &r->objects[i];
+        io_error reason;
+        const uint32_t own = object->frames != NULL ? frame : 0;
+        if (recorded_object_read(object, own, positions + (size_t)object->first_vertex * 3, &reason))
+            continue;
+        if (r->object_count == 1) return io_fail(error, "frame %d: %s", r->frame_numbers[frame], reason.text);
+        return io_fail(error, "frame %d: %s: %s", r->frame_numbers[frame], object->source.name, reason.text);
+    }
     return true;
 }
 
 void recording_rest(const recording *r, double *positions) {
-    for (uint32_t v = 0; v < cscd_mesh_vertex_count(r->mesh); v++) {
-        uint32_t from = r->welded ? r->weld.file_vertex[v] : v;
-        memcpy(positions + (size_t)v * 3, r->file.positions + (size_t)from * 3, 3 * sizeof *positions);
-    }
+    for (uint32_t i = 0; i < r->object_count; i++)
+        recorded_object_rest(&r->objects[i], positions + (size_t)r->objects[i].first_vertex * 3);
+}
+
+void recording_hash_frame(recording *r) {
+    for (uint32_t i = 0; i < r->object_count; i++) recorded_object_hash_frame(&r->objects[i]);
+}
+
+bool recording_moves(const recording *r) {
+    for (uint32_t i = 0; i < r->object_count; i++)
+        if (r->objects[i].frames != NULL) return true;
+    return false;
+}
+
+uint32_t recording_object_of_vertex(const recording *r, uint32_t vertex) {
+    uint32_t i = 0;
+    while (i + 1 < r->object_count && vertex >= r->objects[i + 1].first_vertex) i++;
+    return i;
+}
+
+uint32_t recording_object_of_triangle(const recording *r, uint32_t triangle) {
+    uint32_t i = 0;
+    while (i + 1 < r->object_count && triangle >= r->objects[i + 1].first_triangle) i++;
+    return i;
+}
+
+uint32_t recording_find_object(const recording *r, const char *name) {
+    for (uint32_t i = 0; i < r->object_count; i++)
+        if (strcmp(r->objects[i].source.name, name) == 0) return i;
+    return UINT32_MAX;
+}
+
+uint32_t recording_file_vertex(const recording *r, uint32_t vertex) {
+    const recorded_object *object = &r->objects[recording_object_of_vertex(r, vertex)];
+    return recorded_object_file_vertex(object, vertex - object->first_vertex);
 }
 
 uint32_t recording_file_triangle(const recording *r, uint32_t triangle) {
-    return r->welded ? r->weld.file_triangle[triangle] : triangle;
+    const recorded_object *object = &r->objects[recording_object_of_triangle(r, triangle)];
+    return recorded_object_file_triangle(object, triangle - object->first_triangle);
 }
 
 static void edge_vertices(const recording *r, uint32_t edge, uint32_t vertices[2]) {
-    if (r->welded)
+    if (r->edge_file_vertices != NULL) {
         memcpy(vertices, r->edge_file_vertices[edge], sizeof r->edge_file_vertices[edge]);
-    else
-        cscd_mesh_edge(r->mesh, edge, vertices);
+        return;
+    }
+    cscd_mesh_edge(r->mesh, edge, vertices);
+    for (int i = 0; i < 2; i++) vertices[i] = recording_file_vertex(r, vertices[i]);
+}
+
+static uint32_t object_of_edge(const recording *r, uint32_t edge) {
+    uint32_t ends[2];
+    cscd_mesh_edge(r->mesh, edge, ends);
+    return recording_object_of_vertex(r, ends[0]);
 }
 
 contact_record recording_contact(const recording *r, uint32_t frame, const cscd_contact *contact) {
@@ -208,10 +299,15 @@ contact_record recording_contact(const recording *r, uint32_t frame, const cscd_
                              .v = contact->v,
                              .bounded = contact->bounded};
     if (contact->kind == CSCD_CONTACT_VF) {
-        record.a[0] = r->welded ? r->weld.file_vertex[contact->a] : contact->a;
-        memcpy(record.b, r->file.triangles + (size_t)recording_file_triangle(r, contact->b) * 3,
+        record.objects[0] = recording_object_of_vertex(r, contact->a);
+        record.objects[1] = recording_object_of_triangle(r, contact->b);
+        record.a[0] = recording_file_vertex(r, contact->a);
+        const mesh_file *second = &r->objects[record.objects[1]].file;
+        memcpy(record.b, second->triangles + (size_t)recording_file_triangle(r, contact->b) * 3,
                sizeof record.b);
     } else {
+        record.objects[0] = object_of_edge(r, contact->a);
+        record.objects[1] = object_of_edge(r, contact->b);
         edge_vertices(r, contact->a, record.a);
         edge_vertices(r, contact->b, record.b);
     }

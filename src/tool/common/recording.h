@@ -1,13 +1,25 @@
-/* A model file and its recorded frames, welded if the user asks for it, as a mesh and an array of
- * positions for each frame. */
+/* A recording: one object or several, each with its model file and its frames, as one mesh and an array of positions
+ * for each frame. */
 #pragma once
 
 #include "cscd/cscd.h"
-#include "src/io/animation.h"
 #include "src/io/contact_file.h"
-#include "src/io/mesh_file.h"
-#include "src/io/weld.h"
 #include "src/tool/common/option_table.h"
+#include "src/tool/common/recorded_object.h"
+
+enum { RECORDING_OBJECTS_MAX = 64 };
+
+/* NAME=PATH of the command line. The name lives as long as the options. */
+typedef struct named_path {
+    char name[64];
+    const char *path;
+    bool obstacle; /* of an object */
+} named_path;
+
+typedef struct named_paths {
+    named_path items[RECORDING_OBJECTS_MAX];
+    uint32_t count;
+} named_paths;
 
 /* A number that may not be given. */
 typedef struct frame_number {
@@ -16,53 +28,64 @@ typedef struct frame_number {
 } frame_number;
 
 typedef struct recording_options {
-    const char *model_path;
+    const char *model_path;         /* NULL: there are only objects by name */
     const char *const *frame_paths; /* none: the model is the only frame */
     size_t frame_path_count;
-    bool allow_gaps;          /* of a series of mesh files, some may be missing */
-    frame_number first_frame; /* what the first frame is called; not given: what its file says */
-    bool weld;
-    double weld_epsilon;
+    named_paths objects, frames_of; /* further objects; frames of these or of the model */
+    bool allow_gaps;                /* of a series of mesh files, some may be missing */
+    frame_number first_frame;       /* what the first frame is called; not given: what its file says */
+    weld_choice weld;
     uint32_t thread_count;
     cscd_simd simd;
     cscd_progress progress; /* of the context; NULL: none */
 } recording_options;
 
-/* MODEL and FRAMES: the first input and the others. There is one at least. */
+/* MODEL and FRAMES: the first input and the others, if there are any. */
 void recording_options_take(recording_options *options, const given_options *given);
+
+/* What a sentence calls the recording: the first model's path. */
+const char *recording_options_path(const recording_options *options);
 
 typedef struct recording {
     cscd_context *context;
-    cscd_mesh *mesh; /* of welded vertices and triangles */
-    mesh_file file;
-    animation *frames; /* NULL: the model is the only frame */
+    cscd_mesh *mesh; /* of welded vertices and triangles, object by object */
+    recorded_object *objects;
+    char *model_name; /* of the object without a name of its own: its file's, without folder and ending */
+    uint32_t object_count;
     uint32_t frame_count;
-    int32_t *frame_numbers; /* frame_count, ascending: what the artist calls each frame */
-    bool welded;
-    weld weld;
-    double *file_positions;            /* of the frame read last */
-    uint32_t (*edge_file_vertices)[2]; /* per edge of mesh; NULL when not welded */
-    uint64_t model_hash, frames_hash;
+    int32_t *frame_numbers;            /* frame_count, ascending: what the artist calls each frame */
+    uint32_t (*edge_file_vertices)[2]; /* per edge of mesh; NULL when nothing is welded */
 } recording;
 
 /* On false *out holds nothing to close. */
 bool recording_open(const recording_options *options, recording *out, io_error *error);
 void recording_close(recording *r);
 
-/* Reads a frame, by its index from 0. positions: cscd_mesh_vertex_count(mesh) * 3. The error names the frame, and vertices as
- * the file numbers them. */
+/* Reads a frame, by its index from 0. positions: cscd_mesh_vertex_count(mesh) * 3. The error names the frame, and vertices
+ * as the file numbers them. */
 bool recording_read(recording *r, uint32_t frame, double *positions, io_error *error);
 
-/* Copies the positions of the model file itself, unchecked; positions as above. */
+/* Copies the positions of the model files themselves, unchecked; positions as above. */
 void recording_rest(const recording *r, double *positions);
 
-/* Adds the file's positions of the frame read last to frames_hash. */
+/* Adds the files' positions of the frame read last to the objects' hashes. */
 void recording_hash_frame(recording *r);
 
-/* A contact, with the vertices that the model file numbers. */
+/* Does any object have frames? */
+bool recording_moves(const recording *r);
+
+/* A contact, with the vertices that the model files number. */
 contact_record recording_contact(const recording *r, uint32_t frame, const cscd_contact *contact);
 
-/* The model file's own number of a triangle of the mesh. */
+/* The object of a vertex or triangle of the mesh. */
+uint32_t recording_object_of_vertex(const recording *r, uint32_t vertex);
+uint32_t recording_object_of_triangle(const recording *r, uint32_t triangle);
+
+/* The object of that name; UINT32_MAX: there is none. */
+uint32_t recording_find_object(const recording *r, const char *name);
+
+/* The model file's own number of a vertex or triangle of the mesh. */
+uint32_t recording_file_vertex(const recording *r, uint32_t vertex);
 uint32_t recording_file_triangle(const recording *r, uint32_t triangle);
 
 /* The number of the edge between two vertices of the mesh, which must have it. */

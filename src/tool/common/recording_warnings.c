@@ -6,17 +6,14 @@
 
 enum { COMPONENTS_NAMED = 3 };
 
-static uint32_t file_vertex(const recording *r, uint32_t vertex) {
-    return r->welded ? r->weld.file_vertex[vertex] : vertex;
-}
-
 static int append_edges(const recording *r, char *text, size_t size, uint32_t count, uint32_t first,
                         const char *what) {
     if (count == 0) return 0;
     uint32_t ends[2];
     cscd_mesh_edge(r->mesh, first, ends);
     return snprintf(text, size, ", %u %s edge%s (the first joins vertices %u and %u)", count, what,
-                    count == 1 ? "" : "s", file_vertex(r, ends[0]), file_vertex(r, ends[1]));
+                    count == 1 ? "" : "s", recording_file_vertex(r, ends[0]),
+                    recording_file_vertex(r, ends[1]));
 }
 
 static void warn_component(const recording *r, uint32_t index, const cscd_component *c) {
@@ -28,7 +25,7 @@ static void warn_component(const recording *r, uint32_t index, const cscd_compon
                       "inconsistently oriented");
     if (c->non_manifold_vertices > 0)
         snprintf(text + n, sizeof text - (size_t)n, ", %u non-manifold vertices (the first is %u)",
-                 c->non_manifold_vertices, file_vertex(r, c->first_non_manifold_vertex));
+                 c->non_manifold_vertices, recording_file_vertex(r, c->first_non_manifold_vertex));
     warn("component %u is not a closed surface: %s; all its pairs are tested (mode all)", index, text + 2);
 }
 
@@ -39,17 +36,26 @@ static uint32_t count_open_edges(const cscd_mesh *mesh) {
     return sum;
 }
 
+/* Does a component of the object have an open edge? */
+static bool object_is_open(const recording *r, const recorded_object *object) {
+    for (uint32_t t = 0; t < object->triangle_count; t++) {
+        uint32_t component = cscd_mesh_triangle_component(r->mesh, object->first_triangle + t);
+        if (cscd_mesh_component(r->mesh, component).open_edges > 0) return true;
+    }
+    return false;
+}
+
 /* Would welding the vertices that are equal in the first frame leave no open edge? */
-static bool welding_closes(recording *r) {
+static bool welding_closes(const recording *r, recorded_object *object) {
     weld welded;
     io_error error;
-    const double *positions = r->file.positions;
-    if (r->frames != NULL) {
-        if (!animation_read(r->frames, 0, r->file_positions, &error)) return false;
-        positions = r->file_positions;
+    const double *positions = object->file.positions;
+    if (object->frames != NULL) {
+        if (!animation_read(object->frames, 0, object->file_positions, &error)) return false;
+        positions = object->file_positions;
     }
-    if (!weld_create(positions, r->file.vertex_count, r->file.triangles, r->file.triangle_count, 0.0, &welded,
-                     NULL))
+    if (!weld_create(positions, object->file.vertex_count, object->file.triangles,
+                     object->file.triangle_count, 0.0, &welded, NULL))
         return false;
     cscd_mesh *mesh = NULL;
     cscd_object_desc desc =
@@ -60,17 +66,50 @@ static bool welding_closes(recording *r) {
     return closes;
 }
 
+static void warn_object(const recording *r, recorded_object *object) {
+    const char *name = r->object_count > 1 ? object->source.name : "",
+               *colon = r->object_count > 1 ? ": " : "";
+    if (object->frames != NULL && animation_note(object->frames) != NULL)
+        warn("%s%s%s", name, colon, animation_note(object->frames));
+    if (object->welded && object->weld.collapsed_triangles > 0)
+        warn("%s%swelding collapsed %u triangle%s, left out from here on", name, colon,
+             object->weld.collapsed_triangles, object->weld.collapsed_triangles == 1 ? "" : "s");
+}
+
+/* Objects with frames may be called by different numbers: body from 1001, shirt from 1. */
+static void warn_numbers(const recording *r) {
+    const recorded_object *first = NULL;
+    for (uint32_t i = 0; i < r->object_count; i++) {
+        const recorded_object *object = &r->objects[i];
+        if (object->frames == NULL) continue;
+        if (first == NULL) first = object;
+        const uint32_t last = r->frame_count - 1;
+        const int32_t own[2] = {animation_frame_number(object->frames, 0),
+                                animation_frame_number(object->frames, last)};
+        const int32_t named[2] = {animation_frame_number(first->frames, 0),
+                                  animation_frame_number(first->frames, last)};
+        if (own[0] == named[0] && own[1] == named[1]) continue;
+        warn(
+            "%s calls its frames %d to %d, and %s calls them %d to %d: the first frames of both are taken together",
+            object->source.name, own[0], own[1], first->source.name, named[0], named[1]);
+    }
+}
+
 void recording_warn(recording *r) {
-    if (r->frames != NULL && animation_note(r->frames) != NULL) warn("%s", animation_note(r->frames));
-    if (r->welded && r->weld.collapsed_triangles > 0)
-        warn("welding collapsed %u triangle%s, left out from here on", r->weld.collapsed_triangles,
-             r->weld.collapsed_triangles == 1 ? "" : "s");
+    for (uint32_t i = 0; i < r->object_count; i++) warn_object(r, &r->objects[i]);
+    warn_numbers(r);
     uint32_t defective = 0;
     for (uint32_t i = 0; i < cscd_mesh_component_count(r->mesh); i++) {
         cscd_component component = cscd_mesh_component(r->mesh, i);
         if (!component.closed_manifold && ++defective <= COMPONENTS_NAMED) warn_component(r, i, &component);
     }
     if (defective > COMPONENTS_NAMED) warn("%u more components are like that", defective - COMPONENTS_NAMED);
-    if (!r->welded && count_open_edges(r->mesh) > 0 && welding_closes(r))
-        warn("vertices are split along seams; --weld exact would close the mesh");
+    for (uint32_t i = 0; i < r->object_count; i++) {
+        recorded_object *object = &r->objects[i];
+        if (object->welded || !object_is_open(r, object) || !welding_closes(r, object)) continue;
+        if (r->object_count == 1)
+            warn("vertices are split along seams; --weld exact would close the mesh");
+        else
+            warn("%s: vertices are split along seams; --weld exact would close it", object->source.name);
+    }
 }

@@ -44,7 +44,7 @@ static void legend_of_regions(contact_picture *picture, plan_legend *legend, con
 bool plan_picture_paint(contact_picture *picture, plan_legend *legend, const recording *r,
                         const cscd_plan *plan, bool by_charge, io_error *error) {
     uint32_t count = cscd_mesh_triangle_count(r->mesh), regions = cscd_plan_region_count(plan);
-    bool frame_shown = r->frames != NULL;
+    bool frame_shown = recording_moves(r);
     size_t used = frame_shown ? strlen(picture->caption) : 0;
     const char *colon = frame_shown ? ": " : "";
     picture->scene.legend = legend->lines;

@@ -13,9 +13,9 @@
  * without FRAMES. */
 static bool paint_plan(const render_options *o, const recording *r, contact_picture *picture,
                        plan_legend *legend, io_error *error) {
-    bool by_charge = o->colouring == COLOUR_CHARGE, at_rest = o->source.frame_path_count == 0;
+    bool by_charge = o->colouring == COLOUR_CHARGE, at_rest = !recording_moves(r);
     if (!by_charge && o->colouring != COLOUR_REGION) return true;
-    plan_request request = {.model_path = o->source.model_path,
+    plan_request request = {.model_path = recording_options_path(&o->source),
                             .plan_path = o->plan_path,
                             .method = by_charge ? CSCD_METHOD_CHARGE : CSCD_METHOD_AUTO,
                             .insists_on_plan = true};
@@ -54,8 +54,12 @@ static bool draw_strip(const render_options *o, recording *r, contact_picture *p
 /* A round length, about a quarter of the model at rest, so that it is the same for all its frames. */
 static double square_side(const recording *r) {
     double extent = 0.0;
-    for (size_t i = 0; i < (size_t)r->file.vertex_count * 3; i++)
-        extent = fmax(extent, fabs(r->file.positions[i] - r->file.positions[i % 3]));
+    const double *first = r->objects[0].file.positions;
+    for (uint32_t i = 0; i < r->object_count; i++) {
+        const mesh_file *file = &r->objects[i].file;
+        for (size_t k = 0; k < (size_t)file->vertex_count * 3; k++)
+            extent = fmax(extent, fabs(file->positions[k] - first[k % 3]));
+    }
     if (!(extent > 0.0)) return 0.0;
     double power = pow(10.0, floor(log10(0.25 * extent))), share = 0.25 * extent / power;
     return power * (share < 1.5 ? 1.0 : share < 3.5 ? 2.0 : share < 7.5 ? 5.0 : 10.0);

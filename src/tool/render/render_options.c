@@ -26,6 +26,12 @@ static const option_row rows[] = {
      "move the camera with the body, which stays in the middle of its tile"},
     {"scenery", "MODEL", read_text, offsetof(render_options, scenery_path),
      "another mesh beside the body (ground, stairs, a ball): only drawn, where it is in view, and never tested"},
+    {"object", "NAME=MODEL", read_named_path, offsetof(render_options, source.objects),
+     "another object, as often as needed: body and shirt, prop and hand"},
+    {"obstacle", "NAME=MODEL", read_obstacle, offsetof(render_options, source.objects),
+     "the same, of something that is not looked at with itself and with other obstacles: ground, walls"},
+    {"frames-of", "NAME=FRAMES", read_named_path, offsetof(render_options, source.frames_of),
+     "how that object moves: a point cache, a pattern or a folder, of as many frames; without it, it rests"},
     {"first-frame", "N", read_frame_number, offsetof(render_options, source.first_frame),
      "what the first frame is called (default: the number in its file's name, the start of a PC2, or 0)"},
     {"allow-gaps", NULL, read_flag, offsetof(render_options, source.allow_gaps),
@@ -50,7 +56,7 @@ static const option_row rows[] = {
      "with contacts: only the neighbourhood of the contacts"},
     {"up", "y|z", read_picture_up, offsetof(render_options, picture), "which axis points up (default z)"},
     {"wire", NULL, read_flag, offsetof(render_options, picture.wire), "draw the triangles' edges"},
-    {"weld", "exact|EPS", read_weld, offsetof(render_options, source),
+    {"weld", "exact|none|EPS", read_weld, offsetof(render_options, source.weld),
      "join vertices that coincide, or lie within EPS, in the first frame"},
 };
 
@@ -89,7 +95,7 @@ bool render_options_parse(int argument_count, char **arguments, render_options *
     given_options given;
     if (!option_table_read(&table, argument_count, arguments, &o, &given, code)) return false;
     o.strip = option_given(&table, &given, "frames");
-    if (given.input_count < 1)
+    if (given.input_count < 1 && o.source.objects.count == 0)
         *code = fail_usage("render", "no MODEL given");
     else if (o.output_path == NULL)
         *code = fail_usage("render", "no -o OUT.png given");

@@ -25,6 +25,7 @@ typedef struct replay {
     uint32_t first, last; /* frames */
     frame_state start_state, end_state;
     contact_file *contacts; /* NULL when not asked for */
+    const char *object_names[RECORDING_OBJECTS_MAX + 1];
     summary_writer *summary;
     replay_report report;
     replay_totals totals;
@@ -66,7 +67,7 @@ static bool prepare_ignored(replay *r, io_error *error) {
 
 static bool prepare_plan(replay *r, io_error *error) {
     const replay_options *o = r->options;
-    plan_request request = {.model_path = o->source.model_path,
+    plan_request request = {.model_path = recording_options_path(&o->source),
                             .plan_path = o->plan_path,
                             .method = o->method,
                             .k = o->k,
@@ -101,13 +102,21 @@ static bool outputs_open(const replay_options *o, io_error *error) {
            output_path_opens(o->report.path, error);
 }
 
+static bool open_contacts(replay *r, io_error *error) {
+    contact_columns columns = {.bounded = r->options->min_separation > 0.0};
+    if (r->recording.object_count > 1) {
+        for (uint32_t i = 0; i < r->recording.object_count; i++)
+            r->object_names[i] = r->recording.objects[i].source.name;
+        columns.object_names = r->object_names;
+    }
+    return contact_file_open(r->options->contacts_path, columns, &r->contacts, error);
+}
+
 static bool open_outputs(replay *r, io_error *error) {
     const replay_options *o = r->options;
-    if (o->contacts_path != NULL &&
-        !contact_file_open(o->contacts_path, o->min_separation > 0.0, &r->contacts, error))
-        return false;
-    return replay_report_open(&r->report, &o->report, o->source.model_path, &r->recording, r->plan.plan,
-                              r->detector, r->first, r->last, error) &&
+    if (o->contacts_path != NULL && !open_contacts(r, error)) return false;
+    return replay_report_open(&r->report, &o->report, recording_options_path(&o->source), &r->recording,
+                              r->plan.plan, r->detector, r->first, r->last, error) &&
            summary_open(o->json_path, o->report.path != NULL, r->recording.mesh, &r->summary, error);
 }
 
@@ -219,9 +228,9 @@ static bool run_intervals(replay *r, io_error *error) {
 static void print_results(const replay *r) {
     const replay_totals *t = &r->totals;
     const int32_t *numbers = r->recording.frame_numbers;
-    printf("%s: %u vertices, %u triangles, %u component%s; frames %d to %d\n", r->options->source.model_path,
-           cscd_mesh_vertex_count(r->recording.mesh), cscd_mesh_triangle_count(r->recording.mesh),
-           cscd_mesh_component_count(r->recording.mesh),
+    printf("%s: %u vertices, %u triangles, %u component%s; frames %d to %d\n",
+           recording_options_path(&r->options->source), cscd_mesh_vertex_count(r->recording.mesh),
+           cscd_mesh_triangle_count(r->recording.mesh), cscd_mesh_component_count(r->recording.mesh),
            cscd_mesh_component_count(r->recording.mesh) == 1 ? "" : "s", numbers[r->first],
            numbers[r->first + t->intervals]);
     printf("contacts: %llu VF and %llu EE in %u of %u intervals", (unsigned long long)t->counter_sum.vf,
@@ -267,9 +276,6 @@ static bool close_outputs(replay *r, const char *stopped_by, io_error *error) {
                              .mode = cscd_mode_name(o->mode),
                              .volume = o->volume,
                              .min_separation = o->min_separation,
-                             .model_path = o->source.model_path,
-                             .frame_paths = o->source.frame_paths,
-                             .frame_path_count = o->source.frame_path_count,
                              .argument_count = o->argument_count,
                              .arguments = o->arguments,
                              .stopped_by = stopped_by};

@@ -44,6 +44,12 @@ static const option_row rows[] = {
      "how it moves: a point cache or a pattern, of as many frames, or of one"},
     {"up", "y|z", read_report_up, offsetof(replay_options, report.up_axis),
      "of the report: which axis points up (default z)"},
+    {"object", "NAME=MODEL", read_named_path, offsetof(replay_options, source.objects),
+     "another object, as often as needed: body and shirt, prop and hand"},
+    {"obstacle", "NAME=MODEL", read_obstacle, offsetof(replay_options, source.objects),
+     "the same, of something that is not looked at with itself and with other obstacles: ground, walls"},
+    {"frames-of", "NAME=FRAMES", read_named_path, offsetof(replay_options, source.frames_of),
+     "how that object moves: a point cache, a pattern or a folder, of as many frames; without it, it rests"},
     {"first-frame", "N", read_frame_number, offsetof(replay_options, source.first_frame),
      "what the first frame is called (default: the number in its file's name, the start of a PC2, or 0)"},
     {"allow-gaps", NULL, read_flag, offsetof(replay_options, source.allow_gaps),
@@ -70,7 +76,7 @@ static const option_row rows[] = {
      "stays one of intersections and touching"},
     {"no-check", NULL, read_flag, offsetof(replay_options, no_check),
      "skip the static check of every frame; how intervals start is then unknown"},
-    {"weld", "exact|EPS", read_weld, offsetof(replay_options, source),
+    {"weld", "exact|none|EPS", read_weld, offsetof(replay_options, source.weld),
      "join vertices that coincide, or lie within EPS, in the first frame"},
     {"ignore-rest", NULL, read_flag, offsetof(replay_options, ignore_rest),
      "leave out triangle pairs that intersect or touch in the first frame"},
@@ -111,7 +117,8 @@ static int check_outputs(const replay_options *o, const char *const *inputs, siz
 
 /* Options that contradict each other or ask for what replay does not do. */
 static int check_options(const replay_options *o, size_t input_count) {
-    if (input_count < 2) return fail_usage("replay", input_count < 1 ? "no MODEL given" : "no FRAMES given");
+    if (input_count < 1 && o->source.objects.count == 0) return fail_usage("replay", "no MODEL given");
+    if (input_count < 2 && o->source.frames_of.count == 0) return fail_usage("replay", "no FRAMES given");
     if (o->contacts_path != NULL && !contact_file_names_format(o->contacts_path))
         return fail_usage("replay", "--contacts '%s': expected a name that ends in .csv or .jsonl",
                           o->contacts_path);

@@ -38,7 +38,8 @@ bool replay_report_open(replay_report *out, const report_request *request, const
                               .up_axis = request->up_axis,
                               .scenery = {out->scenery.mesh.vertex_count, out->scenery.mesh.triangle_count,
                                           out->scenery.mesh.triangles, out->scenery.frame_count > 1},
-                              .file_vertices = r->welded ? file_vertices : NULL,
+                              .file_vertices =
+                                  r->edge_file_vertices != NULL || r->object_count > 1 ? file_vertices : NULL,
                               .file_vertices_user = r};
     return report_create(&options, &out->report, error);
 }

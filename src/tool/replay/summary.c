@@ -225,16 +225,23 @@ static void write_summary(summary_writer *w, const summary_ending *e) {
 }
 
 static void write_provenance(summary_writer *w, const summary_ending *e) {
+    const recording *r = e->recording;
     json *out = &w->out;
     json_break_line(out);
     json_begin_object(out, "provenance");
     provenance_write(out, e->argument_count, e->arguments, cscd_context_thread_count(e->recording->context));
     json_begin_array(out, "inputs");
-    provenance_write_input(out, e->model_path, e->recording->model_hash);
-    provenance_write_input(out, e->frame_paths[0], e->recording->frames_hash);
+    for (uint32_t i = 0; i < r->object_count; i++) {
+        const recorded_object *object = &r->objects[i];
+        provenance_write_input(out, object->source.model_path, object->model_hash);
+        if (object->frames != NULL)
+            provenance_write_input(out, object->source.frame_paths[0], object->frames_hash);
+    }
     json_end_array(out);
     json_begin_array(out, "frame_paths");
-    for (size_t i = 0; i < e->frame_path_count; i++) json_string(out, NULL, e->frame_paths[i]);
+    for (uint32_t i = 0; i < r->object_count; i++)
+        for (size_t k = 0; k < r->objects[i].source.frame_path_count; k++)
+            json_string(out, NULL, r->objects[i].source.frame_paths[k]);
     json_end_array(out);
     json_end_object(out);
 }

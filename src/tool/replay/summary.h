@@ -19,10 +19,8 @@ typedef struct summary_ending {
     const replay_totals *totals;
     const recording *recording;
     const plan_choice *plan;
-    const char *mode, *model_path;
+    const char *mode;
     cscd_volume volume;
-    const char *const *frame_paths;
-    size_t frame_path_count;
     int argument_count;
     char **arguments;
     double min_separation;

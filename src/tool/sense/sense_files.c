@@ -25,17 +25,13 @@ bool sense_files_open(const sense_options *o, sense_files *out, io_error *error)
     return true;
 }
 
-static uint32_t file_vertex(const recording *r, uint32_t vertex) {
-    return r->welded ? r->weld.file_vertex[vertex] : vertex;
-}
-
 /* Without the exact check the columns contact and toi stay empty. */
 static void write_warnings(FILE *csv, const sense_subject *subject, const sense_interval *interval) {
     for (size_t i = 0; i < interval->warnings->count; i++) {
         const cscd_warning *w = &interval->warnings->items[i];
         fprintf(csv, "%d,%u,%u,%u,%u,%u,%u,%.17g,%.17g,", interval->frame, w->part_a, w->part_b, w->object_a,
-                w->object_b, file_vertex(subject->recording, w->vertex_a),
-                file_vertex(subject->recording, w->vertex_b), w->distance, w->time);
+                w->object_b, recording_file_vertex(subject->recording, w->vertex_a),
+                recording_file_vertex(subject->recording, w->vertex_b), w->distance, w->time);
         if (!subject->options->sensors.exact)
             fputs(",\n", csv);
         else if (w->contact)
@@ -146,8 +142,8 @@ static void write_provenance(json *out, const sense_subject *s) {
     json_begin_object(out, "provenance");
     provenance_write(out, o->argument_count, o->arguments, cscd_context_thread_count(s->recording->context));
     json_begin_array(out, "inputs");
-    provenance_write_input(out, o->source.model_path, s->recording->model_hash);
-    provenance_write_input(out, o->source.frame_paths[0], s->recording->frames_hash);
+    provenance_write_input(out, o->source.model_path, s->recording->objects[0].model_hash);
+    provenance_write_input(out, o->source.frame_paths[0], s->recording->objects[0].frames_hash);
     json_end_array(out);
     json_end_object(out);
 }

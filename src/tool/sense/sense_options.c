@@ -68,7 +68,7 @@ static const option_row rows[] = {
      "of numbered files, some may be missing"},
     {"frames", "A:B", read_frames, offsetof(sense_options, frames),
      "only from frame A to frame B, both included (A: and :B are open ends)"},
-    {"weld", "exact|EPS", read_weld, offsetof(sense_options, source),
+    {"weld", "exact|none|EPS", read_weld, offsetof(sense_options, source.weld),
      "join vertices that coincide, or lie within EPS, in the first frame"},
     {"threads", "N", read_threads, offsetof(sense_options, source.thread_count),
      "default 1; 0: one per processor"},

@@ -1,0 +1,125 @@
+/* Opens the model and the frames of an object, and reads one frame after the other. */
+#include "src/tool/common/recorded_object.h"
+
+#include "src/io/path_name.h"
+#include "src/tool/common/provenance.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool open_frames(const recorded_source *source, bool allow_gaps, recorded_object *o, io_error *error) {
+    o->file_positions = malloc((size_t)o->file.vertex_count * 3 * sizeof *o->file_positions);
+    if (o->file_positions == NULL) return io_fail(error, "%s: out of memory", source->model_path);
+    const animation_options options = {.model_path = source->model_path, .allow_gaps = allow_gaps};
+    return source->frame_path_count == 0 || animation_open(source->frame_paths, source->frame_path_count,
+                                                           o->file.vertex_count, &options, &o->frames, error);
+}
+
+/* Reads the file's own positions of a frame into file_positions. */
+static bool read_file_positions(recorded_object *o, uint32_t frame, io_error *error) {
+    if (o->frames != NULL) return animation_read(o->frames, frame, o->file_positions, error);
+    memcpy(o->file_positions, o->file.positions,
+           (size_t)o->file.vertex_count * 3 * sizeof *o->file_positions);
+    return true;
+}
+
+static bool weld_first_frame(weld_choice welding, recorded_object *o, io_error *error) {
+    o->vertex_count = o->file.vertex_count;
+    o->triangle_count = o->file.triangle_count;
+    const bool by_format = welding.rule == WELD_BY_FORMAT && path_has_extension(o->source.model_path, ".stl");
+    if (welding.rule != WELD_WITHIN && !by_format) return true;
+    if (!read_file_positions(o, 0, error) ||
+        !weld_create(o->file_positions, o->file.vertex_count, o->file.triangles, o->file.triangle_count,
+                     welding.epsilon, &o->weld, error))
+        return false;
+    o->welded = true;
+    o->vertex_count = o->weld.vertex_count;
+    o->triangle_count = o->weld.triangle_count;
+    return true;
+}
+
+static uint64_t hash_model(const mesh_file *file) {
+    uint64_t hash = provenance_hash(PROVENANCE_HASH_START, file->triangles,
+                                    (size_t)file->triangle_count * 3 * sizeof *file->triangles);
+    return provenance_hash(hash, file->positions, (size_t)file->vertex_count * 3 * sizeof *file->positions);
+}
+
+bool recorded_object_open(const recorded_source *source, weld_choice welding, bool allow_gaps,
+                          recorded_object *out, io_error *error) {
+    recorded_object o = {.source = *source, .frames_hash = PROVENANCE_HASH_START};
+    if (!mesh_file_read(source->model_path, &o.file, error) || !open_frames(source, allow_gaps, &o, error) ||
+        !weld_first_frame(welding, &o, error)) {
+        recorded_object_close(&o);
+        return false;
+    }
+    o.model_hash = hash_model(&o.file);
+    *out = o;
+    return true;
+}
+
+void recorded_object_close(recorded_object *o) {
+    animation_close(o->frames);
+    weld_free(&o->weld);
+    mesh_file_free(&o->file);
+    free(o->file_positions);
+    *o = (recorded_object){0};
+}
+
+uint32_t recorded_object_frame_count(const recorded_object *o) {
+    return o->frames != NULL ? animation_frame_count(o->frames) : 1;
+}
+
+/* Checks the range that the library accepts, so that the error can name vertices as the file numbers them. */
+static bool check_range(const recorded_object *o, io_error *error) {
+    for (size_t i = 0; i < (size_t)o->file.vertex_count * 3; i++) {
+        double x = o->file_positions[i], magnitude = fabs(x);
+        if (x == 0.0 || (magnitude >= 0x1p-300 && magnitude <= 0x1p300)) continue;
+        return io_fail(error, "vertex %zu has %c = %g, expected 0 or a magnitude from 2^-300 to 2^300", i / 3,
+                       "xyz"[i % 3], x);
+    }
+    return true;
+}
+
+bool recorded_object_read(recorded_object *o, uint32_t frame, double *positions, io_error *error) {
+    if (!read_file_positions(o, frame, error) || !check_range(o, error)) return false;
+    if (o->welded) return weld_positions(&o->weld, o->file_positions, positions, error);
+    memcpy(positions, o->file_positions, (size_t)o->vertex_count * 3 * sizeof *positions);
+    return true;
+}
+
+void recorded_object_rest(const recorded_object *o, double *positions) {
+    for (uint32_t v = 0; v < o->vertex_count; v++)
+        memcpy(positions + (size_t)v * 3, o->file.positions + (size_t)recorded_object_file_vertex(o, v) * 3,
+               3 * sizeof *positions);
+}
+
+void recorded_object_hash_frame(recorded_object *o) {
+    size_t size = (size_t)o->file.vertex_count * 3 * sizeof *o->file_positions;
+    o->frames_hash = provenance_hash(o->frames_hash, o->file_positions, size);
+}
+
+const uint32_t *recorded_object_triangles(const recorded_object *o) {
+    return o->welded ? o->weld.triangles : o->file.triangles;
+}
+
+uint32_t recorded_object_file_vertex(const recorded_object *o, uint32_t vertex) {
+    return o->welded ? o->weld.file_vertex[vertex] : vertex;
+}
+
+uint32_t recorded_object_file_triangle(const recorded_object *o, uint32_t triangle) {
+    return o->welded ? o->weld.file_triangle[triangle] : triangle;
+}
+
+uint32_t recorded_object_find_triangle(const recorded_object *o, uint32_t file_triangle) {
+    if (!o->welded) return file_triangle;
+    uint32_t low = 0, high = o->weld.triangle_count;
+    while (low < high) {
+        uint32_t middle = low + (high - low) / 2;
+        if (o->weld.file_triangle[middle] < file_triangle)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < o->weld.triangle_count && o->weld.file_triangle[low] == file_triangle ? low : UINT32_MAX;
+}

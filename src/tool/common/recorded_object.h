@@ -1,0 +1,64 @@
+/* One object of a recording: a model file and its frames, welded if that was asked for. */
+#pragma once
+
+#include "src/io/animation.h"
+#include "src/io/mesh_file.h"
+#include "src/io/weld.h"
+
+/* Where an object comes from. The texts live as long as the command line. */
+typedef struct recorded_source {
+    const char *name;
+    const char *model_path;
+    const char *const *frame_paths; /* none: the object rests */
+    size_t frame_path_count;
+    bool
+        obstacle; /* its own triangles are not looked at with each other, nor with those of other obstacles */
+} recorded_source;
+
+/* Which vertices of a model are joined. */
+typedef struct weld_choice {
+    enum {
+        WELD_BY_FORMAT, /* equal ones where the format stores a vertex once for each face (STL), else none */
+        WELD_NOTHING,
+        WELD_WITHIN
+    } rule;
+    double epsilon; /* WITHIN: how far they lie apart at most in the first frame; 0: not at all */
+} weld_choice;
+
+typedef struct recorded_object {
+    recorded_source source;
+    mesh_file file;
+    animation *frames; /* NULL: it rests */
+    bool welded;
+    weld weld;
+    double *file_positions;                /* of the frame read last */
+    uint32_t vertex_count, triangle_count; /* welded, as in the mesh */
+    uint32_t first_vertex, first_triangle; /* in the mesh of the recording */
+    uint64_t model_hash, frames_hash;
+} recorded_object;
+
+/* On false *out holds nothing to close. */
+bool recorded_object_open(const recorded_source *source, weld_choice welding, bool allow_gaps,
+                          recorded_object *out, io_error *error);
+void recorded_object_close(recorded_object *object);
+
+/* 1 for an object that rests. */
+uint32_t recorded_object_frame_count(const recorded_object *object);
+
+/* Reads a frame, by its index from 0, and its positions: vertex_count * 3 of them. */
+bool recorded_object_read(recorded_object *object, uint32_t frame, double *positions, io_error *error);
+
+/* Copies the positions of the model file itself, unchecked; positions as above. */
+void recorded_object_rest(const recorded_object *object, double *positions);
+
+/* Adds the file's positions of the frame read last to frames_hash. */
+void recorded_object_hash_frame(recorded_object *object);
+
+/* The corners of its triangles, counted from 0 within the object; triangle_count * 3 of them. */
+const uint32_t *recorded_object_triangles(const recorded_object *object);
+
+/* The numbers of the model file for a vertex and a triangle, both counted from 0 within the object, and the reverse:
+ * UINT32_MAX for a triangle that welding has dropped. */
+uint32_t recorded_object_file_vertex(const recorded_object *object, uint32_t vertex);
+uint32_t recorded_object_file_triangle(const recorded_object *object, uint32_t triangle);
+uint32_t recorded_object_find_triangle(const recorded_object *object, uint32_t file_triangle);
