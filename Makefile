@@ -63,7 +63,7 @@ CORE_SOURCES    := $(filter-out %_simd.c runtime/ccd/cubic_guess_$(if $(filter 0
                      preprocess/charge_library.c $(CHARGE_SOURCES),$(CORE_FILES))
 KERNEL_SOURCES  := $(filter %_simd.c,$(CORE_FILES))
 # What commands of the tool share, and the commands.
-COMMON_SOURCES  := $(wildcard src/io/*.c src/tool/picture/*.c src/tool/common/*.c src/tool/report/*.c)
+COMMON_SOURCES  := $(wildcard src/io/*.c src/io/*/*.c src/tool/picture/*.c src/tool/common/*.c src/tool/report/*.c)
 COMMAND_SOURCES := $(wildcard src/tool/*.c src/tool/replay/*.c src/tool/render/*.c src/tool/sense/*.c)
 SUPPORT_SOURCES := $(wildcard tests/support/*.c tests/support/*/*.c)
 # `rm -r runtime/baselines`, and its lines in runtime/detector/method_table.c: what needs them is not built then.

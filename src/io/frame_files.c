@@ -7,6 +7,7 @@
 #include "src/io/frame_series.h"
 #include "src/io/growable.h"
 #include "src/io/mesh_file.h"
+#include "src/io/path_name.h"
 #include "src/io/point_cache.h"
 
 #include <errno.h>
@@ -103,9 +104,9 @@ static bool check_listed(const char *path, io_error *error) {
                        S_ISDIR(status.st_mode) ? "a folder" : "not a regular file");
     if (point_cache_recognise(path))
         return io_fail(error, "%s: a point cache among several paths, expected it to be the only one", path);
-    if (!frame_names_is_mesh(path))
+    if (path_mesh_ending(path) == 0)
         return io_fail(
-            error, "%s: unknown extension, expected .obj, .ply or .off (one a frame), or one .pc2 or .mdd",
+            error, "%s: unknown extension, expected " PATH_MESH_ENDINGS " (one a frame), or one .pc2 or .mdd",
             path);
     return true;
 }
@@ -154,7 +155,8 @@ static bool take_series(frame_files *files, const char *model_path, bool *is_ser
 /* Finds the order of the frames, and their numbers. */
 static bool order_list(frame_files *files, const char *model_path, bool allow_gaps, io_error *error) {
     frame_names *list = &files->list;
-    const bool joins = model_path != NULL && frame_names_is_mesh(model_path) && !lists_path(list, model_path);
+    const bool joins =
+        model_path != NULL && path_mesh_ending(model_path) > 0 && !lists_path(list, model_path);
     const bool sorted = frame_names_are_sorted(list);
     bool is_series = false;
     size_t number = SIZE_MAX;

@@ -8,7 +8,7 @@
 /* Plans lie beside the meshes that they were made for. */
 static bool keep_mesh(const char *name, const void *context) {
     (void)context;
-    return name[0] != '.' && frame_names_is_mesh(name) && !path_has_extension(name, ".plan.ply");
+    return name[0] != '.' && path_mesh_ending(name) > 0 && !path_has_extension(name, ".plan.ply");
 }
 
 static bool check_extensions(const char *folder, const frame_names *list, io_error *error) {
@@ -45,7 +45,7 @@ bool frame_folder_find(const char *folder, const char *prefix, bool allow_gaps, 
                        io_error *error) {
     if (!frame_names_read_folder(list, folder, keep_mesh, NULL, error)) return false;
     if (frame_names_count(list) == 0)
-        return io_fail(error, "%s: no frames in this folder, expected .obj, .ply or .off files", folder);
+        return io_fail(error, "%s: no frames in this folder, expected " PATH_MESH_ENDINGS " files", folder);
     frame_names_sort(list);
     size_t number = SIZE_MAX;
     if (!check_extensions(folder, list, error) || !check_series(folder, list, &number, error)) return false;

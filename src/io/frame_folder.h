@@ -6,7 +6,7 @@
 
 #include <stdbool.h>
 
-/* Appends the .obj, .ply and .off files of folder to the empty list, in natural order. Hidden files, folders
+/* Appends the mesh files of folder to the empty list, in natural order. Hidden files, folders
  * and all other files are ignored. The names must have one extension and differ in the value of one number
  * only, so that their order is beyond doubt. Unless allow_gaps, none of a regular step may be missing. prefix: the folder
  * with its '/', for messages. On false the list may have grown. */

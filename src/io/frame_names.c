@@ -119,9 +119,3 @@ bool frame_names_are_sorted(const frame_names *list) {
         if (compare_names(names + i - 1, names + i) > 0) return false;
     return true;
 }
-
-bool frame_names_is_mesh(const char *name) {
-    const char *dot = strrchr(name, '.');
-    return dot != NULL &&
-           (strcasecmp(dot, ".obj") == 0 || strcasecmp(dot, ".ply") == 0 || strcasecmp(dot, ".off") == 0);
-}

@@ -33,6 +33,3 @@ bool frame_names_read_folder(frame_names *list, const char *folder,
  * yet. */
 void frame_names_sort(frame_names *list);
 bool frame_names_are_sorted(const frame_names *list);
-
-/* Ends in .obj, .ply or .off, in any case. */
-bool frame_names_is_mesh(const char *name);

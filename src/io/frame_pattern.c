@@ -117,8 +117,8 @@ static bool check_gaps(const frame_pattern *pattern, const char *folder, const f
 static bool find_files(frame_pattern *pattern, const char *source, bool allow_gaps, char **folder,
                        frame_names *list, io_error *error) {
     if (!parse_pattern(pattern, source, error)) return false;
-    if (!frame_names_is_mesh(pattern->text + pattern->number_start))
-        return io_fail(error, "%s: unknown extension, a pattern is expected to end in .obj, .ply or .off",
+    if (path_mesh_ending(pattern->text + pattern->number_start) == 0)
+        return io_fail(error, "%s: unknown extension, a pattern is expected to end in " PATH_MESH_ENDINGS,
                        source);
     char *found = frame_names_copy(pattern->text, pattern->name_start);
     if (found == NULL) return io_fail(error, "%s: out of memory", source);

@@ -1,4 +1,4 @@
-/* Triangle meshes from OBJ, PLY and OFF files. */
+/* Triangle meshes from OBJ, PLY, OFF and glTF files. */
 #pragma once
 
 #include "src/io/io_error.h"
@@ -14,7 +14,7 @@ typedef struct mesh_file {
     uint32_t *triangles; /* triangle_count * 3 */
 } mesh_file;
 
-/* The format follows from the content where it says so ("ply", "OFF"), else from the extension.
+/* The format follows from the content where it says so ("ply", "OFF", "glTF"), else from the extension.
  * On false *out is untouched and *error says file, line or byte offset, what was found and expected. */
 bool mesh_file_read(const char *path, mesh_file *out, io_error *error);
 

@@ -14,3 +14,13 @@ bool path_has_extension(const char *path, const char *extension) {
     size_t length = strlen(name), extension_length = strlen(extension);
     return length > extension_length && strcasecmp(name + length - extension_length, extension) == 0;
 }
+
+size_t path_mesh_ending(const char *path) {
+    static const char *const endings[] = {".obj", ".ply", ".off", ".glb", ".gltf"};
+    const size_t length = strlen(path);
+    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
+        const size_t own = strlen(endings[i]);
+        if (length >= own && strcasecmp(path + length - own, endings[i]) == 0) return own;
+    }
+    return 0;
+}

@@ -2,10 +2,17 @@
 #pragma once
 
 #include <stdbool.h>
+#include <stddef.h>
 
 /* extension: with its dot; upper and lower case are the same. A name that consists of the extension alone does not
  * count. */
 bool path_has_extension(const char *path, const char *extension);
+
+/* The endings of mesh files, for messages. */
+#define PATH_MESH_ENDINGS ".obj, .ply, .off, .glb or .gltf"
+
+/* The length of the ending if it is that of a mesh file, else 0. */
+size_t path_mesh_ending(const char *path);
 
 /* Returns the part after the last '/'. */
 const char *path_file_name(const char *path);

@@ -124,7 +124,7 @@ static void bad_patterns_are_refused(void **state) {
     check_pattern_fails("f_%d_%04d.obj", "bad pattern: a second number", "");
     check_pattern_fails("f_%%d.obj", "bad pattern: no number", "");
     check_pattern_fails("%d/f.obj", "bad pattern: a number in the folder", "");
-    check_pattern_fails("f_%d.txt", "unknown extension", ".obj, .ply or .off");
+    check_pattern_fails("f_%d.txt", "unknown extension", ".obj, .ply, .off");
     check_pattern_fails("f_%d", "unknown extension", "");
     check_pattern_fails("f_%d.obj", "no file matches", "");
     check_pattern_fails("none/f_%d.obj", "cannot open the folder", "No such file");
@@ -169,7 +169,7 @@ static void folder_with_one_file_is_one_frame(void **state) {
 
 static void folder_without_frames_is_refused(void **state) {
     (void)state;
-    check_folder_fails("no frames in this folder", ".obj, .ply or .off", "");
+    check_folder_fails("no frames in this folder", ".obj, .ply, .off", "");
     temp_file_write(&frame_fixture_folder, "readme.txt", "x", 1);
     check_folder_fails("no frames in this folder", "", "");
 }

@@ -36,12 +36,10 @@ static bool same_file(const char *a, const char *b) {
 }
 
 static bool named_like_input(const char *path) {
-    static const char *const endings[] = {".obj", ".ply", ".off",  ".stl", ".gii",
-                                          ".pc2", ".mdd", ".gltf", ".glb"};
-    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
-        if (path_has_extension(path, endings[i])) return true;
-    }
-    return false;
+    static const char *const others[] = {".pc2", ".mdd", ".stl", ".gii"};
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+        if (path_has_extension(path, others[i])) return true;
+    return path_mesh_ending(path) > 0;
 }
 
 /* Removes the file that was created to see whether it can be; a link that led to nothing stays. */

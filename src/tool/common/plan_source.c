@@ -13,10 +13,7 @@
 
 char *plan_path_of_model(const char *model_path) {
     static const char ending[] = ".plan.ply";
-    size_t length = strlen(model_path);
-    if (path_has_extension(model_path, ".obj") || path_has_extension(model_path, ".ply") ||
-        path_has_extension(model_path, ".off"))
-        length -= 4;
+    const size_t length = strlen(model_path) - path_mesh_ending(model_path);
     char *path = malloc(length + sizeof ending);
     if (path == NULL) return NULL;
     memcpy(path, model_path, length);

@@ -1,0 +1,108 @@
+/* glTF files with random damage, read as meshes and as animations. */
+#include "tests/support/io/gltf_damage.h"
+#include "src/io/animation.h"
+#include "tests/support/random_stream.h"
+#include "tests/support/temp_file.h"
+#include "tests/support/test.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Copies the file into bytes with one more fault: a flipped bit, another byte, a byte doubled or dropped, or its end cut
+ * off. */
+static size_t damage_once(random_stream *random, unsigned char *bytes, size_t size) {
+    const size_t at = stream_below(random, (uint32_t)size);
+    switch (stream_below(random, 8)) {
+    case 0:
+        return stream_below(random, 4) == 0 && at > 0 ? at : size;
+    case 1:
+        memmove(bytes + at + 1, bytes + at, size - at);
+        return size + 1;
+    case 2:
+        memmove(bytes + at, bytes + at + 1, size - at - 1);
+        return size > 1 ? size - 1 : size;
+    case 3:
+        bytes[at] = (unsigned char)stream_bits(random);
+        return size;
+    case 4: /* numbers stay numbers */
+        if (bytes[at] >= '0' && bytes[at] <= '9') bytes[at] = (unsigned char)('0' + stream_below(random, 10));
+        return size;
+    default:
+        bytes[at] ^= (unsigned char)(1u << stream_below(random, 8));
+        return size;
+    }
+}
+
+static void check_mesh(const mesh_file *mesh) {
+    assert_true(mesh->vertex_count > 0 && mesh->triangle_count > 0);
+    for (size_t i = 0; i < 3 * (size_t)mesh->vertex_count; i++) assert_true(isfinite(mesh->positions[i]));
+    for (size_t i = 0; i < mesh->triangle_count; i++) {
+        const uint32_t *corner = mesh->triangles + 3 * i;
+        for (int j = 0; j < 3; j++) {
+            assert_true(corner[j] < mesh->vertex_count);
+            assert_true(corner[j] != corner[(j + 1) % 3]);
+        }
+    }
+}
+
+static void check_refusal(const io_error *error, const char *name) {
+    if (strstr(error->text, name) == NULL || strpbrk(error->text, "\r\n") != NULL)
+        fail_msg("the refusal is: %s", error->text);
+}
+
+/* The first, a middle and the last frame. */
+static bool check_frames(const char *path, const mesh_file *mesh, const char *name) {
+    animation *frames;
+    io_error error = {""};
+    if (!animation_open(&path, 1, mesh->vertex_count, NULL, &frames, &error)) {
+        check_refusal(&error, name);
+        return false;
+    }
+    double *positions = malloc(3 * sizeof *positions * mesh->vertex_count);
+    assert_non_null(positions);
+    const uint32_t count = animation_frame_count(frames);
+    for (uint32_t i = 0; i < 3; i++) {
+        const uint32_t frame = i == 0 ? 0 : i == 1 ? count / 2 : count - 1;
+        if (!animation_read(frames, frame, positions, &error)) {
+            check_refusal(&error, name);
+            continue;
+        }
+        for (size_t k = 0; k < 3 * (size_t)mesh->vertex_count; k++) assert_true(isfinite(positions[k]));
+    }
+    free(positions);
+    animation_close(frames);
+    return true;
+}
+
+gltf_damage_counts gltf_damage_rounds(file_bytes file, uint32_t round_count, uint64_t seed) {
+    gltf_damage_counts counts = {0};
+    random_stream random = stream_start(seed);
+    const temp_folder folder = temp_folder_make();
+    unsigned char *bytes = malloc(file.size + 8);
+    assert_non_null(bytes);
+    for (uint32_t round = 0; round < round_count; round++) {
+        size_t size = file.size;
+        memcpy(bytes, file.bytes, size);
+        for (uint32_t fault = 1 + stream_below(&random, 4); fault > 0; fault--)
+            size = damage_once(&random, bytes, size);
+        const temp_path path = temp_file_write(&folder, file.name, bytes, size);
+        mesh_file mesh = {0};
+        io_error error = {""};
+        if (!mesh_file_read(path.text, &mesh, &error)) {
+            check_refusal(&error, file.name);
+            counts.refused++;
+            continue;
+        }
+        check_mesh(&mesh);
+        counts.read++;
+        if (check_frames(path.text, &mesh, file.name))
+            counts.animated++;
+        else
+            counts.unanimated++;
+        mesh_file_free(&mesh);
+    }
+    free(bytes);
+    temp_folder_remove(&folder);
+    return counts;
+}
