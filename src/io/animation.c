@@ -2,6 +2,7 @@
 #include "src/io/animation.h"
 
 #include "src/io/frame_files.h"
+#include "src/io/gltf.h"
 #include "src/io/growable.h"
 #include "src/io/point_cache.h"
 
@@ -105,10 +106,37 @@ static void close_files(void *source) {
     frame_files_close(source);
 }
 
-enum { POINT_CACHE, FILE_PATTERN, FILE_FOLDER, FILE_LIST };
+static bool open_gltf(const animation_source *from, void **source, io_error *error) {
+    const double fps = from->options.fps != 0 ? from->options.fps : ANIMATION_FPS;
+    gltf_frames *frames;
+    if (!gltf_frames_open(from->paths[0], from->vertex_count, fps, from->options.animation_name, &frames,
+                          error))
+        return false;
+    *source = frames;
+    return true;
+}
+
+static uint32_t count_gltf(const void *source) {
+    return gltf_frames_count(source);
+}
+
+static int32_t number_in_gltf(const void *source, uint32_t frame) {
+    return gltf_frames_number(source, frame);
+}
+
+static bool read_gltf(void *source, uint32_t frame, double *positions, io_error *error) {
+    return gltf_frames_read(source, frame, positions, error);
+}
+
+static void close_gltf(void *source) {
+    gltf_frames_close(source);
+}
+
+enum { POINT_CACHE, GLTF_FILE, FILE_PATTERN, FILE_FOLDER, FILE_LIST };
 
 static const animation_reader readers[] = {
     [POINT_CACHE] = {open_cache, count_cache, number_in_cache, NULL, read_cache, close_cache},
+    [GLTF_FILE] = {open_gltf, count_gltf, number_in_gltf, NULL, read_gltf, close_gltf},
     [FILE_PATTERN] = {open_pattern, count_files, number_of_file, note_on_files, read_files, close_files},
     [FILE_FOLDER] = {open_folder, count_files, number_of_file, note_on_files, read_files, close_files},
     [FILE_LIST] = {open_list, count_files, number_of_file, note_on_files, read_files, close_files},
@@ -132,12 +160,14 @@ static const animation_reader *choose_reader(const animation_source *from, io_er
         return NULL;
     }
     if (S_ISDIR(status.st_mode)) return &readers[FILE_FOLDER];
-    return &readers[S_ISREG(status.st_mode) && point_cache_recognise(path) ? POINT_CACHE : FILE_LIST];
+    if (!S_ISREG(status.st_mode)) return &readers[FILE_LIST];
+    if (gltf_recognise_path(path)) return &readers[GLTF_FILE];
+    return &readers[point_cache_recognise(path) ? POINT_CACHE : FILE_LIST];
 }
 
 bool animation_open(const char *const *paths, size_t path_count, uint32_t vertex_count,
                     const animation_options *options, animation **out, io_error *error) {
-    animation_source from = {paths, path_count, vertex_count, {NULL}};
+    animation_source from = {.paths = paths, .count = path_count, .vertex_count = vertex_count};
     if (options != NULL) from.options = *options;
     const animation_reader *chosen = choose_reader(&from, error);
     if (chosen == NULL) return false;

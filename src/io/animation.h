@@ -1,4 +1,5 @@
-/* Recorded vertex positions, one frame at a time: PC2 and MDD point caches, sequences of mesh files. */
+/* Recorded vertex positions, one frame at a time: PC2 and MDD point caches, sequences of mesh files,
+ * animations of glTF files. */
 #pragma once
 
 #include "src/io/io_error.h"
@@ -9,13 +10,18 @@
 
 typedef struct animation animation;
 
+/* Frames a second of glTF files, which have seconds only. */
+#define ANIMATION_FPS 24.0
+
 typedef struct animation_options {
     const char
         *model_path; /* joins the mesh files that are listed if its name belongs to their series; NULL: no */
     bool allow_gaps; /* of a series of mesh files, some may be missing */
+    double fps;      /* of a glTF file: frames a second; 0: 24 */
+    const char *animation_name; /* of a glTF file: which of its animations; NULL: the first */
 } animation_options;
 
-/* paths: one .pc2 or .mdd file; one printf pattern (f_%04d.obj); one folder; or a list of mesh files, one a frame.
+/* paths: one .pc2 or .mdd file; one .glb or .gltf file; one printf pattern (f_%04d.obj); one folder; or a list of mesh files, one a frame.
  * Only headers (and, of a folder, names) are read here; the size of a point cache is checked at once. Every frame
  * must have vertex_count vertices. options NULL: none. On false *out is untouched. */
 bool animation_open(const char *const *paths, size_t path_count, uint32_t vertex_count,
@@ -24,8 +30,8 @@ void animation_close(animation *animation);
 
 uint32_t animation_frame_count(const animation *animation);
 
-/* What the artist calls a frame: its file's number, or that of its sample by the start and rate of a PC2 header; where
- * there is none, its index. Numbers ascend. */
+/* What the artist calls a frame: its file's number, or that of its sample by the start and rate of a PC2 header, or
+ * by its time and the frames a second; where there is none, its index. Numbers ascend. */
 int32_t animation_frame_number(const animation *animation, uint32_t frame);
 
 /* A sentence about the order of listed files, if there is something to say; else NULL. */
