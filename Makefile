@@ -1,8 +1,9 @@
 # cscd: `make demo` and `make test` do all their own set-up; `make help` lists the rest.
 #
-#   CONFIG=release|debug|sanitize|tsan|scalar   CC=gcc|clang   GSL=0   CHARGE=0   WERROR=1   `make -j` as usual
+#   CONFIG=release|debug|sanitize|tsan|scalar   CC=gcc|clang   GSL=0   CHARGE=0   EXPAT=0   WERROR=1   `make -j` as usual
 # GSL=0 builds without GSL (GPL-3): with our own guesses of cubic roots, and the same results, bit for bit.
 # CHARGE=0 leaves out what makes charge plans, and with it LAPACKE and OpenBLAS; plan files with charge are read all the same.
+# EXPAT=0 builds a tool that does not read GIFTI surfaces, as on a machine where pkg-config finds no expat; the library never needs it.
 # One build folder per configuration; the release tool is also linked as ./cscd.
 
 CONFIG  ?= release
@@ -13,7 +14,12 @@ WERROR  ?= 0
 GSL     ?= 1
 CHARGE  ?= 1
 BUILD_ROOT ?= build
-BUILD   := $(BUILD_ROOT)/$(CONFIG)$(if $(filter 0,$(GSL)),-without-gsl)$(if $(filter 0,$(CHARGE)),-without-charge)
+# A machine without expat builds in the same folder as one with it; only who leaves it out on purpose has another.
+WITHOUT_EXPAT := $(if $(filter 0,$(EXPAT)),-without-expat)
+BUILD   := $(BUILD_ROOT)/$(CONFIG)$(if $(filter 0,$(GSL)),-without-gsl)$(if $(filter 0,$(CHARGE)),-without-charge)$(WITHOUT_EXPAT)
+# The flags of a package that pkg-config finds, else those given here.
+packaged = $(shell pkg-config $(1) 2>/dev/null || echo $(2))
+EXPAT   ?= $(if $(shell pkg-config --modversion expat 2>/dev/null),1,0)
 
 OPTIMISE_release  := -O3 -g -DNDEBUG
 OPTIMISE_debug    := -O0 -g3
@@ -53,7 +59,8 @@ LINK_ALL   := $(OPTIMISE_$(CONFIG)) -pthread $(LDFLAGS)
 SHARED_LIBS := $(if $(filter 0,$(GSL)),,-lgsl) -lm -ldl
 CHARGE_LIBS := -llapacke -lopenblas -lm
 STATIC_LIBS := $(if $(filter 0,$(GSL)),,-lgsl) $(if $(filter 0,$(CHARGE)),-lm -ldl,$(CHARGE_LIBS))
-TOOL_LIBS   := -lpng -lz -ljson-c $(STATIC_LIBS)
+EXPAT_LIBS  := $(if $(filter 0,$(EXPAT)),,$(call packaged,--libs expat,-lexpat))
+TOOL_LIBS   := $(call packaged,--libs libpng zlib json-c,-lpng -lz -ljson-c) $(EXPAT_LIBS) $(STATIC_LIBS)
 TEST_LIBS   := -lcmocka -lflint-arb -lflint -lgmp $(TOOL_LIBS) $(CHARGE_LIBS)
 
 # A file that ends in _simd.c is compiled once per instruction set. Charge is a library of its own.
@@ -63,7 +70,9 @@ CORE_SOURCES    := $(filter-out %_simd.c runtime/ccd/cubic_guess_$(if $(filter 0
                      preprocess/charge_library.c $(CHARGE_SOURCES),$(CORE_FILES))
 KERNEL_SOURCES  := $(filter %_simd.c,$(CORE_FILES))
 # What commands of the tool share, and the commands.
-COMMON_SOURCES  := $(wildcard src/io/*.c src/io/*/*.c src/tool/picture/*.c src/tool/common/*.c src/tool/report/*.c)
+WITHOUT_GIFTI   := src/io/gifti/no_gifti.c
+COMMON_SOURCES  := $(filter-out $(if $(filter 0,$(EXPAT)),$(filter-out $(WITHOUT_GIFTI),$(wildcard src/io/gifti/*.c)),$(WITHOUT_GIFTI)), \
+                     $(wildcard src/io/*.c src/io/*/*.c src/tool/picture/*.c src/tool/common/*.c src/tool/report/*.c))
 COMMAND_SOURCES := $(wildcard src/tool/*.c src/tool/replay/*.c src/tool/render/*.c src/tool/sense/*.c)
 SUPPORT_SOURCES := $(wildcard tests/support/*.c tests/support/*/*.c)
 # `rm -r runtime/baselines`, and its lines in runtime/detector/method_table.c: what needs them is not built then.
@@ -74,6 +83,7 @@ NOT_HERE        := $(if $(filter 0,$(GSL)),tests/ccd/test_cubic_guess.c tests/cc
                      tests/install/test_header_examples.c tests/install/test_header_versions.c) \
                    $(if $(filter %/release,$(BUILD)),,tests/report/test_report_browser.c) \
                    $(if $(filter release,$(CONFIG)),,tests/install/test_install.c) \
+                   $(if $(filter 0,$(EXPAT)),tests/io/test_gifti.c) \
                    $(if $(HAS_BASELINES),,$(wildcard tests/baselines/*.c))
 TEST_SOURCES    := $(filter-out $(NOT_HERE),$(wildcard tests/*/test_*.c tests/*/test_*.cpp))
 # ONLY="bvh line_search" chooses the tests of these rooms, or with one of these words in their names.
@@ -150,13 +160,16 @@ BENCHMARKS := $(filter-out %/embree,$(patsubst benchmarks/%.c,$(BUILD)/benchmark
 
 COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 
+# What installs packages; a build that leaves expat out on purpose does not ask for it.
+PACKAGES = GSL=$(GSL) CHARGE=$(CHARGE) EXPAT=$(if $(WITHOUT_EXPAT),0,1) .ci/packages
+
 .PHONY: all programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-embree referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
 # Installs no package: it says which are missing.
 all:
-	@GSL=$(GSL) CHARGE=$(CHARGE) .ci/packages --tell build
+	@$(PACKAGES) --tell build
 	@$(MAKE) --no-print-directory tool library
 
 tool: $(TOOL)
@@ -185,7 +198,7 @@ uninstall:
 
 # The functions and classes of the library as HTML, from the comments of the headers; a warning of doxygen is an error.
 reference:
-	@GSL=$(GSL) CHARGE=$(CHARGE) .ci/packages reference
+	@$(PACKAGES) reference
 	@mkdir -p build/reference
 	@VERSION='$(VERSION)' OUTPUT=build/reference doxygen docs/Doxyfile
 
@@ -195,7 +208,7 @@ freeze-api:
 
 # Installs what the build or the tests need and this machine lacks.
 packages:
-	@GSL=$(GSL) CHARGE=$(CHARGE) .ci/packages
+	@$(PACKAGES)
 
 demo: packages
 	@$(MAKE) --no-print-directory tool $(BUILD)/models/record
@@ -291,14 +304,14 @@ performance: packages
 
 # The broad phase beside that of Embree (Debian: libembree-dev), which nothing else needs.
 bench-embree:
-	@GSL=$(GSL) CHARGE=$(CHARGE) .ci/packages embree
+	@$(PACKAGES) embree
 	@$(MAKE) --no-print-directory $(BUILD)/benchmarks/embree
 	@$(BUILD)/benchmarks/embree $(EMBREE)
 
 # Our pairs of triangles beside those of CGAL, tetgen and MeshLab, which nothing else needs: docs/referee.md. REFEREE: options of
 # benchmarks/referee/compare.py, such as --quick.
 referee:
-	@GSL=$(GSL) CHARGE=$(CHARGE) .ci/packages referee
+	@$(PACKAGES) referee
 	@$(MAKE) --no-print-directory $(BUILD)/benchmarks/referee $(BUILD)/benchmarks/cgal_pairs
 	@PYTHONDONTWRITEBYTECODE=1 benchmarks/referee/compare.py --build $(BUILD) $(REFEREE)
 
@@ -340,7 +353,8 @@ help:
 	@echo 'make test-blender   frames of glTF files beside those that Blender evaluates (installs blender)'
 	@echo 'make test-threads   the tests that use threads, under the thread sanitizer'
 	@echo 'make           build the tool (./cscd), build/release/libcscd.a and libcscd.so; make library builds these alone'
-	@echo '               GSL=0: without GSL; CHARGE=0: without LAPACKE and OpenBLAS, so without charge plans'
+	@echo '               GSL=0: without GSL; CHARGE=0: without LAPACKE and OpenBLAS, so without charge plans; EXPAT=0: a tool'
+	@echo '               without GIFTI surfaces'
 	@echo 'make install   [PREFIX=/usr/local] [DESTDIR=] tool, library, man pages; make install-library; make uninstall'
 	@echo 'make reference   the functions of the library as HTML, in build/reference (installs doxygen)'
 	@echo 'make freeze-api   write down what the public headers promise, when functions or members were added'

@@ -1,4 +1,4 @@
-/* Triangle meshes from OBJ, PLY, OFF and glTF files. */
+/* Triangle meshes from OBJ, PLY, OFF, glTF and GIFTI files. */
 #pragma once
 
 #include "src/io/io_error.h"

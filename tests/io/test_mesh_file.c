@@ -63,9 +63,9 @@ static void refuses_what_is_no_file(void **state) {
     check_unreadable("", ": cannot open: No such file");
     temp_folder_remove(&folder);
     mesh_check_error(FILE_OF("a.obj", ""), ": ", "the file is empty",
-                     "expected an OBJ, PLY, OFF or glTF mesh");
+                     "expected an OBJ, PLY, OFF, glTF or GIFTI mesh");
     mesh_check_error(FILE_OF("a.ply", ""), ": ", "the file is empty",
-                     "expected an OBJ, PLY, OFF or glTF mesh");
+                     "expected an OBJ, PLY, OFF, glTF or GIFTI mesh");
 }
 
 static void keeps_messages_on_one_line(void **state) {

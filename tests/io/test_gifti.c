@@ -1,0 +1,197 @@
+/* GIFTI surfaces: all encodings, and each error with its line. */
+#include "src/io/animation.h"
+#include "src/io/growable.h"
+#include "tests/support/io/gifti_fixture.h"
+#include "tests/support/temp_file.h"
+#include "tests/support/test.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static long allocations_left = -1; /* so many allocations succeed before one fails; negative: none fails */
+
+void *io_realloc(void *memory, size_t size) {
+    if (allocations_left == 0) return NULL;
+    if (allocations_left > 0) allocations_left--;
+    return realloc(memory, size);
+}
+
+static void reads_all_styles(void **state) {
+    (void)state;
+    uint32_t count = 0;
+    for (int i = 0; i < 48; i++) {
+        const gifti_style style = {.encoding = i % 3,
+                                   .big_endian = i / 3 % 2 != 0,
+                                   .column_major = i / 6 % 2 != 0,
+                                   .doubles = i / 12 % 2 != 0,
+                                   .gzip_header = i / 24 != 0};
+        if (style.gzip_header && style.encoding != 2) continue;
+        gifti_text file;
+        gifti_fixture_square(&file, style);
+        mesh_check_square(gifti_fixture_file(&file));
+        count++;
+    }
+    assert_int_equal(count, 32);
+}
+
+/* Numbers of a file are its floats; as text they are rounded to the type that the file names. */
+static void rounds_text_to_its_type(void **state) {
+    (void)state;
+    static const uint32_t triangle[] = {0, 1, 2};
+    for (int doubles = 0; doubles < 2; doubles++) {
+        char text[1200];
+        snprintf(
+            text, sizeof text,
+            "<GIFTI><DataArray Intent='NIFTI_INTENT_TRIANGLE' DataType='NIFTI_TYPE_INT32' ArrayIndexingOrder="
+            "'RowMajorOrder' Dimensionality='2' Dim0='1' Dim1='3' Encoding='ASCII'><Data>0 1 2</Data></DataArray>"
+            "<DataArray Intent='NIFTI_INTENT_POINTSET' DataType='NIFTI_TYPE_FLOAT%d' ArrayIndexingOrder="
+            "'RowMajorOrder' Dimensionality='2' Dim0='3' Dim1='3' Encoding='ASCII'><Data>0.1 -2.5e3 1e-3\n"
+            "0 0 0\t1 1 1</Data></DataArray></GIFTI>",
+            doubles ? 64 : 32);
+        const double expected[] = {doubles ? 0.1 : 0.1f, -2500, doubles ? 1e-3 : 1e-3f, 0, 0, 0, 1, 1, 1};
+        mesh_check_equal((file_bytes){"brain.xml", text, strlen(text)}, 3, expected, 1, triangle);
+    }
+}
+
+/* The file in ASCII with one text replaced. */
+static void check_replaced(gifti_style style, const char *text, const char *by, const char *place,
+                           const char *found, const char *expected) {
+    gifti_text file, other;
+    gifti_fixture_square(&file, style);
+    const char *at = strstr(file.text, text);
+    assert_non_null(at);
+    snprintf(other.text, sizeof other.text, "%.*s%s%s", (int)(at - file.text), file.text, by,
+             at + strlen(text));
+    mesh_check_error(gifti_fixture_file(&other), place, found, expected);
+}
+
+static void refuses_what_is_no_surface(void **state) {
+    (void)state;
+    const gifti_style ascii = {0};
+    check_replaced(ascii, "NIFTI_INTENT_TRIANGLE", "NIFTI_INTENT_SHAPE", ": ",
+                   "no data array of NIFTI_INTENT_TRIANGLE", "points and triangles");
+    check_replaced(ascii, "ASCII\" Endian=\"LittleEndian\" ExternalFileName=\"\"",
+                   "ExternalFileBinary\" Endian=\"LittleEndian\" ExternalFileName=\"lh.dat\"",
+                   ":line 7: ", "another file, 'lh.dat'", "save the surface with its data inside");
+    check_replaced(ascii, "NIFTI_TYPE_FLOAT32", "NIFTI_TYPE_UINT8",
+                   ":line 7: ", "DataType is 'NIFTI_TYPE_UINT8'", "NIFTI_TYPE_FLOAT32 or NIFTI_TYPE_FLOAT64");
+    check_replaced(ascii, "Dim1=\"3\"", "Dim1=\"2\"", ":line 7: ", "Dim1 is '2'", "of 3");
+    check_replaced(ascii, "Dimensionality=\"2\"", "Dimensionality=\"3\"",
+                   ":line 7: ", "expected two dimensions", "");
+    check_replaced(ascii, "Dim0=\"4\" Dim1", "Dim0=\"-4\" Dim1", ":line 7: ", "Dim0 is '-4'",
+                   "1 to 2147483647");
+    check_replaced(ascii, "Dim0=\"4\" Dim1", "Dim0=\"4e9\" Dim1", ":line 7: ", "Dim0 is '4e9'",
+                   "1 to 2147483647");
+    check_replaced(ascii, "Dim0=\"4\" Dim1", "Dim0=\"2147483647\" Dim1", ":line 10: ", "characters",
+                   "6442450941 numbers");
+    check_replaced(ascii, "\"RowMajorOrder\" Dimensionality=\"2\"", "\"Diagonal\" Dimensionality=\"2\"",
+                   ":line 7: ", "ArrayIndexingOrder is 'Diagonal'", "RowMajorOrder or ColumnMajorOrder");
+    check_replaced((gifti_style){.encoding = 1}, "LittleEndian\" Ex", "MiddleEndian\" Ex",
+                   ":line 7: ", "Endian is 'MiddleEndian'", "LittleEndian or BigEndian");
+    check_replaced(ascii, "</GIFTI>", "</GIFTY>", ":line ", "no valid XML: mismatched tag", "");
+    mesh_check_error(FILE_OF("lh.gii", "<surface/>"), ": ", "no element GIFTI", "");
+    mesh_check_error(FILE_OF("lh.gii", "\n<GIFTI>"), ":line 2: ", "no valid XML", "");
+}
+
+static void refuses_wrong_data(void **state) {
+    (void)state;
+    const gifti_style ascii = {0}, base64 = {.encoding = 1}, zipped = {.encoding = 2};
+    check_replaced(ascii, "<Data>0 0 0", "<Data>0 0 x", ":line 10: ", "found 'x'", "a number");
+    check_replaced(ascii, "<Data>0 1 2", "<Data>0 1 2.5", ":line ", "found '2.5'", "a whole number");
+    check_replaced(ascii, "<Data>0 1 2", "<Data>0 1 4", ":line ", "triangle 0 names vertex 4", "there are 4");
+    check_replaced(ascii, "<Data>0 1 2", "<Data>0 1 -1", ":line ", "triangle 0 names vertex -1",
+                   "there are 4");
+    check_replaced(ascii, "<Data>0 0 0", "<Data>0 0", ":line 10: ", "have 11 numbers", "expected 12");
+    check_replaced(ascii, "<Data>0 0 0", "<Data>0 0 0 7", ":line 10: ", "after the last of 12", "");
+    check_replaced(ascii, "<Data>0 0 0", "<Data>0 0 1e39", ":line ", "coordinate z of vertex 0 is inf",
+                   "finite");
+    check_replaced(base64, "<Data>AAAA", "<Data>AA*A", ":line 10: ", "no base64 at character 2", "");
+    check_replaced(base64, "<Data>AAAA", "<Data>", ":line 10: ", "the data have 45 bytes",
+                   "expected 48 for 4 rows");
+    check_replaced(base64, "<Data>AAAA", "<Data>AAAAAAAA", ":line 10: ", "the data have 51 bytes",
+                   "expected 48 for 4 rows");
+    check_replaced(zipped, "Dim0=\"4\" Dim1", "Dim0=\"3\" Dim1", ":line 10: ", "the data have 37 bytes",
+                   "expected 36");
+    check_replaced(zipped, "Dim0=\"4\" Dim1", "Dim0=\"5\" Dim1", ":line 10: ", "the data have 48 bytes",
+                   "expected 60");
+    check_replaced(zipped, "Dim0=\"4\" Dim1", "Dim0=\"2147483647\" Dim1", ":line 10: ", "bytes",
+                   "25769803764");
+    check_replaced(zipped, "<Data>e", "<Data>f", ":line 10: ", "cannot be unzipped", "damaged");
+}
+
+static void plays_files_as_frames(void **state) {
+    (void)state;
+    const temp_folder folder = temp_folder_make();
+    char pattern[300];
+    for (int frame = 0; frame < 3; frame++) {
+        gifti_text file;
+        char name[32];
+        gifti_fixture_square(&file, (gifti_style){.encoding = frame});
+        snprintf(name, sizeof name, "f%d.surf.gii", frame);
+        temp_file_write(&folder, name, file.text, strlen(file.text));
+    }
+    snprintf(pattern, sizeof pattern, "%s/f%%d.surf.gii", folder.path);
+    const char *path = pattern;
+    animation *frames;
+    io_error error;
+    double positions[12];
+    if (!animation_open(&path, 1, 4, NULL, &frames, &error)) fail_msg("%s", error.text);
+    assert_int_equal(animation_frame_count(frames), 3);
+    for (uint32_t frame = 0; frame < 3; frame++) {
+        assert_true(animation_read(frames, frame, positions, &error));
+        assert_true(positions[3] == 1 && positions[10] == 1);
+    }
+    animation_close(frames);
+    temp_folder_remove(&folder);
+}
+
+static void survives_failed_allocations(void **state) {
+    (void)state;
+    for (int encoding = 0; encoding < 3; encoding++) {
+        gifti_text file;
+        gifti_fixture_square(&file, (gifti_style){.encoding = encoding});
+        long successes = 0;
+        for (bool done = false; !done; successes++) {
+            mesh_file mesh = {0};
+            io_error error = {""};
+            allocations_left = successes;
+            done = mesh_check_read(gifti_fixture_file(&file), &mesh, &error);
+            allocations_left = -1;
+            if (!done && strstr(error.text, "out of memory") == NULL) fail_msg("%s", error.text);
+            mesh_file_free(&mesh);
+        }
+        assert_true(successes > 15);
+    }
+}
+
+/* Every byte of the file would be thousands of readings: a fault in each third one, a different one each time. */
+static void survives_damage(void **state) {
+    (void)state;
+    for (int encoding = 0; encoding < 3; encoding++) {
+        gifti_text file;
+        gifti_fixture_square(&file, (gifti_style){.encoding = encoding});
+        const size_t size = strlen(file.text);
+        for (size_t i = 0; i < size; i += 3) {
+            gifti_text damaged = file;
+            mesh_check_survives((file_bytes){"lh.surf.gii", file.text, i});
+            damaged.text[i] = (char)(damaged.text[i] ^ 1 << i / 3 % 7);
+            mesh_check_survives((file_bytes){"lh.surf.gii", damaged.text, size});
+            memmove(damaged.text + i, damaged.text + i + 1, size - i);
+            mesh_check_survives((file_bytes){"lh.surf.gii", damaged.text, size - 1});
+        }
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(reads_all_styles),
+        cmocka_unit_test(rounds_text_to_its_type),
+        cmocka_unit_test(refuses_what_is_no_surface),
+        cmocka_unit_test(refuses_wrong_data),
+        cmocka_unit_test(plays_files_as_frames),
+        cmocka_unit_test(survives_failed_allocations),
+        cmocka_unit_test(survives_damage),
+    };
+    return cmocka_run_group_tests_name("gifti", tests, NULL, NULL);
+}
