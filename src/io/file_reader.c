@@ -46,7 +46,7 @@ bool file_reader_fail(file_reader *reader, const char *format, ...) {
 bool file_reader_fail_here(file_reader *reader, const char *format, ...) {
     char message[MESSAGE_SIZE];
     size_t used = write_path(message, reader->path);
-    const char *place = reader->binary ? ": byte %zu: " : ":line %zu: ";
+    const char *place = reader->binary ? ": byte %zu: " : ":%zu: ";
     size_t number = reader->binary ? reader->mark : reader->line;
     used += (size_t)snprintf(message + used, MESSAGE_SIZE - used, place, number);
     va_list arguments;

@@ -23,8 +23,8 @@ typedef struct file_reader {
 bool file_reader_open(file_reader *reader, const char *path, io_error *error);
 void file_reader_close(file_reader *reader);
 
-/* Write "path: message", or "path:line N: message" / "path: byte N: message" with the place where the reader is, to
- * reader->error. The message is always one line; the result is always false. */
+/* Write "path: message" to reader->error, or, with the place where the reader is, "path:LINE: message", as compilers do, or
+ * "path: byte N: message". The message is always one line; the result is always false. */
 bool file_reader_fail(file_reader *reader, const char *format, ...) __attribute__((format(printf, 2, 3)));
 bool file_reader_fail_here(file_reader *reader, const char *format, ...)
     __attribute__((format(printf, 2, 3)));

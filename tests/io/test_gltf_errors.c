@@ -202,8 +202,8 @@ static void refuses_wrong_containers(void **state) {
     bytes[16] = 'J';
     bytes[20] = '}';
     mesh_check_error(file, ": byte ", "no valid JSON", "");
-    mesh_check_error(FILE_OF("mesh.gltf", "{\n\"asset\":{\"version\":}}"), ":line 2: ", "no valid JSON", "");
-    mesh_check_error(FILE_OF("mesh.gltf", "{\n\"asset\":"), ":line 2: ", "no valid JSON", "ends too early");
+    mesh_check_error(FILE_OF("mesh.gltf", "{\n\"asset\":{\"version\":}}"), ":2: ", "no valid JSON", "");
+    mesh_check_error(FILE_OF("mesh.gltf", "{\n\"asset\":"), ":2: ", "no valid JSON", "ends too early");
     mesh_check_error(FILE_OF("mesh.gltf", "[1]"), ": ", "no object", "");
 }
 

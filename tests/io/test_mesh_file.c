@@ -40,8 +40,8 @@ static void chooses_the_format(void **state) {
     mesh_check_square(FILE_OF("a", SQUARE_PLY));
     mesh_check_square(FILE_OF("a.Off", "4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n"));
     mesh_check_error(FILE_OF("a.txt", SQUARE_OBJ), ": ", "unknown format", "ply or OFF or is named .obj");
-    mesh_check_error(FILE_OF("a.PLY", SQUARE_OBJ), ":line 1: ", "found 'v'", "expected ply");
-    mesh_check_error(FILE_OF("a.off", SQUARE_OBJ), ":line 1: ", "found 'v'", "the number of vertices");
+    mesh_check_error(FILE_OF("a.PLY", SQUARE_OBJ), ":1: ", "found 'v'", "expected ply");
+    mesh_check_error(FILE_OF("a.off", SQUARE_OBJ), ":1: ", "found 'v'", "the number of vertices");
 }
 
 static void check_unreadable(const char *path, const char *found) {
@@ -155,10 +155,10 @@ static void counts_up_to_the_limit(void **state) {
     builder.triangles.count = MESH_COUNT_LIMIT; /* as if it were full; its data is not touched */
     assert_true(mesh_builder_add_corner(&builder, 0) && mesh_builder_add_corner(&builder, 1));
     assert_false(mesh_builder_add_corner(&builder, 2));
-    assert_string_equal(error.text, "big.obj:line 12: more than 2147483647 triangles, the most of a mesh");
+    assert_string_equal(error.text, "big.obj:12: more than 2147483647 triangles, the most of a mesh");
     builder.positions.count = MESH_COUNT_LIMIT;
     assert_false(mesh_builder_add_vertex(&builder, (double[]){0, 0, 0}));
-    assert_string_equal(error.text, "big.obj:line 12: more than 2147483647 vertices, the most of a mesh");
+    assert_string_equal(error.text, "big.obj:12: more than 2147483647 vertices, the most of a mesh");
 }
 
 static void parses_integers_up_to_18_digits(void **state) {

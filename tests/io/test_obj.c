@@ -80,51 +80,47 @@ static void reads_numbers_exactly(void **state) {
 
 static void refuses_bad_vertices(void **state) {
     (void)state;
-    mesh_check_error(OBJ("v 0 0 0\nv 1 0\nv 0 1 0\n"), ":line 2: ", "the line ends",
-                     "coordinate z of the vertex");
-    mesh_check_error(OBJ("v 0 0 0\n\n# c\nv"), ":line 4: ", "the file ends", "coordinate x of the vertex");
-    mesh_check_error(OBJ("v 0 0,5 0\n"), ":line 1: ", "found '0,5'", "coordinate y");
-    mesh_check_error(OBJ("v 0 0 0x10\n"), ":line 1: ", "found '0x10'", "coordinate z");
-    mesh_check_error(OBJ("v 0 1e 0\n"), ":line 1: ", "found '1e'", "coordinate y");
-    mesh_check_error(OBJ("v 0 1\0002 0\n"), ":line 1: ", "found '1?2'", "coordinate y");
-    mesh_check_error(OBJ("v 0 0 0\r\nv 0 nan 0\r\n"), ":line 2: ", "coordinate y of vertex 2 is nan",
-                     "finite");
-    mesh_check_error(OBJ("v 0 0 -inf\n"), ":line 1: ", "coordinate z of vertex 1 is -inf", "finite");
-    mesh_check_error(OBJ("v 1e309 0 0\n"), ":line 1: ", "coordinate x of vertex 1 is inf", "finite");
-    mesh_check_error(OBJ("v 0 \\\n 0 \\\n q\n"), ":line 3: ", "found 'q'", "coordinate z");
+    mesh_check_error(OBJ("v 0 0 0\nv 1 0\nv 0 1 0\n"), ":2: ", "the line ends", "coordinate z of the vertex");
+    mesh_check_error(OBJ("v 0 0 0\n\n# c\nv"), ":4: ", "the file ends", "coordinate x of the vertex");
+    mesh_check_error(OBJ("v 0 0,5 0\n"), ":1: ", "found '0,5'", "coordinate y");
+    mesh_check_error(OBJ("v 0 0 0x10\n"), ":1: ", "found '0x10'", "coordinate z");
+    mesh_check_error(OBJ("v 0 1e 0\n"), ":1: ", "found '1e'", "coordinate y");
+    mesh_check_error(OBJ("v 0 1\0002 0\n"), ":1: ", "found '1?2'", "coordinate y");
+    mesh_check_error(OBJ("v 0 0 0\r\nv 0 nan 0\r\n"), ":2: ", "coordinate y of vertex 2 is nan", "finite");
+    mesh_check_error(OBJ("v 0 0 -inf\n"), ":1: ", "coordinate z of vertex 1 is -inf", "finite");
+    mesh_check_error(OBJ("v 1e309 0 0\n"), ":1: ", "coordinate x of vertex 1 is inf", "finite");
+    mesh_check_error(OBJ("v 0 \\\n 0 \\\n q\n"), ":3: ", "found 'q'", "coordinate z");
 }
 
 static void refuses_bad_faces(void **state) {
     (void)state;
-    mesh_check_error(OBJ(SQUARE "f 1 2\n"), ":line 5: ", "a face of 2 corners", "3 or more");
-    mesh_check_error(OBJ(SQUARE "f 1\n"), ":line 5: ", "a face of 1 corner,", "3 or more");
-    mesh_check_error(OBJ(SQUARE "f"), ":line 5: ", "a face of 0 corners", "3 or more");
-    mesh_check_error(OBJ(SQUARE "f 1 2 x\n"), ":line 5: ", "found 'x'", "v/vt/vn");
-    mesh_check_error(OBJ(SQUARE "f 1 2 3/4/5/6\n"), ":line 5: ", "found '3/4/5/6'", "v/vt/vn");
-    mesh_check_error(OBJ(SQUARE "f 1 2 3.5\n"), ":line 5: ", "found '3.5'", "v/vt/vn");
-    mesh_check_error(OBJ(SQUARE "f 1 2 /3\n"), ":line 5: ", "found '/3'", "v/vt/vn");
-    mesh_check_error(OBJ(SQUARE "f 1 2 -\n"), ":line 5: ", "found '-'", "v/vt/vn");
-    mesh_check_error(OBJ(SQUARE "f 1 2 2\n"), ":line 5: ", "triangle 1 2 2 repeats vertex 2", "different");
-    mesh_check_error(OBJ(SQUARE "f 3 -2 4\n"), ":line 5: ", "triangle 3 3 4 repeats vertex 3", "different");
-    mesh_check_error(OBJ(SQUARE "f 1 2 3 4 1\n"), ":line 5: ", "triangle 1 4 1 repeats vertex 1",
-                     "different");
-    mesh_check_error(OBJ(SQUARE "f 1 2 3 3 4\n"), ":line 5: ", "triangle 1 3 3 repeats vertex 3",
-                     "different");
+    mesh_check_error(OBJ(SQUARE "f 1 2\n"), ":5: ", "a face of 2 corners", "3 or more");
+    mesh_check_error(OBJ(SQUARE "f 1\n"), ":5: ", "a face of 1 corner,", "3 or more");
+    mesh_check_error(OBJ(SQUARE "f"), ":5: ", "a face of 0 corners", "3 or more");
+    mesh_check_error(OBJ(SQUARE "f 1 2 x\n"), ":5: ", "found 'x'", "v/vt/vn");
+    mesh_check_error(OBJ(SQUARE "f 1 2 3/4/5/6\n"), ":5: ", "found '3/4/5/6'", "v/vt/vn");
+    mesh_check_error(OBJ(SQUARE "f 1 2 3.5\n"), ":5: ", "found '3.5'", "v/vt/vn");
+    mesh_check_error(OBJ(SQUARE "f 1 2 /3\n"), ":5: ", "found '/3'", "v/vt/vn");
+    mesh_check_error(OBJ(SQUARE "f 1 2 -\n"), ":5: ", "found '-'", "v/vt/vn");
+    mesh_check_error(OBJ(SQUARE "f 1 2 2\n"), ":5: ", "triangle 1 2 2 repeats vertex 2", "different");
+    mesh_check_error(OBJ(SQUARE "f 3 -2 4\n"), ":5: ", "triangle 3 3 4 repeats vertex 3", "different");
+    mesh_check_error(OBJ(SQUARE "f 1 2 3 4 1\n"), ":5: ", "triangle 1 4 1 repeats vertex 1", "different");
+    mesh_check_error(OBJ(SQUARE "f 1 2 3 3 4\n"), ":5: ", "triangle 1 3 3 repeats vertex 3", "different");
 }
 
 static void refuses_indices_out_of_range(void **state) {
     (void)state;
-    mesh_check_error(OBJ(SQUARE "f 1 2 0\n"), ":line 5: ", "face index 0 is out of range",
+    mesh_check_error(OBJ(SQUARE "f 1 2 0\n"), ":5: ", "face index 0 is out of range",
                      "the first vertex is 1");
-    mesh_check_error(OBJ(SQUARE "f 1 2 3\nf 1 2 5\nf 1 2 3\n"), ":line 6: ", "face index 5 is out of range",
+    mesh_check_error(OBJ(SQUARE "f 1 2 3\nf 1 2 5\nf 1 2 3\n"), ":6: ", "face index 5 is out of range",
                      "the file has 4 vertices");
-    mesh_check_error(OBJ(SQUARE "f 1 2 -5\nv 0 0 0\n"), ":line 5: ", "face index -5 is out of range",
+    mesh_check_error(OBJ(SQUARE "f 1 2 -5\nv 0 0 0\n"), ":5: ", "face index -5 is out of range",
                      "the file has 4 vertices before it");
-    mesh_check_error(OBJ(SQUARE "f 1 2 2147483648\n"), ":line 5: ", "face index 2147483648 is out of range",
+    mesh_check_error(OBJ(SQUARE "f 1 2 2147483648\n"), ":5: ", "face index 2147483648 is out of range",
                      "at most 2147483647 vertices");
-    mesh_check_error(OBJ(SQUARE "f 1 2 99999999999999999999\n"), ":line 5: ", "found '99999999999999999999'",
+    mesh_check_error(OBJ(SQUARE "f 1 2 99999999999999999999\n"), ":5: ", "found '99999999999999999999'",
                      "face corner");
-    mesh_check_error(OBJ("f 1 2 7\n" SQUARE), ":line 1: ", "face index 7 is out of range",
+    mesh_check_error(OBJ("f 1 2 7\n" SQUARE), ":1: ", "face index 7 is out of range",
                      "the file has 4 vertices");
 }
 
@@ -139,7 +135,7 @@ static void refuses_incomplete_meshes(void **state) {
 static void shows_long_tokens_cut(void **state) {
     (void)state;
     mesh_check_error(OBJ("v 0 0 0123456789012345678901234567890123456789012345678901234567890123456789x\n"),
-                     ":line 1: ", "found '01234567890123456789012345678901234567890123...'", "coordinate z");
+                     ":1: ", "found '01234567890123456789012345678901234567890123...'", "coordinate z");
 }
 
 static void survives_damage(void **state) {

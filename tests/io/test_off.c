@@ -46,57 +46,52 @@ static void reads_rows(void **state) {
 
 static void refuses_bad_headers(void **state) {
     (void)state;
-    mesh_check_error(OFF("OFF"), ":line 1: ", "the file ends", "the number of vertices");
-    mesh_check_error(OFF("# only this\n"), ":line 2: ", "the file ends", "the number of vertices");
-    mesh_check_error(OFF("OFF\n4\n"), ":line 2: ", "the line ends", "the number of faces");
-    mesh_check_error(OFF("OFF\nfour 2 0\n"), ":line 2: ", "found 'four'", "the number of vertices");
-    mesh_check_error(OFF("OFF\n4 2 x\n"), ":line 2: ", "found 'x'", "the number of edges");
-    mesh_check_error(OFF("OFF\n4 2 0 0\n"), ":line 2: ", "found '0'", "the end of the line");
-    mesh_check_error(OFF("OFF\n-4 2 0\n"), ":line 2: ", "the number of vertices is -4",
+    mesh_check_error(OFF("OFF"), ":1: ", "the file ends", "the number of vertices");
+    mesh_check_error(OFF("# only this\n"), ":2: ", "the file ends", "the number of vertices");
+    mesh_check_error(OFF("OFF\n4\n"), ":2: ", "the line ends", "the number of faces");
+    mesh_check_error(OFF("OFF\nfour 2 0\n"), ":2: ", "found 'four'", "the number of vertices");
+    mesh_check_error(OFF("OFF\n4 2 x\n"), ":2: ", "found 'x'", "the number of edges");
+    mesh_check_error(OFF("OFF\n4 2 0 0\n"), ":2: ", "found '0'", "the end of the line");
+    mesh_check_error(OFF("OFF\n-4 2 0\n"), ":2: ", "the number of vertices is -4",
                      "expected 0 to 2147483647");
-    mesh_check_error(OFF("OFF\n4 2147483648 0\n"), ":line 2: ", "the number of faces is 2147483648",
+    mesh_check_error(OFF("OFF\n4 2147483648 0\n"), ":2: ", "the number of faces is 2147483648",
                      "0 to 2147483647");
-    mesh_check_error(OFF("4OFF\n4 2 0\n"), ":line 1: ", "found '4OFF'", "three dimensions");
-    mesh_check_error(OFF("nOFF\n3\n4 2 0\n"), ":line 1: ", "found 'nOFF'", "three dimensions");
-    mesh_check_error(OFF("OFF BINARY\n\0\0\0\4"), ":line 1: ", "binary OFF", "expected text");
-    mesh_check_error(OFF("OFFSET 1\n"), ":line 1: ", "found 'OFFSET'", "the number of vertices");
-    mesh_check_error(OFF("\x01\x02\xff\xfe\0\0\0"), ":line 1: ", "found '????", "the number of vertices");
+    mesh_check_error(OFF("4OFF\n4 2 0\n"), ":1: ", "found '4OFF'", "three dimensions");
+    mesh_check_error(OFF("nOFF\n3\n4 2 0\n"), ":1: ", "found 'nOFF'", "three dimensions");
+    mesh_check_error(OFF("OFF BINARY\n\0\0\0\4"), ":1: ", "binary OFF", "expected text");
+    mesh_check_error(OFF("OFFSET 1\n"), ":1: ", "found 'OFFSET'", "the number of vertices");
+    mesh_check_error(OFF("\x01\x02\xff\xfe\0\0\0"), ":1: ", "found '????", "the number of vertices");
 }
 
 static void refuses_bad_rows(void **state) {
     (void)state;
-    mesh_check_error(OFF("OFF\n4 2 0\n0 0 0\n1 0\n1 1 0\n0 1 0\n" FACES), ":line 4: ", "the line ends",
+    mesh_check_error(OFF("OFF\n4 2 0\n0 0 0\n1 0\n1 1 0\n0 1 0\n" FACES), ":4: ", "the line ends",
                      "coordinate z");
-    mesh_check_error(OFF("OFF\n4 2 0\n0 0 0\n1 zero 0\n"), ":line 4: ", "found 'zero'", "coordinate y");
-    mesh_check_error(OFF("OFF\n4 2 0\n0 0 0\n1 0 NaN\n"), ":line 4: ", "coordinate z of vertex 1 is nan",
+    mesh_check_error(OFF("OFF\n4 2 0\n0 0 0\n1 zero 0\n"), ":4: ", "found 'zero'", "coordinate y");
+    mesh_check_error(OFF("OFF\n4 2 0\n0 0 0\n1 0 NaN\n"), ":4: ", "coordinate z of vertex 1 is nan",
                      "finite");
-    mesh_check_error(OFF("OFF\n4 2 0\n-1e400 0 0\n"), ":line 3: ", "coordinate x of vertex 0 is -inf",
-                     "finite");
-    mesh_check_error(OFF("OFF\n4 1 0\n" VERTICES "2 0 1\n"), ":line 7: ", "a face of 2 corners", "3 or more");
-    mesh_check_error(OFF("OFF\n4 1 0\n" VERTICES "-3 0 1 2\n"), ":line 7: ", "a face of -3 corners",
-                     "3 or more");
-    mesh_check_error(OFF("OFF\n4 1 0\n" VERTICES "4 0 1 2\n"), ":line 7: ", "the line ends",
-                     "a vertex index");
-    mesh_check_error(OFF("OFF\n4 1 0\n" VERTICES "3 0 1.5 2\n"), ":line 7: ", "found '1.5'",
-                     "a vertex index");
-    mesh_check_error(OFF("OFF\n4 1 0\n" VERTICES "3 0 1 4\n"), ":line 7: ", "face index 4 is out of range",
+    mesh_check_error(OFF("OFF\n4 2 0\n-1e400 0 0\n"), ":3: ", "coordinate x of vertex 0 is -inf", "finite");
+    mesh_check_error(OFF("OFF\n4 1 0\n" VERTICES "2 0 1\n"), ":7: ", "a face of 2 corners", "3 or more");
+    mesh_check_error(OFF("OFF\n4 1 0\n" VERTICES "-3 0 1 2\n"), ":7: ", "a face of -3 corners", "3 or more");
+    mesh_check_error(OFF("OFF\n4 1 0\n" VERTICES "4 0 1 2\n"), ":7: ", "the line ends", "a vertex index");
+    mesh_check_error(OFF("OFF\n4 1 0\n" VERTICES "3 0 1.5 2\n"), ":7: ", "found '1.5'", "a vertex index");
+    mesh_check_error(OFF("OFF\n4 1 0\n" VERTICES "3 0 1 4\n"), ":7: ", "face index 4 is out of range",
                      "the file has 4 vertices");
-    mesh_check_error(OFF("OFF\n4 1 0\n" VERTICES "3 0 1 -1\n"), ":line 7: ", "face index -1 is out of range",
+    mesh_check_error(OFF("OFF\n4 1 0\n" VERTICES "3 0 1 -1\n"), ":7: ", "face index -1 is out of range",
                      "the file has 4 vertices");
-    mesh_check_error(OFF("OFF\n4 1 0\n" VERTICES "4 0 1 2 0\n"),
-                     ":line 7: ", "triangle 0 2 0 repeats vertex 0", "different");
+    mesh_check_error(OFF("OFF\n4 1 0\n" VERTICES "4 0 1 2 0\n"), ":7: ", "triangle 0 2 0 repeats vertex 0",
+                     "different");
 }
 
 static void refuses_counts_that_do_not_fit(void **state) {
     (void)state;
-    mesh_check_error(OFF("OFF\n4 3 0\n" REST), ":line 9: ", "file ends before face 3 of 3", "");
-    mesh_check_error(OFF("OFF\n4 2000000000 0\n" REST), ":line 9: ", "file ends before face 3 of 2000000000",
+    mesh_check_error(OFF("OFF\n4 3 0\n" REST), ":9: ", "file ends before face 3 of 3", "");
+    mesh_check_error(OFF("OFF\n4 2000000000 0\n" REST), ":9: ", "file ends before face 3 of 2000000000", "");
+    mesh_check_error(OFF("OFF\n2000000000 2 0\n" VERTICES), ":7: ", "file ends before vertex 5 of 2000000000",
                      "");
-    mesh_check_error(OFF("OFF\n2000000000 2 0\n" VERTICES),
-                     ":line 7: ", "file ends before vertex 5 of 2000000000", "");
-    mesh_check_error(OFF("OFF\n4 1 0\n" REST), ":line 8: ", "found '3' after the last face",
+    mesh_check_error(OFF("OFF\n4 1 0\n" REST), ":8: ", "found '3' after the last face",
                      "the end of the file");
-    mesh_check_error(OFF("OFF\n4 1 0\n" VERTICES "2000000000 0 1 2\n"), ":line 7: ", "the line ends",
+    mesh_check_error(OFF("OFF\n4 1 0\n" VERTICES "2000000000 0 1 2\n"), ":7: ", "the line ends",
                      "a vertex index");
     mesh_check_error(OFF("OFF\n0 0 0\n"), ": ", "no vertices", "expected a triangle mesh");
     mesh_check_error(OFF("OFF\n4 0 0\n" VERTICES), ": ", "no faces found for the 4 vertices",

@@ -198,12 +198,14 @@ static void nothing_to_read_is_refused(void **state) {
 static void every_truncation_is_refused(void **state) {
     (void)state;
     saved s = save_plan(recorded_tetrahedra(1), CSCD_METHOD_CHARGE);
-    size_t size;
+    size_t size, line = 1;
     char *bytes = read_whole_file(s.path.text, &size), *end = strstr(bytes, "end_header");
-    for (size_t cut = 0; cut < size; cut++) {
+    for (size_t cut = 0; cut < size; line += bytes[cut++] == '\n') {
+        char place[40];
         temp_path path = temp_file_write(&folder, "cut.ply", bytes, cut);
+        snprintf(place, sizeof place, "cut.ply:%zu: ", line);
         expect_refused(&s, path.text,
-                       bytes + cut < end + 10 ? TEXTS(":line ") : TEXTS(": byte ", "file ends inside"));
+                       bytes + cut < end + 10 ? TEXTS(place) : TEXTS(": byte ", "file ends inside"));
         remove(path.text);
     }
     free(bytes);
@@ -296,11 +298,11 @@ static void expect_all_refused(const char *const (*cases)[3], size_t count) {
 static void bad_headers_are_refused(void **state) {
     (void)state;
     static const char *const cases[][3] = {
-        {HEAD "comment cscd plan 2\n" VERTEX FACE REGION REGIONS END, ":line 3: found '2'", "expected 1"},
-        {HEAD "comment cscd plan\n" VERTEX FACE REGION REGIONS END, ":line 3: found ''", "expected 1"},
-        {HEAD "comment cscd plan 1\ncomment cscd method none\n" VERTEX FACE END, ":line 4: found 'none'",
+        {HEAD "comment cscd plan 2\n" VERTEX FACE REGION REGIONS END, ":3: found '2'", "expected 1"},
+        {HEAD "comment cscd plan\n" VERTEX FACE REGION REGIONS END, ":3: found ''", "expected 1"},
+        {HEAD "comment cscd plan 1\ncomment cscd method none\n" VERTEX FACE END, ":4: found 'none'",
          "charge, kmeans or single"},
-        {HEAD "comment cscd plan 1\ncomment cscd mesh 12g\n" VERTEX FACE END, ":line 4: found '12g'",
+        {HEAD "comment cscd plan 1\ncomment cscd mesh 12g\n" VERTEX FACE END, ":4: found '12g'",
          "16 hexadecimal digits"},
         {HEAD "comment cscd plan 1\ncomment cscd method single\n" VERTEX FACE END,
          "lacks 'comment cscd mesh'", "expected"},
@@ -322,7 +324,7 @@ static void bad_headers_are_refused(void **state) {
          "element vertex 5\nproperty double x\nproperty double y\nproperty double z\n" FACE CHARGE REGION
              REGIONS COMPONENT END,
          "5 vertices", "expected 4"},
-        {"ply\nformat ascii 1.0\n" COMMENTS "element vertex 4\n", ":line 7: file ends inside the header",
+        {"ply\nformat ascii 1.0\n" COMMENTS "element vertex 4\n", ":7: file ends inside the header",
          "end_header"},
     };
     expect_all_refused(cases, sizeof cases / sizeof *cases);
@@ -331,15 +333,14 @@ static void bad_headers_are_refused(void **state) {
 static void bad_rows_are_refused(void **state) {
     (void)state;
     static const char *const cases[][3] = {
-        {HEADER "0 0 nan\n", ":line 21: 'z' of vertex 0 is nan", "finite"},
-        {HEADER VERTICES "4 0 2 1 3 .5 0\n", ":line 25: a face of 4 corners", "expected 3"},
-        {HEADER VERTICES "3 0 2 1 inf 0\n", ":line 25: 'charge' of face 0 is inf", "finite"},
-        {HEADER VERTICES "3 0 2 1 .5 1\n", ":line 25: face 0 is in region 1", "one of the 1 regions"},
-        {HEADER VERTICES FACES "0 0 nan\n", ":line 29: 'z' of region 0 is nan", "finite"},
-        {HEADER VERTICES FACES ".25 .25 .25\n-inf\n", ":line 30: 'capacitance' of component 0 is -inf",
-         "finite"},
-        {HEADER VERTICES FACES ".25 .25 .25\n", ":line 30: file ends inside component 1 of 1", ""},
-        {HEADER VERTICES FACES REST "7\n", ":line 31: found '7' after the last element", "end of the file"},
+        {HEADER "0 0 nan\n", ":21: 'z' of vertex 0 is nan", "finite"},
+        {HEADER VERTICES "4 0 2 1 3 .5 0\n", ":25: a face of 4 corners", "expected 3"},
+        {HEADER VERTICES "3 0 2 1 inf 0\n", ":25: 'charge' of face 0 is inf", "finite"},
+        {HEADER VERTICES "3 0 2 1 .5 1\n", ":25: face 0 is in region 1", "one of the 1 regions"},
+        {HEADER VERTICES FACES "0 0 nan\n", ":29: 'z' of region 0 is nan", "finite"},
+        {HEADER VERTICES FACES ".25 .25 .25\n-inf\n", ":30: 'capacitance' of component 0 is -inf", "finite"},
+        {HEADER VERTICES FACES ".25 .25 .25\n", ":30: file ends inside component 1 of 1", ""},
+        {HEADER VERTICES FACES REST "7\n", ":31: found '7' after the last element", "end of the file"},
         {HEADER VERTICES "3 0 2 1 .5 0\n3 0 1 2 .25 0\n3 0 3 1 1 0\n3 1 2 3 2 0\n" REST,
          "triangle 1 has the vertices 0 1 2, expected 0 1 3", ""},
         {HEADER "0 0 1e-310\n1 0 0\n0 1 0\n0 0 1\n" FACES REST, "text.ply: ", "vertex 0"},

@@ -73,96 +73,89 @@ static void reads_numbers_exactly(void **state) {
 
 static void refuses_bad_headers(void **state) {
     (void)state;
-    mesh_check_error(PLY("plywood\n"), ":line 1: ", "found 'plywood'", "expected ply");
-    mesh_check_error(PLY("\nply\n"), ":line 1: ", "the line ends", "expected ply");
-    mesh_check_error(PLY("\xff\xfe\0\1garbage"), ":line 1: ", "found '????garbage'", "expected ply");
-    mesh_check_error(PLY("ply ply\n"), ":line 1: ", "found 'ply'", "end of the line");
-    mesh_check_error(PLY("ply\n"), ":line 2: ", "file ends inside the header", "end_header");
-    mesh_check_error(PLY("ply\nfromat ascii 1.0\n"), ":line 2: ", "found 'fromat'", "format, comment");
-    mesh_check_error(PLY("ply\nformat binary 1.0\n"), ":line 2: ", "found 'binary'",
+    mesh_check_error(PLY("plywood\n"), ":1: ", "found 'plywood'", "expected ply");
+    mesh_check_error(PLY("\nply\n"), ":1: ", "the line ends", "expected ply");
+    mesh_check_error(PLY("\xff\xfe\0\1garbage"), ":1: ", "found '????garbage'", "expected ply");
+    mesh_check_error(PLY("ply ply\n"), ":1: ", "found 'ply'", "end of the line");
+    mesh_check_error(PLY("ply\n"), ":2: ", "file ends inside the header", "end_header");
+    mesh_check_error(PLY("ply\nfromat ascii 1.0\n"), ":2: ", "found 'fromat'", "format, comment");
+    mesh_check_error(PLY("ply\nformat binary 1.0\n"), ":2: ", "found 'binary'",
                      "ascii, binary_little_endian");
-    mesh_check_error(PLY("ply\nformat\n"), ":line 2: ", "the line ends", "ascii, binary_little_endian");
-    mesh_check_error(PLY("ply\nformat ascii 2.0\n"), ":line 2: ", "found '2.0'", "version 1.0");
-    mesh_check_error(PLY(START "format ascii 1.0\n"), ":line 3: ", "a second format", "expected one");
-    mesh_check_error(PLY("ply\nend_header\n"), ":line 2: ", "the header ends", "a format line");
-    mesh_check_error(PLY(START "element\n"), ":line 3: ", "the line ends", "an element name");
-    mesh_check_error(PLY(START "element vertex\n"), ":line 3: ", "the line ends", "the number of elements");
-    mesh_check_error(PLY(START "element vertex many\n"), ":line 3: ", "found 'many'",
-                     "the number of elements");
-    mesh_check_error(PLY(START "element vertex 4 4\n"), ":line 3: ", "found '4'", "end of the line");
-    mesh_check_error(PLY(START "element vertex 1\nelement vertex 1\n"),
-                     ":line 4: ", "a second element 'vertex'", "one");
-    mesh_check_error(PLY(START END), ":line 3: ", "the header ends", "an element 'vertex'");
-    mesh_check_error(PLY(START "element vertex 4\n" XYZ END), ":line 7: ", "the header ends",
-                     "an element 'face'");
+    mesh_check_error(PLY("ply\nformat\n"), ":2: ", "the line ends", "ascii, binary_little_endian");
+    mesh_check_error(PLY("ply\nformat ascii 2.0\n"), ":2: ", "found '2.0'", "version 1.0");
+    mesh_check_error(PLY(START "format ascii 1.0\n"), ":3: ", "a second format", "expected one");
+    mesh_check_error(PLY("ply\nend_header\n"), ":2: ", "the header ends", "a format line");
+    mesh_check_error(PLY(START "element\n"), ":3: ", "the line ends", "an element name");
+    mesh_check_error(PLY(START "element vertex\n"), ":3: ", "the line ends", "the number of elements");
+    mesh_check_error(PLY(START "element vertex many\n"), ":3: ", "found 'many'", "the number of elements");
+    mesh_check_error(PLY(START "element vertex 4 4\n"), ":3: ", "found '4'", "end of the line");
+    mesh_check_error(PLY(START "element vertex 1\nelement vertex 1\n"), ":4: ", "a second element 'vertex'",
+                     "one");
+    mesh_check_error(PLY(START END), ":3: ", "the header ends", "an element 'vertex'");
+    mesh_check_error(PLY(START "element vertex 4\n" XYZ END), ":7: ", "the header ends", "an element 'face'");
 }
 
 static void refuses_bad_properties(void **state) {
     (void)state;
-    mesh_check_error(PLY(START "property float x\n"), ":line 3: ", "a property before any element", "");
-    mesh_check_error(PLY(START "element a 1\nproperty real x\n"), ":line 4: ", "found 'real'",
-                     "a type: char");
-    mesh_check_error(PLY(START "element a 1\nproperty list float int x\n"), ":line 4: ", "found 'float'",
+    mesh_check_error(PLY(START "property float x\n"), ":3: ", "a property before any element", "");
+    mesh_check_error(PLY(START "element a 1\nproperty real x\n"), ":4: ", "found 'real'", "a type: char");
+    mesh_check_error(PLY(START "element a 1\nproperty list float int x\n"), ":4: ", "found 'float'",
                      "an integer type for the length");
-    mesh_check_error(PLY(START "element a 1\nproperty list uchar\n"), ":line 4: ", "the line ends",
+    mesh_check_error(PLY(START "element a 1\nproperty list uchar\n"), ":4: ", "the line ends",
                      "a type: char");
-    mesh_check_error(PLY(START "element a 1\nproperty int\n"), ":line 4: ", "the line ends",
-                     "a property name");
+    mesh_check_error(PLY(START "element a 1\nproperty int\n"), ":4: ", "the line ends", "a property name");
     mesh_check_error(PLY(START "element vertex 1\nproperty list uchar float x\n"),
-                     ":line 4: ", "property 'x' is a list", "expected one number");
+                     ":4: ", "property 'x' is a list", "expected one number");
     mesh_check_error(PLY(START "element face 1\nproperty int vertex_indices\n"),
-                     ":line 4: ", "property 'vertex_indices' is no list", "expected a list");
+                     ":4: ", "property 'vertex_indices' is no list", "expected a list");
     mesh_check_error(PLY(START "element vertex 1\n" XYZ "property double y\n"),
-                     ":line 7: ", "a second property 'y'", "expected one");
+                     ":7: ", "a second property 'y'", "expected one");
     mesh_check_error(PLY(START "element vertex 1\nproperty float x\nproperty float z\n" END),
-                     ":line 6: ", "element 'vertex' lacks", "property 'y'");
+                     ":6: ", "element 'vertex' lacks", "property 'y'");
     mesh_check_error(PLY(START "element vertex 1\n" XYZ "element face 1\n" END),
-                     ":line 8: ", "element 'face' lacks", "property 'vertex_indices'");
+                     ":8: ", "element 'face' lacks", "property 'vertex_indices'");
 }
 
 static void refuses_bad_rows(void **state) {
     (void)state;
-    mesh_check_error(PLY(HEADER "0 0 0\n1 0\n1 1 0\n"), ":line 11: ", "the line ends inside vertex 2 of 4",
+    mesh_check_error(PLY(HEADER "0 0 0\n1 0\n1 1 0\n"), ":11: ", "the line ends inside vertex 2 of 4",
                      "expected its property 'z'");
-    mesh_check_error(PLY(HEADER "0 0 0 0\n"), ":line 10: ", "found '0'", "the end of the line");
-    mesh_check_error(PLY(HEADER "0 0 0\n1 o 0\n"), ":line 11: ", "found 'o'", "a number for property 'y'");
-    mesh_check_error(PLY(HEADER "0 0 0\n1 0 nan\n"), ":line 11: ", "coordinate z of vertex 1 is nan",
-                     "finite");
-    mesh_check_error(PLY(HEADER "1e999 0 0\n"), ":line 10: ", "coordinate x of vertex 0 is inf", "finite");
-    mesh_check_error(PLY(HEADER VERTICES "3 0 1\n"), ":line 14: ", "the line ends inside face 1 of 2",
+    mesh_check_error(PLY(HEADER "0 0 0 0\n"), ":10: ", "found '0'", "the end of the line");
+    mesh_check_error(PLY(HEADER "0 0 0\n1 o 0\n"), ":11: ", "found 'o'", "a number for property 'y'");
+    mesh_check_error(PLY(HEADER "0 0 0\n1 0 nan\n"), ":11: ", "coordinate z of vertex 1 is nan", "finite");
+    mesh_check_error(PLY(HEADER "1e999 0 0\n"), ":10: ", "coordinate x of vertex 0 is inf", "finite");
+    mesh_check_error(PLY(HEADER VERTICES "3 0 1\n"), ":14: ", "the line ends inside face 1 of 2",
                      "property 'vertex_indices'");
-    mesh_check_error(PLY(HEADER VERTICES "3 0 1 2.5\n"), ":line 14: ", "found '2.5'", "an integer");
-    mesh_check_error(PLY(HEADER VERTICES "2 0 1\n"), ":line 14: ", "a face of 2 corners", "3 or more");
-    mesh_check_error(PLY(HEADER VERTICES "0\n"), ":line 14: ", "a face of 0 corners", "3 or more");
-    mesh_check_error(PLY(HEADER VERTICES "-1\n"), ":line 14: ", "'vertex_indices' has -1 entries",
-                     "0 or more");
-    mesh_check_error(PLY(HEADER VERTICES "3 0 1 4\n"), ":line 14: ", "face index 4 is out of range",
+    mesh_check_error(PLY(HEADER VERTICES "3 0 1 2.5\n"), ":14: ", "found '2.5'", "an integer");
+    mesh_check_error(PLY(HEADER VERTICES "2 0 1\n"), ":14: ", "a face of 2 corners", "3 or more");
+    mesh_check_error(PLY(HEADER VERTICES "0\n"), ":14: ", "a face of 0 corners", "3 or more");
+    mesh_check_error(PLY(HEADER VERTICES "-1\n"), ":14: ", "'vertex_indices' has -1 entries", "0 or more");
+    mesh_check_error(PLY(HEADER VERTICES "3 0 1 4\n"), ":14: ", "face index 4 is out of range",
                      "the file has 4 vertices");
-    mesh_check_error(PLY(HEADER VERTICES "3 0 1 -1\n"), ":line 14: ", "face index -1 is out of range",
+    mesh_check_error(PLY(HEADER VERTICES "3 0 1 -1\n"), ":14: ", "face index -1 is out of range",
                      "the file has 4 vertices");
     mesh_check_error(PLY(HEADER VERTICES "3 0 1 2\n5 0 1 2 2 3\n"),
-                     ":line 15: ", "triangle 0 2 2 repeats vertex 2", "different");
-    mesh_check_error(PLY(HEADER VERTICES FACES "3 0 1 2\n"), ":line 16: ", "found '3' after the last element",
+                     ":15: ", "triangle 0 2 2 repeats vertex 2", "different");
+    mesh_check_error(PLY(HEADER VERTICES FACES "3 0 1 2\n"), ":16: ", "found '3' after the last element",
                      "the end of the file");
     mesh_check_error(PLY(START "element vertex 4\n" XYZ
                                "element face 1\nproperty list int float vertex_index\n" END VERTICES
                                "3 0 1 1.5\n"),
-                     ":line 14: ", "face index 1.5", "expected an integer");
+                     ":14: ", "face index 1.5", "expected an integer");
 }
 
 static void refuses_counts_that_do_not_fit(void **state) {
     (void)state;
-    mesh_check_error(PLY(HEADER "0 0 0\n1 0 0\n"), ":line 12: ", "file ends inside vertex 3 of 4", "");
-    mesh_check_error(PLY(HEADER "0 0 0\n1 0"), ":line 11: ", "file ends inside vertex 2 of 4", "");
-    mesh_check_error(PLY(HEADER VERTICES "3 0 1 2\n"), ":line 15: ", "file ends inside face 2 of 2", "");
+    mesh_check_error(PLY(HEADER "0 0 0\n1 0 0\n"), ":12: ", "file ends inside vertex 3 of 4", "");
+    mesh_check_error(PLY(HEADER "0 0 0\n1 0"), ":11: ", "file ends inside vertex 2 of 4", "");
+    mesh_check_error(PLY(HEADER VERTICES "3 0 1 2\n"), ":15: ", "file ends inside face 2 of 2", "");
     mesh_check_error(PLY(START "element vertex 2000000000\n" XYZ "element face 2\n" CORNERS END VERTICES),
-                     ":line 14: ", "file ends inside vertex 5 of 2000000000", "");
-    mesh_check_error(PLY(START "element vertex -4\n"), ":line 3: ", "-4 elements 'vertex'",
-                     "0 to 2147483647");
-    mesh_check_error(PLY(START "element face 2147483648\n"), ":line 3: ", "2147483648 elements 'face'",
+                     ":14: ", "file ends inside vertex 5 of 2000000000", "");
+    mesh_check_error(PLY(START "element vertex -4\n"), ":3: ", "-4 elements 'vertex'", "0 to 2147483647");
+    mesh_check_error(PLY(START "element face 2147483648\n"), ":3: ", "2147483648 elements 'face'",
                      "2147483647");
-    mesh_check_error(PLY(START "element edge 9999999999999999999\n"),
-                     ":line 3: ", "found '9999999999999999999'", "the number of elements");
+    mesh_check_error(PLY(START "element edge 9999999999999999999\n"), ":3: ", "found '9999999999999999999'",
+                     "the number of elements");
     mesh_check_error(PLY(START "element vertex 0\n" XYZ "element face 0\n" CORNERS END), ": ", "no vertices",
                      "expected a triangle mesh");
     mesh_check_error(PLY(START "element vertex 4\n" XYZ "element face 0\n" CORNERS END VERTICES), ": ",

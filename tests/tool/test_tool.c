@@ -133,10 +133,10 @@ static void names_missing_files(void **state) {
 static void names_the_line_of_a_malformed_mesh(void **state) {
     (void)state;
     temp_path bad = write_text("bad.obj", "v 0 0 0\nv 1 0 0\nv 0 one 0\nf 1 2 3\n");
-    EXPECT_ERROR(1, TEXTS("bad.obj:line 3: "), "info", bad.text);
-    EXPECT_ERROR(1, TEXTS("bad.obj:line 3: "), "replay", bad.text, cache.text);
+    EXPECT_ERROR(1, TEXTS("bad.obj:3: "), "info", bad.text);
+    EXPECT_ERROR(1, TEXTS("bad.obj:3: "), "replay", bad.text, cache.text);
     temp_path outside = write_text("outside.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n");
-    EXPECT_ERROR(1, TEXTS("outside.obj:line 4: "), "check", outside.text);
+    EXPECT_ERROR(1, TEXTS("outside.obj:4: "), "check", outside.text);
     temp_path repeated = write_text("repeated.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 2\n");
     EXPECT_ERROR(1, TEXTS("repeated.obj", "triangle 1"), "info", repeated.text);
 }

@@ -28,8 +28,8 @@ void mesh_check_equal(file_bytes file, uint32_t vertex_count, const double *posi
 /* Checks the same for a square: 0 0 0, 1 0 0, 1 1 0, 0 1 0 with the triangles 0 1 2 and 0 2 3. */
 void mesh_check_square(file_bytes file);
 
-/* Checks that the file is refused in one line that contains the file's name followed by `place` (":line 3:
- * ", ": byte 7: " or ": ") and the two texts, and that the mesh is unchanged. */
+/* Checks that the file is refused in one line that contains the file's name followed by `place` (":3: ", ": byte 7: "
+ * or ": ") and the two texts, and that the mesh is unchanged. */
 void mesh_check_error(file_bytes file, const char *place, const char *found, const char *expected);
 
 /* Checks that the file is refused with a message, or gives a mesh whose numbers are all in range. */
