@@ -34,9 +34,9 @@ typedef struct cscd_cut_off {
         patch_count; /* in the list of patches: those of the smaller part, ascending. None if it lies within triangles */
 } cscd_cut_off;
 
-/* Sorted by (curve, trace). Components are those of the mesh: a trace that runs over a seam divides nothing. Each of n traces
- * costs as much as its component has points of curves and patches. The lists belong to the detector and live until its next
- * call. */
+/* Sorted by (curve, trace). Components are those of the mesh, as it was created: a trace that runs over a seam divides
+ * nothing, and what is joined by a seam alone is not joined here. Each of n traces costs as much as its component has points
+ * of curves and patches. The lists belong to the detector and live until its next call. */
 typedef struct cscd_cut_offs {
     const cscd_cut_off *items;
     size_t count;

@@ -43,14 +43,34 @@ static bool is_in_one_component(const cscd_mesh *mesh, const curve_joiner *j, co
     return true;
 }
 
+static bool triangle_has_edge(const cscd_mesh *mesh, uint32_t triangle, uint32_t edge) {
+    const uint32_t *edges = mesh->triangle_edges[triangle];
+    return edges[0] == edge || edges[1] == edge || edges[2] == edge;
+}
+
+/* Does the trace go over a seam? Then the edge of a point is only in one of the two triangles at it. */
+static bool goes_over_seam(const cscd_mesh *mesh, const curve_joiner *j, const cscd_curve *c, uint32_t side) {
+    for (size_t i = 0; i < c->piece_count; i++) {
+        const cscd_curve_piece *piece = &j->pieces[c->first_piece + i];
+        uint32_t triangle = trace_triangle(piece, side);
+        for (size_t k = 0; k < 2; k++) {
+            const cscd_curve_point *point = &j->points[c->first_point + (i + k) % c->point_count];
+            if (point->edge == NO_EDGE || point->triangle == triangle) continue;
+            if (!triangle_has_edge(mesh, triangle, point->edge)) return true;
+        }
+    }
+    return false;
+}
+
 bool trace_may_divide(const cscd_mesh *mesh, const curve_joiner *j, trace_number trace) {
     const cscd_curve *c = &j->curves[trace / 2];
     uint32_t side = trace % 2;
     const cscd_curve_piece *first = &j->pieces[c->first_piece];
     if (mesh->components[mesh->triangle_components[trace_triangle(first, side)]].closed_manifold)
         return false;
-    if (!is_in_one_component(mesh, j, c, side)) return false;
-    if (trace_is_both(c)) return side == 0 && is_in_one_component(mesh, j, c, 1);
+    if (!is_in_one_component(mesh, j, c, side) || goes_over_seam(mesh, j, c, side)) return false;
+    if (trace_is_both(c))
+        return side == 0 && is_in_one_component(mesh, j, c, 1) && !goes_over_seam(mesh, j, c, 1);
     if (c->closed) return true;
     return end_may_divide(j, c, c->start, 0, 0, side) &&
            end_may_divide(j, c, c->end, c->point_count - 1, c->piece_count - 1, side);

@@ -8,13 +8,16 @@
 static body_rig rig; /* large; one test at a time */
 static cscd_intersection_pairs found;
 
-static void find_cut_offs(void) {
+static cscd_status try_cut_offs(void) {
     cscd_intersection_options options = cscd_intersection_defaults();
     options.cut_offs = options.overlaps = true;
+    return cscd_detector_find_intersections(rig.detector, CSCD_DOUBLES(rig.all.x0, rig.all.vertex_count),
+                                            &options, &found);
+}
+
+static void find_cut_offs(void) {
     body_rig_create(&rig, NULL, 1);
-    assert_int_equal(cscd_detector_find_intersections(
-                         rig.detector, CSCD_DOUBLES(rig.all.x0, rig.all.vertex_count), &options, &found),
-                     CSCD_OK);
+    assert_int_equal(try_cut_offs(), CSCD_OK);
     assert_non_null(found.cut_offs);
 }
 
@@ -126,6 +129,49 @@ static void a_cut_to_a_hole_divides_nothing(void **state) {
     }
 }
 
+/* A sheet of 6 x 6 cells with a slit along its middle from a border to (3, 3), whose sides are sewn together. */
+enum { SLIT_ROW = 3, SLIT_LENGTH = 3, SLIT_CELLS = 6 };
+
+static void add_sewn_slit(uint32_t seams[SLIT_LENGTH][2]) {
+    static const double along[3] = {6, 0, 0}, up[3] = {0, 6, 0};
+    scene *s = &rig.all;
+    body_rig_add_sheet(&rig, ORIGIN, along, up, SLIT_CELLS, SLIT_CELLS, false);
+    uint32_t row = SLIT_ROW * (SLIT_CELLS + 1), upper = SLIT_ROW * SLIT_CELLS * 2;
+    for (uint32_t v = 0; v < SLIT_LENGTH; v++) {
+        memcpy(&s->x0[s->vertex_count * 3], &s->x0[(row + v) * 3], sizeof(double[3]));
+        for (uint32_t i = upper * 3; i < s->triangle_count * 3; i++)
+            if (s->triangles[i] == row + v) s->triangles[i] = s->vertex_count;
+        seams[v][0] = row + v;
+        seams[v][1] = s->vertex_count++;
+    }
+}
+
+/* A post beside the seam cuts its cross-section off; one on the seam has a closed curve, and cuts nothing off. */
+static void traces_over_seams_divide_nothing(void **state) {
+    (void)state;
+    static const double size[3] = {0.8, 1.6, 2};
+    for (int i = 0; i < 4; i++) {
+        const double corner[3] = {0.63, 0.35 + i, -1};
+        uint32_t seams[SLIT_LENGTH][2];
+        cscd_detector_options options = cscd_detector_defaults();
+        body_rig_begin(&rig);
+        add_sewn_slit(seams);
+        options.seams = seams[0];
+        options.seam_count = SLIT_LENGTH;
+        body_rig_end_body(&rig);
+        body_rig_add_box(&rig, corner, size);
+        body_rig_end_body(&rig);
+        body_rig_create(&rig, &options, 1);
+        assert_int_equal(try_cut_offs(), CSCD_OK);
+        assert_int_equal(found.curves->count, 1);
+        assert_true(found.curves->items[0].closed);
+        bool over_seam = corner[1] < SLIT_ROW && corner[1] + size[1] > SLIT_ROW;
+        assert_int_equal(found.cut_offs->count, !over_seam);
+        if (!over_seam) expect_cut_off(0, size[0] * size[1], 36 - size[0] * size[1]);
+        body_rig_free(&rig);
+    }
+}
+
 /* Balls in a sheet that is bent: what they bury of it is what their curves cut off, or the rest. */
 static void balls_in_bent_sheets(void **state) {
     (void)state;
@@ -165,13 +211,6 @@ static void add_post(void) {
     body_rig_end_body(&rig);
 }
 
-static cscd_status try_cut_offs(void) {
-    cscd_intersection_options options = cscd_intersection_defaults();
-    options.cut_offs = true;
-    return cscd_detector_find_intersections(rig.detector, CSCD_DOUBLES(rig.all.x0, rig.all.vertex_count),
-                                            &options, &found);
-}
-
 static void every_allocation_may_fail(void **state) {
     (void)state;
     size_t failed = 0;
@@ -203,8 +242,8 @@ int main(void) {
                                        cmocka_unit_test(sheets_cross),
                                        cmocka_unit_test(a_narrow_sheet_is_divided),
                                        cmocka_unit_test(a_cut_to_a_hole_divides_nothing),
+                                       cmocka_unit_test(traces_over_seams_divide_nothing),
                                        cmocka_unit_test(balls_in_bent_sheets),
-
                                        cmocka_unit_test(every_allocation_may_fail)};
     return cmocka_run_group_tests_name("cut_offs", tests, NULL, NULL);
 }
