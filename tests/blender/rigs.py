@@ -50,7 +50,7 @@ def tube(name, rings, around, radius, height):
     return mesh
 
 
-def key_curve(owner, path, index, points, interpolation):
+def key_curve(owner, path, index, points, interpolation, slopes=(0.0, 0.3, -0.2, 0.1)):
     """Keys (frame, value); Bezier handles at a third of the way, as a cubic in time has them."""
     if owner.animation_data is None:
         owner.animation_data_create()
@@ -58,7 +58,6 @@ def key_curve(owner, path, index, points, interpolation):
         owner.animation_data.action = bpy.data.actions.new(owner.name)
     curve = owner.animation_data.action.fcurves.new(path, index=index)
     curve.keyframe_points.add(len(points))
-    slopes = [0.0, 0.3, -0.2, 0.1]
     for i, (point, (frame, value)) in enumerate(zip(curve.keyframe_points, points)):
         point.co = frame, value
         point.interpolation = interpolation
@@ -107,7 +106,7 @@ def rig_arm():
 
 
 def rig_face():
-    """Shape keys with constant, linear and Bezier keys, not sampled."""
+    """Shape keys with Bezier keys, exported as they are. Blender stops their values at 0 and 1, its exporter does not."""
     clear_file()
     set_range(0, 40)
     face = add_object('Face', tube('Face', 8, 10, 0.6, 1.0))
@@ -118,11 +117,10 @@ def rig_face():
             if j % 3 != i:  # many vertices stay where they are
                 point.co += Vector((0.1 * math.sin(j + i), 0.2 * math.cos(2 * j), 0.15 * i))
     keys = face.data.shape_keys
-    points = [(0, 0.0), (13, 0.8), (29, 0.1), (40, 1.0)]
-    key_curve(keys, 'key_blocks["Smile"].value', 0, points, 'LINEAR')
-    key_curve(keys, 'key_blocks["Blink"].value', 0, [(f, 1 - v) for f, v in points], 'LINEAR')
-    key_curve(keys, 'key_blocks["Bulge"].value', 0, [(f, v / 2) for f, v in points], 'LINEAR')
-    return {'export_force_sampling': True, 'export_morph': True}
+    for name, values in (('Smile', (0.1, 0.8, 0.2, 0.9)), ('Blink', (0.9, 0.1, 0.7, 0.3)), ('Bulge', (0.2, 0.5, 0.4, 0.3))):
+        key_curve(keys, f'key_blocks["{name}"].value', 0, list(zip((0, 13, 29, 40), values)), 'BEZIER',
+                  (0.0, 0.01, -0.01, 0.005))
+    return {'export_force_sampling': False, 'export_morph': True}
 
 
 def rig_train():
@@ -161,6 +159,38 @@ def rig_crane():
     return {'export_force_sampling': True}
 
 
+def rig_fin():
+    """Vertices of six joints each, which shape keys move as well."""
+    clear_file()
+    set_range(1, 24)
+    armature = add_object('Spine', bpy.data.armatures.new('Spine'))
+    bpy.context.view_layer.objects.active = armature
+    bpy.ops.object.mode_set(mode='EDIT')
+    for i in range(6):
+        bone = armature.data.edit_bones.new(f'ray{i}')
+        bone.head, bone.tail = (0.2 * i, 0, 0), (0.2 * i, 0.1 * i, 1)
+    bpy.ops.object.mode_set(mode='OBJECT')
+    fin = add_object('Fin', tube('Fin', 12, 8, 0.4, 1.5), armature)
+    for i in range(6):
+        group = fin.vertex_groups.new(name=f'ray{i}')
+        for vertex in fin.data.vertices:
+            group.add([vertex.index], 0.1 + abs(math.sin(vertex.index + i)), 'REPLACE')
+    fin.modifiers.new('Armature', 'ARMATURE').object = armature
+    fin.shape_key_add(name='Basis')
+    swell = fin.shape_key_add(name='Swell')
+    for j, point in enumerate(swell.data):
+        point.co += Vector((0.2 * math.cos(j), 0.1 * math.sin(j), 0))
+    key_curve(fin.data.shape_keys, 'key_blocks["Swell"].value', 0, [(1, 0.2), (11, 1.0), (24, 0.0)], 'LINEAR')
+    for i, bone in enumerate(armature.pose.bones):
+        bone.rotation_mode = 'XYZ'
+        for frame, angle in ((1, 0.1), (13, -0.5), (24, 0.8)):
+            bone.rotation_euler = (angle, 0.3 * angle * i, -angle)
+            bone.scale = (1, 1 + angle / 4, 1)
+            bone.keyframe_insert('rotation_euler', frame=frame)
+            bone.keyframe_insert('scale', frame=frame)
+    return {'export_force_sampling': True, 'export_all_influences': True}
+
+
 def evaluated_vertices():
     """Of each object, in the axes of glTF: x, z, -y."""
     graph = bpy.context.evaluated_depsgraph_get()
@@ -195,7 +225,8 @@ def write_truth(folder, name):
 
 def main():
     folder = sys.argv[sys.argv.index('--') + 1]
-    for name, rig in (('arm', rig_arm), ('face', rig_face), ('train', rig_train), ('crane', rig_crane)):
+    for name, rig in (('arm', rig_arm), ('face', rig_face), ('train', rig_train), ('crane', rig_crane),
+                      ('fin', rig_fin)):
         options = rig()
         bpy.context.view_layer.update()
         write_truth(folder, name)
