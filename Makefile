@@ -163,7 +163,7 @@ COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 # What installs packages; a build that leaves expat out on purpose does not ask for it.
 PACKAGES = GSL=$(GSL) CHARGE=$(CHARGE) EXPAT=$(if $(WITHOUT_EXPAT),0,1) .ci/packages
 
-.PHONY: all programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-embree referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces FORCE
+.PHONY: all programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-embree referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces fuzz-files FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -283,6 +283,12 @@ fuzz-surfaces: packages
 	@$(MAKE) --no-print-directory $(BUILD)/tests/intersections/fuzz_surfaces
 	@$(BUILD)/tests/intersections/fuzz_surfaces $(SCENES) $(SEED)
 
+# Mesh files with random damage, FILES="a.glb b.gii"; CONFIG=sanitize is what it is for.
+ROUNDS ?= 10000
+fuzz-files: packages
+	@$(MAKE) --no-print-directory $(BUILD)/tests/io/fuzz_files
+	@$(BUILD)/tests/io/fuzz_files $(ROUNDS) $(SEED) $(FILES)
+
 benchmarks: packages
 	@$(MAKE) --no-print-directory $(BENCHMARKS)
 
@@ -365,6 +371,7 @@ help:
 	@echo 'make referee   pairs of triangles beside those of CGAL, tetgen and MeshLab (installs these; REFEREE=--quick)'
 	@echo 'make fuzz-elementary   elementary tests against exact answers, [SECONDS=60] [QUERIES=0] [SEED=1] [KIND=both]'
 	@echo 'make fuzz-surfaces   curves, patches and winding numbers against exact answers, [SCENES=1000000] [SEED=1]'
+	@echo 'make fuzz-files   mesh files with random damage, FILES="a.glb b.gii" [ROUNDS=10000] [SEED=1], best with CONFIG=sanitize'
 	@echo 'make template  bundle the page of the reports, after changes in src/tool/report/web (needs node and npm)'
 	@echo 'make lint      format, file sizes, rooms, names, exported symbols'
 	@echo 'make examples  compile and run the examples of README and docs'

@@ -1,8 +1,8 @@
 /* Animations of glTF files that are refused, and what memory they take. */
 #include "src/io/animation.h"
 #include "src/io/growable.h"
+#include "tests/support/io/file_damage.h"
 #include "tests/support/io/gltf_animations.h"
-#include "tests/support/io/gltf_damage.h"
 #include "tests/support/temp_file.h"
 #include "tests/support/test.h"
 
@@ -147,7 +147,7 @@ static void survives_damage(void **state) {
     (void)state;
     gltf_fixture fixture;
     const file_bytes file = gltf_animations_two(&fixture, GLTF_MOVE_NODE_1 "," GLTF_SCALE_NODE_0);
-    const gltf_damage_counts counts = gltf_damage_rounds(file, 4000, 2);
+    const file_damage_counts counts = file_damage_rounds(file, 4000, 2);
     assert_true(counts.animated > 400 && counts.unanimated > 100 && counts.refused > 400);
 }
 

@@ -1,5 +1,5 @@
 /* glTF files that are wrong: each error says what and where, and no damage ends the program. */
-#include "tests/support/io/gltf_damage.h"
+#include "tests/support/io/file_damage.h"
 #include "tests/support/io/gltf_fixture.h"
 #include "tests/support/test.h"
 
@@ -230,7 +230,7 @@ static void survives_damage(void **state) {
     (void)state;
     gltf_fixture fixture = rich_fixture();
     const file_bytes file = gltf_fixture_glb(&fixture, RICH);
-    const gltf_damage_counts counts = gltf_damage_rounds(file, 4000, 1);
+    const file_damage_counts counts = file_damage_rounds(file, 4000, 1);
     assert_true(counts.read > 400 && counts.refused > 400);
 }
 

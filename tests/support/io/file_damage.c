@@ -1,5 +1,5 @@
-/* glTF files with random damage, read as meshes and as animations. */
-#include "tests/support/io/gltf_damage.h"
+/* Mesh files with random damage, read as meshes and as animations. */
+#include "tests/support/io/file_damage.h"
 #include "src/io/animation.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/temp_file.h"
@@ -75,8 +75,8 @@ static bool check_frames(const char *path, const mesh_file *mesh, const char *na
     return true;
 }
 
-gltf_damage_counts gltf_damage_rounds(file_bytes file, uint32_t round_count, uint64_t seed) {
-    gltf_damage_counts counts = {0};
+file_damage_counts file_damage_rounds(file_bytes file, uint32_t round_count, uint64_t seed) {
+    file_damage_counts counts = {0};
     random_stream random = stream_start(seed);
     const temp_folder folder = temp_folder_make();
     unsigned char *bytes = malloc(file.size + 8);
