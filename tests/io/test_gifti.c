@@ -73,51 +73,46 @@ static void refuses_what_is_no_surface(void **state) {
                    "no data array of NIFTI_INTENT_TRIANGLE", "points and triangles");
     check_replaced(ascii, "ASCII\" Endian=\"LittleEndian\" ExternalFileName=\"\"",
                    "ExternalFileBinary\" Endian=\"LittleEndian\" ExternalFileName=\"lh.dat\"",
-                   ":line 7: ", "another file, 'lh.dat'", "save the surface with its data inside");
-    check_replaced(ascii, "NIFTI_TYPE_FLOAT32", "NIFTI_TYPE_UINT8",
-                   ":line 7: ", "DataType is 'NIFTI_TYPE_UINT8'", "NIFTI_TYPE_FLOAT32 or NIFTI_TYPE_FLOAT64");
-    check_replaced(ascii, "Dim1=\"3\"", "Dim1=\"2\"", ":line 7: ", "Dim1 is '2'", "of 3");
-    check_replaced(ascii, "Dimensionality=\"2\"", "Dimensionality=\"3\"",
-                   ":line 7: ", "expected two dimensions", "");
-    check_replaced(ascii, "Dim0=\"4\" Dim1", "Dim0=\"-4\" Dim1", ":line 7: ", "Dim0 is '-4'",
-                   "1 to 2147483647");
-    check_replaced(ascii, "Dim0=\"4\" Dim1", "Dim0=\"4e9\" Dim1", ":line 7: ", "Dim0 is '4e9'",
-                   "1 to 2147483647");
-    check_replaced(ascii, "Dim0=\"4\" Dim1", "Dim0=\"2147483647\" Dim1", ":line 10: ", "characters",
+                   ":7: ", "another file, 'lh.dat'", "save the surface with its data inside");
+    check_replaced(ascii, "NIFTI_TYPE_FLOAT32", "NIFTI_TYPE_UINT8", ":7: ", "DataType is 'NIFTI_TYPE_UINT8'",
+                   "NIFTI_TYPE_FLOAT32 or NIFTI_TYPE_FLOAT64");
+    check_replaced(ascii, "Dim1=\"3\"", "Dim1=\"2\"", ":7: ", "Dim1 is '2'", "of 3");
+    check_replaced(ascii, "Dimensionality=\"2\"", "Dimensionality=\"3\"", ":7: ", "expected two dimensions",
+                   "");
+    check_replaced(ascii, "Dim0=\"4\" Dim1", "Dim0=\"-4\" Dim1", ":7: ", "Dim0 is '-4'", "1 to 2147483647");
+    check_replaced(ascii, "Dim0=\"4\" Dim1", "Dim0=\"4e9\" Dim1", ":7: ", "Dim0 is '4e9'", "1 to 2147483647");
+    check_replaced(ascii, "Dim0=\"4\" Dim1", "Dim0=\"2147483647\" Dim1", ":10: ", "characters",
                    "6442450941 numbers");
     check_replaced(ascii, "\"RowMajorOrder\" Dimensionality=\"2\"", "\"Diagonal\" Dimensionality=\"2\"",
-                   ":line 7: ", "ArrayIndexingOrder is 'Diagonal'", "RowMajorOrder or ColumnMajorOrder");
+                   ":7: ", "ArrayIndexingOrder is 'Diagonal'", "RowMajorOrder or ColumnMajorOrder");
     check_replaced((gifti_style){.encoding = 1}, "LittleEndian\" Ex", "MiddleEndian\" Ex",
-                   ":line 7: ", "Endian is 'MiddleEndian'", "LittleEndian or BigEndian");
-    check_replaced(ascii, "</GIFTI>", "</GIFTY>", ":line ", "no valid XML: mismatched tag", "");
+                   ":7: ", "Endian is 'MiddleEndian'", "LittleEndian or BigEndian");
+    check_replaced(ascii, "</GIFTI>", "</GIFTY>", ":", "no valid XML: mismatched tag", "");
     mesh_check_error(FILE_OF("lh.gii", "<surface/>"), ": ", "no element GIFTI", "");
-    mesh_check_error(FILE_OF("lh.gii", "\n<GIFTI>"), ":line 2: ", "no valid XML", "");
+    mesh_check_error(FILE_OF("lh.gii", "\n<GIFTI>"), ":2: ", "no valid XML", "");
 }
 
 static void refuses_wrong_data(void **state) {
     (void)state;
     const gifti_style ascii = {0}, base64 = {.encoding = 1}, zipped = {.encoding = 2};
-    check_replaced(ascii, "<Data>0 0 0", "<Data>0 0 x", ":line 10: ", "found 'x'", "a number");
-    check_replaced(ascii, "<Data>0 1 2", "<Data>0 1 2.5", ":line ", "found '2.5'", "a whole number");
-    check_replaced(ascii, "<Data>0 1 2", "<Data>0 1 4", ":line ", "triangle 0 names vertex 4", "there are 4");
-    check_replaced(ascii, "<Data>0 1 2", "<Data>0 1 -1", ":line ", "triangle 0 names vertex -1",
-                   "there are 4");
-    check_replaced(ascii, "<Data>0 0 0", "<Data>0 0", ":line 10: ", "have 11 numbers", "expected 12");
-    check_replaced(ascii, "<Data>0 0 0", "<Data>0 0 0 7", ":line 10: ", "after the last of 12", "");
-    check_replaced(ascii, "<Data>0 0 0", "<Data>0 0 1e39", ":line ", "coordinate z of vertex 0 is inf",
-                   "finite");
-    check_replaced(base64, "<Data>AAAA", "<Data>AA*A", ":line 10: ", "no base64 at character 2", "");
-    check_replaced(base64, "<Data>AAAA", "<Data>", ":line 10: ", "the data have 45 bytes",
+    check_replaced(ascii, "<Data>0 0 0", "<Data>0 0 x", ":10: ", "found 'x'", "a number");
+    check_replaced(ascii, "<Data>0 1 2", "<Data>0 1 2.5", ":", "found '2.5'", "a whole number");
+    check_replaced(ascii, "<Data>0 1 2", "<Data>0 1 4", ":", "triangle 0 names vertex 4", "there are 4");
+    check_replaced(ascii, "<Data>0 1 2", "<Data>0 1 -1", ":", "triangle 0 names vertex -1", "there are 4");
+    check_replaced(ascii, "<Data>0 0 0", "<Data>0 0", ":10: ", "have 11 numbers", "expected 12");
+    check_replaced(ascii, "<Data>0 0 0", "<Data>0 0 0 7", ":10: ", "after the last of 12", "");
+    check_replaced(ascii, "<Data>0 0 0", "<Data>0 0 1e39", ":", "coordinate z of vertex 0 is inf", "finite");
+    check_replaced(base64, "<Data>AAAA", "<Data>AA*A", ":10: ", "no base64 at character 2", "");
+    check_replaced(base64, "<Data>AAAA", "<Data>", ":10: ", "the data have 45 bytes",
                    "expected 48 for 4 rows");
-    check_replaced(base64, "<Data>AAAA", "<Data>AAAAAAAA", ":line 10: ", "the data have 51 bytes",
+    check_replaced(base64, "<Data>AAAA", "<Data>AAAAAAAA", ":10: ", "the data have 51 bytes",
                    "expected 48 for 4 rows");
-    check_replaced(zipped, "Dim0=\"4\" Dim1", "Dim0=\"3\" Dim1", ":line 10: ", "the data have 37 bytes",
+    check_replaced(zipped, "Dim0=\"4\" Dim1", "Dim0=\"3\" Dim1", ":10: ", "the data have 37 bytes",
                    "expected 36");
-    check_replaced(zipped, "Dim0=\"4\" Dim1", "Dim0=\"5\" Dim1", ":line 10: ", "the data have 48 bytes",
+    check_replaced(zipped, "Dim0=\"4\" Dim1", "Dim0=\"5\" Dim1", ":10: ", "the data have 48 bytes",
                    "expected 60");
-    check_replaced(zipped, "Dim0=\"4\" Dim1", "Dim0=\"2147483647\" Dim1", ":line 10: ", "bytes",
-                   "25769803764");
-    check_replaced(zipped, "<Data>e", "<Data>f", ":line 10: ", "cannot be unzipped", "damaged");
+    check_replaced(zipped, "Dim0=\"4\" Dim1", "Dim0=\"2147483647\" Dim1", ":10: ", "bytes", "25769803764");
+    check_replaced(zipped, "<Data>e", "<Data>f", ":10: ", "cannot be unzipped", "damaged");
 }
 
 static void plays_files_as_frames(void **state) {
