@@ -239,7 +239,9 @@ static void list_with_a_stranger_is_refused(void **state) {
                      "a point cache among several");
     check_list_fails(temp_file_path(&frame_fixture_folder, "missing.obj").text, "cannot open: No such file");
     check_list_fails(temp_file_path(&frame_fixture_folder, "f_%d.obj").text, "cannot open: No such file");
-    check_list_fails(temp_file_write(&frame_fixture_folder, "a.stl", "x", 1).text, "unknown extension");
+    check_list_fails(temp_file_write(&frame_fixture_folder, "a.txt", "x", 1).text, "unknown extension");
+    check_list_fails(temp_file_write(&frame_fixture_folder, "a.abc", "x", 1).text,
+                     "this is an Alembic archive");
     check_list_fails(frame_fixture_folder.path, "a folder must be the only path");
 }
 
@@ -278,7 +280,7 @@ static void bad_frames_are_named(void **state) {
     frame_fixture_check_error(&error, other.text, "holds 5 vertices, the model has 4 vertices",
                               "exported from another mesh", NULL);
     frame_fixture_read_fails(opened, VERTICES, 2, &error);
-    frame_fixture_check_error(&error, garbage.text, "line 1", NULL);
+    frame_fixture_check_error(&error, garbage.text, ":1: ", NULL);
     frame_fixture_read_fails(opened, VERTICES, 3, &error);
     frame_fixture_check_error(&error, gone.text, "No such file", NULL);
     frame_fixture_read_fails(opened, VERTICES, 5, &error);
@@ -298,7 +300,7 @@ static void values_that_are_not_finite_are_refused(void **state) {
         animation *opened = frame_fixture_open(path.text, 3);
         io_error error;
         frame_fixture_read_fails(opened, 3, 0, &error);
-        frame_fixture_check_error(&error, path.text, "line 2", NULL);
+        frame_fixture_check_error(&error, path.text, ":2: ", NULL);
         animation_close(opened);
     }
 }
