@@ -1,6 +1,7 @@
 /* Plays a sequence of mesh files: keeps their names and reads one file for each frame asked for. */
 #include "src/io/frame_files.h"
 
+#include "src/io/foreign_format.h"
 #include "src/io/frame_folder.h"
 #include "src/io/frame_names.h"
 #include "src/io/frame_pattern.h"
@@ -104,6 +105,8 @@ static bool check_listed(const char *path, io_error *error) {
                        S_ISDIR(status.st_mode) ? "a folder" : "not a regular file");
     if (point_cache_recognise(path))
         return io_fail(error, "%s: a point cache among several paths, expected it to be the only one", path);
+    const char *advice = foreign_format_advice(path, NULL, 0);
+    if (advice != NULL) return io_fail(error, "%s: this is %s", path, advice);
     if (path_mesh_ending(path) == 0)
         return io_fail(
             error, "%s: unknown extension, expected " PATH_MESH_ENDINGS " (one a frame), or one .pc2 or .mdd",

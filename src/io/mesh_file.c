@@ -1,13 +1,15 @@
-/* Triangle meshes from OBJ, PLY, OFF, glTF and GIFTI files: which format it is, and writing OBJ. */
+/* Triangle meshes from OBJ, PLY, OFF, STL, glTF and GIFTI files: which format it is, and writing OBJ. */
 #include "src/io/mesh_file.h"
 
 #include "src/io/file_reader.h"
+#include "src/io/foreign_format.h"
 #include "src/io/gifti.h"
 #include "src/io/gltf.h"
 #include "src/io/obj.h"
 #include "src/io/off.h"
 #include "src/io/path_name.h"
 #include "src/io/ply.h"
+#include "src/io/stl.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -24,18 +26,21 @@ static void skip_byte_order_mark(file_reader *reader) {
 
 static bool read_any(file_reader *reader, mesh_file *out) {
     if (reader->size == 0)
-        return file_reader_fail(reader, "the file is empty, expected an OBJ, PLY, OFF, glTF or GIFTI mesh");
+        return file_reader_fail(reader,
+                                "the file is empty, expected an OBJ, PLY, OFF, STL, glTF or GIFTI mesh");
     skip_byte_order_mark(reader);
     if (gltf_recognise(reader)) return gltf_read(reader, out);
     if (gifti_recognise(reader)) return gifti_read(reader, out);
+    if (stl_recognise(reader)) return stl_read(reader, out);
     if (ply_recognise(reader)) return ply_read(reader, out);
     if (off_recognise(reader)) return off_read(reader, out);
     if (path_has_extension(reader->path, ".obj")) return obj_read(reader, out);
     if (path_has_extension(reader->path, ".ply")) return ply_read(reader, out);
     if (path_has_extension(reader->path, ".off")) return off_read(reader, out);
-    return file_reader_fail(
-        reader,
-        "unknown format, expected a file that begins with ply or OFF or is named .obj, .gltf or .gii");
+    if (path_has_extension(reader->path, ".stl")) return stl_read(reader, out);
+    const char *advice = foreign_format_advice(reader->path, reader->bytes, reader->size);
+    if (advice != NULL) return file_reader_fail(reader, "this is %s", advice);
+    return file_reader_fail(reader, "unknown format, expected a mesh: " PATH_MESH_ENDINGS);
 }
 
 bool mesh_file_read(const char *path, mesh_file *out, io_error *error) {

@@ -1,4 +1,4 @@
-/* Triangle meshes from OBJ, PLY, OFF, glTF and GIFTI files. */
+/* Triangle meshes from OBJ, PLY, OFF, STL, glTF and GIFTI files. */
 #pragma once
 
 #include "src/io/io_error.h"

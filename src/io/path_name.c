@@ -16,7 +16,7 @@ bool path_has_extension(const char *path, const char *extension) {
 }
 
 size_t path_mesh_ending(const char *path) {
-    static const char *const endings[] = {".obj", ".ply", ".off", ".glb", ".gltf", ".gii"};
+    static const char *const endings[] = {".obj", ".ply", ".off", ".stl", ".glb", ".gltf", ".gii"};
     const size_t length = strlen(path);
     for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
         const size_t own = strlen(endings[i]);

@@ -68,7 +68,7 @@ static const option_row rows[] = {
 
 static const option_table table = {
     "preprocess", "MODEL [-o PLAN.ply] [options]",
-    "Cuts the mesh MODEL (OBJ, PLY, OFF, glTF, GIFTI), at rest as in the file, into regions, each with a point that sees "
+    "Cuts the mesh MODEL (OBJ, PLY, OFF, STL, glTF, GIFTI), at rest as in the file, into regions, each with a point that sees "
     "most of it, and saves this plan as a PLY that any viewer shows. cscd replay uses it to leave out pairs "
     "of triangles that cannot touch. Contacts are the same with any plan and with none.",
     rows, sizeof rows / sizeof *rows};

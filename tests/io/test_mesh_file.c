@@ -39,9 +39,25 @@ static void chooses_the_format(void **state) {
     mesh_check_square(FILE_OF("a.off", SQUARE_PLY));
     mesh_check_square(FILE_OF("a", SQUARE_PLY));
     mesh_check_square(FILE_OF("a.Off", "4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n"));
-    mesh_check_error(FILE_OF("a.txt", SQUARE_OBJ), ": ", "unknown format", "ply or OFF or is named .obj");
+    mesh_check_error(FILE_OF("a.txt", SQUARE_OBJ), ": ", "unknown format", "expected a mesh: .obj, .ply");
     mesh_check_error(FILE_OF("a.PLY", SQUARE_OBJ), ":1: ", "found 'v'", "expected ply");
     mesh_check_error(FILE_OF("a.off", SQUARE_OBJ), ":1: ", "found 'v'", "the number of vertices");
+}
+
+static void names_the_way_out_of_other_formats(void **state) {
+    (void)state;
+    static const file_bytes files[] = {
+        FILE_OF("a.abc", "?"),           FILE_OF("a", "Ogawa\xff"),    FILE_OF("a.usd", "?"),
+        FILE_OF("a.USDA", "?"),          FILE_OF("a.usdc", "?"),       FILE_OF("a.usdz", "PK"),
+        FILE_OF("a.txt", "#usda 1.0\n"), FILE_OF("a.fbx", "?"),        FILE_OF("a", "Kaydara FBX Binary  \0"),
+        FILE_OF("a.blend", "?"),         FILE_OF("a", "BLENDER-v304"), FILE_OF("a.x3d", "<X3D/>"),
+        FILE_OF("a.dae", "<COLLADA/>")};
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++)
+        mesh_check_error(files[i], ": ", "which is not read: export the mesh as OBJ", "docs/formats.md");
+    mesh_check_error(FILE_OF("a.vtp", "?"), ": ", "a VTK file", "convert it to OBJ");
+    mesh_check_error(FILE_OF("lh.pial", "\xff\xff\xfe"), ": ", "FreeSurfer", "mris_convert");
+    mesh_check_error(FILE_OF("surface", "\xff\xff\xfe"), ": ", "FreeSurfer", "mris_convert");
+    mesh_check_square(FILE_OF("a.obj", "#usda\n" SQUARE_OBJ)); /* a comment like another */
 }
 
 static void check_unreadable(const char *path, const char *found) {
@@ -63,9 +79,9 @@ static void refuses_what_is_no_file(void **state) {
     check_unreadable("", ": cannot open: No such file");
     temp_folder_remove(&folder);
     mesh_check_error(FILE_OF("a.obj", ""), ": ", "the file is empty",
-                     "expected an OBJ, PLY, OFF, glTF or GIFTI mesh");
+                     "expected an OBJ, PLY, OFF, STL, glTF or GIFTI mesh");
     mesh_check_error(FILE_OF("a.ply", ""), ": ", "the file is empty",
-                     "expected an OBJ, PLY, OFF, glTF or GIFTI mesh");
+                     "expected an OBJ, PLY, OFF, STL, glTF or GIFTI mesh");
 }
 
 static void keeps_messages_on_one_line(void **state) {
@@ -265,6 +281,7 @@ static void removes_what_it_cannot_finish(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(chooses_the_format),
+        cmocka_unit_test(names_the_way_out_of_other_formats),
         cmocka_unit_test(refuses_what_is_no_file),
         cmocka_unit_test(keeps_messages_on_one_line),
         cmocka_unit_test(reads_pipes),

@@ -96,6 +96,65 @@ static void welding_finds_what_the_clean_export_has(void **state) {
     contact_rows_free(&welded);
 }
 
+/* The recording with three vertices for each triangle, as STL stores them. */
+static recorded split_all(const recorded *r) {
+    recorded soup = {.vertex_count = 3 * r->triangle_count,
+                     .triangle_count = r->triangle_count,
+                     .frame_count = r->frame_count};
+    soup.triangles = malloc(soup.vertex_count * sizeof *soup.triangles);
+    soup.frames = malloc((size_t)soup.frame_count * soup.vertex_count * 3 * sizeof *soup.frames);
+    assert_true(soup.triangles != NULL && soup.frames != NULL);
+    for (uint32_t v = 0; v < soup.vertex_count; v++) {
+        soup.triangles[v] = v;
+        for (uint32_t frame = 0; frame < soup.frame_count; frame++)
+            memcpy(soup.frames + 3 * ((size_t)frame * soup.vertex_count + v),
+                   recorded_position(r, frame, r->triangles[v]), 3 * sizeof *soup.frames);
+    }
+    return soup;
+}
+
+static temp_path write_stl(const char *name, const recorded *soup, uint32_t frame) {
+    static char text[20000];
+    size_t used = (size_t)snprintf(text, sizeof text, "solid recorded\n");
+    for (uint32_t v = 0; v < soup->vertex_count; v++) {
+        const double *x = recorded_position(soup, frame, v);
+        used += (size_t)snprintf(text + used, sizeof text - used, "%svertex %.17g %.17g %.17g\n%s",
+                                 v % 3 == 0 ? "facet normal 0 0 0\nouter loop\n" : "", x[0], x[1], x[2],
+                                 v % 3 == 2 ? "endloop\nendfacet\n" : "");
+        assert_true(used < sizeof text - 20);
+    }
+    used += (size_t)snprintf(text + used, sizeof text - used, "endsolid recorded\n");
+    return temp_file_write(&folder, name, text, used);
+}
+
+static void stl_files_are_welded_unless_one_says_no(void **state) {
+    (void)state;
+    recorded soup = split_all(&clean);
+    temp_path frames[3];
+    assert_int_equal(soup.frame_count, 3);
+    for (uint32_t i = 0; i < 3; i++)
+        frames[i] = write_stl((const char *[]){"f1.stl", "f2.stl", "f3.stl"}[i], &soup, i);
+    contact_rows expected = contacts_of(&clean_model, clean_cache.text, "--threads", "1");
+    EXPECT_TOOL(0, "replay", frames[0].text, frames[1].text, frames[2].text, "--contacts", csv.text,
+                "--quiet");
+    contact_rows welded = contact_rows_read_csv(csv.text);
+    for (size_t i = 0; i < welded.count; i++) welded.items[i].frame--; /* f1.stl is frame 1 */
+    assert_file_indices(&soup, &welded);
+    assert_same_places(&expected, &welded);
+    contact_rows_free(&expected);
+    contact_rows_free(&welded);
+    tool_run run = RUN_TOOL("info", frames[0].text);
+    assert_non_null(
+        strstr(run.error, "the 48 vertices of the STL file are joined to 12; --weld none keeps them apart"));
+    assert_non_null(strstr(run.out, "components  2"));
+    tool_run_free(&run);
+    run = RUN_TOOL("info", frames[0].text, "--weld", "none");
+    assert_non_null(strstr(run.out, "components  16"));
+    assert_non_null(strstr(run.error, "--weld exact would close the mesh"));
+    tool_run_free(&run);
+    recorded_free(&soup);
+}
+
 static void expect_info(const char *text, const char *weld) {
     tool_run run = weld != NULL ? RUN_TOOL("info", split_model.text, "--weld", weld)
                                 : RUN_TOOL("info", split_model.text);
@@ -287,6 +346,7 @@ static void ignores_what_meets_at_rest(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(welding_finds_what_the_clean_export_has),
+        cmocka_unit_test(stl_files_are_welded_unless_one_says_no),
         cmocka_unit_test(welding_closes_the_mesh),
         cmocka_unit_test(suggests_welding_where_it_would_close_the_first_frame),
         cmocka_unit_test(welds_within_a_distance),

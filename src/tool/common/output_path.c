@@ -36,7 +36,7 @@ static bool same_file(const char *a, const char *b) {
 }
 
 static bool named_like_input(const char *path) {
-    static const char *const others[] = {".pc2", ".mdd", ".stl"};
+    static const char *const others[] = {".pc2", ".mdd"};
     for (size_t i = 0; i < sizeof others / sizeof *others; i++)
         if (path_has_extension(path, others[i])) return true;
     return path_mesh_ending(path) > 0;

@@ -1,4 +1,5 @@
 /* Warnings about a mesh, which a person should know before trusting its results. */
+#include "src/io/path_name.h"
 #include "src/tool/common/command.h"
 #include "src/tool/common/recording.h"
 
@@ -71,6 +72,9 @@ static void warn_object(const recording *r, recorded_object *object) {
                *colon = r->object_count > 1 ? ": " : "";
     if (object->frames != NULL && animation_note(object->frames) != NULL)
         warn("%s%s%s", name, colon, animation_note(object->frames));
+    if (object->welded && path_has_extension(object->source.model_path, ".stl"))
+        warn("%s%sthe %u vertices of the STL file are joined to %u; --weld none keeps them apart", name,
+             colon, object->file.vertex_count, object->weld.vertex_count);
     if (object->welded && object->weld.collapsed_triangles > 0)
         warn("%s%swelding collapsed %u triangle%s, left out from here on", name, colon,
              object->weld.collapsed_triangles, object->weld.collapsed_triangles == 1 ? "" : "s");

@@ -95,7 +95,7 @@ static const option_row rows[] = {
 
 static const option_table table = {
     "replay", "MODEL FRAMES... [options]",
-    "Finds every contact of the mesh MODEL (OBJ, PLY, OFF, glTF, GIFTI) with itself between one frame and the next.\n"
+    "Finds every contact of the mesh MODEL (OBJ, PLY, OFF, STL, glTF, GIFTI) with itself between one frame and the next.\n"
     "FRAMES: one .pc2 or .mdd point cache, one .glb or .gltf file, a pattern like f_%04d.obj, a folder, or a "
     "list of mesh files.",
     rows, sizeof rows / sizeof *rows};
