@@ -127,6 +127,26 @@ class Material:
         self.replay_files(made, *options)
         return made
 
+    def stepped(self):
+        """Makes the same flight as mesh files that an artist has numbered, with a gap: frames 1001, 1003 ... 1011, 1017 ...
+
+        The file before them, 999, is not replayed."""
+        return self.once("stepped", self._stepped)
+
+    def _stepped(self, name):
+        made, source = Made(self.folder, name), self.tetrahedra()
+        made.numbers = [1001, 1003, 1005, 1007, 1009, 1011, 1017, 1019, 1021, 1023]
+        _, triangles = recording_file.read_obj(source.model)
+        files = []
+        frames = list(recording_file.read_pc2(source.frames))
+        for number, axes in zip([999] + made.numbers, frames[:1] + frames):
+            files.append(os.path.join(self.folder, f"stepped.{number}.obj"))
+            recording_file.write_obj(files[-1], list(zip(*axes)), triangles)
+        made.model = files[0]
+        self.run("cscd", "replay", *files, "--allow-gaps", "--frames", "1001:", "--json", made.json, "--contacts", made.csv,
+                 "--report", made.page, "--quiet")
+        return made
+
     def large(self):
         """Makes a torus of 100,000 triangles that is bent to and fro: not all of its frames fit in the page."""
         return self.once("large", self._large)

@@ -17,6 +17,7 @@ import charts_scenarios  # noqa: E402
 import controls_scenarios  # noqa: E402
 import data_scenarios  # noqa: E402
 import extremes_scenarios  # noqa: E402
+import frames_scenarios  # noqa: E402
 import layout_scenarios  # noqa: E402
 import speed_scenarios  # noqa: E402
 import tables_scenarios  # noqa: E402
@@ -25,8 +26,8 @@ from material import Material  # noqa: E402
 from page import Page  # noqa: E402
 from pictures import Pictures  # noqa: E402
 
-MODULES = (data_scenarios, controls_scenarios, view_scenarios, charts_scenarios, tables_scenarios, layout_scenarios,
-           extremes_scenarios, speed_scenarios)
+MODULES = (data_scenarios, controls_scenarios, frames_scenarios, view_scenarios, charts_scenarios, tables_scenarios,
+           layout_scenarios, extremes_scenarios, speed_scenarios)
 SCENARIOS = {scenario.__name__: scenario for module in MODULES for scenario in module.SCENARIOS}
 
 

@@ -49,6 +49,7 @@ static void heat_contact(contact_arrays *a, const cscd_mesh *mesh, const cscd_co
 
 static bool keep_contact(contact_arrays *a, const report_options *options, uint32_t interval,
                          const cscd_contact *contact, double scale) {
+    uint32_t place = interval - options->first;
     uint8_t kind = contact->kind == CSCD_CONTACT_EE;
     cscd_stencil stencil =
         cscd_mesh_stencil(options->mesh, contact->kind, contact->a, contact->b, contact->u, contact->v);
@@ -60,7 +61,7 @@ static bool keep_contact(contact_arrays *a, const report_options *options, uint3
         options->file_vertices(options->file_vertices_user, contact, vertices);
         if (!packed_array_add_u32(a->file_vertices, vertices, 4)) return false;
     }
-    return packed_array_add_u32(a->interval, &interval, 1) && packed_array_add_bytes(a->kind, &kind, 1) &&
+    return packed_array_add_u32(a->interval, &place, 1) && packed_array_add_bytes(a->kind, &kind, 1) &&
            packed_array_add_u32(a->vertices, stencil.vertices, 4) &&
            packed_array_add_f64(a->toi, &contact->toi, 1) && packed_array_add_f64(a->point, point, 3);
 }

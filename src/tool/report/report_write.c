@@ -23,6 +23,14 @@ static void write_frames(json *out, const report *r, bool all) {
     json_end_array(out);
 }
 
+/* What all frames are called, also those that are not kept. */
+static void write_numbers(json *out, const report *r) {
+    json_begin_array(out, "numbers");
+    for (uint32_t frame = r->options.first; frame <= r->last; frame++)
+        json_signed(out, NULL, frame_number_of(r, frame));
+    json_end_array(out);
+}
+
 static void write_scenery(json *out, const report *r) {
     const report_scenery *scenery = &r->options.scenery;
     if (scenery->triangles == NULL) {
@@ -109,6 +117,7 @@ static void write_scene(json *out, const report *r, const page_arrays *arrays) {
     json_string(out, "up", r->options.up_axis == 1 ? "y" : "z");
     json_signed(out, "first", frame_number_of(r, r->options.first));
     json_signed(out, "last", frame_number_of(r, r->last));
+    write_numbers(out, r);
     write_frames(out, r, true);
     json_number(out, "max_error", r->frames.max_error);
     json_number(out, "relative_error", r->frames.relative_error);

@@ -24,8 +24,8 @@ function drawTicks(canvas, counts, strip, ink) {
 export function createBand(report, store, player) {
   const canvas = element('canvas', { class: 'band', 'aria-hidden': 'true' });
   const find = finder(report.summaries[0]?.summary);
-  const intervals = player.last - player.first;
-  const stateOf = (i) => find(player.first + i)?.state ?? 'unknown';
+  const intervals = player.counts.length;
+  const stateOf = (i) => find(player.numbers[i])?.state ?? 'unknown';
 
   function draw() {
     const density = window.devicePixelRatio || 1;

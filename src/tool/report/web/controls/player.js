@@ -1,5 +1,7 @@
 /** Moves the time by playing, stepping and jumping, always through the store. */
 
+import { finder, intervalCount, lastAtOrBefore, timeWithin } from '../page/intervals.js';
+
 const SPEEDS = [1, 2, 5, 10, 15, 24, 30, 60];
 
 /** A contact at the very end of an interval is shown in this interval, not in the next one. */
@@ -7,23 +9,22 @@ const WITHIN = 1 - 1e-9;
 
 /** How many contacts each interval has by the summary, and which intervals have any. */
 function contactCounts(report) {
-  const { first, last } = report.scene;
-  const counts = new Uint32Array(Math.max(0, last - first));
-  for (const row of report.summaries[0]?.summary.intervals ?? []) {
-    if (row.frame >= first && row.frame < last) counts[row.frame - first] = row.vf + row.ee;
-  }
-  return counts;
+  const find = finder(report.summaries[0]?.summary);
+  return Uint32Array.from({ length: intervalCount(report.scene) }, (_, i) => {
+    const row = find(report.scene.numbers[i]);
+    return row === undefined ? 0 : row.vf + row.ee;
+  });
 }
 
 export function createPlayer(report, store) {
-  const { first, last } = report.scene;
+  const { first, last, numbers } = report.scene;
   const counts = contactCounts(report);
   const withContacts = [];
   counts.forEach((count, i) => {
-    if (count > 0) withContacts.push(first + i);
+    if (count > 0) withContacts.push(numbers[i]);
   });
-  let most = null;
-  for (const frame of withContacts) if (most === null || counts[frame - first] > counts[most - first]) most = frame;
+  const greatest = counts.reduce((at, count, i) => (count > counts[at] ? i : at), 0);
+  const most = withContacts.length > 0 ? numbers[greatest] : null;
 
   let request = null;
   let then = 0;
@@ -53,11 +54,14 @@ export function createPlayer(report, store) {
     }
   });
 
+  /** The frame at or before a time. */
+  const frameAt = (time) => numbers[Math.max(0, lastAtOrBefore(numbers, time))];
   const clamp = (time) => Math.min(last, Math.max(first, time));
   const show = (time) => store.set({ time: clamp(time), playing: false, selected: null });
   const player = {
     first,
     last,
+    numbers,
     speeds: SPEEDS,
     counts,
     withContacts,
@@ -76,11 +80,11 @@ export function createPlayer(report, store) {
     stepTo: show,
     toFirst: () => show(first),
     toLast: () => show(last),
-    previous: () => show(Math.ceil(store.get().time) - 1),
-    next: () => show(Math.floor(store.get().time) + 1),
+    previous: () => show(numbers.findLast((number) => number < store.get().time) ?? first),
+    next: () => show(numbers[lastAtOrBefore(numbers, store.get().time) + 1] ?? last),
     /** null where there is none. */
-    frameWithContactsBefore: (time) => withContacts.findLast((frame) => frame < Math.floor(time)) ?? null,
-    frameWithContactsAfter: (time) => withContacts.find((frame) => frame > Math.floor(time)) ?? null,
+    frameWithContactsBefore: (time) => withContacts.findLast((frame) => frame < frameAt(time)) ?? null,
+    frameWithContactsAfter: (time) => withContacts.find((frame) => frame > frameAt(time)) ?? null,
     previousWithContacts() {
       const frame = player.frameWithContactsBefore(store.get().time);
       if (frame !== null) show(frame);
@@ -99,7 +103,8 @@ export function createPlayer(report, store) {
         return;
       }
       const { interval, toi } = report.scene.contacts;
-      store.set({ selected: contact, time: interval[contact] + Math.min(toi[contact], WITHIN), playing: false });
+      const time = timeWithin(interval[contact], Math.min(toi[contact], WITHIN), report.scene);
+      store.set({ selected: contact, time, playing: false });
     },
     faster: () => changeSpeed(1),
     slower: () => changeSpeed(-1),

@@ -4,6 +4,7 @@ import { createBand } from './band.js';
 import { onCalmly } from './calm.js';
 import { button, element, icon } from '../page/dom.js';
 import { moment } from '../page/format.js';
+import { lastAtOrBefore } from '../page/intervals.js';
 
 const GLYPHS = {
   play: 'M4 2.5v11l9-5.5z',
@@ -74,15 +75,16 @@ function slider(store, player) {
   const input = element('input', {
     type: 'range',
     'aria-label': 'Frame',
-    min: player.first,
-    max: player.last,
+    min: 0, // frames from the first: their numbers may have gaps, the band over the slider has none
+    max: player.numbers.length - 1,
     step: 1,
-    value: player.first,
+    value: 0,
   });
-  input.addEventListener('input', () => player.stepTo(Number(input.value)));
+  input.addEventListener('input', () => player.stepTo(player.numbers[Number(input.value)]));
   const update = ({ time }) => {
-    const frame = Math.floor(time);
+    const frame = Math.max(0, lastAtOrBefore(player.numbers, time));
     if (Number(input.value) !== frame) input.value = String(frame);
+    input.setAttribute('aria-valuetext', String(player.numbers[frame]));
   };
   store.on(['time'], update);
   update(store.get());

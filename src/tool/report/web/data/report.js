@@ -2,6 +2,7 @@
 
 import { BlockError, readArray, readDocument } from './decode.js';
 import { FrameStore } from './frames.js';
+import { lastAtOrBefore } from '../page/intervals.js';
 
 function below(array, bound, name) {
   for (let i = 0; i < array.length; i++) {
@@ -28,18 +29,6 @@ async function readArrays(entries) {
 function required(array, name) {
   if (array === null) throw new BlockError(name, 'is missing');
   return array;
-}
-
-/** The last element at or before a value; -1 where there is none. */
-export function lastAtOrBefore(ascending, value) {
-  let low = 0;
-  let high = ascending.length;
-  while (low < high) {
-    const middle = (low + high) >> 1;
-    if (ascending[middle] <= value) low = middle + 1;
-    else high = middle;
-  }
-  return low - 1;
 }
 
 /** Orientations are stored as the difference from the interval before, four triangles a byte. */
@@ -69,10 +58,11 @@ function orientationOf(bytes, scene) {
 function detectorPointsOf(numbers, scene) {
   if (numbers === null) return null;
   const regions = scene.plan.regions.length;
-  ofLength(numbers, 6 * regions * (scene.last - scene.first), 'detector_points');
+  ofLength(numbers, 6 * regions * (scene.numbers.length - 1), 'detector_points');
+  /** @param {number} interval counted from the first */
   return (interval, fraction) => {
     const points = new Float64Array(3 * regions);
-    const begin = 6 * regions * (interval - scene.first);
+    const begin = 6 * regions * interval;
     for (let i = 0; i < 3 * regions; i++) {
       const start = begin + 6 * Math.floor(i / 3) + (i % 3);
       points[i] = numbers[start] + fraction * (numbers[start + 3] - numbers[start]);
@@ -83,17 +73,19 @@ function detectorPointsOf(numbers, scene) {
 
 function contactsOf(array, scene) {
   if (scene.contacts === null) return null;
-  const interval = array('contact_interval') ?? new Uint32Array(0);
+  const places = array('contact_interval') ?? new Uint32Array(0);
+  below(places, scene.numbers.length - 1, 'contact_interval');
+  const interval = Int32Array.from(places, (place) => scene.numbers[place]);
   const contacts = {
     count: interval.length,
-    interval,
+    interval, // the frame that it begins with
     kind: array('contact_kind') ?? new Uint8Array(0),
     vertices: array('contact_vertices') ?? new Uint32Array(0),
     fileVertices: array('contact_file_vertices'),
     toi: array('contact_toi') ?? new Float64Array(0),
     point: array('contact_point') ?? new Float64Array(0),
     /** Contacts begin .. end-1 belong to the interval. */
-    range: (k) => [lastAtOrBefore(interval, k - 1) + 1, lastAtOrBefore(interval, k) + 1],
+    range: (frame) => [lastAtOrBefore(interval, frame - 1) + 1, lastAtOrBefore(interval, frame) + 1],
   };
   checkContacts(contacts, scene);
   return contacts;
@@ -111,7 +103,6 @@ function checkContacts(contacts, scene) {
   ofLength(contacts.point, 3 * count, 'contact_point');
   below(contacts.kind, 2, 'contact_kind');
   below(contacts.vertices, scene.vertices, 'contact_vertices');
-  below(interval, Math.max(scene.last, 1), 'contact_interval');
   for (let i = 1; i < count; i++) {
     if (interval[i] < interval[i - 1]) throw new BlockError('contact_interval', 'is not ascending');
   }
@@ -138,7 +129,18 @@ function perTriangle(array, scene) {
   return values;
 }
 
-async function sceneOf(scene) {
+/** Reports of tools before the frames had numbers have a step of 1. */
+function numbersOf({ numbers, first, last }) {
+  const found = numbers ?? Array.from({ length: last - first + 1 }, (_, i) => first + i);
+  const ascending = found.every((number, i) => Number.isInteger(number) && (i === 0 || number > found[i - 1]));
+  if (!ascending || found[0] !== first || found[found.length - 1] !== last) {
+    throw new BlockError('cscd-report', 'has frame numbers that are not ascending from the first to the last');
+  }
+  return found;
+}
+
+async function sceneOf(told) {
+  const scene = { ...told, numbers: numbersOf(told) };
   const array = await readArrays(scene.arrays);
   const triangles = required(array('triangles'), 'triangles');
   ofLength(triangles, 3 * scene.triangles, 'triangles');
@@ -150,6 +152,7 @@ async function sceneOf(scene) {
     componentCount: scene.components,
     first: scene.first,
     last: scene.last,
+    numbers: scene.numbers, // of all frames, also of those that are not kept
     frames: scene.frames,
     maxError: scene.max_error,
     relativeError: scene.relative_error,

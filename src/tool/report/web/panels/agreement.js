@@ -1,6 +1,6 @@
 /** In which intervals replays found the same contacts, and under which circumstances they ran. */
 import { counted, integer, ranges } from '../page/format.js';
-import { finder } from '../page/intervals.js';
+import { finder, lastFrameOf } from '../page/intervals.js';
 import { nameOf } from '../page/names.js';
 
 /** In which of its intervals a replay found other contacts than the first did, and how many both have. */
@@ -55,13 +55,14 @@ export function agreement(report) {
 const GRAVE = ['model', 'recording', 'frames', 'mode', 'least separation'];
 
 /** The circumstances of a replay and their values. */
-function circumstances({ provenance, summary, intervals }) {
+function circumstances(run) {
+  const { provenance, summary, intervals } = run;
   const { machine } = provenance;
   const input = (i) =>
     provenance.inputs?.[i] ? `${provenance.inputs[i].name} ${provenance.inputs[i].fnv1a64}` : 'unknown';
   const content = (i) => provenance.inputs?.[i]?.fnv1a64 ?? 'unknown';
   const span =
-    intervals.length > 0 ? `${intervals[0].frame} to ${intervals[intervals.length - 1].frame + 1}` : 'none';
+    intervals.length > 0 ? `${intervals[0].frame} to ${lastFrameOf(run)}` : 'none';
   return {
     model: [content(0), input(0)],
     recording: [content(1), input(1)],

@@ -3,12 +3,11 @@ import { onCalmly } from '../controls/calm.js';
 import { element, heading, setText } from '../page/dom.js';
 import { createFigure } from './figure.js';
 import { compareFigures, replayFigures } from './figures.js';
-import { extentOf, finder, intervalAt } from '../page/intervals.js';
+import { extentOf, finder, intervalCount, intervalIndexAt, placeOf } from '../page/intervals.js';
 import { followPointer } from './pointer.js';
 import { createStateBand } from './stateband.js';
 
 const ZOOMED_FROM = 60; /* fewer intervals need no zoom */
-const MOST = 5e6; /* intervals, gaps between replays included */
 
 /** How many intervals a chart shows of a long recording. */
 function createRange(count, changed) {
@@ -63,19 +62,18 @@ function scaleSwitches(compares, change) {
 
 export function create(container, report, store, player) {
   const extent = extentOf(report);
-  const { first, last } = extent;
-  const count = last - first;
+  const { numbers } = extent;
+  const count = intervalCount(extent);
   container.hidden = report.kind === 'preprocess' || count < 1;
   if (container.hidden) return;
-  if (count > MOST) throw new Error('its replays are of frames too far apart for one chart.');
   const compares = report.kind === 'compare';
   const finders = report.summaries.map(({ summary }) => finder(summary));
-  const figures = (compares ? compareFigures : replayFigures)(report, first, last, finders).map((figure) =>
-    createFigure({ ...figure, first, last }),
+  const figures = (compares ? compareFigures : replayFigures)(report, numbers, finders).map((figure) =>
+    createFigure({ ...figure, numbers }),
   );
   const band = compares
     ? null
-    : createStateBand(Array.from({ length: count }, (_, i) => finders[0](first + i)));
+    : createStateBand(Array.from({ length: count }, (_, i) => finders[0](numbers[i])));
   let plots = [];
   let hovered = null;
   let read = -1;
@@ -85,35 +83,36 @@ export function create(container, report, store, player) {
     title: 'The interval whose values are shown: under the pointer, else the current one',
   });
 
-  const moment = () => store.get().time - first;
+  const moment = () => placeOf(store.get().time, extent);
   const range = createRange(count, (begin, end) => {
     plots.forEach((plot) => plot.setRange(begin, end));
     band?.setRange(begin, end);
   });
 
   function readValues() {
-    const interval = hovered ?? intervalAt(store.get().time, extent) - first;
+    const interval = hovered ?? intervalIndexAt(store.get().time, extent);
     if (interval === read) return;
     read = interval;
-    setText(reading, `frame ${first + interval}`);
+    setText(reading, `frame ${numbers[interval]}`);
     figures.forEach((figure) => figure.show(interval));
   }
 
   function hover(interval) {
     hovered = interval;
-    plots.forEach((plot) => plot.setHover(interval === null ? null : first + interval + 0.5));
+    plots.forEach((plot) => plot.setHover(interval === null ? null : interval + 0.5));
     readValues();
   }
 
   function go(interval) {
-    if (player) player.stepTo(first + interval);
-    else store.set({ time: first + interval });
+    if (player) player.stepTo(numbers[interval]);
+    else store.set({ time: numbers[interval] });
   }
 
   function follow({ time }) {
-    range.contain(time - first);
-    plots.forEach((plot) => plot.setTime(time));
-    band?.setTime(time - first);
+    const place = placeOf(time, extent);
+    range.contain(place);
+    plots.forEach((plot) => plot.setTime(place));
+    band?.setTime(place);
   }
 
   function draw() {

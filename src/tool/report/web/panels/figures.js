@@ -4,9 +4,10 @@ import { nameOf } from '../page/names.js';
 import { lineOf, lineStyle } from './palette.js';
 import { OTHER, otherMilliseconds, stagesOf } from './stages.js';
 
-const column = (first, last, find, value) =>
-  Array.from({ length: last - first }, (_, i) => {
-    const interval = find(first + i);
+/** A value of each interval; null where the replay has none. */
+const column = (numbers, find, value) =>
+  Array.from({ length: numbers.length - 1 }, (_, i) => {
+    const interval = find(numbers[i]);
     return interval ? value(interval) : null;
   });
 
@@ -20,15 +21,15 @@ const millisecondsWithUnit = (value) => `${milliseconds(value)} ms`;
 
 const tick = (value) => (value >= 10000 ? `${significant(value / 1000, 4)}k` : significant(value, 6));
 
-function stageFigure({ summary: { summary } }, first, last, find) {
-  const total = column(first, last, find, ({ ms }) => ms.total);
+function stageFigure({ summary: { summary } }, numbers, find) {
+  const total = column(numbers, find, ({ ms }) => ms.total);
   const stages = stagesOf(summary.method).map((stage) => ({
     ...stage,
-    values: column(first, last, find, ({ ms }) => ms[stage.key]),
+    values: column(numbers, find, ({ ms }) => ms[stage.key]),
   }));
-  const other = { ...OTHER, values: column(first, last, find, ({ ms }) => otherMilliseconds(ms)) };
+  const other = { ...OTHER, values: column(numbers, find, ({ ms }) => otherMilliseconds(ms)) };
   const { mean, max } = summary.total_ms;
-  const most = first + largest(total);
+  const most = numbers[largest(total)];
   const words = `mean ${milliseconds(mean)} ms, maximum ${milliseconds(max)} ms (frame ${most})`;
   return {
     title: 'Milliseconds per stage',
@@ -42,9 +43,9 @@ function stageFigure({ summary: { summary } }, first, last, find) {
   };
 }
 
-function contactFigure({ summary: { summary } }, first, last, find) {
-  const vf = column(first, last, find, (interval) => interval.vf);
-  const ee = column(first, last, find, (interval) => interval.ee);
+function contactFigure({ summary: { summary } }, numbers, find) {
+  const vf = column(numbers, find, (interval) => interval.vf);
+  const ee = column(numbers, find, (interval) => interval.ee);
   const both = vf.map((value, i) => (value === null ? null : value + ee[i]));
   const most = largest(both);
   const words =
@@ -52,7 +53,7 @@ function contactFigure({ summary: { summary } }, first, last, find) {
       ? 'none'
       : `${integer(summary.vf)} VF and ${integer(summary.ee)} EE ` +
         `in ${counted(summary.intervals_with_contact, 'interval')}, ` +
-        `at most ${integer(both[most])} (frame ${first + most})`;
+        `at most ${integer(both[most])} (frame ${numbers[most]})`;
   return {
     title: 'Contacts per interval',
     summary: words,
@@ -68,10 +69,10 @@ function contactFigure({ summary: { summary } }, first, last, find) {
   };
 }
 
-function pairFigure({ summary: { summary } }, first, last, find) {
-  const values = column(first, last, find, ({ pcp }) => pcp);
+function pairFigure({ summary: { summary } }, numbers, find) {
+  const values = column(numbers, find, ({ pcp }) => pcp);
   const { mean, max } = summary.pcp;
-  const words = `mean ${decimal(mean, 1)}, maximum ${integer(max)} (frame ${first + largest(values)})`;
+  const words = `mean ${decimal(mean, 1)}, maximum ${integer(max)} (frame ${numbers[largest(values)]})`;
   return {
     title: 'Pairs per interval (#PCPs)',
     summary: words,
@@ -84,23 +85,23 @@ function pairFigure({ summary: { summary } }, first, last, find) {
 }
 
 /** The charts of one replay. If it was stopped, missing values count as 0 in a stack. */
-export function replayFigures(report, first, last, [find]) {
-  return [stageFigure, contactFigure, pairFigure].map((make) => make(report.summaries[0], first, last, find));
+export function replayFigures(report, numbers, [find]) {
+  return [stageFigure, contactFigure, pairFigure].map((make) => make(report.summaries[0], numbers, find));
 }
 
-function compareFigure(report, first, last, finders, { title, value, read, words }) {
+function compareFigure(report, numbers, finders, { title, value, read, words }) {
   const series = report.summaries.map((_, index) => ({
     ...lineStyle(index),
     label: nameOf(report, index),
     mark: lineOf(index),
     summary: words(report.summaries[index].summary.summary),
-    values: column(first, last, finders[index], value),
+    values: column(numbers, finders[index], value),
   }));
   return { title, summary: '', stacked: false, height: 190, read, format: tick, series };
 }
 
 /** The charts of several replays, a line for each. */
-export function compareFigures(report, first, last, finders) {
+export function compareFigures(report, numbers, finders) {
   return [
     {
       title: 'Milliseconds per interval',
@@ -121,5 +122,5 @@ export function compareFigures(report, first, last, finders) {
       read: integer,
       words: ({ pcp }) => `mean ${decimal(pcp.mean, 1)}, maximum ${integer(pcp.max)}`,
     },
-  ].map((figure) => compareFigure(report, first, last, finders, figure));
+  ].map((figure) => compareFigure(report, numbers, finders, figure));
 }

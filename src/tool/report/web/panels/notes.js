@@ -61,7 +61,7 @@ function cappedIntervals(scene, intervals) {
 
 function notesOfScene(scene, intervals) {
   const notes = [];
-  const all = scene.last - scene.first + 1;
+  const all = scene.numbers.length;
   if (scene.frames.length < all) {
     notes.push([
       '',

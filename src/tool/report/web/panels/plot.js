@@ -14,8 +14,8 @@ const token = (name) => getComputedStyle(document.documentElement).getPropertyVa
 const colourOf = (colour) => (colour.startsWith('--') ? token(colour) : colour);
 
 /** The value that 98 % of the intervals stay below, so that a few peaks do not flatten the rest. */
-function usualLimit({ first, last, series, stacked }) {
-  const heights = Float64Array.from({ length: last - first }, (_, i) => {
+function usualLimit({ numbers, series, stacked }) {
+  const heights = Float64Array.from({ length: numbers.length - 1 }, (_, i) => {
     const values = series.map((one) => one.values[i] ?? 0);
     return stacked ? values.reduce((sum, value) => sum + value, 0) : Math.max(...values);
   }).sort();
@@ -23,12 +23,12 @@ function usualLimit({ first, last, series, stacked }) {
 }
 
 /**
- * Steps: the value of interval k holds from frame k to k + 1, so the last is given twice. Of the intervals that share a
+ * Steps: the value of interval k holds from place k to k + 1, so the last is given twice. Of the intervals that share a
  * pixel the one with the most shows.
  */
-function stepsOf({ first, series, stacked }, from, to, pixels) {
+function stepsOf({ series, stacked }, from, to, pixels) {
   const columns = columnsOf(from, to, pixels);
-  const x = [...columns.map(({ begin }) => first + begin), first + to];
+  const x = [...columns.map(({ begin }) => begin), to];
   const kept = (weight) => columns.map(({ begin, end }) => heaviest(begin, end, weight));
   const at = (values, places) => {
     const column = places.map((i) => values[i]);
@@ -57,14 +57,25 @@ function seriesOptions({ series, stacked }) {
 }
 
 /** Leaves out a number at the right end, which would be cut off. */
-function frameLabels({ scales: { x } }, splits) {
+function frameLabels(numbers, { scales: { x } }, splits) {
   const room = (x.max - x.min) * 0.015;
-  return splits.map((frame) =>
-    Number.isInteger(frame) && (frame < 1000 || frame < x.max - room) ? String(frame) : '',
-  );
+  return splits.map((place) => {
+    const label = String(numbers[place] ?? '');
+    return label.length < 4 || place < x.max - room ? label : '';
+  });
 }
 
-function axes(format, logarithmic) {
+/** Places with a label: those of round numbers where frames count by ones, else round places. */
+function roundPlaces(numbers, least, most, increment) {
+  const byOnes = numbers[numbers.length - 1] - numbers[0] === numbers.length - 1;
+  const offset = byOnes ? ((-numbers[0] % increment) + increment) % increment : 0;
+  const splits = [];
+  const from = offset + increment * Math.ceil((least - offset) / increment);
+  for (let place = from; place <= most; place += increment) splits.push(place);
+  return splits;
+}
+
+function axes({ format, numbers }, logarithmic) {
   const common = { font: AXIS_FONT, stroke: () => token('--quiet'), ticks: { show: false } };
   return [
     {
@@ -74,7 +85,8 @@ function axes(format, logarithmic) {
       space: 56,
       incrs: [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000, 50000, 100000],
       grid: { show: false },
-      values: frameLabels,
+      splits: (_, axis, least, most, increment) => roundPlaces(numbers, least, most, increment),
+      values: (chart, splits) => frameLabels(numbers, chart, splits),
     },
     {
       ...common,
@@ -89,21 +101,21 @@ function axes(format, logarithmic) {
 
 /**
  * @param {HTMLElement} host
- * @param {{first: number, last: number, height: number, stacked: boolean, format: (value: number) => string,
+ * @param {{numbers: ArrayLike<number>, height: number, stacked: boolean, format: (value: number) => string,
  *          series: {label: string, colour: string, dash?: number[], values: ArrayLike<number|null>}[]}} plot
- *   values: of interval first, first + 1, ...
+ *   numbers: of all frames; values: of each interval
  * @param {(surface: HTMLElement) => void} attach is called with the layer over the plot, each time the plot is made
  */
 export function createPlot(host, plot, attach) {
-  const { first, last, height } = plot;
+  const { numbers, height } = plot;
   const timeLine = element('div', { class: 'time-line' });
   const hoverLine = element('div', { class: 'hover-line', hidden: true });
-  let range = [0, last - first];
+  let range = [0, numbers.length - 1];
   let logarithmic = false;
   let cut = false;
   const usual = usualLimit(plot);
   let chart = null;
-  let time = first;
+  let time = 0;
   let hover = null;
 
   const width = () => Math.max(160, host.clientWidth);
@@ -125,10 +137,10 @@ export function createPlot(host, plot, attach) {
       cursor: { show: false },
       select: { show: false },
       scales: {
-        x: { time: false, range: () => [first + range[0], first + range[1]] },
+        x: { time: false, range: () => [range[0], range[1]] },
         y: logarithmic ? { distr: 3 } : { range: (_, low, high) => [0, topOf(high)] },
       },
-      axes: axes(plot.format, logarithmic),
+      axes: axes(plot, logarithmic),
       series: seriesOptions(plot),
       hooks: { ready: [moveLines], setScale: [moveLines] },
     };
@@ -139,7 +151,7 @@ export function createPlot(host, plot, attach) {
   }
 
   function moveLine(line, at) {
-    const inside = chart.status === 1 && at !== null && at >= first + range[0] && at <= first + range[1];
+    const inside = chart.status === 1 && at !== null && at >= range[0] && at <= range[1];
     line.hidden = !inside;
     if (inside) line.style.transform = `translateX(${chart.valToPos(at, 'x')}px)`;
   }
@@ -151,11 +163,12 @@ export function createPlot(host, plot, attach) {
 
   build();
   return {
+    /** A place: intervals from the first, with a fraction. */
     setTime(at) {
       time = at;
       moveLine(timeLine, time);
     },
-    /** The interval that the pointer is on, or null. */
+    /** The place that the pointer is on, or null. */
     setHover(interval) {
       hover = interval;
       moveLine(hoverLine, hover);

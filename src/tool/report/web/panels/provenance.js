@@ -81,7 +81,7 @@ function factsOfMethod(summary) {
 
 /** The largest distance between what is drawn and what was computed. */
 function factsOfPicture(scene) {
-  const all = scene.last - scene.first + 1;
+  const all = scene.numbers.length;
   const kept = scene.frames.length;
   const shown =
     kept === all

@@ -4,7 +4,7 @@ import {
   BufferAttribute, BufferGeometry, DynamicDrawUsage, GLSL3, GreaterDepth, Group, LessEqualDepth, Points, ShaderMaterial,
   Sphere,
 } from 'three';
-import { intervalAt } from '../page/intervals.js';
+import { intervalIndexAt } from '../page/intervals.js';
 import { EE, VF, regionColour } from './colours.js';
 
 export const TRAIL = 8; // intervals
@@ -140,12 +140,13 @@ class Marks {
 /** The contacts to be marked, the oldest first so that the newest lie on top. */
 export function markedContacts(scene, state) {
   if (scene.contacts === null || !state.contacts) return [];
-  const now = intervalAt(state.time, scene);
+  const now = intervalIndexAt(state.time, scene);
   const marked = [];
-  const oldest = state.trail ? Math.max(scene.first, now - TRAIL) : now;
-  for (let interval = oldest; interval <= now; interval++) {
+  const oldest = state.trail ? Math.max(0, now - TRAIL) : now;
+  for (let i = oldest; i <= now; i++) {
+    const interval = scene.numbers[i];
     const [begin, end] = scene.contacts.range(interval);
-    for (let contact = begin; contact < end; contact++) marked.push({ contact, interval, age: now - interval });
+    for (let contact = begin; contact < end; contact++) marked.push({ contact, interval, age: now - i });
   }
   return marked;
 }

@@ -1,7 +1,7 @@
 /** The 3D view: builds the scene, and draws it only when something has changed. */
 
 import { Box3, Color, LinearSRGBColorSpace, Scene, Vector3, WebGLRenderer } from 'three';
-import { intervalAt } from '../page/intervals.js';
+import { fractionAt, intervalIndexAt } from '../page/intervals.js';
 import { View } from './camera.js';
 import { ContactMarks, DetectorMarks } from './markers.js';
 import { Painter } from './paint.js';
@@ -221,18 +221,17 @@ export class Viewer {
 
   updateMarks(state) {
     const { data, space } = this;
-    const interval = intervalAt(state.time, data);
     this.contacts.setState(data, state, space.toView);
-    const points = state.points ? this.detectorPoints(interval, state.time - interval) : null;
+    const points = state.points ? this.detectorPoints(state.time) : null;
     this.detectors.setState(data, points, space.toView);
     const pixel = (2 * Math.tan((this.view.camera.fov * Math.PI) / 360)) / this.size.height;
     for (const marks of [this.contacts, this.detectors]) marks.setScale(this.resolution.ratio, pixel);
   }
 
   /** The detector points of the recording or, if it has none, those of the plan. */
-  detectorPoints(interval, fraction) {
+  detectorPoints(time) {
     const { data } = this;
-    if (data.detectorPoints !== null) return data.detectorPoints(interval, fraction);
+    if (data.detectorPoints !== null) return data.detectorPoints(intervalIndexAt(time, data), fractionAt(time, data));
     return Float64Array.from(data.plan?.regions.flatMap((region) => region.detector_point) ?? []);
   }
 
