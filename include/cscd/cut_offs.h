@@ -35,8 +35,8 @@ typedef struct cscd_cut_off {
 } cscd_cut_off;
 
 /* Sorted by (curve, trace). Components are those of the mesh, as it was created: a trace that runs over a seam divides
- * nothing, and what is joined by a seam alone is not joined here. Each of n traces costs as much as its component has points
- * of curves and patches. The lists belong to the detector and live until its next call. */
+ * nothing, and what is joined by a seam alone is not joined here. A trace costs as much as it is long, and as the side
+ * with fewer patches, or the smaller one, has patches. The lists belong to the detector and live until its next call. */
 typedef struct cscd_cut_offs {
     const cscd_cut_off *items;
     size_t count;

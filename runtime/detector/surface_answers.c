@@ -33,7 +33,8 @@ static surface_answers *make_answers(cscd_detector *d) {
     surface_answers *a = context_allocate(context, 1, sizeof *a);
     if (a == NULL) return NULL;
     a->names.context = a->left_out.context = a->joiner.context = context;
-    a->cut_off_finder = (cut_off_finder){.context = context, .links = {.context = context}};
+    a->cut_off_finder =
+        (cut_off_finder){.context = context, .links = {.context = context}, .sides = {.context = context}};
     a->overlap_finder =
         (overlap_finder){.context = context, .cuts = {.context = context}, .gaps = {.context = context}};
     a->depth_bounder.context = context;

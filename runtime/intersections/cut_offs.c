@@ -6,20 +6,19 @@
 
 #include <string.h>
 
-enum { UNKNOWN_SIDE = 2 };
-
 /* ---- memory -------------------------------------------------------------------------------------------- */
 
-static array_list list_of_nodes(cut_off_finder *f, size_t count) {
-    return (array_list){{ARRAY(f->colours, count), ARRAY(f->queue, count)}};
+static array_list list_of_patches(cut_off_finder *f, size_t count) {
+    return (array_list){
+        {ARRAY(f->patch_areas, count), ARRAY(f->sorted, count), ARRAY(f->spare_sorted, count)}};
 }
 
-static array_list list_of_patches(cut_off_finder *f, size_t count) {
-    return (array_list){{ARRAY(f->patch_nodes, count), ARRAY(f->patch_areas, count)}};
+static array_list list_of_components(cut_off_finder *f, size_t count) {
+    return (array_list){{ARRAY(f->component_areas, count)}};
 }
 
 static array_list list_of_curves(cut_off_finder *f, size_t count) {
-    return (array_list){{ARRAY(f->first_links, 2 * count), ARRAY(f->items, 2 * count)}};
+    return (array_list){{ARRAY(f->items, 2 * count)}};
 }
 
 static array_list list_of_pieces(cut_off_finder *f, size_t count) {
@@ -29,14 +28,16 @@ static array_list list_of_pieces(cut_off_finder *f, size_t count) {
 
 void cut_off_finder_free(cut_off_finder *f) {
     if (f->context == NULL) return;
-    context_free_all(f->context, list_of_nodes(f, 0));
     context_free_all(f->context, list_of_patches(f, 0));
+    context_free_all(f->context, list_of_components(f, 0));
     context_free_all(f->context, list_of_curves(f, 0));
     context_free_all(f->context, list_of_pieces(f, 0));
     context_free(f->context, f->listed);
     cut_memory_free(f->context, &f->memory);
     trace_links_free(&f->links);
-    *f = (cut_off_finder){.context = f->context, .links = {.context = f->context}};
+    trace_sides_free(&f->sides);
+    *f = (cut_off_finder){
+        .context = f->context, .links = {.context = f->context}, .sides = {.context = f->context}};
 }
 
 static bool reserve_list(cut_off_finder *f, array_list (*list)(cut_off_finder *, size_t), size_t *capacity,
@@ -46,13 +47,14 @@ static bool reserve_list(cut_off_finder *f, array_list (*list)(cut_off_finder *,
 
 static bool reserve_all(cut_off_finder *f, const surface_cuts *found) {
     const curve_joiner *j = found->curves;
-    return reserve_list(f, list_of_nodes, &f->node_capacity, f->links.node_count) &&
-           reserve_list(f, list_of_patches, &f->patch_capacity, found->patches->patch_count) &&
+    return reserve_list(f, list_of_patches, &f->patch_capacity, found->patches->patch_count) &&
+           reserve_list(f, list_of_components, &f->component_capacity,
+                        found->surface->mesh->component_count) &&
            reserve_list(f, list_of_curves, &f->curve_capacity, j->curve_count) &&
            reserve_list(f, list_of_pieces, &f->piece_capacity, 2 * j->piece_count);
 }
 
-/* ---- sides --------------------------------------------------------------------------------------------- */
+/* ---- areas --------------------------------------------------------------------------------------------- */
 
 typedef struct cut_off_work {
     cut_off_finder *finder;
@@ -62,49 +64,11 @@ typedef struct cut_off_work {
     uint32_t component;
 } cut_off_work;
 
-/* Does the trace pass the link an odd number of times? */
-static bool link_changes_side(const trace_links *t, const trace_link *link, trace_number trace) {
-    bool odd = false;
-    for (size_t i = link->first_pass; i < link->end_pass; i++) odd ^= t->passes[i].trace == trace;
-    return odd;
+static int32_t side_of_corner(const cut_off_work *work, uint32_t triangle, uint32_t corner) {
+    const patch_finder *p = work->found->patches;
+    return (int32_t)trace_side_of_patch(&work->finder->sides,
+                                        p->corner_patches[(size_t)triangle * 3 + corner]);
 }
-
-/* Gives each node the number of times, modulo 2, that a way to it from the first one crosses the trace. False: two ways
- * do not agree, so the trace does not divide the surface. *known: so many nodes of the queue have a side now. */
-static bool find_sides(const cut_off_work *work, size_t *known) {
-    cut_off_finder *f = work->finder;
-    const trace_links *t = &f->links;
-    size_t first = f->first_links[work->trace];
-    *known = 0;
-    if (first == SIZE_MAX) return true;
-    f->queue[(*known)++] = t->links[first].nodes[0];
-    f->colours[f->queue[0]] = 0;
-    for (size_t i = 0; i < *known; i++) {
-        uint32_t node = f->queue[i];
-        for (size_t k = t->node_links[node]; k < t->node_links[node + 1]; k++) {
-            const trace_link *link = &t->links[t->link_list[k]];
-            uint32_t other = link->nodes[0] == node ? link->nodes[1] : link->nodes[0];
-            uint8_t side = f->colours[node] ^ (uint8_t)link_changes_side(t, link, work->trace);
-            if (f->colours[other] == UNKNOWN_SIDE) {
-                f->colours[other] = side;
-                f->queue[(*known)++] = other;
-            }
-            if (f->colours[other] != side) return false;
-        }
-    }
-    return true;
-}
-
-static uint8_t side_of_patch(const cut_off_finder *f, uint32_t patch) {
-    uint32_t node = f->patch_nodes[patch];
-    return node == UINT32_MAX || f->colours[node] == UNKNOWN_SIDE ? 0 : f->colours[node];
-}
-
-static uint8_t side_of_corner(const cut_off_work *work, uint32_t triangle, uint32_t corner) {
-    return side_of_patch(work->finder, work->found->patches->corner_patches[(size_t)triangle * 3 + corner]);
-}
-
-/* ---- areas --------------------------------------------------------------------------------------------- */
 
 /* Adds the trace's pieces in one side's triangles to the list. */
 static size_t list_side(const cut_off_work *work, uint32_t side, size_t count) {
@@ -181,48 +145,74 @@ static bool divide_triangle(const cut_off_work *work, const trace_piece *pieces,
     return true;
 }
 
-static bool measure_sides(const cut_off_work *work, double areas[2]) {
+/* What the triangles that the trace divides add to both sides, over what load_patches gives. False: no memory. */
+static bool divide_triangles(const cut_off_work *work, double areas[2]) {
     cut_off_finder *f = work->finder;
-    const patch_finder *p = work->found->patches;
     areas[0] = areas[1] = 0.0;
-    for (uint32_t i = 0; i < p->patch_count; i++) {
-        if (p->patches[i].component == work->component) areas[side_of_patch(f, i)] += f->patch_areas[i];
-    }
     size_t count = list_pieces(work);
     for (size_t begin = 0, end = 0; begin < count; begin = end) {
         while (end < count && f->pieces[end].triangle == f->pieces[begin].triangle) end++;
         if (!divide_triangle(work, f->pieces + begin, end - begin, areas)) return false;
     }
-    for (int i = 0; i < 2; i++) areas[i] = fmax(areas[i], 0.0);
+    return true;
+}
+
+/* The areas of a side's patches. */
+static double sum_side(const cut_off_work *work, uint32_t side) {
+    cut_off_finder *f = work->finder;
+    double sum = 0.0;
+    size_t count = trace_sides_list(&f->sides, side);
+    for (size_t i = 0; i < count; i++) {
+        uint32_t patch = f->sides.elements[f->sides.list[i]].patch;
+        if (patch != UINT32_MAX) sum += f->patch_areas[patch];
+    }
+    return sum;
+}
+
+/* The side with fewer elements is summed up, and the other one too, unless that is the larger one. False: no memory. */
+static bool measure_sides(const cut_off_work *work, double areas[2]) {
+    cut_off_finder *f = work->finder;
+    double whole = f->component_areas[work->component], shifts[2];
+    uint32_t known = f->sides.known_side;
+    if (!divide_triangles(work, shifts)) return false;
+    areas[known] = fmax(sum_side(work, known) + shifts[known], 0.0);
+    areas[1 - known] = 2.0 * areas[known] <= whole ? whole - areas[known]
+                                                   : fmax(sum_side(work, 1 - known) + shifts[1 - known], 0.0);
     return true;
 }
 
 /* ---- all traces ---------------------------------------------------------------------------------------- */
 
+static bool reserve_listed(cut_off_finder *f, size_t more) {
+    if (more <= f->listed_capacity - f->listed_count) return true;
+    size_t larger = room_with_spare(f->listed_count + more);
+    uint32_t *grown = context_grow(f->context, f->listed, f->listed_count, larger, sizeof *grown);
+    if (grown == NULL) return false;
+    f->listed = grown;
+    f->listed_capacity = larger;
+    return true;
+}
+
 /* Lists the patches of one side. False: no memory. */
-static bool list_patches(const cut_off_work *work, uint8_t side, cscd_cut_off *item) {
+static bool list_patches(const cut_off_work *work, uint32_t side, cscd_cut_off *item) {
     cut_off_finder *f = work->finder;
-    const patch_finder *p = work->found->patches;
-    item->first_patch = f->listed_count;
-    for (uint32_t i = 0; i < p->patch_count; i++) {
-        if (p->patches[i].component != work->component || side_of_patch(f, i) != side) continue;
-        if (f->listed_count == f->listed_capacity) {
-            size_t larger = room_with_spare(f->listed_count);
-            uint32_t *grown = context_grow(f->context, f->listed, f->listed_count, larger, sizeof *grown);
-            if (grown == NULL) return false;
-            f->listed = grown;
-            f->listed_capacity = larger;
-        }
-        f->listed[f->listed_count++] = i;
+    size_t elements = trace_sides_list(&f->sides, side), count = 0;
+    for (size_t i = 0; i < elements; i++) {
+        uint32_t patch = f->sides.elements[f->sides.list[i]].patch;
+        if (patch != UINT32_MAX) f->sorted[count++] = patch;
     }
-    item->patch_count = f->listed_count - item->first_patch;
+    sort_by_number(f->sorted, f->spare_sorted, count, sizeof *f->sorted);
+    if (!reserve_listed(f, count)) return false;
+    item->first_patch = f->listed_count;
+    item->patch_count = count;
+    for (size_t i = 0; i < count; i++) f->listed[f->listed_count++] = (uint32_t)f->sorted[i];
     return true;
 }
 
 static bool add_cut_off(const cut_off_work *work) {
     double areas[2];
     if (!measure_sides(work, areas)) return false;
-    uint8_t smaller = areas[1] <= areas[0] ? 1 : 0;
+    uint32_t smaller = areas[1] <= areas[0] ? 1 : 0;
     bool both = trace_is_both(&work->found->curves->curves[work->trace / 2]);
     cscd_cut_off item = {.curve = work->trace / 2,
                          .trace = both                   ? CSCD_TRACE_BOTH
@@ -237,57 +227,37 @@ static bool add_cut_off(const cut_off_work *work) {
     return true;
 }
 
-static void load_patches(const cut_off_work *work) {
+static void load_areas(const cut_off_work *work) {
     cut_off_finder *f = work->finder;
     const cscd_mesh *mesh = work->mesh;
     const patch_finder *p = work->found->patches;
-    for (uint32_t i = 0; i < p->patch_count; i++) {
-        const cscd_patch *patch = &p->patches[i];
-        uint32_t edge = mesh->triangle_edges[patch->triangle][patch->corner];
-        bool crossed = p->crossed_components[patch->component];
-        f->patch_areas[i] = 0.0;
-        f->patch_nodes[i] =
-            crossed ? trace_links_node(&f->links,
-                                       patch_node(p, edge, mesh->triangles[patch->triangle][patch->corner]))
-                    : UINT32_MAX;
-    }
+    memset(f->patch_areas, 0, p->patch_count * sizeof *f->patch_areas);
+    memset(f->component_areas, 0, mesh->component_count * sizeof *f->component_areas);
     for (uint32_t t = 0; t < mesh->triangle_count; t++) {
         if (mesh->components[mesh->triangle_components[t]].closed_manifold) continue;
         f->patch_areas[p->corner_patches[(size_t)t * 3]] +=
             surface_area(mesh, work->found->surface->positions, t);
     }
-}
-
-static void load_links(const cut_off_work *work) {
-    cut_off_finder *f = work->finder;
-    const trace_links *t = &f->links;
-    memset(f->colours, UNKNOWN_SIDE, t->node_count);
-    for (size_t i = 0; i < 2 * work->found->curves->curve_count; i++) f->first_links[i] = SIZE_MAX;
-    for (size_t i = t->link_count; i-- > 0;) {
-        for (size_t k = t->links[i].first_pass; k < t->links[i].end_pass; k++)
-            f->first_links[t->passes[k].trace] = i;
-    }
+    for (uint32_t i = 0; i < p->patch_count; i++)
+        f->component_areas[p->patches[i].component] += f->patch_areas[i];
 }
 
 static bool try_trace(cut_off_work *work) {
-    cut_off_finder *f = work->finder;
     const curve_joiner *j = work->found->curves;
-    size_t known;
     if (!trace_may_divide(work->mesh, j, work->trace)) return true;
     const cscd_curve_piece *piece = &j->pieces[j->curves[work->trace / 2].first_piece];
     work->component = work->mesh->triangle_components[trace_triangle(piece, work->trace % 2)];
-    bool enough = !find_sides(work, &known) || add_cut_off(work);
-    for (size_t i = 0; i < known; i++) f->colours[f->queue[i]] = UNKNOWN_SIDE;
-    return enough;
+    return !trace_sides_find(&work->finder->sides, work->trace, work->component) || add_cut_off(work);
 }
 
 cscd_status cut_off_finder_run(cut_off_finder *f, const surface_cuts *found, cscd_cut_offs *out) {
     cut_off_work work = {.finder = f, .found = found, .mesh = found->surface->mesh};
     size_t traces = 2 * found->curves->curve_count;
     f->item_count = f->listed_count = 0;
-    if (!trace_links_find(&f->links, found) || !reserve_all(f, found)) return CSCD_OUT_OF_MEMORY;
-    load_patches(&work);
-    load_links(&work);
+    if (!trace_links_find(&f->links, found) || !trace_sides_load(&f->sides, found, &f->links) ||
+        !reserve_all(f, found))
+        return CSCD_OUT_OF_MEMORY;
+    load_areas(&work);
     for (size_t i = 0; i < traces; i++) {
         if (!progress_go_on(&f->context->progress, (double)i / (double)traces)) break;
         work.trace = (uint32_t)i;

@@ -1,7 +1,7 @@
 /* What traces of curves cut off of open surfaces. */
 #pragma once
 
-#include "runtime/intersections/trace_links.h"
+#include "runtime/intersections/trace_sides.h"
 
 /* A piece of a trace, by its triangle. */
 typedef struct trace_piece {
@@ -13,14 +13,12 @@ typedef struct trace_piece {
 typedef struct cut_off_finder {
     cscd_context *context;
     trace_links links;
-    uint8_t *colours; /* per node: on which side of the trace it is, or UNKNOWN_SIDE */
-    uint32_t *queue;
-    size_t node_capacity;
-    uint32_t *patch_nodes; /* UINT32_MAX: no trace parts it from others */
+    trace_sides sides;
     double
         *patch_areas; /* of its triangles; of those that curves cut, the patch of the first corner has all */
     size_t patch_capacity;
-    size_t *first_links; /* per trace: a link that it passes, or SIZE_MAX */
+    double *component_areas;
+    size_t component_capacity;
     cscd_cut_off *items;
     size_t curve_capacity;
     trace_piece *pieces, *spare_pieces; /* of one trace */
@@ -28,6 +26,7 @@ typedef struct cut_off_finder {
     cut_border *borders, *spare_borders;
     size_t piece_capacity;
     cut_memory memory;
+    uint64_t *sorted, *spare_sorted; /* patches of one side */
     uint32_t *listed;
     size_t listed_count, listed_capacity, item_count;
 } cut_off_finder;

@@ -70,7 +70,8 @@ bool trace_may_divide(const cscd_mesh *mesh, const curve_joiner *j, trace_number
         return false;
     if (!is_in_one_component(mesh, j, c, side) || goes_over_seam(mesh, j, c, side)) return false;
     if (trace_is_both(c))
-        return side == 0 && is_in_one_component(mesh, j, c, 1) && !goes_over_seam(mesh, j, c, 1);
+        return side == 0 && c->components[0] == c->components[1] && is_in_one_component(mesh, j, c, 1) &&
+               !goes_over_seam(mesh, j, c, 1);
     if (c->closed) return true;
     return end_may_divide(j, c, c->start, 0, 0, side) &&
            end_may_divide(j, c, c->end, c->point_count - 1, c->piece_count - 1, side);
@@ -121,6 +122,11 @@ static void add_passes(pass_work *work, size_t curve) {
 }
 
 /* ---- links --------------------------------------------------------------------------------------------- */
+
+uint32_t trace_link_triangle(const cscd_mesh *mesh, uint64_t link) {
+    if (link >= mesh->edge_count) return (uint32_t)((link - mesh->edge_count) / 3);
+    return mesh->edge_stars[mesh->edge_star_offsets[link]];
+}
 
 static void find_nodes(const pass_work *work, uint64_t link, uint64_t out[2]) {
     const cscd_mesh *mesh = work->mesh;

@@ -51,5 +51,8 @@ static inline uint32_t trace_triangle(const cscd_curve_piece *piece, uint32_t si
 /* False: no memory. */
 bool trace_links_find(trace_links *t, const surface_cuts *found);
 
+/* A triangle at the edge or corner of a pass. */
+uint32_t trace_link_triangle(const cscd_mesh *mesh, uint64_t link);
+
 /* The place of a node in the list, or UINT32_MAX. */
 uint32_t trace_links_node(const trace_links *t, uint32_t root);

@@ -174,10 +174,38 @@ static void expect_areas(const cscd_cut_off *item, const cscd_curve *c, uint32_t
     assert_true(fabs(item->area - fmin(areas[0], areas[1])) <= 0.02 * cut);
 }
 
+static bool is_listed(const cscd_cut_off *item, uint32_t patch) {
+    const uint32_t *patches = &found.cut_offs->patches[item->first_patch];
+    size_t count = 0;
+    for (size_t i = 0; i < item->patch_count; i++) {
+        assert_true(i == 0 || patches[i] > patches[i - 1]);
+        count += patches[i] == patch;
+    }
+    return count > 0;
+}
+
+/* The patches at the corners on one side are listed, and none of the other one. Returns how many corners are. */
+static size_t expect_patches(const cscd_cut_off *item) {
+    size_t listed[2] = {0, 0}, others[2] = {0, 0};
+    for (uint32_t i = 0; i < 3 * rig.all.triangle_count; i++) {
+        uint8_t side = sides[rig.all.triangles[i]];
+        if (side == 2) continue;
+        if (is_listed(item, found.patches->corner_patches[i]))
+            listed[side]++;
+        else
+            others[side]++;
+    }
+    assert_true(listed[0] == 0 || listed[1] == 0);
+    assert_true(others[0] == 0 || others[1] == 0);
+    assert_true(listed[0] == 0 || others[0] == 0);
+    assert_true(listed[1] == 0 || others[1] == 0);
+    return listed[0] + listed[1];
+}
+
 /* Crumpled sheets, with a hole or not, whose traces are looked at one by one. */
 static void sheets_in_themselves(void **state) {
     (void)state;
-    size_t divide = 0, do_not = 0, joined = 0;
+    size_t divide = 0, do_not = 0, joined = 0, named = 0;
     random_stream random = stream_start(7);
     for (int i = 0; i < 60; i++) {
         body_rig_begin(&rig);
@@ -196,6 +224,7 @@ static void sheets_in_themselves(void **state) {
                 bool divides = (both || ends_at_own_border(c, side)) && spread_sides(c, side);
                 assert_int_equal(listed, divides);
                 if (listed) expect_areas(item, c, side);
+                if (listed) named += expect_patches(item);
                 next += listed;
                 joined += both && divides;
                 divide += divides;
@@ -205,9 +234,10 @@ static void sheets_in_themselves(void **state) {
         assert_int_equal(next, found.cut_offs->count);
         body_rig_free(&rig);
     }
-    print_message("%zu traces divide their sheet, %zu do not; %zu of them with the other trace\n", divide,
-                  do_not, joined);
-    assert_true(divide > 80 && do_not > 100 && joined > 5);
+    print_message(
+        "%zu traces divide their sheet, %zu do not; %zu of them with the other trace; %zu corners\n", divide,
+        do_not, joined, named);
+    assert_true(divide > 80 && do_not > 100 && joined > 5 && named > 400);
 }
 
 int main(void) {
