@@ -3,6 +3,7 @@
 
 #include "src/core/vec3.h"
 
+#include <math.h>
 #include <stdbool.h>
 
 static double clamp_to_unit(double x) {
@@ -64,6 +65,28 @@ static bool add_projection(const double p[3], const double a[3], const double ab
     return *u != old_u || *v != old_v;
 }
 
+/* Are u and v, after one projection, so far outside of the triangle that no further one leads into it? A projection is off by
+ * less than 2^-44 of Q E |ac| / area in u, and of Q E |ab| / area in v, where E is at least |ab| |ac|, the largest magnitude
+ * of the normal, and Q at least what the residual is the sum of: coordinates of the residual are off by 2^-50 Q, those of
+ * the normal by 2^-50 E, products and sums with them by a few units more of 2^-53, and area is at most E E. If these errors
+ * are at most a half, Q is no less than at all later points, and these are at most twice the errors away. An area of 2^-900
+ * or more keeps what underflow loses below that. */
+static bool stays_outside(const double p[3], const double a[3], const double ab[3], const double ac[3],
+                          double area, double u, double v) {
+    double offset = 0.0, long_ab = 0.0, long_ac = 0.0;
+    for (int k = 0; k < 3; k++) {
+        offset += fabs(p[k] - a[k]);
+        long_ab += fabs(ab[k]);
+        long_ac += fabs(ac[k]);
+    }
+    double sum = offset + (fabs(u) + 1.0) * long_ab + (fabs(v) + 1.0) * long_ac;
+    double twice = 0x1p-43 * sum * (long_ab * long_ac);
+    double off_u = twice * long_ac, off_v = twice * long_ab; /* times area */
+    if (!(area > 0x1p-900 && off_u <= area && off_v <= area)) return false;
+    return u * area < -off_u || v * area < -off_v ||
+           (u + v - 1.0) * area > off_u + off_v + 0x1p-43 * (1.0 + fabs(u) + fabs(v)) * area;
+}
+
 /* A squared distance below this share of the squared lengths is rounding, so no other point is nearer. */
 static const double touching = 0x1p-90;
 
@@ -79,6 +102,7 @@ static double closest_in_plane(const double p[3], const double a[3], const doubl
     if (!(area > 0.0)) return INFINITY;
     for (int i = 0; i < PROJECTIONS_MAX; i++) {
         if (!add_projection(p, a, ab, ac, normal, area, &inside_u, &inside_v)) break;
+        if (i == 0 && stays_outside(p, a, ab, ac, area, inside_u, inside_v)) return INFINITY;
     }
     if (!(inside_u >= 0.0 && inside_v >= 0.0 && inside_u + inside_v <= 1.0)) return INFINITY;
     *u = inside_u;

@@ -15,10 +15,15 @@ static array_list list_of_cuts(outer_surface *o, size_t count) {
         {ARRAY(o->cut_triangles, count), ARRAY(o->part_begins, count + 1), ARRAY(o->boxes, count)}};
 }
 
+static array_list list_of_places(outer_surface *o, size_t count) {
+    return (array_list){{ARRAY(o->places, count)}};
+}
+
 void outer_surface_free(outer_surface *o) {
     if (o->context == NULL) return;
     triangle_cuts_free(&o->cuts);
     context_free_all(o->context, list_of_cuts(o, 0));
+    context_free_all(o->context, list_of_places(o, 0));
     context_free(o->context, o->parts);
     *o = (outer_surface){.context = o->context, .cuts = {.context = o->context}};
 }
@@ -151,6 +156,29 @@ static bool divide_triangle(outer_surface *o, const surface_cuts *found, loaded_
     return !taker.out_of_memory;
 }
 
+/* Triangles of open components are outer nowhere. */
+static uint32_t place_uncut(const surface_cuts *found, uint32_t triangle) {
+    const cscd_mesh *mesh = found->surface->mesh;
+    const patch_finder *p = found->patches;
+    uint32_t patch = p->triangle_patches[triangle];
+    if (patch == UINT32_MAX) patch = p->corner_patches[(size_t)triangle * 3];
+    bool outer =
+        mesh->components[mesh->triangle_components[triangle]].closed_manifold && p->patches[patch].own < 1;
+    return outer ? OUTER_AS_A_WHOLE : OUTER_NOWHERE;
+}
+
+static bool find_places(outer_surface *o, const surface_cuts *found) {
+    const cscd_mesh *mesh = found->surface->mesh;
+    size_t count = mesh->triangle_count;
+    if (!context_renew_all(o->context, list_of_places(o, count), &o->place_capacity, count)) return false;
+    for (uint32_t i = 0; i < mesh->triangle_count; i++) o->places[i] = place_uncut(found, i);
+    for (size_t i = 0; i < o->cut_count; i++) {
+        if (mesh->components[mesh->triangle_components[o->cut_triangles[i]]].closed_manifold)
+            o->places[o->cut_triangles[i]] = (uint32_t)i;
+    }
+    return true;
+}
+
 bool outer_surface_find(outer_surface *o, const surface_cuts *found, const bvh *f) {
     triangle_cuts *c = &o->cuts;
     o->scale = f->scale;
@@ -165,7 +193,7 @@ bool outer_surface_find(outer_surface *o, const surface_cuts *found, const bvh *
         if (cut.stretch > 0.0 && !divide_triangle(o, found, &cut)) return false;
     }
     o->part_begins[o->cut_count] = o->part_count;
-    return true;
+    return find_places(o, found);
 }
 
 /* ---- the nearest point --------------------------------------------------------------------------------- */
@@ -174,22 +202,10 @@ typedef struct nearest_search {
     const outer_surface *outer;
     const surface_cuts *found;
     uint32_t object;
-    double x[3]; /* scaled, as all that is found */
+    bool objects_mix; /* trees hold several */
+    double x[3];      /* scaled, as all that is found */
     outer_point best;
 } nearest_search;
-
-/* The place of a triangle among those with parts, or cut_count. */
-static size_t find_cut(const outer_surface *o, uint32_t triangle) {
-    size_t low = 0, high = o->cut_count;
-    while (low < high) {
-        size_t middle = low + (high - low) / 2;
-        if (o->cut_triangles[middle] < triangle)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < o->cut_count && o->cut_triangles[low] == triangle ? low : o->cut_count;
-}
 
 /* Is the box further away than what was found? Computed distances from points of a triangle are off by less than 2^-47 of
  * the sum of the distance and the triangle's size, which the margins cover, so that nothing is left out that would be
@@ -205,11 +221,30 @@ static bool box_is_far(const nearest_search *s, const outer_box *box) {
     return squared * (1.0 - 0x1p-20) > s->best.squared + 0x1p-70 * size;
 }
 
+/* Is the plane of a triangle further away than what was found? The least distance of the point w from the plane, seen from a
+ * corner, is |h| / |n|, with n the product of two sides of squared lengths a and b, and h = n w. Computed, n is off by less
+ * than 8 * 2^-53 * sqrt(ab), since each of its coordinates is by 5 * 2^-53 of the sum of its two products, and h by less than
+ * 13 * 2^-53 * sqrt(ab) |w|. As (x - e)^2 > x^2 (1 - t) - e^2 / t, and the same with +, for t = 2^-22, what remains of these is
+ * 2^-76 ab in n n, and 2^-75 ab w w in h h; the rest of 2^-18 is for what box_is_far says of computed distances, with
+ * 2 (a + b) as the square of the size. What underflow loses is below 2^-900. */
+static bool plane_is_far(const nearest_search *s, const double corners[3][3]) {
+    double ab[3], ac[3], w[3], n[3];
+    vec3_subtract(corners[1], corners[0], ab);
+    vec3_subtract(corners[2], corners[0], ac);
+    vec3_subtract(s->x, corners[0], w);
+    vec3_cross(ab, ac, n);
+    double a = vec3_dot(ab, ab), b = vec3_dot(ac, ac), h = vec3_dot(n, w),
+           most = s->best.squared + 0x1p-69 * (a + b);
+    double rounding = 0x1p-75 * a * b;
+    return h * h * (1.0 - 0x1p-18) >
+           most * (vec3_dot(n, n) + rounding) + rounding * vec3_dot(w, w) + 0x1p-900;
+}
+
 static void try_part(nearest_search *s, uint32_t triangle, const outer_part *part) {
     double u, v;
     const double(*p)[3] = part->corners;
     const outer_box box = box_of_part(part);
-    if (box_is_far(s, &box)) return;
+    if (box_is_far(s, &box) || plane_is_far(s, p)) return;
     double squared = closest_point_triangle(s->x, p[0], p[1], p[2], &u, &v);
     if (!(squared < s->best.squared)) return;
     s->best.squared = squared;
@@ -229,18 +264,13 @@ static void try_triangle(void *data, uint32_t triangle) {
     nearest_search *s = data;
     const named_surface *surface = s->found->surface;
     const cscd_mesh *mesh = surface->mesh;
-    const patch_finder *p = s->found->patches;
-    uint32_t patch = p->triangle_patches[triangle];
-    if (patch != UINT32_MAX && p->patches[patch].own >= 1) return;
-    if (cscd_mesh_vertex_object(mesh, mesh->triangles[triangle][0]) != s->object ||
-        !mesh->components[mesh->triangle_components[triangle]].closed_manifold)
-        return;
-    size_t cut = patch == UINT32_MAX ? find_cut(s->outer, triangle) : s->outer->cut_count;
-    if (cut < s->outer->cut_count) {
-        try_parts(s, triangle, cut);
+    uint32_t place = s->outer->places[triangle];
+    if (place == OUTER_NOWHERE) return;
+    if (s->objects_mix && cscd_mesh_vertex_object(mesh, mesh->triangles[triangle][0]) != s->object) return;
+    if (place != OUTER_AS_A_WHOLE) {
+        try_parts(s, triangle, place);
         return;
     }
-    if (p->patches[p->corner_patches[(size_t)triangle * 3]].own >= 1) return;
     outer_part whole;
     for (uint32_t i = 0; i < 3; i++)
         scale_point(s->outer, surface_corner(mesh, surface->positions, triangle, i), whole.corners[i]);
@@ -258,8 +288,11 @@ static double squared_beyond(const double x[3], const outer_part *part) {
 
 outer_point outer_surface_nearest(const outer_surface *o, const surface_cuts *found, const bvh *f,
                                   uint32_t object, const double x[3], const outer_point *near) {
-    nearest_search s = {
-        .outer = o, .found = found, .object = object, .best = {.squared = (double)INFINITY, UINT32_MAX}};
+    nearest_search s = {.outer = o,
+                        .found = found,
+                        .object = object,
+                        .objects_mix = f->trees_mix_objects,
+                        .best = {.squared = (double)INFINITY, UINT32_MAX}};
     scale_point(o, x, s.x);
     if (near != NULL && near->triangle != UINT32_MAX) s.best.squared = squared_beyond(s.x, &near->part);
     bvh_visit_near(f, object, x, &s.best.squared, try_triangle, &s);

@@ -14,6 +14,9 @@ typedef struct outer_box {
     double low[3], high[3];
 } outer_box;
 
+#define OUTER_AS_A_WHOLE UINT32_MAX
+#define OUTER_NOWHERE    (UINT32_MAX - 1)
+
 /* The memory of all calls; begins with the context, also of cuts, and nothing else set. The triangles that their own object
  * cuts have parts; all others are outer as a whole, or not at all. */
 typedef struct outer_surface {
@@ -26,6 +29,8 @@ typedef struct outer_surface {
     size_t *part_begins;     /* per cut triangle and one more: where its parts begin */
     outer_box *boxes;        /* per cut triangle: of its parts; without parts low is above high */
     size_t cut_count, cut_capacity;
+    uint32_t *places; /* per triangle: its place among those with parts, OUTER_AS_A_WHOLE or OUTER_NOWHERE */
+    size_t place_capacity;
 } outer_surface;
 
 void outer_surface_free(outer_surface *o);
