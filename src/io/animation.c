@@ -124,6 +124,10 @@ static int32_t number_in_gltf(const void *source, uint32_t frame) {
     return gltf_frames_number(source, frame);
 }
 
+static const char *note_on_gltf(const void *source) {
+    return gltf_frames_note(source);
+}
+
 static bool read_gltf(void *source, uint32_t frame, double *positions, io_error *error) {
     return gltf_frames_read(source, frame, positions, error);
 }
@@ -136,7 +140,7 @@ enum { POINT_CACHE, GLTF_FILE, FILE_PATTERN, FILE_FOLDER, FILE_LIST };
 
 static const animation_reader readers[] = {
     [POINT_CACHE] = {open_cache, count_cache, number_in_cache, NULL, read_cache, close_cache},
-    [GLTF_FILE] = {open_gltf, count_gltf, number_in_gltf, NULL, read_gltf, close_gltf},
+    [GLTF_FILE] = {open_gltf, count_gltf, number_in_gltf, note_on_gltf, read_gltf, close_gltf},
     [FILE_PATTERN] = {open_pattern, count_files, number_of_file, note_on_files, read_files, close_files},
     [FILE_FOLDER] = {open_folder, count_files, number_of_file, note_on_files, read_files, close_files},
     [FILE_LIST] = {open_list, count_files, number_of_file, note_on_files, read_files, close_files},

@@ -34,7 +34,7 @@ uint32_t animation_frame_count(const animation *animation);
  * by its time and the frames a second; where there is none, its index. Numbers ascend. */
 int32_t animation_frame_number(const animation *animation, uint32_t frame);
 
-/* A sentence about the order of listed files, if there is something to say; else NULL. */
+/* A sentence about the order of listed files, or the choice among animations, if there is something to say; else NULL. */
 const char *animation_note(const animation *animation);
 
 /* Reads a frame, by its index from 0, into positions, vertex_count * 3. The memory in use does not grow with the frames

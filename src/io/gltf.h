@@ -28,5 +28,8 @@ uint32_t gltf_frames_count(const gltf_frames *frames);
 /* The time of the frame in frames a second, as animation programs count: frame 1 is at 1 / fps. */
 int32_t gltf_frames_number(const gltf_frames *frames, uint32_t frame);
 
+/* Which of several animations is played, if none was named; else NULL. */
+const char *gltf_frames_note(const gltf_frames *frames);
+
 /* frame is below the count; positions takes vertex_count * 3 and is undefined on false. */
 bool gltf_frames_read(gltf_frames *frames, uint32_t frame, double *positions, io_error *error);

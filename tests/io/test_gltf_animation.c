@@ -213,6 +213,10 @@ static void chooses_animations_by_name(void **state) {
     assert_int_equal(animation_frame_number(opened.frames, 0), 2);
     const double expected[] = {4, 5, 0, 5, 5, 0, 4, 6, 0};
     check_frame(&opened, 1, expected);
+    assert_null(animation_note(opened.frames));
+    close_file(&opened);
+    opened = open_bytes(gltf_animations_two(&fixture, GLTF_MOVE_NODE_1), 4, NULL);
+    assert_string_equal(animation_note(opened.frames), "the first of 2 animations is played: A, B");
     close_file(&opened);
 }
 

@@ -9,17 +9,22 @@
 
 /* ---- which animation --------------------------------------------------------------------------------- */
 
-/* The names of the animations, as many as fit. */
-static void list_names(const gltf_element *root, size_t count, char *text, size_t size) {
+static const char *name_of(const gltf_element *element) {
+    const char *name = gltf_string(element, "name");
+    return name != NULL ? name : "(no name)";
+}
+
+bool gltf_animation_names(const gltf_scene *scene, size_t *count, char *text, size_t size) {
+    const gltf_element *root = &scene->document.root;
     size_t used = 0;
     text[0] = '\0';
-    for (size_t i = 0; i < count && used + 1 < size; i++) {
+    if (!gltf_array_length(root, "animations", count)) return false;
+    for (size_t i = 0; i < *count && used + 1 < size; i++) {
         gltf_element element;
-        if (!gltf_element_at(root, "animations", "animation", i, &element)) return;
-        const char *name = gltf_string(&element, "name");
-        used += (size_t)snprintf(text + used, size - used, "%s%s", i > 0 ? ", " : "",
-                                 name != NULL ? name : "(no name)");
+        if (!gltf_element_at(root, "animations", "animation", i, &element)) return false;
+        used += (size_t)snprintf(text + used, size - used, "%s%s", i > 0 ? ", " : "", name_of(&element));
     }
+    return true;
 }
 
 static bool find_animation(gltf_scene *scene, const char *name, gltf_element *out) {
@@ -38,7 +43,7 @@ static bool find_animation(gltf_scene *scene, const char *name, gltf_element *ou
         }
     }
     char names[300];
-    list_names(root, count, names, sizeof names);
+    if (!gltf_animation_names(scene, &count, names, sizeof names)) return false;
     return gltf_fail(root, "holds no animation %.100s, but: %s", name, names);
 }
 

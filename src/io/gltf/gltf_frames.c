@@ -5,6 +5,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -15,7 +16,8 @@ struct gltf_frames {
     gltf_pose pose;
     double fps;
     uint32_t count;
-    char path[]; /* the reader's */
+    char note[400]; /* "": nothing to say */
+    char path[];    /* the reader's */
 };
 
 /* A frame for each step of 1 / fps from the start on; the end counts when the last step meets it but for rounding. */
@@ -30,6 +32,17 @@ static bool count_frames(gltf_frames *frames) {
     return true;
 }
 
+/* Whoever has several animations in a file may have meant another one. */
+static bool write_note(gltf_frames *frames, const char *name) {
+    char names[300];
+    size_t count;
+    if (!gltf_animation_names(&frames->scene, &count, names, sizeof names)) return false;
+    if (count > 1 && name == NULL)
+        snprintf(frames->note, sizeof frames->note, "the first of %zu animations is played: %s", count,
+                 names);
+    return true;
+}
+
 static bool open_frames(gltf_frames *frames, uint32_t vertex_count, const char *name) {
     if (!gltf_scene_open(&frames->reader, &frames->scene)) return false;
     if (frames->scene.vertex_count != vertex_count)
@@ -38,7 +51,7 @@ static bool open_frames(gltf_frames *frames, uint32_t vertex_count, const char *
                                 " vertices: it was exported from another mesh",
                                 frames->scene.vertex_count, vertex_count);
     return gltf_animation_open(&frames->scene, name, &frames->animation) &&
-           gltf_pose_open(&frames->scene, &frames->pose) && count_frames(frames);
+           gltf_pose_open(&frames->scene, &frames->pose) && count_frames(frames) && write_note(frames, name);
 }
 
 bool gltf_frames_open(const char *path, uint32_t vertex_count, double fps, const char *name,
@@ -69,6 +82,10 @@ void gltf_frames_close(gltf_frames *frames) {
 
 uint32_t gltf_frames_count(const gltf_frames *frames) {
     return frames->count;
+}
+
+const char *gltf_frames_note(const gltf_frames *frames) {
+    return frames->note[0] != '\0' ? frames->note : NULL;
 }
 
 int32_t gltf_frames_number(const gltf_frames *frames, uint32_t frame) {
