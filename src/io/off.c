@@ -7,6 +7,12 @@
 #include <inttypes.h>
 #include <string.h>
 
+/* What the keyword and the line of a dimension say of a vertex. */
+typedef struct off_kind {
+    bool homogeneous; /* 4: a last coordinate divides the others */
+    bool dimensioned; /* n: the number of dimensions stands behind the keyword */
+} off_kind;
+
 typedef struct off_counts {
     int64_t vertices, faces;
 } off_counts;
@@ -16,49 +22,56 @@ static bool starts_with(text_token token, size_t at, const char *word) {
     return token.length >= at + length && memcmp(token.text + at, word, length) == 0;
 }
 
-/* [ST][C][N][4][n]OFF, with the first count behind it or, in some widely used files, glued to it. Returns the
- * keyword's length, 0 when it is none; dimension_flag is the 4 or n that changes what a vertex is, else 0. */
-static size_t keyword_length(text_token token, char *dimension_flag) {
+/* Which of the letters in front of OFF stands here: texture coordinates, colour, normal, 4 or n; NULL: none. */
+static const char *prefix_at(text_token token, size_t at) {
     static const char *const prefixes[] = {"ST", "C", "N", "4", "n"};
+    for (size_t i = 0; i < sizeof prefixes / sizeof *prefixes; i++)
+        if (starts_with(token, at, prefixes[i])) return prefixes[i];
+    return NULL;
+}
+
+/* [ST][C][N][4][n]OFF, in any order, with the first count behind it or, in some widely used files, glued to it. Returns
+ * the keyword's length, 0 when it is none. */
+static size_t keyword_length(text_token token, off_kind *kind) {
+    off_kind found = {0};
     size_t at = 0;
-    *dimension_flag = '\0';
-    for (size_t i = 0; i < sizeof prefixes / sizeof *prefixes; i++) {
-        if (!starts_with(token, at, prefixes[i])) continue;
-        at += strlen(prefixes[i]);
-        if (i >= 3) *dimension_flag = *prefixes[i];
+    for (const char *prefix; (prefix = prefix_at(token, at)) != NULL; at += strlen(prefix)) {
+        found.homogeneous = found.homogeneous || *prefix == '4';
+        found.dimensioned = found.dimensioned || *prefix == 'n';
     }
-    if (!starts_with(token, at, "OFF")) return 0;
+    if (!starts_with(token, at, "OFF") && !text_equals(token, "off")) return 0;
     at += strlen("OFF");
-    bool ends = at == token.length || (token.text[at] >= '0' && token.text[at] <= '9');
-    return ends ? at : 0;
+    if (at < token.length && !(token.text[at] >= '0' && token.text[at] <= '9')) return 0;
+    *kind = found;
+    return at;
 }
 
 bool off_recognise(const file_reader *reader) {
     file_reader probe = *reader;
     text_token token;
-    char dimension_flag;
+    off_kind kind;
     probe.comments = true;
-    return text_seek_token(&probe) && text_next_token(&probe, &token) &&
-           keyword_length(token, &dimension_flag) > 0;
+    return text_seek_token(&probe) && text_next_token(&probe, &token) && keyword_length(token, &kind) > 0;
 }
 
-/* Every OFF keyword leaves x y z the first three numbers of a vertex's line, except those refused here. */
-static bool read_keyword(file_reader *reader) {
+/* Only vertices in space can be read. */
+static bool read_dimension(file_reader *reader) {
+    int64_t dimension;
+    text_seek_token(reader);
+    if (!text_integer(reader, "the number of dimensions", &dimension)) return false;
+    return dimension == 3 ||
+           file_reader_fail_here(reader, "vertices of %" PRId64 " dimensions, expected 3", dimension);
+}
+
+static bool read_keyword(file_reader *reader, off_kind *kind) {
     text_token token;
-    char dimension_flag;
     if (!text_seek_token(reader) || !text_next_token(reader, &token)) return true;
-    size_t length = keyword_length(token, &dimension_flag);
-    reader->at -= token.length - length;
-    if (dimension_flag != '\0' && length > 0) {
-        return file_reader_fail_here(
-            reader, "found '%s', expected vertices of three dimensions: OFF, COFF, NOFF or STOFF",
-            text_show(token).text);
-    }
+    reader->at -= token.length - keyword_length(token, kind);
     file_reader probe = *reader;
     if (text_next_token(&probe, &token) && text_equals(token, "BINARY")) {
         return file_reader_fail_here(reader, "found binary OFF, expected text");
     }
-    return true;
+    return !kind->dimensioned || read_dimension(reader);
 }
 
 static bool check_count(file_reader *reader, const char *what, int64_t count) {
@@ -67,22 +80,36 @@ static bool check_count(file_reader *reader, const char *what, int64_t count) {
                                  count, MESH_COUNT_LIMIT);
 }
 
-/* Reads the counts of vertices and faces and, if it is given, that of edges, which is not needed. */
+/* The number of edges is not needed, and may be missing. It may have a line of its own, which then has one number, while a
+ * vertex has three. */
+static bool skip_edge_count(file_reader *reader) {
+    text_token token;
+    int64_t edges;
+    file_reader next = *reader;
+    if (!text_next_token(&next, &token)) {
+        if (!text_seek_token(&next) || !text_next_token(&next, &token)) return true;
+        const bool alone = text_parse_integer(token, &edges) && !text_next_token(&next, &token);
+        if (alone) *reader = next;
+        return true;
+    }
+    *reader = next;
+    return text_parse_integer(token, &edges) ||
+           file_reader_fail_here(reader, "found '%s', expected the number of edges", text_show(token).text);
+}
+
+/* Reads the counts of vertices, faces and edges. */
 static bool read_counts(file_reader *reader, off_counts *counts) {
     text_seek_token(reader);
     if (!text_integer(reader, "the number of vertices", &counts->vertices) ||
-        !check_count(reader, "vertices", counts->vertices) ||
-        !text_integer(reader, "the number of faces", &counts->faces) ||
+        !check_count(reader, "vertices", counts->vertices)) {
+        return false;
+    }
+    text_seek_token(reader);
+    if (!text_integer(reader, "the number of faces", &counts->faces) ||
         !check_count(reader, "faces", counts->faces)) {
         return false;
     }
-    text_token token;
-    int64_t edges;
-    if (text_next_token(reader, &token) && !text_parse_integer(token, &edges)) {
-        return file_reader_fail_here(reader, "found '%s', expected the number of edges",
-                                     text_show(token).text);
-    }
-    if (!text_expect_line_end(reader)) return false;
+    if (!skip_edge_count(reader) || !text_expect_line_end(reader)) return false;
     text_skip_line(reader);
     return true;
 }
@@ -92,19 +119,41 @@ static bool seek_row(file_reader *reader, const char *what, int64_t row, int64_t
            file_reader_fail_here(reader, "file ends before %s %" PRId64 " of %" PRId64, what, row + 1, count);
 }
 
-static bool read_vertices(file_reader *reader, int64_t count, mesh_builder *builder) {
+/* The rest of a line is a normal, a colour or texture coordinates. */
+static bool read_vertex(file_reader *reader, off_kind kind, double position[3]) {
     static const char *const names[3] = {"coordinate x of a vertex", "coordinate y of a vertex",
                                          "coordinate z of a vertex"};
+    double divisor;
+    for (int axis = 0; axis < 3; axis++) {
+        if (!text_number(reader, names[axis], &position[axis])) return false;
+    }
+    if (!kind.homogeneous) return true;
+    if (!text_number(reader, "the fourth coordinate of a vertex", &divisor)) return false;
+    for (int axis = 0; axis < 3 && divisor != 1; axis++) position[axis] /= divisor;
+    return true;
+}
+
+static bool read_vertices(file_reader *reader, off_kind kind, int64_t count, mesh_builder *builder) {
     for (int64_t row = 0; row < count; row++) {
         double position[3];
-        if (!seek_row(reader, "vertex", row, count)) return false;
-        for (int axis = 0; axis < 3; axis++) {
-            if (!text_number(reader, names[axis], &position[axis])) return false;
+        if (!seek_row(reader, "vertex", row, count) || !read_vertex(reader, kind, position) ||
+            !mesh_builder_add_vertex(builder, position)) {
+            return false;
         }
-        if (!mesh_builder_add_vertex(builder, position)) return false;
         text_skip_line(reader);
     }
     return true;
+}
+
+/* A face's indices may go on in further lines. A line that is too short takes from the next one then, and the file ends
+ * too early, so it is noticed all the same. */
+static bool read_index(file_reader *reader, int64_t vertex_count, int64_t *index) {
+    text_seek_token(reader);
+    if (!text_integer(reader, "a vertex index of the face", index)) return false;
+    return (*index >= 0 && *index < vertex_count) ||
+           file_reader_fail_here(
+               reader, "face index %" PRId64 " is out of range, the file has %" PRId64 " vertices, from 0",
+               *index, vertex_count);
 }
 
 static bool read_face(file_reader *reader, int64_t vertex_count, mesh_builder *builder) {
@@ -116,13 +165,8 @@ static bool read_face(file_reader *reader, int64_t vertex_count, mesh_builder *b
     }
     mesh_builder_begin_face(builder);
     for (int64_t corner = 0; corner < corner_count; corner++) {
-        if (!text_integer(reader, "a vertex index of the face", &index)) return false;
-        if (index < 0 || index >= vertex_count) {
-            return file_reader_fail_here(
-                reader, "face index %" PRId64 " is out of range, the file has %" PRId64 " vertices, from 0",
-                index, vertex_count);
-        }
-        if (!mesh_builder_add_corner(builder, (uint32_t)index)) return false;
+        if (!read_index(reader, vertex_count, &index) || !mesh_builder_add_corner(builder, (uint32_t)index))
+            return false;
     }
     return mesh_builder_end_face(builder);
 }
@@ -148,10 +192,12 @@ static bool expect_file_end(file_reader *reader) {
 bool off_read(file_reader *reader, mesh_file *out) {
     reader->comments = true;
     mesh_builder builder = mesh_builder_of(reader, 0);
+    off_kind kind = {0};
     off_counts counts = {0};
-    bool done = read_keyword(reader) && read_counts(reader, &counts) &&
-                read_vertices(reader, counts.vertices, &builder) && read_faces(reader, &counts, &builder) &&
-                expect_file_end(reader) && mesh_builder_finish(&builder, out);
+    bool done = read_keyword(reader, &kind) && read_counts(reader, &counts) &&
+                read_vertices(reader, kind, counts.vertices, &builder) &&
+                read_faces(reader, &counts, &builder) && expect_file_end(reader) &&
+                mesh_builder_finish(&builder, out);
     mesh_builder_free(&builder);
     return done;
 }

@@ -31,6 +31,27 @@ static void reads_extra_vertex_data(void **state) {
     mesh_check_square(OFF("STCNOFF 4 1 0\n" VERTICES "4 0 1 2 3\n"));
 }
 
+/* Vertices of four coordinates are divided by the last one; n is followed by the number of dimensions. */
+static void reads_other_dimensions(void **state) {
+    (void)state;
+    mesh_check_square(OFF("4OFF\n4 1 0\n0 0 0 1\n2 0 0 2\n-.5 -.5 -0 -.5\n0 1 0 1\n4 0 1 2 3\n"));
+    mesh_check_square(
+        OFF("C4OFF\n4 1 0\n0 0 0 1 255 0 0\n1 0 0 1 255 0 0\n1 1 0 1 0 0 0\n0 1 0 1\n4 0 1 2 3\n"));
+    mesh_check_square(OFF("nOFF 3\n4 2 0\n" REST));
+    mesh_check_square(OFF("nOFF\n3\n4 2 0\n" REST));
+    mesh_check_square(OFF("4nOFF\n3\n4 1 0\n0 0 0 1\n1 0 0 1\n1 1 0 1\n0 1 0 1\n4 0 1 2 3\n"));
+}
+
+static void reads_headers_and_indices_over_several_lines(void **state) {
+    (void)state;
+    mesh_check_square(OFF("NCOFF\n4\n2\n5\n" REST));
+    mesh_check_square(OFF("off\n4\n2\n" REST));
+    mesh_check_square(OFF("OFF\n4 2\n# edges\n0\n\n" REST));
+    mesh_check_square(OFF("OFF\n4 1 0\n" VERTICES "4\n0\n1\n2\n3"));
+    mesh_check_square(
+        OFF("OFF\r\n4 2 0\r\n" VERTICES "3 0 1 # one more\r\n\r\n 2 255 0 0\r\n3 0 2\r\n3 0.5 0.5 1\r\n"));
+}
+
 static void reads_rows(void **state) {
     (void)state;
     static const double positions[] = {0.1, -1e-5, 3, 1, 2, 3, 4, 5, 6, 7, 8, 9, 0, 0, -0.0};
@@ -48,7 +69,7 @@ static void refuses_bad_headers(void **state) {
     (void)state;
     mesh_check_error(OFF("OFF"), ":1: ", "the file ends", "the number of vertices");
     mesh_check_error(OFF("# only this\n"), ":2: ", "the file ends", "the number of vertices");
-    mesh_check_error(OFF("OFF\n4\n"), ":2: ", "the line ends", "the number of faces");
+    mesh_check_error(OFF("OFF\n4\n"), ":3: ", "the file ends", "the number of faces");
     mesh_check_error(OFF("OFF\nfour 2 0\n"), ":2: ", "found 'four'", "the number of vertices");
     mesh_check_error(OFF("OFF\n4 2 x\n"), ":2: ", "found 'x'", "the number of edges");
     mesh_check_error(OFF("OFF\n4 2 0 0\n"), ":2: ", "found '0'", "the end of the line");
@@ -56,8 +77,11 @@ static void refuses_bad_headers(void **state) {
                      "expected 0 to 2147483647");
     mesh_check_error(OFF("OFF\n4 2147483648 0\n"), ":2: ", "the number of faces is 2147483648",
                      "0 to 2147483647");
-    mesh_check_error(OFF("4OFF\n4 2 0\n"), ":1: ", "found '4OFF'", "three dimensions");
-    mesh_check_error(OFF("nOFF\n3\n4 2 0\n"), ":1: ", "found 'nOFF'", "three dimensions");
+    mesh_check_error(OFF("nOFF\n4\n4 2 0\n"), ":2: ", "vertices of 4 dimensions", "expected 3");
+    mesh_check_error(OFF("nOFF\n"), ":2: ", "the file ends", "the number of dimensions");
+    mesh_check_error(OFF("4OFF\n4 2 0\n0 0 0\n"), ":3: ", "the line ends", "the fourth coordinate");
+    mesh_check_error(OFF("4OFF\n4 2 0\n1 0 0 0\n"), ":3: ", "coordinate x of vertex 0 is inf", "finite");
+    mesh_check_error(OFF("xOFF\n"), ":1: ", "found 'xOFF'", "the number of vertices");
     mesh_check_error(OFF("OFF BINARY\n\0\0\0\4"), ":1: ", "binary OFF", "expected text");
     mesh_check_error(OFF("OFFSET 1\n"), ":1: ", "found 'OFFSET'", "the number of vertices");
     mesh_check_error(OFF("\x01\x02\xff\xfe\0\0\0"), ":1: ", "found '????", "the number of vertices");
@@ -73,7 +97,9 @@ static void refuses_bad_rows(void **state) {
     mesh_check_error(OFF("OFF\n4 2 0\n-1e400 0 0\n"), ":3: ", "coordinate x of vertex 0 is -inf", "finite");
     mesh_check_error(OFF("OFF\n4 1 0\n" VERTICES "2 0 1\n"), ":7: ", "a face of 2 corners", "3 or more");
     mesh_check_error(OFF("OFF\n4 1 0\n" VERTICES "-3 0 1 2\n"), ":7: ", "a face of -3 corners", "3 or more");
-    mesh_check_error(OFF("OFF\n4 1 0\n" VERTICES "4 0 1 2\n"), ":7: ", "the line ends", "a vertex index");
+    mesh_check_error(OFF("OFF\n4 1 0\n" VERTICES "4 0 1 2\n"), ":8: ", "the file ends", "a vertex index");
+    mesh_check_error(OFF("OFF\n4 2 0\n" VERTICES "4 0 1 2\n3 0 2 3\n"),
+                     ":9: ", "file ends before face 2 of 2", "");
     mesh_check_error(OFF("OFF\n4 1 0\n" VERTICES "3 0 1.5 2\n"), ":7: ", "found '1.5'", "a vertex index");
     mesh_check_error(OFF("OFF\n4 1 0\n" VERTICES "3 0 1 4\n"), ":7: ", "face index 4 is out of range",
                      "the file has 4 vertices");
@@ -91,7 +117,7 @@ static void refuses_counts_that_do_not_fit(void **state) {
                      "");
     mesh_check_error(OFF("OFF\n4 1 0\n" REST), ":8: ", "found '3' after the last face",
                      "the end of the file");
-    mesh_check_error(OFF("OFF\n4 1 0\n" VERTICES "2000000000 0 1 2\n"), ":7: ", "the line ends",
+    mesh_check_error(OFF("OFF\n4 1 0\n" VERTICES "2000000000 0 1 2\n"), ":8: ", "the file ends",
                      "a vertex index");
     mesh_check_error(OFF("OFF\n0 0 0\n"), ": ", "no vertices", "expected a triangle mesh");
     mesh_check_error(OFF("OFF\n4 0 0\n" VERTICES), ": ", "no faces found for the 4 vertices",
@@ -107,9 +133,14 @@ static void survives_damage(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reads_headers),    cmocka_unit_test(reads_extra_vertex_data),
-        cmocka_unit_test(reads_rows),       cmocka_unit_test(refuses_bad_headers),
-        cmocka_unit_test(refuses_bad_rows), cmocka_unit_test(refuses_counts_that_do_not_fit),
+        cmocka_unit_test(reads_headers),
+        cmocka_unit_test(reads_extra_vertex_data),
+        cmocka_unit_test(reads_other_dimensions),
+        cmocka_unit_test(reads_headers_and_indices_over_several_lines),
+        cmocka_unit_test(reads_rows),
+        cmocka_unit_test(refuses_bad_headers),
+        cmocka_unit_test(refuses_bad_rows),
+        cmocka_unit_test(refuses_counts_that_do_not_fit),
         cmocka_unit_test(survives_damage),
     };
     return cmocka_run_group_tests_name("off", tests, NULL, NULL);
