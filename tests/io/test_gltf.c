@@ -124,6 +124,16 @@ static void reads_all_types_of_positions(void **state) {
         }
 }
 
+/* Data that are compressed and, for readers without that extension, also not compressed. */
+static void reads_what_compressed_files_have_besides(void **state) {
+    (void)state;
+    gltf_fixture fixture = square_fixture(5123);
+    mesh_check_square(gltf_fixture_glb(
+        &fixture,
+        "\"extensionsUsed\":[\"KHR_draco_mesh_compression\"]," MESH(
+            "\"attributes\":{\"POSITION\":0},\"indices\":1,\"extensions\":{\"KHR_draco_mesh_compression\":{}}")));
+}
+
 /* Each vertex has a normal behind its position, and the view begins four bytes before. */
 static void reads_interleaved_elements(void **state) {
     (void)state;
@@ -354,6 +364,7 @@ int main(void) {
         cmocka_unit_test(refuses_buffers_that_are_not_there),
         cmocka_unit_test(reads_all_types_of_indices),
         cmocka_unit_test(reads_all_types_of_positions),
+        cmocka_unit_test(reads_what_compressed_files_have_besides),
         cmocka_unit_test(reads_interleaved_elements),
         cmocka_unit_test(reads_sparse_accessors),
         cmocka_unit_test(reads_accessors_without_data_as_zeros),

@@ -14,7 +14,7 @@ static const double weights[16] = {1, 0, 0, 0, 1, 0, 0, 0, 0.5, 0.5, 0, 0, 1, 0,
 static const double identity[32] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1,
                                     1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 
-/* Accessors: 0 positions, 1 indices, 2 joints, 3 weights, 4 matrices, 5 sparse, 6 of the numbers 0 to 2. */
+/* Accessors: 0 positions, 1 indices, 2 joints, 3 weights, 4 matrices, 5 sparse, 6 the numbers 0 to 2, 7 without data. */
 static gltf_fixture rich_fixture(void) {
     static const double places[] = {0, 2, 3}, times[] = {0, 1, 2};
     gltf_fixture fixture = {0};
@@ -30,6 +30,7 @@ static gltf_fixture rich_fixture(void) {
         "\"bufferView\":%d,\"componentType\":5121},\"values\":{\"bufferView\":0}}}",
         view);
     gltf_fixture_array(&fixture, 5126, "SCALAR", 3, times);
+    gltf_fixture_accessor(&fixture, "{\"componentType\":5126,\"count\":4,\"type\":\"VEC3\"}");
     return fixture;
 }
 
@@ -75,7 +76,7 @@ static void refuses_wrong_meshes(void **state) {
     (void)state;
     check_replaced("\"POSITION\":0,", "", "mesh 0, primitive 0: POSITION is missing", "");
     check_replaced("\"POSITION\":0,", "\"POSITION\":1,", "accessor 1: type is SCALAR", "VEC3 for POSITION");
-    check_replaced("\"POSITION\":0,", "\"POSITION\":9,", "primitive 0: POSITION is 9", "7 accessors");
+    check_replaced("\"POSITION\":0,", "\"POSITION\":9,", "primitive 0: POSITION is 9", "8 accessors");
     check_replaced("\"indices\":1", "\"indices\":6", "indices are no unsigned integers",
                    "mesh 0, primitive 0");
     check_replaced("\"mode\":6", "\"mode\":7", "primitive 0: mode is 7", "0 to 6");
@@ -89,8 +90,10 @@ static void refuses_wrong_meshes(void **state) {
     check_replaced("\"joints\":[1,2]", "\"joints\":[]", "skin 0: has 0 joints", "");
     check_replaced("\"mode\":6", "\"mode\":6,\"targets\":[{}]},{\"attributes\":{\"POSITION\":0}",
                    "mesh 1, primitive 1: has 0 targets", "the first primitive has 1");
-    check_replaced("\"mode\":6", "\"extensions\":{\"KHR_draco_mesh_compression\":{\"bufferView\":0}}",
-                   "KHR_draco_mesh_compression, which is not read", "without compression");
+    check_replaced(
+        "\"POSITION\":0},\"mode\":6",
+        "\"POSITION\":7},\"mode\":6,\"extensions\":{\"KHR_draco_mesh_compression\":{\"bufferView\":0}}",
+        "KHR_draco_mesh_compression, which is not read", "without compression");
 }
 
 static void refuses_wrong_numbers(void **state) {

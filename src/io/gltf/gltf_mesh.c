@@ -93,12 +93,12 @@ static bool open_vertices(const gltf_primitive *primitive, gltf_vertices *vertic
     return true;
 }
 
-/* Compressed primitives have accessors without data, which would be read as zeros. */
-static bool refuse_compressed(const gltf_primitive *primitive) {
+/* Compressed primitives have accessors without data, which would be read as zeros; some files have both. */
+static bool refuse_compressed(const gltf_primitive *primitive, const gltf_accessor *positions) {
     static const char draco[] = "KHR_draco_mesh_compression";
     gltf_element extensions;
     if (!gltf_object(&primitive->element, "extensions", &extensions)) return false;
-    if (extensions.value == NULL || !gltf_has(&extensions, draco)) return true;
+    if (positions->data != NULL || extensions.value == NULL || !gltf_has(&extensions, draco)) return true;
     return gltf_fail(&primitive->element,
                      "uses the extension %s, which is not read; export it without compression", draco);
 }
@@ -106,7 +106,6 @@ static bool refuse_compressed(const gltf_primitive *primitive) {
 static bool read_vertices(gltf_primitive *primitive, gltf_vertices **out) {
     gltf_mesh *mesh = primitive->mesh;
     growable accessors = growable_of(sizeof(uint32_t));
-    if (!refuse_compressed(primitive)) return false;
     if (!list_accessors(primitive, &accessors)) {
         growable_free(&accessors);
         return false;
@@ -118,7 +117,7 @@ static bool read_vertices(gltf_primitive *primitive, gltf_vertices **out) {
     }
     *out = &mesh->vertices[mesh->vertices_count++]; /* what fails is freed with the mesh */
     (*out)->accessors = accessors;
-    return open_vertices(primitive, *out);
+    return open_vertices(primitive, *out) && refuse_compressed(primitive, &(*out)->positions);
 }
 
 /* ---- triangles --------------------------------------------------------------------------------------- */
