@@ -51,7 +51,8 @@ static void names_the_way_out_of_other_formats(void **state) {
         FILE_OF("a.USDA", "?"),          FILE_OF("a.usdc", "?"),       FILE_OF("a.usdz", "PK"),
         FILE_OF("a.txt", "#usda 1.0\n"), FILE_OF("a.fbx", "?"),        FILE_OF("a", "Kaydara FBX Binary  \0"),
         FILE_OF("a.blend", "?"),         FILE_OF("a", "BLENDER-v304"), FILE_OF("a.x3d", "<X3D/>"),
-        FILE_OF("a.dae", "<COLLADA/>")};
+        FILE_OF("a.dae", "<COLLADA/>"),  FILE_OF("a.hipnc", "?"),      FILE_OF("a.ztl", "?"),
+        FILE_OF("a.zprj", "?"),          FILE_OF("a.c4d", "?")};
     for (size_t i = 0; i < sizeof files / sizeof *files; i++)
         mesh_check_error(files[i], ": ", "which is not read: export the mesh as OBJ", "docs/formats.md");
     mesh_check_error(FILE_OF("a.vtp", "?"), ": ", "a VTK file", "convert it to OBJ");
