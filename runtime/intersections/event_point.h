@@ -9,7 +9,7 @@ typedef struct event_point {
     double x[3];
 } event_point;
 
-/* Each number is rounded once, to nearest, from its exact value. An end at a vertex has the parameters 0. */
+/* The event happens. Each number is rounded once, to nearest, from its exact value. An end at a vertex has the parameters 0. */
 void event_point_find(const named_surface *s, surface_event event, event_point *out);
 
 /* The same, by integers alone. */

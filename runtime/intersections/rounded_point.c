@@ -50,14 +50,17 @@ static inline pair_sum pair_multiply(pair_sum a, pair_sum b) {
     return sum_ordered(high.high, high.low + (a.high * b.low + a.low * b.high));
 }
 
-/* Off by less than 2^-98 of the quotient. */
-static inline pair_sum pair_divide(pair_sum a, pair_sum b) {
-    double first = a.high / b.high;
-    pair_sum rest = pair_add(a, pair_negate(pair_multiply(b, (pair_sum){first, 0.0})));
-    double second = rest.high / b.high;
-    rest = pair_add(rest, pair_negate(pair_multiply(b, (pair_sum){second, 0.0})));
-    pair_sum sum = sum_ordered(first, second);
-    return sum_ordered(sum.high, sum.low + rest.high / b.high);
+static inline pair_sum pair_scale(pair_sum a, double by) {
+    pair_sum high = multiply_exactly(a.high, by);
+    return sum_ordered(high.high, high.low + a.low * by);
+}
+
+/* inverse: 1 / b.high, rounded. What the first product leaves is less than 2^-50 of the quotient; it is off by 3 * 2^-103
+ * of it, and the second product by 5 * 2^-53 of itself, so that both are off by less than 2^-99 of the quotient. */
+static inline pair_sum pair_divide(pair_sum a, pair_sum b, double inverse) {
+    double first = a.high * inverse;
+    pair_sum rest = pair_add(a, pair_negate(pair_scale(b, first)));
+    return sum_ordered(first, rest.high * inverse);
 }
 
 /* ---- weights ------------------------------------------------------------------------------------------- */
@@ -68,22 +71,39 @@ typedef struct bounded_sum {
     double error;
 } bounded_sum;
 
-/* The magnitude of the volume of four points. A minor is off by 3 * 2^-100 of the sum of its two products, and the volume
- * by 10 * 2^-100 of the sum of all six. False: it may be 0. */
-static bool find_weight(const double *a, const double *b, const double *c, const double *d,
-                        bounded_sum *out) {
-    pair_sum u[3], v[3], w[3], sum = {0.0, 0.0};
-    double size = 0.0;
+/* The plane of three points, the first of which is a. */
+typedef struct weight_plane {
+    const double *a;
+    pair_sum normal[3];
+    double sizes[3];
+} weight_plane;
+
+/* Each coordinate of the normal is off by 3 * 2^-100 of the sum of its two products, its size. */
+static weight_plane plane_of_points(const double *a, const double *b, const double *c) {
+    weight_plane plane = {.a = a};
+    pair_sum u[3], v[3];
     for (int k = 0; k < 3; k++) {
         u[k] = sum_exactly(b[k], -a[k]);
         v[k] = sum_exactly(c[k], -a[k]);
-        w[k] = sum_exactly(d[k], -a[k]);
     }
     for (int k = 0; k < 3; k++) {
         int x = (k + 1) % 3, y = (k + 2) % 3;
         pair_sum left = pair_multiply(u[x], v[y]), right = pair_multiply(u[y], v[x]);
-        sum = pair_add(sum, pair_multiply(pair_add(left, pair_negate(right)), w[k]));
-        size += (fabs(left.high) + fabs(right.high)) * fabs(w[k].high);
+        plane.normal[k] = pair_add(left, pair_negate(right));
+        plane.sizes[k] = fabs(left.high) + fabs(right.high);
+    }
+    return plane;
+}
+
+/* The magnitude of the volume of a plane's points and another one. It is off by 10 * 2^-100 of the sum of its six products.
+ * False: it may be 0. */
+static bool find_weight(const weight_plane *plane, const double *d, bounded_sum *out) {
+    pair_sum sum = {0.0, 0.0};
+    double size = 0.0;
+    for (int k = 0; k < 3; k++) {
+        pair_sum w = sum_exactly(d[k], -plane->a[k]);
+        sum = pair_add(sum, pair_multiply(plane->normal[k], w));
+        size += plane->sizes[k] * fabs(w.high);
     }
     *out = (bounded_sum){sum.high < 0.0 ? pair_negate(sum) : sum, 0x1p-95 * size};
     return out->value.high > 16.0 * out->error && out->value.high > least_weight;
@@ -96,42 +116,49 @@ static bounded_sum add_weights(bounded_sum a, bounded_sum b) {
 
 /* ---- results ------------------------------------------------------------------------------------------- */
 
+/* A sum of weights, by which numbers are divided. */
+typedef struct divisor {
+    bounded_sum sum;
+    double inverse;
+} divisor;
+
 /* Rounds the quotient of a number, which may be off by error, and a sum of weights. False: it is not certain how. */
-static bool round_quotient(pair_sum above, double error, const bounded_sum *below, double *out) {
-    pair_sum q = pair_divide(above, below->value);
+static bool round_quotient(pair_sum above, double error, const divisor *below, double *out) {
+    pair_sum q = pair_divide(above, below->sum.value, below->inverse);
     double size = fabs(q.high);
-    double bound = 2.0 * (error + size * below->error) / below->value.high + 0x1p-96 * size + lost;
+    double bound = 2.0 * (error + size * below->sum.error) * below->inverse + 0x1p-96 * size + lost;
     *out = q.high + (q.low + bound);
     return *out == q.high + (q.low - bound);
 }
 
-static bool round_coordinate(const bounded_sum weights[2], const bounded_sum *sum, double from, double to,
+static bool round_coordinate(const bounded_sum weights[2], const divisor *sum, double from, double to,
                              double *out) {
     *out = from + 0.0; /* 0 has no sign */
     if (from == to) return true;
-    pair_sum first = pair_multiply(weights[0].value, (pair_sum){from, 0.0});
-    pair_sum second = pair_multiply(weights[1].value, (pair_sum){to, 0.0});
+    pair_sum first = pair_scale(weights[0].value, from);
+    pair_sum second = pair_scale(weights[1].value, to);
     double error = 2.0 * (weights[0].error * fabs(from) + weights[1].error * fabs(to)) +
                    0x1p-97 * (fabs(first.high) + fabs(second.high));
     return round_quotient(pair_add(first, second), error, sum, out);
 }
 
+/* The weights of the triangle's corners add up to what those of the edge's ends add up to: the magnitude of the product of
+ * the edge and the triangle's normal. So that of the first corner is not needed, and may be 0. */
 bool rounded_point_find(const double *const p[5], event_point *out) {
-    bounded_sum ends[2], corners[3];
+    bounded_sum ends[2], corners[2]; /* of the second and the third corner */
     for (int i = 0; i < 15; i++) {
         if (!(fabs(p[i / 3][i % 3]) < largest)) return false;
     }
-    if (!find_weight(p[2], p[3], p[4], p[1], &ends[0]) || !find_weight(p[2], p[3], p[4], p[0], &ends[1]) ||
-        !find_weight(p[0], p[1], p[3], p[4], &corners[0]) ||
-        !find_weight(p[0], p[1], p[4], p[2], &corners[1]) ||
-        !find_weight(p[0], p[1], p[2], p[3], &corners[2]))
+    weight_plane triangle = plane_of_points(p[2], p[3], p[4]), edge = plane_of_points(p[0], p[1], p[2]);
+    if (!find_weight(&triangle, p[1], &ends[0]) || !find_weight(&triangle, p[0], &ends[1]) ||
+        !find_weight(&edge, p[4], &corners[0]) || !find_weight(&edge, p[3], &corners[1]))
         return false;
-    bounded_sum sum = add_weights(ends[0], ends[1]);
-    if (!round_quotient(ends[1].value, ends[1].error, &sum, &out->s)) return false;
+    divisor below = {.sum = add_weights(ends[0], ends[1])};
+    below.inverse = 1.0 / below.sum.value.high;
+    if (!round_quotient(ends[1].value, ends[1].error, &below, &out->s)) return false;
     for (int k = 0; k < 3; k++) {
-        if (!round_coordinate(ends, &sum, p[0][k], p[1][k], &out->x[k])) return false;
+        if (!round_coordinate(ends, &below, p[0][k], p[1][k], &out->x[k])) return false;
     }
-    sum = add_weights(add_weights(corners[0], corners[1]), corners[2]);
-    return round_quotient(corners[1].value, corners[1].error, &sum, &out->u) &&
-           round_quotient(corners[2].value, corners[2].error, &sum, &out->v);
+    return round_quotient(corners[0].value, corners[0].error, &below, &out->u) &&
+           round_quotient(corners[1].value, corners[1].error, &below, &out->v);
 }

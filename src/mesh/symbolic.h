@@ -6,6 +6,8 @@
  * minors of the same matrix, whose signs src/mesh/predicates.h knows exactly. docs/theory/curves.md has the proof. */
 #pragma once
 
+#include "src/mesh/predicates.h"
+
 #include <stdint.h>
 
 /* Points of one call have different names, but may lie at the same place. */
@@ -34,7 +36,8 @@ symbolic_minor symbolic_minor_of(const symbolic_term *term);
 
 /* orient3d of the moved points: -1 or 1. */
 static inline int symbolic_orient3d(symbolic_point a, symbolic_point b, symbolic_point c, symbolic_point d) {
-    return symbolic_orient3d_term((symbolic_point[4]){a, b, c, d}).sign;
+    int sign = orient3d(a.x, b.x, c.x, d.x);
+    return sign != 0 ? sign : symbolic_orient3d_term((symbolic_point[4]){a, b, c, d}).sign;
 }
 
 /* orient2d of the moved points in the projection along an axis, with coordinate axis + 1 to the right and axis + 2

@@ -53,15 +53,23 @@ static bool compare_point(const point_rig *r) {
     return found;
 }
 
-/* Makes points that agree in so many leading bits, of so many bits in all; scaled. */
+static void draw_points(point_rig *r, random_stream *random, double offset, double grid) {
+    for (int k = 0; k < 15; k++) {
+        double x = stream_between(random, -1.0, 1.0);
+        r->x[k / 3][k % 3] = offset + (grid > 0.0 ? nearbyint(x * grid) / grid : x);
+    }
+}
+
+/* Makes events of points that agree in so many leading bits, of so many bits in all; scaled by a power of two. */
 static int compare_points(point_rig *r, uint64_t seed, double offset, double grid, double scale) {
+    const surface_event event = {r->mesh->triangle_edges[0][0], 1};
+    const named_surface s = {r->mesh, r->x[0], NULL};
     random_stream random = stream_start(seed);
     int found = 0;
     for (int i = 0; i < POINTS; i++) {
-        for (int k = 0; k < 15; k++) {
-            double x = stream_between(&random, -1.0, 1.0);
-            r->x[k / 3][k % 3] = (offset + (grid > 0.0 ? nearbyint(x * grid) / grid : x)) * scale;
-        }
+        do draw_points(r, &random, offset, grid);
+        while (!surface_event_happens(&s, event));
+        for (int k = 0; k < 15; k++) r->x[k / 3][k % 3] *= scale;
         found += compare_point(r);
     }
     return found;
