@@ -2,6 +2,7 @@
 #include "src/io/contact_file.h"
 
 #include "src/io/json.h"
+#include "src/io/output_file.h"
 #include "src/io/path_name.h"
 
 #include <errno.h>
@@ -12,7 +13,7 @@
 #include <strings.h>
 
 struct contact_file {
-    FILE *file;
+    output_file out;
     char *path;
     bool csv;
     contact_columns columns;
@@ -27,19 +28,23 @@ static void free_contact_file(contact_file *file) {
     free(file);
 }
 
+static bool names_csv(const char *path) {
+    return path_has_extension(path, ".csv") || output_file_is_standard(path);
+}
+
 bool contact_file_names_format(const char *path) {
-    return path_has_extension(path, ".csv") || path_has_extension(path, ".jsonl");
+    return names_csv(path) || path_has_extension(path, ".jsonl");
 }
 
 static bool write_header(const contact_file *file) {
     const char *bounded = file->columns.bounded ? ",bounded" : "";
     const char *objects = file->columns.object_names != NULL ? ",object_a,object_b" : "";
-    return !file->csv || fprintf(file->file, "frame,kind,toi,a0,a1,b0,b1,b2,u,v,x,y,z,nx,ny,nz%s%s\n",
+    return !file->csv || fprintf(file->out.file, "frame,kind,toi,a0,a1,b0,b1,b2,u,v,x,y,z,nx,ny,nz%s%s\n",
                                  bounded, objects) >= 0;
 }
 
 bool contact_file_open(const char *path, contact_columns columns, contact_file **out, io_error *error) {
-    bool csv = path_has_extension(path, ".csv");
+    bool csv = names_csv(path);
     if (!contact_file_names_format(path))
         return io_fail(error, "%s: contacts are written as .csv or .jsonl", path);
     contact_file *file = calloc(1, sizeof *file);
@@ -49,15 +54,14 @@ bool contact_file_open(const char *path, contact_columns columns, contact_file *
     }
     file->csv = csv;
     file->columns = columns;
-    file->file = fopen(path, "w");
-    if (file->file == NULL) {
+    if (!output_file_open(path, &file->out)) {
         write_failed(file, error);
         free_contact_file(file);
         return false;
     }
     if (!write_header(file)) {
         write_failed(file, error);
-        fclose(file->file);
+        output_file_close(&file->out, OUTPUT_ABANDONED);
         free_contact_file(file);
         return false;
     }
@@ -127,19 +131,19 @@ static void write_json_line(FILE *file, const contact_record *r, const contact_c
 
 bool contact_file_write(contact_file *file, const contact_record *record, io_error *error) {
     if (file->csv)
-        write_csv(file->file, record, &file->columns);
+        write_csv(file->out.file, record, &file->columns);
     else
-        write_json_line(file->file, record, &file->columns);
-    return !ferror(file->file) || write_failed(file, error);
+        write_json_line(file->out.file, record, &file->columns);
+    return !ferror(file->out.file) || write_failed(file, error);
 }
 
 bool contact_file_flush(contact_file *file, io_error *error) {
-    return fflush(file->file) == 0 || write_failed(file, error);
+    return output_file_flush(&file->out) || write_failed(file, error);
 }
 
 bool contact_file_close(contact_file *file, io_error *error) {
     if (file == NULL) return true;
-    bool written = fclose(file->file) == 0 || write_failed(file, error);
+    bool written = output_file_close(&file->out, OUTPUT_WHOLE_LINES) || write_failed(file, error);
     free_contact_file(file);
     return written;
 }

@@ -27,10 +27,10 @@ typedef struct contact_columns {
         *object_names; /* each row names its two objects; NULL: none does. They outlive the file */
 } contact_columns;
 
-/* The format follows from the extension: .csv or .jsonl. On false *out is untouched. */
+/* The format follows from the extension: .csv or .jsonl; "-", the standard output, is CSV. On false *out is untouched. */
 bool contact_file_open(const char *path, contact_columns columns, contact_file **out, io_error *error);
 bool contact_file_write(contact_file *file, const contact_record *record, io_error *error);
-/* Passes everything written so far to the system. */
+/* Passes everything written so far to the system. That much is kept even if the disk is full later. */
 bool contact_file_flush(contact_file *file, io_error *error);
-/* False when the rest could not be written. NULL does nothing and is fine. */
+/* Puts the file in its place. False when the rest could not be written. NULL does nothing and is fine. */
 bool contact_file_close(contact_file *file, io_error *error);

@@ -8,7 +8,7 @@
 bool plan_file_is_plan(const char *path);
 
 /* positions: the mesh at rest, as the plan was made from it; colours: red, green, blue per triangle. A file that
- * cannot be finished is removed. */
+ * was there stays until the plan is whole. */
 bool plan_file_write(const char *path, const cscd_mesh *mesh, const double *positions, const cscd_plan *plan,
                      const uint8_t *colours, io_error *error);
 

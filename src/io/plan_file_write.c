@@ -1,11 +1,11 @@
 /* Writes a plan as a binary PLY file. */
+#include "src/io/output_file.h"
 #include "src/io/plan_file.h"
 
 #include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
 
 /* The bytes of one vertex, face, region or component. */
 typedef struct file_row {
@@ -93,24 +93,13 @@ static void write_components(FILE *file, const cscd_mesh *mesh, const cscd_plan 
 
 bool plan_file_write(const char *path, const cscd_mesh *mesh, const double *positions, const cscd_plan *plan,
                      const uint8_t *colours, io_error *error) {
-    FILE *file = fopen(path, "wb");
-    if (file == NULL) return io_fail(error, "%s: cannot write: %s", path, strerror(errno));
-    struct stat status;
-    bool regular = fstat(fileno(file), &status) == 0 && S_ISREG(status.st_mode);
-    errno = 0;
-    write_header(file, mesh, plan);
-    write_vertices(file, mesh, positions);
-    write_faces(file, mesh, plan, colours);
-    write_regions(file, plan);
-    write_components(file, mesh, plan);
-    bool written = fflush(file) == 0 && !ferror(file);
-    int cause = errno;
-    if (fclose(file) != 0 && written) {
-        written = false;
-        cause = errno;
-    }
-    if (written) return true;
-    /* A device or a pipe is not ours to remove. */
-    if (regular) remove(path);
-    return io_fail(error, "%s: cannot write: %s", path, strerror(cause));
+    output_file out;
+    if (!output_file_open(path, &out)) return io_fail(error, "%s: cannot write: %s", path, strerror(errno));
+    write_header(out.file, mesh, plan);
+    write_vertices(out.file, mesh, positions);
+    write_faces(out.file, mesh, plan, colours);
+    write_regions(out.file, plan);
+    write_components(out.file, mesh, plan);
+    return output_file_close(&out, OUTPUT_WHOLE) ||
+           io_fail(error, "%s: cannot write: %s", path, strerror(errno));
 }

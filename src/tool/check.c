@@ -1,4 +1,5 @@
 /* `cscd check`: finds where a mesh intersects or touches itself, frame by frame. */
+#include "src/io/output_file.h"
 #include "src/tool/common/command.h"
 #include "src/tool/common/frame_list.h"
 #include "src/tool/common/frame_range.h"
@@ -23,7 +24,8 @@ typedef struct check_options {
 
 static const option_row rows[] = {
     {"json", "OUT.json", read_text, offsetof(check_options, json_path),
-     "write the pairs of every frame (triangles as in MODEL, from 0)"},
+     "write the pairs of every frame (triangles as in MODEL, from 0); - is the standard output, and the text for "
+     "people then goes to the standard error"},
     {"frames", "A:B[:STEP]", read_frames, offsetof(check_options, frames),
      "only the frames A to B, both included, or every STEP-th of them"},
     {"object", "NAME=MODEL", read_named_path, offsetof(check_options, source.objects),
@@ -64,7 +66,8 @@ typedef struct check_run {
     ignore_pairs ignored;
     cscd_detector *detector;
     double *positions;
-    json out; /* file NULL when not asked for */
+    output_file file; /* its file is NULL when not asked for */
+    json out;
     terminal_progress progress;
     frame_choice frames;
     uint32_t frames_checked;
@@ -88,7 +91,7 @@ static void write_frame(check_run *c, uint32_t frame, const cscd_intersections *
     }
     json_end_array(out);
     json_end_object(out);
-    fflush(out->file);
+    output_file_flush(&c->file);
 }
 
 static bool check_frame(check_run *c, uint32_t frame, io_error *error) {
@@ -127,8 +130,9 @@ static bool prepare_check(check_run *c, io_error *error) {
     c->positions = malloc((size_t)cscd_mesh_vertex_count(c->recording.mesh) * 3 * sizeof *c->positions);
     if (c->positions == NULL) return io_fail(error, "out of memory");
     if (o->json_path == NULL) return true;
-    c->out.file = fopen(o->json_path, "w");
-    if (c->out.file == NULL) return io_fail(error, "%s: cannot write: %s", o->json_path, strerror(errno));
+    if (!output_file_open(o->json_path, &c->file))
+        return io_fail(error, "%s: cannot write: %s", o->json_path, strerror(errno));
+    c->out.file = c->file.file;
     json_begin_object(&c->out, NULL);
     json_begin_array(&c->out, "frames");
     return true;
@@ -152,9 +156,8 @@ static bool close_json(check_run *c, const char *stopped_by, io_error *error) {
     if (stopped_by != NULL) json_string(out, "stopped_by", stopped_by);
     json_end_object(out);
     fputc('\n', out->file);
-    bool written = !ferror(out->file);
-    written = fclose(out->file) == 0 && written;
-    return written || io_fail(error, "%s: cannot write: %s", c->options->json_path, strerror(errno));
+    return output_file_close(&c->file, OUTPUT_WHOLE) ||
+           io_fail(error, "%s: cannot write: %s", c->options->json_path, strerror(errno));
 }
 
 static int run_check(const check_options *options) {

@@ -1,6 +1,6 @@
 /* The file of a report is whole or absent; an older one stays intact, and links and pipes work. */
 #include "src/io/growable.h"
-#include "src/tool/report/replacing_file.h"
+#include "src/io/output_file.h"
 #include "src/tool/report/template.h"
 #include "tests/support/report/page_reader.h"
 #include "tests/support/report/report_rig.h"

@@ -1,9 +1,11 @@
 /* Keeps a command from writing over what it reads. */
 #include "src/tool/common/output_path.h"
 
+#include "src/io/output_file.h"
 #include "src/io/path_name.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -52,6 +54,7 @@ static void remove_created(const char *path) {
 /* A pipe is not opened: its reader would take the end of this writer for the end of the data. */
 static bool try_open(const char *path) {
     struct stat status;
+    if (output_file_is_standard(path)) return fcntl(STDOUT_FILENO, F_GETFD) >= 0;
     bool exists = stat(path, &status) == 0;
     if (exists && S_ISFIFO(status.st_mode)) return access(path, W_OK) == 0;
     FILE *file = fopen(path, "ab");
@@ -67,8 +70,10 @@ bool output_path_opens(const char *path, io_error *error) {
 
 bool output_path_differs(const char *path, const char *const *others, size_t other_count, io_error *error) {
     for (size_t i = 0; path != NULL && i < other_count; i++) {
-        if (others[i] != NULL && same_file(path, others[i]))
-            return io_fail(error, "'%s' would overwrite '%s'", path, others[i]);
+        if (others[i] == NULL) continue;
+        if (output_file_is_standard(path) && output_file_is_standard(others[i]))
+            return io_fail(error, "- would be the standard output twice; give the other output a file");
+        if (same_file(path, others[i])) return io_fail(error, "'%s' would overwrite '%s'", path, others[i]);
     }
     return true;
 }

@@ -1,5 +1,6 @@
 /* RGBA pictures: memory, blending and the way into a PNG file. */
 #include "src/tool/picture/image.h"
+#include "src/io/output_file.h"
 
 #include <errno.h>
 #include <png.h>
@@ -7,7 +8,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 bool picture_image_create(uint32_t width, uint32_t height, picture_image *out, io_error *error) {
     if (width == 0 || height == 0 || width > PICTURE_SIDE_MAX || height > PICTURE_SIDE_MAX)
@@ -107,21 +107,12 @@ static bool encode_png(const picture_image *image, encoded_png *encoded) {
 }
 
 static bool write_file(const char *path, const uint8_t *bytes, size_t size, io_error *error) {
-    FILE *file = fopen(path, "wb");
-    if (file == NULL) return io_fail(error, "%s: cannot open for writing: %s", path, strerror(errno));
-    struct stat status;
-    bool regular = fstat(fileno(file), &status) == 0 && S_ISREG(status.st_mode);
-    errno = 0;
-    bool written = fwrite(bytes, 1, size, file) == size && fflush(file) == 0;
-    int reason = errno;
-    if (fclose(file) != 0 && written) {
-        written = false;
-        reason = errno;
-    }
-    if (written) return true;
-    /* Removes a file, but not a device or a pipe. */
-    if (regular) remove(path);
-    return io_fail(error, "%s: cannot write %zu bytes: %s", path, size, strerror(reason));
+    output_file out;
+    if (!output_file_open(path, &out))
+        return io_fail(error, "%s: cannot open for writing: %s", path, strerror(errno));
+    fwrite(bytes, 1, size, out.file);
+    return output_file_close(&out, OUTPUT_WHOLE) ||
+           io_fail(error, "%s: cannot write %zu bytes: %s", path, size, strerror(errno));
 }
 
 bool picture_image_write_png(const char *path, const picture_image *image, io_error *error) {

@@ -19,6 +19,7 @@ typedef struct replay {
     const replay_options *options;
     recording recording;
     ignore_pairs ignored;
+    size_t rest_pairs; /* of these, those of the first frame */
     plan_choice plan;
     cscd_detector *detector;
     double *x0, *x1;
@@ -59,9 +60,7 @@ static bool prepare_ignored(replay *r, io_error *error) {
     if (!r->options->ignore_rest) return true;
     size_t listed = r->ignored.triangle_count;
     if (!ignore_pairs_add_rest(&r->ignored, &r->recording, error)) return false;
-    if (!r->options->quiet)
-        printf("%zu triangle pairs that intersect or touch in frame %d are left out\n",
-               r->ignored.triangle_count - listed, r->recording.frame_numbers[0]);
+    r->rest_pairs = r->ignored.triangle_count - listed;
     return true;
 }
 
@@ -305,13 +304,22 @@ static int fail_replay(const replay *r, bool begun, const char *reason) {
     return fail_input("%s%s", reason, unreported ? "; no report was written" : "");
 }
 
+/* What a person should know before the results. */
+static void print_beginning(replay *r) {
+    if (r->options->quiet) return;
+    recording_warn(&r->recording);
+    if (r->options->ignore_rest)
+        printf("%zu triangle pairs that intersect or touch in frame %d are left out\n", r->rest_pairs,
+               r->recording.frame_numbers[0]);
+}
+
 static int run_replay(const replay_options *options) {
     replay r = {.options = options};
     io_error error = {""}, close_error = {""};
     int code = EXIT_RAN;
     bool begun = begin_replay(&r, &error), ran = false;
     if (begun) {
-        if (!options->quiet) recording_warn(&r.recording);
+        print_beginning(&r);
         interrupt_catch();
         terminal_progress_begin(&r.progress, options->quiet);
         ran = run_intervals(&r, &error);

@@ -33,9 +33,12 @@ static bool read_simd(const char *text, void *place) {
 
 static const option_row rows[] = {
     {"contacts", "OUT.csv|OUT.jsonl", read_text, offsetof(replay_options, contacts_path),
-     "write each contact: frame, kind, time of impact, vertices, point, normal"},
+     "write each contact: frame, kind, time of impact, vertices, point, normal; - is the standard output"},
+    {"csv", "OUT.csv", read_text, offsetof(replay_options, contacts_path),
+     "another name of --contacts; --csv - writes them to the standard output"},
     {"json", "OUT.json", read_text, offsetof(replay_options, json_path),
-     "write a summary: every interval, every frame, timings, provenance"},
+     "write a summary: every interval, every frame, timings, provenance; - is the standard output, and the text "
+     "for people then goes to the standard error"},
     {"report", "OUT.html", read_text, offsetof(replay_options, report.path),
      "write a page that shows all of it in any browser: the motion, contacts, charge, regions, timings"},
     {"scenery", "MODEL", read_text, offsetof(replay_options, report.scenery_path),
@@ -121,7 +124,7 @@ static int check_options(const replay_options *o, size_t input_count) {
     if (input_count < 1 && o->source.objects.count == 0) return fail_usage("replay", "no MODEL given");
     if (input_count < 2 && o->source.frames_of.count == 0) return fail_usage("replay", "no FRAMES given");
     if (o->contacts_path != NULL && !contact_file_names_format(o->contacts_path))
-        return fail_usage("replay", "--contacts '%s': expected a name that ends in .csv or .jsonl",
+        return fail_usage("replay", "--contacts '%s': expected a name that ends in .csv or .jsonl, or -",
                           o->contacts_path);
     if (o->plan_path != NULL && (o->method == CSCD_METHOD_NONE || o->method == CSCD_METHOD_BRUTE))
         return fail_usage("replay", "--plan is of no use with --method %s", cscd_method_name(o->method));

@@ -2,6 +2,7 @@
 #include "src/tool/replay/summary.h"
 
 #include "src/io/growable.h"
+#include "src/io/output_file.h"
 #include "src/tool/common/provenance.h"
 
 #include <errno.h>
@@ -14,7 +15,7 @@ typedef struct checked_frame {
 } checked_frame;
 
 struct summary_writer {
-    FILE *file; /* NULL: nothing is written */
+    output_file file; /* its file is NULL when nothing is written */
     char *path;
     FILE *memory; /* everything is written here first: text, size bytes of it */
     char *text;
@@ -40,8 +41,8 @@ static void free_summary(summary_writer *w) {
 
 static bool open_file(summary_writer *w, const char *path, io_error *error) {
     w->path = strdup(path);
-    w->file = w->path != NULL ? fopen(path, "w") : NULL;
-    return w->file != NULL || io_fail(error, "%s: cannot write: %s", path, strerror(errno));
+    return (w->path != NULL && output_file_open(path, &w->file)) ||
+           io_fail(error, "%s: cannot write: %s", path, strerror(errno));
 }
 
 bool summary_open(const char *path, bool keep_text, const cscd_mesh *mesh, summary_writer **out,
@@ -71,8 +72,9 @@ static bool forward_text(summary_writer *w, io_error *error) {
     if (fflush(w->memory) != 0 || ferror(w->memory)) return io_fail(error, "out of memory for the summary");
     size_t begin = w->keeps_text ? w->forwarded : 0, count = w->size - begin;
     w->forwarded = w->size;
+    FILE *file = w->file.file;
     bool written =
-        w->file == NULL || (fwrite(w->text + begin, 1, count, w->file) == count && fflush(w->file) == 0);
+        file == NULL || (fwrite(w->text + begin, 1, count, file) == count && output_file_flush(&w->file));
     if (!w->keeps_text) rewind(w->memory);
     return written || write_failed(w, error);
 }
@@ -248,10 +250,7 @@ static void write_provenance(summary_writer *w, const summary_ending *e) {
 
 /* The file, if there is one, is closed in any case. */
 static bool close_file(summary_writer *w, io_error *error) {
-    if (w->file == NULL) return true;
-    bool written = !ferror(w->file);
-    written = fclose(w->file) == 0 && written;
-    return written || write_failed(w, error);
+    return w->file.file == NULL || output_file_close(&w->file, OUTPUT_WHOLE) || write_failed(w, error);
 }
 
 bool summary_close(summary_writer *w, const summary_ending *ending, char **text, io_error *error) {

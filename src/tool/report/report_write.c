@@ -1,8 +1,8 @@
 /* Writes a report: the template, what the page is told as JSON, and its arrays. */
 #include "src/io/json.h"
+#include "src/io/output_file.h"
 #include "src/tool/report/collected.h"
 #include "src/tool/report/page_arrays.h"
-#include "src/tool/report/replacing_file.h"
 #include "src/tool/report/template.h"
 
 #include <errno.h>
@@ -209,11 +209,11 @@ static bool put_page(FILE *file, const report_template *page, const char *text, 
 
 static bool write_file(const char *path, const report_template *page, const char *text,
                        const page_arrays *arrays, io_error *error) {
-    replacing_file out;
-    bool written = replacing_file_open(path, &out);
+    output_file out;
+    bool written = output_file_open(path, &out);
     if (written) {
         written = put_page(out.file, page, text, arrays);
-        written = replacing_file_close(&out, written) && written;
+        written = output_file_close(&out, written ? OUTPUT_WHOLE : OUTPUT_ABANDONED);
     }
     return written || io_fail(error, "%s: cannot write: %s", path, strerror(errno));
 }

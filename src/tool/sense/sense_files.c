@@ -7,18 +7,17 @@
 #include <stdio.h>
 #include <string.h>
 
-static bool open_one(const char *path, FILE **out, io_error *error) {
-    if (path == NULL) return true;
-    *out = fopen(path, "w");
-    return *out != NULL || io_fail(error, "%s: cannot write: %s", path, strerror(errno));
+static bool open_one(const char *path, output_file *out, io_error *error) {
+    return path == NULL || output_file_open(path, out) ||
+           io_fail(error, "%s: cannot write: %s", path, strerror(errno));
 }
 
 bool sense_files_open(const sense_options *o, sense_files *out, io_error *error) {
-    if (!open_one(o->csv_path, &out->csv, error) || !open_one(o->json_path, &out->out.file, error))
-        return false;
-    if (out->csv != NULL)
+    if (!open_one(o->csv_path, &out->csv, error) || !open_one(o->json_path, &out->json, error)) return false;
+    out->out.file = out->json.file;
+    if (out->csv.file != NULL)
         fputs("frame,part_a,part_b,object_a,object_b,vertex_a,vertex_b,distance,time,contact,toi\n",
-              out->csv);
+              out->csv.file);
     if (out->out.file == NULL) return true;
     json_begin_object(&out->out, NULL);
     json_begin_array(&out->out, "intervals");
@@ -78,12 +77,13 @@ static void write_interval(json *out, const sense_options *o, const sense_interv
 bool sense_files_add(sense_files *f, const sense_subject *subject, const sense_interval *interval,
                      io_error *error) {
     const sense_options *o = subject->options;
-    if (f->csv != NULL) write_warnings(f->csv, subject, interval);
-    if (f->csv != NULL && fflush(f->csv) != 0)
+    if (f->csv.file != NULL) write_warnings(f->csv.file, subject, interval);
+    if (f->csv.file != NULL && !output_file_flush(&f->csv))
         return io_fail(error, "%s: cannot write: %s", o->csv_path, strerror(errno));
     if (f->out.file == NULL) return true;
     write_interval(&f->out, o, interval);
-    return fflush(f->out.file) == 0 || io_fail(error, "%s: cannot write: %s", o->json_path, strerror(errno));
+    return output_file_flush(&f->json) ||
+           io_fail(error, "%s: cannot write: %s", o->json_path, strerror(errno));
 }
 
 static void write_recall(json *out, const sense_totals *t) {
@@ -148,11 +148,9 @@ static void write_provenance(json *out, const sense_subject *s) {
     json_end_object(out);
 }
 
-static bool close_one(FILE *file, const char *path, io_error *error) {
-    if (file == NULL) return true;
-    bool written = !ferror(file);
-    written = fclose(file) == 0 && written;
-    return written || io_fail(error, "%s: cannot write: %s", path, strerror(errno));
+static bool close_one(output_file *file, output_ending ending, const char *path, io_error *error) {
+    return file->file == NULL || output_file_close(file, ending) ||
+           io_fail(error, "%s: cannot write: %s", path, strerror(errno));
 }
 
 bool sense_files_close(sense_files *f, const sense_subject *subject, const sense_totals *t,
@@ -164,8 +162,9 @@ bool sense_files_close(sense_files *f, const sense_subject *subject, const sense
         json_end_object(&f->out);
         fputc('\n', f->out.file);
     }
-    bool written = close_one(f->csv, subject->options->csv_path, error);
-    written = close_one(f->out.file, subject->options->json_path, written ? error : NULL) && written;
+    bool written = close_one(&f->csv, OUTPUT_WHOLE_LINES, subject->options->csv_path, error);
+    written =
+        close_one(&f->json, OUTPUT_WHOLE, subject->options->json_path, written ? error : NULL) && written;
     *f = (sense_files){0};
     return written;
 }

@@ -3,6 +3,7 @@
 
 #include "cscd/sensors.h"
 #include "src/io/json.h"
+#include "src/io/output_file.h"
 #include "src/tool/common/plan_source.h"
 #include "src/tool/sense/sense_options.h"
 
@@ -81,8 +82,8 @@ void sense_print_totals(const sense_subject *subject, const sense_totals *t);
 
 /* The warnings as CSV and the intervals as JSON; either may be absent. */
 typedef struct sense_files {
-    FILE *csv;
-    json out; /* file NULL: not wanted */
+    output_file csv, json; /* their files are NULL when not wanted */
+    json out;
 } sense_files;
 
 bool sense_files_open(const sense_options *options, sense_files *out, io_error *error);

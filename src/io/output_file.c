@@ -1,5 +1,5 @@
-/* A file that takes another's place only when it is complete. */
-#include "src/tool/report/replacing_file.h"
+/* A file that takes another's place only when it is complete; "-" is the standard output. */
+#include "src/io/output_file.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -41,10 +41,10 @@ static char *follow_links(const char *path) {
 
 /* Creates a new file in the target's folder. Its name is short, because the target's may be as long as
  * names can be. */
-static int create_temporary(replacing_file *f) {
+static int create_temporary(output_file *f) {
     for (int i = 0; i < NAMES_MAX; i++) {
         char name[64];
-        snprintf(name, sizeof name, ".cscd-report-%ld-%d", (long)getpid(), i);
+        snprintf(name, sizeof name, ".cscd-output-%ld-%d", (long)getpid(), i);
         f->temporary = name_beside(f->target, name);
         if (f->temporary == NULL) return -1;
         int descriptor = open(f->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
@@ -58,11 +58,21 @@ static int create_temporary(replacing_file *f) {
     return -1;
 }
 
+/* Is the path that of a file which is open already? */
+static bool names_descriptor(const char *path) {
+    return strncmp(path, "/dev/", 5) == 0 || strncmp(path, "/proc/", 6) == 0;
+}
+
 /* replaced: the file that is there, NULL if there is none. */
-static bool open_temporary(replacing_file *f, const struct stat *replaced) {
+static bool open_temporary(output_file *f, const struct stat *replaced) {
     if (replaced != NULL && access(f->target, W_OK) != 0) return false;
     int descriptor = create_temporary(f);
-    if (descriptor < 0) return false;
+    if (descriptor < 0) {
+        /* The file may be written where its folder may not: it is then written itself. */
+        bool only_in_place = replaced != NULL && (errno == EACCES || errno == EPERM || errno == EROFS);
+        f->file = only_in_place ? fopen(f->target, "wb") : NULL;
+        return f->file != NULL;
+    }
     if (replaced == NULL || fchmod(descriptor, replaced->st_mode & 07777) == 0)
         f->file = fdopen(descriptor, "wb");
     if (f->file != NULL) return true;
@@ -73,19 +83,38 @@ static bool open_temporary(replacing_file *f, const struct stat *replaced) {
     return false;
 }
 
-static void free_names(replacing_file *f) {
+/* Takes the standard output for the file, and leaves the standard error to whatever is printed. */
+static FILE *open_standard(void) {
+    int descriptor = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+    if (descriptor < 0) return NULL;
+    FILE *file =
+        fflush(stdout) == 0 && dup2(STDERR_FILENO, STDOUT_FILENO) >= 0 ? fdopen(descriptor, "wb") : NULL;
+    if (file != NULL) return file;
+    int cause = errno;
+    close(descriptor);
+    errno = cause;
+    return NULL;
+}
+
+static void free_names(output_file *f) {
     int cause = errno;
     free(f->target);
     free(f->temporary);
-    *f = (replacing_file){0};
+    *f = (output_file){0};
     errno = cause;
 }
 
-bool replacing_file_open(const char *path, replacing_file *out) {
-    replacing_file f = {0};
+bool output_file_is_standard(const char *path) {
+    return path != NULL && strcmp(path, "-") == 0;
+}
+
+bool output_file_open(const char *path, output_file *out) {
+    output_file f = {0};
     struct stat status;
-    bool exists = stat(path, &status) == 0;
-    if (exists && !S_ISREG(status.st_mode))
+    bool standard = output_file_is_standard(path), exists = !standard && stat(path, &status) == 0;
+    if (standard)
+        f.file = open_standard();
+    else if (exists && (!S_ISREG(status.st_mode) || names_descriptor(path)))
         f.file = fopen(path, "wb");
     else if ((f.target = follow_links(path)) != NULL)
         open_temporary(&f, exists ? &status : NULL);
@@ -97,17 +126,33 @@ bool replacing_file_open(const char *path, replacing_file *out) {
     return true;
 }
 
-bool replacing_file_close(replacing_file *f, bool complete) {
+bool output_file_flush(output_file *f) {
+    if (fflush(f->file) != 0 || ferror(f->file)) return false;
+    off_t size = f->temporary != NULL ? ftello(f->file) : -1;
+    if (size >= 0) f->whole_size = size;
+    return true;
+}
+
+/* What was written up to the last flush, without what a full disk has cut off behind it. */
+static bool cut_to_whole(const output_file *f) {
+    return f->temporary != NULL && f->whole_size > 0 && truncate(f->temporary, f->whole_size) == 0;
+}
+
+bool output_file_close(output_file *f, output_ending ending) {
     int cause = errno;
-    bool written = fclose(f->file) == 0;
-    if (complete && !written) cause = errno;
-    bool placed = complete && written;
+    bool written = !ferror(f->file);
+    if (fclose(f->file) != 0 && written) {
+        written = false;
+        cause = errno;
+    }
+    if (ending == OUTPUT_ABANDONED) written = false;
+    bool placed = written || (ending == OUTPUT_WHOLE_LINES && cut_to_whole(f));
     if (placed && f->temporary != NULL && rename(f->temporary, f->target) != 0) {
-        placed = false;
+        placed = written = false;
         cause = errno;
     }
     if (!placed && f->temporary != NULL) unlink(f->temporary);
     free_names(f);
     errno = cause;
-    return placed;
+    return written;
 }

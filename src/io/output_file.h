@@ -1,0 +1,34 @@
+/* A file that takes another's place only when it is complete; "-" is the standard output. */
+#pragma once
+
+#include <stdbool.h>
+#include <stdio.h>
+#include <sys/types.h>
+
+typedef struct output_file {
+    FILE *file;
+    char *target;     /* where symbolic links lead */
+    char *temporary;  /* in its folder; NULL: the target is a pipe or a device, and written to itself */
+    off_t whole_size; /* bytes up to the last flush */
+} output_file;
+
+/* How a file ends. Whatever a path held before stays until a file takes its place. */
+typedef enum output_ending {
+    OUTPUT_WHOLE,       /* it takes its place, or is removed if the rest could not be written */
+    OUTPUT_WHOLE_LINES, /* the same, but what the last flush had written takes its place in any case */
+    OUTPUT_ABANDONED    /* it is removed */
+} output_ending;
+
+/* Opens a file that takes the place of path once it is complete, with the permissions that fopen would
+ * give. "-": the standard output; what the program prints from then on goes to the standard error. On false
+ * *out holds nothing to close, and errno says why. */
+bool output_file_open(const char *path, output_file *out);
+
+/* Passes everything written so far to the system. */
+bool output_file_flush(output_file *file);
+
+/* Closes, and puts the file in its place. False: not all of it is there, and errno says why. */
+bool output_file_close(output_file *file, output_ending ending);
+
+/* Is the path "-"? It may be NULL. */
+bool output_file_is_standard(const char *path);
