@@ -19,7 +19,7 @@ typedef struct cscd_depth {
     uint32_t edge;     /* UINT32_MAX: the point is a vertex */
     uint32_t patch;    /* of the vertex; UINT32_MAX: of an edge, or of a vertex at which curves end */
     uint32_t object;   /* which contains the point */
-    uint32_t triangle; /* of that object: has the nearest point */
+    uint32_t triangle; /* of that object: has the nearest point; of several the first */
     uint32_t reserved; /* 0 */
     double s;          /* on the edge (e0, e1) the point is (1-s) e0 + s e1 */
     double depth;      /* up to rounding */

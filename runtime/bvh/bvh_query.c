@@ -129,7 +129,7 @@ static int push_children(const bvh *f, const near_place *at, const framed_query 
     int begin = count;
     measure_children(f, at, q, distances);
     for (uint32_t lane = 0; (used >> lane & 1) != 0; lane++) {
-        if (!(distances[lane] < squared)) continue;
+        if (distances[lane] > squared) continue;
         int i = count++;
         for (; i > begin && stack[i - 1].squared < distances[lane]; i--) stack[i] = stack[i - 1];
         stack[i] = (near_place){distances[lane], at->level - 1, first + lane};
@@ -151,7 +151,7 @@ void bvh_visit_near(const bvh *f, uint32_t object, const double point[3], double
     stack[count++] = (near_place){0.0, f->tree_count == 1 ? f->tree_level - 1 : f->level_count - 1, 0};
     while (count > 0) {
         near_place at = stack[--count];
-        if (!(at.squared < *squared)) continue;
+        if (at.squared > *squared) continue;
         if (at.level == f->tree_level - 1) {
             if (!tree_has_object(&f->trees[at.block], object)) continue;
             q = frame_box(f, &f->trees[at.block], &box);

@@ -14,8 +14,8 @@ typedef struct query_box {
 void bvh_visit_box(const bvh *f, const query_box *box, bool closed_only,
                    void (*visit)(void *data, uint32_t triangle), void *data);
 
-/* Calls visit for each triangle of an object, and perhaps for some of other objects, whose bounding volume may be nearer to
- * the point than the root of *squared, nearer blocks first; visit may lower *squared, which is a squared distance times
+/* Calls visit for each triangle of an object, and perhaps for some of other objects, whose bounding volume may be as near to
+ * the point as the root of *squared, nearer blocks first; visit may lower *squared, which is a squared distance times
  * the square of the trees' scale, so that it neither overflows nor vanishes. INFINITY: any distance. */
 void bvh_visit_near(const bvh *f, uint32_t object, const double point[3], double *squared,
                     void (*visit)(void *data, uint32_t triangle), void *data);

@@ -240,13 +240,14 @@ static bool plane_is_far(const nearest_search *s, const double corners[3][3]) {
            most * (vec3_dot(n, n) + rounding) + rounding * vec3_dot(w, w) + 0x1p-900;
 }
 
+/* Of several parts at the same distance, that of the first triangle is the answer, whatever the trees' order is. */
 static void try_part(nearest_search *s, uint32_t triangle, const outer_part *part) {
     double u, v;
     const double(*p)[3] = part->corners;
     const outer_box box = box_of_part(part);
     if (box_is_far(s, &box) || plane_is_far(s, p)) return;
     double squared = closest_point_triangle(s->x, p[0], p[1], p[2], &u, &v);
-    if (!(squared < s->best.squared)) return;
+    if (!(squared < s->best.squared || (squared == s->best.squared && triangle < s->best.triangle))) return;
     s->best.squared = squared;
     s->best.triangle = triangle;
     s->best.part = *part;
@@ -277,8 +278,8 @@ static void try_triangle(void *data, uint32_t triangle) {
     try_part(s, triangle, &whole);
 }
 
-/* A squared distance that is a little more than that of a part, so that the part itself is found, and whatever is before it
- * in the order of the trees at the same distance. */
+/* A squared distance that is a little more than that of a part, so that the part itself is found, and all others at the same
+ * distance. */
 static double squared_beyond(const double x[3], const outer_part *part) {
     const double(*p)[3] = part->corners;
     double u, v, size = vec3_squared_distance(p[0], p[1]) + vec3_squared_distance(p[0], p[2]);

@@ -2,6 +2,7 @@
  * is left out, refused where they make no sense, without memory, and with none in a steady state. */
 #include "cscd/research.h"
 #include "tests/support/counting_allocator.h"
+#include "tests/support/intersections/answer_lists.h"
 #include "tests/support/intersections/body_rig.h"
 #include "tests/support/test.h"
 
@@ -32,31 +33,6 @@ static void add_boxes(body_rig *r) {
     }
 }
 
-static void compare_bytes(const void *a, size_t a_count, const void *b, size_t b_count, size_t size) {
-    assert_int_equal(a_count, b_count);
-    assert_memory_equal(a, b, a_count * size);
-}
-
-static void compare_answers(const cscd_intersection_pairs *a, const cscd_intersection_pairs *b) {
-    const cscd_curves *p = a->curves, *q = b->curves;
-    compare_bytes(p->items, p->count, q->items, q->count, sizeof *p->items);
-    compare_bytes(p->points, p->point_count, q->points, q->point_count, sizeof *p->points);
-    compare_bytes(p->pieces, p->piece_count, q->pieces, q->piece_count, sizeof *p->pieces);
-    compare_bytes(p->pair_curves, p->pair_count, q->pair_curves, q->pair_count, sizeof *p->pair_curves);
-    compare_bytes(a->patches->items, a->patches->count, b->patches->items, b->patches->count,
-                  sizeof *a->patches->items);
-    compare_bytes(a->patches->windings, a->patches->winding_count, b->patches->windings,
-                  b->patches->winding_count, sizeof *a->patches->windings);
-    compare_bytes(a->overlaps->items, a->overlaps->count, b->overlaps->items, b->overlaps->count,
-                  sizeof *a->overlaps->items);
-    compare_bytes(a->depths->items, a->depths->count, b->depths->items, b->depths->count,
-                  sizeof *a->depths->items);
-    compare_bytes(a->depths->patches, a->depths->patch_count, b->depths->patches, b->depths->patch_count,
-                  sizeof *a->depths->patches);
-    compare_bytes(a->depths->triangles, a->depths->triangle_count, b->depths->triangles,
-                  b->depths->triangle_count, sizeof *a->depths->triangles);
-}
-
 static void methods_and_threads_agree(void **state) {
     (void)state;
     const cscd_method methods[] = {CSCD_METHOD_NONE, CSCD_METHOD_SINGLE, CSCD_METHOD_BRUTE};
@@ -72,7 +48,7 @@ static void methods_and_threads_agree(void **state) {
         add_scene(&other);
         body_rig_create(&other, &options, 1 + i % 4);
         body_rig_find(&other);
-        compare_answers(&rig.found, &other.found);
+        compare_answers(rig.mesh, &rig.found, &other.found);
         body_rig_free(&other);
     }
     body_rig_free(&rig);
@@ -204,7 +180,7 @@ static void every_allocation_may_fail(void **state) {
         assert_int_equal(status, done ? CSCD_OK : CSCD_OUT_OF_MEMORY);
         counter.fail_at = SIZE_MAX;
         body_rig_find(&rig);
-        compare_answers(&rig.found, &other.found);
+        compare_answers(rig.mesh, &rig.found, &other.found);
         body_rig_free(&rig);
         assert_int_equal(counter.live, 0);
     }
@@ -259,10 +235,10 @@ static void clones_answer_alike(void **state) {
     first = rig.detector;
     rig.detector = second;
     body_rig_find(&rig);
-    compare_answers(&rig.found, &other.found);
+    compare_answers(rig.mesh, &rig.found, &other.found);
     cscd_detector_destroy(first);
     body_rig_find(&rig);
-    compare_answers(&rig.found, &other.found);
+    compare_answers(rig.mesh, &rig.found, &other.found);
     body_rig_free(&rig);
     body_rig_free(&other);
 }
@@ -325,7 +301,7 @@ static void a_larger_mesh_has_its_own_answers(void **state) {
     cscd_mesh_change_destroy(change);
     rig.all.vertex_count += rig.bodies[2].vertex_count;
     body_rig_find(&rig);
-    compare_answers(&rig.found, &other.found);
+    compare_answers(rig.mesh, &rig.found, &other.found);
     body_rig_free(&rig);
     body_rig_free(&other);
 }
