@@ -59,7 +59,7 @@ static bool write_scene(const char *name, const char *count, const char *path, i
     if (!crossing_scene_make(kind, (uint32_t)triangle_count, &s, error)) return false;
     for (uint32_t i = 0; i < s.object_count; i++) body_append(&all, &s.objects[i], nowhere);
     body_round(&all);
-    mesh_file mesh = {all.vertex_count, all.triangle_count, all.positions, all.triangles};
+    mesh_file mesh = mesh_file_of(all.vertex_count, all.triangle_count, all.positions, all.triangles);
     bool good = write_off(path, &mesh, error);
     body_free(&all);
     crossing_scene_free(&s);

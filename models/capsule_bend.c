@@ -160,7 +160,7 @@ int main(int argument_count, char **arguments) {
     uint32_t *end = model.triangles;
     for (uint32_t ring = 0; ring + 1 < ring_count; ring++) end = join_rings(&model, ring, end);
     place_vertices(&model, 0.0, positions);
-    const mesh_file mesh = {vertex_count, triangle_count, positions, model.triangles};
+    const mesh_file mesh = mesh_file_of(vertex_count, triangle_count, positions, model.triangles);
     if (!mesh_file_write_obj(arguments[1], &mesh, &error) ||
         !write_frames(arguments[2], &model, positions, &error)) {
         fprintf(stderr, "capsule_bend: %s\n", error.text);

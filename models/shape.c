@@ -82,7 +82,7 @@ static int write_shape(int argument_count, char **arguments) {
         fprintf(stderr, "shape: %s\n", error.text);
         return 1;
     }
-    const mesh_file mesh = {b.vertex_count, b.triangle_count, b.positions, b.triangles};
+    const mesh_file mesh = mesh_file_of(b.vertex_count, b.triangle_count, b.positions, b.triangles);
     bool written = mesh_file_write_obj(wanted.path, &mesh, &error);
     if (!written) fprintf(stderr, "shape: %s\n", error.text);
     if (written)

@@ -38,8 +38,8 @@ static bool make_recording(const char *model, const char *frames, const char *na
     recorder r;
     if ((access(model, F_OK) == 0 && access(frames, F_OK) == 0) || s == NULL) return true;
     if (!recorder_open(s, NULL, &r, error)) return false;
-    const mesh_file mesh = {r.shape.vertex_count, r.shape.triangle_count, r.shape.positions,
-                            r.shape.triangles};
+    const mesh_file mesh =
+        mesh_file_of(r.shape.vertex_count, r.shape.triangle_count, r.shape.positions, r.shape.triangles);
     bool made = mesh_file_write_obj(model, &mesh, error) && record_frames(&r, frames, error);
     recorder_close(&r);
     return made;

@@ -17,7 +17,7 @@ static bool name_file(const char *folder, const char *name, const char *ending, 
 bool recording_write_model(const char *folder, const char *name, const char *ending, const body *b,
                            io_error *error) {
     char path[PATH_MAX_LENGTH];
-    const mesh_file mesh = {b->vertex_count, b->triangle_count, b->positions, b->triangles};
+    const mesh_file mesh = mesh_file_of(b->vertex_count, b->triangle_count, b->positions, b->triangles);
     return name_file(folder, name, ending, path, error) && mesh_file_write_obj(path, &mesh, error);
 }
 

@@ -227,17 +227,16 @@ static bool copy_positions(const frame_files *files, const mesh_file *mesh, doub
 
 /* If the faces differ from those of earlier frames, the vertices most likely have another order. */
 static bool same_faces(frame_files *files, uint32_t frame, const mesh_file *mesh, io_error *error) {
-    const unsigned char *bytes = (const unsigned char *)mesh->triangles;
-    const size_t size = (size_t)mesh->triangle_count * 3 * sizeof *mesh->triangles;
-    uint64_t hash = 0xcbf29ce484222325u; /* FNV-1a */
-    for (size_t i = 0; i < size; i++) hash = (hash ^ bytes[i]) * 0x100000001b3u;
-    if (files->faces_seen && hash != files->faces_hash)
-        return io_fail(error,
-                       "%s: has other faces than %s: expected frames of one mesh, vertices in one order",
-                       files->path, frame_names_at(&files->list, files->faces_frame));
+    if (files->faces_seen && mesh->faces_hash != files->faces_hash)
+        return io_fail(
+            error, "%s: has other faces than %s: expected frames of one mesh, vertices in one order%s",
+            files->path, frame_names_at(&files->list, files->faces_frame),
+            mesh->polygons == NULL
+                ? "; if the exporter triangulates each frame by itself, export without triangulating"
+                : "");
     if (!files->faces_seen) files->faces_frame = frame;
     files->faces_seen = true;
-    files->faces_hash = hash;
+    files->faces_hash = mesh->faces_hash;
     return true;
 }
 

@@ -1,8 +1,11 @@
 /* Collects the vertices and faces of a mesh file, checking each. */
 #include "src/io/mesh_builder.h"
 
+#include "src/io/polygon.h"
+
 #include <inttypes.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 mesh_builder mesh_builder_of(file_reader *reader, uint32_t index_base) {
@@ -10,16 +13,21 @@ mesh_builder mesh_builder_of(file_reader *reader, uint32_t index_base) {
         .reader = reader,
         .index_base = index_base,
         .positions = growable_of(3 * sizeof(double)),
-        .triangles = growable_of(3 * sizeof(uint32_t)),
+        .corners = growable_of(sizeof(uint32_t)),
+        .faces = growable_of(sizeof(built_face)),
+        .part = NO_MESH_PART,
+        .faces_hash = MESH_HASH_START,
     };
 }
 
 void mesh_builder_free(mesh_builder *builder) {
     growable_free(&builder->positions);
-    growable_free(&builder->triangles);
+    growable_free(&builder->corners);
+    growable_free(&builder->faces);
+    mesh_parts_free(&builder->parts);
 }
 
-/* A new element of one of the two arrays, or NULL and an error. */
+/* A new element of an array, or NULL and an error. */
 static void *push_item(mesh_builder *builder, growable *array, const char *what) {
     if (array->count >= MESH_COUNT_LIMIT) {
         file_reader_fail_here(builder->reader, "more than %" PRId32 " %s, the most of a mesh",
@@ -47,55 +55,149 @@ bool mesh_builder_add_vertex(mesh_builder *builder, const double position[3]) {
     return true;
 }
 
-static bool add_triangle(mesh_builder *builder, uint32_t a, uint32_t b, uint32_t c) {
-    if (a == b || b == c || c == a) {
-        uint32_t base = builder->index_base, twice = b == c ? b : a;
-        return file_reader_fail_here(builder->reader,
-                                     "triangle %" PRIu32 " %" PRIu32 " %" PRIu32 " repeats vertex %" PRIu32
-                                     ", expected three different corners",
-                                     a + base, b + base, c + base, twice + base);
-    }
-    uint32_t *triangle = push_item(builder, &builder->triangles, "triangles");
-    if (triangle == NULL) return false;
-    triangle[0] = a;
-    triangle[1] = b;
-    triangle[2] = c;
-    return true;
+bool mesh_builder_set_part(mesh_builder *builder, const char *name, size_t length) {
+    builder->part = length > 0 ? mesh_parts_find(&builder->parts, name, length) : NO_MESH_PART;
+    return length == 0 || builder->part != NO_MESH_PART ||
+           file_reader_fail_here(builder->reader, "out of memory after %" PRIu32 " parts",
+                                 builder->parts.count);
 }
 
-void mesh_builder_begin_face(mesh_builder *builder) {
-    builder->corner_count = 0;
+/* Where the corners of the face that was begun last begin. */
+static size_t corner_start(const mesh_builder *builder) {
+    const built_face *faces = builder->faces.data;
+    return builder->faces.count > 1 ? faces[builder->faces.count - 2].corner_end : 0;
+}
+
+bool mesh_builder_begin_face(mesh_builder *builder) {
+    built_face *face = push_item(builder, &builder->faces, "faces");
+    if (face == NULL) return false;
+    *face = (built_face){builder->corners.count, builder->part};
+    return true;
 }
 
 bool mesh_builder_add_corner(mesh_builder *builder, uint32_t vertex) {
-    if (builder->corner_count == 0) builder->first_corner = vertex;
-    if (builder->corner_count >= 2 &&
-        !add_triangle(builder, builder->first_corner, builder->last_corner, vertex)) {
-        return false;
-    }
-    builder->last_corner = vertex;
-    builder->corner_count++;
+    uint32_t *corner = growable_push(&builder->corners);
+    if (corner == NULL)
+        return file_reader_fail_here(builder->reader, "out of memory after %zu corners of faces",
+                                     builder->corners.count);
+    *corner = vertex;
     return true;
 }
 
+/* Counts a repair of the last face, and keeps which one was first. */
+static void note_repair(const mesh_builder *builder, uint32_t *count, uint32_t *first) {
+    if ((*count)++ == 0) *first = (uint32_t)builder->faces.count - 1;
+}
+
+/* Leaves a vertex out that follows itself in the face, which is a cycle; returns how many corners are left. */
+static size_t shorten_face(uint32_t *corners, size_t count) {
+    size_t left = 0;
+    for (size_t i = 0; i < count; i++)
+        if (left == 0 || corners[i] != corners[left - 1]) corners[left++] = corners[i];
+    while (left > 1 && corners[left - 1] == corners[0]) left--;
+    return left;
+}
+
 bool mesh_builder_end_face(mesh_builder *builder) {
-    if (builder->corner_count >= 3) return true;
-    return file_reader_fail_here(builder->reader, "a face of %zu %s, expected 3 or more",
-                                 builder->corner_count, builder->corner_count == 1 ? "corner" : "corners");
+    const size_t start = corner_start(builder), count = builder->corners.count - start;
+    if (count < 3)
+        return file_reader_fail_here(builder->reader, "a face of %zu %s, expected 3 or more", count,
+                                     count == 1 ? "corner" : "corners");
+    size_t left = shorten_face((uint32_t *)builder->corners.data + start, count);
+    mesh_repairs *repairs = &builder->repairs;
+    if (left < 3) {
+        note_repair(builder, &repairs->dropped, &repairs->first_dropped);
+        left = 0;
+    } else if (left < count) {
+        note_repair(builder, &repairs->shortened, &repairs->first_shortened);
+    }
+    builder->corners.count = start + left;
+    builder->faces_hash =
+        mesh_file_hash(builder->faces_hash, (uint32_t *)builder->corners.data + start, left);
+    ((built_face *)builder->faces.data)[builder->faces.count - 1].corner_end = builder->corners.count;
+    if (left > 0) builder->triangle_count += left - 2;
+    return builder->triangle_count <= MESH_COUNT_LIMIT ||
+           file_reader_fail_here(builder->reader, "more than %" PRId32 " triangles, the most of a mesh",
+                                 MESH_COUNT_LIMIT);
+}
+
+/* ---- triangles --------------------------------------------------------------------------------------- */
+
+static bool repeats_vertex(const uint32_t triangle[3]) {
+    return triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0];
+}
+
+/* Cuts a face into triangles behind those that there are. A face that names a vertex twice, but not in a row, may have
+ * triangles that do so, too, and are left out. */
+static bool cut_face(mesh_builder *builder, uint32_t face, mesh_file *out) {
+    const built_face *faces = builder->faces.data;
+    const size_t start = face > 0 ? faces[face - 1].corner_end : 0, count = faces[face].corner_end - start;
+    if (count == 0) return true;
+    uint32_t(*triangles)[3] = (uint32_t(*)[3])out->triangles + out->triangle_count;
+    switch (
+        polygon_fill(out->positions, (uint32_t *)builder->corners.data + start, (uint32_t)count, triangles)) {
+    case POLYGON_OUT_OF_MEMORY:
+        return file_reader_fail(builder->reader, "out of memory for a face of %zu corners", count);
+    case POLYGON_FANNED:
+        if (out->repairs.fanned++ == 0) out->repairs.first_fanned = face;
+        break;
+    case POLYGON_FILLED:
+        break;
+    }
+    for (size_t i = 0; i + 2 < count; i++) {
+        if (repeats_vertex(triangles[i])) continue;
+        memmove(out->triangles + (size_t)out->triangle_count * 3, triangles[i], sizeof triangles[i]);
+        out->polygons[out->triangle_count] = face;
+        if (out->parts.count > 0) out->parts.of_triangle[out->triangle_count] = faces[face].part;
+        out->triangle_count++;
+    }
+    return true;
+}
+
+static bool cut_faces(mesh_builder *builder, mesh_file *out) {
+    const size_t count = (size_t)builder->triangle_count + 1;
+    out->triangles = io_realloc(NULL, count * 3 * sizeof *out->triangles);
+    out->polygons = io_realloc(NULL, count * sizeof *out->polygons);
+    if (out->parts.count > 0)
+        out->parts.of_triangle = io_realloc(NULL, count * sizeof *out->parts.of_triangle);
+    if (out->triangles == NULL || out->polygons == NULL ||
+        (out->parts.count > 0 && out->parts.of_triangle == NULL))
+        return file_reader_fail(builder->reader, "out of memory for %" PRIu64 " triangles",
+                                builder->triangle_count);
+    for (uint32_t face = 0; face < builder->faces.count; face++)
+        if (!cut_face(builder, face, out)) return false;
+    return true;
+}
+
+/* A mesh of triangles alone needs no list of the faces that they are cut from. */
+static void drop_plain_polygons(mesh_file *mesh) {
+    for (uint32_t i = 0; i < mesh->triangle_count; i++)
+        if (mesh->polygons[i] != i) return;
+    free(mesh->polygons);
+    mesh->polygons = NULL;
 }
 
 bool mesh_builder_finish(mesh_builder *builder, mesh_file *out) {
     if (builder->positions.count == 0) {
         return file_reader_fail(builder->reader, "no vertices found, expected a triangle mesh");
     }
-    if (builder->triangles.count == 0) {
+    if (builder->triangle_count == 0) {
         return file_reader_fail(builder->reader,
                                 "no faces found for the %zu vertices, expected a triangle mesh",
                                 builder->positions.count);
     }
-    out->vertex_count = (uint32_t)builder->positions.count;
-    out->triangle_count = (uint32_t)builder->triangles.count;
-    out->positions = growable_take(&builder->positions);
-    out->triangles = growable_take(&builder->triangles);
+    mesh_file mesh = {.vertex_count = (uint32_t)builder->positions.count,
+                      .polygon_count = (uint32_t)builder->faces.count,
+                      .positions = growable_take(&builder->positions),
+                      .parts = builder->parts,
+                      .faces_hash = builder->faces_hash,
+                      .repairs = builder->repairs};
+    builder->parts = (mesh_parts){0};
+    if (!cut_faces(builder, &mesh)) {
+        mesh_file_free(&mesh);
+        return false;
+    }
+    drop_plain_polygons(&mesh);
+    *out = mesh;
     return true;
 }

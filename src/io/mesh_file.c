@@ -43,10 +43,20 @@ static bool read_any(file_reader *reader, mesh_file *out) {
     return file_reader_fail(reader, "unknown format, expected a mesh: " PATH_MESH_ENDINGS);
 }
 
+/* Readers of formats that have triangles only leave this to be filled. */
+static void count_triangles_as_faces(mesh_file *mesh) {
+    if (mesh->polygon_count > 0) return;
+    mesh->polygon_count = mesh->triangle_count;
+    mesh->faces_hash = MESH_HASH_START;
+    for (uint32_t t = 0; t < mesh->triangle_count; t++)
+        mesh->faces_hash = mesh_file_hash(mesh->faces_hash, mesh->triangles + (size_t)t * 3, 3);
+}
+
 bool mesh_file_read(const char *path, mesh_file *out, io_error *error) {
     file_reader reader;
     if (!file_reader_open(&reader, path, error)) return false;
     bool done = read_any(&reader, out);
+    if (done) count_triangles_as_faces(out);
     file_reader_close(&reader);
     return done;
 }
@@ -54,6 +64,8 @@ bool mesh_file_read(const char *path, mesh_file *out, io_error *error) {
 void mesh_file_free(mesh_file *mesh) {
     free(mesh->positions);
     free(mesh->triangles);
+    free(mesh->polygons);
+    mesh_parts_free(&mesh->parts);
     *mesh = (mesh_file){0};
 }
 

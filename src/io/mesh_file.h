@@ -2,17 +2,56 @@
 #pragma once
 
 #include "src/io/io_error.h"
+#include "src/io/mesh_parts.h"
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
-/* Vertices in the file's own order; faces in file order, polygons as triangle fans around their first
- * corner. */
+/* What a reader did to faces that are no polygons of three different corners or more, or that it could not fill by their
+ * shape. Faces are counted from 0, in the file's order. */
+typedef struct mesh_repairs {
+    uint32_t shortened,
+        first_shortened;             /* faces that named a vertex twice in a row, which then counts once */
+    uint32_t dropped, first_dropped; /* faces that were left with fewer than three corners */
+    uint32_t fanned, first_fanned;   /* faces that cross themselves in every plane of two coordinates */
+} mesh_repairs;
+
+/* Vertices in the file's own order; faces in file order, polygons cut into triangles by their shape (polygon.h), as they
+ * are in this file. */
 typedef struct mesh_file {
-    uint32_t vertex_count, triangle_count;
+    uint32_t vertex_count, triangle_count,
+        polygon_count;   /* polygons: faces of the file, dropped ones included */
     double *positions;   /* vertex_count * 3 */
     uint32_t *triangles; /* triangle_count * 3 */
+    uint32_t *polygons;  /* triangle_count: the face that each is cut from; NULL: triangle i is face i */
+    mesh_parts parts;
+    uint64_t faces_hash; /* of the faces as the file has them: their corners, face by face */
+    mesh_repairs repairs;
 } mesh_file;
+
+/* Adds a face to the hash of those before it (64-bit FNV-1a). Files whose faces have the same hash have the same faces. */
+#define MESH_HASH_START 0xcbf29ce484222325u
+static inline uint64_t mesh_file_hash(uint64_t hash, const uint32_t *corners, size_t count) {
+    hash = (hash ^ count) * 0x100000001b3u;
+    for (size_t i = 0; i < count; i++) hash = (hash ^ corners[i]) * 0x100000001b3u;
+    return hash;
+}
+
+/* A mesh of triangles, to be written. */
+static inline mesh_file mesh_file_of(uint32_t vertex_count, uint32_t triangle_count, double *positions,
+                                     uint32_t *triangles) {
+    mesh_file mesh = {.vertex_count = vertex_count,
+                      .triangle_count = triangle_count,
+                      .positions = positions,
+                      .triangles = triangles};
+    return mesh;
+}
+
+/* The face of the file that a triangle is cut from, counted from 0. */
+static inline uint32_t mesh_file_polygon(const mesh_file *mesh, uint32_t triangle) {
+    return mesh->polygons != NULL ? mesh->polygons[triangle] : triangle;
+}
 
 /* The format follows from the content where it says so ("ply", "OFF", "glTF"), else from the extension.
  * On false *out is untouched and *error says file, line or byte offset, what was found and expected. */

@@ -1,10 +1,11 @@
-/* Wavefront OBJ: vertices and polygons; all other records are skipped. */
+/* Wavefront OBJ: vertices, polygons, and the names of objects and groups; all other records are skipped. */
 #include "src/io/obj.h"
 
 #include "src/io/mesh_builder.h"
 #include "src/io/text.h"
 
 #include <inttypes.h>
+#include <stdio.h>
 #include <string.h>
 
 typedef struct obj_parser {
@@ -14,6 +15,7 @@ typedef struct obj_parser {
      * end. */
     int64_t largest_index;
     size_t largest_line;
+    text_token object, group; /* those of the faces to come; of length 0: none */
 } obj_parser;
 
 static bool read_vertex(obj_parser *obj) {
@@ -66,7 +68,7 @@ static bool resolve_index(obj_parser *obj, int64_t index, uint32_t *vertex) {
 
 static bool read_face(obj_parser *obj) {
     text_token token;
-    mesh_builder_begin_face(&obj->builder);
+    if (!mesh_builder_begin_face(&obj->builder)) return false;
     while (text_next_token(obj->reader, &token)) {
         int64_t index;
         uint32_t vertex = 0;
@@ -81,6 +83,28 @@ static bool read_face(obj_parser *obj) {
     return mesh_builder_end_face(&obj->builder);
 }
 
+/* What exporters write where there is no name. */
+static bool is_no_name(text_token name) {
+    return text_equals(name, "default") || text_equals(name, "off") || text_equals(name, "(null)");
+}
+
+/* Reads the name of an object or group, the first of several; the part is OBJECT/GROUP, or one of them alone. */
+static bool read_name(obj_parser *obj, text_token *name) {
+    char joined[512];
+    *name = (text_token){"", 0};
+    text_next_token(obj->reader, name);
+    if (is_no_name(*name)) name->length = 0;
+    const text_token object = obj->object, group = obj->group;
+    if (object.length == 0 || group.length == 0) {
+        const text_token only = object.length > 0 ? object : group;
+        return mesh_builder_set_part(&obj->builder, only.text, only.length);
+    }
+    int length = snprintf(joined, sizeof joined, "%.*s/%.*s", (int)object.length, object.text,
+                          (int)group.length, group.text);
+    if ((size_t)length >= sizeof joined) length = sizeof joined - 1;
+    return mesh_builder_set_part(&obj->builder, joined, (size_t)length);
+}
+
 static bool read_records(obj_parser *obj) {
     for (; text_seek_token(obj->reader); text_skip_line(obj->reader)) {
         text_token keyword;
@@ -89,6 +113,11 @@ static bool read_records(obj_parser *obj) {
             if (!read_vertex(obj)) return false;
         } else if (text_equals(keyword, "f")) {
             if (!read_face(obj)) return false;
+        } else if (text_equals(keyword, "o")) {
+            obj->group = (text_token){"", 0}; /* an object's faces begin in no group */
+            if (!read_name(obj, &obj->object)) return false;
+        } else if (text_equals(keyword, "g")) {
+            if (!read_name(obj, &obj->group)) return false;
         }
     }
     return true;

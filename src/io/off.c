@@ -163,7 +163,7 @@ static bool read_face(file_reader *reader, int64_t vertex_count, mesh_builder *b
         return file_reader_fail_here(reader, "a face of %" PRId64 " corners, expected 3 or more",
                                      corner_count);
     }
-    mesh_builder_begin_face(builder);
+    if (!mesh_builder_begin_face(builder)) return false;
     for (int64_t corner = 0; corner < corner_count; corner++) {
         if (!read_index(reader, vertex_count, &index) || !mesh_builder_add_corner(builder, (uint32_t)index))
             return false;

@@ -36,7 +36,7 @@ static bool read_corner(ply_parser *ply, const ply_property *property) {
 static bool read_corners(ply_parser *ply, const ply_property *property) {
     int64_t length = 0;
     if (!ply_data_length(&ply->data, property, &length)) return false;
-    mesh_builder_begin_face(&ply->builder);
+    if (!mesh_builder_begin_face(&ply->builder)) return false;
     for (int64_t i = 0; i < length; i++) {
         if (!read_corner(ply, property)) return false;
     }

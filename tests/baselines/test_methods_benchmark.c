@@ -23,7 +23,8 @@ static void write_recording(void) {
     point_cache_writer *writer;
     temp_path model = temp_file_path(&folder, "tiny.obj"), frames = temp_file_path(&folder, "tiny.pc2");
     if (!body_make(BODY_DUMBBELL, 300, &shape, &error)) fail_msg("%s", error.text);
-    const mesh_file mesh = {shape.vertex_count, shape.triangle_count, shape.positions, shape.triangles};
+    const mesh_file mesh =
+        mesh_file_of(shape.vertex_count, shape.triangle_count, shape.positions, shape.triangles);
     double *moved = malloc((size_t)shape.vertex_count * 3 * sizeof *moved);
     if (moved == NULL || !mesh_file_write_obj(model.text, &mesh, &error) ||
         !point_cache_writer_open(frames.text, shape.vertex_count, FRAMES, &writer, &error))

@@ -169,13 +169,15 @@ static void counts_up_to_the_limit(void **state) {
     io_error error = {""};
     file_reader reader = {.path = "big.obj", .error = &error, .line = 12};
     mesh_builder builder = mesh_builder_of(&reader, 1);
-    builder.triangles.count = MESH_COUNT_LIMIT; /* as if it were full; its data is not touched */
-    assert_true(mesh_builder_add_corner(&builder, 0) && mesh_builder_add_corner(&builder, 1));
-    assert_false(mesh_builder_add_corner(&builder, 2));
+    builder.triangle_count = MESH_COUNT_LIMIT; /* as if there were so many */
+    assert_true(mesh_builder_begin_face(&builder));
+    for (uint32_t corner = 0; corner < 3; corner++) assert_true(mesh_builder_add_corner(&builder, corner));
+    assert_false(mesh_builder_end_face(&builder));
     assert_string_equal(error.text, "big.obj:12: more than 2147483647 triangles, the most of a mesh");
     builder.positions.count = MESH_COUNT_LIMIT;
     assert_false(mesh_builder_add_vertex(&builder, (double[]){0, 0, 0}));
     assert_string_equal(error.text, "big.obj:12: more than 2147483647 vertices, the most of a mesh");
+    mesh_builder_free(&builder);
 }
 
 static void parses_integers_up_to_18_digits(void **state) {
@@ -221,7 +223,7 @@ static void writes_what_it_reads(void **state) {
     double positions[] = {0.1, -1.0 / 3, 1e-300, 4.9406564584124654e-324, 1.7976931348623157e308, -0.0,
                           3,   2,        1};
     uint32_t triangles[] = {0, 1, 2, 2, 1, 0};
-    mesh_file mesh = {3, 2, positions, triangles}, again = {0};
+    mesh_file mesh = mesh_file_of(3, 2, positions, triangles), again = {0};
     io_error error = {""};
     temp_folder folder = temp_folder_make();
     temp_path path = temp_file_path(&folder, "out.obj");
@@ -238,8 +240,10 @@ static void writes_what_it_reads(void **state) {
 
 static double some_positions[3000];
 static uint32_t some_triangles[3000];
-static const mesh_file some_mesh = {1000, 1, some_positions, some_triangles};
-static const mesh_file many_triangles = {1, 1000, some_positions, some_triangles};
+static const mesh_file some_mesh = {
+    .vertex_count = 1000, .triangle_count = 1, .positions = some_positions, .triangles = some_triangles};
+static const mesh_file many_triangles = {
+    .vertex_count = 1, .triangle_count = 1000, .positions = some_positions, .triangles = some_triangles};
 
 static void reports_where_it_cannot_write(void **state) {
     (void)state;

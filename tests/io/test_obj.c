@@ -102,10 +102,54 @@ static void refuses_bad_faces(void **state) {
     mesh_check_error(OBJ(SQUARE "f 1 2 3.5\n"), ":5: ", "found '3.5'", "v/vt/vn");
     mesh_check_error(OBJ(SQUARE "f 1 2 /3\n"), ":5: ", "found '/3'", "v/vt/vn");
     mesh_check_error(OBJ(SQUARE "f 1 2 -\n"), ":5: ", "found '-'", "v/vt/vn");
-    mesh_check_error(OBJ(SQUARE "f 1 2 2\n"), ":5: ", "triangle 1 2 2 repeats vertex 2", "different");
-    mesh_check_error(OBJ(SQUARE "f 3 -2 4\n"), ":5: ", "triangle 3 3 4 repeats vertex 3", "different");
-    mesh_check_error(OBJ(SQUARE "f 1 2 3 4 1\n"), ":5: ", "triangle 1 4 1 repeats vertex 1", "different");
-    mesh_check_error(OBJ(SQUARE "f 1 2 3 3 4\n"), ":5: ", "triangle 1 3 3 repeats vertex 3", "different");
+}
+
+/* Faces that name a vertex twice are shortened, and dropped when fewer than three corners are left; the others keep their
+ * numbers. */
+static void repairs_faces(void **state) {
+    (void)state;
+    static const uint32_t triangles[] = {0, 1, 2, 0, 1, 2, 0, 2, 3}, polygons[] = {0, 3, 3};
+    mesh_file mesh = {0};
+    io_error error = {""};
+    assert_true(
+        mesh_check_read(OBJ(SQUARE "f 1 2 3 3\nf 1 2 2\nf 3 -2 4\nf 1 2 3 3 4 4 1 1\n"), &mesh, &error));
+    assert_int_equal(mesh.triangle_count, 3);
+    assert_int_equal(mesh.polygon_count, 4);
+    assert_memory_equal(mesh.triangles, triangles, sizeof triangles);
+    assert_memory_equal(mesh.polygons, polygons, sizeof polygons);
+    assert_int_equal(mesh.repairs.shortened, 2);
+    assert_int_equal(mesh.repairs.first_shortened, 0);
+    assert_int_equal(mesh.repairs.dropped, 2);
+    assert_int_equal(mesh.repairs.first_dropped, 1);
+    assert_int_equal(mesh.repairs.fanned, 0);
+    mesh_file_free(&mesh);
+    mesh_check_error(OBJ(SQUARE "f 1 2 2\n"), ": ", "no faces found", "expected a triangle mesh");
+}
+
+static void check_parts(const char *text, const char *const *names, const uint32_t *labels) {
+    mesh_file mesh = {0};
+    io_error error = {""};
+    assert_true(mesh_check_read((file_bytes){"mesh.obj", text, strlen(text)}, &mesh, &error));
+    uint32_t count = 0;
+    for (; names[count] != NULL; count++) assert_string_equal(mesh.parts.names[count], names[count]);
+    assert_int_equal(mesh.parts.count, count);
+    for (uint32_t t = 0; t < mesh.triangle_count && count > 0; t++)
+        assert_int_equal(mesh.parts.of_triangle[t], labels[t]);
+    if (count == 0) assert_null(mesh.parts.of_triangle);
+    mesh_file_free(&mesh);
+}
+
+static void names_parts(void **state) {
+    (void)state;
+    const uint32_t none = NO_MESH_PART;
+    check_parts(SQUARE "f 1 2 3\n", (const char *const[]){NULL}, NULL);
+    check_parts(SQUARE "g default\nf 1 2 3\ng off\nf 1 2 3\n", (const char *const[]){NULL}, NULL);
+    check_parts(SQUARE "f 1 2 3\no Body\nf 1 2 3 4\no Hat\nf 1 2 3\no Body\nf 1 3 4\n",
+                (const char *const[]){"Body", "Hat", NULL}, (const uint32_t[]){none, 0, 0, 1, 0});
+    check_parts(SQUARE "g Arm.L deform\nf 1 2 3\ng\nf 1 2 3\n", (const char *const[]){"Arm.L", NULL},
+                (const uint32_t[]){0, none});
+    check_parts(SQUARE "o Body\ng Arm\nf 1 2 3\ng (null)\nf 1 2 3\no Hat\nf 1 2 3\n",
+                (const char *const[]){"Body", "Body/Arm", "Hat", NULL}, (const uint32_t[]){1, 0, 2});
 }
 
 static void refuses_indices_out_of_range(void **state) {
@@ -154,6 +198,8 @@ int main(void) {
         cmocka_unit_test(reads_numbers_exactly),
         cmocka_unit_test(refuses_bad_vertices),
         cmocka_unit_test(refuses_bad_faces),
+        cmocka_unit_test(repairs_faces),
+        cmocka_unit_test(names_parts),
         cmocka_unit_test(refuses_indices_out_of_range),
         cmocka_unit_test(refuses_incomplete_meshes),
         cmocka_unit_test(shows_long_tokens_cut),

@@ -67,6 +67,12 @@ static bool welding_closes(const recording *r, recorded_object *object) {
     return closes;
 }
 
+/* Faces are counted from 0, as everywhere. */
+static void warn_repair(const char *name, const char *colon, uint32_t count, uint32_t first,
+                        const char *what) {
+    if (count > 0) warn("%s%s%u %s (the first is face %u)", name, colon, count, what, first);
+}
+
 static void warn_object(const recording *r, recorded_object *object) {
     const char *name = r->object_count > 1 ? object->source.name : "",
                *colon = r->object_count > 1 ? ": " : "";
@@ -75,6 +81,12 @@ static void warn_object(const recording *r, recorded_object *object) {
     if (object->welded && path_has_extension(object->source.model_path, ".stl"))
         warn("%s%sthe %u vertices of the STL file are joined to %u; --weld none keeps them apart", name,
              colon, object->file.vertex_count, object->weld.vertex_count);
+    warn_repair(name, colon, object->file.repairs.shortened, object->file.repairs.first_shortened,
+                "faces name a vertex twice in a row, which counts once");
+    warn_repair(name, colon, object->file.repairs.dropped, object->file.repairs.first_dropped,
+                "faces have fewer than three different corners and are left out");
+    warn_repair(name, colon, object->file.repairs.fanned, object->file.repairs.first_fanned,
+                "faces cross themselves as seen along every axis, and are filled by fans");
     if (object->welded && object->weld.collapsed_triangles > 0)
         warn("%s%swelding collapsed %u triangle%s, left out from here on", name, colon,
              object->weld.collapsed_triangles, object->weld.collapsed_triangles == 1 ? "" : "s");

@@ -237,7 +237,7 @@ static void write_ply(const char *path, const mesh_file *mesh) {
 temp_path recorded_write_mesh(const temp_folder *folder, const char *name, const recorded *r,
                               uint32_t frame) {
     temp_path path = temp_file_path(folder, name);
-    mesh_file mesh = {r->vertex_count, r->triangle_count, position_at(r, frame, 0), r->triangles};
+    mesh_file mesh = mesh_file_of(r->vertex_count, r->triangle_count, position_at(r, frame, 0), r->triangles);
     io_error error = {""};
     if (strlen(name) > 4 && strcmp(name + strlen(name) - 4, ".ply") == 0)
         write_ply(path.text, &mesh);

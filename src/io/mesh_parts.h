@@ -1,0 +1,21 @@
+/* The named parts of a mesh file: objects and groups of an OBJ, nodes of a glTF, labels of a PLY. */
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define NO_MESH_PART UINT32_MAX
+
+typedef struct mesh_parts {
+    uint32_t count;        /* 0: the file names none, and there are no labels */
+    char **names;          /* count of them, each another one */
+    uint32_t *of_triangle; /* per triangle: which part, or NO_MESH_PART */
+} mesh_parts;
+
+/* Frees names and labels; a zeroed struct is fine. */
+void mesh_parts_free(mesh_parts *parts);
+
+/* The part of that name, which is added if there is none yet; the first length characters of name count. NO_MESH_PART when
+ * out of memory. */
+uint32_t mesh_parts_find(mesh_parts *parts, const char *name, size_t length);
