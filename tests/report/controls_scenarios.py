@@ -10,9 +10,11 @@ BUTTONS = ("First frame", "Previous frame with contacts", "Previous frame", "Pla
            "Light or dark", "Keyboard help")
 COLOURS = {"Plain": "plain", "Charge": "charge", "Equalized charge": "equalized", "Region": "region",
            "Orientation": "orientation", "Contact heat": "heat"}
-MARKS = {"Contacts": "contacts", "Trail": "trail", "Through the surface": "through", "Detector points": "points",
+MARKS = {"Intersections": "answers", "Contacts": "contacts", "Trail": "trail", "Through the surface": "through",
+         "Detector points": "points",
          "Region cuts": "cuts", "Edges": "edges", "Surroundings": "scenery"}
-MARK_KEYS = {"c": "contacts", "t": "trail", "x": "through", "d": "points", "r": "cuts", "e": "edges", "b": "scenery"}
+MARK_KEYS = {"i": "answers", "c": "contacts", "t": "trail", "x": "through", "d": "points", "r": "cuts", "e": "edges",
+             "b": "scenery"}
 LANDMARKS = ("Playback", "Colour and marks", "Contacts of this interval", "Charts", "Timings", "Intervals", "Regions",
              "Provenance", "Licences")
 TABS_MOST = 250

@@ -115,7 +115,7 @@ static bool open_outputs(replay *r, io_error *error) {
     const replay_options *o = r->options;
     if (o->contacts_path != NULL && !open_contacts(r, error)) return false;
     return replay_report_open(&r->report, &o->report, recording_options_path(&o->source), &r->recording,
-                              r->plan.plan, r->detector, r->first, r->last, error) &&
+                              r->plan.plan, r->detector, r->first, r->last, !o->no_check, error) &&
            summary_open(o->json_path, o->report.path != NULL, r->recording.mesh, &r->summary, error);
 }
 
@@ -201,6 +201,7 @@ static bool run_interval(replay *r, uint32_t k, io_error *error) {
     if (!write_contacts(r, k, &contacts, error) || !check_frame(r, k + 1, r->x1, &r->end_state, error))
         return false;
     result.timings = cscd_detector_timings(r->detector);
+    replay_report_add_frame(&r->report, r->detector, k + 1, r->x1);
     result.state = state_of(r, result.contact_count);
     totals_add(&r->totals, &result, r->recording.mesh);
     alarm_contradiction(r, &result);
@@ -213,6 +214,7 @@ static bool run_intervals(replay *r, io_error *error) {
     if (!read_frame(r, r->first, r->x0, error) || !check_frame(r, r->first, r->x0, &r->start_state, error))
         return false;
     replay_report_begin(&r->report, r->x0);
+    replay_report_add_frame(&r->report, r->detector, r->first, r->x0);
     for (uint32_t k = r->first; k < r->last && !interrupted(); k++) {
         terminal_progress_update(&r->progress, k - r->first, r->last - r->first, "replay");
         if (!run_interval(r, k, error)) return false;

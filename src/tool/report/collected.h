@@ -2,7 +2,9 @@
 #pragma once
 
 #include "src/io/growable.h"
+#include "src/tool/report/answer_arrays.h"
 #include "src/tool/report/contact_arrays.h"
+#include "src/tool/report/event_list.h"
 #include "src/tool/report/frame_stream.h"
 #include "src/tool/report/orientation_arrays.h"
 #include "src/tool/report/report.h"
@@ -16,6 +18,8 @@ struct report {
     double *last_positions; /* NULL where every frame is kept */
     frame_stream frames, scenery;
     contact_arrays contacts;         /* of a replay */
+    answer_arrays answers;           /* of a replay */
+    event_list events;               /* of a replay */
     orientation_arrays orientations; /* of a replay whose method has them */
 };
 

@@ -97,6 +97,20 @@ static bool list_contacts(page_arrays *a, report *r) {
             list_array(a, "contact_toi", "f64", c->toi) && list_array(a, "contact_point", "f64", c->point));
 }
 
+static bool list_answers(page_arrays *a, report *r) {
+    const answer_arrays *found = &r->answers;
+    if (found->frames_checked == 0) return true;
+    return list_array(a, "answer_frame", "u32", found->frame) &&
+           list_array(a, "answer_counts", "u32", found->counts) &&
+           list_array(a, "answer_triangle", "u32", found->triangle) &&
+           list_array(a, "answer_kind", "u8", found->kind) &&
+           list_array(a, "curve_vertices", "u32", found->point_vertices) &&
+           list_array(a, "curve_share", "f32", found->point_share) &&
+           list_array(a, "curve_begins", "u8", found->point_begins) &&
+           list_array(a, "depth_vertex", "u32", found->depth_vertex) &&
+           list_array(a, "depth", "f32", found->depth);
+}
+
 bool page_arrays_list(report *r, page_arrays *out) {
     const cscd_mesh *mesh = r->options.mesh;
     *out = (page_arrays){.count = 0};
@@ -104,7 +118,8 @@ bool page_arrays_list(report *r, page_arrays *out) {
     return list_triangles(out, mesh) && list_array(out, "frames", "u8", r->frames.bytes) &&
            list_scenery(out, r) && list_components(out, mesh) && list_plan(out, r->options.plan, mesh) &&
            list_array(out, "orientation", "u8", r->orientations.orientations) &&
-           list_array(out, "detector_points", "f64", r->orientations.points) && list_contacts(out, r);
+           list_array(out, "detector_points", "f64", r->orientations.points) && list_contacts(out, r) &&
+           list_answers(out, r);
 }
 
 void page_arrays_free(page_arrays *arrays) {

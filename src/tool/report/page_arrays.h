@@ -4,7 +4,7 @@
 #include "src/tool/report/packed_array.h"
 #include "src/tool/report/report.h"
 
-enum { PAGE_ARRAYS_MAX = 20 };
+enum { PAGE_ARRAYS_MAX = 30 };
 
 typedef struct page_array {
     const char *name, *type; /* u8, u32, f32 or f64 */

@@ -32,7 +32,7 @@ static bool prepare_report(report *r) {
     size_t size = cscd_mesh_vertex_count(o->mesh) * sizeof(double[3]);
     if (r->stride > 1 && (r->last_positions = io_realloc(NULL, size)) == NULL) return false;
     if (o->kind != REPORT_REPLAY) return true;
-    if (!contact_arrays_create(o, &r->contacts)) return false;
+    if (!contact_arrays_create(o, &r->contacts) || !answer_arrays_create(o, &r->answers)) return false;
     uint32_t intervals = o->last - o->first, kept = (intervals + r->stride - 1) / r->stride;
     return !o->oriented ||
            orientation_arrays_create(cscd_mesh_triangle_count(o->mesh), kept, intervals, &r->orientations);
@@ -57,6 +57,8 @@ void report_destroy(report *r) {
     frame_stream_free(&r->frames);
     frame_stream_free(&r->scenery);
     contact_arrays_free(&r->contacts);
+    answer_arrays_free(&r->answers);
+    event_list_free(&r->events);
     orientation_arrays_free(&r->orientations);
     free(r);
 }
@@ -115,6 +117,15 @@ bool report_add_interval(report *r, const cscd_detector *detector, const cscd_co
                 (!is_due(r, r->last) || orientation_arrays_add(&r->orientations, detector));
     }
     return (added && add_frame(r, r->last + 1, end)) || out_of_memory(error);
+}
+
+bool report_add_answers(report *r, uint32_t frame, const cscd_intersection_pairs *found, io_error *error) {
+    return answer_arrays_add(&r->answers, &r->options, frame, found, 1.0 / r->unit) || out_of_memory(error);
+}
+
+bool report_set_events(report *r, const cscd_event *events, size_t count, report_part_name name, void *user,
+                       io_error *error) {
+    return event_list_set(&r->events, events, count, name, user) || out_of_memory(error);
 }
 
 bool report_keep_last(report *r) {

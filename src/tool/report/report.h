@@ -11,6 +11,12 @@ enum {
     REPORT_INTERVAL_CONTACTS_MAX = 4000, /* kept of one interval: the earliest */
     REPORT_CONTACTS_MAX = 100000,        /* all contacts that are kept; each interval has room for its
                                           * share at least */
+    REPORT_ANSWER_TRIANGLES_MAX =
+        400000, /* intersecting, over all frames; each has room for its share at least */
+    REPORT_ANSWER_POINTS_MAX = 200000, /* the same, of curves */
+    REPORT_ANSWER_DEPTHS_MAX = 200000, /* and of vertices with a depth */
+    REPORT_EVENTS_MAX = 2000,          /* the worst are kept */
+    REPORT_PART_NAME_SIZE = 160,
     REPORT_MARKS_MAX = 16 * 1024 * 1024, /* bytes of orientations, and of detector points: else left out */
 };
 
@@ -54,6 +60,17 @@ bool report_begin(report *r, const double *positions, io_error *error);
  * end. The report ends with the last frame that it was given here, be it earlier than expected. */
 bool report_add_interval(report *r, const cscd_detector *detector, const cscd_contacts *contacts,
                          const double *end, io_error *error);
+
+/* What intersects in a frame: pairs and, if they were asked for, curves and depths of vertices. Frames come in their
+ * order, those that were not checked are left out. */
+bool report_add_answers(report *r, uint32_t frame, const cscd_intersection_pairs *found, io_error *error);
+
+/* What a part is called, in the buffer or elsewhere; UINT32_MAX stands for what is in no part. */
+typedef const char *(*report_part_name)(void *user, uint32_t part, char buffer[REPORT_PART_NAME_SIZE]);
+
+/* The events, by the indices of frames; they are copied. name must live as long as the report. Once. */
+bool report_set_events(report *r, const cscd_event *events, size_t count, report_part_name name, void *user,
+                       io_error *error);
 
 /* The frames that are kept, ascending, the first and the last among them: final after the last interval. */
 uint32_t report_frame_count(const report *r);

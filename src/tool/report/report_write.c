@@ -91,6 +91,24 @@ static void write_contacts(json *out, const report *r) {
     json_end_object(out);
 }
 
+static void write_answers(json *out, const report *r) {
+    const answer_arrays *a = &r->answers;
+    if (a->frames_checked == 0) {
+        json_null(out, "answers");
+        return;
+    }
+    json_begin_object(out, "answers");
+    json_integer(out, "frames_checked", a->frames_checked);
+    json_integer(out, "triangles_found", a->found.triangles);
+    json_integer(out, "triangles_kept", a->kept.triangles);
+    json_integer(out, "points_found", a->found.points);
+    json_integer(out, "points_kept", a->kept.points);
+    json_integer(out, "depths_found", a->found.depths);
+    json_integer(out, "depths_kept", a->kept.depths);
+    event_list_write(&r->events, r->options.frame_numbers, 1.0 / r->unit, out);
+    json_end_object(out);
+}
+
 static void write_arrays(json *out, const page_arrays *arrays) {
     json_begin_array(out, "arrays");
     for (size_t i = 0; i < arrays->count; i++) {
@@ -124,6 +142,7 @@ static void write_scene(json *out, const report *r, const page_arrays *arrays) {
     write_scenery(out, r);
     write_plan(out, r);
     write_contacts(out, r);
+    write_answers(out, r);
     write_arrays(out, arrays);
     json_end_object(out);
 }

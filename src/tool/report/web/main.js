@@ -47,6 +47,8 @@ function initialState(report) {
     speed: 30,
     loop: false,
     colour: planShown ? 'region' : 'plain',
+    answers: true,
+    event: null,
     contacts: true,
     trail: false,
     through: true,

@@ -23,10 +23,13 @@ const REASONS = {
   heat: 'The report has no contacts: nothing was replayed',
 };
 
+const NO_ANSWERS = 'The frames of this report were not checked';
+
 function marksOfScene(scene) {
   const noContacts = scene.contacts === null ? REASONS.heat : null;
   const noPoints = scene.detectorPoints === null && scene.plan === null ? NO_PLAN : null;
   return [
+    { key: 'answers', name: 'Intersections', letter: 'I', missing: scene.answers === null ? NO_ANSWERS : null },
     { key: 'contacts', name: 'Contacts', letter: 'C', missing: noContacts },
     { key: 'trail', name: 'Trail', letter: 'T', missing: noContacts, title: TRAIL },
     { key: 'through', name: 'Through the surface', letter: 'X', missing: noContacts, title: THROUGH },

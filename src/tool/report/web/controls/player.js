@@ -96,6 +96,17 @@ export function createPlayer(report, store) {
     toMost() {
       if (most !== null) show(most);
     },
+    /** Goes to an event: the view follows the state. */
+    toEvent(event) {
+      const { worst } = report.scene.answers.events[event];
+      store.set({ event: null });
+      store.set({ event, time: worst, playing: false, selected: null });
+    },
+    stepEvent(by) {
+      const count = report.scene.answers?.events.length ?? 0;
+      const { event } = store.get();
+      if (count > 0) player.toEvent(event === null ? (by > 0 ? 0 : count - 1) : (event + by + count) % count);
+    },
     /** Goes to the moment of a contact and selects it; null selects none. */
     select(contact) {
       if (contact === null) {

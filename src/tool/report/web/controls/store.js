@@ -7,6 +7,8 @@
  * @property {number} speed frames a second
  * @property {boolean} loop
  * @property {'plain'|'charge'|'equalized'|'region'|'orientation'|'heat'} colour
+ * @property {boolean} answers fill what intersects, and draw the curves
+ * @property {number|null} event the number of the event last gone to
  * @property {boolean} contacts mark the contacts of the interval
  * @property {boolean} trail mark those of the intervals before, fading
  * @property {boolean} through show marks that the surface hides, faintly

@@ -1,5 +1,6 @@
 /** The report as the page uses it: the content of the data blocks, checked and in typed arrays. */
 
+import { answersOf } from './answers.js';
 import { BlockError, readArray, readDocument } from './decode.js';
 import { FrameStore } from './frames.js';
 import { lastAtOrBefore } from '../page/intervals.js';
@@ -167,6 +168,7 @@ async function sceneOf(told) {
     orientation: orientationOf(array('orientation'), scene),
     detectorPoints: detectorPointsOf(array('detector_points'), scene),
     contacts: contactsOf(array, scene),
+    answers: answersOf(array, scene),
   };
 }
 

@@ -1,4 +1,5 @@
 /** Puts every panel into its place on the page. */
+import * as answer from './answer.js';
 import * as charts from './charts.js';
 import * as comparison from './comparison.js';
 import * as contacts from './contacts.js';
@@ -14,6 +15,7 @@ import * as timings from './timings.js';
 
 const PANELS = {
   status,
+  answer,
   notes,
   comparison,
   charts,

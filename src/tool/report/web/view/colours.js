@@ -1,10 +1,13 @@
 /** Colours of triangles and marks: maps for values, hues for categories, all told apart with any colour vision. */
 
-import { interpolateInferno, interpolateViridis } from 'd3-scale-chromatic';
+import { interpolateInferno, interpolateRdPu, interpolateViridis } from 'd3-scale-chromatic';
 
 export const VF = [0, 90, 181];
 export const EE = [220, 50, 32];
 export const TOUCHING = [255, 176, 66];
+/** Triangles that cross others or share area with them, and those that only touch. */
+export const INTERSECTING = [222, 45, 38];
+export const ONLY_TOUCHING = [255, 221, 125];
 export const PLAIN = [184, 196, 214];
 
 /** S0, S+ and S-, numbered as in the array "orientation". */
@@ -54,6 +57,9 @@ function table(map) {
 export const VIRIDIS = table(interpolateViridis);
 /** The map without its darkest and lightest ends, which could not be seen beside shading and background. */
 export const HEAT = table((t) => interpolateInferno(0.22 + 0.72 * t));
+
+/** Depths: from a pink that differs from the body to the darkest purple. */
+export const DEPTH = table((t) => interpolateRdPu(0.4 + 0.6 * t));
 
 export const step = (t) => 3 * Math.round(255 * Math.min(1, Math.max(0, t)));
 

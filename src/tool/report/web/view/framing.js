@@ -3,6 +3,22 @@
 import { Box3, Vector3 } from 'three';
 import { intervalAt } from '../page/intervals.js';
 
+const AROUND = 0.12; // of the body's longest side, to each side of an event
+
+/** Goes to the place of an event, in its worst frame, which is shown. */
+export function zoomToEvent(viewer, event) {
+  const { data, reach, space, store } = viewer;
+  viewer.update(store.get());
+  if (event.point === null) return;
+  const place = new Vector3(...space.toView(event.point));
+  const size = Math.max(...reach.getSize(new Vector3()).toArray());
+  const half = Math.max(AROUND * size, (1.5 * event.depth) / data.unit / space.length);
+  const outwards = place.clone().sub(viewer.bodyPlace());
+  const away = outwards.length() / size;
+  const box = new Box3().setFromCenterAndSize(place, new Vector3(1, 1, 1).multiplyScalar(2 * half));
+  viewer.frameFromOutside(box, away > 1e-3 ? outwards.normalize() : new Vector3());
+}
+
 /** Frames the contacts of the interval, or the selected one and its triangles. */
 export function zoomToContacts(viewer) {
   const { data, painter, space, store } = viewer;

@@ -4,7 +4,9 @@ import { onCalmly } from '../controls/calm.js';
 import { element, swatch } from '../page/dom.js';
 import { counted, integer, percent, significant } from '../page/format.js';
 import { finder, intervalAt } from '../page/intervals.js';
-import { HEAT, ORIENTATIONS, PLAIN, TOUCHING, VIRIDIS, css, regionColour } from './colours.js';
+import {
+  DEPTH, HEAT, INTERSECTING, ONLY_TOUCHING, ORIENTATIONS, PLAIN, TOUCHING, VIRIDIS, css, regionColour,
+} from './colours.js';
 
 const MANY = 8;
 const ROOMY = { width: 560, height: 380 }; // CSS pixels: in smaller views the legend begins folded
@@ -104,6 +106,25 @@ function marksLegend(scene, state, find) {
   return rows.length > 0 ? [items(...rows)] : [];
 }
 
+/** What the fills of the frame mean, with the depths in the file's unit. */
+function answersLegend(scene, state) {
+  const { answers: all, unit } = scene;
+  const found = state.answers && all !== null ? all.at(all.placeOf(state.time)) : null;
+  if (found === null) return [];
+  const rows = [];
+  if (found.crossing > 0) rows.push(item(swatch(css(INTERSECTING)), `intersecting: ${counted(found.crossing, 'pair')} of triangles`));
+  if (found.touching > 0) rows.push(item(swatch(css(ONLY_TOUCHING)), `touching: ${counted(found.touching, 'pair')}`));
+  if (found.curveShares.length > 0) rows.push(item(element('span', { class: 'mark-curve', 'aria-hidden': 'true' }), 'intersection curves'));
+  const parts = [title(`What intersects in frame ${scene.numbers[all.placeOf(state.time)]}`), items(...rows)];
+  if (found.depths.length === 0) return parts;
+  return [
+    ...parts,
+    title('Depth of what is buried, in the unit of the file'),
+    bar(DEPTH),
+    ends('0', short((all.deepest * unit) / 2), short(all.deepest * unit)),
+  ];
+}
+
 function colourLegend(scene, state, painter) {
   switch (state.colour) {
     case 'charge':
@@ -132,13 +153,14 @@ export function createLegend(container, report, store, painter) {
   container.append(box);
   let shown = null;
   const show = (state) => {
-    const key = [state.colour, state.contacts, intervalAt(state.time, scene)].join(' ');
+    const frame = scene.answers === null ? '' : scene.answers.placeOf(state.time);
+    const key = [state.colour, state.contacts, state.answers, frame, intervalAt(state.time, scene)].join(' ');
     if (key === shown) return;
     shown = key;
-    const parts = [...colourLegend(scene, state, painter), ...marksLegend(scene, state, find)];
+    const parts = [...answersLegend(scene, state), ...colourLegend(scene, state, painter), ...marksLegend(scene, state, find)];
     body.replaceChildren(...parts);
     box.hidden = parts.length === 0;
   };
-  onCalmly(store, ['time', 'colour', 'contacts'], show);
+  onCalmly(store, ['time', 'colour', 'contacts', 'answers'], show);
   show(store.get());
 }

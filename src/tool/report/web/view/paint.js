@@ -1,9 +1,13 @@
 /** Gives each triangle its colour, and says which of its edges are drawn. */
 
 import { intervalAt } from '../page/intervals.js';
-import { HEAT, ORIENTATIONS, PLAIN, TOUCHING, VIRIDIS, heatPlace, limitsOf, regionColour, step } from './colours.js';
+import {
+  DEPTH, HEAT, INTERSECTING, ONLY_TOUCHING, ORIENTATIONS, PLAIN, TOUCHING, VIRIDIS, heatPlace, limitsOf, regionColour, step,
+} from './colours.js';
 import { CUT, CUT_CORNER, PICKED, TOUCHES } from './shading.js';
-import { contactTriangles, cutEdges, trianglesOfVertices } from './topology.js';
+import { around, contactTriangles, cutEdges, trianglesOfVertices } from './topology.js';
+
+const TOUCHING_KIND = 16; // the bit of the kind 'touching'
 
 export class Painter {
   constructor(scene) {
@@ -15,6 +19,8 @@ export class Painter {
     this.cuts = null;
     this.touching = new Map();
     this.incidence = null;
+    this.deep = new Float32Array(scene.vertexCount);
+    this.filled = []; // triangles that intersect or are buried, in the frame shown
   }
 
   fill(colourOf) {
@@ -88,6 +94,33 @@ export class Painter {
     return found;
   }
 
+  /** Fills what intersects, and what is buried by how deep it is. */
+  fillAnswers({ answers, time }) {
+    const { scene, deep, rgb } = this;
+    const { answers: all } = scene;
+    const found = answers && all !== null ? all.at(all.placeOf(time)) : null;
+    this.filled = [];
+    if (found === null) return;
+    found.triangles.forEach((t, i) => {
+      rgb.set(found.kinds[i] & ~TOUCHING_KIND ? INTERSECTING : ONLY_TOUCHING, 3 * t);
+      this.filled.push(t);
+    });
+    if (found.depths.length === 0) return;
+    deep.fill(0);
+    found.depthVertices.forEach((vertex, i) => {
+      deep[vertex] = found.depths[i];
+    });
+    this.incidence ??= trianglesOfVertices(scene);
+    const buried = new Set();
+    for (const vertex of found.depthVertices) for (const t of around(this.incidence, vertex)) buried.add(t);
+    for (const t of buried) {
+      const depth = Math.max(...[0, 1, 2].map((corner) => deep[scene.triangles[3 * t + corner]]));
+      const from = step(all.deepest > 0 ? depth / all.deepest : 0);
+      rgb.set(DEPTH.subarray(from, from + 3), 3 * t);
+      this.filled.push(t);
+    }
+  }
+
   mark({ colour, contacts, cuts, selected, triangle, time }) {
     const { scene, flags, rgb } = this;
     flags.fill(0);
@@ -116,12 +149,16 @@ export class Painter {
     const { scene } = this;
     const moving = state.colour === 'orientation' || (state.contacts && scene.contacts !== null);
     const interval = moving ? intervalAt(state.time, scene) : '';
-    return [state.colour, state.contacts, state.cuts, state.selected, state.triangle, interval].join(' ');
+    const { answers } = scene;
+    const found = state.answers && answers !== null ? answers.placeOf(state.time) : '';
+    return [found, state.colour, state.contacts, state.cuts, state.selected, state.triangle, interval].join(' ');
   }
 
   /** @returns {boolean} whether some triangle has lines */
   paint(state) {
     this.base(state);
-    return this.mark(state);
+    const lines = this.mark(state);
+    this.fillAnswers(state);
+    return lines;
   }
 }

@@ -1,6 +1,8 @@
 /** The surface's material: one light from over the reader's shoulder, lines along chosen edges. */
 
-import { DoubleSide, GLSL3, ShaderMaterial, Vector3 } from 'three';
+import {
+  ConstantAlphaFactor, CustomBlending, DoubleSide, GLSL3, GreaterDepth, OneMinusConstantAlphaFactor, ShaderMaterial, Vector3,
+} from 'three';
 import { TOUCHING } from './colours.js';
 
 /** Bits of a triangle's flags, which travel in the fourth byte of its colour. */
@@ -98,9 +100,21 @@ void main() {
 
 const unit = (colour) => new Vector3(...colour.map((value) => value / 255));
 
+/** What makes a material one for what the surface in front hides. */
+export const HIDDEN = {
+  transparent: true,
+  depthWrite: false,
+  depthFunc: GreaterDepth,
+  blending: CustomBlending,
+  blendSrc: ConstantAlphaFactor,
+  blendDst: OneMinusConstantAlphaFactor,
+  blendAlpha: 0.5,
+};
+
 /** The material with lines along edges, with shadow, or with neither. */
-export function surfaceMaterial({ lines = false, shadowed = false }) {
+export function surfaceMaterial({ lines = false, shadowed = false, more = {} }) {
   return new ShaderMaterial({
+    ...more,
     glslVersion: GLSL3,
     vertexShader: VERTEX,
     fragmentShader: FRAGMENT,

@@ -1,7 +1,7 @@
 /** A moving mesh. Every triangle has its own corners, so that it has one colour and one normal. */
 
 import { BufferAttribute, BufferGeometry, DynamicDrawUsage, Mesh, Sphere } from 'three';
-import { surfaceMaterial } from './shading.js';
+import { HIDDEN, surfaceMaterial } from './shading.js';
 
 /** Positions of all vertices at a time, from the frame's middle. */
 function localAt(positions, { i, fraction }, out) {
@@ -61,6 +61,13 @@ export class Surface {
     this.lined = surfaceMaterial({ lines: true });
     this.mesh = new Mesh(geometry, this.quick);
     this.mesh.frustumCulled = false;
+    this.through = new Mesh(new BufferGeometry(), surfaceMaterial({ more: HIDDEN }));
+    for (const name of ['position', 'facing', 'tint']) this.through.geometry.setAttribute(name, geometry.getAttribute(name));
+    this.through.geometry.boundingSphere = geometry.boundingSphere;
+    this.through.frustumCulled = false;
+    this.through.renderOrder = 1;
+    this.mesh.add(this.through);
+    this.showThrough([]);
   }
 
   /** Moves the mesh to a time; its place is `center`, in double. */
@@ -93,6 +100,16 @@ export class Surface {
       }
     }
     this.mesh.geometry.attributes.tint.needsUpdate = true;
+  }
+
+  /** Shows these triangles faintly where the surface hides them. */
+  showThrough(triangles) {
+    this.through.visible = triangles.length > 0;
+    const index = new Uint32Array(3 * triangles.length);
+    triangles.forEach((t, i) => {
+      for (let corner = 0; corner < 3; corner++) index[3 * i + corner] = 3 * t + corner;
+    });
+    this.through.geometry.setIndex(new BufferAttribute(index, 1));
   }
 
   /** Switches the lines along edges, which cost time on each pixel. */

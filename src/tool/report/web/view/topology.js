@@ -11,7 +11,7 @@ export function trianglesOfVertices({ triangles, vertexCount }) {
   return { begin, items };
 }
 
-const around = ({ begin, items }, vertex) => items.subarray(begin[vertex], begin[vertex + 1]);
+export const around = ({ begin, items }, vertex) => items.subarray(begin[vertex], begin[vertex + 1]);
 
 function withVertices(incidence, triangles, vertices) {
   return [...around(incidence, vertices[0])].filter((t) => {

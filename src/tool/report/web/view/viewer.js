@@ -3,6 +3,8 @@
 import { Box3, Color, LinearSRGBColorSpace, Scene, Vector3, WebGLRenderer } from 'three';
 import { fractionAt, intervalIndexAt } from '../page/intervals.js';
 import { View } from './camera.js';
+import { Curves } from './curves.js';
+import { zoomToEvent } from './framing.js';
 import { ContactMarks, DetectorMarks } from './markers.js';
 import { Painter } from './paint.js';
 import { onClick, pick } from './picking.js';
@@ -56,6 +58,8 @@ export class Viewer {
     this.shadow = this.scenery !== null && cheap ? new Shadow(this.body, this.scenery) : null;
     this.contacts = new ContactMarks();
     this.detectors = new DetectorMarks();
+    this.curves = new Curves();
+    this.body.mesh.add(this.curves.object);
     this.scene.add(this.body.mesh, this.contacts.object, this.detectors.object);
     if (this.scenery !== null) this.scene.add(this.scenery.mesh);
     this.setTheme();
@@ -82,7 +86,12 @@ export class Viewer {
         this.invalidate();
       });
     redraw(['time'], () => this.resolution.moving());
-    redraw(['colour', 'contacts', 'trail', 'through', 'points', 'cuts', 'edges', 'scenery', 'selected', 'triangle']);
+    redraw(['colour', 'answers', 'contacts', 'trail', 'through', 'points', 'cuts', 'edges', 'scenery', 'selected', 'triangle']);
+    this.store.on(['event'], ({ event }) => {
+      if (event === null) return;
+      zoomToEvent(this, this.data.answers.events[event]);
+      this.canvas.scrollIntoView({ block: 'nearest' }); // below the list, in narrow windows
+    });
     redraw(['theme'], () => this.setTheme());
     redraw(['up'], () => this.setUp());
     new ResizeObserver(() => this.resize()).observe(this.container);
@@ -212,11 +221,24 @@ export class Viewer {
       this.painted = key;
       this.linesMarked = this.painter.paint(state);
       this.body.paint(this.painter.rgb, this.painter.flags);
+      this.filledThrough = null;
     }
+    const filled = state.through ? this.painter.filled : [];
+    if (filled !== this.filledThrough) this.body.showThrough((this.filledThrough = filled));
+    this.updateCurves(state);
     this.body.setLines(state.edges || this.linesMarked);
     const { uniforms } = this.body.lined;
     uniforms.edges.value = state.edges ? 0.4 : 0;
     uniforms.density.value = this.resolution.ratio;
+  }
+
+  updateCurves(state) {
+    const { answers } = this.data;
+    const place = answers === null ? -1 : answers.placeOf(state.time);
+    const found = answers !== null && state.answers ? answers.at(place) : null;
+    const { record, fraction } = this.body.shown;
+    const key = found === null ? 'none' : `${place} ${this.data.positions.records.indexOf(record)} ${fraction}`;
+    this.curves.setState(found, this.body.local, key, state.through);
   }
 
   updateMarks(state) {
@@ -233,6 +255,17 @@ export class Viewer {
     const { data } = this;
     if (data.detectorPoints !== null) return data.detectorPoints(intervalIndexAt(time, data), fractionAt(time, data));
     return Float64Array.from(data.plan?.regions.flatMap((region) => region.detector_point) ?? []);
+  }
+
+  /** Looks at a box from outside the body; from then on this is the view that the reader has chosen. */
+  frameFromOutside(box, outwards) {
+    const { camera, controls } = this.view;
+    const from = camera.position.clone().sub(controls.target).normalize();
+    from.multiplyScalar(0.5).add(outwards).normalize();
+    if (Math.abs(from.dot(camera.up)) > 0.97) from.addScaledVector(camera.up, -0.4 * Math.sign(from.dot(camera.up))).normalize();
+    this.view.frame(box, from.length() > 0.5 ? from : null);
+    this.touched = true;
+    this.invalidate();
   }
 
   /** Looks at a box; from then on this is the view that the reader has chosen. */

@@ -1,0 +1,169 @@
+/** The answer first: a sentence, parts against parts as a matrix, and the events; a click goes to an event's worst frame. */
+import { button, element, heading, scrollable, setText } from '../page/dom.js';
+import { counted, integer, ranges, significant } from '../page/format.js';
+import { whoOf, worseThan } from '../page/events.js';
+
+const PARTS_MOST = 14; // rows of the matrix
+const FORWARD = 'M6 2.5v11l7-5.5zM3 2.5h2v11H3z';
+const BACK = 'M10 2.5v11L3 8zM11 2.5h2v11h-2z';
+
+const lengthOf = (value) => significant(value, 3);
+
+function isOrAre(numbers) {
+  return numbers.length === 1 ? `Frame ${numbers[0]} has` : `Frames ${ranges(numbers, 4)} have`;
+}
+
+/** The answer in one or two sentences. */
+export function sentenceOf({ scene }) {
+  const { answers } = scene;
+  if (answers === null) return 'The frames were not checked, so this report does not say what intersects.';
+  const { crossingFrames, touchingFrames, events } = answers;
+  const checked = `${integer(answers.frames_checked)} ${answers.frames_checked === 1 ? 'frame' : 'frames'} checked`;
+  const parts = [];
+  if (crossingFrames.length > 0) parts.push(`${isOrAre(crossingFrames)} intersections (${crossingFrames.length} of ${checked}).`);
+  else if (touchingFrames.length > 0) parts.push(`Nothing crosses; ${isOrAre(touchingFrames).toLowerCase()} touching triangles (${checked}).`);
+  else parts.push(`Nothing intersects (${checked}).`);
+  const worst = events.reduce((most, event) => (most === null || worseThan(event, most) ? event : most), null);
+  if (worst === null) return parts[0];
+  parts.push(`${counted(answers.events_found, 'event')}, the worst: ${whoOf(worst)}, ${framesOf(worst)}${depthOf(worst)}.`);
+  return parts.join(' ');
+}
+
+const framesOf = ({ first, last }) => (first === last ? `frame ${first}` : `frames ${first} to ${last}`);
+
+function depthOf({ depth, worst, pairs }) {
+  if (depth > 0) return `, ${lengthOf(depth)} deep at frame ${worst}`;
+  return pairs > 0 ? `, worst at frame ${worst}` : '';
+}
+
+/** What an event is, in a word, and in what state its mark is drawn. */
+function kindOf({ kinds, pairs, depth }) {
+  if (kinds.some((kind) => kind !== 'touching') || (pairs === 0 && depth > 0)) return ['penetrating', 'intersecting'];
+  return pairs > 0 ? ['unknown', 'touching'] : ['contact', 'contact only'];
+}
+
+/** Parts that have events, those with the worst first, and the events of each pair. */
+function pairsOf(events) {
+  const worst = [...events].sort((a, b) => (worseThan(a, b) ? -1 : worseThan(b, a) ? 1 : 0));
+  const parts = [...new Set(worst.flatMap(({ a, b }) => [a, b]))];
+  const key = (a, b) => JSON.stringify([a, b].sort());
+  const cells = new Map();
+  for (const event of worst) {
+    const found = cells.get(key(event.a, event.b)) ?? [];
+    found.push(event);
+    cells.set(key(event.a, event.b), found);
+  }
+  return { parts, of: (a, b) => cells.get(key(a, b)) ?? [] };
+}
+
+function matrixCell(events, a, b, deepest, choose) {
+  if (events.length === 0) return element('td', { class: 'none' }, element('span', { 'aria-hidden': 'true' }, '·'));
+  const { depth } = events[0];
+  const title = `${whoOf(events[0])}: ${counted(events.length, 'event')}${depth > 0 ? `, at most ${lengthOf(depth)} deep` : ''}`;
+  const made = element('button', { type: 'button', class: 'cell', title, 'aria-label': title, 'aria-pressed': 'false' },
+    depth > 0 ? lengthOf(depth) : integer(events.length));
+  made.style.setProperty('--share', String(deepest > 0 ? Math.round(100 * (0.15 + (0.6 * depth) / deepest)) : 15));
+  made.addEventListener('click', () => choose(a, b, made));
+  return element('td', {}, made);
+}
+
+/** Parts against parts: the greatest depth of each pair or, where nothing is buried, how many events it has. */
+function matrixOf(events, choose) {
+  const { parts, of } = pairsOf(events);
+  const shown = parts.slice(0, PARTS_MOST);
+  const deepest = events.reduce((most, { depth }) => Math.max(most, depth), 0);
+  const head = element('tr', {}, element('th', { scope: 'col' }, element('span', { class: 'visually-hidden' }, 'part')));
+  for (const part of shown) head.append(element('th', { scope: 'col', title: part }, element('span', {}, part)));
+  const body = element('tbody');
+  shown.forEach((a, i) => {
+    const row = element('tr', {}, element('th', { scope: 'row', title: a }, a));
+    shown.forEach((b, j) => row.append(j > i ? element('td', {}) : matrixCell(of(a, b), a, b, deepest, choose)));
+    body.append(row);
+  });
+  const table = element('table', { class: 'matrix', 'aria-label': 'Parts against parts' }, element('thead', {}, head), body);
+  const rest = parts.length - shown.length;
+  const more = rest > 0 ? [element('p', { class: 'quiet' }, `${counted(rest, 'more part')} with events, of lesser depth`)] : [];
+  return [scrollable(table), ...more];
+}
+
+function eventRow(event, number, go) {
+  const [state, word] = kindOf(event);
+  const row = element('tr', { class: 'item', 'data-event': number });
+  row.append(
+    element('td', {}, element('button', { type: 'button', 'aria-label': `Event ${number + 1}` }, String(number + 1))),
+    element('td', { class: 'who', title: `${whoOf(event)}: ${word}` },
+      element('span', { class: `state ${state}` }, element('i'), element('span', { class: 'visually-hidden' }, `${word}: `), whoOf(event))),
+    element('td', { class: 'number' }, event.first === event.last ? `${event.first}` : `${event.first} to ${event.last}`),
+    element('td', { class: 'number', 'data-value': event.depth, title: event.depth }, event.depth > 0 ? lengthOf(event.depth) : '–'),
+  );
+  row.addEventListener('click', () => go(number));
+  return row;
+}
+
+const COLUMNS = [['no.'], ['parts'], ['frames', true], ['depth', true, 'The greatest depth, in the unit of the file']];
+
+function tableOf(events, go) {
+  const head = element('tr');
+  for (const [text, number, title] of COLUMNS) head.append(element('th', { scope: 'col', text, title, class: number ? 'number' : null }));
+  const body = element('tbody', {}, ...events.map((event, number) => eventRow(event, number, go)));
+  return element('table', { class: 'events', 'aria-label': 'Events' }, element('thead', {}, head), body);
+}
+
+/** What was left out of the page to keep it small. */
+function leftOut(answers) {
+  const missing = [];
+  const add = (kept, found, what) => {
+    if (kept < found) missing.push(`${integer(kept)} of ${integer(found)} ${what}`);
+  };
+  add(answers.events.length, answers.events_found, 'events, the worst ones');
+  add(answers.triangles_kept, answers.triangles_found, 'intersecting triangles');
+  add(answers.points_kept, answers.points_found, 'points of curves');
+  add(answers.depths_kept, answers.depths_found, 'depths');
+  return missing.length > 0 ? [element('p', { class: 'quiet' }, `To keep it small, this page has ${missing.join(', ')}.`)] : [];
+}
+
+export function create(container, report, store, player) {
+  container.hidden = report.kind !== 'replay';
+  if (container.hidden) return;
+  const { answers } = report.scene;
+  document.getElementById('answer-line').textContent = sentenceOf(report);
+  const events = answers?.events ?? [];
+  if (events.length === 0) {
+    container.hidden = true;
+    return;
+  }
+  const position = element('span', { class: 'quiet', 'aria-live': 'polite' });
+  const previous = button('Previous event', { glyph: BACK, key: 'P' }, () => player.stepEvent(-1));
+  const next = button('Next event', { glyph: FORWARD, key: 'N' }, () => player.stepEvent(1));
+  const table = tableOf(events, (number) => player.toEvent(number));
+  const list = scrollable(table);
+  let chosen = null;
+  function choose(a, b, cell) {
+    chosen = chosen === cell ? null : cell;
+    for (const other of container.querySelectorAll('.matrix .cell')) other.setAttribute('aria-pressed', String(other === chosen));
+    events.forEach((event, i) => {
+      const fits = chosen === null || (event.a === a && event.b === b) || (event.a === b && event.b === a);
+      table.tBodies[0].rows[i].hidden = !fits;
+    });
+  }
+  function show({ event }) {
+    setText(position, event === null ? counted(events.length, 'event') : `${event + 1} of ${counted(events.length, 'event')}`);
+    [...table.tBodies[0].rows].forEach((row, i) => row.setAttribute('aria-current', String(i === event)));
+    if (event === null) return;
+    const row = table.tBodies[0].rows[event];
+    const head = table.tHead.offsetHeight;
+    if (row.offsetTop - head < list.scrollTop) list.scrollTop = row.offsetTop - head;
+    else if (row.offsetTop + row.offsetHeight > list.scrollTop + list.clientHeight) {
+      list.scrollTop = row.offsetTop + row.offsetHeight - list.clientHeight;
+    }
+  }
+  const names = new Set(events.flatMap(({ a, b }) => [a, b]));
+  container.append(
+    heading('Events', position, previous, next),
+    ...(names.size > 1 ? matrixOf(events, choose) : []),
+    list,
+    ...leftOut(answers),
+  );
+  store.on(['event'], show);
+  show(store.get());
+}

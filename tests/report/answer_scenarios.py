@@ -1,0 +1,137 @@
+"""The page begins with the answer: a sentence, parts against parts, events that the view goes to, and what intersects there."""
+from selenium.webdriver.common.keys import Keys
+
+from controls_scenarios import SMALL
+from page import expect, expect_equal
+from report_file import Report
+
+CURVE_SEGMENTS = "return window.cscd.viewer.curves.segments;"
+FILLED = "return [...window.cscd.viewer.painter.filled];"
+
+
+def open_pawn(context, **arguments):
+    made = context.material.replay("pawn-drop")
+    context.page.open(made.page, **{**SMALL, **arguments})
+    return made, context.page, Report(made.page)
+
+
+def crossing_frames(made):
+    return [row["frame"] for row in made.summary()["frames"] if row["crossing"]]
+
+
+def expect_event(page, report, number):
+    event = report.scene["answers"]["events"][number]
+    expect_equal((page.state("event"), page.frame()), (number, event["worst"]), "the event and its worst frame")
+    return event
+
+
+def answers_are_those_of_the_run(context):
+    """The frames in which something was found are those that the summary calls crossing, and each event lies in them."""
+    for name in ("pawn-drop", "figure-balls"):
+        made = context.material.replay(name)
+        report = Report(made.page)
+        answers, arrays = report.scene["answers"], report.arrays
+        found = [report.scene["numbers"][place] for place in arrays["answer_frame"]]
+        expect_equal(found, crossing_frames(made), f"{name}: frames in which triangles intersect or touch")
+        expect_equal(answers["frames_checked"], len(report.scene["numbers"]), f"{name}: frames checked")
+        counts = [arrays["answer_counts"][5 * i:5 * i + 5] for i in range(len(found))]
+        for what, place in (("triangles", 2), ("points", 3), ("depths", 4)):
+            total = sum(row[place] for row in counts)
+            expect_equal((answers[f"{what}_kept"], answers[f"{what}_found"]), (total, total), f"{name}: {what}")
+        expect(answers["events_found"] == len(answers["events"]) > 3, f"{name}: {answers['events_found']} events")
+        for event in answers["events"]:
+            expect(event["pairs"] == 0 or event["worst"] in found, f"{name}: {event} is worst where nothing intersects")
+        deepest = max(event["depth"] for event in answers["events"])
+        stored = max(arrays["depth"]) * report.scene["unit"]
+        expect(abs(deepest - stored) <= 1e-3 * deepest, f"{name}: events are {deepest} deep, vertices {stored}")
+
+
+def the_sentence_says_what_intersects(context):
+    made, page, report = open_pawn(context)
+    text = page.script("return document.getElementById('answer-line').textContent;")
+    expect(f"{len(crossing_frames(made))} of 150 frames checked" in text, text)
+    events = report.scene["answers"]["events"]
+    worst = max(events, key=lambda event: event["depth"])
+    for words in (f"{len(events)} events", f"frames {worst['first']} to {worst['last']}", f"deep at frame {worst['worst']}"):
+        expect(words in text, f"no {words!r} in {text!r}")
+
+
+def clicks_and_keys_walk_the_events(context):
+    _, page, report = open_pawn(context)
+    count = len(report.scene["answers"]["events"])
+    expect_equal(len(page.table("Events")) - 1, count, "rows of the table of events")
+    page.click("button", "Event 2")
+    expect_event(page, report, 1)
+    page.click("button", "Next event")
+    expect_event(page, report, 2)
+    page.leave_controls()
+    page.press("p", "p")
+    expect_event(page, report, 0)
+    page.press("p")
+    expect_event(page, report, count - 1)
+    page.press("n")
+    expect_event(page, report, 0)
+
+
+def an_event_is_seen(context):
+    """The camera is near its place, triangles are filled, curves are drawn, and the box 'Intersections' takes them away."""
+    _, page, report = open_pawn(context, width=1280, height=800)
+    page.go_to(0)
+    expect_equal((page.script(FILLED), page.script(CURVE_SEGMENTS)), ([], 0), "what is filled where nothing intersects")
+    page.click("button", "Event 2")
+    page.rest()
+    event = expect_event(page, report, 1)
+    place = report.scene["numbers"].index(event["worst"])
+    row = list(report.arrays["answer_frame"]).index(place)
+    counts = report.arrays["answer_counts"][5 * row:5 * row + 5]
+    filled = set(page.script(FILLED))
+    begin = sum(report.arrays["answer_counts"][5 * i + 2] for i in range(row))
+    triangles = set(report.arrays["answer_triangle"][begin:begin + counts[2]])
+    expect(len(triangles) > 50 and triangles <= filled, f"{len(triangles - filled)} of {len(triangles)} triangles are not filled")
+    expect(page.script(CURVE_SEGMENTS) > 50, "no curves")
+    near = context.pictures.view("event")
+    red = context.pictures.count(near, (150, 20, 110), 70)
+    expect(red > 1000, f"{red} pixels of depth")
+    legend = page.script("return document.querySelector('.legend-body').textContent;")
+    expect("in the unit of the file" in legend and f"frame {event['worst']}" in legend, legend)
+    page.set_box("Intersections", False)
+    page.rest()
+    expect_equal((page.script(FILLED), page.script(CURVE_SEGMENTS)), ([], 0), "what is filled without the box")
+
+
+def parts_stand_against_parts(context):
+    made = context.material.tetrahedra()
+    context.page.open(made.page, **SMALL)
+    page, events = context.page, Report(made.page).scene["answers"]["events"]
+    expect_equal([(event["a"], event["b"]) for event in events], [("component 0", "component 1")], "the events' parts")
+    expect(page.has("table", "Parts against parts"), "no matrix")
+    cell = next(e for e in page.find_all(".matrix button.cell"))
+    cell.click()
+    expect_equal(cell.get_attribute("aria-pressed"), "true", "the cell after a click")
+    page.press(Keys.ENTER)
+    expect_equal(cell.get_attribute("aria-pressed"), "false", "the cell after Enter")
+    page.leave_controls()
+    page.press("n")
+    expect_equal(page.frame(), events[0]["worst"], "the worst frame")
+
+
+def curves_lie_on_the_bodies(context):
+    """The points of curves, as the page draws them, lie in planes of the tetrahedron that stands still."""
+    made = context.material.tetrahedra()
+    report = Report(made.page)
+    frames, arrays = report.frames(), report.arrays
+    planes = [lambda p: p[0], lambda p: p[0] - p[1] - p[2] + 4]
+    checked = at = 0
+    for row, place in enumerate(arrays["answer_frame"]):
+        for _ in range(arrays["answer_counts"][5 * row + 3]):
+            a, b = arrays["curve_vertices"][2 * at:2 * at + 2]
+            share = arrays["curve_share"][at]
+            shown = [(1 - share) * axis[a] + share * axis[b] for axis in frames[place]]
+            off = min(min(abs(shown[1]), abs(shown[2])), *(abs(plane(shown)) for plane in planes))
+            expect(off < 1e-3, f"frame {place}: {shown} is off the surface by {off}")
+            checked, at = checked + 1, at + 1
+    expect(checked > 10, f"{checked} points of curves")
+
+
+SCENARIOS = (answers_are_those_of_the_run, the_sentence_says_what_intersects, clicks_and_keys_walk_the_events,
+             an_event_is_seen, parts_stand_against_parts, curves_lie_on_the_bodies)
