@@ -15,6 +15,7 @@ typedef struct mesh_repairs {
         first_shortened;             /* faces that named a vertex twice in a row, which then counts once */
     uint32_t dropped, first_dropped; /* faces that were left with fewer than three corners */
     uint32_t fanned, first_fanned;   /* faces that cross themselves in every plane of two coordinates */
+    uint32_t skipped_primitives;     /* of a glTF: points and lines */
 } mesh_repairs;
 
 /* Vertices in the file's own order; faces in file order, polygons cut into triangles by their shape (polygon.h), as they

@@ -1,5 +1,6 @@
 /* The mesh of a glTF file in its rest state. */
 #include "src/io/gltf.h"
+#include "src/io/gltf/gltf_parts.h"
 #include "src/io/gltf/gltf_pose.h"
 #include "src/io/growable.h"
 
@@ -13,7 +14,9 @@ static bool allocate_mesh(const gltf_scene *scene, mesh_file *mesh) {
     mesh->positions = gltf_allocate(reader, mesh->vertex_count, 3 * sizeof *mesh->positions);
     if (mesh->positions == NULL) return false;
     mesh->triangles = gltf_allocate(reader, mesh->triangle_count, 3 * sizeof *mesh->triangles);
-    return mesh->triangles != NULL;
+    if (mesh->triangles == NULL) return false;
+    mesh->polygons = gltf_allocate(reader, mesh->triangle_count, sizeof *mesh->polygons);
+    return mesh->polygons != NULL;
 }
 
 /* A node that mirrors its mesh turns the triangles around, as the format demands; joints leave them. */
@@ -33,15 +36,34 @@ static void write_triangles(const gltf_scene *scene, const gltf_pose *pose, mesh
     }
 }
 
+/* Which face of the file each triangle is: one that names a vertex twice is dropped, and keeps its number. */
+static void write_polygons(const gltf_scene *scene, mesh_file *out) {
+    uint32_t *polygon = out->polygons;
+    for (uint32_t i = 0; i < scene->instance_count; i++) {
+        const gltf_mesh *mesh = &scene->meshes[scene->instances[i].mesh];
+        const uint32_t *faces = mesh->faces.data;
+        for (size_t t = 0; t < mesh->faces.count; t++) *polygon++ = out->polygon_count + faces[t];
+        if (mesh->dropped_count > 0 && out->repairs.dropped == 0)
+            out->repairs.first_dropped = out->polygon_count + mesh->first_dropped;
+        out->repairs.dropped += mesh->dropped_count;
+        out->repairs.skipped_primitives += mesh->skipped_primitives;
+        out->polygon_count += mesh->face_count;
+    }
+    out->faces_hash = MESH_HASH_START;
+    for (size_t t = 0; t < out->triangle_count; t++)
+        out->faces_hash = mesh_file_hash(out->faces_hash, out->triangles + 3 * t, 3);
+}
+
 bool gltf_read(file_reader *reader, mesh_file *out) {
     gltf_scene scene;
     gltf_pose pose = {0};
     mesh_file mesh = {0};
     if (!gltf_scene_open(reader, &scene)) return false;
     const bool done = gltf_pose_open(&scene, &pose) && allocate_mesh(&scene, &mesh) &&
-                      gltf_pose_write(&pose, mesh.positions);
+                      gltf_pose_write(&pose, mesh.positions) && gltf_parts_of(&scene, &mesh.parts);
     if (done) {
         write_triangles(&scene, &pose, &mesh);
+        write_polygons(&scene, &mesh);
         *out = mesh;
     } else {
         mesh_file_free(&mesh);

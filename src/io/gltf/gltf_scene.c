@@ -35,10 +35,11 @@ static bool add_instance(gltf_scene *scene, uint32_t node) {
         return false;
     const gltf_mesh *mesh = &scene->meshes[instance.mesh];
     if (mesh->vertex_count > INT32_MAX - scene->vertex_count ||
-        mesh->triangles.count > INT32_MAX - scene->triangle_count)
+        mesh->face_count > INT32_MAX - scene->face_count)
         return file_reader_fail(scene->document.reader,
                                 "more than %" PRId32 " vertices or triangles, the most of a mesh", INT32_MAX);
     scene->vertex_count += mesh->vertex_count;
+    scene->face_count += mesh->face_count;
     scene->triangle_count += (uint32_t)mesh->triangles.count;
     scene->instances[scene->instance_count++] = instance;
     return true;

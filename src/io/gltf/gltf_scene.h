@@ -21,6 +21,7 @@ typedef struct gltf_scene {
     gltf_instance *instances; /* in the order of the nodes */
     uint32_t instance_count;
     uint32_t vertex_count, triangle_count;
+    uint32_t face_count; /* with those that were dropped */
 } gltf_scene;
 
 /* The reader stays the caller's, and open as long as the scene. On false *out owns nothing, and the reader's error is

@@ -87,6 +87,10 @@ static void warn_object(const recording *r, recorded_object *object) {
                 "faces have fewer than three different corners and are left out");
     warn_repair(name, colon, object->file.repairs.fanned, object->file.repairs.first_fanned,
                 "faces cross themselves as seen along every axis, and are filled by fans");
+    if (object->file.repairs.skipped_primitives > 0)
+        warn("%s%s%u primitive%s of points or lines %s left out", name, colon,
+             object->file.repairs.skipped_primitives, object->file.repairs.skipped_primitives == 1 ? "" : "s",
+             object->file.repairs.skipped_primitives == 1 ? "is" : "are");
     if (object->welded && object->weld.collapsed_triangles > 0)
         warn("%s%swelding collapsed %u triangle%s, left out from here on", name, colon,
              object->weld.collapsed_triangles, object->weld.collapsed_triangles == 1 ? "" : "s");

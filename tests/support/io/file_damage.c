@@ -43,6 +43,10 @@ static void check_mesh(const mesh_file *mesh) {
             assert_true(corner[j] < mesh->vertex_count);
             assert_true(corner[j] != corner[(j + 1) % 3]);
         }
+        assert_true(mesh_file_polygon(mesh, (uint32_t)i) < mesh->polygon_count);
+        if (mesh->parts.of_triangle != NULL)
+            assert_true(mesh->parts.of_triangle[i] < mesh->parts.count ||
+                        mesh->parts.of_triangle[i] == NO_MESH_PART);
     }
 }
 

@@ -1,0 +1,9 @@
+/* The parts of a glTF scene: a name for each node with triangles, no two of them equal. */
+#pragma once
+
+#include "src/io/gltf/gltf_scene.h"
+#include "src/io/mesh_parts.h"
+
+/* Nodes are called by their own name, else by that of their mesh, else "node 3"; a name that is taken gets .001, .002, ... behind
+ * it. On false *out owns nothing, and the error of the scene's reader is set. */
+bool gltf_parts_of(const gltf_scene *scene, mesh_parts *out);

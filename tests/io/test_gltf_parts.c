@@ -1,0 +1,114 @@
+/* The parts of glTF files, and which face of the file a triangle is. */
+#include "src/io/growable.h"
+#include "tests/support/io/gltf_fixture.h"
+#include "tests/support/test.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static long allocations_left = -1; /* so many allocations succeed before one fails; negative: none fails */
+
+void *io_realloc(void *memory, size_t size) {
+    if (allocations_left == 0) return NULL;
+    if (allocations_left > 0) allocations_left--;
+    return realloc(memory, size);
+}
+
+/* Meshes: 0 has a triangle, a point and a triangle that names a vertex twice before a third one; 1, "Arm", has one triangle;
+ * 2 has points alone. */
+static file_bytes parts_file(gltf_fixture *fixture, const char *nodes) {
+    static const double positions[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1},
+                        indices[] = {0, 1, 2, 3, 3, 0, 1, 2, 3};
+    char rest[1500];
+    *fixture = (gltf_fixture){0};
+    gltf_fixture_array(fixture, 5126, "VEC3", 12, positions);
+    gltf_fixture_array(fixture, 5121, "SCALAR", 9, indices);
+    gltf_fixture_accessor(fixture,
+                          "{\"bufferView\":1,\"componentType\":5121,\"count\":3,\"type\":\"SCALAR\"}");
+    snprintf(
+        rest, sizeof rest,
+        "\"nodes\":[%s],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"mode\":0},{\"attributes\":{"
+        "\"POSITION\":0},\"indices\":1}]},{\"name\":\"Arm\",\"primitives\":[{\"attributes\":{\"POSITION\":0},"
+        "\"indices\":2}]},{\"name\":\"Dust\",\"primitives\":[{\"attributes\":{\"POSITION\":0},\"mode\":0}]}]",
+        nodes);
+    return gltf_fixture_glb(fixture, rest);
+}
+
+static void check_names(const char *nodes, uint32_t count, const char *const *names) {
+    gltf_fixture fixture;
+    mesh_file mesh;
+    io_error error;
+    if (!mesh_check_read(parts_file(&fixture, nodes), &mesh, &error)) fail_msg("%s", error.text);
+    assert_int_equal(mesh.parts.count, count);
+    for (uint32_t i = 0; i < count; i++) assert_string_equal(mesh.parts.names[i], names[i]);
+    mesh_file_free(&mesh);
+    assert_int_equal(mesh.parts.count, 0);
+}
+
+static void calls_parts_by_their_nodes(void **state) {
+    (void)state;
+    static const char *const plain[] = {"Body", "Arm", "node 2", "Hand/L"};
+    check_names(
+        "{\"name\":\"Body\",\"mesh\":0},{\"mesh\":1},{\"mesh\":0,\"name\":\"\"},{\"name\":\"Hand/L\",\"mesh\":1},{\"name\":"
+        "\"Dust\",\"mesh\":2},{\"name\":\"Empty\"}",
+        4, plain);
+}
+
+static void tells_equal_names_apart(void **state) {
+    (void)state;
+    static const char *const names[] = {"Body",     "Body.001", "Body.001.001",
+                                        "Body.003", "Body.002", "Body.004"};
+    check_names(
+        "{\"name\":\"Body\",\"mesh\":1},{\"name\":\"Body\",\"mesh\":1},{\"name\":\"Body.001\",\"mesh\":1},{\"name\":"
+        "\"Body.003\",\"mesh\":1},{\"name\":\"Body\",\"mesh\":1},{\"name\":\"Body\",\"mesh\":1}",
+        6, names);
+}
+
+/* Two nodes with mesh 0, and one with mesh 1 between them. */
+static void numbers_the_faces_of_the_file(void **state) {
+    (void)state;
+    static const uint32_t polygons[] = {0, 2, 3, 4, 6}, parts[] = {0, 0, 1, 2, 2};
+    static const uint32_t triangles[] = {0, 1, 2, 1, 2, 3, 4, 5, 6, 8, 9, 10, 9, 10, 11};
+    gltf_fixture fixture;
+    mesh_file mesh;
+    io_error error;
+    const file_bytes file = parts_file(&fixture, "{\"mesh\":0},{\"mesh\":1},{\"mesh\":0},{\"mesh\":2}");
+    if (!mesh_check_read(file, &mesh, &error)) fail_msg("%s", error.text);
+    assert_int_equal(mesh.triangle_count, 5);
+    assert_int_equal(mesh.polygon_count, 7);
+    assert_memory_equal(mesh.triangles, triangles, sizeof triangles);
+    for (uint32_t i = 0; i < 5; i++) assert_int_equal(mesh_file_polygon(&mesh, i), polygons[i]);
+    assert_memory_equal(mesh.parts.of_triangle, parts, sizeof parts);
+    assert_int_equal(mesh.repairs.dropped, 2);
+    assert_int_equal(mesh.repairs.first_dropped, 1);
+    assert_int_equal(mesh.repairs.skipped_primitives, 3);
+    mesh_file_free(&mesh);
+}
+
+static void survives_failed_allocations(void **state) {
+    (void)state;
+    gltf_fixture fixture;
+    const file_bytes file = parts_file(&fixture, "{\"mesh\":0},{\"mesh\":1},{\"mesh\":1}");
+    long successes = 0;
+    for (bool done = false; !done; successes++) {
+        mesh_file mesh = {0};
+        io_error error = {""};
+        allocations_left = successes;
+        done = mesh_check_read(file, &mesh, &error);
+        allocations_left = -1;
+        if (!done && strstr(error.text, "out of memory") == NULL) fail_msg("%s", error.text);
+        mesh_file_free(&mesh);
+    }
+    assert_true(successes > 25);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(calls_parts_by_their_nodes),
+        cmocka_unit_test(tells_equal_names_apart),
+        cmocka_unit_test(numbers_the_faces_of_the_file),
+        cmocka_unit_test(survives_failed_allocations),
+    };
+    return cmocka_run_group_tests_name("gltf_parts", tests, NULL, NULL);
+}
