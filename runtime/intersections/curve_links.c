@@ -78,6 +78,46 @@ static size_t sort_ends(link_work *work, size_t piece_count, curve_key *keys, cu
     return count;
 }
 
+/* ---- edges that seams join ------------------------------------------------------------------------------ */
+
+/* The first key of this number or a larger one. */
+static size_t find_key(const curve_key *keys, size_t count, uint64_t number) {
+    size_t low = 0;
+    while (low < count) {
+        size_t middle = low + (count - low) / 2;
+        if (keys[middle].number < number)
+            low = middle + 1;
+        else
+            count = middle;
+    }
+    return low;
+}
+
+/* An edge was found that may be joined to those of the ends: they are at no border then. */
+static void count_joined_edge(link_work *work, const curve_key *keys, size_t count, uint32_t edge) {
+    uint64_t number = name_edge(work->surface, edge);
+    uint32_t triangles = count_triangles(work->surface, edge);
+    for (size_t i = find_key(keys, count, number); i < count && keys[i].number == number; i++) {
+        uint32_t *link = &work->links[keys[i].end];
+        if (event_of(work, keys[i].end).edge == edge || triangles == 0) continue;
+        *link = *link == LINK_TO_BORDER && triangles == 1 ? LINK_TO_LEFT_OUT : LINK_TO_JUNCTION;
+    }
+}
+
+/* The triangle on the other side of a seam may have no end here, as its pair is left out. So all
+ * edges of the mesh are compared with those of the ends that seem to be at a border. */
+static void name_ends_at_seams(link_work *work, size_t piece_count, curve_key *keys, curve_key *spare_keys) {
+    const cscd_mesh *mesh = work->surface->mesh;
+    size_t count = 0;
+    for (uint64_t end = 0; end < 2 * piece_count; end++) {
+        if (work->links[end] == LINK_TO_BORDER)
+            keys[count++] = (curve_key){name_edge(work->surface, event_of(work, end).edge), end};
+    }
+    sort_by_number(keys, spare_keys, count, sizeof *keys);
+    for (uint32_t edge = 0; edge < mesh->edge_count && count > 0; edge++)
+        count_joined_edge(work, keys, count, edge);
+}
+
 void curve_links_find(const named_surface *s, const curve_piece *pieces, size_t piece_count, curve_key *keys,
                       curve_key *spare_keys, uint32_t *links) {
     link_work work = {s, pieces, links};
@@ -89,4 +129,5 @@ void curve_links_find(const named_surface *s, const curve_piece *pieces, size_t 
         link_group(&work, keys + begin, i + 1 - begin);
         begin = i + 1;
     }
+    if (s->names != NULL) name_ends_at_seams(&work, piece_count, keys, spare_keys);
 }

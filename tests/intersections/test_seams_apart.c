@@ -122,6 +122,50 @@ static void an_edge_that_is_a_point(void **state) {
     body_rig_free(&other);
 }
 
+/* Two triangles that are sewn together along x = 0, or three, and a blade through them. The pairs of the blade with all but
+ * the first are ignored: its curve ends at the seam, where it would go on, or where three triangles meet. */
+static void a_pair_is_left_out_at_a_seam(void **state) {
+    (void)state;
+    static const double corners[4][3] = {{-2, 1, 0}, {2, 1, 0}, {0, 1, -2}, {0, 0, 0}};
+    static const double blade[3][3] = {{-1, 1.25, -1}, {1, 1.25, -1}, {0, 1.25, 2}};
+    static const uint32_t seams[4][2] = {{0, 3}, {1, 4}, {0, 6}, {1, 7}};
+    for (uint32_t sewn = 1; sewn <= 3; sewn++) {
+        uint32_t ignored[2][2] = {{1, sewn}, {2, sewn}};
+        cscd_detector_options options = cscd_detector_defaults();
+        body_rig_begin(&rig);
+        for (uint32_t t = 0; t <= sewn; t++) {
+            if (t == sewn) body_rig_end_body(&rig);
+            for (uint32_t i = 0; i < 3; i++) {
+                const double end[3] = {0, 2.0 * i, 0};
+                memcpy(&rig.all.x0[(3 * t + i) * 3],
+                       t == sewn ? blade[i]
+                       : i < 2   ? end
+                                 : corners[t],
+                       sizeof end);
+                rig.all.triangles[3 * t + i] = 3 * t + i;
+            }
+            rig.all.vertex_count += 3;
+            rig.all.triangle_count++;
+        }
+        body_rig_end_body(&rig);
+        options.seams = seams[0];
+        options.seam_count = 2 * (sewn - 1);
+        options.ignored = ignored[0];
+        options.ignored_count = sewn - 1;
+        body_rig_create(&rig, &options, 1);
+        body_rig_find(&rig);
+        assert_int_equal(rig.found.curves->count, 1);
+        const cscd_curve *curve = &rig.found.curves->items[0];
+        cscd_curve_end expected = sewn == 1   ? CSCD_CURVE_END_BORDER
+                                  : sewn == 2 ? CSCD_CURVE_END_LEFT_OUT
+                                              : CSCD_CURVE_END_JUNCTION;
+        assert_int_equal(curve->piece_count, 1);
+        assert_true(curve->start == expected || curve->end == expected);
+        assert_true(curve->start == CSCD_CURVE_END_BORDER || curve->end == CSCD_CURVE_END_BORDER);
+        body_rig_free(&rig);
+    }
+}
+
 static void every_allocation_may_fail(void **state) {
     (void)state;
     static const uint32_t seams[][2] = {{0, 7}, {7, 1}, {1, 6}};
@@ -146,9 +190,10 @@ static void every_allocation_may_fail(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_seam_across_a_body),    cmocka_unit_test(a_seam_between_bodies),
-        cmocka_unit_test(a_seam_along_an_edge),    cmocka_unit_test(those_at_one_place_are_one),
-        cmocka_unit_test(an_edge_that_is_a_point), cmocka_unit_test(every_allocation_may_fail),
+        cmocka_unit_test(a_seam_across_a_body),      cmocka_unit_test(a_seam_between_bodies),
+        cmocka_unit_test(a_seam_along_an_edge),      cmocka_unit_test(those_at_one_place_are_one),
+        cmocka_unit_test(an_edge_that_is_a_point),   cmocka_unit_test(a_pair_is_left_out_at_a_seam),
+        cmocka_unit_test(every_allocation_may_fail),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
