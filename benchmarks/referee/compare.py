@@ -20,7 +20,7 @@ import subprocess
 import sys
 
 from exact_pair import CASES, case_of
-from programs import Failed, all_programs, ours
+from programs import TIMER, Failed, all_programs, ours
 from small_meshes import meshes
 
 SCENES = [("figure", 20000, "a figure whose legs cross"), ("knot", 20000, "a knot in itself"),
@@ -306,6 +306,8 @@ def parse_options():
 
 def main():
     o = parse_options()
+    if not os.access(TIMER, os.X_OK):
+        sys.exit(f"compare.py: there is no {TIMER}, which measures the programs: install the package `time`")
     os.makedirs(o.work, exist_ok=True)
     comparison = Comparison(o)
     if comparison.we.missing():

@@ -16,6 +16,9 @@ SCRIPT = """<!DOCTYPE FilterScript>
 SELECTED = 0x20  # of the flags of a face in MeshLab's files
 
 
+TIMER = "/usr/bin/time"
+
+
 class Failed(Exception):
     """A program has no answer; its text says why."""
 
@@ -42,7 +45,7 @@ def last_words(log, status):
 def measured(command, folder, limit, log, before=()):
     """Runs a command with its output in a file; returns seconds of processor time and megabytes at most."""
     figures = os.path.join(folder, "figures.txt")
-    timed = [*before, "/usr/bin/time", "-f", "%U %S %M", "-o", figures, "timeout", str(limit), *command]
+    timed = [*before, TIMER, "-f", "%U %S %M", "-o", figures, "timeout", str(limit), *command]
     with open(log, "w", encoding="utf-8") as out:
         status = subprocess.run(timed, cwd=folder, stdout=out, stderr=out, stdin=subprocess.DEVNULL, check=False).returncode
     if status == 124:

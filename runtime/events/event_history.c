@@ -58,7 +58,7 @@ void event_history_free(cscd_context *context, event_history *h) {
 
 /* ---- events that are no longer needed ------------------------------------------------------------------- */
 
-static uint32_t halve_path(event_history *h, uint32_t event) {
+uint32_t event_root(event_history *h, uint32_t event) {
     uint32_t *parents = h->parents;
     while (parents[event] != event) {
         parents[event] = parents[parents[event]];
@@ -73,12 +73,12 @@ static void renew_stamps(event_history *h) {
     for (size_t i = 0; i < h->last.count; i++) {
         stamp s = h->last.stamps[i];
         if (!frame_is_last(h, s.frame)) continue;
-        s.owner = halve_path(h, s.owner);
+        s.owner = event_root(h, s.owner);
         *kept++ = s;
     }
     if (h->last.count > 0) stamp_table_shrink(&h->last, (size_t)(kept - h->last.stamps));
     for (size_t i = 0; i < h->first.count; i++)
-        h->first.stamps[i].owner = halve_path(h, h->first.stamps[i].owner);
+        h->first.stamps[i].owner = event_root(h, h->first.stamps[i].owner);
 }
 
 /* Moves the events that are their own parents together, in their order; parents say where to, meanwhile. */
@@ -146,7 +146,7 @@ static void add_events(event_history *h, const event_history *next) {
 /* The events of both stamps are one if the frames are near enough to each other. */
 static void join_stamps(event_history *h, const stamp *before, const stamp *after) {
     if (before == NULL || after->frame - before->frame > (uint64_t)h->gap + 1) return;
-    uint32_t a = halve_path(h, before->owner), b = halve_path(h, after->owner);
+    uint32_t a = event_root(h, before->owner), b = event_root(h, after->owner);
     if (a == b) return;
     tracked_event_join(&h->events[a], &h->events[b]);
     h->parents[b] = a;

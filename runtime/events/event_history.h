@@ -36,11 +36,8 @@ enum { NO_EVENT = UINT32_MAX };
 cscd_status event_history_append(cscd_context *context, event_history *h, const mesh_rings *rings,
                                  const event_history *next);
 
-/* The event that has all of this one. */
-static inline uint32_t event_root(const event_history *h, uint32_t event) {
-    while (h->parents[event] != event) event = h->parents[event];
-    return event;
-}
+/* The event that has all of this one. It shortens the ways on which it goes, so that many calls take little time. */
+uint32_t event_root(event_history *h, uint32_t event);
 
 /* May a frame, counted from the first one, be joined to the next frame? */
 static inline bool frame_is_last(const event_history *h, uint64_t frame) {

@@ -117,7 +117,7 @@ static void sort_events(const event_history *h, sorted_state *s) {
     }
 }
 
-static size_t sort_stamps(const event_history *h, const stamp_table *table, sorted_state *s, bool first,
+static size_t sort_stamps(event_history *h, const stamp_table *table, sorted_state *s, bool first,
                           stamp *out) {
     size_t count = 0;
     for (size_t i = 0; i < table->count; i++) {

@@ -25,7 +25,6 @@ typedef enum place_rank { PLACE_OF_PAIR, PLACE_OF_CONTACT, PLACE_OF_CURVE, PLACE
 typedef struct group_thing {
     uint64_t parts, origin;
     uint32_t parent; /* in the trees of things that are joined; then the group */
-
 } group_thing;
 
 /* The memory of all frames; begins with zeros. */
