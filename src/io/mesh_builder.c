@@ -62,6 +62,12 @@ bool mesh_builder_set_part(mesh_builder *builder, const char *name, size_t lengt
                                  builder->parts.count);
 }
 
+bool mesh_builder_set_face_part(mesh_builder *builder, const char *name, size_t length) {
+    if (!mesh_builder_set_part(builder, name, length)) return false;
+    ((built_face *)builder->faces.data)[builder->faces.count - 1].part = builder->part;
+    return true;
+}
+
 /* Where the corners of the face that was begun last begin. */
 static size_t corner_start(const mesh_builder *builder) {
     const built_face *faces = builder->faces.data;
@@ -84,9 +90,9 @@ bool mesh_builder_add_corner(mesh_builder *builder, uint32_t vertex) {
     return true;
 }
 
-/* Counts a repair of the last face, and keeps which one was first. */
-static void note_repair(const mesh_builder *builder, uint32_t *count, uint32_t *first) {
-    if ((*count)++ == 0) *first = (uint32_t)builder->faces.count - 1;
+/* Counts a repair of a face, and keeps the smallest number of one. */
+static void note_repair(uint32_t face, uint32_t *count, uint32_t *first) {
+    if ((*count)++ == 0 || face < *first) *first = face;
 }
 
 /* Leaves a vertex out that follows itself in the face, which is a cycle; returns how many corners are left. */
@@ -100,16 +106,14 @@ static size_t shorten_face(uint32_t *corners, size_t count) {
 
 bool mesh_builder_end_face(mesh_builder *builder) {
     const size_t start = corner_start(builder), count = builder->corners.count - start;
-    if (count < 3)
-        return file_reader_fail_here(builder->reader, "a face of %zu %s, expected 3 or more", count,
-                                     count == 1 ? "corner" : "corners");
     size_t left = shorten_face((uint32_t *)builder->corners.data + start, count);
     mesh_repairs *repairs = &builder->repairs;
+    const uint32_t face = (uint32_t)builder->faces.count - 1;
     if (left < 3) {
-        note_repair(builder, &repairs->dropped, &repairs->first_dropped);
+        note_repair(face, &repairs->dropped, &repairs->first_dropped);
         left = 0;
     } else if (left < count) {
-        note_repair(builder, &repairs->shortened, &repairs->first_shortened);
+        note_repair(face, &repairs->shortened, &repairs->first_shortened);
     }
     builder->corners.count = start + left;
     builder->faces_hash =
@@ -132,6 +136,7 @@ static bool repeats_vertex(const uint32_t triangle[3]) {
 static bool cut_face(mesh_builder *builder, uint32_t face, mesh_file *out) {
     const built_face *faces = builder->faces.data;
     const size_t start = face > 0 ? faces[face - 1].corner_end : 0, count = faces[face].corner_end - start;
+    const uint32_t first_triangle = out->triangle_count;
     if (count == 0) return true;
     uint32_t(*triangles)[3] = (uint32_t(*)[3])out->triangles + out->triangle_count;
     switch (
@@ -139,7 +144,7 @@ static bool cut_face(mesh_builder *builder, uint32_t face, mesh_file *out) {
     case POLYGON_OUT_OF_MEMORY:
         return file_reader_fail(builder->reader, "out of memory for a face of %zu corners", count);
     case POLYGON_FANNED:
-        if (out->repairs.fanned++ == 0) out->repairs.first_fanned = face;
+        note_repair(face, &out->repairs.fanned, &out->repairs.first_fanned);
         break;
     case POLYGON_FILLED:
         break;
@@ -151,6 +156,8 @@ static bool cut_face(mesh_builder *builder, uint32_t face, mesh_file *out) {
         if (out->parts.count > 0) out->parts.of_triangle[out->triangle_count] = faces[face].part;
         out->triangle_count++;
     }
+    if (out->triangle_count == first_triangle)
+        note_repair(face, &out->repairs.dropped, &out->repairs.first_dropped);
     return true;
 }
 
@@ -181,11 +188,6 @@ bool mesh_builder_finish(mesh_builder *builder, mesh_file *out) {
     if (builder->positions.count == 0) {
         return file_reader_fail(builder->reader, "no vertices found, expected a triangle mesh");
     }
-    if (builder->triangle_count == 0) {
-        return file_reader_fail(builder->reader,
-                                "no faces found for the %zu vertices, expected a triangle mesh",
-                                builder->positions.count);
-    }
     mesh_file mesh = {.vertex_count = (uint32_t)builder->positions.count,
                       .polygon_count = (uint32_t)builder->faces.count,
                       .positions = growable_take(&builder->positions),
@@ -193,7 +195,12 @@ bool mesh_builder_finish(mesh_builder *builder, mesh_file *out) {
                       .faces_hash = builder->faces_hash,
                       .repairs = builder->repairs};
     builder->parts = (mesh_parts){0};
-    if (!cut_faces(builder, &mesh)) {
+    bool done = cut_faces(builder, &mesh);
+    if (done && mesh.triangle_count == 0)
+        done = file_reader_fail(builder->reader,
+                                "no faces found for the %" PRIu32 " vertices, expected a triangle mesh",
+                                mesh.vertex_count);
+    if (!done) {
         mesh_file_free(&mesh);
         return false;
     }

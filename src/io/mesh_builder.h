@@ -40,6 +40,9 @@ bool mesh_builder_add_vertex(mesh_builder *builder, const double position[3]);
 /* The faces to come belong to the part of that name; length 0: to none. */
 bool mesh_builder_set_part(mesh_builder *builder, const char *name, size_t length);
 
+/* The face that was begun last belongs to the part of that name, and so do those to come. */
+bool mesh_builder_set_face_part(mesh_builder *builder, const char *name, size_t length);
+
 /* Begin a face, add its corners (0-based, in range or checked later), and end it. */
 bool mesh_builder_begin_face(mesh_builder *builder);
 bool mesh_builder_add_corner(mesh_builder *builder, uint32_t vertex);

@@ -13,7 +13,7 @@
 typedef struct mesh_repairs {
     uint32_t shortened,
         first_shortened;             /* faces that named a vertex twice in a row, which then counts once */
-    uint32_t dropped, first_dropped; /* faces that were left with fewer than three corners */
+    uint32_t dropped, first_dropped; /* faces that are left without a triangle */
     uint32_t fanned, first_fanned;   /* faces that cross themselves in every plane of two coordinates */
     uint32_t skipped_primitives;     /* of a glTF: points and lines */
 } mesh_repairs;

@@ -5,11 +5,16 @@
 #include "src/io/ply_data.h"
 
 #include <inttypes.h>
+#include <stdio.h>
 
 typedef struct ply_parser {
     ply_data data;
     mesh_builder builder;
     double position[3]; /* of the current vertex */
+    double label;       /* of the current face */
+    bool labelled;      /* the face has one */
+    bool has_parts;     /* the last face with a label had part_label */
+    double part_label;
 } ply_parser;
 
 bool ply_recognise(const file_reader *reader) {
@@ -52,15 +57,29 @@ static bool visit_property(void *user, const ply_property *property) {
         return ply_data_number(&ply->data, property, &ply->position[property->role]);
     case PLY_CORNERS:
         return read_corners(ply, property);
+    case PLY_PART:
+        ply->labelled = true;
+        return ply_data_number(&ply->data, property, &ply->label);
     case PLY_IGNORED:
         break;
     }
     return ply_data_skip(&ply->data, property);
 }
 
+/* Parts are called by their number. A face is begun before its label is known if the label stands behind its corners. */
+static bool set_part(ply_parser *ply) {
+    char name[32];
+    if (ply->has_parts && ply->label == ply->part_label) return true; /* as the face before it */
+    const int length = snprintf(name, sizeof name, "%.0f", ply->label);
+    ply->has_parts = true;
+    ply->part_label = ply->label;
+    return mesh_builder_set_face_part(&ply->builder, name, (size_t)length);
+}
+
 static bool end_row(void *user) {
     ply_parser *ply = user;
-    return ply->data.element->kind != PLY_VERTEX || mesh_builder_add_vertex(&ply->builder, ply->position);
+    if (ply->data.element->kind == PLY_VERTEX) return mesh_builder_add_vertex(&ply->builder, ply->position);
+    return ply->data.element->kind != PLY_FACE || !ply->labelled || set_part(ply);
 }
 
 bool ply_read(file_reader *reader, mesh_file *out) {

@@ -100,6 +100,11 @@ static ply_role role_of(ply_kind kind, text_token name) {
     return PLY_IGNORED;
 }
 
+static bool names_part(const ply_element *element, const ply_property *property) {
+    return element->kind == PLY_FACE && !property->is_list && ply_type_is_integer(property->type) &&
+           (text_equals(property->name, "part") || text_equals(property->name, "label"));
+}
+
 static bool has_role(const ply_header *header, const ply_element *element, ply_role role) {
     const ply_property *properties = header->properties.data;
     for (size_t i = 0; i < element->property_count; i++) {
@@ -135,7 +140,9 @@ static bool read_property(header_parser *parser) {
     if (!read_property_words(parser, &property)) return false;
     ply_element *element = last_element(header);
     property.role = role_of(element->kind, property.name);
-    if (property.role != PLY_IGNORED) {
+    if (names_part(element, &property) && !has_role(header, element, PLY_PART)) {
+        property.role = PLY_PART;
+    } else if (property.role != PLY_IGNORED) {
         if (property.is_list != (property.role == PLY_CORNERS)) {
             return file_reader_fail_here(
                 parser->reader, "property '%s' is %s, expected %s", text_show(property.name).text,

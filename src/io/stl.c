@@ -58,7 +58,7 @@ bool stl_recognise(const file_reader *reader) {
 
 static bool read_binary_triangle(file_reader *reader, mesh_builder *builder) {
     reader->at += NORMAL_SIZE;
-    mesh_builder_begin_face(builder);
+    if (!mesh_builder_begin_face(builder)) return false;
     for (int corner = 0; corner < 3; corner++) {
         double position[3];
         const uint32_t vertex = (uint32_t)builder->positions.count;
@@ -152,7 +152,7 @@ static bool skip_normal(file_reader *reader) {
 
 /* Reads a facet behind its first word. */
 static bool read_text_facet(file_reader *reader, mesh_builder *builder) {
-    mesh_builder_begin_face(builder);
+    if (!mesh_builder_begin_face(builder)) return false;
     if (!skip_normal(reader) || !expect_word(reader, "loop")) return false;
     text_token token;
     for (token = take_word(reader); is_keyword(token, "vertex"); token = take_word(reader))
@@ -171,14 +171,28 @@ static bool read_text_solid(file_reader *reader, mesh_builder *builder) {
     return true;
 }
 
+/* A name is the rest of the line, without the blanks around it. */
+static bool read_solid_name(file_reader *reader, mesh_builder *builder) {
+    text_token word, name = {"", 0};
+    while (text_next_token(reader, &word)) {
+        if (name.length == 0) name = word;
+        name.length = (size_t)(word.text + word.length - name.text);
+    }
+    text_skip_line(reader);
+    return mesh_builder_set_part(builder, name.text, name.length);
+}
+
+/* Several solids are parts. One alone is none: exporters write their own name there. */
 static bool read_text(file_reader *reader, mesh_builder *builder) {
     text_token token = take_word(reader);
+    uint32_t solid_count = 0;
     do {
         if (!is_keyword(token, "solid")) return fail_word(reader, token, "solid");
-        text_skip_line(reader); /* its name */
-        if (!read_text_solid(reader, builder)) return false;
+        if (!read_solid_name(reader, builder) || !read_text_solid(reader, builder)) return false;
         token = take_word(reader);
+        solid_count++;
     } while (token.length > 0);
+    if (solid_count == 1) mesh_parts_free(&builder->parts);
     return true;
 }
 

@@ -95,7 +95,8 @@ static void refuses_bad_rows(void **state) {
     mesh_check_error(OFF("OFF\n4 2 0\n0 0 0\n1 0 NaN\n"), ":4: ", "coordinate z of vertex 1 is nan",
                      "finite");
     mesh_check_error(OFF("OFF\n4 2 0\n-1e400 0 0\n"), ":3: ", "coordinate x of vertex 0 is -inf", "finite");
-    mesh_check_error(OFF("OFF\n4 1 0\n" VERTICES "2 0 1\n"), ":7: ", "a face of 2 corners", "3 or more");
+    mesh_check_error(OFF("OFF\n4 1 0\n" VERTICES "2 0 1\n"), ": ", "no faces found",
+                     "expected a triangle mesh");
     mesh_check_error(OFF("OFF\n4 1 0\n" VERTICES "-3 0 1 2\n"), ":7: ", "a face of -3 corners", "3 or more");
     mesh_check_error(OFF("OFF\n4 1 0\n" VERTICES "4 0 1 2\n"), ":8: ", "the file ends", "a vertex index");
     mesh_check_error(OFF("OFF\n4 2 0\n" VERTICES "4 0 1 2\n3 0 2 3\n"),

@@ -127,8 +127,8 @@ static void refuses_bad_rows(void **state) {
     mesh_check_error(PLY(HEADER VERTICES "3 0 1\n"), ":14: ", "the line ends inside face 1 of 2",
                      "property 'vertex_indices'");
     mesh_check_error(PLY(HEADER VERTICES "3 0 1 2.5\n"), ":14: ", "found '2.5'", "an integer");
-    mesh_check_error(PLY(HEADER VERTICES "2 0 1\n"), ":14: ", "a face of 2 corners", "3 or more");
-    mesh_check_error(PLY(HEADER VERTICES "0\n"), ":14: ", "a face of 0 corners", "3 or more");
+    mesh_check_error(PLY(HEADER VERTICES "2 0 1\n1 0\n"), ": ", "no faces found", "expected a triangle mesh");
+    mesh_check_error(PLY(HEADER VERTICES "0\n0\n"), ": ", "no faces found", "expected a triangle mesh");
     mesh_check_error(PLY(HEADER VERTICES "-1\n"), ":14: ", "'vertex_indices' has -1 entries", "0 or more");
     mesh_check_error(PLY(HEADER VERTICES "3 0 1 4\n"), ":14: ", "face index 4 is out of range",
                      "the file has 4 vertices");
@@ -162,10 +162,35 @@ static void refuses_counts_that_do_not_fit(void **state) {
 
 static void survives_damage(void **state) {
     (void)state;
+    mesh_check_damage(PLY(START "element vertex 3\n" XYZ "element face 1\nproperty int part\n" CORNERS END
+                                "0 0 0\n1 0 0\n1 1 0\n7 3 0 1 2\n"));
     mesh_check_damage(
         PLY("ply\r\nformat ascii 1.0\nelement e 1\nproperty list uchar int a\nelement vertex 4\n" XYZ
             "property uchar q\nelement face 2\n" CORNERS "property char r\n" END
             "2 1 2\n0 0 0 1\n1 0 1e1 2\n1 1 0 3\n0 1 .5 4\n4 0 1 2 3 1\n3 0 1 2 2\n"));
+}
+
+/* A face's integer part or label, before its corners or behind them, names its part. */
+static void names_parts(void **state) {
+    (void)state;
+#define LABELLED(before, behind, faces)                                                                      \
+    PLY(START "element vertex 4\n" XYZ "element face 4\n" before CORNERS behind END VERTICES faces)
+    static const uint32_t labels[] = {0, 1, 1, 1, 0};
+    const char *const names[] = {"3", "-7", NULL}, *const none[] = {NULL};
+    mesh_check_parts(
+        LABELLED("property uchar label\n", "", "3 3 0 1 2\n-7 4 0 1 2 3\n-7 3 0 1 2\n3 3 0 2 3\n"), names,
+        labels);
+    mesh_check_parts(LABELLED("", "property int part\n", "3 0 1 2 3\n4 0 1 2 3 -7\n3 0 1 2 -7\n3 0 2 3 3\n"),
+                     names, labels);
+    mesh_check_parts(LABELLED("property int part\n", "property int label\n",
+                              "3 3 0 1 2 3\n-7 4 0 1 2 3 9\n-7 3 0 1 2 9\n3 3 0 2 3 9\n"),
+                     names, labels);
+    mesh_check_parts(LABELLED("property float label\n", "", "3 3 0 1 2\n1 4 0 1 2 3\n1 3 0 1 2\n3 3 0 2 3\n"),
+                     none, NULL);
+    mesh_check_parts(
+        LABELLED("property list uchar int part\n", "", "0 3 0 1 2\n0 4 0 1 2 3\n0 3 0 1 2\n0 3 0 2 3\n"),
+        none, NULL);
+    mesh_check_error(LABELLED("", "property int part\n", "3 0 1 2 x\n"), ":15: ", "found 'x'", "an integer");
 }
 
 int main(void) {
@@ -174,6 +199,7 @@ int main(void) {
         cmocka_unit_test(reads_all_type_names),
         cmocka_unit_test(skips_what_is_not_the_mesh),
         cmocka_unit_test(reads_numbers_exactly),
+        cmocka_unit_test(names_parts),
         cmocka_unit_test(refuses_bad_headers),
         cmocka_unit_test(refuses_bad_properties),
         cmocka_unit_test(refuses_bad_rows),

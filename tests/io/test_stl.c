@@ -61,6 +61,17 @@ static void reads_loose_text(void **state) {
         4, corners, 2, triangles);
 }
 
+/* Several solids are parts; one alone is none, since exporters write their own name there. */
+static void names_parts(void **state) {
+    (void)state;
+    mesh_check_parts(STL("solid left  arm \r\n" FACET_0 "endsolid left  arm\nsolid\n" FACET_1
+                         "endsolid\nsolid b\n" FACET_0 "endsolid b\nsolid left  arm\n" FACET_1 "endsolid\n"),
+                     (const char *const[]){"left  arm", "b", NULL},
+                     (const uint32_t[]){0, NO_MESH_PART, 1, 0});
+    mesh_check_parts(STL("solid Exported from Blender\n" FACET_0 FACET_1 "endsolid\n"),
+                     (const char *const[]){NULL}, NULL);
+}
+
 static void refuses_bad_text(void **state) {
     (void)state;
     mesh_check_error(STL("solid s\n" FACET_0), ":9: ", "the file ends", "expected facet or endsolid");
@@ -72,8 +83,9 @@ static void refuses_bad_text(void **state) {
                      ":4: ", "found 'zero'", "coordinate z");
     mesh_check_error(STL("solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 inf\n"),
                      ":4: ", "coordinate z of vertex 0 is inf", "finite");
-    mesh_check_error(STL("solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 1\nvertex 0 0 2\nendloop\n"),
-                     ":6: ", "a face of 2 corners", "3 or more");
+    mesh_check_error(
+        STL("solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 1\nvertex 0 0 2\nendloop\nendfacet\nendsolid\n"),
+        ": ", "no faces found", "expected a triangle mesh");
     mesh_check_error(STL("solid s\n" FACET_0 "endsolid s\nfacet\n"), ":10: ", "found 'facet'",
                      "expected solid");
     mesh_check_error(STL("solid s\n" FACET_0 "corner\n"), ":9: ", "found 'corner'",
@@ -201,10 +213,15 @@ static void survives_failing_allocations(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reads_text),       cmocka_unit_test(reads_loose_text),
-        cmocka_unit_test(refuses_bad_text), cmocka_unit_test(reads_binary),
-        cmocka_unit_test(keeps_floats),     cmocka_unit_test(refuses_bad_binary),
-        cmocka_unit_test(survives_damage),  cmocka_unit_test(survives_failing_allocations),
+        cmocka_unit_test(reads_text),
+        cmocka_unit_test(reads_loose_text),
+        cmocka_unit_test(names_parts),
+        cmocka_unit_test(refuses_bad_text),
+        cmocka_unit_test(reads_binary),
+        cmocka_unit_test(keeps_floats),
+        cmocka_unit_test(refuses_bad_binary),
+        cmocka_unit_test(survives_damage),
+        cmocka_unit_test(survives_failing_allocations),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

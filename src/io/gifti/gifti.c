@@ -189,7 +189,7 @@ static bool parse_file(gifti_parser *parser) {
 
 static bool add_triangle(const gifti_array *array, uint32_t row, uint32_t vertex_count,
                          mesh_builder *builder) {
-    mesh_builder_begin_face(builder);
+    if (!mesh_builder_begin_face(builder)) return false;
     for (uint32_t k = 0; k < 3; k++) {
         const double vertex = gifti_array_number(array, row, k);
         if (!(vertex >= 0 && vertex < vertex_count))

@@ -70,7 +70,21 @@ static bool welding_closes(const recording *r, recorded_object *object) {
 /* Faces are counted from 0, as everywhere. */
 static void warn_repair(const char *name, const char *colon, uint32_t count, uint32_t first,
                         const char *what) {
-    if (count > 0) warn("%s%s%u %s (the first is face %u)", name, colon, count, what, first);
+    if (count > 0)
+        warn("%s%s%u face%s %s (the first is face %u)", name, colon, count, count == 1 ? "" : "s", what,
+             first);
+}
+
+static void warn_repairs(const char *name, const char *colon, const mesh_repairs *repairs) {
+    warn_repair(name, colon, repairs->shortened, repairs->first_shortened,
+                "named a vertex twice in a row, which counts once");
+    warn_repair(name, colon, repairs->dropped, repairs->first_dropped,
+                "had no three different corners, left out");
+    warn_repair(name, colon, repairs->fanned, repairs->first_fanned,
+                "crossed themselves or had no area as seen along every axis, filled by fans");
+    if (repairs->skipped_primitives > 0)
+        warn("%s%s%u primitive%s of points or lines %s left out", name, colon, repairs->skipped_primitives,
+             repairs->skipped_primitives == 1 ? "" : "s", repairs->skipped_primitives == 1 ? "is" : "are");
 }
 
 static void warn_object(const recording *r, recorded_object *object) {
@@ -81,16 +95,7 @@ static void warn_object(const recording *r, recorded_object *object) {
     if (object->welded && path_has_extension(object->source.model_path, ".stl"))
         warn("%s%sthe %u vertices of the STL file are joined to %u; --weld none keeps them apart", name,
              colon, object->file.vertex_count, object->weld.vertex_count);
-    warn_repair(name, colon, object->file.repairs.shortened, object->file.repairs.first_shortened,
-                "faces name a vertex twice in a row, which counts once");
-    warn_repair(name, colon, object->file.repairs.dropped, object->file.repairs.first_dropped,
-                "faces have fewer than three different corners and are left out");
-    warn_repair(name, colon, object->file.repairs.fanned, object->file.repairs.first_fanned,
-                "faces cross themselves as seen along every axis, and are filled by fans");
-    if (object->file.repairs.skipped_primitives > 0)
-        warn("%s%s%u primitive%s of points or lines %s left out", name, colon,
-             object->file.repairs.skipped_primitives, object->file.repairs.skipped_primitives == 1 ? "" : "s",
-             object->file.repairs.skipped_primitives == 1 ? "is" : "are");
+    warn_repairs(name, colon, &object->file.repairs);
     if (object->welded && object->weld.collapsed_triangles > 0)
         warn("%s%swelding collapsed %u triangle%s, left out from here on", name, colon,
              object->weld.collapsed_triangles, object->weld.collapsed_triangles == 1 ? "" : "s");

@@ -37,6 +37,22 @@ void mesh_check_square(file_bytes file) {
     mesh_check_equal(file, 4, positions, 2, triangles);
 }
 
+void mesh_check_parts(file_bytes file, const char *const *names, const uint32_t *labels) {
+    mesh_file mesh = {0};
+    io_error error = {""};
+    if (!mesh_check_read(file, &mesh, &error)) fail_msg("refused: %s", error.text);
+    uint32_t count = 0;
+    for (; names[count] != NULL; count++) {
+        assert_true(count < mesh.parts.count);
+        assert_string_equal(mesh.parts.names[count], names[count]);
+    }
+    assert_int_equal(mesh.parts.count, count);
+    for (uint32_t t = 0; t < mesh.triangle_count && count > 0; t++)
+        assert_int_equal(mesh.parts.of_triangle[t], labels[t]);
+    if (count == 0) assert_null(mesh.parts.of_triangle);
+    mesh_file_free(&mesh);
+}
+
 void mesh_check_error(file_bytes file, const char *place, const char *found, const char *expected) {
     double untouched;
     mesh_file mesh = {.vertex_count = 7, .positions = &untouched};

@@ -28,6 +28,9 @@ void mesh_check_equal(file_bytes file, uint32_t vertex_count, const double *posi
 /* Checks the same for a square: 0 0 0, 1 0 0, 1 1 0, 0 1 0 with the triangles 0 1 2 and 0 2 3. */
 void mesh_check_square(file_bytes file);
 
+/* Checks that the file is read and has these parts, a list up to NULL; labels: per triangle, or NULL without parts. */
+void mesh_check_parts(file_bytes file, const char *const *names, const uint32_t *labels);
+
 /* Checks that the file is refused in one line that contains the file's name followed by `place` (":3: ", ": byte 7: "
  * or ": ") and the two texts, and that the mesh is unchanged. */
 void mesh_check_error(file_bytes file, const char *place, const char *found, const char *expected);
