@@ -60,6 +60,13 @@ bool read_weld(const char *text, void *place) {
            (parse_double(text, &choice->epsilon) && choice->epsilon > 0.0);
 }
 
+bool read_fps(const char *text, void *place) {
+    double value;
+    if (!parse_double(text, &value) || value <= 0.0 || value > 1e6) return false;
+    *(double *)place = value;
+    return true;
+}
+
 bool read_named_path(const char *text, void *place) {
     named_paths *list = place;
     const char *equals = strchr(text, '=');

@@ -15,6 +15,7 @@ bool read_threads(const char *text, void *place);      /* uint32_t, 256 at most 
 bool read_frame_number(const char *text, void *place); /* frame_number */
 bool read_frames(const char *text, void *place);       /* frame_range: A:B[:STEP] */
 bool read_weld(const char *text, void *place);         /* weld_choice: exact|none|EPS */
+bool read_fps(const char *text, void *place);          /* double above 0 */
 bool read_named_path(const char *text,
                      void *place);                  /* named_paths: NAME=PATH; a name has no ':' and no ',' */
 bool read_obstacle(const char *text, void *place);  /* the same, of an obstacle */

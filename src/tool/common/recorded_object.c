@@ -8,10 +8,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool open_frames(const recorded_source *source, bool allow_gaps, recorded_object *o, io_error *error) {
+static bool open_frames(const recorded_source *source, const animation_options *frames, recorded_object *o,
+                        io_error *error) {
     o->file_positions = malloc((size_t)o->file.vertex_count * 3 * sizeof *o->file_positions);
     if (o->file_positions == NULL) return io_fail(error, "%s: out of memory", source->model_path);
-    const animation_options options = {.model_path = source->model_path, .allow_gaps = allow_gaps};
+    animation_options options = *frames;
+    options.model_path = source->model_path;
     return source->frame_path_count == 0 || animation_open(source->frame_paths, source->frame_path_count,
                                                            o->file.vertex_count, &options, &o->frames, error);
 }
@@ -45,10 +47,10 @@ static uint64_t hash_model(const mesh_file *file) {
     return provenance_hash(hash, file->positions, (size_t)file->vertex_count * 3 * sizeof *file->positions);
 }
 
-bool recorded_object_open(const recorded_source *source, weld_choice welding, bool allow_gaps,
+bool recorded_object_open(const recorded_source *source, weld_choice welding, const animation_options *frames,
                           recorded_object *out, io_error *error) {
     recorded_object o = {.source = *source, .frames_hash = PROVENANCE_HASH_START};
-    if (!mesh_file_read(source->model_path, &o.file, error) || !open_frames(source, allow_gaps, &o, error) ||
+    if (!mesh_file_read(source->model_path, &o.file, error) || !open_frames(source, frames, &o, error) ||
         !weld_first_frame(welding, &o, error)) {
         recorded_object_close(&o);
         return false;

@@ -38,7 +38,7 @@ typedef struct recorded_object {
 } recorded_object;
 
 /* On false *out holds nothing to close. */
-bool recorded_object_open(const recorded_source *source, weld_choice welding, bool allow_gaps,
+bool recorded_object_open(const recorded_source *source, weld_choice welding, const animation_options *frames,
                           recorded_object *out, io_error *error);
 void recorded_object_close(recorded_object *object);
 

@@ -46,7 +46,7 @@ static bool open_object(const recording_options *options, recorded_source source
     if (recording_find_object(r, source.name) != UINT32_MAX)
         return io_fail(error, "two objects are called %s", source.name);
     recorded_object *object = &r->objects[r->object_count];
-    if (!recorded_object_open(&source, options->weld, options->allow_gaps, object, error)) return false;
+    if (!recorded_object_open(&source, options->weld, &options->frames, object, error)) return false;
     if (r->object_count > 0) {
         const recorded_object *before = object - 1;
         object->first_vertex = before->first_vertex + before->vertex_count;

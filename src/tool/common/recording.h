@@ -32,7 +32,7 @@ typedef struct recording_options {
     const char *const *frame_paths; /* none: the model is the only frame */
     size_t frame_path_count;
     named_paths objects, frames_of; /* further objects; frames of these or of the model */
-    bool allow_gaps;                /* of a series of mesh files, some may be missing */
+    animation_options frames;       /* how frames are read; the model's path is filled in for each object */
     frame_number first_frame;       /* what the first frame is called; not given: what its file says */
     weld_choice weld;
     uint32_t thread_count;

@@ -3,6 +3,7 @@
 
 #include "cscd/research.h"
 #include "src/io/contact_file.h"
+#include "src/io/gltf.h"
 #include "src/tool/common/command.h"
 #include "src/tool/common/option_values.h"
 #include "src/tool/common/output_path.h"
@@ -55,7 +56,11 @@ static const option_row rows[] = {
      "how that object moves: a point cache, a pattern or a folder, of as many frames; without it, it rests"},
     {"first-frame", "N", read_frame_number, offsetof(replay_options, source.first_frame),
      "what the first frame is called (default: the number in its file's name, the start of a PC2, or 0)"},
-    {"allow-gaps", NULL, read_flag, offsetof(replay_options, source.allow_gaps),
+    {"fps", "N", read_fps, offsetof(replay_options, source.frames.fps),
+     "frames a second of a glTF file, which has seconds only (default 24)"},
+    {"animation", "NAME", read_text, offsetof(replay_options, source.frames.animation_name),
+     "which animation of a glTF file (default: the first)"},
+    {"allow-gaps", NULL, read_flag, offsetof(replay_options, source.frames.allow_gaps),
      "of numbered files, some may be missing; an interval then goes on to the next that exists"},
     {"frames", "A:B", read_frames, offsetof(replay_options, frames),
      "only from frame A to frame B, both included (A: and :B are open ends)"},
@@ -146,6 +151,13 @@ bool replay_options_parse(int argument_count, char **arguments, replay_options *
                         .arguments = arguments};
     given_options given;
     if (!option_table_read(&table, argument_count, arguments, &o, &given, code)) return false;
+    /* A glTF file holds the model and its frames. */
+    static const char *both[2]; /* as long as the command line */
+    if (given.input_count == 1 && gltf_recognise_path(given.inputs[0])) {
+        both[0] = both[1] = given.inputs[0];
+        given.inputs = both;
+        given.input_count = 2;
+    }
     *code = check_options(&o, given.input_count);
     if (*code == EXIT_RAN) *code = check_outputs(&o, given.inputs, given.input_count);
     if (*code != EXIT_RAN) return false;
