@@ -13,8 +13,9 @@ typedef struct cell {
 /* Chained hash of vertices by cell. */
 typedef struct cell_table {
     uint32_t mask;
-    uint32_t *first; /* vertex + 1 of each bucket, 0 when empty */
-    uint32_t *next;  /* the same, per vertex */
+    uint32_t *first;       /* vertex + 1 of each bucket, 0 when empty */
+    uint32_t *next;        /* the same, per vertex */
+    const uint32_t *parts; /* of each vertex, which joins none of another part; NULL: all are of one */
 } cell_table;
 
 static cell cell_of(const double p[3], double epsilon) {
@@ -44,22 +45,24 @@ static double distance_between(const double *a, const double *b) {
 
 /* Returns the smallest group of one cell whose first vertex is within epsilon of p, or best if that is
  * smaller. */
-static uint32_t nearest_group(const cell_table *table, const double *positions, const double *p, cell c,
+static uint32_t nearest_group(const cell_table *table, const double *positions, uint32_t vertex, cell c,
                               const weld *w, uint32_t best) {
+    const double *p = positions + (size_t)vertex * 3;
     for (uint32_t i = table->first[bucket_of(table, c)]; i != 0; i = table->next[i - 1]) {
         uint32_t group = w->vertex_of_file_vertex[i - 1];
+        if (table->parts != NULL && table->parts[i - 1] != table->parts[vertex]) continue;
         if (group < best && distance_between(p, positions + (size_t)(i - 1) * 3) <= w->epsilon) best = group;
     }
     return best;
 }
 
-static uint32_t find_group(const cell_table *table, const double *positions, const double *p, const weld *w) {
-    cell home = cell_of(p, w->epsilon);
-    if (w->epsilon == 0.0) return nearest_group(table, positions, p, home, w, UINT32_MAX);
+static uint32_t find_group(const cell_table *table, const double *positions, uint32_t vertex, const weld *w) {
+    cell home = cell_of(positions + (size_t)vertex * 3, w->epsilon);
+    if (w->epsilon == 0.0) return nearest_group(table, positions, vertex, home, w, UINT32_MAX);
     uint32_t best = UINT32_MAX;
     for (int i = 0; i < 27; i++) {
         cell near = {{home.key[0] + i % 3 - 1, home.key[1] + i / 3 % 3 - 1, home.key[2] + i / 9 - 1}};
-        best = nearest_group(table, positions, p, near, w, best);
+        best = nearest_group(table, positions, vertex, near, w, best);
     }
     return best;
 }
@@ -68,10 +71,9 @@ static uint32_t find_group(const cell_table *table, const double *positions, con
  * chain of near neighbours welds what lies far apart. */
 static void group_vertices(const cell_table *table, const double *positions, weld *w) {
     for (uint32_t v = 0; v < w->file_vertex_count; v++) {
-        const double *p = positions + (size_t)v * 3;
-        uint32_t group = find_group(table, positions, p, w);
+        uint32_t group = find_group(table, positions, v, w);
         if (group == UINT32_MAX) {
-            uint32_t bucket = bucket_of(table, cell_of(p, w->epsilon));
+            uint32_t bucket = bucket_of(table, cell_of(positions + (size_t)v * 3, w->epsilon));
             table->next[v] = table->first[bucket];
             table->first[bucket] = v + 1;
             group = w->vertex_count++;
@@ -94,9 +96,9 @@ static void weld_triangles(const uint32_t *triangles, uint32_t triangle_count, w
 }
 
 bool weld_create(const double *positions, uint32_t vertex_count, const uint32_t *triangles,
-                 uint32_t triangle_count, double epsilon, weld *out, io_error *error) {
+                 uint32_t triangle_count, const uint32_t *parts, double epsilon, weld *out, io_error *error) {
     weld w = {.epsilon = epsilon, .file_vertex_count = vertex_count};
-    cell_table table = {.mask = 1};
+    cell_table table = {.mask = 1, .parts = parts};
     while (table.mask < vertex_count && table.mask < UINT32_MAX / 2) table.mask = table.mask * 2 + 1;
     table.first = calloc((size_t)table.mask + 1, sizeof *table.first);
     table.next = calloc(vertex_count, sizeof *table.next);

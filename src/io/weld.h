@@ -18,9 +18,10 @@ typedef struct weld {
 } weld;
 
 /* Each vertex joins the first one, in file order, that stands for itself and lies within epsilon. Welded
- * vertices are numbered in the order of their first file vertex. On false *out is untouched. */
+ * vertices are numbered in the order of their first file vertex. parts: vertex_count labels, and a vertex joins those of its own part alone; NULL:
+ * there are none. On false *out is untouched. */
 bool weld_create(const double *positions, uint32_t vertex_count, const uint32_t *triangles,
-                 uint32_t triangle_count, double epsilon, weld *out, io_error *error);
+                 uint32_t triangle_count, const uint32_t *parts, double epsilon, weld *out, io_error *error);
 void weld_free(weld *w);
 
 /* Welded positions are those of the first file vertex. False, with the vertices and their distance, when two

@@ -1,4 +1,5 @@
 /* The tool welds split seams and ignores given pairs. */
+#include "tests/support/io/gltf_fixture.h"
 #include "tests/support/test.h"
 #include "tests/support/tool/contact_rows.h"
 #include "tests/support/tool/json_reader.h"
@@ -153,6 +154,30 @@ static void stl_files_are_welded_unless_one_says_no(void **state) {
     assert_non_null(strstr(run.error, "--weld exact would close the mesh"));
     tool_run_free(&run);
     recorded_free(&soup);
+}
+
+static void expect_components(const char *path, const char *weld, const char *components) {
+    tool_run run = weld != NULL ? RUN_TOOL("info", path, "--weld", weld) : RUN_TOOL("info", path);
+    if (strstr(run.out, components) == NULL) fail_msg("no %s in: %s", components, run.out);
+    if (weld == NULL)
+        assert_non_null(
+            strstr(run.error, "the 12 vertices of the glTF file are joined to 8; --weld none keeps"));
+    tool_run_free(&run);
+}
+
+/* Two squares that share an edge, each a part of two triangles with vertices of their own. */
+static void gltf_files_are_welded_within_their_parts(void **state) {
+    (void)state;
+    static const double square[] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0, 1, 1, 0, 0, 1, 0};
+    gltf_fixture fixture = {0};
+    gltf_fixture_array(&fixture, 5126, "VEC3", 18, square);
+    const file_bytes file = gltf_fixture_glb(
+        &fixture, "\"nodes\":[{\"mesh\":0},{\"mesh\":0,\"translation\":[1,0,0]}],\"meshes\":[{"
+                  "\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}]");
+    const temp_path path = temp_file_write(&folder, "squares.glb", file.bytes, file.size);
+    expect_components(path.text, NULL, "components  2");
+    expect_components(path.text, "none", "components  4");
+    expect_components(path.text, "exact", "components  1");
 }
 
 static void expect_info(const char *text, const char *weld) {
@@ -347,6 +372,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(welding_finds_what_the_clean_export_has),
         cmocka_unit_test(stl_files_are_welded_unless_one_says_no),
+        cmocka_unit_test(gltf_files_are_welded_within_their_parts),
         cmocka_unit_test(welding_closes_the_mesh),
         cmocka_unit_test(suggests_welding_where_it_would_close_the_first_frame),
         cmocka_unit_test(welds_within_a_distance),

@@ -1,6 +1,7 @@
 /* Opens the model and the frames of an object, and reads one frame after the other. */
 #include "src/tool/common/recorded_object.h"
 
+#include "src/io/gltf.h"
 #include "src/io/path_name.h"
 #include "src/tool/common/provenance.h"
 
@@ -26,16 +27,37 @@ static bool read_file_positions(recorded_object *o, uint32_t frame, io_error *er
     return true;
 }
 
+const char *recorded_object_split_format(const char *model_path) {
+    if (path_has_extension(model_path, ".stl")) return "STL";
+    return gltf_recognise_path(model_path) ? "glTF" : NULL;
+}
+
+/* The part of each vertex: objects of a scene may stand on each other, and stay apart. */
+static bool label_vertices(const mesh_file *file, uint32_t **out, io_error *error) {
+    uint32_t *parts = malloc((size_t)file->vertex_count * sizeof *parts);
+    if (parts == NULL)
+        return io_fail(error, "out of memory for the parts of %u vertices", file->vertex_count);
+    for (uint32_t v = 0; v < file->vertex_count; v++) parts[v] = NO_MESH_PART;
+    for (size_t i = 0; file->parts.of_triangle != NULL && i < 3 * (size_t)file->triangle_count; i++)
+        parts[file->triangles[i]] = file->parts.of_triangle[i / 3];
+    *out = parts;
+    return true;
+}
+
 static bool weld_first_frame(weld_choice welding, recorded_object *o, io_error *error) {
     o->vertex_count = o->file.vertex_count;
     o->triangle_count = o->file.triangle_count;
-    const bool by_format = welding.rule == WELD_BY_FORMAT && path_has_extension(o->source.model_path, ".stl");
+    const bool by_format =
+        welding.rule == WELD_BY_FORMAT && recorded_object_split_format(o->source.model_path) != NULL;
     if (welding.rule != WELD_WITHIN && !by_format) return true;
-    if (!read_file_positions(o, 0, error) ||
-        !weld_create(o->file_positions, o->file.vertex_count, o->file.triangles, o->file.triangle_count,
-                     welding.epsilon, &o->weld, error))
+    if (!read_file_positions(o, 0, error)) return false;
+    uint32_t *parts = NULL;
+    if (by_format && gltf_recognise_path(o->source.model_path) && !label_vertices(&o->file, &parts, error))
         return false;
-    o->welded = true;
+    o->welded = weld_create(o->file_positions, o->file.vertex_count, o->file.triangles,
+                            o->file.triangle_count, parts, welding.epsilon, &o->weld, error);
+    free(parts);
+    if (!o->welded) return false;
     o->vertex_count = o->weld.vertex_count;
     o->triangle_count = o->weld.triangle_count;
     return true;

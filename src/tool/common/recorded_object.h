@@ -18,7 +18,7 @@ typedef struct recorded_source {
 /* Which vertices of a model are joined. */
 typedef struct weld_choice {
     enum {
-        WELD_BY_FORMAT, /* equal ones where the format stores a vertex once for each face (STL), else none */
+        WELD_BY_FORMAT, /* equal ones, of glTF within a part, where the format stores vertices several times; else none */
         WELD_NOTHING,
         WELD_WITHIN
     } rule;
@@ -36,6 +36,10 @@ typedef struct recorded_object {
     uint32_t first_vertex, first_triangle; /* in the mesh of the recording */
     uint64_t model_hash, frames_hash;
 } recorded_object;
+
+/* What a format is called that stores a vertex once for each face (STL), or for each of its normals (glTF); NULL: the model is of
+ * none of them. */
+const char *recorded_object_split_format(const char *model_path);
 
 /* On false *out holds nothing to close. */
 bool recorded_object_open(const recorded_source *source, weld_choice welding, const animation_options *frames,

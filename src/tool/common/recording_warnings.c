@@ -56,7 +56,7 @@ static bool welding_closes(const recording *r, recorded_object *object) {
         positions = object->file_positions;
     }
     if (!weld_create(positions, object->file.vertex_count, object->file.triangles,
-                     object->file.triangle_count, 0.0, &welded, NULL))
+                     object->file.triangle_count, NULL, 0.0, &welded, NULL))
         return false;
     cscd_mesh *mesh = NULL;
     cscd_object_desc desc =
@@ -92,9 +92,10 @@ static void warn_object(const recording *r, recorded_object *object) {
                *colon = r->object_count > 1 ? ": " : "";
     if (object->frames != NULL && animation_note(object->frames) != NULL)
         warn("%s%s%s", name, colon, animation_note(object->frames));
-    if (object->welded && path_has_extension(object->source.model_path, ".stl"))
-        warn("%s%sthe %u vertices of the STL file are joined to %u; --weld none keeps them apart", name,
-             colon, object->file.vertex_count, object->weld.vertex_count);
+    const char *format = recorded_object_split_format(object->source.model_path);
+    if (object->welded && format != NULL && object->weld.vertex_count < object->file.vertex_count)
+        warn("%s%sthe %u vertices of the %s file are joined to %u; --weld none keeps them apart", name, colon,
+             object->file.vertex_count, format, object->weld.vertex_count);
     warn_repairs(name, colon, &object->file.repairs);
     if (object->welded && object->weld.collapsed_triangles > 0)
         warn("%s%swelding collapsed %u triangle%s, left out from here on", name, colon,
