@@ -60,21 +60,25 @@ static void close_cache(void *source) {
     point_cache_close(source);
 }
 
+static bool keep_files(const animation_source *from, frame_files *files, void **source) {
+    frame_files_expect_faces(files, from->options.model_face_count, from->options.model_faces_hash);
+    *source = files;
+    return true;
+}
+
 static bool open_pattern(const animation_source *from, void **source, io_error *error) {
     frame_files *files;
     if (!frame_files_open_pattern(from->paths[0], from->options.allow_gaps, from->vertex_count, &files,
                                   error))
         return false;
-    *source = files;
-    return true;
+    return keep_files(from, files, source);
 }
 
 static bool open_folder(const animation_source *from, void **source, io_error *error) {
     frame_files *files;
     if (!frame_files_open_folder(from->paths[0], from->options.allow_gaps, from->vertex_count, &files, error))
         return false;
-    *source = files;
-    return true;
+    return keep_files(from, files, source);
 }
 
 static bool open_list(const animation_source *from, void **source, io_error *error) {
@@ -82,8 +86,7 @@ static bool open_list(const animation_source *from, void **source, io_error *err
     if (!frame_files_open_list(from->paths, from->count, from->options.model_path, from->options.allow_gaps,
                                from->vertex_count, &files, error))
         return false;
-    *source = files;
-    return true;
+    return keep_files(from, files, source);
 }
 
 static uint32_t count_files(const void *source) {

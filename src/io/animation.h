@@ -16,8 +16,11 @@ typedef struct animation animation;
 typedef struct animation_options {
     const char
         *model_path; /* joins the mesh files that are listed if its name belongs to their series; NULL: no */
-    bool allow_gaps; /* of a series of mesh files, some may be missing */
-    double fps;      /* of a glTF file: frames a second; 0: 24 */
+    uint32_t
+        model_face_count; /* of mesh files: as many faces as the model are the model's; 0: any faces will do */
+    uint64_t model_faces_hash;  /* of mesh_file */
+    bool allow_gaps;            /* of a series of mesh files, some may be missing */
+    double fps;                 /* of a glTF file: frames a second; 0: 24 */
     const char *animation_name; /* of a glTF file: which of its animations; NULL: the first */
 } animation_options;
 

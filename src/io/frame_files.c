@@ -26,6 +26,8 @@ struct frame_files {
     char *path; /* room for the folder and the longest name */
     size_t path_size;
     const char *note;
+    uint32_t model_face_count; /* 0: not known */
+    uint64_t model_faces_hash;
     bool faces_seen; /* of the first frame read: */
     uint64_t faces_hash;
     uint32_t faces_frame;
@@ -225,15 +227,27 @@ static bool copy_positions(const frame_files *files, const mesh_file *mesh, doub
     return true;
 }
 
-/* If the faces differ from those of earlier frames, the vertices most likely have another order. */
+void frame_files_expect_faces(frame_files *files, uint32_t face_count, uint64_t faces_hash) {
+    files->model_face_count = face_count;
+    files->model_faces_hash = faces_hash;
+}
+
+static bool fail_faces(const frame_files *files, const mesh_file *mesh, const char *other, io_error *error) {
+    return io_fail(error, "%s: has other faces than %s: expected frames of one mesh, vertices in one order%s",
+                   files->path, other,
+                   mesh->polygons == NULL
+                       ? "; if the exporter triangulates each frame by itself, export without triangulating"
+                       : "");
+}
+
+/* If the faces differ from those of earlier frames, the vertices most likely have another order. A model with another
+ * number of faces may be the same mesh all the same, triangulated or with its quads. */
 static bool same_faces(frame_files *files, uint32_t frame, const mesh_file *mesh, io_error *error) {
     if (files->faces_seen && mesh->faces_hash != files->faces_hash)
-        return io_fail(
-            error, "%s: has other faces than %s: expected frames of one mesh, vertices in one order%s",
-            files->path, frame_names_at(&files->list, files->faces_frame),
-            mesh->polygons == NULL
-                ? "; if the exporter triangulates each frame by itself, export without triangulating"
-                : "");
+        return fail_faces(files, mesh, frame_names_at(&files->list, files->faces_frame), error);
+    if (mesh->polygon_count == files->model_face_count && mesh->polygon_count > 0 &&
+        mesh->faces_hash != files->model_faces_hash)
+        return fail_faces(files, mesh, "the model, though as many", error);
     if (!files->faces_seen) files->faces_frame = frame;
     files->faces_seen = true;
     files->faces_hash = mesh->faces_hash;

@@ -20,6 +20,10 @@ bool frame_files_open_folder(const char *folder, bool allow_gaps, uint32_t verte
  * each must be a file that exists. model_path, unless NULL, joins a series that it belongs to and is not in yet. */
 bool frame_files_open_list(const char *const *paths, size_t path_count, const char *model_path,
                            bool allow_gaps, uint32_t vertex_count, frame_files **out, io_error *error);
+
+/* From now on a frame with face_count faces is refused if they are not those of this hash (mesh_file.h): its vertices most
+ * likely have another order. 0: none is. */
+void frame_files_expect_faces(frame_files *files, uint32_t face_count, uint64_t faces_hash);
 void frame_files_close(frame_files *files);
 
 uint32_t frame_files_frame_count(const frame_files *files);

@@ -15,6 +15,8 @@ static bool open_frames(const recorded_source *source, const animation_options *
     if (o->file_positions == NULL) return io_fail(error, "%s: out of memory", source->model_path);
     animation_options options = *frames;
     options.model_path = source->model_path;
+    options.model_face_count = o->file.polygon_count;
+    options.model_faces_hash = o->file.faces_hash;
     return source->frame_path_count == 0 || animation_open(source->frame_paths, source->frame_path_count,
                                                            o->file.vertex_count, &options, &o->frames, error);
 }
