@@ -49,7 +49,7 @@ static const option_row rows[] = {
     {"ignore-rest", NULL, read_flag, offsetof(check_options, ignore_rest),
      "leave out the pairs that intersect or touch in the first frame"},
     {"threads", "N", read_threads, offsetof(check_options, source.thread_count),
-     "default 1; 0: one per processor"},
+     "default 0: one per processor; the results are the same"},
     {"fail-on-contact", NULL, read_flag, offsetof(check_options, fail_on_contact),
      "exit with 3 when any frame has such a pair"},
     {"quiet", NULL, read_flag, offsetof(check_options, quiet),
@@ -164,6 +164,18 @@ static bool close_json(check_run *c, const char *stopped_by, io_error *error) {
            io_fail(error, "%s: cannot write: %s", c->options->json_path, strerror(errno));
 }
 
+static void tell_interrupt(const check_run *c) {
+    const uint32_t done = c->frames_checked > 0 ? c->frames_checked - 1 : 0;
+    const int32_t *numbers = c->recording.frame_numbers;
+    interrupt_tell(&(interrupt_kept){.done = c->frames_checked,
+                                     .whole = frame_choice_count(&c->frames),
+                                     .what = "frames",
+                                     .first = numbers[c->frames.first],
+                                     .last = numbers[c->frames.first + done * c->frames.step],
+                                     .paths = &c->options->json_path,
+                                     .path_count = 1});
+}
+
 static int run_check(const check_options *options) {
     check_run c = {.options = options};
     io_error error = {""}, close_error = {""};
@@ -179,6 +191,7 @@ static int run_check(const check_options *options) {
                frame_list_frames(&c.intersecting), c.frames_checked);
         frame_list_print(&c.intersecting, c.recording.frame_numbers, ": ");
     }
+    if (ran && closed && interrupted()) tell_interrupt(&c);
     int code = !ran                                                   ? fail_input("%s", error.text)
                : !closed                                              ? fail_input("%s", close_error.text)
                : interrupted()                                        ? EXIT_INTERRUPTED
@@ -193,7 +206,7 @@ static int run_check(const check_options *options) {
 }
 
 int command_check(int argument_count, char **arguments) {
-    check_options options = {.source = {.thread_count = 1}, .frames = frame_range_all()};
+    check_options options = {.frames = frame_range_all()};
     given_options given;
     int code;
     if (!option_table_read(&table, argument_count, arguments, &options, &given, &code)) return code;
@@ -201,7 +214,8 @@ int command_check(int argument_count, char **arguments) {
         return fail_usage("check", "no MODEL given");
     io_error error;
     if (!output_path_is_safe(options.json_path, given.inputs, given.input_count, &error) ||
-        !output_path_is_safe(options.json_path, &options.ignore_path, 1, &error))
+        !output_path_is_safe(options.json_path, &options.ignore_path, 1, &error) ||
+        !output_path_fits(options.json_path, ".json", &error))
         return fail_usage("check", "--json %s", error.text);
     recording_options_take(&options.source, &given);
     return run_check(&options);

@@ -33,9 +33,25 @@ static void print_help(void) {
            "exit: 0 ran, 1 bad input, 2 usage, 3 contacts found (with --fail-on-contact), 130 interrupted\n");
 }
 
+/* NULL: there is none of that name. */
+static const command *find_command(const char *name) {
+    for (int i = 0; i < COMMAND_COUNT; i++)
+        if (strcmp(name, commands[i].name) == 0) return &commands[i];
+    return NULL;
+}
+
+/* `cscd help replay` is `cscd replay --help`. */
+static int help_on(char *name) {
+    char help[] = "--help";
+    const command *asked = find_command(name);
+    if (asked == NULL) return fail_usage("", "unknown command '%s'", name);
+    return asked->run(2, (char *[]){name, help, NULL});
+}
+
 static int run_command(int argument_count, char **arguments) {
     if (argument_count < 2) return fail_usage("", "no command given");
     const char *name = arguments[1];
+    if (strcmp(name, "help") == 0 && argument_count > 2) return help_on(arguments[2]);
     if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 || strcmp(name, "help") == 0) {
         print_help();
         return EXIT_RAN;
@@ -44,10 +60,9 @@ static int run_command(int argument_count, char **arguments) {
         printf("cscd %s (%s)\n", cscd_version_string(), provenance_commit());
         return EXIT_RAN;
     }
-    for (int i = 0; i < COMMAND_COUNT; i++) {
-        if (strcmp(name, commands[i].name) == 0) return commands[i].run(argument_count - 1, arguments + 1);
-    }
-    return fail_usage("", "unknown command '%s'", name);
+    const command *asked = find_command(name);
+    return asked != NULL ? asked->run(argument_count - 1, arguments + 1)
+                         : fail_usage("", "unknown command '%s'", name);
 }
 
 int main(int argument_count, char **arguments) {

@@ -61,7 +61,7 @@ static const option_row rows[] = {
     {"weld", "exact|none|EPS", read_weld, offsetof(preprocess_options, source.weld),
      "join vertices that coincide, or lie within EPS; replay needs the same"},
     {"threads", "N", read_threads, offsetof(preprocess_options, source.thread_count),
-     "default 0: one per processor"},
+     "default 0: one per processor; the results are the same"},
     {"quiet", NULL, read_flag, offsetof(preprocess_options, quiet),
      "no progress, no warnings, nothing on the standard output"},
 };
@@ -159,6 +159,9 @@ static bool make_plan(const preprocess_options *o, recording *r, const double *p
     terminal_progress_end(o->source.progress.user);
     if (status == CSCD_CANCELLED)
         return io_fail(error, "%s: interrupted; no plan was written", o->source.model_path);
+    if (status == CSCD_OUT_OF_MEMORY && o->plan.method == CSCD_METHOD_CHARGE)
+        return io_fail(error, "%s: %s; or give --method kmeans:8, which needs little", o->source.model_path,
+                       cscd_context_detail(r->context));
     if (status != CSCD_OK)
         return io_fail(error, "%s: %s", o->source.model_path, cscd_context_detail(r->context));
     bool saved = save_plan(o, r, positions, plan, error);

@@ -71,7 +71,8 @@ static int check_command(const report_command *c) {
     io_error error;
     if (c->count == 0) return fail_usage("report", "no summary given: what cscd replay --json wrote");
     if (c->output_path == NULL) return fail_usage("report", "no -o OUT.html given");
-    if (!output_path_is_safe(c->output_path, c->paths, c->count, &error))
+    if (!output_path_is_safe(c->output_path, c->paths, c->count, &error) ||
+        !output_path_fits(c->output_path, ".html", &error))
         return fail_usage("report", "-o %s", error.text);
     return EXIT_RAN;
 }

@@ -58,8 +58,10 @@ static void helps_on_every_command(void **state) {
         char usage[64];
         snprintf(usage, sizeof usage, "usage: cscd %s MODEL", commands[i]);
         EXPECT_OUT(usage, commands[i], "--help");
+        EXPECT_OUT(usage, "help", commands[i]);
         EXPECT_OUT(commands[i], "--help");
     }
+    EXPECT_ERROR(2, TEXTS("unknown command 'play'"), "help", "play");
 }
 
 static void refuses_unknown_commands_and_options(void **state) {
@@ -167,6 +169,7 @@ static void refuses_outputs_it_cannot_write(void **state) {
         tool_run_free(&run);
     }
     EXPECT_ERROR(1, TEXTS("no/such/folder"), "check", model.text, "--json", nowhere);
+    snprintf(nowhere, sizeof nowhere, "%s/no/such/folder/out.png", folder.path);
     EXPECT_ERROR(1, TEXTS("no/such/folder"), "render", model.text, "-o", nowhere);
 }
 

@@ -208,6 +208,26 @@ static void two_dashes_are_refused(void **state) {
                  "--csv", "-");
 }
 
+/* A name that says another format than the one that would be written is refused, and no file is there. */
+static void names_of_other_formats_are_refused(void **state) {
+    (void)state;
+    size_t files = files_in_folder();
+    EXPECT_ERROR(2, TEXTS("'x.jpg'", "ends in .png"), "render", sheet.text, "-o", "x.jpg");
+    EXPECT_ERROR(2, TEXTS("'x.PDF'", "ends in .html"), "replay", sheet.text, folding.text, "--report",
+                 "x.PDF");
+    EXPECT_ERROR(2, TEXTS("'x.csv'", "ends in .json"), "replay", sheet.text, folding.text, "--json", "x.csv");
+    EXPECT_ERROR(2, TEXTS("'x.pdf'", "ends in .html"), "preprocess", sheet.text, "--report", "x.pdf");
+    EXPECT_ERROR(2, TEXTS("'x.html'", "ends in .json"), "check", sheet.text, "--json", "x.html");
+    EXPECT_ERROR(2, TEXTS("'x.tiff'", "ends in .png"), "sense", sheet.text, folding.text, "--picture",
+                 "x.tiff");
+    EXPECT_ERROR(2, TEXTS("'x.json'", "ends in .csv"), "sense", sheet.text, folding.text, "--csv", "x.json");
+    EXPECT_ERROR(2, TEXTS("'x.txt'", "ends in .html"), "report", "a.json", "-o", "x.txt");
+    assert_int_equal(files_in_folder(), files);
+    temp_path odd = temp_file_path(&folder, "frame.0012");
+    EXPECT_TOOL(0, "render", sheet.text, "--size", "32x24", "-o", odd.text);
+    remove(odd.text);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_full_disk_leaves_the_older_file),
@@ -215,6 +235,7 @@ int main(void) {
         cmocka_unit_test(a_full_disk_keeps_the_contacts_of_whole_intervals),
         cmocka_unit_test(a_dash_is_the_standard_output),
         cmocka_unit_test(two_dashes_are_refused),
+        cmocka_unit_test(names_of_other_formats_are_refused),
         cmocka_unit_test(a_killed_replay_leaves_the_older_files),
     };
     return cmocka_run_group_tests(tests, make_files, remove_files);

@@ -176,10 +176,16 @@ static void an_interrupt_keeps_what_is_written(void **state) {
         tool_run run = run_tool_finish(&process);
         assert_int_equal(run.code, 130);
         assert_non_null(strstr(run.out, "contacts: "));
-        tool_run_free(&run);
         json_node *root = json_node_read_file(summary.text);
         size_t done = json_node_member(root, "intervals")->count;
         json_node_free(root);
+        char kept[1200];
+        snprintf(kept, sizeof kept,
+                 "cscd: interrupted after %zu of 4999 intervals (frames 0 to %zu); what was found is kept in "
+                 "%s, %s\n",
+                 done, done, csv.text, summary.text);
+        if (strstr(run.error, kept) == NULL) fail_msg("expected '%s' in: %s", kept, run.error);
+        tool_run_free(&run);
         assert_true(done >= 1 && done < 4999);
         expect_stopped(done, done + 1, "interrupted");
     }

@@ -215,7 +215,7 @@ static void suggests_welding_where_it_would_close_the_first_frame(void **state) 
     assert_non_null(strstr(run.error, "--weld exact would close the mesh"));
     tool_run_free(&run);
     run = RUN_TOOL("replay", split_model.text, cache.text);
-    assert_non_null(strstr(run.error, "not a closed surface"));
+    assert_non_null(strstr(run.error, "open surface"));
     assert_null(strstr(run.error, "would close the mesh"));
     tool_run_free(&run);
     recorded_free(&apart);

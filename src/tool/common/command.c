@@ -49,6 +49,13 @@ void warn(const char *format, ...) {
     va_end(arguments);
 }
 
+void note(const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    print_line("cscd: ", format, arguments);
+    va_end(arguments);
+}
+
 bool parse_unsigned(const char *text, uint32_t *out) {
     if (text[0] < '0' || text[0] > '9') return false;
     char *end = NULL;

@@ -30,6 +30,9 @@ int fail_option(const char *command, int id, char **arguments);
 /* "cscd: warning: ..." on stderr. */
 void warn(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
+/* "cscd: ..." on stderr: what is good to know, and no fault. */
+void note(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
 /* Both read whole strings only. When they return false, *out is untouched. */
 bool parse_unsigned(const char *text, uint32_t *out);
 bool parse_integer(const char *text, int32_t *out);

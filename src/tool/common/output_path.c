@@ -44,6 +44,18 @@ static bool named_like_input(const char *path) {
     return path_mesh_ending(path) > 0;
 }
 
+bool output_path_fits(const char *path, const char *ending, io_error *error) {
+    static const char *const known[] = {".png", ".jpg", ".jpeg", ".gif",  ".bmp",  ".tif",   ".tiff", ".webp",
+                                        ".svg", ".exr", ".pdf",  ".html", ".json", ".jsonl", ".csv",  ".tsv",
+                                        ".txt", ".xml", ".xlsx", ".md",   ".vtk",  ".vtp",   ".mp4",  ".mov"};
+    for (size_t i = 0; path != NULL && i < sizeof known / sizeof *known; i++) {
+        if (path_has_extension(path, known[i]) && strcmp(known[i], ending) != 0)
+            return io_fail(error, "'%s' would be no %s file; choose a name that ends in %s", path,
+                           known[i] + 1, ending);
+    }
+    return true;
+}
+
 /* Removes the file that was created to see whether it can be; a link that led to nothing stays. */
 static void remove_created(const char *path) {
     char *target = realpath(path, NULL);

@@ -30,6 +30,35 @@ static void warn_component(const recording *r, uint32_t index, const cscd_compon
     warn("component %u is not a closed surface: %s; all its pairs are tested (mode all)", index, text + 2);
 }
 
+/* Open, and nothing else: a cloth, not a fault. */
+static bool is_cloth(const cscd_component *c) {
+    return c->open_edges > 0 && c->non_manifold_edges == 0 && c->inconsistent_edges == 0 &&
+           c->non_manifold_vertices == 0;
+}
+
+/* One sentence for all open components, about what it means for the results. */
+static void note_open_surfaces(const recording *r) {
+    uint32_t count = 0, first = 0, open_edges = 0;
+    for (uint32_t i = cscd_mesh_component_count(r->mesh); i-- > 0;) {
+        cscd_component component = cscd_mesh_component(r->mesh, i);
+        if (!is_cloth(&component)) continue;
+        count++;
+        first = i;
+        open_edges += component.open_edges;
+    }
+    if (count == 0) return;
+    uint32_t ends[2];
+    cscd_mesh_edge(r->mesh, cscd_mesh_component(r->mesh, first).first_open_edge, ends);
+    char which[64];
+    snprintf(which, sizeof which,
+             count == 1 ? "component %u is an open surface" : "%u components are open surfaces",
+             count == 1 ? first : count);
+    note(
+        "%s, as cloth is (%u open edges, the first joins vertices %u and %u): nothing is missed there, but there "
+        "is no inside, and a plan makes it no faster",
+        which, open_edges, recording_file_vertex(r, ends[0]), recording_file_vertex(r, ends[1]));
+}
+
 static uint32_t count_open_edges(const cscd_mesh *mesh) {
     uint32_t sum = 0;
     for (uint32_t i = 0; i < cscd_mesh_component_count(mesh); i++)
@@ -124,10 +153,12 @@ static void warn_numbers(const recording *r) {
 void recording_warn(recording *r) {
     for (uint32_t i = 0; i < r->object_count; i++) warn_object(r, &r->objects[i]);
     warn_numbers(r);
+    note_open_surfaces(r);
     uint32_t defective = 0;
     for (uint32_t i = 0; i < cscd_mesh_component_count(r->mesh); i++) {
         cscd_component component = cscd_mesh_component(r->mesh, i);
-        if (!component.closed_manifold && ++defective <= COMPONENTS_NAMED) warn_component(r, i, &component);
+        if (!component.closed_manifold && !is_cloth(&component) && ++defective <= COMPONENTS_NAMED)
+            warn_component(r, i, &component);
     }
     if (defective > COMPONENTS_NAMED) warn("%u more components are like that", defective - COMPONENTS_NAMED);
     for (uint32_t i = 0; i < r->object_count; i++) {

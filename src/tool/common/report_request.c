@@ -14,7 +14,7 @@ bool report_request_is_safe(const report_request *r, const char *const *others, 
         return io_fail(error, "--scenery-frames moves the mesh of --scenery MODEL, which is missing");
     io_error reason;
     if (output_path_is_safe(r->path, others, other_count, &reason) &&
-        output_path_differs(r->path, own, 2, &reason))
+        output_path_fits(r->path, ".html", &reason) && output_path_differs(r->path, own, 2, &reason))
         return true;
     return io_fail(error, "--report %s", reason.text);
 }

@@ -3,6 +3,7 @@
 
 #include <signal.h>
 #include <stdio.h>
+#include <string.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -56,4 +57,18 @@ void interrupt_catch(void) {
 
 bool interrupted(void) {
     return interrupt_flag != 0;
+}
+
+void interrupt_tell(const interrupt_kept *kept) {
+    fflush(stdout);
+    fprintf(stderr, "cscd: interrupted after %u of %u %s", kept->done, kept->whole, kept->what);
+    if (kept->done > 0) fprintf(stderr, " (frames %d to %d)", kept->first, kept->last);
+    const char *before = "; what was found is kept in ";
+    for (size_t i = 0; i < kept->path_count; i++) {
+        if (kept->paths[i] == NULL) continue;
+        bool standard = strcmp(kept->paths[i], "-") == 0;
+        fprintf(stderr, "%s%s", before, standard ? "the standard output" : kept->paths[i]);
+        before = ", ";
+    }
+    fputc('\n', stderr);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 typedef struct terminal_progress {
@@ -21,3 +22,14 @@ void terminal_progress_end(terminal_progress *p);
  * one ends the program at once. */
 void interrupt_catch(void);
 bool interrupted(void);
+
+/* Says on stderr how far an interrupted command came, and which files have that much. done: of frames or
+ * intervals; first and last: the numbers of the frames at its ends. Paths may be NULL. */
+typedef struct interrupt_kept {
+    uint32_t done, whole;
+    const char *what; /* "frames" */
+    int32_t first, last;
+    const char *const *paths;
+    size_t path_count;
+} interrupt_kept;
+void interrupt_tell(const interrupt_kept *kept);

@@ -89,13 +89,14 @@ static int check_paths(const render_options *o, const char *const *inputs, size_
     const char *others[] = {o->plan_path, o->scenery_path, o->scenery_frames_path};
     io_error error;
     if (!output_path_is_safe(o->output_path, inputs, input_count, &error) ||
-        !output_path_differs(o->output_path, others, 3, &error))
+        !output_path_differs(o->output_path, others, 3, &error) ||
+        !output_path_fits(o->output_path, ".png", &error))
         return fail_usage("render", "-o %s", error.text);
     return EXIT_RAN;
 }
 
 bool render_options_parse(int argument_count, char **arguments, render_options *out, int *code) {
-    render_options o = {.source = {.thread_count = 1}, .picture = picture_options_defaults()};
+    render_options o = {.picture = picture_options_defaults()};
     given_options given;
     if (!option_table_read(&table, argument_count, arguments, &o, &given, code)) return false;
     o.strip = option_given(&table, &given, "frames");

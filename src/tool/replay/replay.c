@@ -288,6 +288,19 @@ static bool close_outputs(replay *r, const char *stopped_by, io_error *error) {
     return written;
 }
 
+static void tell_interrupt(const replay *r) {
+    const replay_options *o = r->options;
+    const char *page = r->totals.intervals > 0 ? o->report.path : NULL;
+    const char *const paths[] = {o->contacts_path, o->json_path, page};
+    interrupt_tell(&(interrupt_kept){.done = r->totals.intervals,
+                                     .whole = r->last - r->first,
+                                     .what = "intervals",
+                                     .first = r->recording.frame_numbers[r->first],
+                                     .last = r->recording.frame_numbers[r->first + r->totals.intervals],
+                                     .paths = paths,
+                                     .path_count = 3});
+}
+
 static void end_replay(replay *r) {
     replay_report_close(&r->report);
     cscd_detector_destroy(r->detector);
@@ -332,7 +345,10 @@ static int run_replay(const replay_options *options) {
     if (!options->quiet && r.totals.intervals > 0) print_results(&r);
     if (!ran) code = fail_replay(&r, begun, error.text);
     if (!closed) code = fail_input("%s", close_error.text);
-    if (code == EXIT_RAN && interrupted()) code = EXIT_INTERRUPTED;
+    if (code == EXIT_RAN && interrupted()) {
+        tell_interrupt(&r);
+        code = EXIT_INTERRUPTED;
+    }
     if (code == EXIT_RAN && options->fail_on_contact && r.totals.intervals_with_contact > 0)
         code = EXIT_CONTACT;
     end_replay(&r);

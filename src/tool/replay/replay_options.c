@@ -91,7 +91,7 @@ static const option_row rows[] = {
     {"ignore", "LIST", read_text, offsetof(replay_options, ignore_path),
      "leave out the pairs of a file: lines 'A B' (triangles) or 'components A B'"},
     {"threads", "N", read_threads, offsetof(replay_options, source.thread_count),
-     "default 1; 0: one per processor"},
+     "default 0: one per processor; the results are the same"},
     {"volume", "box|kdop14", read_volume, offsetof(replay_options, volume),
      "bounding volumes of the trees (default box); the contacts are the same"},
     {"simd", "auto|scalar|avx2|avx512", read_simd, offsetof(replay_options, source.simd),
@@ -121,6 +121,8 @@ static int check_outputs(const replay_options *o, const char *const *inputs, siz
     if (!report_request_is_safe(&o->report, inputs, input_count, &error) ||
         !report_request_is_safe(&o->report, others, 4, &error))
         return fail_usage("replay", "%s", error.text);
+    if (!output_path_fits(o->json_path, ".json", &error))
+        return fail_usage("replay", "--json %s", error.text);
     return EXIT_RAN;
 }
 
@@ -142,8 +144,7 @@ static int check_options(const replay_options *o, size_t input_count) {
 }
 
 bool replay_options_parse(int argument_count, char **arguments, replay_options *out, int *code) {
-    replay_options o = {.source = {.thread_count = 1},
-                        .method = CSCD_METHOD_AUTO,
+    replay_options o = {.method = CSCD_METHOD_AUTO,
                         .mode = CSCD_MODE_ALL,
                         .frames = frame_range_all(),
                         .report.up_axis = 2,

@@ -225,6 +225,18 @@ static void print_results(const sense *s) {
                          "pairs were missed in the intervals from frame ");
 }
 
+static void tell_interrupt(const sense *s) {
+    const sense_options *o = s->options;
+    const char *const paths[] = {o->csv_path, o->json_path};
+    interrupt_tell(&(interrupt_kept){.done = s->totals.intervals,
+                                     .whole = s->last - s->first,
+                                     .what = "intervals",
+                                     .first = s->recording.frame_numbers[s->first],
+                                     .last = s->recording.frame_numbers[s->first + s->totals.intervals],
+                                     .paths = paths,
+                                     .path_count = 2});
+}
+
 static void end_sense(sense *s) {
     cscd_detector_destroy(s->detector);
     cscd_sensors_destroy(s->sensors);
@@ -263,7 +275,10 @@ static int run_sense(const sense_options *options) {
     if (!options->quiet && s.totals.intervals > 0) print_results(&s);
     if (!ran) code = fail_input("%s", error.text);
     if (!closed) code = fail_input("%s", close_error.text);
-    if (code == EXIT_RAN && interrupted()) code = EXIT_INTERRUPTED;
+    if (code == EXIT_RAN && interrupted()) {
+        tell_interrupt(&s);
+        code = EXIT_INTERRUPTED;
+    }
     end_sense(&s);
     return code;
 }

@@ -75,7 +75,7 @@ static const option_row rows[] = {
     {"weld", "exact|none|EPS", read_weld, offsetof(sense_options, source.weld),
      "join vertices that coincide, or lie within EPS, in the first frame"},
     {"threads", "N", read_threads, offsetof(sense_options, source.thread_count),
-     "default 1; 0: one per processor"},
+     "default 0: one per processor; the results are the same"},
     {"quiet", NULL, read_flag, offsetof(sense_options, quiet), "no progress, no warnings, no table"},
 };
 
@@ -118,18 +118,19 @@ static int check_options(const sense_options *o, const given_options *given) {
 static int check_paths(const sense_options *o, const char *const *inputs, size_t input_count) {
     const char *others[] = {o->plan_path, o->csv_path, o->json_path};
     const char *const outputs[] = {o->csv_path, o->json_path, o->picture_path};
-    static const char *const names[] = {"csv", "json", "picture"};
+    static const char *const names[] = {"csv", "json", "picture"}, *const endings[] = {".csv", ".json",
+                                                                                       ".png"};
     io_error error;
     for (size_t i = 0; i < 3; i++)
         if (!output_path_is_safe(outputs[i], inputs, input_count, &error) ||
-            !output_path_is_safe(outputs[i], others, i + 1, &error))
+            !output_path_is_safe(outputs[i], others, i + 1, &error) ||
+            !output_path_fits(outputs[i], endings[i], &error))
             return fail_usage("sense", "--%s %s", names[i], error.text);
     return EXIT_RAN;
 }
 
 bool sense_options_parse(int argument_count, char **arguments, sense_options *out, int *code) {
-    sense_options o = {.source = {.thread_count = 1},
-                       .frames = frame_range_all(),
+    sense_options o = {.frames = frame_range_all(),
                        .partition = cscd_partition_defaults(),
                        .sensors = cscd_sensor_defaults(),
                        .picture = picture_options_defaults(),
