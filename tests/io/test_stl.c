@@ -186,7 +186,8 @@ static void survives_damage(void **state) {
     (void)state;
     const binary_file file = write_binary("solid", 2);
     mesh_check_damage(file_of(&file));
-    mesh_check_damage(STL("solid s\n" FACET_0 FACET_1 "endsolid s\n"));
+    mesh_check_damage(STL(
+        "solid s\nfacet outer loop vertex 0 0 0 vertex 1 0 0\nvertex 1 1 0 endloop endfacet\nendsolid s\n"));
 }
 
 /* Reads with the first, second, ... allocation failing until none is left to fail. */

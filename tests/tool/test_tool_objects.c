@@ -215,7 +215,7 @@ static void differing_numbers_are_told(void **state) {
                     frames = named_path_of("dart", &numbered),
                     pc2 = recorded_write_cache(&folder, "n.pc2", &wall);
     for (int k = 0; k < 3; k++) {
-        char from[16], to[16];
+        char from[32], to[32];
         snprintf(from, sizeof from, "n_%d.obj", k);
         snprintf(to, sizeof to, "n_%d.obj", k + 11);
         assert_int_equal(rename(temp_file_path(&folder, from).text, temp_file_path(&folder, to).text), 0);
