@@ -1,4 +1,5 @@
-/* What answers about intersections cost beside the plain check: kinds, curves, patches, overlaps, depths. */
+/* What answers about intersections cost beside the plain check: kinds, curves, patches, overlaps, depths, bounds of depths,
+ * what is cut off, changes of curves, events. */
 #include "benchmarks/lib/crossing_scenes.h"
 #include "benchmarks/lib/deforming_body.h"
 #include "benchmarks/lib/options.h"
@@ -9,7 +10,7 @@
 #include <string.h>
 #include <time.h>
 
-enum { REPEATS = 7 };
+enum { REPEATS = 7, ROWS_MAX = 16 };
 
 static const char help[] =
     "usage: intersections [options]\n"
@@ -19,6 +20,9 @@ static const char help[] =
     "cloth. Milliseconds of processor time of all threads, in which a crowded machine shows less; each the least of\n"
     "some rounds, in which all take turns; trees and buffers are there. x: of all, beside the check. grown: how\n"
     "often these rounds have allocated.\n"
+    "The second table: with depths and bounds of depths; with patches and what is cut off; a frame of a\n"
+    "cscd_event_tracker that is given all answers; and of an interval in which cloth goes to its other frame and\n"
+    "bodies swell by a thousandth of their size, cscd_detector_step, and cscd_detector_curve_changes for its contacts.\n"
     "--intervals: the rounds (default 7, with --quick 3). --sizes, --body and --shuffled mean nothing here.\n"
     "\n";
 
@@ -30,17 +34,20 @@ typedef enum question {
     ASK_OVERLAPS,
     ASK_DEPTHS,
     ASK_ALL,
-    QUESTION_COUNT
+    ASK_BOUNDS,
+    ASK_CUT_OFFS,
+    QUESTION_COUNT,
+    FIRST_TABLE_COUNT = ASK_ALL + 1
 } question;
 
-static const char *const question_names[QUESTION_COUNT] = {"check",    "kinds",  "curves", "patches",
-                                                           "overlaps", "depths", "all"};
+static const char *const question_names[QUESTION_COUNT] = {"check",  "kinds", "curves", "patches", "overlaps",
+                                                           "depths", "all",   "bounds", "cut_offs"};
 
 typedef struct moment {
     const char *name;
     const cscd_object_desc *objects;
     uint32_t object_count, vertex_count, triangle_count;
-    const double *positions;
+    const double *positions, *next; /* next: where an interval from the positions ends */
 } moment;
 
 typedef struct answer_times {
@@ -48,7 +55,21 @@ typedef struct answer_times {
     cscd_intersection_pairs found; /* of all */
     size_t buried;                 /* vertices */
     size_t grown;
+    double tracker_ms, step_ms, changes_ms;
+    size_t contacts, changes;
 } answer_times;
+
+/* A row of the second table, which is printed behind the first one. */
+typedef struct later_row {
+    const char *name;
+    uint32_t triangle_count;
+    answer_times times;
+} later_row;
+
+typedef struct row_list {
+    later_row items[ROWS_MAX];
+    size_t count;
+} row_list;
 
 /* ---- measuring ----------------------------------------------------------------------------------------- */
 
@@ -74,7 +95,9 @@ static cscd_status ask_question(cscd_detector *d, const moment *m, question q, d
     options.curves = q >= ASK_CURVES;
     options.patches = q >= ASK_PATCHES;
     options.overlaps = q == ASK_OVERLAPS || q == ASK_ALL;
-    options.depths = q == ASK_DEPTHS || q == ASK_ALL;
+    options.depths = q == ASK_DEPTHS || q == ASK_ALL || q == ASK_BOUNDS;
+    options.depth_bounds = q == ASK_BOUNDS;
+    options.cut_offs = q == ASK_CUT_OFFS;
     double since = processor_ms();
     cscd_intersections pairs;
     cscd_status status =
@@ -106,7 +129,43 @@ static cscd_status run_rounds(cscd_detector *d, const moment *m, uint32_t rounds
         }
         if (i > 0) out->grown += *allocations - before;
     }
+    return status;
+}
+
+/* One round of what comes behind the answers: a frame for the tracker, and an interval. */
+static cscd_status run_later_round(cscd_detector *d, const moment *m, cscd_event_tracker *tracker,
+                                   uint64_t frame, answer_times *out) {
+    const cscd_view from = cscd_view_doubles(m->positions, m->vertex_count),
+                    to = cscd_view_doubles(m->next, m->vertex_count);
+    cscd_events events;
+    cscd_contacts contacts;
+    cscd_curve_changes changes;
+    double ms, since;
+    cscd_status status = ask_question(d, m, ASK_ALL, &ms, &out->found);
     if (status == CSCD_OK) out->buried = count_buried(out->found.depths);
+    since = processor_ms();
+    if (status == CSCD_OK) status = cscd_event_tracker_add_frame(tracker, frame, &out->found);
+    if (status == CSCD_OK) status = cscd_event_tracker_take(tracker, &events);
+    out->tracker_ms = fmin(out->tracker_ms, processor_ms() - since);
+    since = processor_ms();
+    if (status == CSCD_OK) status = cscd_detector_step(d, &from, &to, &contacts);
+    out->step_ms = fmin(out->step_ms, processor_ms() - since);
+    since = processor_ms();
+    if (status == CSCD_OK)
+        status = cscd_detector_curve_changes(d, &from, &to, contacts.items, contacts.count, &changes);
+    out->changes_ms = fmin(out->changes_ms, processor_ms() - since);
+    if (status != CSCD_OK) return status;
+    out->contacts = contacts.count;
+    out->changes = changes.count;
+    return ask_question(d, m, ASK_ALL, &ms, &out->found);
+}
+
+static cscd_status run_later_rounds(cscd_detector *d, const moment *m, cscd_event_tracker *tracker,
+                                    uint32_t rounds, answer_times *out) {
+    cscd_status status = CSCD_OK;
+    out->tracker_ms = out->step_ms = out->changes_ms = HUGE_VAL;
+    for (uint32_t i = 0; status == CSCD_OK && i <= rounds; i++)
+        status = run_later_round(d, m, tracker, i, out);
     return status;
 }
 
@@ -116,7 +175,7 @@ static void print_heading(const bench_options *o) {
     printf("%u thread%s, simd %s; ms\n  %-13s %8s %7s %8s %7s %7s %7s %7s", o->thread_count,
            o->thread_count == 1 ? "" : "s", cscd_simd_name(o->simd), "scene", "triangles", "pairs",
            "crossing", "curves", "pieces", "patches", "buried");
-    for (int q = 0; q < QUESTION_COUNT; q++) printf(" %8s", question_names[q]);
+    for (int q = 0; q < FIRST_TABLE_COUNT; q++) printf(" %8s", question_names[q]);
     printf(" %6s %5s\n", "x", "grown");
 }
 
@@ -124,9 +183,21 @@ static void print_row(const moment *m, const answer_times *t) {
     const cscd_intersection_pairs *f = &t->found;
     printf("  %-13s %8u %8zu %8zu %7zu %7zu %7zu %7zu", m->name, m->triangle_count, f->count, f->crossing,
            f->curves->count, f->curves->piece_count, f->patches->count, t->buried);
-    for (int q = 0; q < QUESTION_COUNT; q++) printf(" %8.2f", t->ms[q]);
+    for (int q = 0; q < FIRST_TABLE_COUNT; q++) printf(" %8.2f", t->ms[q]);
     printf(" %6.2f %5zu\n", t->ms[ASK_ALL] / t->ms[ASK_CHECK], t->grown);
     fflush(stdout);
+}
+
+static void print_later_rows(const row_list *rows) {
+    printf("\n  %-13s %8s %8s %8s %8s %8s %8s %8s %8s %8s\n", "scene", "triangles", "check", "bounds",
+           "cut_offs", "tracker", "contacts", "changes", "step", "changes");
+    for (size_t i = 0; i < rows->count; i++) {
+        const later_row *row = &rows->items[i];
+        const answer_times *t = &row->times;
+        printf("  %-13s %8u %8.2f %8.2f %8.2f %8.2f %8zu %8zu %8.2f %8.2f\n", row->name, row->triangle_count,
+               t->ms[ASK_CHECK], t->ms[ASK_BOUNDS], t->ms[ASK_CUT_OFFS], t->tracker_ms, t->contacts,
+               t->changes, t->step_ms, t->changes_ms);
+    }
 }
 
 static void write_row(json *out, const moment *m, const answer_times *t) {
@@ -144,7 +215,12 @@ static void write_row(json *out, const moment *m, const answer_times *t) {
     json_integer(out, "buried", t->buried);
     json_begin_object(out, "ms");
     for (int q = 0; q < QUESTION_COUNT; q++) json_number(out, question_names[q], t->ms[q]);
+    json_number(out, "tracker", t->tracker_ms);
+    json_number(out, "step", t->step_ms);
+    json_number(out, "changes", t->changes_ms);
     json_end_object(out);
+    json_integer(out, "contacts", t->contacts);
+    json_integer(out, "changes", t->changes);
     json_integer(out, "grown", t->grown);
     json_end_object(out);
 }
@@ -154,6 +230,7 @@ static cscd_status measure_in(cscd_context *context, const moment *m, const benc
                               const size_t *allocations, answer_times *out) {
     cscd_mesh *mesh = NULL;
     cscd_detector *d = NULL;
+    cscd_event_tracker *tracker = NULL;
     cscd_detector_options options = cscd_detector_defaults();
     options.method = CSCD_METHOD_NONE;
     options.volume = o->volume;
@@ -161,13 +238,17 @@ static cscd_status measure_in(cscd_context *context, const moment *m, const benc
     cscd_status status = cscd_mesh_create(context, m->objects, m->object_count, &mesh);
     if (status == CSCD_OK) status = cscd_detector_create(context, mesh, NULL, &options, &d);
     if (status == CSCD_OK) status = run_rounds(d, m, rounds, allocations, out);
+    if (status == CSCD_OK) status = cscd_event_tracker_create(context, mesh, NULL, &tracker);
+    if (status == CSCD_OK) status = run_later_rounds(d, m, tracker, rounds, out);
     if (status == CSCD_OK) print_row(m, out);
+    cscd_event_tracker_destroy(tracker);
     cscd_detector_destroy(d);
     cscd_mesh_destroy(mesh);
     return status;
 }
 
-static bool measure_moment(const moment *m, const bench_options *o, json *out, io_error *error) {
+static bool measure_moment(const moment *m, const bench_options *o, row_list *rows, json *out,
+                           io_error *error) {
     size_t allocations = 0;
     answer_times times = {.grown = 0};
     cscd_context *context = NULL;
@@ -179,14 +260,41 @@ static bool measure_moment(const moment *m, const bench_options *o, json *out, i
     if (status == CSCD_OK) status = measure_in(context, m, o, &allocations, &times);
     bool good = status == CSCD_OK || io_fail(error, "%s: %s", m->name, cscd_status_string(status));
     if (good) write_row(out, m, &times);
+    if (good && rows->count < ROWS_MAX)
+        rows->items[rows->count++] = (later_row){m->name, m->triangle_count, times};
     cscd_context_destroy(context);
     return good;
 }
 
 /* ---- the program --------------------------------------------------------------------------------------- */
 
-static bool measure_scene(crossing_kind kind, uint32_t triangle_count, const bench_options *o, json *out,
-                          io_error *error) {
+/* Moves the vertices of a body along the sum of the normals around them, by a thousandth of its largest extent. */
+static void swell_body(const body *b, double *positions) {
+    double *normals = body_allocate(b->vertex_count, sizeof(double[3])), extent = 0.0;
+    memset(normals, 0, b->vertex_count * sizeof(double[3]));
+    for (uint32_t i = 0; i < b->triangle_count; i++) {
+        const uint32_t *t = b->triangles + 3 * (size_t)i;
+        const double *p = b->positions + 3 * (size_t)t[0], *q = b->positions + 3 * (size_t)t[1],
+                     *r = b->positions + 3 * (size_t)t[2];
+        for (int k = 0; k < 3; k++) {
+            int x = (k + 1) % 3, y = (k + 2) % 3;
+            double normal = (q[x] - p[x]) * (r[y] - p[y]) - (q[y] - p[y]) * (r[x] - p[x]);
+            for (int corner = 0; corner < 3; corner++) normals[3 * (size_t)t[corner] + (size_t)k] += normal;
+        }
+    }
+    for (uint32_t v = 0; v < 3 * b->vertex_count; v++)
+        extent = fmax(extent, fabs(b->positions[v] - b->positions[v % 3]));
+    for (uint32_t v = 0; v < b->vertex_count; v++) {
+        const double *n = normals + 3 * (size_t)v;
+        double norm = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+        for (int k = 0; k < 3 && norm > 0.0; k++)
+            positions[3 * (size_t)v + (size_t)k] += 1e-3 * extent * n[k] / norm;
+    }
+    free(normals);
+}
+
+static bool measure_scene(crossing_kind kind, uint32_t triangle_count, const bench_options *o, row_list *rows,
+                          json *out, io_error *error) {
     crossing_scene s;
     if (!crossing_scene_make(kind, triangle_count, &s, error)) return false;
     cscd_object_desc descs[CROSSING_OBJECTS_MAX];
@@ -197,28 +305,34 @@ static bool measure_scene(crossing_kind kind, uint32_t triangle_count, const ben
         m.vertex_count += b->vertex_count;
         m.triangle_count += b->triangle_count;
     }
-    double *positions = body_allocate(m.vertex_count, sizeof(double[3])), *next = positions;
-    for (uint32_t i = 0; i < s.object_count; i++) {
-        memcpy(next, s.objects[i].positions, s.objects[i].vertex_count * sizeof(double[3]));
-        next += (size_t)s.objects[i].vertex_count * 3;
+    double *positions = body_allocate(m.vertex_count, sizeof(double[3]));
+    double *swollen = body_allocate(m.vertex_count, sizeof(double[3]));
+    for (uint32_t i = 0, first = 0; i < s.object_count; first += s.objects[i++].vertex_count) {
+        const body *b = &s.objects[i];
+        memcpy(positions + (size_t)first * 3, b->positions, b->vertex_count * sizeof(double[3]));
+        memcpy(swollen + (size_t)first * 3, b->positions, b->vertex_count * sizeof(double[3]));
+        swell_body(b, swollen + (size_t)first * 3);
     }
     m.positions = positions;
-    bool good = measure_moment(&m, o, out, error);
+    m.next = swollen;
+    bool good = measure_moment(&m, o, rows, out, error);
+    free(swollen);
     free(positions);
     crossing_scene_free(&s);
     return good;
 }
 
-static bool measure_cloth(const bench_options *o, json *out, io_error *error) {
+static bool measure_cloth(const bench_options *o, row_list *rows, json *out, io_error *error) {
     deforming_body b;
     if (!bench_has_data(o, "cloth_ball")) return true;
     if (!deforming_body_read(o->data, "cloth_ball", 92, &b, error)) return false;
     cscd_object_desc desc = cscd_object_of_triangles(b.vertex_count, b.triangle_count, b.triangles);
-    moment m = {"cloth_ball 92", &desc, 1, b.vertex_count, b.triangle_count, b.rest};
-    bool good = measure_moment(&m, o, out, error);
+    moment m = {"cloth_ball 92", &desc, 1, b.vertex_count, b.triangle_count, b.rest, b.last};
+    bool good = measure_moment(&m, o, rows, out, error);
     m.name = "cloth_ball 93";
     m.positions = b.last;
-    good = good && measure_moment(&m, o, out, error);
+    m.next = b.rest;
+    good = good && measure_moment(&m, o, rows, out, error);
     deforming_body_free(&b);
     return good;
 }
@@ -232,12 +346,14 @@ static bool run_scenes(const bench_options *o, json *out, io_error *error) {
                   {CROSSING_SPHERES, 27000, false}, {CROSSING_FIGURE, 100000, true},
                   {CROSSING_KNOT, 100000, true},    {CROSSING_CLEAN, 100000, false},
                   {CROSSING_SCAN, 1000000, true}};
+    row_list rows = {.count = 0};
     print_heading(o);
-    bool good = measure_cloth(o, out, error);
+    bool good = measure_cloth(o, &rows, out, error);
     for (size_t i = 0; good && i < sizeof scenes / sizeof *scenes; i++) {
         if (scenes[i].large && o->quick) continue;
-        good = measure_scene(scenes[i].kind, scenes[i].triangle_count, o, out, error);
+        good = measure_scene(scenes[i].kind, scenes[i].triangle_count, o, &rows, out, error);
     }
+    if (good) print_later_rows(&rows);
     return good;
 }
 
