@@ -133,5 +133,57 @@ def curves_lie_on_the_bodies(context):
     expect(checked > 10, f"{checked} points of curves")
 
 
+def the_camera_stays_above_the_ground(context):
+    """There is ground in this recording, and events on the lower side of the pawn."""
+    _, page, report = open_pawn(context)
+    for number in range(len(report.scene["answers"]["events"])):
+        page.script("window.cscd.player.toEvent(arguments[0]);", number)
+        over = page.script("""const { camera, controls } = window.cscd.viewer.view;
+            return camera.position.z - controls.target.z;""")
+        expect(over > 0, f"event {number + 1} is looked at from {over} below it")
+
+
+def the_method_is_folded(context):
+    _, page, _ = open_pawn(context)
+    summary = page.find_all("#method > summary")[0]
+    page.script("document.getElementById('method').open = false; arguments[0].focus();", summary)
+    page.settle()
+    expect(not page.has("table", "Timings"), "timings are seen although the method is folded")
+    page.press(Keys.ENTER)
+    expect(page.has("table", "Timings") and page.has("table", "Regions"), "Enter does not unfold the method")
+    width = page.script("return document.querySelector('#charts .plot canvas').clientWidth;")
+    expect(width > 400, f"charts that were folded are {width} wide")
+
+
+def the_picture_is_saved(context):
+    _, page, _ = open_pawn(context)
+    page.click("button", "Event 2")
+    page.script("""window.saved = []; const click = HTMLAnchorElement.prototype.click;
+        HTMLAnchorElement.prototype.click = function () {
+          if (this.download) window.saved.push([this.download, this.href]); else click.call(this); };""")
+    page.click("button", "Save picture")
+    page.wait(lambda: page.script("return window.saved.length;") == 1, "no picture is offered")
+    name, address = page.script("return window.saved[0];")
+    expect_equal((name, address[:5]), (f"pawn-drop.obj-{page.frame()}.png", "blob:"), "the offered picture")
+    size = page.driver.execute_async_script(
+        "const done = arguments[1], image = new Image(); image.onload = () => done(image.naturalWidth);"
+        "image.onerror = () => done(0); image.src = arguments[0];", address)
+    expect(size >= page.view_box()[2], f"the picture is {size} pixels wide")
+
+
+def what_is_told_of_a_triangle_fits(context):
+    for width in (1280, 360):
+        _, page, _ = open_pawn(context, width=width, height=800)
+        page.script("const { report, store } = window.cscd; store.set("
+                    "{time: 40, triangle: report.scene.orientation.at(40).indexOf(0)});")  # the longest words
+        page.settle()
+        over = page.script("""const box = document.querySelector('.readout');
+            const most = Math.max(...[...box.querySelectorAll('*')].map((e) => e.getBoundingClientRect().right));
+            return [box.scrollWidth - box.clientWidth, most - box.getBoundingClientRect().right];""")
+        expect(max(over) <= 0, f"{width} pixels: the readout overflows by {over}")
+
+
 SCENARIOS = (answers_are_those_of_the_run, the_sentence_says_what_intersects, clicks_and_keys_walk_the_events,
-             an_event_is_seen, parts_stand_against_parts, curves_lie_on_the_bodies)
+             an_event_is_seen, parts_stand_against_parts, curves_lie_on_the_bodies,
+             the_camera_stays_above_the_ground, the_method_is_folded,
+             the_picture_is_saved, what_is_told_of_a_triangle_fits)

@@ -7,7 +7,7 @@ from page import expect, expect_equal
 
 BUTTONS = ("First frame", "Previous frame with contacts", "Previous frame", "Play", "Next frame",
            "Next frame with contacts", "Last frame", "Frame with most contacts", "Reset view", "Zoom to contacts",
-           "Light or dark", "Keyboard help")
+           "Save picture", "Light or dark", "Keyboard help")
 COLOURS = {"Plain": "plain", "Charge": "charge", "Equalized charge": "equalized", "Region": "region",
            "Orientation": "orientation", "Contact heat": "heat"}
 MARKS = {"Intersections": "answers", "Contacts": "contacts", "Trail": "trail", "Through the surface": "through",

@@ -75,5 +75,21 @@ def playing_takes_the_gap_and_ends(context):
     expect_frame(page, made.numbers[-1], "playing to the end")
 
 
+def the_address_names_the_frame(context):
+    made, page = open_stepped(context)
+    hash_of = "return window.location.hash;"
+    page.click("button", "Next frame")
+    expect_equal(page.script(hash_of), "#frame=1003", "the address after a step")
+    page.script("window.location.hash = '#frame=1017';")
+    page.wait(lambda: page.frame() == 1017, "the page does not follow the address")
+    page.script("window.location.hash = '#frame=1014';")
+    page.wait(lambda: page.frame() == 1011, "in a gap the frame before it is shown")
+    page.driver.get("file://" + page.path + "#frame=1019")
+    page.driver.refresh()
+    page.driver.execute_async_script("const done = arguments[0]; window.cscd.ready.then(() => done());")
+    expect_frame(page, 1019, "opening with a frame in the address")
+    page.forget()
+
+
 SCENARIOS = (steps_lead_to_the_neighbouring_frame, the_slider_and_the_charts_know_the_frames,
-             contacts_are_at_their_moments, playing_takes_the_gap_and_ends)
+             contacts_are_at_their_moments, playing_takes_the_gap_and_ends, the_address_names_the_frame)

@@ -98,6 +98,7 @@ class Page:
         error = self.driver.execute_async_script(
             "const done = arguments[0], ready = window.cscd ? window.cscd.ready : Promise.reject('no window.cscd');"
             "ready.then(() => done(null), (error) => done(String(error)));")
+        self.script("document.querySelectorAll('#method').forEach((one) => { one.open = true; });")
         expect((error is None) == whole, f"{self.path}: opening ended with {error}")
         self.settle()
 

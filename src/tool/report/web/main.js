@@ -1,5 +1,6 @@
 /** Opens the report: reads the data blocks, then builds the view, the controls and the panels. */
 
+import { followAddress, frameInAddress } from './controls/address.js';
 import { createChoices } from './controls/choices.js';
 import { button, element } from './page/dom.js';
 import { createHelp, listenToKeys } from './controls/keys.js';
@@ -42,7 +43,7 @@ function initialState(report) {
   const { scene } = report;
   const planShown = report.kind === 'preprocess' && scene.region !== null; // there is nothing else to see
   return {
-    time: scene?.first ?? 0,
+    time: scene === null ? 0 : (frameInAddress(scene) ?? scene.first),
     playing: false,
     speed: 30,
     loop: false,
@@ -105,6 +106,7 @@ async function open() {
   createTools(byId('page-tools'), theme, help);
   Object.assign(hook, { report, store, player, viewer, markers: () => markersOnScreen(viewer) });
   createPanels(report, store, player);
+  if (report.scene !== null) followAddress(report.scene, store);
   viewer?.resize();
   viewer?.drawNow();
   byId('opening')?.remove();

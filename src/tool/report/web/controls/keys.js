@@ -17,6 +17,7 @@ const HELP = [
   ['D R E B', 'Detector points, region cuts, edges, surroundings'],
   ['Z', 'Zoom to the contacts of this interval'],
   ['0', 'Reset the view'],
+  ['S', 'Save the view as a picture'],
   ['L', 'Light or dark'],
   ['?', 'This help'],
   ['Esc', 'Unselect the contact and the triangle'],
@@ -94,6 +95,7 @@ function sceneKeys(scene, store, viewer) {
   const actions = {
     0: () => viewer?.home(),
     z: () => viewer && zoomToContacts(viewer),
+    s: () => viewer?.savePicture(),
     Escape: () => store.set({ selected: null, triangle: null }),
   };
   COLOURS.forEach((colour, i) => {

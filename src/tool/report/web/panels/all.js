@@ -46,6 +46,11 @@ function createPanel(panel, container, report, store, player) {
 
 export function createPanels(report, store, player) {
   document.body.dataset.kind = report.kind;
+  const method = document.getElementById('method');
+  method.open = report.kind !== 'replay'; // whose answer is above
+  window.addEventListener('beforeprint', () => {
+    method.open = true;
+  });
   document.getElementById('title').textContent = titleOf(report);
   for (const [id, panel] of Object.entries(PANELS))
     createPanel(panel, document.getElementById(id), report, store, player);

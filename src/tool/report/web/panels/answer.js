@@ -86,13 +86,17 @@ function matrixOf(events, choose) {
   return [scrollable(table), ...more];
 }
 
-function eventRow(event, number, go) {
+/** @param {boolean} single all events are of one part, so that its name says nothing */
+function eventRow(event, number, single, go) {
   const [state, word] = kindOf(event);
+  const words = single
+    ? [word]
+    : [element('span', { class: 'visually-hidden' }, `${word}: `), whoOf(event)];
   const row = element('tr', { class: 'item', 'data-event': number });
   row.append(
     element('td', {}, element('button', { type: 'button', 'aria-label': `Event ${number + 1}` }, String(number + 1))),
     element('td', { class: 'who', title: `${whoOf(event)}: ${word}` },
-      element('span', { class: `state ${state}` }, element('i'), element('span', { class: 'visually-hidden' }, `${word}: `), whoOf(event))),
+      element('span', { class: `state ${state}` }, element('i'), ...words)),
     element('td', { class: 'number' }, event.first === event.last ? `${event.first}` : `${event.first} to ${event.last}`),
     element('td', { class: 'number', 'data-value': event.depth, title: event.depth }, event.depth > 0 ? lengthOf(event.depth) : '–'),
   );
@@ -100,12 +104,12 @@ function eventRow(event, number, go) {
   return row;
 }
 
-const COLUMNS = [['no.'], ['parts'], ['frames', true], ['depth', true, 'The greatest depth, in the unit of the file']];
+const COLUMNS = [['no.'], ['what'], ['frames', true], ['depth', true, 'The greatest depth, in the unit of the file']];
 
-function tableOf(events, go) {
+function tableOf(events, single, go) {
   const head = element('tr');
   for (const [text, number, title] of COLUMNS) head.append(element('th', { scope: 'col', text, title, class: number ? 'number' : null }));
-  const body = element('tbody', {}, ...events.map((event, number) => eventRow(event, number, go)));
+  const body = element('tbody', {}, ...events.map((event, number) => eventRow(event, number, single, go)));
   return element('table', { class: 'events', 'aria-label': 'Events' }, element('thead', {}, head), body);
 }
 
@@ -135,7 +139,8 @@ export function create(container, report, store, player) {
   const position = element('span', { class: 'quiet', 'aria-live': 'polite' });
   const previous = button('Previous event', { glyph: BACK, key: 'P' }, () => player.stepEvent(-1));
   const next = button('Next event', { glyph: FORWARD, key: 'N' }, () => player.stepEvent(1));
-  const table = tableOf(events, (number) => player.toEvent(number));
+  const names = new Set(events.flatMap(({ a, b }) => [a, b]));
+  const table = tableOf(events, names.size === 1, (number) => player.toEvent(number));
   const list = scrollable(table);
   let chosen = null;
   function choose(a, b, cell) {
@@ -157,7 +162,6 @@ export function create(container, report, store, player) {
       list.scrollTop = row.offsetTop + row.offsetHeight - list.clientHeight;
     }
   }
-  const names = new Set(events.flatMap(({ a, b }) => [a, b]));
   container.append(
     heading('Events', position, previous, next),
     ...(names.size > 1 ? matrixOf(events, choose) : []),

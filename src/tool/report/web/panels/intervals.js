@@ -16,7 +16,7 @@ const COLUMNS = [
   ['#PCPs', 'Potentially colliding pairs: triangle pairs whose volumes overlap', true],
   ['tests', 'Elementary tests of a vertex and a face or of two edges', true],
   ['ms', 'Milliseconds of the whole step; the check of the frame is not part of it', true],
-  ['guarantee', 'What is promised of the contacts'],
+  ['may contacts be missing?', 'Whether every contact of the interval was found, and why that is known'],
 ];
 
 const FILTERS = {

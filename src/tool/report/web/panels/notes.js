@@ -77,7 +77,8 @@ function notesOfScene(scene, intervals) {
       '',
       'not every contact is in this page',
       `${integer(info.kept)} of ${integer(info.found)} are, the earliest of each interval: at most ` +
-        `${integer(info.interval_limit)} an interval and ${integer(info.limit)} in all. ` +
+        `${integer(info.interval_limit)}, and fewer where later ones need their share of the ` +
+        `${integer(info.limit)} that a page has room for. ` +
         `Fewer than found in ${counted(frames.length, 'interval')} (${ranges(frames)}).`,
     ]);
   }

@@ -31,11 +31,11 @@ export function otherMilliseconds(ms) {
   );
 }
 
-/** The guarantee of an interval in words; components with the same guarantee are put together. */
+/** Whether contacts of an interval may be missing, in words; components with the same guarantee are put together. */
 export function guaranteeInWords(guarantee) {
   const counts = new Map();
   for (const { mode, reason } of guarantee) {
-    const words = `${mode === 'all' ? 'all contacts' : 'not all contacts'}: ${reason}`;
+    const words = `${mode === 'all' ? 'none' : 'perhaps'}: ${reason}`;
     counts.set(words, (counts.get(words) ?? 0) + 1);
   }
   const parts = [...counts];

@@ -1,6 +1,7 @@
 /** The view with its buttons, legend and readout, or a message if it cannot be drawn. */
 
 import { button, element } from '../page/dom.js';
+import { moment } from '../page/format.js';
 import { intervalAt } from '../page/intervals.js';
 import { zoomToContacts } from './framing.js';
 import { createLegend } from './legend.js';
@@ -11,6 +12,10 @@ const HOUSE = 'M8 2 1.5 8H3.5v6h3.5v-4h2v4h3.5V8h2z';
 const LOUPE =
   'M6.5 1.5a5 5 0 1 0 3 9l3.8 3.8 1.2-1.2-3.8-3.8a5 5 0 0 0-4.2-8z' +
   'm0 1.8a3.2 3.2 0 1 1 0 6.4 3.2 3.2 0 0 1 0-6.4z';
+
+const CAMERA =
+  'M5.5 3 6.5 1.5h3L10.5 3H14v11H2V3zM8 5.2a3.3 3.3 0 1 0 0 6.6 3.3 3.3 0 0 0 0-6.6z' +
+  'm0 1.6a1.7 1.7 0 1 1 0 3.4 1.7 1.7 0 0 1 0-3.4z';
 
 const KEYS =
   'Alt with arrows turns the view, Alt and Shift with arrows pans, Alt with Page Up or Down zooms; ? lists all keys.';
@@ -24,6 +29,20 @@ function toggle(name, text, title, pressed, action) {
     action(now);
   });
   return made;
+}
+
+/** Saves what the view shows as a PNG. */
+function savePicture(viewer, report) {
+  viewer.resolution.stop();
+  viewer.drawNow();
+  viewer.canvas.toBlob((blob) => {
+    const link = element('a', {
+      href: URL.createObjectURL(blob),
+      download: `${report.title.replace(/[^\w.-]+/g, '_')}-${moment(viewer.store.get().time)}.png`,
+    });
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+  }, 'image/png');
 }
 
 function tools(viewer, store) {
@@ -45,6 +64,8 @@ function tools(viewer, store) {
   );
   viewer.onHome = () => follow.setAttribute('aria-pressed', String(viewer.follows));
   if (data.last > data.first) row.append(follow);
+  row.append(button('Save picture', { glyph: CAMERA, key: 'S' }, () => savePicture(viewer, viewer.report)));
+  viewer.savePicture = () => savePicture(viewer, viewer.report);
   return row;
 }
 

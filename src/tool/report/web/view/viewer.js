@@ -262,6 +262,9 @@ export class Viewer {
     const { camera, controls } = this.view;
     const from = camera.position.clone().sub(controls.target).normalize();
     from.multiplyScalar(0.5).add(outwards).normalize();
+    const least = this.scenery === null ? -0.5 : 0.12; // not from below the ground
+    const steep = from.dot(camera.up);
+    if (steep < least) from.addScaledVector(camera.up, least - steep).normalize();
     if (Math.abs(from.dot(camera.up)) > 0.97) from.addScaledVector(camera.up, -0.4 * Math.sign(from.dot(camera.up))).normalize();
     this.view.frame(box, from.length() > 0.5 ? from : null);
     this.touched = true;
