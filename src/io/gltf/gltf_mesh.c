@@ -199,7 +199,7 @@ static bool read_triangles(const gltf_primitive *primitive, const gltf_vertices 
 
 static bool read_primitive(gltf_primitive *primitive) {
     int64_t mode = MODE_TRIANGLES;
-    gltf_vertices *vertices;
+    gltf_vertices *vertices = NULL;
     if (!gltf_integer(&primitive->element, "mode", 0, 6, &mode)) return false;
     if (mode < MODE_TRIANGLES) {
         primitive->mesh->skipped_primitives++;

@@ -199,7 +199,7 @@ static bool map_edges(recording *r, io_error *error) {
 /* ---- the interface ----------------------------------------------------------------------------------- */
 
 bool recording_open(const recording_options *options, recording *out, io_error *error) {
-    recording r = {NULL};
+    recording r = {0};
     if (!open_objects(options, &r, error) || !number_frames(options, &r, error) ||
         !create_context(options, &r, error) || !create_mesh(&r, error) || !map_edges(&r, error)) {
         recording_close(&r);
