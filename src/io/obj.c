@@ -16,6 +16,7 @@ typedef struct obj_parser {
     int64_t largest_index;
     size_t largest_line;
     text_token object, group; /* those of the faces to come; of length 0: none */
+    bool renamed;             /* since the last face: a name without faces is no part */
 } obj_parser;
 
 static bool read_vertex(obj_parser *obj) {
@@ -66,8 +67,37 @@ static bool resolve_index(obj_parser *obj, int64_t index, uint32_t *vertex) {
     return true;
 }
 
+/* What exporters write where there is no name. */
+static bool is_no_name(text_token name) {
+    return text_equals(name, "default") || text_equals(name, "off") || text_equals(name, "(null)");
+}
+
+/* Reads the name of an object or group, the first of several. */
+static void read_name(obj_parser *obj, text_token *name) {
+    *name = (text_token){"", 0};
+    text_next_token(obj->reader, name);
+    if (is_no_name(*name)) name->length = 0;
+    obj->renamed = true;
+}
+
+/* The faces to come are in the part OBJECT/GROUP, or in one of them alone. */
+static bool name_part(obj_parser *obj) {
+    char joined[512];
+    obj->renamed = false;
+    const text_token object = obj->object, group = obj->group;
+    if (object.length == 0 || group.length == 0) {
+        const text_token only = object.length > 0 ? object : group;
+        return mesh_builder_set_part(&obj->builder, only.text, only.length);
+    }
+    int length = snprintf(joined, sizeof joined, "%.*s/%.*s", (int)object.length, object.text,
+                          (int)group.length, group.text);
+    if ((size_t)length >= sizeof joined) length = sizeof joined - 1;
+    return mesh_builder_set_part(&obj->builder, joined, (size_t)length);
+}
+
 static bool read_face(obj_parser *obj) {
     text_token token;
+    if (obj->renamed && !name_part(obj)) return false;
     if (!mesh_builder_begin_face(&obj->builder)) return false;
     while (text_next_token(obj->reader, &token)) {
         int64_t index;
@@ -83,28 +113,6 @@ static bool read_face(obj_parser *obj) {
     return mesh_builder_end_face(&obj->builder);
 }
 
-/* What exporters write where there is no name. */
-static bool is_no_name(text_token name) {
-    return text_equals(name, "default") || text_equals(name, "off") || text_equals(name, "(null)");
-}
-
-/* Reads the name of an object or group, the first of several; the part is OBJECT/GROUP, or one of them alone. */
-static bool read_name(obj_parser *obj, text_token *name) {
-    char joined[512];
-    *name = (text_token){"", 0};
-    text_next_token(obj->reader, name);
-    if (is_no_name(*name)) name->length = 0;
-    const text_token object = obj->object, group = obj->group;
-    if (object.length == 0 || group.length == 0) {
-        const text_token only = object.length > 0 ? object : group;
-        return mesh_builder_set_part(&obj->builder, only.text, only.length);
-    }
-    int length = snprintf(joined, sizeof joined, "%.*s/%.*s", (int)object.length, object.text,
-                          (int)group.length, group.text);
-    if ((size_t)length >= sizeof joined) length = sizeof joined - 1;
-    return mesh_builder_set_part(&obj->builder, joined, (size_t)length);
-}
-
 static bool read_records(obj_parser *obj) {
     for (; text_seek_token(obj->reader); text_skip_line(obj->reader)) {
         text_token keyword;
@@ -115,9 +123,9 @@ static bool read_records(obj_parser *obj) {
             if (!read_face(obj)) return false;
         } else if (text_equals(keyword, "o")) {
             obj->group = (text_token){"", 0}; /* an object's faces begin in no group */
-            if (!read_name(obj, &obj->object)) return false;
+            read_name(obj, &obj->object);
         } else if (text_equals(keyword, "g")) {
-            if (!read_name(obj, &obj->group)) return false;
+            read_name(obj, &obj->group);
         }
     }
     return true;

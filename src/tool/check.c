@@ -18,8 +18,9 @@
 typedef struct check_options {
     recording_options source;
     frame_range frames;
-    const char *json_path, *ignore_path;
-    bool ignore_rest, fail_on_contact, quiet;
+    const char *json_path;
+    ignore_options ignored;
+    bool fail_on_contact, quiet;
 } check_options;
 
 static const option_row rows[] = {
@@ -44,10 +45,18 @@ static const option_row rows[] = {
      "of numbered files, some may be missing"},
     {"weld", "exact|none|EPS", read_weld, offsetof(check_options, source.weld),
      "join vertices that coincide, or lie within EPS, in the first frame"},
-    {"ignore", "LIST", read_text, offsetof(check_options, ignore_path),
+    {"ignore-rest", "[=parts]", read_rest, offsetof(check_options, ignored),
+     "leave out triangle pairs that intersect or touch in the first frame; =parts: all pairs of parts that do, "
+     "as of an eye in its socket"},
+    {"ignore", "LIST", read_text, offsetof(check_options, ignored.path),
      "leave out the pairs of a file: lines 'A B' (triangles) or 'components A B'"},
-    {"ignore-rest", NULL, read_flag, offsetof(check_options, ignore_rest),
-     "leave out the pairs that intersect or touch in the first frame"},
+    {"ignore-parts", "A[,B]", read_part_pairs, offsetof(check_options, ignored.ignored),
+     "leave out part A with part B, or with everything; as often as needed"},
+    {"only", "A[,B]", read_part_pairs, offsetof(check_options, ignored.only),
+     "look at part A with part B only, or at A with everything; as often as needed"},
+    {"parts", "TABLE.csv", read_text, offsetof(check_options, ignored.parts_path),
+     "which part each triangle, face or vertex is in (default: the parts that the files name, else "
+     "components)"},
     {"threads", "N", read_threads, offsetof(check_options, source.thread_count),
      "default 0: one per processor; the results are the same"},
     {"fail-on-contact", NULL, read_flag, offsetof(check_options, fail_on_contact),
@@ -123,10 +132,7 @@ static bool prepare_check(check_run *c, io_error *error) {
                             error))
         return false;
     cscd_detector_options options = cscd_detector_defaults();
-    c->ignored.mesh = c->recording.mesh;
-    if (o->ignore_path != NULL && !ignore_pairs_read(&c->ignored, &c->recording, o->ignore_path, error))
-        return false;
-    if (o->ignore_rest && !ignore_pairs_add_rest(&c->ignored, &c->recording, error)) return false;
+    if (!ignore_pairs_prepare(&o->ignored, &c->recording, &c->ignored, error)) return false;
     ignore_pairs_choose(&c->ignored, &options);
     if (cscd_detector_create(c->recording.context, c->recording.mesh, NULL, &options, &c->detector) !=
         CSCD_OK)
@@ -214,7 +220,7 @@ int command_check(int argument_count, char **arguments) {
         return fail_usage("check", "no MODEL given");
     io_error error;
     if (!output_path_is_safe(options.json_path, given.inputs, given.input_count, &error) ||
-        !output_path_is_safe(options.json_path, &options.ignore_path, 1, &error) ||
+        !output_path_is_safe(options.json_path, &options.ignored.path, 1, &error) ||
         !output_path_fits(options.json_path, ".json", &error))
         return fail_usage("check", "--json %s", error.text);
     recording_options_take(&options.source, &given);

@@ -105,8 +105,7 @@ static bool read_line(ignore_pairs *pairs, const recording *r, char *line, const
     return added || io_fail(error, "%s:%d: out of memory", path, number);
 }
 
-bool ignore_pairs_read(ignore_pairs *pairs, const recording *r, const char *path, io_error *error) {
-    pairs->mesh = r->mesh;
+static bool read_list(ignore_pairs *pairs, const recording *r, const char *path, io_error *error) {
     FILE *file = fopen(path, "r");
     if (file == NULL) return io_fail(error, "%s: cannot open: %s", path, strerror(errno));
     char *line = NULL;
@@ -121,48 +120,72 @@ bool ignore_pairs_read(ignore_pairs *pairs, const recording *r, const char *path
     return read;
 }
 
-static bool add_intersections(ignore_pairs *pairs, cscd_detector *detector, const double *positions) {
+/* Leaves out a pair of triangles that intersect or touch at rest, or the parts that these are in. */
+static bool add_rest_pair(ignore_pairs *pairs, bool by_parts, cscd_intersection found) {
+    const uint32_t a = pairs->parts.labels[found.a], b = pairs->parts.labels[found.b];
+    pairs->rest_pairs++;
+    if (by_parts && a != b) return part_rules_ignore(&pairs->rules, a, b);
+    return append_pair(&pairs->triangles, &pairs->triangle_count, &pairs->triangle_capacity, found.a,
+                       found.b);
+}
+
+static bool check_rest(ignore_pairs *pairs, bool by_parts, recording *r, cscd_detector *detector,
+                       const double *positions, io_error *error) {
     cscd_intersections found;
-    if (cscd_detector_check(detector,
-                            CSCD_DOUBLES(positions, cscd_mesh_vertex_count(cscd_detector_mesh(detector))),
-                            &found) != CSCD_OK)
-        return false;
-    for (size_t i = 0; i < found.count; i++) {
-        if (!append_pair(&pairs->triangles, &pairs->triangle_count, &pairs->triangle_capacity,
-                         found.items[i].a, found.items[i].b))
-            return false;
-    }
+    if (cscd_detector_check(detector, CSCD_DOUBLES(positions, cscd_mesh_vertex_count(r->mesh)), &found) !=
+        CSCD_OK)
+        return io_fail(error, "frame %d: %s", r->frame_numbers[0], cscd_context_detail(r->context));
+    for (size_t i = 0; i < found.count; i++)
+        if (!add_rest_pair(pairs, by_parts, found.items[i]))
+            return io_fail(error, "frame %d: out of memory for what intersects or touches at rest",
+                           r->frame_numbers[0]);
     return true;
 }
 
-bool ignore_pairs_add_rest(ignore_pairs *pairs, recording *r, io_error *error) {
-    pairs->mesh = r->mesh;
+static bool add_rest(ignore_pairs *pairs, bool by_parts, recording *r, io_error *error) {
     double *positions = malloc((size_t)cscd_mesh_vertex_count(r->mesh) * 3 * sizeof *positions);
     cscd_detector *detector = NULL;
     bool added = positions != NULL || io_fail(error, "out of memory");
     added = added && recording_read(r, 0, positions, error);
-    if (added && (cscd_detector_create(r->context, r->mesh, NULL, NULL, &detector) != CSCD_OK ||
-                  !add_intersections(pairs, detector, positions)))
+    if (added && cscd_detector_create(r->context, r->mesh, NULL, NULL, &detector) != CSCD_OK)
         added = io_fail(error, "frame %d: %s", r->frame_numbers[0], cscd_context_detail(r->context));
+    added = added && check_rest(pairs, by_parts, r, detector, positions, error);
     cscd_detector_destroy(detector);
     free(positions);
     sort_triangles(pairs);
     return added;
 }
 
-static uint32_t component_of(const cscd_mesh *mesh, cscd_contact_kind kind, uint32_t feature, bool second) {
-    uint32_t count;
-    bool triangle = kind == CSCD_CONTACT_TT || (kind == CSCD_CONTACT_VF && second);
-    if (triangle) return cscd_mesh_triangle_component(mesh, feature);
-    const uint32_t *star = kind == CSCD_CONTACT_VF ? cscd_mesh_vertex_triangles(mesh, feature, &count)
-                                                   : cscd_mesh_edge_triangles(mesh, feature, &count);
-    return cscd_mesh_triangle_component(mesh, star[0]);
+bool ignore_options_any(const ignore_options *options) {
+    return options->path != NULL || options->rest != REST_KEPT ||
+           options->ignored.count + options->only.count > 0;
 }
 
-/* The callback for cscd_detector_options.ignore. */
-static bool components_contain(void *user, cscd_contact_kind kind, uint32_t a, uint32_t b) {
-    const ignore_pairs *pairs = user;
-    uint32_t c = component_of(pairs->mesh, kind, a, false), d = component_of(pairs->mesh, kind, b, true);
+bool ignore_pairs_prepare(const ignore_options *options, recording *r, ignore_pairs *out, io_error *error) {
+    *out = (ignore_pairs){.mesh = r->mesh};
+    const bool named = options->parts_path != NULL
+                           ? part_names_read(r, options->parts_path, &out->parts, error)
+                           : part_names_find(r, NULL, &out->parts, error);
+    if (named && part_rules_create(&out->parts, &options->ignored, &options->only, &out->rules, error) &&
+        (options->path == NULL || read_list(out, r, options->path, error)) &&
+        (options->rest == REST_KEPT || add_rest(out, options->rest == REST_PARTS, r, error)))
+        return true;
+    ignore_pairs_free(out);
+    return false;
+}
+
+/* The triangles that have a feature: of a triangle itself. */
+static const uint32_t *triangles_of(const cscd_mesh *mesh, cscd_contact_kind kind, const uint32_t *feature,
+                                    bool second, uint32_t *count) {
+    *count = 1;
+    if (kind == CSCD_CONTACT_TT || (kind == CSCD_CONTACT_VF && second)) return feature;
+    return kind == CSCD_CONTACT_VF ? cscd_mesh_vertex_triangles(mesh, *feature, count)
+                                   : cscd_mesh_edge_triangles(mesh, *feature, count);
+}
+
+static bool components_contain(const ignore_pairs *pairs, uint32_t a, uint32_t b) {
+    const uint32_t c = cscd_mesh_triangle_component(pairs->mesh, a),
+                   d = cscd_mesh_triangle_component(pairs->mesh, b);
     for (size_t i = 0; i < pairs->component_count; i++) {
         cscd_intersection pair = pairs->components[i];
         if ((pair.a == c && pair.b == d) || (pair.a == d && pair.b == c)) return true;
@@ -170,16 +193,29 @@ static bool components_contain(void *user, cscd_contact_kind kind, uint32_t a, u
     return false;
 }
 
+/* The callback for cscd_detector_options.ignore. */
+static bool leaves_out(void *user, cscd_contact_kind kind, uint32_t a, uint32_t b) {
+    const ignore_pairs *pairs = user;
+    uint32_t a_count, b_count;
+    const uint32_t *of_a = triangles_of(pairs->mesh, kind, &a, false, &a_count);
+    const uint32_t *of_b = triangles_of(pairs->mesh, kind, &b, true, &b_count);
+    return (pairs->component_count > 0 && components_contain(pairs, of_a[0], of_b[0])) ||
+           (part_rules_any(&pairs->rules) &&
+            part_rules_leave_out(&pairs->rules, of_a, a_count, of_b, b_count));
+}
+
 void ignore_pairs_choose(ignore_pairs *pairs, cscd_detector_options *options) {
     options->ignored_count = pairs->triangle_count;
     if (pairs->triangle_count > 0) options->ignored = &pairs->triangles->a;
-    if (pairs->component_count == 0) return;
-    options->ignore = components_contain;
+    if (pairs->component_count == 0 && !part_rules_any(&pairs->rules)) return;
+    options->ignore = leaves_out;
     options->ignore_user = pairs;
 }
 
 void ignore_pairs_free(ignore_pairs *pairs) {
     free(pairs->triangles);
     free(pairs->components);
+    part_rules_free(&pairs->rules);
+    part_names_free(&pairs->parts);
     *pairs = (ignore_pairs){0};
 }

@@ -1,25 +1,42 @@
-/* Triangle pairs that the user wants left out: those that intersect or touch in the first frame, and those of a
- * list file. */
+/* What the user wants left out: pairs of triangles that intersect or touch in the first frame, those of a list file, and
+ * pairs of parts. */
 #pragma once
 
-#include "src/tool/common/recording.h"
+#include "src/tool/common/part_rules.h"
+
+typedef struct ignore_options {
+    const char *path;       /* of a list file; NULL: none */
+    const char *parts_path; /* of a table of parts; NULL: those that the recording names */
+    enum {
+        REST_KEPT,
+        REST_PAIRS, /* pairs of triangles that intersect or touch in the first frame are left out */
+        REST_PARTS  /* pairs of parts that do; within a part the pairs of triangles */
+    } rest;
+    part_pairs_list ignored, only; /* pairs of parts */
+} ignore_options;
+
+/* Is anything to be left out? */
+bool ignore_options_any(const ignore_options *options);
 
 typedef struct ignore_pairs {
     const cscd_mesh *mesh;
+    part_names parts;
+    part_rules rules;
+    size_t
+        rest_pairs; /* so many pairs of triangles intersect or touch in the first frame, if that was asked */
     cscd_intersection *triangles; /* sorted by (a, b) */
     size_t triangle_count, triangle_capacity;
     cscd_intersection *components; /* a <= b; few */
     size_t component_count, component_capacity;
 } ignore_pairs;
 
-/* Each line of a list file is `A B` (two triangles), `components A B` (all pairs between two components, or
+/* Finds the parts of a recording, and what is left out of it. On false *out holds nothing to free.
+ *
+ * Each line of a list file is `A B` (two triangles), `components A B` (all pairs between two components, or
  * within one), blank, or a comment from # on. Triangles are numbered from 0 in the order of the model file, a polygon
  * counting as many as it is cut into; with several objects they are `NAME:A`, of the first one `A` as well. Components
  * are numbered as `cscd info` lists them. */
-bool ignore_pairs_read(ignore_pairs *pairs, const recording *r, const char *path, io_error *error);
-
-/* Adds the pairs that intersect or touch in the first frame. */
-bool ignore_pairs_add_rest(ignore_pairs *pairs, recording *r, io_error *error);
+bool ignore_pairs_prepare(const ignore_options *options, recording *r, ignore_pairs *out, io_error *error);
 
 /* Makes a detector leave out the pairs, which live until it has been destroyed. */
 void ignore_pairs_choose(ignore_pairs *pairs, cscd_detector_options *options);

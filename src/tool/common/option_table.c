@@ -43,7 +43,7 @@ static void print_wrapped(const char *text, int column, int used) {
 static int write_label(const option_row *row, char label[LABEL_SIZE]) {
     const char *value = row->value != NULL ? row->value : "";
     return snprintf(label, LABEL_SIZE, "  %s%s%s%s  ", is_letter(row) ? "-" : "--", row->name,
-                    value[0] != '\0' ? " " : "", value);
+                    value[0] != '\0' && value[0] != '[' ? " " : "", value);
 }
 
 static void print_help(const option_table *table) {
@@ -77,7 +77,9 @@ static void fill_tables(const option_table *table, getopt_tables *out) {
     out->letters[letters++] = ':'; /* getopt_long tells a missing value from an unknown option */
     for (size_t i = 0; i < table->count; i++) {
         const option_row *row = &table->rows[i];
-        int has_value = row->value != NULL ? required_argument : no_argument;
+        int has_value = row->value == NULL     ? no_argument
+                        : row->value[0] == '[' ? optional_argument
+                                               : required_argument;
         if (row->read == NULL) continue;
         out->names[names++] = (struct option){row->name, has_value, NULL, LONG_OPTION + (int)i};
         if (!is_letter(row)) continue;
@@ -118,7 +120,8 @@ bool option_table_read(const option_table *table, int argument_count, char **arg
         const option_row *row = &table->rows[i];
         given->rows[i] = true;
         if (!row->read(optarg, (char *)options + row->place)) {
-            *code = fail_usage(table->command, "--%s cannot be '%s'", row->name, optarg);
+            *code =
+                fail_usage(table->command, "--%s cannot be '%s'", row->name, optarg != NULL ? optarg : "");
             return false;
         }
     }

@@ -7,12 +7,12 @@
 #include <stdint.h>
 
 /* Reads an option's value; false when it does not fit. `place` is that of the row; text is NULL for an option
- * without a value. The readers of values that more than one command has are in option_values.h. */
+ * without a value, given or not to be given. The readers of values that more than one command has are in option_values.h. */
 typedef bool option_reader(const char *text, void *place);
 
 typedef struct option_row {
     const char *name;    /* without its dashes: "weld" is --weld, and "o", of one letter, is -o */
-    const char *value;   /* as --help shows it; NULL: the option has none */
+    const char *value;   /* as --help shows it; NULL: the option has none; "[=...]": it may have one */
     option_reader *read; /* NULL: a row for --help only, with other values of the option above */
     size_t place;        /* offset of the value in the command's struct of options */
     const char *help;    /* NULL: --help leaves the row out, as for another spelling of an option */

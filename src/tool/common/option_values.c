@@ -3,6 +3,7 @@
 
 #include "src/tool/common/command.h"
 #include "src/tool/common/frame_range.h"
+#include "src/tool/common/ignore_pairs.h"
 #include "src/tool/common/recording.h"
 #include "src/tool/common/report_request.h"
 #include "src/tool/picture/scene.h"
@@ -58,6 +59,19 @@ bool read_weld(const char *text, void *place) {
     *choice = (weld_choice){.rule = strcmp(text, "none") == 0 ? WELD_NOTHING : WELD_WITHIN};
     return choice->rule == WELD_NOTHING || strcmp(text, "exact") == 0 ||
            (parse_double(text, &choice->epsilon) && choice->epsilon > 0.0);
+}
+
+bool read_rest(const char *text, void *place) {
+    ignore_options *options = place;
+    options->rest = text == NULL ? REST_PAIRS : REST_PARTS;
+    return text == NULL || strcmp(text, "parts") == 0;
+}
+
+bool read_part_pairs(const char *text, void *place) {
+    part_pairs_list *list = place;
+    if (text[0] == '\0' || text[0] == ',' || list->count == PART_RULES_MAX) return false;
+    list->items[list->count++] = text;
+    return true;
 }
 
 bool read_fps(const char *text, void *place) {

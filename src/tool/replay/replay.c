@@ -19,7 +19,6 @@ typedef struct replay {
     const replay_options *options;
     recording recording;
     ignore_pairs ignored;
-    size_t rest_pairs; /* of these, those of the first frame */
     plan_choice plan;
     cscd_detector *detector;
     double *x0, *x1;
@@ -49,18 +48,6 @@ static bool choose_frames(replay *r, io_error *error) {
     if (r->first >= r->last)
         return io_fail(error, "an interval needs two frames, and %d to %d leave one; the recording has %u",
                        numbers[r->first], numbers[r->last], r->recording.frame_count);
-    return true;
-}
-
-static bool prepare_ignored(replay *r, io_error *error) {
-    r->ignored.mesh = r->recording.mesh;
-    if (r->options->ignore_path != NULL &&
-        !ignore_pairs_read(&r->ignored, &r->recording, r->options->ignore_path, error))
-        return false;
-    if (!r->options->ignore_rest) return true;
-    size_t listed = r->ignored.triangle_count;
-    if (!ignore_pairs_add_rest(&r->ignored, &r->recording, error)) return false;
-    r->rest_pairs = r->ignored.triangle_count - listed;
     return true;
 }
 
@@ -115,15 +102,17 @@ static bool open_outputs(replay *r, io_error *error) {
     const replay_options *o = r->options;
     if (o->contacts_path != NULL && !open_contacts(r, error)) return false;
     return replay_report_open(&r->report, &o->report, recording_options_path(&o->source), &r->recording,
-                              r->plan.plan, r->detector, r->first, r->last, !o->no_check, error) &&
+                              r->plan.plan, r->detector, r->first, r->last,
+                              o->no_check ? NULL : &r->ignored.parts, error) &&
            summary_open(o->json_path, o->report.path != NULL, r->recording.mesh, &r->summary, error);
 }
 
 /* Opens everything that can fail before the work begins. */
 static bool begin_replay(replay *r, io_error *error) {
     return recording_open(&r->options->source, &r->recording, error) && choose_frames(r, error) &&
-           prepare_ignored(r, error) && outputs_open(r->options, error) && prepare_plan(r, error) &&
-           prepare_detector(r, error) && open_outputs(r, error);
+           ignore_pairs_prepare(&r->options->ignored, &r->recording, &r->ignored, error) &&
+           outputs_open(r->options, error) && prepare_plan(r, error) && prepare_detector(r, error) &&
+           open_outputs(r, error);
 }
 
 static bool read_frame(replay *r, uint32_t frame, double *positions, io_error *error) {
@@ -164,8 +153,9 @@ static interval_state state_of(const replay *r, size_t contact_count) {
 /* A mesh that is embedded at the start and intersects itself at the end had a contact in between. Pairs that are
  * left out may hide it. */
 static void alarm_contradiction(replay *r, const interval_result *result) {
-    bool ignores = r->options->ignore_path != NULL || r->options->ignore_rest;
-    if (ignores || result->state != INTERVAL_CLEAN || r->end_state != FRAME_CROSSING) return;
+    if (ignore_options_any(&r->options->ignored) || result->state != INTERVAL_CLEAN ||
+        r->end_state != FRAME_CROSSING)
+        return;
     r->totals.contradictions++;
     if (method_facts_of(r->plan.method).loses_contacts) return; /* which such a method may have */
     warn(
@@ -323,9 +313,10 @@ static int fail_replay(const replay *r, bool begun, const char *reason) {
 static void print_beginning(replay *r) {
     if (r->options->quiet) return;
     recording_warn(&r->recording);
-    if (r->options->ignore_rest)
-        printf("%zu triangle pairs that intersect or touch in frame %d are left out\n", r->rest_pairs,
-               r->recording.frame_numbers[0]);
+    if (r->options->ignored.rest != REST_KEPT)
+        printf("%zu triangle pairs that intersect or touch in frame %d are left out%s\n",
+               r->ignored.rest_pairs, r->recording.frame_numbers[0],
+               r->options->ignored.rest == REST_PARTS ? ", with all pairs of parts that they are in" : "");
 }
 
 static int run_replay(const replay_options *options) {

@@ -1,32 +1,17 @@
 /* What intersects in each frame of a replay, and the events, for its report. */
 #include "src/tool/replay/replay_answers.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-
 static bool api_failed(const replay_answers *a, io_error *error) {
     return io_fail(error, "%s", cscd_context_detail(a->recording->context));
 }
 
-static bool create_tracker(replay_answers *a, io_error *error) {
-    const cscd_mesh *mesh = a->recording->mesh;
+bool replay_answers_open(recording *r, const part_names *parts, replay_answers *out, io_error *error) {
+    *out = (replay_answers){.recording = r, .parts = parts};
     cscd_event_options options = cscd_event_defaults();
-    uint32_t *labels = NULL;
-    if (a->by_component) {
-        labels = malloc(cscd_mesh_triangle_count(mesh) * sizeof *labels);
-        if (labels == NULL) return io_fail(error, "out of memory for the events");
-        options.part_count = cscd_mesh_component_labels(mesh, labels);
-        options.labels = labels;
-    }
-    cscd_status status = cscd_event_tracker_create(a->recording->context, mesh, &options, &a->tracker);
-    free(labels);
-    return status == CSCD_OK || api_failed(a, error);
-}
-
-bool replay_answers_open(recording *r, replay_answers *out, io_error *error) {
-    *out = (replay_answers){.recording = r};
-    out->by_component = r->object_count == 1 && cscd_mesh_component_count(r->mesh) > 1;
-    return create_tracker(out, error);
+    options.part_count = parts->count;
+    options.labels = parts->labels;
+    return cscd_event_tracker_create(r->context, r->mesh, &options, &out->tracker) == CSCD_OK ||
+           api_failed(out, error);
 }
 
 void replay_answers_close(replay_answers *a) {
@@ -55,10 +40,8 @@ bool replay_answers_add_frame(replay_answers *a, report *page, cscd_detector *de
 
 static const char *name_part(void *user, uint32_t part, char buffer[REPORT_PART_NAME_SIZE]) {
     const replay_answers *a = user;
-    if (part == UINT32_MAX) return "no part";
-    if (!a->by_component) return a->recording->objects[part].source.name;
-    snprintf(buffer, REPORT_PART_NAME_SIZE, "component %u", part);
-    return buffer;
+    (void)buffer;
+    return part_names_at(a->parts, part);
 }
 
 bool replay_answers_finish(replay_answers *a, report *page, io_error *error) {

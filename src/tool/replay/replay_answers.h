@@ -1,18 +1,17 @@
 /* What intersects in each frame of a replay, and the events, for its report. */
 #pragma once
 
-#include "src/tool/common/recording.h"
+#include "src/tool/common/part_names.h"
 #include "src/tool/report/report.h"
 
-/* Objects are the parts or, of a single object, its components. */
 typedef struct replay_answers {
     recording *recording;
+    const part_names *parts;
     cscd_event_tracker *tracker; /* NULL: frames are not checked */
-    bool by_component;
 } replay_answers;
 
-/* On false *out holds nothing to close. */
-bool replay_answers_open(recording *r, replay_answers *out, io_error *error);
+/* parts outlive the answers. On false *out holds nothing to close. */
+bool replay_answers_open(recording *r, const part_names *parts, replay_answers *out, io_error *error);
 void replay_answers_close(replay_answers *answers); /* a zeroed struct is fine */
 
 /* The contacts of an interval, before the frame at its end. */

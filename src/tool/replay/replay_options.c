@@ -86,10 +86,18 @@ static const option_row rows[] = {
      "skip the static check of every frame; how intervals start is then unknown"},
     {"weld", "exact|none|EPS", read_weld, offsetof(replay_options, source.weld),
      "join vertices that coincide, or lie within EPS, in the first frame"},
-    {"ignore-rest", NULL, read_flag, offsetof(replay_options, ignore_rest),
-     "leave out triangle pairs that intersect or touch in the first frame"},
-    {"ignore", "LIST", read_text, offsetof(replay_options, ignore_path),
+    {"ignore-rest", "[=parts]", read_rest, offsetof(replay_options, ignored),
+     "leave out triangle pairs that intersect or touch in the first frame; =parts: all pairs of parts that do, "
+     "as of an eye in its socket"},
+    {"ignore", "LIST", read_text, offsetof(replay_options, ignored.path),
      "leave out the pairs of a file: lines 'A B' (triangles) or 'components A B'"},
+    {"ignore-parts", "A[,B]", read_part_pairs, offsetof(replay_options, ignored.ignored),
+     "leave out part A with part B, or with everything; as often as needed"},
+    {"only", "A[,B]", read_part_pairs, offsetof(replay_options, ignored.only),
+     "look at part A with part B only, or at A with everything; as often as needed"},
+    {"parts", "TABLE.csv", read_text, offsetof(replay_options, ignored.parts_path),
+     "which part each triangle, face or vertex is in (default: the parts that the files name, else "
+     "components)"},
     {"threads", "N", read_threads, offsetof(replay_options, source.thread_count),
      "default 0: one per processor; the results are the same"},
     {"volume", "box|kdop14", read_volume, offsetof(replay_options, volume),
@@ -110,7 +118,7 @@ static const option_table table = {
 
 /* Outputs are not inputs, and not each other. */
 static int check_outputs(const replay_options *o, const char *const *inputs, size_t input_count) {
-    const char *others[] = {o->plan_path, o->ignore_path, o->contacts_path, o->json_path};
+    const char *others[] = {o->plan_path, o->ignored.path, o->contacts_path, o->json_path};
     io_error error;
     if (!output_path_is_safe(o->contacts_path, inputs, input_count, &error) ||
         !output_path_is_safe(o->contacts_path, others, 2, &error))

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "src/tool/common/frame_range.h"
-#include "src/tool/common/recording.h"
+#include "src/tool/common/ignore_pairs.h"
 #include "src/tool/common/report_request.h"
 
 typedef struct replay_options {
@@ -14,8 +14,9 @@ typedef struct replay_options {
     cscd_volume volume;
     frame_range frames;
     double min_separation;
-    bool ignore_rest, no_check, quiet, fail_on_contact;
-    const char *plan_path, *ignore_path, *contacts_path, *json_path; /* NULL: not given */
+    bool no_check, quiet, fail_on_contact;
+    ignore_options ignored;
+    const char *plan_path, *contacts_path, *json_path; /* NULL: not given */
     report_request report;
     int argument_count; /* the command line, for the provenance */
     char **arguments;

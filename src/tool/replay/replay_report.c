@@ -21,11 +21,11 @@ static bool open_scenery(replay_report *r, io_error *error) {
 
 bool replay_report_open(replay_report *out, const report_request *request, const char *model_path,
                         recording *r, const cscd_plan *plan, const cscd_detector *detector, uint32_t first,
-                        uint32_t last, bool checked, io_error *error) {
+                        uint32_t last, const part_names *parts, io_error *error) {
     *out = (replay_report){.request = request, .model_path = model_path, .recording = r};
     if (request->path == NULL) return true;
     if (!open_scenery(out, error)) return false;
-    if (checked && !replay_answers_open(r, &out->answers, error)) return false;
+    if (parts != NULL && !replay_answers_open(r, parts, &out->answers, error)) return false;
     provenance_generator(out->generator);
     report_options options = {.kind = REPORT_REPLAY,
                               .title = path_file_name(model_path),

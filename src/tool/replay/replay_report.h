@@ -23,7 +23,7 @@ typedef struct replay_report {
  * returns, replay_report_close is due. */
 bool replay_report_open(replay_report *out, const report_request *request, const char *model_path,
                         recording *r, const cscd_plan *plan, const cscd_detector *detector, uint32_t first,
-                        uint32_t last, bool checked, io_error *error);
+                        uint32_t last, const part_names *parts, io_error *error);
 
 /* The positions of the first frame. */
 void replay_report_begin(replay_report *r, const double *positions);
