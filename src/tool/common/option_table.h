@@ -26,7 +26,7 @@ typedef struct option_table {
     size_t count;
 } option_table;
 
-enum { OPTION_ROWS_MAX = 40 };
+enum { OPTION_ROWS_MAX = 64 };
 
 typedef struct given_options {
     bool rows[OPTION_ROWS_MAX]; /* which rows of the table were given */
