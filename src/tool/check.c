@@ -66,11 +66,19 @@ static const option_row rows[] = {
 };
 
 static const option_table table = {
-    "check", "MODEL [FRAMES...] [options]",
+    "check",
+    "MODEL [FRAMES...] [options]",
     "Finds the pairs of triangles that intersect or touch at each frame, features that share a vertex aside. "
     "Exact: the answer is that of the given coordinates, without rounding. FRAMES as for replay; without them "
     "MODEL itself is checked.",
-    rows, sizeof rows / sizeof *rows};
+    rows,
+    sizeof rows / sizeof *rows,
+    .examples = {
+        {"check body.obj", "Find the triangles of a mesh that intersect or touch each other."},
+        {"check body.obj body.pc2 --frames 80:90 --json pairs.json",
+         "Find those of the frames 80 to 90, and write them to a file."},
+        {"check body.obj body.pc2 --ignore-rest=parts --fail-on-contact",
+         "Fail, as a test does, when parts meet that are apart in the first frame, as an eye and its lid are not."}}};
 
 /* A run of the command. */
 typedef struct check_run {

@@ -13,9 +13,15 @@ static const option_row rows[] = {
 };
 
 static const option_table table = {
-    "info", "MODEL [--weld exact|none|EPS]",
+    "info",
+    "MODEL [--weld exact|none|EPS]",
     "Prints counts, components, closedness (open edges, non-manifold places), genus and bounds of a mesh.",
-    rows, sizeof rows / sizeof *rows};
+    rows,
+    sizeof rows / sizeof *rows,
+    .examples = {{"info body.obj", "Is this mesh closed, how many components has it, and how large is it?"},
+                 {"info body.obj --weld exact",
+                  "The same, with vertices in the same place joined, so that seams are no open edges."},
+                 {"info scan.stl --weld 0.001", "Join corners that lie within 0.001 of each other first."}}};
 
 enum { COMPONENTS_LISTED = 50 };
 

@@ -67,11 +67,20 @@ static const option_row rows[] = {
 };
 
 static const option_table table = {
-    "preprocess", "MODEL [-o PLAN.ply] [options]",
+    "preprocess",
+    "MODEL [-o PLAN.ply] [options]",
     "Cuts the mesh MODEL (OBJ, PLY, OFF, STL, glTF, GIFTI), at rest as in the file, into regions, each with a point that sees "
     "most of it, and saves this plan as a PLY that any viewer shows. cscd replay uses it to leave out pairs "
     "of triangles that cannot touch. Contacts are the same with any plan and with none.",
-    rows, sizeof rows / sizeof *rows};
+    rows,
+    sizeof rows / sizeof *rows,
+    .examples = {
+        {"preprocess body.obj",
+         "Cut a closed body into regions, once, and write them to body.plan.ply, where replay finds them."},
+        {"preprocess body.obj --report plan.html",
+         "Also write a page that shows the regions in any browser."},
+        {"preprocess scan.ply --method kmeans:8",
+         "Cut a large mesh by distance alone, which needs little time and memory."}}};
 
 static double total_area(const cscd_plan *plan) {
     double area = 0.0;

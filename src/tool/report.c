@@ -26,11 +26,19 @@ static const option_row rows[] = {
 };
 
 static const option_table table = {
-    "report", "A.json [B.json ...] -o OUT.html",
+    "report",
+    "A.json [B.json ...] -o OUT.html",
     "Puts the summaries that cscd replay --json wrote side by side on one page for any browser: the thesis' "
     "table, times, contacts and pairs of every interval, and whether the contacts agree. To see the motion "
     "itself, give cscd replay --report.",
-    rows, sizeof rows / sizeof *rows};
+    rows,
+    sizeof rows / sizeof *rows,
+    .examples = {{"report before.json after.json -o compare.html",
+                  "Put two runs of replay side by side on a page for any browser."},
+                 {"report charge.json none.json iccd.json -o methods.html",
+                  "Compare the methods that replay has, on one recording."},
+                 {"report runs/*.json -o runs.html --quiet",
+                  "Put all runs of a folder on one page, and print nothing."}}};
 
 static void free_summaries(report_summary *summaries, size_t count) {
     for (size_t i = 0; summaries != NULL && i < count; i++) free((char *)summaries[i].text);

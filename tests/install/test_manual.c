@@ -1,7 +1,8 @@
 /* The man pages have no warnings, and name every option of the tool and every function of the library, and
- * no others. */
+ * no others; its examples are those of --help, and none is refused. */
 #include "tests/support/install/api_names.h"
 #include "tests/support/shell.h"
+#include "tests/support/temp_file.h"
 #include "tests/support/test.h"
 
 #include <stdlib.h>
@@ -12,6 +13,12 @@
 #define PART_OF    PLAIN_PAGE " | awk '/^\\.S[SH] / { in_part = $0 == \".SS cscd %s\" } in_part'"
 /* Prints all names of options in a text, each once. */
 #define NAMES "grep -oE '(^|[^-a-z])-(o\\b|-[a-z-]+)' | grep -oE -e '-.*' | LC_ALL=C sort -u"
+
+/* Prints a command's examples as --help shows them: the command line, and below it what it does. */
+#define EXAMPLES "\"$CSCD_TOOL\" %s --help | sed '/^$/,$d'"
+
+static const char *const commands[] = {"preprocess", "replay", "report", "sense", "check", "info", "render"};
+enum { COMMAND_COUNT = sizeof commands / sizeof *commands };
 
 static int find_tool(void **state) {
     (void)state;
@@ -47,8 +54,7 @@ static void commands_are_those_of_the_tool(void **state) {
 
 static void options_are_those_of_the_tool(void **state) {
     (void)state;
-    static const char *const commands[] = {"preprocess", "replay", "sense", "check", "info", "render"};
-    for (size_t i = 0; i < sizeof commands / sizeof *commands; i++) {
+    for (size_t i = 0; i < COMMAND_COUNT; i++) {
         const char *name = commands[i];
         expect_equal(name, shell_output(0, PART_OF " | " NAMES, name),
                      shell_output(0, "\"$CSCD_TOOL\" %s --help | " NAMES, name));
@@ -69,9 +75,48 @@ static void no_option_is_made_up(void **state) {
     (void)state;
     expect_equal(
         "options", shell_output(0, PLAIN_PAGE " | " NAMES),
-        shell_output(0,
-                     "{ \"$CSCD_TOOL\" --help; for command in preprocess replay sense check info render; do "
-                     "\"$CSCD_TOOL\" $command --help; done; } | " NAMES));
+        shell_output(
+            0, "{ \"$CSCD_TOOL\" --help; for command in preprocess replay report sense check info render; do "
+               "\"$CSCD_TOOL\" $command --help; done; } | " NAMES));
+}
+
+static void examples_are_those_of_the_tool(void **state) {
+    (void)state;
+    char *page = shell_output(
+        0,
+        "sed -e 's/^\\.TP//' -e 's/\\\\(aq/'\\''/g' docs/man/cscd.1 | sed -e 's/\\\\f.//g' -e 's/\\\\-/-/g' | "
+        "sed -n '/^\\.SH EXAMPLES/,/^\\.SH SEE/p' | grep -v -e '^\\.SH' -e '^$'");
+    char *help = shell_output(0, "for command in preprocess replay report sense check info render; do "
+                                 "\"$CSCD_TOOL\" $command --help | sed -e '/^$/,$d' -e 's/^ *//'; done");
+    expect_equal("examples", page, help);
+    for (size_t i = 0; i < COMMAND_COUNT; i++) {
+        char *lines = shell_output(0, EXAMPLES " | grep -c '^  cscd %s '", commands[i], commands[i]);
+        assert_string_equal(lines, "3\n");
+        free(lines);
+    }
+}
+
+/* In an empty folder an example ends with 1, because it finds no files; with 2, if its options do not exist, have
+ * values that do not fit, or contradict each other. */
+static void no_example_is_refused(void **state) {
+    (void)state;
+    temp_folder folder = temp_folder_make();
+    for (size_t i = 0; i < COMMAND_COUNT; i++)
+        shell("tool=$(realpath \"$CSCD_TOOL\"); " EXAMPLES " | sed -n 's/^  cscd //p' | { cd '%s'; tried=0; "
+              "while IFS= read -r line; do eval \"$tool $line\"; status=$?; "
+              "[ $status = 1 ] || { echo \"cscd $line: ended with $status\"; exit 1; }; "
+              "tried=$((tried + 1)); done; [ $tried = 3 ]; }",
+              commands[i], folder.path);
+    temp_folder_remove(&folder);
+}
+
+static void help_fits_a_terminal(void **state) {
+    (void)state;
+    for (size_t i = 0; i < COMMAND_COUNT; i++) {
+        char *longer = shell_output(0, "\"$CSCD_TOOL\" %s --help | awk 'length > 110'", commands[i]);
+        assert_string_equal(longer, "");
+        free(longer);
+    }
 }
 
 static void functions_are_those_of_the_headers(void **state) {
@@ -95,6 +140,9 @@ int main(void) {
         cmocka_unit_test(commands_are_those_of_the_tool),
         cmocka_unit_test(options_are_those_of_the_tool),
         cmocka_unit_test(no_option_is_made_up),
+        cmocka_unit_test(examples_are_those_of_the_tool),
+        cmocka_unit_test(no_example_is_refused),
+        cmocka_unit_test(help_fits_a_terminal),
         cmocka_unit_test(functions_are_those_of_the_headers),
     };
     return cmocka_run_group_tests(tests, find_tool, NULL);

@@ -46,6 +46,12 @@ static int write_label(const option_row *row, char label[LABEL_SIZE]) {
                     value[0] != '\0' && value[0] != '[' ? " " : "", value);
 }
 
+static void print_examples(const option_table *table) {
+    for (size_t i = 0; i < OPTION_EXAMPLES; i++)
+        printf("  cscd %s\n      %s\n", table->examples[i].line, table->examples[i].does);
+    putchar('\n');
+}
+
 static void print_help(const option_table *table) {
     char label[LABEL_SIZE];
     int column = 0;
@@ -53,6 +59,7 @@ static void print_help(const option_table *table) {
         int width = write_label(&table->rows[i], label);
         if (table->rows[i].help != NULL && width > column && width <= LABEL_WIDTH) column = width;
     }
+    print_examples(table);
     printf("usage: cscd %s %s\n\n", table->command, table->usage);
     print_wrapped(table->description, 0, 0);
     putchar('\n');

@@ -18,12 +18,20 @@ typedef struct option_row {
     const char *help;    /* NULL: --help leaves the row out, as for another spelling of an option */
 } option_row;
 
+/* A command line that is worth knowing, from the command's name on, and a sentence that says what it does. */
+typedef struct option_example {
+    const char *line, *does;
+} option_example;
+
+enum { OPTION_EXAMPLES = 3 }; /* of each command: before all else in --help, and in the manual page */
+
 typedef struct option_table {
     const char *command;
     const char *usage;       /* the inputs, behind the name of the command in the first line of --help */
     const char *description; /* a sentence or two; --help breaks the lines */
     const option_row *rows;
     size_t count;
+    option_example examples[OPTION_EXAMPLES];
 } option_table;
 
 enum { OPTION_ROWS_MAX = 64 };

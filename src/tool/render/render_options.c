@@ -65,10 +65,18 @@ static const option_row rows[] = {
 };
 
 static const option_table table = {
-    "render", "MODEL [FRAMES...] -o OUT.png [options]",
+    "render",
+    "MODEL [FRAMES...] -o OUT.png [options]",
     "Draws a frame, or several side by side, with perspective and light. FRAMES as for replay; without them "
     "the model itself.",
-    rows, sizeof rows / sizeof *rows};
+    rows,
+    sizeof rows / sizeof *rows,
+    .examples = {{"render body.obj body.pc2 --frame 84 --colour contacts -o contacts.png",
+                  "Draw frame 84, with its contacts up to the next frame."},
+                 {"render body.obj body.pc2 --frames 0:140:10 --columns 5 -o strip.png",
+                  "Draw every tenth frame as a tile of one picture."},
+                 {"render body.obj --colour region -o regions.png",
+                  "Draw the regions of the plan, with a dot at each detector point."}}};
 
 /* Options that contradict each other. */
 static int check_options(const render_options *o, const given_options *given) {

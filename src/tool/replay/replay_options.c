@@ -110,11 +110,20 @@ static const option_row rows[] = {
 };
 
 static const option_table table = {
-    "replay", "MODEL FRAMES... [options]",
+    "replay",
+    "MODEL FRAMES... [options]",
     "Finds every contact of the mesh MODEL (OBJ, PLY, OFF, STL, glTF, GIFTI) with itself between one frame and the next.\n"
     "FRAMES: one .pc2 or .mdd point cache, one .glb or .gltf file, a pattern like f_%04d.obj, a folder, or a "
     "list of mesh files.",
-    rows, sizeof rows / sizeof *rows};
+    rows,
+    sizeof rows / sizeof *rows,
+    .examples = {
+        {"replay body.obj body.pc2 --report body.html",
+         "Find every contact between one frame and the next, and show them on a page for any browser."},
+        {"replay body.obj body.pc2 --object Shirt=shirt.obj --frames-of Shirt=shirt.pc2 --only Shirt,body",
+         "Find where a shirt and the body under it meet, each with a cache of its own."},
+        {"replay body.obj 'f_%04d.obj' --weld exact --ignore-rest --fail-on-contact",
+         "Fail, as a test does, when a body with split seams touches itself where it does not in the first frame."}}};
 
 /* Outputs are not inputs, and not each other. */
 static int check_outputs(const replay_options *o, const char *const *inputs, size_t input_count) {

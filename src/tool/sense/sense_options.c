@@ -80,10 +80,18 @@ static const option_row rows[] = {
 };
 
 static const option_table table = {
-    "sense", "MODEL FRAMES... [options]",
+    "sense",
+    "MODEL FRAMES... [options]",
     "Watches every pair of objects (components of MODEL) with particles that walk on their surfaces, and warns "
     "where two come near: an early warning, which can miss contacts. FRAMES as for replay.",
-    rows, sizeof rows / sizeof *rows};
+    rows,
+    sizeof rows / sizeof *rows,
+    .examples = {{"sense scene.obj scene.pc2",
+                  "Warn, for each interval, where two objects of a scene come near each other."},
+                 {"sense scene.obj scene.pc2 --compare --json summary.json",
+                  "Also find all contacts, and say which of them the warnings miss."},
+                 {"sense scene.obj scene.pc2 --picture particles.png --frame 24",
+                  "Draw the particles as they are at frame 24."}}};
 
 /* Options that contradict each other. */
 static int check_options(const sense_options *o, const given_options *given) {
