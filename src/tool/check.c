@@ -8,6 +8,7 @@
 #include "src/tool/common/option_values.h"
 #include "src/tool/common/output_path.h"
 #include "src/tool/common/provenance.h"
+#include "src/tool/common/shared_options.h"
 #include "src/tool/common/terminal.h"
 
 #include <errno.h>
@@ -29,36 +30,6 @@ static const option_row rows[] = {
      "people then goes to the standard error"},
     {"frames", "A:B[:STEP]", read_frames, offsetof(check_options, frames),
      "only the frames A to B, both included, or every STEP-th of them"},
-    {"object", "NAME=MODEL", read_named_path, offsetof(check_options, source.objects),
-     "another object, as often as needed: body and shirt, prop and hand"},
-    {"obstacle", "NAME=MODEL", read_obstacle, offsetof(check_options, source.objects),
-     "the same, of something that is not looked at with itself and with other obstacles: ground, walls"},
-    {"frames-of", "NAME=FRAMES", read_named_path, offsetof(check_options, source.frames_of),
-     "how that object moves: a point cache, a pattern or a folder, of as many frames; without it, it rests"},
-    {"first-frame", "N", read_frame_number, offsetof(check_options, source.first_frame),
-     "what the first frame is called (default: the number in its file's name, or 0)"},
-    {"fps", "N", read_fps, offsetof(check_options, source.frames.fps),
-     "frames a second of a glTF file, which has seconds only (default 24)"},
-    {"animation", "NAME", read_text, offsetof(check_options, source.frames.animation_name),
-     "which animation of a glTF file (default: the first)"},
-    {"allow-gaps", NULL, read_flag, offsetof(check_options, source.frames.allow_gaps),
-     "of numbered files, some may be missing"},
-    {"weld", "exact|none|EPS", read_weld, offsetof(check_options, source.weld),
-     "join vertices that coincide, or lie within EPS, in the first frame"},
-    {"ignore-rest", "[=parts]", read_rest, offsetof(check_options, ignored),
-     "leave out triangle pairs that intersect or touch in the first frame; =parts: all pairs of parts that do, "
-     "as of an eye in its socket"},
-    {"ignore", "LIST", read_text, offsetof(check_options, ignored.path),
-     "leave out the pairs of a file: lines 'A B' (triangles) or 'components A B'"},
-    {"ignore-parts", "A[,B]", read_part_pairs, offsetof(check_options, ignored.ignored),
-     "leave out part A with part B, or with everything; as often as needed"},
-    {"only", "A[,B]", read_part_pairs, offsetof(check_options, ignored.only),
-     "look at part A with part B only, or at A with everything; as often as needed"},
-    {"parts", "TABLE.csv", read_text, offsetof(check_options, ignored.parts_path),
-     "which part each triangle, face or vertex is in (default: the parts that the files name, else "
-     "components)"},
-    {"threads", "N", read_threads, offsetof(check_options, source.thread_count),
-     "default 0: one per processor; the results are the same"},
     {"fail-on-contact", NULL, read_flag, offsetof(check_options, fail_on_contact),
      "exit with 3 when any frame has such a pair"},
     {"quiet", NULL, read_flag, offsetof(check_options, quiet),
@@ -73,6 +44,9 @@ static const option_table table = {
     "MODEL itself is checked.",
     rows,
     sizeof rows / sizeof *rows,
+    .shared = {{&object_rows, offsetof(check_options, source)},
+               {&frame_rows, offsetof(check_options, source)},
+               {&pair_rows, offsetof(check_options, ignored)}},
     .examples = {
         {"check body.obj", "Find the triangles of a mesh that intersect or touch each other."},
         {"check body.obj body.pc2 --frames 80:90 --json pairs.json",

@@ -19,6 +19,27 @@ static bool is_letter(const option_row *row) {
     return row->name[1] == '\0';
 }
 
+/* All rows of a table, with the places that they have in the command's struct. */
+typedef struct all_rows {
+    option_row rows[OPTION_ROWS_MAX];
+    size_t count;
+} all_rows;
+
+static void append_rows(all_rows *all, const option_row *rows, size_t count, size_t place) {
+    assert(all->count + count <= OPTION_ROWS_MAX);
+    for (size_t i = 0; i < count; i++) {
+        all->rows[all->count] = rows[i];
+        all->rows[all->count++].place += place;
+    }
+}
+
+static void collect_rows(const option_table *table, all_rows *all) {
+    all->count = 0;
+    append_rows(all, table->rows, table->count, 0);
+    for (size_t i = 0; i < OPTION_LISTS_MAX && table->shared[i].list != NULL; i++)
+        append_rows(all, table->shared[i].list->rows, table->shared[i].list->count, table->shared[i].place);
+}
+
 /* ---- help -------------------------------------------------------------------------------------------- */
 
 /* Prints the words of a text, in lines that begin at `column`; the cursor stands at `used`. */
@@ -52,22 +73,38 @@ static void print_examples(const option_table *table) {
     putchar('\n');
 }
 
-static void print_help(const option_table *table) {
+static int label_column(const option_table *table) {
     char label[LABEL_SIZE];
     int column = 0;
-    for (size_t i = 0; i < table->count; i++) {
-        int width = write_label(&table->rows[i], label);
-        if (table->rows[i].help != NULL && width > column && width <= LABEL_WIDTH) column = width;
+    all_rows all;
+    collect_rows(table, &all);
+    for (size_t i = 0; i < all.count; i++) {
+        int width = write_label(&all.rows[i], label);
+        if (all.rows[i].help != NULL && width > column && width <= LABEL_WIDTH) column = width;
     }
+    return column;
+}
+
+static void print_rows(const option_row *rows, size_t count, int column) {
+    char label[LABEL_SIZE];
+    for (size_t i = 0; i < count; i++) {
+        if (rows[i].help == NULL) continue;
+        write_label(&rows[i], label);
+        int used = printf("%-*s", column, label);
+        print_wrapped(rows[i].help, column, used);
+    }
+}
+
+static void print_help(const option_table *table) {
+    int column = label_column(table);
     print_examples(table);
     printf("usage: cscd %s %s\n\n", table->command, table->usage);
     print_wrapped(table->description, 0, 0);
     putchar('\n');
-    for (size_t i = 0; i < table->count; i++) {
-        if (table->rows[i].help == NULL) continue;
-        write_label(&table->rows[i], label);
-        int used = printf("%-*s", column, label);
-        print_wrapped(table->rows[i].help, column, used);
+    print_rows(table->rows, table->count, column);
+    for (size_t i = 0; i < OPTION_LISTS_MAX && table->shared[i].list != NULL; i++) {
+        printf("\n%s\n", table->shared[i].list->title);
+        print_rows(table->shared[i].list->rows, table->shared[i].list->count, column);
     }
 }
 
@@ -79,7 +116,7 @@ typedef struct getopt_tables {
     char letters[2 * OPTION_ROWS_MAX + 2];
 } getopt_tables;
 
-static void fill_tables(const option_table *table, getopt_tables *out) {
+static void fill_tables(const all_rows *table, getopt_tables *out) {
     size_t names = 0, letters = 0;
     out->letters[letters++] = ':'; /* getopt_long tells a missing value from an unknown option */
     for (size_t i = 0; i < table->count; i++) {
@@ -98,7 +135,7 @@ static void fill_tables(const option_table *table, getopt_tables *out) {
     out->letters[letters] = '\0';
 }
 
-static size_t row_of(const option_table *table, int id) {
+static size_t row_of(const all_rows *table, int id) {
     if (id >= LONG_OPTION) return (size_t)(id - LONG_OPTION);
     size_t i = 0;
     while (!is_letter(&table->rows[i]) || table->rows[i].name[0] != id) i++;
@@ -108,8 +145,9 @@ static size_t row_of(const option_table *table, int id) {
 bool option_table_read(const option_table *table, int argument_count, char **arguments, void *options,
                        given_options *given, int *code) {
     getopt_tables tables;
-    assert(table->count <= OPTION_ROWS_MAX);
-    fill_tables(table, &tables);
+    all_rows all;
+    collect_rows(table, &all);
+    fill_tables(&all, &tables);
     *given = (given_options){.inputs = NULL};
     opterr = 0;
     optind = 1;
@@ -118,13 +156,13 @@ bool option_table_read(const option_table *table, int argument_count, char **arg
             *code = fail_option(table->command, id, arguments);
             return false;
         }
-        size_t i = row_of(table, id);
-        if (i == table->count) {
+        size_t i = row_of(&all, id);
+        if (i == all.count) {
             print_help(table);
             *code = EXIT_RAN;
             return false;
         }
-        const option_row *row = &table->rows[i];
+        const option_row *row = &all.rows[i];
         given->rows[i] = true;
         if (!row->read(optarg, (char *)options + row->place)) {
             *code =
@@ -139,8 +177,10 @@ bool option_table_read(const option_table *table, int argument_count, char **arg
 }
 
 bool option_given(const option_table *table, const given_options *given, const char *name) {
-    for (size_t i = 0; i < table->count; i++)
-        if (table->rows[i].read != NULL && strcmp(table->rows[i].name, name) == 0) return given->rows[i];
+    all_rows all;
+    collect_rows(table, &all);
+    for (size_t i = 0; i < all.count; i++)
+        if (all.rows[i].read != NULL && strcmp(all.rows[i].name, name) == 0) return given->rows[i];
     assert(false);
     return false;
 }

@@ -25,19 +25,35 @@ typedef struct option_example {
 
 enum { OPTION_EXAMPLES = 3 }; /* of each command: before all else in --help, and in the manual page */
 
+/* Rows that several commands have (shared_options.h). --help shows them below a title. */
+typedef struct option_list {
+    const char *title;
+    const option_row *rows; /* their places count from the struct that all these commands have */
+    size_t count;
+} option_list;
+
+/* Such rows in a table. */
+typedef struct shared_options {
+    const option_list *list; /* NULL: none */
+    size_t place;            /* offset of that struct in the command's struct of options */
+} shared_options;
+
+enum { OPTION_LISTS_MAX = 4 };
+
 typedef struct option_table {
     const char *command;
     const char *usage;       /* the inputs, behind the name of the command in the first line of --help */
     const char *description; /* a sentence or two; --help breaks the lines */
     const option_row *rows;
     size_t count;
+    shared_options shared[OPTION_LISTS_MAX]; /* behind the rows */
     option_example examples[OPTION_EXAMPLES];
 } option_table;
 
-enum { OPTION_ROWS_MAX = 64 };
+enum { OPTION_ROWS_MAX = 64 }; /* of a table, shared ones among them */
 
 typedef struct given_options {
-    bool rows[OPTION_ROWS_MAX]; /* which rows of the table were given */
+    bool rows[OPTION_ROWS_MAX]; /* which rows of the table were given, its own first */
     const char *const *inputs;  /* the arguments that are no options, in their order */
     size_t input_count;
 } given_options;

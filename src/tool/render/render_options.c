@@ -4,6 +4,7 @@
 #include "src/tool/common/command.h"
 #include "src/tool/common/option_values.h"
 #include "src/tool/common/output_path.h"
+#include "src/tool/common/shared_options.h"
 
 static bool read_colour(const char *text, void *place) {
     int colour;
@@ -26,20 +27,6 @@ static const option_row rows[] = {
      "move the camera with the body, which stays in the middle of its tile"},
     {"scenery", "MODEL", read_text, offsetof(render_options, scenery_path),
      "another mesh beside the body (ground, stairs, a ball): only drawn, where it is in view, and never tested"},
-    {"object", "NAME=MODEL", read_named_path, offsetof(render_options, source.objects),
-     "another object, as often as needed: body and shirt, prop and hand"},
-    {"obstacle", "NAME=MODEL", read_obstacle, offsetof(render_options, source.objects),
-     "the same, of something that is not looked at with itself and with other obstacles: ground, walls"},
-    {"frames-of", "NAME=FRAMES", read_named_path, offsetof(render_options, source.frames_of),
-     "how that object moves: a point cache, a pattern or a folder, of as many frames; without it, it rests"},
-    {"first-frame", "N", read_frame_number, offsetof(render_options, source.first_frame),
-     "what the first frame is called (default: the number in its file's name, the start of a PC2, or 0)"},
-    {"fps", "N", read_fps, offsetof(render_options, source.frames.fps),
-     "frames a second of a glTF file, which has seconds only (default 24)"},
-    {"animation", "NAME", read_text, offsetof(render_options, source.frames.animation_name),
-     "which animation of a glTF file (default: the first)"},
-    {"allow-gaps", NULL, read_flag, offsetof(render_options, source.frames.allow_gaps),
-     "of numbered files, some may be missing"},
     {"scenery-frames", "FRAMES", read_text, offsetof(render_options, scenery_frames_path),
      "how it moves: a point cache or a pattern, of as many frames, or of one"},
     {"colour", "plain", read_colour, offsetof(render_options, colouring), "one colour (default)"},
@@ -60,8 +47,6 @@ static const option_row rows[] = {
      "with contacts: only the neighbourhood of the contacts"},
     {"up", "y|z", read_picture_up, offsetof(render_options, picture), "which axis points up (default z)"},
     {"wire", NULL, read_flag, offsetof(render_options, picture.wire), "draw the triangles' edges"},
-    {"weld", "exact|none|EPS", read_weld, offsetof(render_options, source.weld),
-     "join vertices that coincide, or lie within EPS, in the first frame"},
 };
 
 static const option_table table = {
@@ -71,6 +56,8 @@ static const option_table table = {
     "the model itself.",
     rows,
     sizeof rows / sizeof *rows,
+    .shared = {{&object_rows, offsetof(render_options, source)},
+               {&frame_rows, offsetof(render_options, source)}},
     .examples = {{"render body.obj body.pc2 --frame 84 --colour contacts -o contacts.png",
                   "Draw frame 84, with its contacts up to the next frame."},
                  {"render body.obj body.pc2 --frames 0:140:10 --columns 5 -o strip.png",

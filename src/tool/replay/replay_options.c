@@ -7,6 +7,7 @@
 #include "src/tool/common/command.h"
 #include "src/tool/common/option_values.h"
 #include "src/tool/common/output_path.h"
+#include "src/tool/common/shared_options.h"
 
 static bool read_method(const char *text, void *place) {
     replay_options *o = place;
@@ -48,20 +49,6 @@ static const option_row rows[] = {
      "how it moves: a point cache or a pattern, of as many frames, or of one"},
     {"up", "y|z", read_report_up, offsetof(replay_options, report.up_axis),
      "of the report: which axis points up (default z)"},
-    {"object", "NAME=MODEL", read_named_path, offsetof(replay_options, source.objects),
-     "another object, as often as needed: body and shirt, prop and hand"},
-    {"obstacle", "NAME=MODEL", read_obstacle, offsetof(replay_options, source.objects),
-     "the same, of something that is not looked at with itself and with other obstacles: ground, walls"},
-    {"frames-of", "NAME=FRAMES", read_named_path, offsetof(replay_options, source.frames_of),
-     "how that object moves: a point cache, a pattern or a folder, of as many frames; without it, it rests"},
-    {"first-frame", "N", read_frame_number, offsetof(replay_options, source.first_frame),
-     "what the first frame is called (default: the number in its file's name, the start of a PC2, or 0)"},
-    {"fps", "N", read_fps, offsetof(replay_options, source.frames.fps),
-     "frames a second of a glTF file, which has seconds only (default 24)"},
-    {"animation", "NAME", read_text, offsetof(replay_options, source.frames.animation_name),
-     "which animation of a glTF file (default: the first)"},
-    {"allow-gaps", NULL, read_flag, offsetof(replay_options, source.frames.allow_gaps),
-     "of numbered files, some may be missing; an interval then goes on to the next that exists"},
     {"frames", "A:B", read_frames, offsetof(replay_options, frames),
      "only from frame A to frame B, both included (A: and :B are open ends)"},
     {"plan", "PLAN.ply", read_text, offsetof(replay_options, plan_path),
@@ -84,22 +71,6 @@ static const option_row rows[] = {
      "stays one of intersections and touching"},
     {"no-check", NULL, read_flag, offsetof(replay_options, no_check),
      "skip the static check of every frame; how intervals start is then unknown"},
-    {"weld", "exact|none|EPS", read_weld, offsetof(replay_options, source.weld),
-     "join vertices that coincide, or lie within EPS, in the first frame"},
-    {"ignore-rest", "[=parts]", read_rest, offsetof(replay_options, ignored),
-     "leave out triangle pairs that intersect or touch in the first frame; =parts: all pairs of parts that do, "
-     "as of an eye in its socket"},
-    {"ignore", "LIST", read_text, offsetof(replay_options, ignored.path),
-     "leave out the pairs of a file: lines 'A B' (triangles) or 'components A B'"},
-    {"ignore-parts", "A[,B]", read_part_pairs, offsetof(replay_options, ignored.ignored),
-     "leave out part A with part B, or with everything; as often as needed"},
-    {"only", "A[,B]", read_part_pairs, offsetof(replay_options, ignored.only),
-     "look at part A with part B only, or at A with everything; as often as needed"},
-    {"parts", "TABLE.csv", read_text, offsetof(replay_options, ignored.parts_path),
-     "which part each triangle, face or vertex is in (default: the parts that the files name, else "
-     "components)"},
-    {"threads", "N", read_threads, offsetof(replay_options, source.thread_count),
-     "default 0: one per processor; the results are the same"},
     {"volume", "box|kdop14", read_volume, offsetof(replay_options, volume),
      "bounding volumes of the trees (default box); the contacts are the same"},
     {"simd", "auto|scalar|avx2|avx512", read_simd, offsetof(replay_options, source.simd),
@@ -117,6 +88,9 @@ static const option_table table = {
     "list of mesh files.",
     rows,
     sizeof rows / sizeof *rows,
+    .shared = {{&object_rows, offsetof(replay_options, source)},
+               {&frame_rows, offsetof(replay_options, source)},
+               {&pair_rows, offsetof(replay_options, ignored)}},
     .examples = {
         {"replay body.obj body.pc2 --report body.html",
          "Find every contact between one frame and the next, and show them on a page for any browser."},

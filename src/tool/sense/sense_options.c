@@ -4,6 +4,7 @@
 #include "src/tool/common/command.h"
 #include "src/tool/common/option_values.h"
 #include "src/tool/common/output_path.h"
+#include "src/tool/common/shared_options.h"
 
 #include <string.h>
 
@@ -62,20 +63,8 @@ static const option_row rows[] = {
      "of the picture: degrees around the vertical axis, degrees above the horizon"},
     {"up", "y|z", read_picture_up, offsetof(sense_options, picture),
      "of the picture: which axis points up (default z)"},
-    {"first-frame", "N", read_frame_number, offsetof(sense_options, source.first_frame),
-     "what the first frame is called (default: the number in its file's name, the start of a PC2, or 0)"},
-    {"fps", "N", read_fps, offsetof(sense_options, source.frames.fps),
-     "frames a second of a glTF file, which has seconds only (default 24)"},
-    {"animation", "NAME", read_text, offsetof(sense_options, source.frames.animation_name),
-     "which animation of a glTF file (default: the first)"},
-    {"allow-gaps", NULL, read_flag, offsetof(sense_options, source.frames.allow_gaps),
-     "of numbered files, some may be missing"},
     {"frames", "A:B", read_frames, offsetof(sense_options, frames),
      "only from frame A to frame B, both included (A: and :B are open ends)"},
-    {"weld", "exact|none|EPS", read_weld, offsetof(sense_options, source.weld),
-     "join vertices that coincide, or lie within EPS, in the first frame"},
-    {"threads", "N", read_threads, offsetof(sense_options, source.thread_count),
-     "default 0: one per processor; the results are the same"},
     {"quiet", NULL, read_flag, offsetof(sense_options, quiet), "no progress, no warnings, no table"},
 };
 
@@ -86,6 +75,7 @@ static const option_table table = {
     "where two come near: an early warning, which can miss contacts. FRAMES as for replay.",
     rows,
     sizeof rows / sizeof *rows,
+    .shared = {{&frame_rows, offsetof(sense_options, source)}},
     .examples = {{"sense scene.obj scene.pc2",
                   "Warn, for each interval, where two objects of a scene come near each other."},
                  {"sense scene.obj scene.pc2 --compare --json summary.json",
