@@ -78,9 +78,8 @@ static bool print_zero_area(recording *r, io_error *error) {
                                         &found) != CSCD_OK))
         checked = io_fail(error, "%s", cscd_context_detail(r->context));
     if (checked) {
-        printf(
-            "zero area   %u triangles\ntouching    %zu triangle pairs intersect or touch (see cscd check)\n",
-            found.zero_area_triangles, found.count);
+        printf("zero area   %u triangles\npairs       %zu of triangles intersect or touch (see cscd check)\n",
+               found.zero_area_triangles, found.count);
     }
     cscd_detector_destroy(detector);
     free(positions);

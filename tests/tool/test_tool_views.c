@@ -130,7 +130,7 @@ static void info_describes_closed_meshes(void **state) {
     expect_info(&torus, "components  1\n", NULL);
     expect_info(&torus, "96 vertices, 288 edges, 192 triangles, Euler characteristic 0, closed, genus 1\n",
                 NULL);
-    expect_info(&torus, "zero area   0 triangles\ntouching    0 triangle pairs", NULL);
+    expect_info(&torus, "zero area   0 triangles\npairs       0 of triangles", NULL);
     recorded_free(&flight);
     recorded_free(&torus);
 }

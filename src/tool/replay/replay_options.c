@@ -63,12 +63,14 @@ static const option_row rows[] = {
     {"mode", "all|earliest", read_mode, offsetof(replay_options, mode),
      "what is promised (default all: every contact; earliest: of each closed component that starts free of "
      "intersections, the first contact with itself)"},
-    {"start", "prove|vouched|unknown", read_start, offsetof(replay_options, start),
-     "how it is known that a start is free of intersections: by the static check (default), because you say "
-     "so, not at all"},
+    {"start", "prove", read_start, offsetof(replay_options, start),
+     "leave out pairs only where it is proven that the mesh does not intersect itself when the interval starts "
+     "(default)"},
+    {"start", "vouched", .help = "take your word for that; where it is wrong, contacts may be lost"},
+    {"start", "unknown", .help = "leave out only what the static check of the frame has shown to be free"},
     {"min-separation", "D", read_length, offsetof(replay_options, min_separation),
-     "a contact is coming within D, a length in the files' unit (default 0: features touch); the static check "
-     "stays one of intersections and touching"},
+     "count it as a contact when features come within D of each other, as cloth of thickness D does; a length in "
+     "the files' unit (default 0: they touch); the check of single frames knows no distance"},
     {"no-check", NULL, read_flag, offsetof(replay_options, no_check),
      "skip the static check of every frame; how intervals start is then unknown"},
     {"volume", "box|kdop14", read_volume, offsetof(replay_options, volume),

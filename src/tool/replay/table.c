@@ -40,5 +40,5 @@ void totals_print_table(const replay_totals *t, cscd_method method) {
     print_row(cscd_method_name(method), method, &t->time_sum, count, (double)t->counter_sum.pcp,
               "mean per frame");
     print_row("", method, &t->time_max, 1.0, (double)t->counter_max.pcp, "maximum");
-    printf("X: not part of this method. The check is not part of the total.\n");
+    printf("X: a stage that this method does not have. The check of frames is not part of the total.\n");
 }

@@ -35,12 +35,12 @@ static const option_row rows[] = {
      "a particle in every cell of the partition (default)"},
     {"method", "random", .help = "a fixed number on each object, from random vertices: to compare with"},
     {"mu", "D", read_length, offsetof(sense_options, sensors.collision_distance),
-     "the collision distance, a length in the files' unit (default 0: what the longest edges and the motion "
-     "ask for)"},
+     "warn of particles that come nearer than this, a length in the files' unit (default 0: by the longest "
+     "edges and the motion)"},
     {"reff", "D", read_length, offsetof(sense_options, sensors.effective_radius),
      "how far particles feel each other, a length, at least --mu (default 0: mu and the two largest cells)"},
     {"cells", "N", read_unsigned, offsetof(sense_options, partition.cells),
-     "cells of each part (default 0: by how many of the smallest spheres touch one)"},
+     "cells of each part (default 0: as many as spheres of the smallest part fit around the sphere of this one)"},
     {"particles", "N", read_positive, offsetof(sense_options, sensors.particles),
      "with random: on each object (default 5)"},
     {"seed", "N", read_unsigned, offsetof(sense_options, sensors.seed), "with random: default 1"},

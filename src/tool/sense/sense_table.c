@@ -97,7 +97,7 @@ const char *sense_renewal_name(cscd_renewal renewal) {
 void sense_print_head(bool compare) {
     printf("%7s %9s %9s %7s %7s %9s %8s %8s %10s", "frame", "warnings", "confirmed", "renewed", "rounds",
            "vertices", "tests", "pairs", "sense ms");
-    if (compare) printf(" %8s %6s %7s %6s %10s", "touching", "found", "missed", "false", "trees ms");
+    if (compare) printf(" %8s %6s %7s %6s %10s", "contact", "found", "missed", "false", "trees ms");
     putchar('\n');
 }
 
