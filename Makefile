@@ -72,7 +72,7 @@ KERNEL_SOURCES  := $(filter %_simd.c,$(CORE_FILES))
 # What commands of the tool share, and the commands.
 WITHOUT_GIFTI   := src/io/gifti/no_gifti.c
 COMMON_SOURCES  := $(filter-out $(if $(filter 0,$(EXPAT)),$(filter-out $(WITHOUT_GIFTI),$(wildcard src/io/gifti/*.c)),$(WITHOUT_GIFTI)), \
-                     $(wildcard src/io/*.c src/io/*/*.c src/tool/picture/*.c src/tool/common/*.c src/tool/report/*.c))
+                     $(wildcard src/io/*.c src/io/*/*.c src/tool/picture/*.c src/tool/common/*.c src/tool/each/*.c src/tool/report/*.c))
 COMMAND_SOURCES := $(wildcard src/tool/*.c src/tool/replay/*.c src/tool/render/*.c src/tool/sense/*.c)
 SUPPORT_SOURCES := $(wildcard tests/support/*.c tests/support/*/*.c)
 # `rm -r runtime/baselines`, and its lines in runtime/detector/method_table.c: what needs them is not built then.
@@ -260,7 +260,7 @@ test-without-baselines: packages
 # The tests that use threads, under the thread sanitizer.
 THREAD_TESTS := $(addprefix $(BUILD)/tests/,detector/test_threads bvh/test_traversal core/test_progress \
                   core/test_parallel_for core/test_contexts core/test_host_loop core/test_exceptions detector/test_reentry \
-                  detector/test_lifetimes detector/test_shared_mesh detector/test_clone_threads \
+                  detector/test_lifetimes detector/test_shared_mesh detector/test_clone_threads tool/test_job_runner \
                   intersections/test_first_pairs intersections/test_surface_answers cpp/test_callbacks)
 test-threads: packages
 	@$(MAKE) --no-print-directory CONFIG=tsan test-threads-run

@@ -10,6 +10,7 @@
 #include "src/tool/common/provenance.h"
 #include "src/tool/common/shared_options.h"
 #include "src/tool/common/terminal.h"
+#include "src/tool/each/check_each.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -21,13 +22,16 @@ typedef struct check_options {
     frame_range frames;
     const char *json_path;
     ignore_options ignored;
-    bool fail_on_contact, quiet;
+    bool each, fail_on_contact, quiet;
 } check_options;
 
 static const option_row rows[] = {
     {"json", "OUT.json", read_text, offsetof(check_options, json_path),
      "write the pairs of every frame (triangles as in MODEL, from 0); - is the standard output, and the text for "
      "people then goes to the standard error"},
+    {"each", NULL, read_flag, offsetof(check_options, each),
+     "the inputs are different meshes, and each is checked alone: a line for each of them, and with --json a line of "
+     "JSON"},
     {"frames", "A:B[:STEP]", read_frames, offsetof(check_options, frames),
      "only the frames A to B, both included, or every STEP-th of them"},
     {"fail-on-contact", NULL, read_flag, offsetof(check_options, fail_on_contact),
@@ -38,7 +42,7 @@ static const option_row rows[] = {
 
 static const option_table table = {
     "check",
-    "MODEL [FRAMES...] [options]",
+    "MODEL [FRAMES...] [options]\n       cscd check --each MODEL... [options]",
     "Finds the pairs of triangles that intersect or touch at each frame, features that share a vertex aside. "
     "Exact: the answer is that of the given coordinates, without rounding. FRAMES as for replay; without them "
     "MODEL itself is checked.",
@@ -198,6 +202,14 @@ int command_check(int argument_count, char **arguments) {
     given_options given;
     int code;
     if (!option_table_read(&table, argument_count, arguments, &options, &given, &code)) return code;
+    if (options.each)
+        return check_each(&table, &given,
+                          &(each_request){.weld = options.source.weld,
+                                          .ignored = options.ignored,
+                                          .json_path = options.json_path,
+                                          .thread_count = options.source.thread_count,
+                                          .fail_on_contact = options.fail_on_contact,
+                                          .quiet = options.quiet});
     if (given.input_count < 1 && options.source.objects.count == 0)
         return fail_usage("check", "no MODEL given");
     io_error error;

@@ -184,3 +184,15 @@ bool option_given(const option_table *table, const given_options *given, const c
     assert(false);
     return false;
 }
+
+const char *option_given_beside(const option_table *table, const given_options *given,
+                                const char *const *names, size_t name_count) {
+    all_rows all;
+    collect_rows(table, &all);
+    for (size_t i = 0; i < all.count; i++) {
+        bool named = !given->rows[i];
+        for (size_t k = 0; k < name_count && !named; k++) named = strcmp(all.rows[i].name, names[k]) == 0;
+        if (!named) return all.rows[i].name;
+    }
+    return NULL;
+}

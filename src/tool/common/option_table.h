@@ -65,3 +65,7 @@ bool option_table_read(const option_table *table, int argument_count, char **arg
 
 /* Was the option of that name given? The table must have it. */
 bool option_given(const option_table *table, const given_options *given, const char *name);
+
+/* The first option that was given and is none of those names; NULL: there is none. */
+const char *option_given_beside(const option_table *table, const given_options *given,
+                                const char *const *names, size_t name_count);

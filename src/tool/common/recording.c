@@ -125,6 +125,11 @@ static bool number_frames(const recording_options *options, recording *r, io_err
 /* ---- mesh -------------------------------------------------------------------------------------------- */
 
 static bool create_context(const recording_options *options, recording *r, io_error *error) {
+    r->shares_context = options->context != NULL;
+    if (r->shares_context) {
+        r->context = options->context;
+        return true;
+    }
     cscd_context_options context_options = cscd_context_defaults();
     context_options.thread_count = options->thread_count;
     context_options.simd = options->simd;
@@ -211,7 +216,7 @@ bool recording_open(const recording_options *options, recording *out, io_error *
 
 void recording_close(recording *r) {
     cscd_mesh_destroy(r->mesh);
-    cscd_context_destroy(r->context);
+    if (!r->shares_context) cscd_context_destroy(r->context);
     for (uint32_t i = 0; i < r->object_count; i++) recorded_object_close(&r->objects[i]);
     free(r->objects);
     free(r->model_name);

@@ -38,6 +38,8 @@ typedef struct recording_options {
     uint32_t thread_count;
     cscd_simd simd;
     cscd_progress progress; /* of the context; NULL: none */
+    cscd_context
+        *context; /* to be shared with other recordings, which goes on living; NULL: one of its own */
 } recording_options;
 
 /* MODEL and FRAMES: the first input and the others, if there are any. */
@@ -48,6 +50,7 @@ const char *recording_options_path(const recording_options *options);
 
 typedef struct recording {
     cscd_context *context;
+    bool shares_context;
     cscd_mesh *mesh; /* of welded vertices and triangles, object by object */
     recorded_object *objects;
     char *model_name; /* of the object without a name of its own: its file's, without folder and ending */

@@ -2,6 +2,7 @@
 #include "src/tool/common/terminal.h"
 
 #include <signal.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
@@ -41,11 +42,12 @@ void terminal_progress_end(terminal_progress *p) {
     p->shown = false;
 }
 
-static volatile sig_atomic_t interrupt_flag;
+/* Any thread may get the signal, and all may ask. */
+static atomic_bool interrupt_flag;
 
 static void note_interrupt(int signal_number) {
     (void)signal_number;
-    interrupt_flag = 1;
+    atomic_store(&interrupt_flag, true);
 }
 
 void interrupt_catch(void) {
@@ -56,7 +58,7 @@ void interrupt_catch(void) {
 }
 
 bool interrupted(void) {
-    return interrupt_flag != 0;
+    return atomic_load(&interrupt_flag);
 }
 
 void interrupt_tell(const interrupt_kept *kept) {

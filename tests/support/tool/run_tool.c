@@ -10,7 +10,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { ARGUMENTS_MAX = 64, NOT_STARTED = 127 };
+enum { ARGUMENTS_MAX = 2048, NOT_STARTED = 127 };
 
 static const char *tool_path(void) {
     const char *path = getenv("CSCD_TOOL");
