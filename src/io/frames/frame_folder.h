@@ -1,7 +1,7 @@
 /* Sequences given as a folder that holds one mesh file a frame. */
 #pragma once
 
-#include "src/io/frame_names.h"
+#include "src/io/frames/frame_names.h"
 #include "src/io/io_error.h"
 
 #include <stdbool.h>

@@ -1,5 +1,5 @@
 /* A growing list of file names, filled from a folder and sorted in natural order. */
-#include "src/io/frame_names.h"
+#include "src/io/frames/frame_names.h"
 #include "src/io/path_name.h"
 
 #include <dirent.h>

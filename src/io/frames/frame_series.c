@@ -1,5 +1,5 @@
 /* Compares the numbers in file names: which one counts the frames, and which of its values is missing. */
-#include "src/io/frame_series.h"
+#include "src/io/frames/frame_series.h"
 
 #include "src/io/path_name.h"
 

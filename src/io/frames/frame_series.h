@@ -1,7 +1,7 @@
 /* Series: file names that differ in the value of one number only, which says when the frames come. */
 #pragma once
 
-#include "src/io/frame_names.h"
+#include "src/io/frames/frame_names.h"
 #include "src/io/io_error.h"
 
 #include <stdbool.h>

@@ -1,6 +1,6 @@
 /* Finds the frames in a folder and makes sure that they are one series. */
-#include "src/io/frame_folder.h"
-#include "src/io/frame_series.h"
+#include "src/io/frames/frame_folder.h"
+#include "src/io/frames/frame_series.h"
 #include "src/io/path_name.h"
 
 #include <string.h>

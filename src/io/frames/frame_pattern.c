@@ -1,7 +1,7 @@
 /* Finds the files that a pattern such as f_%04d.obj stands for; the pattern never reaches printf. */
-#include "src/io/frame_pattern.h"
+#include "src/io/frames/frame_pattern.h"
 
-#include "src/io/frame_series.h"
+#include "src/io/frames/frame_series.h"
 #include "src/io/growable.h"
 #include "src/io/path_name.h"
 
