@@ -4,6 +4,7 @@
 #include "src/io/json.h"
 #include "src/io/output_file.h"
 #include "src/io/path_name.h"
+#include "src/io/text_escape.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -69,16 +70,6 @@ bool contact_file_open(const char *path, contact_columns columns, contact_file *
     return true;
 }
 
-/* In quotes, with those of the name doubled, so that any name is one field. */
-static void write_quoted(FILE *file, const char *name) {
-    fputs(",\"", file);
-    for (; *name != '\0'; name++) {
-        if (*name == '"') fputc('"', file);
-        fputc(*name, file);
-    }
-    fputc('"', file);
-}
-
 static void write_csv(FILE *file, const contact_record *r, const contact_columns *columns) {
     fprintf(file, "%" PRId32 ",%s,%.17g,", r->frame, cscd_contact_kind_name(r->kind), r->toi);
     if (r->kind == CSCD_CONTACT_VF)
@@ -89,8 +80,10 @@ static void write_csv(FILE *file, const contact_record *r, const contact_columns
     for (int k = 0; k < 3; k++) fprintf(file, ",%.17g", r->point[k]);
     for (int k = 0; k < 3; k++) fprintf(file, ",%.17g", r->normal[k]);
     if (columns->bounded) fprintf(file, ",%d", r->bounded);
-    for (int i = 0; i < 2 && columns->object_names != NULL; i++)
-        write_quoted(file, columns->object_names[r->objects[i]]);
+    for (int i = 0; i < 2 && columns->object_names != NULL; i++) {
+        fputc(',', file);
+        text_write_csv(file, columns->object_names[r->objects[i]]);
+    }
     fputc('\n', file);
 }
 

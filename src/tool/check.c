@@ -1,41 +1,57 @@
 /* `cscd check`: finds where a mesh intersects or touches itself, frame by frame. */
-#include "src/io/output_file.h"
+#include "src/tool/answers/answer_options.h"
+#include "src/tool/answers/answer_words.h"
+#include "src/tool/check_output.h"
 #include "src/tool/common/command.h"
-#include "src/tool/common/frame_list.h"
 #include "src/tool/common/frame_range.h"
 #include "src/tool/common/ignore_pairs.h"
 #include "src/tool/common/option_table.h"
 #include "src/tool/common/option_values.h"
 #include "src/tool/common/output_path.h"
-#include "src/tool/common/provenance.h"
 #include "src/tool/common/shared_options.h"
 #include "src/tool/common/terminal.h"
 #include "src/tool/each/check_each.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 typedef struct check_options {
     recording_options source;
     frame_range frames;
-    const char *json_path;
+    const char *json_path, *csv_path;
     ignore_options ignored;
-    bool each, fail_on_contact, quiet;
+    answer_options answers;
+    bool each, quiet;
 } check_options;
+
+static bool read_fail_kind(const char *text, void *place) {
+    int kind;
+    if (!parse_choice(text, (const char *const[]){"crossing", "touching"}, 2, &kind)) return false;
+    *(fail_kind *)place = kind == 0 ? FAIL_ON_CROSSING : FAIL_ON_TOUCHING;
+    return true;
+}
+
+static bool fail_on_touching(const char *text, void *place) {
+    (void)text;
+    *(fail_kind *)place = FAIL_ON_TOUCHING;
+    return true;
+}
 
 static const option_row rows[] = {
     {"json", "OUT.json", read_text, offsetof(check_options, json_path),
-     "write the pairs of every frame (triangles as in MODEL, from 0); - is the standard output, and the text for "
-     "people then goes to the standard error"},
+     "write the pairs of every frame (triangles and faces as in MODEL, from 0) and the events; - is the standard "
+     "output, and the text for people then goes to the standard error"},
+    {"csv", "OUT.csv", read_text, offsetof(check_options, csv_path),
+     "write the pairs as a table; - as above"},
     {"each", NULL, read_flag, offsetof(check_options, each),
      "the inputs are different meshes, and each is checked alone: a line for each of them, and with --json a line of "
      "JSON"},
     {"frames", "A:B[:STEP]", read_frames, offsetof(check_options, frames),
      "only the frames A to B, both included, or every STEP-th of them"},
-    {"fail-on-contact", NULL, read_flag, offsetof(check_options, fail_on_contact),
-     "exit with 3 when any frame has such a pair"},
+    {"fail-on", "crossing|touching", read_fail_kind, offsetof(check_options, answers.fail.kind),
+     "exit with 3 when triangles cross in any frame; touching: or touch"},
+    {"fail-on-contact", NULL, fail_on_touching, offsetof(check_options, answers.fail.kind),
+     "another name of --fail-on touching"},
     {"quiet", NULL, read_flag, offsetof(check_options, quiet),
      "no progress, no warnings, nothing on the standard output"},
 };
@@ -50,7 +66,8 @@ static const option_table table = {
     sizeof rows / sizeof *rows,
     .shared = {{&object_rows, offsetof(check_options, source)},
                {&frame_rows, offsetof(check_options, source)},
-               {&pair_rows, offsetof(check_options, ignored)}},
+               {&pair_rows, offsetof(check_options, ignored)},
+               {&answer_rows, offsetof(check_options, answers)}},
     .examples = {
         {"check body.obj", "Find the triangles of a mesh that intersect or touch each other."},
         {"check body.obj body.pc2 --frames 80:90 --json pairs.json",
@@ -63,75 +80,53 @@ typedef struct check_run {
     const check_options *options;
     recording recording;
     ignore_pairs ignored;
+    length_unit unit;
+    fail_rules rules;
+    answers answers;
     cscd_detector *detector;
     double *positions;
-    output_file file; /* its file is NULL when not asked for */
-    json out;
+    check_output output;
+    answer_outputs files;
     terminal_progress progress;
     frame_choice frames;
-    uint32_t frames_checked;
-    frame_list intersecting;
 } check_run;
 
-/* Triangles are numbered as in MODEL. The smaller comes first, because welding keeps the order. */
-static void write_frame(check_run *c, uint32_t frame, const cscd_intersections *found) {
-    json *out = &c->out;
-    json_break_line(out);
-    json_begin_object(out, NULL);
-    json_signed(out, "frame", c->recording.frame_numbers[frame]);
-    json_boolean(out, "crossing", found->count > 0);
-    json_integer(out, "zero_area_triangles", found->zero_area_triangles);
-    json_begin_array(out, "pairs");
-    for (size_t i = 0; i < found->count; i++) {
-        json_begin_array(out, NULL);
-        json_integer(out, NULL, recording_file_triangle(&c->recording, found->items[i].a));
-        json_integer(out, NULL, recording_file_triangle(&c->recording, found->items[i].b));
-        json_end_array(out);
-    }
-    json_end_array(out);
-    json_end_object(out);
-    output_file_flush(&c->file);
+static size_t frames_done(const check_run *c) {
+    return answers_frame_count(&c->answers);
 }
 
 static bool check_frame(check_run *c, uint32_t frame, io_error *error) {
-    cscd_intersections found;
+    cscd_intersection_pairs found;
+    io_error reason;
     if (!recording_read(&c->recording, frame, c->positions, error)) return false;
-    if (cscd_detector_check(c->detector,
-                            CSCD_DOUBLES(c->positions, cscd_mesh_vertex_count(c->recording.mesh)),
-                            &found) != CSCD_OK)
-        return io_fail(error, "frame %d: %s", c->recording.frame_numbers[frame],
-                       cscd_context_detail(c->recording.context));
-    c->frames_checked++;
-    if (found.count > 0 && !frame_list_add(&c->intersecting, frame)) return io_fail(error, "out of memory");
-    if (found.count > 0 && !c->options->quiet)
-        printf("frame %d: %zu triangle pairs intersect or touch, the first %u and %u\n",
-               c->recording.frame_numbers[frame], found.count,
-               recording_file_triangle(&c->recording, found.items[0].a),
-               recording_file_triangle(&c->recording, found.items[0].b));
-    if (c->out.file != NULL) write_frame(c, frame, &found);
-    return true;
+    if (!answers_add_frame(&c->answers, c->detector, frame, c->positions, &found, &reason))
+        return io_fail(error, "frame %d: %s", c->recording.frame_numbers[frame], reason.text);
+    return check_output_add(&c->output, &c->answers, &found, error);
 }
 
-static bool prepare_check(check_run *c, io_error *error) {
-    const check_options *o = c->options;
-    if (!frame_range_choose(&o->frames, c->recording.frame_numbers, c->recording.frame_count, &c->frames,
-                            error))
-        return false;
+static bool create_detector(check_run *c, io_error *error) {
     cscd_detector_options options = cscd_detector_defaults();
-    if (!ignore_pairs_prepare(&o->ignored, &c->recording, &c->ignored, error)) return false;
     ignore_pairs_choose(&c->ignored, &options);
     if (cscd_detector_create(c->recording.context, c->recording.mesh, NULL, &options, &c->detector) !=
         CSCD_OK)
         return io_fail(error, "%s", cscd_context_detail(c->recording.context));
     c->positions = malloc((size_t)cscd_mesh_vertex_count(c->recording.mesh) * 3 * sizeof *c->positions);
-    if (c->positions == NULL) return io_fail(error, "out of memory");
-    if (o->json_path == NULL) return true;
-    if (!output_file_open(o->json_path, &c->file))
-        return io_fail(error, "%s: cannot write: %s", o->json_path, strerror(errno));
-    c->out.file = c->file.file;
-    json_begin_object(&c->out, NULL);
-    json_begin_array(&c->out, "frames");
-    return true;
+    return (c->positions != NULL || io_fail(error, "out of memory")) &&
+           answers_open(&c->recording, &c->ignored.parts, !c->options->answers.no_depths, &c->answers,
+                        error) &&
+           answers_prepare(&c->answers, c->detector, error);
+}
+
+/* Everything that can fail before the work begins. */
+static bool prepare_check(check_run *c, io_error *error) {
+    const check_options *o = c->options;
+    c->unit = answer_options_unit(&o->answers, &c->recording);
+    return frame_range_choose(&o->frames, c->recording.frame_numbers, c->recording.frame_count, &c->frames,
+                              error) &&
+           fail_rules_create(&o->answers.fail, &c->unit, &c->rules, error) &&
+           ignore_pairs_prepare(&o->ignored, &c->recording, &c->ignored, error) &&
+           create_detector(c, error) && answer_outputs_open(&o->answers, &c->files, error) &&
+           check_output_open(o->json_path, o->csv_path, &c->output, error);
 }
 
 static bool check_frames(check_run *c, io_error *error) {
@@ -143,58 +138,95 @@ static bool check_frames(check_run *c, io_error *error) {
     return true;
 }
 
-static bool close_json(check_run *c, const char *stopped_by, io_error *error) {
-    json *out = &c->out;
-    if (out->file == NULL) return true;
-    json_end_array(out);
-    json_break_line(out);
-    json_boolean(out, "complete", stopped_by == NULL);
-    if (stopped_by != NULL) json_string(out, "stopped_by", stopped_by);
-    json_end_object(out);
-    fputc('\n', out->file);
-    return output_file_close(&c->file, OUTPUT_WHOLE) ||
-           io_fail(error, "%s: cannot write: %s", c->options->json_path, strerror(errno));
+static void print_answers(const check_run *c) {
+    if (c->options->quiet || frames_done(c) == 0) return;
+    answers_print_sentence(&c->answers, &c->unit);
+    answers_print_events(&c->answers, &c->unit);
+    if (c->options->answers.timings) answers_print_frames(&c->answers, &c->unit);
+}
+
+/* Writes what was found, be it of all frames or not. */
+static bool close_check(check_run *c, const char *stopped_by, io_error *error) {
+    const check_options *o = c->options;
+    const char *suite = recording_options_path(&o->source);
+    bool finished = answers_finish(&c->answers, error);
+    if (finished) print_answers(c);
+    if (!o->quiet) recording_warn(&c->recording);
+    bool closed = check_output_close(&c->output, &c->answers, &c->unit, stopped_by, finished ? error : NULL);
+    bool written = answer_outputs_close(&c->files, finished ? &c->answers : NULL, &c->rules, suite,
+                                        finished && closed ? error : NULL);
+    return finished && closed && written;
 }
 
 static void tell_interrupt(const check_run *c) {
-    const uint32_t done = c->frames_checked > 0 ? c->frames_checked - 1 : 0;
+    const check_options *o = c->options;
+    const uint32_t done = (uint32_t)frames_done(c);
     const int32_t *numbers = c->recording.frame_numbers;
-    interrupt_tell(&(interrupt_kept){.done = c->frames_checked,
-                                     .whole = frame_choice_count(&c->frames),
-                                     .what = "frames",
-                                     .first = numbers[c->frames.first],
-                                     .last = numbers[c->frames.first + done * c->frames.step],
-                                     .paths = &c->options->json_path,
-                                     .path_count = 1});
+    const char *const paths[] = {o->json_path, o->csv_path, o->answers.events_path, o->answers.junit_path};
+    interrupt_tell(
+        &(interrupt_kept){.done = done,
+                          .whole = frame_choice_count(&c->frames),
+                          .what = "frames",
+                          .first = numbers[c->frames.first],
+                          .last = numbers[c->frames.first + (done > 0 ? done - 1 : 0) * c->frames.step],
+                          .paths = paths,
+                          .path_count = sizeof paths / sizeof *paths});
+}
+
+static int end_check(check_run *c, bool ran, const io_error *error) {
+    io_error close_error = {""};
+    if (!close_check(c, ran ? (interrupted() ? "interrupted" : NULL) : error->text, &close_error) && ran)
+        return fail_input("%s", close_error.text);
+    if (!ran) return fail_input("%s", error->text);
+    if (interrupted()) {
+        tell_interrupt(c);
+        return EXIT_INTERRUPTED;
+    }
+    return fail_rules_apply(&c->rules, &c->answers) ? EXIT_CONTACT : EXIT_RAN;
 }
 
 static int run_check(const check_options *options) {
     check_run c = {.options = options};
-    io_error error = {""}, close_error = {""};
+    io_error error = {""};
+    int code;
     if (!recording_open(&options->source, &c.recording, &error)) return fail_input("%s", error.text);
-    if (!options->quiet) recording_warn(&c.recording);
     interrupt_catch();
-    terminal_progress_begin(&c.progress, options->quiet);
-    bool ran = prepare_check(&c, &error) && check_frames(&c, &error);
-    terminal_progress_end(&c.progress);
-    bool closed = close_json(&c, ran ? (interrupted() ? "interrupted" : NULL) : error.text, &close_error);
-    if (c.frames_checked > 0 && !options->quiet) {
-        printf("%s: %u of %u frames intersect or touch themselves", recording_options_path(&options->source),
-               frame_list_frames(&c.intersecting), c.frames_checked);
-        frame_list_print(&c.intersecting, c.recording.frame_numbers, ": ");
+    if (prepare_check(&c, &error)) {
+        terminal_progress_begin(&c.progress, options->quiet);
+        bool ran = check_frames(&c, &error);
+        terminal_progress_end(&c.progress);
+        code = end_check(&c, ran, &error);
+    } else {
+        check_output_abandon(&c.output);
+        answer_outputs_close(&c.files, NULL, &c.rules, NULL, NULL);
+        code = fail_input("%s", error.text);
     }
-    if (ran && closed && interrupted()) tell_interrupt(&c);
-    int code = !ran                                                   ? fail_input("%s", error.text)
-               : !closed                                              ? fail_input("%s", close_error.text)
-               : interrupted()                                        ? EXIT_INTERRUPTED
-               : options->fail_on_contact && c.intersecting.count > 0 ? EXIT_CONTACT
-                                                                      : EXIT_RAN;
+    answers_close(&c.answers);
     cscd_detector_destroy(c.detector);
     ignore_pairs_free(&c.ignored);
     recording_close(&c.recording);
-    frame_list_free(&c.intersecting);
     free(c.positions);
     return code;
+}
+
+/* Outputs are not inputs, and not each other. */
+static int check_outputs(const check_options *o, const given_options *given) {
+    const char *inputs[] = {o->ignored.path, o->ignored.parts_path};
+    const char *outputs[] = {o->json_path, o->csv_path};
+    io_error error;
+    if (!output_path_is_safe(o->json_path, given->inputs, given->input_count, &error) ||
+        !output_path_is_safe(o->json_path, inputs, 2, &error) ||
+        !output_path_fits(o->json_path, ".json", &error))
+        return fail_usage("check", "--json %s", error.text);
+    if (!output_path_is_safe(o->csv_path, given->inputs, given->input_count, &error) ||
+        !output_path_is_safe(o->csv_path, inputs, 2, &error) ||
+        !output_path_differs(o->csv_path, outputs, 1, &error) ||
+        !output_path_fits(o->csv_path, ".csv", &error))
+        return fail_usage("check", "--csv %s", error.text);
+    if (!answer_options_are_safe(&o->answers, given->inputs, given->input_count, outputs, 2, &error) ||
+        !answer_options_are_safe(&o->answers, inputs, 2, NULL, 0, &error))
+        return fail_usage("check", "%s", error.text);
+    return EXIT_RAN;
 }
 
 int command_check(int argument_count, char **arguments) {
@@ -208,15 +240,13 @@ int command_check(int argument_count, char **arguments) {
                                           .ignored = options.ignored,
                                           .json_path = options.json_path,
                                           .thread_count = options.source.thread_count,
-                                          .fail_on_contact = options.fail_on_contact,
+                                          .fail_on_crossing = options.answers.fail.kind == FAIL_ON_CROSSING,
+                                          .fail_on_touching = options.answers.fail.kind == FAIL_ON_TOUCHING,
                                           .quiet = options.quiet});
     if (given.input_count < 1 && options.source.objects.count == 0)
         return fail_usage("check", "no MODEL given");
-    io_error error;
-    if (!output_path_is_safe(options.json_path, given.inputs, given.input_count, &error) ||
-        !output_path_is_safe(options.json_path, &options.ignored.path, 1, &error) ||
-        !output_path_fits(options.json_path, ".json", &error))
-        return fail_usage("check", "--json %s", error.text);
+    code = check_outputs(&options, &given);
+    if (code != EXIT_RAN) return code;
     recording_options_take(&options.source, &given);
     return run_check(&options);
 }

@@ -61,8 +61,8 @@ static int count_of(const char *text, const char *word) {
 /* The method promises nothing, so the contacts that it loses are no reason for a warning. */
 static void published_is_marked_as_such(void **state) {
     (void)state;
-    tool_run run =
-        RUN_TOOL("replay", model.text, cache.text, "--method", "published", "--json", summary.text);
+    tool_run run = RUN_TOOL("replay", model.text, cache.text, "--timings", "--method", "published", "--json",
+                            summary.text);
     assert_int_equal(run.code, 0);
     assert_string_equal(run.error, "");
     assert_non_null(strstr(run.out, "method published: in "));
@@ -77,7 +77,8 @@ static void published_is_marked_as_such(void **state) {
  * nor a plan. */
 static void iccd_has_a_column_for_contours(void **state) {
     (void)state;
-    tool_run run = RUN_TOOL("replay", model.text, cache.text, "--method", "iccd", "--json", summary.text);
+    tool_run run =
+        RUN_TOOL("replay", model.text, cache.text, "--timings", "--method", "iccd", "--json", summary.text);
     assert_int_equal(run.code, 0);
     assert_non_null(strstr(run.out, "\niccd "));
     assert_non_null(strstr(run.out, " contour "));
@@ -104,8 +105,8 @@ static void iccd_has_a_column_for_contours(void **state) {
 
 static void iccd_as_published_is_marked_as_such(void **state) {
     (void)state;
-    tool_run run =
-        RUN_TOOL("replay", model.text, cache.text, "--method", "iccd-published", "--json", summary.text);
+    tool_run run = RUN_TOOL("replay", model.text, cache.text, "--timings", "--method", "iccd-published",
+                            "--json", summary.text);
     assert_int_equal(run.code, 0);
     assert_string_equal(run.error, "");
     assert_non_null(strstr(run.out, "method iccd-published: in 15 of 15 intervals contacts"));
@@ -140,7 +141,8 @@ static void iccd_finds_every_contact(void **state) {
 static void published_takes_any_plan(void **state) {
     (void)state;
     EXPECT_TOOL(0, "preprocess", model.text, "--quiet", "--method", "kmeans:4");
-    tool_run run = RUN_TOOL("replay", model.text, cache.text, "--method", "published", "--frames", "0:2");
+    tool_run run =
+        RUN_TOOL("replay", model.text, cache.text, "--timings", "--method", "published", "--frames", "0:2");
     assert_int_equal(run.code, 0);
     assert_non_null(strstr(run.out, "plan: kmeans, 4 regions, "));
     assert_non_null(strstr(run.out, "\npublished "));

@@ -166,13 +166,14 @@ static int count_of(const char *text, const char *word) {
 
 static void tables_have_a_column_for_orientation(void **state) {
     (void)state;
-    tool_run run = RUN_TOOL("replay", model.text, cache.text, "--method", "single", "--mode", "earliest");
+    tool_run run =
+        RUN_TOOL("replay", model.text, cache.text, "--timings", "--method", "single", "--mode", "earliest");
     assert_int_equal(run.code, 0);
     assert_non_null(strstr(run.out, "mode earliest: in 1 of 15 intervals later contacts"));
     assert_non_null(strstr(run.out, "\nsingle "));
     assert_int_equal(count_of(run.out, " X "), 2); /* for the contour, in both rows */
     tool_run_free(&run);
-    run = RUN_TOOL("replay", model.text, cache.text, "--method", "none");
+    run = RUN_TOOL("replay", model.text, cache.text, "--timings", "--method", "none");
     assert_int_equal(count_of(run.out, " X "), 6);
     assert_null(strstr(run.out, "may be missing"));
     tool_run_free(&run);

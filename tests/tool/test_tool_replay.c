@@ -179,7 +179,7 @@ static void check_summary(const json_node *root, const contact_rows *rows) {
     assert_true(strlen(json_node_string(provenance, "commit")) > 0);
     assert_true(strlen(json_node_string(provenance, "date")) == 20);
     assert_int_equal(json_node_member(provenance, "machine")->kind, JSON_OBJECT);
-    assert_int_equal(json_node_member(provenance, "arguments")->count, 7);
+    assert_int_equal(json_node_member(provenance, "arguments")->count, 8);
     assert_int_equal(json_node_member(provenance, "inputs")->count, 2);
 }
 
@@ -201,8 +201,8 @@ static void check_table(const char *out, const json_node *root) {
 
 static void json_csv_and_table_agree(void **state) {
     (void)state;
-    tool_run run =
-        RUN_TOOL("replay", fold_model.text, fold_cache.text, "--contacts", csv.text, "--json", summary.text);
+    tool_run run = RUN_TOOL("replay", fold_model.text, fold_cache.text, "--timings", "--contacts", csv.text,
+                            "--json", summary.text);
     assert_int_equal(run.code, 0);
     contact_rows rows = contact_rows_read_csv(csv.text);
     json_node *root = json_node_read_file(summary.text);

@@ -281,6 +281,11 @@ uint32_t recording_file_triangle(const recording *r, uint32_t triangle) {
     return recorded_object_file_triangle(object, triangle - object->first_triangle);
 }
 
+uint32_t recording_file_face(const recording *r, uint32_t triangle) {
+    const recorded_object *object = &r->objects[recording_object_of_triangle(r, triangle)];
+    return mesh_file_polygon(&object->file, recording_file_triangle(r, triangle));
+}
+
 static void edge_vertices(const recording *r, uint32_t edge, uint32_t vertices[2]) {
     if (r->edge_file_vertices != NULL) {
         memcpy(vertices, r->edge_file_vertices[edge], sizeof r->edge_file_vertices[edge]);

@@ -91,6 +91,9 @@ uint32_t recording_find_object(const recording *r, const char *name);
 uint32_t recording_file_vertex(const recording *r, uint32_t vertex);
 uint32_t recording_file_triangle(const recording *r, uint32_t triangle);
 
+/* The face of the model file that a triangle of the mesh is cut from, counted from 0. */
+uint32_t recording_file_face(const recording *r, uint32_t triangle);
+
 /* The number of the edge between two vertices of the mesh, which must have it. */
 uint32_t recording_find_edge(const cscd_mesh *mesh, uint32_t a, uint32_t b);
 

@@ -118,8 +118,11 @@ static int find_exit_code(const each_run *run) {
     const answer_sums *sums = &run->sums;
     if (interrupted()) return EXIT_INTERRUPTED;
     if (sums->failed > 0) return fail_input("%u of %u meshes could not be checked", sums->failed, run->count);
-    const bool found = sums->intersecting + sums->touching > 0;
-    return run->request->fail_on_contact && found ? EXIT_CONTACT : EXIT_RAN;
+    const each_request *request = run->request;
+    const bool crossing = request->fail_on_crossing || request->fail_on_touching;
+    const bool found =
+        (crossing && sums->intersecting > 0) || (request->fail_on_touching && sums->touching > 0);
+    return found ? EXIT_CONTACT : EXIT_RAN;
 }
 
 static int run_jobs(each_run *run) {
@@ -156,7 +159,7 @@ static int start_jobs(each_run *run) {
 int check_each(const option_table *table, const given_options *given, const each_request *request) {
     io_error error;
     static const char *const own[] = {
-        "each", "json", "weld", "ignore-parts", "only", "threads", "fail-on-contact", "quiet"};
+        "each", "json", "weld", "ignore-parts", "only", "threads", "fail-on", "fail-on-contact", "quiet"};
     const char *foreign = option_given_beside(table, given, own, sizeof own / sizeof *own);
     if (foreign != NULL)
         return fail_usage("check", "--each checks each mesh alone, and --%s says nothing about that",

@@ -8,10 +8,11 @@
 /* Of the options of `check`, those that make sense for each mesh alone. */
 typedef struct each_request {
     weld_choice weld;
-    ignore_options ignored; /* pairs of parts */
-    const char *json_path;  /* JSON Lines; NULL: none are written */
-    uint32_t thread_count;  /* 0: one per processor */
-    bool fail_on_contact, quiet;
+    ignore_options ignored;                  /* pairs of parts */
+    const char *json_path;                   /* JSON Lines; NULL: none are written */
+    uint32_t thread_count;                   /* 0: one per processor */
+    bool fail_on_crossing, fail_on_touching; /* exit with 3; touching: crossing as well */
+    bool quiet;
 } each_request;
 
 /* Checks the inputs, in their order; returns the exit code. Options that were given and are none of the request's are

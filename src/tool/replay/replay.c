@@ -1,37 +1,10 @@
 /* `cscd replay`: finds every contact of a recorded mesh with itself, interval by interval. */
 #include "src/tool/common/command.h"
-#include "src/tool/common/frame_list.h"
-#include "src/tool/common/ignore_pairs.h"
 #include "src/tool/common/methods.h"
 #include "src/tool/common/output_path.h"
-#include "src/tool/common/plan_source.h"
-#include "src/tool/common/terminal.h"
-#include "src/tool/replay/replay_options.h"
-#include "src/tool/replay/replay_report.h"
-#include "src/tool/replay/summary.h"
+#include "src/tool/replay/replay_print.h"
 
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
-
-/* A replay under way. */
-typedef struct replay {
-    const replay_options *options;
-    recording recording;
-    ignore_pairs ignored;
-    plan_choice plan;
-    cscd_detector *detector;
-    double *x0, *x1;
-    uint32_t first, last; /* frames */
-    frame_state start_state, end_state;
-    contact_file *contacts; /* NULL when not asked for */
-    const char *object_names[RECORDING_OBJECTS_MAX + 1];
-    summary_writer *summary;
-    replay_report report;
-    replay_totals totals;
-    frame_list contact_frames, crossing_frames;
-    terminal_progress progress;
-} replay;
 
 static bool api_failed(const replay *r, uint32_t frame, io_error *error) {
     return io_fail(error, "frame %d: %s", r->recording.frame_numbers[frame],
@@ -82,6 +55,14 @@ static bool prepare_detector(replay *r, io_error *error) {
     return (r->x0 != NULL && r->x1 != NULL) || io_fail(error, "out of memory");
 }
 
+static bool prepare_answers(replay *r, io_error *error) {
+    const answer_options *o = &r->options->answers;
+    r->unit = answer_options_unit(o, &r->recording);
+    return fail_rules_create(&o->fail, &r->unit, &r->rules, error) &&
+           answers_open(&r->recording, &r->ignored.parts, !o->no_depths, &r->answers, error) &&
+           answers_prepare(&r->answers, r->detector, error);
+}
+
 /* Checks the outputs before anything takes time and before any file is truncated. */
 static bool outputs_open(const replay_options *o, io_error *error) {
     return output_path_opens(o->contacts_path, error) && output_path_opens(o->json_path, error) &&
@@ -102,9 +83,9 @@ static bool open_outputs(replay *r, io_error *error) {
     const replay_options *o = r->options;
     if (o->contacts_path != NULL && !open_contacts(r, error)) return false;
     return replay_report_open(&r->report, &o->report, recording_options_path(&o->source), &r->recording,
-                              r->plan.plan, r->detector, r->first, r->last,
-                              o->no_check ? NULL : &r->ignored.parts, error) &&
-           summary_open(o->json_path, o->report.path != NULL, r->recording.mesh, &r->summary, error);
+                              r->plan.plan, r->detector, r->first, r->last, error) &&
+           summary_open(o->json_path, o->report.path != NULL, r->recording.mesh, &r->summary, error) &&
+           answer_outputs_open(&o->answers, &r->files, error);
 }
 
 /* Opens everything that can fail before the work begins. */
@@ -112,7 +93,7 @@ static bool begin_replay(replay *r, io_error *error) {
     return recording_open(&r->options->source, &r->recording, error) && choose_frames(r, error) &&
            ignore_pairs_prepare(&r->options->ignored, &r->recording, &r->ignored, error) &&
            outputs_open(r->options, error) && prepare_plan(r, error) && prepare_detector(r, error) &&
-           open_outputs(r, error);
+           prepare_answers(r, error) && open_outputs(r, error);
 }
 
 static bool read_frame(replay *r, uint32_t frame, double *positions, io_error *error) {
@@ -121,27 +102,28 @@ static bool read_frame(replay *r, uint32_t frame, double *positions, io_error *e
     return true;
 }
 
-/* The static check of a frame, unless told not to. */
+static void warn_of_zero_area(const replay *r, uint32_t frame, const cscd_intersection_pairs *found) {
+    if (frame == r->first && found->zero_area_triangles > 0 && !r->options->quiet)
+        warn("frame %d has %u triangles of zero area (the first is %u)", r->recording.frame_numbers[frame],
+             found->zero_area_triangles, recording_file_triangle(&r->recording, found->first_zero_area));
+}
+
+/* What intersects in a frame, unless nothing is to be looked for. */
 static bool check_frame(replay *r, uint32_t frame, const double *positions, frame_state *state,
                         io_error *error) {
     *state = FRAME_UNCHECKED;
-    if (!r->options->no_check) {
-        cscd_intersections found;
-        if (cscd_detector_check(r->detector,
-                                CSCD_DOUBLES(positions, cscd_mesh_vertex_count(r->recording.mesh)),
-                                &found) != CSCD_OK)
-            return api_failed(r, frame, error);
-        *state = found.count > 0 ? FRAME_CROSSING : FRAME_EMBEDDED;
-        r->totals.frames_checked++;
-        r->totals.frames_crossing += found.count > 0;
-        if (found.count > 0 && !frame_list_add(&r->crossing_frames, frame))
-            return io_fail(error, "out of memory");
-        if (frame == r->first && found.zero_area_triangles > 0 && !r->options->quiet)
-            warn("frame %d has %u triangles of zero area (the first is %u)",
-                 r->recording.frame_numbers[frame], found.zero_area_triangles,
-                 recording_file_triangle(&r->recording, found.first_zero_area));
-    }
-    return summary_add_frame(r->summary, r->recording.frame_numbers[frame], *state, error);
+    io_error reason;
+    cscd_intersection_pairs found;
+    if (r->options->no_check) return answers_skip_frame(&r->answers, frame, error);
+    if (!answers_add_frame(&r->answers, r->detector, frame, positions, &found, &reason))
+        return io_fail(error, "frame %d: %s", r->recording.frame_numbers[frame], reason.text);
+    const bool meets = found.count > found.duplicate;
+    *state = meets ? FRAME_CROSSING : FRAME_EMBEDDED;
+    r->totals.frames_checked++;
+    r->totals.frames_crossing += meets;
+    warn_of_zero_area(r, frame, &found);
+    replay_report_add_found(&r->report, frame, &found);
+    return true;
 }
 
 static interval_state state_of(const replay *r, size_t contact_count) {
@@ -188,10 +170,10 @@ static bool run_interval(replay *r, uint32_t k, io_error *error) {
                               .detector = r->detector,
                               .counters = cscd_detector_counters(r->detector)};
     replay_report_add(&r->report, r->detector, &contacts, r->x1);
-    if (!write_contacts(r, k, &contacts, error) || !check_frame(r, k + 1, r->x1, &r->end_state, error))
+    if (!write_contacts(r, k, &contacts, error) || !answers_add_contacts(&r->answers, &contacts, error) ||
+        !check_frame(r, k + 1, r->x1, &r->end_state, error))
         return false;
     result.timings = cscd_detector_timings(r->detector);
-    replay_report_add_frame(&r->report, r->detector, k + 1, r->x1);
     result.state = state_of(r, result.contact_count);
     totals_add(&r->totals, &result, r->recording.mesh);
     alarm_contradiction(r, &result);
@@ -201,10 +183,9 @@ static bool run_interval(replay *r, uint32_t k, io_error *error) {
 }
 
 static bool run_intervals(replay *r, io_error *error) {
-    if (!read_frame(r, r->first, r->x0, error) || !check_frame(r, r->first, r->x0, &r->start_state, error))
-        return false;
+    if (!read_frame(r, r->first, r->x0, error)) return false;
     replay_report_begin(&r->report, r->x0);
-    replay_report_add_frame(&r->report, r->detector, r->first, r->x0);
+    if (!check_frame(r, r->first, r->x0, &r->start_state, error)) return false;
     for (uint32_t k = r->first; k < r->last && !interrupted(); k++) {
         terminal_progress_update(&r->progress, k - r->first, r->last - r->first, "replay");
         if (!run_interval(r, k, error)) return false;
@@ -216,63 +197,45 @@ static bool run_intervals(replay *r, io_error *error) {
     return true;
 }
 
-static void print_results(const replay *r) {
-    const replay_totals *t = &r->totals;
-    const int32_t *numbers = r->recording.frame_numbers;
-    printf("%s: %u vertices, %u triangles, %u component%s; frames %d to %d\n",
-           recording_options_path(&r->options->source), cscd_mesh_vertex_count(r->recording.mesh),
-           cscd_mesh_triangle_count(r->recording.mesh), cscd_mesh_component_count(r->recording.mesh),
-           cscd_mesh_component_count(r->recording.mesh) == 1 ? "" : "s", numbers[r->first],
-           numbers[r->first + t->intervals]);
-    printf("contacts: %llu VF and %llu EE in %u of %u intervals", (unsigned long long)t->counter_sum.vf,
-           (unsigned long long)t->counter_sum.ee, t->intervals_with_contact, t->intervals);
-    frame_list_print(&r->contact_frames, numbers, "; from frame ");
-    if (r->options->min_separation > 0.0)
-        printf("minimum separation: %g; contacts whose time is a bound only: %llu\n",
-               r->options->min_separation, (unsigned long long)t->counter_sum.bounded);
-    if (t->frames_checked > 0) {
-        printf("intersecting or touching: %u of %u frames", t->frames_crossing, t->frames_checked);
-        frame_list_print(&r->crossing_frames, numbers, "; ");
-    }
-    printf("intervals: %u clean, %u with contact, %u intersecting, %u unknown\n", t->states[INTERVAL_CLEAN],
-           t->states[INTERVAL_CONTACT], t->states[INTERVAL_PENETRATING], t->states[INTERVAL_UNKNOWN]);
-    bool by_method = method_facts_of(r->plan.method).loses_contacts;
-    if (t->intervals_complete < t->intervals)
-        printf("%s %s: in %u of %u intervals %scontacts of a component with itself may be missing\n",
-               by_method ? "method" : "mode", by_method ? cscd_method_name(r->plan.method) : "earliest",
-               t->intervals - t->intervals_complete, t->intervals, by_method ? "" : "later ");
-    if (t->contradictions > 0) printf("intervals that lost all their contacts: %u\n", t->contradictions);
-    plan_choice_print(&r->plan);
-    totals_print_table(t, r->plan.method);
-}
-
 /* Writes the report of the intervals that were replayed; without any there is no report. */
 static bool write_report(replay *r, const char *summary, io_error *error) {
     if (r->options->report.path == NULL || r->totals.intervals == 0) return true;
     terminal_progress_begin(&r->progress, r->options->quiet);
     terminal_progress_say(&r->progress, "writing the report");
-    bool written = replay_report_write(&r->report, summary, error);
+    bool written = replay_report_write(&r->report, r->options->no_check ? NULL : &r->answers, summary, error);
     terminal_progress_end(&r->progress);
     return written;
 }
 
-static bool close_outputs(replay *r, const char *stopped_by, io_error *error) {
-    bool written = contact_file_close(r->contacts, error);
-    r->contacts = NULL;
-    if (r->summary == NULL) return written;
+static bool close_summary(replay *r, const char *stopped_by, char **text, io_error *error) {
     const replay_options *o = r->options;
     summary_ending ending = {.totals = &r->totals,
                              .recording = &r->recording,
                              .plan = &r->plan,
+                             .answers = &r->answers,
+                             .unit = &r->unit,
                              .mode = cscd_mode_name(o->mode),
                              .volume = o->volume,
                              .min_separation = o->min_separation,
                              .argument_count = o->argument_count,
                              .arguments = o->arguments,
                              .stopped_by = stopped_by};
-    char *text = NULL;
-    written = summary_close(r->summary, &ending, &text, error) && written;
+    bool written = summary_close(r->summary, &ending, text, error);
     r->summary = NULL;
+    return written;
+}
+
+/* Writes what was found, be it of all intervals or not. Without a frame nothing was. */
+static bool close_outputs(replay *r, const char *stopped_by, io_error *error) {
+    const char *suite = recording_options_path(&r->options->source);
+    bool written = contact_file_close(r->contacts, error);
+    r->contacts = NULL;
+    if (r->summary == NULL) return answer_outputs_close(&r->files, NULL, &r->rules, suite, NULL) && written;
+    written = answers_finish(&r->answers, written ? error : NULL) && written;
+    char *text = NULL;
+    written = close_summary(r, stopped_by, &text, written ? error : NULL) && written;
+    written =
+        answer_outputs_close(&r->files, &r->answers, &r->rules, suite, written ? error : NULL) && written;
     written = write_report(r, text, written ? error : NULL) && written;
     free(text);
     return written;
@@ -281,24 +244,25 @@ static bool close_outputs(replay *r, const char *stopped_by, io_error *error) {
 static void tell_interrupt(const replay *r) {
     const replay_options *o = r->options;
     const char *page = r->totals.intervals > 0 ? o->report.path : NULL;
-    const char *const paths[] = {o->contacts_path, o->json_path, page};
+    const char *const paths[] = {o->contacts_path, o->json_path, o->answers.events_path,
+                                 o->answers.junit_path, page};
     interrupt_tell(&(interrupt_kept){.done = r->totals.intervals,
                                      .whole = r->last - r->first,
                                      .what = "intervals",
                                      .first = r->recording.frame_numbers[r->first],
                                      .last = r->recording.frame_numbers[r->first + r->totals.intervals],
                                      .paths = paths,
-                                     .path_count = 3});
+                                     .path_count = sizeof paths / sizeof *paths});
 }
 
 static void end_replay(replay *r) {
     replay_report_close(&r->report);
+    answers_close(&r->answers);
     cscd_detector_destroy(r->detector);
     plan_choice_free(&r->plan);
     ignore_pairs_free(&r->ignored);
     if (r->recording.mesh != NULL) recording_close(&r->recording);
     frame_list_free(&r->contact_frames);
-    frame_list_free(&r->crossing_frames);
     free(r->x0);
     free(r->x1);
 }
@@ -309,23 +273,12 @@ static int fail_replay(const replay *r, bool begun, const char *reason) {
     return fail_input("%s%s", reason, unreported ? "; no report was written" : "");
 }
 
-/* What a person should know before the results. */
-static void print_beginning(replay *r) {
-    if (r->options->quiet) return;
-    recording_warn(&r->recording);
-    if (r->options->ignored.rest != REST_KEPT)
-        printf("%zu triangle pairs that intersect or touch in frame %d are left out%s\n",
-               r->ignored.rest_pairs, r->recording.frame_numbers[0],
-               r->options->ignored.rest == REST_PARTS ? ", with all pairs of parts that they are in" : "");
-}
-
 static int run_replay(const replay_options *options) {
     replay r = {.options = options};
     io_error error = {""}, close_error = {""};
     int code = EXIT_RAN;
     bool begun = begin_replay(&r, &error), ran = false;
     if (begun) {
-        print_beginning(&r);
         interrupt_catch();
         terminal_progress_begin(&r.progress, options->quiet);
         ran = run_intervals(&r, &error);
@@ -333,15 +286,15 @@ static int run_replay(const replay_options *options) {
     }
     const char *stopped_by = ran ? (interrupted() ? "interrupted" : NULL) : error.text;
     bool closed = close_outputs(&r, stopped_by, &close_error);
-    if (!options->quiet && r.totals.intervals > 0) print_results(&r);
+    if (!options->quiet && r.totals.intervals > 0) replay_print_results(&r);
+    if (begun && !options->quiet) replay_print_remarks(&r);
     if (!ran) code = fail_replay(&r, begun, error.text);
     if (!closed) code = fail_input("%s", close_error.text);
     if (code == EXIT_RAN && interrupted()) {
         tell_interrupt(&r);
         code = EXIT_INTERRUPTED;
     }
-    if (code == EXIT_RAN && options->fail_on_contact && r.totals.intervals_with_contact > 0)
-        code = EXIT_CONTACT;
+    if (code == EXIT_RAN && fail_rules_apply(&r.rules, &r.answers)) code = EXIT_CONTACT;
     end_replay(&r);
     return code;
 }

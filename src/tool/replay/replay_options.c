@@ -33,13 +33,26 @@ static bool read_simd(const char *text, void *place) {
     return cscd_simd_from_name(text, place);
 }
 
+static bool read_fail_kind(const char *text, void *place) {
+    int kind;
+    if (!parse_choice(text, (const char *const[]){"crossing", "touching", "contact"}, 3, &kind)) return false;
+    *(fail_kind *)place = (fail_kind)(FAIL_ON_CROSSING + kind);
+    return true;
+}
+
+static bool fail_on_contact(const char *text, void *place) {
+    (void)text;
+    *(fail_kind *)place = FAIL_ON_CONTACT;
+    return true;
+}
+
 static const option_row rows[] = {
     {"contacts", "OUT.csv|OUT.jsonl", read_text, offsetof(replay_options, contacts_path),
      "write each contact: frame, kind, time of impact, vertices, point, normal; - is the standard output"},
     {"csv", "OUT.csv", read_text, offsetof(replay_options, contacts_path),
      "another name of --contacts; --csv - writes them to the standard output"},
     {"json", "OUT.json", read_text, offsetof(replay_options, json_path),
-     "write a summary: every interval, every frame, timings, provenance; - is the standard output, and the text "
+     "write a summary: every interval, every frame, events, timings, provenance; - is the standard output, and the text "
      "for people then goes to the standard error"},
     {"report", "OUT.html", read_text, offsetof(replay_options, report.path),
      "write a page that shows all of it in any browser: the motion, contacts, charge, regions, timings"},
@@ -77,8 +90,11 @@ static const option_row rows[] = {
      "bounding volumes of the trees (default box); the contacts are the same"},
     {"simd", "auto|scalar|avx2|avx512", read_simd, offsetof(replay_options, source.simd),
      "vector instructions (default: the best here); the contacts are the same"},
-    {"fail-on-contact", NULL, read_flag, offsetof(replay_options, fail_on_contact),
-     "exit with 3 when there was a contact"},
+    {"fail-on", "crossing|touching|contact", read_fail_kind, offsetof(replay_options, answers.fail.kind),
+     "exit with 3 when triangles cross in any frame; touching: or touch; contact: or come into contact between "
+     "two frames"},
+    {"fail-on-contact", NULL, fail_on_contact, offsetof(replay_options, answers.fail.kind),
+     "another name of --fail-on contact"},
     {"quiet", NULL, read_flag, offsetof(replay_options, quiet), "no progress, no warnings, no table"},
 };
 
@@ -92,7 +108,8 @@ static const option_table table = {
     sizeof rows / sizeof *rows,
     .shared = {{&object_rows, offsetof(replay_options, source)},
                {&frame_rows, offsetof(replay_options, source)},
-               {&pair_rows, offsetof(replay_options, ignored)}},
+               {&pair_rows, offsetof(replay_options, ignored)},
+               {&answer_rows, offsetof(replay_options, answers)}},
     .examples = {
         {"replay body.obj body.pc2 --report body.html",
          "Find every contact between one frame and the next, and show them on a page for any browser."},
@@ -116,6 +133,11 @@ static int check_outputs(const replay_options *o, const char *const *inputs, siz
         return fail_usage("replay", "%s", error.text);
     if (!output_path_fits(o->json_path, ".json", &error))
         return fail_usage("replay", "--json %s", error.text);
+    const char *files[] = {o->plan_path, o->ignored.path, o->ignored.parts_path};
+    const char *outputs[] = {o->contacts_path, o->json_path, o->report.path};
+    if (!answer_options_are_safe(&o->answers, inputs, input_count, outputs, 3, &error) ||
+        !answer_options_are_safe(&o->answers, files, 3, NULL, 0, &error))
+        return fail_usage("replay", "%s", error.text);
     return EXIT_RAN;
 }
 

@@ -1,6 +1,7 @@
 /* The options of `cscd replay`. */
 #pragma once
 
+#include "src/tool/answers/answer_options.h"
 #include "src/tool/common/frame_range.h"
 #include "src/tool/common/ignore_pairs.h"
 #include "src/tool/common/report_request.h"
@@ -14,7 +15,8 @@ typedef struct replay_options {
     cscd_volume volume;
     frame_range frames;
     double min_separation;
-    bool no_check, quiet, fail_on_contact;
+    bool no_check, quiet;
+    answer_options answers;
     ignore_options ignored;
     const char *plan_path, *contacts_path, *json_path; /* NULL: not given */
     report_request report;

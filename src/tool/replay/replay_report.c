@@ -21,11 +21,10 @@ static bool open_scenery(replay_report *r, io_error *error) {
 
 bool replay_report_open(replay_report *out, const report_request *request, const char *model_path,
                         recording *r, const cscd_plan *plan, const cscd_detector *detector, uint32_t first,
-                        uint32_t last, const part_names *parts, io_error *error) {
+                        uint32_t last, io_error *error) {
     *out = (replay_report){.request = request, .model_path = model_path, .recording = r};
     if (request->path == NULL) return true;
     if (!open_scenery(out, error)) return false;
-    if (parts != NULL && !replay_answers_open(r, parts, &out->answers, error)) return false;
     provenance_generator(out->generator);
     report_options options = {.kind = REPORT_REPLAY,
                               .title = path_file_name(model_path),
@@ -59,15 +58,11 @@ void replay_report_begin(replay_report *r, const double *positions) {
 void replay_report_add(replay_report *r, const cscd_detector *detector, const cscd_contacts *contacts,
                        const double *end) {
     if (r->report != NULL)
-        keep_or_give_up(r, report_add_interval(r->report, detector, contacts, end, &r->failure) &&
-                               replay_answers_add_contacts(&r->answers, contacts, &r->failure));
+        keep_or_give_up(r, report_add_interval(r->report, detector, contacts, end, &r->failure));
 }
 
-void replay_report_add_frame(replay_report *r, cscd_detector *detector, uint32_t frame,
-                             const double *positions) {
-    if (r->report != NULL)
-        keep_or_give_up(
-            r, replay_answers_add_frame(&r->answers, r->report, detector, frame, positions, &r->failure));
+void replay_report_add_found(replay_report *r, uint32_t frame, const cscd_intersection_pairs *found) {
+    if (r->report != NULL) keep_or_give_up(r, report_add_answers(r->report, frame, found, &r->failure));
 }
 
 static bool add_scenery(replay_report *r, io_error *error) {
@@ -81,13 +76,23 @@ static bool add_scenery(replay_report *r, io_error *error) {
     return true;
 }
 
-bool replay_report_write(replay_report *r, const char *summary, io_error *error) {
+static const char *name_part(void *user, uint32_t part, char buffer[REPORT_PART_NAME_SIZE]) {
+    (void)buffer;
+    return part_names_at(user, part);
+}
+
+static bool set_events(replay_report *r, const answers *found, io_error *error) {
+    return found == NULL || report_set_events(r->report, found->events, found->event_count, name_part,
+                                              (void *)found->parts, error);
+}
+
+bool replay_report_write(replay_report *r, const answers *found, const char *summary, io_error *error) {
     if (r->failure.text[0] != '\0') return io_fail(error, "no report was written: %s", r->failure.text);
     if (r->report == NULL) return true;
     if (summary == NULL) return io_fail(error, "no report was written: out of memory for the summary");
     report_summary text = {path_file_name(r->model_path), summary};
     io_error reason;
-    if (replay_answers_finish(&r->answers, r->report, &reason) && add_scenery(r, &reason) &&
+    if (set_events(r, found, &reason) && add_scenery(r, &reason) &&
         report_write(r->report, r->request->path, &text, 1, NULL, &reason))
         return true;
     return io_fail(error, "no report was written: %s", reason.text);
@@ -95,7 +100,6 @@ bool replay_report_write(replay_report *r, const char *summary, io_error *error)
 
 void replay_report_close(replay_report *r) {
     report_destroy(r->report);
-    replay_answers_close(&r->answers);
     scenery_close(&r->scenery);
     r->report = NULL;
 }

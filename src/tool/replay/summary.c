@@ -1,18 +1,12 @@
 /* The JSON summary of a replay, written interval by interval. */
 #include "src/tool/replay/summary.h"
 
-#include "src/io/growable.h"
 #include "src/io/output_file.h"
 #include "src/tool/common/provenance.h"
 
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-
-typedef struct checked_frame {
-    int32_t frame;
-    frame_state state;
-} checked_frame;
 
 struct summary_writer {
     output_file file; /* its file is NULL when nothing is written */
@@ -24,7 +18,6 @@ struct summary_writer {
     size_t forwarded; /* bytes of it that the file has */
     const cscd_mesh *mesh;
     json out;
-    growable frames; /* checked_frame: their list comes after the intervals */
 };
 
 static bool write_failed(const summary_writer *w, io_error *error) {
@@ -35,7 +28,6 @@ static void free_summary(summary_writer *w) {
     if (w->memory != NULL) fclose(w->memory);
     free(w->text);
     free(w->path);
-    growable_free(&w->frames);
     free(w);
 }
 
@@ -58,7 +50,6 @@ bool summary_open(const char *path, bool keep_text, const cscd_mesh *mesh, summa
         return false;
     }
     w->mesh = mesh;
-    w->frames = growable_of(sizeof(checked_frame));
     w->keeps_text = keep_text;
     w->out.file = w->memory;
     json_begin_object(&w->out, NULL);
@@ -125,27 +116,20 @@ bool summary_add_interval(summary_writer *w, const interval_result *result, io_e
     return forward_text(w, error);
 }
 
-bool summary_add_frame(summary_writer *w, int32_t frame, frame_state state, io_error *error) {
-    checked_frame *added = growable_push(&w->frames);
-    if (added == NULL) return io_fail(error, "out of memory");
-    *added = (checked_frame){frame, state};
-    return true;
+static void write_frame(json *out, const answers *a, const frame_answer *frame) {
+    json_begin_object(out, NULL);
+    json_signed(out, "frame", answers_frame_number(a, frame->frame));
+    if (frame->checked)
+        answers_write_frame(a, frame, out);
+    else
+        json_null(out, "crossing");
+    json_end_object(out);
 }
 
-static void write_frames(summary_writer *w) {
-    const checked_frame *frames = w->frames.data;
-    json_begin_array(&w->out, "frames");
-    for (size_t i = 0; i < w->frames.count; i++) {
-        json_break_line(&w->out);
-        json_begin_object(&w->out, NULL);
-        json_signed(&w->out, "frame", frames[i].frame);
-        if (frames[i].state == FRAME_UNCHECKED)
-            json_null(&w->out, "crossing");
-        else
-            json_boolean(&w->out, "crossing", frames[i].state == FRAME_CROSSING);
-        json_end_object(&w->out);
-    }
-    json_end_array(&w->out);
+static void write_frames(json *out, const answers *a) {
+    json_begin_array(out, "frames");
+    for (size_t i = 0; i < answers_frame_count(a); i++) write_frame(out, a, &answers_frames(a)[i]);
+    json_end_array(out);
 }
 
 static void write_column(json *out, const char *key, double sum, double max, uint32_t count) {
@@ -256,7 +240,9 @@ static bool close_file(summary_writer *w, io_error *error) {
 bool summary_close(summary_writer *w, const summary_ending *ending, char **text, io_error *error) {
     json_end_array(&w->out);
     json_break_line(&w->out);
-    write_frames(w);
+    write_frames(&w->out, ending->answers);
+    json_break_line(&w->out);
+    answers_write_json(ending->answers, ending->unit, &w->out);
     write_summary(w, ending);
     write_provenance(w, ending);
     json_end_object(&w->out);

@@ -1,10 +1,8 @@
 /* The JSON summary of a replay, written interval by interval. */
 #pragma once
 
+#include "src/tool/answers/answer_files.h"
 #include "src/tool/replay/table.h"
-
-/* The result of the static check of a frame. */
-typedef enum frame_state { FRAME_UNCHECKED, FRAME_EMBEDDED, FRAME_CROSSING } frame_state;
 
 typedef struct summary_writer summary_writer;
 
@@ -13,12 +11,13 @@ bool summary_open(const char *path, bool keep_text, const cscd_mesh *mesh, summa
                   io_error *error);
 /* Writes an interval, which is handed to the system at once. */
 bool summary_add_interval(summary_writer *w, const interval_result *result, io_error *error);
-bool summary_add_frame(summary_writer *w, int32_t frame, frame_state state, io_error *error);
 
 typedef struct summary_ending {
     const replay_totals *totals;
     const recording *recording;
     const plan_choice *plan;
+    const answers *answers; /* finished, as far as they came */
+    const length_unit *unit;
     const char *mode;
     cscd_volume volume;
     int argument_count;
@@ -27,6 +26,6 @@ typedef struct summary_ending {
     const char *stopped_by; /* why not every interval is there; NULL when all are */
 } summary_ending;
 
-/* Writes the frames, the summary and the provenance, and closes. text NULL, or with keep_text: all that was
+/* Writes the frames, the events, the summary and the provenance, and closes. text NULL, or with keep_text: all that was
  * written, to be freed, also when the file could not be; NULL when there was no memory for it. */
 bool summary_close(summary_writer *w, const summary_ending *ending, char **text, io_error *error);

@@ -2,25 +2,12 @@
 #include "src/tool/report/event_list.h"
 
 #include "src/io/growable.h"
+#include "src/tool/common/event_order.h"
 #include "src/tool/report/page_coordinate.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-static int compare_numbers(double a, double b) {
-    return (a > b) - (a < b);
-}
-
-/* The worst first. */
-static int compare_events(const void *left, const void *right) {
-    const cscd_event *a = *(const cscd_event *const *)left, *b = *(const cscd_event *const *)right;
-    int order = compare_numbers(b->depth, a->depth);
-    if (order == 0) order = compare_numbers(b->length, a->length);
-    if (order == 0) order = (a->pairs < b->pairs) - (a->pairs > b->pairs);
-    if (order == 0) order = (a->contacts < b->contacts) - (a->contacts > b->contacts);
-    return order != 0 ? order : (a > b) - (a < b);
-}
 
 static int compare_places(const void *left, const void *right) {
     const cscd_event *a = *(const cscd_event *const *)left, *b = *(const cscd_event *const *)right;
@@ -37,7 +24,7 @@ bool event_list_set(event_list *list, const cscd_event *events, size_t count, re
     bool copied = order != NULL && list->items != NULL;
     if (copied) {
         for (size_t i = 0; i < count; i++) order[i] = &events[i];
-        if (count > list->count) qsort(order, count, sizeof *order, compare_events);
+        if (count > list->count) event_order_sort(order, count);
         qsort(order, list->count, sizeof *order, compare_places);
         for (size_t i = 0; i < list->count; i++) list->items[i] = *order[i];
     }

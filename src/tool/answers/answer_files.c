@@ -1,0 +1,152 @@
+/* The answers as files: members of a JSON object, a CSV file of the events, and a JUnit file for continuous integration. */
+#include "src/tool/answers/answer_files.h"
+
+#include "src/io/text_escape.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+
+/* ---- JSON ----------------------------------------------------------------------------------------------- */
+
+static void write_kinds(const cscd_event *event, json *out) {
+    json_begin_array(out, "kinds");
+    for (int kind = CSCD_INTERSECTION_CROSSING; kind <= CSCD_INTERSECTION_TOUCHING; kind++)
+        if (event->kinds & cscd_intersection_set((cscd_intersection_kind)kind))
+            json_string(out, NULL, cscd_intersection_kind_name((cscd_intersection_kind)kind));
+    json_end_array(out);
+}
+
+static void write_place(const answers *a, const cscd_event *event, json *out) {
+    const recording *r = a->recording;
+    if (isnan(event->x[0]))
+        json_null(out, "point");
+    else {
+        json_begin_array(out, "point");
+        for (int k = 0; k < 3; k++) json_number(out, NULL, event->x[k]);
+        json_end_array(out);
+    }
+    if (event->triangle == UINT32_MAX) {
+        json_null(out, "triangle");
+        json_null(out, "face");
+        json_null(out, "object");
+        return;
+    }
+    json_integer(out, "triangle", recording_file_triangle(r, event->triangle));
+    json_integer(out, "face", recording_file_face(r, event->triangle));
+    json_string(out, "object", r->objects[recording_object_of_triangle(r, event->triangle)].source.name);
+}
+
+static void write_event(const answers *a, const cscd_event *event, json *out) {
+    json_break_line(out);
+    json_begin_object(out, NULL);
+    json_string(out, "a", part_names_at(a->parts, event->a));
+    json_string(out, "b", part_names_at(a->parts, event->b));
+    json_signed(out, "first", answers_frame_number(a, event->first_frame));
+    json_signed(out, "last", answers_frame_number(a, event->last_frame));
+    json_signed(out, "worst", answers_frame_number(a, event->worst_frame));
+    write_kinds(event, out);
+    json_integer(out, "pairs", event->pairs);
+    json_integer(out, "contacts", event->contacts);
+    json_number(out, "depth", event->depth);
+    json_number(out, "length", event->length);
+    write_place(a, event, out);
+    json_end_object(out);
+}
+
+void answers_write_json(const answers *a, const length_unit *unit, json *out) {
+    if (unit->name != NULL)
+        json_string(out, "unit", unit->name);
+    else
+        json_null(out, "unit");
+    json_begin_array(out, "events");
+    for (size_t i = 0; i < a->event_count; i++) write_event(a, &a->events[i], out);
+    json_end_array(out);
+}
+
+void answers_write_frame(const answers *a, const frame_answer *frame, json *out) {
+    const uint32_t triangles = cscd_mesh_triangle_count(a->recording->mesh);
+    json_boolean(out, "crossing", frame_answer_meets(frame));
+    json_integer(out, "crossing_pairs", frame->crossing);
+    json_integer(out, "touching_pairs", frame->touching);
+    json_integer(out, "duplicate_pairs", frame->duplicates);
+    json_integer(out, "crossing_faces", frame->crossing_faces);
+    json_number(out, "crossing_share", triangles > 0 ? (double)frame->crossing_faces / triangles : 0.0);
+    json_number(out, "depth", frame->worst_depth);
+}
+
+/* ---- CSV ------------------------------------------------------------------------------------------------ */
+
+static void write_row(const answers *a, const cscd_event *event, FILE *file) {
+    const recording *r = a->recording;
+    text_write_csv(file, part_names_at(a->parts, event->a));
+    fputc(',', file);
+    text_write_csv(file, part_names_at(a->parts, event->b));
+    fprintf(file, ",%" PRId32 ",%" PRId32 ",%" PRId32 ",", answers_frame_number(a, event->first_frame),
+            answers_frame_number(a, event->last_frame), answers_frame_number(a, event->worst_frame));
+    const char *before = "";
+    for (int kind = CSCD_INTERSECTION_CROSSING; kind <= CSCD_INTERSECTION_TOUCHING; kind++) {
+        if (!(event->kinds & cscd_intersection_set((cscd_intersection_kind)kind))) continue;
+        fprintf(file, "%s%s", before, cscd_intersection_kind_name((cscd_intersection_kind)kind));
+        before = " ";
+    }
+    fprintf(file, ",%" PRIu64 ",%" PRIu64 ",%.17g,%.17g,", event->pairs, event->contacts, event->depth,
+            event->length);
+    if (isnan(event->x[0]))
+        fputs(",,,", file);
+    else
+        fprintf(file, "%.17g,%.17g,%.17g,", event->x[0], event->x[1], event->x[2]);
+    if (event->triangle == UINT32_MAX)
+        fputs(",,", file);
+    else {
+        fprintf(file, "%" PRIu32 ",%" PRIu32 ",", recording_file_triangle(r, event->triangle),
+                recording_file_face(r, event->triangle));
+        text_write_csv(file, r->objects[recording_object_of_triangle(r, event->triangle)].source.name);
+    }
+    fputc('\n', file);
+}
+
+void answers_write_csv(const answers *a, FILE *file) {
+    fputs("a,b,first,last,worst,kinds,pairs,contacts,depth,length,x,y,z,triangle,face,object\n", file);
+    for (size_t i = 0; i < a->event_count; i++) write_row(a, &a->events[i], file);
+}
+
+/* ---- JUnit ---------------------------------------------------------------------------------------------- */
+
+static bool frame_fails(const answers *a, const fail_rules *rules, const frame_answer *frame,
+                        char text[FAIL_TEXT_SIZE]) {
+    fail_rules own = *rules;
+    if (!fail_rules_any(rules)) own.options.kind = FAIL_ON_CROSSING;
+    return fail_rules_meet(&own, a, frame, text);
+}
+
+static void write_case(const answers *a, const fail_rules *rules, const frame_answer *frame, FILE *file) {
+    char text[FAIL_TEXT_SIZE];
+    fprintf(file, "    <testcase classname=\"cscd\" name=\"frame %" PRId32 "\" time=\"%.6f\"",
+            answers_frame_number(a, frame->frame), frame->ms * 1e-3);
+    if (!frame_fails(a, rules, frame, text)) {
+        fputs("/>\n", file);
+        return;
+    }
+    fputs(">\n      <failure message=\"", file);
+    text_write_xml(file, text);
+    fputs("\"/>\n    </testcase>\n", file);
+}
+
+void answers_write_junit(const answers *a, const fail_rules *rules, const char *suite, FILE *file) {
+    const frame_answer *frames = answers_frames(a);
+    char text[FAIL_TEXT_SIZE];
+    size_t tests = 0, failures = 0;
+    double ms = 0.0;
+    for (size_t i = 0; i < answers_frame_count(a); i++) {
+        tests++;
+        failures += frame_fails(a, rules, &frames[i], text);
+        ms += frames[i].ms;
+    }
+    fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n  <testsuite name=\"", file);
+    text_write_xml(file, suite);
+    fprintf(file, "\" tests=\"%zu\" failures=\"%zu\" errors=\"0\" time=\"%.6f\">\n", tests, failures,
+            ms * 1e-3);
+    for (size_t i = 0; i < answers_frame_count(a); i++) write_case(a, rules, &frames[i], file);
+    fputs("  </testsuite>\n</testsuites>\n", file);
+}

@@ -1,0 +1,249 @@
+/* The answers for people: a sentence first, then the events, the worst first. */
+#include "src/tool/answers/answer_words.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { SPANS_SAID = 6, EVENTS_SHOWN = 20, NAME_WIDTH_MAX = 60 };
+
+#define CROSSING cscd_intersection_set(CSCD_INTERSECTION_CROSSING)
+
+typedef bool frame_test(const frame_answer *frame);
+
+static bool frame_checked(const frame_answer *frame) {
+    return frame->checked;
+}
+
+static bool frame_crosses(const frame_answer *frame) {
+    return frame->crossing > 0;
+}
+
+static bool frame_touches(const frame_answer *frame) {
+    return frame->crossing == 0 && frame->touching > 0;
+}
+
+static size_t count_frames(const answers *a, frame_test *test) {
+    size_t count = 0;
+    for (size_t i = 0; i < answers_frame_count(a); i++) count += test(&answers_frames(a)[i]);
+    return count;
+}
+
+/* Prints "17 to 43, 45, 47 to 48": the frames that pass, in their order. Frames that follow each other in what was looked
+ * at make a range. */
+static void say_frames(const answers *a, frame_test *test) {
+    const frame_answer *frames = answers_frames(a);
+    size_t spans = 0;
+    for (size_t i = 0, end; i < answers_frame_count(a); i = end) {
+        end = i + 1;
+        if (!test(&frames[i])) continue;
+        while (end < answers_frame_count(a) && test(&frames[end])) end++;
+        if (++spans > SPANS_SAID) {
+            printf(" and others");
+            return;
+        }
+        printf("%s%d", spans > 1 ? ", " : " ", answers_frame_number(a, frames[i].frame));
+        if (end - i > 1) printf(" to %d", answers_frame_number(a, frames[end - 1].frame));
+    }
+}
+
+/* ---- names ------------------------------------------------------------------------------------------- */
+
+/* Columns that a text takes in a terminal, but for wide characters: characters, not bytes. */
+static int text_width(const char *text) {
+    int width = 0;
+    for (; *text != '\0'; text++) width += ((unsigned char)*text & 0xc0) != 0x80;
+    return width;
+}
+
+/* "A x B", or "A x itself". */
+static const char *second_name(const answers *a, uint32_t first, uint32_t second) {
+    return first == second ? "itself" : part_names_at(a->parts, second);
+}
+
+static int pair_width(const answers *a, uint32_t first, uint32_t second) {
+    return text_width(part_names_at(a->parts, first)) + 3 + text_width(second_name(a, first, second));
+}
+
+/* Filled with blanks. */
+static void print_pair(const answers *a, uint32_t first, uint32_t second, int width) {
+    printf("%s x %s", part_names_at(a->parts, first), second_name(a, first, second));
+    printf("%*s", width > pair_width(a, first, second) ? width - pair_width(a, first, second) : 0, "");
+}
+
+/* ---- the sentence --------------------------------------------------------------------------------------- */
+
+static void say_recording(const answers *a) {
+    const size_t checked = count_frames(a, frame_checked);
+    const size_t crossing = count_frames(a, frame_crosses), touching = count_frames(a, frame_touches);
+    if (checked == 0)
+        printf("No frame was checked.");
+    else if (crossing == checked)
+        printf("All %zu frames cross.", checked);
+    else if (crossing > 0) {
+        printf("Frame%s", crossing > 1 ? "s" : "");
+        say_frames(a, frame_crosses);
+        printf(" cross%s (%zu of %zu)", crossing > 1 ? "" : "es", crossing, checked);
+        if (touching == 0) printf(".");
+    } else
+        printf(touching > 0 ? "No frame crosses" : "No frame crosses or touches (%zu checked).", checked);
+    if (touching > 0 && crossing < checked) {
+        printf(crossing > 0 ? ", frame%s" : "; frame%s", touching > 1 ? "s" : "");
+        say_frames(a, frame_touches);
+        printf(" touch%s (%zu of %zu).", touching > 1 ? "" : "es", touching, checked);
+    }
+}
+
+static void say_frame(const answers *a) {
+    const frame_answer *frame = answers_frames(a);
+    if (!frame_answer_meets(frame)) {
+        printf("Clean: no two triangles cross or touch.");
+        return;
+    }
+    if (frame->crossing > 0) {
+        const uint32_t triangles = cscd_mesh_triangle_count(a->recording->mesh);
+        printf("%zu pair%s of triangles cross%s, with %u of %u triangles (%.3g %%)", frame->crossing,
+               frame->crossing > 1 ? "s" : "", frame->crossing > 1 ? "" : "es", frame->crossing_faces,
+               triangles, 100.0 * frame->crossing_faces / triangles);
+        if (frame->touching > 0) printf("; %zu touch%s", frame->touching, frame->touching > 1 ? "" : "es");
+    } else
+        printf("%zu pair%s of triangles touch%s, none cross", frame->touching, frame->touching > 1 ? "s" : "",
+               frame->touching > 1 ? "" : "es");
+    printf(".");
+}
+
+static void say_duplicates(const answers *a) {
+    size_t most = 0;
+    for (size_t i = 0; i < answers_frame_count(a); i++)
+        if (answers_frames(a)[i].duplicates > most) most = answers_frames(a)[i].duplicates;
+    if (most == 1) printf(" One triangle is there twice.");
+    if (most > 1) printf(" %zu pairs of triangles are the same triangle twice.", most);
+}
+
+static void say_measure(const cscd_event *event, const length_unit *unit) {
+    char text[LENGTH_TEXT_SIZE];
+    if (event->depth > 0.0)
+        printf(", %s deep", length_text(event->depth, unit, text));
+    else if (event->length > 0.0)
+        printf(", %s along %s", event->kinds & CROSSING ? "crossing" : "touching",
+               length_text(event->length, unit, text));
+    else if (event->pairs == 0 && event->depths == 0)
+        printf(", contacts only");
+}
+
+/* "A x B, frames 21 to 29, 12.4 mm deep at frame 24". */
+static void say_event(const answers *a, const cscd_event *event, const length_unit *unit) {
+    const bool single = answers_frame_count(a) == 1;
+    print_pair(a, event->a, event->b, 0);
+    if (single) {
+        say_measure(event, unit);
+        return;
+    }
+    printf(", frame%s %d", event->last_frame > event->first_frame ? "s" : "",
+           answers_frame_number(a, event->first_frame));
+    if (event->last_frame > event->first_frame) printf(" to %d", answers_frame_number(a, event->last_frame));
+    say_measure(event, unit);
+    if (event->last_frame > event->first_frame && (event->depth > 0.0 || event->length > 0.0))
+        printf(" at frame %d", answers_frame_number(a, event->worst_frame));
+}
+
+void answers_print_sentence(const answers *a, const length_unit *unit) {
+    const bool single = answers_frame_count(a) == 1;
+    if (single)
+        say_frame(a);
+    else
+        say_recording(a);
+    say_duplicates(a);
+    if (a->event_count > 0) {
+        const char *what = single ? "place" : "event";
+        printf(" %zu %s%s, %s", a->event_count, what, a->event_count > 1 ? "s" : "",
+               a->event_count > 1 ? "worst: " : "");
+        say_event(a, &a->events[a->worst_first[0]], unit);
+        putchar('.');
+    }
+    putchar('\n');
+}
+
+/* ---- tables --------------------------------------------------------------------------------------------- */
+
+/* What an event is, in a word: that which weighs most. */
+static const char *event_word(const cscd_event *event) {
+    if (event->kinds & CROSSING) return "cross";
+    if (event->depths > 0) return "inside";
+    return event->pairs > 0 ? "touch" : "contact";
+}
+
+static void print_length(double length, const length_unit *unit) {
+    char text[LENGTH_TEXT_SIZE];
+    printf("  %9s", length > 0.0 ? length_text(length, unit, text) : "-");
+}
+
+static void print_event(const answers *a, const cscd_event *event, const length_unit *unit, int width) {
+    char frames[32];
+    print_pair(a, event->a, event->b, width);
+    printf("  %-7s", event_word(event));
+    if (answers_frame_count(a) > 1) {
+        if (event->last_frame > event->first_frame)
+            snprintf(frames, sizeof frames, "%d to %d", answers_frame_number(a, event->first_frame),
+                     answers_frame_number(a, event->last_frame));
+        else
+            snprintf(frames, sizeof frames, "%d", answers_frame_number(a, event->first_frame));
+        printf("  %-14s  %6d", frames, answers_frame_number(a, event->worst_frame));
+    }
+    print_length(event->depth, unit);
+    print_length(event->length, unit);
+    printf("  %7llu  %8llu\n", (unsigned long long)event->pairs, (unsigned long long)event->contacts);
+}
+
+static int widest_pair(const answers *a, size_t shown) {
+    int width = text_width("parts");
+    for (size_t i = 0; i < shown; i++) {
+        const cscd_event *event = &a->events[a->worst_first[i]];
+        const int own = pair_width(a, event->a, event->b);
+        if (own > width) width = own;
+    }
+    return width < NAME_WIDTH_MAX ? width : NAME_WIDTH_MAX;
+}
+
+void answers_print_events(const answers *a, const length_unit *unit) {
+    const size_t shown = a->event_count < EVENTS_SHOWN ? a->event_count : EVENTS_SHOWN;
+    if (shown == 0) return;
+    const int width = widest_pair(a, shown);
+    printf("\n%-*s  %-7s", width, "parts", "what");
+    if (answers_frame_count(a) > 1) printf("  %-14s  %6s", "frames", "worst");
+    printf("  %9s  %9s  %7s  %8s\n", "depth", "length", "pairs", "contacts");
+    for (size_t i = 0; i < shown; i++) print_event(a, &a->events[a->worst_first[i]], unit, width);
+    if (shown < a->event_count)
+        printf("and %zu more; --events OUT.csv writes all of them\n", a->event_count - shown);
+}
+
+static void print_frame(const answers *a, const frame_answer *frame, const length_unit *unit) {
+    const double triangles = cscd_mesh_triangle_count(a->recording->mesh);
+    printf("%8d  %9zu  %9zu  %8.3f %%", answers_frame_number(a, frame->frame), frame->crossing,
+           frame->touching, triangles > 0.0 ? 100.0 * frame->crossing_faces / triangles : 0.0);
+    print_length(frame->worst_depth, unit);
+    printf("  %10.3f  ", frame->ms);
+    print_pair(a, frame->worst_parts[0], frame->worst_parts[1], 0);
+    putchar('\n');
+}
+
+static bool frame_clean(const frame_answer *frame) {
+    return frame->checked && !frame_answer_meets(frame);
+}
+
+void answers_print_frames(const answers *a, const length_unit *unit) {
+    const size_t checked = count_frames(a, frame_checked), clean = count_frames(a, frame_clean);
+    if (clean < checked)
+        printf("\n%8s  %9s  %9s  %10s  %9s  %10s  %s\n", "frame", "crossing", "touching", "share", "depth",
+               "ms", "worst");
+    double ms = 0.0;
+    for (size_t i = 0; i < answers_frame_count(a); i++) {
+        const frame_answer *frame = &answers_frames(a)[i];
+        ms += frame->ms;
+        if (frame_answer_meets(frame)) print_frame(a, frame, unit);
+    }
+    if (clean < checked)
+        printf("crossing, touching: pairs of triangles; share: of the triangles that cross another one\n");
+    if (checked > 0)
+        printf("%zu of %zu frames are clean; a frame took %.3f ms on average\n", clean, checked,
+               ms / (double)checked);
+}

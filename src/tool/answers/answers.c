@@ -1,0 +1,170 @@
+/* The answers of check and replay: what intersects in each frame, between which parts, how deep, and the events that
+ * these frames make up. */
+#include "src/tool/answers/answers.h"
+
+#include "src/tool/common/event_order.h"
+
+#include <stdlib.h>
+
+static bool api_failed(const answers *a, io_error *error) {
+    return io_fail(error, "%s", cscd_context_detail(a->recording->context));
+}
+
+static bool create_tracker(answers *a, io_error *error) {
+    cscd_event_options options = cscd_event_defaults();
+    options.part_count = a->parts->count;
+    options.labels = a->parts->labels;
+    return cscd_event_tracker_create(a->recording->context, a->recording->mesh, &options, &a->tracker) ==
+               CSCD_OK ||
+           api_failed(a, error);
+}
+
+bool answers_open(recording *r, const part_names *parts, bool depths, answers *out, io_error *error) {
+    answers a = {
+        .recording = r, .parts = parts, .depths = depths, .frames = growable_of(sizeof(frame_answer))};
+    a.seen = calloc((size_t)cscd_mesh_triangle_count(r->mesh) + 1, sizeof *a.seen);
+    if (a.seen == NULL) return io_fail(error, "out of memory");
+    if (!create_tracker(&a, error)) {
+        answers_close(&a);
+        return false;
+    }
+    *out = a;
+    return true;
+}
+
+void answers_close(answers *a) {
+    cscd_event_tracker_destroy(a->tracker);
+    growable_free(&a->frames);
+    free(a->events);
+    free(a->worst_first);
+    free(a->seen);
+    *a = (answers){0};
+}
+
+bool answers_prepare(const answers *a, cscd_detector *detector, io_error *error) {
+    return cscd_detector_set_parts(detector, a->parts->labels, a->parts->count) == CSCD_OK ||
+           api_failed(a, error);
+}
+
+const frame_answer *answers_frames(const answers *a) {
+    return a->frames.data;
+}
+
+size_t answers_frame_count(const answers *a) {
+    return a->frames.count;
+}
+
+bool answers_add_contacts(answers *a, const cscd_contacts *contacts, io_error *error) {
+    a->waiting_contacts = contacts->count;
+    return cscd_event_tracker_add_contacts(a->tracker, contacts->items, contacts->count) == CSCD_OK ||
+           api_failed(a, error);
+}
+
+/* A new frame, with the contacts that wait for it. */
+static frame_answer *push_frame(answers *a, uint32_t frame, io_error *error) {
+    frame_answer *added = growable_push(&a->frames);
+    if (added == NULL) {
+        io_fail(error, "out of memory");
+        return NULL;
+    }
+    *added =
+        (frame_answer){.frame = frame, .contacts = a->waiting_contacts, .worst_parts = {NO_PART, NO_PART}};
+    a->waiting_contacts = 0;
+    return added;
+}
+
+static void count_faces(answers *a, const cscd_intersection_pairs *found, frame_answer *frame) {
+    const uint32_t mark = (uint32_t)a->frames.count;
+    for (size_t i = 0; i < found->count; i++) {
+        if (found->items[i].kind != CSCD_INTERSECTION_CROSSING) continue;
+        const uint32_t triangles[] = {found->items[i].a, found->items[i].b};
+        for (int k = 0; k < 2; k++) {
+            frame->crossing_faces += a->seen[triangles[k]] != mark;
+            a->seen[triangles[k]] = mark;
+        }
+    }
+}
+
+static size_t count_pairs(const cscd_part_pair *pair) {
+    return pair->crossing + pair->coplanar + pair->folded + pair->touching;
+}
+
+static bool is_worse(const cscd_part_pair *a, const cscd_part_pair *b) {
+    if (a->depth != b->depth) return a->depth > b->depth;
+    if (a->length != b->length) return a->length > b->length;
+    return count_pairs(a) > count_pairs(b);
+}
+
+static void find_worst(const cscd_part_pairs *pairs, frame_answer *frame) {
+    const cscd_part_pair *worst = NULL;
+    for (size_t i = 0; i < pairs->count; i++) {
+        const cscd_part_pair *pair = &pairs->items[i];
+        if (count_pairs(pair) == 0 && pair->depth == 0.0) continue;
+        if (worst == NULL || is_worse(pair, worst)) worst = pair;
+    }
+    if (worst == NULL) return;
+    frame->worst_parts[0] = worst->a;
+    frame->worst_parts[1] = worst->b;
+    frame->worst_depth = worst->depth;
+    frame->worst_length = worst->length;
+}
+
+bool answers_add_frame(answers *a, cscd_detector *detector, uint32_t frame, const double *positions,
+                       cscd_intersection_pairs *found, io_error *error) {
+    cscd_intersection_options options = cscd_intersection_defaults();
+    options.parts = true;
+    options.curves = options.patches = options.depths = a->depths;
+    const cscd_view *view = CSCD_DOUBLES(positions, cscd_mesh_vertex_count(a->recording->mesh));
+    if (cscd_detector_find_intersections(detector, view, &options, found) != CSCD_OK)
+        return api_failed(a, error);
+    frame_answer *added = push_frame(a, frame, error);
+    if (added == NULL) return false;
+    added->checked = true;
+    added->crossing = found->crossing;
+    added->touching = found->coplanar + found->folded + found->touching;
+    added->duplicates = found->duplicate;
+    added->ms = cscd_detector_timings(detector).check_ms;
+    count_faces(a, found, added);
+    find_worst(found->parts, added);
+    return cscd_event_tracker_add_frame(a->tracker, frame, found) == CSCD_OK || api_failed(a, error);
+}
+
+bool answers_skip_frame(answers *a, uint32_t frame, io_error *error) {
+    return push_frame(a, frame, error) != NULL &&
+           (cscd_event_tracker_add_frame(a->tracker, frame, NULL) == CSCD_OK || api_failed(a, error));
+}
+
+/* ---- events -------------------------------------------------------------------------------------------- */
+
+/* Triangles that are one and the same are no event: they never come apart. */
+static bool is_event(const cscd_event *event) {
+    return event->kinds != cscd_intersection_set(CSCD_INTERSECTION_DUPLICATE) || event->contacts > 0 ||
+           event->depths > 0;
+}
+
+static bool copy_events(answers *a, const cscd_events *events) {
+    a->events = malloc((events->count + 1) * sizeof *a->events);
+    a->worst_first = malloc((events->count + 1) * sizeof *a->worst_first);
+    if (a->events == NULL || a->worst_first == NULL) return false;
+    for (size_t i = 0; i < events->count; i++)
+        if (is_event(&events->items[i])) a->events[a->event_count++] = events->items[i];
+    return true;
+}
+
+static bool order_events(answers *a) {
+    const cscd_event **order = malloc((a->event_count + 1) * sizeof *order);
+    if (order == NULL) return false;
+    for (size_t i = 0; i < a->event_count; i++) order[i] = &a->events[i];
+    event_order_sort(order, a->event_count);
+    for (size_t i = 0; i < a->event_count; i++) a->worst_first[i] = (size_t)(order[i] - a->events);
+    free(order);
+    return true;
+}
+
+bool answers_finish(answers *a, io_error *error) {
+    const uint32_t next = a->frames.count > 0 ? answers_frames(a)[a->frames.count - 1].frame + 1 : 0;
+    if (a->waiting_contacts > 0 && !answers_skip_frame(a, next, error)) return false;
+    cscd_events events;
+    if (cscd_event_tracker_finish(a->tracker, &events) != CSCD_OK) return api_failed(a, error);
+    return (copy_events(a, &events) && order_events(a)) || io_fail(error, "out of memory for the events");
+}

@@ -1,0 +1,68 @@
+/* The answers of check and replay: what intersects in each frame, between which parts, how deep, and the events that
+ * these frames make up. */
+#pragma once
+
+#include "src/io/growable.h"
+#include "src/tool/common/part_names.h"
+
+/* What was found in a frame. */
+typedef struct frame_answer {
+    uint32_t frame;          /* its index in the recording */
+    bool checked;            /* else nothing was looked for, and only contacts are known */
+    size_t crossing;         /* pairs of triangles that cross, */
+    size_t touching;         /* that meet otherwise, duplicates aside, */
+    size_t duplicates;       /* and that are one and the same */
+    size_t contacts;         /* of the interval that ends here */
+    uint32_t crossing_faces; /* so many triangles cross another one */
+    uint32_t worst_parts[2]; /* those with the greatest depth, or the longest curves, or the most pairs; */
+    double worst_depth, worst_length; /* between these; 0: none is known */
+    double ms;                        /* how long it took */
+} frame_answer;
+
+typedef struct answers {
+    recording *recording;
+    const part_names *parts;
+    bool depths;        /* curves and depths are looked for */
+    growable frames;    /* frame_answer, in their order */
+    cscd_event *events; /* when finished: by their first frames; frames are indices */
+    size_t event_count;
+    size_t *worst_first; /* places of events */
+    cscd_event_tracker *tracker;
+    uint32_t *seen;          /* per triangle: counted in the frame with this number in `frames`, from 1 */
+    size_t waiting_contacts; /* of an interval whose end has not come yet */
+} answers;
+
+/* parts outlive the answers. Without depths there are neither curves nor depths. On false *out holds nothing to close. */
+bool answers_open(recording *r, const part_names *parts, bool depths, answers *out, io_error *error);
+void answers_close(answers *a); /* a zeroed struct is fine */
+
+/* Makes the detector sum up by these parts. Once, before the first frame. */
+bool answers_prepare(const answers *a, cscd_detector *detector, io_error *error);
+
+/* The contacts of an interval, before the frame at its end. */
+bool answers_add_contacts(answers *a, const cscd_contacts *contacts, io_error *error);
+
+/* Finds what intersects in a frame, which comes after those before. *found is the detector's, until its next call. The error
+ * does not name the frame. */
+bool answers_add_frame(answers *a, cscd_detector *detector, uint32_t frame, const double *positions,
+                       cscd_intersection_pairs *found, io_error *error);
+
+/* The same of a frame in which nothing is looked for. */
+bool answers_skip_frame(answers *a, uint32_t frame, io_error *error);
+
+/* The last frame has come, be it earlier than expected: finds the events. Those of duplicates alone are left out. */
+bool answers_finish(answers *a, io_error *error);
+
+/* The frames so far, and how many there are. */
+const frame_answer *answers_frames(const answers *a);
+size_t answers_frame_count(const answers *a);
+
+/* What the artist calls a frame, given by its index. */
+static inline int32_t answers_frame_number(const answers *a, uint64_t frame) {
+    return a->recording->frame_numbers[frame];
+}
+
+/* Does any pair of triangles in the frame intersect or touch, duplicates aside? */
+static inline bool frame_answer_meets(const frame_answer *frame) {
+    return frame->crossing + frame->touching > 0;
+}

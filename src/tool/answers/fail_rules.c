@@ -1,0 +1,70 @@
+/* When a run counts as failed (exit code 3): what --fail-on, --fail-depth and --max-faces say. */
+#include "src/tool/answers/fail_rules.h"
+
+#include "src/tool/common/command.h"
+
+#include <stdio.h>
+
+bool fail_rules_create(const fail_options *options, const length_unit *unit, fail_rules *out,
+                       io_error *error) {
+    fail_rules rules = {.options = *options, .unit = *unit};
+    io_error reason;
+    if (options->depth.given && !length_given_convert(&options->depth, unit, &rules.depth, &reason))
+        return io_fail(error, "--fail-depth %s", reason.text);
+    *out = rules;
+    return true;
+}
+
+bool fail_rules_any(const fail_rules *rules) {
+    const fail_options *o = &rules->options;
+    return o->kind != FAIL_ON_NOTHING || o->depth.given || o->faces_limited;
+}
+
+/* "A x B", of the worst that the frame has; "" if it has nothing. */
+static void name_worst(const answers *a, const frame_answer *frame, char *text, size_t size) {
+    text[0] = '\0';
+    if (!frame_answer_meets(frame) && frame->worst_depth == 0.0) return;
+    snprintf(text, size, ", worst: %.100s x %.100s", part_names_at(a->parts, frame->worst_parts[0]),
+             part_names_at(a->parts, frame->worst_parts[1]));
+}
+
+bool fail_rules_meet(const fail_rules *rules, const answers *a, const frame_answer *frame,
+                     char text[FAIL_TEXT_SIZE]) {
+    const fail_options *o = &rules->options;
+    char worst[240], length[LENGTH_TEXT_SIZE];
+    name_worst(a, frame, worst, sizeof worst);
+    if (o->depth.given && frame->worst_depth > rules->depth)
+        snprintf(text, FAIL_TEXT_SIZE, "%s deep%s", length_text(frame->worst_depth, &rules->unit, length),
+                 worst);
+    else if (o->faces_limited && frame->crossing_faces > o->most_faces)
+        snprintf(text, FAIL_TEXT_SIZE, "%u triangles cross others%s", frame->crossing_faces, worst);
+    else if (o->kind >= FAIL_ON_CROSSING && frame->crossing > 0)
+        snprintf(text, FAIL_TEXT_SIZE, "%zu pair%s of triangles cross%s%s", frame->crossing,
+                 frame->crossing > 1 ? "s" : "", frame->crossing > 1 ? "" : "es", worst);
+    else if (o->kind >= FAIL_ON_TOUCHING && frame->touching > 0)
+        snprintf(text, FAIL_TEXT_SIZE, "%zu pair%s of triangles touch%s%s", frame->touching,
+                 frame->touching > 1 ? "s" : "", frame->touching > 1 ? "" : "es", worst);
+    else if (o->kind >= FAIL_ON_CONTACT && frame->contacts > 0)
+        snprintf(text, FAIL_TEXT_SIZE, "%zu contact%s on the way to it", frame->contacts,
+                 frame->contacts > 1 ? "s" : "");
+    else
+        return false;
+    return true;
+}
+
+bool fail_rules_apply(const fail_rules *rules, const answers *a) {
+    char text[FAIL_TEXT_SIZE], first[FAIL_TEXT_SIZE];
+    size_t count = 0;
+    const frame_answer *frames = answers_frames(a), *failed = NULL;
+    for (size_t i = 0; i < answers_frame_count(a); i++) {
+        if (!fail_rules_meet(rules, a, &frames[i], failed == NULL ? first : text)) continue;
+        if (count++ == 0) failed = &frames[i];
+    }
+    if (count == 0) return false;
+    if (answers_frame_count(a) == 1)
+        note("failed: %s", first);
+    else
+        note("failed: %zu of %zu frames, the first is frame %d: %s", count, answers_frame_count(a),
+             a->recording->frame_numbers[failed->frame], first);
+    return true;
+}

@@ -1,0 +1,43 @@
+/* When a run counts as failed (exit code 3): what --fail-on, --fail-depth and --max-faces say. */
+#pragma once
+
+#include "src/tool/answers/answers.h"
+#include "src/tool/common/length_unit.h"
+
+/* What --fail-on takes; each includes those before it. */
+typedef enum fail_kind {
+    FAIL_ON_NOTHING,
+    FAIL_ON_CROSSING, /* triangles that cross */
+    FAIL_ON_TOUCHING, /* or meet otherwise */
+    FAIL_ON_CONTACT   /* or come into contact between two frames */
+} fail_kind;
+
+/* As the command line has them; zeroed: nothing fails. */
+typedef struct fail_options {
+    fail_kind kind;
+    length_given depth;  /* a point deeper than this fails */
+    bool faces_limited;  /* more triangles that cross another one */
+    uint32_t most_faces; /* than this, in one frame, fail */
+} fail_options;
+
+typedef struct fail_rules {
+    fail_options options;
+    length_unit unit; /* of the files */
+    double depth;     /* that of the options, in it */
+} fail_rules;
+
+/* The error says that a depth has a unit and the files have none. */
+bool fail_rules_create(const fail_options *options, const length_unit *unit, fail_rules *out,
+                       io_error *error);
+
+/* Is there any rule? */
+bool fail_rules_any(const fail_rules *rules);
+
+enum { FAIL_TEXT_SIZE = 400 };
+
+/* Does a frame fail? The text then says what of it does. */
+bool fail_rules_meet(const fail_rules *rules, const answers *a, const frame_answer *frame,
+                     char text[FAIL_TEXT_SIZE]);
+
+/* Does any frame fail? Says on stderr how many do and what the first does wrong. */
+bool fail_rules_apply(const fail_rules *rules, const answers *a);

@@ -1,0 +1,8 @@
+/* The order of events, the worst first. */
+#pragma once
+
+#include "cscd/events.h"
+
+/* Sorts pointers into one array: deeper events first, then those with longer curves, more pairs, more contacts, and of
+ * those that have all of these in common the one that stands first in the array. */
+void event_order_sort(const cscd_event **events, size_t count);

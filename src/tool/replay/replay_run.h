@@ -1,0 +1,36 @@
+/* A replay under way: what it reads, how far it is, and what it has found. */
+#pragma once
+
+#include "src/tool/common/frame_list.h"
+#include "src/tool/common/ignore_pairs.h"
+#include "src/tool/common/plan_source.h"
+#include "src/tool/common/terminal.h"
+#include "src/tool/replay/replay_options.h"
+#include "src/tool/replay/replay_report.h"
+#include "src/tool/replay/summary.h"
+
+/* What is known of a frame. */
+typedef enum frame_state { FRAME_UNCHECKED, FRAME_EMBEDDED, FRAME_CROSSING } frame_state;
+
+/* A replay under way. */
+typedef struct replay {
+    const replay_options *options;
+    recording recording;
+    ignore_pairs ignored;
+    plan_choice plan;
+    cscd_detector *detector;
+    double *x0, *x1;
+    uint32_t first, last; /* frames */
+    frame_state start_state, end_state;
+    contact_file *contacts; /* NULL when not asked for */
+    const char *object_names[RECORDING_OBJECTS_MAX + 1];
+    summary_writer *summary;
+    replay_report report;
+    replay_totals totals;
+    length_unit unit;
+    fail_rules rules;
+    answers answers;
+    answer_outputs files;
+    frame_list contact_frames;
+    terminal_progress progress;
+} replay;
