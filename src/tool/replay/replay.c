@@ -84,8 +84,8 @@ static bool open_outputs(replay *r, io_error *error) {
     if (o->contacts_path != NULL && !open_contacts(r, error)) return false;
     return replay_report_open(&r->report, &o->report, recording_options_path(&o->source), &r->recording,
                               r->plan.plan, r->detector, r->first, r->last, error) &&
-           summary_open(o->json_path, o->report.path != NULL, r->recording.mesh, &r->summary, error) &&
-           answer_outputs_open(&o->answers, &r->files, error);
+           answer_outputs_open(&o->answers, &r->files, error) &&
+           summary_open(o->json_path, o->report.path != NULL, r->recording.mesh, &r->summary, error);
 }
 
 /* Opens everything that can fail before the work begins. */
