@@ -19,7 +19,7 @@ static void write_origin(json *out, const plan_report *r) {
     json_begin_object(out, "provenance");
     provenance_write(out, r->argument_count, r->arguments, cscd_context_thread_count(r->recording->context));
     json_begin_array(out, "inputs");
-    provenance_write_input(out, r->model_path, r->recording->objects[0].model_hash);
+    provenance_write_input(out, r->model_path, recorded_object_hash_model(&r->recording->objects[0]));
     json_end_array(out);
     json_end_object(out);
     json_end_object(out);

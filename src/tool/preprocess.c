@@ -62,7 +62,7 @@ static const option_row rows[] = {
     {"weld", "exact|none|EPS", read_weld, offsetof(preprocess_options, source.weld),
      "join vertices that coincide, or lie within EPS; replay needs the same"},
     {"threads", "N", read_threads, offsetof(preprocess_options, source.thread_count),
-     "default 0: one per processor; the results are the same"},
+     "default 0: one per processor, and one for a mesh of less than 1,000 triangles; the results are the same"},
     {"quiet", NULL, read_flag, offsetof(preprocess_options, quiet),
      "no progress, no warnings, nothing on the standard output"},
 };

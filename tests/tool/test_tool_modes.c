@@ -5,6 +5,7 @@
 #include "tests/support/tool/run_tool.h"
 #include "tests/support/tool/tool_fixture.h"
 
+#include <sched.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -179,6 +180,28 @@ static void tables_have_a_column_for_orientation(void **state) {
     tool_run_free(&run);
 }
 
+static double threads_of(json_node *root) {
+    const double threads = json_node_number(json_node_member(root, "provenance"), "threads");
+    json_node_free(root);
+    return threads;
+}
+
+/* Starting them takes longer than the command on a small mesh, unless the user wants them. */
+static void small_meshes_get_one_thread(void **state) {
+    (void)state;
+    cpu_set_t processors;
+    assert_int_equal(sched_getaffinity(0, sizeof processors, &processors), 0);
+    assert_int_equal(threads_of(REPLAY("--method", "none")), 1);
+    assert_int_equal(threads_of(REPLAY("--method", "none", "--threads", "0")), 1);
+    assert_int_equal(threads_of(REPLAY("--method", "none", "--threads", "3")), 3);
+    recorded fold = recorded_fold(25, 20, 2);
+    temp_path larger = recorded_write_mesh(&folder, "larger.obj", &fold, 0);
+    temp_path frames = recorded_write_cache(&folder, "larger.pc2", &fold);
+    EXPECT_TOOL(0, "replay", larger.text, frames.text, "--quiet", "--method", "none", "--json", summary.text);
+    assert_int_equal(threads_of(json_node_read_file(summary.text)), CPU_COUNT(&processors));
+    recorded_free(&fold);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(methods_agree_in_mode_all),
@@ -186,6 +209,7 @@ int main(void) {
         cmocka_unit_test(counters_tell_that_culling_is_on),
         cmocka_unit_test(starts_are_proven_once),
         cmocka_unit_test(tables_have_a_column_for_orientation),
+        cmocka_unit_test(small_meshes_get_one_thread),
     };
     return cmocka_run_group_tests_name("tool_modes", tests, make_files, remove_files);
 }

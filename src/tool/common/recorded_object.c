@@ -65,7 +65,8 @@ static bool weld_first_frame(weld_choice welding, recorded_object *o, io_error *
     return true;
 }
 
-static uint64_t hash_model(const mesh_file *file) {
+uint64_t recorded_object_hash_model(const recorded_object *o) {
+    const mesh_file *file = &o->file;
     uint64_t hash = provenance_hash(PROVENANCE_HASH_START, file->triangles,
                                     (size_t)file->triangle_count * 3 * sizeof *file->triangles);
     return provenance_hash(hash, file->positions, (size_t)file->vertex_count * 3 * sizeof *file->positions);
@@ -79,7 +80,6 @@ bool recorded_object_open(const recorded_source *source, weld_choice welding, co
         recorded_object_close(&o);
         return false;
     }
-    o.model_hash = hash_model(&o.file);
     *out = o;
     return true;
 }

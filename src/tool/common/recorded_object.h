@@ -34,7 +34,7 @@ typedef struct recorded_object {
     double *file_positions;                /* of the frame read last */
     uint32_t vertex_count, triangle_count; /* welded, as in the mesh */
     uint32_t first_vertex, first_triangle; /* in the mesh of the recording */
-    uint64_t model_hash, frames_hash;
+    uint64_t frames_hash;
 } recorded_object;
 
 /* What a format is called that stores a vertex once for each face (STL), or for each of its normals (glTF); NULL: the model is of
@@ -54,6 +54,9 @@ bool recorded_object_read(recorded_object *object, uint32_t frame, double *posit
 
 /* Copies the positions of the model file itself, unchecked; positions as above. */
 void recorded_object_rest(const recorded_object *object, double *positions);
+
+/* The hash of the model file's triangles and positions. */
+uint64_t recorded_object_hash_model(const recorded_object *object);
 
 /* Adds the file's positions of the frame read last to frames_hash. */
 void recorded_object_hash_frame(recorded_object *object);

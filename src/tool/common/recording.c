@@ -124,6 +124,15 @@ static bool number_frames(const recording_options *options, recording *r, io_err
 
 /* ---- mesh -------------------------------------------------------------------------------------------- */
 
+/* Unless the user says otherwise: starting threads takes longer than a whole command on a mesh so small that the library
+ * would give them nothing to do (runtime/bvh/traversal.c shares trees of 768 triangles and more). */
+static uint32_t choose_thread_count(const recording_options *options, const recording *r) {
+    enum { SHARED_TRIANGLES_MIN = 1000 };
+    uint64_t triangles = 0;
+    for (uint32_t i = 0; i < r->object_count; i++) triangles += r->objects[i].triangle_count;
+    return options->thread_count == 0 && triangles < SHARED_TRIANGLES_MIN ? 1 : options->thread_count;
+}
+
 static bool create_context(const recording_options *options, recording *r, io_error *error) {
     r->shares_context = options->context != NULL;
     if (r->shares_context) {
@@ -131,7 +140,7 @@ static bool create_context(const recording_options *options, recording *r, io_er
         return true;
     }
     cscd_context_options context_options = cscd_context_defaults();
-    context_options.thread_count = options->thread_count;
+    context_options.thread_count = choose_thread_count(options, r);
     context_options.simd = options->simd;
     context_options.progress = options->progress;
     cscd_status status = cscd_context_create(&context_options, &r->context);

@@ -35,7 +35,7 @@ typedef struct recording_options {
     animation_options frames;       /* how frames are read; the model's path is filled in for each object */
     frame_number first_frame;       /* what the first frame is called; not given: what its file says */
     weld_choice weld;
-    uint32_t thread_count;
+    uint32_t thread_count; /* 0: one per processor, for small meshes one */
     cscd_simd simd;
     cscd_progress progress; /* of the context; NULL: none */
     cscd_context

@@ -219,7 +219,7 @@ static void write_provenance(summary_writer *w, const summary_ending *e) {
     json_begin_array(out, "inputs");
     for (uint32_t i = 0; i < r->object_count; i++) {
         const recorded_object *object = &r->objects[i];
-        provenance_write_input(out, object->source.model_path, object->model_hash);
+        provenance_write_input(out, object->source.model_path, recorded_object_hash_model(object));
         if (object->frames != NULL)
             provenance_write_input(out, object->source.frame_paths[0], object->frames_hash);
     }
