@@ -112,8 +112,7 @@ static bool create_detector(check_run *c, io_error *error) {
         return io_fail(error, "%s", cscd_context_detail(c->recording.context));
     c->positions = malloc((size_t)cscd_mesh_vertex_count(c->recording.mesh) * 3 * sizeof *c->positions);
     return (c->positions != NULL || io_fail(error, "out of memory")) &&
-           answers_open(&c->recording, &c->ignored.parts, !c->options->answers.no_depths, &c->answers,
-                        error) &&
+           answers_open(&c->recording, &c->ignored, !c->options->answers.no_depths, &c->answers, error) &&
            answers_prepare(&c->answers, c->detector, error);
 }
 

@@ -161,6 +161,41 @@ static void parts_that_meet_at_rest_are_left_out(void **state) {
     recorded_free(&both);
 }
 
+/* An eye in a head: with its tip, or with all but its tip. */
+static temp_path write_eye(bool tip_only) {
+    const char *eye = tip_only ? "v 1 1 0.8\nv 0.7 0.7 -0.5\nv 1.6 0.8 -0.5\nv 0.8 1.6 -0.5\n"
+                               : "v 0.9 0.9 -1\nv 0.7 0.8 0.5\nv 0.8 1.6 0.5\nv 1.6 0.7 0.5\n";
+    char text[512];
+    const int used =
+        snprintf(text, sizeof text,
+                 "v 0 0 0\nv 4 0 0\nv 0 4 0\nv 0 0 4\no Head\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n"
+                 "%so Eye\nf 6 8 7\nf 6 7 5\nf 7 8 5\nf 8 6 5\n",
+                 eye);
+    return temp_file_write(&folder, "eye.obj", text, (size_t)used);
+}
+
+/* Where the curve between two objects is left out, the library may find all of one inside of the other. */
+static void nothing_is_inside_of_what_is_left_out(void **state) {
+    (void)state;
+    const char *list = "components 0 1\n", *clean = "Clean: no two triangles cross or touch.\n";
+    const temp_path ignored = temp_file_write(&folder, "list.txt", list, strlen(list));
+    const char *options[][2] = {{"--ignore-rest=parts", NULL}, {"--ignore-rest", NULL},
+                                {"--ignore-parts", "Eye"},     {"--ignore-parts", "Head,Eye"},
+                                {"--only", "Eye,Eye"},         {"--ignore", ignored.text}};
+    for (int tip_only = 0; tip_only < 2; tip_only++) {
+        const temp_path eye = write_eye(tip_only);
+        tool_run run = RUN_TOOL("check", eye.text, "--json", json.text);
+        assert_non_null(strstr(run.out, "Head x Eye  cross"));
+        tool_run_free(&run);
+        for (size_t i = 0; i < sizeof options / sizeof *options; i++) {
+            run = RUN_TOOL("check", eye.text, "--fail-depth", "0.01", options[i][0], options[i][1]);
+            if (run.code != 0 || strcmp(run.out, clean) != 0)
+                fail_msg("%s: ended with %d and %s", options[i][0], run.code, run.out);
+            tool_run_free(&run);
+        }
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(parts_are_left_out),
@@ -168,6 +203,7 @@ int main(void) {
         cmocka_unit_test(tables_name_parts),
         cmocka_unit_test(bad_tables_and_names_are_told),
         cmocka_unit_test(parts_that_meet_at_rest_are_left_out),
+        cmocka_unit_test(nothing_is_inside_of_what_is_left_out),
     };
     return cmocka_run_group_tests_name("tool_parts", tests, make_files, remove_files);
 }

@@ -19,9 +19,12 @@ static bool create_tracker(answers *a, io_error *error) {
            api_failed(a, error);
 }
 
-bool answers_open(recording *r, const part_names *parts, bool depths, answers *out, io_error *error) {
-    answers a = {
-        .recording = r, .parts = parts, .depths = depths, .frames = growable_of(sizeof(frame_answer))};
+bool answers_open(recording *r, const ignore_pairs *ignored, bool depths, answers *out, io_error *error) {
+    answers a = {.recording = r,
+                 .parts = &ignored->parts,
+                 .depths = depths,
+                 .shown = shown_depths_of(ignored),
+                 .frames = growable_of(sizeof(frame_answer))};
     a.seen = calloc((size_t)cscd_mesh_triangle_count(r->mesh) + 1, sizeof *a.seen);
     if (a.seen == NULL) return io_fail(error, "out of memory");
     if (!create_tracker(&a, error)) {
@@ -35,6 +38,7 @@ bool answers_open(recording *r, const part_names *parts, bool depths, answers *o
 void answers_close(answers *a) {
     cscd_event_tracker_destroy(a->tracker);
     growable_free(&a->frames);
+    shown_depths_free(&a->shown);
     free(a->events);
     free(a->worst_first);
     free(a->seen);
@@ -95,18 +99,18 @@ static bool is_worse(const cscd_part_pair *a, const cscd_part_pair *b) {
     return count_pairs(a) > count_pairs(b);
 }
 
-static void find_worst(const cscd_part_pairs *pairs, frame_answer *frame) {
-    const cscd_part_pair *worst = NULL;
-    for (size_t i = 0; i < pairs->count; i++) {
-        const cscd_part_pair *pair = &pairs->items[i];
-        if (count_pairs(pair) == 0 && pair->depth == 0.0) continue;
-        if (worst == NULL || is_worse(pair, worst)) worst = pair;
+static void find_worst(const shown_depths *shown, const cscd_intersection_pairs *found, frame_answer *frame) {
+    cscd_part_pair worst = {.a = NO_PART, .b = NO_PART};
+    for (size_t i = 0; i < found->parts->count; i++) {
+        cscd_part_pair pair = found->parts->items[i];
+        pair.depth = pair.depth > 0.0 ? shown_depths_of_parts(shown, found, &pair) : 0.0;
+        if (count_pairs(&pair) == 0 && pair.depth == 0.0) continue;
+        if (worst.a == NO_PART || is_worse(&pair, &worst)) worst = pair;
     }
-    if (worst == NULL) return;
-    frame->worst_parts[0] = worst->a;
-    frame->worst_parts[1] = worst->b;
-    frame->worst_depth = worst->depth;
-    frame->worst_length = worst->length;
+    frame->worst_parts[0] = worst.a;
+    frame->worst_parts[1] = worst.b;
+    frame->worst_depth = worst.depth;
+    frame->worst_length = worst.length;
 }
 
 bool answers_add_frame(answers *a, cscd_detector *detector, uint32_t frame, const double *positions,
@@ -117,6 +121,7 @@ bool answers_add_frame(answers *a, cscd_detector *detector, uint32_t frame, cons
     const cscd_view *view = CSCD_DOUBLES(positions, cscd_mesh_vertex_count(a->recording->mesh));
     if (cscd_detector_find_intersections(detector, view, &options, found) != CSCD_OK)
         return api_failed(a, error);
+    if (!shown_depths_choose(&a->shown, found)) return io_fail(error, "out of memory");
     frame_answer *added = push_frame(a, frame, error);
     if (added == NULL) return false;
     added->checked = true;
@@ -125,7 +130,7 @@ bool answers_add_frame(answers *a, cscd_detector *detector, uint32_t frame, cons
     added->duplicates = found->duplicate;
     added->ms = cscd_detector_timings(detector).check_ms;
     count_faces(a, found, added);
-    find_worst(found->parts, added);
+    find_worst(&a->shown, found, added);
     return cscd_event_tracker_add_frame(a->tracker, frame, found) == CSCD_OK || api_failed(a, error);
 }
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "src/io/growable.h"
-#include "src/tool/common/part_names.h"
+#include "src/tool/answers/shown_depths.h"
 
 /* What was found in a frame. */
 typedef struct frame_answer {
@@ -23,6 +23,7 @@ typedef struct answers {
     recording *recording;
     const part_names *parts;
     bool depths;        /* curves and depths are looked for */
+    shown_depths shown; /* of the frame found last */
     growable frames;    /* frame_answer, in their order */
     cscd_event *events; /* when finished: by their first frames; frames are indices */
     size_t event_count;
@@ -32,8 +33,9 @@ typedef struct answers {
     size_t waiting_contacts; /* of an interval whose end has not come yet */
 } answers;
 
-/* parts outlive the answers. Without depths there are neither curves nor depths. On false *out holds nothing to close. */
-bool answers_open(recording *r, const part_names *parts, bool depths, answers *out, io_error *error);
+/* The ignored pairs, which have the parts, outlive the answers. Without depths there are neither curves nor depths. On false *out
+ * holds nothing to close. */
+bool answers_open(recording *r, const ignore_pairs *ignored, bool depths, answers *out, io_error *error);
 void answers_close(answers *a); /* a zeroed struct is fine */
 
 /* Makes the detector sum up by these parts. Once, before the first frame. */
@@ -42,8 +44,8 @@ bool answers_prepare(const answers *a, cscd_detector *detector, io_error *error)
 /* The contacts of an interval, before the frame at its end. */
 bool answers_add_contacts(answers *a, const cscd_contacts *contacts, io_error *error);
 
-/* Finds what intersects in a frame, which comes after those before. *found is the detector's, until its next call. The error
- * does not name the frame. */
+/* Finds what intersects in a frame, which comes after those before. *found is the detector's and ours, until the next call. The
+ * error does not name the frame. */
 bool answers_add_frame(answers *a, cscd_detector *detector, uint32_t frame, const double *positions,
                        cscd_intersection_pairs *found, io_error *error);
 

@@ -156,6 +156,24 @@ static bool add_rest(ignore_pairs *pairs, bool by_parts, recording *r, io_error 
     return added;
 }
 
+static bool list_contains(const cscd_intersection *list, size_t count, uint32_t c, uint32_t d) {
+    for (size_t i = 0; i < count; i++)
+        if ((list[i].a == c && list[i].b == d) || (list[i].a == d && list[i].b == c)) return true;
+    return false;
+}
+
+/* Notes the components of which triangles are left out with each other. */
+static bool separate_components(ignore_pairs *pairs) {
+    for (size_t i = 0; i < pairs->triangle_count; i++) {
+        const uint32_t c = cscd_mesh_triangle_component(pairs->mesh, pairs->triangles[i].a),
+                       d = cscd_mesh_triangle_component(pairs->mesh, pairs->triangles[i].b);
+        if (c != d && !list_contains(pairs->separated, pairs->separated_count, c, d) &&
+            !append_pair(&pairs->separated, &pairs->separated_count, &pairs->separated_capacity, c, d))
+            return false;
+    }
+    return true;
+}
+
 bool ignore_options_any(const ignore_options *options) {
     return options->path != NULL || options->rest != REST_KEPT ||
            options->ignored.count + options->only.count > 0;
@@ -168,7 +186,8 @@ bool ignore_pairs_prepare(const ignore_options *options, recording *r, ignore_pa
                            : part_names_find(r, NULL, &out->parts, error);
     if (named && part_rules_create(&out->parts, &options->ignored, &options->only, &out->rules, error) &&
         (options->path == NULL || read_list(out, r, options->path, error)) &&
-        (options->rest == REST_KEPT || add_rest(out, options->rest == REST_PARTS, r, error)))
+        (options->rest == REST_KEPT || add_rest(out, options->rest == REST_PARTS, r, error)) &&
+        (separate_components(out) || io_fail(error, "out of memory for the pairs that are left out")))
         return true;
     ignore_pairs_free(out);
     return false;
@@ -184,13 +203,15 @@ static const uint32_t *triangles_of(const cscd_mesh *mesh, cscd_contact_kind kin
 }
 
 static bool components_contain(const ignore_pairs *pairs, uint32_t a, uint32_t b) {
-    const uint32_t c = cscd_mesh_triangle_component(pairs->mesh, a),
-                   d = cscd_mesh_triangle_component(pairs->mesh, b);
-    for (size_t i = 0; i < pairs->component_count; i++) {
-        cscd_intersection pair = pairs->components[i];
-        if ((pair.a == c && pair.b == d) || (pair.a == d && pair.b == c)) return true;
-    }
-    return false;
+    return list_contains(pairs->components, pairs->component_count,
+                         cscd_mesh_triangle_component(pairs->mesh, a),
+                         cscd_mesh_triangle_component(pairs->mesh, b));
+}
+
+static bool triangles_left_out(const ignore_pairs *pairs, const uint32_t *a, uint32_t a_count,
+                               const uint32_t *b, uint32_t b_count) {
+    return (pairs->component_count > 0 && components_contain(pairs, a[0], b[0])) ||
+           (part_rules_any(&pairs->rules) && part_rules_leave_out(&pairs->rules, a, a_count, b, b_count));
 }
 
 /* The callback for cscd_detector_options.ignore. */
@@ -199,9 +220,31 @@ static bool leaves_out(void *user, cscd_contact_kind kind, uint32_t a, uint32_t 
     uint32_t a_count, b_count;
     const uint32_t *of_a = triangles_of(pairs->mesh, kind, &a, false, &a_count);
     const uint32_t *of_b = triangles_of(pairs->mesh, kind, &b, true, &b_count);
-    return (pairs->component_count > 0 && components_contain(pairs, of_a[0], of_b[0])) ||
-           (part_rules_any(&pairs->rules) &&
-            part_rules_leave_out(&pairs->rules, of_a, a_count, of_b, b_count));
+    return triangles_left_out(pairs, of_a, a_count, of_b, b_count);
+}
+
+static bool sets_apart(const ignore_pairs *pairs, const uint32_t *of_feature, uint32_t count,
+                       uint32_t triangle) {
+    return triangles_left_out(pairs, of_feature, count, &triangle, 1) ||
+           list_contains(pairs->separated, pairs->separated_count,
+                         cscd_mesh_triangle_component(pairs->mesh, of_feature[0]),
+                         cscd_mesh_triangle_component(pairs->mesh, triangle));
+}
+
+bool ignore_pairs_separate_vertex(const ignore_pairs *pairs, uint32_t vertex, uint32_t triangle) {
+    uint32_t count;
+    const uint32_t *of_vertex = cscd_mesh_vertex_triangles(pairs->mesh, vertex, &count);
+    return sets_apart(pairs, of_vertex, count, triangle);
+}
+
+bool ignore_pairs_separate_edge(const ignore_pairs *pairs, uint32_t edge, uint32_t triangle) {
+    uint32_t count;
+    const uint32_t *of_edge = cscd_mesh_edge_triangles(pairs->mesh, edge, &count);
+    return sets_apart(pairs, of_edge, count, triangle);
+}
+
+bool ignore_pairs_any(const ignore_pairs *pairs) {
+    return pairs->triangle_count > 0 || pairs->component_count > 0 || part_rules_any(&pairs->rules);
 }
 
 void ignore_pairs_choose(ignore_pairs *pairs, cscd_detector_options *options) {
@@ -215,6 +258,7 @@ void ignore_pairs_choose(ignore_pairs *pairs, cscd_detector_options *options) {
 void ignore_pairs_free(ignore_pairs *pairs) {
     free(pairs->triangles);
     free(pairs->components);
+    free(pairs->separated);
     part_rules_free(&pairs->rules);
     part_names_free(&pairs->parts);
     *pairs = (ignore_pairs){0};

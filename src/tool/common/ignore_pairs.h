@@ -28,6 +28,8 @@ typedef struct ignore_pairs {
     size_t triangle_count, triangle_capacity;
     cscd_intersection *components; /* a <= b; few */
     size_t component_count, component_capacity;
+    cscd_intersection *separated; /* a < b: different components of which pairs of triangles are left out */
+    size_t separated_count, separated_capacity;
 } ignore_pairs;
 
 /* Finds the parts of a recording, and what is left out of it. On false *out holds nothing to free.
@@ -40,5 +42,13 @@ bool ignore_pairs_prepare(const ignore_options *options, recording *r, ignore_pa
 
 /* Makes a detector leave out the pairs, which live until it has been destroyed. */
 void ignore_pairs_choose(ignore_pairs *pairs, cscd_detector_options *options);
+
+/* Is anything left out? */
+bool ignore_pairs_any(const ignore_pairs *pairs);
+
+/* Is it left out that a vertex or an edge is inside of what has the triangle? As contacts of the two are; and of different
+ * components, if any pair of their triangles is left out. */
+bool ignore_pairs_separate_vertex(const ignore_pairs *pairs, uint32_t vertex, uint32_t triangle);
+bool ignore_pairs_separate_edge(const ignore_pairs *pairs, uint32_t edge, uint32_t triangle);
 
 void ignore_pairs_free(ignore_pairs *pairs);

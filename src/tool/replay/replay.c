@@ -59,7 +59,7 @@ static bool prepare_answers(replay *r, io_error *error) {
     const answer_options *o = &r->options->answers;
     r->unit = answer_options_unit(o, &r->recording);
     return fail_rules_create(&o->fail, &r->unit, &r->rules, error) &&
-           answers_open(&r->recording, &r->ignored.parts, !o->no_depths, &r->answers, error) &&
+           answers_open(&r->recording, &r->ignored, !o->no_depths, &r->answers, error) &&
            answers_prepare(&r->answers, r->detector, error);
 }
 
