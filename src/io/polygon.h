@@ -14,6 +14,7 @@ typedef enum polygon_result {
  * orientation. positions: of all vertices, three doubles each. The polygon is looked at in the plane of two coordinates that
  * shows most of its area, so coordinates stay exact, and all decisions are exact. A triangle stays as it is; a polygon
  * that is convex without corners on a line becomes a fan around its first corner; a quad gets the diagonal that lies
- * inside. Holes may be bridged: the corners go to the hole and come back on the same way. */
+ * inside. Holes may be bridged: the corners go to the hole and come back on the same way. A polygon that crosses itself
+ * becomes a fan; of more than 128 corners it may also be filled, by triangles that lie twofold in places. */
 polygon_result polygon_fill(const double *positions, const uint32_t *corners, uint32_t corner_count,
                             uint32_t (*triangles)[3]);

@@ -88,7 +88,8 @@ static bool leaves_inwards(const ear_clipper *c, uint32_t from, uint32_t to) {
     return !(turn_at(c, from, to, next) >= 0 && turn_at(c, to, from, previous) >= 0);
 }
 
-/* The candidates that wait for a corner may be ears now. */
+/* The candidates that wait for a corner may be ears once it is clipped, and not before: a corner in the way stays there, even
+ * when it has become convex. */
 static void release_waiting(ear_clipper *c, uint32_t corner) {
     uint32_t waiting = c->corners[corner].first_waiting;
     c->corners[corner].first_waiting = NO_CORNER;
@@ -133,10 +134,8 @@ static void renew_corner(ear_clipper *c, uint32_t corner) {
     clipped_corner *v = &c->corners[corner];
     v->version++;
     stop_waiting(c, corner);
-    const bool was_convex = v->convex;
     v->convex = turn_at(c, v->previous, corner, v->next) > 0;
     corner_tree_set_active(&c->tree, corner, !v->convex);
-    if (!was_convex && v->convex) release_waiting(c, corner);
     if (v->convex) push_candidate(c, corner);
     retry_neighbour(c, corner, v->previous);
     retry_neighbour(c, corner, v->next);

@@ -96,12 +96,36 @@ static bool is_convex(const polygon_places *places) {
     return changes == 2;
 }
 
+static bool sides_cross(const double *a, const double *b, const double *c, const double *d) {
+    if (fmax(a[0], b[0]) < fmin(c[0], d[0]) || fmax(c[0], d[0]) < fmin(a[0], b[0]) ||
+        fmax(a[1], b[1]) < fmin(c[1], d[1]) || fmax(c[1], d[1]) < fmin(a[1], b[1]))
+        return false;
+    return orientation_of(a, b, c) * orientation_of(a, b, d) < 0 &&
+           orientation_of(c, d, a) * orientation_of(c, d, b) < 0;
+}
+
+/* Ears may fill a polygon that crosses itself as well, by triangles that lie twofold in places. All pairs of sides are
+ * looked at, but not where that takes longer than the ears. */
+static bool crosses_itself(const polygon_places *places) {
+    enum { SIDES_MAX = 128 };
+    const uint32_t n = places->count;
+    if (n > SIDES_MAX) return false;
+    for (uint32_t i = 2; i < n; i++)
+        for (uint32_t j = 0; j + 1 < i; j++)
+            if (sides_cross(places->points[i], places->points[(i + 1) % n], places->points[j],
+                            places->points[j + 1]))
+                return true;
+    return false;
+}
+
 /* Fills in one plane; false: its triangles would overlap there. */
 static bool fill_in_plane(const double *positions, const uint32_t *corners, polygon_plane plane,
                           polygon_places *places, uint32_t (*triangles)[3], bool *out_of_memory) {
     project_places(positions, corners, plane, places);
     if (!is_convex(places))
-        return ear_clipping_fill((const double(*)[2])places->points, places->count, triangles, out_of_memory);
+        return ear_clipping_fill((const double(*)[2])places->points, places->count, triangles,
+                                 out_of_memory) &&
+               !crosses_itself(places);
     for (uint32_t i = 0; i + 2 < places->count; i++) {
         triangles[i][0] = 0;
         triangles[i][1] = i + 1;
