@@ -149,7 +149,9 @@ static void names_parts(void **state) {
     check_parts(SQUARE "g Arm.L deform\nf 1 2 3\ng\nf 1 2 3\n", (const char *const[]){"Arm.L", NULL},
                 (const uint32_t[]){0, none});
     check_parts(SQUARE "o Body\ng Arm\nf 1 2 3\ng (null)\nf 1 2 3\no Hat\nf 1 2 3\n",
-                (const char *const[]){"Body", "Body/Arm", "Hat", NULL}, (const uint32_t[]){1, 0, 2});
+                (const char *const[]){"Body/Arm", "Body", "Hat", NULL}, (const uint32_t[]){0, 1, 2});
+    check_parts(SQUARE "o Empty\ng None\no Body\nf 1 2 3\no End\n", (const char *const[]){"Body", NULL},
+                (const uint32_t[]){0});
 }
 
 static void refuses_indices_out_of_range(void **state) {
