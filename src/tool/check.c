@@ -11,6 +11,7 @@
 #include "src/tool/common/shared_options.h"
 #include "src/tool/common/terminal.h"
 #include "src/tool/each/check_each.h"
+#include "src/tool/export/exports.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,6 +22,7 @@ typedef struct check_options {
     const char *json_path, *csv_path;
     ignore_options ignored;
     answer_options answers;
+    export_request exports;
     bool each, quiet;
 } check_options;
 
@@ -67,7 +69,8 @@ static const option_table table = {
     .shared = {{&object_rows, offsetof(check_options, source)},
                {&frame_rows, offsetof(check_options, source)},
                {&pair_rows, offsetof(check_options, ignored)},
-               {&answer_rows, offsetof(check_options, answers)}},
+               {&answer_rows, offsetof(check_options, answers)},
+               {&export_rows, offsetof(check_options, exports)}},
     .examples = {
         {"check body.obj", "Find the triangles of a mesh that intersect or touch each other."},
         {"check body.obj body.pc2 --frames 80:90 --json pairs.json",
@@ -87,6 +90,7 @@ typedef struct check_run {
     double *positions;
     check_output output;
     answer_outputs files;
+    exports exports;
     terminal_progress progress;
     frame_choice frames;
 } check_run;
@@ -101,7 +105,8 @@ static bool check_frame(check_run *c, uint32_t frame, io_error *error) {
     if (!recording_read(&c->recording, frame, c->positions, error)) return false;
     if (!answers_add_frame(&c->answers, c->detector, frame, c->positions, &found, &reason))
         return io_fail(error, "frame %d: %s", c->recording.frame_numbers[frame], reason.text);
-    return check_output_add(&c->output, &c->answers, &found, error);
+    return check_output_add(&c->output, &c->answers, &found, error) &&
+           exports_add_frame(&c->exports, frame, c->positions, &found, error);
 }
 
 static bool create_detector(check_run *c, io_error *error) {
@@ -124,7 +129,9 @@ static bool prepare_check(check_run *c, io_error *error) {
                               error) &&
            fail_rules_create(&o->answers.fail, &c->unit, &c->rules, error) &&
            ignore_pairs_prepare(&o->ignored, &c->recording, &c->ignored, error) &&
-           create_detector(c, error) && answer_outputs_open(&o->answers, &c->files, error) &&
+           create_detector(c, error) &&
+           exports_open(&o->exports, &c->recording, &c->ignored.parts, NULL, &c->exports, error) &&
+           answer_outputs_open(&o->answers, &c->files, error) &&
            check_output_open(o->json_path, o->csv_path, &c->output, error);
 }
 
@@ -154,14 +161,17 @@ static bool close_check(check_run *c, const char *stopped_by, io_error *error) {
     bool closed = check_output_close(&c->output, &c->answers, &c->unit, stopped_by, finished ? error : NULL);
     bool written = answer_outputs_close(&c->files, finished ? &c->answers : NULL, &c->rules, suite,
                                         finished && closed ? error : NULL);
-    return finished && closed && written;
+    bool exported = exports_close(&c->exports, finished && closed && written ? error : NULL);
+    return finished && closed && written && exported;
 }
 
 static void tell_interrupt(const check_run *c) {
     const check_options *o = c->options;
     const uint32_t done = (uint32_t)frames_done(c);
     const int32_t *numbers = c->recording.frame_numbers;
-    const char *const paths[] = {o->json_path, o->csv_path, o->answers.events_path, o->answers.junit_path};
+    const char *const paths[] = {o->json_path,          o->csv_path,         o->answers.events_path,
+                                 o->answers.junit_path, o->exports.vtk_path, o->exports.ply_path,
+                                 o->exports.select_path};
     interrupt_tell(
         &(interrupt_kept){.done = done,
                           .whole = frame_choice_count(&c->frames),
@@ -200,6 +210,7 @@ static int run_check(const check_options *options) {
         answer_outputs_close(&c.files, NULL, &c.rules, NULL, NULL);
         code = fail_input("%s", error.text);
     }
+    exports_close(&c.exports, NULL);
     answers_close(&c.answers);
     cscd_detector_destroy(c.detector);
     ignore_pairs_free(&c.ignored);
@@ -225,6 +236,12 @@ static int check_outputs(const check_options *o, const given_options *given) {
     if (!answer_options_are_safe(&o->answers, given->inputs, given->input_count, outputs, 2, &error) ||
         !answer_options_are_safe(&o->answers, inputs, 2, NULL, 0, &error))
         return fail_usage("check", "%s", error.text);
+    const char *tables[] = {o->answers.events_path, o->answers.junit_path};
+    if (!export_request_fits(&o->exports, given->inputs, given->input_count, &error) ||
+        !export_request_fits(&o->exports, inputs, 2, &error) ||
+        !export_request_fits(&o->exports, outputs, 2, &error) ||
+        !export_request_fits(&o->exports, tables, 2, &error))
+        return fail_usage("check", "%s", error.text);
     return EXIT_RAN;
 }
 
@@ -247,5 +264,7 @@ int command_check(int argument_count, char **arguments) {
     code = check_outputs(&options, &given);
     if (code != EXIT_RAN) return code;
     recording_options_take(&options.source, &given);
+    options.exports.fps = options.source.frames.fps;
+    options.exports.no_depths = options.answers.no_depths;
     return run_check(&options);
 }

@@ -38,7 +38,7 @@ typedef struct shared_options {
     size_t place;            /* offset of that struct in the command's struct of options */
 } shared_options;
 
-enum { OPTION_LISTS_MAX = 4 };
+enum { OPTION_LISTS_MAX = 5 };
 
 typedef struct option_table {
     const char *command;

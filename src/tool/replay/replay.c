@@ -81,7 +81,9 @@ static bool open_contacts(replay *r, io_error *error) {
 
 static bool open_outputs(replay *r, io_error *error) {
     const replay_options *o = r->options;
-    if (o->contacts_path != NULL && !open_contacts(r, error)) return false;
+    if (!exports_open(&o->exports, &r->recording, &r->ignored.parts, r->plan.plan, &r->exports, error) ||
+        (o->contacts_path != NULL && !open_contacts(r, error)))
+        return false;
     return replay_report_open(&r->report, &o->report, recording_options_path(&o->source), &r->recording,
                               r->plan.plan, r->detector, r->first, r->last, error) &&
            answer_outputs_open(&o->answers, &r->files, error) &&
@@ -123,7 +125,7 @@ static bool check_frame(replay *r, uint32_t frame, const double *positions, fram
     r->totals.frames_crossing += meets;
     warn_of_zero_area(r, frame, &found);
     replay_report_add_found(&r->report, frame, &found);
-    return true;
+    return exports_add_frame(&r->exports, frame, positions, &found, error);
 }
 
 static interval_state state_of(const replay *r, size_t contact_count) {
@@ -170,6 +172,7 @@ static bool run_interval(replay *r, uint32_t k, io_error *error) {
                               .detector = r->detector,
                               .counters = cscd_detector_counters(r->detector)};
     replay_report_add(&r->report, r->detector, &contacts, r->x1);
+    exports_add_contacts(&r->exports, &contacts);
     if (!write_contacts(r, k, &contacts, error) || !answers_add_contacts(&r->answers, &contacts, error) ||
         !check_frame(r, k + 1, r->x1, &r->end_state, error))
         return false;
@@ -236,6 +239,7 @@ static bool close_outputs(replay *r, const char *stopped_by, io_error *error) {
     written = close_summary(r, stopped_by, &text, written ? error : NULL) && written;
     written =
         answer_outputs_close(&r->files, &r->answers, &r->rules, suite, written ? error : NULL) && written;
+    written = exports_close(&r->exports, written ? error : NULL) && written;
     written = write_report(r, text, written ? error : NULL) && written;
     free(text);
     return written;
@@ -244,8 +248,9 @@ static bool close_outputs(replay *r, const char *stopped_by, io_error *error) {
 static void tell_interrupt(const replay *r) {
     const replay_options *o = r->options;
     const char *page = r->totals.intervals > 0 ? o->report.path : NULL;
-    const char *const paths[] = {o->contacts_path, o->json_path, o->answers.events_path,
-                                 o->answers.junit_path, page};
+    const char *const paths[] = {
+        o->contacts_path,    o->json_path,        o->answers.events_path, o->answers.junit_path,
+        o->exports.vtk_path, o->exports.ply_path, o->exports.select_path, page};
     interrupt_tell(&(interrupt_kept){.done = r->totals.intervals,
                                      .whole = r->last - r->first,
                                      .what = "intervals",
@@ -257,6 +262,7 @@ static void tell_interrupt(const replay *r) {
 
 static void end_replay(replay *r) {
     replay_report_close(&r->report);
+    exports_close(&r->exports, NULL);
     answers_close(&r->answers);
     cscd_detector_destroy(r->detector);
     plan_choice_free(&r->plan);

@@ -109,7 +109,8 @@ static const option_table table = {
     .shared = {{&object_rows, offsetof(replay_options, source)},
                {&frame_rows, offsetof(replay_options, source)},
                {&pair_rows, offsetof(replay_options, ignored)},
-               {&answer_rows, offsetof(replay_options, answers)}},
+               {&answer_rows, offsetof(replay_options, answers)},
+               {&export_rows, offsetof(replay_options, exports)}},
     .examples = {
         {"replay body.obj body.pc2 --report body.html",
          "Find every contact between one frame and the next, and show them on a page for any browser."},
@@ -138,6 +139,12 @@ static int check_outputs(const replay_options *o, const char *const *inputs, siz
     if (!answer_options_are_safe(&o->answers, inputs, input_count, outputs, 3, &error) ||
         !answer_options_are_safe(&o->answers, files, 3, NULL, 0, &error))
         return fail_usage("replay", "%s", error.text);
+    const char *tables[] = {o->answers.events_path, o->answers.junit_path};
+    if (!export_request_fits(&o->exports, inputs, input_count, &error) ||
+        !export_request_fits(&o->exports, files, 3, &error) ||
+        !export_request_fits(&o->exports, outputs, 3, &error) ||
+        !export_request_fits(&o->exports, tables, 2, &error))
+        return fail_usage("replay", "%s", error.text);
     return EXIT_RAN;
 }
 
@@ -150,6 +157,9 @@ static int check_options(const replay_options *o, size_t input_count) {
                           o->contacts_path);
     if (o->plan_path != NULL && (o->method == CSCD_METHOD_NONE || o->method == CSCD_METHOD_BRUTE))
         return fail_usage("replay", "--plan is of no use with --method %s", cscd_method_name(o->method));
+    if (o->no_check && export_request_any(&o->exports))
+        return fail_usage("replay",
+                          "--vtk, --ply and --select tell what intersects, which --no-check leaves out");
     if (o->frames.step != 1)
         return fail_usage("replay",
                           "--frames with a step of %u: a contact lies between one frame and the next, so "
@@ -178,6 +188,9 @@ bool replay_options_parse(int argument_count, char **arguments, replay_options *
     if (*code == EXIT_RAN) *code = check_outputs(&o, given.inputs, given.input_count);
     if (*code != EXIT_RAN) return false;
     recording_options_take(&o.source, &given);
+    o.exports.fps = o.source.frames.fps;
+    o.exports.no_depths = o.answers.no_depths;
+    o.exports.contacts = true;
     *out = o;
     return true;
 }

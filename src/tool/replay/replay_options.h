@@ -5,6 +5,7 @@
 #include "src/tool/common/frame_range.h"
 #include "src/tool/common/ignore_pairs.h"
 #include "src/tool/common/report_request.h"
+#include "src/tool/export/exports.h"
 
 typedef struct replay_options {
     recording_options source;
@@ -17,6 +18,7 @@ typedef struct replay_options {
     double min_separation;
     bool no_check, quiet;
     answer_options answers;
+    export_request exports;
     ignore_options ignored;
     const char *plan_path, *contacts_path, *json_path; /* NULL: not given */
     report_request report;

@@ -5,6 +5,7 @@
 #include "src/tool/common/ignore_pairs.h"
 #include "src/tool/common/plan_source.h"
 #include "src/tool/common/terminal.h"
+#include "src/tool/export/exports.h"
 #include "src/tool/replay/replay_options.h"
 #include "src/tool/replay/replay_report.h"
 #include "src/tool/replay/summary.h"
@@ -31,6 +32,7 @@ typedef struct replay {
     fail_rules rules;
     answers answers;
     answer_outputs files;
+    exports exports;
     frame_list contact_frames;
     terminal_progress progress;
 } replay;
