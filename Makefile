@@ -164,7 +164,7 @@ COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 # What installs packages; a build that leaves expat out on purpose does not ask for it.
 PACKAGES = GSL=$(GSL) CHARGE=$(CHARGE) EXPAT=$(if $(WITHOUT_EXPAT),0,1) .ci/packages
 
-.PHONY: all programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-embree referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces fuzz-files FORCE
+.PHONY: all programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-embree referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender test-vtk benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces fuzz-files FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -248,11 +248,18 @@ check-run: tool library $(FAST_TESTS) $(MODELS) $(BUILD)/benchmarks/queries $(BU
 test-run: tool library $(TESTS) $(MODELS) $(BUILD)/benchmarks/queries $(BUILD)/benchmarks/methods
 	@BUILD=$(BUILD) tests/run.sh $(IN_ORDER)
 
-# Frames of glTF files beside the vertices that Blender itself evaluates; nothing else needs Blender.
+# Frames of glTF files beside the vertices that Blender itself evaluates, and faces that its script selects; nothing else needs
+# Blender.
 test-blender:
 	@.ci/packages blender
-	@$(MAKE) --no-print-directory $(BUILD)/tests/blender/print_frames
+	@$(MAKE) --no-print-directory tool $(BUILD)/tests/blender/print_frames
 	@BUILD=$(BUILD) tests/blender/run.sh
+
+# What --vtk writes, read by VTK itself and compared with the other outputs; nothing else needs VTK.
+test-vtk:
+	@.ci/packages vtk
+	@$(MAKE) --no-print-directory tool
+	@BUILD=$(BUILD) tests/vtk/run.sh
 
 # What is left without runtime/baselines builds, and passes its tests: about a minute.
 test-without-baselines: packages
@@ -357,7 +364,8 @@ help:
 	@echo 'make check     build and run the tests that take less than a second each, for the inner loop'
 	@echo 'make test      build and run every test (CONFIG=sanitize: with sanitizers; ONLY="bvh line_search": of these rooms or names)'
 	@echo 'make test-without-baselines   build and test what is left when runtime/baselines is removed'
-	@echo 'make test-blender   frames of glTF files beside those that Blender evaluates (installs blender)'
+	@echo 'make test-blender   frames of glTF files beside those that Blender evaluates, faces selected in it (installs blender)'
+	@echo 'make test-vtk   what --vtk writes, read by VTK and compared with the other outputs (installs python3-vtk9)'
 	@echo 'make test-threads   the tests that use threads, under the thread sanitizer'
 	@echo 'make           build the tool (./cscd), build/release/libcscd.a and libcscd.so; make library builds these alone'
 	@echo '               GSL=0: without GSL; CHARGE=0: without LAPACKE and OpenBLAS, so without charge plans; EXPAT=0: a tool'
