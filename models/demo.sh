@@ -19,7 +19,7 @@ show() { # show PROGRAM ARGUMENTS...: the command, then what it says
 show "$build/models/record" pawn-drop "$out"
 show "$tool" preprocess "$name.obj"
 show "$tool" replay "$name.obj" "$name.pc2" --contacts "$out/contacts.csv" --json "$out/summary.json" \
-    --report "$out/report.html" --scenery "$name-scenery.obj" >"$out/table.txt"
+    --up z --report "$out/report.html" --scenery "$name-scenery.obj" >"$out/table.txt"
 cat "$out/table.txt"
 
 # The plain method without regions gives the same contacts, and brute force over all pairs of features the same
@@ -46,11 +46,11 @@ print(max(intervals, key=lambda i: i["vf"] + i["ee"])["frame"])
 PYTHON
 most=$(cat "$out/most.txt")
 
-"$tool" render "$name.obj" --colour charge --view 30,12 -o "$out/charge.png"
-"$tool" render "$name.obj" --colour region --view 30,12 -o "$out/regions.png"
-"$tool" render "$name.obj" "$name.pc2" --frames 0:143:13 --columns 4 --colour contacts --view 20,12 \
+"$tool" render "$name.obj" --up z --colour charge --view 30,12 -o "$out/charge.png"
+"$tool" render "$name.obj" --up z --colour region --view 30,12 -o "$out/regions.png"
+"$tool" render "$name.obj" "$name.pc2" --up z --frames 0:143:13 --columns 4 --colour contacts --view 20,12 \
     --scenery "$name-scenery.obj" -o "$out/strip.png"
-"$tool" render "$name.obj" "$name.pc2" --frame "$most" --colour contacts --view 0,10 --scenery "$name-scenery.obj" \
+"$tool" render "$name.obj" "$name.pc2" --up z --frame "$most" --colour contacts --view 0,10 --scenery "$name-scenery.obj" \
     -o "$out/contacts.png"
 
 echo

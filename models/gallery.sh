@@ -12,18 +12,18 @@ strip() { # strip NAME VIEW COLUMNS FRAMES [OPTIONS]: contacts on the body, with
     moving=
     [ ! -e "$scenery.pc2" ] || moving="--scenery-frames $scenery.pc2"
     # shellcheck disable=SC2086
-    "$tool" render "$models/$1.obj" "$models/$1.pc2" --frames "$4" --columns "$3" --colour contacts --size 300x225 \
+    "$tool" render "$models/$1.obj" "$models/$1.pc2" --up z --frames "$4" --columns "$3" --colour contacts --size 300x225 \
         --view "$2" --scenery "$scenery.obj" $moving ${5:-} -o "$images/$1.png"
 }
 
 for name in pawn dumbbell figure; do
     "$tool" preprocess "$models/$name.obj" -o "$models/$name.plan.ply" --quiet
     for colour in charge region; do
-        "$tool" render "$models/$name.obj" --colour "$colour" --view 30,12 --size 640x480 -o "$images/$name-$colour.png"
+        "$tool" render "$models/$name.obj" --up z --colour "$colour" --view 30,12 --size 640x480 -o "$images/$name-$colour.png"
     done
 done
 for name in torus genus2 coil slab chain; do
-    "$tool" render "$models/$name.obj" --wire --view 30,30 --size 360x300 -o "$images/$name.png"
+    "$tool" render "$models/$name.obj" --up z --wire --view 30,30 --size 360x300 -o "$images/$name.png"
 done
 strip pawn-drop 20,12 4 0:143:13
 strip pawn-drop-free 20,12 4 0:140:20
@@ -34,11 +34,11 @@ strip figure-balls-free 25,14 4 12:138:18
 strip cloth-drape 20,20 4 0:319:29
 strip sleeve 20,12 4 0:239:21
 strip bag 20,15 4 0:259:23 '--weld exact'
-"$tool" render "$models/pawn-drop.obj" "$models/pawn-drop.pc2" --frame 84 --colour contacts --view 0,10 --size 900x560 \
+"$tool" render "$models/pawn-drop.obj" "$models/pawn-drop.pc2" --up z --frame 84 --colour contacts --view 0,10 --size 900x560 \
     --scenery "$models/pawn-drop-scenery.obj" -o "$images/pawn-contacts.png"
 whole() { # whole NAME VIEW FRAMES [OPTIONS]: obstacles are part of the model
     # shellcheck disable=SC2086
-    "$tool" render "$models/$1.obj" "$models/$1.pc2" --frames "$3" --columns 4 --size 300x225 --view "$2" ${4:-} \
+    "$tool" render "$models/$1.obj" "$models/$1.pc2" --up z --frames "$3" --columns 4 --size 300x225 --view "$2" ${4:-} \
         -o "$images/$1.png"
 }
 whole rings 0,10 0:165:15

@@ -42,11 +42,12 @@ static bool write_page(const plan_report *r, const char *origin, io_error *error
     char generator[PROVENANCE_GENERATOR_SIZE];
     provenance_generator(generator);
     report_options options = {.kind = REPORT_PREPROCESS,
-                              .title = path_file_name(r->model_path),
+                              .title = r->request->title != NULL ? r->request->title
+                                                                 : path_file_name(r->model_path),
                               .generator = generator,
                               .mesh = r->recording->mesh,
                               .plan = r->plan,
-                              .up_axis = r->request->up_axis};
+                              .up_axis = (int)up_axis_choose(r->request->up, r->model_path)};
     report *page = NULL;
     bool written = report_create(&options, &page, error) && report_begin(page, r->positions, error) &&
                    report_write(page, r->request->path, NULL, 0, origin, error);

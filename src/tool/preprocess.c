@@ -46,8 +46,8 @@ static const option_row rows[] = {
     {"output", "PLAN.ply", read_text, offsetof(preprocess_options, output_path), NULL},
     {"report", "OUT.html", read_text, offsetof(preprocess_options, report.path),
      "also write a page that shows charge, regions and detector points in any browser"},
-    {"up", "y|z", read_report_up, offsetof(preprocess_options, report.up_axis),
-     "of the report: which axis points up (default z)"},
+    {"up", "y|z", read_up, offsetof(preprocess_options, report.up),
+     "of the report: which axis points up (default: y of OBJ and glTF, else z)"},
     {"method", "charge", read_plan_method, offsetof(preprocess_options, plan),
      "cut where little charge gathers on the mesh as a conductor (default); takes 4 bytes for each pair of "
      "triangles of a component, and time with the cube"},
@@ -222,10 +222,8 @@ static int check_output(const preprocess_options *o) {
 }
 
 int command_preprocess(int argument_count, char **arguments) {
-    preprocess_options options = {.plan = cscd_plan_defaults(),
-                                  .report.up_axis = 2,
-                                  .argument_count = argument_count,
-                                  .arguments = arguments};
+    preprocess_options options = {
+        .plan = cscd_plan_defaults(), .argument_count = argument_count, .arguments = arguments};
     given_options given;
     int code;
     if (!option_table_read(&table, argument_count, arguments, &options, &given, &code)) return code;

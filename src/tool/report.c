@@ -13,7 +13,7 @@
 #include <string.h>
 
 typedef struct report_command {
-    const char *output_path;
+    const char *output_path, *title;
     const char *const *paths;
     size_t count;
     bool quiet;
@@ -22,6 +22,7 @@ typedef struct report_command {
 static const option_row rows[] = {
     {"o", "OUT.html", read_text, offsetof(report_command, output_path), "the page"},
     {"output", "OUT.html", read_text, offsetof(report_command, output_path), NULL},
+    {"title", "TEXT", read_text, offsetof(report_command, title), "of the page (default: Comparison)"},
     {"quiet", NULL, read_flag, offsetof(report_command, quiet), "nothing on the standard output"},
 };
 
@@ -66,7 +67,8 @@ static bool write_page(const report_command *c, io_error *error) {
     if (summaries == NULL) return false;
     char generator[PROVENANCE_GENERATOR_SIZE];
     provenance_generator(generator);
-    report_options options = {.kind = REPORT_COMPARE, .title = "Comparison", .generator = generator};
+    report_options options = {
+        .kind = REPORT_COMPARE, .title = c->title != NULL ? c->title : "Comparison", .generator = generator};
     report *page = NULL;
     bool written = report_create(&options, &page, error) &&
                    report_write(page, c->output_path, summaries, c->count, NULL, error);

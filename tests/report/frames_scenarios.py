@@ -18,6 +18,7 @@ def steps_lead_to_the_neighbouring_frame(context):
     for number in made.numbers[1:]:
         page.click("button", "Next frame")
         expect_frame(page, number, "a step forwards")
+        expect(page.status().startswith(f"Frame {number} ({number / 25:.2f} s) of "), page.status())
     expect(page.element("button", "Next frame").get_property("disabled"), "there is no frame after the last")
     for number in made.numbers[-2::-1]:
         page.press(Keys.ARROW_LEFT) if number % 4 == 1 else page.click("button", "Previous frame")

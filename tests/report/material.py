@@ -81,8 +81,9 @@ class Material:
         return made
 
     def replay_files(self, made, *options):
+        up = () if "--up" in options else ("--up", "z")  # these recordings stand on z, as few files of that format do
         self.run("cscd", "replay", made.model, made.frames, "--json", made.json, "--contacts", made.csv, "--report",
-                 made.page, "--quiet", *options)
+                 made.page, "--quiet", *up, *options)
 
     def preprocess(self):
         """Returns the report of the regions of the dumbbell."""
@@ -91,7 +92,7 @@ class Material:
     def _preprocess(self, name):
         source = self.recorded("dumbbell-stairs")
         made = Made(self.folder, name)
-        self.run("cscd", "preprocess", source.model, "-o", made.base + ".plan.ply", "--report", made.page)
+        self.run("cscd", "preprocess", source.model, "-o", made.base + ".plan.ply", "--up", "z", "--report", made.page)
         return made
 
     def comparison(self):
@@ -144,7 +145,7 @@ class Material:
             recording_file.write_obj(files[-1], list(zip(*axes)), triangles)
         made.model = files[0]
         self.run("cscd", "replay", *files, "--allow-gaps", "--frames", "1001:", "--json", made.json, "--contacts", made.csv,
-                 "--report", made.page, "--quiet")
+                 "--up", "z", "--fps", "25", "--report", made.page, "--quiet")
         return made
 
     def large(self):

@@ -5,7 +5,6 @@
 #include "src/tool/common/frame_range.h"
 #include "src/tool/common/ignore_pairs.h"
 #include "src/tool/common/recording.h"
-#include "src/tool/common/report_request.h"
 #include "src/tool/picture/scene.h"
 
 #include <stdio.h>
@@ -104,13 +103,6 @@ bool read_obstacle(const char *text, void *place) {
     return true;
 }
 
-bool read_report_up(const char *text, void *place) {
-    int axis;
-    if (!parse_choice(text, (const char *const[]){"y", "z"}, 2, &axis)) return false;
-    *(int *)place = axis + 1;
-    return true;
-}
-
 bool read_picture_size(const char *text, void *place) {
     picture_options *picture = place;
     char end = '\0';
@@ -124,14 +116,6 @@ bool read_picture_view(const char *text, void *place) {
     return sscanf(text, "%lf,%lf%c", &picture->azimuth, &picture->elevation, &end) == 2 &&
            picture->elevation >= -90.0 && picture->elevation <= 90.0 && picture->azimuth >= -1e6 &&
            picture->azimuth <= 1e6;
-}
-
-bool read_picture_up(const char *text, void *place) {
-    picture_options *picture = place;
-    int axis;
-    if (!parse_choice(text, (const char *const[]){"y", "z"}, 2, &axis)) return false;
-    picture->y_up = axis == 0;
-    return true;
 }
 
 bool parse_method(const char *text, cscd_method *method, uint32_t *k) {

@@ -19,12 +19,10 @@ bool read_rest(const char *text, void *place);         /* ignore_options.rest: n
 bool read_part_pairs(const char *text, void *place);   /* part_pairs_list: A or A,B */
 bool read_fps(const char *text, void *place);          /* double above 0 */
 bool read_named_path(const char *text,
-                     void *place);                  /* named_paths: NAME=PATH; a name has no ':' and no ',' */
-bool read_obstacle(const char *text, void *place);  /* the same, of an obstacle */
-bool read_report_up(const char *text, void *place); /* int, report_request.up_axis: y|z */
+                     void *place);                 /* named_paths: NAME=PATH; a name has no ':' and no ',' */
+bool read_obstacle(const char *text, void *place); /* the same, of an obstacle */
 bool read_picture_size(const char *text, void *place); /* picture_options: WxH */
 bool read_picture_view(const char *text, void *place); /* picture_options: AZ,EL */
-bool read_picture_up(const char *text, void *place);   /* picture_options: y|z */
 
 /* NAME|kmeans:K of --method. Without a K, *k stays as it is. */
 bool parse_method(const char *text, cscd_method *method, uint32_t *k);

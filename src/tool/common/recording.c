@@ -1,6 +1,7 @@
 /* Puts the objects of a recording together: one mesh, one array of positions, one series of frames. */
 #include "src/tool/common/recording.h"
 
+#include "src/io/gltf.h"
 #include "src/io/path_name.h"
 #include "src/tool/common/command.h"
 
@@ -213,7 +214,7 @@ static bool map_edges(recording *r, io_error *error) {
 /* ---- the interface ----------------------------------------------------------------------------------- */
 
 bool recording_open(const recording_options *options, recording *out, io_error *error) {
-    recording r = {0};
+    recording r = {.fps = options->frames.fps};
     if (!open_objects(options, &r, error) || !number_frames(options, &r, error) ||
         !create_context(options, &r, error) || !create_mesh(&r, error) || !map_edges(&r, error)) {
         recording_close(&r);
@@ -254,6 +255,16 @@ void recording_rest(const recording *r, double *positions) {
 
 void recording_hash_frame(recording *r) {
     for (uint32_t i = 0; i < r->object_count; i++) recorded_object_hash_frame(&r->objects[i]);
+}
+
+double recording_fps(const recording *r) {
+    if (r->fps > 0.0) return r->fps;
+    for (uint32_t i = 0; i < r->object_count; i++) {
+        const recorded_object *object = &r->objects[i];
+        if (object->frames != NULL && gltf_recognise_path(object->source.frame_paths[0]))
+            return ANIMATION_FPS;
+    }
+    return 0.0;
 }
 
 bool recording_moves(const recording *r) {

@@ -56,6 +56,7 @@ typedef struct recording {
     char *model_name; /* of the object without a name of its own: its file's, without folder and ending */
     uint32_t object_count;
     uint32_t frame_count;
+    double fps;                        /* that of the options; 0: not given */
     int32_t *frame_numbers;            /* frame_count, ascending: what the artist calls each frame */
     uint32_t (*edge_file_vertices)[2]; /* per edge of mesh; NULL when nothing is welded */
 } recording;
@@ -73,6 +74,9 @@ void recording_rest(const recording *r, double *positions);
 
 /* Adds the files' positions of the frame read last to the objects' hashes. */
 void recording_hash_frame(recording *r);
+
+/* Frames a second: as --fps says, or 24 where a glTF file was sampled; 0: nobody knows. */
+double recording_fps(const recording *r);
 
 /* Does any object have frames? */
 bool recording_moves(const recording *r);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "src/io/io_error.h"
+#include "src/tool/common/up_axis.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -9,7 +10,8 @@
 typedef struct report_request {
     const char *path;                               /* NULL: no report */
     const char *scenery_path, *scenery_frames_path; /* NULL: none */
-    int up_axis;                                    /* 1: y, 2: z */
+    const char *title;                              /* NULL: the model's file */
+    up_axis up;
 } report_request;
 
 /* False, with the reason, if the options contradict each other, or if the report would be written over one

@@ -18,7 +18,7 @@ static const option_row of_frames[] = {
     {"first-frame", "N", read_frame_number, offsetof(recording_options, first_frame),
      "what the first frame is called (default: the number in its file's name, the start of a PC2, or 0)"},
     {"fps", "N", read_fps, offsetof(recording_options, frames.fps),
-     "frames a second of a glTF file, which has seconds only (default 24)"},
+     "frames a second: of a glTF file, which has seconds only (default 24), and of the page's seconds"},
     {"animation", "NAME", read_text, offsetof(recording_options, frames.animation_name),
      "which animation of a glTF file (default: the first)"},
     {"allow-gaps", NULL, read_flag, offsetof(recording_options, frames.allow_gaps),

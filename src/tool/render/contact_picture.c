@@ -75,9 +75,11 @@ static bool place_markers(contact_picture *p, const cscd_contacts *contacts, io_
 
 static bool create_detector(contact_picture *p, const recording *r, io_error *error) {
     if (p->detector != NULL) return true;
+    cscd_detector_options options = cscd_detector_defaults();
+    if (p->ignored != NULL) ignore_pairs_choose(p->ignored, &options);
     p->end = malloc((size_t)cscd_mesh_vertex_count(r->mesh) * 3 * sizeof *p->end);
     return (p->end != NULL &&
-            cscd_detector_create(r->context, r->mesh, NULL, NULL, &p->detector) == CSCD_OK) ||
+            cscd_detector_create(r->context, r->mesh, NULL, &options, &p->detector) == CSCD_OK) ||
            io_fail(error, "out of memory");
 }
 
@@ -120,6 +122,20 @@ void contact_picture_kind_colour(int kind, uint8_t rgb[3]) {
     memcpy(rgb, kind_colours[kind], 3);
 }
 
+/* The longest side of the body's box. */
+static double body_size(const contact_picture *p) {
+    double size = 0.0;
+    for (int k = 0; k < 3; k++) {
+        double low = INFINITY, high = -INFINITY;
+        for (uint32_t v = 0; v < p->scene.vertex_count; v++) {
+            low = fmin(low, p->positions[(size_t)v * 3 + (size_t)k]);
+            high = fmax(high, p->positions[(size_t)v * 3 + (size_t)k]);
+        }
+        size = fmax(size, high - low);
+    }
+    return size;
+}
+
 void contact_picture_focus(const contact_picture *p, picture_options *options) {
     if (p->scene.marker_count == 0) return;
     double widest = 0.0;
@@ -133,9 +149,7 @@ void contact_picture_focus(const contact_picture *p, picture_options *options) {
         options->focus_max[k] = high;
         widest = fmax(widest, high - low);
     }
-    double margin = 0.5 * widest;
-    for (uint32_t v = 0; margin == 0.0 && v < p->scene.vertex_count * 3; v++)
-        margin = fmax(margin, 0.02 * fabs(p->positions[v])); /* a single contact */
+    const double margin = fmax(0.5 * widest, 0.05 * body_size(p));
     for (int k = 0; k < 3; k++) {
         options->focus_min[k] -= margin;
         options->focus_max[k] += margin;

@@ -66,7 +66,9 @@ static double square_side(const recording *r) {
 }
 
 static bool draw_picture(render_options *o, recording *r, io_error *error) {
-    contact_picture picture = {0};
+    ignore_pairs ignored;
+    if (!ignore_pairs_prepare(&o->ignored, r, &ignored, error)) return false;
+    contact_picture picture = {.ignored = &ignored};
     scenery other = {0};
     scenery *beside = o->scenery_path != NULL ? &other : NULL;
     o->picture.square = square_side(r);
@@ -76,6 +78,7 @@ static bool draw_picture(render_options *o, recording *r, io_error *error) {
     if (beside != NULL) picture.scene.scenery = &beside->mesh;
     drawn = drawn && (o->strip ? draw_strip : draw_frame)(o, r, &picture, beside, error);
     contact_picture_free(&picture);
+    ignore_pairs_free(&ignored);
     scenery_close(&other);
     return drawn;
 }

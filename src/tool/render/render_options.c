@@ -45,7 +45,8 @@ static const option_row rows[] = {
      "camera: degrees around the vertical axis, degrees above the horizon"},
     {"zoom", NULL, read_flag, offsetof(render_options, zoom),
      "with contacts: only the neighbourhood of the contacts"},
-    {"up", "y|z", read_picture_up, offsetof(render_options, picture), "which axis points up (default z)"},
+    {"up", "y|z", read_up, offsetof(render_options, up),
+     "which axis points up (default: y of OBJ and glTF, else z)"},
     {"wire", NULL, read_flag, offsetof(render_options, picture.wire), "draw the triangles' edges"},
 };
 
@@ -57,7 +58,8 @@ static const option_table table = {
     rows,
     sizeof rows / sizeof *rows,
     .shared = {{&object_rows, offsetof(render_options, source)},
-               {&frame_rows, offsetof(render_options, source)}},
+               {&frame_rows, offsetof(render_options, source)},
+               {&pair_rows, offsetof(render_options, ignored)}},
     .examples = {{"render body.obj body.pc2 --frame 84 --colour contacts -o contacts.png",
                   "Draw frame 84, with its contacts up to the next frame."},
                  {"render body.obj body.pc2 --frames 0:140:10 --columns 5 -o strip.png",
@@ -107,6 +109,7 @@ bool render_options_parse(int argument_count, char **arguments, render_options *
         o.picture.height = 300;
     }
     recording_options_take(&o.source, &given);
+    o.picture.y_up = up_axis_choose(o.up, recording_options_path(&o.source)) == UP_Y;
     *out = o;
     return true;
 }

@@ -2,7 +2,8 @@
 #pragma once
 
 #include "src/tool/common/frame_range.h"
-#include "src/tool/common/recording.h"
+#include "src/tool/common/ignore_pairs.h"
+#include "src/tool/common/up_axis.h"
 #include "src/tool/picture/scene.h"
 
 typedef enum colouring { COLOUR_PLAIN, COLOUR_CONTACTS, COLOUR_CHARGE, COLOUR_REGION } colouring;
@@ -19,6 +20,8 @@ typedef struct render_options {
     colouring colouring;
     bool zoom;
     picture_options picture;
+    up_axis up;
+    ignore_options ignored;
 } render_options;
 
 /* False: *code is the exit code to end with (0 after --help). */

@@ -85,7 +85,7 @@ static bool open_outputs(replay *r, io_error *error) {
         (o->contacts_path != NULL && !open_contacts(r, error)))
         return false;
     return replay_report_open(&r->report, &o->report, recording_options_path(&o->source), &r->recording,
-                              r->plan.plan, r->detector, r->first, r->last, error) &&
+                              r->plan.plan, r->detector, r->first, r->last, &r->unit, error) &&
            answer_outputs_open(&o->answers, &r->files, error) &&
            summary_open(o->json_path, o->report.path != NULL, r->recording.mesh, &r->summary, error);
 }

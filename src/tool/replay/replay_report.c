@@ -21,13 +21,15 @@ static bool open_scenery(replay_report *r, io_error *error) {
 
 bool replay_report_open(replay_report *out, const report_request *request, const char *model_path,
                         recording *r, const cscd_plan *plan, const cscd_detector *detector, uint32_t first,
-                        uint32_t last, io_error *error) {
+                        uint32_t last, const length_unit *unit, io_error *error) {
     *out = (replay_report){.request = request, .model_path = model_path, .recording = r};
     if (request->path == NULL) return true;
     if (!open_scenery(out, error)) return false;
     provenance_generator(out->generator);
     report_options options = {.kind = REPORT_REPLAY,
-                              .title = path_file_name(model_path),
+                              .title = request->title != NULL ? request->title : path_file_name(model_path),
+                              .fps = recording_fps(r),
+                              .length_unit = unit->name,
                               .generator = out->generator,
                               .mesh = r->mesh,
                               .plan = plan,
@@ -35,7 +37,7 @@ bool replay_report_open(replay_report *out, const report_request *request, const
                               .first = first,
                               .last = last,
                               .oriented = cscd_detector_region_count(detector) > 0,
-                              .up_axis = request->up_axis,
+                              .up_axis = (int)up_axis_choose(request->up, model_path),
                               .scenery = {out->scenery.mesh.vertex_count, out->scenery.mesh.triangle_count,
                                           out->scenery.mesh.triangles, out->scenery.frame_count > 1},
                               .file_vertices =

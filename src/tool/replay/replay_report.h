@@ -2,6 +2,7 @@
 #pragma once
 
 #include "src/tool/answers/answers.h"
+#include "src/tool/common/length_unit.h"
 #include "src/tool/common/provenance.h"
 #include "src/tool/common/report_request.h"
 #include "src/tool/common/scenery.h"
@@ -17,11 +18,11 @@ typedef struct replay_report {
     io_error failure; /* "" while all is well */
 } replay_report;
 
-/* Opens the scenery, and the report if one is asked for. The frames to come are first to last. Whatever this returns,
- * replay_report_close is due. */
+/* Opens the scenery, and the report if one is asked for. The frames to come are first to last. unit: of the files.
+ * Whatever this returns, replay_report_close is due. */
 bool replay_report_open(replay_report *out, const report_request *request, const char *model_path,
                         recording *r, const cscd_plan *plan, const cscd_detector *detector, uint32_t first,
-                        uint32_t last, io_error *error);
+                        uint32_t last, const length_unit *unit, io_error *error);
 
 /* The positions of the first frame. */
 void replay_report_begin(replay_report *r, const double *positions);

@@ -34,9 +34,11 @@ typedef struct report_options {
     const cscd_mesh *mesh;        /* NULL for REPORT_COMPARE, which shows no surface */
     const cscd_plan *plan;        /* NULL: none */
     const int32_t *frame_numbers; /* what frames are called, by index; NULL: their indices */
-    uint32_t first, last; /* the frames to come; what is kept follows from them; of a preprocess 0, 0 */
-    bool oriented;        /* the detector's method has detector points and orientations */
-    int up_axis;          /* of the picture: 1: y, 2: z; 0 stands for z */
+    uint32_t first, last;    /* the frames to come; what is kept follows from them; of a preprocess 0, 0 */
+    bool oriented;           /* the detector's method has detector points and orientations */
+    int up_axis;             /* of the picture: 1: y, 2: z; 0 stands for z */
+    double fps;              /* frames a second; 0: nobody knows */
+    const char *length_unit; /* "mm": of the files' coordinates; NULL: nobody knows */
     report_scenery scenery;
 
     /* The vertices of a contact as the model file numbers them. VF: the vertex, the face's three; EE: those

@@ -133,6 +133,14 @@ static void write_scene(json *out, const report *r, const page_arrays *arrays) {
     json_integer(out, "components", cscd_mesh_component_count(mesh));
     json_number(out, "unit", r->unit);
     json_string(out, "up", r->options.up_axis == 1 ? "y" : "z");
+    if (r->options.fps > 0.0)
+        json_number(out, "fps", r->options.fps);
+    else
+        json_null(out, "fps");
+    if (r->options.length_unit != NULL)
+        json_string(out, "length_unit", r->options.length_unit);
+    else
+        json_null(out, "length_unit");
     json_signed(out, "first", frame_number_of(r, r->options.first));
     json_signed(out, "last", frame_number_of(r, r->last));
     write_numbers(out, r);

@@ -61,8 +61,8 @@ static const option_row rows[] = {
      "of the picture: pixels (default 1280x960)"},
     {"view", "AZ,EL", read_picture_view, offsetof(sense_options, picture),
      "of the picture: degrees around the vertical axis, degrees above the horizon"},
-    {"up", "y|z", read_picture_up, offsetof(sense_options, picture),
-     "of the picture: which axis points up (default z)"},
+    {"up", "y|z", read_up, offsetof(sense_options, up),
+     "of the picture: which axis points up (default: y of OBJ and glTF, else z)"},
     {"frames", "A:B", read_frames, offsetof(sense_options, frames),
      "only from frame A to frame B, both included (A: and :B are open ends)"},
     {"quiet", NULL, read_flag, offsetof(sense_options, quiet), "no progress, no warnings, no table"},
@@ -142,6 +142,7 @@ bool sense_options_parse(int argument_count, char **arguments, sense_options *ou
     if (*code == EXIT_RAN) *code = check_paths(&o, given.inputs, given.input_count);
     if (*code != EXIT_RAN) return false;
     recording_options_take(&o.source, &given);
+    o.picture.y_up = up_axis_choose(o.up, recording_options_path(&o.source)) == UP_Y;
     *out = o;
     return true;
 }

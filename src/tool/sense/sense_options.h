@@ -4,6 +4,7 @@
 #include "cscd/sensors.h"
 #include "src/tool/common/frame_range.h"
 #include "src/tool/common/recording.h"
+#include "src/tool/common/up_axis.h"
 #include "src/tool/picture/scene.h"
 
 typedef struct sense_options {
@@ -17,6 +18,7 @@ typedef struct sense_options {
     const char *json_path, *csv_path, *picture_path; /* NULL: not given */
     frame_number frame;                              /* of the picture; not given: the last */
     picture_options picture;
+    up_axis up;
     int argument_count; /* the command line, for the provenance */
     char **arguments;
 } sense_options;

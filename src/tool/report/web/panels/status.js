@@ -19,11 +19,13 @@ export function create(container, report, store) {
   }
   const extent = extentOf(report);
   const { first, last } = extent;
+  const { fps } = report.scene;
   const find = finder(report.summaries[0]?.summary);
 
   function update({ time, playing }) {
     container.setAttribute('aria-live', playing ? 'off' : 'polite');
-    const parts = [`Frame ${moment(time)} of ${first} to ${last}`];
+    const seconds = fps === null ? '' : ` (${(time / fps).toFixed(2)} s)`;
+    const parts = [`Frame ${moment(time)}${seconds} of ${first} to ${last}`];
     const interval = find(intervalAt(time, extent));
     if (interval) {
       parts.push(STATE_NAME[interval.state] ?? interval.state);
