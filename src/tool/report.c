@@ -29,9 +29,9 @@ static const option_row rows[] = {
 static const option_table table = {
     "report",
     "A.json [B.json ...] -o OUT.html",
-    "Puts the summaries that cscd replay --json wrote side by side on one page for any browser: the thesis' "
-    "table, times, contacts and pairs of every interval, and whether the contacts agree. To see the motion "
-    "itself, give cscd replay --report.",
+    "Compares runs of cscd replay, by the summaries that --json wrote, on one page for any browser: which events "
+    "are new, still there or fixed since the first run, and how contacts, pairs and times differ. To see the "
+    "motion itself, give cscd replay --report.",
     rows,
     sizeof rows / sizeof *rows,
     .examples = {{"report before.json after.json -o compare.html",

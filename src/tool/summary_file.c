@@ -13,7 +13,7 @@
 #include <string.h>
 
 /* A member that must be there, and what it must be: n: number, i: whole number, N: number or null, s: string,
- * a: array, o: object, b: true or false. */
+ * S: string or null, a: array, A: array or null, o: object, b: true or false. */
 typedef struct member {
     const char *name;
     char kind;
@@ -52,6 +52,11 @@ static const member of_provenance[] = {
     {"machine", 'o'}, {"threads", 'n'}, {"arguments", 'a'}, {"inputs", 'a'}, {NULL, 0}};
 static const member of_machine[] = {{"system", 's'},    {"release", 's'},    {"architecture", 's'},
                                     {"processor", 's'}, {"processors", 'n'}, {NULL, 0}};
+static const member of_event[] = {{"a", 's'},     {"b", 's'},      {"first", 'i'}, {"last", 'i'},
+                                  {"worst", 'i'}, {"kinds", 'a'},  {"pairs", 'n'}, {"contacts", 'n'},
+                                  {"depth", 'n'}, {"length", 'n'}, {"point", 'A'}, {"triangle", 'N'},
+                                  {"face", 'N'},  {"object", 'S'}, {NULL, 0}};
+static const member of_unit[] = {{"unit", 'S'}, {NULL, 0}};
 static const member of_input[] = {{"name", 's'}, {"fnv1a64", 's'}, {NULL, 0}};
 /* The counters whose mean and maximum the page shows, beside those of all stages. */
 static const char *const counted_columns[] = {"pcp", "tests"};
@@ -65,8 +70,12 @@ static bool is_of_kind(json_object *value, char kind) {
         return type == json_type_int;
     case 's':
         return type == json_type_string;
+    case 'S':
+        return type == json_type_string || type == json_type_null;
     case 'a':
         return type == json_type_array;
+    case 'A':
+        return type == json_type_array || type == json_type_null;
     case 'o':
         return type == json_type_object;
     case 'b':
@@ -162,6 +171,41 @@ static bool strings_only(json_object *array, const char *where, io_error *error)
     return true;
 }
 
+static bool numbers_only(json_object *array, const char *where, io_error *error) {
+    for (size_t i = 0; i < json_object_array_length(array); i++)
+        if (!is_of_kind(json_object_array_get_idx(array, i), 'n'))
+            return io_fail(error, "%s are not what cscd writes there", where);
+    return true;
+}
+
+static bool check_event(json_object *event, size_t index, io_error *error) {
+    char where[48], what[96];
+    snprintf(where, sizeof where, "event %zu of the file", index);
+    if (!has_members(event, of_event, where, error)) return false;
+    int64_t first = json_object_get_int64(find_member(event, "first"));
+    int64_t last = json_object_get_int64(find_member(event, "last"));
+    int64_t worst = json_object_get_int64(find_member(event, "worst"));
+    if (first < INT32_MIN || last > INT32_MAX || worst < first || worst > last)
+        return io_fail(error, "%s: its frames are not what cscd writes there", where);
+    json_object *point = find_member(event, "point");
+    snprintf(what, sizeof what, "%s: the coordinates", where);
+    if (point != NULL && (json_object_array_length(point) != 3 || !numbers_only(point, what, error)))
+        return io_fail(error, "%s are not what cscd writes there", what);
+    snprintf(what, sizeof what, "%s: its kinds", where);
+    return strings_only(find_member(event, "kinds"), what, error);
+}
+
+/* Summaries of older versions have no events: that is fine. */
+static bool check_events(json_object *root, io_error *error) {
+    json_object *events = NULL;
+    if (!json_object_object_get_ex(root, "events", &events)) return true;
+    if (!json_object_is_type(events, json_type_array))
+        return io_fail(error, "the file: 'events' is not what cscd writes there");
+    for (size_t i = 0; i < json_object_array_length(events); i++)
+        if (!check_event(json_object_array_get_idx(events, i), i, error)) return false;
+    return has_members(root, of_unit, "the file", error);
+}
+
 static bool check_summary(json_object *root, io_error *error) {
     static const member parts[] = {
         {"intervals", 'a'}, {"frames", 'a'}, {"summary", 'o'}, {"provenance", 'o'}, {NULL, 0}};
@@ -169,7 +213,8 @@ static bool check_summary(json_object *root, io_error *error) {
     json_object *summary = find_member(root, "summary"), *provenance = find_member(root, "provenance");
     return check_intervals(find_member(root, "intervals"), error) &&
            elements_have(find_member(root, "frames"), of_frame, "a frame", error) &&
-           has_members(summary, of_summary, "the summary", error) && check_columns(summary, error) &&
+           check_events(root, error) && has_members(summary, of_summary, "the summary", error) &&
+           check_columns(summary, error) &&
            has_members(find_member(summary, "plan"), of_plan, "the plan", error) &&
            (json_object_get_boolean(find_member(summary, "complete")) ||
             has_members(summary, of_incomplete, "the summary", error)) &&

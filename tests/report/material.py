@@ -12,6 +12,15 @@ RECORDINGS = ("pawn-drop", "dumbbell-stairs", "figure-balls")
 HOSTILE = "<img src=x onerror=document.title='owned'>&amp;\"'\n</script><b>.obj"
 LARGE_FRAMES, LARGE_TRIANGLES = 161, 100000
 
+TETRAHEDRON = ((0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0))
+LIMBS = ("Arm", "Leg", "Eye")
+LIMB_PLACES = ((1.2, 0.6), (2.2, 0.6), (0.6, 1.9))
+OUT = [2.5] * 10
+# How far the tip of each limb is from the body, in each frame.
+LIMB_WAYS = ({"before": [3, 2, 1, -0.6, -0.9, -0.6, 1, 2, 3, 3], "after": OUT},
+             {"before": [3, 3, 2, 2, 1, -0.1, -0.2, -0.15, -0.1, 1], "after": [3, 3, 2, 2, 1, -0.1, -0.5, -0.3, -0.1, 1]},
+             {"before": OUT, "after": [3, 3, 3, 2, 2, 2, 1, -0.25, -0.25, 1]})
+
 
 class Made:
     """The files of one report."""
@@ -148,6 +157,28 @@ class Material:
                  "--up", "z", "--fps", "25", "--report", made.page, "--quiet")
         return made
 
+    def limbs(self, name):
+        """Makes ten frames of a body that three limbs reach into, each along x: `before` or `after` it was mended."""
+        return self.once("limbs-" + name, lambda _: self._limbs(name))
+
+    def _limbs(self, name):
+        made = Made(self.folder, "limbs-" + name)
+        names, triangles = {}, []
+        for part, limb in enumerate(["Body", *LIMBS]):
+            names[len(triangles)] = limb
+            triangles += [tuple(corner + 4 * part for corner in triangle) for triangle in TETRAHEDRON]
+        frames = [limbs_at([ways[name][frame] for ways in LIMB_WAYS]) for frame in range(10)]
+        recording_file.write_obj(made.model, frames[0], triangles, names)
+        recording_file.write_pc2(made.frames, [recording_file.flat(frame) for frame in frames])
+        self.replay_files(made)
+        return made
+
+    def limbs_compared(self, *others):
+        """Returns the page that compares `before` with these summaries."""
+        made = Made(self.folder, "limbs")
+        self.run("cscd", "report", self.limbs("before").json, *others, "-o", made.page)
+        return made
+
     def large(self):
         """Makes a torus of 100,000 triangles that is bent to and fro: not all of its frames fit in the page."""
         return self.once("large", self._large)
@@ -161,6 +192,14 @@ class Material:
         recording_file.write_pc2(made.frames, [there_and_back[k % len(there_and_back)] for k in range(LARGE_FRAMES)])
         self.replay_files(made, "--method", "single", "--no-check")
         return made
+
+
+def limbs_at(tips):
+    """Returns the positions of the body and of limbs whose tips are at these x."""
+    positions = [(0.0, 0.0, 0.0), (0.0, 4.0, 0.0), (0.0, 0.0, 4.0), (-4.0, 0.0, 0.0)]
+    for x, (y, z) in zip(tips, LIMB_PLACES):
+        positions += [(x, y, z), (x + 2.0, y, z), (x + 2.0, y, z + 0.6), (x + 2.0, y + 0.6, z)]
+    return positions
 
 
 def bent(positions, bend):

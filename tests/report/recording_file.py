@@ -18,10 +18,14 @@ def read_obj(path):
     return positions, triangles
 
 
-def write_obj(path, positions, triangles):
+def write_obj(path, positions, triangles, names=None):
+    """names: {the first triangle of a part: its name}."""
     with open(path, "w", encoding="utf-8") as file:
         file.writelines(f"v {x!r} {y!r} {z!r}\n" for x, y, z in positions)
-        file.writelines(f"f {a + 1} {b + 1} {c + 1}\n" for a, b, c in triangles)
+        for number, (a, b, c) in enumerate(triangles):
+            if names is not None and number in names:
+                file.write(f"o {names[number]}\n")
+            file.write(f"f {a + 1} {b + 1} {c + 1}\n")
 
 
 def read_pc2(path):

@@ -14,6 +14,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 sys.dont_write_bytecode = True
 
 import answer_scenarios  # noqa: E402
+import changes_scenarios  # noqa: E402
 import charts_scenarios  # noqa: E402
 import controls_scenarios  # noqa: E402
 import data_scenarios  # noqa: E402
@@ -27,7 +28,7 @@ from material import Material  # noqa: E402
 from page import Page  # noqa: E402
 from pictures import Pictures  # noqa: E402
 
-MODULES = (data_scenarios, answer_scenarios, controls_scenarios, frames_scenarios, view_scenarios, charts_scenarios,
+MODULES = (data_scenarios, answer_scenarios, changes_scenarios, controls_scenarios, frames_scenarios, view_scenarios, charts_scenarios,
            tables_scenarios, layout_scenarios, extremes_scenarios, speed_scenarios)
 SCENARIOS = {scenario.__name__: scenario for module in MODULES for scenario in module.SCENARIOS}
 

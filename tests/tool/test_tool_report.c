@@ -167,6 +167,18 @@ static void a_changed_summary_is_refused(void **state) {
         {"\"release\":", "\"release\":7,\"was\":", {"the machine: 'release' is not", NULL}},
         {"\"source\"", "\"sauce\"", {"the plan has no member 'source'", NULL}},
         {"\"complete\":true", "\"complete\":false", {"the summary has no member 'stopped_by'", NULL}},
+        {"\"events\":[",
+         "\"events\":7,\"were\":[",
+         {"the file: 'events' is not what cscd writes there", NULL}},
+        {"\"unit\":null", "\"unit\":7", {"the file: 'unit' is not what cscd writes there", NULL}},
+        {"\"worst\":", "\"worst\":1234", {"event 0 of the file: its frames are not", NULL}},
+        {"\"worst\":", "\"worse\":", {"event 0 of the file has no member 'worst'", NULL}},
+        {"\"kinds\":[", "\"kinds\":[7,", {"event 0 of the file: its kinds are not", NULL}},
+        {"\"point\":[", "\"point\":[1,", {"event 0 of the file: the coordinates are not", NULL}},
+        {"\"point\":[",
+         "\"point\":[null,null,null],\"place\":[",
+         {"event 0 of the file: the coordinates are not", NULL}},
+        {"\"object\":", "\"object\":7,\"body\":", {"event 0 of the file: 'object' is not", NULL}},
     };
     EXPECT_TOOL(0, "replay", model.text, cache.text, "--json", summary.text);
     char *text = read_whole_file(summary.text, NULL);
@@ -184,6 +196,21 @@ static void a_changed_summary_is_refused(void **state) {
         EXPECT_ERROR(1, cases[i].reasons, "report", path.text, "-o", page.text);
     }
     free(text);
+}
+
+/* An older version wrote a summary without events: the page says so. */
+static void a_summary_without_events_is_read(void **state) {
+    (void)state;
+    EXPECT_TOOL(0, "replay", model.text, cache.text, "--json", summary.text);
+    char *text = read_whole_file(summary.text, NULL), *place = strstr(text, "\"events\":");
+    assert_non_null(place);
+    memcpy(place, "\"remark\":", strlen("\"remark\":"));
+    temp_path path = temp_file_write(&folder, "changed.json", text, strlen(text));
+    free(text);
+    EXPECT_TOOL(0, "report", path.text, "-o", page.text);
+    json_node *root = read_page(page.text);
+    assert_non_null(json_node_member(first_summary(root), "remark"));
+    json_node_free(root);
 }
 
 static void options_that_do_not_fit_are_refused(void **state) {
@@ -371,6 +398,7 @@ int main(void) {
         cmocka_unit_test(summaries_stand_side_by_side),
         cmocka_unit_test(what_is_no_summary_is_named),
         cmocka_unit_test(a_changed_summary_is_refused),
+        cmocka_unit_test(a_summary_without_events_is_read),
         cmocka_unit_test(options_that_do_not_fit_are_refused),
         cmocka_unit_test(an_unwritable_report_loses_nothing_else),
         cmocka_unit_test(outputs_are_where_links_lead),

@@ -6,5 +6,11 @@ export function worseThan(a, b) {
   return false;
 }
 
+/** What an event is, in a word, and in what state its mark is drawn. */
+export function kindOf({ kinds, pairs, depth }) {
+  if (kinds.some((kind) => kind !== 'touching') || (pairs === 0 && depth > 0)) return ['penetrating', 'intersecting'];
+  return pairs > 0 ? ['unknown', 'touching'] : ['contact', 'contact only'];
+}
+
 /** The parts of an event. */
 export const whoOf = ({ a, b }) => (a === b ? `${a} × itself` : `${a} × ${b}`);

@@ -11,6 +11,12 @@ export function nameOf(report, index) {
 
 const withoutFolders = (path) => path.slice(path.lastIndexOf('/') + 1);
 
+/** The name of a replay without its folders, unless another one then has the same. */
+export function shortNameOf(report, index) {
+  const short = report.summaries.map(({ name }) => withoutFolders(name));
+  return short.filter((name) => name === short[index]).length > 1 ? nameOf(report, index) : short[index];
+}
+
 /** The title of a comparison: the files of its replays, if that is short. */
 export function titleOf(report) {
   if (report.kind !== 'compare') return report.title;

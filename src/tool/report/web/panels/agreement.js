@@ -51,8 +51,15 @@ export function agreement(report) {
   return sentences;
 }
 
-/* Options that change contacts, then options that change times only. */
-const GRAVE = ['model', 'recording', 'frames', 'mode', 'least separation'];
+/* What differs where a scene was mended between the runs; options that change contacts; the rest changes times only. */
+const MENDED = ['model', 'recording'];
+const GRAVE = ['frames', 'mode', 'least separation'];
+
+function consequenceOf(what) {
+  if (MENDED.includes(what)) return ['warn', 'Numbers of contacts and times are of different motions.'];
+  if (GRAVE.includes(what)) return ['alarm', 'Neither contacts nor times can be compared directly.'];
+  return ['warn', 'Compare times with care.'];
+}
 
 /** The circumstances of a replay and their values. */
 function circumstances(run) {
@@ -102,11 +109,7 @@ export function differences(report) {
       const values = [...groups.values()]
         .map(({ words, names }) => `${words} (${names.join(', ')})`)
         .join('; ');
-      const grave = GRAVE.includes(what);
-      return [
-        grave ? 'alarm' : 'warn',
-        `Not the same ${what}: ${values}. ` +
-          (grave ? 'Neither contacts nor times can be compared directly.' : 'Compare times with care.'),
-      ];
+      const [grade, consequence] = consequenceOf(what);
+      return [grade, `Not the same ${what}: ${values}. ${consequence}`];
     });
 }

@@ -1,5 +1,6 @@
 /** Puts every panel into its place on the page. */
 import * as answer from './answer.js';
+import * as changes from './changes.js';
 import * as charts from './charts.js';
 import * as comparison from './comparison.js';
 import * as contacts from './contacts.js';
@@ -17,6 +18,7 @@ const PANELS = {
   status,
   answer,
   notes,
+  changes,
   comparison,
   charts,
   contacts,

@@ -1,7 +1,7 @@
 /** The answer first: a sentence, parts against parts as a matrix, and the events; a click goes to an event's worst frame. */
 import { button, element, heading, scrollable, setText } from '../page/dom.js';
 import { counted, integer, ranges, significant } from '../page/format.js';
-import { whoOf, worseThan } from '../page/events.js';
+import { kindOf, whoOf, worseThan } from '../page/events.js';
 
 const PARTS_MOST = 14; // rows of the matrix
 const FORWARD = 'M6 2.5v11l7-5.5zM3 2.5h2v11H3z';
@@ -34,12 +34,6 @@ const framesOf = ({ first, last }) => (first === last ? `frame ${first}` : `fram
 function depthOf({ depth, worst, pairs }) {
   if (depth > 0) return `, ${lengthOf(depth)} deep at frame ${worst}`;
   return pairs > 0 ? `, worst at frame ${worst}` : '';
-}
-
-/** What an event is, in a word, and in what state its mark is drawn. */
-function kindOf({ kinds, pairs, depth }) {
-  if (kinds.some((kind) => kind !== 'touching') || (pairs === 0 && depth > 0)) return ['penetrating', 'intersecting'];
-  return pairs > 0 ? ['unknown', 'touching'] : ['contact', 'contact only'];
 }
 
 /** Parts that have events, those with the worst first, and the events of each pair. */
