@@ -7,6 +7,7 @@
 #include "src/io/gltf.h"
 #include "src/io/obj.h"
 #include "src/io/off.h"
+#include "src/io/output_file.h"
 #include "src/io/path_name.h"
 #include "src/io/ply.h"
 #include "src/io/stl.h"
@@ -17,11 +18,38 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <sys/stat.h>
 
 /* Some editors put a UTF-8 byte order mark in front of a text. */
 static void skip_byte_order_mark(file_reader *reader) {
     if (reader->size >= 3 && memcmp(reader->bytes, "\xef\xbb\xbf", 3) == 0) reader->at = 3;
+}
+
+typedef struct format_reader {
+    mesh_format format;
+    const char *ending; /* of the files that are read so, whatever is in them; NULL: none */
+    bool (*recognise)(const file_reader *); /* NULL: what is in them does not say */
+    bool (*read)(file_reader *, mesh_file *);
+} format_reader;
+
+static const format_reader readers[] = {
+    {MESH_FORMAT_GLTF, NULL, gltf_recognise, gltf_read},
+    {MESH_FORMAT_GIFTI, NULL, gifti_recognise, gifti_read},
+    {MESH_FORMAT_STL, ".stl", stl_recognise, stl_read},
+    {MESH_FORMAT_PLY, ".ply", ply_recognise, ply_read},
+    {MESH_FORMAT_OFF, ".off", off_recognise, off_read},
+    {MESH_FORMAT_OBJ, ".obj", NULL, obj_read},
+};
+
+enum { READERS = sizeof readers / sizeof *readers };
+
+/* What is in the file decides; if that says nothing, its ending. NULL: neither does. */
+static const format_reader *choose_reader(file_reader *reader) {
+    for (size_t i = 0; i < READERS; i++)
+        if (readers[i].recognise != NULL && readers[i].recognise(reader)) return &readers[i];
+    for (size_t i = 0; i < READERS; i++)
+        if (readers[i].ending != NULL && path_has_extension(reader->path, readers[i].ending))
+            return &readers[i];
+    return NULL;
 }
 
 static bool read_any(file_reader *reader, mesh_file *out) {
@@ -29,15 +57,12 @@ static bool read_any(file_reader *reader, mesh_file *out) {
         return file_reader_fail(reader,
                                 "the file is empty, expected an OBJ, PLY, OFF, STL, glTF or GIFTI mesh");
     skip_byte_order_mark(reader);
-    if (gltf_recognise(reader)) return gltf_read(reader, out);
-    if (gifti_recognise(reader)) return gifti_read(reader, out);
-    if (stl_recognise(reader)) return stl_read(reader, out);
-    if (ply_recognise(reader)) return ply_read(reader, out);
-    if (off_recognise(reader)) return off_read(reader, out);
-    if (path_has_extension(reader->path, ".obj")) return obj_read(reader, out);
-    if (path_has_extension(reader->path, ".ply")) return ply_read(reader, out);
-    if (path_has_extension(reader->path, ".off")) return off_read(reader, out);
-    if (path_has_extension(reader->path, ".stl")) return stl_read(reader, out);
+    const format_reader *chosen = choose_reader(reader);
+    if (chosen != NULL) {
+        const bool done = chosen->read(reader, out);
+        if (done) out->format = chosen->format;
+        return done;
+    }
     const char *advice = foreign_format_advice(reader->path, reader->bytes, reader->size);
     if (advice != NULL) return file_reader_fail(reader, "this is %s", advice);
     return file_reader_fail(reader, "unknown format, expected a mesh: " PATH_MESH_ENDINGS);
@@ -84,23 +109,12 @@ static bool print_obj(FILE *file, const mesh_file *mesh) {
     return fflush(file) == 0;
 }
 
-/* A device or a pipe that could not take the mesh is not removed. */
-static void remove_regular_file(const char *path) {
-    struct stat status;
-    if (lstat(path, &status) == 0 && S_ISREG(status.st_mode)) remove(path);
-}
-
 bool mesh_file_write_obj(const char *path, const mesh_file *mesh, io_error *error) {
     file_reader place = {.path = path, .error = error}; /* for its messages */
-    FILE *file = fopen(path, "wb");
-    if (file == NULL) return file_reader_fail(&place, "cannot open for writing: %s", strerror(errno));
-    bool done = print_obj(file, mesh);
-    int cause = errno;
-    if (fclose(file) != 0 && done) {
-        done = false;
-        cause = errno;
-    }
-    if (done) return true;
-    remove_regular_file(path);
-    return file_reader_fail(&place, "cannot write: %s", strerror(cause));
+    output_file out;
+    if (!output_file_open(path, &out))
+        return file_reader_fail(&place, "cannot open for writing: %s", strerror(errno));
+    const bool printed = print_obj(out.file, mesh);
+    if (output_file_close(&out, printed ? OUTPUT_WHOLE : OUTPUT_ABANDONED)) return true;
+    return file_reader_fail(&place, "cannot write: %s", strerror(errno));
 }

@@ -18,9 +18,21 @@ typedef struct mesh_repairs {
     uint32_t skipped_primitives;     /* of a glTF: points and lines */
 } mesh_repairs;
 
+/* Which format a file turned out to be. */
+typedef enum mesh_format {
+    MESH_FORMAT_NONE, /* a mesh that was not read */
+    MESH_FORMAT_OBJ,
+    MESH_FORMAT_PLY,
+    MESH_FORMAT_OFF,
+    MESH_FORMAT_STL,
+    MESH_FORMAT_GLTF,
+    MESH_FORMAT_GIFTI
+} mesh_format;
+
 /* Vertices in the file's own order; faces in file order, polygons cut into triangles by their shape (polygon.h), as they
  * are in this file. */
 typedef struct mesh_file {
+    mesh_format format;
     uint32_t vertex_count, triangle_count,
         polygon_count;   /* polygons: faces of the file, dropped ones included */
     double *positions;   /* vertex_count * 3 */
@@ -61,4 +73,5 @@ bool mesh_file_read(const char *path, mesh_file *out, io_error *error);
 /* Frees what read allocated and zeroes the struct; a zeroed struct is fine. */
 void mesh_file_free(mesh_file *mesh);
 
+/* The file takes the place of an older one when it is whole (output_file.h). */
 bool mesh_file_write_obj(const char *path, const mesh_file *mesh, io_error *error);

@@ -1,9 +1,10 @@
-/* Writes PC2 and MDD point caches through one small buffer; a file that cannot be finished is removed. */
+/* Writes PC2 and MDD point caches through one small buffer. */
 #define _FILE_OFFSET_BITS 64 /* caches beyond 2 GiB on 32-bit systems too */
 
 #include "src/io/point_cache_write.h"
 
 #include "src/io/growable.h"
+#include "src/io/output_file.h"
 #include "src/io/point_cache.h"
 
 #include <errno.h>
@@ -14,13 +15,12 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <sys/stat.h>
 
 enum { CHUNK_FLOATS = 4096 };
 
 struct point_cache_writer {
-    FILE *file; /* NULL after a failure */
-    bool removable, big_endian;
+    output_file out; /* its file is NULL after a failure */
+    bool big_endian;
     uint32_t vertex_count, frame_count, written_count;
     unsigned char chunk[CHUNK_FLOATS * sizeof(float)];
     char path[];
@@ -36,15 +36,12 @@ static void store_float(unsigned char *bytes, float value, bool big_endian) {
     store_uint32(bytes, bits, big_endian);
 }
 
-/* Ends the file; a path that is no regular file (a device) stays where it is. */
-static void remove_file(point_cache_writer *writer) {
-    if (writer->file != NULL) fclose(writer->file);
-    writer->file = NULL;
-    if (writer->removable) remove(writer->path);
+static void abandon_file(point_cache_writer *writer) {
+    if (writer->out.file != NULL) output_file_close(&writer->out, OUTPUT_ABANDONED);
 }
 
 static bool write_bytes(point_cache_writer *writer, size_t size, io_error *error) {
-    if (fwrite(writer->chunk, 1, size, writer->file) == size) return true;
+    if (fwrite(writer->chunk, 1, size, writer->out.file) == size) return true;
     const int cause = errno;
     return io_fail(error, "%s: cannot write frame %" PRIu32 ": %s", writer->path, writer->written_count,
                    strerror(cause));
@@ -73,11 +70,8 @@ static bool write_mdd_header(point_cache_writer *writer, io_error *error) {
 }
 
 static bool create_file(point_cache_writer *writer, io_error *error) {
-    writer->file = fopen(writer->path, "wb");
-    if (writer->file == NULL) return io_fail(error, "%s: cannot create: %s", writer->path, strerror(errno));
-    struct stat status;
-    writer->removable = fstat(fileno(writer->file), &status) == 0 && S_ISREG(status.st_mode);
-    return true;
+    return output_file_open(writer->path, &writer->out) ||
+           io_fail(error, "%s: cannot create: %s", writer->path, strerror(errno));
 }
 
 static bool begin_file(point_cache_writer *writer, io_error *error) {
@@ -103,7 +97,7 @@ bool point_cache_writer_open(const char *path, uint32_t vertex_count, uint32_t f
     writer->vertex_count = vertex_count;
     writer->frame_count = frame_count;
     if (!begin_file(writer, error)) {
-        remove_file(writer);
+        abandon_file(writer);
         free(writer);
         return false;
     }
@@ -134,9 +128,9 @@ static bool write_frame(point_cache_writer *writer, const double *positions, io_
 }
 
 bool point_cache_writer_write(point_cache_writer *writer, const double *positions, io_error *error) {
-    if (writer->file == NULL) return io_fail(error, "%s: an earlier write failed", writer->path);
+    if (writer->out.file == NULL) return io_fail(error, "%s: an earlier write failed", writer->path);
     if (write_frame(writer, positions, error)) return true;
-    remove_file(writer);
+    abandon_file(writer);
     return false;
 }
 
@@ -144,18 +138,16 @@ static bool finish_file(point_cache_writer *writer, io_error *error) {
     if (writer->written_count < writer->frame_count)
         return io_fail(error, "%s: only %" PRIu32 " frames were written, expected %" PRIu32, writer->path,
                        writer->written_count, writer->frame_count);
-    FILE *file = writer->file;
-    writer->file = NULL;
-    if (fclose(file) != 0) return io_fail(error, "%s: cannot write: %s", writer->path, strerror(errno));
-    return true;
+    return output_file_close(&writer->out, OUTPUT_WHOLE) ||
+           io_fail(error, "%s: cannot write: %s", writer->path, strerror(errno));
 }
 
 bool point_cache_writer_close(point_cache_writer *writer, io_error *error) {
     if (writer == NULL) return true;
     bool finished = false;
-    if (writer->file != NULL) {
+    if (writer->out.file != NULL) {
         finished = finish_file(writer, error);
-        if (!finished) remove_file(writer);
+        if (!finished) abandon_file(writer);
     }
     free(writer);
     return finished;

@@ -262,7 +262,8 @@ static void reports_where_it_cannot_write(void **state) {
     temp_folder_remove(&folder);
 }
 
-static void removes_what_it_cannot_finish(void **state) {
+/* What was there before stays. */
+static void leaves_nothing_that_it_cannot_finish(void **state) {
     (void)state;
     struct rlimit before, limit;
     struct stat status;
@@ -275,11 +276,16 @@ static void removes_what_it_cannot_finish(void **state) {
     limit.rlim_cur = 5000;
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
     bool done = mesh_file_write_obj(path.text, &some_mesh, &error);
+    const bool gone = stat(path.text, &status) != 0;
+    path = temp_file_write(&folder, "out.obj", "older", 5);
+    done = mesh_file_write_obj(path.text, &some_mesh, NULL) || done;
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
     signal(SIGXFSZ, handler);
     assert_false(done);
     assert_non_null(strstr(error.text, "/out.obj: cannot write: File too large"));
-    assert_int_not_equal(stat(path.text, &status), 0);
+    assert_true(gone);
+    assert_int_equal(stat(path.text, &status), 0);
+    assert_int_equal(status.st_size, 5);
     temp_folder_remove(&folder);
 }
 
@@ -298,7 +304,7 @@ int main(void) {
         cmocka_unit_test(survives_garbage),
         cmocka_unit_test(writes_what_it_reads),
         cmocka_unit_test(reports_where_it_cannot_write),
-        cmocka_unit_test(removes_what_it_cannot_finish),
+        cmocka_unit_test(leaves_nothing_that_it_cannot_finish),
     };
     return cmocka_run_group_tests_name("mesh_file", tests, NULL, NULL);
 }

@@ -197,6 +197,23 @@ static void removes_the_file_when_the_disk_is_full(void **state) {
     }
 }
 
+/* Until the last frame is there, and for good when there is an error. */
+static void leaves_the_older_file_until_it_is_whole(void **state) {
+    (void)state;
+    const temp_path path = temp_file_write(&folder, "cache.pc2", "older", 5);
+    io_error error;
+    point_cache_writer *writer = open_writer(path.text, VERTICES, 2);
+    assert_true(point_cache_writer_write(writer, positions, &error));
+    assert_int_equal(read_bytes(path.text).size, 5);
+    assert_false(point_cache_writer_close(writer, &error));
+    assert_int_equal(read_bytes(path.text).size, 5);
+    writer = open_writer(path.text, VERTICES, 1);
+    assert_true(point_cache_writer_write(writer, positions, &error));
+    assert_int_equal(read_bytes(path.text).size, 5);
+    assert_true(point_cache_writer_close(writer, &error));
+    assert_int_equal(read_bytes(path.text).size, 32 + VERTICES * 12);
+}
+
 /* A device (here behind a link that has the extension) must not be removed. */
 static void leaves_devices_alone(void **state) {
     (void)state;
@@ -218,6 +235,7 @@ int main(void) {
         TEST(refuses_a_wrong_number_of_frames),
         TEST(refuses_bad_arguments),
         TEST(removes_the_file_when_the_disk_is_full),
+        TEST(leaves_the_older_file_until_it_is_whole),
         TEST(leaves_devices_alone),
     };
     return cmocka_run_group_tests_name("point_cache_write", tests, NULL, NULL);

@@ -141,6 +141,37 @@ static void intersections_and_flat_triangles_are_counted(void **state) {
     remove(json.text);
 }
 
+/* Corners of STL files in one place are one vertex, whatever ending the file has. */
+static void stl_files_are_welded_by_what_is_in_them(void **state) {
+    (void)state;
+    static const char corners[4][3][4] = {
+        {"000", "040", "400"}, {"000", "400", "004"}, {"000", "004", "040"}, {"400", "040", "004"}};
+    static const char *const names[] = {"scan.stl", "scan.dat", "scan.obj"};
+    char stl[2048] = "solid scan\n";
+    for (int f = 0; f < 4; f++) {
+        strcat(stl, "facet normal 0 0 0\nouter loop\n");
+        for (int k = 0; k < 3; k++) {
+            char line[64];
+            snprintf(line, sizeof line, "vertex %c %c %c\n", corners[f][k][0], corners[f][k][1],
+                     corners[f][k][2]);
+            strcat(stl, line);
+        }
+        strcat(stl, "endloop\nendfacet\n");
+    }
+    strcat(stl, "endsolid scan\n");
+    for (int i = 0; i < 3; i++) {
+        temp_path path = temp_file_write(&folder, names[i], stl, strlen(stl));
+        tool_run run = RUN_TOOL("info", path.text, "--json", json.text);
+        expect_line(run.error, "the 12 vertices of the STL file are joined to 4");
+        tool_run_free(&run);
+        json_node *root = json_node_read_file(json.text);
+        assert_int_equal(json_node_number(root, "file_vertices"), 12);
+        assert_int_equal(json_node_number(root, "vertices"), 4);
+        json_node_free(root);
+        remove(json.text);
+    }
+}
+
 static void outputs_are_as_everywhere(void **state) {
     (void)state;
     tool_run run = RUN_TOOL("info", named.text, "--json", "-");
@@ -167,6 +198,7 @@ int main(void) {
         cmocka_unit_test(many_parts_are_cut_short),
         cmocka_unit_test(everything_is_in_the_json),
         cmocka_unit_test(intersections_and_flat_triangles_are_counted),
+        cmocka_unit_test(stl_files_are_welded_by_what_is_in_them),
         cmocka_unit_test(outputs_are_as_everywhere),
     };
     return cmocka_run_group_tests(tests, make_files, remove_files);

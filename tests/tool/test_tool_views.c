@@ -5,6 +5,7 @@
 #include "tests/support/tool/tool_fixture.h"
 
 #include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -110,6 +111,23 @@ static void check_keeps_what_precedes_a_bad_frame(void **state) {
     recorded_free(&other);
 }
 
+/* That listed files are not taken as they were given is good to know, and no warning. */
+static void the_order_of_files_is_a_note(void **state) {
+    (void)state;
+    recorded flight = recorded_tetrahedra(3);
+    temp_path paths[3];
+    for (uint32_t i = 0; i < 3; i++) {
+        char name[32];
+        snprintf(name, sizeof name, "listed_%u.obj", i + 9);
+        paths[i] = recorded_write_mesh(&folder, name, &flight, i);
+    }
+    tool_run run = RUN_TOOL("check", paths[1].text, paths[2].text, paths[0].text);
+    assert_int_equal(run.code, 0);
+    assert_string_equal(run.error, "cscd: the frames are taken in the order of their numbers\n");
+    tool_run_free(&run);
+    recorded_free(&flight);
+}
+
 /* Expects everything that info prints about a mesh, on stdout and stderr. */
 static void expect_info(const recorded *r, const char *out, const char *error) {
     temp_path path = recorded_write_mesh(&folder, "info.obj", r, 0);
@@ -159,6 +177,7 @@ int main(void) {
         cmocka_unit_test(check_lists_crossing_frames),
         cmocka_unit_test(check_writes_every_frame),
         cmocka_unit_test(check_keeps_what_precedes_a_bad_frame),
+        cmocka_unit_test(the_order_of_files_is_a_note),
         cmocka_unit_test(info_describes_closed_meshes),
         cmocka_unit_test(info_describes_defects),
     };

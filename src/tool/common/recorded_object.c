@@ -1,8 +1,6 @@
 /* Opens the model and the frames of an object, and reads one frame after the other. */
 #include "src/tool/common/recorded_object.h"
 
-#include "src/io/gltf.h"
-#include "src/io/path_name.h"
 #include "src/tool/common/provenance.h"
 
 #include <math.h>
@@ -29,9 +27,8 @@ static bool read_file_positions(recorded_object *o, uint32_t frame, io_error *er
     return true;
 }
 
-const char *recorded_object_split_format(const char *model_path) {
-    if (path_has_extension(model_path, ".stl")) return "STL";
-    return gltf_recognise_path(model_path) ? "glTF" : NULL;
+const char *recorded_object_split_format(const recorded_object *o) {
+    return o->file.format == MESH_FORMAT_STL ? "STL" : o->file.format == MESH_FORMAT_GLTF ? "glTF" : NULL;
 }
 
 /* The part of each vertex: objects of a scene may stand on each other, and stay apart. */
@@ -49,12 +46,11 @@ static bool label_vertices(const mesh_file *file, uint32_t **out, io_error *erro
 static bool weld_first_frame(weld_choice welding, recorded_object *o, io_error *error) {
     o->vertex_count = o->file.vertex_count;
     o->triangle_count = o->file.triangle_count;
-    const bool by_format =
-        welding.rule == WELD_BY_FORMAT && recorded_object_split_format(o->source.model_path) != NULL;
+    const bool by_format = welding.rule == WELD_BY_FORMAT && recorded_object_split_format(o) != NULL;
     if (welding.rule != WELD_WITHIN && !by_format) return true;
     if (!read_file_positions(o, 0, error)) return false;
     uint32_t *parts = NULL;
-    if (by_format && gltf_recognise_path(o->source.model_path) && !label_vertices(&o->file, &parts, error))
+    if (by_format && o->file.format == MESH_FORMAT_GLTF && !label_vertices(&o->file, &parts, error))
         return false;
     o->welded = weld_create(o->file_positions, o->file.vertex_count, o->file.triangles,
                             o->file.triangle_count, parts, welding.epsilon, &o->weld, error);

@@ -37,9 +37,9 @@ typedef struct recorded_object {
     uint64_t frames_hash;
 } recorded_object;
 
-/* What a format is called that stores a vertex once for each face (STL), or for each of its normals (glTF); NULL: the model is of
- * none of them. */
-const char *recorded_object_split_format(const char *model_path);
+/* What the model's format is called if it stores a vertex once for each face (STL), or for each of its normals (glTF); else
+ * NULL. */
+const char *recorded_object_split_format(const recorded_object *object);
 
 /* On false *out holds nothing to close. */
 bool recorded_object_open(const recorded_source *source, weld_choice welding, const animation_options *frames,

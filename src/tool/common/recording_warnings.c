@@ -108,7 +108,7 @@ static void warn_repairs(const char *name, const char *colon, const mesh_repairs
     warn_repair(name, colon, repairs->shortened, repairs->first_shortened,
                 "named a vertex twice in a row, which counts once");
     warn_repair(name, colon, repairs->dropped, repairs->first_dropped,
-                "had no three different corners, left out");
+                "left out for having fewer than three different corners");
     warn_repair(name, colon, repairs->fanned, repairs->first_fanned,
                 "crossed themselves or had no area as seen along every axis, filled by fans");
     if (repairs->skipped_primitives > 0)
@@ -120,8 +120,8 @@ static void warn_object(const recording *r, recorded_object *object) {
     const char *name = r->object_count > 1 ? object->source.name : "",
                *colon = r->object_count > 1 ? ": " : "";
     if (object->frames != NULL && animation_note(object->frames) != NULL)
-        warn("%s%s%s", name, colon, animation_note(object->frames));
-    const char *format = recorded_object_split_format(object->source.model_path);
+        note("%s%s%s", name, colon, animation_note(object->frames));
+    const char *format = recorded_object_split_format(object);
     if (object->welded && format != NULL && object->weld.vertex_count < object->file.vertex_count)
         warn("%s%sthe %u vertices of the %s file are joined to %u; --weld none keeps them apart", name, colon,
              object->file.vertex_count, format, object->weld.vertex_count);

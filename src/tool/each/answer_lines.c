@@ -43,7 +43,7 @@ void answer_print(FILE *out, const char *path, const mesh_answer *a) {
     print_kind(out, a->touching, "touches", "touch", &first);
     if (first) fputs(" clean", out);
     print_share(out, a->crossing_share);
-    print_repair(out, a->repairs.dropped, "left out, without three different corners");
+    print_repair(out, a->repairs.dropped, "left out for having fewer than three different corners");
     print_repair(out, a->repairs.fanned, "filled by fans, as they cross themselves");
     fputc('\n', out);
 }
