@@ -173,8 +173,8 @@ static bool order_list(frame_files *files, const char *model_path, bool allow_ga
         return true;
     }
     if (is_series && !sorted) files->note = "the frames are taken in the order of their numbers";
-    if (!frame_series_read(list, number, &list->numbers)) list->numbers.count = 0;
-    return allow_gaps || frame_series_is_complete("", list, number, error);
+    return frame_series_read("", list, number, &list->numbers, error) &&
+           (allow_gaps || frame_series_is_complete("", list, number, error));
 }
 
 bool frame_files_open_list(const char *const *paths, size_t path_count, const char *model_path,

@@ -49,6 +49,6 @@ bool frame_folder_find(const char *folder, const char *prefix, bool allow_gaps, 
     frame_names_sort(list);
     size_t number = SIZE_MAX;
     if (!check_extensions(folder, list, error) || !check_series(folder, list, &number, error)) return false;
-    if (!frame_series_read(list, number, &list->numbers)) list->numbers.count = 0;
-    return allow_gaps || frame_series_is_complete(prefix, list, number, error);
+    return frame_series_read(prefix, list, number, &list->numbers, error) &&
+           (allow_gaps || frame_series_is_complete(prefix, list, number, error));
 }

@@ -74,12 +74,18 @@ static bool read_number(const char *name, size_t number, int32_t *value) {
     return true;
 }
 
-bool frame_series_read(const frame_names *list, size_t number, growable *numbers) {
+bool frame_series_read(const char *folder, const frame_names *list, size_t number, growable *numbers,
+                       io_error *error) {
+    int32_t value = 0;
     for (size_t i = 0; i < frame_names_count(list); i++) {
-        int32_t value, *place;
-        if (!read_number(frame_names_at(list, i), number, &value)) return false;
-        place = growable_push(numbers);
-        if (place == NULL) return false;
+        if (!read_number(frame_names_at(list, i), number, &value)) {
+            numbers->count = 0;
+            return true;
+        }
+        int32_t *place = growable_push(numbers);
+        if (place == NULL)
+            return io_fail(error, "%s%s: out of memory for the numbers of %zu frames", folder,
+                           frame_names_at(list, 0), frame_names_count(list));
         *place = value;
     }
     return true;

@@ -22,9 +22,10 @@ name_difference frame_series_compare(const char *a, const char *b);
 bool frame_series_find(const frame_names *list, size_t *number);
 
 /* What the names' numbers count, appended to numbers (of int32_t): number says which one, counted from 0, and SIZE_MAX
- * the last one after the last '/'. False when a name lacks it or its value is larger than INT32_MAX; numbers may then
- * have grown. */
-bool frame_series_read(const frame_names *list, size_t number, growable *numbers);
+ * the last one after the last '/'. There are none when a name lacks it or its value is larger than INT32_MAX. False when
+ * memory is short; folder: what precedes the names. */
+bool frame_series_read(const char *folder, const frame_names *list, size_t number, growable *numbers,
+                       io_error *error);
 
 /* A member that a series lacks: the one behind the member `before`. */
 typedef struct frame_gap {
