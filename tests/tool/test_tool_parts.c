@@ -196,6 +196,19 @@ static void nothing_is_inside_of_what_is_left_out(void **state) {
     }
 }
 
+static void objects_are_not_named_twice(void **state) {
+    (void)state;
+    const char *one = "v 0 0 0\nv 4 0 0\nv 0 4 0\no Head\nf 1 2 3\n",
+               *two = "v 1 1 -1\nv 1 1 1\nv 2 1 0\no Nose\nf 1 2 3\n";
+    const temp_path head = temp_file_write(&folder, "Head.obj", one, strlen(one)),
+                    nose = temp_file_write(&folder, "nose.obj", two, strlen(two));
+    char object[sizeof nose.text + 8];
+    snprintf(object, sizeof object, "Face=%s", nose.text);
+    tool_run run = RUN_TOOL("check", head.text, "--object", object);
+    if (strstr(run.out, "\nHead x Face/Nose  cross") == NULL) fail_msg("named otherwise: %s", run.out);
+    tool_run_free(&run);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(parts_are_left_out),
@@ -204,6 +217,7 @@ int main(void) {
         cmocka_unit_test(bad_tables_and_names_are_told),
         cmocka_unit_test(parts_that_meet_at_rest_are_left_out),
         cmocka_unit_test(nothing_is_inside_of_what_is_left_out),
+        cmocka_unit_test(objects_are_not_named_twice),
     };
     return cmocka_run_group_tests_name("tool_parts", tests, make_files, remove_files);
 }

@@ -52,19 +52,26 @@ static bool add_part(part_names *parts, const char *object, const char *part, io
     return true;
 }
 
+/* A file with one part that is called as the object names the object once more: Body.obj of "o Body". */
+static uint32_t count_parts(const mesh_parts *own, const char *object) {
+    const bool again = object != NULL && own->count == 1 && strcmp(own->names[0], object) == 0;
+    return again ? 0 : own->count;
+}
+
 /* The parts that an object's file names; of a file that names none, the object itself. What the file leaves without a name
  * is in no part, unless the object has a name of its own. */
 static bool add_object(const recording *r, uint32_t index, part_names *parts, io_error *error) {
     const recorded_object *object = &r->objects[index];
     const mesh_parts *own = &object->file.parts;
     const char *name = r->object_count > 1 ? object->source.name : NULL;
-    const uint32_t first = parts->count, rest = name != NULL ? first + own->count : NO_PART;
-    for (uint32_t i = 0; i < own->count; i++)
+    const uint32_t first = parts->count, count = count_parts(own, name);
+    const uint32_t rest = name != NULL ? first + count : NO_PART;
+    for (uint32_t i = 0; i < count; i++)
         if (!add_part(parts, name, own->names[i], error)) return false;
     if (name != NULL && !add_part(parts, name, NULL, error)) return false;
     for (uint32_t t = 0; t < object->triangle_count; t++) {
         const uint32_t part =
-            own->count > 0 ? own->of_triangle[recorded_object_file_triangle(object, t)] : NO_MESH_PART;
+            count > 0 ? own->of_triangle[recorded_object_file_triangle(object, t)] : NO_MESH_PART;
         parts->labels[object->first_triangle + t] = part != NO_MESH_PART ? first + part : rest;
     }
     return true;
