@@ -253,7 +253,7 @@ test-run: tool library $(TESTS) $(MODELS) $(BUILD)/benchmarks/queries $(BUILD)/b
 test-blender:
 	@.ci/packages blender
 	@$(MAKE) --no-print-directory tool $(BUILD)/tests/blender/print_frames
-	@BUILD=$(BUILD) tests/blender/run.sh
+	@BUILD=$(BUILD) PAGE=$(PAGE) tests/blender/run.sh
 
 # What --vtk writes, read by VTK itself and compared with the other outputs; nothing else needs VTK.
 test-vtk:
@@ -364,7 +364,8 @@ help:
 	@echo 'make check     build and run the tests that take less than a second each, for the inner loop'
 	@echo 'make test      build and run every test (CONFIG=sanitize: with sanitizers; ONLY="bvh line_search": of these rooms or names)'
 	@echo 'make test-without-baselines   build and test what is left when runtime/baselines is removed'
-	@echo 'make test-blender   frames of glTF files beside those that Blender evaluates, faces selected in it (installs blender)'
+	@echo 'make test-blender   frames of glTF files beside those that Blender evaluates, faces selected in it, and the steps of docs/from-your-program.md'
+	@echo '               (installs blender); PAGE=--write puts what the steps print into the page, and draws its pictures'
 	@echo 'make test-vtk   what --vtk writes, read by VTK and compared with the other outputs (installs python3-vtk9)'
 	@echo 'make test-threads   the tests that use threads, under the thread sanitizer'
 	@echo 'make           build the tool (./cscd), build/release/libcscd.a and libcscd.so; make library builds these alone'

@@ -1,21 +1,31 @@
 #!/bin/sh
 # Builds rigs in Blender, exports them as glTF, and compares their frames as the tool reads them with the vertices that Blender
-# evaluates; then selects there what the tool has found in a scene of its own. BUILD is the build folder. Ends non-zero when they differ.
+# evaluates; then selects there what the tool has found in a scene of its own, and runs the steps of docs/from-your-program.md. BUILD is
+# the build folder, PAGE the option --write of page.py, or nothing. Ends non-zero when something differs.
 set -eu
 cd "$(dirname "$0")"
 : "${BUILD:?BUILD must name the build folder}"
 case $BUILD in /*) ;; *) BUILD=../../$BUILD ;; esac
+export PYTHONDONTWRITEBYTECODE=1
 
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-if ! blender --background --factory-startup --python-exit-code 1 --python rigs.py -- "$folder" >"$folder/log" 2>&1; then
-    tail -20 "$folder/log"
-    exit 1
-fi
-PYTHONDONTWRITEBYTECODE=1 python3 compare.py "$BUILD/tests/blender/print_frames" "$folder"
-if ! PYTHONDONTWRITEBYTECODE=1 blender --background --factory-startup --python-exit-code 1 --python selection.py -- \
-    "$(realpath "$BUILD/cscd")" "$folder" >"$folder/log" 2>&1; then
-    tail -20 "$folder/log"
-    exit 1
-fi
+run_blender() { # run_blender SCRIPT ARGUMENTS...
+    script=$1
+    shift
+    blender --background --factory-startup --python-exit-code 1 --python "$script" -- "$@" >"$folder/log" 2>&1 || {
+        tail -20 "$folder/log"
+        exit 1
+    }
+}
+
+run_blender rigs.py "$folder"
+python3 compare.py "$BUILD/tests/blender/print_frames" "$folder"
+
+run_blender selection.py "$(realpath "$BUILD/cscd")" "$folder"
 grep '^selection:' "$folder/log"
+
+mkdir "$folder/page"
+run_blender clamp.py "$folder/page"
+run_blender doll.py "$folder/page/doll.blend"
+python3 page.py "$BUILD/cscd" "$folder/page/doll.blend" "$folder/page" ${PAGE:-}
