@@ -61,9 +61,9 @@ static const option_row rows[] = {
 static const option_table table = {
     "check",
     "MODEL [FRAMES...] [options]\n       cscd check --each MODEL... [options]",
-    "Finds the pairs of triangles that intersect or touch at each frame, features that share a vertex aside. "
-    "Exact: the answer is that of the given coordinates, without rounding. FRAMES as for replay; without them "
-    "MODEL itself is checked.",
+    "Finds where triangles cross or touch at each frame, and says which parts do, from when to when, and how deep. "
+    "Features that share a vertex do not count. Exact: the answer is that of the given coordinates, without "
+    "rounding. FRAMES as for replay; without them MODEL itself is checked.",
     rows,
     sizeof rows / sizeof *rows,
     .shared = {{&object_rows, offsetof(check_options, source)},
@@ -72,11 +72,12 @@ static const option_table table = {
                {&answer_rows, offsetof(check_options, answers)},
                {&export_rows, offsetof(check_options, exports)}},
     .examples = {
-        {"check body.obj", "Find the triangles of a mesh that intersect or touch each other."},
+        {"check body.obj",
+         "Find out whether a mesh crosses or touches itself: which parts, how deep, with how many triangles."},
         {"check body.obj body.pc2 --frames 80:90 --json pairs.json",
-         "Find those of the frames 80 to 90, and write them to a file."},
-        {"check body.obj body.pc2 --ignore-rest=parts --fail-on-contact",
-         "Fail, as a test does, when parts meet that are apart in the first frame, as an eye and its lid are not."}}};
+         "Look at the frames 80 to 90, and write all pairs of triangles to a file."},
+        {"check body.obj body.pc2 --ignore-rest=parts --fail-on crossing",
+         "Fail, as a test does, when parts cross that are apart in the first frame, as an eye and its lid are not."}}};
 
 /* A run of the command. */
 typedef struct check_run {

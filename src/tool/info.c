@@ -35,7 +35,7 @@ static const option_table table = {
     .examples = {{"info body.obj", "Is this mesh closed, how many components has it, and how large is it?"},
                  {"info body.obj --weld exact",
                   "The same, with vertices in the same place joined, so that seams are no open edges."},
-                 {"info scan.stl --weld 0.001", "Join corners that lie within 0.001 of each other first."}}};
+                 {"info scan.stl --json scan.json", "Write all of it for another program."}}};
 
 enum { COMPONENTS_LISTED = 50, PARTS_LISTED = 20 };
 

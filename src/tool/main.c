@@ -14,11 +14,11 @@ typedef struct command {
 } command;
 
 static const command commands[] = {
-    {"preprocess", "cut a mesh into regions by charge, once, so that replays are faster", command_preprocess},
-    {"replay", "find every contact of a recorded mesh with itself", command_replay},
-    {"report", "put summaries of replays side by side on one page for a browser", command_report},
-    {"sense", "warn with particles where objects come near each other", command_sense},
-    {"check", "find where a mesh intersects or touches itself, frame by frame", command_check},
+    {"preprocess", "cut a closed mesh into regions, once, so that replays are faster", command_preprocess},
+    {"replay", "find every contact between the frames of a recording, and what check finds", command_replay},
+    {"report", "compare runs of replay on one page for a browser", command_report},
+    {"sense", "warn where objects come near each other; can miss contacts", command_sense},
+    {"check", "find which parts cross or touch in which frames, and how deep", command_check},
     {"info", "counts, components, holes, bounds of a mesh", command_info},
     {"render", "draw frames to a PNG", command_render},
 };
@@ -26,11 +26,11 @@ static const command commands[] = {
 enum { COMMAND_COUNT = sizeof commands / sizeof *commands };
 
 static void print_help(void) {
-    printf("cscd - continuous self-collision detection for deforming triangle meshes\n\n"
+    printf("cscd - find where the surfaces of meshes and animations go through each other\n\n"
            "usage: cscd COMMAND ...\n\n");
     for (int i = 0; i < COMMAND_COUNT; i++) printf("  %-11s %s\n", commands[i].name, commands[i].summary);
     printf("\ncscd COMMAND --help says more; cscd --version.\n"
-           "exit: 0 ran, 1 bad input, 2 usage, 3 contacts found (with --fail-on-contact), 130 interrupted\n");
+           "exit: 0 ran, 1 bad input, 2 wrong usage, 3 found what --fail-on asks for, 130 interrupted\n");
 }
 
 /* NULL: there is none of that name. */

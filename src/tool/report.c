@@ -35,7 +35,7 @@ static const option_table table = {
     rows,
     sizeof rows / sizeof *rows,
     .examples = {{"report before.json after.json -o compare.html",
-                  "Put two runs of replay side by side on a page for any browser."},
+                  "Compare two versions of an animation: which events are fixed, new, or still there."},
                  {"report charge.json none.json iccd.json -o methods.html",
                   "Compare the methods that replay has, on one recording."},
                  {"report runs/*.json -o runs.html --quiet",

@@ -8,7 +8,7 @@ typedef enum exit_code {
     EXIT_RAN = 0,
     EXIT_BAD_INPUT = 1,
     EXIT_USAGE = 2,
-    EXIT_CONTACT = 3, /* with --fail-on-contact */
+    EXIT_CONTACT = 3, /* found what --fail-on, --fail-depth or --max-faces asks for */
     EXIT_INTERRUPTED = 130
 } exit_code;
 

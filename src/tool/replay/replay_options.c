@@ -103,7 +103,8 @@ static const option_row rows[] = {
 static const option_table table = {
     "replay",
     "MODEL FRAMES... [options]",
-    "Finds every contact of the mesh MODEL (OBJ, PLY, OFF, STL, glTF, GIFTI) with itself between one frame and the next.\n"
+    "Finds every contact of the mesh MODEL (OBJ, PLY, OFF, STL, glTF, GIFTI) with itself between one frame and the next, and what "
+    "crosses or touches at each frame, as check does.\n"
     "FRAMES: one .pc2 or .mdd point cache, one .glb or .gltf file, a pattern like f_%04d.obj, a folder, or a "
     "list of mesh files.",
     rows,
@@ -118,7 +119,7 @@ static const option_table table = {
          "Find every contact between one frame and the next, and show them on a page for any browser."},
         {"replay body.obj body.pc2 --object Shirt=shirt.obj --frames-of Shirt=shirt.pc2 --only Shirt,body",
          "Find where a shirt and the body under it meet, each with a cache of its own."},
-        {"replay body.obj 'f_%04d.obj' --weld exact --ignore-rest --fail-on-contact",
+        {"replay body.obj 'f_%04d.obj' --weld exact --ignore-rest --fail-on contact",
          "Fail, as a test does, when a body with split seams touches itself where it does not in the first frame."}}};
 
 /* Outputs are not inputs, and not each other. */
