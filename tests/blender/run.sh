@@ -1,7 +1,7 @@
 #!/bin/sh
 # Builds rigs in Blender, exports them as glTF, and compares their frames as the tool reads them with the vertices that Blender
-# evaluates; then selects there what the tool has found in a scene of its own, and runs the steps of docs/from-your-program.md. BUILD is
-# the build folder, PAGE the option --write of page.py, or nothing. Ends non-zero when something differs.
+# evaluates; selects there what the tool has found in a scene of its own, checks meshes whose polygons a fan would fill wrongly, and
+# runs the steps of docs/from-your-program.md. BUILD is the build folder, PAGE the option --write of page.py, or nothing. Ends non-zero when something differs.
 set -eu
 cd "$(dirname "$0")"
 : "${BUILD:?BUILD must name the build folder}"
@@ -24,6 +24,9 @@ python3 compare.py "$BUILD/tests/blender/print_frames" "$folder"
 
 run_blender selection.py "$(realpath "$BUILD/cscd")" "$folder"
 grep '^selection:' "$folder/log"
+
+run_blender families.py "$(realpath "$BUILD/cscd")" "$folder"
+grep '^families:' "$folder/log"
 
 mkdir "$folder/page"
 run_blender clamp.py "$folder/page"
