@@ -3,6 +3,7 @@
 #include "tests/support/tool/export_scene.h"
 #include "tests/support/tool/json_reader.h"
 #include "tests/support/tool/run_tool.h"
+#include "tests/support/tool/tool_fixture.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -204,6 +205,36 @@ static void the_tool_writes_what_is_asked_for(void **state) {
     export_scene_close(&s);
 }
 
+/* Fails unless the vertices of a part are the corners of its polygons, which are triangles of the scene. */
+static void expect_own_corners(const json_node *part, const recorded *scene) {
+    const json_node *vertices = json_node_member(part, "vertices"),
+                    *polygons = json_node_member(part, "polygons");
+    int used[28] = {0};
+    size_t count = 0;
+    for (size_t i = 0; i < polygons->count; i++)
+        for (size_t k = 0; k < 3; k++)
+            used[scene->triangles[3 * (size_t)json_node_item(polygons, i)->number + k]] = 1;
+    for (int v = 0; v < 28; v++)
+        if (used[v]) assert_int_equal(json_node_item(vertices, count++)->number, v);
+    assert_int_equal(vertices->count, count);
+    assert_true(count > 0);
+}
+
+/* Corners are those that a face has in the file, also where another vertex stands for them. */
+static void welded_corners_are_those_of_the_file(void **state) {
+    (void)state;
+    recorded scene = recorded_cube(true);
+    const temp_path model = recorded_write_mesh(&folder, "cube.obj", &scene, 0);
+    const temp_path cache = recorded_write_cache(&folder, "cube.pc2", &scene);
+    EXPECT_TOOL(0, "check", model.text, cache.text, "--quiet", "--weld", "exact", "--select", list_path.text);
+    json_node *root = json_node_read_file(list_path.text);
+    const json_node *parts = json_node_member(root, "union");
+    assert_int_equal(parts->count, 2);
+    for (size_t i = 0; i < 2; i++) expect_own_corners(json_node_item(parts, i), &scene);
+    json_node_free(root);
+    recorded_free(&scene);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lists_name_what_to_select),
@@ -212,6 +243,7 @@ int main(void) {
         cmocka_unit_test(a_folder_of_frames_gets_no_meshes),
         cmocka_unit_test(nothing_asked_for_is_nothing_done),
         cmocka_unit_test(the_tool_writes_what_is_asked_for),
+        cmocka_unit_test(welded_corners_are_those_of_the_file),
     };
     return cmocka_run_group_tests(tests, make_files, remove_files);
 }
