@@ -2,6 +2,9 @@
 
 In Blender's text editor: open this file, fill in the three lines below, and run it; the objects are then in edit mode with
 the faces selected. From a shell: blender scene.blend --python select_in_blender.py -- LIST.json [FRAME]
+
+Faces and vertices have Blender's numbers in an OBJ file that is exported as it is: without triangulating, without modifiers that
+add or join vertices, and without materials, by which the exporter sorts the faces. glTF files number vertices otherwise.
 """
 import json
 import sys
@@ -45,6 +48,13 @@ def find_offsets(lists):
             first = part['first_vertex'], part['first_polygon']
         before = offsets.get(thing, first)
         offsets[thing] = min(before[0], first[0]), min(before[1], first[1])
+    for part in lists['parts']:
+        thing = find_object(part)
+        first_vertex, first_face = offsets[thing]
+        if (part['last_vertex'] - first_vertex >= len(thing.data.vertices) or
+                part['last_polygon'] - first_face >= len(thing.data.polygons)):
+            raise RuntimeError(f'{thing.name} has fewer vertices or faces than in the file that cscd has read: export it as OBJ, '
+                               'as it is')
     return offsets
 
 
@@ -64,8 +74,6 @@ def find_numbers(lists, frame, touching):
 
 
 def select_numbers(mesh, vertices, faces):
-    if max(vertices, default=0) >= len(mesh.vertices) or max(faces, default=0) >= len(mesh.polygons):
-        raise RuntimeError(f'{mesh.name} has fewer vertices or faces than the model that cscd has read')
     edges = {key for i in faces for key in mesh.polygons[i].edge_keys}
     corners = vertices.union(v for i in faces for v in mesh.polygons[i].vertices)
     mesh.polygons.foreach_set('select', [i in faces for i in range(len(mesh.polygons))])

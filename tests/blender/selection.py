@@ -63,6 +63,19 @@ def selected_faces(things):
     return [{p.index for p in thing.data.polygons if p.select} for thing in things]
 
 
+def refuse_triangles(tool, folder, script):
+    """Faces of a triangulated file have other numbers, and the script says so."""
+    path, lists = os.path.join(folder, 'triangles.obj'), os.path.join(folder, 'triangles.json')
+    bpy.ops.wm.obj_export(filepath=path, export_materials=False, export_triangulated_mesh=True)
+    subprocess.run([tool, 'check', path, '--select', lists, '--quiet'], check=True)
+    try:
+        script.select(lists)
+    except RuntimeError as error:
+        assert 'export it as OBJ' in str(error), error
+    else:
+        raise AssertionError('triangles were taken for faces')
+
+
 def main():
     tool, folder = sys.argv[sys.argv.index('--') + 1:]
     things = make_scene()
@@ -79,6 +92,7 @@ def main():
         counts.append(sum(map(len, expected)))
     script.select(lists)
     assert selected_faces(things) == union, 'all frames'
+    refuse_triangles(tool, folder, script)
     assert counts[0] == 0 and min(counts[-2:]) >= 10 and len(set(counts)) > 2, counts
     print('selection: faces of', len(counts), 'frames:', counts, 'passed')
 
