@@ -51,19 +51,22 @@ void answer_print(FILE *out, const char *path, const mesh_answer *a) {
 void answer_sums_add(answer_sums *sums, const mesh_answer *a) {
     if (!a->checked)
         sums->failed++;
-    else if (mesh_answer_intersections(a) > 0)
-        sums->intersecting++;
-    else if (a->touching > 0)
+    else if (a->crossing > 0)
+        sums->crossing++;
+    else if (a->coplanar + a->folded + a->touching > 0)
         sums->touching++;
+    else if (a->duplicate > 0)
+        sums->duplicate++;
     else
         sums->clean++;
 }
 
 void answer_sums_print(FILE *out, const answer_sums *s) {
-    const uint32_t count = s->clean + s->intersecting + s->touching + s->failed;
+    const uint32_t count = s->clean + s->crossing + s->touching + s->duplicate + s->failed;
     fprintf(out, "%u mesh%s: %u clean", count, count == 1 ? "" : "es", s->clean);
-    if (s->intersecting > 0) fprintf(out, ", %u with intersections", s->intersecting);
+    if (s->crossing > 0) fprintf(out, ", %u with intersections", s->crossing);
     if (s->touching > 0) fprintf(out, ", %u only touching", s->touching);
+    if (s->duplicate > 0) fprintf(out, ", %u only with duplicates", s->duplicate);
     if (s->failed > 0) fprintf(out, ", %u failed", s->failed);
     fputc('\n', out);
 }

@@ -11,9 +11,10 @@ void answer_print(FILE *out, const char *path, const mesh_answer *answer);
 /* One object and a line end: docs/formats.md. */
 void answer_write_json(FILE *out, const char *path, const mesh_answer *answer);
 
-/* So many meshes of a run. */
+/* So many meshes of a run. As in `check`, what lies in one plane or is folded touches, and duplicates do neither. */
 typedef struct answer_sums {
-    uint32_t clean, intersecting, touching, failed; /* touching: without intersections */
+    uint32_t clean, crossing, touching, duplicate,
+        failed; /* each mesh is one of these, the worst that it is */
 } answer_sums;
 
 void answer_sums_add(answer_sums *sums, const mesh_answer *answer);

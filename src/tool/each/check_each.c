@@ -120,8 +120,7 @@ static int find_exit_code(const each_run *run) {
     if (sums->failed > 0) return fail_input("%u of %u meshes could not be checked", sums->failed, run->count);
     const each_request *request = run->request;
     const bool crossing = request->fail_on_crossing || request->fail_on_touching;
-    const bool found =
-        (crossing && sums->intersecting > 0) || (request->fail_on_touching && sums->touching > 0);
+    const bool found = (crossing && sums->crossing > 0) || (request->fail_on_touching && sums->touching > 0);
     return found ? EXIT_CONTACT : EXIT_RAN;
 }
 

@@ -11,14 +11,6 @@ static double now_ms(void) {
     return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
 }
 
-size_t mesh_answer_intersections(const mesh_answer *a) {
-    return a->crossing + a->coplanar + a->folded + a->duplicate;
-}
-
-size_t mesh_answer_pairs(const mesh_answer *a) {
-    return mesh_answer_intersections(a) + a->touching;
-}
-
 void mesh_answer_free(mesh_answer *answer) {
     free(answer->error);
     *answer = (mesh_answer){0};

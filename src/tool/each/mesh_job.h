@@ -29,7 +29,3 @@ void mesh_answer_free(mesh_answer *answer);
 
 /* Why the mesh was not checked, beginning with the name of its file unless memory was short. */
 const char *mesh_answer_reason(const mesh_answer *answer);
-
-/* How many pairs there are of all kinds, and of those in which surfaces do not merely touch. */
-size_t mesh_answer_pairs(const mesh_answer *answer);
-size_t mesh_answer_intersections(const mesh_answer *answer);
