@@ -155,6 +155,42 @@ def the_method_is_folded(context):
     expect(width > 400, f"charts that were folded are {width} wide")
 
 
+def colours_of_the_method_are_folded(context):
+    """They lie beside the view, folded at first; the key of one of them unfolds them, and a plan has nothing else."""
+    folded = "return document.querySelector('.method-choices').open;"
+    made = context.material.replay("pawn-drop")
+    page = context.page
+    for path, opened in ((made.page, False), (context.material.preprocess().page, True)):
+        page.open(path, **SMALL, unfold=False)
+        expect_equal(page.script(folded), opened, f"whether {path} shows the choices of the method")
+        expect_equal(page.has("radio", "Charge"), opened, "whether charge can be chosen")
+        expect(page.has("radio", "Plain") and page.has("checkbox", "Intersections"), "what anybody needs is not there")
+    page.open(made.page, **SMALL)
+    page.script("document.querySelector('.method-choices').open = false;")
+    page.press("2")
+    expect_equal((page.state("colour"), page.script(folded)), ("charge", True), "after the key for charge")
+
+
+def parts_are_told_by_name(context):
+    """The matrix has each pair of parts that meet, a click lists its events alone, and a click on one of them goes there."""
+    made, page = context.material.limbs("before"), context.page
+    page.open(made.page, width=1280, height=800)
+    text = page.script("return document.getElementById('answer-line').textContent;")
+    expect("2 events, the worst: Body × Arm, frames 3 to 6, 0.6 deep at frame 4." in text, text)
+    rows = page.table("Parts against parts")
+    expect_equal([row[0] for row in rows[1:]], ["Body", "Arm", "Leg"], "parts with events, the worst first")
+    expect_equal((rows[2][1], rows[3][1]), ("0.6", "0.2"), "depths against the body")
+    page.click("button", "Body × Leg: 1 event, at most 0.2 deep")
+    shown = page.script("return [...document.querySelectorAll('.events tbody tr:not([hidden]) .who')].map((one) => one.title);")
+    expect_equal(shown, ["Body × Leg: intersecting"], "events after a click in the matrix")
+    page.click("button", "Event 2")
+    page.rest()
+    event = expect_event(page, Report(made.page), 1)
+    expect_equal((event["a"], event["b"]), ("Body", "Leg"), "the parts of the second event")
+    expect(len(page.script(FILLED)) > 0 and page.script(CURVE_SEGMENTS) > 0, "nothing is filled or drawn there")
+    context.pictures.whole("parts")
+
+
 def the_picture_is_saved(context):
     _, page, _ = open_pawn(context)
     page.click("button", "Event 2")
@@ -185,5 +221,5 @@ def what_is_told_of_a_triangle_fits(context):
 
 SCENARIOS = (answers_are_those_of_the_run, the_sentence_says_what_intersects, clicks_and_keys_walk_the_events,
              an_event_is_seen, parts_stand_against_parts, curves_lie_on_the_bodies,
-             the_camera_stays_above_the_ground, the_method_is_folded,
-             the_picture_is_saved, what_is_told_of_a_triangle_fits)
+             the_camera_stays_above_the_ground, the_method_is_folded, colours_of_the_method_are_folded,
+             parts_are_told_by_name, the_picture_is_saved, what_is_told_of_a_triangle_fits)

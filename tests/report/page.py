@@ -84,8 +84,8 @@ class Page:
         """Tells the page whether the system prefers light or dark."""
         self.command("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": theme}])
 
-    def open(self, path, width=WIDTH, height=HEIGHT, ratio=1, theme="light", whole=True):
-        """Opens a report and waits until it is drawn, or, for an incomplete one, until it has given up."""
+    def open(self, path, width=WIDTH, height=HEIGHT, ratio=1, theme="light", whole=True, unfold=True):
+        """Opens a report, waits until it is drawn or, an incomplete one, has given up, and unfolds all of it."""
         if self.path is not None:
             self.check_quiet()
         self.path = os.path.abspath(path)
@@ -98,7 +98,8 @@ class Page:
         error = self.driver.execute_async_script(
             "const done = arguments[0], ready = window.cscd ? window.cscd.ready : Promise.reject('no window.cscd');"
             "ready.then(() => done(null), (error) => done(String(error)));")
-        self.script("document.querySelectorAll('#method').forEach((one) => { one.open = true; });")
+        if unfold:
+            self.script("document.querySelectorAll('#method, .method-choices').forEach((one) => { one.open = true; });")
         expect((error is None) == whole, f"{self.path}: opening ended with {error}")
         self.settle()
 

@@ -90,7 +90,7 @@ async function createScene(report, store, player) {
   if (quick) await Promise.all([scene.positions.readAll(), scene.scenery?.positions.readAll()]);
   const viewer = createView(byId('view'), report, store, player);
   if (scene.last > scene.first) createTransport(byId('playback'), report, store, player);
-  createChoices(byId('choices'), scene, viewer !== null, store);
+  createChoices(byId('choices'), scene, viewer !== null, store, report.kind !== 'replay');
   return viewer;
 }
 

@@ -1,13 +1,13 @@
-/** Controls of the view: one colouring, and the marks over it. */
+/** Controls of the view: one colouring, and the marks over it. Those that only the method has are folded. */
 
 import { element } from '../page/dom.js';
 
 export const COLOURS = [
   { value: 'plain', name: 'Plain' },
-  { value: 'charge', name: 'Charge', array: 'charge' },
-  { value: 'equalized', name: 'Equalized charge', array: 'equalized' },
-  { value: 'region', name: 'Region', array: 'region' },
-  { value: 'orientation', name: 'Orientation', array: 'orientation' },
+  { value: 'charge', name: 'Charge', array: 'charge', method: true },
+  { value: 'equalized', name: 'Equalized charge', array: 'equalized', method: true },
+  { value: 'region', name: 'Region', array: 'region', method: true },
+  { value: 'orientation', name: 'Orientation', array: 'orientation', method: true },
   { value: 'heat', name: 'Contact heat', array: 'heat' },
 ];
 
@@ -33,8 +33,8 @@ function marksOfScene(scene) {
     { key: 'contacts', name: 'Contacts', letter: 'C', missing: noContacts },
     { key: 'trail', name: 'Trail', letter: 'T', missing: noContacts, title: TRAIL },
     { key: 'through', name: 'Through the surface', letter: 'X', missing: noContacts, title: THROUGH },
-    { key: 'points', name: 'Detector points', letter: 'D', missing: noPoints, title: 'From where each region is seen' },
-    { key: 'cuts', name: 'Region cuts', letter: 'R', missing: scene.region === null ? NO_PLAN : null },
+    { key: 'points', name: 'Detector points', letter: 'D', missing: noPoints, title: 'From where each region is seen', method: true },
+    { key: 'cuts', name: 'Region cuts', letter: 'R', missing: scene.region === null ? NO_PLAN : null, method: true },
     { key: 'edges', name: 'Edges', letter: 'E', missing: null },
     {
       key: 'scenery',
@@ -67,10 +67,12 @@ function choice(input, name, key, title) {
   return label;
 }
 
-function colourChoices(scene, drawn, store) {
-  const group = element('fieldset', { class: 'choices', role: 'radiogroup', 'aria-label': 'Colour by' });
-  group.append(element('legend', {}, 'Colour by'));
+/** @param {(one: {method?: boolean}) => boolean} listed which of them this group has */
+function colourChoices(scene, drawn, store, title, listed) {
+  const group = element('fieldset', { class: 'choices', role: 'radiogroup', 'aria-label': title });
+  group.append(element('legend', {}, title));
   COLOURS.forEach((colour, i) => {
+    if (!listed(colour)) return;
     const missing = colourMissing(scene, drawn, colour);
     const input = element('input', {
       type: 'radio',
@@ -91,10 +93,10 @@ function colourChoices(scene, drawn, store) {
   return group;
 }
 
-function markChoices(scene, drawn, store) {
-  const group = element('fieldset', { class: 'choices', 'aria-label': 'Show' });
-  group.append(element('legend', {}, 'Show'));
-  for (const { key, name, letter, missing, title = null } of marksOf(scene, drawn)) {
+function markChoices(scene, drawn, store, heading, listed) {
+  const group = element('fieldset', { class: 'choices', 'aria-label': heading });
+  group.append(element('legend', {}, heading));
+  for (const { key, name, letter, missing, title = null } of marksOf(scene, drawn).filter(listed)) {
     const input = element('input', {
       type: 'checkbox',
       'aria-label': name,
@@ -123,7 +125,30 @@ function upSelect(drawn, store) {
   return element('label', { class: 'row' }, 'Up axis', select);
 }
 
-/** @param {boolean} drawn whether there is a view */
-export function createChoices(container, scene, drawn, store) {
-  container.append(colourChoices(scene, drawn, store), markChoices(scene, drawn, store), upSelect(drawn, store));
+/** Colours and marks of charge, regions and orientations; a key that chooses a colour unfolds them. */
+function methodChoices(scene, drawn, store, open) {
+  const box = element('details', { class: 'method-choices', open });
+  box.append(
+    element('summary', {}, 'Method: charge, regions, orientations'),
+    colourChoices(scene, drawn, store, 'Colour by the method', ({ method }) => method),
+    markChoices(scene, drawn, store, 'Show of the method', ({ method }) => method),
+  );
+  store.on(['colour'], ({ colour }) => {
+    if (COLOURS.find(({ value }) => value === colour).method) box.open = true;
+  });
+  return box;
+}
+
+/**
+ * @param {boolean} drawn whether there is a view
+ * @param {boolean} open whether the method is what the report is about
+ */
+export function createChoices(container, scene, drawn, store, open) {
+  const common = ({ method }) => !method;
+  container.append(
+    colourChoices(scene, drawn, store, 'Colour by', common),
+    markChoices(scene, drawn, store, 'Show', common),
+    upSelect(drawn, store),
+    methodChoices(scene, drawn, store, open),
+  );
 }

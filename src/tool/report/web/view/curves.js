@@ -40,7 +40,8 @@ export class Curves {
     const passes = [
       material(5, HALO, { depthFunc: LessEqualDepth, transparent: true, opacity: 0.85 }),
       material(2.4, COLOUR, { depthFunc: LessEqualDepth }),
-      material(2.4, COLOUR, { depthFunc: GreaterDepth, transparent: true, opacity: 0.4 }),
+      material(5, HALO, { depthFunc: GreaterDepth, transparent: true, opacity: 0.3 }),
+      material(2.4, COLOUR, { depthFunc: GreaterDepth, transparent: true, opacity: 0.5 }),
     ];
     this.lines = passes.map((pass, i) => {
       const line = new LineSegments2(new LineSegmentsGeometry(), pass);
@@ -48,7 +49,7 @@ export class Curves {
       line.renderOrder = 1 + i;
       return line;
     });
-    this.hidden = this.lines[2];
+    this.hidden = this.lines.slice(2);
     this.object = new Group();
     this.object.add(...this.lines);
     this.shown = null;
@@ -57,7 +58,7 @@ export class Curves {
 
   /** @param {object|null} found what intersects in the frame @param {Float32Array} local the body's vertices */
   setState(found, local, key, through) {
-    this.hidden.visible = through;
+    for (const line of this.hidden) line.visible = through;
     if (key === this.shown) return;
     this.shown = key;
     const ends = found === null ? [] : segmentsOf(found, local);
