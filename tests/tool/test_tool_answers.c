@@ -20,19 +20,10 @@ static recorded flight;
 static int make_files(void **state) {
     (void)state;
     flight = recorded_tetrahedra(FRAMES);
-    char text[2048];
-    int used = 0;
-    for (uint32_t v = 0; v < 8; v++) {
-        const double *x = recorded_position(&flight, 0, v);
-        used += snprintf(text + used, sizeof text - (size_t)used, "v %g %g %g\n", x[0], x[1], x[2]);
-    }
-    for (uint32_t t = 0; t < 8; t++) {
-        const uint32_t *c = flight.triangles + t * 3;
-        used += snprintf(text + used, sizeof text - (size_t)used, "o %s\nf %u %u %u\n",
-                         t < 4 ? "<Wall>&\"Co\"" : "Dart", c[0] + 1, c[1] + 1, c[2] + 1);
-    }
+    const char *records[8];
+    for (int t = 0; t < 8; t++) records[t] = t < 4 ? "o <Wall>&\"Co\"" : "o Dart";
     folder = temp_folder_make();
-    model = temp_file_write(&folder, "named.obj", text, (size_t)used);
+    model = recorded_write_parts(&folder, "named.obj", &flight, records);
     cache = recorded_write_cache(&folder, "flight.pc2", &flight);
     json = temp_file_path(&folder, "out.json");
     csv = temp_file_path(&folder, "out.csv");

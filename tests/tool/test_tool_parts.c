@@ -17,23 +17,14 @@ static temp_path model, cache, plain, csv, json;
 static int make_files(void **state) {
     (void)state;
     recorded both = recorded_tetrahedra(8);
-    char text[2048];
-    int used = 0;
-    for (uint32_t v = 0; v < 8; v++) {
-        const double *x = recorded_position(&both, 0, v);
-        used += snprintf(text + used, sizeof text - (size_t)used, "v %g %g %g\n", x[0], x[1], x[2]);
-    }
+    const char *records[8];
     for (uint32_t t = 0; t < 8; t++) {
         const uint32_t *c = both.triangles + t * 3;
-        const bool tip = t >= 4 && (c[0] == 4 || c[1] == 4 || c[2] == 4);
-        used += snprintf(text + used, sizeof text - (size_t)used, "%s\nf %u %u %u\n",
-                         t < 4 ? "o Wall"
-                         : tip ? "o Dart\ng Tip"
-                               : "o Dart",
-                         c[0] + 1, c[1] + 1, c[2] + 1);
+        const bool tip = c[0] == 4 || c[1] == 4 || c[2] == 4;
+        records[t] = t < 4 ? "o Wall" : tip ? "o Dart\ng Tip" : "o Dart";
     }
     folder = temp_folder_make();
-    model = temp_file_write(&folder, "named.obj", text, (size_t)used);
+    model = recorded_write_parts(&folder, "named.obj", &both, records);
     plain = recorded_write_mesh(&folder, "plain.obj", &both, 0);
     cache = recorded_write_cache(&folder, "both.pc2", &both);
     csv = temp_file_path(&folder, "out.csv");

@@ -246,6 +246,23 @@ temp_path recorded_write_mesh(const temp_folder *folder, const char *name, const
     return path;
 }
 
+temp_path recorded_write_parts(const temp_folder *folder, const char *name, const recorded *r,
+                               const char *const *records) {
+    temp_path path = temp_file_path(folder, name);
+    FILE *file = fopen(path.text, "w");
+    require_done(file != NULL, path.text);
+    for (uint32_t v = 0; v < r->vertex_count; v++) {
+        const double *x = recorded_position(r, 0, v);
+        fprintf(file, "v %.17g %.17g %.17g\n", x[0], x[1], x[2]);
+    }
+    for (uint32_t t = 0; t < r->triangle_count; t++) {
+        const uint32_t *c = r->triangles + (size_t)t * 3;
+        fprintf(file, "%s\nf %u %u %u\n", records[t], c[0] + 1, c[1] + 1, c[2] + 1);
+    }
+    require_done(fclose(file) == 0, path.text);
+    return path;
+}
+
 /* Returns 0 1 2 3 2 1 0 1 ... for four frames. */
 static uint32_t cycle_frame(uint32_t k, uint32_t frame_count) {
     if (frame_count == 1) return 0;

@@ -46,6 +46,10 @@ const double *recorded_position(const recorded *r, uint32_t frame, uint32_t vert
 /* Writes one frame as a mesh file: .obj or .ply (ascii), by the name's extension. */
 temp_path recorded_write_mesh(const temp_folder *folder, const char *name, const recorded *r, uint32_t frame);
 
+/* Writes the first frame as an OBJ file in which each triangle stands below records of its own: "o Wall", "o Dart\ng Tip". */
+temp_path recorded_write_parts(const temp_folder *folder, const char *name, const recorded *r,
+                               const char *const *records);
+
 /* Writes all frames as a point cache: .pc2 or .mdd. */
 temp_path recorded_write_cache(const temp_folder *folder, const char *name, const recorded *r);
 
