@@ -11,3 +11,4 @@ done
 "$BUILD/models/cloth" all "$folder"
 "$BUILD/models/ipc" all "$folder"
 "$BUILD/models/objects" all "$folder"
+"$BUILD/models/mannequin" "$folder" cache skin
