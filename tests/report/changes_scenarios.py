@@ -115,6 +115,24 @@ def runs_without_events_agree(context):
     expect_equal(sentence(context), "Neither clean.json nor tidy.json has an event: nothing meets or intersects.", "sentence")
 
 
+def many_runs_are_each_compared_with_the_first(context):
+    """A sentence for each; their tables are folded."""
+    source = context.material.limbs("before")
+    there = event([0.0, 0.0, 0.0], 0, 5)
+    paths = [written(context, f"{name}.json", source, events) for name, events in (("one", [there]), ("two", []),
+                                                                                 ("three", [there, there]))]
+    made = os.path.join(context.material.folder, "many.html")
+    context.material.run("cscd", "report", *paths, "-o", made)
+    context.page.open(made)
+    said = context.page.script("return [...document.querySelectorAll('.change-sentence')].map((one) => one.textContent);")
+    expect_equal(said, ["From one.json to two.json, 1 event is fixed, none is new and none is still there.",
+                        "From one.json to three.json, no events are fixed, 1 is new and 1 is still there."], "the sentences")
+    expect(not context.page.has("table", "Events of one.json and three.json"), "a table of many runs is unfolded")
+    context.page.script("document.querySelectorAll('#changes details')[1].open = true;")
+    rows = context.page.table("Events of one.json and three.json")[1:]
+    expect_equal([row[0] for row in rows], ["new", "still there"], "the table of the third run")
+
+
 SCENARIOS = (a_comparison_says_what_is_fixed_new_and_still_there, a_run_that_ended_early_fixes_nothing,
              events_match_by_parts_frames_and_places, a_summary_without_events_is_of_an_older_version,
-             runs_without_events_agree)
+             runs_without_events_agree, many_runs_are_each_compared_with_the_first)

@@ -12,7 +12,7 @@ sys.dont_write_bytecode = True
 
 from page import Page  # noqa: E402
 
-FRAME = 84  # of the pawn: its head touches the collar
+EVENT = 1  # of the pawn: where its head is pressed into the collar
 
 
 def save(page, folder, name):
@@ -29,14 +29,12 @@ def main():
     replay, plan, comparison, folder = sys.argv[1:]
     page = Page()
     try:
-        page.open(replay)
-        page.script("window.cscd.store.set({time: arguments[0], colour: 'charge'});", FRAME)
+        page.open(replay, unfold=False)
+        page.script("window.cscd.player.toEvent(arguments[0]);", EVENT)
         save(page, folder, "report.png")
         page.open(plan, theme="dark")
         save(page, folder, "report-plan.png")
-        page.open(comparison, height=900)
-        page.script("for (const box of document.querySelectorAll('#charts input')) box.click();")
-        page.settle()
+        page.open(comparison)
         shown = page.command("Page.captureScreenshot", format="png")["data"]
         with open(os.path.join(folder, "report-comparison.png"), "wb") as file:
             file.write(base64.b64decode(shown))

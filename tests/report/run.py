@@ -28,8 +28,8 @@ from material import Material  # noqa: E402
 from page import Page  # noqa: E402
 from pictures import Pictures  # noqa: E402
 
-MODULES = (data_scenarios, answer_scenarios, changes_scenarios, controls_scenarios, frames_scenarios, view_scenarios, charts_scenarios,
-           tables_scenarios, layout_scenarios, extremes_scenarios, speed_scenarios)
+MODULES = (data_scenarios, answer_scenarios, changes_scenarios, controls_scenarios, frames_scenarios, view_scenarios,
+           charts_scenarios, tables_scenarios, layout_scenarios, extremes_scenarios, speed_scenarios)
 SCENARIOS = {scenario.__name__: scenario for module in MODULES for scenario in module.SCENARIOS}
 
 

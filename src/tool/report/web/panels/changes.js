@@ -121,11 +121,14 @@ function blockOf(report, index, container) {
     : `From ${names[0]} to ${names[1]}, ${sentenceOf(rows)}.`;
   container.append(element('p', { class: 'change-sentence', text: sentence }));
   if (rows.length === 0) return;
+  // Of many runs the sentences are the answer; the tables are there to look things up.
+  const box = report.summaries.length === 2 ? container : element('details', {}, element('summary', { text: 'Events' }));
+  if (box !== container) container.append(box);
   const table = tableOf(rows, runs, names);
-  container.append(heading('Events', filterOf(table, rows, index)), scrollable(table));
+  box.append(heading('Events', filterOf(table, rows, index)), scrollable(table));
   if (rows.length > ROWS_MOST) {
     const text = `The first ${integer(ROWS_MOST)} of ${integer(rows.length)} rows are listed.`;
-    container.append(element('p', { class: 'quiet', text }));
+    box.append(element('p', { class: 'quiet', text }));
   }
   if (runs[0].unit !== runs[1].unit) {
     const text = 'The two runs give lengths in different units, so depths and places cannot be compared.';
