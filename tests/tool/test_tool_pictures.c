@@ -36,8 +36,8 @@ typedef struct drawn {
 } drawn;
 
 /* The picture that render draws of a frame with up to three more arguments. */
-static drawn draw(const char *mesh, const char *frames, const char *first, const char *second,
-                  const char *third) {
+static drawn draw_scene(const char *mesh, const char *frames, const char *first, const char *second,
+                        const char *third) {
     drawn picture;
     EXPECT_TOOL(0, "render", mesh, frames, "--frame", "3", "-o", png.text, "--size", "160x120", first, second,
                 third);
@@ -58,12 +58,12 @@ static void the_format_says_what_is_up(void **state) {
     recorded flight = recorded_tetrahedra(FRAMES);
     temp_path ply = recorded_write_mesh(&folder, "flight.ply", &flight, 0);
     recorded_free(&flight);
-    assert_true(same_picture(draw(model.text, cache.text, NULL, NULL, NULL),
-                             draw(model.text, cache.text, "--up", "y", NULL)));
-    assert_false(same_picture(draw(model.text, cache.text, NULL, NULL, NULL),
-                              draw(model.text, cache.text, "--up", "z", NULL)));
-    assert_true(same_picture(draw(ply.text, cache.text, NULL, NULL, NULL),
-                             draw(ply.text, cache.text, "--up", "z", NULL)));
+    assert_true(same_picture(draw_scene(model.text, cache.text, NULL, NULL, NULL),
+                             draw_scene(model.text, cache.text, "--up", "y", NULL)));
+    assert_false(same_picture(draw_scene(model.text, cache.text, NULL, NULL, NULL),
+                              draw_scene(model.text, cache.text, "--up", "z", NULL)));
+    assert_true(same_picture(draw_scene(ply.text, cache.text, NULL, NULL, NULL),
+                             draw_scene(ply.text, cache.text, "--up", "z", NULL)));
     const struct {
         const char *mesh, *option, *value, *expected;
     } cases[] = {{model.text, NULL, NULL, "\"up\":\"y\""},
@@ -87,9 +87,9 @@ static void a_zoom_does_not_depend_on_the_origin(void **state) {
     temp_path far_model = recorded_write_mesh(&folder, "far.obj", &flight, 0);
     temp_path far_cache = recorded_write_cache(&folder, "far.pc2", &flight);
     recorded_free(&flight);
-    drawn near = draw(model.text, cache.text, "--colour=contacts", "--zoom", NULL);
-    drawn far = draw(far_model.text, far_cache.text, "--colour=contacts", "--zoom", NULL);
-    drawn whole = draw(model.text, cache.text, "--colour=contacts", NULL, NULL);
+    drawn near = draw_scene(model.text, cache.text, "--colour=contacts", "--zoom", NULL);
+    drawn far = draw_scene(far_model.text, far_cache.text, "--colour=contacts", "--zoom", NULL);
+    drawn whole = draw_scene(model.text, cache.text, "--colour=contacts", NULL, NULL);
     drawn copy = {malloc(near.size), near.size};
     memcpy(copy.bytes, near.bytes, near.size);
     assert_false(same_picture(copy, whole));
@@ -106,7 +106,7 @@ static void a_zoom_shows_a_tenth_of_the_body(void **state) {
                  {"v 0.2 5 1.15\nv 0.2 5.05 1.2\nv 0.2 4.95 1.2\nf 1 2 3\n", false}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         temp_path flake = temp_file_write(&folder, "flake.obj", cases[i].text, strlen(cases[i].text));
-        drawn alone = draw(model.text, cache.text, "--colour=contacts", "--zoom", NULL);
+        drawn alone = draw_scene(model.text, cache.text, "--colour=contacts", "--zoom", NULL);
         EXPECT_TOOL(0, "render", model.text, cache.text, "--frame", "3", "-o", png.text, "--size", "160x120",
                     "--colour=contacts", "--zoom", "--scenery", flake.text);
         drawn with = {.bytes = NULL};
@@ -118,9 +118,9 @@ static void a_zoom_shows_a_tenth_of_the_body(void **state) {
 /* render leaves out what replay leaves out. */
 static void pictures_leave_out_what_the_rules_say(void **state) {
     (void)state;
-    assert_false(
-        same_picture(draw(model.text, cache.text, "--colour=contacts", NULL, NULL),
-                     draw(model.text, cache.text, "--colour=contacts", "--ignore-parts=component 1", NULL)));
+    assert_false(same_picture(
+        draw_scene(model.text, cache.text, "--colour=contacts", NULL, NULL),
+        draw_scene(model.text, cache.text, "--colour=contacts", "--ignore-parts=component 1", NULL)));
     EXPECT_ERROR(1, TEXTS("no part", "component 0"), "render", model.text, cache.text, "-o", png.text,
                  "--only", "Shirt");
 }
