@@ -265,7 +265,6 @@ int command_check(int argument_count, char **arguments) {
     code = check_outputs(&options, &given);
     if (code != EXIT_RAN) return code;
     recording_options_take(&options.source, &given);
-    options.exports.fps = options.source.frames.fps;
     options.exports.no_depths = options.answers.no_depths;
     return run_check(&options);
 }

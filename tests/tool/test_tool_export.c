@@ -192,7 +192,8 @@ static void vtk_files_hold_what_the_library_says(void **state) {
     (void)state;
     export_scene s;
     export_scene_open(&s, &folder, true);
-    export_scene_start(&s, &(export_request){.vtk_path = out_path.text, .fps = 25.0, .contacts = true});
+    s.recording.fps = 25.0;
+    export_scene_start(&s, &(export_request){.vtk_path = out_path.text, .contacts = true});
     uint32_t intervals = 0;
     for (uint32_t frame = 0; frame < FRAMES; frame++) {
         export_scene_add_frame(&s, frame);

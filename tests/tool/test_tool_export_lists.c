@@ -112,9 +112,8 @@ static void names_of_other_formats_are_refused(void **state) {
     expect_misfit(&(export_request){.ply_path = "-"}, TEXTS("--ply", "several files"));
     expect_misfit(&(export_request){.select_path = "out.json"}, TEXTS("--select", "would overwrite"));
     expect_misfit(&(export_request){.select_path = "wall.obj"}, TEXTS("--select"));
-    assert_true(
-        export_request_fits(&(export_request){"x.pvd", "x.PLY", "-", 0.0, false, false}, NULL, 0, &error));
-    assert_true(export_request_fits(&(export_request){"x", "x", "x", 0.0, false, false}, NULL, 0, &error));
+    assert_true(export_request_fits(&(export_request){"x.pvd", "x.PLY", "-", false, false}, NULL, 0, &error));
+    assert_true(export_request_fits(&(export_request){"x", "x", "x", false, false}, NULL, 0, &error));
 }
 
 static void expect_unopened(const export_request *request, const char *text) {
@@ -160,7 +159,7 @@ static void nothing_asked_for_is_nothing_done(void **state) {
     (void)state;
     export_scene s;
     export_scene_open(&s, &folder, false);
-    export_scene_start(&s, &(export_request){.fps = 24.0});
+    export_scene_start(&s, &(export_request){.contacts = true});
     assert_null(s.exports.run);
     export_scene_add_frame(&s, 0);
     export_scene_close(&s);

@@ -63,19 +63,6 @@ static bool series_opens(const export_request *request, const recording *r, io_e
 
 /* ---- frames -------------------------------------------------------------------------------------------- */
 
-/* Frames a second, as given or as of a glTF file; 0: nobody knows. */
-static double find_rate(const export_request *request, const recording *r) {
-    if (request->fps > 0.0) return request->fps;
-    for (uint32_t i = 0; i < r->object_count; i++) {
-        const recorded_source *source = &r->objects[i].source;
-        const char *path = source->frame_path_count > 0 ? source->frame_paths[0] : source->model_path;
-        if (r->objects[i].frames != NULL &&
-            (path_has_extension(path, ".glb") || path_has_extension(path, ".gltf")))
-            return ANIMATION_FPS;
-    }
-    return 0.0;
-}
-
 static bool open_outputs(const export_request *request, const part_names *parts, const cscd_plan *plan,
                          export_run *run, io_error *error) {
     recording *r = run->recording;
@@ -85,8 +72,8 @@ static bool open_outputs(const export_request *request, const part_names *parts,
                             &run->values, error))
         return false;
     return (request->vtk_path == NULL ||
-            vtk_output_open(request->vtk_path, (vtk_choice){find_rate(request, r), !request->no_depths}, r,
-                            parts, &run->values, &run->vtk, error)) &&
+            vtk_output_open(request->vtk_path, (vtk_choice){recording_fps(r), !request->no_depths}, r, parts,
+                            &run->values, &run->vtk, error)) &&
            (request->ply_path == NULL ||
             ply_output_open(request->ply_path, r, parts, &run->values, &run->ply, error)) &&
            (request->select_path == NULL ||

@@ -6,8 +6,7 @@
 
 typedef struct export_request {
     const char *vtk_path, *ply_path, *select_path; /* NULL: not asked for */
-    double fps;     /* frames a second, for the times of a .pvd; 0: not known */
-    bool contacts;  /* each vertex has its number of contacts */
+    bool contacts;                                 /* each vertex has its number of contacts */
     bool no_depths; /* frames come without curves, patches and depths, so neither is written */
 } export_request;
 

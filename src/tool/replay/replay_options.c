@@ -190,7 +190,6 @@ bool replay_options_parse(int argument_count, char **arguments, replay_options *
     if (*code == EXIT_RAN) *code = check_outputs(&o, given.inputs, given.input_count);
     if (*code != EXIT_RAN) return false;
     recording_options_take(&o.source, &given);
-    o.exports.fps = o.source.frames.fps;
     o.exports.no_depths = o.answers.no_depths;
     o.exports.contacts = true;
     *out = o;
