@@ -1,5 +1,6 @@
 /* Polygons at the limits of what their plane shows: nearly collinear corners, windings, faces that are not flat. */
 #include "src/io/polygon.h"
+#include "src/io/polygon/corner_tree.h"
 #include "src/io/polygon/orientation.h"
 #include "tests/support/io/flat_polygon.h"
 #include "tests/support/random_stream.h"
@@ -44,7 +45,6 @@ static void turns_of_nearly_collinear_points_are_exact(void **state) {
             const double *a = points[i], *b = points[(i + 1) % 3], *c = points[(i + 2) % 3];
             assert_int_equal(orientation_of(a, b, c), expected);
             assert_int_equal(orientation_of(b, a, c), -expected);
-            if (orientation_is_right(a, b, c)) assert_true(expected < 0);
         }
     }
     for (int i = 0; i < 3; i++) assert_true(counts[i] > 4000);
@@ -70,6 +70,65 @@ static void notches_of_one_bit_are_seen(void **state) {
             assert_int_equal(orientation_of(moved[v[0]], moved[v[1]], moved[v[2]]), 1);
         }
     }
+}
+
+/* ---- corners in triangles ------------------------------------------------------------------------------ */
+
+static bool lies_in_triangle(const double (*points)[2], const uint32_t t[3], uint32_t point) {
+    for (int i = 0; i < 3; i++) {
+        const double *a = points[t[i]], *p = points[point];
+        if ((a[0] == p[0] && a[1] == p[1]) || orientation_of(a, points[t[(i + 1) % 3]], p) < 0) return false;
+    }
+    return true;
+}
+
+/* Stretches of an outline that run along lines, wander, or lie far from 0, where the last bits decide. */
+static void place_outline(random_stream *random, uint32_t count, double (*points)[2]) {
+    const double far_away = stream_below(random, 2) == 0 ? 0.0 : 0x1p30,
+                 bit = far_away == 0.0 ? 0x1p-50 : 0x1p-22;
+    const double steps[2] = {stream_between(random, -1.0, 1.0), stream_between(random, -1.0, 1.0)};
+    const uint32_t kind = stream_below(random, 3);
+    for (uint32_t i = 0; i < count; i++)
+        for (int k = 0; k < 2; k++) {
+            const double noise = bit * stream_below(random, 4);
+            points[i][k] = kind == 0   ? far_away + i % 40 * steps[k] + noise
+                           : kind == 1 ? far_away + stream_below(random, 9) * bit
+                                       : far_away + (i > 0 ? points[i - 1][k] - far_away : 0.0) +
+                                             stream_between(random, -1.0, 1.0);
+        }
+}
+
+static void corners_in_triangles_are_found(void **state) {
+    (void)state;
+    enum { COUNT = 200 };
+    random_stream random = stream_start(11);
+    uint32_t found_count = 0, empty_count = 0;
+    for (uint32_t round = 0; round < 60; round++) {
+        double points[COUNT][2];
+        bool active[COUNT];
+        corner_tree tree;
+        place_outline(&random, COUNT, points);
+        assert_true(corner_tree_create((const double(*)[2])points, COUNT, &tree));
+        for (uint32_t i = 0; i < COUNT; i++)
+            corner_tree_set_active(&tree, i, active[i] = stream_below(&random, 1 + round % 8) == 0);
+        for (uint32_t trial = 0; trial < 400; trial++) {
+            uint32_t t[3];
+            const uint32_t near = 4 + stream_below(&random, COUNT - 4), first = stream_below(&random, COUNT);
+            for (int k = 0; k < 3; k++) t[k] = (first + stream_below(&random, near)) % COUNT;
+            if (orientation_of(points[t[0]], points[t[1]], points[t[2]]) <= 0) continue;
+            bool expected = false;
+            for (uint32_t i = 0; i < COUNT; i++)
+                expected |= active[i] && lies_in_triangle((const double(*)[2])points, t, i);
+            const uint32_t found = corner_tree_find(&tree, t);
+            assert_int_equal(found != UINT32_MAX, expected);
+            if (expected)
+                assert_true(active[found] && lies_in_triangle((const double(*)[2])points, t, found));
+            found_count += expected;
+            empty_count += !expected;
+        }
+        corner_tree_free(&tree);
+    }
+    assert_true(found_count > 1000 && empty_count > 1000);
 }
 
 /* ---- windings and planes ------------------------------------------------------------------------------- */
@@ -173,6 +232,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(turns_of_nearly_collinear_points_are_exact),
         cmocka_unit_test(notches_of_one_bit_are_seen),
+        cmocka_unit_test(corners_in_triangles_are_found),
         cmocka_unit_test(stars_that_cross_themselves_become_fans),
         cmocka_unit_test(loops_in_loops_become_fans),
         cmocka_unit_test(random_polygons_that_cross_themselves_become_fans),

@@ -52,8 +52,3 @@ int orientation_of(const double a[2], const double b[2], const double c[2]) {
     if (determinant < -bound) return -1;
     return exact_sign(a, b, c);
 }
-
-bool orientation_is_right(const double a[2], const double b[2], const double c[2]) {
-    double bound;
-    return find_determinant(a, b, c, &bound) < -bound;
-}
