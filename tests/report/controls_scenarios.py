@@ -241,7 +241,7 @@ def tab_reaches_every_control(context):
     chosen = page.element("radio", "Plain")
     page.script("arguments[0].focus();", chosen)
     page.press(Keys.ARROW_DOWN)
-    expect_equal(page.state("colour"), "charge", "colour after an arrow in the group")
+    expect_equal(page.state("colour"), "heat", "colour after an arrow in the group")
     focused = page.driver.find_element(By.CSS_SELECTOR, ":focus")
     outline = page.script("const s = getComputedStyle(arguments[0]); return s.outlineStyle + s.boxShadow;", focused)
     expect(outline != "nonenone", "the focus cannot be seen")

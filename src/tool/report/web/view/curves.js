@@ -7,6 +7,7 @@ import { LineSegmentsGeometry } from 'three/addons/lines/LineSegmentsGeometry.js
 
 const COLOUR = 0x111111;
 const HALO = 0xffffff;
+const ORDER = [1, 2, 0.5, 3]; // of the passes: the rim of what is hidden lies below the marks of hidden contacts
 
 function material(width, colour, more) {
   return new LineMaterial({
@@ -46,7 +47,7 @@ export class Curves {
     this.lines = passes.map((pass, i) => {
       const line = new LineSegments2(new LineSegmentsGeometry(), pass);
       line.frustumCulled = false;
-      line.renderOrder = 1 + i;
+      line.renderOrder = ORDER[i];
       return line;
     });
     this.hidden = this.lines.slice(2);
