@@ -5,6 +5,7 @@
 #include "tests/support/tool/tool_fixture.h"
 
 #include "cscd/cscd.h"
+#include "src/tool/common/event_order.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -197,6 +198,20 @@ static void events_of_a_replay_have_contacts(void **state) {
     json_node_free(root);
 }
 
+/* What one part buries in a second one may be nearest to its own surface: that is told last, however deep. */
+static void what_lies_in_itself_comes_last(void **state) {
+    (void)state;
+    const cscd_event events[] = {{.a = 2, .b = 2, .depth = 0.104},
+                                 {.a = 1, .b = 2, .depth = 0.103, .pairs = 46},
+                                 {.a = 1, .b = 1, .depth = 0.2, .contacts = 1},
+                                 {.a = 0, .b = 1, .depth = 0.05},
+                                 {.a = 1, .b = 1, .depth = 0.3}};
+    const cscd_event *order[] = {events, events + 1, events + 2, events + 3, events + 4};
+    const ptrdiff_t expected[] = {2, 1, 3, 4, 0};
+    event_order_sort(order, 5);
+    for (size_t i = 0; i < 5; i++) assert_int_equal(order[i] - events, expected[i]);
+}
+
 /* Two quads and a triangle that passes through the second one: triangles 2 and 3 are the polygon 1. */
 static void polygons_have_the_numbers_of_the_file(void **state) {
     (void)state;
@@ -331,6 +346,7 @@ int main(void) {
         cmocka_unit_test(one_mesh_has_a_sentence_of_its_own),
         cmocka_unit_test(events_are_those_of_the_library),
         cmocka_unit_test(events_of_a_replay_have_contacts),
+        cmocka_unit_test(what_lies_in_itself_comes_last),
         cmocka_unit_test(polygons_have_the_numbers_of_the_file),
         cmocka_unit_test(rules_fail_the_run),
         cmocka_unit_test(rules_hold_for_each_mesh),

@@ -72,7 +72,7 @@ void answers_write_frame(const answers *a, const frame_answer *frame, json *out)
     json_integer(out, "duplicate_pairs", frame->duplicates);
     json_integer(out, "crossing_faces", frame->crossing_faces);
     json_number(out, "crossing_share", triangles > 0 ? (double)frame->crossing_faces / triangles : 0.0);
-    json_number(out, "depth", frame->worst_depth);
+    json_number(out, "depth", frame->depth);
 }
 
 /* ---- CSV ------------------------------------------------------------------------------------------------ */

@@ -93,7 +93,11 @@ static size_t count_pairs(const cscd_part_pair *pair) {
     return pair->crossing + pair->coplanar + pair->folded + pair->touching;
 }
 
+/* In the order of events (event_order.h). */
 static bool is_worse(const cscd_part_pair *a, const cscd_part_pair *b) {
+    const bool a_in_itself = a->a == a->b && count_pairs(a) == 0;
+    const bool b_in_itself = b->a == b->b && count_pairs(b) == 0;
+    if (a_in_itself != b_in_itself) return b_in_itself;
     if (a->depth != b->depth) return a->depth > b->depth;
     if (a->length != b->length) return a->length > b->length;
     return count_pairs(a) > count_pairs(b);
@@ -101,16 +105,17 @@ static bool is_worse(const cscd_part_pair *a, const cscd_part_pair *b) {
 
 static void find_worst(const shown_depths *shown, const cscd_intersection_pairs *found, frame_answer *frame) {
     cscd_part_pair worst = {.a = NO_PART, .b = NO_PART};
+    bool worst_of_none = true;
     for (size_t i = 0; i < found->parts->count; i++) {
         cscd_part_pair pair = found->parts->items[i];
         pair.depth = pair.depth > 0.0 ? shown_depths_of_parts(shown, found, &pair) : 0.0;
         if (count_pairs(&pair) == 0 && pair.depth == 0.0) continue;
-        if (worst.a == NO_PART || is_worse(&pair, &worst)) worst = pair;
+        if (worst_of_none || is_worse(&pair, &worst)) worst = pair;
+        worst_of_none = false;
+        if (pair.depth > frame->depth) frame->depth = pair.depth;
     }
     frame->worst_parts[0] = worst.a;
     frame->worst_parts[1] = worst.b;
-    frame->worst_depth = worst.depth;
-    frame->worst_length = worst.length;
 }
 
 bool answers_add_frame(answers *a, cscd_detector *detector, uint32_t frame, const double *positions,

@@ -14,9 +14,9 @@ typedef struct frame_answer {
     size_t duplicates;       /* and that are one and the same */
     size_t contacts;         /* of the interval that ends here */
     uint32_t crossing_faces; /* so many triangles cross another one */
-    uint32_t worst_parts[2]; /* those with the greatest depth, or the longest curves, or the most pairs; */
-    double worst_depth, worst_length; /* between these; 0: none is known */
-    double ms;                        /* how long it took */
+    double depth;            /* the greatest; 0: none is known */
+    uint32_t worst_parts[2]; /* of the worst, in the order of events (event_order.h) */
+    double ms;               /* how long it took */
 } frame_answer;
 
 typedef struct answers {

@@ -23,7 +23,7 @@ bool fail_rules_any(const fail_rules *rules) {
 /* "A x B", of the worst that the frame has; "" if it has nothing. */
 static void name_worst(const answers *a, const frame_answer *frame, char *text, size_t size) {
     text[0] = '\0';
-    if (!frame_answer_meets(frame) && frame->worst_depth == 0.0) return;
+    if (!frame_answer_meets(frame) && frame->depth == 0.0) return;
     snprintf(text, size, ", worst: %.100s x %.100s", part_names_at(a->parts, frame->worst_parts[0]),
              part_names_at(a->parts, frame->worst_parts[1]));
 }
@@ -33,9 +33,8 @@ bool fail_rules_meet(const fail_rules *rules, const answers *a, const frame_answ
     const fail_options *o = &rules->options;
     char worst[240], length[LENGTH_TEXT_SIZE];
     name_worst(a, frame, worst, sizeof worst);
-    if (o->depth.given && frame->worst_depth > rules->depth)
-        snprintf(text, FAIL_TEXT_SIZE, "%s deep%s", length_text(frame->worst_depth, &rules->unit, length),
-                 worst);
+    if (o->depth.given && frame->depth > rules->depth)
+        snprintf(text, FAIL_TEXT_SIZE, "%s deep%s", length_text(frame->depth, &rules->unit, length), worst);
     else if (o->faces_limited && frame->crossing_faces > o->most_faces)
         snprintf(text, FAIL_TEXT_SIZE, "%u triangles cross others%s", frame->crossing_faces, worst);
     else if (o->kind >= FAIL_ON_CROSSING && frame->crossing > 0)

@@ -1,7 +1,11 @@
 /** Events: which is the worse of two, and what they are called. */
 
-/** As the tracker orders groups: by depth, then by length, then by pairs, then by contacts. */
+/** A part that lies in itself without a pair or a contact: some other part cuts it, and what that buries is nearest to itself. */
+const onlyInItself = ({ a, b, pairs, contacts }) => a === b && pairs === 0 && contacts === 0;
+
+/** As the tracker orders groups: by depth, then by length, then by pairs, then by contacts; what lies in itself alone comes last. */
 export function worseThan(a, b) {
+  if (onlyInItself(a) !== onlyInItself(b)) return onlyInItself(b);
   for (const key of ['depth', 'length', 'pairs', 'contacts']) if (a[key] !== b[key]) return a[key] > b[key];
   return false;
 }
