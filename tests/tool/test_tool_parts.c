@@ -112,6 +112,7 @@ static void bad_tables_and_names_are_told(void **state) {
     } cases[] = {
         {"", "the file is empty"},
         {"polygon,name\n", ":1: expected 'triangle,name'"},
+        {"\xef\xbb\xbftriangle,name\n# none\n", ": no part is named below the first line"},
         {"triangle,name\n0,A\n8,A\n", ":3: expected a number of the model file"},
         {"vertex,name\nx,A\n", ":2: expected a number"},
         {"vertex,name\n3\n", ":2: expected a number"},

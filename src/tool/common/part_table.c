@@ -46,7 +46,9 @@ static bool split_fields(char *line, char *fields[2]) {
 
 static bool read_kind(part_table *table, char *line, io_error *error) {
     static const char *const names[] = {"triangle", "face", "vertex"};
+    static const char mark[] = "\xef\xbb\xbf"; /* by which some programs begin text in UTF-8 */
     char *fields[2];
+    if (strncmp(line, mark, 3) == 0) line += 3;
     if (split_fields(line, fields)) {
         for (int i = 0; i < 3; i++) {
             table->kind = (table_kind)i;
@@ -107,6 +109,8 @@ static bool read_rows(part_table *table, FILE *file, io_error *error) {
     for (table->line = 2; read && getline(&line, &size, file) >= 0; table->line++)
         read = read_row(table, line, error);
     if (read && ferror(file)) read = io_fail(error, "%s: cannot read: %s", table->path, strerror(errno));
+    if (read && table->names.count == 0)
+        read = io_fail(error, "%s: no part is named below the first line", table->path);
     free(line);
     return read;
 }
