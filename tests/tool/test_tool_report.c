@@ -126,93 +126,6 @@ static void summaries_stand_side_by_side(void **state) {
     json_node_free(own);
 }
 
-static void what_is_no_summary_is_named(void **state) {
-    (void)state;
-    static const struct {
-        const char *text, *reasons[3];
-    } cases[] = {
-        {"", {"other.json:1", "ends too early", NULL}},
-        {"{\"intervals\":[\n{\"frame\":0", {"other.json:2", "ends too early", NULL}},
-        {"{\"intervals\":[\n{\"frame\":zero}]}", {"other.json:2", NULL}},
-        {"{\"intervals\":[],\n\"a\":\"\xff\"}", {"other.json:2", "utf-8", NULL}},
-        {"[]", {"the file has no member 'intervals'", "cscd replay --json", NULL}},
-        {"{\"intervals\":7}", {"the file: 'intervals' is not what cscd writes", NULL}},
-        {"{\"intervals\":[{\"frame\":0}],\"frames\":[],\"summary\":{},\"provenance\":{}}",
-         {"interval 0 of the file has no member 'vf'", NULL}},
-        {"{\"intervals\":[],\"frames\":[],\"summary\":{},\"provenance\":{}}",
-         {"the summary has no member", NULL}},
-        {"{} {}", {"other.json:1", "unexpected character", NULL}},
-    };
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        temp_path path = temp_file_write(&folder, "other.json", cases[i].text, strlen(cases[i].text));
-        remove(page.text);
-        EXPECT_ERROR(1, cases[i].reasons, "report", path.text, "-o", page.text);
-        assert_false(file_exists(page.text));
-    }
-    EXPECT_ERROR(1, TEXTS("nowhere.json", "No such file"), "report", "nowhere.json", "-o", page.text);
-}
-
-/* Writes a correct summary with one part of it replaced. */
-static void a_changed_summary_is_refused(void **state) {
-    (void)state;
-    static const struct {
-        const char *part, *instead, *reasons[2];
-    } cases[] = {
-        {"\"frame\":3", "\"frame\":2", {"interval 3 of the file: 'frame'", NULL}},
-        {"\"frame\":0", "\"frame\":-2147483649", {"interval 0 of the file: 'frame'", NULL}},
-        {"\"frame\":0", "\"frame\":1e300", {"interval 0 of the file: 'frame'", NULL}},
-        {"\"frame\":0", "\"frame\":2147483648", {"interval 0 of the file: 'frame'", NULL}},
-        {"\"state\":\"clean\"", "\"state\":\"tidy\"", {"'state' is not what cscd writes there", NULL}},
-        {"\"processors\"", "\"possessors\"", {"the machine has no member 'processors'", NULL}},
-        {"\"release\":", "\"release\":7,\"was\":", {"the machine: 'release' is not", NULL}},
-        {"\"source\"", "\"sauce\"", {"the plan has no member 'source'", NULL}},
-        {"\"complete\":true", "\"complete\":false", {"the summary has no member 'stopped_by'", NULL}},
-        {"\"events\":[",
-         "\"events\":7,\"were\":[",
-         {"the file: 'events' is not what cscd writes there", NULL}},
-        {"\"unit\":null", "\"unit\":7", {"the file: 'unit' is not what cscd writes there", NULL}},
-        {"\"worst\":", "\"worst\":1234", {"event 0 of the file: its frames are not", NULL}},
-        {"\"worst\":", "\"worse\":", {"event 0 of the file has no member 'worst'", NULL}},
-        {"\"kinds\":[", "\"kinds\":[7,", {"event 0 of the file: its kinds are not", NULL}},
-        {"\"point\":[", "\"point\":[1,", {"event 0 of the file: the coordinates are not", NULL}},
-        {"\"point\":[",
-         "\"point\":[null,null,null],\"place\":[",
-         {"event 0 of the file: the coordinates are not", NULL}},
-        {"\"object\":", "\"object\":7,\"body\":", {"event 0 of the file: 'object' is not", NULL}},
-    };
-    EXPECT_TOOL(0, "replay", model.text, cache.text, "--json", summary.text);
-    char *text = read_whole_file(summary.text, NULL);
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        const char *place = strstr(text, cases[i].part);
-        assert_non_null(place);
-        char *changed = NULL;
-        size_t size = 0;
-        FILE *out = open_memstream(&changed, &size);
-        assert_non_null(out);
-        fprintf(out, "%.*s%s%s", (int)(place - text), text, cases[i].instead, place + strlen(cases[i].part));
-        assert_int_equal(fclose(out), 0);
-        temp_path path = temp_file_write(&folder, "changed.json", changed, size);
-        free(changed);
-        EXPECT_ERROR(1, cases[i].reasons, "report", path.text, "-o", page.text);
-    }
-    free(text);
-}
-
-/* An older version wrote a summary without events: the page says so. */
-static void a_summary_without_events_is_read(void **state) {
-    (void)state;
-    EXPECT_TOOL(0, "replay", model.text, cache.text, "--json", summary.text);
-    char *text = read_whole_file(summary.text, NULL), *place = strstr(text, "\"events\":");
-    assert_non_null(place);
-    memcpy(place, "\"remark\":", strlen("\"remark\":"));
-    temp_path path = temp_file_write(&folder, "changed.json", text, strlen(text));
-    free(text);
-    EXPECT_TOOL(0, "report", path.text, "-o", page.text);
-    json_node *root = read_page(page.text);
-    assert_non_null(json_node_member(first_summary(root), "remark"));
-    json_node_free(root);
-}
-
 static void options_that_do_not_fit_are_refused(void **state) {
     (void)state;
     EXPECT_ERROR(2, TEXTS("--report OUT.html"), "replay", model.text, cache.text, "--scenery", model.text);
@@ -396,9 +309,6 @@ int main(void) {
         cmocka_unit_test(the_page_of_a_replay_has_its_summary),
         cmocka_unit_test(the_page_of_a_plan_has_charge_and_timings),
         cmocka_unit_test(summaries_stand_side_by_side),
-        cmocka_unit_test(what_is_no_summary_is_named),
-        cmocka_unit_test(a_changed_summary_is_refused),
-        cmocka_unit_test(a_summary_without_events_is_read),
         cmocka_unit_test(options_that_do_not_fit_are_refused),
         cmocka_unit_test(an_unwritable_report_loses_nothing_else),
         cmocka_unit_test(outputs_are_where_links_lead),
