@@ -5,6 +5,7 @@
 #include "tests/support/tool/tool_fixture.h"
 
 #include "cscd/cscd.h"
+#include "src/tool/answers/consequences.h"
 #include "src/tool/common/event_order.h"
 
 #include <stdio.h>
@@ -212,6 +213,28 @@ static void what_lies_in_itself_comes_last(void **state) {
     for (size_t i = 0; i < 5; i++) assert_int_equal(order[i] - events, expected[i]);
 }
 
+/* What lies in itself while another part cuts it is no event of its own; at any other time it is. */
+static void what_follows_is_left_out(void **state) {
+    (void)state;
+    cscd_event events[] = {
+        {.a = 1, .b = 2, .first_frame = 4, .last_frame = 5, .pairs = 1},
+        {.a = 1, .b = 2, .first_frame = 1, .last_frame = 9, .pairs = 3},
+        {.a = 1, .b = 1, .first_frame = 9, .last_frame = 12, .depths = 1},  /* follows */
+        {.a = 2, .b = 2, .first_frame = 0, .last_frame = 1, .depths = 2},   /* follows */
+        {.a = 2, .b = 2, .first_frame = 10, .last_frame = 11, .depths = 3}, /* at another time */
+        {.a = 3, .b = 3, .first_frame = 4, .last_frame = 5, .depths = 4},   /* of another part */
+        {.a = 1, .b = 1, .first_frame = 4, .last_frame = 5, .contacts = 1}, /* with a contact */
+        {.a = 0, .b = 1, .first_frame = 4, .last_frame = 5, .depths = 5},   /* of two parts */
+    };
+    const size_t expected[] = {0, 1, 4, 5, 6, 7};
+    cscd_event all[8];
+    memcpy(all, events, sizeof all);
+    size_t count = 8;
+    assert_true(consequences_leave_out(events, &count));
+    assert_int_equal(count, 6);
+    for (size_t i = 0; i < count; i++) assert_memory_equal(&events[i], &all[expected[i]], sizeof *events);
+}
+
 /* Two quads and a triangle that passes through the second one: triangles 2 and 3 are the polygon 1. */
 static void polygons_have_the_numbers_of_the_file(void **state) {
     (void)state;
@@ -347,6 +370,7 @@ int main(void) {
         cmocka_unit_test(events_are_those_of_the_library),
         cmocka_unit_test(events_of_a_replay_have_contacts),
         cmocka_unit_test(what_lies_in_itself_comes_last),
+        cmocka_unit_test(what_follows_is_left_out),
         cmocka_unit_test(polygons_have_the_numbers_of_the_file),
         cmocka_unit_test(rules_fail_the_run),
         cmocka_unit_test(rules_hold_for_each_mesh),

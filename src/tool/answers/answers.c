@@ -2,6 +2,7 @@
  * these frames make up. */
 #include "src/tool/answers/answers.h"
 
+#include "src/tool/answers/consequences.h"
 #include "src/tool/common/event_order.h"
 
 #include <stdlib.h>
@@ -158,7 +159,7 @@ static bool copy_events(answers *a, const cscd_events *events) {
     if (a->events == NULL || a->worst_first == NULL) return false;
     for (size_t i = 0; i < events->count; i++)
         if (is_event(&events->items[i])) a->events[a->event_count++] = events->items[i];
-    return true;
+    return consequences_leave_out(a->events, &a->event_count);
 }
 
 static bool order_events(answers *a) {

@@ -52,7 +52,8 @@ bool answers_add_frame(answers *a, cscd_detector *detector, uint32_t frame, cons
 /* The same of a frame in which nothing is looked for. */
 bool answers_skip_frame(answers *a, uint32_t frame, io_error *error);
 
-/* The last frame has come, be it earlier than expected: finds the events. Those of duplicates alone are left out. */
+/* The last frame has come, be it earlier than expected: finds the events. Those of duplicates alone are left out,
+ * and those that only follow from others (consequences.h). */
 bool answers_finish(answers *a, io_error *error);
 
 /* The frames so far, and how many there are. */
