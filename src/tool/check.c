@@ -158,7 +158,10 @@ static bool close_check(check_run *c, const char *stopped_by, io_error *error) {
     const char *suite = recording_options_path(&o->source);
     bool finished = answers_finish(&c->answers, error);
     if (finished) print_answers(c);
-    if (!o->quiet) recording_warn(&c->recording);
+    if (!o->quiet) {
+        recording_warn(&c->recording);
+        recording_note_animations(&c->recording);
+    }
     bool closed = check_output_close(&c->output, &c->answers, &c->unit, stopped_by, finished ? error : NULL);
     bool written = answer_outputs_close(&c->files, finished ? &c->answers : NULL, &c->rules, suite,
                                         finished && closed ? error : NULL);

@@ -170,7 +170,7 @@ class Material:
         frames = [limbs_at([ways[name][frame] for ways in LIMB_WAYS]) for frame in range(10)]
         recording_file.write_obj(made.model, frames[0], triangles, names)
         recording_file.write_pc2(made.frames, [recording_file.flat(frame) for frame in frames])
-        self.replay_files(made)
+        self.replay_files(made, "--unit", "cm", "--fps", "12")
         return made
 
     def limbs_compared(self, *others):

@@ -5,6 +5,8 @@
 #include "tests/support/tool/contact_rows.h"
 #include "tests/support/tool/run_tool.h"
 
+#include <string.h>
+
 static temp_folder folder;
 static temp_path model, out;
 
@@ -62,7 +64,13 @@ static void a_file_is_model_and_frames(void **state) {
     EXPECT_TOOL(0, "replay", model.text, "--quiet", "--fps", "5", "--animation", "slow", "--contacts",
                 out.text);
     check_first(4, 1.0);
-    EXPECT_TOOL(0, "check", model.text, "--quiet", "--fail-on-contact");
+    tool_run run = RUN_TOOL("check", model.text, "--fail-on-contact");
+    assert_int_equal(run.code, 0);
+    assert_non_null(strstr(run.error, "holds an animation, and only its rest pose is looked at"));
+    tool_run_free(&run);
+    run = RUN_TOOL("check", model.text, model.text);
+    assert_null(strstr(run.error, "rest pose"));
+    tool_run_free(&run);
     EXPECT_TOOL(3, "check", model.text, model.text, "--quiet", "--fail-on-contact");
 }
 

@@ -1,7 +1,6 @@
 /* The options about answers that check and replay have in common. */
 #include "src/tool/answers/answer_options.h"
 
-#include "src/io/gltf.h"
 #include "src/tool/answers/answer_files.h"
 #include "src/tool/common/command.h"
 #include "src/tool/common/option_values.h"
@@ -63,7 +62,7 @@ bool answer_options_are_safe(const answer_options *o, const char *const *inputs,
 length_unit answer_options_unit(const answer_options *o, const recording *r) {
     length_unit unit = o->unit;
     for (uint32_t i = 0; i < r->object_count; i++)
-        if (!gltf_recognise_path(r->objects[i].source.model_path)) return unit;
+        if (r->objects[i].file.format != MESH_FORMAT_GLTF) return unit;
     if (unit.name == NULL) length_unit_from_name("m", &unit);
     return unit;
 }

@@ -101,6 +101,9 @@ uint32_t recording_file_face(const recording *r, uint32_t triangle);
 /* The number of the edge between two vertices of the mesh, which must have it. */
 uint32_t recording_find_edge(const cscd_mesh *mesh, uint32_t a, uint32_t b);
 
+/* Says on stderr which glTF files hold an animation that is not looked at. */
+void recording_note_animations(const recording *r);
+
 /* Warns on stderr about triangles that welding has dropped, and about open, non-manifold and
  * inconsistently oriented components. */
 void recording_warn(recording *r);

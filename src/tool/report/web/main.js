@@ -45,7 +45,7 @@ function initialState(report) {
   return {
     time: scene === null ? 0 : (frameInAddress(scene) ?? scene.first),
     playing: false,
-    speed: 30,
+    speed: report.scene?.fps ?? 30,
     loop: false,
     colour: planShown ? 'region' : 'plain',
     answers: true,

@@ -17,7 +17,8 @@ function contactCounts(report) {
 }
 
 export function createPlayer(report, store) {
-  const { first, last, numbers } = report.scene;
+  const { first, last, numbers, fps } = report.scene;
+  const speeds = SPEEDS.includes(fps ?? 30) ? SPEEDS : [...SPEEDS, fps].sort((a, b) => a - b);
   const counts = contactCounts(report);
   const withContacts = [];
   counts.forEach((count, i) => {
@@ -62,7 +63,7 @@ export function createPlayer(report, store) {
     first,
     last,
     numbers,
-    speeds: SPEEDS,
+    speeds,
     counts,
     withContacts,
     most,
@@ -123,7 +124,7 @@ export function createPlayer(report, store) {
 
   function changeSpeed(direction) {
     const { speed } = store.get();
-    const next = direction > 0 ? SPEEDS.find((value) => value > speed) : SPEEDS.findLast((value) => value < speed);
+    const next = direction > 0 ? speeds.find((value) => value > speed) : speeds.findLast((value) => value < speed);
     if (next !== undefined) store.set({ speed: next });
   }
 

@@ -1,5 +1,6 @@
 /** What intersects in each frame, and the events, as the page uses them. */
 
+import { lengthText } from '../page/format.js';
 import { BlockError } from './decode.js';
 import { lastAtOrBefore } from '../page/intervals.js';
 
@@ -58,7 +59,7 @@ export function answersOf(array, scene) {
   });
   return {
     ...scene.answers,
-    events: scene.answers.events ?? [],
+    events: (scene.answers.events ?? []).map((event) => ({ ...event, deep: lengthText(event.depth, scene.length_unit ?? null) })),
     /** The numbers of the frames in which surfaces cross or something is buried. */
     crossingFrames: places.filter((_, i) => counts[COUNTS * i] + counts[COUNTS * i + 4] > 0).map((p) => scene.numbers[p]),
     touchingFrames: places.filter((_, i) => counts[COUNTS * i + 1] > 0).map((p) => scene.numbers[p]),

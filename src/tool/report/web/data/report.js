@@ -159,6 +159,7 @@ async function sceneOf(told) {
     relativeError: scene.relative_error,
     up: scene.up === 'y' ? 'y' : 'z',
     fps: scene.fps ?? null,
+    lengthUnit: scene.length_unit ?? null,
     unit: scene.unit ?? 1, // the file's units that 1 in the page's coordinates is
     plan: scene.plan,
     contactsInfo: scene.contacts,

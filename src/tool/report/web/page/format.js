@@ -20,6 +20,18 @@ export function significant(value, digits) {
   return String(Number(value.toPrecision(digits)));
 }
 
+const METRES = { um: 1e-6, mm: 1e-3, cm: 1e-2, dm: 0.1, m: 1, km: 1e3 };
+const STEPS = [['km', 1e3], ['m', 1], ['mm', 1e-3]];
+
+/** A length with its unit, three digits of it; metric ones in um, mm, m or km, whichever suits. unit null: nobody knows it. */
+export function lengthText(value, unit) {
+  if (unit === null) return significant(value, 3);
+  if (METRES[unit] === undefined) return `${significant(value, 3)} ${unit}`;
+  const metres = value * METRES[unit];
+  const [name, scale] = STEPS.find(([, step]) => Math.abs(metres) >= 0.9995 * step) ?? ['um', 1e-6];
+  return `${significant(metres / scale, 3)} ${name}`;
+}
+
 export function milliseconds(value) {
   return value === 0 ? '0' : decimal(value, 3);
 }

@@ -1,13 +1,11 @@
 /** The answer first: a sentence, parts against parts as a matrix, and the events; a click goes to an event's worst frame. */
 import { button, element, heading, scrollable, setText } from '../page/dom.js';
-import { counted, integer, ranges, significant } from '../page/format.js';
+import { counted, integer, ranges } from '../page/format.js';
 import { kindOf, whoOf, worseThan } from '../page/events.js';
 
 const PARTS_MOST = 14; // rows of the matrix
 const FORWARD = 'M6 2.5v11l7-5.5zM3 2.5h2v11H3z';
 const BACK = 'M10 2.5v11L3 8zM11 2.5h2v11h-2z';
-
-const lengthOf = (value) => significant(value, 3);
 
 function isOrAre(numbers) {
   return numbers.length === 1 ? `Frame ${numbers[0]} has` : `Frames ${ranges(numbers, 4)} have`;
@@ -31,8 +29,8 @@ export function sentenceOf({ scene }) {
 
 const framesOf = ({ first, last }) => (first === last ? `frame ${first}` : `frames ${first} to ${last}`);
 
-function depthOf({ depth, worst, pairs }) {
-  if (depth > 0) return `, ${lengthOf(depth)} deep at frame ${worst}`;
+function depthOf({ depth, deep, worst, pairs }) {
+  if (depth > 0) return `, ${deep} deep at frame ${worst}`;
   return pairs > 0 ? `, worst at frame ${worst}` : '';
 }
 
@@ -52,10 +50,10 @@ function pairsOf(events) {
 
 function matrixCell(events, a, b, deepest, choose) {
   if (events.length === 0) return element('td', { class: 'none' }, element('span', { 'aria-hidden': 'true' }, '·'));
-  const { depth } = events[0];
-  const title = `${whoOf(events[0])}: ${counted(events.length, 'event')}${depth > 0 ? `, at most ${lengthOf(depth)} deep` : ''}`;
+  const { depth, deep } = events[0];
+  const title = `${whoOf(events[0])}: ${counted(events.length, 'event')}${depth > 0 ? `, at most ${deep} deep` : ''}`;
   const made = element('button', { type: 'button', class: 'cell', title, 'aria-label': title, 'aria-pressed': 'false' },
-    depth > 0 ? lengthOf(depth) : integer(events.length));
+    depth > 0 ? deep : integer(events.length));
   made.style.setProperty('--share', String(deepest > 0 ? Math.round(100 * (0.15 + (0.6 * depth) / deepest)) : 15));
   made.addEventListener('click', () => choose(a, b, made));
   return element('td', {}, made);
@@ -92,13 +90,13 @@ function eventRow(event, number, single, go) {
     element('td', { class: 'who', title: `${whoOf(event)}: ${word}` },
       element('span', { class: `state ${state}` }, element('i'), ...words)),
     element('td', { class: 'number' }, event.first === event.last ? `${event.first}` : `${event.first} to ${event.last}`),
-    element('td', { class: 'number', 'data-value': event.depth, title: event.depth }, event.depth > 0 ? lengthOf(event.depth) : '–'),
+    element('td', { class: 'number', 'data-value': event.depth, title: event.depth }, event.depth > 0 ? event.deep : '–'),
   );
   row.addEventListener('click', () => go(number));
   return row;
 }
 
-const COLUMNS = [['no.'], ['what'], ['frames', true], ['depth', true, 'The greatest depth, in the unit of the file']];
+const COLUMNS = [['no.'], ['what'], ['frames', true], ['depth', true, 'The greatest depth']];
 
 function tableOf(events, single, go) {
   const head = element('tr');

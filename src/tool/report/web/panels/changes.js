@@ -1,6 +1,6 @@
 /** What changed between two runs, event by event: first on the page of a comparison. */
 import { element, heading, scrollable, segments } from '../page/dom.js';
-import { integer, significant } from '../page/format.js';
+import { integer, lengthText } from '../page/format.js';
 import { kindOf, whoOf } from '../page/events.js';
 import { shortNameOf } from '../page/names.js';
 import { matchEvents, worstOf } from '../data/matching.js';
@@ -54,11 +54,9 @@ const framesOf = (events) =>
         .map(({ first, last }) => (first === last ? `${first}` : `${first} to ${last}`))
         .join(', ');
 
-const lengthIn = (value, unit) => `${significant(value, 3)}${unit ? ` ${unit}` : ''}`;
-
 function depthCell(events, unit) {
   const depth = deepest(events);
-  const text = depth > 0 ? lengthIn(depth, unit) : '–';
+  const text = depth > 0 ? lengthText(depth, unit ?? null) : '–';
   return element('td', { class: 'number', text, 'data-value': events.length > 0 ? depth : '', title: depth > 0 ? depth : null });
 }
 

@@ -119,7 +119,7 @@ function answersLegend(scene, state) {
   if (found.depths.length === 0) return parts;
   return [
     ...parts,
-    title('Depth of what is buried, in the unit of the file'),
+    title(`Depth of what is buried, in ${scene.lengthUnit ?? 'the unit of the file'}`),
     bar(DEPTH),
     ends('0', short((all.deepest * unit) / 2), short(all.deepest * unit)),
   ];
