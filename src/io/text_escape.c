@@ -18,6 +18,16 @@ size_t text_utf8_length(const unsigned char *s) {
     return overlong || surrogate_or_beyond ? 0 : length;
 }
 
+int text_cut_length(const char *text, int most) {
+    int length = 0;
+    while (text[length] != '\0') {
+        const int next = (int)text_utf8_length((const unsigned char *)text + length);
+        if (length + (next > 0 ? next : 1) > most) break;
+        length += next > 0 ? next : 1;
+    }
+    return length;
+}
+
 void text_write_csv(FILE *file, const char *text) {
     fputc('"', file);
     for (; *text != '\0'; text++) {

@@ -341,6 +341,22 @@ static void junit_has_a_case_for_each_frame(void **state) {
     free(text);
 }
 
+static void long_names_are_cut_between_characters(void **state) {
+    (void)state;
+    char name[2 * 80 + 2] = "x", text[400];
+    for (size_t i = 0; i < 80; i++) memcpy(&name[1 + 2 * i], "\xc3\x84", 3);
+    snprintf(text, sizeof text,
+             "v 0 0 0\nv 1 0 0\nv 0 1 0\nv .2 .2 -1\nv .2 .2 1\nv .3 .3 1\no %s\nf 1 2 3\no B\nf 4 5 6\n",
+             name);
+    const temp_path long_name = write_text("long.obj", text);
+    char whole[130];
+    snprintf(whole, sizeof whole, "worst: %.99s x B", name);
+    tool_run run = RUN_TOOL("check", long_name.text, "--fail-on", "crossing");
+    assert_non_null(strstr(run.error, whole));
+    tool_run_free(&run);
+    EXPECT_ERROR(1, TEXTS("\xc3\x84, B"), "check", long_name.text, "--only", "C");
+}
+
 /* ---- outputs -------------------------------------------------------------------------------------------- */
 
 static void outputs_are_not_inputs_nor_each_other(void **state) {
@@ -376,6 +392,7 @@ int main(void) {
         cmocka_unit_test(rules_hold_for_each_mesh),
         cmocka_unit_test(standing_intersections_fail),
         cmocka_unit_test(junit_has_a_case_for_each_frame),
+        cmocka_unit_test(long_names_are_cut_between_characters),
         cmocka_unit_test(outputs_are_not_inputs_nor_each_other),
     };
     return cmocka_run_group_tests(tests, make_files, remove_files);

@@ -1,6 +1,7 @@
 /* When a run counts as failed (exit code 3): what --fail-on, --fail-depth and --max-faces say. */
 #include "src/tool/answers/fail_rules.h"
 
+#include "src/io/text_escape.h"
 #include "src/tool/common/command.h"
 
 #include <stdio.h>
@@ -20,12 +21,16 @@ bool fail_rules_any(const fail_rules *rules) {
     return o->kind != FAIL_ON_NOTHING || o->depth.given || o->faces_limited;
 }
 
+enum { NAME_BYTES_MAX = 100 };
+
 /* "A x B", of the worst that the frame has; "" if it has nothing. */
 static void name_worst(const answers *a, const frame_answer *frame, char *text, size_t size) {
     text[0] = '\0';
     if (!frame_answer_meets(frame) && frame->depth == 0.0) return;
-    snprintf(text, size, ", worst: %.100s x %.100s", part_names_at(a->parts, frame->worst_parts[0]),
-             part_names_at(a->parts, frame->worst_parts[1]));
+    const char *first = part_names_at(a->parts, frame->worst_parts[0]);
+    const char *second = part_names_at(a->parts, frame->worst_parts[1]);
+    snprintf(text, size, ", worst: %.*s x %.*s", text_cut_length(first, NAME_BYTES_MAX), first,
+             text_cut_length(second, NAME_BYTES_MAX), second);
 }
 
 bool fail_rules_meet(const fail_rules *rules, const answers *a, const frame_answer *frame,

@@ -1,6 +1,8 @@
 /* Tables of pairs of parts, filled from the names of the command line. */
 #include "src/tool/common/part_rules.h"
 
+#include "src/io/text_escape.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,8 +27,8 @@ static bool fail_name(const part_names *parts, const char *option, const char *n
     char known[400] = "";
     size_t used = 0;
     for (uint32_t i = 0; i < parts->count && used + 48 < sizeof known; i++)
-        used += (size_t)snprintf(known + used, sizeof known - used, "%s%.40s", i > 0 ? ", " : "",
-                                 parts->names[i]);
+        used += (size_t)snprintf(known + used, sizeof known - used, "%s%.*s", i > 0 ? ", " : "",
+                                 text_cut_length(parts->names[i], 40), parts->names[i]);
     return io_fail(error, "%s: there is no part '%.*s'; the parts are %s%s", option, (int)length, name, known,
                    parts->count > 0 && used + 48 >= sizeof known ? ", ..." : "");
 }
