@@ -3,6 +3,7 @@
 
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { FIRST_CAPACITY = 64 };
 
@@ -31,6 +32,12 @@ bool growable_reserve(growable *array, size_t capacity) {
     if (capacity <= array->capacity) return true;
     if (capacity > SIZE_MAX / array->element_size) return false;
     return resize_array(array, capacity);
+}
+
+void *io_zeroed(size_t size) {
+    void *memory = io_realloc(NULL, size);
+    if (memory != NULL) memset(memory, 0, size);
+    return memory;
 }
 
 void *growable_push(growable *array) {

@@ -27,3 +27,6 @@ void *growable_take(growable *array);
 /* realloc: the one place where the mesh readers get memory. It is weak, so that a test can put a failing one
  * in its place. */
 void *io_realloc(void *memory, size_t size);
+
+/* New memory from it, all bytes 0. */
+void *io_zeroed(size_t size);

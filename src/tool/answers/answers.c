@@ -26,7 +26,7 @@ bool answers_open(recording *r, const ignore_pairs *ignored, bool depths, answer
                  .depths = depths,
                  .shown = shown_depths_of(ignored),
                  .frames = growable_of(sizeof(frame_answer))};
-    a.seen = calloc((size_t)cscd_mesh_triangle_count(r->mesh) + 1, sizeof *a.seen);
+    a.seen = io_zeroed(((size_t)cscd_mesh_triangle_count(r->mesh) + 1) * sizeof *a.seen);
     if (a.seen == NULL) return io_fail(error, "out of memory");
     if (!create_tracker(&a, error)) {
         answers_close(&a);
@@ -154,8 +154,8 @@ static bool is_event(const cscd_event *event) {
 }
 
 static bool copy_events(answers *a, const cscd_events *events) {
-    a->events = malloc((events->count + 1) * sizeof *a->events);
-    a->worst_first = malloc((events->count + 1) * sizeof *a->worst_first);
+    a->events = io_realloc(NULL, (events->count + 1) * sizeof *a->events);
+    a->worst_first = io_realloc(NULL, (events->count + 1) * sizeof *a->worst_first);
     if (a->events == NULL || a->worst_first == NULL) return false;
     for (size_t i = 0; i < events->count; i++)
         if (is_event(&events->items[i])) a->events[a->event_count++] = events->items[i];
@@ -163,7 +163,7 @@ static bool copy_events(answers *a, const cscd_events *events) {
 }
 
 static bool order_events(answers *a) {
-    const cscd_event **order = malloc((a->event_count + 1) * sizeof *order);
+    const cscd_event **order = io_realloc(NULL, (a->event_count + 1) * sizeof *order);
     if (order == NULL) return false;
     for (size_t i = 0; i < a->event_count; i++) order[i] = &a->events[i];
     event_order_sort(order, a->event_count);

@@ -1,6 +1,8 @@
 /* Events that only follow from others. */
 #include "src/tool/answers/consequences.h"
 
+#include "src/io/growable.h"
+
 #include <stdlib.h>
 
 /* The frames in which a part has an event with pairs. */
@@ -45,7 +47,7 @@ static bool happens_during(const part_span *spans, size_t count, const cscd_even
 }
 
 bool consequences_leave_out(cscd_event *events, size_t *count) {
-    part_span *spans = malloc((2 * *count + 1) * sizeof *spans);
+    part_span *spans = io_realloc(NULL, (2 * *count + 1) * sizeof *spans);
     if (spans == NULL) return false;
     const size_t span_count = collect_spans(events, *count, spans);
     size_t kept = 0;

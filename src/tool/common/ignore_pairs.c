@@ -2,6 +2,8 @@
  * list file. */
 #include "src/tool/common/ignore_pairs.h"
 
+#include "src/io/growable.h"
+
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,7 +12,7 @@
 static bool append_pair(cscd_intersection **items, size_t *count, size_t *capacity, uint32_t a, uint32_t b) {
     if (*count == *capacity) {
         size_t wider = *capacity == 0 ? 64 : *capacity * 2;
-        cscd_intersection *grown = realloc(*items, wider * sizeof *grown);
+        cscd_intersection *grown = io_realloc(*items, wider * sizeof *grown);
         if (grown == NULL) return false;
         *items = grown;
         *capacity = wider;
@@ -143,7 +145,7 @@ static bool check_rest(ignore_pairs *pairs, bool by_parts, recording *r, cscd_de
 }
 
 static bool add_rest(ignore_pairs *pairs, bool by_parts, recording *r, io_error *error) {
-    double *positions = malloc((size_t)cscd_mesh_vertex_count(r->mesh) * 3 * sizeof *positions);
+    double *positions = io_realloc(NULL, (size_t)cscd_mesh_vertex_count(r->mesh) * 3 * sizeof *positions);
     cscd_detector *detector = NULL;
     bool added = positions != NULL || io_fail(error, "out of memory");
     added = added && recording_read(r, 0, positions, error);

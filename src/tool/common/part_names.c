@@ -1,6 +1,8 @@
 /* Finds the parts of a recording, and keeps their names. */
 #include "src/tool/common/part_names.h"
 
+#include "src/io/growable.h"
+
 #include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -30,7 +32,7 @@ uint32_t part_names_choose(const part_names *parts, const char *name, size_t len
 
 static bool allocate_labels(const recording *r, part_names *parts, io_error *error) {
     uint32_t count = cscd_mesh_triangle_count(r->mesh);
-    parts->labels = malloc(((size_t)count + 1) * sizeof *parts->labels);
+    parts->labels = io_realloc(NULL, ((size_t)count + 1) * sizeof *parts->labels);
     if (parts->labels == NULL) return io_fail(error, "out of memory for the parts of %u triangles", count);
     for (uint32_t t = 0; t < count; t++) parts->labels[t] = NO_PART;
     return true;
@@ -39,8 +41,8 @@ static bool allocate_labels(const recording *r, part_names *parts, io_error *err
 /* Appends a part called OBJECT/PART, or by one of them if the other is NULL. */
 static bool add_part(part_names *parts, const char *object, const char *part, io_error *error) {
     const size_t size = (object != NULL ? strlen(object) + 1 : 0) + (part != NULL ? strlen(part) : 0) + 1;
-    char **names = realloc(parts->names, ((size_t)parts->count + 1) * sizeof *names);
-    char *name = malloc(size);
+    char **names = io_realloc(parts->names, ((size_t)parts->count + 1) * sizeof *names);
+    char *name = io_realloc(NULL, size);
     if (names != NULL) parts->names = names;
     if (names == NULL || name == NULL) {
         free(name);

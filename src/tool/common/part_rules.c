@@ -1,6 +1,7 @@
 /* Tables of pairs of parts, filled from the names of the command line. */
 #include "src/tool/common/part_rules.h"
 
+#include "src/io/growable.h"
 #include "src/io/text_escape.h"
 
 #include <stdio.h>
@@ -19,7 +20,7 @@ static void mark_pair(const part_rules *rules, unsigned char *table, uint32_t a,
 }
 
 static unsigned char *make_table(const part_rules *rules) {
-    return calloc((size_t)rules->size * rules->size, 1);
+    return io_zeroed((size_t)rules->size * rules->size);
 }
 
 static bool fail_name(const part_names *parts, const char *option, const char *name, size_t length,
@@ -54,7 +55,7 @@ static bool mark_text(const part_rules *rules, const char *option, const char *t
 static bool mark_list(const part_rules *rules, const char *option, const part_pairs_list *list,
                       unsigned char **table, io_error *error) {
     if (list->count == 0) return true;
-    bool *chosen = malloc(2 * (size_t)rules->size * sizeof *chosen), marked = chosen != NULL;
+    bool *chosen = io_realloc(NULL, 2 * (size_t)rules->size * sizeof *chosen), marked = chosen != NULL;
     *table = make_table(rules);
     if (*table == NULL || chosen == NULL) marked = io_fail(error, "%s: out of memory", option);
     for (uint32_t i = 0; i < list->count && marked; i++)

@@ -61,7 +61,7 @@ static bool read_kind(part_table *table, char *line, io_error *error) {
 static bool allocate_things(part_table *table, io_error *error) {
     for (uint32_t i = 0; i < table->recording->object_count; i++) {
         const uint32_t count = count_things(table, i);
-        table->labels[i] = malloc(((size_t)count + 1) * sizeof *table->labels[i]);
+        table->labels[i] = io_realloc(NULL, ((size_t)count + 1) * sizeof *table->labels[i]);
         if (table->labels[i] == NULL) return io_fail(error, "%s: out of memory", table->path);
         for (uint32_t k = 0; k < count; k++) table->labels[i][k] = NO_PART;
     }
@@ -124,7 +124,7 @@ static uint32_t choose_of_corners(const uint32_t *labels, const uint32_t corners
 static bool label_triangles(part_table *table, part_names *out, io_error *error) {
     const recording *r = table->recording;
     const uint32_t count = cscd_mesh_triangle_count(r->mesh);
-    out->labels = malloc(((size_t)count + 1) * sizeof *out->labels);
+    out->labels = io_realloc(NULL, ((size_t)count + 1) * sizeof *out->labels);
     if (out->labels == NULL) return io_fail(error, "%s: out of memory", table->path);
     for (uint32_t t = 0; t < count; t++) {
         const uint32_t index = recording_object_of_triangle(r, t), *labels = table->labels[index];

@@ -1,0 +1,153 @@
+/* Parts, rules and answers survive every failed allocation: they say so, and nothing leaks. */
+#include "src/io/growable.h"
+#include "src/tool/answers/answers.h"
+#include "src/tool/answers/consequences.h"
+#include "tests/support/test.h"
+#include "tests/support/tool/tool_fixture.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static temp_folder folder;
+static temp_path model, cache, table;
+static recording scene;
+
+static long allocations_left = -1; /* so many allocations succeed before one fails; negative: none fails */
+static bool has_failed;
+
+void *io_realloc(void *memory, size_t size) {
+    if (allocations_left-- == 0) {
+        has_failed = true;
+        return NULL;
+    }
+    return realloc(memory, size);
+}
+
+/* The two tetrahedra, the first of which is a part, and the other one two. */
+static int open_scene(void **state) {
+    (void)state;
+    static const char table_text[] =
+        "triangle,name\n0,Wall\n1,Wall\n2,Wall\n3,Wall\n4,Tip\n5,Tip\n6,Tip\n7,Base\n";
+    recorded flight = recorded_tetrahedra(8);
+    const char *records[8];
+    for (int t = 0; t < 8; t++) records[t] = t < 4 ? "o Wall" : t < 7 ? "o Dart\ng Tip" : "o Dart\ng Base";
+    folder = temp_folder_make();
+    model = recorded_write_parts(&folder, "parts.obj", &flight, records);
+    cache = recorded_write_cache(&folder, "parts.pc2", &flight);
+    table = temp_file_write(&folder, "parts.csv", table_text, sizeof table_text - 1);
+    recorded_free(&flight);
+    static const char *frames[1];
+    frames[0] = cache.text;
+    const recording_options options = {
+        .model_path = model.text, .frame_paths = frames, .frame_path_count = 1, .thread_count = 1};
+    io_error error;
+    if (!recording_open(&options, &scene, &error)) fail_msg("%s", error.text);
+    return 0;
+}
+
+static int close_scene(void **state) {
+    (void)state;
+    recording_close(&scene);
+    temp_folder_remove(&folder);
+    return 0;
+}
+
+typedef bool attempt(io_error *error);
+
+/* Lets each allocation of what is attempted fail once; returns how many there are. */
+static long fail_each(attempt *attempted) {
+    for (long successes = 0;; successes++) {
+        io_error error = {""};
+        allocations_left = successes;
+        has_failed = false;
+        const bool done = attempted(&error);
+        allocations_left = -1;
+        assert_int_equal(done, !has_failed);
+        if (done) return successes;
+        if (strstr(error.text, "out of memory") == NULL) fail_msg("'%s'", error.text);
+    }
+}
+
+static bool find_parts(io_error *error) {
+    part_names parts;
+    if (!part_names_find(&scene, NULL, &parts, error)) return false;
+    assert_int_equal(parts.count, 3);
+    part_names_free(&parts);
+    return true;
+}
+
+static bool read_parts(io_error *error) {
+    part_names parts;
+    if (!part_names_read(&scene, table.text, &parts, error)) return false;
+    assert_int_equal(parts.count, 3);
+    part_names_free(&parts);
+    return true;
+}
+
+static bool prepare_rules(io_error *error) {
+    ignore_pairs ignored;
+    const ignore_options options = {.parts_path = table.text,
+                                    .rest = REST_PARTS,
+                                    .ignored = {.items = {"Tip,Base"}, .count = 1},
+                                    .only = {.items = {"Wall"}, .count = 1}};
+    if (!ignore_pairs_prepare(&options, &scene, &ignored, error)) return false;
+    ignore_pairs_free(&ignored);
+    return true;
+}
+
+static bool add_frames(answers *a, cscd_detector *detector, io_error *error) {
+    double positions[24];
+    cscd_intersection_pairs found;
+    for (uint32_t frame = 0; frame < 8; frame++) {
+        if (!recording_read(&scene, frame, positions, error) ||
+            !answers_add_frame(a, detector, frame, positions, &found, error))
+            return false;
+    }
+    return answers_finish(a, error);
+}
+
+static bool find_answers(io_error *error) {
+    ignore_pairs ignored;
+    answers a = {0};
+    cscd_detector *detector = NULL;
+    cscd_detector_options options = cscd_detector_defaults();
+    const ignore_options none = {.path = NULL};
+    if (!ignore_pairs_prepare(&none, &scene, &ignored, error)) return false;
+    assert_int_equal(cscd_detector_create(scene.context, scene.mesh, NULL, &options, &detector), CSCD_OK);
+    bool found = answers_open(&scene, &ignored, true, &a, error);
+    if (found) found = answers_prepare(&a, detector, error) && add_frames(&a, detector, error);
+    if (found) assert_true(a.event_count > 0 && a.frames.count == 8);
+    answers_close(&a);
+    cscd_detector_destroy(detector);
+    ignore_pairs_free(&ignored);
+    return found;
+}
+
+static void each_allocation_may_fail(void **state) {
+    (void)state;
+    assert_true(fail_each(find_parts) >= 7); /* labels, and two for each part */
+    assert_true(fail_each(read_parts) >= 7);
+    assert_true(fail_each(prepare_rules) >= 10);
+    assert_true(fail_each(find_answers) >= 10);
+}
+
+/* What cannot be left out for want of memory stays. */
+static void events_stay_without_memory(void **state) {
+    (void)state;
+    cscd_event events[] = {{.a = 0, .b = 1, .pairs = 1}, {.depths = 1}};
+    size_t count = 2;
+    allocations_left = 0;
+    assert_false(consequences_leave_out(events, &count));
+    allocations_left = -1;
+    assert_int_equal(count, 2);
+    assert_true(consequences_leave_out(events, &count));
+    assert_int_equal(count, 1);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(each_allocation_may_fail),
+        cmocka_unit_test(events_stay_without_memory),
+    };
+    return cmocka_run_group_tests_name("answers_memory", tests, open_scene, close_scene);
+}
