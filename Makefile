@@ -75,6 +75,7 @@ COMMON_SOURCES  := $(filter-out $(if $(filter 0,$(EXPAT)),$(filter-out $(WITHOUT
                      $(wildcard src/io/*.c src/io/*/*.c src/tool/picture/*.c src/tool/common/*.c src/tool/answers/*.c \
                      src/tool/each/*.c src/tool/export/*.c src/tool/report/*.c))
 COMMAND_SOURCES := $(wildcard src/tool/*.c src/tool/replay/*.c src/tool/render/*.c src/tool/sense/*.c)
+NATIVE_SOURCES  := $(wildcard python/native/*.c)
 SUPPORT_SOURCES := $(wildcard tests/support/*.c tests/support/*/*.c)
 # `rm -r runtime/baselines`, and its lines in runtime/detector/method_table.c: what needs them is not built then.
 HAS_BASELINES   := $(wildcard runtime/baselines/*.h)
@@ -100,7 +101,7 @@ CPP_MODEL_SOURCES := $(wildcard models/*.cpp)
 CPP_MODEL_PARTS   := $(wildcard models/*/*.cpp)
 BENCHMARK_SOURCES := $(filter-out $(if $(HAS_BASELINES),,benchmarks/published_rules.c),$(wildcard benchmarks/*.c))
 BENCHMARK_PARTS   := $(filter-out %_simd.c,$(wildcard benchmarks/lib/*.c))
-SOURCES := $(CORE_SOURCES) $(CHARGE_SOURCES) $(KERNEL_SOURCES) $(COMMON_SOURCES) $(COMMAND_SOURCES) $(SUPPORT_SOURCES) $(TEST_SOURCES) $(FUZZ_SOURCES) \
+SOURCES := $(CORE_SOURCES) $(CHARGE_SOURCES) $(KERNEL_SOURCES) $(COMMON_SOURCES) $(COMMAND_SOURCES) $(NATIVE_SOURCES) $(SUPPORT_SOURCES) $(TEST_SOURCES) $(FUZZ_SOURCES) \
            $(MODEL_SOURCES) $(MODEL_PARTS) $(CPP_MODEL_SOURCES) $(CPP_MODEL_PARTS) $(BENCHMARK_SOURCES) $(BENCHMARK_PARTS)
 
 # One short line per file; V=1 shows the commands.
@@ -164,7 +165,7 @@ COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 # What installs packages; a build that leaves expat out on purpose does not ask for it.
 PACKAGES = GSL=$(GSL) CHARGE=$(CHARGE) EXPAT=$(if $(WITHOUT_EXPAT),0,1) .ci/packages
 
-.PHONY: all programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-embree referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender test-vtk benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces fuzz-files FORCE
+.PHONY: all python python-package programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-embree referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender test-vtk benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces fuzz-files FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -177,6 +178,17 @@ tool: $(TOOL)
 	@if [ "$(BUILD)" = build/release ]; then ln -sfn $(TOOL) cscd; fi
 
 library: $(LIBRARY) $(SHARED) $(CHARGE_SHARED)
+
+# The Python package as it is imported: PYTHONPATH=build/python. It has no GSL in it, and charge from the library beside it, which
+# CHARGE=0 leaves out.
+python:
+	@$(MAKE) --no-print-directory GSL=0 python-package
+
+PYTHON_PACKAGE := $(BUILD_ROOT)/python/cscd
+PYTHON_SOURCES := $(wildcard python/cscd/*)
+python-package: $(PYTHON_PACKAGE)/libcscd-python.so $(CHARGE_SHARED)
+	@cp -p $(PYTHON_SOURCES) $(PYTHON_PACKAGE)
+	@$(if $(CHARGE_SHARED),cp -p $(CHARGE_SHARED) $(PYTHON_PACKAGE)/libcscd-charge.so.$(MAJOR),rm -f $(PYTHON_PACKAGE)/libcscd-charge.so.$(MAJOR))
 
 # Installs what is built and builds the rest; it needs no network and no package but those of `make`, and install-library
 # none but those of the library.
@@ -406,6 +418,14 @@ $(SHARED): $(OPENED_OBJECTS) $(BUILD)/cscd.map
 	    -o $@ $(OPENED_OBJECTS) $(SHARED_LIBS)
 	@ln -sfn $(@F) $(BUILD)/libcscd.so.$(MAJOR)
 	@ln -sfn libcscd.so.$(MAJOR) $(BUILD)/libcscd.so
+
+# All of the tool but its program, and what Python calls. Its own functions are meant wherever it calls one of the library, whatever
+# else the process has loaded.
+NATIVE_OBJECTS := $(OPENED_OBJECTS) $(COMMON_OBJECTS) $(call objects,$(filter-out src/tool/main.c,$(COMMAND_SOURCES)) $(NATIVE_SOURCES))
+$(PYTHON_PACKAGE)/libcscd-python.so: $(NATIVE_OBJECTS)
+	@mkdir -p $(@D)
+	$(say) '  LD $@'
+	$(Q)$(CC) $(LINK_ALL) $(SHARED_FLAGS) -Wl,-Bsymbolic -o $@ $(NATIVE_OBJECTS) $(call packaged,--libs libpng zlib json-c,-lpng -lz -ljson-c) $(EXPAT_LIBS) $(SHARED_LIBS)
 
 # The charge library exports one function, and needs two more files of the core.
 CHARGE_LIBRARY_OBJECTS := $(call objects,$(CHARGE_SOURCES) src/core/sort.c src/core/timer.c)

@@ -1,0 +1,27 @@
+"""cscd: where and when do the surfaces of triangle meshes run into themselves and each other?
+
+One mesh at one moment: ``self_intersections``, ``is_self_intersecting``, ``self_intersecting_faces`` for many frames,
+``intersections`` of two meshes. Two moments: ``contacts``. A recording: ``replay``. Solvers keep a ``Detector``.
+Every verdict is that of exact arithmetic on the given numbers.
+"""
+
+from __future__ import annotations
+
+from ._library import library as _library
+from .detector import Detector
+from .errors import Cancelled, Error, InContact, ListTooLong
+from .intersections import Curve, Intersections, PartPairs
+from .line_search import LineSearch
+from .mesh import HalfSpace, Mesh, Points, Scene, Wires
+from .pairs import pairs_near, pairs_step
+from .plan import Plan
+from .questions import contacts, intersections, is_self_intersecting, self_intersecting_faces, self_intersections
+from .results import CONTACT_KINDS, INTERSECTION_KINDS, Contacts, Events, PairContacts, PairDistances, Proximities
+
+__version__: str = _library.cscd_version_string().decode()
+
+__all__ = ["CONTACT_KINDS", "Cancelled", "Contacts", "Curve", "Detector", "Error", "Events", "HalfSpace",
+           "INTERSECTION_KINDS", "InContact", "Intersections", "LineSearch", "ListTooLong", "Mesh", "PairContacts",
+           "PairDistances", "PartPairs", "Plan", "Points", "Proximities", "Scene", "Wires", "__version__", "contacts",
+           "intersections", "is_self_intersecting", "pairs_near", "pairs_step", "self_intersecting_faces",
+           "self_intersections"]

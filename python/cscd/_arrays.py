@@ -1,0 +1,111 @@
+"""Arrays of the caller, as the library reads them: checked, and without a copy where its views allow."""
+
+from __future__ import annotations
+
+from typing import Any, List, Optional, Sequence, Tuple
+
+import numpy as np
+
+from ._library import address_of, structs
+
+__all__ = ["as_faces", "as_floats", "as_indices", "as_positions", "mutable_view", "views_of"]
+
+Array = Any  # np.ndarray[Any, Any], said shorter
+
+_LARGEST_INDEX = 2**32 - 2
+_LARGEST_EXACT = 2**53
+
+
+def describe(array: Array) -> str:
+    """What a sentence says of an array that does not fit."""
+    return f"shape {array.shape} of {array.dtype}"
+
+
+def as_floats(name: str, values: Any, what: str) -> Array:
+    """Floats as they are; whole numbers and halves as doubles, which have the same values."""
+    try:
+        array = np.asarray(values)
+    except Exception as problem:  # whatever __array__ of a foreign object raises
+        raise ValueError(f"{name}: expected {what}, got {type(values).__name__}: {problem}") from None
+    if array.dtype in (np.float64, np.float32) and array.dtype.isnative:
+        return array
+    if array.dtype.kind == "f" and array.dtype.itemsize <= 8:
+        return array.astype(np.float64)
+    if array.dtype.kind in "iu":
+        if array.dtype.itemsize == 8 and array.size and max(int(array.max()), -int(array.min())) > _LARGEST_EXACT:
+            raise ValueError(f"{name}: {int(array.max())} has no exact double; expected {what}")
+        return array.astype(np.float64)
+    raise ValueError(f"{name}: expected {what}, got {describe(array)}")
+
+
+def as_positions(name: str, values: Any, vertex_count: Optional[int] = None) -> Array:
+    """Vertex positions (n, 3), float32 or float64."""
+    rows = "n" if vertex_count is None else str(vertex_count)
+    array = as_floats(name, values, f"an array ({rows}, 3) of float32 or float64")
+    if array.size == 0 and array.ndim == 1:
+        array = array.reshape(0, 3)
+    if array.ndim != 2 or array.shape[1] != 3 or (vertex_count is not None and len(array) != vertex_count):
+        raise ValueError(f"{name}: expected an array ({rows}, 3) of float32 or float64, got {describe(array)}")
+    return array
+
+
+def as_faces(name: str, values: Any, vertex_count: Optional[int] = None) -> Array:
+    """Faces (m, 3) or (m, 4) of whole numbers, as packed uint32; ``vertex_count`` bounds them."""
+    what = "an array (m, 3) or (m, 4) of whole numbers"
+    try:
+        array = np.asarray(values)
+    except Exception as problem:
+        raise ValueError(f"{name}: expected {what}, got {type(values).__name__}: {problem}") from None
+    if array.size == 0 and (array.ndim < 2 or array.shape[1] in (3, 4)):
+        return np.empty((0, array.shape[1] if array.ndim == 2 else 3), np.uint32)
+    if array.ndim != 2 or array.shape[1] not in (3, 4) or array.dtype.kind not in "iu":
+        raise ValueError(f"{name}: expected {what}, got {describe(array)}")
+    limit = _LARGEST_INDEX if vertex_count is None else vertex_count - 1
+    if int(array.min()) < 0 or int(array.max()) > limit:
+        row, column = np.argwhere((array < 0) | (array > limit))[0]
+        has = "" if vertex_count is None else f", of {vertex_count} vertices"
+        raise ValueError(f"{name}[{row}, {column}] is {array[row, column]}; expected an index from 0 to {limit}{has}")
+    return np.ascontiguousarray(array, np.uint32)
+
+
+def as_indices(name: str, values: Any, columns: int, limit: int, of_what: str) -> Array:
+    """Rows of ``columns`` indices below ``limit``, as packed uint32; with one column the array is flat."""
+    shape = "(k,)" if columns == 1 else f"(k, {columns})"
+    what = f"an array {shape} of whole numbers"
+    array = np.asarray(values)
+    if array.size == 0:
+        return np.empty((0,) if columns == 1 else (0, columns), np.uint32)
+    if array.dtype.kind not in "iu" or array.shape[1:] != (() if columns == 1 else (columns,)) or array.ndim == 0:
+        raise ValueError(f"{name}: expected {what}, got {describe(array)}")
+    if int(array.min()) < 0 or int(array.max()) >= limit:
+        place = tuple(int(i) for i in np.argwhere((array < 0) | (array >= limit))[0])
+        raise ValueError(f"{name}{list(place)} is {array[place]}; expected the index of one of {limit} {of_what}")
+    return np.ascontiguousarray(array, np.uint32)
+
+
+def _view(array: Array, objects: int) -> Tuple[Tuple[int, ...], Array]:
+    """The members of a view of positions, and the array that it looks at."""
+    stride, step = array.strides
+    item = array.itemsize
+    if len(array) > 0 and (stride <= 0 or step <= 0):  # backwards, or one row many times
+        array = np.ascontiguousarray(array)
+        stride, step = array.strides
+    size = (len(array) - 1) * stride + 2 * step + item if len(array) else 0
+    return (address_of(array), size, stride, step, 1 if item == 4 else 0, objects), array
+
+
+def views_of(name: str, positions: Any, vertex_counts: Sequence[int]) -> Tuple[Array, List[Array]]:
+    """Views of one array of all vertices, or of a list with an array for each object, and what keeps them alive."""
+    if len(vertex_counts) > 1 and isinstance(positions, (list, tuple)) and len(positions) == len(vertex_counts) \
+            and np.ndim(positions[0]) == 2:
+        parts = [as_positions(f"{name}[{i}]", part, vertex_counts[i]) for i, part in enumerate(positions)]
+        pairs = [_view(part, 1) for part in parts]
+    else:
+        pairs = [_view(as_positions(name, positions, sum(vertex_counts)), 0)]
+    return np.array([members for members, _ in pairs], structs["view"]), [array for _, array in pairs]
+
+
+def mutable_view(array: Array) -> Array:
+    """A view of a packed array that the library writes."""
+    return np.array([(address_of(array), array.nbytes, 0, 0, 1 if array.itemsize == 4 else 0, 0)],
+                    structs["mutable_view"])

@@ -1,0 +1,174 @@
+"""Where calls run: a context of the library with its threads, one call at a time, and what failures are raised as."""
+
+from __future__ import annotations
+
+import ctypes
+import operator
+import os
+import threading
+from typing import Any, Callable, NoReturn, Optional
+
+from ._library import library
+from .errors import Cancelled, Error, ListTooLong
+
+__all__ = ["Handle", "Host", "code_of", "new_handle", "processor_count", "raise_status", "thread_count_of"]
+
+_OUT_OF_MEMORY, _INVALID_ARGUMENT, _INVALID_MESH, _SYSTEM_ERROR, _CANCELLED, IN_CONTACT = 1, 2, 3, 4, 5, 6
+_LIST_TOO_LONG = 10
+_MOST_THREADS = 256
+
+#: Counts the forks behind this process: threads of a context do not come along into a child.
+_forks = 0
+
+
+def _count_fork() -> None:
+    global _forks
+    _forks += 1
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_count_fork)
+
+
+def raise_status(status: int, sentence: str) -> NoReturn:
+    """Raises the exception that a status of the library stands for."""
+    phrase = library.cscd_status_string(status).decode()
+    text = sentence or phrase
+    if status == _OUT_OF_MEMORY:
+        raise MemoryError(text)
+    if status in (_INVALID_ARGUMENT, _INVALID_MESH):
+        raise ValueError(text)
+    if status == _CANCELLED:
+        raise Cancelled(text)
+    if status == _LIST_TOO_LONG:
+        raise ListTooLong(text)
+    raise Error(text)
+
+
+def code_of(what: str, name: Any) -> int:
+    """The number of a method, mode, volume or simd level, by its name; ``what`` says which of them."""
+    code = ctypes.c_uint32()
+    if not isinstance(name, str):
+        raise ValueError(f"{what}: expected a name, got {name!r}")
+    if not getattr(library, f"cscd_{what}_from_name")(name.encode(), ctypes.byref(code)):
+        raise ValueError(f"{what}: {name!r} is unknown")
+    return code.value
+
+
+def thread_count_of(threads: Any) -> int:
+    """A number of threads, 0 for one per processor."""
+    try:
+        count = operator.index(threads)
+    except TypeError:
+        raise ValueError(f"threads: expected a whole number, got {threads!r}") from None
+    if not 0 <= count <= _MOST_THREADS:
+        raise ValueError(f"threads: expected 0 (one per processor) to {_MOST_THREADS}, got {count}")
+    return count
+
+
+def processor_count() -> int:
+    """How many processors this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+class Host:
+    """A context and its lock. ``with host:`` is a turn in it; another thread waits for its own turn.
+
+    Results of a call live in the library until the next one, so they are copied within the same turn.
+    """
+
+    __slots__ = ("handle", "threads", "_lock", "_owner", "_kept", "_born")
+
+    _destroy = library.cscdpy_host_destroy
+
+    def __init__(self, threads: Any = 1, simd: str = "auto", progress: Optional[Callable[[str, float], Any]] = None,
+                 ignore: Optional[Callable[[str, int, int], bool]] = None) -> None:
+        self.handle: Optional[int] = None
+        self._lock = threading.Lock()
+        self._owner = 0
+        self._kept = (progress, ignore)
+        self._born = _forks
+        for name, callback in (("progress", progress), ("ignore", ignore)):
+            if callback is not None and not callable(callback):
+                raise ValueError(f"{name}: expected a function, got {callback!r}")
+        reason = ctypes.create_string_buffer(500)
+        out = ctypes.c_void_p()
+        status = library.cscdpy_host_create(
+            thread_count_of(threads), code_of("simd", simd), None if progress is None else id(progress),
+            None if ignore is None else id(ignore), ctypes.addressof(reason), len(reason), ctypes.byref(out))
+        if status:
+            raise_status(status, reason.value.decode())
+        self.handle = out.value
+        self.threads: int = library.cscdpy_host_thread_count(self.handle)
+
+    def __enter__(self) -> Host:
+        me = threading.get_ident()
+        if self._owner == me:
+            raise Error("this object is in the middle of a call, which a callback of it cannot repeat; make the call "
+                        "when it has returned, or with another object")
+        if self.handle is None:
+            raise Error("this object has been destroyed")
+        if self.threads > 1 and self._born != _forks:
+            raise Error(f"this object has {self.threads} threads, which stayed in the process that forked; make "
+                        "another one here, or use the start method 'spawn'")
+        self._lock.acquire()
+        self._owner = me
+        return self
+
+    def __exit__(self, *_: Any) -> None:
+        self._owner = 0
+        self._lock.release()
+
+    def call(self, function: Any, *arguments: Any) -> None:
+        """Calls a function of the layer, within a turn."""
+        status = function(self.handle, *arguments)
+        if status:
+            raise_status(status, self.detail())
+
+    def call_public(self, function: Any, *arguments: Any) -> None:
+        """The same of a function of the public headers, which takes no host."""
+        status = function(*arguments)
+        if status:
+            raise_status(status, self.detail())
+
+    def detail(self) -> str:
+        """Why the last call failed."""
+        return str(library.cscdpy_host_detail(self.handle).decode())
+
+    def cancel(self) -> None:
+        """Ends the call that is running, from another thread."""
+        if self.handle is not None:
+            library.cscdpy_host_cancel(self.handle)
+
+    def live_bytes(self) -> int:
+        """How much memory the context and its objects hold."""
+        return int(library.cscdpy_host_bytes(self.handle))
+
+    def __del__(self) -> None:
+        if self.handle is not None:
+            self._destroy(self.handle)
+            self.handle = None
+
+
+class Handle:
+    """An object of the library, which is given back with this one, and what it was made from."""
+
+    __slots__ = ("pointer", "host", "_destroy")
+
+    def __init__(self, pointer: int, host: Host, destroy: Any) -> None:
+        self.pointer = pointer
+        self.host = host
+        self._destroy = destroy
+
+    def __del__(self) -> None:
+        self._destroy(self.pointer)
+
+
+def new_handle(host: Host, destroy: Any, create: Any, *arguments: Any) -> Handle:
+    """Creates an object by a function whose last argument is where to put it, within a turn."""
+    out = ctypes.c_void_p()
+    host.call(create, *arguments, ctypes.byref(out))
+    assert out.value is not None
+    return Handle(out.value, host, destroy)

@@ -1,0 +1,88 @@
+"""Finds the compiled library and loads it: its functions, and its structs as numpy dtypes.
+
+The functions are called through ``ctypes.PyDLL``, with Python's lock held. Calls that may take long give the lock back
+themselves and take it again to look for signals (python/native/host.h), which costs less than a thread for each call,
+and what a signal's handler raises is raised here as if it had been called directly. What these need of Python is handed
+over as addresses, so that the library is built without Python's headers and fits every version.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from typing import Any, Dict, List
+
+import numpy as np
+
+from ._prototypes import PROTOTYPES
+
+__all__ = ["address_of", "copy_list", "library", "new_struct", "structs"]
+
+_FROM_PYTHON = ("PyEval_SaveThread", "PyEval_RestoreThread", "PyErr_CheckSignals", "PyObject_CallFunction",
+                "PyObject_IsTrue", "Py_DecRef")
+
+
+def _load() -> ctypes.PyDLL:
+    path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "libcscd-python.so")
+    if not os.path.exists(path):
+        raise ImportError(f"cscd: the compiled library {path} is missing; `pip install .` or `make python` in the "
+                          "sources of cscd builds it")
+    loaded = ctypes.PyDLL(path)
+    for name, (result, arguments) in PROTOTYPES.items():
+        function = getattr(loaded, name)
+        function.restype = result
+        function.argtypes = arguments
+    addresses = [ctypes.cast(getattr(ctypes.pythonapi, name), ctypes.c_void_p) for name in _FROM_PYTHON]
+    if not loaded.cscdpy_set_interpreter((ctypes.c_void_p * len(addresses))(*addresses), len(addresses)):
+        raise ImportError(f"cscd: {path} is of another version of the package")
+    return loaded
+
+
+def _describe_member(index: int, member: int) -> List[Any]:
+    """The name, the numpy format and the offset of a member of a struct."""
+    numbers = (ctypes.c_size_t * 3)()
+    letter = ctypes.c_char()
+    name = library.cscdpy_member(index, member, numbers, ctypes.byref(letter)).decode()
+    offset, size, item = numbers
+    if letter.value == b"s":
+        return [name, structs["contact"], offset]
+    kind = {b"b": "?", b"p": f"u{item}"}.get(letter.value, f"{letter.value.decode()}{item}")
+    return [name, kind if size == item else (kind, (size // item,)), offset]
+
+
+def _read_structs() -> None:
+    """Makes a dtype of each struct that the library describes."""
+    size, members = ctypes.c_size_t(), ctypes.c_size_t()
+    index = 0
+    while True:
+        name = library.cscdpy_struct(index, ctypes.byref(size), ctypes.byref(members))
+        if name is None:
+            return
+        names, formats, offsets = zip(*(_describe_member(index, i) for i in range(members.value)))
+        structs[name.decode()] = np.dtype({"names": names, "formats": formats, "offsets": offsets,
+                                           "itemsize": size.value})
+        index += 1
+
+
+library = _load()
+
+#: A dtype for each struct of the library, by its name without ``cscd_``.
+structs: Dict[str, Any] = {}
+_read_structs()
+
+
+def address_of(array: np.ndarray[Any, Any]) -> int:
+    """Where the first byte of an array is."""
+    return int(array.__array_interface__["data"][0])
+
+
+def new_struct(name: str, count: int = 1) -> np.ndarray[Any, Any]:
+    """An array of structs, all zero."""
+    return np.zeros(count, structs[name])
+
+
+def copy_list(address: int, count: int, dtype: Any) -> np.ndarray[Any, Any]:
+    """A copy of a list of the library, which the caller owns."""
+    copied = np.empty(count, dtype)
+    library.cscdpy_copy(address_of(copied), address, copied.nbytes)
+    return copied

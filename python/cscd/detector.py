@@ -1,0 +1,386 @@
+"""A detector finds the contacts of one mesh, interval by interval, and keeps its trees between them."""
+
+from __future__ import annotations
+
+from typing import Any, Callable, Dict, Optional, Tuple
+
+import numpy as np
+
+from ._arrays import as_faces, as_indices, mutable_view, views_of
+from ._host import IN_CONTACT, Handle, Host, new_handle, raise_status
+from ._library import address_of, library, new_struct, structs
+from ._options import DetectorOptions
+from .errors import InContact, ListTooLong
+from .intersections import Intersections, _Surface, intersection_options, kind_set, labels_of
+from .line_search import LineSearch
+from .mesh import Mesh
+from .plan import Plan
+from .results import Contacts, Proximities, copy_records
+
+__all__ = ["Detector"]
+
+Array = Any
+
+_NEAR_PAIRS, _NEAR_UNIQUE = 0, 1
+
+
+class Detector:
+    """Finds the contacts of one mesh.
+
+    Parameters
+    ----------
+    mesh : Mesh or (m, 3) integers
+    plan : Plan, optional
+        Makes steps faster; contacts stay the same.
+    method : str
+        "auto", "none", "single", "kmeans" or "charge" (docs/tuning.md).
+    mode : str
+        "all": every contact; "earliest": of each embedded component at least one with the earliest time.
+    start : str
+        "prove", "vouched" (you say that every start is free of intersections) or "unknown".
+    volume : str
+        "box" or "kdop14".
+    min_separation, tolerance : float
+        A length, and a share of it: coming within ``min_separation`` is a contact. 0: touching is.
+    step_factor, floor_ratio : float
+        See ``max_step``.
+    seams : (k, 2) integers, optional
+        Pairs of vertices that count as one.
+    ignored : (k, 2) integers, optional
+        Pairs of triangles that are left out.
+    ignore : function (kind, a, b) -> bool, optional
+        Leaves out a pair that was found if it returns true.
+    rules : sequence of dict, optional
+        One for each object, with some of category, mask, thickness, thickness_class, self, obstacle_pairs.
+    thickness_matrix : (c, c), optional
+        Distances of objects by their thickness_class.
+    seam_reach : float, optional
+    longest_list : int
+        Lists that would be longer raise ``ListTooLong``; 0: any length.
+    threads : int
+        0: one per processor.
+    progress : function (stage, fraction), optional
+        Called every few milliseconds of a long call. What it raises ends the call and is raised by it.
+
+    One call at a time has a detector; a call from another thread waits. Ctrl-C ends a long call. Arrays that are given
+    back own their memory. Pickling keeps what a detector was made from, but not ``ignore`` and ``progress``.
+
+    A point of one triangle falls through another one:
+
+    >>> x0 = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [.2, .2, 1], [.3, .2, 3], [.2, .3, 3]])
+    >>> x1 = x0.copy()
+    >>> x1[3:, 2] -= 2
+    >>> found = Detector([[0, 1, 2], [3, 4, 5]]).step(x0, x1)
+    >>> found.toi.round(6).tolist(), found.vertices.tolist()
+    ([0.5], [[3, 0, 1, 2]])
+    """
+
+    def __init__(self, mesh: Any, *, plan: Optional[Plan] = None, method: str = "auto", mode: str = "all",
+                 start: str = "prove", volume: str = "box", min_separation: float = 0.0, tolerance: float = 0.0,
+                 step_factor: float = 0.8, floor_ratio: float = 0.9, seams: Any = None, ignored: Any = None,
+                 ignore: Optional[Callable[[str, int, int], bool]] = None, rules: Any = None,
+                 thickness_matrix: Any = None, seam_reach: float = 0.0, longest_list: int = 0, threads: int = 1,
+                 simd: str = "auto", progress: Optional[Callable[[str, float], Any]] = None) -> None:
+        self.mesh: Mesh = mesh if isinstance(mesh, Mesh) else Mesh(as_faces("mesh", mesh))
+        self._inputs = dict(plan=plan, method=method, mode=mode, start=start, volume=volume,
+                            min_separation=min_separation, tolerance=tolerance, step_factor=step_factor,
+                            floor_ratio=floor_ratio, seams=seams, ignored=ignored, rules=rules,
+                            thickness_matrix=thickness_matrix, seam_reach=seam_reach, longest_list=longest_list,
+                            threads=threads, simd=simd)
+        if plan is not None and not isinstance(plan, Plan):
+            raise ValueError(f"plan: expected a Plan, got {type(plan).__name__}")
+        pointer = self.mesh.pointer
+        self._vertex_counts = self.mesh.vertex_counts
+        self._host = Host(threads, simd, progress, ignore)
+        options = DetectorOptions(self.mesh, self._inputs, self._host, ignore is not None)
+        with self._host as host:
+            self._handle: Handle = new_handle(host, library.cscd_detector_destroy, library.cscdpy_detector_create,
+                                              pointer, None if plan is None else plan.pointer, options.address)
+        self._detector = self._handle.pointer
+        self._lists = {name: new_struct(name) for name in ("contacts", "intersections", "intersection_pairs",
+                                                           "proximities", "free_step")}
+        self._at = {name: address_of(array) for name, array in self._lists.items()}
+
+    # ---- contacts ---------------------------------------------------------------------------------------
+
+    def step(self, x0: Any, x1: Any) -> Contacts:
+        """Finds the contacts while every vertex moves in a straight line from ``x0`` to ``x1``, both (n, 3).
+
+        Every verdict is that of exact arithmetic on the given numbers (docs/guarantees.md).
+        """
+        start, kept0 = self._views("x0", x0)
+        end, kept1 = self._views("x1", x1)
+        with self._host as host:
+            self._call(host, "contacts", library.cscdpy_detector_step, self._detector, address_of(start),
+                       address_of(end), self._at["contacts"])
+            return self._copied("contacts", Contacts)
+
+    def max_step(self, x0: Any, x1: Any, out: Optional[Array] = None) -> Tuple[Array, float, Optional[Contacts]]:
+        """Finds how far the vertices may go from ``x0`` towards ``x1`` without any contact, and certifies it.
+
+        Parameters
+        ----------
+        out : (n, 3) float32 or float64, packed, optional
+            Where the positions are written. By default an array of the type of ``x0``.
+
+        Returns
+        -------
+        x : (n, 3)
+            ``x0 + fraction * (x1 - x0)``, rounded. It is the motion to these very numbers that is free of contact.
+        fraction : float
+            In (0, 1]; at most ``step_factor`` of the way to the contact that limits it.
+        limit : Contacts or None
+            That contact (one item); None if the whole way is free.
+
+        Raises
+        ------
+        InContact
+            Two features touch at ``x0``.
+        """
+        start, kept0 = self._views("x0", x0)
+        end, kept1 = self._views("x1", x1)
+        reached = self._positions_for("out", out, kept0)
+        target = mutable_view(reached)
+        with self._host as host:
+            self._call(host, "free_step", library.cscdpy_detector_max_step, self._detector, address_of(start),
+                       address_of(end), address_of(target), self._at["free_step"])
+            return free_step_of(self._lists["free_step"], reached)
+
+    # ---- one moment -------------------------------------------------------------------------------------
+
+    def check(self, x: Any) -> Array:
+        """The pairs of triangles that intersect or touch at positions ``x``: (k, 2) uint32, sorted."""
+        views, kept = self._views("x", x)
+        with self._host as host:
+            self._call(host, "intersections", library.cscdpy_detector_check, self._detector, address_of(views),
+                       self._at["intersections"])
+            found = copy_records(self._lists["intersections"], structs["intersection"])
+        return found.view(np.uint32).reshape(-1, 2)
+
+    def find_intersections(self, x: Any, kinds: Any = None, stop_after: int = 0) -> Intersections:
+        """The pairs of triangles that intersect or touch at positions ``x``, and how.
+
+        Parameters
+        ----------
+        kinds : str or iterable of str, optional
+            Which ones count, of ``INTERSECTION_KINDS``; None: all.
+        stop_after : int
+            Ends the search at so many pairs; 0: never.
+        """
+        kind_bits = kind_set(kinds)
+        options = intersection_options(kind_bits, count_of("stop_after", stop_after), False, False, False)
+        views, kept = self._views("x", x)
+        with self._host as host:
+            self._find(host, views, options)
+            pairs = self._copied("intersection_pairs", None, structs["intersection_pair"])
+            stopped = bool(self._lists["intersection_pairs"]["stopped"][0])
+        return Intersections(self.mesh, self, [array.copy() for array in kept], pairs, stopped,
+                             kinds is None and stop_after == 0)
+
+    def is_intersecting(self, x: Any, kinds: Any = None) -> bool:
+        """Whether there is any pair of these kinds at positions ``x``; the search ends at the first one."""
+        options = intersection_options(kind_set(kinds), 0, True, False, False)
+        views, kept = self._views("x", x)
+        with self._host as host:
+            self._find(host, views, options)
+            return bool(self._lists["intersection_pairs"]["count"][0])
+
+    def _surface_answers(self, positions: Any, parts: bool = False) -> _Surface:
+        """Curves and depths, or sums by parts, of positions that were looked at before."""
+        options = intersection_options(2**64 - 1, 0, False, not parts, parts)
+        views, kept = self._views("x", positions if len(positions) > 1 else positions[0])
+        with self._host as host:
+            self._find(host, views, options)
+            return _Surface(self._lists["intersection_pairs"], self.mesh.vertex_count, not parts, parts)
+
+    def near(self, x: Any, distance: float, unique: bool = False) -> Proximities:
+        """Every pair of features whose distance at positions ``x`` is at most ``distance``, a length above 0.
+
+        Parameters
+        ----------
+        unique : bool
+            Pairs with the same nearest vertices, or edge and vertex, are one item with a ``count``, so that the sum of
+            ``count * energy(distance)`` is that over all pairs (include/cscd/solver.h).
+        """
+        views, kept = self._views("x", x)
+        with self._host as host:
+            self._call(host, "proximities", library.cscdpy_detector_find_near, self._detector, address_of(views),
+                       float(distance), _NEAR_UNIQUE if unique else _NEAR_PAIRS, self._at["proximities"])
+            return self._copied("proximities", Proximities)
+
+    def bounds(self, x: Any, search_radius: float) -> Array:
+        """(n,) float64: how far each vertex may go from ``x``, on any path, so that all that is apart stays apart.
+
+        Offset Geometric Contact (Chen et al. 2025); docs/theory/displacement-bounds.md has the proof. Vertices farther
+        than ``search_radius`` from everything have half of it.
+        """
+        views, kept = self._views("x", x)
+        bounds = np.empty(self.mesh.vertex_count)
+        out = new_struct("displacement_bounds")
+        with self._host as host:
+            host.call(library.cscdpy_detector_displacement_bounds, self._detector, address_of(views),
+                      float(search_radius), 0, address_of(bounds), bounds.nbytes, address_of(out))
+        return bounds
+
+    def truncate(self, x0: Any, x1: Any, search_radius: float, out: Optional[Array] = None) -> Tuple[Array, Any]:
+        """Lets every vertex go from ``x0`` towards ``x1`` as far as planes between near pairs allow.
+
+        Divide and Truncate (Chen et al. 2026). Returns the positions, and a record of ``cscd_truncation``: fraction,
+        obstacle_fraction, near_count, moved, shortened.
+        """
+        start, kept0 = self._views("x0", x0)
+        end, kept1 = self._views("x1", x1)
+        reached = self._positions_for("out", out, kept0)
+        target = mutable_view(reached)
+        found = new_struct("truncation")
+        with self._host as host:
+            host.call(library.cscdpy_detector_truncate, self._detector, address_of(start), address_of(end),
+                      float(search_radius), address_of(target), address_of(found))
+        names = ["fraction", "obstacle_fraction", "near_count", "moved", "shortened", "waiting"]
+        return reached, found[names].view(np.recarray)[0]
+
+    def line_search(self, x0: Any, x1: Any, reach: float = 0.0) -> LineSearch:
+        """One motion that is asked about many times; ``reach`` is the largest distance that its ``near`` will be asked."""
+        return LineSearch(self, x0, x1, reach)
+
+    # ---- changes ----------------------------------------------------------------------------------------
+
+    def set_separation(self, min_separation: float, tolerance: float = 0.0) -> None:
+        """Changes ``min_separation`` and ``tolerance`` from the next call on."""
+        self._set(library.cscd_detector_set_separation, float(min_separation), float(tolerance))
+        self._inputs.update(min_separation=min_separation, tolerance=tolerance)
+
+    def set_rest(self, rest: Any) -> None:
+        """Takes edge lengths at rest (n, 3) for the thresholds of ``near``; None forgets them."""
+        views, kept = (None, None) if rest is None else self._views("rest", rest)
+        with self._host as host:
+            host.call(library.cscdpy_detector_set_rest, self._detector, None if views is None else address_of(views))
+
+    def set_parts(self, labels: Any, part_count: Optional[int] = None) -> None:
+        """Says which part each triangle is in, by numbers from 0 on, -1 for none; None: the objects are the parts."""
+        if labels is None:
+            self._set(library.cscd_detector_set_parts, None, 0)
+            return
+        array, count = labels_of(labels, self.mesh.triangle_count, part_count)
+        self._set(library.cscd_detector_set_parts, address_of(array), count)
+
+    def set_active(self, vertices: Any) -> None:
+        """Only these vertices move, all others rest (include/cscd/live.h); None: all may move."""
+        array = as_indices("vertices", () if vertices is None else vertices, 1, self.mesh.vertex_count, "vertices")
+        if vertices is None:
+            self._set(library.cscd_detector_set_active, None, 0)
+        else:
+            self._set(library.cscd_detector_set_active, address_of(array), len(array))
+
+    def set_seams(self, seams: Any) -> None:
+        """Replaces the seams: (k, 2) vertices; None: none."""
+        array = as_indices("seams", () if seams is None else seams, 2, self.mesh.vertex_count, "vertices")
+        self._set(library.cscd_detector_set_seams, address_of(array) if len(array) else None, len(array))
+        self._inputs.update(seams=seams)
+
+    def set_ignored(self, ignored: Any) -> None:
+        """Replaces the pairs of triangles that are left out: (k, 2); None: none."""
+        array = as_indices("ignored", () if ignored is None else ignored, 2, self.mesh.triangle_count, "triangles")
+        self._set(library.cscd_detector_set_ignored, address_of(array) if len(array) else None, len(array))
+        self._inputs.update(ignored=ignored)
+
+    def cancel(self) -> None:
+        """Ends a call that is running in another thread, which then raises ``Cancelled``."""
+        self._host.cancel()
+
+    # ---- what the last step was like ----------------------------------------------------------------------
+
+    def guarantee(self, component: int = 0) -> Dict[str, Any]:
+        """What the last step promises for the contacts of a component with itself: complete, start_embedded, reason."""
+        if not 0 <= component < self.mesh.component_count:
+            raise IndexError(f"component {component}: the mesh has {self.mesh.component_count}")
+        found = self._read("guarantee", library.cscd_detector_guarantee_sized, component)
+        found["reason"] = library.cscd_reason_text(found["reason"]).decode()
+        return found
+
+    @property
+    def timings(self) -> Dict[str, float]:
+        """Milliseconds of each stage of the last step, by the members of ``cscd_timings``."""
+        return self._read("timings", library.cscd_detector_timings_sized)
+
+    @property
+    def counters(self) -> Dict[str, int]:
+        """What the last step did, by the members of ``cscd_counters``: the same for any number of threads."""
+        return self._read("counters", library.cscd_detector_counters_sized)
+
+    @property
+    def live_bytes(self) -> int:
+        """How much memory the detector holds in the library."""
+        return self._host.live_bytes()
+
+    # ---- inside -----------------------------------------------------------------------------------------
+
+    def _views(self, name: str, positions: Any) -> Tuple[Array, Any]:
+        return views_of(name, positions, self._vertex_counts)
+
+    def _call(self, host: Host, kind: str, function: Any, *arguments: Any) -> None:
+        status = function(host.handle, *arguments)
+        if status:
+            self._fail(status, host.detail(), kind)
+
+    def _fail(self, status: int, sentence: str, kind: str) -> None:
+        if status == IN_CONTACT:
+            raise InContact(sentence, self._lists[kind]["limit"].copy().view(Contacts))
+        try:
+            raise_status(status, sentence)
+        except ListTooLong as problem:
+            problem.count = int(self._lists[kind]["count"][0])
+            raise
+
+    def _find(self, host: Host, views: Array, options: Array) -> None:
+        self._call(host, "intersection_pairs", library.cscdpy_detector_find_intersections, self._detector,
+                   address_of(views), address_of(options), self._at["intersection_pairs"])
+
+    def _copied(self, kind: str, cls: Any, dtype: Any = None) -> Any:
+        found = copy_records(self._lists[kind], dtype or cls.record())
+        return found if cls is None else found.view(cls)
+
+    def _positions_for(self, name: str, out: Optional[Array], kept: Any) -> Array:
+        """Where positions are written."""
+        shape = (self.mesh.vertex_count, 3)
+        if out is None:
+            single = all(array.itemsize == 4 for array in kept)
+            return np.empty(shape, np.float32 if single else np.float64)
+        if not isinstance(out, np.ndarray) or out.shape != shape or out.dtype not in (np.float32, np.float64) \
+                or not out.flags.c_contiguous or not out.flags.writeable:
+            raise ValueError(f"{name}: expected a packed, writable array {shape} of float32 or float64")
+        return out
+
+    def _set(self, function: Any, *arguments: Any) -> None:
+        with self._host as host:
+            host.call_public(function, self._detector, *arguments)
+
+    def _read(self, name: str, function: Any, *arguments: Any) -> Dict[str, Any]:
+        found = new_struct(name)
+        with self._host:
+            function(self._detector, *arguments, address_of(found), found.nbytes)
+        return {member: found[member][0].item() for member in structs[name].names}
+
+    def __repr__(self) -> str:
+        return f"Detector({self.mesh!r}, method {self._inputs['method']!r})"
+
+    def __reduce__(self) -> Tuple[Callable[..., Any], Tuple[Any, ...]]:
+        return _restore, (self.mesh, self._inputs)
+
+
+def count_of(name: str, value: Any) -> int:
+    """A whole number from 0 on."""
+    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not 0 <= value < 2**63:
+        raise ValueError(f"{name}: expected a whole number from 0 on, got {value!r}")
+    return int(value)
+
+
+def free_step_of(step: Array, reached: Array) -> Tuple[Array, float, Optional[Contacts]]:
+    """The results of ``max_step`` from the struct of the library."""
+    limited = bool(step["limited"][0])
+    return reached, float(step["fraction"][0]), step["limit"].copy().view(Contacts) if limited else None
+
+
+def _restore(mesh: Mesh, inputs: Dict[str, Any]) -> Detector:
+    """What pickle calls."""
+    return Detector(mesh, **inputs)

@@ -1,0 +1,268 @@
+"""What intersects at one moment: pairs of triangles with their kinds, curves, what is buried, and how deep."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Iterable, List, NamedTuple, Optional, Tuple, Union
+
+import numpy as np
+
+from ._library import address_of, copy_list, library, new_struct, structs
+from .results import INTERSECTION_KINDS
+
+if TYPE_CHECKING:
+    from .detector import Detector
+    from .mesh import Mesh
+
+__all__ = ["Curve", "Intersections", "PartPairs"]
+
+Array = Any
+
+_NONE = 2**32 - 1
+_LIST, _ANY = 0, 2
+
+
+def kind_set(kinds: Union[None, str, Iterable[str]]) -> int:
+    """A set of kinds as the library takes it; None stands for all."""
+    if kinds is None:
+        return 2**64 - 1
+    names = [kinds] if isinstance(kinds, str) else list(kinds)
+    for name in names:
+        if name not in INTERSECTION_KINDS:
+            raise ValueError(f"kinds: expected some of {', '.join(INTERSECTION_KINDS)}; got {name!r}")
+    if not names:
+        raise ValueError(f"kinds: expected some of {', '.join(INTERSECTION_KINDS)}; got none")
+    return sum(1 << INTERSECTION_KINDS.index(name) for name in set(names))
+
+
+class Curve(NamedTuple):
+    """A curve along which two sheets of surface pass through each other."""
+
+    #: (p, 3) float64: the points of the curve, in the unit of the positions; a closed one ends where it begins.
+    points: Array
+    #: (p - 1, 2) uint32: the triangles of each piece, the first sheet's and the second one's.
+    triangles: Array
+    closed: bool
+    #: The surfaces only touch along it.
+    touching: bool
+    length: float
+    #: The components of the two sheets.
+    components: Tuple[int, int]
+    objects: Tuple[int, int]
+
+
+class PartPairs(np.recarray):  # type: ignore[type-arg]
+    """Intersections summed up by pair of parts: a, b, crossing, coplanar, folded, duplicate, touching, faces (2), shares
+    (2), curves, touching_curves, length, depth."""
+
+
+class Intersections:
+    """The pairs of triangles of a mesh that intersect or touch at one moment. True if there are any.
+
+    Attributes
+    ----------
+    mesh : Mesh
+    triangles : (k, 2) uint32
+        Two triangles of ``mesh``, the smaller number first, sorted.
+    kind : (k,) uint32
+        How they meet: a code of ``INTERSECTION_KINDS``.
+    shared : (k,) uint32
+        How many vertices they share, 0 to 3.
+    components, objects : (k, 2) uint32
+    stopped : bool
+        The search ended at ``stop_after`` pairs, so there may be more.
+    """
+
+    def __init__(self, mesh: Mesh, detector: Optional[Detector], positions: Any, pairs: Array, stopped: bool,
+                 allowed: bool) -> None:
+        self.mesh = mesh
+        self.stopped = stopped
+        self._detector = detector
+        self._positions = positions
+        self._allowed = allowed
+        self._surface: Optional[_Surface] = None
+        #: The face that counts as row 0 of each column of ``pairs``.
+        self.first_faces: Array = np.zeros(2, np.uint32)
+        self.triangles: Array = np.stack([pairs["a"], pairs["b"]], axis=1)
+        self.kind: Array = pairs["kind"].copy()
+        self.shared: Array = pairs["shared"].copy()
+        self.components: Array = pairs["components"].copy()
+        self.objects: Array = pairs["objects"].copy()
+
+    @classmethod
+    def none(cls, mesh: Mesh) -> Intersections:
+        """What is found in a mesh without triangles."""
+        found = cls(mesh, None, None, new_struct("intersection_pair", 0), False, True)
+        found._surface = _Surface.none(mesh.vertex_count)
+        return found
+
+    def __len__(self) -> int:
+        return len(self.kind)
+
+    @property
+    def pairs(self) -> Array:
+        """(k, 2) uint32: the faces, as rows of F, that the triangles are cut from."""
+        return self.mesh.triangle_face[self.triangles] - self.first_faces
+
+    @property
+    def faces(self) -> Array:
+        """(m,) bool: the faces that take part in a pair."""
+        marked = np.zeros(self.mesh.face_count, bool)
+        marked[self.mesh.triangle_face[self.triangles].ravel()] = True
+        return marked
+
+    def kind_names(self) -> List[str]:
+        """The name of each pair's kind."""
+        return [INTERSECTION_KINDS[kind] for kind in self.kind]
+
+    def count(self, kind: str) -> int:
+        """The number of pairs of a kind, as in ``count("crossing")``."""
+        kind_set(kind)
+        return int((self.kind == INTERSECTION_KINDS.index(kind)).sum())
+
+    # ---- computed when they are asked for ----------------------------------------------------------------
+
+    @property
+    def curves(self) -> List[Curve]:
+        """The curves along which surfaces pass through each other."""
+        return self._found().curves()
+
+    @property
+    def buried(self) -> Array:
+        """(n,) bool: the vertices that an object contains; of their own one, that it contains twice."""
+        return self._found().buried
+
+    @property
+    def depth(self) -> Array:
+        """(n,) float64: how deep each vertex is below the surface that contains it; 0 where none does."""
+        return self._found().depth
+
+    @property
+    def depths(self) -> Array:
+        """All depths, by the members of ``cscd_depth`` (include/cscd/depths.h): of vertices, then of points on edges."""
+        return self._found().depths
+
+    @property
+    def max_depth(self) -> float:
+        """The greatest of all depths; 0 without any."""
+        depths = self.depths
+        return float(depths["depth"].max()) if len(depths) else 0.0
+
+    def by_parts(self, labels: Any, part_count: Optional[int] = None) -> PartPairs:
+        """Sums up by pair of parts.
+
+        Parameters
+        ----------
+        labels : (t,) integers
+            The part of each triangle of ``mesh``; -1: it is in none.
+        """
+        detector, positions = self._again()
+        detector.set_parts(labels, part_count)
+        try:
+            return detector._surface_answers(positions, parts=True).parts
+        finally:
+            detector.set_parts(None)
+
+    def _again(self) -> Tuple[Detector, Any]:
+        if not self._allowed:
+            raise ValueError("curves, buried, depth and parts need the list of all pairs; leave out kinds= and "
+                             "stop_after=")
+        if self._detector is None:
+            raise ValueError("curves, buried, depth and parts are computed when they are asked for, and do not "
+                             "come along in a pickle; ask for them before")
+        return self._detector, self._positions
+
+    def _found(self) -> _Surface:
+        if self._surface is None:
+            detector, positions = self._again()
+            self._surface = detector._surface_answers(positions)
+        return self._surface
+
+    def __repr__(self) -> str:
+        counts = [f"{self.count(name)} {name}" for name in INTERSECTION_KINDS if self.count(name)]
+        return f"Intersections({', '.join(counts) or 'none'})"
+
+    def __getstate__(self) -> Any:
+        return {**self.__dict__, "_detector": None, "_positions": None}
+
+
+class _Surface:
+    """Copies of curves, patches, depths and parts, which live in the library until its next call."""
+
+    def __init__(self, found: Array, vertex_count: int, depths: bool, parts: bool) -> None:
+        self._lists: Tuple[Array, Array, Array] = (np.empty(0), np.empty(0), np.empty(0))
+        if depths:
+            self._copy_curves(int(found["curves"][0]))
+            self._copy_depths(int(found["depths"][0]), vertex_count)
+        if parts:
+            sums = copy_struct("part_pairs", int(found["parts"][0]))
+            self.parts = copy_list(int(sums["items"]), int(sums["count"]), structs["part_pair"]).view(PartPairs)
+
+    @classmethod
+    def none(cls, vertex_count: int) -> _Surface:
+        """Nothing is buried, and there are no curves."""
+        found = cls(np.empty(0), vertex_count, False, False)
+        found.depths = new_struct("depth", 0).view(np.recarray)
+        found.buried, found.depth = np.zeros(vertex_count, bool), np.zeros(vertex_count)
+        return found
+
+    def _copy_curves(self, address: int) -> None:
+        curves = copy_struct("curves", address)
+        self._lists = (copy_list(int(curves["items"]), int(curves["count"]), structs["curve"]),
+                       copy_list(int(curves["points"]), int(curves["point_count"]), structs["curve_point"]),
+                       copy_list(int(curves["pieces"]), int(curves["piece_count"]), structs["curve_piece"]))
+
+    def _copy_depths(self, address: int, vertex_count: int) -> None:
+        depths = copy_struct("depths", address)
+        self.depths = copy_list(int(depths["items"]), int(depths["count"]), structs["depth"]).view(np.recarray)
+        of_vertices = self.depths[: int(depths["vertex_count"])]
+        self.buried = np.zeros(vertex_count, bool)
+        self.buried[of_vertices["vertex"]] = True
+        self.depth = np.zeros(vertex_count)
+        np.maximum.at(self.depth, of_vertices["vertex"], of_vertices["depth"])
+
+    def curves(self) -> List[Curve]:
+        items, points, pieces = self._lists
+        return [self._curve(item, points, pieces) for item in items]
+
+    @staticmethod
+    def _curve(item: Any, points: Array, pieces: Array) -> Curve:
+        first, count = int(item["first_point"]), int(item["point_count"])
+        begin, end = int(item["first_piece"]), int(item["first_piece"]) + int(item["piece_count"])
+        line = points["x"][first: first + count]
+        if item["closed"]:
+            line = np.concatenate([line, line[:1]])
+        triangles = np.stack([pieces["a"][begin:end], pieces["b"][begin:end]], axis=1)
+        return Curve(line.copy(), triangles, bool(item["closed"]), bool(item["touching"]), float(item["length"]),
+                     (int(item["components"][0]), int(item["components"][1])),
+                     (int(item["objects"][0]), int(item["objects"][1])))
+
+
+def copy_struct(name: str, address: int) -> Any:
+    """A struct of the library, by its address."""
+    return copy_list(address, 1, structs[name])[0]
+
+
+def intersection_options(kinds: int, stop_after: int, any_alone: bool, depths: bool, parts: bool) -> Array:
+    """Options of the library for one search."""
+    options = new_struct("intersection_options")
+    library.cscd_intersection_defaults_sized(address_of(options), options.nbytes)
+    options["answer"] = _ANY if any_alone else _LIST
+    options["kinds"] = kinds
+    options["stop_after"] = stop_after
+    options["curves"] = options["patches"] = options["depths"] = depths
+    options["parts"] = parts
+    return options
+
+
+def labels_of(labels: Any, triangle_count: int, part_count: Optional[int]) -> Tuple[Array, int]:
+    """Labels of triangles as the library takes them, and how many parts they make."""
+    array = np.asarray(labels)
+    if array.shape != (triangle_count,) or array.dtype.kind not in "iu":
+        raise ValueError(f"labels: expected {triangle_count} whole numbers, one for each triangle of the mesh, got "
+                         f"shape {array.shape} of {array.dtype}")
+    highest = int(array.max(initial=-1))
+    count = highest + 1 if part_count is None else part_count
+    if int(array.min(initial=0)) < -1 or highest >= max(count, 1) or highest >= _NONE:
+        raise ValueError(f"labels: expected numbers from 0 to {count - 1}, or -1 for no part; got "
+                         f"{int(array.min(initial=0))} to {highest}")
+    return np.where(array < 0, _NONE, array).astype(np.uint32), max(count, 1)

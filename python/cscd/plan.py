@@ -1,0 +1,180 @@
+"""Plans: how a mesh is cut into regions, once, so that steps are faster. Contacts are the same with any plan."""
+
+from __future__ import annotations
+
+from typing import Any, Callable, Dict, Optional, Tuple
+
+import numpy as np
+
+from ._arrays import as_positions, views_of
+from ._host import Handle, Host, code_of, new_handle
+from ._library import address_of, library, new_struct, structs
+from .errors import Error
+from .mesh import Mesh
+
+__all__ = ["Plan"]
+
+Array = Any
+
+
+class Plan:
+    """The regions of a mesh and their detector points. Made by ``Plan.charge``, ``Plan.kmeans`` or ``Plan.from_parts``.
+
+    Attributes
+    ----------
+    mesh : Mesh
+    method : str
+        "charge", "kmeans" or "single".
+    region_count : int
+    triangle_regions : (t,) uint32
+    detector_points : (r, 3) float64
+        Inside each region, at rest.
+    charges : (t,) float64 or None
+        Charge densities of triangles, in Gaussian units.
+    """
+
+    mesh: Mesh
+    rest: Array
+    _handle: Handle
+
+    @classmethod
+    def charge(cls, mesh: Mesh, V: Any, *, threshold: float = 0.1, memory_limit: int = 0, threads: int = 0,
+               progress: Optional[Callable[[str, float], Any]] = None) -> Plan:
+        """Cuts a mesh by its charge density (docs/theory/charge.md; Yeh 2012).
+
+        Parameters
+        ----------
+        V : (n, 3)
+            The mesh at rest.
+        threshold : float
+            The share of the triangles, those of least density, from which cuts grow; in (0, 1).
+        memory_limit : int
+            Bytes that the dense system may take; 0: what the system has.
+
+        Raises
+        ------
+        Error
+            This installation has no charge library; the text says how to get it.
+        """
+        return cls._create(mesh, V, threads, progress, method=code_of("method", "charge"), threshold=threshold,
+                           memory_limit=memory_limit)
+
+    @classmethod
+    def kmeans(cls, mesh: Mesh, V: Any, k: int = 4, *, seed: int = 1, threads: int = 0,
+               progress: Optional[Callable[[str, float], Any]] = None) -> Plan:
+        """Cuts a mesh into ``k`` regions by k-means of its triangles."""
+        return cls._create(mesh, V, threads, progress, method=code_of("method", "kmeans"), k=k, seed=seed)
+
+    @classmethod
+    def from_parts(cls, mesh: Mesh, V: Any, triangle_regions: Any, detector_points: Any, *, method: str = "single",
+                   charges: Any = None, capacitances: Any = None) -> Plan:
+        """A plan from what another one, or another program, consists of."""
+        parts = new_struct("plan_parts")
+        arrays = {"triangle_regions": np.ascontiguousarray(triangle_regions, np.uint32),
+                  "detector_points": np.ascontiguousarray(detector_points, np.float64)}
+        for name, values in (("charges", charges), ("capacitances", capacitances)):
+            if values is not None:
+                arrays[name] = np.ascontiguousarray(values, np.float64)
+        cls._check_parts(mesh, arrays)
+        parts["method"] = code_of("method", method)
+        parts["region_count"] = len(arrays["detector_points"])
+        for name, array in arrays.items():
+            parts[name] = address_of(array)
+        return cls._made(mesh, V, Host(), library.cscdpy_plan_create_from_parts, parts)
+
+    @staticmethod
+    def _check_parts(mesh: Mesh, arrays: Dict[str, Array]) -> None:
+        expected = {"triangle_regions": (mesh.triangle_count,), "charges": (mesh.triangle_count,),
+                    "detector_points": (len(arrays["detector_points"]), 3), "capacitances": (mesh.component_count,)}
+        for name, array in arrays.items():
+            if array.shape != expected[name]:
+                raise ValueError(f"{name}: expected shape {expected[name]}, got {array.shape}")
+
+    @classmethod
+    def _create(cls, mesh: Mesh, V: Any, threads: int, progress: Any, **members: Any) -> Plan:
+        options = new_struct("plan_options")
+        library.cscd_plan_defaults_sized(address_of(options), options.nbytes)
+        for name, value in members.items():
+            try:
+                options[name] = value
+            except (OverflowError, TypeError, ValueError):
+                raise ValueError(f"{name}: {value!r} is out of range") from None
+        try:
+            return cls._made(mesh, V, Host(threads, progress=progress), library.cscdpy_plan_create, options)
+        except Error as problem:
+            if "libcscd-charge" not in str(problem):
+                raise
+            raise Error(f"{problem}\nThis installation of cscd was built without charge, as wheels are. Install it from "
+                        "its sources on a machine with LAPACKE and OpenBLAS (Debian: liblapacke-dev, "
+                        "libopenblas-dev): pip install --no-binary cscd; or make the plan with the tool's "
+                        "`cscd preprocess`, and read it by Plan.read") from None
+
+    @classmethod
+    def _made(cls, mesh: Mesh, V: Any, host: Host, create: Any, options: Array) -> Plan:
+        plan = cls.__new__(cls)
+        views, kept = views_of("V", V, mesh.vertex_counts)
+        plan.mesh = mesh
+        with host:
+            plan._handle = new_handle(host, library.cscd_plan_destroy, create, mesh.pointer, address_of(views),
+                                      address_of(options))
+        plan.rest = np.concatenate([as_positions("V", part).astype(np.float64) for part in kept])
+        return plan
+
+    @property
+    def pointer(self) -> int:
+        """The plan of the library, for the detectors that use it."""
+        return self._handle.pointer
+
+    @property
+    def method(self) -> str:
+        return str(library.cscd_method_name(library.cscd_plan_method(self.pointer)).decode())
+
+    @property
+    def region_count(self) -> int:
+        return int(library.cscd_plan_region_count(self.pointer))
+
+    @property
+    def triangle_regions(self) -> Array:
+        labels = np.empty(self.mesh.triangle_count, np.uint32)
+        library.cscd_plan_region_labels(self.pointer, address_of(labels))
+        return labels
+
+    @property
+    def regions(self) -> Any:
+        """The regions, by the members of ``cscd_region``: component, triangle_count, area, visible_share, detector_point."""
+        found = new_struct("region", self.region_count)
+        size = structs["region"].itemsize
+        for i in range(len(found)):
+            library.cscd_plan_region_sized(self.pointer, i, address_of(found) + i * size, size)
+        return found.view(np.recarray)
+
+    @property
+    def detector_points(self) -> Array:
+        return self.regions["detector_point"].copy()
+
+    @property
+    def charges(self) -> Optional[Array]:
+        if self.method != "charge":
+            return None
+        return np.array([library.cscd_plan_triangle_charge(self.pointer, t) for t in range(self.mesh.triangle_count)])
+
+    @property
+    def capacitances(self) -> Optional[Array]:
+        """(c,) float64: the capacitance of each component, a length in Gaussian units; None without charge."""
+        if self.method != "charge":
+            return None
+        return np.array([library.cscd_plan_capacitance(self.pointer, c) for c in range(self.mesh.component_count)])
+
+    def __repr__(self) -> str:
+        return f"Plan(method {self.method!r}, {self.region_count} regions)"
+
+    def __reduce__(self) -> Tuple[Callable[..., Any], Tuple[Any, ...]]:
+        return _restore, (self.mesh, self.rest, self.triangle_regions, self.detector_points, self.method, self.charges,
+                          self.capacitances)
+
+
+def _restore(mesh: Mesh, rest: Array, *parts: Any) -> Plan:
+    """What pickle calls."""
+    regions, points, method, charges, capacitances = parts
+    return Plan.from_parts(mesh, rest, regions, points, method=method, charges=charges, capacitances=capacitances)
+

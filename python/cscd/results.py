@@ -1,0 +1,155 @@
+"""Lists that the library gives out, as numpy arrays with names: contacts, proximities, events."""
+
+from __future__ import annotations
+
+from typing import Any, Tuple
+
+import numpy as np
+
+from ._library import address_of, copy_list, library, structs
+
+__all__ = ["CONTACT_KINDS", "Contacts", "Events", "INTERSECTION_KINDS", "PairContacts", "PairDistances", "Proximities"]
+
+
+def _names(function: Any) -> Tuple[str, ...]:
+    """The names of all kinds, in the order of their codes."""
+    names = []
+    while function(len(names)) != b"unknown":
+        names.append(function(len(names)).decode())
+    return tuple(names)
+
+
+#: The kinds of contacts by their codes: "vf", "ee", ...
+CONTACT_KINDS = _names(library.cscd_contact_kind_name)
+
+#: The kinds of intersections by their codes: "crossing", "coplanar", "folded", "duplicate", "touching".
+INTERSECTION_KINDS = _names(library.cscd_intersection_kind_name)
+
+
+class Records(np.recarray):  # type: ignore[type-arg]
+    """A structured array whose members are attributes, too, of the array and of each item."""
+
+    @classmethod
+    def copy_from(cls, address: int, count: int) -> Any:
+        """A copy of a list of the library."""
+        return copy_list(address, count, cls.record()).view(cls)
+
+    @classmethod
+    def record(cls) -> Any:
+        """The dtype of one item."""
+        raise NotImplementedError
+
+
+class Contacts(Records):
+    """Contacts, sorted by (toi, kind, a, b): where two features touch during an interval, and when they first do.
+
+    Attributes
+    ----------
+    kind : (k,) uint32
+        A code of ``CONTACT_KINDS``: 0 is vf, a vertex and a face, 1 is ee, two edges.
+    a, b : (k,) uint32
+        The features: vertex and triangle, or two edges, in the numbering of the mesh.
+    toi : (k,) float64
+        The time of impact, as a fraction of the interval, 0 to 1.
+    u, v : (k,) float64
+        Barycentric coordinates of the points that touch.
+    vertices, weights : (k, 4) uint32 and float64
+        The four vertices behind each contact, and weights so that ``(weights[..., None] * x[vertices]).sum(1)`` is the
+        vector to the point on a from that on b.
+    point, normal : (k, 3) float64
+        Where they touch, in the unit of the positions, and a unit vector against the motion of a relative to b.
+    bounded : (k,) bool
+        With a minimum separation only: the time is safe, but may be early.
+    """
+
+    @classmethod
+    def record(cls) -> Any:
+        return structs["contact"]
+
+    @property
+    def weights(self) -> Any:
+        return _weights(self, library.cscd_contact_stencils)
+
+
+class Proximities(Records):
+    """Pairs of features that are near each other at one moment, sorted by (kind, a, b).
+
+    Attributes
+    ----------
+    kind, a, b : (k,) uint32
+        A code of ``CONTACT_KINDS``, and two features of that kind.
+    count, vf_count, ee_count : (k,) uint32
+        How many pairs of features an item stands for; 1 unless ``unique`` was asked for.
+    distance : (k,) float64
+        In the unit of the positions.
+    vertices, weights : (k, 4) uint32 and float64
+        As those of ``Contacts``. The gradient of the distance at ``vertices[:, i]`` is ``weights[:, i] * normal``.
+    u, v : (k,) float64
+    point, normal : (k, 3) float64
+        The middle between the nearest points, and a unit vector from b's to a's.
+    threshold : (k,) float64
+        Of two edges, after ``set_rest``: below it a barrier's energy fades.
+    """
+
+    @classmethod
+    def record(cls) -> Any:
+        return structs["proximity"]
+
+
+class PairContacts(Records):
+    """What each pair of ``pairs_step`` does: toi (inf without contact), contact, bounded, u, v, point, normal."""
+
+    @classmethod
+    def record(cls) -> Any:
+        return structs["pair_contact"]
+
+
+class PairDistances(Records):
+    """How far the features of each pair of ``pairs_near`` are apart: distance (inf beyond the limit), u, v, point, normal."""
+
+    @classmethod
+    def record(cls) -> Any:
+        return structs["pair_distance"]
+
+
+class Events(Records):
+    """Events, sorted by (first_frame, a, b): what two parts have to do with each other at one place, for some frames.
+
+    Attributes
+    ----------
+    a, b : (k,) uint32
+        Parts, a <= b.
+    first_frame, last_frame, worst_frame : (k,) uint64
+    kinds : (k,) uint64
+        A set of intersection kinds: bit i stands for ``INTERSECTION_KINDS[i]``.
+    pairs, depths, contacts : (k,) uint64
+        So many of each, all frames together.
+    depth, length : (k,) float64
+        The greatest depth and the greatest length of curves, in the unit of the positions; 0 where none is known.
+    x : (k, 3) float64
+        A place to look at in the worst frame; NaN where only pairs are known.
+    triangle, first_triangle : (k,) uint32
+        The triangle at that place, and the least one of the first frame.
+    """
+
+    @classmethod
+    def record(cls) -> Any:
+        return structs["event"]
+
+    def kind_names(self) -> Tuple[Tuple[str, ...], ...]:
+        """The names of the kinds of each event."""
+        return tuple(tuple(name for i, name in enumerate(INTERSECTION_KINDS) if int(kinds) >> i & 1)
+                     for kinds in np.atleast_1d(np.asarray(self["kinds"])))
+
+
+def _weights(records: Records, function: Any) -> Any:
+    """The weights of a list of contacts, which are computed from u and v."""
+    packed = np.ascontiguousarray(np.asarray(records))
+    weights = np.empty((packed.size, 4))
+    function(address_of(packed), packed.size, None, address_of(weights))
+    return weights.reshape(*records.shape, 4)
+
+
+def copy_records(found: Any, dtype: Any) -> Any:
+    """A copy of the list that a struct of the library gives out."""
+    return copy_list(int(found["items"][0]), int(found["count"][0]), dtype)

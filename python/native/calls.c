@@ -1,0 +1,108 @@
+/* The calls of the library that may take long, each in its host: without Python's lock. All other functions Python calls
+ * as cscd/cscd.h has them. Structs have the sizes of this build, whose layouts.c tells Python of them. */
+#include "cscd/cscd.h"
+
+#include "python/native/exports.h"
+#include "python/native/host.h"
+
+#define CALL_OF(name, arguments, call)                                                                       \
+    PYTHON_API cscd_status cscdpy_##name arguments {                                                         \
+        host_begin(h);                                                                                       \
+        cscd_status status = call;                                                                           \
+        host_end(h);                                                                                         \
+        return status;                                                                                       \
+    }
+
+/* ---- what is created ----------------------------------------------------------------------------------- */
+
+CALL_OF(mesh_create, (host * h, const cscd_object_desc *objects, uint32_t object_count, cscd_mesh **out),
+        cscd_mesh_create(h->context, objects, object_count, out))
+CALL_OF(plan_create,
+        (host * h, const cscd_mesh *mesh, const cscd_view *positions, const cscd_plan_options *options,
+         cscd_plan **out),
+        cscd_plan_create(h->context, mesh, positions, options, out))
+CALL_OF(plan_create_from_parts,
+        (host * h, const cscd_mesh *mesh, const cscd_view *positions, const cscd_plan_parts *parts,
+         cscd_plan **out),
+        cscd_plan_create_from_parts(h->context, mesh, positions, parts, out))
+CALL_OF(detector_create,
+        (host * h, const cscd_mesh *mesh, const cscd_plan *plan, const cscd_detector_options *options,
+         cscd_detector **out),
+        cscd_detector_create(h->context, mesh, plan, options, out))
+CALL_OF(tracker_create,
+        (host * h, const cscd_mesh *mesh, const cscd_event_options *options, cscd_event_tracker **out),
+        cscd_event_tracker_create(h->context, mesh, options, out))
+
+/* ---- a detector ----------------------------------------------------------------------------------------- */
+
+CALL_OF(detector_step,
+        (host * h, cscd_detector *detector, const cscd_view *x0, const cscd_view *x1, cscd_contacts *out),
+        cscd_detector_step(detector, x0, x1, out))
+CALL_OF(detector_check,
+        (host * h, cscd_detector *detector, const cscd_view *positions, cscd_intersections *out),
+        cscd_detector_check(detector, positions, out))
+CALL_OF(detector_find_intersections,
+        (host * h, cscd_detector *detector, const cscd_view *positions,
+         const cscd_intersection_options *options, cscd_intersection_pairs *out),
+        cscd_detector_find_intersections(detector, positions, options, out))
+CALL_OF(detector_find_near,
+        (host * h, cscd_detector *detector, const cscd_view *positions, double distance, uint32_t form,
+         cscd_proximities *out),
+        cscd_detector_find_near(detector, positions, distance, (cscd_near_form)form, out))
+CALL_OF(detector_max_step,
+        (host * h, cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
+         const cscd_mutable_view *reached, cscd_free_step *out),
+        cscd_detector_max_step(detector, x0, x1, reached, out))
+CALL_OF(detector_displacement_bounds,
+        (host * h, cscd_detector *detector, const cscd_view *x0, double search_radius, uint32_t scalar,
+         void *bounds, size_t size, cscd_displacement_bounds *out),
+        cscd_detector_displacement_bounds(detector, x0, search_radius, (cscd_scalar)scalar, bounds, size,
+                                          out))
+CALL_OF(detector_truncate,
+        (host * h, cscd_detector *detector, const cscd_view *x0, const cscd_view *x1, double search_radius,
+         const cscd_mutable_view *reached, cscd_truncation *out),
+        cscd_detector_truncate(detector, x0, x1, search_radius, reached, out))
+CALL_OF(detector_contact_parts,
+        (host * h, cscd_detector *detector, const cscd_contact *contacts, size_t contact_count,
+         cscd_contact_part_pairs *out),
+        cscd_detector_contact_parts(detector, contacts, contact_count, out))
+CALL_OF(detector_set_rest, (host * h, cscd_detector *detector, const cscd_view *rest),
+        cscd_detector_set_rest(detector, rest))
+
+/* ---- a line search -------------------------------------------------------------------------------------- */
+
+CALL_OF(line_search_begin,
+        (host * h, cscd_line_search *search, const cscd_view *x0, const cscd_view *x1, double reach),
+        cscd_line_search_begin(search, x0, x1, reach))
+CALL_OF(line_search_positions,
+        (host * h, cscd_line_search *search, double fraction, const cscd_mutable_view *positions),
+        cscd_line_search_positions(search, fraction, positions))
+CALL_OF(line_search_max_step,
+        (host * h, cscd_line_search *search, double longest, const cscd_mutable_view *reached,
+         cscd_free_step *out),
+        cscd_line_search_max_step(search, longest, reached, out))
+CALL_OF(line_search_find_near,
+        (host * h, cscd_line_search *search, double fraction, double distance, uint32_t form,
+         cscd_proximities *out),
+        cscd_line_search_find_near(search, fraction, distance, (cscd_near_form)form, out))
+
+/* ---- single pairs, and events --------------------------------------------------------------------------- */
+
+CALL_OF(pairs_step,
+        (host * h, const cscd_pairs *pairs, const cscd_view *x0, const cscd_view *x1, double min_separation,
+         double tolerance, cscd_pair_contact *out),
+        cscd_pairs_step(h->context, pairs, x0, x1, min_separation, tolerance, out))
+CALL_OF(pairs_find_near,
+        (host * h, const cscd_pairs *pairs, const cscd_view *positions, double distance,
+         cscd_pair_distance *out),
+        cscd_pairs_find_near(h->context, pairs, positions, distance, out))
+CALL_OF(tracker_add_contacts,
+        (host * h, cscd_event_tracker *tracker, const cscd_contact *contacts, size_t contact_count),
+        cscd_event_tracker_add_contacts(tracker, contacts, contact_count))
+CALL_OF(tracker_add_frame,
+        (host * h, cscd_event_tracker *tracker, uint64_t frame, const cscd_intersection_pairs *found),
+        cscd_event_tracker_add_frame(tracker, frame, found))
+CALL_OF(tracker_take, (host * h, cscd_event_tracker *tracker, cscd_events *out),
+        cscd_event_tracker_take(tracker, out))
+CALL_OF(tracker_finish, (host * h, cscd_event_tracker *tracker, cscd_events *out),
+        cscd_event_tracker_finish(tracker, out))

@@ -1,0 +1,108 @@
+/* Contexts for Python: the lock, signals and callbacks during a call. */
+#include "python/native/host.h"
+
+#include "python/native/exports.h"
+#include "python/native/interpreter.h"
+
+#include <stdlib.h>
+#include <time.h>
+
+/* Callbacks and signals have their turn once in so many milliseconds. */
+enum { LOOK_EVERY_MS = 5 };
+
+static double clock_ms(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return 1e3 * (double)now.tv_sec + 1e-6 * (double)now.tv_nsec;
+}
+
+void host_begin(host *h) {
+    h->raised = false;
+    h->looked_ms = 0.0;
+    h->thread = python.save_thread();
+}
+
+void host_end(host *h) {
+    void *thread = h->thread;
+    h->thread = NULL;
+    python.restore_thread(thread);
+}
+
+/* What a callable answers; -1: it has raised. Takes the result. */
+static int answer_of(void *result) {
+    if (result == NULL) return -1;
+    int answer = python.is_true(result);
+    python.release(result);
+    return answer;
+}
+
+/* The callback of the context. What progress= returns does not matter: who wants to end the call raises. */
+static bool report_progress(void *user, const char *stage, double fraction) {
+    host *h = user;
+    if (h->thread == NULL) return true;
+    if (h->raised) return false;
+    double now = clock_ms();
+    if (now - h->looked_ms < LOOK_EVERY_MS) return true;
+    h->looked_ms = now;
+    python.restore_thread(h->thread);
+    h->raised = python.check_signals() != 0;
+    if (!h->raised && h->progress != NULL)
+        h->raised = answer_of(python.call(h->progress, "sd", stage, fraction)) < 0;
+    h->thread = python.save_thread();
+    return !h->raised;
+}
+
+/* The function `ignore` of detectors; its user is a host. Returns true for all pairs once it has raised. */
+PYTHON_API bool cscdpy_ignore(void *user, cscd_contact_kind kind, uint32_t a, uint32_t b) {
+    host *h = user;
+    if (h->raised || h->thread == NULL) return true;
+    python.restore_thread(h->thread);
+    int answer = answer_of(python.call(h->ignore, "sII", cscd_contact_kind_name(kind), a, b));
+    h->raised = answer < 0;
+    h->thread = python.save_thread();
+    if (h->raised) cscd_context_cancel(h->context);
+    return answer != 0;
+}
+
+PYTHON_API cscd_status cscdpy_host_create(uint32_t thread_count, uint32_t simd, void *progress, void *ignore,
+                                          char *reason, size_t reason_size, host **out) {
+    host *h = calloc(1, sizeof *h);
+    if (h == NULL) return CSCD_OUT_OF_MEMORY;
+    h->progress = progress;
+    h->ignore = ignore;
+    cscd_context_options options = cscd_context_defaults();
+    options.thread_count = thread_count;
+    options.simd = (cscd_simd)simd;
+    options.progress = (cscd_progress){report_progress, h};
+    options.reason = reason;
+    options.reason_size = reason_size;
+    cscd_status status = cscd_context_create(&options, &h->context);
+    if (status != CSCD_OK) {
+        free(h);
+        return status;
+    }
+    *out = h;
+    return CSCD_OK;
+}
+
+/* After all objects of its context. */
+PYTHON_API void cscdpy_host_destroy(host *h) {
+    cscd_context_destroy(h->context);
+    free(h);
+}
+
+PYTHON_API const char *cscdpy_host_detail(const host *h) {
+    return cscd_context_detail(h->context);
+}
+
+PYTHON_API void cscdpy_host_cancel(const host *h) {
+    cscd_context_cancel(h->context);
+}
+
+PYTHON_API size_t cscdpy_host_bytes(const host *h) {
+    return cscd_context_bytes(h->context);
+}
+
+PYTHON_API uint32_t cscdpy_host_thread_count(const host *h) {
+    return cscd_context_thread_count(h->context);
+}
