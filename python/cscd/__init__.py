@@ -10,18 +10,21 @@ from __future__ import annotations
 from ._library import library as _library
 from .detector import Detector
 from .errors import Cancelled, Error, InContact, ListTooLong
+from .files import FrameSequence, Recording, read, write_report
 from .intersections import Curve, Intersections, PartPairs
 from .line_search import LineSearch
 from .mesh import HalfSpace, Mesh, Points, Scene, Wires
 from .pairs import pairs_near, pairs_step
 from .plan import Plan
 from .questions import contacts, intersections, is_self_intersecting, self_intersecting_faces, self_intersections
+from .replay import Frame, Replay, replay
 from .results import CONTACT_KINDS, INTERSECTION_KINDS, Contacts, Events, PairContacts, PairDistances, Proximities
 
 __version__: str = _library.cscd_version_string().decode()
 
-__all__ = ["CONTACT_KINDS", "Cancelled", "Contacts", "Curve", "Detector", "Error", "Events", "HalfSpace",
+__all__ = ["CONTACT_KINDS", "Cancelled", "Contacts", "Curve", "Detector", "Error", "Events", "Frame", "FrameSequence",
+           "HalfSpace",
            "INTERSECTION_KINDS", "InContact", "Intersections", "LineSearch", "ListTooLong", "Mesh", "PairContacts",
-           "PairDistances", "PartPairs", "Plan", "Points", "Proximities", "Scene", "Wires", "__version__", "contacts",
-           "intersections", "is_self_intersecting", "pairs_near", "pairs_step", "self_intersecting_faces",
-           "self_intersections"]
+           "PairDistances", "PartPairs", "Plan", "Points", "Proximities", "Recording", "Replay", "Scene", "Wires", "__version__", "contacts",
+           "intersections", "is_self_intersecting", "pairs_near", "pairs_step", "read", "replay", "self_intersecting_faces",
+           "self_intersections", "write_report"]

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import ctypes
-from typing import Any, Dict, List
+from typing import Any, Dict, List, Optional
 
 import numpy as np
 
 from ._arrays import as_floats, as_indices
-from ._host import Host, code_of
+from ._host import Handle, Host, code_of
 from ._library import address_of, library, new_struct, structs
 from .mesh import Mesh
 
@@ -24,7 +24,8 @@ _DEFAULT_RULE = {"category": 1, "mask": 2**64 - 1, "thickness": 0.0, "thickness_
 class DetectorOptions:
     """The struct, and the arrays that it points to."""
 
-    def __init__(self, mesh: Mesh, inputs: Dict[str, Any], host: Host, has_ignore: bool) -> None:
+    def __init__(self, mesh: Mesh, inputs: Dict[str, Any], host: Host, has_ignore: bool,
+                 left_out: Optional[Handle]) -> None:
         self._struct = new_struct("detector_options")
         self._kept: List[Array] = []
         library.cscd_detector_defaults_sized(address_of(self._struct), self._struct.nbytes)
@@ -41,6 +42,8 @@ class DetectorOptions:
         if has_ignore:
             self._struct["ignore"] = ctypes.cast(library.cscdpy_ignore, ctypes.c_void_p).value
             self._struct["ignore_user"] = host.handle
+        if left_out is not None:
+            library.cscdpy_left_out_choose(left_out.pointer, self.address)
 
     @property
     def address(self) -> int:

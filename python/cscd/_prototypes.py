@@ -5,8 +5,7 @@ Those named ``cscd_...`` are of its public headers (include/cscd), those named `
 
 from __future__ import annotations
 
-from ctypes import (POINTER, c_bool, c_char, c_char_p, c_double, c_int, c_int32, c_size_t, c_uint32, c_uint64, c_void_p,
-                    py_object)
+from ctypes import (POINTER, c_bool, c_char, c_char_p, c_double, c_int, c_size_t, c_uint32, c_uint64, c_void_p)
 from typing import Any, Dict, List, Tuple
 
 __all__ = ["PROTOTYPES"]
@@ -29,6 +28,28 @@ _LAYER: Dict[str, Tuple[Any, List[Any]]] = {
     "cscdpy_polygons_count": (_u32, [_p]),
     "cscdpy_polygons_copy": (None, [_p, _p, _p]),
     "cscdpy_polygons_free": (None, [_p]),
+    "cscdpy_left_out_create": (c_bool, [_p, _p, _u32, POINTER(c_void_p), _p]),
+    "cscdpy_left_out_destroy": (None, [_p]),
+    "cscdpy_left_out_add_parts": (c_bool, [_p, _u32, _u32]),
+    "cscdpy_left_out_add_rest": (c_bool, [_p, _p, _size, c_bool]),
+    "cscdpy_left_out_choose": (None, [_p, _p]),
+    "cscdpy_left_out_show": (c_bool, [_p, _p]),
+    "cscdpy_choose_events": (c_bool, [_p, _p]),
+    "cscdpy_recording_open": (c_bool, [c_char_p, _p, _size, _f64, POINTER(c_void_p), _p]),
+    "cscdpy_recording_close": (None, [_p]),
+    "cscdpy_recording_mesh": (_p, [_p]),
+    "cscdpy_recording_frame_count": (_u32, [_p]),
+    "cscdpy_recording_fps": (_f64, [_p]),
+    "cscdpy_recording_copy": (_u32, [_p, _p, _p, _p, _p]),
+    "cscdpy_recording_part_count": (_u32, [_p]),
+    "cscdpy_recording_part_name": (c_char_p, [_p, _u32]),
+    "cscdpy_recording_read": (c_bool, [_p, _u32, _p, _p]),
+    "cscdpy_plan_read": (c_bool, [c_char_p, _p, POINTER(c_void_p), _p]),
+    "cscdpy_plan_write": (c_bool, [c_char_p, _p, _p, _p, _p]),
+    "cscdpy_mesh_read": (c_bool, [c_char_p, POINTER(c_void_p), _p]),
+    "cscdpy_mesh_vertex_count": (_u32, [_p]),
+    "cscdpy_mesh_copy_positions": (None, [_p, _p]),
+    "cscdpy_run_tool": (c_int, [c_int, _p]),
 }
 
 # All of these end with a status, and begin with a host.

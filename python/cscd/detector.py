@@ -80,7 +80,9 @@ class Detector:
                  step_factor: float = 0.8, floor_ratio: float = 0.9, seams: Any = None, ignored: Any = None,
                  ignore: Optional[Callable[[str, int, int], bool]] = None, rules: Any = None,
                  thickness_matrix: Any = None, seam_reach: float = 0.0, longest_list: int = 0, threads: int = 1,
-                 simd: str = "auto", progress: Optional[Callable[[str, float], Any]] = None) -> None:
+                 simd: str = "auto", progress: Optional[Callable[[str, float], Any]] = None,
+                 _left_out: Optional[Handle] = None) -> None:
+        self._left_out = _left_out  # of a replay; it outlives the detector
         self.mesh: Mesh = mesh if isinstance(mesh, Mesh) else Mesh(as_faces("mesh", mesh))
         self._inputs = dict(plan=plan, method=method, mode=mode, start=start, volume=volume,
                             min_separation=min_separation, tolerance=tolerance, step_factor=step_factor,
@@ -92,7 +94,7 @@ class Detector:
         pointer = self.mesh.pointer
         self._vertex_counts = self.mesh.vertex_counts
         self._host = Host(threads, simd, progress, ignore)
-        options = DetectorOptions(self.mesh, self._inputs, self._host, ignore is not None)
+        options = DetectorOptions(self.mesh, self._inputs, self._host, ignore is not None, self._left_out)
         with self._host as host:
             self._handle: Handle = new_handle(host, library.cscd_detector_destroy, library.cscdpy_detector_create,
                                               pointer, None if plan is None else plan.pointer, options.address)
@@ -113,7 +115,8 @@ class Detector:
         with self._host as host:
             self._call(host, "contacts", library.cscdpy_detector_step, self._detector, address_of(start),
                        address_of(end), self._at["contacts"])
-            return self._copied("contacts", Contacts)
+            found: Contacts = self._copied("contacts", Contacts)
+            return found
 
     def max_step(self, x0: Any, x1: Any, out: Optional[Array] = None) -> Tuple[Array, float, Optional[Contacts]]:
         """Finds how far the vertices may go from ``x0`` towards ``x1`` without any contact, and certifies it.
@@ -206,7 +209,8 @@ class Detector:
         with self._host as host:
             self._call(host, "proximities", library.cscdpy_detector_find_near, self._detector, address_of(views),
                        float(distance), _NEAR_UNIQUE if unique else _NEAR_PAIRS, self._at["proximities"])
-            return self._copied("proximities", Proximities)
+            found: Proximities = self._copied("proximities", Proximities)
+            return found
 
     def bounds(self, x: Any, search_radius: float) -> Array:
         """(n,) float64: how far each vertex may go from ``x``, on any path, so that all that is apart stays apart.

@@ -80,6 +80,8 @@ class Intersections:
         self._positions = positions
         self._allowed = allowed
         self._surface: Optional[_Surface] = None
+        #: Of a frame of ``replay``: what was found, summed up by pair of parts.
+        self.part_pairs: Optional[PartPairs] = None
         #: The face that counts as row 0 of each column of ``pairs``.
         self.first_faces: Array = np.zeros(2, np.uint32)
         self.triangles: Array = np.stack([pairs["a"], pairs["b"]], axis=1)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import os
 from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
@@ -31,6 +32,20 @@ def cut_polygons(positions: Array, corners: Array, face_sizes: Array) -> Tuple[A
     library.cscdpy_polygons_copy(out, address_of(triangles), address_of(faces))
     library.cscdpy_polygons_free(out)
     return triangles, faces
+
+
+def read_surface(path: Union[str, os.PathLike[str]]) -> Tuple[Array, Array]:
+    """The triangles and the positions of a mesh file."""
+    out, error = ctypes.c_void_p(), ctypes.create_string_buffer(1024)
+    if not library.cscdpy_mesh_read(os.fsencode(path), ctypes.byref(out), ctypes.addressof(error)):
+        raise ValueError(error.value.decode(errors="replace"))
+    count = library.cscdpy_polygons_count(out)
+    triangles, faces = np.empty((count, 3), np.uint32), np.empty(count, np.uint32)
+    positions = np.empty((library.cscdpy_mesh_vertex_count(out), 3))
+    library.cscdpy_polygons_copy(out, address_of(triangles), address_of(faces))
+    library.cscdpy_mesh_copy_positions(out, address_of(positions))
+    library.cscdpy_polygons_free(out)
+    return triangles, positions
 
 
 class Surface:
@@ -151,8 +166,13 @@ class Mesh:
         counts : (m,) integers
             How many corners each face has; their sum is c.
         """
+        return cls.of_surface(Surface.of_polygons(positions, corners, counts))
+
+    @classmethod
+    def of_surface(cls, surface: Surface) -> Mesh:
+        """A mesh of one object whose triangles are known."""
         mesh = cls.__new__(cls)
-        mesh._begin([Surface.of_polygons(positions, corners, counts)], [False])
+        mesh._begin([surface], [False])
         return mesh
 
     def _begin(self, objects: Sequence[Any], obstacles: Sequence[bool]) -> None:
@@ -205,6 +225,12 @@ class Mesh:
         return self._handle.pointer
 
     @property
+    def host(self) -> Host:
+        """Where the mesh lives in the library."""
+        assert self._handle is not None
+        return self._handle.host
+
+    @property
     def triangle_count(self) -> int:
         return len(self.triangles)
 
@@ -212,6 +238,12 @@ class Mesh:
     def vertex_counts(self) -> List[int]:
         """How many vertices each object has."""
         return [item.vertex_count for item in self._objects]
+
+    @property
+    def triangle_objects(self) -> Array:
+        """(t,) uint32: the object of each triangle."""
+        counts = [len(item.triangles) if isinstance(item, Surface) else 0 for item in self._objects]
+        return np.repeat(np.arange(len(counts), dtype=np.uint32), counts)
 
     @property
     def edges(self) -> Array:

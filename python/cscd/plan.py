@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any, Callable, Dict, Optional, Tuple
+import ctypes
+import os
+from typing import Any, Callable, Dict, Optional, Tuple, Union
 
 import numpy as np
 
@@ -10,7 +12,7 @@ from ._arrays import as_positions, views_of
 from ._host import Handle, Host, code_of, new_handle
 from ._library import address_of, library, new_struct, structs
 from .errors import Error
-from .mesh import Mesh
+from .mesh import Mesh, read_surface
 
 __all__ = ["Plan"]
 
@@ -18,7 +20,7 @@ Array = Any
 
 
 class Plan:
-    """The regions of a mesh and their detector points. Made by ``Plan.charge``, ``Plan.kmeans`` or ``Plan.from_parts``.
+    """The regions of a mesh and their detector points. Made by ``Plan.charge``, ``Plan.kmeans``, ``Plan.read`` or ``Plan.from_parts``.
 
     Attributes
     ----------
@@ -70,7 +72,7 @@ class Plan:
                    charges: Any = None, capacitances: Any = None) -> Plan:
         """A plan from what another one, or another program, consists of."""
         parts = new_struct("plan_parts")
-        arrays = {"triangle_regions": np.ascontiguousarray(triangle_regions, np.uint32),
+        arrays: Dict[str, Array] = {"triangle_regions": np.ascontiguousarray(triangle_regions, np.uint32),
                   "detector_points": np.ascontiguousarray(detector_points, np.float64)}
         for name, values in (("charges", charges), ("capacitances", capacitances)):
             if values is not None:
@@ -81,6 +83,40 @@ class Plan:
         for name, array in arrays.items():
             parts[name] = address_of(array)
         return cls._made(mesh, V, Host(), library.cscdpy_plan_create_from_parts, parts)
+
+    @classmethod
+    def read(cls, path: Union[str, os.PathLike[str]], mesh: Optional[Mesh] = None) -> Plan:
+        """Reads a plan that ``write``, or ``cscd preprocess``, has written: bit for bit, and with charge everywhere.
+
+        Parameters
+        ----------
+        mesh : Mesh, optional
+            That of the detector. By default the one in the file.
+
+        Raises
+        ------
+        ValueError
+            The file is no plan, or one of another mesh.
+        """
+        triangles, rest = read_surface(path)
+        plan = cls.__new__(cls)
+        plan.mesh = mesh if mesh is not None else Mesh(triangles, len(rest))
+        plan.rest = rest
+        out, error = ctypes.c_void_p(), ctypes.create_string_buffer(1024)
+        pointer = plan.mesh.pointer
+        with plan.mesh.host as host:
+            if not library.cscdpy_plan_read(os.fsencode(path), pointer, ctypes.byref(out), ctypes.addressof(error)):
+                raise ValueError(error.value.decode(errors="replace"))
+            assert out.value is not None
+            plan._handle = Handle(out.value, host, library.cscd_plan_destroy)
+        return plan
+
+    def write(self, path: Union[str, os.PathLike[str]]) -> None:
+        """Writes the plan as a PLY file that any viewer shows (docs/formats.md); an older file is replaced at once."""
+        error = ctypes.create_string_buffer(1024)
+        if not library.cscdpy_plan_write(os.fsencode(path), self.mesh.pointer, address_of(self.rest), self.pointer,
+                                         ctypes.addressof(error)):
+            raise OSError(error.value.decode(errors="replace"))
 
     @staticmethod
     def _check_parts(mesh: Mesh, arrays: Dict[str, Array]) -> None:

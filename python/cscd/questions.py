@@ -174,7 +174,7 @@ class _FrameQueue:
         self._lock = threading.Lock()
         self._rows: List[Optional[Array]] = []
         self._failure: Optional[BaseException] = None
-        self._first = next(self._frames, None)
+        self._first: Optional[Tuple[int, Any]] = next(self._frames, None)
         self.mesh: Optional[Mesh] = None
         if self._first is not None:
             self.mesh = mesh_of(F, as_positions("frames[0]", self._first[1]))
@@ -192,10 +192,10 @@ class _FrameQueue:
         with self._lock:
             if self._failure is not None:
                 return None
-            if self._first is not None:
-                taken, self._first = self._first, None
-            else:
+            taken: Optional[Tuple[int, Any]] = self._first
+            if taken is None:
                 taken = next(self._frames, None)
+            self._first = None
             if taken is not None:
                 self._rows.append(None)
             return taken

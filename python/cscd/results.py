@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Tuple
+from typing import Any, List, Tuple
 
 import numpy as np
 
@@ -13,7 +13,7 @@ __all__ = ["CONTACT_KINDS", "Contacts", "Events", "INTERSECTION_KINDS", "PairCon
 
 def _names(function: Any) -> Tuple[str, ...]:
     """The names of all kinds, in the order of their codes."""
-    names = []
+    names: List[str] = []
     while function(len(names)) != b"unknown":
         names.append(function(len(names)).decode())
     return tuple(names)

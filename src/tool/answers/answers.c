@@ -6,6 +6,7 @@
 #include "src/tool/common/event_order.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 static bool api_failed(const answers *a, io_error *error) {
     return io_fail(error, "%s", cscd_context_detail(a->recording->context));
@@ -147,18 +148,12 @@ bool answers_skip_frame(answers *a, uint32_t frame, io_error *error) {
 
 /* ---- events -------------------------------------------------------------------------------------------- */
 
-/* Triangles that are one and the same are no event: they never come apart. */
-static bool is_event(const cscd_event *event) {
-    return event->kinds != cscd_intersection_set(CSCD_INTERSECTION_DUPLICATE) || event->contacts > 0 ||
-           event->depths > 0;
-}
-
 static bool copy_events(answers *a, const cscd_events *events) {
     a->events = io_realloc(NULL, (events->count + 1) * sizeof *a->events);
     a->worst_first = io_realloc(NULL, (events->count + 1) * sizeof *a->worst_first);
     if (a->events == NULL || a->worst_first == NULL) return false;
-    for (size_t i = 0; i < events->count; i++)
-        if (is_event(&events->items[i])) a->events[a->event_count++] = events->items[i];
+    a->event_count = events->count;
+    if (events->count > 0) memcpy(a->events, events->items, events->count * sizeof *a->events);
     return consequences_leave_out(a->events, &a->event_count);
 }
 

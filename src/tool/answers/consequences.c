@@ -5,6 +5,12 @@
 
 #include <stdlib.h>
 
+/* Triangles that are one and the same are no event: they never come apart. */
+static bool is_event(const cscd_event *event) {
+    return event->kinds != cscd_intersection_set(CSCD_INTERSECTION_DUPLICATE) || event->contacts > 0 ||
+           event->depths > 0;
+}
+
 /* The frames in which a part has an event with pairs. */
 typedef struct part_span {
     uint32_t part;
@@ -21,7 +27,7 @@ static size_t collect_spans(const cscd_event *events, size_t count, part_span *s
     size_t used = 0;
     for (size_t i = 0; i < count; i++) {
         const cscd_event *e = &events[i];
-        if (e->pairs == 0) continue;
+        if (e->pairs == 0 || !is_event(e)) continue;
         spans[used++] = (part_span){e->a, e->first_frame, e->last_frame};
         if (e->b != e->a) spans[used++] = (part_span){e->b, e->first_frame, e->last_frame};
     }
@@ -54,7 +60,7 @@ bool consequences_leave_out(cscd_event *events, size_t *count) {
     for (size_t i = 0; i < *count; i++) {
         const cscd_event *e = &events[i];
         const bool in_itself = e->a == e->b && e->pairs == 0 && e->contacts == 0;
-        if (!in_itself || !happens_during(spans, span_count, e)) events[kept++] = *e;
+        if (is_event(e) && (!in_itself || !happens_during(spans, span_count, e))) events[kept++] = *e;
     }
     *count = kept;
     free(spans);

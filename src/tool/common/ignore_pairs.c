@@ -131,33 +131,6 @@ static bool add_rest_pair(ignore_pairs *pairs, bool by_parts, cscd_intersection 
                        found.b);
 }
 
-static bool check_rest(ignore_pairs *pairs, bool by_parts, recording *r, cscd_detector *detector,
-                       const double *positions, io_error *error) {
-    cscd_intersections found;
-    if (cscd_detector_check(detector, CSCD_DOUBLES(positions, cscd_mesh_vertex_count(r->mesh)), &found) !=
-        CSCD_OK)
-        return io_fail(error, "frame %d: %s", r->frame_numbers[0], cscd_context_detail(r->context));
-    for (size_t i = 0; i < found.count; i++)
-        if (!add_rest_pair(pairs, by_parts, found.items[i]))
-            return io_fail(error, "frame %d: out of memory for what intersects or touches at rest",
-                           r->frame_numbers[0]);
-    return true;
-}
-
-static bool add_rest(ignore_pairs *pairs, bool by_parts, recording *r, io_error *error) {
-    double *positions = io_realloc(NULL, (size_t)cscd_mesh_vertex_count(r->mesh) * 3 * sizeof *positions);
-    cscd_detector *detector = NULL;
-    bool added = positions != NULL || io_fail(error, "out of memory");
-    added = added && recording_read(r, 0, positions, error);
-    if (added && cscd_detector_create(r->context, r->mesh, NULL, NULL, &detector) != CSCD_OK)
-        added = io_fail(error, "frame %d: %s", r->frame_numbers[0], cscd_context_detail(r->context));
-    added = added && check_rest(pairs, by_parts, r, detector, positions, error);
-    cscd_detector_destroy(detector);
-    free(positions);
-    sort_triangles(pairs);
-    return added;
-}
-
 static bool list_contains(const cscd_intersection *list, size_t count, uint32_t c, uint32_t d) {
     for (size_t i = 0; i < count; i++)
         if ((list[i].a == c && list[i].b == d) || (list[i].a == d && list[i].b == c)) return true;
@@ -176,6 +149,37 @@ static bool separate_components(ignore_pairs *pairs) {
     return true;
 }
 
+bool ignore_pairs_add_rest(ignore_pairs *pairs, const cscd_intersection *found, size_t count, bool by_parts) {
+    for (size_t i = 0; i < count; i++)
+        if (!add_rest_pair(pairs, by_parts, found[i])) return false;
+    sort_triangles(pairs);
+    return separate_components(pairs);
+}
+
+static bool check_rest(ignore_pairs *pairs, bool by_parts, recording *r, cscd_detector *detector,
+                       const double *positions, io_error *error) {
+    cscd_intersections found;
+    if (cscd_detector_check(detector, CSCD_DOUBLES(positions, cscd_mesh_vertex_count(r->mesh)), &found) !=
+        CSCD_OK)
+        return io_fail(error, "frame %d: %s", r->frame_numbers[0], cscd_context_detail(r->context));
+    return ignore_pairs_add_rest(pairs, found.items, found.count, by_parts) ||
+           io_fail(error, "frame %d: out of memory for what intersects or touches at rest",
+                   r->frame_numbers[0]);
+}
+
+static bool add_rest(ignore_pairs *pairs, bool by_parts, recording *r, io_error *error) {
+    double *positions = io_realloc(NULL, (size_t)cscd_mesh_vertex_count(r->mesh) * 3 * sizeof *positions);
+    cscd_detector *detector = NULL;
+    bool added = positions != NULL || io_fail(error, "out of memory");
+    added = added && recording_read(r, 0, positions, error);
+    if (added && cscd_detector_create(r->context, r->mesh, NULL, NULL, &detector) != CSCD_OK)
+        added = io_fail(error, "frame %d: %s", r->frame_numbers[0], cscd_context_detail(r->context));
+    added = added && check_rest(pairs, by_parts, r, detector, positions, error);
+    cscd_detector_destroy(detector);
+    free(positions);
+    return added;
+}
+
 bool ignore_options_any(const ignore_options *options) {
     return options->path != NULL || options->rest != REST_KEPT ||
            options->ignored.count + options->only.count > 0;
@@ -191,6 +195,15 @@ bool ignore_pairs_prepare(const ignore_options *options, recording *r, ignore_pa
         (options->rest == REST_KEPT || add_rest(out, options->rest == REST_PARTS, r, error)) &&
         (separate_components(out) || io_fail(error, "out of memory for the pairs that are left out")))
         return true;
+    ignore_pairs_free(out);
+    return false;
+}
+
+bool ignore_pairs_of(const cscd_mesh *mesh, part_names *parts, ignore_pairs *out, io_error *error) {
+    const part_pairs_list none = {.count = 0};
+    *out = (ignore_pairs){.mesh = mesh, .parts = *parts};
+    *parts = (part_names){0};
+    if (part_rules_create(&out->parts, &none, &none, &out->rules, error)) return true;
     ignore_pairs_free(out);
     return false;
 }

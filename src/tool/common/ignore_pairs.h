@@ -40,6 +40,14 @@ typedef struct ignore_pairs {
  * are numbered as `cscd info` lists them. */
 bool ignore_pairs_prepare(const ignore_options *options, recording *r, ignore_pairs *out, io_error *error);
 
+/* The same of a mesh without files, from which nothing is left out yet. Takes the parts. *out stays where it is, since its
+ * rules point to its parts. */
+bool ignore_pairs_of(const cscd_mesh *mesh, part_names *parts, ignore_pairs *out, io_error *error);
+
+/* Leaves out pairs that intersect or touch at rest; by_parts: all pairs of the two parts, unless both triangles are in one. False
+ * when out of memory. */
+bool ignore_pairs_add_rest(ignore_pairs *pairs, const cscd_intersection *found, size_t count, bool by_parts);
+
 /* Makes a detector leave out the pairs, which live until it has been destroyed. */
 void ignore_pairs_choose(ignore_pairs *pairs, cscd_detector_options *options);
 

@@ -1,0 +1,251 @@
+"""Recordings in files, and the page for a browser."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import subprocess
+import sys
+import tempfile
+import threading
+from typing import Any, Iterable, Iterator, List, Optional, Sequence, Tuple, Union
+
+import numpy as np
+
+from ._arrays import as_positions
+from ._library import address_of, copy_list, library
+from .errors import Error
+from .mesh import Mesh, Surface
+from .questions import mesh_of
+
+__all__ = ["FrameSequence", "Recording", "read", "write_report"]
+
+Array = Any
+PathLike = Union[str, "os.PathLike[str]"]
+
+_NO_PART = 2**32 - 1
+
+
+class _OpenRecording:
+    """Open files, which are closed with this object."""
+
+    def __init__(self, path: PathLike, frames: Sequence[bytes], fps: float) -> None:
+        out, error = ctypes.c_void_p(), ctypes.create_string_buffer(1024)
+        paths = (ctypes.c_char_p * len(frames))(*frames)
+        model = ctypes.c_char_p(os.fsencode(path))
+        self._kept = (model, paths)  # the library does not copy them
+        self.pointer: Optional[int] = None
+        if not library.cscdpy_recording_open(model, paths, len(frames), fps, ctypes.byref(out),
+                                             ctypes.addressof(error)):
+            raise ValueError(error.value.decode(errors="replace"))
+        self.pointer = out.value
+        self.lock = threading.Lock()
+
+    def read(self, frame: int, positions: Array) -> None:
+        """Reads a frame into packed doubles."""
+        error = ctypes.create_string_buffer(1024)
+        with self.lock:
+            if not library.cscdpy_recording_read(self.pointer, frame, address_of(positions), ctypes.addressof(error)):
+                raise ValueError(error.value.decode(errors="replace"))
+
+    def __del__(self) -> None:
+        if self.pointer is not None:
+            library.cscdpy_recording_close(self.pointer)
+
+
+class FrameSequence(Sequence[Array]):
+    """The frames of a recording, each read from its file when it is asked for: (n, 3) float64."""
+
+    def __init__(self, opened: _OpenRecording, indices: Sequence[int], vertex_count: int) -> None:
+        self._opened = opened
+        self._indices = indices
+        self._vertex_count = vertex_count
+
+    def __len__(self) -> int:
+        return len(self._indices)
+
+    def __getitem__(self, index: Any) -> Any:
+        if isinstance(index, slice):
+            return FrameSequence(self._opened, self._indices[index], self._vertex_count)
+        positions = np.empty((self._vertex_count, 3))
+        self._opened.read(self._indices[index], positions)
+        return positions
+
+    def __iter__(self) -> Iterator[Array]:
+        return (self[i] for i in range(len(self)))
+
+
+class Recording:
+    """A mesh and its frames, as ``read`` gives them.
+
+    Attributes
+    ----------
+    mesh : Mesh
+        Its faces are those of the file.
+    vertices : (n, 3) float64
+        The first frame.
+    frames : sequence of (n, 3) float64
+        Each is read when it is asked for.
+    frame_numbers : list of int
+        What the artist calls them.
+    fps : float
+        Frames a second; 0: nobody knows.
+    part_names : list of str
+        Objects and groups of the file, or its components.
+    part_labels : (t,) int64
+        The part of each triangle of the mesh, -1 for none.
+    file_vertices : (n,) uint32
+        The number that each vertex has in the file. Formats that store vertices several times, as STL and glTF, have
+        several for one; this is the first.
+    """
+
+    def __init__(self, opened: _OpenRecording) -> None:
+        pointer = opened.pointer
+        of_library = library.cscdpy_recording_mesh(pointer)
+        vertex_count = int(library.cscd_mesh_vertex_count(of_library))
+        triangle_count = int(library.cscd_mesh_triangle_count(of_library))
+        triangles = copy_list(library.cscd_mesh_all_triangles(of_library), 3 * triangle_count, np.uint32)
+        numbers = np.empty(library.cscdpy_recording_frame_count(pointer), np.int32)
+        faces, parts = np.empty(triangle_count, np.uint32), np.empty(triangle_count, np.uint32)
+        self.file_vertices: Array = np.empty(vertex_count, np.uint32)
+        face_count = library.cscdpy_recording_copy(pointer, address_of(numbers), address_of(faces), address_of(parts),
+                                                   address_of(self.file_vertices))
+        self.mesh = Mesh.of_surface(Surface(triangles.reshape(-1, 3), faces, face_count, vertex_count))
+        self.frames = FrameSequence(opened, range(len(numbers)), vertex_count)
+        self.frame_numbers: List[int] = numbers.tolist()
+        self.fps = float(library.cscdpy_recording_fps(pointer))
+        self.part_names: List[str] = [library.cscdpy_recording_part_name(pointer, i).decode(errors="replace")
+                                      for i in range(library.cscdpy_recording_part_count(pointer))]
+        self.part_labels: Array = np.where(parts == _NO_PART, -1, parts.astype(np.int64))
+        self._first: Optional[Array] = None
+
+    @property
+    def vertices(self) -> Array:
+        if self._first is None:
+            self._first = self.frames[0]
+        return self._first
+
+    def __repr__(self) -> str:
+        return f"Recording({self.mesh!r}, {len(self.frames)} frames)"
+
+
+def read(path: PathLike, frames: Union[None, PathLike, Sequence[PathLike]] = None, *, fps: float = 0.0) -> Recording:
+    """Reads a mesh, and what it does.
+
+    Parameters
+    ----------
+    path : path
+        An OBJ, PLY, OFF, STL, glTF or GIFTI file.
+    frames : path or sequence of paths, optional
+        A point cache (.pc2, .mdd), a glTF file, a pattern (``f_%04d.obj``), a folder, or mesh files, one a frame. By
+        default what a glTF file animates, else the mesh is the only frame.
+    fps : float
+        Frames a second, of a glTF file; 0: 24.
+
+    Raises
+    ------
+    ValueError
+        The text says what is wrong, in which file, and where.
+    """
+    if frames is None:
+        listed: List[bytes] = []
+    elif isinstance(frames, (str, os.PathLike)):
+        listed = [os.fsencode(frames)]
+    else:
+        listed = [os.fsencode(item) for item in frames]
+    if not listed and os.fsencode(path).lower().endswith((b".glb", b".gltf")):
+        try:
+            return Recording(_OpenRecording(path, [os.fsencode(path)], fps))
+        except ValueError:  # it animates nothing, or cannot be read, which is said below
+            pass
+    return Recording(_OpenRecording(path, listed, fps))
+
+
+# ---- the page ------------------------------------------------------------------------------------------------
+
+
+def _write_model(path: str, positions: Array, triangles: Array) -> None:
+    """A mesh as OBJ, every coordinate as it is."""
+    with open(path, "w", encoding="ascii") as file:
+        file.writelines(f"v {x!r} {y!r} {z!r}\n" for x, y, z in positions.astype(np.float64).tolist())
+        file.writelines(f"f {a} {b} {c}\n" for a, b, c in (triangles.astype(np.int64) + 1).tolist())
+
+
+def _write_frames(folder: str, frames: Iterable[Any], F: Any) -> Tuple[Mesh, int]:
+    """A mesh file for each frame; returns the mesh, and how many there are."""
+    mesh: Optional[Mesh] = None
+    count = 0
+    for frame in frames:
+        positions = as_positions(f"frames[{count}]", frame, None if mesh is None else mesh.vertex_count)
+        if mesh is None:
+            mesh = mesh_of(F, positions)
+        _write_model(os.path.join(folder, f"frame_{count:06d}.obj"), positions, mesh.triangles)
+        count += 1
+    if mesh is None:
+        raise ValueError("frames: expected one at least, got none")
+    return mesh, count
+
+
+def write_report(path: PathLike, frames: Any, F: Any, *, title: str = "", part_names: Optional[Sequence[str]] = None,
+                 part_labels: Any = None, fps: float = 0.0, unit: str = "", up: str = "") -> str:
+    """Writes the page for a browser: the frames in three dimensions, what intersects in them, contacts and events.
+
+    It is the page of ``cscd replay --report``, made by the tool in a process of its own.
+
+    Parameters
+    ----------
+    path : path
+        An HTML file, which needs nothing beside it.
+    frames : (B, n, 3), or an iterable of (n, 3)
+    F : (m, 3) or (m, 4) integers, or Mesh
+    title : str, optional
+    part_names, part_labels : sequence of str, and (t,) integers, optional
+        The part of each triangle of the mesh, -1 for none.
+    fps : float
+        Frames a second, for playing them.
+    unit : str
+        The unit of the positions: "mm", "cm", "m", ...
+    up : str
+        "y" or "z".
+
+    Returns
+    -------
+    str
+        The sentence that the tool prints: what crosses, in which frames, and the worst.
+    """
+    with tempfile.TemporaryDirectory(prefix="cscd-") as folder:
+        mesh, count = _write_frames(folder, frames, F)
+        command = [sys.executable, "-m", "cscd", "replay", os.path.join(folder, "frame_000000.obj"),
+                   os.path.join(folder, "frame_%06d.obj"), "--report", os.path.abspath(os.fspath(path)),
+                   "--title", title or os.path.splitext(os.path.basename(os.fspath(path)))[0]]
+        for option, value in (("--unit", unit), ("--up", up), ("--fps", f"{fps:.17g}" if fps else "")):
+            if value:
+                command += [option, value]
+        if part_labels is not None:
+            command += ["--parts", _write_parts(folder, mesh, part_names, part_labels)]
+        return _run_tool(command)
+
+
+def _write_parts(folder: str, mesh: Mesh, names: Optional[Sequence[str]], labels: Any) -> str:
+    """The table of parts that the tool reads."""
+    from .intersections import labels_of
+    array, count = labels_of(labels, mesh.triangle_count, None if names is None else len(names))
+    path = os.path.join(folder, "parts.csv")
+    with open(path, "w", encoding="utf-8") as file:
+        file.write("triangle,name\n")
+        for triangle, part in enumerate(array.tolist()):
+            if part != _NO_PART:
+                name = str(part) if names is None else " ".join(str(names[part]).split())
+                file.write(f"{triangle},{name}\n")
+    return path
+
+
+def _run_tool(command: List[str]) -> str:
+    """Runs the tool of this package; returns its first line."""
+    package = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+    paths = [package] + ([os.environ["PYTHONPATH"]] if os.environ.get("PYTHONPATH") else [])
+    done = subprocess.run(command, env={**os.environ, "PYTHONPATH": os.pathsep.join(paths)}, text=True,
+                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, check=False)
+    if done.returncode != 0:
+        raise Error(done.stderr.strip() or f"the tool ended with {done.returncode}")
+    return done.stdout.split("\n", 1)[0]

@@ -1,0 +1,288 @@
+"""A recording, frame by frame: what intersects in each frame, what touches on the way, and the events that follow."""
+
+from __future__ import annotations
+
+import ctypes
+from typing import Any, Callable, Iterable, Iterator, List, NamedTuple, Optional, Sequence, Tuple
+
+import numpy as np
+
+from ._arrays import as_indices
+from ._host import Handle, new_handle
+from ._library import address_of, library, new_struct, structs
+from .detector import Detector
+from .intersections import Intersections, _Surface, intersection_options, labels_of
+from .mesh import Mesh
+from .questions import mesh_of
+from .results import Contacts, Events, copy_records
+
+__all__ = ["Frame", "Replay", "replay"]
+
+Array = Any
+
+_NO_PART = 2**32 - 1
+_RESTS = (None, "pairs", "parts")
+
+
+class Frame(NamedTuple):
+    """What a replay has found in one frame."""
+
+    #: The number of the frame: its index, or what ``frame_numbers`` says.
+    number: int
+    #: The contacts of the interval that ends here; of the first frame none.
+    contacts: Contacts
+    #: What intersects or touches in this frame.
+    intersections: Intersections
+    #: The events that have ended before this frame, and were not given out yet. ``Replay.events`` lacks those of them that
+    #: turn out to follow from others.
+    events: Events
+
+
+class LeftOut(Handle):
+    """Pairs of parts, and pairs of triangles at rest, that a replay leaves out, by the rules of the tool."""
+
+    __slots__ = ("mesh",)
+
+    def __init__(self, mesh: Mesh, labels: Array, part_count: int) -> None:
+        out, error = ctypes.c_void_p(), ctypes.create_string_buffer(1024)
+        if not library.cscdpy_left_out_create(mesh.pointer, address_of(labels), part_count, ctypes.byref(out),
+                                              ctypes.addressof(error)):
+            raise MemoryError(error.value.decode())
+        assert out.value is not None
+        super().__init__(out.value, mesh.host, library.cscdpy_left_out_destroy)
+        self.mesh = mesh
+
+    def add_parts(self, pairs: Any, part_count: int) -> None:
+        """Leaves out all pairs of two parts, (k, 2); -1 stands for what is in no part."""
+        for a, b in np.asarray(pairs, np.int64).reshape(-1, 2).tolist():
+            if not (-1 <= a < part_count and -1 <= b < part_count):
+                raise ValueError(f"ignore_parts: ({a}, {b}): expected numbers from 0 to {part_count - 1}, or -1")
+            if not library.cscdpy_left_out_add_parts(self.pointer, a & _NO_PART, b & _NO_PART):
+                raise ValueError("ignore_parts: at most 8192 parts")
+
+    def add_rest(self, pairs: Array, by_parts: bool) -> None:
+        """Leaves out what meets at rest, (k, 2) triangles."""
+        packed = np.ascontiguousarray(pairs, np.uint32)
+        if len(packed) and not library.cscdpy_left_out_add_rest(self.pointer, address_of(packed), len(packed),
+                                                                by_parts):
+            raise ValueError("ignore_rest: at most 8192 parts")
+
+
+def replay(frames: Iterable[Any], F: Any, *, parts: Any = None, ignore_parts: Any = (),
+           ignore_rest: Optional[str] = None, contacts: bool = True, depths: bool = True,
+           frame_numbers: Optional[Sequence[int]] = None, rings: int = 2, gap: int = 0, threads: int = 1,
+           progress: Optional[Callable[[str, float], Any]] = None, **options: Any) -> Replay:
+    """Follows a mesh through the frames of a recording.
+
+    Parameters
+    ----------
+    frames : (B, n, 3), or an iterable of (n, 3)
+        Read as they come; two are held at a time.
+    F : (m, 3) or (m, 4) integers, or Mesh
+    parts : (t,) integers, optional
+        The part of each triangle of the mesh, -1 for none; events are between parts. By default objects are the parts.
+    ignore_parts : (k, 2) integers
+        Pairs of parts that are not looked at with each other; a part with itself as well.
+    ignore_rest : "pairs" or "parts", optional
+        Leaves out the pairs of triangles that meet in the first frame, or all pairs of the parts that do.
+    contacts : bool
+        Whether to look at what happens between the frames.
+    depths : bool
+        Whether to look for curves and depths.
+    frame_numbers : sequence of int, optional
+        What frames are called, ascending.
+    rings, gap : int
+        How near in space and time things belong to one event (include/cscd/events.h).
+    options
+        Further ones of ``Detector``, but ``ignored`` and ``ignore``.
+
+    Returns
+    -------
+    Replay
+        An iterator of ``Frame``. After the last one, its ``events`` are those of the whole recording, those of the tool.
+
+    >>> below = [[0, 0, 0], [4, 0, 0], [0, 4, 0]]
+    >>> moving = [below + [[1, 1, z], [1, 1, z + 1], [2, 1, z + 1]] for z in (0.5, -0.5, -2)]
+    >>> run = replay(moving, [[0, 1, 2], [3, 4, 5]], parts=[0, 1])
+    >>> [len(frame.intersections) for frame in run]
+    [0, 1, 0]
+    >>> run.events.first_frame.tolist(), run.events.last_frame.tolist(), run.events.kind_names()
+    ([1], [2], (('crossing',),))
+    """
+    return Replay(frames, F, parts=parts, ignore_parts=ignore_parts, ignore_rest=ignore_rest, contacts=contacts,
+                  depths=depths, frame_numbers=frame_numbers, rings=rings, gap=gap, threads=threads,
+                  progress=progress, **options)
+
+
+class Replay:
+    """An iterator of ``Frame``; see ``replay``.
+
+    Attributes
+    ----------
+    mesh : Mesh
+        Known from the first frame on.
+    events : Events
+        Those that have ended so far; after the last frame all of them, by their first frames.
+    """
+
+    def __init__(self, frames: Iterable[Any], F: Any, *, parts: Any, ignore_parts: Any, ignore_rest: Optional[str],
+                 contacts: bool, depths: bool, frame_numbers: Optional[Sequence[int]], rings: int, gap: int,
+                 **options: Any) -> None:
+        if isinstance(frames, np.ndarray) and frames.ndim != 3:
+            raise ValueError(f"frames: expected an array (B, n, 3), got shape {frames.shape}; one frame is frames[None]")
+        for name in ("ignored", "ignore"):
+            if name in options:
+                raise ValueError(f"{name}: a replay leaves out by ignore_parts= and ignore_rest=")
+        if ignore_rest not in _RESTS:
+            raise ValueError(f"ignore_rest: expected None, 'pairs' or 'parts', got {ignore_rest!r}")
+        self._frames = iter(frames)
+        self._numbers = None if frame_numbers is None else [int(number) for number in frame_numbers]
+        self._faces = F
+        self._parts, self._ignore_parts, self._ignore_rest = parts, ignore_parts, ignore_rest
+        self._contacts, self._depths = contacts, depths
+        self._tracking = {"rings": rings, "gap": gap}
+        self._options = options
+        self._index = 0
+        self._before: Any = None
+        self._taken: List[Array] = []
+        self._finished = False
+
+    # ---- before the first frame ---------------------------------------------------------------------------
+
+    def _open(self, first: Any) -> None:
+        """Makes what is needed, now that there are positions."""
+        self.mesh = mesh_of(self._faces, first if self._is_single(first) else None)
+        labels, part_count = self._label()
+        self._left_out = self._leave_out(first, labels, part_count)
+        self._detector = Detector(self.mesh, _left_out=self._left_out, **self._options)
+        if self._parts is not None:
+            self._detector.set_parts(np.where(labels == _NO_PART, -1, labels.astype(np.int64)), part_count)
+        tracking = new_struct("event_options")
+        library.cscd_event_defaults_sized(address_of(tracking), tracking.nbytes)
+        for name, value in self._tracking.items():
+            tracking[name] = value
+        tracking["part_count"], tracking["labels"] = part_count, address_of(labels)
+        self._follow_seams(tracking)
+        with self._detector._host as host:
+            self._tracker = new_handle(host, library.cscd_event_tracker_destroy, library.cscdpy_tracker_create,
+                                       self.mesh.pointer, address_of(tracking))
+        self._found_options = intersection_options(2**64 - 1, 0, False, self._depths, True)
+
+    @staticmethod
+    def _is_single(positions: Any) -> bool:
+        return not isinstance(positions, (list, tuple)) or np.ndim(positions[0]) != 2
+
+    def _label(self) -> Tuple[Array, int]:
+        if self._parts is not None:
+            return labels_of(self._parts, self.mesh.triangle_count, None)
+        return self.mesh.triangle_objects, self.mesh.object_count
+
+    def _leave_out(self, first: Any, labels: Array, part_count: int) -> Optional[LeftOut]:
+        if len(self._ignore_parts) == 0 and self._ignore_rest is None:
+            return None
+        left_out = LeftOut(self.mesh, labels, part_count)
+        left_out.add_parts(self._ignore_parts, part_count)
+        if self._ignore_rest is not None:
+            options = {name: value for name, value in self._options.items() if name in ("seams", "threads", "rules")}
+            left_out.add_rest(Detector(self.mesh, **options).check(first), self._ignore_rest == "parts")
+        return left_out
+
+    def _follow_seams(self, tracking: Array) -> None:
+        if self._options.get("seams") is not None:
+            self._seams = as_indices("seams", self._options["seams"], 2, self.mesh.vertex_count, "vertices")
+            tracking["seams"], tracking["seam_count"] = address_of(self._seams), len(self._seams)
+
+    # ---- frame by frame -----------------------------------------------------------------------------------
+
+    def __iter__(self) -> Iterator[Frame]:
+        return self
+
+    def __next__(self) -> Frame:
+        positions = next(self._frames, None)
+        if positions is None:
+            self._finish()
+            raise StopIteration
+        if self._index == 0:
+            self._open(positions)
+        number = self._number()
+        views, kept = self._detector._views(f"frames[{self._index}]", positions)
+        kept = [array.copy() for array in kept]
+        touched = self._step(kept)
+        found = self._find(kept)
+        self._before = kept
+        self._index += 1
+        return Frame(number, touched, found, self._take(library.cscdpy_tracker_take))
+
+    def _number(self) -> int:
+        if self._numbers is None:
+            return self._index
+        if self._index >= len(self._numbers):
+            raise ValueError(f"frame_numbers: expected one for each frame, got {len(self._numbers)}")
+        return self._numbers[self._index]
+
+    def _step(self, positions: List[Array]) -> Contacts:
+        """The contacts on the way here, which the tracker gets, too."""
+        if self._before is None or not self._contacts:
+            return np.empty(0, Contacts.record()).view(Contacts)
+        touched = self._detector.step(_joined(self._before), _joined(positions))
+        with self._detector._host as host:
+            host.call(library.cscdpy_tracker_add_contacts, self._tracker.pointer, address_of(touched), len(touched))
+        return touched
+
+    def _find(self, positions: List[Array]) -> Intersections:
+        detector = self._detector
+        views, kept = detector._views("frames", _joined(positions))
+        found = detector._lists["intersection_pairs"]
+        with detector._host as host:
+            detector._find(host, views, self._found_options)
+            pairs = copy_records(found, structs["intersection_pair"])
+            if self._left_out is not None and not library.cscdpy_left_out_show(self._left_out.pointer,
+                                                                               address_of(found)):
+                raise MemoryError("out of memory for the depths of a frame")
+            surface = _Surface(found, self.mesh.vertex_count, self._depths, True)
+            host.call(library.cscdpy_tracker_add_frame, self._tracker.pointer, self._index, address_of(found))
+        answer = Intersections(self.mesh, detector, kept, pairs, False, True)
+        if self._depths:
+            answer._surface = surface
+        answer.part_pairs = surface.parts
+        return answer
+
+    # ---- events -------------------------------------------------------------------------------------------
+
+    def _take(self, function: Any) -> Events:
+        """Events that have ended, in the caller's numbers."""
+        out = new_struct("events")
+        with self._detector._host as host:
+            host.call(function, self._tracker.pointer, address_of(out))
+            taken = copy_records(out, Events.record())
+        self._taken.append(taken)
+        return self._shown(taken)
+
+    def _shown(self, taken: Array) -> Events:
+        """Without the events that only follow from others."""
+        shown = taken.copy()
+        count = ctypes.c_size_t(len(shown))
+        if not library.cscdpy_choose_events(address_of(shown), ctypes.addressof(count)):
+            raise MemoryError("out of memory for the events")
+        shown = shown[: count.value]
+        if self._numbers is not None:
+            for name in ("first_frame", "last_frame", "worst_frame"):
+                shown[name] = np.asarray(self._numbers, np.int64)[shown[name].astype(np.intp)]
+        found: Events = shown.view(Events)
+        return found
+
+    def _finish(self) -> None:
+        if self._index > 0 and not self._finished:
+            self._take(library.cscdpy_tracker_finish)
+        self._finished = True
+
+    @property
+    def events(self) -> Events:
+        taken = np.concatenate(self._taken) if self._taken else np.empty(0, Events.record())
+        order = np.lexsort((taken["first_triangle"], taken["b"], taken["a"], taken["first_frame"]))
+        return self._shown(taken[order])
+
+
+def _joined(arrays: List[Array]) -> Any:
+    """Positions as they were given: one array, or one for each object."""
+    return arrays if len(arrays) > 1 else arrays[0]

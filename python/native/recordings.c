@@ -1,0 +1,148 @@
+/* Recordings and plans in files, for Python. */
+#include "python/native/exports.h"
+#include "python/native/interpreter.h"
+
+#include "src/io/plan_file.h"
+#include "src/tool/common/part_names.h"
+#include "src/tool/common/plan_colours.h"
+#include "src/tool/tool.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct read_recording {
+    recording recording;
+    part_names parts;
+} read_recording;
+
+/* model_path: a mesh file. frame_paths: what the tool takes for FRAMES; none: the model, or what a glTF file animates. fps: of
+ * a glTF file, 0: 24. Files are read without Python's lock. */
+PYTHON_API bool cscdpy_recording_open(const char *model_path, const char *const *frame_paths,
+                                      size_t frame_path_count, double fps, read_recording **out,
+                                      io_error *error) {
+    recording_options options = {.model_path = model_path,
+                                 .frame_paths = frame_paths,
+                                 .frame_path_count = frame_path_count,
+                                 .frames = {.fps = fps},
+                                 .thread_count = 1};
+    read_recording *r = calloc(1, sizeof *r);
+    if (r == NULL) return io_fail(error, "out of memory");
+    void *thread = python.save_thread();
+    bool opened = recording_open(&options, &r->recording, error);
+    if (opened && !part_names_find(&r->recording, NULL, &r->parts, error)) {
+        recording_close(&r->recording);
+        opened = false;
+    }
+    python.restore_thread(thread);
+    if (!opened) {
+        free(r);
+        return false;
+    }
+    *out = r;
+    return true;
+}
+
+PYTHON_API void cscdpy_recording_close(read_recording *r) {
+    part_names_free(&r->parts);
+    recording_close(&r->recording);
+    free(r);
+}
+
+PYTHON_API const cscd_mesh *cscdpy_recording_mesh(const read_recording *r) {
+    return r->recording.mesh;
+}
+
+PYTHON_API uint32_t cscdpy_recording_frame_count(const read_recording *r) {
+    return r->recording.frame_count;
+}
+
+PYTHON_API double cscdpy_recording_fps(const read_recording *r) {
+    return recording_fps(&r->recording);
+}
+
+/* Per frame: what the artist calls it. Per triangle: the face of the file that it is cut from, and its part. Per vertex: its
+ * number in the file. Returns how many faces the file has. */
+PYTHON_API uint32_t cscdpy_recording_copy(const read_recording *r, int32_t *frame_numbers, uint32_t *faces,
+                                          uint32_t *parts, uint32_t *file_vertices) {
+    const cscd_mesh *mesh = r->recording.mesh;
+    const uint32_t triangle_count = cscd_mesh_triangle_count(mesh);
+    memcpy(frame_numbers, r->recording.frame_numbers, r->recording.frame_count * sizeof *frame_numbers);
+    for (uint32_t t = 0; t < triangle_count; t++) {
+        faces[t] = recording_file_face(&r->recording, t);
+        parts[t] = r->parts.labels[t];
+    }
+    for (uint32_t v = 0; v < cscd_mesh_vertex_count(mesh); v++)
+        file_vertices[v] = recording_file_vertex(&r->recording, v);
+    return r->recording.objects[0].file.polygon_count;
+}
+
+PYTHON_API uint32_t cscdpy_recording_part_count(const read_recording *r) {
+    return r->parts.count;
+}
+
+PYTHON_API const char *cscdpy_recording_part_name(const read_recording *r, uint32_t part) {
+    return r->parts.names[part];
+}
+
+/* positions: of all vertices, three doubles each. One call at a time. */
+PYTHON_API bool cscdpy_recording_read(read_recording *r, uint32_t frame, double *positions, io_error *error) {
+    void *thread = python.save_thread();
+    bool read = recording_read(&r->recording, frame, positions, error);
+    python.restore_thread(thread);
+    return read;
+}
+
+/* ---- plans ----------------------------------------------------------------------------------------------- */
+
+/* Within a turn in the host of the mesh, which has the plan. */
+PYTHON_API bool cscdpy_plan_read(const char *path, const cscd_mesh *mesh, cscd_plan **out, io_error *error) {
+    return plan_file_read(path, cscd_mesh_context(mesh), mesh, out, error);
+}
+
+static bool colour_plan(const cscd_plan *plan, const cscd_mesh *mesh, uint8_t *colours) {
+    if (cscd_plan_method(plan) == CSCD_METHOD_CHARGE) return plan_colour_charge(plan, mesh, colours);
+    plan_colour_regions(plan, cscd_mesh_triangle_count(mesh), colours);
+    return true;
+}
+
+/* positions: the mesh at rest, as the plan was made from it. */
+PYTHON_API bool cscdpy_plan_write(const char *path, const cscd_mesh *mesh, const double *positions,
+                                  const cscd_plan *plan, io_error *error) {
+    uint8_t *colours = malloc((size_t)cscd_mesh_triangle_count(mesh) * 3);
+    bool written = (colours != NULL && colour_plan(plan, mesh, colours)) || io_fail(error, "out of memory");
+    written = written && plan_file_write(path, mesh, positions, plan, colours, error);
+    free(colours);
+    return written;
+}
+
+/* The mesh at rest in a plan file, or in any file of a mesh; cscdpy_polygons_... work on it. */
+PYTHON_API bool cscdpy_mesh_read(const char *path, mesh_file **out, io_error *error) {
+    mesh_file *mesh = calloc(1, sizeof *mesh);
+    if (mesh == NULL) return io_fail(error, "out of memory");
+    if (!mesh_file_read(path, mesh, error)) {
+        free(mesh);
+        return false;
+    }
+    *out = mesh;
+    return true;
+}
+
+PYTHON_API uint32_t cscdpy_mesh_vertex_count(const mesh_file *mesh) {
+    return mesh->vertex_count;
+}
+
+PYTHON_API void cscdpy_mesh_copy_positions(const mesh_file *mesh, double *positions) {
+    memcpy(positions, mesh->positions, (size_t)mesh->vertex_count * 3 * sizeof *positions);
+}
+
+/* ---- the tool ---------------------------------------------------------------------------------------------- */
+
+/* Runs the tool `cscd` in this process, with its own signals and output, and returns its exit code. */
+PYTHON_API int cscdpy_run_tool(int argument_count, char **arguments) {
+    void *thread = python.save_thread();
+    int code = tool_run(argument_count, arguments);
+    fflush(NULL);
+    python.restore_thread(thread);
+    return code;
+}
