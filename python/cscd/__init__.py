@@ -22,9 +22,9 @@ from .results import CONTACT_KINDS, INTERSECTION_KINDS, Contacts, Events, PairCo
 
 __version__: str = _library.cscd_version_string().decode()
 
-__all__ = ["CONTACT_KINDS", "Cancelled", "Contacts", "Curve", "Detector", "Error", "Events", "Frame", "FrameSequence",
-           "HalfSpace",
-           "INTERSECTION_KINDS", "InContact", "Intersections", "LineSearch", "ListTooLong", "Mesh", "PairContacts",
-           "PairDistances", "PartPairs", "Plan", "Points", "Proximities", "Recording", "Replay", "Scene", "Wires", "__version__", "contacts",
-           "intersections", "is_self_intersecting", "pairs_near", "pairs_step", "read", "replay", "self_intersecting_faces",
+__all__ = ["CONTACT_KINDS", "Cancelled", "Contacts", "Curve", "Detector", "Error", "Events", "Frame",
+           "FrameSequence", "HalfSpace", "INTERSECTION_KINDS", "InContact", "Intersections", "LineSearch",
+           "ListTooLong", "Mesh", "PairContacts", "PairDistances", "PartPairs", "Plan", "Points", "Proximities",
+           "Recording", "Replay", "Scene", "Wires", "__version__", "contacts", "intersections",
+           "is_self_intersecting", "pairs_near", "pairs_step", "read", "replay", "self_intersecting_faces",
            "self_intersections", "write_report"]

@@ -72,7 +72,8 @@ class DetectorOptions:
             self._keep("rules", rules_of(mesh, rules))
             self._struct["rule_count"] = mesh.object_count
         if matrix is not None:
-            lengths = np.ascontiguousarray(as_floats("thickness_matrix", matrix, "a square array of lengths"), np.float64)
+            lengths = as_floats("thickness_matrix", matrix, "a square array of lengths")
+            lengths = np.ascontiguousarray(lengths, np.float64)
             if lengths.ndim != 2 or lengths.shape[0] != lengths.shape[1]:
                 raise ValueError(f"thickness_matrix: expected a square array of lengths, got shape {lengths.shape}")
             self._keep("thickness_matrix", lengths)

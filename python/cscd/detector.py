@@ -244,7 +244,7 @@ class Detector:
         return reached, found[names].view(np.recarray)[0]
 
     def line_search(self, x0: Any, x1: Any, reach: float = 0.0) -> LineSearch:
-        """One motion that is asked about many times; ``reach`` is the largest distance that its ``near`` will be asked."""
+        """One motion that is asked about many times; ``reach`` is the largest distance for which its ``near`` is asked."""
         return LineSearch(self, x0, x1, reach)
 
     # ---- changes ----------------------------------------------------------------------------------------

@@ -51,8 +51,8 @@ class Curve(NamedTuple):
 
 
 class PartPairs(np.recarray):  # type: ignore[type-arg]
-    """Intersections summed up by pair of parts: a, b, crossing, coplanar, folded, duplicate, touching, faces (2), shares
-    (2), curves, touching_curves, length, depth."""
+    """Intersections summed up by pair of parts: a, b, crossing, coplanar, folded, duplicate, touching, faces (2),
+    shares (2), curves, touching_curves, length, depth."""
 
 
 class Intersections:
@@ -140,7 +140,7 @@ class Intersections:
 
     @property
     def depths(self) -> Array:
-        """All depths, by the members of ``cscd_depth`` (include/cscd/depths.h): of vertices, then of points on edges."""
+        """All depths, by the members of ``cscd_depth`` (include/cscd/depths.h): of vertices, then of edges."""
         return self._found().depths
 
     @property

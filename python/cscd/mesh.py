@@ -111,7 +111,7 @@ class Points:
 
 
 class HalfSpace:
-    """All that is behind a plane, as the ground. ``normal`` (3,) points out of it; its one vertex is a point of the plane."""
+    """All that is behind a plane, as the ground. ``normal`` (3,) points out of it; its vertex is a point of the plane."""
 
     vertex_count = 1
 

@@ -20,7 +20,9 @@ Array = Any
 
 
 class Plan:
-    """The regions of a mesh and their detector points. Made by ``Plan.charge``, ``Plan.kmeans``, ``Plan.read`` or ``Plan.from_parts``.
+    """The regions of a mesh and their detector points.
+
+    Made by ``Plan.charge``, ``Plan.kmeans``, ``Plan.read`` or ``Plan.from_parts``.
 
     Attributes
     ----------
@@ -140,8 +142,8 @@ class Plan:
         except Error as problem:
             if "libcscd-charge" not in str(problem):
                 raise
-            raise Error(f"{problem}\nThis installation of cscd was built without charge, as wheels are. Install it from "
-                        "its sources on a machine with LAPACKE and OpenBLAS (Debian: liblapacke-dev, "
+            raise Error(f"{problem}\nThis installation of cscd was built without charge, as wheels are. Install it "
+                        "from its sources on a machine with LAPACKE and OpenBLAS (Debian: liblapacke-dev, "
                         "libopenblas-dev): pip install --no-binary cscd; or make the plan with the tool's "
                         "`cscd preprocess`, and read it by Plan.read") from None
 
@@ -177,7 +179,8 @@ class Plan:
 
     @property
     def regions(self) -> Any:
-        """The regions, by the members of ``cscd_region``: component, triangle_count, area, visible_share, detector_point."""
+        """The regions, by the members of ``cscd_region``: component, triangle_count, area, visible_share,
+        detector_point."""
         found = new_struct("region", self.region_count)
         size = structs["region"].itemsize
         for i in range(len(found)):

@@ -86,8 +86,8 @@ def intersections(V1: Any, F1: Any, V2: Any, F2: Any, kinds: Any = None, *, thre
                   progress: Progress = None) -> Intersections:
     """The pairs of triangles of which one is of the first mesh, the other of the second one.
 
-    ``pairs[:, 0]`` are rows of ``F1``, ``pairs[:, 1]`` rows of ``F2``. The mesh of the answer is a ``Scene`` of both, in
-    whose numbers ``triangles``, ``depth`` and ``buried`` are.
+    ``pairs[:, 0]`` are rows of ``F1``, ``pairs[:, 1]`` rows of ``F2``. The mesh of the answer is a ``Scene`` of both,
+    in whose numbers ``triangles``, ``depth`` and ``buried`` are.
 
     >>> V = [[0, 0, 0], [4, 0, 0], [0, 4, 0]]
     >>> intersections(V, [[0, 1, 2]], [[1, 1, -1], [1, 1, 1], [3, 3, 1]], [[0, 1, 2]]).pairs.tolist()

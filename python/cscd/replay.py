@@ -33,8 +33,8 @@ class Frame(NamedTuple):
     contacts: Contacts
     #: What intersects or touches in this frame.
     intersections: Intersections
-    #: The events that have ended before this frame, and were not given out yet. ``Replay.events`` lacks those of them that
-    #: turn out to follow from others.
+    #: The events that have ended before this frame, and were not given out yet. ``Replay.events`` lacks those of them
+    #: that turn out to follow from others.
     events: Events
 
 
@@ -99,7 +99,7 @@ def replay(frames: Iterable[Any], F: Any, *, parts: Any = None, ignore_parts: An
     Returns
     -------
     Replay
-        An iterator of ``Frame``. After the last one, its ``events`` are those of the whole recording, those of the tool.
+        An iterator of ``Frame``. After the last one its ``events`` are those that the tool finds in the recording.
 
     >>> below = [[0, 0, 0], [4, 0, 0], [0, 4, 0]]
     >>> moving = [below + [[1, 1, z], [1, 1, z + 1], [2, 1, z + 1]] for z in (0.5, -0.5, -2)]
@@ -129,7 +129,8 @@ class Replay:
                  contacts: bool, depths: bool, frame_numbers: Optional[Sequence[int]], rings: int, gap: int,
                  **options: Any) -> None:
         if isinstance(frames, np.ndarray) and frames.ndim != 3:
-            raise ValueError(f"frames: expected an array (B, n, 3), got shape {frames.shape}; one frame is frames[None]")
+            raise ValueError(f"frames: expected an array (B, n, 3), got shape {frames.shape}; one frame is "
+                             "frames[None]")
         for name in ("ignored", "ignore"):
             if name in options:
                 raise ValueError(f"{name}: a replay leaves out by ignore_parts= and ignore_rest=")

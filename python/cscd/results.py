@@ -105,7 +105,8 @@ class PairContacts(Records):
 
 
 class PairDistances(Records):
-    """How far the features of each pair of ``pairs_near`` are apart: distance (inf beyond the limit), u, v, point, normal."""
+    """How far apart the features of each pair of ``pairs_near`` are: distance (inf beyond the limit), u, v, point,
+    normal."""
 
     @classmethod
     def record(cls) -> Any:
