@@ -8,7 +8,7 @@ import numpy as np
 
 from ._library import address_of, structs
 
-__all__ = ["as_faces", "as_floats", "as_indices", "as_positions", "mutable_view", "views_of"]
+__all__ = ["as_faces", "as_floats", "as_indices", "as_positions", "count_of", "mutable_view", "number_of", "views_of"]
 
 Array = Any  # np.ndarray[Any, Any], said shorter
 
@@ -19,6 +19,21 @@ _LARGEST_EXACT = 2**53
 def describe(array: Array) -> str:
     """What a sentence says of an array that does not fit."""
     return f"shape {array.shape} of {array.dtype}"
+
+
+def number_of(name: str, value: Any) -> float:
+    """A number, as a double."""
+    try:
+        return float(value)
+    except (OverflowError, TypeError, ValueError):
+        raise ValueError(f"{name}: expected a number, got {value!r}") from None
+
+
+def count_of(name: str, value: Any, largest: int = 2**63 - 1) -> int:
+    """A whole number from 0 on."""
+    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not 0 <= value <= largest:
+        raise ValueError(f"{name}: expected a whole number from 0 to {largest}, got {value!r}")
+    return int(value)
 
 
 def as_floats(name: str, values: Any, what: str) -> Array:

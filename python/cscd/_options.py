@@ -7,12 +7,12 @@ from typing import Any, Dict, List, Optional
 
 import numpy as np
 
-from ._arrays import as_floats, as_indices
+from ._arrays import as_floats, as_indices, count_of, number_of
 from ._host import Handle, Host, code_of
 from ._library import address_of, library, new_struct, structs
 from .mesh import Mesh
 
-__all__ = ["DetectorOptions"]
+__all__ = ["DetectorOptions", "in_python", "matrix_of", "rules_of"]
 
 Array = Any
 
@@ -54,10 +54,7 @@ class DetectorOptions:
         self._struct[member] = address_of(array)
 
     def _set_number(self, name: str, value: Any) -> None:
-        try:
-            self._struct[name] = value
-        except (OverflowError, TypeError, ValueError):
-            raise ValueError(f"{name}: expected a number, got {value!r}") from None
+        self._struct[name] = count_of(name, value) if name == "longest_list" else number_of(name, value)
 
     def _set_pairs(self, member: str, count: str, values: Any, limit: int, of_what: str) -> None:
         if values is None:
@@ -72,12 +69,30 @@ class DetectorOptions:
             self._keep("rules", rules_of(mesh, rules))
             self._struct["rule_count"] = mesh.object_count
         if matrix is not None:
-            lengths = as_floats("thickness_matrix", matrix, "a square array of lengths")
-            lengths = np.ascontiguousarray(lengths, np.float64)
-            if lengths.ndim != 2 or lengths.shape[0] != lengths.shape[1]:
-                raise ValueError(f"thickness_matrix: expected a square array of lengths, got shape {lengths.shape}")
+            lengths = matrix_of(matrix)
             self._keep("thickness_matrix", lengths)
             self._struct["thickness_class_count"] = len(lengths)
+
+
+#: What the sentences of the library call things that have other names here.
+_PYTHON_NAMES = (("call cscd_detector_set_longest_list", "call set_longest_list"), ("cscd_detector_", ""))
+
+
+def in_python(sentence: str, positions: str) -> str:
+    """A sentence of the library, with the names of Python; ``positions``: what the caller calls these."""
+    if sentence.startswith("positions: "):
+        sentence = positions + sentence[len("positions"):]
+    for c_name, name in _PYTHON_NAMES:
+        sentence = sentence.replace(c_name, name)
+    return sentence
+
+
+def matrix_of(matrix: Any) -> Array:
+    """A thickness matrix, packed."""
+    lengths = np.ascontiguousarray(as_floats("thickness_matrix", matrix, "a square array of lengths"), np.float64)
+    if lengths.ndim != 2 or lengths.shape[0] != lengths.shape[1]:
+        raise ValueError(f"thickness_matrix: expected a square array of lengths, got shape {lengths.shape}")
+    return lengths
 
 
 def rules_of(mesh: Mesh, rules: Any) -> Array:

@@ -6,13 +6,14 @@ from typing import Any, Callable, Dict, Optional, Tuple
 
 import numpy as np
 
-from ._arrays import as_faces, as_indices, mutable_view, views_of
+from ._arrays import as_faces, count_of, mutable_view, number_of, views_of
 from ._host import IN_CONTACT, Handle, Host, new_handle, raise_status
 from ._library import address_of, library, new_struct, structs
-from ._options import DetectorOptions
+from ._options import DetectorOptions, in_python
 from .errors import InContact, ListTooLong
-from .intersections import Intersections, _Surface, intersection_options, kind_set, labels_of
+from .intersections import Intersections, _Surface, intersection_options, kind_set
 from .line_search import LineSearch
+from .live import LiveSettings
 from .mesh import Mesh
 from .plan import Plan
 from .results import Contacts, Proximities, copy_records
@@ -24,7 +25,7 @@ Array = Any
 _NEAR_PAIRS, _NEAR_UNIQUE = 0, 1
 
 
-class Detector:
+class Detector(LiveSettings):
     """Finds the contacts of one mesh.
 
     Parameters
@@ -99,6 +100,7 @@ class Detector:
             self._handle: Handle = new_handle(host, library.cscd_detector_destroy, library.cscdpy_detector_create,
                                               pointer, None if plan is None else plan.pointer, options.address)
         self._detector = self._handle.pointer
+        self._name = "x"  # what a sentence calls the positions of one moment
         self._lists = {name: new_struct(name) for name in ("contacts", "intersections", "intersection_pairs",
                                                            "proximities", "free_step")}
         self._at = {name: address_of(array) for name, array in self._lists.items()}
@@ -208,7 +210,8 @@ class Detector:
         views, kept = self._views("x", x)
         with self._host as host:
             self._call(host, "proximities", library.cscdpy_detector_find_near, self._detector, address_of(views),
-                       float(distance), _NEAR_UNIQUE if unique else _NEAR_PAIRS, self._at["proximities"])
+                       number_of("distance", distance), _NEAR_UNIQUE if unique else _NEAR_PAIRS,
+                       self._at["proximities"])
             found: Proximities = self._copied("proximities", Proximities)
             return found
 
@@ -223,7 +226,7 @@ class Detector:
         out = new_struct("displacement_bounds")
         with self._host as host:
             host.call(library.cscdpy_detector_displacement_bounds, self._detector, address_of(views),
-                      float(search_radius), 0, address_of(bounds), bounds.nbytes, address_of(out))
+                      number_of("search_radius", search_radius), 0, address_of(bounds), bounds.nbytes, address_of(out))
         return bounds
 
     def truncate(self, x0: Any, x1: Any, search_radius: float, out: Optional[Array] = None) -> Tuple[Array, Any]:
@@ -239,54 +242,15 @@ class Detector:
         found = new_struct("truncation")
         with self._host as host:
             host.call(library.cscdpy_detector_truncate, self._detector, address_of(start), address_of(end),
-                      float(search_radius), address_of(target), address_of(found))
+                      number_of("search_radius", search_radius), address_of(target), address_of(found))
         names = ["fraction", "obstacle_fraction", "near_count", "moved", "shortened", "waiting"]
         return reached, found[names].view(np.recarray)[0]
 
     def line_search(self, x0: Any, x1: Any, reach: float = 0.0) -> LineSearch:
-        """One motion that is asked about many times; ``reach`` is the largest distance for which its ``near`` is asked."""
+        """One motion that is asked about many times; ``reach``: the largest distance for which ``near`` is asked."""
         return LineSearch(self, x0, x1, reach)
 
-    # ---- changes ----------------------------------------------------------------------------------------
-
-    def set_separation(self, min_separation: float, tolerance: float = 0.0) -> None:
-        """Changes ``min_separation`` and ``tolerance`` from the next call on."""
-        self._set(library.cscd_detector_set_separation, float(min_separation), float(tolerance))
-        self._inputs.update(min_separation=min_separation, tolerance=tolerance)
-
-    def set_rest(self, rest: Any) -> None:
-        """Takes edge lengths at rest (n, 3) for the thresholds of ``near``; None forgets them."""
-        views, kept = (None, None) if rest is None else self._views("rest", rest)
-        with self._host as host:
-            host.call(library.cscdpy_detector_set_rest, self._detector, None if views is None else address_of(views))
-
-    def set_parts(self, labels: Any, part_count: Optional[int] = None) -> None:
-        """Says which part each triangle is in, by numbers from 0 on, -1 for none; None: the objects are the parts."""
-        if labels is None:
-            self._set(library.cscd_detector_set_parts, None, 0)
-            return
-        array, count = labels_of(labels, self.mesh.triangle_count, part_count)
-        self._set(library.cscd_detector_set_parts, address_of(array), count)
-
-    def set_active(self, vertices: Any) -> None:
-        """Only these vertices move, all others rest (include/cscd/live.h); None: all may move."""
-        array = as_indices("vertices", () if vertices is None else vertices, 1, self.mesh.vertex_count, "vertices")
-        if vertices is None:
-            self._set(library.cscd_detector_set_active, None, 0)
-        else:
-            self._set(library.cscd_detector_set_active, address_of(array), len(array))
-
-    def set_seams(self, seams: Any) -> None:
-        """Replaces the seams: (k, 2) vertices; None: none."""
-        array = as_indices("seams", () if seams is None else seams, 2, self.mesh.vertex_count, "vertices")
-        self._set(library.cscd_detector_set_seams, address_of(array) if len(array) else None, len(array))
-        self._inputs.update(seams=seams)
-
-    def set_ignored(self, ignored: Any) -> None:
-        """Replaces the pairs of triangles that are left out: (k, 2); None: none."""
-        array = as_indices("ignored", () if ignored is None else ignored, 2, self.mesh.triangle_count, "triangles")
-        self._set(library.cscd_detector_set_ignored, address_of(array) if len(array) else None, len(array))
-        self._inputs.update(ignored=ignored)
+    # ---- while a call runs ----------------------------------------------------------------------------------
 
     def cancel(self) -> None:
         """Ends a call that is running in another thread, which then raises ``Cancelled``."""
@@ -325,7 +289,7 @@ class Detector:
     def _call(self, host: Host, kind: str, function: Any, *arguments: Any) -> None:
         status = function(host.handle, *arguments)
         if status:
-            self._fail(status, host.detail(), kind)
+            self._fail(status, in_python(host.detail(), self._name), kind)
 
     def _fail(self, status: int, sentence: str, kind: str) -> None:
         if status == IN_CONTACT:
@@ -355,9 +319,10 @@ class Detector:
             raise ValueError(f"{name}: expected a packed, writable array {shape} of float32 or float64")
         return out
 
-    def _set(self, function: Any, *arguments: Any) -> None:
-        with self._host as host:
-            host.call_public(function, self._detector, *arguments)
+    def _called(self, name: str) -> Detector:
+        """The same detector, whose positions have another name in sentences."""
+        self._name = name
+        return self
 
     def _read(self, name: str, function: Any, *arguments: Any) -> Dict[str, Any]:
         found = new_struct(name)
@@ -370,13 +335,6 @@ class Detector:
 
     def __reduce__(self) -> Tuple[Callable[..., Any], Tuple[Any, ...]]:
         return _restore, (self.mesh, self._inputs)
-
-
-def count_of(name: str, value: Any) -> int:
-    """A whole number from 0 on."""
-    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not 0 <= value < 2**63:
-        raise ValueError(f"{name}: expected a whole number from 0 on, got {value!r}")
-    return int(value)
 
 
 def free_step_of(step: Array, reached: Array) -> Tuple[Array, float, Optional[Contacts]]:

@@ -30,11 +30,12 @@ class _OpenRecording:
     """Open files, which are closed with this object."""
 
     def __init__(self, path: PathLike, frames: Sequence[bytes], fps: float) -> None:
+        self.pointer: Optional[int] = None
+        os.stat(path)  # a missing file is Python's own error
         out, error = ctypes.c_void_p(), ctypes.create_string_buffer(1024)
         paths = (ctypes.c_char_p * len(frames))(*frames)
         model = ctypes.c_char_p(os.fsencode(path))
         self._kept = (model, paths)  # the library does not copy them
-        self.pointer: Optional[int] = None
         if not library.cscdpy_recording_open(model, paths, len(frames), fps, ctypes.byref(out),
                                              ctypes.addressof(error)):
             raise ValueError(error.value.decode(errors="replace"))

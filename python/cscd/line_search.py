@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Optional, Tuple
 
 import numpy as np
 
-from ._arrays import mutable_view
+from ._arrays import mutable_view, number_of
 from ._host import Handle
 from ._library import address_of, library
 from .results import Contacts, Proximities, copy_records
@@ -43,7 +43,7 @@ class LineSearch:
             assert out.value is not None
             self._handle = Handle(out.value, host, library.cscd_line_search_destroy)
             host.call(library.cscdpy_line_search_begin, self._handle.pointer, address_of(start), address_of(end),
-                      float(reach))
+                      number_of("reach", reach))
         self.candidate_count: int = library.cscd_line_search_candidate_count(self._handle.pointer)
 
     def positions(self, fraction: float) -> Array:
@@ -51,7 +51,8 @@ class LineSearch:
         reached = self._empty()
         target = mutable_view(reached)
         with self._host as host:
-            host.call(library.cscdpy_line_search_positions, self._handle.pointer, float(fraction), address_of(target))
+            host.call(library.cscdpy_line_search_positions, self._handle.pointer,
+                      number_of("fraction", fraction), address_of(target))
         return reached
 
     def max_step(self, longest: float = 1.0) -> Tuple[Array, float, Optional[Contacts]]:
@@ -62,7 +63,7 @@ class LineSearch:
         detector = self.detector
         with self._host as host:
             detector._call(host, "free_step", library.cscdpy_line_search_max_step, self._handle.pointer,
-                           float(longest), address_of(target), detector._at["free_step"])
+                           number_of("longest", longest), address_of(target), detector._at["free_step"])
             return free_step_of(detector._lists["free_step"], reached)
 
     def near(self, fraction: float, distance: float, unique: bool = False) -> Proximities:
@@ -70,7 +71,8 @@ class LineSearch:
         detector = self.detector
         with self._host as host:
             detector._call(host, "proximities", library.cscdpy_line_search_find_near, self._handle.pointer,
-                           float(fraction), float(distance), _NEAR_UNIQUE if unique else _NEAR_PAIRS,
+                           number_of("fraction", fraction), number_of("distance", distance),
+                           _NEAR_UNIQUE if unique else _NEAR_PAIRS,
                            detector._at["proximities"])
             found: Proximities = copy_records(detector._lists["proximities"], Proximities.record()).view(Proximities)
             return found

@@ -8,7 +8,7 @@ from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
-from ._arrays import as_faces, as_floats, as_indices, as_positions
+from ._arrays import as_faces, as_floats, as_indices, as_positions, count_of
 from ._host import Handle, Host, new_handle
 from ._library import address_of, copy_list, library, new_struct, structs
 
@@ -18,6 +18,7 @@ Array = Any
 
 _TRIANGLES, _WIRES, _POINTS, _HALF_SPACE = 0, 1, 2, 3
 _MOST_CORNERS = 2**31 - 1
+_MOST_VERTICES = 2**32 - 2
 
 
 def cut_polygons(positions: Array, corners: Array, face_sizes: Array) -> Tuple[Array, Array]:
@@ -36,6 +37,7 @@ def cut_polygons(positions: Array, corners: Array, face_sizes: Array) -> Tuple[A
 
 def read_surface(path: Union[str, os.PathLike[str]]) -> Tuple[Array, Array]:
     """The triangles and the positions of a mesh file."""
+    os.stat(path)  # a missing file is Python's own error
     out, error = ctypes.c_void_p(), ctypes.create_string_buffer(1024)
     if not library.cscdpy_mesh_read(os.fsencode(path), ctypes.byref(out), ctypes.addressof(error)):
         raise ValueError(error.value.decode(errors="replace"))
@@ -63,6 +65,8 @@ class Surface:
         if positions is not None:
             positions = as_positions("positions", positions, vertex_count)
             vertex_count = len(positions)
+        if vertex_count is not None:
+            vertex_count = count_of("vertex_count", vertex_count, _MOST_VERTICES)
         rows = as_faces("F", faces, vertex_count)
         if vertex_count is None:
             vertex_count = int(rows.max()) + 1 if rows.size else 0
@@ -98,20 +102,20 @@ class Wires:
     """An object of segments between its vertices, as of hair: ``edges`` (k, 2), indices of its own vertices."""
 
     def __init__(self, edges: Any, vertex_count: Optional[int] = None) -> None:
-        limit = 2**32 - 2 if vertex_count is None else vertex_count
+        limit = _MOST_VERTICES if vertex_count is None else count_of("vertex_count", vertex_count, _MOST_VERTICES)
         self.edges = as_indices("edges", edges, 2, limit, "vertices")
-        self.vertex_count = int(self.edges.max(initial=0)) + 1 if vertex_count is None else vertex_count
+        self.vertex_count = int(self.edges.max(initial=0)) + 1 if vertex_count is None else limit
 
 
 class Points:
     """An object of ``vertex_count`` points, as of particles; with a thickness they are spheres."""
 
     def __init__(self, vertex_count: int) -> None:
-        self.vertex_count = vertex_count
+        self.vertex_count = count_of("vertex_count", vertex_count, _MOST_VERTICES)
 
 
 class HalfSpace:
-    """All that is behind a plane, as the ground. ``normal`` (3,) points out of it; its vertex is a point of the plane."""
+    """All that is behind a plane, as the ground. ``normal`` (3,) points out of it; its vertex lies in the plane."""
 
     vertex_count = 1
 

@@ -6,7 +6,7 @@ from typing import Any, Tuple
 
 import numpy as np
 
-from ._arrays import as_indices, as_positions, views_of
+from ._arrays import as_indices, as_positions, number_of, views_of
 from ._host import Host
 from ._library import address_of, library, new_struct
 from .results import CONTACT_KINDS, PairContacts, PairDistances
@@ -63,7 +63,8 @@ def pairs_step(kind: str, x0: Any, x1: Any, points: Any = None, *, min_separatio
         views1, kept1 = (None, None) if end is None else views_of("x1", end, [len(start)])
         with Host(threads) as host:
             host.call(library.cscdpy_pairs_step, address_of(pairs), address_of(views0),
-                      None if views1 is None else address_of(views1), float(min_separation), float(tolerance),
+                      None if views1 is None else address_of(views1), number_of("min_separation", min_separation),
+                      number_of("tolerance", tolerance),
                       address_of(found))
     return found.view(PairContacts)
 
@@ -80,6 +81,7 @@ def pairs_near(kind: str, x: Any, points: Any = None, *, distance: float = np.in
     if len(found):
         views, kept_positions = views_of("x", positions, [len(positions)])
         with Host(threads) as host:
-            host.call(library.cscdpy_pairs_find_near, address_of(pairs), address_of(views), float(distance),
+            host.call(library.cscdpy_pairs_find_near, address_of(pairs), address_of(views),
+                      number_of("distance", distance),
                       address_of(found))
     return found.view(PairDistances)

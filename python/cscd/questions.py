@@ -63,7 +63,8 @@ def self_intersections(V: Any, F: Any, kinds: Any = None, *, threads: int = 1, p
     mesh = mesh_of(F, positions)
     if mesh.triangle_count == 0:
         return Intersections.none(mesh)
-    return Detector(mesh, threads=threads, progress=progress, **options).find_intersections(positions, kinds)
+    detector = Detector(mesh, threads=threads, progress=progress, **options)
+    return detector._called("V").find_intersections(positions, kinds)
 
 
 def is_self_intersecting(V: Any, F: Any, kinds: Any = None, *, threads: int = 1, progress: Progress = None,
@@ -79,7 +80,8 @@ def is_self_intersecting(V: Any, F: Any, kinds: Any = None, *, threads: int = 1,
     mesh = mesh_of(F, positions)
     if mesh.triangle_count == 0:
         return False
-    return Detector(mesh, threads=threads, progress=progress, **options).is_intersecting(positions, kinds)
+    detector = Detector(mesh, threads=threads, progress=progress, **options)
+    return detector._called("V").is_intersecting(positions, kinds)
 
 
 def intersections(V1: Any, F1: Any, V2: Any, F2: Any, kinds: Any = None, *, threads: int = 1,
@@ -207,9 +209,9 @@ class _FrameQueue:
             if taken is None:
                 return
             index, frame = taken
-            found = detector.find_intersections(as_positions(f"frames[{index}]", frame, self.mesh.vertex_count),
-                                                self._kinds)
-            self._rows[index] = found.faces
+            name = f"frames[{index}]"
+            positions = as_positions(name, frame, self.mesh.vertex_count)
+            self._rows[index] = detector._called(name).find_intersections(positions, self._kinds).faces
             if report:
                 self.report(index + 1)
 

@@ -232,7 +232,7 @@ class Replay:
 
     def _find(self, positions: List[Array]) -> Intersections:
         detector = self._detector
-        views, kept = detector._views("frames", _joined(positions))
+        views, kept = detector._called(f"frames[{self._index}]")._views("frames", _joined(positions))
         found = detector._lists["intersection_pairs"]
         with detector._host as host:
             detector._find(host, views, self._found_options)
