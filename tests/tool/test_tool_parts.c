@@ -188,6 +188,32 @@ static void nothing_is_inside_of_what_is_left_out(void **state) {
     }
 }
 
+/* So many triangles in a row, each a part of its own. The first two cross, and all others are apart. */
+static temp_path write_row(int count) {
+    temp_path path = temp_file_path(&folder, "row.obj");
+    FILE *file = fopen(path.text, "w");
+    assert_non_null(file);
+    fputs("v 1 1 -1\nv 2 1 -1\nv 1 1 1\no P0\nf 1 2 3\n", file);
+    for (int i = 1; i < count; i++) {
+        const int x = 9 * (i - 1), v = 3 * i;
+        fprintf(file, "v %d 0 0\nv %d 0 0\nv %d 4 0\no P%d\nf %d %d %d\n", x, x + 4, x, i, v + 1, v + 2,
+                v + 3);
+    }
+    assert_int_equal(fclose(file), 0);
+    return path;
+}
+
+/* Tables of pairs of parts have a limit, of which every option that needs one speaks. */
+static void too_many_parts_are_told(void **state) {
+    (void)state;
+    const char *limit = "at most 8192 parts, and there are 8193";
+    temp_path row = write_row(8193);
+    EXPECT_ERROR(1, TEXTS("--ignore-rest=parts takes", limit), "check", row.text, "--ignore-rest=parts");
+    EXPECT_ERROR(1, TEXTS("--ignore-parts and --only take", limit), "check", row.text, "--only", "P0");
+    row = write_row(8192);
+    EXPECT_TOOL(0, "check", row.text, "--ignore-rest=parts", "--fail-on", "crossing");
+}
+
 static void objects_are_not_named_twice(void **state) {
     (void)state;
     const char *one = "v 0 0 0\nv 4 0 0\nv 0 4 0\no Head\nf 1 2 3\n",
@@ -209,6 +235,7 @@ int main(void) {
         cmocka_unit_test(bad_tables_and_names_are_told),
         cmocka_unit_test(parts_that_meet_at_rest_are_left_out),
         cmocka_unit_test(nothing_is_inside_of_what_is_left_out),
+        cmocka_unit_test(too_many_parts_are_told),
         cmocka_unit_test(objects_are_not_named_twice),
     };
     return cmocka_run_group_tests_name("tool_parts", tests, make_files, remove_files);

@@ -162,7 +162,8 @@ static bool check_rest(ignore_pairs *pairs, bool by_parts, recording *r, cscd_de
     if (cscd_detector_check(detector, CSCD_DOUBLES(positions, cscd_mesh_vertex_count(r->mesh)), &found) !=
         CSCD_OK)
         return io_fail(error, "frame %d: %s", r->frame_numbers[0], cscd_context_detail(r->context));
-    return ignore_pairs_add_rest(pairs, found.items, found.count, by_parts) ||
+    if (ignore_pairs_add_rest(pairs, found.items, found.count, by_parts)) return true;
+    return (!by_parts || part_rules_check_count(&pairs->parts, "--ignore-rest=parts takes", error)) &&
            io_fail(error, "frame %d: out of memory for what intersects or touches at rest",
                    r->frame_numbers[0]);
 }

@@ -45,7 +45,7 @@ bool ignore_pairs_prepare(const ignore_options *options, recording *r, ignore_pa
 bool ignore_pairs_of(const cscd_mesh *mesh, part_names *parts, ignore_pairs *out, io_error *error);
 
 /* Leaves out pairs that intersect or touch at rest; by_parts: all pairs of the two parts, unless both triangles are in one. False
- * when out of memory. */
+ * when there are too many parts for that, or when out of memory. */
 bool ignore_pairs_add_rest(ignore_pairs *pairs, const cscd_intersection *found, size_t count, bool by_parts);
 
 /* Makes a detector leave out the pairs, which live until it has been destroyed. */

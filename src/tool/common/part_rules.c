@@ -64,12 +64,17 @@ static bool mark_list(const part_rules *rules, const char *option, const part_pa
     return marked;
 }
 
+bool part_rules_check_count(const part_names *parts, const char *options_take, io_error *error) {
+    return parts->count <= PARTS_MAX ||
+           io_fail(error, "%s at most %d parts, and there are %u", options_take, PARTS_MAX, parts->count);
+}
+
 bool part_rules_create(const part_names *parts, const part_pairs_list *ignored, const part_pairs_list *only,
                        part_rules *out, io_error *error) {
     part_rules rules = {.parts = parts, .size = parts->count + 1};
-    if (parts->count > PARTS_MAX && ignored->count + only->count > 0)
-        return io_fail(error, "--ignore-parts and --only take at most %d parts, and there are %u", PARTS_MAX,
-                       parts->count);
+    if (ignored->count + only->count > 0 &&
+        !part_rules_check_count(parts, "--ignore-parts and --only take", error))
+        return false;
     if (!mark_list(&rules, "--ignore-parts", ignored, &rules.ignored, error) ||
         !mark_list(&rules, "--only", only, &rules.only, error)) {
         part_rules_free(&rules);
@@ -86,7 +91,7 @@ void part_rules_free(part_rules *rules) {
 }
 
 bool part_rules_ignore(part_rules *rules, uint32_t a, uint32_t b) {
-    if (rules->size > PARTS_MAX + 1) return false;
+    if (rules->parts->count > PARTS_MAX) return false;
     if (rules->ignored == NULL) rules->ignored = make_table(rules);
     if (rules->ignored == NULL) return false;
     mark_pair(rules, rules->ignored, row_of(rules, a), row_of(rules, b));

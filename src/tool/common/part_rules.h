@@ -23,7 +23,11 @@ bool part_rules_create(const part_names *parts, const part_pairs_list *ignored, 
                        part_rules *out, io_error *error);
 void part_rules_free(part_rules *rules);
 
-/* Leaves out the pairs of two parts, which may be NO_PART, from now on. False when out of memory. */
+/* Whether rules can be of so many parts. The sentence begins with the options, and "take" or "takes". */
+bool part_rules_check_count(const part_names *parts, const char *options_take, io_error *error);
+
+/* Leaves out the pairs of two parts, which may be NO_PART, from now on. False when there are too many parts, or when out of
+ * memory. */
 bool part_rules_ignore(part_rules *rules, uint32_t a, uint32_t b);
 
 /* Are two sets of triangles, each that of a feature, left out? They are if one of the first and one of the second form a
