@@ -126,12 +126,54 @@ static void places_are_of_the_files(void **state) {
     json_node_free(root);
 }
 
+/* ---- depths of what is left out --------------------------------------------------------------------------- */
+
+#define HEAD                                                                                                       \
+    "v -10 -10 -10\nv 10 -10 -10\nv 10 10 -10\nv -10 10 -10\nv -10 -10 10\nv 10 -10 10\nv 10 10 10\nv -10 10 10\n" \
+    "o Head\nf 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n"
+
+/* Checks a model without the pairs of two parts: how deep its frame is, and which parts are the worst. */
+static void check_depth(const char *text, const char *left_out, double depth, const char *worst) {
+    const temp_path path = temp_file_write(&folder, "head.obj", text, strlen(text));
+    EXPECT_TOOL(3, "check", path.text, "--quiet", "--ignore-parts", left_out, "--fail-depth", "0.01",
+                "--json", json.text, "--junit", xml.text);
+    json_node *root = json_node_read_file(json.text);
+    const json_node *frame = json_node_item(json_node_member(root, "frames"), 0);
+    assert_true(json_node_number(frame, "depth") == depth);
+    json_node_free(root);
+    char *lines = read_whole_file(xml.text, NULL);
+    if (strstr(lines, worst) == NULL) fail_msg("'%s' is not in: %s", worst, lines);
+    free(lines);
+}
+
+/* Two stones in a head, as deep as each other: the one that is left out is not the worst. */
+static void equal_depths_are_told_apart(void **state) {
+    (void)state;
+    static const char stones[] =
+        HEAD "v 4 0 0\nv 5 -1 -1\nv 5 1 -1\nv 5 0 1\no Left\nf 9 11 10\nf 9 12 11\nf 9 10 12\nf 10 11 12\n"
+             "v -4 0 0\nv -5 -1 -1\nv -5 1 -1\nv -5 0 1\no Right\nf 13 14 15\nf 13 15 16\nf 13 16 14\n"
+             "f 14 16 15\n";
+    check_depth(stones, "Left,Head", 6.0, "worst: Head x Right");
+    check_depth(stones, "Right,Head", 6.0, "worst: Head x Left");
+}
+
+/* A stone of two parts, of which the one that is left out has the deepest vertex, together with the other one. */
+static void lesser_depths_are_still_there(void **state) {
+    (void)state;
+    static const char stone[] =
+        HEAD "v 5 0 0\nv 4 -1 -1\nv 4 1 -1\nv 4 0 1\no Side\nf 9 10 11\nf 9 11 12\nf 9 12 10\no Base\n"
+             "f 10 12 11\n";
+    check_depth(stone, "Base,Head", 5.0, "worst: Head x Side");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bounds_are_allowed),
         cmocka_unit_test(contacts_count_for_the_end_of_their_interval),
         cmocka_unit_test(the_share_is_of_crossings),
         cmocka_unit_test(places_are_of_the_files),
+        cmocka_unit_test(equal_depths_are_told_apart),
+        cmocka_unit_test(lesser_depths_are_still_there),
     };
     return cmocka_run_group_tests_name("tool_rules", tests, make_files, remove_files);
 }

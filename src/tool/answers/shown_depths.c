@@ -44,6 +44,7 @@ bool shown_depths_choose(shown_depths *s, cscd_intersection_pairs *found) {
     if (all == NULL || !ignore_pairs_any(s->ignored)) return true;
     s->items.count = s->patches.count = 0;
     s->list = (cscd_depths){0};
+    s->all = all;
     for (size_t i = 0; i < all->count; i++) {
         if (!is_shown(s, &all->items[i])) continue;
         cscd_depth *kept = growable_push(&s->items);
@@ -61,11 +62,27 @@ bool shown_depths_choose(shown_depths *s, cscd_intersection_pairs *found) {
     return true;
 }
 
-/* The sum of a pair of parts has the greatest of all its depths: it holds if this one is still there. */
+static uint32_t part_of(const shown_depths *s, const cscd_depth *depth) {
+    const cscd_mesh *mesh = s->ignored->mesh;
+    uint32_t count;
+    const uint32_t *triangles = depth->vertex != UINT32_MAX
+                                    ? cscd_mesh_vertex_triangles(mesh, depth->vertex, &count)
+                                    : cscd_mesh_edge_triangles(mesh, depth->edge, &count);
+    return s->ignored->parts.labels[triangles[0]]; /* as the library counts: that of the first triangle */
+}
+
+/* A pair of parts comes with the deepest of all its depths. If that one is left out, another one may still be there: of a vertex
+ * between two parts, only one of which is left out. */
 double shown_depths_of_parts(const shown_depths *s, const cscd_intersection_pairs *found,
                              const cscd_part_pair *pair) {
-    if (found->depths != &s->list) return pair->depth;
-    for (size_t i = 0; i < s->list.count; i++)
-        if (s->list.items[i].depth == pair->depth) return pair->depth;
-    return 0.0;
+    if (found->depths != &s->list || pair->deepest == SIZE_MAX) return pair->depth;
+    if (is_shown(s, &s->all->items[pair->deepest])) return pair->depth;
+    double greatest = 0.0;
+    for (size_t i = 0; i < s->list.count; i++) {
+        const cscd_depth *depth = &s->list.items[i];
+        const uint32_t part = part_of(s, depth), burier = s->ignored->parts.labels[depth->triangle];
+        const bool of_pair = (part == pair->a && burier == pair->b) || (part == pair->b && burier == pair->a);
+        if (of_pair && depth->depth > greatest) greatest = depth->depth;
+    }
+    return greatest;
 }

@@ -9,6 +9,7 @@ typedef struct shown_depths {
     const ignore_pairs *ignored;
     growable items, patches; /* cscd_depth, cscd_patch_depth: what is left */
     cscd_depths list;        /* of these */
+    const cscd_depths *all;  /* the library's, until its next call */
 } shown_depths;
 
 shown_depths shown_depths_of(const ignore_pairs *ignored); /* of a whole recording; they outlive it */
@@ -18,6 +19,6 @@ void shown_depths_free(shown_depths *s);
  * memory. */
 bool shown_depths_choose(shown_depths *s, cscd_intersection_pairs *found);
 
-/* The greatest depth of a pair of parts that is shown; 0: none. */
+/* The greatest depth of a pair of parts that is shown, in the frame chosen last; 0: none. */
 double shown_depths_of_parts(const shown_depths *s, const cscd_intersection_pairs *found,
                              const cscd_part_pair *pair);
