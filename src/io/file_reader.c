@@ -18,6 +18,7 @@ static size_t write_path(char *message, const char *path) {
     size_t length = strlen(path);
     bool cut = length > SHOWN_PATH_LENGTH;
     const char *shown = cut ? path + length - SHOWN_PATH_LENGTH : path;
+    while (cut && ((unsigned char)*shown & 0xc0) == 0x80) shown++; /* within a character */
     return (size_t)snprintf(message, MESSAGE_SIZE, "%s%s", cut ? "..." : "", shown);
 }
 

@@ -4,6 +4,7 @@
 #include "src/io/gifti/gifti_array.h"
 #include "src/io/mesh_builder.h"
 #include "src/io/path_name.h"
+#include "src/io/text_escape.h"
 
 #include <expat.h>
 #include <inttypes.h>
@@ -52,8 +53,9 @@ static bool choose_word(gifti_parser *parser, const char **attributes, const cha
             *out = i;
             return true;
         }
-    return file_reader_fail_here(reader_here(parser), "%s is '%.40s', expected %s%s%s", name, value, words[0],
-                                 word_count > 1 ? " or " : "", word_count > 1 ? words[word_count - 1] : "");
+    return file_reader_fail_here(reader_here(parser), "%s is '%.*s', expected %s%s%s", name,
+                                 TEXT_CUT(value, 40), words[0], word_count > 1 ? " or " : "",
+                                 word_count > 1 ? words[word_count - 1] : "");
 }
 
 static bool read_dimensions(gifti_parser *parser, const char **attributes, gifti_array *array) {
@@ -61,11 +63,12 @@ static bool read_dimensions(gifti_parser *parser, const char **attributes, gifti
     char *end;
     const long long count = strtoll(rows, &end, 10);
     if (*end != '\0' || end == rows || count < 1 || count > INT32_MAX)
-        return file_reader_fail_here(reader_here(parser), "Dim0 is '%.40s', expected 1 to %" PRId32, rows,
-                                     INT32_MAX);
+        return file_reader_fail_here(reader_here(parser), "Dim0 is '%.*s', expected 1 to %" PRId32,
+                                     TEXT_CUT(rows, 40), INT32_MAX);
     if (strcmp(find_attribute(attributes, "Dimensionality"), "2") != 0 || strcmp(columns, "3") != 0)
         return file_reader_fail_here(reader_here(parser),
-                                     "Dim1 is '%.40s', expected two dimensions, the second of 3", columns);
+                                     "Dim1 is '%.*s', expected two dimensions, the second of 3",
+                                     TEXT_CUT(columns, 40));
     array->row_count = (uint32_t)count;
     return true;
 }
@@ -78,9 +81,9 @@ static bool read_encoding(gifti_parser *parser, const char **attributes, gifti_a
     if (strcmp(find_attribute(attributes, "Encoding"), "ExternalFileBinary") == 0)
         return file_reader_fail_here(
             reader_here(parser),
-            "its data are in another file, '%.200s'; save the surface with its data inside, for "
+            "its data are in another file, '%.*s'; save the surface with its data inside, for "
             "example as GZipBase64Binary",
-            find_attribute(attributes, "ExternalFileName"));
+            TEXT_CUT(find_attribute(attributes, "ExternalFileName"), 200));
     if (!choose_word(parser, attributes, "Encoding", encodings, 3, &encoding) ||
         !choose_word(parser, attributes, "ArrayIndexingOrder", layouts, 2, &column_major) ||
         (encoding != GIFTI_ASCII && !choose_word(parser, attributes, "Endian", orders, 2, &big_endian)))

@@ -1,6 +1,8 @@
 /* Accessors of a glTF file: typed arrays in its buffers, element by element as doubles. */
 #include "src/io/gltf/gltf_accessor.h"
 
+#include "src/io/text_escape.h"
+
 #include <inttypes.h>
 #include <string.h>
 
@@ -165,8 +167,8 @@ static bool check_type(const gltf_element *element, const gltf_element *user, co
         expected = types[i].name;
         if (type != NULL && strcmp(type, expected) == 0) return true;
     }
-    return gltf_fail(element, "type is %.20s, expected %s for %s of %s", type != NULL ? type : "missing",
-                     expected, key, user->name);
+    return gltf_fail(element, "type is %.*s, expected %s for %s of %s",
+                     TEXT_CUT(type != NULL ? type : "missing", 20), expected, key, user->name);
 }
 
 bool gltf_accessor_open(gltf_document *document, const gltf_element *user, const char *key,

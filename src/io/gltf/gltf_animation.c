@@ -1,6 +1,8 @@
 /* Reads an animation of a glTF file: which of them, its channels, and when it begins and ends. */
 #include "src/io/gltf/gltf_animation.h"
 
+#include "src/io/text_escape.h"
+
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -8,6 +10,9 @@
 #include <string.h>
 
 /* ---- which animation --------------------------------------------------------------------------------- */
+
+/* Of each animation in a list; a longer name is cut. */
+enum { SHOWN_NAME_LENGTH = 60 };
 
 static const char *name_of(const gltf_element *element) {
     const char *name = gltf_string(element, "name");
@@ -19,10 +24,16 @@ bool gltf_animation_names(const gltf_scene *scene, size_t *count, char *text, si
     size_t used = 0;
     text[0] = '\0';
     if (!gltf_array_length(root, "animations", count)) return false;
-    for (size_t i = 0; i < *count && used + 1 < size; i++) {
+    for (size_t i = 0; i < *count; i++) {
         gltf_element element;
         if (!gltf_element_at(root, "animations", "animation", i, &element)) return false;
-        used += (size_t)snprintf(text + used, size - used, "%s%s", i > 0 ? ", " : "", name_of(&element));
+        const char *comma = i > 0 ? ", " : "", *name = name_of(&element);
+        const int length = text_cut_length(name, SHOWN_NAME_LENGTH);
+        if (used + (size_t)length + sizeof ", , ..." > size) {
+            snprintf(text + used, size - used, "%s...", comma);
+            break;
+        }
+        used += (size_t)snprintf(text + used, size - used, "%s%.*s", comma, length, name);
     }
     return true;
 }
@@ -44,7 +55,7 @@ static bool find_animation(gltf_scene *scene, const char *name, gltf_element *ou
     }
     char names[300];
     if (!gltf_animation_names(scene, &count, names, sizeof names)) return false;
-    return gltf_fail(root, "holds no animation %.100s, but: %s", name, names);
+    return gltf_fail(root, "holds no animation %.*s, but: %s", TEXT_CUT(name, 100), names);
 }
 
 /* ---- channels ---------------------------------------------------------------------------------------- */
@@ -72,7 +83,8 @@ static bool read_interpolation(const gltf_element *sampler, gltf_interpolation *
             *out = (gltf_interpolation)i;
             return true;
         }
-    return gltf_fail(sampler, "interpolation is %.40s, expected LINEAR, STEP or CUBICSPLINE", name);
+    return gltf_fail(sampler, "interpolation is %.*s, expected LINEAR, STEP or CUBICSPLINE",
+                     TEXT_CUT(name, 40));
 }
 
 /* Which node, and what of it; *moves becomes false when this channel moves no vertex of the scene. */

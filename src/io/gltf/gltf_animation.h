@@ -24,7 +24,7 @@ typedef struct gltf_animation {
 /* The animation of this name, or with NULL the first one. On false *out owns nothing, and the error of the scene's reader is
  * set. */
 bool gltf_animation_open(gltf_scene *scene, const char *name, gltf_animation *out);
-/* The number of animations, and the names of all, as many as fit. */
+/* The number of animations, and the names of all; "..." stands for those that do not fit into size, which is 16 or more. */
 bool gltf_animation_names(const gltf_scene *scene, size_t *count, char *text, size_t size);
 void gltf_animation_close(gltf_animation *animation);
 

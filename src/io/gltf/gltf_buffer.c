@@ -3,6 +3,7 @@
 #include "src/io/gltf/gltf_document.h"
 #include "src/io/growable.h"
 #include "src/io/path_name.h"
+#include "src/io/text_escape.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
@@ -42,7 +43,8 @@ static char *path_of_uri(const gltf_element *buffer, const char *uri) {
     memcpy(path + folder_length, uri, uri_length + 1);
     size_t length;
     if (decode_percents(path + folder_length, &length)) return path;
-    gltf_fail(buffer, "uri %.80s has a percent sign without two hexadecimal digits of a character", uri);
+    gltf_fail(buffer, "uri %.*s has a percent sign without two hexadecimal digits of a character",
+              TEXT_CUT(uri, 80));
     free(path);
     return NULL;
 }
@@ -50,7 +52,8 @@ static char *path_of_uri(const gltf_element *buffer, const char *uri) {
 static bool load_file(const gltf_element *buffer, const char *uri, gltf_buffer *out) {
     const size_t scheme = strcspn(uri, ":/?#");
     if (uri[0] == '/' || uri[scheme] == ':')
-        return gltf_fail(buffer, "uri %.80s, expected a file in the folder of the glTF file", uri);
+        return gltf_fail(buffer, "uri %.*s, expected a file in the folder of the glTF file",
+                         TEXT_CUT(uri, 80));
     char *path = path_of_uri(buffer, uri);
     if (path == NULL) return false;
     file_reader file;

@@ -4,6 +4,7 @@
 #include "src/io/gltf.h"
 #include "src/io/growable.h"
 #include "src/io/path_name.h"
+#include "src/io/text_escape.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -100,9 +101,9 @@ static bool check_version(const gltf_element *root) {
     if (version == NULL)
         return gltf_fail(root, "asset.version is missing, expected a glTF file of version 2.0");
     if (strncmp(version, "2.", 2) != 0)
-        return gltf_fail(root, "is a glTF file of version %.20s, expected 2.0", version);
+        return gltf_fail(root, "is a glTF file of version %.*s, expected 2.0", TEXT_CUT(version, 20));
     if (least != NULL && strcmp(least, "2.0") != 0)
-        return gltf_fail(root, "needs a reader of glTF %.20s, this one reads 2.0", least);
+        return gltf_fail(root, "needs a reader of glTF %.*s, this one reads 2.0", TEXT_CUT(least, 20));
     return true;
 }
 
@@ -124,7 +125,7 @@ static bool check_extensions(const gltf_element *root) {
         if (name == NULL) return gltf_fail(root, "extensionsRequired[%zu] is no string", i);
         if (is_harmless(name)) continue;
         const bool compressed = strstr(name, "draco") != NULL || strstr(name, "meshopt") != NULL;
-        return gltf_fail(root, "requires the extension %.80s, which is not read%s", name,
+        return gltf_fail(root, "requires the extension %.*s, which is not read%s", TEXT_CUT(name, 80),
                          compressed ? "; export it without compression" : "");
     }
     return true;

@@ -1,6 +1,8 @@
 /* The JSON of a glTF file: members are asked for by name and type, and errors say which object has the fault. */
 #include "src/io/gltf/gltf_json.h"
 
+#include "src/io/text_escape.h"
+
 #include <inttypes.h>
 #include <json-c/json.h>
 #include <limits.h>
@@ -111,6 +113,12 @@ bool gltf_object(const gltf_element *element, const char *key, gltf_element *out
 
 /* ---- numbers ---------------------------------------------------------------------------------------- */
 
+/* What a message shows of a value; NULL is null, and a value has no text when memory runs out. */
+static const char *text_of(gltf_value *value) {
+    const char *text = json_object_get_string(value);
+    return text != NULL ? text : "null";
+}
+
 /* Some exporters write 3.0 for 3. */
 static bool whole_number(gltf_value *value, int64_t *number) {
     const enum json_type type = json_object_get_type(value);
@@ -128,7 +136,7 @@ static bool take_integer(const gltf_element *element, const char *key, gltf_valu
                          int64_t most, int64_t *out) {
     int64_t number = 0;
     if (!whole_number(value, &number))
-        return gltf_fail(element, "%s is %.40s, expected a whole number", key, json_object_get_string(value));
+        return gltf_fail(element, "%s is %.*s, expected a whole number", key, TEXT_CUT(text_of(value), 40));
     if (number < least || number > most)
         return gltf_fail(element, "%s is %" PRId64 ", expected %" PRId64 " to %" PRId64, key, number, least,
                          most);
@@ -182,8 +190,8 @@ bool gltf_numbers(const gltf_element *element, const char *key, size_t count, do
         gltf_value *value = find_item(array, i);
         const enum json_type type = json_object_get_type(value);
         if ((type != json_type_int && type != json_type_double) || !isfinite(json_object_get_double(value)))
-            return gltf_fail(element, "%s[%zu] is %.40s, expected a finite number", key, i,
-                             value == NULL ? "null" : json_object_get_string(value));
+            return gltf_fail(element, "%s[%zu] is %.*s, expected a finite number", key, i,
+                             TEXT_CUT(text_of(value), 40));
         numbers[i] = json_object_get_double(value);
     }
     return true;

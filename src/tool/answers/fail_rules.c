@@ -29,8 +29,8 @@ static void name_worst(const answers *a, const frame_answer *frame, char *text, 
     if (!frame_answer_meets(frame) && frame->depth == 0.0) return;
     const char *first = part_names_at(a->parts, frame->worst_parts[0]);
     const char *second = part_names_at(a->parts, frame->worst_parts[1]);
-    snprintf(text, size, ", worst: %.*s x %.*s", text_cut_length(first, NAME_BYTES_MAX), first,
-             text_cut_length(second, NAME_BYTES_MAX), second);
+    snprintf(text, size, ", worst: %.*s x %.*s", TEXT_CUT(first, NAME_BYTES_MAX),
+             TEXT_CUT(second, NAME_BYTES_MAX));
 }
 
 bool fail_rules_meet(const fail_rules *rules, const answers *a, const frame_answer *frame,

@@ -29,7 +29,7 @@ static bool fail_name(const part_names *parts, const char *option, const char *n
     size_t used = 0;
     for (uint32_t i = 0; i < parts->count && used + 48 < sizeof known; i++)
         used += (size_t)snprintf(known + used, sizeof known - used, "%s%.*s", i > 0 ? ", " : "",
-                                 text_cut_length(parts->names[i], 40), parts->names[i]);
+                                 TEXT_CUT(parts->names[i], 40));
     return io_fail(error, "%s: there is no part '%.*s'; the parts are %s%s", option, (int)length, name, known,
                    parts->count > 0 && used + 48 >= sizeof known ? ", ..." : "");
 }

@@ -4,6 +4,7 @@
 
 #include "src/io/path_name.h"
 #include "src/io/plan_file.h"
+#include "src/io/text_escape.h"
 #include "src/tool/common/methods.h"
 
 #include <stdio.h>
@@ -70,13 +71,13 @@ static void try_model_plan(const plan_request *request, const recording *r, plan
     io_error error = {""};
     if (path != NULL && access(path, F_OK) == 0) {
         if (!plan_file_read(path, r->context, r->mesh, &plan, &error)) {
-            snprintf(choice->remark, sizeof choice->remark, "%.560s: left aside", error.text);
+            snprintf(choice->remark, sizeof choice->remark, "%.*s: left aside", TEXT_CUT(error.text, 560));
         } else if (method_fits(request, plan)) {
             choose_plan(choice, request, plan, path);
             return;
         } else {
-            snprintf(choice->remark, sizeof choice->remark, "%.500s: left aside, it is of method %s", path,
-                     cscd_method_name(cscd_plan_method(plan)));
+            snprintf(choice->remark, sizeof choice->remark, "%.*s: left aside, it is of method %s",
+                     TEXT_CUT(path, 500), cscd_method_name(cscd_plan_method(plan)));
             cscd_plan_destroy(plan);
         }
     }
@@ -126,7 +127,7 @@ static bool make_best(const plan_request *request, const recording *r, plan_choi
     }
     if (small) {
         if (make_plan(request, CSCD_METHOD_CHARGE, r, choice, error)) return true;
-        snprintf(choice->remark, sizeof choice->remark, "%.590s", error->text);
+        snprintf(choice->remark, sizeof choice->remark, "%.*s", TEXT_CUT(error->text, 590));
     } else {
         add_remark(choice, "more than 6000 triangles; cscd preprocess makes a better plan, once");
     }
