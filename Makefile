@@ -265,7 +265,8 @@ test-run: tool library $(TESTS) $(MODELS) $(BUILD)/benchmarks/queries $(BUILD)/b
 test-blender:
 	@.ci/packages blender
 	@$(MAKE) --no-print-directory tool $(BUILD)/tests/blender/print_frames
-	@BUILD=$(BUILD) PAGE=$(PAGE) tests/blender/run.sh
+	@$(MAKE) --no-print-directory python
+	@BUILD=$(BUILD) PYTHON_PACKAGE=$(BUILD_ROOT)/python PAGE=$(PAGE) tests/blender/run.sh
 
 # What --vtk writes, read by VTK itself and compared with the other outputs; nothing else needs VTK.
 test-vtk:

@@ -148,6 +148,11 @@ class Replay:
         self._taken: List[Array] = []
         self._finished = False
 
+    def cancel(self) -> None:
+        """Ends a call of this iterator that is running in another thread, which then raises ``Cancelled``."""
+        if self._index > 0:
+            self._detector.cancel()
+
     # ---- before the first frame ---------------------------------------------------------------------------
 
     def _open(self, first: Any) -> None:

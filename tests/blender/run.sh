@@ -1,7 +1,8 @@
 #!/bin/sh
 # Builds rigs in Blender, exports them as glTF, and compares their frames as the tool reads them with the vertices that Blender
-# evaluates; selects there what the tool has found in a scene of its own, checks meshes whose polygons a fan would fill wrongly, and
-# runs the steps of docs/from-your-program.md. BUILD is the build folder, PAGE the option --write of page.py, or nothing. Ends non-zero when something differs.
+# evaluates; selects there what the tool has found in a scene of its own, compares the extension with the tool, checks meshes whose
+# polygons a fan would fill wrongly, and runs the steps of docs/from-your-program.md. BUILD is the build folder, PYTHON_PACKAGE the
+# folder of the Python package, PAGE the option --write of page.py, or nothing. Ends non-zero when something differs.
 set -eu
 cd "$(dirname "$0")"
 : "${BUILD:?BUILD must name the build folder}"
@@ -28,7 +29,22 @@ grep '^selection:' "$folder/log"
 run_blender families.py "$(realpath "$BUILD/cscd")" "$folder"
 grep '^families:' "$folder/log"
 
+# The extension, on the Python package of these sources.
+PYTHONPATH=$(case ${PYTHON_PACKAGE:?PYTHON_PACKAGE must name the folder of the package} in /*) echo "$PYTHON_PACKAGE" ;; *) realpath "../../$PYTHON_PACKAGE" ;; esac)
+export PYTHONPATH
+check_extension() { # check_extension [FILE.blend]
+    blender --background "$@" --factory-startup --python-use-system-env --python-exit-code 1 --python extension.py -- \
+        "$(realpath "$BUILD/cscd")" "$folder/frames" >"$folder/log" 2>&1 || {
+        tail -20 "$folder/log"
+        exit 1
+    }
+    grep '^extension:' "$folder/log"
+    rm -r "$folder/frames"
+}
+check_extension
+
 mkdir "$folder/page"
 run_blender clamp.py "$folder/page"
 run_blender doll.py "$folder/page/doll.blend"
+check_extension "$folder/page/doll.blend"
 python3 page.py "$BUILD/cscd" "$folder/page/doll.blend" "$folder/page" ${PAGE:-}

@@ -1,0 +1,243 @@
+"""Reads what is to be checked out of a Blender scene: evaluated meshes in world space, and their parts.
+
+Faces keep Blender's own numbers: those of the polygons of the evaluated mesh.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Iterator, List, NamedTuple, Optional, Sequence, Tuple
+
+import bpy
+import numpy as np
+
+import cscd
+
+Array = Any
+
+#: What Blender evaluates to a mesh.
+MESH_TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
+
+
+class SceneError(Exception):
+    """Why a scene cannot be checked, as a sentence for the user."""
+
+
+class Polygons(NamedTuple):
+    """The faces of an object, at one frame."""
+
+    #: (n, 3) float64, in world space.
+    positions: Array
+    #: (c,) the vertices of all faces, one face after the other.
+    corners: Array
+    #: (m,) how many corners each face has.
+    counts: Array
+
+
+class Target(NamedTuple):
+    """An object that is checked."""
+
+    #: The name of the object in Blender.
+    name: str
+    vertex_count: int
+    face_count: int
+    #: The first of its faces in the numbers of the checked mesh.
+    first_face: int
+    first_vertex: int
+
+
+def objects_of(view_layer: Any, names: Sequence[str] = (), collections: Sequence[str] = ()) -> List[Any]:
+    """The objects that are named, or lie in a named collection, in the order of the scene; without names all visible ones."""
+    wanted = set(names)
+    for name in names:
+        if name not in view_layer.objects:
+            raise SceneError(f"there is no object {name!r} in the view layer {view_layer.name!r}")
+    for name in collections:
+        if name not in bpy.data.collections:
+            raise SceneError(f"there is no collection {name!r}")
+        wanted.update(thing.name for thing in bpy.data.collections[name].all_objects)
+    if names or collections:
+        return [thing for thing in view_layer.objects if thing.name in wanted and thing.type in MESH_TYPES]
+    return [thing for thing in view_layer.objects if thing.type in MESH_TYPES and thing.visible_get(view_layer=view_layer)]
+
+
+def read_polygons(thing: Any, depsgraph: Any) -> Polygons:
+    """The evaluated mesh of an object, with modifiers, shape keys and simulations, in world space.
+
+    Where the object's matrix mirrors, faces are turned over, so that their normals stay outside; Blender's exporters do
+    the same.
+    """
+    evaluated = thing.evaluated_get(depsgraph)
+    mesh = evaluated.to_mesh()
+    try:
+        positions = np.empty(3 * len(mesh.vertices), np.float32)
+        corners = np.empty(len(mesh.loops), np.int32)
+        counts = np.empty(len(mesh.polygons), np.int32)
+        mesh.vertices.foreach_get("co", positions)
+        mesh.loops.foreach_get("vertex_index", corners)
+        mesh.polygons.foreach_get("loop_total", counts)
+    finally:
+        evaluated.to_mesh_clear()
+    matrix = np.array(evaluated.matrix_world, np.float64)
+    world = positions.reshape(-1, 3).astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
+    if np.linalg.det(matrix[:3, :3]) < 0.0:
+        corners = _turned(corners, counts)
+    return Polygons(world, corners, counts)
+
+
+def _turned(corners: Array, counts: Array) -> Array:
+    """Each face the other way around, from the same corner on."""
+    ends = np.cumsum(counts)
+    starts = ends - counts
+    places = np.arange(len(corners)) - np.repeat(starts, counts)
+    sizes = np.repeat(counts, counts)
+    return corners[np.repeat(starts, counts) + (sizes - places) % sizes]
+
+
+class CheckedScene:
+    """Objects as one mesh of the module, and their positions frame by frame.
+
+    Attributes
+    ----------
+    mesh : cscd.Scene
+    targets : list of Target
+    """
+
+    def __init__(self, things: Sequence[Any], depsgraph: Any) -> None:
+        self._things = [thing.name for thing in things]
+        polygons = [read_polygons(thing, depsgraph) for thing in things]
+        kept = [(name, item) for name, item in zip(self._things, polygons) if len(item.counts)]
+        if not kept:
+            raise SceneError("there is nothing to check: none of the objects has faces")
+        self._things = [name for name, _ in kept]
+        self._counts = [item.counts for _, item in kept]
+        self._corners = [item.corners for _, item in kept]
+        self.targets: List[Target] = []
+        first_face = first_vertex = 0
+        for name, item in kept:
+            self.targets.append(Target(name, len(item.positions), len(item.counts), first_face, first_vertex))
+            first_face += len(item.counts)
+            first_vertex += len(item.positions)
+        try:
+            meshes = [cscd.Mesh.from_polygons(item.positions, item.corners, item.counts) for _, item in kept]
+        except ValueError as problem:
+            raise SceneError(str(problem)) from None
+        whole = [i for i, mesh in enumerate(meshes) if mesh.triangle_count]
+        if len(whole) < len(meshes):
+            raise SceneError(f"{self._things[next(i for i in range(len(meshes)) if i not in whole)]} has no face with three "
+                             "different corners; leave it out")
+        self.mesh = cscd.Scene(meshes)
+
+    def read(self, view_layer: Any, depsgraph: Any) -> Array:
+        """The positions of all vertices at the frame that the dependency graph has: (n, 3) float64."""
+        parts = []
+        for i, name in enumerate(self._things):
+            thing = view_layer.objects.get(name)
+            if thing is None:
+                raise SceneError(f"{name} is no longer in the view layer")
+            item = read_polygons(thing, depsgraph)
+            if not (np.array_equal(item.counts, self._counts[i]) and np.array_equal(item.corners, self._corners[i])):
+                raise SceneError(f"{name} has other faces than in the first frame ({len(item.counts)} instead of "
+                                 f"{len(self._counts[i])}); apply or switch off the modifier that changes them, or leave "
+                                 "the object out")
+            parts.append(item.positions)
+        return np.concatenate(parts)
+
+    def place_of(self, face: int) -> Tuple[str, int]:
+        """The object of a face, and Blender's number of it there."""
+        target = self.targets[self.object_of(face)]
+        return target.name, face - target.first_face
+
+    def object_of(self, face: int) -> int:
+        """Which target has a face."""
+        firsts = [target.first_face for target in self.targets]
+        return int(np.searchsorted(firsts, face, side="right")) - 1
+
+
+# ---- parts ---------------------------------------------------------------------------------------------------
+
+
+class Parts(NamedTuple):
+    """The part of each triangle, and what the parts are called."""
+
+    labels: Array
+    names: List[str]
+
+    def find(self, name: str) -> List[int]:
+        """The parts of that name, and those below it: OBJECT stands for all of OBJECT/GROUP."""
+        found = [i for i, part in enumerate(self.names) if part == name or part.startswith(name + "/")]
+        if not found:
+            raise SceneError(f"there is no part {name!r}; there are {', '.join(self.names[:12])}"
+                             f"{', ...' if len(self.names) > 12 else ''}")
+        return found
+
+
+def _dominant_groups(thing: Any, depsgraph: Any) -> Tuple[Array, List[str]]:
+    """The vertex group with the largest weight of each vertex, -1 without one, and the names of groups.
+
+    Where bones deform the object, only groups of bones count, as they say which limb a vertex belongs to.
+    """
+    names = [group.name for group in thing.vertex_groups]
+    bones = {bone.name for modifier in thing.modifiers if modifier.type == "ARMATURE" and modifier.object is not None
+             for bone in modifier.object.data.bones if bone.use_deform}
+    counted = [not bones or name in bones for name in names]
+    evaluated = thing.evaluated_get(depsgraph)
+    mesh = evaluated.to_mesh()
+    try:
+        groups = np.full(len(mesh.vertices), -1, np.int64)
+        for i, vertex in enumerate(mesh.vertices):
+            weights = [(entry.weight, -entry.group) for entry in vertex.groups
+                       if entry.group < len(names) and counted[entry.group] and entry.weight > 0.0]
+            if weights:
+                groups[i] = -max(weights)[1]
+    finally:
+        evaluated.to_mesh_clear()
+    return groups, names
+
+
+def _of_triangles(triangles: Array, of_vertices: Array) -> Array:
+    """The label that most corners of a triangle have; of equally many that of its first corner."""
+    a, b, c = (of_vertices[triangles[:, i]] for i in range(3))
+    return np.where(b == c, b, a)
+
+
+def parts_of(checked: CheckedScene, view_layer: Any, depsgraph: Any, by_groups: bool = True) -> Parts:
+    """Parts by vertex group, as OBJECT/GROUP, of objects that have some; else an object is one part."""
+    labels = np.empty(checked.mesh.triangle_count, np.int64)
+    names: List[str] = []
+    of_objects = checked.mesh.triangle_objects
+    for i, target in enumerate(checked.targets):
+        triangles = np.flatnonzero(of_objects == i)
+        thing = view_layer.objects[target.name]
+        groups, group_names = _dominant_groups(thing, depsgraph) if by_groups and thing.type == "MESH" else (None, [])
+        if groups is None or not np.any(groups >= 0):
+            labels[triangles] = len(names)
+            names.append(target.name)
+            continue
+        own = checked.mesh.triangles[triangles].astype(np.int64) - target.first_vertex
+        found = _of_triangles(own, groups)
+        used = {group: len(names) + place for place, group in enumerate(sorted(set(found.tolist())))}
+        names += [f"{target.name}/{group_names[group]}" if group >= 0 else f"{target.name}/(no group)"
+                  for group in sorted(used)]
+        labels[triangles] = [used[group] for group in found.tolist()]
+    return Parts(labels, names)
+
+
+def frames_of(scene: Any, first: Optional[int], last: Optional[int], step: int = 1) -> range:
+    """The frames to check; by default those of the scene."""
+    begin = scene.frame_start if first is None else first
+    end = scene.frame_end if last is None else last
+    if end < begin:
+        raise SceneError(f"there are no frames from {begin} to {end}")
+    return range(begin, end + 1, max(step, 1))
+
+
+def read_frames(scene: Any, checked: CheckedScene, view_layer: Any, frames: Sequence[int]) -> Iterator[Array]:
+    """The positions of each frame; the scene goes back to its own frame at the end, whatever happens."""
+    before = scene.frame_current, scene.frame_subframe
+    try:
+        for frame in frames:
+            scene.frame_set(frame)
+            yield checked.read(view_layer, view_layer.depsgraph)
+    finally:
+        scene.frame_set(before[0], subframe=before[1])
+
