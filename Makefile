@@ -423,10 +423,12 @@ $(SHARED): $(OPENED_OBJECTS) $(BUILD)/cscd.map
 # All of the tool but its program, and what Python calls. Its own functions are meant wherever it calls one of the library, whatever
 # else the process has loaded.
 NATIVE_OBJECTS := $(OPENED_OBJECTS) $(COMMON_OBJECTS) $(call objects,$(filter-out src/tool/main.c,$(COMMAND_SOURCES)) $(NATIVE_SOURCES))
-$(PYTHON_PACKAGE)/libcscd-python.so: $(NATIVE_OBJECTS)
+NATIVE_FILE_LIBS = $(call packaged,--static --libs libpng zlib json-c,-lpng -lz -ljson-c -lm) $(EXPAT_LIBS)
+$(PYTHON_PACKAGE)/libcscd-python.so: $(NATIVE_OBJECTS) python/native/link.sh
 	@mkdir -p $(@D)
 	$(say) '  LD $@'
-	$(Q)$(CC) $(LINK_ALL) $(SHARED_FLAGS) -Wl,-Bsymbolic -o $@ $(NATIVE_OBJECTS) $(call packaged,--libs libpng zlib json-c,-lpng -lz -ljson-c) $(EXPAT_LIBS) $(SHARED_LIBS)
+	$(Q)LINK='$(CC) $(LINK_ALL) $(SHARED_FLAGS) -Wl,-Bsymbolic' FILE_LIBS='$(NATIVE_FILE_LIBS)' OTHER_LIBS='$(SHARED_LIBS)' \
+	    python/native/link.sh $@ $(NATIVE_OBJECTS)
 
 # The charge library exports one function, and needs two more files of the core.
 CHARGE_LIBRARY_OBJECTS := $(call objects,$(CHARGE_SOURCES) src/core/sort.c src/core/timer.c)
