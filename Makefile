@@ -165,7 +165,7 @@ COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 # What installs packages; a build that leaves expat out on purpose does not ask for it.
 PACKAGES = GSL=$(GSL) CHARGE=$(CHARGE) EXPAT=$(if $(WITHOUT_EXPAT),0,1) .ci/packages
 
-.PHONY: all python python-package programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-embree referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender test-vtk benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces fuzz-files FORCE
+.PHONY: all python python-package wheel sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-embree referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender test-vtk benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces fuzz-files FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -185,10 +185,30 @@ python:
 	@$(MAKE) --no-print-directory GSL=0 python-package
 
 PYTHON_PACKAGE := $(BUILD_ROOT)/python/cscd
-PYTHON_SOURCES := $(wildcard python/cscd/*)
+PYTHON_SOURCES := $(wildcard python/cscd/*.py python/cscd/py.typed)
+PACKED_CHARGE  := $(if $(CHARGE_SHARED),$(PYTHON_PACKAGE)/libcscd-charge.so.$(MAJOR))
+# What an older version, or a build with charge, has left there goes.
 python-package: $(PYTHON_PACKAGE)/libcscd-python.so $(CHARGE_SHARED)
 	@cp -p $(PYTHON_SOURCES) $(PYTHON_PACKAGE)
-	@$(if $(CHARGE_SHARED),cp -p $(CHARGE_SHARED) $(PYTHON_PACKAGE)/libcscd-charge.so.$(MAJOR),rm -f $(PYTHON_PACKAGE)/libcscd-charge.so.$(MAJOR))
+	@$(if $(CHARGE_SHARED),cp -p $(CHARGE_SHARED) $(PACKED_CHARGE))
+	@rm -rf $(filter-out $(addprefix $(PYTHON_PACKAGE)/,$(notdir $(PYTHON_SOURCES))) $(PACKED_CHARGE) $<,$(wildcard $(PYTHON_PACKAGE)/*))
+
+# The interpreter that builds wheels and is tested: the first that has numpy.
+PYTHON ?= $(or $(shell for python in python3 /usr/bin/python3; do \
+              $$python -c 'import numpy' 2>/dev/null && echo $$python && break; done),/usr/bin/python3)
+BACK_END = PYTHONPATH=python PYTHONDONTWRITEBYTECODE=1 CC='$(CC)' $(PYTHON) -m build_backend
+
+# The wheel to give away, without charge, and the archive of the sources.
+wheel:
+	@$(BACK_END) wheel build/dist
+
+sdist:
+	@$(BACK_END) sdist build/dist
+
+test-python:
+	@$(PACKAGES) python
+	@$(MAKE) --no-print-directory python $(BUILD)/models/record
+	@CC='$(CC)' $(PYTHON) python/tests/run.py
 
 # Installs what is built and builds the rest; it needs no network and no package but those of `make`, and install-library
 # none but those of the library.
@@ -384,6 +404,8 @@ help:
 	@echo 'make           build the tool (./cscd), build/release/libcscd.a and libcscd.so; make library builds these alone'
 	@echo '               GSL=0: without GSL; CHARGE=0: without LAPACKE and OpenBLAS, so without charge plans; EXPAT=0: a tool'
 	@echo '               without GIFTI surfaces'
+	@echo 'make python    the Python package, in build/python; make wheel: a wheel to give away, make sdist: its sources, in build/dist;'
+	@echo '               make test-python: its tests, types and archives (installs pytest, mypy, venv); PYTHON=python3'
 	@echo 'make install   [PREFIX=/usr/local] [DESTDIR=] tool, library, man pages; make install-library; make uninstall'
 	@echo 'make reference   the functions of the library as HTML, in build/reference (installs doxygen)'
 	@echo 'make freeze-api   write down what the public headers promise, when functions or members were added'

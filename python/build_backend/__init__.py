@@ -1,0 +1,81 @@
+"""Builds the Python package cscd for pip: the hooks of PEP 517, and those of PEP 660 for an editable installation.
+
+Needs the standard library alone. pip calls these functions in the root of the source tree. `python -m build_backend`
+with this folder's parent on PYTHONPATH makes the same files without pip.
+
+Each hook takes `config_settings`, of which it knows one: charge=0 leaves out the library that makes plans by charge,
+charge=1 insists on it, and without the setting it is built where LAPACKE and OpenBLAS are:
+`pip install . --config-settings charge=0`.
+"""
+from __future__ import annotations
+
+from typing import Dict, List, Optional
+
+from . import native, sdist, wheel
+from .project import ROOT, Failure, Project
+
+Settings = Optional[Dict[str, object]]
+
+__all__ = [
+    "build_editable",
+    "build_sdist",
+    "build_wheel",
+    "get_requires_for_build_editable",
+    "get_requires_for_build_sdist",
+    "get_requires_for_build_wheel",
+    "prepare_metadata_for_build_editable",
+    "prepare_metadata_for_build_wheel",
+]
+
+
+def get_requires_for_build_wheel(config_settings: Settings = None) -> List[str]:
+    """Names no package: pip never needs the network for the build."""
+    return []
+
+
+get_requires_for_build_sdist = get_requires_for_build_wheel
+get_requires_for_build_editable = get_requires_for_build_wheel
+
+
+def prepare_metadata_for_build_wheel(metadata_directory: str, config_settings: Settings = None) -> str:
+    """Writes the folder cscd-VERSION.dist-info without building anything, and returns its name."""
+    return wheel.write_metadata(Project.read(ROOT), metadata_directory)
+
+
+prepare_metadata_for_build_editable = prepare_metadata_for_build_wheel
+
+
+def build_wheel(
+    wheel_directory: str, config_settings: Settings = None, metadata_directory: Optional[str] = None
+) -> str:
+    """Builds the package and writes its wheel, and returns the wheel's file name.
+
+    Ends the process with a sentence, not with a traceback, when something that the build needs is missing, or make
+    fails.
+    """
+    try:
+        project = Project.read(ROOT)
+        with native.built_package(ROOT, native.charge_setting(config_settings)) as package:
+            return wheel.write_wheel(project, package, wheel_directory)
+    except Failure as failure:
+        raise SystemExit(f"cscd: {failure}") from None
+
+
+def build_editable(
+    wheel_directory: str, config_settings: Settings = None, metadata_directory: Optional[str] = None
+) -> str:
+    """Builds the package in build/python and writes a wheel that points there, and returns the wheel's file name.
+
+    After a change of the sources, C or Python, `make python` renews what the installation sees.
+    """
+    try:
+        project = Project.read(ROOT)
+        native.build_in_place(ROOT, native.charge_setting(config_settings))
+        return wheel.write_editable(project, ROOT / "build" / "python", wheel_directory)
+    except Failure as failure:
+        raise SystemExit(f"cscd: {failure}") from None
+
+
+def build_sdist(sdist_directory: str, config_settings: Settings = None) -> str:
+    """Writes the archive of the sources, and returns its file name."""
+    return sdist.write_sdist(Project.read(ROOT), ROOT, sdist_directory)
