@@ -41,6 +41,8 @@ class FoundFrame(NamedTuple):
     frame: int
     #: (k, 2) the faces of each pair, in the numbers of the checked mesh.
     faces: Array
+    #: (k, 2) the parts of each pair, -1 for none.
+    parts: Array
     #: (k,) codes of ``KINDS``.
     kinds: Array
     contact_count: int
@@ -90,10 +92,16 @@ class Findings:
         """Whether surfaces cross, share area or touch anywhere."""
         return bool(self.events)
 
-    def faces_in(self, frame: int) -> Array:
-        """The faces that take part in a pair in a frame, in the numbers of the checked mesh."""
+    def faces_in(self, frame: int, a: Optional[str] = None, b: Optional[str] = None) -> Array:
+        """The faces that take part in a pair in a frame, of two parts or of any, in the numbers of the checked mesh."""
         found = self.frames.get(frame)
-        return np.unique(found.faces) if found is not None else np.empty(0, np.int64)
+        if found is None:
+            return np.empty(0, np.int64)
+        if a is None:
+            return np.unique(found.faces)
+        numbers = [self.parts.names.index(name) if name in self.parts.names else -1 for name in (a, b)]
+        wanted = (np.sort(found.parts, axis=1) == sorted(numbers)).all(axis=1)
+        return np.unique(found.faces[wanted])
 
 
 class Run:
@@ -140,8 +148,8 @@ class Run:
             answer = found.intersections
             depths = self.findings.request.depths
             self.findings.frames[number] = FoundFrame(
-                number, answer.pairs.astype(np.int64), answer.kind, len(found.contacts),
-                answer.depth if depths else None,
+                number, answer.pairs.astype(np.int64), self.findings.parts.labels[answer.triangles], answer.kind,
+                len(found.contacts), answer.depth if depths else None,
                 [curve.points for curve in answer.curves if not curve.touching] if depths else [])
         except BaseException as problem:
             self._failure = problem

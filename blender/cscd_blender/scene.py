@@ -17,6 +17,9 @@ Array = Any
 #: What Blender evaluates to a mesh.
 MESH_TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 
+#: How the names of marks begin that the extension adds to a scene; a check does not look at them.
+MARK_PREFIX = "cscd "
+
 
 class SceneError(Exception):
     """Why a scene cannot be checked, as a sentence for the user."""
@@ -55,9 +58,11 @@ def objects_of(view_layer: Any, names: Sequence[str] = (), collections: Sequence
         if name not in bpy.data.collections:
             raise SceneError(f"there is no collection {name!r}")
         wanted.update(thing.name for thing in bpy.data.collections[name].all_objects)
+    candidates = [thing for thing in view_layer.objects
+                  if thing.type in MESH_TYPES and not thing.name.startswith(MARK_PREFIX)]
     if names or collections:
-        return [thing for thing in view_layer.objects if thing.name in wanted and thing.type in MESH_TYPES]
-    return [thing for thing in view_layer.objects if thing.type in MESH_TYPES and thing.visible_get(view_layer=view_layer)]
+        return [thing for thing in candidates if thing.name in wanted]
+    return [thing for thing in candidates if thing.visible_get(view_layer=view_layer)]
 
 
 def read_polygons(thing: Any, depsgraph: Any) -> Polygons:
@@ -179,7 +184,7 @@ def _dominant_groups(thing: Any, depsgraph: Any) -> Tuple[Array, List[str]]:
     names = [group.name for group in thing.vertex_groups]
     bones = {bone.name for modifier in thing.modifiers if modifier.type == "ARMATURE" and modifier.object is not None
              for bone in modifier.object.data.bones if bone.use_deform}
-    counted = [not bones or name in bones for name in names]
+    counted = [name in bones if bones else not name.startswith(MARK_PREFIX) for name in names]
     evaluated = thing.evaluated_get(depsgraph)
     mesh = evaluated.to_mesh()
     try:

@@ -1,4 +1,7 @@
-"""``python -m cscd`` is the tool ``cscd``: ``python -m cscd check FILE``."""
+"""``python -m cscd`` is the tool ``cscd``: ``python -m cscd check FILE``.
+
+This file also runs by itself, without numpy, as ``python -I .../cscd/__main__.py``.
+"""
 
 from __future__ import annotations
 
@@ -7,15 +10,15 @@ import os
 import signal
 import sys
 
-from ._library import library
-
 
 def main() -> int:
     """Runs the tool on the arguments of this process, and returns its exit code."""
+    library = ctypes.PyDLL(os.path.join(os.path.dirname(os.path.abspath(__file__)), "libcscd-python.so"))
     arguments = [b"cscd", *(os.fsencode(argument) for argument in sys.argv[1:])]
     signal.signal(signal.SIGINT, signal.SIG_DFL)  # the tool has a handler of its own, and ends with 130
     sys.stdout.flush()
     values = (ctypes.c_char_p * (len(arguments) + 1))(*arguments, None)
+    library.cscdpy_run_tool.restype = ctypes.c_int
     return int(library.cscdpy_run_tool(len(arguments), values))
 
 

@@ -216,7 +216,7 @@ def write_report(path: PathLike, frames: Any, F: Any, *, title: str = "", part_n
     """
     with tempfile.TemporaryDirectory(prefix="cscd-") as folder:
         mesh, count = _write_frames(folder, frames, F)
-        command = [sys.executable, "-m", "cscd", "replay", os.path.join(folder, "frame_000000.obj"),
+        command = ["replay", os.path.join(folder, "frame_000000.obj"),
                    os.path.join(folder, "frame_%06d.obj"), "--report", os.path.abspath(os.fspath(path)),
                    "--title", title or os.path.splitext(os.path.basename(os.fspath(path)))[0]]
         for option, value in (("--unit", unit), ("--up", up), ("--fps", f"{fps:.17g}" if fps else "")):
@@ -243,10 +243,9 @@ def _write_parts(folder: str, mesh: Mesh, names: Optional[Sequence[str]], labels
 
 def _run_tool(command: List[str]) -> str:
     """Runs the tool of this package; returns its first line."""
-    package = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-    paths = [package] + ([os.environ["PYTHONPATH"]] if os.environ.get("PYTHONPATH") else [])
-    done = subprocess.run(command, env={**os.environ, "PYTHONPATH": os.pathsep.join(paths)}, text=True,
-                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, check=False)
+    program = os.path.join(os.path.dirname(os.path.abspath(__file__)), "__main__.py")
+    done = subprocess.run([sys.executable, "-I", program, *command], text=True, stdout=subprocess.PIPE,
+                          stderr=subprocess.PIPE, check=False)
     if done.returncode != 0:
         raise Error(done.stderr.strip() or f"the tool ended with {done.returncode}")
     return done.stdout.split("\n", 1)[0]

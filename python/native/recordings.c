@@ -140,9 +140,10 @@ PYTHON_API void cscdpy_mesh_copy_positions(const mesh_file *mesh, double *positi
 
 /* Runs the tool `cscd` in this process, with its own signals and output, and returns its exit code. */
 PYTHON_API int cscdpy_run_tool(int argument_count, char **arguments) {
-    void *thread = python.save_thread();
+    const bool has_lock_to_give = python.save_thread != NULL; /* not where nothing but the tool is used */
+    void *thread = has_lock_to_give ? python.save_thread() : NULL;
     int code = tool_run(argument_count, arguments);
     fflush(NULL);
-    python.restore_thread(thread);
+    if (has_lock_to_give) python.restore_thread(thread);
     return code;
 }

@@ -47,4 +47,10 @@ mkdir "$folder/page"
 run_blender clamp.py "$folder/page"
 run_blender doll.py "$folder/page/doll.blend"
 check_extension "$folder/page/doll.blend"
+blender --background "$folder/page/doll.blend" --factory-startup --python-use-system-env --python-exit-code 1 \
+    --python marks.py >"$folder/log" 2>&1 || {
+    tail -20 "$folder/log"
+    exit 1
+}
+grep '^marks:' "$folder/log"
 python3 page.py "$BUILD/cscd" "$folder/page/doll.blend" "$folder/page" ${PAGE:-}

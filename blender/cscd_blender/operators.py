@@ -1,0 +1,344 @@
+"""What the buttons of the panel do."""
+
+from __future__ import annotations
+
+import os
+import threading
+from typing import Any, List, Optional, Set
+
+import bpy
+
+import cscd
+
+from . import marks
+from .checking import Findings, Run, run_to_end
+from .properties import findings_of, keep_findings
+from .scene import SceneError, read_frames
+
+#: Seconds between two turns of a run, and how long a turn waits.
+_TICK, _PATIENCE = 0.02, 0.01
+
+
+def _redraw(context: Any) -> None:
+    for window in context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "VIEW_3D":
+                area.tag_redraw()
+
+
+class CSCD_OT_check(bpy.types.Operator):
+    """Find where the objects go through each other and themselves, in every frame. Esc ends it"""
+
+    bl_idname = "cscd.check"
+    bl_label = "Check"
+    bl_options = {"REGISTER"}
+
+    _run: Optional[Run] = None
+    _timer: Any = None
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        return not context.scene.cscd.is_running
+
+    def execute(self, context: Any) -> Set[str]:
+        """The whole run at once, for scripts."""
+        try:
+            keep_findings(context.scene, run_to_end(context, context.scene.cscd.request(context)))
+        except (SceneError, MemoryError, cscd.Error) as problem:
+            self.report({"ERROR"}, str(problem))
+            return {"CANCELLED"}
+        self.report({"INFO"}, context.scene.cscd.summary)
+        return {"FINISHED"}
+
+    def invoke(self, context: Any, event: Any) -> Set[str]:
+        if bpy.app.background:
+            return self.execute(context)
+        try:
+            self._run = Run(context, context.scene.cscd.request(context))
+        except (SceneError, MemoryError, cscd.Error) as problem:
+            self.report({"ERROR"}, str(problem))
+            return {"CANCELLED"}
+        settings = context.scene.cscd
+        settings.is_running, settings.progress = True, 0.0
+        self._timer = context.window_manager.event_timer_add(_TICK, window=context.window)
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context: Any, event: Any) -> Set[str]:
+        if event.type == "ESC":
+            self.cancel(context)
+            self.report({"INFO"}, "Stopped; the findings of the check before are kept")
+            return {"CANCELLED"}
+        if event.type != "TIMER":
+            return {"PASS_THROUGH"}
+        assert self._run is not None
+        try:
+            more = self._run.step(_PATIENCE)
+        except (SceneError, MemoryError, cscd.Error) as problem:
+            self._end(context)
+            self.report({"ERROR"}, str(problem))
+            return {"CANCELLED"}
+        context.scene.cscd.progress = 100.0 * self._run.done / self._run.total
+        _redraw(context)
+        if more:
+            return {"RUNNING_MODAL"}
+        keep_findings(context.scene, self._run.findings)
+        self._end(context)
+        self.report({"INFO"}, context.scene.cscd.summary)
+        return {"FINISHED"}
+
+    def cancel(self, context: Any) -> None:
+        """Ends the run early; also called when the window closes."""
+        if self._run is not None:
+            self._run.cancel()
+        self._end(context)
+
+    def _end(self, context: Any) -> None:
+        context.scene.cscd.is_running = False
+        if self._timer is not None:
+            context.window_manager.event_timer_remove(self._timer)
+        self._timer = self._run = None
+        _redraw(context)
+
+
+class _MarkOperator:
+    """What operators have in common that put findings into the scene."""
+
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        return findings_of(context.scene) is not None and context.mode == "OBJECT"
+
+    def _say(self, context: Any, findings: Findings, text: str) -> Set[str]:
+        """Reports what was done, and on which objects it could not be done."""
+        left = marks.unmarked_names(findings, context.view_layer)
+        if left:
+            self.report({"WARNING"}, f"{text}; not on {', '.join(left)}, "  # type: ignore[attr-defined]
+                        "whose modifiers make other faces: apply them first")
+        else:
+            self.report({"INFO"}, text)  # type: ignore[attr-defined]
+        return {"FINISHED"}
+
+
+class CSCD_OT_mark_attributes(_MarkOperator, bpy.types.Operator):
+    """Write the face attribute cscd_kind and the vertex attribute cscd_depth, the worst over all frames"""
+
+    bl_idname = "cscd.mark_attributes"
+    bl_label = "Attributes"
+
+    def execute(self, context: Any) -> Set[str]:
+        findings = findings_of(context.scene)
+        assert findings is not None
+        return self._say(context, findings, f"Attributes on {marks.add_attributes(findings, context.view_layer)} objects")
+
+
+class CSCD_OT_mark_groups(_MarkOperator, bpy.types.Operator):
+    """Make a vertex group of what intersects, weighted by depth"""
+
+    bl_idname = "cscd.mark_groups"
+    bl_label = "Vertex Group"
+
+    def execute(self, context: Any) -> Set[str]:
+        findings = findings_of(context.scene)
+        assert findings is not None
+        return self._say(context, findings, f"A vertex group on {marks.add_groups(findings, context.view_layer)} objects")
+
+
+class CSCD_OT_mark_materials(_MarkOperator, bpy.types.Operator):
+    """Colour the faces that intersect, by kind and depth; Clear gives their materials back"""
+
+    bl_idname = "cscd.mark_materials"
+    bl_label = "Colours"
+
+    def execute(self, context: Any) -> Set[str]:
+        findings = findings_of(context.scene)
+        assert findings is not None
+        return self._say(context, findings, f"Colours on {marks.add_materials(findings, context.view_layer)} objects")
+
+
+class CSCD_OT_mark_curves(_MarkOperator, bpy.types.Operator):
+    """Draw the curves along which surfaces cross in the current frame, as a curve object"""
+
+    bl_idname = "cscd.mark_curves"
+    bl_label = "Curves of This Frame"
+
+    def execute(self, context: Any) -> Set[str]:
+        findings = findings_of(context.scene)
+        assert findings is not None
+        count = marks.add_curves(findings, context.scene, context.scene.frame_current)
+        self.report({"INFO"}, f"{count} curves at frame {context.scene.frame_current}")
+        return {"FINISHED"}
+
+
+class CSCD_OT_mark_timeline(bpy.types.Operator):
+    """Put a marker on the timeline where each event is worst"""
+
+    bl_idname = "cscd.mark_timeline"
+    bl_label = "Timeline Markers"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        return len(context.scene.cscd.events) > 0
+
+    def execute(self, context: Any) -> Set[str]:
+        self.report({"INFO"}, f"{marks.add_timeline_markers(context.scene)} markers")
+        return {"FINISHED"}
+
+
+class CSCD_OT_clear(bpy.types.Operator):
+    """Take the list and all marks out of the scene again"""
+
+    bl_idname = "cscd.clear"
+    bl_label = "Clear"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        return context.mode == "OBJECT" and not context.scene.cscd.is_running
+
+    def execute(self, context: Any) -> Set[str]:
+        marks.clear(context)
+        keep_findings(context.scene, None)
+        return {"FINISHED"}
+
+
+class CSCD_OT_show_event(bpy.types.Operator):
+    """Go to the frame where the event is worst, frame it, and select its faces"""
+
+    bl_idname = "cscd.show_event"
+    bl_label = "Show"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        return 0 <= context.scene.cscd.event_index < len(context.scene.cscd.events)
+
+    def execute(self, context: Any) -> Set[str]:
+        settings = context.scene.cscd
+        marks.show_event(context, settings.events[settings.event_index])
+        return {"FINISHED"}
+
+
+class CSCD_OT_ignore(bpy.types.Operator):
+    """Leave out two parts in the checks to come"""
+
+    bl_idname = "cscd.ignore"
+    bl_label = "Leave Out"
+    bl_options = {"REGISTER", "UNDO"}
+
+    from_event: bpy.props.BoolProperty(options={"HIDDEN"})  # type: ignore[valid-type]
+
+    def execute(self, context: Any) -> Set[str]:
+        settings = context.scene.cscd
+        added = settings.ignored.add()
+        if self.from_event and 0 <= settings.event_index < len(settings.events):
+            event = settings.events[settings.event_index]
+            added.a, added.b = event.a, event.b
+        settings.ignored_index = len(settings.ignored) - 1
+        return {"FINISHED"}
+
+
+class CSCD_OT_look_at_again(bpy.types.Operator):
+    """Take a pair of parts from the list of what is left out"""
+
+    bl_idname = "cscd.look_at_again"
+    bl_label = "Look At Again"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        return 0 <= context.scene.cscd.ignored_index < len(context.scene.cscd.ignored)
+
+    def execute(self, context: Any) -> Set[str]:
+        settings = context.scene.cscd
+        settings.ignored.remove(settings.ignored_index)
+        settings.ignored_index = max(0, settings.ignored_index - 1)
+        return {"FINISHED"}
+
+
+class CSCD_OT_report(bpy.types.Operator):
+    """Write the page of the findings, and open it in the browser"""
+
+    bl_idname = "cscd.report"
+    bl_label = "Report Page"
+    bl_options = {"REGISTER"}
+
+    filepath: bpy.props.StringProperty(subtype="FILE_PATH")  # type: ignore[valid-type]
+    filter_glob: bpy.props.StringProperty(default="*.html", options={"HIDDEN"})  # type: ignore[valid-type]
+    open_page: bpy.props.BoolProperty(name="Open in the browser", default=True)  # type: ignore[valid-type]
+
+    _thread: Optional[threading.Thread] = None
+    _timer: Any = None
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        return findings_of(context.scene) is not None
+
+    def invoke(self, context: Any, event: Any) -> Set[str]:
+        name = os.path.splitext(bpy.data.filepath)[0] or os.path.join(os.path.expanduser("~"), "cscd")
+        self.filepath = f"{name}.html"
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def execute(self, context: Any) -> Set[str]:
+        """Reads the frames here, and writes the page on a thread, so that the window stays alive."""
+        findings = findings_of(context.scene)
+        assert findings is not None
+        self._said: List[str] = []
+        try:
+            frames = list(read_frames(context.scene, findings.checked, context.view_layer, list(findings.frames)))
+        except SceneError as problem:
+            self.report({"ERROR"}, str(problem))
+            return {"CANCELLED"}
+        scene = context.scene
+        arguments = dict(title=os.path.basename(bpy.data.filepath) or scene.name, part_names=findings.parts.names,
+                         part_labels=findings.parts.labels, fps=scene.render.fps / scene.render.fps_base, up="z")
+        path = bpy.path.abspath(self.filepath)
+
+        def write() -> None:
+            try:
+                cscd.write_report(path, frames, findings.checked.mesh, **arguments)
+            except Exception as problem:
+                self._said.append(str(problem))
+
+        self._thread = threading.Thread(target=write, daemon=True)
+        self._thread.start()
+        if bpy.app.background:
+            self._thread.join()
+            return self._finish()
+        self._timer = context.window_manager.event_timer_add(0.2, window=context.window)
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context: Any, event: Any) -> Set[str]:
+        if event.type != "TIMER" or (self._thread is not None and self._thread.is_alive()):
+            return {"PASS_THROUGH"}
+        context.window_manager.event_timer_remove(self._timer)
+        return self._finish()
+
+    def _finish(self) -> Set[str]:
+        if self._said:
+            self.report({"ERROR"}, self._said[0])
+            return {"CANCELLED"}
+        path = bpy.path.abspath(self.filepath)
+        self.report({"INFO"}, f"{path} is written")
+        if self.open_page and not bpy.app.background:
+            bpy.ops.wm.url_open(url=f"file://{path}")
+        return {"FINISHED"}
+
+
+_classes = (CSCD_OT_check, CSCD_OT_mark_attributes, CSCD_OT_mark_groups, CSCD_OT_mark_materials, CSCD_OT_mark_curves,
+            CSCD_OT_mark_timeline, CSCD_OT_clear, CSCD_OT_show_event, CSCD_OT_ignore, CSCD_OT_look_at_again,
+            CSCD_OT_report)
+
+
+def register() -> None:
+    for cls in _classes:
+        bpy.utils.register_class(cls)
+
+
+def unregister() -> None:
+    for cls in reversed(_classes):
+        bpy.utils.unregister_class(cls)
