@@ -14,9 +14,9 @@ class CSCD_UL_events(bpy.types.UIList):
 
     def draw_item(self, context: Any, layout: Any, data: Any, item: Any, icon: int, active_data: Any,
                   active_property: str, index: int = 0, flt_flag: int = 0) -> None:
-        row = layout.split(factor=0.56)
-        row.label(text=item.name, icon="ERROR" if "crossing" in item.kinds else "DOT")
-        numbers = row.split(factor=0.55)
+        row = layout.split(factor=0.5)
+        row.label(text=f"{_short(item.a)} x {_short(item.b)}")
+        numbers = row.split(factor=0.45)
         numbers.label(text=f"{item.first}-{item.last}" if item.last > item.first else f"{item.first}")
         numbers.label(text=_length(context, item.depth) if item.depth > 0.0 else "")
 
@@ -31,10 +31,15 @@ class CSCD_UL_ignored(bpy.types.UIList):
         row.prop(item, "b", text="", emboss=False, icon="MESH_DATA")
 
 
+def _short(part: str) -> str:
+    """A part without its object."""
+    return part.rpartition("/")[2]
+
+
 def _length(context: Any, length: float) -> str:
     """A length in the units of the scene."""
     settings = context.scene.unit_settings
-    return bpy.utils.units.to_string(settings.system, "LENGTH", length * settings.scale_length, precision=3)
+    return bpy.utils.units.to_string(settings.system, "LENGTH", length * settings.scale_length, precision=2)
 
 
 class _CscdPanel:
@@ -51,13 +56,11 @@ class CSCD_PT_check(_CscdPanel, bpy.types.Panel):
 
     def draw(self, context: Any) -> None:
         layout, settings = self.layout, context.scene.cscd
-        layout.use_property_split = True
-        layout.use_property_decorate = False
         column = layout.column()
         column.enabled = not settings.is_running
-        column.prop(settings, "source")
+        column.prop(settings, "source", text="")
         if settings.source == "COLLECTION":
-            column.prop(settings, "collection", text=" ")
+            column.prop(settings, "collection", text="")
         column.prop(settings, "use_range")
         if settings.use_range:
             frames = column.column(align=True)

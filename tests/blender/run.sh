@@ -53,4 +53,5 @@ blender --background "$folder/page/doll.blend" --factory-startup --python-use-sy
     exit 1
 }
 grep '^marks:' "$folder/log"
+BUILD=$BUILD PYTHON_PACKAGE=$PYTHONPATH ./window.sh ${PAGE:+../../docs/images/blender-panel.png}
 python3 page.py "$BUILD/cscd" "$folder/page/doll.blend" "$folder/page" ${PAGE:-}

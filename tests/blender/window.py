@@ -1,0 +1,35 @@
+"""The extension in a window, for window.sh: no splash, the sidebar open, and what the panel knows in a file.
+
+Run by `blender FILE.blend --python window.py -- STATE.json`.
+"""
+import json
+import os
+import sys
+
+import bpy
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'blender'))
+import cscd_blender
+
+bpy.context.preferences.view.show_splash = False
+cscd_blender.register()
+
+
+def open_sidebar():
+    for area in bpy.context.window_manager.windows[0].screen.areas:
+        if area.type == 'VIEW_3D':
+            area.spaces.active.show_region_ui = True
+
+
+def tell():
+    scene = bpy.context.scene
+    path = sys.argv[-1]
+    with open(path + '.part', 'w') as file:
+        json.dump({'running': scene.cscd.is_running, 'events': len(scene.cscd.events), 'frame': scene.frame_current,
+                   'selected': [thing.name for thing in bpy.context.selected_objects]}, file)
+    os.replace(path + '.part', path)
+    return 0.2
+
+
+bpy.app.timers.register(open_sidebar, first_interval=1.0)
+bpy.app.timers.register(tell, first_interval=2.0)
