@@ -165,7 +165,7 @@ COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 # What installs packages; a build that leaves expat out on purpose does not ask for it.
 PACKAGES = GSL=$(GSL) CHARGE=$(CHARGE) EXPAT=$(if $(WITHOUT_EXPAT),0,1) .ci/packages
 
-.PHONY: all python python-package wheel sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-embree referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender test-vtk benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces fuzz-files FORCE
+.PHONY: all python python-package wheel sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-embree referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender blender-extension test-vtk benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces fuzz-files FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -285,8 +285,13 @@ test-run: tool library $(TESTS) $(MODELS) $(BUILD)/benchmarks/queries $(BUILD)/b
 test-blender:
 	@.ci/packages blender
 	@$(MAKE) --no-print-directory tool $(BUILD)/tests/blender/print_frames
-	@$(MAKE) --no-print-directory python
+	@$(MAKE) --no-print-directory python blender-extension
 	@BUILD=$(BUILD) PYTHON_PACKAGE=$(BUILD_ROOT)/python PAGE=$(PAGE) tests/blender/run.sh
+
+# The extension as an archive that Blender installs, with the wheel in it: build/blender/cscd_blender-VERSION.zip.
+blender-extension:
+	@$(MAKE) --no-print-directory wheel
+	@blender/pack.py "$$(ls -t $(BUILD_ROOT)/dist/cscd-$(VERSION)-*.whl | head -1)" $(BUILD_ROOT)/blender
 
 # What --vtk writes, read by VTK itself and compared with the other outputs; nothing else needs VTK.
 test-vtk:
@@ -397,8 +402,9 @@ help:
 	@echo 'make check     build and run the tests that take less than a second each, for the inner loop'
 	@echo 'make test      build and run every test (CONFIG=sanitize: with sanitizers; ONLY="bvh line_search": of these rooms or names)'
 	@echo 'make test-without-baselines   build and test what is left when runtime/baselines is removed'
-	@echo 'make test-blender   frames of glTF files beside those that Blender evaluates, faces selected in it, and the steps of docs/from-your-program.md'
+	@echo 'make test-blender   frames of glTF files beside those that Blender evaluates, faces selected in it, the extension, and the steps of docs/from-your-program.md'
 	@echo '               (installs blender); PAGE=--write puts what the steps print into the page, and draws its pictures'
+	@echo 'make blender-extension   the extension of Blender, with the Python package in it, in build/blender'
 	@echo 'make test-vtk   what --vtk writes, read by VTK and compared with the other outputs (installs python3-vtk9)'
 	@echo 'make test-threads   the tests that use threads, under the thread sanitizer'
 	@echo 'make           build the tool (./cscd), build/release/libcscd.a and libcscd.so; make library builds these alone'

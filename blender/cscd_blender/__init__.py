@@ -1,5 +1,13 @@
 """Finds where characters, cloth and props go through each other and themselves, frame by frame."""
 
+from __future__ import annotations
+
+import glob
+import os
+import sys
+import zipfile
+from typing import Any, Tuple
+
 bl_info = {
     "name": "cscd",
     "author": "the authors of cscd",
@@ -11,7 +19,27 @@ bl_info = {
 }
 
 
-def _modules():  # type: ignore[no-untyped-def]
+def _find_package() -> None:
+    """Makes the Python package importable. Blender 4.2 installs the wheel that lies beside; here older versions unpack it."""
+    try:
+        import cscd  # noqa: F401
+        return
+    except ImportError:
+        folder = os.path.join(os.path.dirname(os.path.abspath(__file__)), "wheels")
+        wheels = sorted(glob.glob(os.path.join(folder, "cscd-*.whl")))
+        if not wheels:
+            raise
+    unpacked = os.path.join(folder, "unpacked")
+    if not os.path.isdir(unpacked):
+        beside = f"{unpacked}.{os.getpid()}"
+        with zipfile.ZipFile(wheels[-1]) as archive:
+            archive.extractall(beside)
+        os.rename(beside, unpacked)
+    sys.path.append(unpacked)
+
+
+def _modules() -> Tuple[Any, ...]:
+    _find_package()
     from . import operators, panel, properties
     return properties, operators, panel
 

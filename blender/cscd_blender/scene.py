@@ -84,6 +84,11 @@ def read_polygons(thing: Any, depsgraph: Any) -> Polygons:
         evaluated.to_mesh_clear()
     matrix = np.array(evaluated.matrix_world, np.float64)
     world = positions.reshape(-1, 3).astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
+    if not np.isfinite(world).all():
+        vertex = int(np.flatnonzero(~np.isfinite(world).all(axis=1))[0])
+        place = ", ".join(f"{x:g}" for x in world[vertex])
+        raise SceneError(f"{thing.name}: vertex {vertex} is at ({place}) at frame {depsgraph.scene.frame_current}; look at "
+                         "its shape keys, drivers and simulation")
     if np.linalg.det(matrix[:3, :3]) < 0.0:
         corners = _turned(corners, counts)
     return Polygons(world, corners, counts)
@@ -122,14 +127,10 @@ class CheckedScene:
             self.targets.append(Target(name, len(item.positions), len(item.counts), first_face, first_vertex))
             first_face += len(item.counts)
             first_vertex += len(item.positions)
-        try:
-            meshes = [cscd.Mesh.from_polygons(item.positions, item.corners, item.counts) for _, item in kept]
-        except ValueError as problem:
-            raise SceneError(str(problem)) from None
-        whole = [i for i, mesh in enumerate(meshes) if mesh.triangle_count]
-        if len(whole) < len(meshes):
-            raise SceneError(f"{self._things[next(i for i in range(len(meshes)) if i not in whole)]} has no face with three "
-                             "different corners; leave it out")
+        meshes = [cscd.Mesh.from_polygons(item.positions, item.corners, item.counts) for _, item in kept]
+        for name, mesh in zip(self._things, meshes):
+            if mesh.triangle_count == 0:
+                raise SceneError(f"{name} has no face with three different corners; leave it out")
         self.mesh = cscd.Scene(meshes)
 
     def read(self, view_layer: Any, depsgraph: Any) -> Array:

@@ -29,7 +29,7 @@ PYTHON_API bool cscdpy_polygons_cut(const double *positions, uint32_t vertex_cou
     mesh_file *mesh = calloc(1, sizeof *mesh);
     bool cut = mesh != NULL &&
                add_faces(&builder, positions, vertex_count, corners, face_sizes, face_count) &&
-               mesh_builder_finish(&builder, mesh);
+               (builder.triangle_count == 0 || mesh_builder_finish(&builder, mesh));
     if (mesh == NULL) io_fail(error, "out of memory");
     mesh_builder_free(&builder);
     if (!cut) {

@@ -53,5 +53,14 @@ blender --background "$folder/page/doll.blend" --factory-startup --python-use-sy
     exit 1
 }
 grep '^marks:' "$folder/log"
+./farm.sh "$folder/page/doll.blend" "$folder/farm"
+mkdir "$folder/scripts"
+env -u PYTHONPATH BLENDER_USER_SCRIPTS="$folder/scripts" blender --background "$folder/page/doll.blend" --factory-startup \
+    --python-use-system-env --python-exit-code 1 --python install.py -- "$(realpath ../../build/blender/cscd_blender-*.zip)" \
+    >"$folder/log" 2>&1 || {
+    tail -20 "$folder/log"
+    exit 1
+}
+grep '^install:' "$folder/log"
 BUILD=$BUILD PYTHON_PACKAGE=$PYTHONPATH ./window.sh ${PAGE:+../../docs/images/blender-panel.png}
 python3 page.py "$BUILD/cscd" "$folder/page/doll.blend" "$folder/page" ${PAGE:-}
