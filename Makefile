@@ -207,7 +207,7 @@ sdist:
 
 test-python:
 	@$(PACKAGES) python
-	@$(MAKE) --no-print-directory python $(BUILD)/models/record
+	@$(MAKE) --no-print-directory python $(BUILD)/models/record $(BUILD)/models/folds
 	@CC='$(CC)' $(PYTHON) python/tests/run.py
 
 # Installs what is built and builds the rest; it needs no network and no package but those of `make`, and install-library
@@ -291,7 +291,7 @@ test-blender:
 # The extension as an archive that Blender installs, with the wheel in it: build/blender/cscd_blender-VERSION.zip.
 blender-extension:
 	@$(MAKE) --no-print-directory wheel
-	@blender/pack.py "$$(ls -t $(BUILD_ROOT)/dist/cscd-$(VERSION)-*.whl | head -1)" $(BUILD_ROOT)/blender
+	@python3 blender/pack.py "$$(ls -t $(BUILD_ROOT)/dist/cscd-$(VERSION)-*.whl | head -1)" $(BUILD_ROOT)/blender
 
 # What --vtk writes, read by VTK itself and compared with the other outputs; nothing else needs VTK.
 test-vtk:

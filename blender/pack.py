@@ -1,8 +1,7 @@
-#!/usr/bin/env python3
 """Packs the extension as a zip: `pack.py WHEEL FOLDER` writes FOLDER/cscd_blender-VERSION.zip and prints its path.
 
-All files lie in one folder within the archive, which Blender 4.2 takes as an extension and Blender 3.4 as an add-on. The wheel of the
-Python package is in it. The same files make the same bytes.
+All files lie in one folder within the archive, which Blender 4.2 takes as an extension and Blender 3.4 as an add-on. The wheel of
+the Python package is in it. The same files make the same bytes.
 """
 import os
 import re

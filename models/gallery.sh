@@ -47,6 +47,8 @@ whole t-pair 25,15 0:110:10 '--colour contacts'
 whole mixed 5,10 0:110:10 '--colour contacts'
 "$tool" render "$models/mannequin.obj" "$models/mannequin.pc2" --frames 0:44:4 --columns 6 --size 180x300 --view 25,8 --up y \
     -o "$images/mannequin.png"
+"$tool" render "$models/folds.obj" "$models/folds.pc2" --frames 0:50:50 --columns 2 --size 480x420 --view 30,20 --up z \
+    -o "$images/folds.png"
 strip tumble 25,25 4 0:143:13
 sensed() { # sensed NAME FRAME VIEW [OPTIONS]: cells, particles and where they have been
     # shellcheck disable=SC2086

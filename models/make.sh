@@ -12,3 +12,4 @@ done
 "$BUILD/models/ipc" all "$folder"
 "$BUILD/models/objects" all "$folder"
 "$BUILD/models/mannequin" "$folder" cache skin
+"$BUILD/models/folds" "$folder"
