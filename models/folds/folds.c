@@ -13,19 +13,19 @@ static const double wave_number = 9.0, trench_width = 0.45, trench_depth = 0.3, 
 
 /* ---- the sphere -------------------------------------------------------------------------------------------- */
 
-typedef struct sphere {
+typedef struct icosphere {
     double points[FOLDS_VERTICES][3];
     uint32_t triangles[FOLDS_TRIANGLES][3];
     uint32_t point_count, triangle_count;
-} sphere;
+} icosphere;
 
-static void push_point(sphere *s, double x, double y, double z) {
+static void push_point(icosphere *s, double x, double y, double z) {
     const double length = sqrt(x * x + y * y + z * z);
     double *p = s->points[s->point_count++];
     p[0] = x / length, p[1] = y / length, p[2] = z / length;
 }
 
-static void begin_icosahedron(sphere *s) {
+static void begin_icosahedron(icosphere *s) {
     static const uint32_t faces[20][3] = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
                                           {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
                                           {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
@@ -50,7 +50,7 @@ typedef struct edge_middles {
     uint8_t counts[FOLDS_VERTICES];
 } edge_middles;
 
-static uint32_t middle_of(edge_middles *known, sphere *s, uint32_t a, uint32_t b) {
+static uint32_t middle_of(edge_middles *known, icosphere *s, uint32_t a, uint32_t b) {
     const uint32_t low = a < b ? a : b, high = a < b ? b : a;
     for (int i = 0; i < known->counts[low]; i++)
         if (known->ends[low][i] == high) return known->middles[low][i];
@@ -63,7 +63,7 @@ static uint32_t middle_of(edge_middles *known, sphere *s, uint32_t a, uint32_t b
     return s->point_count - 1;
 }
 
-static void subdivide_sphere(sphere *s) {
+static void subdivide_sphere(icosphere *s) {
     static edge_middles known;
     static uint32_t coarse[FOLDS_TRIANGLES][3];
     const uint32_t count = s->triangle_count;
@@ -119,7 +119,7 @@ static double height_of(const waves *w, const double p[3]) {
 
 /* ---- folds --------------------------------------------------------------------------------------------------- */
 
-static void dig_trenches(folds *f, const sphere *s) {
+static void dig_trenches(folds *f, const icosphere *s) {
     const waves w = make_waves(7, 24, wave_number);
     for (uint32_t v = 0; v < FOLDS_VERTICES; v++) {
         const double height = height_of(&w, s->points[v]) / trench_width;
@@ -147,7 +147,7 @@ static void add_normals(folds *f) {
 }
 
 /* How far a vertex swells, from 0 to 1: a slow wave where it is above 0. */
-static void weigh_swelling(folds *f, const sphere *s) {
+static void weigh_swelling(folds *f, const icosphere *s) {
     static double shares[FOLDS_VERTICES];
     const waves w = make_waves(11, 8, swelling_wave_number);
     double most = 0.0;
@@ -163,7 +163,7 @@ static void weigh_swelling(folds *f, const sphere *s) {
 }
 
 void folds_make(folds *f) {
-    static sphere s;
+    static icosphere s;
     begin_icosahedron(&s);
     while (s.triangle_count < FOLDS_TRIANGLES) subdivide_sphere(&s);
     assert(s.point_count == FOLDS_VERTICES);

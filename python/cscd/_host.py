@@ -6,6 +6,7 @@ import ctypes
 import operator
 import os
 import threading
+import weakref
 from typing import Any, Callable, NoReturn, Optional
 
 from ._library import library
@@ -13,27 +14,31 @@ from .errors import Cancelled, Error, ListTooLong
 
 __all__ = ["Handle", "Host", "code_of", "new_handle", "processor_count", "raise_status", "thread_count_of"]
 
-_OUT_OF_MEMORY, _INVALID_ARGUMENT, _INVALID_MESH, _SYSTEM_ERROR, _CANCELLED, IN_CONTACT = 1, 2, 3, 4, 5, 6
+_OUT_OF_MEMORY, _INVALID_ARGUMENT, _INVALID_MESH, _SYSTEM_ERROR, _CANCELLED, IN_CONTACT, _BUSY = 1, 2, 3, 4, 5, 6, 7
 _LIST_TOO_LONG = 10
 _MOST_THREADS = 256
 
-#: Counts the forks behind this process: threads of a context do not come along into a child.
-_forks = 0
+#: All hosts of this process, of which a child gets copies.
+_hosts: weakref.WeakSet[Host] = weakref.WeakSet()
 
 
-def _count_fork() -> None:
-    global _forks
-    _forks += 1
+def _look_after_fork() -> None:
+    """In a child: threads, and calls that run in them, have stayed in the process that forked."""
+    for host in list(_hosts):
+        host.after_fork()
 
 
 if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_count_fork)
+    os.register_at_fork(after_in_child=_look_after_fork)
 
 
 def raise_status(status: int, sentence: str) -> NoReturn:
     """Raises the exception that a status of the library stands for."""
     phrase = library.cscd_status_string(status).decode()
     text = sentence or phrase
+    if status == _BUSY:
+        raise Error("this object is in the middle of a call, which a callback of it cannot repeat; make the call when it "
+                    "has returned, or with another object")
     if status == _OUT_OF_MEMORY:
         raise MemoryError(text)
     if status in (_INVALID_ARGUMENT, _INVALID_MESH):
@@ -74,61 +79,60 @@ def processor_count() -> int:
 
 
 class Host:
-    """A context and its lock. ``with host:`` is a turn in it; another thread waits for its own turn.
+    """A context and its lock. ``with host.lock:`` is a turn in it; another thread waits for its own turn.
 
-    Results of a call live in the library until the next one, so they are copied within the same turn.
+    Results of a call live in the library until the next one, so they are copied within the same turn. The lock is written
+    in C, because Python handles signals between its own steps: an ``__enter__`` in Python would leave the lock behind when
+    Ctrl-C comes just there. The same thread may take it again, from a callback; the library then refuses the call.
     """
 
-    __slots__ = ("handle", "threads", "_lock", "_owner", "_kept", "_born")
+    __slots__ = ("handle", "lock", "threads", "lost", "_out", "_kept", "__weakref__")
 
     _destroy = library.cscdpy_host_destroy
 
     def __init__(self, threads: Any = 1, simd: str = "auto", progress: Optional[Callable[[str, float], Any]] = None,
                  ignore: Optional[Callable[[str, int, int], bool]] = None) -> None:
-        self.handle: Optional[int] = None
-        self._lock = threading.Lock()
-        self._owner = 0
+        self._out = ctypes.c_void_p()
+        #: Why it cannot be used any more; "" if it can.
+        self.lost = ""
+        self.lock: Any = threading.RLock()
         self._kept = (progress, ignore)
-        self._born = _forks
         for name, callback in (("progress", progress), ("ignore", ignore)):
             if callback is not None and not callable(callback):
                 raise ValueError(f"{name}: expected a function, got {callback!r}")
         reason = ctypes.create_string_buffer(500)
-        out = ctypes.c_void_p()
         status = library.cscdpy_host_create(
             thread_count_of(threads), code_of("simd", simd), None if progress is None else id(progress),
-            None if ignore is None else id(ignore), ctypes.addressof(reason), len(reason), ctypes.byref(out))
+            None if ignore is None else id(ignore), ctypes.addressof(reason), len(reason), ctypes.byref(self._out))
         if status:
             raise_status(status, reason.value.decode())
-        self.handle = out.value
+        self.handle: int = self._out.value or 0
         self.threads: int = library.cscdpy_host_thread_count(self.handle)
+        _hosts.add(self)
 
-    def __enter__(self) -> Host:
-        me = threading.get_ident()
-        if self._owner == me:
-            raise Error("this object is in the middle of a call, which a callback of it cannot repeat; make the call "
-                        "when it has returned, or with another object")
-        if self.handle is None:
-            raise Error("this object has been destroyed")
-        if self.threads > 1 and self._born != _forks:
-            raise Error(f"this object has {self.threads} threads, which stayed in the process that forked; make "
-                        "another one here, or use the start method 'spawn'")
-        self._lock.acquire()
-        self._owner = me
-        return self
+    def after_fork(self) -> None:
+        """In a child. What had threads, or was in the middle of a call, is of no use there, and is never destroyed."""
+        self.lock._at_fork_reinit()
+        if self.threads > 1:
+            self.lost = f"this object has {self.threads} threads, which stayed in the process that forked"
+        elif library.cscdpy_host_is_busy(self.handle):
+            self.lost = "this object was in the middle of a call when the process forked"
 
-    def __exit__(self, *_: Any) -> None:
-        self._owner = 0
-        self._lock.release()
+    def check(self) -> None:
+        """Raises if it cannot be used."""
+        if self.lost:
+            raise Error(f"{self.lost}; make another one here, or use the start method 'spawn'")
 
     def call(self, function: Any, *arguments: Any) -> None:
         """Calls a function of the layer, within a turn."""
+        self.check()
         status = function(self.handle, *arguments)
         if status:
             raise_status(status, self.detail())
 
     def call_public(self, function: Any, *arguments: Any) -> None:
         """The same of a function of the public headers, which takes no host."""
+        self.check()
         status = function(*arguments)
         if status:
             raise_status(status, self.detail())
@@ -139,7 +143,7 @@ class Host:
 
     def cancel(self) -> None:
         """Ends the call that is running, from another thread."""
-        if self.handle is not None:
+        if not self.lost:
             library.cscdpy_host_cancel(self.handle)
 
     def live_bytes(self) -> int:
@@ -147,28 +151,42 @@ class Host:
         return int(library.cscdpy_host_bytes(self.handle))
 
     def __del__(self) -> None:
-        if self.handle is not None:
-            self._destroy(self.handle)
-            self.handle = None
+        if self._out.value is not None and not self.lost:
+            self._destroy(self._out)
 
 
 class Handle:
-    """An object of the library, which is given back with this one, and what it was made from."""
+    """An object of the library, which is given back with this one, and what it was made from.
 
-    __slots__ = ("pointer", "host", "_destroy")
+    It is there before what it holds: a function that creates an object puts it into ``place``, so that no signal comes
+    in between.
+    """
 
-    def __init__(self, pointer: int, host: Host, destroy: Any) -> None:
-        self.pointer = pointer
+    __slots__ = ("out", "host", "_destroy")
+
+    def __init__(self, host: Host, destroy: Any) -> None:
+        self.out = ctypes.c_void_p()
         self.host = host
         self._destroy = destroy
 
+    @property
+    def place(self) -> Any:
+        """Where to put the object."""
+        return ctypes.byref(self.out)
+
+    @property
+    def pointer(self) -> int:
+        """The object."""
+        assert self.out.value is not None
+        return self.out.value
+
     def __del__(self) -> None:
-        self._destroy(self.pointer)
+        if self.out.value is not None and not self.host.lost:
+            self._destroy(self.out)
 
 
 def new_handle(host: Host, destroy: Any, create: Any, *arguments: Any) -> Handle:
     """Creates an object by a function whose last argument is where to put it, within a turn."""
-    out = ctypes.c_void_p()
-    host.call(create, *arguments, ctypes.byref(out))
-    assert out.value is not None
-    return Handle(out.value, host, destroy)
+    handle = Handle(host, destroy)
+    host.call(create, *arguments, handle.place)
+    return handle

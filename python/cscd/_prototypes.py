@@ -23,6 +23,7 @@ _LAYER: Dict[str, Tuple[Any, List[Any]]] = {
     "cscdpy_host_cancel": (None, [_p]),
     "cscdpy_host_bytes": (_size, [_p]),
     "cscdpy_host_thread_count": (_u32, [_p]),
+    "cscdpy_host_is_busy": (c_bool, [_p]),
     "cscdpy_ignore": (c_bool, [_p, _u32, _u32, _u32]),
     "cscdpy_polygons_cut": (c_bool, [_p, _u32, _p, _p, _size, POINTER(c_void_p), _p]),
     "cscdpy_polygons_count": (_u32, [_p]),

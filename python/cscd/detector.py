@@ -96,7 +96,8 @@ class Detector(LiveSettings):
         self._vertex_counts = self.mesh.vertex_counts
         self._host = Host(threads, simd, progress, ignore)
         options = DetectorOptions(self.mesh, self._inputs, self._host, ignore is not None, self._left_out)
-        with self._host as host:
+        host = self._host
+        with host.lock:
             self._handle: Handle = new_handle(host, library.cscd_detector_destroy, library.cscdpy_detector_create,
                                               pointer, None if plan is None else plan.pointer, options.address)
         self._detector = self._handle.pointer
@@ -114,7 +115,8 @@ class Detector(LiveSettings):
         """
         start, kept0 = self._views("x0", x0)
         end, kept1 = self._views("x1", x1)
-        with self._host as host:
+        host = self._host
+        with host.lock:
             self._call(host, "contacts", library.cscdpy_detector_step, self._detector, address_of(start),
                        address_of(end), self._at["contacts"])
             found: Contacts = self._copied("contacts", Contacts)
@@ -146,7 +148,8 @@ class Detector(LiveSettings):
         end, kept1 = self._views("x1", x1)
         reached = self._positions_for("out", out, kept0)
         target = mutable_view(reached)
-        with self._host as host:
+        host = self._host
+        with host.lock:
             self._call(host, "free_step", library.cscdpy_detector_max_step, self._detector, address_of(start),
                        address_of(end), address_of(target), self._at["free_step"])
             return free_step_of(self._lists["free_step"], reached)
@@ -156,7 +159,8 @@ class Detector(LiveSettings):
     def check(self, x: Any) -> Array:
         """The pairs of triangles that intersect or touch at positions ``x``: (k, 2) uint32, sorted."""
         views, kept = self._views("x", x)
-        with self._host as host:
+        host = self._host
+        with host.lock:
             self._call(host, "intersections", library.cscdpy_detector_check, self._detector, address_of(views),
                        self._at["intersections"])
             found = copy_records(self._lists["intersections"], structs["intersection"])
@@ -175,7 +179,8 @@ class Detector(LiveSettings):
         kind_bits = kind_set(kinds)
         options = intersection_options(kind_bits, count_of("stop_after", stop_after), False, False, False)
         views, kept = self._views("x", x)
-        with self._host as host:
+        host = self._host
+        with host.lock:
             self._find(host, views, options)
             pairs = self._copied("intersection_pairs", None, structs["intersection_pair"])
             stopped = bool(self._lists["intersection_pairs"]["stopped"][0])
@@ -186,7 +191,8 @@ class Detector(LiveSettings):
         """Whether there is any pair of these kinds at positions ``x``; the search ends at the first one."""
         options = intersection_options(kind_set(kinds), 0, True, False, False)
         views, kept = self._views("x", x)
-        with self._host as host:
+        host = self._host
+        with host.lock:
             self._find(host, views, options)
             return bool(self._lists["intersection_pairs"]["count"][0])
 
@@ -194,7 +200,8 @@ class Detector(LiveSettings):
         """Curves and depths, or sums by parts, of positions that were looked at before."""
         options = intersection_options(2**64 - 1, 0, False, not parts, parts)
         views, kept = self._views("x", positions if len(positions) > 1 else positions[0])
-        with self._host as host:
+        host = self._host
+        with host.lock:
             self._find(host, views, options)
             return _Surface(self._lists["intersection_pairs"], self.mesh.vertex_count, not parts, parts)
 
@@ -208,7 +215,8 @@ class Detector(LiveSettings):
             ``count * energy(distance)`` is that over all pairs (include/cscd/solver.h).
         """
         views, kept = self._views("x", x)
-        with self._host as host:
+        host = self._host
+        with host.lock:
             self._call(host, "proximities", library.cscdpy_detector_find_near, self._detector, address_of(views),
                        number_of("distance", distance), _NEAR_UNIQUE if unique else _NEAR_PAIRS,
                        self._at["proximities"])
@@ -224,7 +232,8 @@ class Detector(LiveSettings):
         views, kept = self._views("x", x)
         bounds = np.empty(self.mesh.vertex_count)
         out = new_struct("displacement_bounds")
-        with self._host as host:
+        host = self._host
+        with host.lock:
             host.call(library.cscdpy_detector_displacement_bounds, self._detector, address_of(views),
                       number_of("search_radius", search_radius), 0, address_of(bounds), bounds.nbytes, address_of(out))
         return bounds
@@ -240,7 +249,8 @@ class Detector(LiveSettings):
         reached = self._positions_for("out", out, kept0)
         target = mutable_view(reached)
         found = new_struct("truncation")
-        with self._host as host:
+        host = self._host
+        with host.lock:
             host.call(library.cscdpy_detector_truncate, self._detector, address_of(start), address_of(end),
                       number_of("search_radius", search_radius), address_of(target), address_of(found))
         names = ["fraction", "obstacle_fraction", "near_count", "moved", "shortened", "waiting"]
@@ -287,6 +297,7 @@ class Detector(LiveSettings):
         return views_of(name, positions, self._vertex_counts)
 
     def _call(self, host: Host, kind: str, function: Any, *arguments: Any) -> None:
+        host.check()
         status = function(host.handle, *arguments)
         if status:
             self._fail(status, in_python(host.detail(), self._name), kind)
@@ -326,7 +337,7 @@ class Detector(LiveSettings):
 
     def _read(self, name: str, function: Any, *arguments: Any) -> Dict[str, Any]:
         found = new_struct(name)
-        with self._host:
+        with self._host.lock:
             function(self._detector, *arguments, address_of(found), found.nbytes)
         return {member: found[member][0].item() for member in structs[name].names}
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
 from typing import TYPE_CHECKING, Any, Optional, Tuple
 
 import numpy as np
@@ -37,11 +36,10 @@ class LineSearch:
         start, kept0 = detector._views("x0", x0)
         end, kept1 = detector._views("x1", x1)
         self._single = all(array.itemsize == 4 for array in kept0)
-        with self._host as host:
-            out = ctypes.c_void_p()
-            host.call_public(library.cscd_line_search_create, detector._detector, ctypes.byref(out))
-            assert out.value is not None
-            self._handle = Handle(out.value, host, library.cscd_line_search_destroy)
+        host = self._host
+        with host.lock:
+            self._handle = Handle(host, library.cscd_line_search_destroy)
+            host.call_public(library.cscd_line_search_create, detector._detector, self._handle.place)
             host.call(library.cscdpy_line_search_begin, self._handle.pointer, address_of(start), address_of(end),
                       number_of("reach", reach))
         self.candidate_count: int = library.cscd_line_search_candidate_count(self._handle.pointer)
@@ -50,7 +48,8 @@ class LineSearch:
         """(n, 3): ``x0 + fraction * (x1 - x0)``, rounded to the type of ``x0``; fraction in [0, 1]."""
         reached = self._empty()
         target = mutable_view(reached)
-        with self._host as host:
+        host = self._host
+        with host.lock:
             host.call(library.cscdpy_line_search_positions, self._handle.pointer,
                       number_of("fraction", fraction), address_of(target))
         return reached
@@ -61,7 +60,8 @@ class LineSearch:
         reached = self._empty()
         target = mutable_view(reached)
         detector = self.detector
-        with self._host as host:
+        host = self._host
+        with host.lock:
             detector._call(host, "free_step", library.cscdpy_line_search_max_step, self._handle.pointer,
                            number_of("longest", longest), address_of(target), detector._at["free_step"])
             return free_step_of(detector._lists["free_step"], reached)
@@ -69,7 +69,8 @@ class LineSearch:
     def near(self, fraction: float, distance: float, unique: bool = False) -> Proximities:
         """As ``Detector.near``, at ``positions(fraction)``; ``distance`` is at most the reach of the line."""
         detector = self.detector
-        with self._host as host:
+        host = self._host
+        with host.lock:
             detector._call(host, "proximities", library.cscdpy_line_search_find_near, self._handle.pointer,
                            number_of("fraction", fraction), number_of("distance", distance),
                            _NEAR_UNIQUE if unique else _NEAR_PAIRS,

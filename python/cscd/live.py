@@ -33,7 +33,8 @@ class LiveSettings:
     def set_rest(self, rest: Any) -> None:
         """Takes edge lengths at rest (n, 3) for the thresholds of ``near``; None forgets them."""
         views, kept = (None, None) if rest is None else self._views("rest", rest)
-        with self._host as host:
+        host = self._host
+        with host.lock:
             host.call(library.cscdpy_detector_set_rest, self._detector, None if views is None else address_of(views))
 
     def set_parts(self, labels: Any, part_count: Optional[int] = None) -> None:
@@ -79,7 +80,8 @@ class LiveSettings:
         self._inputs.update(ignored=ignored)
 
     def _set(self, function: Any, *arguments: Any) -> None:
-        with self._host as host:
+        host = self._host
+        with host.lock:
             host.call_public(function, self._detector, *arguments)
 
     def _views(self, name: str, positions: Any) -> Tuple[Array, Any]:

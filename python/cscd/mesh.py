@@ -217,7 +217,8 @@ class Mesh:
                 desc["wire_count"], desc["wires"] = len(item.edges), address_of(item.edges)
             elif isinstance(item, HalfSpace):
                 desc["normal"] = item.normal
-        with Host() as host:
+        host = Host()
+        with host.lock:
             self._handle = new_handle(host, library.cscd_mesh_destroy, library.cscdpy_mesh_create,
                                       address_of(described), len(described))
 

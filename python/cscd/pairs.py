@@ -61,7 +61,8 @@ def pairs_step(kind: str, x0: Any, x1: Any, points: Any = None, *, min_separatio
     if len(found):
         views0, kept0 = views_of("x0", start, [len(start)])
         views1, kept1 = (None, None) if end is None else views_of("x1", end, [len(start)])
-        with Host(threads) as host:
+        host = Host(threads)
+        with host.lock:
             host.call(library.cscdpy_pairs_step, address_of(pairs), address_of(views0),
                       None if views1 is None else address_of(views1), number_of("min_separation", min_separation),
                       number_of("tolerance", tolerance),
@@ -80,7 +81,8 @@ def pairs_near(kind: str, x: Any, points: Any = None, *, distance: float = np.in
     found = new_struct("pair_distance", int(pairs["pair_count"][0]))
     if len(found):
         views, kept_positions = views_of("x", positions, [len(positions)])
-        with Host(threads) as host:
+        host = Host(threads)
+        with host.lock:
             host.call(library.cscdpy_pairs_find_near, address_of(pairs), address_of(views),
                       number_of("distance", distance),
                       address_of(found))

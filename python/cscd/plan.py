@@ -104,13 +104,14 @@ class Plan:
         plan = cls.__new__(cls)
         plan.mesh = mesh if mesh is not None else Mesh(triangles, len(rest))
         plan.rest = rest
-        out, error = ctypes.c_void_p(), ctypes.create_string_buffer(1024)
+        error = ctypes.create_string_buffer(1024)
         pointer = plan.mesh.pointer
-        with plan.mesh.host as host:
-            if not library.cscdpy_plan_read(os.fsencode(path), pointer, ctypes.byref(out), ctypes.addressof(error)):
+        host = plan.mesh.host
+        with host.lock:
+            handle = Handle(host, library.cscd_plan_destroy)
+            if not library.cscdpy_plan_read(os.fsencode(path), pointer, handle.place, ctypes.addressof(error)):
                 raise ValueError(error.value.decode(errors="replace"))
-            assert out.value is not None
-            plan._handle = Handle(out.value, host, library.cscd_plan_destroy)
+            plan._handle = handle
         return plan
 
     def write(self, path: Union[str, os.PathLike[str]]) -> None:
@@ -152,7 +153,7 @@ class Plan:
         plan = cls.__new__(cls)
         views, kept = views_of("V", V, mesh.vertex_counts)
         plan.mesh = mesh
-        with host:
+        with host.lock:
             plan._handle = new_handle(host, library.cscd_plan_destroy, create, mesh.pointer, address_of(views),
                                       address_of(options))
         plan.rest = np.concatenate([as_positions("V", part).astype(np.float64) for part in kept])

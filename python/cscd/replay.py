@@ -44,13 +44,12 @@ class LeftOut(Handle):
     __slots__ = ("mesh",)
 
     def __init__(self, mesh: Mesh, labels: Array, part_count: int) -> None:
-        out, error = ctypes.c_void_p(), ctypes.create_string_buffer(1024)
-        if not library.cscdpy_left_out_create(mesh.pointer, address_of(labels), part_count, ctypes.byref(out),
+        super().__init__(mesh.host, library.cscdpy_left_out_destroy)
+        self.mesh = mesh
+        error = ctypes.create_string_buffer(1024)
+        if not library.cscdpy_left_out_create(mesh.pointer, address_of(labels), part_count, self.place,
                                               ctypes.addressof(error)):
             raise MemoryError(error.value.decode())
-        assert out.value is not None
-        super().__init__(out.value, mesh.host, library.cscdpy_left_out_destroy)
-        self.mesh = mesh
 
     def add_parts(self, pairs: Any, part_count: int) -> None:
         """Leaves out all pairs of two parts, (k, 2); -1 stands for what is in no part."""
@@ -169,7 +168,8 @@ class Replay:
             tracking[name] = value
         tracking["part_count"], tracking["labels"] = part_count, address_of(labels)
         self._follow_seams(tracking)
-        with self._detector._host as host:
+        host = self._detector._host
+        with host.lock:
             self._tracker = new_handle(host, library.cscd_event_tracker_destroy, library.cscdpy_tracker_create,
                                        self.mesh.pointer, address_of(tracking))
         self._found_options = intersection_options(2**64 - 1, 0, False, self._depths, True)
@@ -231,7 +231,8 @@ class Replay:
         if self._before is None or not self._contacts:
             return np.empty(0, Contacts.record()).view(Contacts)
         touched = self._detector.step(_joined(self._before), _joined(positions))
-        with self._detector._host as host:
+        host = self._detector._host
+        with host.lock:
             host.call(library.cscdpy_tracker_add_contacts, self._tracker.pointer, address_of(touched), len(touched))
         return touched
 
@@ -239,7 +240,8 @@ class Replay:
         detector = self._detector
         views, kept = detector._called(f"frames[{self._index}]")._views("frames", _joined(positions))
         found = detector._lists["intersection_pairs"]
-        with detector._host as host:
+        host = detector._host
+        with host.lock:
             detector._find(host, views, self._found_options)
             pairs = copy_records(found, structs["intersection_pair"])
             if self._left_out is not None and not library.cscdpy_left_out_show(self._left_out.pointer,
@@ -258,7 +260,8 @@ class Replay:
     def _take(self, function: Any) -> Events:
         """Events that have ended, in the caller's numbers."""
         out = new_struct("events")
-        with self._detector._host as host:
+        host = self._detector._host
+        with host.lock:
             host.call(function, self._tracker.pointer, address_of(out))
             taken = copy_records(out, Events.record())
         self._taken.append(taken)

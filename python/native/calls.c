@@ -7,7 +7,7 @@
 
 #define CALL_OF(name, arguments, call)                                                                       \
     PYTHON_API cscd_status cscdpy_##name arguments {                                                         \
-        host_begin(h);                                                                                       \
+        if (!host_begin(h)) return CSCD_BUSY;                                                                \
         cscd_status status = call;                                                                           \
         host_end(h);                                                                                         \
         return status;                                                                                       \

@@ -16,10 +16,12 @@ static double clock_ms(void) {
     return 1e3 * (double)now.tv_sec + 1e-6 * (double)now.tv_nsec;
 }
 
-void host_begin(host *h) {
+bool host_begin(host *h) {
+    if (h->thread != NULL) return false;
     h->raised = false;
     h->looked_ms = 0.0;
     h->thread = python.save_thread();
+    return true;
 }
 
 void host_end(host *h) {
@@ -105,4 +107,9 @@ PYTHON_API size_t cscdpy_host_bytes(const host *h) {
 
 PYTHON_API uint32_t cscdpy_host_thread_count(const host *h) {
     return cscd_context_thread_count(h->context);
+}
+
+/* Is a call running? */
+PYTHON_API bool cscdpy_host_is_busy(const host *h) {
+    return h->thread != NULL;
 }

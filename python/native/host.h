@@ -17,6 +17,6 @@ typedef struct host {
     bool raised;      /* an exception is set */
 } host;
 
-/* Between these the lock is not ours. One call at a time has a host; Python sees to that. */
-void host_begin(host *h);
+/* Between these the lock is not ours. False: a call is running in the host, and a callback of it has made another one. */
+bool host_begin(host *h);
 void host_end(host *h);
