@@ -165,7 +165,7 @@ COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 # What installs packages; a build that leaves expat out on purpose does not ask for it.
 PACKAGES = GSL=$(GSL) CHARGE=$(CHARGE) EXPAT=$(if $(WITHOUT_EXPAT),0,1) .ci/packages
 
-.PHONY: all python python-package wheel sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-embree referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender blender-extension test-vtk benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces fuzz-files FORCE
+.PHONY: all python python-package wheel sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-embree referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender blender-extension test-vtk python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces fuzz-files FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -207,7 +207,7 @@ sdist:
 
 test-python:
 	@$(PACKAGES) python
-	@$(MAKE) --no-print-directory python $(BUILD)/models/record $(BUILD)/models/folds
+	@$(MAKE) --no-print-directory python python-oracle $(BUILD)/models/record $(BUILD)/models/folds
 	@CC='$(CC)' $(PYTHON) python/tests/run.py
 
 # Installs what is built and builds the rest; it needs no network and no package but those of `make`, and install-library
@@ -510,6 +510,14 @@ $(BUILD)/tests/%: $(OBJECTS)/tests/%.o $(BUILD)/tests/support.a $(BUILD)/inside.
 	$(say) '  LD $@'
 	$(Q)$(CC) $(LINK_ALL) -Wl,--as-needed -o $@ $^ $(TEST_LIBS)
 
+# Brute force for the tests of the Python package, which load it.
+PYTHON_ORACLE := $(BUILD)/tests/python/oracle.so
+python-oracle: $(PYTHON_ORACLE)
+$(PYTHON_ORACLE): $(OBJECTS)/tests/python/oracle.o $(BUILD)/tests/support.a $(BUILD)/inside.a
+	@mkdir -p $(@D)
+	$(say) '  LD $@'
+	$(Q)$(CC) $(LINK_ALL) -shared -Wl,-Bsymbolic,--as-needed -o $@ $^ $(TEST_LIBS)
+
 # Parts of tests that are compiled once per instruction set.
 TEST_LEVELS := $(foreach level,$(LEVELS),$(OBJECTS)/tests/core/simd_operations_simd.$(level).o)
 $(BUILD)/tests/core/test_simd: $(TEST_LEVELS)
@@ -576,4 +584,4 @@ $(BUILD)/commit: FORCE
 FORCE:
 
 -include $(addprefix $(OBJECTS)/,$(addsuffix .d,$(basename $(SOURCES)))) $(KERNEL_OBJECTS:.o=.d) \
-         $(CHARGE_LIBRARY_FORMS:.o=.d) $(MACHINE_LEVELS:.o=.d) $(TEST_LEVELS:.o=.d) $(OBJECTS)/tests/blender/print_frames.d
+         $(CHARGE_LIBRARY_FORMS:.o=.d) $(MACHINE_LEVELS:.o=.d) $(TEST_LEVELS:.o=.d) $(OBJECTS)/tests/blender/print_frames.d $(OBJECTS)/tests/python/oracle.d

@@ -8,7 +8,8 @@ import numpy as np
 
 from ._library import address_of, structs
 
-__all__ = ["as_faces", "as_floats", "as_indices", "as_positions", "count_of", "mutable_view", "number_of", "views_of"]
+__all__ = ["as_faces", "as_floats", "as_indices", "as_positions", "check_magnitudes",
+           "count_of", "mutable_view", "number_of", "views_of"]
 
 Array = Any  # np.ndarray[Any, Any], said shorter
 
@@ -23,10 +24,12 @@ def describe(array: Array) -> str:
 
 def number_of(name: str, value: Any) -> float:
     """A number, as a double."""
-    try:
-        return float(value)
-    except (OverflowError, TypeError, ValueError):
-        raise ValueError(f"{name}: expected a number, got {value!r}") from None
+    if not isinstance(value, (str, bytes, bool)) and np.ndim(value) == 0:
+        try:
+            return float(value)
+        except (OverflowError, TypeError, ValueError):
+            pass
+    raise ValueError(f"{name}: expected a number, got {value!r}")
 
 
 def count_of(name: str, value: Any, largest: int = 2**63 - 1) -> int:
@@ -48,7 +51,7 @@ def as_floats(name: str, values: Any, what: str) -> Array:
         return array.astype(np.float64)
     if array.dtype.kind in "iu":
         if array.dtype.itemsize == 8 and array.size and max(int(array.max()), -int(array.min())) > _LARGEST_EXACT:
-            raise ValueError(f"{name}: {int(array.max())} has no exact double; expected {what}")
+            raise ValueError(f"{name}: expected {what}, got {int(np.abs(array).max())}, which no double is")
         return array.astype(np.float64)
     raise ValueError(f"{name}: expected {what}, got {describe(array)}")
 
@@ -62,6 +65,16 @@ def as_positions(name: str, values: Any, vertex_count: Optional[int] = None) -> 
     if array.ndim != 2 or array.shape[1] != 3 or (vertex_count is not None and len(array) != vertex_count):
         raise ValueError(f"{name}: expected an array ({rows}, 3) of float32 or float64, got {describe(array)}")
     return array
+
+
+def check_magnitudes(name: str, positions: Array) -> None:
+    """Says what the library would say of one object's positions, with their own name and number."""
+    sizes = np.abs(positions.astype(np.float64))
+    right = (sizes == 0.0) | ((sizes >= 2.0**-300) & (sizes <= 2.0**300))
+    if not right.all():
+        vertex, column = (int(i) for i in np.argwhere(~right)[0])
+        raise ValueError(f"{name}: vertex {vertex} has {'xyz'[column]} = {positions[vertex, column]}, expected 0 or a "
+                         "magnitude from 2^-300 to 2^300")
 
 
 def as_faces(name: str, values: Any, vertex_count: Optional[int] = None) -> Array:

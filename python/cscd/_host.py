@@ -53,7 +53,7 @@ def raise_status(status: int, sentence: str) -> NoReturn:
 def code_of(what: str, name: Any) -> int:
     """The number of a method, mode, volume or simd level, by its name; ``what`` says which of them."""
     code = ctypes.c_uint32()
-    if not isinstance(name, str):
+    if not isinstance(name, str) or "\0" in name:
         raise ValueError(f"{what}: expected a name, got {name!r}")
     if not getattr(library, f"cscd_{what}_from_name")(name.encode(), ctypes.byref(code)):
         raise ValueError(f"{what}: {name!r} is unknown")

@@ -87,6 +87,13 @@ def in_python(sentence: str, positions: str) -> str:
     return sentence
 
 
+def flag_of(name: str, value: Any) -> bool:
+    """True or false."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise ValueError(f"{name}: expected True or False, got {value!r}")
+    return bool(value)
+
+
 def matrix_of(matrix: Any) -> Array:
     """A thickness matrix, packed."""
     lengths = np.ascontiguousarray(as_floats("thickness_matrix", matrix, "a square array of lengths"), np.float64)
@@ -105,9 +112,12 @@ def rules_of(mesh: Mesh, rules: Any) -> Array:
         if unknown:
             raise ValueError(f"rules[{i}]: {sorted(unknown)[0]!r} is none of {', '.join(_DEFAULT_RULE)}")
         for name, value in {**_DEFAULT_RULE, **rule}.items():
-            try:
-                found[i][name] = value
-            except (OverflowError, TypeError, ValueError):
-                raise ValueError(f"rules[{i}]: {name} {value!r} is out of range "
-                                 f"({structs['object_rule'][name]})") from None
+            member = structs["object_rule"][name]
+            called = f"rules[{i}]: {name}"
+            if member.kind == "f":
+                found[i][name] = number_of(called, value)
+            elif member.kind == "b":
+                found[i][name] = flag_of(called, value)
+            else:
+                found[i][name] = count_of(called, value, int(np.iinfo(member).max))
     return found

@@ -186,7 +186,8 @@ class Mesh:
         self._handle: Optional[Handle] = None
         self._edges: Optional[Array] = None
         if self.triangles.size or any(not isinstance(item, Surface) for item in self._objects):
-            self._create()
+            if all(not isinstance(item, Surface) or len(item.triangles) for item in self._objects):
+                self._create()
 
     def _collect_faces(self) -> None:
         """Numbers triangles and faces object by object, as vertices are."""
@@ -226,7 +227,7 @@ class Mesh:
     def pointer(self) -> int:
         """The mesh of the library, for what is made from it."""
         if self._handle is None:
-            raise ValueError("this mesh has no triangle; expected one at least")
+            raise ValueError("this mesh, or an object of it, has no triangle; expected one at least")
         return self._handle.pointer
 
     @property
@@ -267,8 +268,8 @@ class Mesh:
     @property
     def triangle_components(self) -> Array:
         """(t,) uint32: the component of each triangle."""
-        labels = np.empty(self.triangle_count, np.uint32)
-        if labels.size:
+        labels = np.zeros(self.triangle_count, np.uint32)
+        if self._handle is not None:
             library.cscd_mesh_component_labels(self.pointer, address_of(labels))
         return labels
 
@@ -331,10 +332,8 @@ class Scene(Mesh):
                                  f"{type(item).__name__}")
         if not parts:
             raise ValueError("objects: expected one at least, got none")
-        for number in obstacles:
-            if not 0 <= number < len(parts):
-                raise ValueError(f"obstacles: {number} is none of the {len(parts)} objects")
-        self._begin(parts, [i in set(obstacles) for i in range(len(parts))])
+        numbers = as_indices("obstacles", list(obstacles), 1, len(parts), "objects").tolist()
+        self._begin(parts, [i in numbers for i in range(len(parts))])
 
     @property
     def object_count(self) -> int:  # type: ignore[override]

@@ -8,7 +8,7 @@ from typing import Any, Callable, Dict, Optional, Tuple, Union
 
 import numpy as np
 
-from ._arrays import as_positions, views_of
+from ._arrays import as_floats, as_indices, as_positions, count_of, number_of, views_of
 from ._host import Handle, Host, code_of, new_handle
 from ._library import address_of, library, new_struct, structs
 from .errors import Error
@@ -74,11 +74,14 @@ class Plan:
                    charges: Any = None, capacitances: Any = None) -> Plan:
         """A plan from what another one, or another program, consists of."""
         parts = new_struct("plan_parts")
-        arrays: Dict[str, Array] = {"triangle_regions": np.ascontiguousarray(triangle_regions, np.uint32),
-                  "detector_points": np.ascontiguousarray(detector_points, np.float64)}
-        for name, values in (("charges", charges), ("capacitances", capacitances)):
+        arrays: Dict[str, Array] = {}
+        for name, values in (("detector_points", detector_points), ("charges", charges), ("capacitances", capacitances)):
             if values is not None:
-                arrays[name] = np.ascontiguousarray(values, np.float64)
+                arrays[name] = np.ascontiguousarray(as_floats(name, values, "an array of numbers"), np.float64)
+        if arrays["detector_points"].ndim != 2:
+            raise ValueError(f"detector_points: expected shape (r, 3), got {arrays['detector_points'].shape}")
+        arrays["triangle_regions"] = as_indices("triangle_regions", triangle_regions, 1, len(arrays["detector_points"]),
+                                                "regions")
         cls._check_parts(mesh, arrays)
         parts["method"] = code_of("method", method)
         parts["region_count"] = len(arrays["detector_points"])
@@ -134,10 +137,10 @@ class Plan:
         options = new_struct("plan_options")
         library.cscd_plan_defaults_sized(address_of(options), options.nbytes)
         for name, value in members.items():
-            try:
-                options[name] = value
-            except (OverflowError, TypeError, ValueError):
-                raise ValueError(f"{name}: {value!r} is out of range") from None
+            if name == "threshold":
+                options[name] = number_of(name, value)
+            else:
+                options[name] = count_of(name, value, int(np.iinfo(structs["plan_options"][name]).max))
         try:
             return cls._made(mesh, V, Host(threads, progress=progress), library.cscdpy_plan_create, options)
         except Error as problem:

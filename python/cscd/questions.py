@@ -7,7 +7,7 @@ from typing import Any, Callable, Iterator, List, Optional, Tuple
 
 import numpy as np
 
-from ._arrays import as_positions
+from ._arrays import as_positions, check_magnitudes
 from ._host import processor_count, thread_count_of
 from .detector import Detector
 from .intersections import Intersections
@@ -21,9 +21,13 @@ Progress = Optional[Callable[[str, float], Any]]
 
 
 
-def mesh_of(F: Any, V: Any) -> Mesh:
-    """The mesh that is given, or one of these faces; faces of four corners are cut by ``V``."""
-    return F if isinstance(F, Mesh) else Mesh(F, positions=V)
+def mesh_of(F: Any, V: Any, name: str = "V") -> Mesh:
+    """The mesh that is given, or one of these faces; faces of four corners are cut by ``V``, which is called so."""
+    if not isinstance(F, Mesh):
+        return Mesh(F, positions=V)
+    if V is not None:
+        as_positions(name, V, F.vertex_count)
+    return F
 
 
 def self_intersections(V: Any, F: Any, kinds: Any = None, *, threads: int = 1, progress: Progress = None,
@@ -96,7 +100,9 @@ def intersections(V1: Any, F1: Any, V2: Any, F2: Any, kinds: Any = None, *, thre
     [[0, 0]]
     """
     first, second = as_positions("V1", V1), as_positions("V2", V2)
-    meshes = [mesh_of(F1, first), mesh_of(F2, second)]
+    check_magnitudes("V1", first)
+    check_magnitudes("V2", second)
+    meshes = [mesh_of(F1, first, "V1"), mesh_of(F2, second, "V2")]
     if any(mesh.triangle_count == 0 for mesh in meshes):
         return Intersections.none(Scene(meshes))
     detector = Detector(Scene(meshes), rules=[{"self": False}, {"self": False}], threads=threads, progress=progress)
@@ -119,7 +125,7 @@ def contacts(x0: Any, x1: Any, F: Any, *, min_separation: float = 0.0, threads: 
         Further ones of ``Detector``. Who asks for many intervals keeps a ``Detector``.
     """
     start, end = as_positions("x0", x0), as_positions("x1", x1)
-    mesh = mesh_of(F, start)
+    mesh = mesh_of(F, start, "x0")
     if mesh.triangle_count == 0:
         return np.empty(0, Contacts.record()).view(Contacts)
     detector = Detector(mesh, min_separation=min_separation, threads=threads, progress=progress, **options)
@@ -179,7 +185,7 @@ class _FrameQueue:
         self._first: Optional[Tuple[int, Any]] = next(self._frames, None)
         self.mesh: Optional[Mesh] = None
         if self._first is not None:
-            self.mesh = mesh_of(F, as_positions("frames[0]", self._first[1]))
+            self.mesh = mesh_of(F, as_positions("frames[0]", self._first[1]), "frames[0]")
         elif isinstance(F, Mesh) or np.size(F) == 0 or np.shape(F)[1:] == (3,):
             self.mesh = mesh_of(F, None)
         else:
