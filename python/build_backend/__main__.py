@@ -46,8 +46,8 @@ def main(words: List[str]) -> int:
         made = Path(place, build_wheel(place, {"charge": "0"}))
         foreign = [library for library in libraries_of(made) if not library.startswith(EVERYWHERE)]
         if foreign:
-            print(f"cscd: the wheel would need {' and '.join(foreign)} on every machine, because this has no "
-                  "archives of them that link into a shared library; `pip install .` works all the same",
+            print(f"cscd: the wheel would need {' and '.join(foreign)} wherever it is installed, because this machine has "
+                  "no archives of them that link into a shared library; `pip install .` works all the same",
                   file=sys.stderr)
             return 1
         target = Path(folder, made.name)

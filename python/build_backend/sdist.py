@@ -39,11 +39,16 @@ def tracked_files(root: Path) -> List[str]:
 def walked_files(root: Path) -> Iterator[str]:
     """All files of the tree but what builds leave there."""
     for folder, folders, files in os.walk(root):
-        folders[:] = [name for name in folders if name not in LEFT_OUT]
+        folders[:] = [name for name in folders if name not in LEFT_OUT and not is_environment(Path(folder, name))]
         for name in files:
             path = Path(folder, name).relative_to(root).as_posix()
             if name not in LEFT_OUT and path != "cscd" and not name.endswith((".pyc", ".whl", ".tar.gz")):
                 yield path
+
+
+def is_environment(folder: Path) -> bool:
+    """Whether a folder is a virtual environment, such as the one that README makes in the tree."""
+    return (folder / "pyvenv.cfg").exists()
 
 
 def write_sdist(project: Project, root: Path, folder: str) -> str:

@@ -72,6 +72,8 @@ def test_archive_of_an_archive_is_the_same(tmp_path: Path) -> None:
         archive.extractall(tmp_path)
     (tmp_path / name / "build").mkdir()
     (tmp_path / name / "build" / "rest").write_text("of a build")
+    (tmp_path / name / "v").mkdir()
+    (tmp_path / name / "v" / "pyvenv.cfg").write_text("of README's environment")
     rig.make_archive("sdist", tmp_path / name, tmp_path / "again")
     assert (tmp_path / "again" / f"{name}.tar.gz").read_bytes() == (tmp_path / f"{name}.tar.gz").read_bytes()
 

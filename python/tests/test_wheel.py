@@ -88,6 +88,15 @@ def test_library_needs_the_c_library_alone(wheel: Path, tmp_path: Path) -> None:
     assert names and [name for name in names if not name.startswith(("cscd_", "cscdpy_"))] == []
 
 
+def test_wheel_that_needs_more_is_not_given_away(tree: Path, tmp_path: Path) -> None:
+    compiler = tmp_path / "compiler-without-archives"
+    compiler.write_text('#!/bin/sh\ncase "$*" in *-print-file-name=lib*.a) echo lib.a ;; *) exec gcc "$@" ;; esac\n')
+    compiler.chmod(0o755)
+    said = rig.make_archive("wheel", tree, tmp_path / "out", status=1, CC=str(compiler))
+    assert "the wheel would need libpng16.so.16 and libz.so.1 and libjson-c.so.5 and libexpat.so.1 wherever" in said
+    assert not (tmp_path / "out").exists()
+
+
 def test_another_folder_gives_the_same_bytes(wheel: Path, tmp_path: Path) -> None:
     other = rig.source_tree(tmp_path / "b")
     # What is compiled there knows the folder in what it tells debuggers.
