@@ -148,7 +148,7 @@ class Plan:
                 raise
             raise Error(f"{problem}\nThis installation of cscd was built without charge, as wheels are. Install it "
                         "from its sources on a machine with LAPACKE and OpenBLAS (Debian: liblapacke-dev, "
-                        "libopenblas-dev): pip install --no-binary cscd; or make the plan with the tool's "
+                        "libopenblas-dev), by `pip install .` there; or make the plan with the tool's "
                         "`cscd preprocess`, and read it by Plan.read") from None
 
     @classmethod

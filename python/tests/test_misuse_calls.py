@@ -111,7 +111,8 @@ def test_scenes() -> None:
     for make in (lambda: cscd.Wires([[0, 1, 2]]), lambda: cscd.Wires([[0, -1]]), lambda: cscd.Wires([[0, 5]], 3),
                  lambda: cscd.Wires([[0.0, 1.0]]), lambda: cscd.Points(-1), lambda: cscd.Points(1.5),
                  lambda: cscd.Points("many"), lambda: cscd.HalfSpace([0, 0]), lambda: cscd.HalfSpace("up"),
-                 lambda: cscd.Scene([mesh, cscd.HalfSpace([0, 0, 0])]), lambda: cscd.Scene([mesh, cscd.HalfSpace([0, np.nan, 1])]),
+                 lambda: cscd.Scene([mesh, cscd.HalfSpace([0, 0, 0])]),
+                 lambda: cscd.Scene([mesh, cscd.HalfSpace([0, np.nan, 1])]),
                  lambda: cscd.Scene([mesh, cscd.Points(2**31), cscd.Points(2**31)])):
         with pytest.raises(ValueError):
             make()
