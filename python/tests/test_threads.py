@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import gc
 import signal
 import threading
@@ -187,17 +186,29 @@ def test_cancel_from_another_thread() -> None:
 @pytest.fixture
 def alarm() -> Any:
     """An alarm raises KeyboardInterrupt, as Ctrl-C does."""
-    before = signal.signal(signal.SIGALRM, signal.default_int_handler)
+    before = signal.signal(signal.SIGALRM, signal.SIG_IGN)
     yield
     signal.setitimer(signal.ITIMER_REAL, 0)
     signal.signal(signal.SIGALRM, before)
 
 
-def stop_alarms() -> None:
-    """No alarm comes after this, though one may come in it."""
-    for _ in range(3):
-        with contextlib.suppress(KeyboardInterrupt):
-            signal.setitimer(signal.ITIMER_REAL, 0)
+def interrupt(call: Callable[[], Any], delay: float, again: float) -> float:
+    """Repeats a call until an alarm interrupts it, after ``delay``; returns how much later that was, in seconds.
+
+    An alarm that comes while an object is destroyed is lost, as Python has it, so others follow. None comes afterwards.
+    """
+    late = 0.0
+    signal.signal(signal.SIGALRM, signal.default_int_handler)
+    try:
+        due = time.monotonic() + delay
+        signal.setitimer(signal.ITIMER_REAL, delay, again)
+        while True:
+            call()
+    except KeyboardInterrupt:
+        signal.signal(signal.SIGALRM, signal.SIG_IGN)
+        late = time.monotonic() - due
+    signal.setitimer(signal.ITIMER_REAL, 0)
+    return late
 
 
 def test_control_c_ends_long_calls(alarm: Any) -> None:
@@ -211,13 +222,7 @@ def test_control_c_ends_long_calls(alarm: Any) -> None:
              lambda: cscd.self_intersecting_faces(frames, mesh), lambda: cscd.self_intersecting_faces(frames, mesh, threads=2)]
     late: List[float] = []
     for i in range(50):
-        delay = random.uniform(0.0005, 0.06)
-        due = time.monotonic() + delay
-        with pytest.raises(KeyboardInterrupt):
-            signal.setitimer(signal.ITIMER_REAL, delay)
-            while True:
-                calls[i % len(calls)]()
-        late.append(time.monotonic() - due)
+        late.append(interrupt(calls[i % len(calls)], random.uniform(0.0005, 0.06), 0.3))
         if i % 10 == 9:
             assert np.array_equal(detector.check(x), truth)
     late.sort()
@@ -230,16 +235,15 @@ def test_control_c_between_short_calls(alarm: Any) -> None:
     line = detector.line_search(V, DOWN, reach=0.5)
     step, near = detector.step(V, DOWN), line.near(0.5, 0.5)
     random = np.random.default_rng(3)
+
+    def call() -> None:
+        detector.step(V, DOWN)
+        line.near(0.5, 0.5)
+        detector.counters
+        cscd.Detector(F).set_seams(None)
+
     for _ in range(400):
-        # An alarm that comes while an object is destroyed is lost, as Python has it, so there is another one.
-        with contextlib.suppress(KeyboardInterrupt):
-            signal.setitimer(signal.ITIMER_REAL, random.uniform(2e-5, 3e-3), 5e-3)
-            while True:
-                detector.step(V, DOWN)
-                line.near(0.5, 0.5)
-                detector.counters
-                cscd.Detector(F).set_seams(None)
-        stop_alarms()
+        interrupt(call, random.uniform(2e-5, 3e-3), 5e-3)
         assert np.array_equal(detector.step(V, DOWN), step) and np.array_equal(line.near(0.5, 0.5), near)
 
 
@@ -252,11 +256,11 @@ def test_other_handlers(alarm: Any) -> None:
     signal.signal(signal.SIGALRM, lambda *_: seen.append(len(other.step(V, DOWN))))
     signal.setitimer(signal.ITIMER_REAL, 0.002, 0.004)
     assert np.array_equal(detector.check(x), truth) and len(seen) > 3 and min(seen) > 0
+    signal.setitimer(signal.ITIMER_REAL, 0)
 
     def fail(*_: Any) -> None:
         raise LookupError("from a handler")
 
-    signal.setitimer(signal.ITIMER_REAL, 0)
     signal.signal(signal.SIGALRM, fail)
     with pytest.raises(LookupError, match="from a handler"):
         signal.setitimer(signal.ITIMER_REAL, 0.002)
