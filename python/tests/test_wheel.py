@@ -124,6 +124,11 @@ def test_two_builds_at_once_wait_for_each_other(tree: Path, wheel: Path, tmp_pat
     assert rig.left_behind(tree) == []
 
 
+def hear_interrupts() -> None:
+    """What a shell starts in the background ignores SIGINT, and so would all that it starts."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 def test_interrupted_build_leaves_nothing(tree: Path, wheel: Path, tmp_path: Path) -> None:
     compiler = tmp_path / "slow-compiler"
     compiler.write_text('#!/bin/sh\n'
@@ -135,7 +140,8 @@ def test_interrupted_build_leaves_nothing(tree: Path, wheel: Path, tmp_path: Pat
     for number in (signal.SIGINT, signal.SIGTERM):
         build = subprocess.Popen([sys.executable, "-m", "build_backend", "wheel", str(out)], cwd=tree,
                                  env=rig.bare_environment(PYTHONPATH=str(tree / "python"), CC=str(compiler)),
-                                 stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
+                                 stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True,
+                                 preexec_fn=hear_interrupts)
         while not reached.exists():
             assert build.poll() is None, "the build ended before it was interrupted"
             time.sleep(0.02)
