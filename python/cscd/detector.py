@@ -197,8 +197,8 @@ class Detector(LiveSettings):
             return bool(self._lists["intersection_pairs"]["count"][0])
 
     def _surface_answers(self, positions: Any, parts: bool = False) -> _Surface:
-        """Curves and depths, or sums by parts, of positions that were looked at before."""
-        options = intersection_options(2**64 - 1, 0, False, not parts, parts)
+        """Curves and depths, or sums by parts, of which they are a part, of positions that were looked at before."""
+        options = intersection_options(2**64 - 1, 0, False, True, parts)
         views, kept = self._views("x", positions if len(positions) > 1 else positions[0])
         host = self._host
         with host.lock:

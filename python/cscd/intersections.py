@@ -262,9 +262,9 @@ def labels_of(labels: Any, triangle_count: int, part_count: Optional[int]) -> Tu
     if array.shape != (triangle_count,) or array.dtype.kind not in "iu":
         raise ValueError(f"labels: expected {triangle_count} whole numbers, one for each triangle of the mesh, got "
                          f"shape {array.shape} of {array.dtype}")
-    highest = int(array.max(initial=-1))
+    lowest, highest = (int(array.min()), int(array.max())) if array.size else (0, -1)
     count = highest + 1 if part_count is None else part_count
-    if int(array.min(initial=0)) < -1 or highest >= max(count, 1) or highest >= _NONE:
+    if lowest < -1 or highest >= max(count, 1) or highest >= _NONE:
         raise ValueError(f"labels: expected numbers from 0 to {count - 1}, or -1 for no part; got "
-                         f"{int(array.min(initial=0))} to {highest}")
+                         f"{lowest} to {highest}")
     return np.where(array < 0, _NONE, array).astype(np.uint32), max(count, 1)
