@@ -4,14 +4,15 @@
 #include <sched.h>
 #include <string.h>
 
-enum { TASK_WAITING, TASK_RUNNING, TASK_DONE, TASK_LEFT };
+/* New memory says that no task waits. */
+enum { TASK_DONE, TASK_WAITING, TASK_RUNNING, TASK_LEFT };
 
 host_loop host_loop_of(host_memory *memory, cscd_parallel_for host) {
     return (host_loop){.host = host, .memory = memory};
 }
 
 void host_loop_free(host_loop *loop) {
-    memory_free(loop->memory, loop->marks);
+    for (int i = 0; i < MARK_BLOCKS; i++) memory_free(loop->memory, loop->marks[i]);
 }
 
 void host_loop_begin_call(host_loop *loop) {
@@ -23,6 +24,38 @@ loop_faults host_loop_faults(const host_loop *loop) {
     loop_faults faults = loop->faults;
     faults.repeated = atomic_load(&loop->repeated);
     return faults;
+}
+
+/* ---- marks ---------------------------------------------------------------------------------------------- */
+
+/* The first block has marks of 256 tasks, the second one those of the next 256, and each further one as many as all before it. */
+enum { FIRST_MARKS_SHIFT = 8 };
+
+static int block_of_task(uint32_t index) {
+    uint32_t doublings = index >> FIRST_MARKS_SHIFT;
+    return doublings == 0 ? 0 : 32 - __builtin_clz(doublings);
+}
+
+static uint32_t block_begin(int block) {
+    return block == 0 ? 0 : UINT32_C(1) << (FIRST_MARKS_SHIFT - 1 + block);
+}
+
+static size_t block_size(int block) {
+    return block == 0 ? 1u << FIRST_MARKS_SHIFT : block_begin(block);
+}
+
+static atomic_uchar *mark_of(host_loop *loop, uint32_t index) {
+    int block = block_of_task(index);
+    return &loop->marks[block][index - block_begin(block)];
+}
+
+static bool reserve_marks(host_loop *loop, uint32_t task_count) {
+    for (int block = 0; block <= block_of_task(task_count - 1); block++) {
+        if (loop->marks[block] != NULL) continue;
+        loop->marks[block] = memory_allocate(loop->memory, block_size(block), sizeof *loop->marks[block]);
+        if (loop->marks[block] == NULL) return false;
+    }
+    return true;
 }
 
 /* ---- one task ------------------------------------------------------------------------------------------ */
@@ -42,15 +75,17 @@ static void end_task(running_task *task) {
 
 static void run_marked_task(host_loop *loop, uint32_t index) {
     __attribute__((cleanup(end_task)))
-    running_task task = {&loop->marks[index], float_environment_begin(), TASK_LEFT};
+    running_task task = {mark_of(loop, index), float_environment_begin(), TASK_LEFT};
     loop->task(loop->data, index);
     task.end = TASK_DONE;
 }
 
+/* A thread of the host that was late for an earlier loop may come at any time, even between two of these lines. It finds
+ * a mark, since these stay where they are, and takes only a task that waits, whose function and data it then sees. */
 static bool take_task(host_loop *loop, uint32_t index) {
     unsigned char waiting = TASK_WAITING;
     return index < atomic_load(&loop->task_count) &&
-           atomic_compare_exchange_strong(&loop->marks[index], &waiting, TASK_RUNNING);
+           atomic_compare_exchange_strong(mark_of(loop, index), &waiting, TASK_RUNNING);
 }
 
 static void run_host_task(void *data, uint32_t index) {
@@ -63,30 +98,26 @@ static void run_host_task(void *data, uint32_t index) {
 
 /* ---- all tasks ----------------------------------------------------------------------------------------- */
 
-static bool reserve_marks(host_loop *loop, uint32_t task_count) {
-    if (task_count > loop->marks_count) {
-        size_t count = (size_t)task_count + task_count / 2;
-        atomic_uchar *marks = memory_allocate(loop->memory, count, sizeof *marks);
-        if (marks == NULL) return false;
-        memory_free(loop->memory, loop->marks);
-        loop->marks = marks;
-        loop->marks_count = count;
-    }
+/* The marks come last: from then on, any thread of the host may begin. */
+static void offer_loop(host_loop *loop, uint32_t task_count, parallel_task *task, void *data) {
+    loop->task = task;
+    loop->data = data;
+    loop->faults.tasks += task_count;
+    atomic_store(&loop->task_count, task_count);
     for (uint32_t i = 0; i < task_count; i++)
-        atomic_store_explicit(&loop->marks[i], TASK_WAITING, memory_order_relaxed);
-    return true;
+        atomic_store_explicit(mark_of(loop, i), TASK_WAITING, memory_order_release);
 }
 
 /* Runs what the host has left out, and waits for what it still runs: that works on our caller's data. */
 static void finish_tasks(host_loop *loop, uint32_t task_count) {
     for (uint32_t i = 0; i < task_count; i++) {
-        loop->faults.unfinished += atomic_load(&loop->marks[i]) == TASK_RUNNING;
+        loop->faults.unfinished += atomic_load(mark_of(loop, i)) == TASK_RUNNING;
         if (!take_task(loop, i)) continue;
         loop->faults.left_out++;
         run_marked_task(loop, i);
     }
     for (uint32_t i = 0; i < task_count; i++) {
-        while (atomic_load(&loop->marks[i]) == TASK_RUNNING) sched_yield();
+        while (atomic_load(mark_of(loop, i)) == TASK_RUNNING) sched_yield();
     }
 }
 
@@ -95,10 +126,7 @@ void host_loop_run(host_loop *loop, uint32_t task_count, parallel_task *task, vo
         for (uint32_t i = 0; i < task_count; i++) task(data, i);
         return;
     }
-    loop->task = task;
-    loop->data = data;
-    loop->faults.tasks += task_count;
-    atomic_store(&loop->task_count, task_count);
+    offer_loop(loop, task_count, task, data);
     HOST_CALL(call, loop->memory->entry, HOST_PARALLEL_FOR);
     loop->host.run(loop->host.user, task_count, run_host_task, loop);
     host_call_end(&call);

@@ -18,13 +18,14 @@ typedef struct loop_faults {
     uint64_t tasks;    /* all tasks of the call */
 } loop_faults;
 
+enum { MARK_BLOCKS = 25 }; /* enough for every 32-bit number of tasks */
+
 typedef struct host_loop {
     cscd_parallel_for host; /* run NULL: there is none */
     host_memory *memory;
     parallel_task *task;
     void *data;
-    atomic_uchar *marks; /* per task */
-    size_t marks_count;
+    atomic_uchar *marks[MARK_BLOCKS]; /* per task; what has been allocated stays to the end of the context */
     atomic_uint task_count, repeated;
     loop_faults faults; /* without those that `repeated` counts */
 } host_loop;

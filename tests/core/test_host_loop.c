@@ -207,8 +207,69 @@ static void every_call_notices(void **state) {
     assert_true(noticed >= 12);
 }
 
+/* ---- a thread that is late again and again --------------------------------------------------------------- */
+
+/* It calls tasks of all numbers from the first loop on, in loops and between them. */
+typedef struct hammer {
+    task_function *task;
+    void *data;
+    atomic_bool quit;
+    bool begun;
+    pthread_t thread;
+} hammer;
+
+static void *hammer_tasks(void *argument) {
+    hammer *h = argument;
+    for (uint32_t i = 0; !atomic_load(&h->quit); i++) {
+        h->task(h->data, i % 1000);
+        if (i % 1000 == 0) usleep(1);
+    }
+    return NULL;
+}
+
+static void run_beside_hammer(void *user, uint32_t task_count, task_function *task, void *data) {
+    hammer *h = user;
+    if (!h->begun) {
+        h->task = task;
+        h->data = data;
+        h->begun = true;
+        assert_int_equal(pthread_create(&h->thread, NULL, hammer_tasks, h), 0);
+    }
+    for (uint32_t i = 0; i < task_count; i++) task(data, i);
+}
+
+static void step_beside_hammer(const cscd_contact *expected, size_t count) {
+    hammer h = {.begun = false};
+    cscd_context_options options = cscd_context_defaults();
+    options.thread_count = 4;
+    options.parallel_for = (cscd_parallel_for){run_beside_hammer, &h};
+    panel_scene p = panels_create(40, &options, NULL);
+    cscd_contacts found;
+    for (int i = 0; i < 5 || !h.begun; i++) {
+        cscd_status status = panels_step(&p, &found);
+        assert_true(status == CSCD_INVALID_ARGUMENT || status == CSCD_OK);
+    }
+    atomic_store(&h.quit, true);
+    pthread_join(h.thread, NULL);
+    assert_int_equal(panels_step(&p, &found), CSCD_OK);
+    assert_int_equal(found.count, count);
+    assert_memory_equal(found.items, expected, count * sizeof *expected);
+    panels_destroy(&p);
+}
+
+/* The first loops of a context are those that need more marks than the ones before. */
+static void late_threads_harm_nothing(void **state) {
+    size_t count;
+    uint32_t runs;
+    cscd_contact *expected = honest_contacts(&count, &runs);
+    (void)state;
+    for (int context = 0; context < 10; context++) step_beside_hammer(expected, count);
+    free(expected);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(faults_fail_the_call),
-                                       cmocka_unit_test(every_call_notices)};
+                                       cmocka_unit_test(every_call_notices),
+                                       cmocka_unit_test(late_threads_harm_nothing)};
     return cmocka_run_group_tests_name("host_loop", tests, NULL, NULL);
 }
