@@ -207,7 +207,7 @@ sdist:
 
 test-python:
 	@$(PACKAGES) python
-	@$(MAKE) --no-print-directory python python-oracle $(BUILD)/models/record $(BUILD)/models/folds
+	@$(MAKE) --no-print-directory python python-oracle $(BUILD)/models/record $(BUILD)/models/folds $(BUILD)/models/mannequin
 	@CC='$(CC)' $(PYTHON) python/tests/run.py
 
 # Installs what is built and builds the rest; it needs no network and no package but those of `make`, and install-library
