@@ -74,3 +74,27 @@ class Picture:
         ground = f'<rect width="{self.width}" height="{self.height}" fill="white"/>'
         with open(path, "w", encoding="utf-8") as file:
             file.write("\n".join([head, f"<style>{styles}</style>", ground, *self.lines, "</svg>"]) + "\n")
+
+
+def write_plot(path: str, lines: Sequence[Tuple[str, str, Array]], across: str, up: str) -> None:
+    """Draws lines, each a label, a colour and its values one after the other, in common axes from 0 on."""
+    width, height, left, bottom = 640, 240, 50, 40
+    top = max(float(np.max(values)) for _, _, values in lines)
+    last = max(len(values) for _, _, values in lines) - 1
+    texts = [(left - 6, 19, "end", f"{top:.2f}"), (left - 6, height - bottom, "end", "0"),
+             (left, height - bottom + 16, "middle", "0"), (width - 10, height - bottom + 16, "end", str(last)),
+             ((left + width) // 2, height - 6, "middle", across)]
+    drawn = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" font-family="sans-serif" font-size="12">',
+             f'<rect width="{width}" height="{height}" fill="white"/>',
+             f'<path d="M{left} 15V{height - bottom}H{width - 10}" fill="none" stroke="black"/>',
+             f'<text x="12" y="{(height - bottom) // 2}" text-anchor="middle" '
+             f'transform="rotate(-90 12 {(height - bottom) // 2})">{up}</text>']
+    for i, (label, colour, values) in enumerate(lines):
+        x = left + np.arange(len(values)) * (width - left - 10) / last
+        y = height - bottom - np.asarray(values) / top * (height - bottom - 15)
+        points = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(x, y))
+        drawn.append(f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="2"/>')
+        drawn.append(f'<text x="{width - 20}" y="{80 + 18 * i}" text-anchor="end" fill="{colour}">{label}</text>')
+    drawn += [f'<text x="{x}" y="{y}" text-anchor="{anchor}">{text}</text>' for x, y, anchor, text in texts]
+    with open(path, "w", encoding="utf-8") as file:
+        file.write("\n".join([*drawn, "</svg>"]) + "\n")
