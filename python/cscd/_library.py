@@ -16,8 +16,10 @@ import numpy as np
 
 from ._prototypes import PROTOTYPES
 
-__all__ = ["address_of", "copy_list", "library", "new_struct", "structs"]
+__all__ = ["address_of", "copy_items", "copy_list", "items_of", "library", "new_struct", "records", "structs"]
 
+_NONE = 2**32 - 1
+_INDICES_MAY_BE_NONE = ("component", "depth", "event", "part_pair")
 _FROM_PYTHON = ("PyEval_SaveThread", "PyEval_RestoreThread", "PyErr_CheckSignals", "PyObject_CallFunction",
                 "PyObject_IsTrue", "Py_DecRef")
 
@@ -50,6 +52,15 @@ def _describe_member(index: int, member: int) -> List[Any]:
     return [name, kind if size == item else (kind, (size // item,)), offset]
 
 
+def _signed(struct: Any) -> Any:
+    """The same members, with signed whole numbers of 64 bits in place of unsigned ones."""
+    members = []
+    for name in struct.names:
+        item, shape = struct[name].subdtype or (struct[name], ())
+        members.append((name, np.dtype(np.int64) if item.kind == "u" else item, shape))
+    return np.dtype(members, align=True)
+
+
 def _read_structs() -> None:
     """Makes a dtype of each struct that the library describes."""
     size, members = ctypes.c_size_t(), ctypes.c_size_t()
@@ -59,8 +70,8 @@ def _read_structs() -> None:
         if name is None:
             return
         names, formats, offsets = zip(*(_describe_member(index, i) for i in range(members.value)))
-        structs[name.decode()] = np.dtype({"names": names, "formats": formats, "offsets": offsets,
-                                           "itemsize": size.value})
+        struct = np.dtype({"names": names, "formats": formats, "offsets": offsets, "itemsize": size.value})
+        structs[name.decode()], records[name.decode()] = struct, _signed(struct)
         index += 1
 
 
@@ -68,6 +79,9 @@ library = _load()
 
 #: A dtype for each struct of the library, by its name without ``cscd_``.
 structs: Dict[str, Any] = {}
+
+#: The same as callers get them: every whole number is an int64, whose differences do not wrap.
+records: Dict[str, Any] = {}
 _read_structs()
 
 
@@ -79,6 +93,31 @@ def address_of(array: np.ndarray[Any, Any]) -> int:
 def new_struct(name: str, count: int = 1) -> np.ndarray[Any, Any]:
     """An array of structs, all zero."""
     return np.zeros(count, structs[name])
+
+
+class _Memory:
+    """Memory of the library, for numpy."""
+
+    def __init__(self, address: int, size: int) -> None:
+        self.__array_interface__ = {"version": 3, "shape": (size,), "typestr": "|u1", "data": (address, True)}
+
+
+def items_of(found: np.ndarray[Any, Any], name: str) -> np.ndarray[Any, Any]:
+    """Structs of the library as records. What the library says of an index that there is none, all bits, becomes -1."""
+    struct = structs[name]
+    items = found.astype(records[name])
+    for member in struct.names if name in _INDICES_MAY_BE_NONE else ():
+        if struct[member].base == np.uint32:
+            items[member][items[member] == _NONE] = -1
+    return items
+
+
+def copy_items(address: int, count: int, name: str) -> np.ndarray[Any, Any]:
+    """A list of the library as records, which the caller owns."""
+    if count == 0:
+        return np.empty(0, records[name])
+    memory: np.ndarray[Any, Any] = np.asarray(_Memory(address, count * structs[name].itemsize))
+    return items_of(memory.view(structs[name]), name)
 
 
 def copy_list(address: int, count: int, dtype: Any) -> np.ndarray[Any, Any]:

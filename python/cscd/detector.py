@@ -8,7 +8,7 @@ import numpy as np
 
 from ._arrays import as_faces, count_of, mutable_view, number_of, views_of
 from ._host import IN_CONTACT, Handle, Host, new_handle, raise_status
-from ._library import address_of, library, new_struct, structs
+from ._library import address_of, items_of, library, new_struct, structs
 from ._options import DetectorOptions, in_python
 from .errors import InContact, ListTooLong
 from .intersections import Intersections, _Surface, intersection_options, kind_set
@@ -119,7 +119,7 @@ class Detector(LiveSettings):
         with host.lock:
             self._call(host, "contacts", library.cscdpy_detector_step, self._detector, address_of(start),
                        address_of(end), self._at["contacts"])
-            found: Contacts = self._copied("contacts", Contacts)
+            found: Contacts = copy_records(self._lists["contacts"], "contact").view(Contacts)
             return found
 
     def max_step(self, x0: Any, x1: Any, out: Optional[Array] = None) -> Tuple[Array, float, Optional[Contacts]]:
@@ -157,14 +157,14 @@ class Detector(LiveSettings):
     # ---- one moment -------------------------------------------------------------------------------------
 
     def check(self, x: Any) -> Array:
-        """The pairs of triangles that intersect or touch at positions ``x``: (k, 2) uint32, sorted."""
+        """The pairs of triangles that intersect or touch at positions ``x``: (k, 2) int64, sorted."""
         views, kept = self._views("x", x)
         host = self._host
         with host.lock:
             self._call(host, "intersections", library.cscdpy_detector_check, self._detector, address_of(views),
                        self._at["intersections"])
-            found = copy_records(self._lists["intersections"], structs["intersection"])
-        return found.view(np.uint32).reshape(-1, 2)
+            found = copy_records(self._lists["intersections"], "intersection")
+        return found.view(np.int64).reshape(-1, 2)
 
     def find_intersections(self, x: Any, kinds: Any = None, stop_after: int = 0) -> Intersections:
         """The pairs of triangles that intersect or touch at positions ``x``, and how.
@@ -182,7 +182,7 @@ class Detector(LiveSettings):
         host = self._host
         with host.lock:
             self._find(host, views, options)
-            pairs = self._copied("intersection_pairs", None, structs["intersection_pair"])
+            pairs = copy_records(self._lists["intersection_pairs"], "intersection_pair")
             stopped = bool(self._lists["intersection_pairs"]["stopped"][0])
         return Intersections(self.mesh, self, [array.copy() for array in kept], pairs, stopped,
                              kinds is None and stop_after == 0)
@@ -220,7 +220,7 @@ class Detector(LiveSettings):
             self._call(host, "proximities", library.cscdpy_detector_find_near, self._detector, address_of(views),
                        number_of("distance", distance), _NEAR_UNIQUE if unique else _NEAR_PAIRS,
                        self._at["proximities"])
-            found: Proximities = self._copied("proximities", Proximities)
+            found: Proximities = copy_records(self._lists["proximities"], "proximity").view(Proximities)
             return found
 
     def bounds(self, x: Any, search_radius: float) -> Array:
@@ -304,7 +304,7 @@ class Detector(LiveSettings):
 
     def _fail(self, status: int, sentence: str, kind: str) -> None:
         if status == IN_CONTACT:
-            raise InContact(sentence, self._lists[kind]["limit"].copy().view(Contacts))
+            raise InContact(sentence, items_of(self._lists[kind]["limit"], "contact").view(Contacts))
         try:
             raise_status(status, sentence)
         except ListTooLong as problem:
@@ -314,10 +314,6 @@ class Detector(LiveSettings):
     def _find(self, host: Host, views: Array, options: Array) -> None:
         self._call(host, "intersection_pairs", library.cscdpy_detector_find_intersections, self._detector,
                    address_of(views), address_of(options), self._at["intersection_pairs"])
-
-    def _copied(self, kind: str, cls: Any, dtype: Any = None) -> Any:
-        found = copy_records(self._lists[kind], dtype or cls.record())
-        return found if cls is None else found.view(cls)
 
     def _positions_for(self, name: str, out: Optional[Array], kept: Any) -> Array:
         """Where positions are written."""
@@ -351,7 +347,7 @@ class Detector(LiveSettings):
 def free_step_of(step: Array, reached: Array) -> Tuple[Array, float, Optional[Contacts]]:
     """The results of ``max_step`` from the struct of the library."""
     limited = bool(step["limited"][0])
-    return reached, float(step["fraction"][0]), step["limit"].copy().view(Contacts) if limited else None
+    return reached, float(step["fraction"][0]), items_of(step["limit"], "contact").view(Contacts) if limited else None
 
 
 def _restore(mesh: Mesh, inputs: Dict[str, Any]) -> Detector:

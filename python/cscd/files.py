@@ -95,7 +95,7 @@ class Recording:
         Objects and groups of the file, or its components.
     part_labels : (t,) int64
         The part of each triangle of the mesh, -1 for none.
-    file_vertices : (n,) uint32
+    file_vertices : (n,) int64
         The number that each vertex has in the file. Formats that store vertices several times, as STL and glTF, have
         several for one; this is the first.
     """
@@ -108,9 +108,10 @@ class Recording:
         triangles = copy_list(library.cscd_mesh_all_triangles(of_library), 3 * triangle_count, np.uint32)
         numbers = np.empty(library.cscdpy_recording_frame_count(pointer), np.int32)
         faces, parts = np.empty(triangle_count, np.uint32), np.empty(triangle_count, np.uint32)
-        self.file_vertices: Array = np.empty(vertex_count, np.uint32)
+        file_vertices = np.empty(vertex_count, np.uint32)
         face_count = library.cscdpy_recording_copy(pointer, address_of(numbers), address_of(faces), address_of(parts),
-                                                   address_of(self.file_vertices))
+                                                   address_of(file_vertices))
+        self.file_vertices: Array = file_vertices.astype(np.int64)
         self.mesh = Mesh.of_surface(Surface(triangles.reshape(-1, 3), faces, face_count, vertex_count))
         self.frames = FrameSequence(opened, range(len(numbers)), vertex_count)
         self.frame_numbers: List[int] = numbers.tolist()

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Iterable, List, NamedTuple, Optional, Tup
 
 import numpy as np
 
-from ._library import address_of, copy_list, library, new_struct, structs
+from ._library import address_of, copy_items, copy_list, library, new_struct, records, structs
 from .results import INTERSECTION_KINDS
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ class Curve(NamedTuple):
 
     #: (p, 3) float64: the points of the curve, in the unit of the positions; a closed one ends where it begins.
     points: Array
-    #: (p - 1, 2) uint32: the triangles of each piece, the first sheet's and the second one's.
+    #: (p - 1, 2) int64: the triangles of each piece, the first sheet's and the second one's.
     triangles: Array
     closed: bool
     #: The surfaces only touch along it.
@@ -61,13 +61,13 @@ class Intersections:
     Attributes
     ----------
     mesh : Mesh
-    triangles : (k, 2) uint32
+    triangles : (k, 2) int64
         Two triangles of ``mesh``, the smaller number first, sorted.
-    kind : (k,) uint32
+    kind : (k,) int64
         How they meet: a code of ``INTERSECTION_KINDS``.
-    shared : (k,) uint32
+    shared : (k,) int64
         How many vertices they share, 0 to 3.
-    components, objects : (k, 2) uint32
+    components, objects : (k, 2) int64
     stopped : bool
         The search ended at ``stop_after`` pairs, so there may be more.
     """
@@ -83,7 +83,7 @@ class Intersections:
         #: Of a frame of ``replay``: what was found, summed up by pair of parts.
         self.part_pairs: Optional[PartPairs] = None
         #: The face that counts as row 0 of each column of ``pairs``.
-        self.first_faces: Array = np.zeros(2, np.uint32)
+        self.first_faces: Array = np.zeros(2, np.int64)
         self.triangles: Array = np.stack([pairs["a"], pairs["b"]], axis=1)
         self.kind: Array = pairs["kind"].copy()
         self.shared: Array = pairs["shared"].copy()
@@ -93,7 +93,7 @@ class Intersections:
     @classmethod
     def none(cls, mesh: Mesh) -> Intersections:
         """What is found in a mesh without triangles."""
-        found = cls(mesh, None, None, new_struct("intersection_pair", 0), False, True)
+        found = cls(mesh, None, None, np.empty(0, records["intersection_pair"]), False, True)
         found._surface = _Surface.none(mesh.vertex_count)
         return found
 
@@ -102,7 +102,7 @@ class Intersections:
 
     @property
     def pairs(self) -> Array:
-        """(k, 2) uint32: the faces, as rows of F, that the triangles are cut from."""
+        """(k, 2) int64: the faces, as rows of F, that the triangles are cut from."""
         return self.mesh.triangle_face[self.triangles] - self.first_faces
 
     @property
@@ -140,7 +140,8 @@ class Intersections:
 
     @property
     def depths(self) -> Array:
-        """All depths, by the members of ``cscd_depth`` (include/cscd/depths.h): of vertices, then of edges."""
+        """All depths, by the members of ``cscd_depth`` (include/cscd/depths.h): of vertices, whose ``edge`` is -1, then of
+        edges, whose ``vertex`` is -1."""
         return self._found().depths
 
     @property
@@ -197,25 +198,25 @@ class _Surface:
             self._copy_depths(int(found["depths"][0]), vertex_count)
         if parts:
             sums = copy_struct("part_pairs", int(found["parts"][0]))
-            self.parts = copy_list(int(sums["items"]), int(sums["count"]), structs["part_pair"]).view(PartPairs)
+            self.parts = copy_items(int(sums["items"]), int(sums["count"]), "part_pair").view(PartPairs)
 
     @classmethod
     def none(cls, vertex_count: int) -> _Surface:
         """Nothing is buried, and there are no curves."""
         found = cls(np.empty(0), vertex_count, False, False)
-        found.depths = new_struct("depth", 0).view(np.recarray)
+        found.depths = np.empty(0, records["depth"]).view(np.recarray)
         found.buried, found.depth = np.zeros(vertex_count, bool), np.zeros(vertex_count)
         return found
 
     def _copy_curves(self, address: int) -> None:
         curves = copy_struct("curves", address)
-        self._lists = (copy_list(int(curves["items"]), int(curves["count"]), structs["curve"]),
-                       copy_list(int(curves["points"]), int(curves["point_count"]), structs["curve_point"]),
-                       copy_list(int(curves["pieces"]), int(curves["piece_count"]), structs["curve_piece"]))
+        self._lists = (copy_items(int(curves["items"]), int(curves["count"]), "curve"),
+                       copy_items(int(curves["points"]), int(curves["point_count"]), "curve_point"),
+                       copy_items(int(curves["pieces"]), int(curves["piece_count"]), "curve_piece"))
 
     def _copy_depths(self, address: int, vertex_count: int) -> None:
         depths = copy_struct("depths", address)
-        self.depths = copy_list(int(depths["items"]), int(depths["count"]), structs["depth"]).view(np.recarray)
+        self.depths = copy_items(int(depths["items"]), int(depths["count"]), "depth").view(np.recarray)
         of_vertices = self.depths[: int(depths["vertex_count"])]
         self.buried = np.zeros(vertex_count, bool)
         self.buried[of_vertices["vertex"]] = True

@@ -75,7 +75,7 @@ class LineSearch:
                            number_of("fraction", fraction), number_of("distance", distance),
                            _NEAR_UNIQUE if unique else _NEAR_PAIRS,
                            detector._at["proximities"])
-            found: Proximities = copy_records(detector._lists["proximities"], Proximities.record()).view(Proximities)
+            found: Proximities = copy_records(detector._lists["proximities"], "proximity").view(Proximities)
             return found
 
     def _empty(self) -> Array:

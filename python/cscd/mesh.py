@@ -10,7 +10,7 @@ import numpy as np
 
 from ._arrays import as_faces, as_floats, as_indices, as_positions, count_of
 from ._host import Handle, Host, new_handle
-from ._library import address_of, copy_list, library, new_struct, structs
+from ._library import address_of, copy_list, items_of, library, new_struct, structs
 
 __all__ = ["HalfSpace", "Mesh", "Points", "Scene", "Wires"]
 
@@ -140,8 +140,8 @@ class Mesh:
 
     Attributes
     ----------
-    triangles : (t, 3) uint32
-    triangle_face : (t,) uint32
+    triangles : (t, 3) int64
+    triangle_face : (t,) int64
         The row of ``F`` that each triangle is cut from.
     face_count, vertex_count : int
 
@@ -191,13 +191,13 @@ class Mesh:
 
     def _collect_faces(self) -> None:
         """Numbers triangles and faces object by object, as vertices are."""
-        triangles: List[Array] = [np.empty((0, 3), np.uint32)]
-        faces: List[Array] = [np.empty(0, np.uint32)]
+        triangles: List[Array] = [np.empty((0, 3), np.int64)]
+        faces: List[Array] = [np.empty(0, np.int64)]
         vertex_count = face_count = 0
         for item in self._objects:
             if isinstance(item, Surface):
-                triangles.append(item.triangles + np.uint32(vertex_count))
-                faces.append(item.triangle_face + np.uint32(face_count))
+                triangles.append(item.triangles + np.int64(vertex_count))
+                faces.append(item.triangle_face + np.int64(face_count))
                 face_count += item.face_count
             vertex_count += item.vertex_count
         self.vertex_count: int = vertex_count
@@ -247,17 +247,17 @@ class Mesh:
 
     @property
     def triangle_objects(self) -> Array:
-        """(t,) uint32: the object of each triangle."""
+        """(t,) int64: the object of each triangle."""
         counts = [len(item.triangles) if isinstance(item, Surface) else 0 for item in self._objects]
-        return np.repeat(np.arange(len(counts), dtype=np.uint32), counts)
+        return np.repeat(np.arange(len(counts)), counts)
 
     @property
     def edges(self) -> Array:
-        """(e, 2) uint32: the two vertices of each edge, the smaller one first, sorted."""
+        """(e, 2) int64: the two vertices of each edge, the smaller one first, sorted."""
         if self._edges is None:
             count = 0 if self._handle is None else library.cscd_mesh_edge_count(self.pointer)
             source = library.cscd_mesh_all_edges(self.pointer) if count else 0
-            self._edges = copy_list(source, 2 * count, np.uint32).reshape(count, 2)
+            self._edges = copy_list(source, 2 * count, np.uint32).reshape(count, 2).astype(np.int64)
         return self._edges
 
     @property
@@ -267,19 +267,22 @@ class Mesh:
 
     @property
     def triangle_components(self) -> Array:
-        """(t,) uint32: the component of each triangle."""
+        """(t,) int64: the component of each triangle."""
         labels = np.zeros(self.triangle_count, np.uint32)
         if self._handle is not None:
             library.cscd_mesh_component_labels(self.pointer, address_of(labels))
-        return labels
+        return labels.astype(np.int64)
 
     def component(self, index: int) -> Dict[str, Any]:
-        """The counts and the defects of a component, by the names of ``cscd_component`` (include/cscd/mesh.h)."""
+        """The counts and the defects of a component, by the names of ``cscd_component`` (include/cscd/mesh.h).
+
+        The first edge or vertex with a defect is -1 where there is none.
+        """
         if not 0 <= index < self.component_count:
             raise IndexError(f"component {index}: the mesh has {self.component_count}")
         found = new_struct("component")
         library.cscd_mesh_component_sized(self.pointer, index, address_of(found), found.nbytes)
-        return {name: found[name][0].item() for name in structs["component"].names}
+        return dict(zip(structs["component"].names, items_of(found, "component")[0].item()))
 
     @property
     def is_closed_manifold(self) -> bool:

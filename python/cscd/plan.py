@@ -10,7 +10,7 @@ import numpy as np
 
 from ._arrays import as_floats, as_indices, as_positions, count_of, number_of, views_of
 from ._host import Handle, Host, code_of, new_handle
-from ._library import address_of, library, new_struct, structs
+from ._library import address_of, items_of, library, new_struct, structs
 from .errors import Error
 from .mesh import Mesh, read_surface
 
@@ -30,7 +30,7 @@ class Plan:
     method : str
         "charge", "kmeans" or "single".
     region_count : int
-    triangle_regions : (t,) uint32
+    triangle_regions : (t,) int64
     detector_points : (r, 3) float64
         Inside each region, at rest.
     charges : (t,) float64 or None
@@ -179,7 +179,7 @@ class Plan:
     def triangle_regions(self) -> Array:
         labels = np.empty(self.mesh.triangle_count, np.uint32)
         library.cscd_plan_region_labels(self.pointer, address_of(labels))
-        return labels
+        return labels.astype(np.int64)
 
     @property
     def regions(self) -> Any:
@@ -189,7 +189,7 @@ class Plan:
         size = structs["region"].itemsize
         for i in range(len(found)):
             library.cscd_plan_region_sized(self.pointer, i, address_of(found) + i * size, size)
-        return found.view(np.recarray)
+        return items_of(found, "region").view(np.recarray)
 
     @property
     def detector_points(self) -> Array:

@@ -107,7 +107,7 @@ def intersections(V1: Any, F1: Any, V2: Any, F2: Any, kinds: Any = None, *, thre
         return Intersections.none(Scene(meshes))
     detector = Detector(Scene(meshes), rules=[{"self": False}, {"self": False}], threads=threads, progress=progress)
     found = detector.find_intersections([first, second], kinds)
-    found.first_faces = np.array([0, meshes[0].face_count], np.uint32)
+    found.first_faces = np.array([0, meshes[0].face_count])
     return found
 
 

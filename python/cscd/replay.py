@@ -9,7 +9,7 @@ import numpy as np
 
 from ._arrays import as_indices
 from ._host import Handle, new_handle
-from ._library import address_of, library, new_struct, structs
+from ._library import address_of, copy_list, items_of, library, new_struct, structs
 from .detector import Detector
 from .intersections import Intersections, _Surface, intersection_options, labels_of
 from .mesh import Mesh
@@ -231,9 +231,11 @@ class Replay:
         if self._before is None or not self._contacts:
             return np.empty(0, Contacts.record()).view(Contacts)
         touched = self._detector.step(_joined(self._before), _joined(positions))
+        found = self._detector._lists["contacts"]
         host = self._detector._host
         with host.lock:
-            host.call(library.cscdpy_tracker_add_contacts, self._tracker.pointer, address_of(touched), len(touched))
+            host.call(library.cscdpy_tracker_add_contacts, self._tracker.pointer, int(found["items"][0]),
+                      int(found["count"][0]))
         return touched
 
     def _find(self, positions: List[Array]) -> Intersections:
@@ -243,7 +245,7 @@ class Replay:
         host = detector._host
         with host.lock:
             detector._find(host, views, self._found_options)
-            pairs = copy_records(found, structs["intersection_pair"])
+            pairs = copy_records(found, "intersection_pair")
             if self._left_out is not None and not library.cscdpy_left_out_show(self._left_out.pointer,
                                                                                address_of(found)):
                 raise MemoryError("out of memory for the depths of a frame")
@@ -263,20 +265,20 @@ class Replay:
         host = self._detector._host
         with host.lock:
             host.call(function, self._tracker.pointer, address_of(out))
-            taken = copy_records(out, Events.record())
+            taken = copy_list(int(out["items"][0]), int(out["count"][0]), structs["event"])
         self._taken.append(taken)
         return self._shown(taken)
 
     def _shown(self, taken: Array) -> Events:
-        """Without the events that only follow from others."""
+        """Without the events that only follow from others; ``taken`` are structs of the library."""
         shown = taken.copy()
         count = ctypes.c_size_t(len(shown))
         if not library.cscdpy_choose_events(address_of(shown), ctypes.addressof(count)):
             raise MemoryError("out of memory for the events")
-        shown = shown[: count.value]
+        shown = items_of(shown[: count.value], "event")
         if self._numbers is not None:
             for name in ("first_frame", "last_frame", "worst_frame"):
-                shown[name] = np.asarray(self._numbers, np.int64)[shown[name].astype(np.intp)]
+                shown[name] = np.asarray(self._numbers, np.int64)[shown[name]]
         found: Events = shown.view(Events)
         return found
 
@@ -287,7 +289,7 @@ class Replay:
 
     @property
     def events(self) -> Events:
-        taken = np.concatenate(self._taken) if self._taken else np.empty(0, Events.record())
+        taken = np.concatenate(self._taken) if self._taken else np.empty(0, structs["event"])
         order = np.lexsort((taken["first_triangle"], taken["b"], taken["a"], taken["first_frame"]))
         return self._shown(taken[order])
 

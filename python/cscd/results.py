@@ -6,7 +6,7 @@ from typing import Any, List, Tuple
 
 import numpy as np
 
-from ._library import address_of, copy_list, library, structs
+from ._library import address_of, copy_items, library, records, structs
 
 __all__ = ["CONTACT_KINDS", "Contacts", "Events", "INTERSECTION_KINDS", "PairContacts", "PairDistances", "Proximities"]
 
@@ -30,11 +30,6 @@ class Records(np.recarray):  # type: ignore[type-arg]
     """A structured array whose members are attributes, too, of the array and of each item."""
 
     @classmethod
-    def copy_from(cls, address: int, count: int) -> Any:
-        """A copy of a list of the library."""
-        return copy_list(address, count, cls.record()).view(cls)
-
-    @classmethod
     def record(cls) -> Any:
         """The dtype of one item."""
         raise NotImplementedError
@@ -45,15 +40,15 @@ class Contacts(Records):
 
     Attributes
     ----------
-    kind : (k,) uint32
+    kind : (k,) int64
         A code of ``CONTACT_KINDS``: 0 is vf, a vertex and a face, 1 is ee, two edges.
-    a, b : (k,) uint32
+    a, b : (k,) int64
         The features: vertex and triangle, or two edges, in the numbering of the mesh.
     toi : (k,) float64
         The time of impact, as a fraction of the interval, 0 to 1.
     u, v : (k,) float64
         Barycentric coordinates of the points that touch.
-    vertices, weights : (k, 4) uint32 and float64
+    vertices, weights : (k, 4) int64 and float64
         The four vertices behind each contact, and weights so that ``(weights[..., None] * x[vertices]).sum(1)`` is the
         vector to the point on a from that on b.
     point, normal : (k, 3) float64
@@ -64,7 +59,7 @@ class Contacts(Records):
 
     @classmethod
     def record(cls) -> Any:
-        return structs["contact"]
+        return records["contact"]
 
     @property
     def weights(self) -> Any:
@@ -76,13 +71,13 @@ class Proximities(Records):
 
     Attributes
     ----------
-    kind, a, b : (k,) uint32
+    kind, a, b : (k,) int64
         A code of ``CONTACT_KINDS``, and two features of that kind.
-    count, vf_count, ee_count : (k,) uint32
+    count, vf_count, ee_count : (k,) int64
         How many pairs of features an item stands for; 1 unless ``unique`` was asked for.
     distance : (k,) float64
         In the unit of the positions.
-    vertices, weights : (k, 4) uint32 and float64
+    vertices, weights : (k, 4) int64 and float64
         As those of ``Contacts``. The gradient of the distance at ``vertices[:, i]`` is ``weights[:, i] * normal``.
     u, v : (k,) float64
     point, normal : (k, 3) float64
@@ -93,7 +88,7 @@ class Proximities(Records):
 
     @classmethod
     def record(cls) -> Any:
-        return structs["proximity"]
+        return records["proximity"]
 
 
 class PairContacts(Records):
@@ -101,7 +96,7 @@ class PairContacts(Records):
 
     @classmethod
     def record(cls) -> Any:
-        return structs["pair_contact"]
+        return records["pair_contact"]
 
 
 class PairDistances(Records):
@@ -110,7 +105,7 @@ class PairDistances(Records):
 
     @classmethod
     def record(cls) -> Any:
-        return structs["pair_distance"]
+        return records["pair_distance"]
 
 
 class Events(Records):
@@ -118,24 +113,24 @@ class Events(Records):
 
     Attributes
     ----------
-    a, b : (k,) uint32
+    a, b : (k,) int64
         Parts, a <= b.
-    first_frame, last_frame, worst_frame : (k,) uint64
-    kinds : (k,) uint64
+    first_frame, last_frame, worst_frame : (k,) int64
+    kinds : (k,) int64
         A set of intersection kinds: bit i stands for ``INTERSECTION_KINDS[i]``.
-    pairs, depths, contacts : (k,) uint64
+    pairs, depths, contacts : (k,) int64
         So many of each, all frames together.
     depth, length : (k,) float64
         The greatest depth and the greatest length of curves, in the unit of the positions; 0 where none is known.
     x : (k, 3) float64
         A place to look at in the worst frame; NaN where only pairs are known.
-    triangle, first_triangle : (k,) uint32
+    triangle, first_triangle : (k,) int64
         The triangle at that place, and the least one of the first frame.
     """
 
     @classmethod
     def record(cls) -> Any:
-        return structs["event"]
+        return records["event"]
 
     def kind_names(self) -> Tuple[Tuple[str, ...], ...]:
         """The names of the kinds of each event."""
@@ -143,14 +138,14 @@ class Events(Records):
                      for kinds in np.atleast_1d(np.asarray(self["kinds"])))
 
 
-def _weights(records: Records, function: Any) -> Any:
+def _weights(found: Records, function: Any) -> Any:
     """The weights of a list of contacts, which are computed from u and v."""
-    packed = np.ascontiguousarray(np.asarray(records))
+    packed = np.ascontiguousarray(found, structs["contact"])
     weights = np.empty((packed.size, 4))
     function(address_of(packed), packed.size, None, address_of(weights))
-    return weights.reshape(*records.shape, 4)
+    return weights.reshape(*found.shape, 4)
 
 
-def copy_records(found: Any, dtype: Any) -> Any:
-    """A copy of the list that a struct of the library gives out."""
-    return copy_list(int(found["items"][0]), int(found["count"][0]), dtype)
+def copy_records(found: Any, name: str) -> Any:
+    """A copy of the list of such structs that a struct of the library gives out."""
+    return copy_items(int(found["items"][0]), int(found["count"][0]), name)

@@ -1,0 +1,68 @@
+"""Results: whole numbers are signed and of 64 bits, so that what callers compute from them does not wrap."""
+
+from __future__ import annotations
+
+from typing import Any, List, Tuple
+
+import numpy as np
+
+import cscd
+import oracle
+
+
+def crossing_cubes() -> Tuple[Any, Any]:
+    """Two cubes, the second shifted into the first, so that vertices and edges have depths."""
+    corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
+    faces = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])
+    return np.concatenate([corners, corners * [.5, .5, 3] + [.25, .25, -.5]]), np.concatenate([faces, faces + 8])
+
+
+def integers_of(array: Any) -> List[Any]:
+    """The dtypes of whole numbers of an array, or of the members of its records."""
+    dtypes = [array.dtype] if array.dtype.names is None else [array.dtype[name].base for name in array.dtype.names]
+    return [dtype for dtype in dtypes if dtype.kind in "iu"]
+
+
+def check_signed(*arrays: Any) -> None:
+    for array in arrays:
+        found = integers_of(array)
+        assert found and set(found) == {np.dtype(np.int64)}, array.dtype
+
+
+def test_whole_numbers_are_signed() -> None:
+    V, F = crossing_cubes()
+    found = cscd.self_intersections(V, F)
+    mesh = found.mesh
+    check_signed(found.pairs, found.triangles, found.kind, found.shared, found.components, found.objects, found.depths,
+                 found.by_parts(np.zeros(mesh.triangle_count, int)), found.curves[0].triangles)
+    check_signed(mesh.triangles, mesh.triangle_face, mesh.triangle_objects, mesh.triangle_components, mesh.edges)
+    detector = cscd.Detector(mesh)
+    near = detector.near(V, .2, unique=True)
+    check_signed(near, detector.check(V))
+    replay = cscd.replay([V, V], mesh)
+    for _ in replay:
+        pass
+    check_signed(replay.events)
+    plan = cscd.Plan.kmeans(mesh, V, 2)
+    check_signed(plan.triangle_regions, plan.regions)
+    assert len(near) and (-near["count"] < 0).all() and (near["a"] - near["b"]).min() < 0
+
+
+def test_contacts_are_signed_and_have_their_weights() -> None:
+    scene = oracle.make_grid_soup(3)
+    scene = oracle.Scene(scene.x0.astype(float), scene.x1.astype(float), scene.F)
+    found = cscd.contacts(scene.x0, scene.x1, scene.F)
+    check_signed(found, found[:2], found[0:0])
+    moved = scene.x0[found.vertices] + found.toi[:, None, None] * (scene.x1 - scene.x0)[found.vertices]
+    assert len(found) > 5
+    np.testing.assert_allclose((found.weights[..., None] * moved).sum(1), 0, atol=1e-7)
+
+
+def test_what_there_is_not_is_minus_one() -> None:
+    V, F = crossing_cubes()
+    depths = cscd.self_intersections(V, F).depths
+    of_vertices, of_edges = depths[depths["edge"] == -1], depths[depths["vertex"] == -1]
+    assert len(of_edges) and len(of_vertices) + len(of_edges) == len(depths)
+    assert (of_edges["edge"] >= 0).all() and (of_edges["patch"] == -1).all()
+    component = cscd.Mesh(F, positions=V).component(0)
+    assert component["first_open_edge"] == -1 and component["vertex_count"] == 8
