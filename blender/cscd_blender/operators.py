@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import threading
-from typing import Any, List, Optional, Set
+from typing import Any, Callable, List, Optional, Set
 
 import bpy
 
@@ -110,8 +110,17 @@ class _MarkOperator:
     def poll(cls, context: Any) -> bool:
         return findings_of(context.scene) is not None and context.mode == "OBJECT"
 
-    def _say(self, context: Any, findings: Findings, text: str) -> Set[str]:
-        """Reports what was done, and on which objects it could not be done."""
+
+class _MarkObjects(_MarkOperator):
+    """Marks each object that was checked, and says on how many, and on which ones it could not."""
+
+    mark: Callable[[Findings, Any], int]
+    made: str
+
+    def execute(self, context: Any) -> Set[str]:
+        findings = findings_of(context.scene)
+        assert findings is not None
+        text = f"{self.made} on {self.mark(findings, context.view_layer)} objects"
         left = marks.unmarked_names(findings, context.view_layer)
         if left:
             self.report({"WARNING"}, f"{text}; not on {', '.join(left)}, "  # type: ignore[attr-defined]
@@ -121,40 +130,31 @@ class _MarkOperator:
         return {"FINISHED"}
 
 
-class CSCD_OT_mark_attributes(_MarkOperator, bpy.types.Operator):
+class CSCD_OT_mark_attributes(_MarkObjects, bpy.types.Operator):
     """Write the face attribute cscd_kind and the vertex attribute cscd_depth, the worst over all frames"""
 
     bl_idname = "cscd.mark_attributes"
     bl_label = "Attributes"
-
-    def execute(self, context: Any) -> Set[str]:
-        findings = findings_of(context.scene)
-        assert findings is not None
-        return self._say(context, findings, f"Attributes on {marks.add_attributes(findings, context.view_layer)} objects")
+    mark = staticmethod(marks.add_attributes)
+    made = "Attributes"
 
 
-class CSCD_OT_mark_groups(_MarkOperator, bpy.types.Operator):
+class CSCD_OT_mark_groups(_MarkObjects, bpy.types.Operator):
     """Make a vertex group of what intersects, weighted by depth"""
 
     bl_idname = "cscd.mark_groups"
     bl_label = "Vertex Group"
-
-    def execute(self, context: Any) -> Set[str]:
-        findings = findings_of(context.scene)
-        assert findings is not None
-        return self._say(context, findings, f"A vertex group on {marks.add_groups(findings, context.view_layer)} objects")
+    mark = staticmethod(marks.add_groups)
+    made = "A vertex group"
 
 
-class CSCD_OT_mark_materials(_MarkOperator, bpy.types.Operator):
+class CSCD_OT_mark_materials(_MarkObjects, bpy.types.Operator):
     """Colour the faces that intersect, by kind and depth; Clear gives their materials back"""
 
     bl_idname = "cscd.mark_materials"
     bl_label = "Colours"
-
-    def execute(self, context: Any) -> Set[str]:
-        findings = findings_of(context.scene)
-        assert findings is not None
-        return self._say(context, findings, f"Colours on {marks.add_materials(findings, context.view_layer)} objects")
+    mark = staticmethod(marks.add_materials)
+    made = "Colours"
 
 
 class CSCD_OT_mark_curves(_MarkOperator, bpy.types.Operator):
@@ -333,12 +333,4 @@ _classes = (CSCD_OT_check, CSCD_OT_mark_attributes, CSCD_OT_mark_groups, CSCD_OT
             CSCD_OT_mark_timeline, CSCD_OT_clear, CSCD_OT_show_event, CSCD_OT_ignore, CSCD_OT_look_at_again,
             CSCD_OT_report)
 
-
-def register() -> None:
-    for cls in _classes:
-        bpy.utils.register_class(cls)
-
-
-def unregister() -> None:
-    for cls in reversed(_classes):
-        bpy.utils.unregister_class(cls)
+register, unregister = bpy.utils.register_classes_factory(_classes)

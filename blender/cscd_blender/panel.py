@@ -148,12 +148,4 @@ def _wrapped(text: str, width: int) -> List[str]:
 
 _classes = (CSCD_UL_events, CSCD_UL_ignored, CSCD_PT_check, CSCD_PT_left_out, CSCD_PT_events, CSCD_PT_marks)
 
-
-def register() -> None:
-    for cls in _classes:
-        bpy.utils.register_class(cls)
-
-
-def unregister() -> None:
-    for cls in reversed(_classes):
-        bpy.utils.unregister_class(cls)
+register, unregister = bpy.utils.register_classes_factory(_classes)

@@ -118,17 +118,15 @@ class CscdSettings(bpy.types.PropertyGroup):
                        {"NONE": None, "PARTS": "parts", "PAIRS": "pairs"}[self.rest], self.depths)
 
 
-_classes = (CscdEvent, CscdIgnored, CscdSettings)
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory((CscdEvent, CscdIgnored, CscdSettings))
 
 
 def register() -> None:
-    for cls in _classes:
-        bpy.utils.register_class(cls)
+    _register_classes()
     bpy.types.Scene.cscd = bpy.props.PointerProperty(type=CscdSettings)
 
 
 def unregister() -> None:
     del bpy.types.Scene.cscd
-    for cls in reversed(_classes):
-        bpy.utils.unregister_class(cls)
+    _unregister_classes()
     _findings.clear()
