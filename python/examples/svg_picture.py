@@ -33,8 +33,11 @@ class Picture:
         seen = ((np.asarray(points, float) - self.centre)[:, None, :] * self.axes).sum(axis=2)
         return self.middle + self.scale * seen[:, :2] * [1.0, -1.0], seen[:, 2]
 
-    def surface(self, V: Array, triangles: Array, colours: Array, closed: bool = False) -> None:
-        """Draws triangles from back to front; ``colours`` (t, 3), 0 to 255. What faces away is darker, or left out."""
+    def surface(self, V: Array, triangles: Array, colours: Array, closed: bool = False, nearer: Any = 0.0) -> None:
+        """Draws triangles from back to front; ``colours`` (t, 3), 0 to 255. What faces away is darker, or left out.
+
+        Triangles are sorted by their centres, as if these were ``nearer`` by so much.
+        """
         place, far = self.project(V)
         corner = place[triangles]
         edge = V[triangles[:, 1:]] - V[triangles[:, :1]]
@@ -45,7 +48,7 @@ class Picture:
         inside = ((corner.max(axis=1) > 0.0) & (corner.min(axis=1) < [self.width, self.height])).all(axis=1)
         seen = inside & (facing > 0.0) if closed else inside
         corner = np.rint(corner).astype(int)
-        for t in np.argsort(-far[triangles].mean(axis=1), kind="stable"):
+        for t in np.argsort(nearer - far[triangles].mean(axis=1), kind="stable"):
             if seen[t]:
                 number = self.colours.setdefault("#%02x%02x%02x" % tuple(shades[t]), len(self.colours))
                 a, b, c = corner[t]
