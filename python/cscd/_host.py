@@ -7,25 +7,28 @@ import operator
 import os
 import threading
 import weakref
-from typing import Any, Callable, NoReturn, Optional
+from typing import Any, Callable, NoReturn, Optional, Set
 
 from ._library import library
 from .errors import Cancelled, Error, ListTooLong
 
-__all__ = ["Handle", "Host", "code_of", "new_handle", "processor_count", "raise_status", "thread_count_of"]
+__all__ = ["Handle", "Host", "Keeper", "code_of", "new_handle", "processor_count", "raise_status", "thread_count_of"]
 
 _OUT_OF_MEMORY, _INVALID_ARGUMENT, _INVALID_MESH, _SYSTEM_ERROR, _CANCELLED, IN_CONTACT, _BUSY = 1, 2, 3, 4, 5, 6, 7
 _LIST_TOO_LONG = 10
 _MOST_THREADS = 256
 
-#: All hosts of this process, of which a child gets copies.
-_hosts: weakref.WeakSet[Host] = weakref.WeakSet()
+#: All hosts of this process, of which a child gets copies. No WeakSet: what that does when one goes is written in Python,
+#: and an exception of a signal's handler would be lost there.
+_hosts: Set[weakref.ref[Host]] = set()
 
 
 def _look_after_fork() -> None:
     """In a child: threads, and calls that run in them, have stayed in the process that forked."""
-    for host in list(_hosts):
-        host.after_fork()
+    for reference in list(_hosts):
+        host = reference()
+        if host is not None:
+            host.after_fork()
 
 
 if hasattr(os, "register_at_fork"):
@@ -78,6 +81,34 @@ def processor_count() -> int:
     return os.cpu_count() or 1
 
 
+class Keeper:
+    """Something of the library, which is given back with this one, by ``destroy``.
+
+    It is there before what it keeps: a function that creates an object puts it into ``place``, so that no signal comes
+    in between. It has no ``__del__``, in which an exception of a signal's handler would be lost, but a capsule, whose
+    destructor is in C (python/native/keeper.c).
+    """
+
+    __slots__ = ("_capsule", "_out")
+
+    def __init__(self, host: Optional[int], destroy: Any) -> None:
+        address = ctypes.c_void_p()
+        self._capsule = library.cscdpy_keep(host, ctypes.cast(destroy, ctypes.c_void_p), ctypes.byref(address))
+        assert address.value is not None
+        self._out = ctypes.c_void_p.from_address(address.value)
+
+    @property
+    def place(self) -> Any:
+        """Where to put the object."""
+        return ctypes.byref(self._out)
+
+    @property
+    def pointer(self) -> int:
+        """The object."""
+        assert self._out.value is not None
+        return self._out.value
+
+
 class Host:
     """A context and its lock. ``with host.lock:`` is a turn in it; another thread waits for its own turn.
 
@@ -86,13 +117,10 @@ class Host:
     Ctrl-C comes just there. The same thread may take it again, from a callback; the library then refuses the call.
     """
 
-    __slots__ = ("handle", "lock", "threads", "lost", "_out", "_kept", "__weakref__")
-
-    _destroy = library.cscdpy_host_destroy
+    __slots__ = ("handle", "lock", "threads", "lost", "_keeper", "_kept", "__weakref__")
 
     def __init__(self, threads: Any = 1, simd: str = "auto", progress: Optional[Callable[[str, float], Any]] = None,
                  ignore: Optional[Callable[[str, int, int], bool]] = None) -> None:
-        self._out = ctypes.c_void_p()
         #: Why it cannot be used any more; "" if it can.
         self.lost = ""
         self.lock: Any = threading.RLock()
@@ -100,15 +128,16 @@ class Host:
         for name, callback in (("progress", progress), ("ignore", ignore)):
             if callback is not None and not callable(callback):
                 raise ValueError(f"{name}: expected a function, got {callback!r}")
+        self._keeper = Keeper(None, library.cscdpy_host_release)
         reason = ctypes.create_string_buffer(500)
         status = library.cscdpy_host_create(
             thread_count_of(threads), code_of("simd", simd), None if progress is None else id(progress),
-            None if ignore is None else id(ignore), ctypes.addressof(reason), len(reason), ctypes.byref(self._out))
+            None if ignore is None else id(ignore), ctypes.addressof(reason), len(reason), self._keeper.place)
         if status:
             raise_status(status, reason.value.decode())
-        self.handle: int = self._out.value or 0
+        self.handle: int = self._keeper.pointer
         self.threads: int = library.cscdpy_host_thread_count(self.handle)
-        _hosts.add(self)
+        _hosts.add(weakref.ref(self, _hosts.discard))
 
     def after_fork(self) -> None:
         """In a child. What had threads, or was in the middle of a call, is of no use there, and is never destroyed."""
@@ -117,6 +146,8 @@ class Host:
             self.lost = f"this object has {self.threads} threads, which stayed in the process that forked"
         elif library.cscdpy_host_is_busy(self.handle):
             self.lost = "this object was in the middle of a call when the process forked"
+        if self.lost:
+            library.cscdpy_host_lose(self.handle)
 
     def check(self) -> None:
         """Raises if it cannot be used."""
@@ -150,39 +181,15 @@ class Host:
         """How much memory the context and its objects hold."""
         return int(library.cscdpy_host_bytes(self.handle))
 
-    def __del__(self) -> None:
-        if self._out.value is not None and not self.lost:
-            self._destroy(self._out)
 
+class Handle(Keeper):
+    """An object of the library in the context of a host, which lives as long."""
 
-class Handle:
-    """An object of the library, which is given back with this one, and what it was made from.
-
-    It is there before what it holds: a function that creates an object puts it into ``place``, so that no signal comes
-    in between.
-    """
-
-    __slots__ = ("out", "host", "_destroy")
+    __slots__ = ("host",)
 
     def __init__(self, host: Host, destroy: Any) -> None:
-        self.out = ctypes.c_void_p()
+        super().__init__(host.handle, destroy)
         self.host = host
-        self._destroy = destroy
-
-    @property
-    def place(self) -> Any:
-        """Where to put the object."""
-        return ctypes.byref(self.out)
-
-    @property
-    def pointer(self) -> int:
-        """The object."""
-        assert self.out.value is not None
-        return self.out.value
-
-    def __del__(self) -> None:
-        if self.out.value is not None and not self.host.lost:
-            self._destroy(self.out)
 
 
 def new_handle(host: Host, destroy: Any, create: Any, *arguments: Any) -> Handle:

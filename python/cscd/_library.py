@@ -21,7 +21,7 @@ __all__ = ["address_of", "copy_items", "copy_list", "items_of", "library", "new_
 _NONE = 2**32 - 1
 _INDICES_MAY_BE_NONE = ("component", "depth", "event", "part_pair")
 _FROM_PYTHON = ("PyEval_SaveThread", "PyEval_RestoreThread", "PyErr_CheckSignals", "PyObject_CallFunction",
-                "PyObject_IsTrue", "Py_DecRef")
+                "PyObject_IsTrue", "Py_DecRef", "PyCapsule_New", "PyCapsule_GetPointer")
 
 
 def _load() -> ctypes.PyDLL:
@@ -87,7 +87,8 @@ _read_structs()
 
 def address_of(array: np.ndarray[Any, Any]) -> int:
     """Where the first byte of an array is."""
-    return int(array.__array_interface__["data"][0])
+    # Not by __array_interface__, which loses what a signal's handler raises while it describes the members of records.
+    return int(array.ctypes.data)
 
 
 def new_struct(name: str, count: int = 1) -> np.ndarray[Any, Any]:

@@ -5,7 +5,7 @@ Those named ``cscd_...`` are of its public headers (include/cscd), those named `
 
 from __future__ import annotations
 
-from ctypes import (POINTER, c_bool, c_char, c_char_p, c_double, c_int, c_size_t, c_uint32, c_uint64, c_void_p)
+from ctypes import (POINTER, c_bool, c_char, c_char_p, c_double, c_int, c_size_t, c_uint32, c_uint64, c_void_p, py_object)
 from typing import Any, Dict, List, Tuple
 
 __all__ = ["PROTOTYPES"]
@@ -18,7 +18,9 @@ _LAYER: Dict[str, Tuple[Any, List[Any]]] = {
     "cscdpy_struct": (c_char_p, [_size, POINTER(c_size_t), POINTER(c_size_t)]),
     "cscdpy_member": (c_char_p, [_size, _size, POINTER(c_size_t), POINTER(c_char)]),
     "cscdpy_host_create": (_status, [_u32, _u32, _p, _p, _p, _size, POINTER(c_void_p)]),
-    "cscdpy_host_destroy": (None, [_p]),
+    "cscdpy_host_release": (None, [_p]),
+    "cscdpy_host_lose": (None, [_p]),
+    "cscdpy_keep": (py_object, [_p, _p, POINTER(c_void_p)]),
     "cscdpy_host_detail": (c_char_p, [_p]),
     "cscdpy_host_cancel": (None, [_p]),
     "cscdpy_host_bytes": (_size, [_p]),

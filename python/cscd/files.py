@@ -13,6 +13,7 @@ from typing import Any, Iterable, Iterator, List, Optional, Sequence, Tuple, Uni
 import numpy as np
 
 from ._arrays import as_positions
+from ._host import Keeper
 from ._library import address_of, copy_list, library
 from .errors import Error
 from .mesh import Mesh, Surface
@@ -30,16 +31,15 @@ class _OpenRecording:
     """Open files, which are closed with this object."""
 
     def __init__(self, path: PathLike, frames: Sequence[bytes], fps: float) -> None:
-        self.pointer: Optional[int] = None
         os.stat(path)  # a missing file is Python's own error
-        out, error = ctypes.c_void_p(), ctypes.create_string_buffer(1024)
+        self._keeper, error = Keeper(None, library.cscdpy_recording_close), ctypes.create_string_buffer(1024)
         paths = (ctypes.c_char_p * len(frames))(*frames)
         model = ctypes.c_char_p(os.fsencode(path))
         self._kept = (model, paths)  # the library does not copy them
-        if not library.cscdpy_recording_open(model, paths, len(frames), fps, ctypes.byref(out),
+        if not library.cscdpy_recording_open(model, paths, len(frames), fps, self._keeper.place,
                                              ctypes.addressof(error)):
             raise ValueError(error.value.decode(errors="replace"))
-        self.pointer = out.value
+        self.pointer = self._keeper.pointer
         self.lock = threading.Lock()
 
     def read(self, frame: int, positions: Array) -> None:
@@ -48,10 +48,6 @@ class _OpenRecording:
         with self.lock:
             if not library.cscdpy_recording_read(self.pointer, frame, address_of(positions), ctypes.addressof(error)):
                 raise ValueError(error.value.decode(errors="replace"))
-
-    def __del__(self) -> None:
-        if self.pointer is not None:
-            library.cscdpy_recording_close(self.pointer)
 
 
 class FrameSequence(Sequence[Array]):

@@ -9,7 +9,7 @@ from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple, Union
 import numpy as np
 
 from ._arrays import as_faces, as_floats, as_indices, as_positions, count_of
-from ._host import Handle, Host, new_handle
+from ._host import Handle, Host, Keeper, new_handle
 from ._library import address_of, copy_list, items_of, library, new_struct, structs
 
 __all__ = ["HalfSpace", "Mesh", "Points", "Scene", "Wires"]
@@ -23,30 +23,30 @@ _MOST_VERTICES = 2**32 - 2
 
 def cut_polygons(positions: Array, corners: Array, face_sizes: Array) -> Tuple[Array, Array]:
     """Cuts faces into triangles by their shape, as faces of files are cut; returns these and the face of each."""
-    out, error = ctypes.c_void_p(), ctypes.create_string_buffer(1024)
+    keeper, error = Keeper(None, library.cscdpy_polygons_free), ctypes.create_string_buffer(1024)
     packed = np.ascontiguousarray(positions, np.float64)
     if not library.cscdpy_polygons_cut(address_of(packed), len(packed), address_of(corners), address_of(face_sizes),
-                                       len(face_sizes), ctypes.byref(out), ctypes.addressof(error)):
+                                       len(face_sizes), keeper.place, ctypes.addressof(error)):
         raise ValueError(error.value.decode())
+    out = keeper.pointer
     count = library.cscdpy_polygons_count(out)
     triangles, faces = np.empty((count, 3), np.uint32), np.empty(count, np.uint32)
     library.cscdpy_polygons_copy(out, address_of(triangles), address_of(faces))
-    library.cscdpy_polygons_free(out)
     return triangles, faces
 
 
 def read_surface(path: Union[str, os.PathLike[str]]) -> Tuple[Array, Array]:
     """The triangles and the positions of a mesh file."""
     os.stat(path)  # a missing file is Python's own error
-    out, error = ctypes.c_void_p(), ctypes.create_string_buffer(1024)
-    if not library.cscdpy_mesh_read(os.fsencode(path), ctypes.byref(out), ctypes.addressof(error)):
+    keeper, error = Keeper(None, library.cscdpy_polygons_free), ctypes.create_string_buffer(1024)
+    if not library.cscdpy_mesh_read(os.fsencode(path), keeper.place, ctypes.addressof(error)):
         raise ValueError(error.value.decode(errors="replace"))
+    out = keeper.pointer
     count = library.cscdpy_polygons_count(out)
     triangles, faces = np.empty((count, 3), np.uint32), np.empty(count, np.uint32)
     positions = np.empty((library.cscdpy_mesh_vertex_count(out), 3))
     library.cscdpy_polygons_copy(out, address_of(triangles), address_of(faces))
     library.cscdpy_mesh_copy_positions(out, address_of(positions))
-    library.cscdpy_polygons_free(out)
     return triangles, positions
 
 

@@ -70,6 +70,7 @@ PYTHON_API cscd_status cscdpy_host_create(uint32_t thread_count, uint32_t simd, 
                                           char *reason, size_t reason_size, host **out) {
     host *h = calloc(1, sizeof *h);
     if (h == NULL) return CSCD_OUT_OF_MEMORY;
+    h->users = 1;
     h->progress = progress;
     h->ignore = ignore;
     cscd_context_options options = cscd_context_defaults();
@@ -87,10 +88,19 @@ PYTHON_API cscd_status cscdpy_host_create(uint32_t thread_count, uint32_t simd, 
     return CSCD_OK;
 }
 
-/* After all objects of its context. */
-PYTHON_API void cscdpy_host_destroy(host *h) {
+void host_release(host *h) {
+    if (--h->users > 0 || h->lost) return;
     cscd_context_destroy(h->context);
     free(h);
+}
+
+PYTHON_API void cscdpy_host_release(host *h) {
+    host_release(h);
+}
+
+/* In a child that has a copy of it, which is of no use there. */
+PYTHON_API void cscdpy_host_lose(host *h) {
+    h->lost = true;
 }
 
 PYTHON_API const char *cscdpy_host_detail(const host *h) {

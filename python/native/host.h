@@ -14,9 +14,14 @@ typedef struct host {
     void *ignore;     /* a callable (kind, a, b) */
     void *thread;     /* of Python, which waits for the call; NULL: no call is running */
     double looked_ms; /* when signals were looked for last */
+    size_t users;     /* one for who created it, and one for each keeper of an object of its context */
     bool raised;      /* an exception is set */
+    bool lost; /* by a fork: its threads, or the call that was running. Nothing in it is destroyed any more */
 } host;
 
 /* Between these the lock is not ours. False: a call is running in the host, and a callback of it has made another one. */
 bool host_begin(host *h);
 void host_end(host *h);
+
+/* Ends one use. The last one destroys the context. */
+void host_release(host *h);

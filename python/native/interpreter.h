@@ -12,6 +12,8 @@ typedef struct interpreter {
     void *(*call)(void *callable, const char *format, ...); /* PyObject_CallFunction */
     int (*is_true)(void *object);                           /* PyObject_IsTrue */
     void (*release)(void *object);                          /* Py_DecRef */
+    void *(*new_capsule)(void *pointer, const char *name, void (*destroy)(void *capsule)); /* PyCapsule_New */
+    void *(*capsule_pointer)(void *capsule, const char *name); /* PyCapsule_GetPointer */
 } interpreter;
 
 /* What was handed over; all NULL before. */
