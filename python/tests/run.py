@@ -1,7 +1,7 @@
 """Runs everything that tests the Python package, and ends as tests/run.sh does: with the line `N passed, M failed`.
 
 `make test-python` calls it, after it has built the package in build/python. The interpreter that runs it is the one
-that is tested.
+that is tested. With the word `bridges` it runs the tests of python/bridges alone, which need other packages.
 """
 from __future__ import annotations
 
@@ -67,6 +67,11 @@ def written_tests(log: Log) -> Totals:
     return log.pytest("tests", "python/tests", *(f"--ignore={path}" for path in ARCHIVES))
 
 
+def bridges(log: Log) -> Totals:
+    """The blocks of docs/python/bridges.md, with the packages that they lead to."""
+    return log.pytest("bridges", "python/bridges")
+
+
 def docstring_examples(log: Log) -> Totals:
     """The examples in the package's docstrings print what they show."""
     return log.pytest("docstrings", "--doctest-modules", str(PACKAGE))
@@ -117,13 +122,14 @@ def run_steps(steps: List[Step], totals: List[Totals]) -> None:
 def main() -> int:
     """Runs all steps, and adds up."""
     totals: List[Totals] = []
-    lanes = [threading.Thread(target=run_steps, args=(steps, totals)) for steps in LANES]
+    chosen: List[List[Step]] = [[bridges]] if sys.argv[1:] == ["bridges"] else LANES
+    lanes = [threading.Thread(target=run_steps, args=(steps, totals)) for steps in chosen]
     for lane in lanes:
         lane.start()
     for lane in lanes:
         lane.join()
     passed, failed = (sum(counts) for counts in zip(*totals))
-    failed += sum(map(len, LANES)) - len(totals)  # steps behind one that has fallen over
+    failed += sum(map(len, chosen)) - len(totals)  # steps behind one that has fallen over
     print(f"{passed} passed, {failed} failed")
     return int(failed > 0)
 
