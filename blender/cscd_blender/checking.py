@@ -9,7 +9,7 @@ import numpy as np
 
 import cscd
 
-from .scene import CheckedScene, Parts, SceneError, frames_of, objects_of, parts_of, read_frames
+from .scene import CheckedScene, KeptFrame, Parts, SceneError, frames_of, objects_of, parts_of, read_frames
 
 Array = Any
 
@@ -118,11 +118,18 @@ class Run:
     """
 
     def __init__(self, context: Any, request: Request) -> None:
-        scene, view_layer = context.scene, context.view_layer
+        self._kept = KeptFrame(context.scene)
+        try:
+            self._begin(context.scene, context.view_layer, request)
+        except BaseException:
+            self._kept.restore()
+            raise
+
+    def _begin(self, scene: Any, view_layer: Any, request: Request) -> None:
         self._numbers = list(frames_of(scene, request.first, request.last, request.step))
         scene.frame_set(self._numbers[0])
         things = objects_of(view_layer, request.objects, request.collections)
-        checked = CheckedScene(things, view_layer.depsgraph)
+        checked = CheckedScene(things, view_layer, view_layer.depsgraph)
         parts = parts_of(checked, view_layer, view_layer.depsgraph, request.by_groups)
         self.findings = Findings(request, checked, parts)
         self._positions = read_frames(scene, checked, view_layer, self._numbers)
@@ -148,7 +155,7 @@ class Run:
             answer = found.intersections
             depths = self.findings.request.depths
             self.findings.frames[number] = FoundFrame(
-                number, answer.pairs.astype(np.int64), self.findings.parts.labels[answer.triangles], answer.kind,
+                number, answer.pairs, self.findings.parts.labels[answer.triangles], answer.kind,
                 len(found.contacts), answer.depth if depths else None,
                 [curve.points for curve in answer.curves if not curve.touching] if depths else [])
         except BaseException as problem:
@@ -157,7 +164,11 @@ class Run:
     def step(self, patience: float = 0.05) -> bool:
         """Goes on for about ``patience`` seconds; returns whether there is more to do."""
         if self._thread is None:
-            positions = next(self._positions, None)
+            try:
+                positions = next(self._positions, None)
+            except BaseException:
+                self.cancel()
+                raise
             if positions is None:
                 self._finish()
                 return False
@@ -179,9 +190,10 @@ class Run:
             self._replay.cancel()
             self._thread.join(0.02)
         self._thread = None
-        self._positions.close()  # type: ignore[attr-defined]
+        self._kept.restore()
 
     def _finish(self) -> None:
+        self._kept.restore()
         next(self._replay, None)  # there is no frame left: the last events end
         events = self._replay.events
         self.findings.events = sorted((self._event(event, kinds) for event, kinds in zip(events, events.kind_names())),
@@ -189,7 +201,7 @@ class Run:
 
     def _event(self, event: Any, kinds: Tuple[str, ...]) -> FoundEvent:
         names = self.findings.parts.names
-        a, b = (names[part] if part < len(names) else "(no part)" for part in (int(event.a), int(event.b)))
+        a, b = (names[part] if 0 <= part < len(names) else "(no part)" for part in (int(event.a), int(event.b)))
         place = None if np.isnan(event.x).any() else tuple(float(x) for x in event.x)
         return FoundEvent(a, b, *(self._numbers[int(frame)] for frame in (event.first_frame, event.last_frame,
                                                                           event.worst_frame)),

@@ -121,11 +121,13 @@ def _write_json(path: str, found: Dict[str, Any]) -> None:
 def check_file(arguments: Sequence[str]) -> int:
     """Checks the file that is open, and returns the exit code."""
     options = parse_arguments(arguments)
+    if bpy.context.mode != "OBJECT" and bpy.context.active_object is not None:
+        bpy.ops.object.mode_set(mode="OBJECT")  # in edit mode, objects are not as they are rendered
     try:
         findings = run_to_end(bpy.context, request_of(options))
         if options.json is not None:
             _write_json(options.json, describe(findings))
-    except (SceneError, OSError, MemoryError, cscd.Error) as problem:
+    except (SceneError, OSError, MemoryError, ValueError, cscd.Error) as problem:
         print(f"cscd: {bpy.data.filepath or 'the scene'}: {problem}", file=sys.stderr)
         return FAILED
     print(summarise(findings))

@@ -13,12 +13,15 @@ from mathutils import Vector
 
 from .checking import KINDS, Findings
 from .properties import findings_of
-from .scene import MARK_PREFIX, SceneError
+from .scene import MARK_PREFIX, SceneError, objects_by_name
 
 Array = Any
 
 KIND_ATTRIBUTE, DEPTH_ATTRIBUTE, MATERIAL_ATTRIBUTE = "cscd_kind", "cscd_depth", "cscd_material_before"
 GROUP = "cscd intersecting"
+
+#: The material slot, as remembered, of faces of a mesh that had none.
+_NO_SLOT = -1
 CURVES = "cscd curves"
 
 #: What a face has: the worst of its kinds, and crossing faces by thirds of the greatest depth.
@@ -36,15 +39,16 @@ _LEVEL_OF_KIND = {"touching": _TOUCHING, "duplicate": _SHARING, "coplanar": _SHA
 
 def marked_meshes(findings: Findings, view_layer: Any) -> Iterator[Tuple[Any, Any]]:
     """The targets and objects whose own faces are those of their evaluated meshes, so that they can carry marks."""
+    by_name = objects_by_name(view_layer)
     for target in findings.checked.targets:
-        thing = view_layer.objects.get(target.name)
+        thing = by_name.get(target.name)
         if thing is not None and thing.type == "MESH" and len(thing.data.polygons) == target.face_count \
                 and len(thing.data.vertices) == target.vertex_count and thing.library is None and thing.data.library is None:
             yield target, thing
 
 
 def unmarked_names(findings: Findings, view_layer: Any) -> List[str]:
-    """The objects whose modifiers change their faces, so that marks have no place on them."""
+    """The objects that cannot carry marks: their modifiers make other faces, or they belong to other files."""
     marked = {target.name for target, _ in marked_meshes(findings, view_layer)}
     return [target.name for target in findings.checked.targets if target.name not in marked]
 
@@ -61,9 +65,10 @@ def select_faces(findings: Findings, view_layer: Any, faces: Array) -> None:
         own = faces - target.first_face
         chosen[own[(own >= 0) & (own < target.face_count)]] = True
         _select_in_mesh(thing.data, chosen)
+    by_name = objects_by_name(view_layer)
     for target in findings.checked.targets:
         inside = (faces >= target.first_face) & (faces < target.first_face + target.face_count)
-        thing = view_layer.objects.get(target.name)
+        thing = by_name.get(target.name)
         if thing is not None and inside.any():
             thing.select_set(True)
             view_layer.objects.active = thing
@@ -88,6 +93,8 @@ def frame_view(context: Any, place: Vector, size: float) -> None:
         for area in window.screen.areas:
             if area.type == "VIEW_3D":
                 region = area.spaces.active.region_3d
+                if region.view_perspective == "CAMERA":
+                    region.view_perspective = "PERSP"
                 region.view_location = place
                 region.view_distance = max(3.0 * size, 10.0 * area.spaces.active.clip_start)
 
@@ -169,11 +176,18 @@ def depths_of_faces(findings: Findings) -> Array:
 
 
 def _parts_of_objects(findings: Findings, view_layer: Any) -> Iterator[Tuple[Any, Array, Array]]:
-    """Each markable object with the levels of its faces and the depths of its vertices."""
+    """Each markable object with the levels of its faces and the depths of its vertices.
+
+    Objects that share a mesh have its marks in common: the first of them comes, with the worst of all.
+    """
     levels, depths = levels_of_faces(findings), depths_of_vertices(findings)
+    found: Dict[str, Tuple[Any, Array, Array]] = {}
     for target, thing in marked_meshes(findings, view_layer):
-        yield (thing, levels[target.first_face: target.first_face + target.face_count],
-               depths[target.first_vertex: target.first_vertex + target.vertex_count])
+        own = levels[target.first_face: target.first_face + target.face_count]
+        deep = depths[target.first_vertex: target.first_vertex + target.vertex_count]
+        first, worst, deepest = found.get(thing.data.name, (thing, own, deep))
+        found[thing.data.name] = first, np.maximum(worst, own), np.maximum(deepest, deep)
+    yield from found.values()
 
 
 def add_attributes(findings: Findings, view_layer: Any) -> int:
@@ -239,13 +253,14 @@ def add_materials(findings: Findings, view_layer: Any) -> int:
         before = np.empty(len(mesh.polygons), np.int32)
         mesh.polygons.foreach_get("material_index", before)
         if not mesh.materials:
-            mesh.materials.append(None)  # what faces without a material had
+            mesh.materials.append(None)  # what faces without a material have
+            before[:] = _NO_SLOT
         slots: Dict[int, int] = {}
         for level in sorted(set(levels[levels >= 0].tolist())):
             slots[level] = len(mesh.materials)
             mesh.materials.append(_material(*COLOURS[level]))
         _set_attribute(mesh, MATERIAL_ATTRIBUTE, "INT", "FACE", before)
-        mesh.polygons.foreach_set("material_index", [slots.get(level, old) for level, old in
+        mesh.polygons.foreach_set("material_index", [slots.get(level, max(old, 0)) for level, old in
                                                      zip(levels.tolist(), before.tolist())])
         mesh.update()
         count += 1
@@ -260,13 +275,13 @@ def restore_materials(thing: Any) -> None:
         return
     before = np.empty(len(mesh.polygons), np.int32)
     attribute.data.foreach_get("value", before)
-    mesh.polygons.foreach_set("material_index", before)
+    mesh.polygons.foreach_set("material_index", np.maximum(before, 0))
     mesh.attributes.remove(mesh.attributes[MATERIAL_ATTRIBUTE])
     names = {name for name, _ in COLOURS}
     for slot in reversed(range(len(mesh.materials))):
         if mesh.materials[slot] is not None and mesh.materials[slot].name in names:
             mesh.materials.pop(index=slot)
-    if len(mesh.materials) == 1 and mesh.materials[0] is None:
+    if (before == _NO_SLOT).any() and len(mesh.materials) == 1 and mesh.materials[0] is None:
         mesh.materials.clear()
     mesh.update()
 

@@ -12,11 +12,14 @@ import cscd
 
 from . import marks
 from .checking import Findings, Run, run_to_end
-from .properties import findings_of, keep_findings
-from .scene import SceneError, read_frames
+from .properties import findings_of, is_running, keep_findings, say_running
+from .scene import KeptFrame, SceneError, read_frames
 
 #: Seconds between two turns of a run, and how long a turn waits.
 _TICK, _PATIENCE = 0.02, 0.01
+
+#: What a scene can be wrong with, said in a sentence.
+_FAILURES = (SceneError, MemoryError, ValueError, cscd.Error)
 
 
 def _redraw(context: Any) -> None:
@@ -34,17 +37,21 @@ class CSCD_OT_check(bpy.types.Operator):
     bl_options = {"REGISTER"}
 
     _run: Optional[Run] = None
+    _scene_name = ""
     _timer: Any = None
 
     @classmethod
     def poll(cls, context: Any) -> bool:
-        return not context.scene.cscd.is_running
+        if context.mode.startswith("EDIT"):
+            cls.poll_message_set("Leave edit mode: what is checked are objects as they are rendered")
+            return False
+        return not is_running()
 
     def execute(self, context: Any) -> Set[str]:
         """The whole run at once, for scripts."""
         try:
             keep_findings(context.scene, run_to_end(context, context.scene.cscd.request(context)))
-        except (SceneError, MemoryError, cscd.Error) as problem:
+        except _FAILURES as problem:
             self.report({"ERROR"}, str(problem))
             return {"CANCELLED"}
         self.report({"INFO"}, context.scene.cscd.summary)
@@ -55,11 +62,12 @@ class CSCD_OT_check(bpy.types.Operator):
             return self.execute(context)
         try:
             self._run = Run(context, context.scene.cscd.request(context))
-        except (SceneError, MemoryError, cscd.Error) as problem:
+        except _FAILURES as problem:
             self.report({"ERROR"}, str(problem))
             return {"CANCELLED"}
-        settings = context.scene.cscd
-        settings.is_running, settings.progress = True, 0.0
+        self._scene_name = context.scene.name
+        context.scene.cscd.progress = 0.0
+        say_running(self._scene_name, True)
         self._timer = context.window_manager.event_timer_add(_TICK, window=context.window)
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
@@ -74,18 +82,29 @@ class CSCD_OT_check(bpy.types.Operator):
         assert self._run is not None
         try:
             more = self._run.step(_PATIENCE)
-        except (SceneError, MemoryError, cscd.Error) as problem:
-            self._end(context)
+            scene = self._scene()
+        except _FAILURES as problem:
+            self.cancel(context)
             self.report({"ERROR"}, str(problem))
             return {"CANCELLED"}
-        context.scene.cscd.progress = 100.0 * self._run.done / self._run.total
+        except BaseException:
+            self.cancel(context)
+            raise
+        scene.cscd.progress = 100.0 * self._run.done / self._run.total
         _redraw(context)
         if more:
             return {"RUNNING_MODAL"}
-        keep_findings(context.scene, self._run.findings)
+        keep_findings(scene, self._run.findings)
         self._end(context)
-        self.report({"INFO"}, context.scene.cscd.summary)
+        self.report({"INFO"}, scene.cscd.summary)
         return {"FINISHED"}
+
+    def _scene(self) -> Any:
+        """The scene that is checked; the window may show another one by now."""
+        scene = bpy.data.scenes.get(self._scene_name)
+        if scene is None:
+            raise SceneError(f"the scene {self._scene_name!r} is no longer there")
+        return scene
 
     def cancel(self, context: Any) -> None:
         """Ends the run early; also called when the window closes."""
@@ -94,7 +113,7 @@ class CSCD_OT_check(bpy.types.Operator):
         self._end(context)
 
     def _end(self, context: Any) -> None:
-        context.scene.cscd.is_running = False
+        say_running(self._scene_name, False)
         if self._timer is not None:
             context.window_manager.event_timer_remove(self._timer)
         self._timer = self._run = None
@@ -124,7 +143,8 @@ class _MarkObjects(_MarkOperator):
         left = marks.unmarked_names(findings, context.view_layer)
         if left:
             self.report({"WARNING"}, f"{text}; not on {', '.join(left)}, "  # type: ignore[attr-defined]
-                        "whose modifiers make other faces: apply them first")
+                        "whose modifiers make other faces, or which belong to other files: apply the modifiers, or make "
+                        "them local")
         else:
             self.report({"INFO"}, text)  # type: ignore[attr-defined]
         return {"FINISHED"}
@@ -196,7 +216,7 @@ class CSCD_OT_clear(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: Any) -> bool:
-        return context.mode == "OBJECT" and not context.scene.cscd.is_running
+        return context.mode == "OBJECT" and not is_running()
 
     def execute(self, context: Any) -> Set[str]:
         marks.clear(context)
@@ -287,11 +307,14 @@ class CSCD_OT_report(bpy.types.Operator):
         findings = findings_of(context.scene)
         assert findings is not None
         self._said: List[str] = []
+        kept = KeptFrame(context.scene)
         try:
             frames = list(read_frames(context.scene, findings.checked, context.view_layer, list(findings.frames)))
         except SceneError as problem:
             self.report({"ERROR"}, str(problem))
             return {"CANCELLED"}
+        finally:
+            kept.restore()
         scene = context.scene
         arguments = dict(title=os.path.basename(bpy.data.filepath) or scene.name, part_names=findings.parts.names,
                          part_labels=findings.parts.labels, fps=scene.render.fps / scene.render.fps_base, up="z")

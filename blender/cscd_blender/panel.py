@@ -6,7 +6,7 @@ from typing import Any, List
 
 import bpy
 
-from .properties import findings_of
+from .properties import findings_of, is_running
 
 
 class CSCD_UL_events(bpy.types.UIList):
@@ -57,7 +57,7 @@ class CSCD_PT_check(_CscdPanel, bpy.types.Panel):
     def draw(self, context: Any) -> None:
         layout, settings = self.layout, context.scene.cscd
         column = layout.column()
-        column.enabled = not settings.is_running
+        column.enabled = not is_running()
         column.prop(settings, "source", text="")
         if settings.source == "COLLECTION":
             column.prop(settings, "collection", text="")
@@ -69,7 +69,7 @@ class CSCD_PT_check(_CscdPanel, bpy.types.Panel):
             frames.prop(settings, "step")
         column.prop(settings, "by_groups")
         column.prop(settings, "depths")
-        if settings.is_running:
+        if is_running():
             layout.prop(settings, "progress", slider=True, text="Esc stops")
         else:
             layout.operator("cscd.check", icon="PLAY")

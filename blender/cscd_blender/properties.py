@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Dict, Optional, Tuple
+from typing import Any, Dict, Optional, Set, Tuple
 
 import bpy
 
@@ -10,6 +10,29 @@ from .checking import Findings, FoundEvent, Request
 
 #: The findings of this session, by the name of the scene; a file keeps the list of events alone.
 _findings: Dict[str, Findings] = {}
+
+#: The names of scenes whose check is running. They are not kept in the scenes, where an undo would bring them back.
+_running: Set[str] = set()
+
+
+def is_running() -> bool:
+    """Whether a check is going on in some scene."""
+    return bool(_running)
+
+
+def say_running(scene_name: str, running: bool) -> None:
+    """Remembers that a check has begun in a scene, or ended."""
+    if running:
+        _running.add(scene_name)
+    else:
+        _running.discard(scene_name)
+
+
+@bpy.app.handlers.persistent
+def _forget_file(*_: Any) -> None:
+    """Another file has scenes of the same names."""
+    _findings.clear()
+    _running.clear()
 
 
 def findings_of(scene: Any) -> Optional[Findings]:
@@ -103,14 +126,13 @@ class CscdSettings(bpy.types.PropertyGroup):
     summary: bpy.props.StringProperty()  # type: ignore[valid-type]
     progress: bpy.props.FloatProperty(name="Progress", subtype="PERCENTAGE", min=0, max=100,  # type: ignore[valid-type]
                                       options={"SKIP_SAVE"})
-    is_running: bpy.props.BoolProperty(options={"SKIP_SAVE"})  # type: ignore[valid-type]
 
     def request(self, context: Any) -> Request:
         """What these settings ask for."""
         objects: Tuple[str, ...] = ()
         collections: Tuple[str, ...] = ()
         if self.source == "SELECTED":
-            objects = tuple(thing.name for thing in context.selected_objects) or ("",)
+            objects = tuple(thing.name_full for thing in context.selected_objects) or ("",)
         elif self.source == "COLLECTION":
             collections = (self.collection.name if self.collection is not None else "",)
         return Request(objects, collections, self.first if self.use_range else None, self.last if self.use_range else None,
@@ -124,9 +146,11 @@ _register_classes, _unregister_classes = bpy.utils.register_classes_factory((Csc
 def register() -> None:
     _register_classes()
     bpy.types.Scene.cscd = bpy.props.PointerProperty(type=CscdSettings)
+    bpy.app.handlers.load_post.append(_forget_file)
 
 
 def unregister() -> None:
+    bpy.app.handlers.load_post.remove(_forget_file)
     del bpy.types.Scene.cscd
     _unregister_classes()
-    _findings.clear()
+    _forget_file()

@@ -5,7 +5,7 @@ Faces keep Blender's own numbers: those of the polygons of the evaluated mesh.
 
 from __future__ import annotations
 
-from typing import Any, Iterator, List, NamedTuple, Optional, Sequence, Tuple
+from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple
 
 import bpy
 import numpy as np
@@ -48,20 +48,31 @@ class Target(NamedTuple):
     first_vertex: int
 
 
+def objects_by_name(view_layer: Any) -> Dict[str, Any]:
+    """The objects of a view layer by their names. Of several with one name, those of other files go by their full names."""
+    found: Dict[str, Any] = {}
+    for thing in view_layer.objects:
+        found.setdefault(thing.name, thing)
+    found.update((thing.name_full, thing) for thing in view_layer.objects)
+    return found
+
+
 def objects_of(view_layer: Any, names: Sequence[str] = (), collections: Sequence[str] = ()) -> List[Any]:
     """The objects that are named, or lie in a named collection, in the order of the scene; without names all visible ones."""
-    wanted = set(names)
+    by_name = objects_by_name(view_layer)
+    wanted = set()
     for name in names:
-        if name not in view_layer.objects:
+        if name not in by_name:
             raise SceneError(f"there is no object {name!r} in the view layer {view_layer.name!r}")
+        wanted.add(by_name[name].name_full)
     for name in collections:
         if name not in bpy.data.collections:
             raise SceneError(f"there is no collection {name!r}")
-        wanted.update(thing.name for thing in bpy.data.collections[name].all_objects)
+        wanted.update(thing.name_full for thing in bpy.data.collections[name].all_objects)
     candidates = [thing for thing in view_layer.objects
                   if thing.type in MESH_TYPES and not thing.name.startswith(MARK_PREFIX)]
     if names or collections:
-        return [thing for thing in candidates if thing.name in wanted]
+        return [thing for thing in candidates if thing.name_full in wanted]
     return [thing for thing in candidates if thing.visible_get(view_layer=view_layer)]
 
 
@@ -112,8 +123,9 @@ class CheckedScene:
     targets : list of Target
     """
 
-    def __init__(self, things: Sequence[Any], depsgraph: Any) -> None:
-        self._things = [thing.name for thing in things]
+    def __init__(self, things: Sequence[Any], view_layer: Any, depsgraph: Any) -> None:
+        by_name = objects_by_name(view_layer)
+        self._things = [thing.name if by_name[thing.name] == thing else thing.name_full for thing in things]
         polygons = [read_polygons(thing, depsgraph) for thing in things]
         kept = [(name, item) for name, item in zip(self._things, polygons) if len(item.counts)]
         if not kept:
@@ -136,8 +148,9 @@ class CheckedScene:
     def read(self, view_layer: Any, depsgraph: Any) -> Array:
         """The positions of all vertices at the frame that the dependency graph has: (n, 3) float64."""
         parts = []
+        by_name = objects_by_name(view_layer)
         for i, name in enumerate(self._things):
-            thing = view_layer.objects.get(name)
+            thing = by_name.get(name)
             if thing is None:
                 raise SceneError(f"{name} is no longer in the view layer")
             item = read_polygons(thing, depsgraph)
@@ -211,15 +224,16 @@ def parts_of(checked: CheckedScene, view_layer: Any, depsgraph: Any, by_groups: 
     labels = np.empty(checked.mesh.triangle_count, np.int64)
     names: List[str] = []
     of_objects = checked.mesh.triangle_objects
+    by_name = objects_by_name(view_layer)
     for i, target in enumerate(checked.targets):
         triangles = np.flatnonzero(of_objects == i)
-        thing = view_layer.objects[target.name]
+        thing = by_name[target.name]
         groups, group_names = _dominant_groups(thing, depsgraph) if by_groups and thing.type == "MESH" else (None, [])
         if groups is None or not np.any(groups >= 0):
             labels[triangles] = len(names)
             names.append(target.name)
             continue
-        own = checked.mesh.triangles[triangles].astype(np.int64) - target.first_vertex
+        own = checked.mesh.triangles[triangles] - target.first_vertex
         found = _of_triangles(own, groups)
         used = {group: len(names) + place for place, group in enumerate(sorted(set(found.tolist())))}
         names += [f"{target.name}/{group_names[group]}" if group >= 0 else f"{target.name}/(no group)"
@@ -237,13 +251,30 @@ def frames_of(scene: Any, first: Optional[int], last: Optional[int], step: int =
     return range(begin, end + 1, max(step, 1))
 
 
-def read_frames(scene: Any, checked: CheckedScene, view_layer: Any, frames: Sequence[int]) -> Iterator[Array]:
-    """The positions of each frame; the scene goes back to its own frame at the end, whatever happens."""
-    before = scene.frame_current, scene.frame_subframe
-    try:
-        for frame in frames:
-            scene.frame_set(frame)
-            yield checked.read(view_layer, view_layer.depsgraph)
-    finally:
-        scene.frame_set(before[0], subframe=before[1])
+class KeptFrame:
+    """The frame that a scene is at, to go back to. It knows the scene by its name, as undo makes another one of it."""
 
+    def __init__(self, scene: Any) -> None:
+        self._scene_name = scene.name
+        self._frame, self._subframe = scene.frame_current, scene.frame_subframe
+
+    def restore(self) -> None:
+        """Goes back."""
+        scene = bpy.data.scenes.get(self._scene_name)
+        if scene is not None:
+            scene.frame_set(self._frame, subframe=self._subframe)
+
+
+def read_frames(scene: Any, checked: CheckedScene, view_layer: Any, frames: Sequence[int]) -> Iterator[Array]:
+    """The positions of each frame, to which the scene goes.
+
+    The user may undo or remove something between two frames, so that the scene is looked up for each.
+    """
+    scene_name, layer_name = scene.name, view_layer.name
+    for frame in frames:
+        there = bpy.data.scenes.get(scene_name)
+        layer = None if there is None else there.view_layers.get(layer_name)
+        if layer is None:
+            raise SceneError(f"the scene {scene_name!r} or its view layer {layer_name!r} is no longer there")
+        there.frame_set(frame)
+        yield checked.read(layer, layer.depsgraph)

@@ -121,7 +121,7 @@ def compare_export(folder, request):
                                   up_axis='Z')
             with open(path) as file:
                 lines = [line.split() for line in file]
-            checked = CheckedScene([thing], layer.depsgraph)
+            checked = CheckedScene([thing], layer, layer.depsgraph)
             positions = checked.read(layer, layer.depsgraph)
             exported = [tuple(map(float, line[1:4])) for line in lines if line[:1] == ['v']]
             faces = [[int(corner.split('/')[0]) - 1 for corner in line[1:]] for line in lines if line[:1] == ['f']]

@@ -53,6 +53,13 @@ blender --background "$folder/page/doll.blend" --factory-startup --python-use-sy
     exit 1
 }
 grep '^marks:' "$folder/log"
+mkdir "$folder/changes"
+blender --background --factory-startup --python-use-system-env --python-exit-code 1 --python changes.py -- "$folder/changes" \
+    >"$folder/log" 2>&1 || {
+    tail -20 "$folder/log"
+    exit 1
+}
+grep '^changes:' "$folder/log"
 ./farm.sh "$folder/page/doll.blend" "$folder/farm"
 mkdir "$folder/scripts"
 env -u PYTHONPATH BLENDER_USER_SCRIPTS="$folder/scripts" blender --background "$folder/page/doll.blend" --factory-startup \

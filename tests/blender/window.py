@@ -10,6 +10,7 @@ import bpy
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'blender'))
 import cscd_blender
+from cscd_blender.properties import is_running
 
 bpy.context.preferences.view.show_splash = False
 cscd_blender.register()
@@ -19,13 +20,20 @@ def open_sidebar():
     for area in bpy.context.window_manager.windows[0].screen.areas:
         if area.type == 'VIEW_3D':
             area.spaces.active.show_region_ui = True
+            area.spaces.active.region_3d.view_perspective = 'CAMERA'
+
+
+def view():
+    return [area.spaces.active.region_3d.view_perspective for area in bpy.context.window_manager.windows[0].screen.areas
+            if area.type == 'VIEW_3D'][0]
 
 
 def tell():
     scene = bpy.context.scene
     path = sys.argv[-1]
     with open(path + '.part', 'w') as file:
-        json.dump({'running': scene.cscd.is_running, 'events': len(scene.cscd.events), 'frame': scene.frame_current,
+        json.dump({'running': is_running(), 'events': len(scene.cscd.events), 'frame': scene.frame_current,
+                   'view': view(),
                    'selected': [thing.name for thing in bpy.context.selected_objects]}, file)
     os.replace(path + '.part', path)
     return 0.2

@@ -41,7 +41,7 @@ wait_for '"running": false' 60
 sleep 2
 click 1226 242 # our tab; Blender 3.4 cannot choose one by script
 click 1120 222 # Check
-wait_for '"running": true' 20
+wait_for '"running": true.*"view": "CAMERA"' 20
 wait_for '"frame": [3-9]' 60
 xdotool key Escape
 wait_for '"running": false, "events": 0, "frame": 1,' 20
@@ -51,7 +51,7 @@ sleep 3        # until the list is drawn
 click 1070 406 # the second event,
 wait_for '"frame": 8' 20
 click 1070 385 # and the first
-wait_for '"frame": 12, "selected": \["Body"\]' 20
+wait_for '"frame": 12, "view": "PERSP", "selected": \["Body"\]' 20
 click 1113 593 # Colours
 sleep 2
 [ -z "$picture" ] || import -window root -crop 1240x880+0+0 +repage -resize 1000x -colors 200 "PNG8:$picture"
