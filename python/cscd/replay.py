@@ -181,7 +181,7 @@ class Replay:
     def _label(self) -> Tuple[Array, int]:
         if self._parts is not None:
             return labels_of(self._parts, self.mesh.triangle_count, None)
-        return self.mesh.triangle_objects, self.mesh.object_count
+        return labels_of(self.mesh.triangle_objects, self.mesh.triangle_count, self.mesh.object_count)
 
     def _leave_out(self, first: Any, labels: Array, part_count: int) -> Optional[LeftOut]:
         if len(self._ignore_parts) == 0 and self._ignore_rest is None:

@@ -1,0 +1,136 @@
+"""cscd.replay on the figure of models/mannequin finds what the tool writes of the same files with the same options."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any, Dict, Iterator, List, Tuple
+
+import numpy as np
+import pytest
+
+import cscd
+import oracle
+
+Found = Tuple[Dict[str, Any], Dict[str, Any], List[Dict[str, Any]]]
+# Options of the tool, and the same of cscd.replay.
+OPTIONS: Dict[str, Tuple[List[str], Dict[str, Any]]] = {
+    "all": ([], {}),
+    "rest pairs": (["--ignore-rest"], {"ignore_rest": "pairs"}),
+    "rest parts": (["--ignore-rest=parts"], {"ignore_rest": "parts"}),
+    "some parts": (["--ignore-parts=Trunk,Arm.L", "--ignore-parts=Head,Eye.R"],
+                   {"ignore_parts": [("Trunk", "Arm.L"), ("Head", "Eye.R")]}),
+}
+
+
+@pytest.fixture(scope="module")
+def figure(tmp_path_factory: Any) -> Iterator[Path]:
+    """The folder of the figure: mannequin.obj, mannequin.pc2, mannequin.glb."""
+    folder = tmp_path_factory.mktemp("figure")
+    program = os.path.join(oracle.BUILD, "models", "mannequin")
+    subprocess.run([program, folder, "cache", "skin"], check=True, stdout=subprocess.DEVNULL)
+    yield folder
+
+
+def run_tool(folder: Path, model: str, frames: List[str], options: List[str]) -> Found:
+    """The JSON of check and of replay, and the list of contacts."""
+    def run(command: str, *outputs: str) -> Dict[str, Any]:
+        words = [command, model, *frames, *options, "--quiet", "--json", "found.json", *outputs]
+        package = os.path.dirname(os.path.dirname(cscd.__file__))
+        done = subprocess.run([sys.executable, "-m", "cscd", *words], cwd=folder, env={**os.environ, "PYTHONPATH": package})
+        assert done.returncode == 0
+        found: Dict[str, Any] = json.loads((folder / "found.json").read_text())
+        return found
+
+    checked, replayed = run("check"), run("replay", "--contacts", "contacts.jsonl")
+    lines = (folder / "contacts.jsonl").read_text().splitlines()
+    return checked, replayed, [json.loads(line) for line in lines]
+
+
+def compare_event(event: Any, kinds: Tuple[str, ...], known: Dict[str, Any], names: List[str]) -> None:
+    """An event is the same as the tool has it."""
+    assert [names[event.a], names[event.b]] == [known["a"], known["b"]] and list(kinds) == known["kinds"]
+    assert [event.first_frame, event.last_frame, event.worst_frame] == [known["first"], known["last"], known["worst"]]
+    assert [event.pairs, event.contacts, event.triangle] == [known["pairs"], known["contacts"], known["triangle"]]
+    assert event.depth == (known["depth"] or 0.0) and event.length == (known["length"] or 0.0)
+    assert known["point"] is None or event.x.tolist() == known["point"]
+
+
+def corners_of(mesh: cscd.Mesh, kind: int, feature: int, is_a: bool) -> List[int]:
+    """The vertices of a feature of a contact, ascending."""
+    if kind == 1:
+        return sorted(mesh.edges[feature].tolist())
+    return [feature] if is_a else sorted(mesh.triangles[feature].tolist())
+
+
+def compare_contacts(mesh: cscd.Mesh, found: List[Any], known: List[Dict[str, Any]]) -> None:
+    """The contacts of all intervals are the same, in the same order."""
+    assert len(found) == len(known) > 0
+    for (frame, contact), line in zip(found, known):
+        assert [frame, cscd.CONTACT_KINDS[contact.kind]] == [line["frame"], line["kind"]]
+        assert corners_of(mesh, contact.kind, contact.a, True) == sorted(line["a"])
+        assert corners_of(mesh, contact.kind, contact.b, False) == sorted(line["b"])
+        assert [contact.toi, contact.u, contact.v] == [line["toi"], line["u"], line["v"]]
+        assert contact.point.tolist() == line["point"] and contact.normal.tolist() == line["normal"]
+
+
+@pytest.mark.parametrize("options", OPTIONS)
+@pytest.mark.parametrize("model", ["mannequin.obj", "mannequin.glb"])
+def test_replay_equals_the_tool(figure: Path, model: str, options: str) -> None:
+    """Events, pairs and their kinds, contacts and depths, frame by frame, to the last bit."""
+    words, ours = OPTIONS[options]
+    files = ["mannequin.pc2" if model.endswith("obj") else model]
+    checked, replayed, lines = run_tool(figure, model, files, words)
+    recording = cscd.read(figure / model, *(figure / name for name in files))
+    names, mesh = recording.part_names, recording.mesh
+    ours = {key: [[names.index(a), names.index(b)] for a, b in value] if key == "ignore_parts" else value
+            for key, value in ours.items()}
+    run = cscd.replay(recording.frames, mesh, parts=recording.part_labels, **ours)
+    contacts = []
+    for frame, of_check, of_replay in zip(run, checked["frames"], replayed["frames"]):
+        found = frame.intersections
+        assert frame.number == of_check["frame"] == of_replay["frame"]
+        assert found.pairs.tolist() == of_check["pairs"]
+        assert found.kind_names() == of_check["kinds"]
+        assert found.max_depth == of_check["depth"] == of_replay["depth"]
+        contacts += [(frame.number - 1, contact) for contact in frame.contacts]
+    assert next(run, None) is None and len(checked["frames"]) == len(recording.frames) == 48
+    compare_contacts(mesh, contacts, lines)
+    assert len(run.events) == len(replayed["events"]) > 1
+    for event, kinds, known in zip(run.events, run.events.kind_names(), replayed["events"]):
+        compare_event(event, kinds, known, names)
+
+
+def test_scene_of_meshes_has_the_same_events(figure: Path) -> None:
+    """The parts as objects of a scene: its triangles are numbered object by object, and the events are the same."""
+    recording = cscd.read(figure / "mannequin.obj", figure / "mannequin.pc2")
+    labels, whole = recording.part_labels, recording.mesh
+    part_count = len(recording.part_names)
+    meshes, corners = [], []
+    for part in range(part_count):
+        vertices, local = np.unique(whole.triangles[labels == part], return_inverse=True)
+        corners.append(vertices)
+        meshes.append(cscd.Mesh(local.reshape(-1, 3), len(vertices)))
+    scene = cscd.Scene(meshes)
+    first = np.cumsum([0] + [mesh.triangle_count for mesh in meshes])
+    number = np.concatenate([np.flatnonzero(labels == part) for part in range(part_count)])
+    for part, mesh in enumerate(meshes):
+        moved = mesh.triangles + sum(map(len, corners[:part]))
+        assert np.array_equal(scene.triangles[first[part]:first[part + 1]], moved)
+    assert np.array_equal(scene.triangle_objects, labels[number])
+
+    frames = recording.frames[15:26]
+    ours = cscd.replay(([x[vertices] for vertices in corners] for x in frames), scene)
+    theirs = cscd.replay(frames, whole, parts=labels)
+    found = 0
+    for a, b in zip(ours, theirs):
+        pairs = np.sort(number[a.intersections.pairs], axis=1)
+        assert np.array_equal(pairs[np.lexsort(pairs.T[::-1])], b.intersections.pairs)
+        assert len(a.contacts) == len(b.contacts)
+        found += len(pairs)
+    assert found > 100 and next(ours, None) is None and next(theirs, None) is None
+    for name in ("a", "b", "first_frame", "last_frame", "kinds", "pairs", "contacts"):  # depths are those within an object
+        assert np.array_equal(np.sort(ours.events[name]), np.sort(theirs.events[name])), name
