@@ -79,11 +79,11 @@ class Solver:
         blocks = self.stiffness[:, None, None] * (outer + across * (np.eye(3) - outer))
 
         d, gap, l = near.distance, near.distance - REACH, np.log(near.distance / REACH)
-        scale = STIFFNESS * near["count"].astype(float)
+        scale = STIFFNESS * near["count"]
         faded, of_fading = fade(x, near)
         slope = scale * faded * (-2.0 * gap * l - gap * gap / d)
         curvature = scale * faded * (-2.0 * l - 4.0 * gap / d + (gap / d) ** 2)
-        corners, weights, normal = near.vertices.astype(np.int64), near.weights, near.normal
+        corners, weights, normal = near.vertices, near.weights, near.normal
         np.add.at(gradient, corners, (slope[:, None] * weights)[:, :, None] * normal[:, None, :]
                   + (-scale * gap * gap * l)[:, None, None] * of_fading)
         return gradient, self.hessian(len(x), blocks, corners, weights, curvature[:, None, None] * normal[:, :, None]
@@ -135,7 +135,7 @@ class Solver:
 
 def fade(x: Array, near: cscd.Proximities) -> Tuple[Array, Array]:
     """The factor of nearly parallel edges (k,), and its gradient (k, 4, 3) (Li et al. 2020, eq. 24)."""
-    p = x[near.vertices.astype(np.int64)]
+    p = x[near.vertices]
     a, b = p[:, 1] - p[:, 0], p[:, 3] - p[:, 2]
     normal = np.cross(a, b)
     area = (normal * normal).sum(axis=1)
@@ -150,8 +150,8 @@ def fade(x: Array, near: cscd.Proximities) -> Tuple[Array, Array]:
 def draw(path: str, scene: cscd.Scene, frames: List[Array]) -> None:
     """Draws the scene at some moments."""
     picture = Picture(900, 330, panels=len(frames))
-    colours = np.array([(222, 196, 150), (120, 160, 200), (190, 190, 190)])[scene.triangle_objects.astype(np.int64)]
-    nearer = np.array([0.06, 0.12, 0.0])[scene.triangle_objects.astype(np.int64)]  # the upper cloth hides what is under it
+    colours = np.array([(222, 196, 150), (120, 160, 200), (190, 190, 190)])[scene.triangle_objects]
+    nearer = np.array([0.06, 0.12, 0.0])[scene.triangle_objects]  # the upper cloth hides what is under it
     for panel, x in enumerate(frames):
         picture.look(panel, 30.0, 20.0, (0.0, -0.2, 0.0), 0.9)
         picture.surface(x, scene.triangles, colours, nearer=nearer)

@@ -30,7 +30,7 @@ def near_penalty(detector: cscd.Detector, x: Array, reach: float) -> Tuple[float
     missing = reach - near.distance
     of_corners = (-missing[:, None] * near.weights)[:, :, None] * near.normal[:, None, :]
     gradient = np.zeros((len(x), 3))
-    np.add.at(gradient, near.vertices.astype(np.int64), of_corners)
+    np.add.at(gradient, near.vertices, of_corners)
     return 0.5 * float((missing * missing).sum()), gradient
 
 
