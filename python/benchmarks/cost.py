@@ -65,7 +65,8 @@ def rows() -> List[Tuple[str, int, Call, Call]]:
     size = f"{len(faces):,} triangles"
     host = detector._host.handle
     return [
-        (f"check, {size}, {len(detector.check(x))} pairs", 20, lambda: detector.check(x), of_detector(detector, check, "intersections", x)),
+        (f"check, {size}, {len(detector.check(x))} pairs", 20, lambda: detector.check(x),
+         of_detector(detector, check, "intersections", x)),
         (f"step, {size}, {len(detector.step(x, end)):,} contacts", 10, lambda: detector.step(x, end),
          of_detector(detector, step, "contacts", x, end)),
         (f"near, {size}, {len(detector.near(x, 0.12)):,} pairs", 5, lambda: detector.near(x, 0.12),

@@ -19,6 +19,7 @@ from ._prototypes import PROTOTYPES
 __all__ = ["address_of", "copy_items", "copy_list", "items_of", "library", "new_struct", "records", "structs"]
 
 _NONE = 2**32 - 1
+_ITEMS_AT_ONCE = 1 << 16
 _INDICES_MAY_BE_NONE = ("component", "depth", "event", "part_pair")
 _FROM_PYTHON = ("PyEval_SaveThread", "PyEval_RestoreThread", "PyErr_CheckSignals", "PyObject_CallFunction",
                 "PyObject_IsTrue", "Py_DecRef", "PyCapsule_New", "PyCapsule_GetPointer")
@@ -104,9 +105,14 @@ class _Memory:
 
 
 def items_of(found: np.ndarray[Any, Any], name: str) -> np.ndarray[Any, Any]:
-    """Structs of the library as records. What the library says of an index that there is none, all bits, becomes -1."""
+    """Structs of the library as records. What the library says of an index that there is none, all bits, becomes -1.
+
+    Ctrl-C has its turn every so many items.
+    """
     struct = structs[name]
-    items = found.astype(records[name])
+    items = np.empty(len(found), records[name])
+    for begin in range(0, len(found), _ITEMS_AT_ONCE):
+        items[begin: begin + _ITEMS_AT_ONCE] = found[begin: begin + _ITEMS_AT_ONCE]
     for member in struct.names if name in _INDICES_MAY_BE_NONE else ():
         if struct[member].base == np.uint32:
             items[member][items[member] == _NONE] = -1

@@ -29,7 +29,9 @@ static void sort_pairs(contact_key *keys, contact_key *spare, size_t count) {
     sort_by_number(keys, spare, count, sizeof *keys);
 }
 
+/* What tasks describe, and whom they ask whether the call goes on. */
 typedef struct description {
+    progress *progress;
     proximity_scene scene;
     const contact_key *keys;
     cscd_proximity *items;
@@ -38,6 +40,7 @@ typedef struct description {
 
 static void describe_share(void *data, uint32_t index) {
     const description *d = data;
+    if (!progress_go_on(d->progress, 1.0)) return; /* the call ends, and nobody reads the list */
     size_t begin = (size_t)index * PAIRS_PER_SHARE, end = begin + PAIRS_PER_SHARE;
     for (size_t i = begin; i < end && i < d->count; i++)
         proximity_describe(&d->scene, d->keys[i].contact, &d->items[i]);
@@ -46,7 +49,7 @@ static void describe_share(void *data, uint32_t index) {
 static void describe_pairs(cscd_detector *d, const proximity_scene *scene, size_t count) {
     result_buffer *buffer = &d->proximities;
     sort_pairs(buffer->keys, buffer->spare_keys, count);
-    description all = {*scene, buffer->keys, buffer->items, count};
+    description all = {&d->context->progress, *scene, buffer->keys, buffer->items, count};
     uint32_t shares = (uint32_t)((count + PAIRS_PER_SHARE - 1) / PAIRS_PER_SHARE);
     parallel_run(d->context->threads, shares, describe_share, &all);
 }
