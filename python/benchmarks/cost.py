@@ -64,7 +64,11 @@ def rows() -> List[Tuple[str, int, Call, Call]]:
     check, step, near = library.cscdpy_detector_check, library.cscdpy_detector_step, library.cscdpy_detector_find_near
     size = f"{len(faces):,} triangles"
     host = detector._host.handle
+    pair = cscd.Detector(faces[:2])
+    corners = np.ascontiguousarray(x[: int(faces[:2].max()) + 1])
     return [
+        (f"check, 2 triangles, {len(pair.check(corners))} pairs", 500, lambda: pair.check(corners),
+         of_detector(pair, check, "intersections", corners)),
         (f"check, {size}, {len(detector.check(x))} pairs", 20, lambda: detector.check(x),
          of_detector(detector, check, "intersections", x)),
         (f"step, {size}, {len(detector.step(x, end)):,} contacts", 10, lambda: detector.step(x, end),
