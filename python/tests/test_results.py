@@ -66,3 +66,11 @@ def test_what_there_is_not_is_minus_one() -> None:
     assert (of_edges["edge"] >= 0).all() and (of_edges["patch"] == -1).all()
     component = cscd.Mesh(F, positions=V).component(0)
     assert component["first_open_edge"] == -1 and component["vertex_count"] == 8
+
+
+def test_lists_are_whole() -> None:
+    """A list that is longer than what is copied at once: all pairs of triangles at the same place."""
+    count = 400
+    x = np.tile([[0., 0, 0], [1, 0, 0], [0, 1, 0]], (count, 1))
+    found = cscd.Detector(np.arange(3 * count).reshape(-1, 3)).check(x)
+    np.testing.assert_array_equal(found, np.column_stack(np.triu_indices(count, 1)))
