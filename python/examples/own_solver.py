@@ -57,7 +57,7 @@ class Solver:
         """The energy at positions, of which the near pairs are given."""
         stretch = self.lengths_at(x)[1] - self.lengths
         d, faded = near.distance, fade(x, near)[0]
-        barrier = -((d - REACH) ** 2) * np.log(d / REACH) * near["count"] * faded
+        barrier = -((d - REACH) ** 2) * np.log(d / REACH) * near.count * faded
         away = (x - self.aim)[: self.free]
         return float(0.5 * MASS / STEP ** 2 * (away * away).sum() + 0.5 * (self.stiffness * stretch * stretch).sum()
                      + STIFFNESS * barrier.sum())
@@ -79,7 +79,7 @@ class Solver:
         blocks = self.stiffness[:, None, None] * (outer + across * (np.eye(3) - outer))
 
         d, gap, l = near.distance, near.distance - REACH, np.log(near.distance / REACH)
-        scale = STIFFNESS * near["count"]
+        scale = STIFFNESS * near.count
         faded, of_fading = fade(x, near)
         slope = scale * faded * (-2.0 * gap * l - gap * gap / d)
         curvature = scale * faded * (-2.0 * l - 4.0 * gap / d + (gap / d) ** 2)

@@ -67,6 +67,8 @@ class Picture:
     def caption(self, panel: int, text: str) -> None:
         """Writes below a panel."""
         x = (panel + 0.5) * self.width / self.panels
+        wide = self.width / self.panels
+        self.lines.append(f'<rect x="{x - 0.5 * wide:.0f}" y="{self.height - 26}" width="{wide:.0f}" height="26" fill="white"/>')
         self.lines.append(f'<text x="{x:.0f}" y="{self.height - 8}" text-anchor="middle">{text}</text>')
 
     def write(self, path: str) -> None:
