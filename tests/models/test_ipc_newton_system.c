@@ -38,26 +38,27 @@ static void add_contacts(system_fixture *f, random_stream *random) {
     }
 }
 
-static system_fixture make_system(uint64_t seed) {
+/* In place, since the system keeps the address of the contacts. */
+static void make_system(system_fixture *f, uint64_t seed) {
     static const ipc_stuff stuff = {.density = 1.0, .membrane = 100.0, .solid = 500.0};
-    system_fixture f = {.count = 0};
+    *f = (system_fixture){.count = 0};
     random_stream random = stream_start(seed);
     io_error error;
-    if (!body_make(BODY_SPHERE, TRIANGLES, &f.shape, &error)) fail_msg("%s", error.text);
-    f.count = f.shape.vertex_count * 3;
-    ipc_springs_add_body(&f.springs, &f.shape, 0, &stuff);
-    add_contacts(&f, &random);
-    f.inertia = body_allocate(f.shape.vertex_count, sizeof *f.inertia);
-    for (uint32_t v = FIXED; v < f.shape.vertex_count; v++) f.inertia[v] = stream_between(&random, 1.0, 20.0);
-    double **arrays[] = {&f.positions, &f.gradient, &f.x, &f.product};
-    for (int k = 0; k < 4; k++) *arrays[k] = body_allocate(f.count, sizeof(double));
-    for (uint32_t i = 0; i < f.count; i++) {
-        f.positions[i] = f.shape.positions[i] + stream_between(&random, -0.1, 0.1);
-        f.gradient[i] = stream_between(&random, -1.0, 1.0);
+    if (!body_make(BODY_SPHERE, TRIANGLES, &f->shape, &error)) fail_msg("%s", error.text);
+    f->count = f->shape.vertex_count * 3;
+    ipc_springs_add_body(&f->springs, &f->shape, 0, &stuff);
+    add_contacts(f, &random);
+    f->inertia = body_allocate(f->shape.vertex_count, sizeof *f->inertia);
+    for (uint32_t v = FIXED; v < f->shape.vertex_count; v++)
+        f->inertia[v] = stream_between(&random, 1.0, 20.0);
+    double **arrays[] = {&f->positions, &f->gradient, &f->x, &f->product};
+    for (int k = 0; k < 4; k++) *arrays[k] = body_allocate(f->count, sizeof(double));
+    for (uint32_t i = 0; i < f->count; i++) {
+        f->positions[i] = f->shape.positions[i] + stream_between(&random, -0.1, 0.1);
+        f->gradient[i] = stream_between(&random, -1.0, 1.0);
     }
-    f.system = ipc_system_make(f.shape.vertex_count, f.inertia, &f.springs);
-    ipc_system_set(&f.system, f.positions, &f.contacts);
-    return f;
+    f->system = ipc_system_make(f->shape.vertex_count, f->inertia, &f->springs);
+    ipc_system_set(&f->system, f->positions, &f->contacts);
 }
 
 static void free_system(system_fixture *f) {
@@ -76,7 +77,8 @@ static void free_system(system_fixture *f) {
  * preconditioner has the inverses of the blocks on its diagonal. */
 static void product_is_that_of_a_symmetric_positive_matrix(void **state) {
     (void)state;
-    system_fixture f = make_system(1);
+    system_fixture f;
+    make_system(&f, 1);
     double *matrix = body_allocate((size_t)f.count * f.count, sizeof *matrix);
     for (uint32_t j = 0; j < f.count; j++) {
         memset(f.x, 0, f.count * sizeof *f.x);
@@ -123,7 +125,8 @@ static void product_is_that_of_a_symmetric_positive_matrix(void **state) {
 static void solution_solves(void **state) {
     (void)state;
     for (uint64_t seed = 0; seed < 10; seed++) {
-        system_fixture f = make_system(seed);
+        system_fixture f;
+        make_system(&f, seed);
         for (uint32_t i = 0; i < FIXED * 3; i++) f.x[i] = 0.01 * i;
         f.x[FIXED * 3] = 77.0; /* has no effect */
         uint32_t iterations = ipc_system_solve(&f.system, f.gradient, 1e-10, 10 * f.count, f.x);
@@ -142,7 +145,8 @@ static void solution_solves(void **state) {
 /* Every iterate is a descent direction, however early the solver stops. */
 static void every_iterate_leads_down(void **state) {
     (void)state;
-    system_fixture f = make_system(5);
+    system_fixture f;
+    make_system(&f, 5);
     double last = 0.0;
     for (uint32_t most = 1; most < 30; most++) {
         double slope = 0.0;
@@ -157,7 +161,8 @@ static void every_iterate_leads_down(void **state) {
 
 static void nothing_to_solve_takes_nothing(void **state) {
     (void)state;
-    system_fixture f = make_system(6);
+    system_fixture f;
+    make_system(&f, 6);
     memset(f.gradient, 0, f.count * sizeof *f.gradient);
     assert_int_equal(ipc_system_solve(&f.system, f.gradient, 1e-3, 100, f.x), 0);
     for (uint32_t i = 0; i < f.count; i++) assert_true(f.x[i] == 0.0);

@@ -81,7 +81,8 @@ static void charge_of_cube(void **state) {
         conductor_crowd_edges(&s);
         crowded = capacitance_of(&s);
         print_message("cube %u: C = %.9f, crowded %.9f\n", s.triangle_count, even, crowded);
-        assert_true(even < exact && crowded < exact && crowded > even);
+        assert_true(even < exact && crowded < exact);
+        if (level > 1) assert_true(crowded > even); /* at first, edges have nothing but their middles */
         if (level > 1) assert_true((exact - even) < 0.65 * (exact - before));
         before = even;
         conductor_free(&s);
