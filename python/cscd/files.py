@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -179,8 +180,8 @@ def _write_frames(folder: str, frames: Iterable[Any], F: Any) -> Tuple[Mesh, int
             mesh = mesh_of(F, positions)
         _write_model(os.path.join(folder, f"frame_{count:06d}.obj"), positions, mesh.triangles)
         count += 1
-    if mesh is None:
-        raise ValueError("frames: expected one at least, got none")
+    if mesh is None or count < 2:
+        raise ValueError(f"frames: expected two at least, got {count}; of one mesh `python -m cscd check` tells all")
     return mesh, count
 
 
@@ -195,6 +196,7 @@ def write_report(path: PathLike, frames: Any, F: Any, *, title: str = "", part_n
     path : path
         An HTML file, which needs nothing beside it.
     frames : (B, n, 3), or an iterable of (n, 3)
+        Two at least.
     F : (m, 3) or (m, 4) integers, or Mesh
     title : str, optional
     part_names, part_labels : sequence of str, and (t,) integers, optional
@@ -238,10 +240,21 @@ def _write_parts(folder: str, mesh: Mesh, names: Optional[Sequence[str]], labels
     return path
 
 
+def _interpreter() -> str:
+    """A Python for the tool. Where a program embeds Python, ``sys.executable`` may be that program, or empty."""
+    version = f"python{sys.version_info[0]}.{sys.version_info[1]}"
+    beside = [os.path.join(prefix, "bin", name) for prefix in (sys.exec_prefix, sys.base_exec_prefix)
+              for name in (version, "python3")]
+    for path in (sys.executable, *beside, shutil.which(version), shutil.which("python3")):
+        if path and "python" in os.path.basename(path).lower() and os.access(path, os.X_OK):
+            return path
+    raise Error("write_report runs the tool in a process of its own, and found no Python for it; put python3 on the PATH")
+
+
 def _run_tool(command: List[str]) -> str:
     """Runs the tool of this package; returns its first line."""
     program = os.path.join(os.path.dirname(os.path.abspath(__file__)), "__main__.py")
-    done = subprocess.run([sys.executable, "-I", program, *command], text=True, stdout=subprocess.PIPE,
+    done = subprocess.run([_interpreter(), "-I", program, *command], text=True, stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE, check=False)
     if done.returncode != 0:
         raise Error(done.stderr.strip() or f"the tool ended with {done.returncode}")

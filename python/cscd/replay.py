@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-from typing import Any, Callable, Iterable, Iterator, List, NamedTuple, Optional, Sequence, Tuple
+from typing import Any, Callable, Iterable, Iterator, List, NamedTuple, NoReturn, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -21,6 +21,7 @@ __all__ = ["Frame", "Replay", "replay"]
 Array = Any
 
 _NO_PART = 2**32 - 1
+_MOST_PARTS = 8192  # of tables of pairs, src/tool/common/part_rules.c
 _RESTS = (None, "pairs", "parts")
 
 
@@ -41,30 +42,38 @@ class Frame(NamedTuple):
 class LeftOut(Handle):
     """Pairs of parts, and pairs of triangles at rest, that a replay leaves out, by the rules of the tool."""
 
-    __slots__ = ("mesh",)
+    __slots__ = ("mesh", "_part_count")
 
     def __init__(self, mesh: Mesh, labels: Array, part_count: int) -> None:
         super().__init__(mesh.host, library.cscdpy_left_out_destroy)
         self.mesh = mesh
+        self._part_count = part_count
         error = ctypes.create_string_buffer(1024)
         if not library.cscdpy_left_out_create(mesh.pointer, address_of(labels), part_count, self.place,
                                               ctypes.addressof(error)):
             raise MemoryError(error.value.decode())
 
-    def add_parts(self, pairs: Any, part_count: int) -> None:
+    def add_parts(self, pairs: Any) -> None:
         """Leaves out all pairs of two parts, (k, 2); -1 stands for what is in no part."""
+        part_count = self._part_count
         for a, b in np.asarray(pairs, np.int64).reshape(-1, 2).tolist():
             if not (-1 <= a < part_count and -1 <= b < part_count):
                 raise ValueError(f"ignore_parts: ({a}, {b}): expected numbers from 0 to {part_count - 1}, or -1")
             if not library.cscdpy_left_out_add_parts(self.pointer, a & _NO_PART, b & _NO_PART):
-                raise ValueError("ignore_parts: at most 8192 parts")
+                self._fail("ignore_parts")
 
     def add_rest(self, pairs: Array, by_parts: bool) -> None:
         """Leaves out what meets at rest, (k, 2) triangles."""
         packed = np.ascontiguousarray(pairs, np.uint32)
         if len(packed) and not library.cscdpy_left_out_add_rest(self.pointer, address_of(packed), len(packed),
                                                                 by_parts):
-            raise ValueError("ignore_rest: at most 8192 parts")
+            self._fail("ignore_rest")
+
+    def _fail(self, option: str) -> NoReturn:
+        """Says why there is no table."""
+        if self._part_count > _MOST_PARTS:
+            raise ValueError(f"{option}: expected at most {_MOST_PARTS} parts, got {self._part_count}")
+        raise MemoryError(f"{option}: out of memory")
 
 
 def replay(frames: Iterable[Any], F: Any, *, parts: Any = None, ignore_parts: Any = (),
@@ -187,7 +196,7 @@ class Replay:
         if len(self._ignore_parts) == 0 and self._ignore_rest is None:
             return None
         left_out = LeftOut(self.mesh, labels, part_count)
-        left_out.add_parts(self._ignore_parts, part_count)
+        left_out.add_parts(self._ignore_parts)
         if self._ignore_rest is not None:
             options = {name: value for name, value in self._options.items() if name in ("seams", "threads", "rules")}
             left_out.add_rest(Detector(self.mesh, **options).check(first), self._ignore_rest == "parts")

@@ -134,3 +134,26 @@ def test_scene_of_meshes_has_the_same_events(figure: Path) -> None:
     assert found > 100 and next(ours, None) is None and next(theirs, None) is None
     for name in ("a", "b", "first_frame", "last_frame", "kinds", "pairs", "contacts"):  # depths are those within an object
         assert np.array_equal(np.sort(ours.events[name]), np.sort(theirs.events[name])), name
+
+
+def test_too_many_parts() -> None:
+    """The sentence says how many there are, and how many there may be."""
+    count = 8193
+    V = np.tile([[0., 0, 0], [1, 0, 0], [0, 1, 0]], (count, 1)) + np.repeat(np.arange(count) * 2., 3)[:, None]
+    F = np.arange(3 * count).reshape(-1, 3)
+    for options in ({"ignore_parts": [(0, 1)]}, {"ignore_rest": "parts"}):
+        replay = cscd.replay([np.concatenate([V[:3], V[:-3]]) if "ignore_rest" in options else V], F,
+                             parts=np.arange(count), depths=False, **options)
+        with pytest.raises(ValueError, match="ignore_[a-z]*: expected at most 8192 parts, got 8193"):
+            list(replay)
+
+
+def test_report_of_a_program_that_embeds_python(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Its executable is no Python, or nobody knows it."""
+    V, F = [[0., 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]
+    for executable in ("", "/bin/false"):
+        monkeypatch.setattr(sys, "executable", executable)
+        assert "No frame crosses" in cscd.write_report(tmp_path / "page.html", [V, V], F)
+        assert (tmp_path / "page.html").stat().st_size > 10**5
+    with pytest.raises(ValueError, match="frames: expected two at least, got 1"):
+        cscd.write_report(tmp_path / "page.html", [V], F)
