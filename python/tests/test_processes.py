@@ -76,6 +76,10 @@ def test_pickled_plans_and_detectors() -> None:
     same = copied(plan)
     assert same.method == plan.method and np.array_equal(same.triangle_regions, plan.triangle_regions)
     assert np.array_equal(same.detector_points, plan.detector_points)
+    charged = cscd.Plan.charge(mesh, torus.x0)
+    same = copied(charged)
+    assert charged.charges is not None and charged.charges.max() > 0.0
+    assert np.array_equal(same.charges, charged.charges) and np.array_equal(same.capacitances, charged.capacitances)
     detector = cscd.Detector(mesh, plan=plan, min_separation=1e-3, threads=2, progress=print)
     detector.step(torus.x0, torus.x1)
     detector.set_ignored([[0, 1]])

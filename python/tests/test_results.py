@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any, List, Tuple
 
 import numpy as np
@@ -74,3 +75,21 @@ def test_lists_are_whole() -> None:
     x = np.tile([[0., 0, 0], [1, 0, 0], [0, 1, 0]], (count, 1))
     found = cscd.Detector(np.arange(3 * count).reshape(-1, 3)).check(x)
     np.testing.assert_array_equal(found, np.column_stack(np.triu_indices(count, 1)))
+
+
+def test_depth_in_two_objects() -> None:
+    """A vertex that two bodies contain is as deep as in the one that contains it deeper, whichever comes first."""
+    corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
+    faces = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])
+    large, shifted, small = 4 * corners, 4 * corners + 1, .5 * corners + 1.5
+    scene = cscd.Scene([cscd.Mesh(faces, positions=corners)] * 3)
+    for bodies in ([large, shifted, small], [shifted, large, small]):
+        np.testing.assert_allclose(cscd.self_intersections(np.concatenate(bodies), scene).depth[16:], small.min(axis=1))
+
+
+def test_faces_without_a_part(tmp_path: Path) -> None:
+    """A face of a file that stands before the first group."""
+    path = tmp_path / "part.obj"
+    path.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\ng Named\nf 1 2 4\n", encoding="ascii")
+    recording = cscd.read(path)
+    assert recording.part_names == ["Named"] and recording.part_labels.tolist() == [-1, 0]
