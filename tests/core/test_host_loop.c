@@ -138,6 +138,13 @@ static void check_sentence(const char *sentence, int trick, bool one_run) {
     assert_true(tasks >= faults[of] || trick == BEYOND_END);
 }
 
+static void check_honest_step(const panel_scene *p, const cscd_contact *expected, size_t count) {
+    cscd_contacts found;
+    assert_int_equal(panels_step(p, &found), CSCD_OK);
+    assert_int_equal(found.count, count);
+    assert_memory_equal(found.items, expected, count * sizeof *expected);
+}
+
 /* Plays the trick in one run of the first step; the step is then repeated. */
 static void step_fails_and_recovers(int trick, uint32_t run, const cscd_contact *expected, size_t count) {
     dishonest_host host = {HONEST, 0, 0};
@@ -152,9 +159,7 @@ static void step_fails_and_recovers(int trick, uint32_t run, const cscd_contact 
         check_sentence(cscd_context_detail(p.context), trick, run > 0);
     }
     host.trick = HONEST;
-    assert_int_equal(panels_step(&p, &found), CSCD_OK);
-    assert_int_equal(found.count, count);
-    assert_memory_equal(found.items, expected, count * sizeof *expected);
+    check_honest_step(&p, expected, count);
     panels_destroy(&p);
 }
 
@@ -251,9 +256,7 @@ static void step_beside_hammer(const cscd_contact *expected, size_t count) {
     }
     atomic_store(&h.quit, true);
     pthread_join(h.thread, NULL);
-    assert_int_equal(panels_step(&p, &found), CSCD_OK);
-    assert_int_equal(found.count, count);
-    assert_memory_equal(found.items, expected, count * sizeof *expected);
+    check_honest_step(&p, expected, count);
     panels_destroy(&p);
 }
 
