@@ -10,7 +10,7 @@ import numpy as np
 from ._arrays import as_positions, check_magnitudes
 from ._host import processor_count, thread_count_of
 from .detector import Detector
-from .intersections import Intersections
+from .intersections import Intersections, kind_set
 from .mesh import Mesh, Scene
 from .results import Contacts
 
@@ -20,7 +20,6 @@ Array = Any
 Progress = Optional[Callable[[str, float], Any]]
 
 
-
 def mesh_of(F: Any, V: Any, name: str = "V") -> Mesh:
     """The mesh that is given, or one of these faces; faces of four corners are cut by ``V``, which is called so."""
     if not isinstance(F, Mesh):
@@ -28,6 +27,12 @@ def mesh_of(F: Any, V: Any, name: str = "V") -> Mesh:
     if V is not None:
         as_positions(name, V, F.vertex_count)
     return F
+
+
+def check_nothing(positions: Array, kinds: Any) -> None:
+    """Without triangles there is nothing to ask the library, which else would look at these."""
+    check_magnitudes("V", positions)
+    kind_set(kinds)
 
 
 def self_intersections(V: Any, F: Any, kinds: Any = None, *, threads: int = 1, progress: Progress = None,
@@ -66,6 +71,7 @@ def self_intersections(V: Any, F: Any, kinds: Any = None, *, threads: int = 1, p
     positions = as_positions("V", V)
     mesh = mesh_of(F, positions)
     if mesh.triangle_count == 0:
+        check_nothing(positions, kinds)
         return Intersections.none(mesh)
     detector = Detector(mesh, threads=threads, progress=progress, **options)
     return detector._called("V").find_intersections(positions, kinds)
@@ -83,6 +89,7 @@ def is_self_intersecting(V: Any, F: Any, kinds: Any = None, *, threads: int = 1,
     positions = as_positions("V", V)
     mesh = mesh_of(F, positions)
     if mesh.triangle_count == 0:
+        check_nothing(positions, kinds)
         return False
     detector = Detector(mesh, threads=threads, progress=progress, **options)
     return detector._called("V").is_intersecting(positions, kinds)
@@ -126,7 +133,10 @@ def contacts(x0: Any, x1: Any, F: Any, *, min_separation: float = 0.0, threads: 
     """
     start, end = as_positions("x0", x0), as_positions("x1", x1)
     mesh = mesh_of(F, start, "x0")
-    if mesh.triangle_count == 0:
+    if mesh.triangle_count == 0 and mesh.object_count == 1:  # in a scene, wires and points have contacts, too
+        as_positions("x1", x1, len(start))
+        check_magnitudes("x0", start)
+        check_magnitudes("x1", end)
         return np.empty(0, Contacts.record()).view(Contacts)
     detector = Detector(mesh, min_separation=min_separation, threads=threads, progress=progress, **options)
     return detector.step(start, end)
@@ -142,7 +152,7 @@ def self_intersecting_faces(frames: Any, F: Any, kinds: Any = "crossing", *, thr
     Parameters
     ----------
     frames : (B, n, 3), or an iterable of (n, 3)
-        Positions of one mesh. An iterable is read as it comes; only some frames are held at a time.
+        Positions of one mesh. An iterable is read as it comes, and may fill one array again and again.
     F : (m, 3) or (m, 4) integers, or Mesh
     kinds : str or iterable of str
         Which pairs count. "crossing", the default, is what is published as the share of self-intersecting faces.
@@ -176,7 +186,10 @@ class _FrameQueue:
 
     def __init__(self, frames: Any, F: Any, kinds: Any, total: Optional[int], progress: Progress) -> None:
         self._frames: Iterator[Tuple[int, Any]] = enumerate(iter(frames))
-        self._kinds = kinds
+        self._kinds = kinds if kinds is None or isinstance(kinds, str) else list(kinds)  # for every frame
+        kind_set(self._kinds)
+        # A generator may fill one array again and again, while threads still look at what it held before.
+        self._copies = not isinstance(frames, (np.ndarray, list, tuple))
         self._total = total
         self._progress = progress
         self._lock = threading.Lock()
@@ -206,17 +219,22 @@ class _FrameQueue:
             self._first = None
             if taken is not None:
                 self._rows.append(None)
+                if self._copies:
+                    taken = taken[0], np.array(self._positions(*taken))
             return taken
 
-    def _work(self, detector: Detector, report: bool) -> None:
+    def _positions(self, index: int, frame: Any) -> Array:
         assert self.mesh is not None
+        return as_positions(f"frames[{index}]", frame, self.mesh.vertex_count)
+
+    def _work(self, detector: Detector, report: bool) -> None:
         while True:
             taken = self._take()
             if taken is None:
                 return
             index, frame = taken
             name = f"frames[{index}]"
-            positions = as_positions(name, frame, self.mesh.vertex_count)
+            positions = self._positions(index, frame)
             self._rows[index] = detector._called(name).find_intersections(positions, self._kinds).faces
             if report:
                 self.report(index + 1)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, List, Tuple
+from typing import Any, Iterator, List, Tuple
 
 import numpy as np
 import pytest
@@ -84,8 +84,45 @@ def test_faces_of_many_frames(threads: int) -> None:
         for given in (frames, list(frames), (frame for frame in frames), np.asfortranarray(frames)):
             found = cscd.self_intersecting_faces(given, scene.F, threads=threads)
             assert found.dtype == bool and np.array_equal(found, truth), family
+        found = cscd.self_intersecting_faces(frames, scene.F, iter(["crossing"]), threads=threads)
+        assert np.array_equal(found, truth), "kinds that can be read only once are those of every frame"
         marked += truth.sum()
     assert marked > 300
+
+
+@pytest.mark.parametrize("threads", [1, 2, 0])
+def test_frames_in_one_array(threads: int) -> None:
+    """A generator that fills the same array for each frame."""
+    random = np.random.default_rng(5)
+    F = np.arange(12000).reshape(-1, 3)
+    frames = [np.repeat(random.uniform(0, 20, (4000, 3)), 3, axis=0) + random.uniform(0, 1, (12000, 3)) for _ in range(13)]
+
+    def refilled() -> Iterator[Any]:
+        array = np.empty_like(frames[0])
+        for frame in frames:
+            array[:] = frame
+            yield array
+
+    truth = cscd.self_intersecting_faces(frames, F)
+    assert len(np.unique(truth, axis=0)) == len(frames)
+    assert np.array_equal(cscd.self_intersecting_faces(refilled(), F, threads=threads), truth)
+
+
+def test_without_triangles() -> None:
+    """Positions and kinds that do not fit are refused, although there is nothing to find."""
+    V = np.zeros((3, 3))
+    for call in (cscd.self_intersections, cscd.is_self_intersecting, cscd.self_intersecting_faces):
+        positions: Any = [V] if call is cscd.self_intersecting_faces else V
+        assert not np.any(len(call(positions, [])) if call is cscd.self_intersections else call(positions, []))
+        with pytest.raises(ValueError, match="^kinds: .*'cross'"):
+            call(positions, [], "cross")
+    for call in (cscd.self_intersections, cscd.is_self_intersecting):
+        with pytest.raises(ValueError, match="^V: vertex 0 has x = nan"):
+            call(V * np.nan, [])
+    with pytest.raises(ValueError, match="^x1: vertex 0 has x = nan"):
+        cscd.contacts(V, V * np.nan, [])
+    with pytest.raises(ValueError, match="^x1: expected"):
+        cscd.contacts(V, V[:2], [])
 
 
 def test_intersections_of_two_meshes() -> None:

@@ -237,3 +237,13 @@ def test_single_pairs() -> None:
             assert found.toi[i] == (toi[match][0] if match.any() else np.inf)
             hits += int(match.any())
         assert 5 < hits < 95, hits
+
+
+def test_scenes_without_triangles() -> None:
+    """Points fall onto a half-space: ``contacts`` finds what a detector finds."""
+    ground = cscd.Scene([cscd.Points(2), cscd.HalfSpace([0, 0, 1])])
+    x0 = np.array([[0, 0, 1.0], [5, 0, 3.0], [0, 0, 0]])
+    x1 = x0 - np.array([[0, 0, 2.0], [0, 0, 2.0], [0, 0, 0]])
+    found = cscd.contacts(x0, x1, ground)
+    assert len(found) == 1 and abs(found.toi[0] - 0.5) < 1e-9 and found.a[0] == 0
+    assert np.array_equal(found, cscd.Detector(ground).step(x0, x1))
