@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import ctypes
+import itertools
+import operator
 import os
 import shutil
 import subprocess
@@ -170,23 +172,43 @@ def _write_model(path: str, positions: Array, triangles: Array) -> None:
         file.writelines(f"f {a} {b} {c}\n" for a, b, c in (triangles.astype(np.int64) + 1).tolist())
 
 
-def _write_frames(folder: str, frames: Iterable[Any], F: Any) -> Tuple[Mesh, int]:
+def _numbers_of(frame_numbers: Optional[Sequence[int]]) -> Iterator[int]:
+    """The numbers of frames, from the first one on: 0, 1, 2, ... where none are given."""
+    if frame_numbers is None:
+        return itertools.count()
+    numbers = [operator.index(number) for number in frame_numbers]
+    if not numbers:
+        raise ValueError("frame_numbers: expected a number for each frame, got none")
+    if any(later <= earlier for earlier, later in zip(numbers, numbers[1:])):
+        raise ValueError("frame_numbers: expected numbers that ascend")
+    return iter([number - numbers[0] for number in numbers])
+
+
+def _write_frames(folder: str, frames: Iterable[Any], F: Any, frame_numbers: Optional[Sequence[int]]) -> Tuple[Mesh, int]:
     """A mesh file for each frame; returns the mesh, and how many there are."""
     mesh: Optional[Mesh] = None
     count = 0
+    numbers = _numbers_of(frame_numbers)
+    number: Optional[int] = 0
     for frame in frames:
+        number = next(numbers, None)
+        if number is None:
+            break
         positions = as_positions(f"frames[{count}]", frame, None if mesh is None else mesh.vertex_count)
         if mesh is None:
             mesh = mesh_of(F, positions)
-        _write_model(os.path.join(folder, f"frame_{count:06d}.obj"), positions, mesh.triangles)
+        _write_model(os.path.join(folder, f"frame_{number:06d}.obj"), positions, mesh.triangles)
         count += 1
+    if frame_numbers is not None and (number is None or next(numbers, None) is not None):
+        raise ValueError(f"frame_numbers: expected as many as there are frames, got {len(frame_numbers)}")
     if mesh is None or count < 2:
         raise ValueError(f"frames: expected two at least, got {count}; of one mesh `python -m cscd check` tells all")
     return mesh, count
 
 
 def write_report(path: PathLike, frames: Any, F: Any, *, title: str = "", part_names: Optional[Sequence[str]] = None,
-                 part_labels: Any = None, fps: float = 0.0, unit: str = "", up: str = "") -> str:
+                 part_labels: Any = None, fps: float = 0.0, unit: str = "", up: str = "",
+                 frame_numbers: Optional[Sequence[int]] = None) -> str:
     """Writes the page for a browser: the frames in three dimensions, what intersects in them, contacts and events.
 
     It is the page of ``cscd replay --report``, made by the tool in a process of its own.
@@ -207,6 +229,8 @@ def write_report(path: PathLike, frames: Any, F: Any, *, title: str = "", part_n
         The unit of the positions: "mm", "cm", "m", ...
     up : str
         "y" or "z".
+    frame_numbers : sequence of int, optional
+        What the frames are called, ascending; by default 0, 1, 2, ...
 
     Returns
     -------
@@ -214,13 +238,15 @@ def write_report(path: PathLike, frames: Any, F: Any, *, title: str = "", part_n
         The sentence that the tool prints: what crosses, in which frames, and the worst.
     """
     with tempfile.TemporaryDirectory(prefix="cscd-") as folder:
-        mesh, count = _write_frames(folder, frames, F)
+        mesh, count = _write_frames(folder, frames, F, frame_numbers)
         command = ["replay", os.path.join(folder, "frame_000000.obj"),
                    os.path.join(folder, "frame_%06d.obj"), "--report", os.path.abspath(os.fspath(path)),
                    "--title", title or os.path.splitext(os.path.basename(os.fspath(path)))[0]]
         for option, value in (("--unit", unit), ("--up", up), ("--fps", f"{fps:.17g}" if fps else "")):
             if value:
                 command += [option, value]
+        if frame_numbers is not None:
+            command += ["--allow-gaps", "--first-frame", str(operator.index(frame_numbers[0]))]
         if part_labels is not None:
             command += ["--parts", _write_parts(folder, mesh, part_names, part_labels)]
         return _run_tool(command)

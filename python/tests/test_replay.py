@@ -148,6 +148,18 @@ def test_too_many_parts() -> None:
             list(replay)
 
 
+def test_report_calls_frames_by_their_numbers(tmp_path: Path) -> None:
+    """A plate that comes down on another one, in frames that are called -3, 2 and 9."""
+    square, F = np.array([[0., 0, 0], [1, 0, 0], [0, 1, 0]]), [[0, 1, 2], [3, 4, 5]]
+    frames = [np.concatenate([square, square[:, [2, 0, 1]] + [0.2, 0.2, z]]) for z in (3., 2., -0.5)]
+    page = tmp_path / "page.html"
+    assert "Frame 9 crosses (1 of 3)" in cscd.write_report(page, frames, F, frame_numbers=[-3, 2, 9])
+    assert "Frame 2 crosses (1 of 3)" in cscd.write_report(page, frames, F)
+    for wrong in ([0, 1], [0, 1, 2, 3], [], [2, 1, 0], [1, 1, 2]):
+        with pytest.raises(ValueError, match="frame_numbers: expected"):
+            cscd.write_report(page, frames, F, frame_numbers=wrong)
+
+
 def test_report_of_a_program_that_embeds_python(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """Its executable is no Python, or nobody knows it."""
     V, F = [[0., 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]
