@@ -9,7 +9,7 @@ import numpy as np
 
 import cscd
 
-from .scene import CheckedScene, KeptFrame, Parts, SceneError, frames_of, objects_of, parts_of, read_frames
+from .scene import CheckedScene, KeptFrame, Parts, SceneError, frames_of, has_instances, objects_of, parts_of, read_frames
 
 Array = Any
 
@@ -78,6 +78,8 @@ class Findings:
     parts : Parts
     frames : dict of FoundFrame, by frame
     events : list of FoundEvent, the worst first
+    left_instances : bool
+        Whether the scene shows instances, which are not checked.
     """
 
     def __init__(self, request: Request, checked: CheckedScene, parts: Parts) -> None:
@@ -86,6 +88,7 @@ class Findings:
         self.parts = parts
         self.frames: Dict[int, FoundFrame] = {}
         self.events: List[FoundEvent] = []
+        self.left_instances = False
 
     @property
     def found_anything(self) -> bool:
@@ -132,6 +135,7 @@ class Run:
         checked = CheckedScene(things, view_layer, view_layer.depsgraph)
         parts = parts_of(checked, view_layer, view_layer.depsgraph, request.by_groups)
         self.findings = Findings(request, checked, parts)
+        self.findings.left_instances = has_instances(view_layer.depsgraph)
         self._positions = read_frames(scene, checked, view_layer, self._numbers)
         self._waiting: List[Array] = []
         self._replay = cscd.replay(self._feed(), checked.mesh, parts=parts.labels, ignore_rest=request.ignore_rest,

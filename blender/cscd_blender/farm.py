@@ -95,13 +95,14 @@ def summarise(findings: Findings) -> str:
     """What was found, as a sentence."""
     total = len(findings.frames)
     crossing = [found.frame for found in findings.frames.values() if (found.kinds == 0).any()]
+    left = " Instances are not checked: make them real (Object > Apply > Make Instances Real)." if findings.left_instances else ""
     if not findings.events:
-        return f"Nothing crosses or touches in {total} frames."
+        return f"Nothing crosses or touches in {total} frame{'s' if total > 1 else ''}.{left}"
     worst = findings.events[0]
     deep = f", {worst.depth:.3g} deep at frame {worst.worst}" if worst.depth > 0.0 else ""
+    when = f"frames {worst.first} to {worst.last}" if worst.last > worst.first else f"frame {worst.first}"
     events = f"{len(findings.events)} event{'s' if len(findings.events) > 1 else ''}"
-    return (f"{len(crossing)} of {total} frames cross. {events}, worst: {worst.a} x {worst.b}, frames {worst.first} to "
-            f"{worst.last}{deep}.")
+    return f"{len(crossing)} of {total} frames cross. {events}, worst: {worst.a} x {worst.b}, {when}{deep}.{left}"
 
 
 def _write_json(path: str, found: Dict[str, Any]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import pathlib
 import threading
 from typing import Any, Callable, List, Optional, Set
 
@@ -289,7 +290,6 @@ class CSCD_OT_report(bpy.types.Operator):
     filter_glob: bpy.props.StringProperty(default="*.html", options={"HIDDEN"})  # type: ignore[valid-type]
     open_page: bpy.props.BoolProperty(name="Open in the browser", default=True)  # type: ignore[valid-type]
 
-    _thread: Optional[threading.Thread] = None
     _timer: Any = None
 
     @classmethod
@@ -303,43 +303,81 @@ class CSCD_OT_report(bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def execute(self, context: Any) -> Set[str]:
-        """Reads the frames here, and writes the page on a thread, so that the window stays alive."""
+        """Reads a frame in each turn, and writes the page on a thread, so that the window stays alive."""
         findings = findings_of(context.scene)
         assert findings is not None
-        self._said: List[str] = []
-        kept = KeptFrame(context.scene)
-        try:
-            frames = list(read_frames(context.scene, findings.checked, context.view_layer, list(findings.frames)))
-        except SceneError as problem:
-            self.report({"ERROR"}, str(problem))
+        if len(findings.frames) < 2:
+            self.report({"ERROR"}, "The page shows motion: check two frames or more")
             return {"CANCELLED"}
-        finally:
-            kept.restore()
+        self._findings = findings
+        self._said: List[str] = []
+        self._thread: Optional[threading.Thread] = None
+        self._read: List[Any] = []
+        self._kept = KeptFrame(context.scene)
+        self._coming = read_frames(context.scene, findings.checked, context.view_layer, list(findings.frames))
         scene = context.scene
-        arguments = dict(title=os.path.basename(bpy.data.filepath) or scene.name, part_names=findings.parts.names,
-                         part_labels=findings.parts.labels, fps=scene.render.fps / scene.render.fps_base, up="z")
-        path = bpy.path.abspath(self.filepath)
-
-        def write() -> None:
-            try:
-                cscd.write_report(path, frames, findings.checked.mesh, **arguments)
-            except Exception as problem:
-                self._said.append(str(problem))
-
-        self._thread = threading.Thread(target=write, daemon=True)
-        self._thread.start()
+        self._arguments = dict(title=os.path.basename(bpy.data.filepath) or scene.name, part_names=findings.parts.names,
+                               part_labels=findings.parts.labels, frame_numbers=list(findings.frames),
+                               fps=scene.render.fps / scene.render.fps_base, up="z")
         if bpy.app.background:
+            while self._thread is None:
+                if not self._take_frame():
+                    return {"CANCELLED"}
             self._thread.join()
             return self._finish()
-        self._timer = context.window_manager.event_timer_add(0.2, window=context.window)
+        context.window_manager.progress_begin(0, len(findings.frames))
+        self._timer = context.window_manager.event_timer_add(_TICK, window=context.window)
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
+    def _take_frame(self) -> bool:
+        """Reads a frame; behind the last one the page is begun. False: it was said what is wrong."""
+        try:
+            positions = next(self._coming, None)
+        except SceneError as problem:
+            self._kept.restore()
+            self.report({"ERROR"}, str(problem))
+            return False
+        if positions is not None:
+            self._read.append(positions)
+            return True
+        self._kept.restore()
+        self._thread = threading.Thread(target=self._write, daemon=True)
+        self._thread.start()
+        return True
+
+    def _write(self) -> None:
+        try:
+            cscd.write_report(bpy.path.abspath(self.filepath), self._read, self._findings.checked.mesh, **self._arguments)
+        except Exception as problem:
+            self._said.append(str(problem))
+
     def modal(self, context: Any, event: Any) -> Set[str]:
+        if self._thread is None and event.type == "ESC":
+            self._kept.restore()
+            self._end(context)
+            self.report({"INFO"}, "Stopped; no page was written")
+            return {"CANCELLED"}
         if event.type != "TIMER" or (self._thread is not None and self._thread.is_alive()):
             return {"PASS_THROUGH"}
-        context.window_manager.event_timer_remove(self._timer)
+        if self._thread is None:
+            if not self._take_frame():
+                self._end(context)
+                return {"CANCELLED"}
+            context.window_manager.progress_update(len(self._read))
+            return {"RUNNING_MODAL"}
+        self._end(context)
         return self._finish()
+
+    def cancel(self, context: Any) -> None:
+        """The window closes."""
+        if self._thread is None:
+            self._kept.restore()
+        self._end(context)
+
+    def _end(self, context: Any) -> None:
+        context.window_manager.event_timer_remove(self._timer)
+        context.window_manager.progress_end()
 
     def _finish(self) -> Set[str]:
         if self._said:
@@ -348,7 +386,7 @@ class CSCD_OT_report(bpy.types.Operator):
         path = bpy.path.abspath(self.filepath)
         self.report({"INFO"}, f"{path} is written")
         if self.open_page and not bpy.app.background:
-            bpy.ops.wm.url_open(url=f"file://{path}")
+            bpy.ops.wm.url_open(url=pathlib.Path(path).absolute().as_uri())
         return {"FINISHED"}
 
 

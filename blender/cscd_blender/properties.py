@@ -7,6 +7,7 @@ from typing import Any, Dict, Optional, Set, Tuple
 import bpy
 
 from .checking import Findings, FoundEvent, Request
+from .scene import SceneError
 
 #: The findings of this session, by the name of the scene; a file keeps the list of events alone.
 _findings: Dict[str, Findings] = {}
@@ -132,9 +133,13 @@ class CscdSettings(bpy.types.PropertyGroup):
         objects: Tuple[str, ...] = ()
         collections: Tuple[str, ...] = ()
         if self.source == "SELECTED":
-            objects = tuple(thing.name_full for thing in context.selected_objects) or ("",)
+            objects = tuple(thing.name_full for thing in context.selected_objects)
+            if not objects:
+                raise SceneError("no object is selected: select what is to be checked, or choose Visible objects")
         elif self.source == "COLLECTION":
-            collections = (self.collection.name if self.collection is not None else "",)
+            if self.collection is None:
+                raise SceneError("no collection is chosen: choose one below Check, or choose Visible objects")
+            collections = (self.collection.name,)
         return Request(objects, collections, self.first if self.use_range else None, self.last if self.use_range else None,
                        self.step, self.by_groups, tuple((pair.a, pair.b) for pair in self.ignored if pair.a and pair.b),
                        {"NONE": None, "PARTS": "parts", "PAIRS": "pairs"}[self.rest], self.depths)

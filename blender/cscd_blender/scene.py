@@ -129,7 +129,8 @@ class CheckedScene:
         polygons = [read_polygons(thing, depsgraph) for thing in things]
         kept = [(name, item) for name, item in zip(self._things, polygons) if len(item.counts)]
         if not kept:
-            raise SceneError("there is nothing to check: none of the objects has faces")
+            raise SceneError("there is nothing to check: none of the objects has faces; objects that the view layer excludes "
+                             "are not among them")
         self._things = [name for name, _ in kept]
         self._counts = [item.counts for _, item in kept]
         self._corners = [item.corners for _, item in kept]
@@ -240,6 +241,11 @@ def parts_of(checked: CheckedScene, view_layer: Any, depsgraph: Any, by_groups: 
                   for group in sorted(used)]
         labels[triangles] = [used[group] for group in found.tolist()]
     return Parts(labels, names)
+
+
+def has_instances(depsgraph: Any) -> bool:
+    """Whether the scene shows instances, of collections, particles or geometry nodes, which are not checked."""
+    return any(instance.is_instance for instance in depsgraph.object_instances)
 
 
 def frames_of(scene: Any, first: Optional[int], last: Optional[int], step: int = 1) -> range:

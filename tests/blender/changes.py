@@ -186,9 +186,77 @@ def check_other_types():
     assert names == ['Ground', 'Tilted', 'Mball'], names
 
 
+def refused(words):
+    try:
+        bpy.ops.cscd.check()
+    except RuntimeError as problem:  # what an operator reports as an error
+        assert words in str(problem), problem
+    else:
+        raise AssertionError(f'the check ran: {words}')
+
+
+def check_choices():
+    """What is wrong with the choice of objects is said in words that name no program's inside."""
+    begin()
+    settings = bpy.context.scene.cscd
+    settings.source = 'SELECTED'
+    bpy.ops.object.select_all(action='DESELECT')
+    refused('no object is selected')
+    settings.source = 'COLLECTION'
+    refused('no collection is chosen')
+    settings.collection = bpy.data.collections.new('Apart')
+    bpy.context.scene.collection.children.link(settings.collection)
+    settings.collection.objects.link(bpy.data.objects['Ground'])
+    bpy.context.scene.collection.objects.unlink(bpy.data.objects['Ground'])
+    bpy.context.view_layer.layer_collection.children['Apart'].exclude = True
+    refused('objects that the view layer excludes are not among them')
+
+
+def check_instances(found):
+    """They are not checked, and the summary says so."""
+    begin()
+    bpy.ops.cscd.check()
+    assert 'nstances' not in bpy.context.scene.cscd.summary
+    shown = bpy.data.objects.new('Instance', None)
+    shown.instance_type, shown.instance_collection = 'COLLECTION', bpy.data.collections.new('Shown')
+    shown.instance_collection.objects.link(bpy.data.objects['Ground'])
+    bpy.context.scene.collection.objects.link(shown)
+    bpy.ops.cscd.check()
+    assert bpy.context.scene.cscd.summary.endswith('Instances are not checked: make them real (Object > Apply > Make '
+                                                   'Instances Real).'), bpy.context.scene.cscd.summary
+    assert events_of(findings_of(bpy.context.scene)) == found
+    keep_findings(bpy.context.scene, None)
+
+
+def check_pages():
+    """A page calls frames as the timeline does, and needs two of them."""
+    begin()
+    settings = bpy.context.scene.cscd
+    settings.use_range, settings.first, settings.last, settings.step = True, -2, 6, 4
+    bpy.ops.cscd.check()
+    path = os.path.join(FOLDER, 'a page #1 ä.html')
+    bpy.ops.cscd.report(filepath=path)
+    with open(path, encoding='utf-8') as file:
+        page = file.read()
+    assert '"frame":-2,' in page and '"frame":2,' in page and '"frame":6,' in page and '"frame":0,' not in page
+    assert bpy.context.scene.frame_current == 2
+    settings.last = -2
+    bpy.ops.cscd.check()
+    assert 'in 1 frame.' in settings.summary, settings.summary
+    try:
+        bpy.ops.cscd.report(filepath=path)
+    except RuntimeError as problem:
+        assert 'check two frames or more' in str(problem)
+    else:
+        raise AssertionError('a page of one frame')
+
+
 def main():
     cscd_blender.register()
     found = expected()
+    check_choices()
+    check_instances(found)
+    check_pages()
     check_changes(found)
     check_undo(found)
     check_names(found)

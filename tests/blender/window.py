@@ -1,6 +1,7 @@
 """The extension in a window, for window.sh: no splash, the sidebar open, and what the panel knows in a file.
 
-Run by `blender FILE.blend --python window.py -- STATE.json`.
+Run by `blender FILE.blend --python window.py -- STATE.json`. Once there is a file page-wanted beside the state, page.html is
+written there.
 """
 import json
 import os
@@ -28,7 +29,17 @@ def view():
             if area.type == 'VIEW_3D'][0]
 
 
+def write_page(folder):
+    wanted = os.path.join(folder, 'page-wanted')
+    if not os.path.exists(wanted):
+        return
+    os.remove(wanted)
+    with bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):
+        bpy.ops.cscd.report(filepath=os.path.join(folder, 'page.html'), open_page=False)
+
+
 def tell():
+    write_page(os.path.dirname(sys.argv[-1]))
     scene = bpy.context.scene
     path = sys.argv[-1]
     with open(path + '.part', 'w') as file:

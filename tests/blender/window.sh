@@ -39,8 +39,14 @@ blender --factory-startup -p 0 0 1500 950 "$folder/doll.blend" --python-use-syst
 viewer=$!
 wait_for '"running": false' 60
 sleep 2
-click 1226 242 # our tab; Blender 3.4 cannot choose one by script
-click 1120 222 # Check
+# A window that is still being drawn loses clicks.
+for try in 1 2 3 4 5 6; do
+    click 1226 242 # our tab; Blender 3.4 cannot choose one by script
+    click 1120 222 # Check
+    sleep 1
+    ! grep -q '"running": true' "$folder/state.json" || break
+    sleep 3
+done
 wait_for '"running": true.*"view": "CAMERA"' 20
 wait_for '"frame": [3-9]' 60
 xdotool key Escape
@@ -54,5 +60,13 @@ click 1070 385 # and the first
 wait_for '"frame": 12, "view": "PERSP", "selected": \["Body"\]' 20
 click 1113 593 # Colours
 sleep 2
+touch "$folder/page-wanted"
+tries=150
+until [ -s "$folder/page.html" ]; do
+    tries=$((tries - 1))
+    [ $tries -gt 0 ] || { echo 'window: waited 30 s for the page'; tail -5 "$folder/log"; exit 1; }
+    sleep 0.2
+done
+wait_for '"frame": 12,' 5
 [ -z "$picture" ] || import -window root -crop 1240x880+0+0 +repage -resize 1000x -colors 200 "PNG8:$picture"
-echo 'window: a check by a click, Esc, and going to events work'
+echo 'window: a check by a click, Esc, going to events and a page work'
