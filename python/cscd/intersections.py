@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Iterable, List, NamedTuple, Optional, Tup
 
 import numpy as np
 
+from ._arrays import count_of
 from ._library import address_of, copy_items, copy_list, library, new_struct, records, structs
 from .results import INTERSECTION_KINDS
 
@@ -159,11 +160,13 @@ class Intersections:
             The part of each triangle of ``mesh``; -1: it is in none.
         """
         detector, positions = self._again()
-        detector.set_parts(labels, part_count)
-        try:
-            return detector._surface_answers(positions, parts=True).parts
-        finally:
-            detector.set_parts(None)
+        with detector._host.lock:  # labels that other threads, or the caller of the detector, have chosen stay
+            before = detector._labels
+            detector.set_parts(labels, part_count)
+            try:
+                return detector._surface_answers(positions, parts=True).parts
+            finally:
+                detector._set_labels(before)
 
     def _again(self) -> Tuple[Detector, Any]:
         if not self._allowed:
@@ -257,15 +260,15 @@ def intersection_options(kinds: int, stop_after: int, any_alone: bool, depths: b
     return options
 
 
-def labels_of(labels: Any, triangle_count: int, part_count: Optional[int]) -> Tuple[Array, int]:
-    """Labels of triangles as the library takes them, and how many parts they make."""
+def labels_of(labels: Any, triangle_count: int, part_count: Optional[int], called: str = "labels") -> Tuple[Array, int]:
+    """Labels of triangles as the library takes them, and how many parts they make; ``called``: by the caller."""
     array = np.asarray(labels)
     if array.shape != (triangle_count,) or array.dtype.kind not in "iu":
-        raise ValueError(f"labels: expected {triangle_count} whole numbers, one for each triangle of the mesh, got "
+        raise ValueError(f"{called}: expected {triangle_count} whole numbers, one for each triangle of the mesh, got "
                          f"shape {array.shape} of {array.dtype}")
     lowest, highest = (int(array.min()), int(array.max())) if array.size else (0, -1)
-    count = highest + 1 if part_count is None else part_count
+    count = highest + 1 if part_count is None else count_of("part_count", part_count, _NONE - 1)
     if lowest < -1 or highest >= max(count, 1) or highest >= _NONE:
-        raise ValueError(f"labels: expected numbers from 0 to {count - 1}, or -1 for no part; got "
+        raise ValueError(f"{called}: expected numbers from 0 to {count - 1}, or -1 for no part; got "
                          f"{lowest} to {highest}")
     return np.where(array < 0, _NONE, array).astype(np.uint32), max(count, 1)

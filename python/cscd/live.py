@@ -23,6 +23,7 @@ class LiveSettings:
     _host: Host
     _detector: int
     _inputs: Dict[str, Any]
+    _labels: Optional[Tuple[Array, int]] = None  # of set_parts
 
     def set_separation(self, min_separation: float, tolerance: float = 0.0) -> None:
         """Changes ``min_separation`` and ``tolerance`` from the next call on."""
@@ -39,11 +40,13 @@ class LiveSettings:
 
     def set_parts(self, labels: Any, part_count: Optional[int] = None) -> None:
         """Says which part each triangle is in, by numbers from 0 on, -1 for none; None: the objects are the parts."""
-        if labels is None:
-            self._set(library.cscd_detector_set_parts, None, 0)
-            return
-        array, count = labels_of(labels, self.mesh.triangle_count, part_count)
-        self._set(library.cscd_detector_set_parts, address_of(array), count)
+        self._set_labels(None if labels is None else labels_of(labels, self.mesh.triangle_count, part_count))
+
+    def _set_labels(self, labels: Optional[Tuple[Array, int]]) -> None:
+        array, count = (None, 0) if labels is None else labels
+        with self._host.lock:
+            self._set(library.cscd_detector_set_parts, None if array is None else address_of(array), count)
+            self._labels = labels
 
     def set_active(self, vertices: Any) -> None:
         """Only these vertices move, all others rest (include/cscd/live.h); None: all may move."""

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import ctypes
+import threading
 from typing import Any, Callable, Iterable, Iterator, List, NamedTuple, NoReturn, Optional, Sequence, Tuple
 
 import numpy as np
 
-from ._arrays import as_indices
+from ._arrays import as_indices, as_positions, check_magnitudes, count_of, describe
 from ._host import Handle, new_handle
 from ._library import address_of, copy_list, items_of, library, new_struct, structs
 from .detector import Detector
+from .errors import Error
 from .intersections import Intersections, _Surface, intersection_options, labels_of
 from .mesh import Mesh
 from .questions import mesh_of
@@ -23,6 +25,7 @@ Array = Any
 _NO_PART = 2**32 - 1
 _MOST_PARTS = 8192  # of tables of pairs, src/tool/common/part_rules.c
 _RESTS = (None, "pairs", "parts")
+_END = object()
 
 
 class Frame(NamedTuple):
@@ -56,7 +59,7 @@ class LeftOut(Handle):
     def add_parts(self, pairs: Any) -> None:
         """Leaves out all pairs of two parts, (k, 2); -1 stands for what is in no part."""
         part_count = self._part_count
-        for a, b in np.asarray(pairs, np.int64).reshape(-1, 2).tolist():
+        for a, b in pairs.tolist():
             if not (-1 <= a < part_count and -1 <= b < part_count):
                 raise ValueError(f"ignore_parts: ({a}, {b}): expected numbers from 0 to {part_count - 1}, or -1")
             if not library.cscdpy_left_out_add_parts(self.pointer, a & _NO_PART, b & _NO_PART):
@@ -107,7 +110,8 @@ def replay(frames: Iterable[Any], F: Any, *, parts: Any = None, ignore_parts: An
     Returns
     -------
     Replay
-        An iterator of ``Frame``. After the last one its ``events`` are those that the tool finds in the recording.
+        An iterator of ``Frame``. After the last one its ``events`` are those that the tool finds in the recording. An
+        exception ends it, as it ends a generator.
 
     >>> below = [[0, 0, 0], [4, 0, 0], [0, 4, 0]]
     >>> moving = [below + [[1, 1, z], [1, 1, z + 1], [2, 1, z + 1]] for z in (0.5, -0.5, -2)]
@@ -145,12 +149,17 @@ class Replay:
         if ignore_rest not in _RESTS:
             raise ValueError(f"ignore_rest: expected None, 'pairs' or 'parts', got {ignore_rest!r}")
         self._frames = iter(frames)
-        self._numbers = None if frame_numbers is None else [int(number) for number in frame_numbers]
+        self._numbers = _numbers_of(frame_numbers)
         self._faces = F
-        self._parts, self._ignore_parts, self._ignore_rest = parts, ignore_parts, ignore_rest
+        self._parts, self._ignore_parts, self._ignore_rest = parts, _part_pairs_of(ignore_parts), ignore_rest
         self._contacts, self._depths = contacts, depths
-        self._tracking = {"rings": rings, "gap": gap}
+        self._tracking = {name: count_of(name, value, int(np.iinfo(structs["event_options"][name]).max))
+                          for name, value in (("rings", rings), ("gap", gap))}
         self._options = options
+        self._detector: Any = None
+        self._lock: Any = threading.RLock()  # another thread waits for its frame
+        self._running = False
+        self._ended = ""
         self._index = 0
         self._before: Any = None
         self._taken: List[Array] = []
@@ -158,7 +167,7 @@ class Replay:
 
     def cancel(self) -> None:
         """Ends a call of this iterator that is running in another thread, which then raises ``Cancelled``."""
-        if self._index > 0:
+        if self._detector is not None:
             self._detector.cancel()
 
     # ---- before the first frame ---------------------------------------------------------------------------
@@ -170,7 +179,7 @@ class Replay:
         self._left_out = self._leave_out(first, labels, part_count)
         self._detector = Detector(self.mesh, _left_out=self._left_out, **self._options)
         if self._parts is not None:
-            self._detector.set_parts(np.where(labels == _NO_PART, -1, labels.astype(np.int64)), part_count)
+            self._detector.set_parts(self._parts, part_count)
         tracking = new_struct("event_options")
         library.cscd_event_defaults_sized(address_of(tracking), tracking.nbytes)
         for name, value in self._tracking.items():
@@ -185,11 +194,11 @@ class Replay:
 
     @staticmethod
     def _is_single(positions: Any) -> bool:
-        return not isinstance(positions, (list, tuple)) or np.ndim(positions[0]) != 2
+        return not isinstance(positions, (list, tuple)) or len(positions) == 0 or np.ndim(positions[0]) != 2
 
     def _label(self) -> Tuple[Array, int]:
         if self._parts is not None:
-            return labels_of(self._parts, self.mesh.triangle_count, None)
+            return labels_of(self._parts, self.mesh.triangle_count, None, "parts")
         return labels_of(self.mesh.triangle_objects, self.mesh.triangle_count, self.mesh.object_count)
 
     def _leave_out(self, first: Any, labels: Array, part_count: int) -> Optional[LeftOut]:
@@ -213,15 +222,41 @@ class Replay:
         return self
 
     def __next__(self) -> Frame:
-        positions = next(self._frames, None)
-        if positions is None:
-            self._finish()
+        with self._lock:
+            if self._running:
+                raise Error("this replay is in the middle of a frame, of which a callback cannot ask for the next one")
+            if self._ended:
+                raise Error(f"this replay ended in frames[{self._index}], by {self._ended}; begin another one")
+            self._running = True
+            try:
+                frame = self._next()
+            except BaseException as problem:
+                self._ended = type(problem).__name__
+                if isinstance(problem, StopIteration):  # of a callback; it would look like the end of the frames
+                    raise RuntimeError("a callback of the replay raised StopIteration") from problem
+                raise
+            finally:
+                self._running = False
+        if frame is None:
             raise StopIteration
+        return frame
+
+    def _next(self) -> Optional[Frame]:
+        """What ``__next__`` gives; None after the last frame."""
+        positions = next(self._frames, _END)
+        if positions is _END:
+            self._finish()
+            return None
+        name = f"frames[{self._index}]"
         if self._index == 0:
+            if self._is_single(positions):
+                positions = as_positions(name, positions)
             self._open(positions)
         number = self._number()
-        views, kept = self._detector._views(f"frames[{self._index}]", positions)
+        views, kept = self._detector._views(name, positions)
         kept = [array.copy() for array in kept]
+        for i, array in enumerate(kept):
+            check_magnitudes(name if len(kept) == 1 else f"{name}[{i}]", array)
         touched = self._step(kept)
         found = self._find(kept)
         self._before = kept
@@ -239,10 +274,10 @@ class Replay:
         """The contacts on the way here, which the tracker gets, too."""
         if self._before is None or not self._contacts:
             return np.empty(0, Contacts.record()).view(Contacts)
-        touched = self._detector.step(_joined(self._before), _joined(positions))
         found = self._detector._lists["contacts"]
         host = self._detector._host
-        with host.lock:
+        with host.lock:  # the list lives until another call of this detector, as a frame's answer makes in another thread
+            touched: Contacts = self._detector.step(_joined(self._before), _joined(positions))
             host.call(library.cscdpy_tracker_add_contacts, self._tracker.pointer, int(found["items"][0]),
                       int(found["count"][0]))
         return touched
@@ -301,6 +336,32 @@ class Replay:
         taken = np.concatenate(self._taken) if self._taken else np.empty(0, structs["event"])
         order = np.lexsort((taken["first_triangle"], taken["b"], taken["a"], taken["first_frame"]))
         return self._shown(taken[order])
+
+
+def _numbers_of(numbers: Any) -> Optional[List[int]]:
+    """The numbers of frames, ascending."""
+    if numbers is None:
+        return None
+    array = np.asarray(numbers if hasattr(numbers, "__len__") else list(numbers))
+    if array.size and (array.ndim != 1 or array.dtype.kind not in "iu" or int(array.max()) >= 2**63):
+        raise ValueError(f"frame_numbers: expected whole numbers, one for each frame, got {describe(array)}")
+    found: List[int] = array.tolist()
+    for i in range(1, len(found)):
+        if found[i] <= found[i - 1]:
+            raise ValueError(f"frame_numbers: expected them to ascend, got {found[i]} after {found[i - 1]}")
+    return found
+
+
+def _part_pairs_of(pairs: Any) -> Array:
+    """Pairs of parts, which are checked when it is known how many parts there are."""
+    array = np.asarray(pairs if hasattr(pairs, "__len__") else list(pairs))
+    if array.size == 0:
+        return np.empty((0, 2), np.int64)
+    if array.shape == (2,):
+        array = array[None]
+    if array.ndim != 2 or array.shape[1] != 2 or array.dtype.kind not in "iu":
+        raise ValueError(f"ignore_parts: expected an array (k, 2) of whole numbers, got {describe(array)}")
+    return array
 
 
 def _joined(arrays: List[Array]) -> Any:

@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 import sys
+import threading
 from pathlib import Path
 from typing import Any, Dict, Iterator, List, Tuple
 
@@ -169,3 +170,117 @@ def test_report_of_a_program_that_embeds_python(monkeypatch: pytest.MonkeyPatch,
         assert (tmp_path / "page.html").stat().st_size > 10**5
     with pytest.raises(ValueError, match="frames: expected two at least, got 1"):
         cscd.write_report(tmp_path / "page.html", [V], F)
+
+
+# ---- misuse -----------------------------------------------------------------------------------------------------------
+
+BELOW = [[0, 0, 0], [4, 0, 0], [0, 4, 0]]
+FALLING = [np.array(BELOW + [[1, 1, z], [1, 1, z + 1], [2, 1, z + 1]]) for z in (0.5, -0.5, -0.25, -2.0)]
+TWO = np.array([[0, 1, 2], [3, 4, 5]])
+
+
+def sheets(count: int) -> Tuple[List[Any], Any]:
+    """Frames of a rough sheet that moves through another one, whose search takes some ten milliseconds each."""
+    corner = np.arange(100 * 100).reshape(100, 100)
+    faces = np.concatenate([np.stack([corner[:-1, :-1], corner[1:, :-1], corner[1:, 1:]], -1).reshape(-1, 3),
+                            np.stack([corner[:-1, :-1], corner[1:, 1:], corner[:-1, 1:]], -1).reshape(-1, 3)])
+    grid = np.stack(np.meshgrid(np.arange(100.0), np.arange(100.0), indexing="ij"), -1).reshape(-1, 2)
+    height = np.random.default_rng(1).uniform(-0.3, 0.3, (2, len(grid)))
+    frames = [np.concatenate([np.column_stack([grid, height[0]]), np.column_stack([grid, height[1] + 0.2 * i])])
+              for i in range(count)]
+    return frames, np.concatenate([faces, faces + corner.size])
+
+
+def test_sums_of_a_frame_change_nothing() -> None:
+    """by_parts of a frame, by other labels, leaves the parts of the replay as they are."""
+    def run(asks: bool) -> Any:
+        replay = cscd.replay(FALLING, TWO, parts=[0, 1])
+        sums = []
+        for frame in replay:
+            if asks:
+                frame.intersections.by_parts([0, 0])
+            sums.append(frame.intersections.part_pairs)
+        return [[sum.a.tolist(), sum.b.tolist(), sum.crossing.tolist()] for sum in sums], replay.events.tobytes()
+
+    assert run(True) == run(False) and run(True)[0][1] == [[0], [1], [1]]
+    detector = cscd.Detector(TWO)
+    detector.set_parts([1, 0])
+    found = detector.find_intersections(FALLING[1])
+    assert found.by_parts([0, 0]).b.tolist() == [0]
+    assert detector._labels is not None and detector._labels[0].tolist() == [1, 0]
+    with pytest.raises(ValueError, match="^labels: "):
+        found.by_parts([0])
+
+
+def test_replay_from_its_own_callback() -> None:
+    """The next frame cannot be asked for in the middle of one; nothing is lost by the attempt."""
+    frames, faces = sheets(3)
+    refused = []
+
+    def progress(stage: str, fraction: float) -> None:
+        with pytest.raises(cscd.Error, match="middle of a frame"):
+            next(replay)
+        refused.append(stage)
+
+    replay = cscd.replay(frames, faces, progress=progress)
+    assert [frame.number for frame in replay] == [0, 1, 2] and refused
+
+
+@pytest.mark.parametrize("raised", [KeyError, KeyboardInterrupt, StopIteration])
+def test_replay_after_an_exception(raised: Any) -> None:
+    """It has ended, and says so, where it gave the frames after the lost one the numbers of those before."""
+    frames, faces = sheets(4)
+    calls = []
+
+    def progress(stage: str, fraction: float) -> None:
+        calls.append(stage)
+        if len(found) == 1:
+            raise raised("stop")
+
+    found: List[int] = []
+    replay = cscd.replay(frames, faces, progress=progress)
+    with pytest.raises(RuntimeError if raised is StopIteration else raised):
+        while True:
+            found.append(next(replay).number)
+    assert found == [0] and calls
+    for _ in range(2):
+        with pytest.raises(cscd.Error, match=rf"ended in frames\[1\], by {raised.__name__}"):
+            next(replay)
+
+
+def test_replay_from_several_threads() -> None:
+    """Each frame goes to one of them, and frames answer meanwhile."""
+    frames, faces = sheets(6)
+    replay = cscd.replay(frames, faces, depths=False)
+    truth = [len(frame.intersections.curves) for frame in cscd.replay(frames, faces, depths=False)]
+    found: Dict[int, int] = {}
+
+    def take() -> None:
+        for frame in replay:
+            found[frame.number] = len(frame.intersections.curves)
+
+    threads = [threading.Thread(target=take) for _ in range(3)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert [found[i] for i in sorted(found)] == truth and max(truth) > 0
+
+
+def test_what_a_replay_refuses() -> None:
+    """The sentence names the option, or the frame."""
+    wrong: Dict[str, List[Any]] = {
+        "rings": [-1, 1.7, "x", None, True, 2**40], "gap": [-1, 1.5], "parts": [[0], [0, "a"], [0, -2]],
+        "frame_numbers": [[3, 1, 4, 5], [0, 0, 1, 2], [0.5, 1.5, 2.5, 3.5], ["a"], [2**70] * 4, [0]],
+        "ignore_parts": [[0.5, 1], [0, 1, 2], [[0, 7]], "ab", [[0, 1, 2]]]}
+    for name, values in wrong.items():
+        for value in values:
+            with pytest.raises(ValueError, match=f"^{name}: "):
+                list(cscd.replay(FALLING, TWO, **{"parts": [0, 1], name: value}))
+    for frame in (None, [[1.0, 2.0]], FALLING[0] * np.nan):
+        for at in (0, 1):
+            with pytest.raises(ValueError, match=rf"^frames\[{at}\]: "):
+                list(cscd.replay(FALLING[:at] + [frame] + FALLING[at:], TWO))  # type: ignore[list-item]
+    for pairs in (iter([(0, 1)]), [0, 1], np.array([[0, 1]], np.uint8)):
+        replay = cscd.replay(FALLING, TWO, parts=[0, 1], ignore_parts=pairs, frame_numbers=iter([-3, 2, 5, 7]))
+        assert [(frame.number, len(frame.intersections)) for frame in replay] == [(-3, 0), (2, 0), (5, 0), (7, 0)]
