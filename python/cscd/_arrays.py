@@ -24,7 +24,7 @@ def describe(array: Array) -> str:
 
 def number_of(name: str, value: Any) -> float:
     """A number, as a double."""
-    if not isinstance(value, (str, bytes, bool)) and np.ndim(value) == 0:
+    if not isinstance(value, (str, bytes, bool, np.bool_, np.complexfloating)) and np.ndim(value) == 0:
         try:
             return float(value)
         except (OverflowError, TypeError, ValueError):
@@ -51,7 +51,9 @@ def as_floats(name: str, values: Any, what: str) -> Array:
         return array.astype(np.float64)
     if array.dtype.kind in "iu":
         if array.dtype.itemsize == 8 and array.size and max(int(array.max()), -int(array.min())) > _LARGEST_EXACT:
-            raise ValueError(f"{name}: expected {what}, got {int(np.abs(array).max())}, which no double is")
+            largest = max((int(array.max()), int(array.min())), key=abs)
+            raise ValueError(f"{name}: expected {what}, got the whole number {largest}, beyond 2^53, where not every one is "
+                             "a double")
         return array.astype(np.float64)
     raise ValueError(f"{name}: expected {what}, got {describe(array)}")
 
@@ -92,8 +94,10 @@ def as_faces(name: str, values: Any, vertex_count: Optional[int] = None) -> Arra
     if int(array.min()) < 0 or int(array.max()) > limit:
         row, column = np.argwhere((array < 0) | (array > limit))[0]
         has = "" if vertex_count is None else f", of {vertex_count} vertices"
+        if limit < 0:
+            raise ValueError(f"{name}[{row}, {column}] is {array[row, column]}, but there are no vertices")
         raise ValueError(f"{name}[{row}, {column}] is {array[row, column]}; expected an index from 0 to {limit}{has}")
-    return np.ascontiguousarray(array, np.uint32)
+    return np.array(array, np.uint32, order="C")  # a copy: a mesh keeps it, and the caller's array may change
 
 
 def as_indices(name: str, values: Any, columns: int, limit: int, of_what: str) -> Array:
@@ -124,7 +128,7 @@ def _view(array: Array, objects: int) -> Tuple[Tuple[int, ...], Array]:
 
 def views_of(name: str, positions: Any, vertex_counts: Sequence[int]) -> Tuple[Array, List[Array]]:
     """Views of one array of all vertices, or of a list with an array for each object, and what keeps them alive."""
-    if len(vertex_counts) > 1 and isinstance(positions, (list, tuple)) and len(positions) == len(vertex_counts) \
+    if vertex_counts and isinstance(positions, (list, tuple)) and len(positions) == len(vertex_counts) \
             and np.ndim(positions[0]) == 2:
         parts = [as_positions(f"{name}[{i}]", part, vertex_counts[i]) for i, part in enumerate(positions)]
         pairs = [_view(part, 1) for part in parts]

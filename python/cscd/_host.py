@@ -9,6 +9,8 @@ import threading
 import weakref
 from typing import Any, Callable, NoReturn, Optional, Set
 
+import numpy as np
+
 from ._library import library
 from .errors import Cancelled, Error, ListTooLong
 
@@ -66,6 +68,8 @@ def code_of(what: str, name: Any) -> int:
 def thread_count_of(threads: Any) -> int:
     """A number of threads, 0 for one per processor."""
     try:
+        if isinstance(threads, (bool, np.bool_)):
+            raise TypeError
         count = operator.index(threads)
     except TypeError:
         raise ValueError(f"threads: expected a whole number, got {threads!r}") from None

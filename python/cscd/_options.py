@@ -75,7 +75,8 @@ class DetectorOptions:
 
 
 #: What the sentences of the library call things that have other names here.
-_PYTHON_NAMES = (("call cscd_detector_set_longest_list", "call set_longest_list"), ("cscd_detector_", ""))
+_PYTHON_NAMES = (("call cscd_detector_set_longest_list", "call set_longest_list"), ("cscd_detector_", ""),
+                 ("cscd_line_search_", ""))
 
 
 def in_python(sentence: str, positions: str) -> str:

@@ -40,8 +40,8 @@ class LineSearch:
         with host.lock:
             self._handle = Handle(host, library.cscd_line_search_destroy)
             host.call_public(library.cscd_line_search_create, detector._detector, self._handle.place)
-            host.call(library.cscdpy_line_search_begin, self._handle.pointer, address_of(start), address_of(end),
-                      number_of("reach", reach))
+            detector._call(host, "free_step", library.cscdpy_line_search_begin, self._handle.pointer, address_of(start),
+                           address_of(end), number_of("reach", reach))
         self.candidate_count: int = library.cscd_line_search_candidate_count(self._handle.pointer)
 
     def positions(self, fraction: float) -> Array:
@@ -50,8 +50,8 @@ class LineSearch:
         target = mutable_view(reached)
         host = self._host
         with host.lock:
-            host.call(library.cscdpy_line_search_positions, self._handle.pointer,
-                      number_of("fraction", fraction), address_of(target))
+            self.detector._call(host, "free_step", library.cscdpy_line_search_positions, self._handle.pointer,
+                                number_of("fraction", fraction), address_of(target))
         return reached
 
     def max_step(self, longest: float = 1.0) -> Tuple[Array, float, Optional[Contacts]]:

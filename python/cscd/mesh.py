@@ -8,7 +8,7 @@ from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
-from ._arrays import as_faces, as_floats, as_indices, as_positions, count_of
+from ._arrays import as_faces, as_floats, as_indices, as_positions, check_magnitudes, count_of
 from ._host import Handle, Host, Keeper, new_handle
 from ._library import address_of, copy_list, items_of, library, new_struct, structs
 
@@ -74,6 +74,7 @@ class Surface:
             if positions is None:
                 raise ValueError("positions: expected an array (n, 3), because faces of four corners are cut into "
                                  "triangles by their shape, got None")
+            check_magnitudes("positions", positions)
             sizes = np.full(len(rows), 4, np.uint32)
             triangles, triangle_face = cut_polygons(positions, rows.reshape(-1), sizes)
             return cls(triangles, triangle_face, len(rows), vertex_count)
@@ -87,6 +88,7 @@ class Surface:
     def of_polygons(cls, positions: Any, corners: Any, face_sizes: Any) -> Surface:
         """Faces of any number of corners, one after the other."""
         positions = as_positions("positions", positions)
+        check_magnitudes("positions", positions)
         corners = as_indices("corners", corners, 1, len(positions), "vertices")
         face_sizes = as_indices("counts", face_sizes, 1, _MOST_CORNERS, "corners of a face")
         if int(face_sizes.sum(dtype=np.uint64)) != len(corners):
@@ -103,7 +105,7 @@ class Wires:
 
     def __init__(self, edges: Any, vertex_count: Optional[int] = None) -> None:
         limit = _MOST_VERTICES if vertex_count is None else count_of("vertex_count", vertex_count, _MOST_VERTICES)
-        self.edges = as_indices("edges", edges, 2, limit, "vertices")
+        self.edges = as_indices("edges", edges, 2, limit, "vertices").copy()
         self.vertex_count = int(self.edges.max(initial=0)) + 1 if vertex_count is None else limit
 
 
@@ -258,6 +260,7 @@ class Mesh:
             count = 0 if self._handle is None else library.cscd_mesh_edge_count(self.pointer)
             source = library.cscd_mesh_all_edges(self.pointer) if count else 0
             self._edges = copy_list(source, 2 * count, np.uint32).reshape(count, 2).astype(np.int64)
+            self._edges.flags.writeable = False
         return self._edges
 
     @property

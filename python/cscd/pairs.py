@@ -6,7 +6,7 @@ from typing import Any, Tuple
 
 import numpy as np
 
-from ._arrays import as_indices, as_positions, number_of, views_of
+from ._arrays import as_indices, as_positions, check_magnitudes, number_of, views_of
 from ._host import Host
 from ._library import address_of, library, new_struct
 from .results import CONTACT_KINDS, PairContacts, PairDistances
@@ -77,6 +77,7 @@ def pairs_near(kind: str, x: Any, points: Any = None, *, distance: float = np.in
     [1.0]
     """
     positions = as_positions("x", x)
+    check_magnitudes("x", positions)
     pairs, kept = _pairs_of(kind, len(positions), points)
     found = new_struct("pair_distance", int(pairs["pair_count"][0]))
     if len(found):

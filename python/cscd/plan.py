@@ -8,7 +8,7 @@ from typing import Any, Callable, Dict, Optional, Tuple, Union
 
 import numpy as np
 
-from ._arrays import as_floats, as_indices, as_positions, count_of, number_of, views_of
+from ._arrays import as_floats, as_indices, as_positions, check_magnitudes, count_of, number_of, views_of
 from ._host import Handle, Host, code_of, new_handle
 from ._library import address_of, items_of, library, new_struct, structs
 from .errors import Error
@@ -154,7 +154,11 @@ class Plan:
     @classmethod
     def _made(cls, mesh: Mesh, V: Any, host: Host, create: Any, options: Array) -> Plan:
         plan = cls.__new__(cls)
+        if not isinstance(mesh, Mesh):
+            raise ValueError(f"mesh: expected a Mesh, got {type(mesh).__name__}")
         views, kept = views_of("V", V, mesh.vertex_counts)
+        for part in kept:
+            check_magnitudes("V", part)
         plan.mesh = mesh
         with host.lock:
             plan._handle = new_handle(host, library.cscd_plan_destroy, create, mesh.pointer, address_of(views),

@@ -7,7 +7,7 @@ from typing import Any, Callable, Iterator, List, Optional, Tuple
 
 import numpy as np
 
-from ._arrays import as_positions, check_magnitudes
+from ._arrays import as_faces, as_positions, check_magnitudes
 from ._host import processor_count, thread_count_of
 from .detector import Detector
 from .intersections import Intersections, kind_set
@@ -23,6 +23,11 @@ Progress = Optional[Callable[[str, float], Any]]
 def mesh_of(F: Any, V: Any, name: str = "V") -> Mesh:
     """The mesh that is given, or one of these faces; faces of four corners are cut by ``V``, which is called so."""
     if not isinstance(F, Mesh):
+        if V is not None:
+            V = as_positions(name, V)
+            F = as_faces("F", F, len(V))
+            if F.shape[1] == 4:
+                check_magnitudes(name, V)
         return Mesh(F, positions=V)
     if V is not None:
         as_positions(name, V, F.vertex_count)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import contextlib
+import copy
+import pickle
 import re
 from typing import Any, Callable, Dict, List, Tuple
 
@@ -122,8 +124,36 @@ def test_faces() -> None:
             assert SAYS.search(text) and text.startswith(name), (wrong, text)
 
 
+def test_arrays_that_change_later() -> None:
+    """A mesh never changes, whatever its caller does with the array of its faces, and cannot be changed."""
+    faces, edges = np.array(F, np.uint32), np.array([[0, 1]], np.uint32)
+    mesh, wires = cscd.Mesh(faces), cscd.Wires(edges)
+    faces[:] = edges[:] = 9
+    assert wires.edges.tolist() == [[0, 1]]
+    for copied in (copy.deepcopy(mesh), pickle.loads(pickle.dumps(mesh)), cscd.Scene([mesh])):
+        assert np.array_equal(copied.triangles, F)
+    for array in (mesh.triangles, mesh.triangle_face, mesh.edges):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 0
+
+
 def test_what_a_sentence_says() -> None:
     """The place of a wrong index or number, and how many there may be."""
+    nan = spoiled(np.nan)
+    for named, calls in {"V": [lambda: cscd.self_intersections(nan, [[0, 1, 2, 4]]), lambda: cscd.Plan.kmeans(MESH, nan)],
+                         "x0": [lambda: cscd.contacts(nan, V, [[0, 1, 2, 4]])],
+                         "x": [lambda: cscd.pairs_near("vf", nan, [[0, 1, 2, 4]])],
+                         "positions": [lambda: cscd.Mesh([[0, 1, 2, 4]], positions=nan),
+                                       lambda: cscd.Mesh.from_polygons(nan, [0, 1, 2, 4], [4])]}.items():
+        for call in calls:
+            with pytest.raises(ValueError, match=f"^{named}: vertex 4 has y = nan, expected"):
+                call()
+    with pytest.raises(ValueError, match="^mesh: expected a Mesh, got ndarray"):
+        cscd.Plan.kmeans(F, V)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match=r"F\[0, 0\] is 0, but there are no vertices"):
+        cscd.self_intersections([], [[0, 1, 2]])
+    with pytest.raises(ValueError, match=r"got the whole number -9223372036854775808, beyond 2\^53"):
+        cscd.self_intersections(np.full((6, 3), -2**63), MESH)
     with pytest.raises(ValueError, match=r"F\[1, 2\] is 6; expected an index from 0 to 5, of 6 vertices"):
         cscd.self_intersections(V, [[0, 1, 2], [3, 4, 6]])
     with pytest.raises(ValueError, match=r"F\[0, 1\] is -1; expected"):

@@ -18,8 +18,8 @@ F = np.array([[0, 1, 2], [3, 4, 5]])
 WRONG_OPTIONS: Dict[str, List[Any]] = {
     "method": ["fast", "", None, 1, b"auto", "auto\0", "kmeans", "charge"],
     "mode": ["some", None, 0], "start": ["proven", None, 0], "volume": ["ball", None], "simd": ["mmx", None, 2],
-    "threads": [-1, 257, 2**40, 1.5, "two", None, [1]],
-    "min_separation": [-1e-3, np.nan, np.inf, "near", None, [1.0], 1j],
+    "threads": [-1, 257, 2**40, 1.5, "two", None, [1], True, np.True_],
+    "min_separation": [-1e-3, np.nan, np.inf, "near", None, [1.0], 1j, np.complex128(1 + 2j), np.True_],
     "tolerance": [-1.0, np.nan, 2.0, "fine", None], "step_factor": [0.0, -1.0, 1.5, np.nan, None],
     "floor_ratio": [0.0, 1.0, np.nan, -0.5, "half"], "seam_reach": [-1.0, np.nan, "far"],
     "longest_list": [-1, 2**70, "long", None, 1.5],
@@ -81,7 +81,9 @@ def test_numbers() -> None:
     calls += [lambda: line.near(0.5, 0.6), lambda: line.max_step(0.0), lambda: detector.line_search(V, DOWN, -1.0),
               lambda: detector.line_search(V, DOWN, np.nan), lambda: detector.set_separation(-1.0),
               lambda: detector.set_separation(np.nan), lambda: detector.set_parts([0]), lambda: detector.set_parts([0, -2]),
-              lambda: detector.set_parts([0, 3], 2), lambda: detector.set_parts([0.0, 1.0]),
+              lambda: detector.set_parts([0, 3], 2), lambda: detector.set_parts([0, 1], 2.5),  # type: ignore[arg-type]
+              lambda: detector.set_parts([0, 1], 2**40), lambda: detector.set_parts([0, 1], -5),
+              lambda: detector.set_parts([0.0, 1.0]),
               lambda: detector.set_active([6]), lambda: detector.set_active([-1]), lambda: detector.set_active([0.5]),
               lambda: detector.set_seams([[0, 9]]), lambda: detector.set_ignored([[0, 9]])]
     for out in (V[:, :2].copy(), V[:-1].copy(), V.astype(int), np.asfortranarray(V.copy()), V.tolist(), "out",
@@ -90,7 +92,7 @@ def test_numbers() -> None:
     for call in calls:
         with pytest.raises((ValueError, TypeError)) as caught:
             call()
-        assert len(str(caught.value)) > 10, str(caught.value)
+        assert len(str(caught.value)) > 10 and "cscd_" not in str(caught.value), str(caught.value)
     for index in (-1, 2, 2**40):
         with pytest.raises(IndexError):
             detector.mesh.component(index)
@@ -121,6 +123,8 @@ def test_scenes() -> None:
         with pytest.raises(ValueError):
             detector.check(x)
     assert len(detector.check([V, V + [0.0, 0.0, 0.5]])) >= 0
+    one = cscd.Detector(cscd.Scene([mesh]))
+    assert np.array_equal(one.step([V], (DOWN,)), one.step(V, DOWN)), "a list with an array for each object, of one object"
 
 
 # ---- callbacks --------------------------------------------------------------------------------------------------------
