@@ -2,7 +2,8 @@
 
 One mesh at one moment: ``self_intersections``, ``is_self_intersecting``, ``self_intersecting_faces`` for many frames,
 ``intersections`` of two meshes. Two moments: ``contacts``. A recording: ``replay``. Solvers keep a ``Detector``.
-Every verdict is that of exact arithmetic on the given numbers.
+Every verdict is that of exact arithmetic on the given numbers. Positions belong to a call until it returns: another
+thread must not write to them meanwhile.
 """
 
 from __future__ import annotations

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from typing import Any, Callable, Dict, Optional, Tuple
 
 import numpy as np
@@ -96,6 +97,8 @@ class Detector(LiveSettings):
         self._vertex_counts = self.mesh.vertex_counts
         self._host = Host(threads, simd, progress, ignore)
         options = DetectorOptions(self.mesh, self._inputs, self._host, ignore is not None, self._left_out)
+        for name in ("seams", "ignored", "rules", "thickness_matrix"):  # the caller's may change
+            self._inputs[name] = copy.deepcopy(self._inputs[name])
         host = self._host
         with host.lock:
             self._handle: Handle = new_handle(host, library.cscd_detector_destroy, library.cscdpy_detector_create,

@@ -15,7 +15,7 @@ from typing import Any, Iterable, Iterator, List, Optional, Sequence, Tuple, Uni
 
 import numpy as np
 
-from ._arrays import as_positions
+from ._arrays import as_positions, number_of
 from ._host import Keeper
 from ._library import address_of, copy_list, library
 from .errors import Error
@@ -154,6 +154,7 @@ def read(path: PathLike, frames: Union[None, PathLike, Sequence[PathLike]] = Non
         listed = [os.fsencode(frames)]
     else:
         listed = [os.fsencode(item) for item in frames]
+    fps = number_of("fps", fps)
     if not listed and os.fsencode(path).lower().endswith((b".glb", b".gltf")):
         try:
             return Recording(_OpenRecording(path, [os.fsencode(path)], fps))

@@ -174,7 +174,7 @@ class Intersections:
                              "stop_after=")
         if self._detector is None:
             raise ValueError("curves, buried, depth and parts are computed when they are asked for, and do not "
-                             "come along in a pickle; ask for them before")
+                             "come along in a copy or a pickle; ask for them before")
         return self._detector, self._positions
 
     def _found(self) -> _Surface:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from typing import Any, Dict, Optional, Tuple
 
 from ._arrays import as_indices, count_of, number_of
@@ -68,19 +69,19 @@ class LiveSettings:
         self._set(library.cscd_detector_set_rules, None if array is None else address_of(array),
                   0 if array is None else len(array), None if matrix is None else address_of(matrix),
                   0 if matrix is None else len(matrix))
-        self._inputs.update(rules=rules, thickness_matrix=thickness_matrix)
+        self._inputs.update(copy.deepcopy({"rules": rules, "thickness_matrix": thickness_matrix}))
 
     def set_seams(self, seams: Any) -> None:
         """Replaces the seams: (k, 2) vertices; None: none."""
         array = as_indices("seams", () if seams is None else seams, 2, self.mesh.vertex_count, "vertices")
         self._set(library.cscd_detector_set_seams, address_of(array) if len(array) else None, len(array))
-        self._inputs.update(seams=seams)
+        self._inputs.update(seams=copy.deepcopy(seams))
 
     def set_ignored(self, ignored: Any) -> None:
         """Replaces the pairs of triangles that are left out: (k, 2); None: none."""
         array = as_indices("ignored", () if ignored is None else ignored, 2, self.mesh.triangle_count, "triangles")
         self._set(library.cscd_detector_set_ignored, address_of(array) if len(array) else None, len(array))
-        self._inputs.update(ignored=ignored)
+        self._inputs.update(ignored=copy.deepcopy(ignored))
 
     def _set(self, function: Any, *arguments: Any) -> None:
         host = self._host

@@ -68,6 +68,20 @@ def test_pickled_meshes() -> None:
     assert len(found) > 3 and np.array_equal(found, cscd.Detector(copied(scene)).step(start, end))
 
 
+def test_what_was_given_may_change_later() -> None:
+    """A pickle has what the detector has, and not what the caller's arrays have become."""
+    V = np.array([[0., 0, 0], [1, 0, 0], [0, 1, 0]] * 2)
+    F, ignored = [[0, 1, 2], [3, 4, 5]], np.array([[0, 1]])
+    detector = cscd.Detector(cscd.Mesh(F), ignored=ignored)
+    ignored[:] = 0, 0
+    later = np.array([[0, 1]])
+    for thing in (detector, pickle.loads(pickle.dumps(detector))):
+        assert len(thing.check(V)) == 0
+    detector.set_ignored(later)
+    later[:] = 0, 0
+    assert len(pickle.loads(pickle.dumps(detector)).check(V)) == 0
+
+
 def test_pickled_plans_and_detectors() -> None:
     """A detector in the middle of its work: the copy has the plan and all that was set, and the same answers."""
     torus = torus_of()
