@@ -147,7 +147,7 @@ static bool check_frames(check_run *c, io_error *error) {
 
 static void print_answers(const check_run *c) {
     if (c->options->quiet || frames_done(c) == 0) return;
-    answers_print_sentence(&c->answers, &c->unit);
+    answers_print_sentence(stdout, &c->answers, &c->unit);
     answers_print_events(&c->answers, &c->unit);
     if (c->options->answers.timings) answers_print_frames(&c->answers, &c->unit);
 }
@@ -193,7 +193,7 @@ static int end_check(check_run *c, bool ran, const io_error *error) {
     if (!ran) return fail_input("%s", error->text);
     if (interrupted()) {
         tell_interrupt(c);
-        return EXIT_INTERRUPTED;
+        return interrupt_exit_code();
     }
     return fail_rules_apply(&c->rules, &c->answers) ? EXIT_CONTACT : EXIT_RAN;
 }

@@ -201,7 +201,7 @@ static int run_preprocess(preprocess_options *o) {
     recording_close(&r);
     if (made) return EXIT_RAN;
     fail_input("%s", error.text);
-    return interrupted() ? EXIT_INTERRUPTED : EXIT_BAD_INPUT;
+    return interrupted() ? interrupt_exit_code() : EXIT_BAD_INPUT;
 }
 
 /* A plan may replace a plan, but no other file. */

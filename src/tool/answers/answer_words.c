@@ -1,7 +1,6 @@
 /* The answers for people: a sentence first, then the events, the worst first. */
 #include "src/tool/answers/answer_words.h"
 
-#include <stdio.h>
 #include <string.h>
 
 enum { SPANS_SAID = 6, EVENTS_SHOWN = 20, NAME_WIDTH_MAX = 60 };
@@ -30,7 +29,7 @@ static size_t count_frames(const answers *a, frame_test *test) {
 
 /* Prints "17 to 43, 45, 47 to 48": the frames that pass, in their order. Frames that follow each other in what was looked
  * at make a range. */
-static void say_frames(const answers *a, frame_test *test) {
+static void say_frames(FILE *out, const answers *a, frame_test *test) {
     const frame_answer *frames = answers_frames(a);
     size_t spans = 0;
     for (size_t i = 0, end; i < answers_frame_count(a); i = end) {
@@ -38,11 +37,11 @@ static void say_frames(const answers *a, frame_test *test) {
         if (!test(&frames[i])) continue;
         while (end < answers_frame_count(a) && test(&frames[end])) end++;
         if (++spans > SPANS_SAID) {
-            printf(" and others");
+            fprintf(out, " and others");
             return;
         }
-        printf("%s%d", spans > 1 ? ", " : " ", answers_frame_number(a, frames[i].frame));
-        if (end - i > 1) printf(" to %d", answers_frame_number(a, frames[end - 1].frame));
+        fprintf(out, "%s%d", spans > 1 ? ", " : " ", answers_frame_number(a, frames[i].frame));
+        if (end - i > 1) fprintf(out, " to %d", answers_frame_number(a, frames[end - 1].frame));
     }
 }
 
@@ -65,102 +64,105 @@ static int pair_width(const answers *a, uint32_t first, uint32_t second) {
 }
 
 /* Filled with blanks. */
-static void print_pair(const answers *a, uint32_t first, uint32_t second, int width) {
-    printf("%s x %s", part_names_at(a->parts, first), second_name(a, first, second));
-    printf("%*s", width > pair_width(a, first, second) ? width - pair_width(a, first, second) : 0, "");
+static void print_pair(FILE *out, const answers *a, uint32_t first, uint32_t second, int width) {
+    fprintf(out, "%s x %s", part_names_at(a->parts, first), second_name(a, first, second));
+    fprintf(out, "%*s", width > pair_width(a, first, second) ? width - pair_width(a, first, second) : 0, "");
 }
 
 /* ---- the sentence --------------------------------------------------------------------------------------- */
 
-static void say_recording(const answers *a) {
+static void say_recording(FILE *out, const answers *a) {
     const size_t checked = count_frames(a, frame_checked);
     const size_t crossing = count_frames(a, frame_crosses), touching = count_frames(a, frame_touches);
     if (checked == 0)
-        printf("No frame was checked.");
+        fprintf(out, "No frame was checked.");
     else if (crossing == checked)
-        printf("All %zu frames cross.", checked);
+        fprintf(out, "All %zu frames cross.", checked);
     else if (crossing > 0) {
-        printf("Frame%s", crossing > 1 ? "s" : "");
-        say_frames(a, frame_crosses);
-        printf(" cross%s (%zu of %zu)", crossing > 1 ? "" : "es", crossing, checked);
-        if (touching == 0) printf(".");
+        fprintf(out, "Frame%s", crossing > 1 ? "s" : "");
+        say_frames(out, a, frame_crosses);
+        fprintf(out, " cross%s (%zu of %zu)", crossing > 1 ? "" : "es", crossing, checked);
+        if (touching == 0) fprintf(out, ".");
     } else
-        printf(touching > 0 ? "No frame crosses" : "No frame crosses or touches (%zu checked).", checked);
+        fprintf(out, touching > 0 ? "No frame crosses" : "No frame crosses or touches (%zu checked).",
+                checked);
     if (touching > 0 && crossing < checked) {
-        printf(crossing > 0 ? ", frame%s" : "; frame%s", touching > 1 ? "s" : "");
-        say_frames(a, frame_touches);
-        printf(" touch%s (%zu of %zu).", touching > 1 ? "" : "es", touching, checked);
+        fprintf(out, crossing > 0 ? ", frame%s" : "; frame%s", touching > 1 ? "s" : "");
+        say_frames(out, a, frame_touches);
+        fprintf(out, " touch%s (%zu of %zu).", touching > 1 ? "" : "es", touching, checked);
     }
 }
 
-static void say_frame(const answers *a) {
+static void say_frame(FILE *out, const answers *a) {
     const frame_answer *frame = answers_frames(a);
     if (!frame_answer_meets(frame)) {
-        printf("Clean: no two triangles cross or touch.");
+        fprintf(out, "Clean: no two triangles cross or touch.");
         return;
     }
     if (frame->crossing > 0) {
         const uint32_t triangles = cscd_mesh_triangle_count(a->recording->mesh);
-        printf("%zu pair%s of triangles cross%s, with %u of %u triangles (%.3g %%)", frame->crossing,
-               frame->crossing > 1 ? "s" : "", frame->crossing > 1 ? "" : "es", frame->crossing_faces,
-               triangles, 100.0 * frame->crossing_faces / triangles);
-        if (frame->touching > 0) printf("; %zu touch%s", frame->touching, frame->touching > 1 ? "" : "es");
+        fprintf(out, "%zu pair%s of triangles cross%s, with %u of %u triangles (%.3g %%)", frame->crossing,
+                frame->crossing > 1 ? "s" : "", frame->crossing > 1 ? "" : "es", frame->crossing_faces,
+                triangles, 100.0 * frame->crossing_faces / triangles);
+        if (frame->touching > 0)
+            fprintf(out, "; %zu touch%s", frame->touching, frame->touching > 1 ? "" : "es");
     } else
-        printf("%zu pair%s of triangles touch%s, none cross", frame->touching, frame->touching > 1 ? "s" : "",
-               frame->touching > 1 ? "" : "es");
-    printf(".");
+        fprintf(out, "%zu pair%s of triangles touch%s, none cross", frame->touching,
+                frame->touching > 1 ? "s" : "", frame->touching > 1 ? "" : "es");
+    fprintf(out, ".");
 }
 
-static void say_duplicates(const answers *a) {
+static void say_duplicates(FILE *out, const answers *a) {
     size_t most = 0;
     for (size_t i = 0; i < answers_frame_count(a); i++)
         if (answers_frames(a)[i].duplicates > most) most = answers_frames(a)[i].duplicates;
-    if (most == 1) printf(" One triangle is there twice.");
-    if (most > 1) printf(" %zu pairs of triangles are the same triangle twice.", most);
+    if (most == 1) fprintf(out, " One triangle is there twice.");
+    if (most > 1) fprintf(out, " %zu pairs of triangles are the same triangle twice.", most);
 }
 
-static void say_measure(const cscd_event *event, const length_unit *unit) {
+static void say_measure(FILE *out, const cscd_event *event, const length_unit *unit) {
     char text[LENGTH_TEXT_SIZE];
     if (event->depth > 0.0)
-        printf(", %s deep", length_text(event->depth, unit, text));
+        fprintf(out, ", %s deep", length_text(event->depth, unit, text));
     else if (event->length > 0.0)
-        printf(", %s along %s", event->kinds & CROSSING ? "crossing" : "touching",
-               length_text(event->length, unit, text));
+        fprintf(out, ", %s along %s", event->kinds & CROSSING ? "crossing" : "touching",
+                length_text(event->length, unit, text));
     else if (event->pairs == 0 && event->depths == 0)
-        printf(", contacts only");
+        fprintf(out, ", contacts only");
 }
 
 /* "A x B, frames 21 to 29, 12.4 mm deep at frame 24". */
-static void say_event(const answers *a, const cscd_event *event, const length_unit *unit) {
+static void say_event(FILE *out, const answers *a, const cscd_event *event, const length_unit *unit) {
     const bool single = answers_frame_count(a) == 1;
-    print_pair(a, event->a, event->b, 0);
+    print_pair(out, a, event->a, event->b, 0);
     if (single) {
-        say_measure(event, unit);
+        say_measure(out, event, unit);
         return;
     }
-    printf(", frame%s %d", event->last_frame > event->first_frame ? "s" : "",
-           answers_frame_number(a, event->first_frame));
-    if (event->last_frame > event->first_frame) printf(" to %d", answers_frame_number(a, event->last_frame));
-    say_measure(event, unit);
+    fprintf(out, ", frame%s %d", event->last_frame > event->first_frame ? "s" : "",
+            answers_frame_number(a, event->first_frame));
+    if (event->last_frame > event->first_frame)
+        fprintf(out, " to %d", answers_frame_number(a, event->last_frame));
+    say_measure(out, event, unit);
     if (event->last_frame > event->first_frame && (event->depth > 0.0 || event->length > 0.0))
-        printf(" at frame %d", answers_frame_number(a, event->worst_frame));
+        fprintf(out, " at frame %d", answers_frame_number(a, event->worst_frame));
 }
 
-void answers_print_sentence(const answers *a, const length_unit *unit) {
+void answers_print_sentence(FILE *out, const answers *a, const length_unit *unit) {
     const bool single = answers_frame_count(a) == 1;
     if (single)
-        say_frame(a);
+        say_frame(out, a);
     else
-        say_recording(a);
-    say_duplicates(a);
+        say_recording(out, a);
+    say_duplicates(out, a);
     if (a->event_count > 0) {
         const char *what = single ? "place" : "event";
-        printf(" %zu %s%s, %s", a->event_count, what, a->event_count > 1 ? "s" : "",
-               a->event_count > 1 ? "worst: " : "");
-        say_event(a, &a->events[a->worst_first[0]], unit);
-        putchar('.');
+        fprintf(out, " %zu %s%s, %s", a->event_count, what, a->event_count > 1 ? "s" : "",
+                a->event_count > 1 ? "worst: " : "");
+        say_event(out, a, &a->events[a->worst_first[0]], unit);
+        fputc('.', out);
     }
-    putchar('\n');
+    fputc('\n', out);
 }
 
 /* ---- tables --------------------------------------------------------------------------------------------- */
@@ -179,7 +181,7 @@ static void print_length(double length, const length_unit *unit) {
 
 static void print_event(const answers *a, const cscd_event *event, const length_unit *unit, int width) {
     char frames[32];
-    print_pair(a, event->a, event->b, width);
+    print_pair(stdout, a, event->a, event->b, width);
     printf("  %-7s", event_word(event));
     if (answers_frame_count(a) > 1) {
         if (event->last_frame > event->first_frame)
@@ -222,7 +224,7 @@ static void print_frame(const answers *a, const frame_answer *frame, const lengt
            frame->touching, triangles > 0.0 ? 100.0 * frame->crossing_faces / triangles : 0.0);
     print_length(frame->depth, unit);
     printf("  %10.3f  ", frame->ms);
-    print_pair(a, frame->worst_parts[0], frame->worst_parts[1], 0);
+    print_pair(stdout, a, frame->worst_parts[0], frame->worst_parts[1], 0);
     putchar('\n');
 }
 

@@ -8,9 +8,8 @@ typedef enum exit_code {
     EXIT_RAN = 0,
     EXIT_BAD_INPUT = 1,
     EXIT_USAGE = 2,
-    EXIT_CONTACT = 3, /* found what --fail-on, --fail-depth or --max-faces asks for */
-    EXIT_INTERRUPTED = 130
-} exit_code;
+    EXIT_CONTACT = 3 /* found what --fail-on, --fail-depth or --max-faces asks for */
+} exit_code;         /* or interrupt_exit_code (terminal.h) */
 
 /* Each command is given the arguments from its name on and returns an exit code. */
 int command_preprocess(int argument_count, char **arguments);

@@ -42,12 +42,18 @@ void terminal_progress_end(terminal_progress *p) {
     p->shown = false;
 }
 
-/* Any thread may get the signal, and all may ask. */
-static atomic_bool interrupt_flag;
+/* Any thread may get the signal, and all may ask. The number of the first signal; 0: none has come. */
+static atomic_int interrupt_signal;
 
 static void note_interrupt(int signal_number) {
-    (void)signal_number;
-    atomic_store(&interrupt_flag, true);
+    int none = 0;
+    atomic_compare_exchange_strong(&interrupt_signal, &none, signal_number);
+}
+
+/* Is the signal ignored because whoever started the program wants that? */
+static bool signal_ignored(int signal_number) {
+    struct sigaction action;
+    return sigaction(signal_number, NULL, &action) == 0 && action.sa_handler == SIG_IGN;
 }
 
 void interrupt_catch(void) {
@@ -55,10 +61,15 @@ void interrupt_catch(void) {
     sigemptyset(&action.sa_mask);
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
+    if (!signal_ignored(SIGHUP)) sigaction(SIGHUP, &action, NULL);
 }
 
 bool interrupted(void) {
-    return atomic_load(&interrupt_flag);
+    return atomic_load(&interrupt_signal) != 0;
+}
+
+int interrupt_exit_code(void) {
+    return 128 + atomic_load(&interrupt_signal);
 }
 
 void interrupt_tell(const interrupt_kept *kept) {

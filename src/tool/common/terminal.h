@@ -18,10 +18,13 @@ void terminal_progress_say(terminal_progress *p, const char *text);
 /* Clears the line. */
 void terminal_progress_end(terminal_progress *p);
 
-/* From now on Ctrl-C (SIGINT) and SIGTERM only set a flag, so that a command can finish its files. A second
- * one ends the program at once. */
+/* From now on Ctrl-C (SIGINT), SIGTERM and SIGHUP only set a flag, so that a command can finish its files. A second
+ * one ends the program at once. A SIGHUP that is ignored, as nohup has it, stays ignored. */
 void interrupt_catch(void);
 bool interrupted(void);
+
+/* 128 and the number of the signal, as shells have it: 130, 143, 129. Only after an interrupt. */
+int interrupt_exit_code(void);
 
 /* Says on stderr how far an interrupted command came, and which files have that much. done: of frames or
  * intervals; first and last: the numbers of the frames at its ends. Paths may be NULL. */

@@ -116,7 +116,7 @@ static void tell_stop(const each_run *run, uint32_t done) {
 
 static int find_exit_code(const each_run *run) {
     const answer_sums *sums = &run->sums;
-    if (interrupted()) return EXIT_INTERRUPTED;
+    if (interrupted()) return interrupt_exit_code();
     if (sums->failed > 0) return fail_input("%u of %u meshes could not be checked", sums->failed, run->count);
     const each_request *request = run->request;
     const bool crossing = request->fail_on_crossing || request->fail_on_touching;

@@ -298,7 +298,7 @@ static int run_replay(const replay_options *options) {
     if (!closed) code = fail_input("%s", close_error.text);
     if (code == EXIT_RAN && interrupted()) {
         tell_interrupt(&r);
-        code = EXIT_INTERRUPTED;
+        code = interrupt_exit_code();
     }
     if (code == EXIT_RAN && fail_rules_apply(&r.rules, &r.answers)) code = EXIT_CONTACT;
     end_replay(&r);

@@ -277,7 +277,7 @@ static int run_sense(const sense_options *options) {
     if (!closed) code = fail_input("%s", close_error.text);
     if (code == EXIT_RAN && interrupted()) {
         tell_interrupt(&s);
-        code = EXIT_INTERRUPTED;
+        code = interrupt_exit_code();
     }
     end_sense(&s);
     return code;
