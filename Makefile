@@ -73,8 +73,8 @@ KERNEL_SOURCES  := $(filter %_simd.c,$(CORE_FILES))
 WITHOUT_GIFTI   := src/io/gifti/no_gifti.c
 COMMON_SOURCES  := $(filter-out $(if $(filter 0,$(EXPAT)),$(filter-out $(WITHOUT_GIFTI),$(wildcard src/io/gifti/*.c)),$(WITHOUT_GIFTI)), \
                      $(wildcard src/io/*.c src/io/*/*.c src/tool/picture/*.c src/tool/common/*.c src/tool/answers/*.c \
-                     src/tool/each/*.c src/tool/export/*.c src/tool/report/*.c))
-COMMAND_SOURCES := $(wildcard src/tool/*.c src/tool/replay/*.c src/tool/render/*.c src/tool/sense/*.c)
+                     src/tool/jobs/*.c src/tool/export/*.c src/tool/report/*.c))
+COMMAND_SOURCES := $(wildcard src/tool/*.c src/tool/check/*.c src/tool/replay/*.c src/tool/render/*.c src/tool/sense/*.c)
 NATIVE_SOURCES  := $(wildcard python/native/*.c)
 SUPPORT_SOURCES := $(wildcard tests/support/*.c tests/support/*/*.c)
 # `rm -r runtime/baselines`, and its lines in runtime/detector/method_table.c: what needs them is not built then.

@@ -21,6 +21,7 @@ static const command commands[] = {
     {"report", "compare runs of replay on one page for a browser", command_report},
     {"sense", "warn where objects come near each other; can miss contacts", command_sense},
     {"check", "find which parts cross or touch in which frames, and how deep", command_check},
+    {"merge", "bring the results of the shards of a list together", command_merge},
     {"info", "counts, components, holes, bounds of a mesh", command_info},
     {"render", "draw frames to a PNG", command_render},
 };

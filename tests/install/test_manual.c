@@ -17,7 +17,7 @@
 /* Prints a command's examples as --help shows them: the command line, and below it what it does. */
 #define EXAMPLES "\"$CSCD_TOOL\" %s --help | sed '/^$/,$d'"
 
-static const char *const commands[] = {"preprocess", "replay", "report", "sense", "check", "info", "render"};
+static const char *const commands[] = {"preprocess", "replay", "report", "sense", "check", "merge", "info", "render"};
 enum { COMMAND_COUNT = sizeof commands / sizeof *commands };
 
 static int find_tool(void **state) {
@@ -76,7 +76,7 @@ static void no_option_is_made_up(void **state) {
     expect_equal(
         "options", shell_output(0, PLAIN_PAGE " | " NAMES),
         shell_output(
-            0, "{ \"$CSCD_TOOL\" --help; for command in preprocess replay report sense check info render; do "
+            0, "{ \"$CSCD_TOOL\" --help; for command in preprocess replay report sense check merge info render; do "
                "\"$CSCD_TOOL\" $command --help; done; } | " NAMES));
 }
 

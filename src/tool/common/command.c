@@ -9,17 +9,35 @@
 #include <stdlib.h>
 #include <string.h>
 
+static io_error *kept_failure; /* NULL: failures are printed */
+
+void failures_keep(io_error *place) {
+    kept_failure = place;
+}
+
+static void print_failure(const char *format, va_list arguments) __attribute__((format(printf, 1, 0)));
+static void print_line(const char *prefix, const char *format, va_list arguments)
+    __attribute__((format(printf, 2, 0)));
+
 static void print_line(const char *prefix, const char *format, va_list arguments) {
+    if (kept_failure != NULL) return;
     fflush(stdout);
     fputs(prefix, stderr);
     vfprintf(stderr, format, arguments);
     fputc('\n', stderr);
 }
 
+static void print_failure(const char *format, va_list arguments) {
+    if (kept_failure != NULL)
+        vsnprintf(kept_failure->text, sizeof kept_failure->text, format, arguments);
+    else
+        print_line("cscd: ", format, arguments);
+}
+
 int fail_input(const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
-    print_line("cscd: ", format, arguments);
+    print_failure(format, arguments);
     va_end(arguments);
     return EXIT_BAD_INPUT;
 }
@@ -27,9 +45,10 @@ int fail_input(const char *format, ...) {
 int fail_usage(const char *command, const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
-    print_line("cscd: ", format, arguments);
+    print_failure(format, arguments);
     va_end(arguments);
-    fprintf(stderr, "Try 'cscd %s%s--help'.\n", command, command[0] != '\0' ? " " : "");
+    if (kept_failure == NULL)
+        fprintf(stderr, "Try 'cscd %s%s--help'.\n", command, command[0] != '\0' ? " " : "");
     return EXIT_USAGE;
 }
 

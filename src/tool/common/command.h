@@ -1,6 +1,8 @@
 /* Exit codes, error lines and numbers of the command line, for all commands of the tool. */
 #pragma once
 
+#include "src/io/io_error.h"
+
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -16,9 +18,14 @@ int command_preprocess(int argument_count, char **arguments);
 int command_replay(int argument_count, char **arguments);
 int command_sense(int argument_count, char **arguments);
 int command_check(int argument_count, char **arguments);
+int command_merge(int argument_count, char **arguments);
 int command_info(int argument_count, char **arguments);
 int command_report(int argument_count, char **arguments);
 int command_render(int argument_count, char **arguments);
+
+/* From now on the functions below print nothing: the last failure is kept here, warnings and notes are dropped. NULL: they print
+ * again. For a job among many, whose failure is part of its answer. */
+void failures_keep(io_error *place);
 
 /* Prints one line on stderr, "cscd: ...", and returns the exit code for it. */
 int fail_input(const char *format, ...) __attribute__((format(printf, 1, 2)));

@@ -2,6 +2,7 @@
 #include "src/tool/common/option_table.h"
 
 #include "src/tool/common/command.h"
+#include "src/tool/common/provenance.h"
 
 #include <assert.h>
 #include <getopt.h>
@@ -142,6 +143,17 @@ static size_t row_of(const all_rows *table, int id) {
     return i;
 }
 
+/* value: NULL for an option without one. */
+static bool give_value(const all_rows *all, size_t i, const char *value, void *options, given_options *given,
+                       io_error *error) {
+    const option_row *row = &all->rows[i];
+    const char *text = value != NULL ? value : "";
+    given->rows[i] = true;
+    given->values[i] = provenance_hash(given->values[i], text, strlen(text) + 1);
+    return row->read(value, (char *)options + row->place) ||
+           io_fail(error, "--%s cannot be '%s'", row->name, text);
+}
+
 bool option_table_read(const option_table *table, int argument_count, char **arguments, void *options,
                        given_options *given, int *code) {
     getopt_tables tables;
@@ -162,11 +174,9 @@ bool option_table_read(const option_table *table, int argument_count, char **arg
             *code = EXIT_RAN;
             return false;
         }
-        const option_row *row = &all.rows[i];
-        given->rows[i] = true;
-        if (!row->read(optarg, (char *)options + row->place)) {
-            *code =
-                fail_usage(table->command, "--%s cannot be '%s'", row->name, optarg != NULL ? optarg : "");
+        io_error error;
+        if (!give_value(&all, i, optarg, options, given, &error)) {
+            *code = fail_usage(table->command, "%s", error.text);
             return false;
         }
     }
@@ -176,13 +186,37 @@ bool option_table_read(const option_table *table, int argument_count, char **arg
     return true;
 }
 
+/* The count of the rows: there is none of that name. */
+static size_t find_row(const all_rows *all, const char *name) {
+    size_t i = 0;
+    while (i < all->count && (all->rows[i].read == NULL || strcmp(all->rows[i].name, name) != 0)) i++;
+    return i;
+}
+
+bool option_table_has(const option_table *table, const char *name) {
+    all_rows all;
+    collect_rows(table, &all);
+    return find_row(&all, name) < all.count;
+}
+
+bool option_table_set(const option_table *table, const char *name, const char *value, void *options,
+                      given_options *given, io_error *error) {
+    all_rows all;
+    collect_rows(table, &all);
+    const size_t i = find_row(&all, name);
+    if (i == all.count) return io_fail(error, "'%s' is no option of %s", name, table->command);
+    const char *shown = all.rows[i].value;
+    if (shown == NULL && value != NULL) return io_fail(error, "--%s takes no value; write true", name);
+    if (shown != NULL && shown[0] != '[' && value == NULL) return io_fail(error, "--%s needs a value", name);
+    return give_value(&all, i, value, options, given, error);
+}
+
 bool option_given(const option_table *table, const given_options *given, const char *name) {
     all_rows all;
     collect_rows(table, &all);
-    for (size_t i = 0; i < all.count; i++)
-        if (all.rows[i].read != NULL && strcmp(all.rows[i].name, name) == 0) return given->rows[i];
-    assert(false);
-    return false;
+    const size_t i = find_row(&all, name);
+    assert(i < all.count);
+    return given->rows[i];
 }
 
 const char *option_given_beside(const option_table *table, const given_options *given,
@@ -195,4 +229,19 @@ const char *option_given_beside(const option_table *table, const given_options *
         if (!named) return all.rows[i].name;
     }
     return NULL;
+}
+
+uint64_t option_hash_beside(const option_table *table, const given_options *given, const char *const *names,
+                            size_t name_count) {
+    uint64_t hash = PROVENANCE_HASH_START;
+    all_rows all;
+    collect_rows(table, &all);
+    for (size_t i = 0; i < all.count; i++) {
+        bool counts = given->rows[i];
+        for (size_t k = 0; k < name_count && counts; k++) counts = strcmp(all.rows[i].name, names[k]) != 0;
+        if (!counts) continue;
+        hash = provenance_hash(hash, all.rows[i].name, strlen(all.rows[i].name) + 1);
+        hash = provenance_hash(hash, &given->values[i], sizeof given->values[i]);
+    }
+    return hash;
 }

@@ -2,6 +2,8 @@
  * --help says of it. */
 #pragma once
 
+#include "src/io/io_error.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -38,7 +40,7 @@ typedef struct shared_options {
     size_t place;            /* offset of that struct in the command's struct of options */
 } shared_options;
 
-enum { OPTION_LISTS_MAX = 5 };
+enum { OPTION_LISTS_MAX = 6 };
 
 typedef struct option_table {
     const char *command;
@@ -50,11 +52,12 @@ typedef struct option_table {
     option_example examples[OPTION_EXAMPLES];
 } option_table;
 
-enum { OPTION_ROWS_MAX = 64 }; /* of a table, shared ones among them */
+enum { OPTION_ROWS_MAX = 80 }; /* of a table, shared ones among them */
 
 typedef struct given_options {
-    bool rows[OPTION_ROWS_MAX]; /* which rows of the table were given, its own first */
-    const char *const *inputs;  /* the arguments that are no options, in their order */
+    bool rows[OPTION_ROWS_MAX];       /* which rows of the table were given, its own first */
+    uint64_t values[OPTION_ROWS_MAX]; /* the hash of what a row was given, in its order */
+    const char *const *inputs;        /* the arguments that are no options, in their order */
     size_t input_count;
 } given_options;
 
@@ -63,9 +66,20 @@ typedef struct given_options {
 bool option_table_read(const option_table *table, int argument_count, char **arguments, void *options,
                        given_options *given, int *code);
 
+/* Gives an option another value or its first, as if it stood at the end of the command line. False, with the reason: there is no such
+ * option, or the value does not fit. */
+bool option_table_set(const option_table *table, const char *name, const char *value, void *options,
+                      given_options *given, io_error *error);
+
+bool option_table_has(const option_table *table, const char *name);
+
 /* Was the option of that name given? The table must have it. */
 bool option_given(const option_table *table, const given_options *given, const char *name);
 
 /* The first option that was given and is none of those names; NULL: there is none. */
 const char *option_given_beside(const option_table *table, const given_options *given,
                                 const char *const *names, size_t name_count);
+
+/* The hash of all options that were given, and of their values, but for those names. */
+uint64_t option_hash_beside(const option_table *table, const given_options *given, const char *const *names,
+                            size_t name_count);

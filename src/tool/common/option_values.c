@@ -73,6 +73,13 @@ bool read_part_pairs(const char *text, void *place) {
     return true;
 }
 
+bool read_seconds(const char *text, void *place) {
+    double value;
+    if (!parse_double(text, &value) || value <= 0.0 || value > 1e9) return false;
+    *(double *)place = value;
+    return true;
+}
+
 bool read_fps(const char *text, void *place) {
     double value;
     if (!parse_double(text, &value) || value <= 0.0 || value > 1e6) return false;

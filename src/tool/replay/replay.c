@@ -2,6 +2,8 @@
 #include "src/tool/common/command.h"
 #include "src/tool/common/methods.h"
 #include "src/tool/common/output_path.h"
+#include "src/tool/jobs/listed_recordings.h"
+#include "src/tool/jobs/recording_answer.h"
 #include "src/tool/replay/replay_print.h"
 
 #include <stdlib.h>
@@ -279,8 +281,8 @@ static int fail_replay(const replay *r, bool begun, const char *reason) {
     return fail_input("%s%s", reason, unreported ? "; no report was written" : "");
 }
 
-static int run_replay(const replay_options *options) {
-    replay r = {.options = options};
+static int run_replay(const replay_options *options, const char *name, job_output *job) {
+    replay r = {.options = options, .name = name, .job = job};
     io_error error = {""}, close_error = {""};
     int code = EXIT_RAN;
     bool begun = begin_replay(&r, &error), ran = false;
@@ -297,17 +299,46 @@ static int run_replay(const replay_options *options) {
     if (!ran) code = fail_replay(&r, begun, error.text);
     if (!closed) code = fail_input("%s", close_error.text);
     if (code == EXIT_RAN && interrupted()) {
-        tell_interrupt(&r);
+        if (job == NULL) tell_interrupt(&r);
         code = interrupt_exit_code();
     }
-    if (code == EXIT_RAN && fail_rules_apply(&r.rules, &r.answers)) code = EXIT_CONTACT;
+    if (code == EXIT_RAN && job != NULL)
+        recording_answer_write(name, &r.answers, &r.unit, &r.rules, job);
+    else if (code == EXIT_RAN && fail_rules_apply(&r.rules, &r.answers))
+        code = EXIT_CONTACT;
     end_replay(&r);
     return code;
 }
 
+static int run_listed(void *options, given_options *given, const char *name, cscd_context *context,
+                      job_output *out) {
+    replay_options *o = options;
+    o->source.context = context;
+    o->quiet = true;
+    const int code = replay_options_finish(o, given);
+    return code == EXIT_RAN ? run_replay(o, name, out) : code;
+}
+
+static int run_list(const replay_options *options, const given_options *given) {
+    const list_command command = {.table = &replay_table,
+                                  .options = options,
+                                  .options_size = sizeof *options,
+                                  .given = given,
+                                  .list = &options->list,
+                                  .thread_count = options->source.thread_count,
+                                  .quiet = options->quiet,
+                                  .run = run_listed};
+    return run_listed_recordings(&command);
+}
+
 int command_replay(int argument_count, char **arguments) {
     replay_options options;
+    given_options given;
     int code;
-    if (!replay_options_parse(argument_count, arguments, &options, &code)) return code;
-    return run_replay(&options);
+    if (!replay_options_read(argument_count, arguments, &options, &given, &code)) return code;
+    if (options.list.path != NULL) return run_list(&options, &given);
+    const char *lone = list_option_without_list(&replay_table, &given);
+    if (lone != NULL) return fail_usage("replay", "--%s is for --list", lone);
+    code = replay_options_finish(&options, &given);
+    return code == EXIT_RAN ? run_replay(&options, NULL, NULL) : code;
 }

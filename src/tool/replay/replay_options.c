@@ -100,9 +100,9 @@ static const option_row rows[] = {
     {"quiet", NULL, read_flag, offsetof(replay_options, quiet), "no progress, no warnings, no table"},
 };
 
-static const option_table table = {
+const option_table replay_table = {
     "replay",
-    "MODEL FRAMES... [options]",
+    "MODEL FRAMES... [options]\n       cscd replay --list JOBS.jsonl [options]",
     "Finds every contact of the mesh MODEL (OBJ, PLY, OFF, STL, glTF, GIFTI) with itself between one frame and the next, and what "
     "crosses or touches at each frame, as check does.\n"
     "FRAMES: one .pc2 or .mdd point cache, one .glb or .gltf file, a pattern like f_%04d.obj, a folder, or a "
@@ -113,7 +113,8 @@ static const option_table table = {
                {&frame_rows, offsetof(replay_options, source)},
                {&pair_rows, offsetof(replay_options, ignored)},
                {&answer_rows, offsetof(replay_options, answers)},
-               {&export_rows, offsetof(replay_options, exports)}},
+               {&export_rows, offsetof(replay_options, exports)},
+               {&list_rows, offsetof(replay_options, list)}},
     .examples = {
         {"replay body.obj body.pc2 --report body.html",
          "Find every contact between one frame and the next, and show them on a page for any browser."},
@@ -171,27 +172,28 @@ static int check_options(const replay_options *o, size_t input_count) {
     return EXIT_RAN;
 }
 
-bool replay_options_parse(int argument_count, char **arguments, replay_options *out, int *code) {
-    replay_options o = {.method = CSCD_METHOD_AUTO,
-                        .mode = CSCD_MODE_ALL,
-                        .frames = frame_range_all(),
-                        .argument_count = argument_count,
-                        .arguments = arguments};
-    given_options given;
-    if (!option_table_read(&table, argument_count, arguments, &o, &given, code)) return false;
+bool replay_options_read(int argument_count, char **arguments, replay_options *out, given_options *given,
+                         int *code) {
+    *out = (replay_options){.method = CSCD_METHOD_AUTO,
+                            .mode = CSCD_MODE_ALL,
+                            .frames = frame_range_all(),
+                            .argument_count = argument_count,
+                            .arguments = arguments};
+    return option_table_read(&replay_table, argument_count, arguments, out, given, code);
+}
+
+int replay_options_finish(replay_options *o, given_options *given) {
     /* A glTF file holds the model and its frames. */
-    static const char *both[2]; /* as long as the command line */
-    if (given.input_count == 1 && gltf_recognise_path(given.inputs[0])) {
-        both[0] = both[1] = given.inputs[0];
-        given.inputs = both;
-        given.input_count = 2;
+    static const char *both[2]; /* as long as the options, of which there is one at a time */
+    if (given->input_count == 1 && gltf_recognise_path(given->inputs[0])) {
+        both[0] = both[1] = given->inputs[0];
+        given->inputs = both;
+        given->input_count = 2;
     }
-    *code = check_options(&o, given.input_count);
-    if (*code == EXIT_RAN) *code = check_outputs(&o, given.inputs, given.input_count);
-    if (*code != EXIT_RAN) return false;
-    recording_options_take(&o.source, &given);
-    o.exports.no_depths = o.answers.no_depths;
-    o.exports.contacts = true;
-    *out = o;
-    return true;
+    int code = check_options(o, given->input_count);
+    if (code == EXIT_RAN) code = check_outputs(o, given->inputs, given->input_count);
+    recording_options_take(&o->source, given);
+    o->exports.no_depths = o->answers.no_depths;
+    o->exports.contacts = true;
+    return code;
 }

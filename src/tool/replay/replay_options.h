@@ -6,6 +6,7 @@
 #include "src/tool/common/ignore_pairs.h"
 #include "src/tool/common/report_request.h"
 #include "src/tool/export/exports.h"
+#include "src/tool/jobs/list_options.h"
 
 typedef struct replay_options {
     recording_options source;
@@ -22,9 +23,16 @@ typedef struct replay_options {
     ignore_options ignored;
     const char *plan_path, *contacts_path, *json_path; /* NULL: not given */
     report_request report;
+    list_options list;
     int argument_count; /* the command line, for the provenance */
     char **arguments;
 } replay_options;
 
-/* False: *code is the exit code to end with (0 after --help). */
-bool replay_options_parse(int argument_count, char **arguments, replay_options *out, int *code);
+extern const option_table replay_table;
+
+/* Reads the command line. False: *code is the exit code to end with (0 after --help). */
+bool replay_options_read(int argument_count, char **arguments, replay_options *out, given_options *given,
+                         int *code);
+
+/* Takes the inputs, and returns the exit code for options that contradict each other or the inputs. */
+int replay_options_finish(replay_options *o, given_options *given);

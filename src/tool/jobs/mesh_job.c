@@ -1,5 +1,5 @@
 /* Reads a mesh and finds which of its triangles intersect. */
-#include "src/tool/each/mesh_job.h"
+#include "src/tool/jobs/mesh_job.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -72,18 +72,6 @@ static bool check_mesh(const mesh_job *job, recording *r, mesh_answer *out, bool
     return good;
 }
 
-/* The reason begins with the name of the file, as those of readers do. */
-static char *name_reason(const char *path, const char *reason) {
-    const size_t length = strlen(path);
-    if (strncmp(reason, path, length) == 0 && reason[length] == ':') return strdup(reason);
-    char *named = malloc(length + strlen(reason) + 3);
-    if (named == NULL) return NULL;
-    strcpy(named, path);
-    strcpy(named + length, ": ");
-    strcpy(named + length + 2, reason);
-    return named;
-}
-
 const char *mesh_answer_reason(const mesh_answer *answer) {
     return answer->error != NULL ? answer->error : "out of memory";
 }
@@ -106,6 +94,6 @@ bool mesh_job_run(const mesh_job *job, cscd_context *context, mesh_answer *out) 
         recording_close(&r);
     }
     if (cancelled) return false;
-    *out = answer.checked ? answer : (mesh_answer){.error = name_reason(job->path, error.text)};
+    *out = answer.checked ? answer : (mesh_answer){.error = strdup(error.text)};
     return true;
 }

@@ -27,5 +27,5 @@ typedef struct mesh_answer {
 bool mesh_job_run(const mesh_job *job, cscd_context *context, mesh_answer *out);
 void mesh_answer_free(mesh_answer *answer);
 
-/* Why the mesh was not checked, beginning with the name of its file unless memory was short. */
+/* Why the mesh was not checked. */
 const char *mesh_answer_reason(const mesh_answer *answer);

@@ -1,6 +1,6 @@
 /* `check --each`: many different meshes, a line for each, in their order, whatever happens to one of them. */
 #include "cscd/cscd.h"
-#include "src/tool/each/mesh_job.h"
+#include "src/tool/jobs/mesh_job.h"
 #include "tests/support/test.h"
 #include "tests/support/tool/json_reader.h"
 #include "tests/support/tool/run_tool.h"

@@ -1,5 +1,5 @@
 /* The pairs of triangles that `cscd check` finds, as JSON and as CSV, frame by frame. */
-#include "src/tool/check_output.h"
+#include "src/tool/check/check_output.h"
 
 #include "src/io/text_escape.h"
 

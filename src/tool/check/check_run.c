@@ -1,0 +1,160 @@
+/* A run of `cscd check`: frame by frame, what intersects. */
+#include "src/tool/check/check_run.h"
+
+#include "src/tool/answers/answer_words.h"
+#include "src/tool/check/check_output.h"
+#include "src/tool/common/command.h"
+#include "src/tool/common/terminal.h"
+#include "src/tool/jobs/recording_answer.h"
+
+#include <stdlib.h>
+
+/* A run of the command. */
+typedef struct check_run {
+    const check_options *options;
+    const char *name; /* of a job among many, */
+    job_output *job;  /* and its output; NULL: it is none */
+    recording recording;
+    ignore_pairs ignored;
+    length_unit unit;
+    fail_rules rules;
+    answers answers;
+    cscd_detector *detector;
+    double *positions;
+    check_output output;
+    answer_outputs files;
+    exports exports;
+    terminal_progress progress;
+    frame_choice frames;
+} check_run;
+
+static size_t frames_done(const check_run *c) {
+    return answers_frame_count(&c->answers);
+}
+
+static bool check_frame(check_run *c, uint32_t frame, io_error *error) {
+    cscd_intersection_pairs found;
+    io_error reason;
+    if (!recording_read(&c->recording, frame, c->positions, error)) return false;
+    if (!answers_add_frame(&c->answers, c->detector, frame, c->positions, &found, &reason))
+        return io_fail(error, "frame %d: %s", c->recording.frame_numbers[frame], reason.text);
+    return check_output_add(&c->output, &c->answers, &found, error) &&
+           exports_add_frame(&c->exports, frame, c->positions, &found, error);
+}
+
+static bool create_detector(check_run *c, io_error *error) {
+    cscd_detector_options options = cscd_detector_defaults();
+    ignore_pairs_choose(&c->ignored, &options);
+    if (cscd_detector_create(c->recording.context, c->recording.mesh, NULL, &options, &c->detector) !=
+        CSCD_OK)
+        return io_fail(error, "%s", cscd_context_detail(c->recording.context));
+    c->positions = malloc((size_t)cscd_mesh_vertex_count(c->recording.mesh) * 3 * sizeof *c->positions);
+    return (c->positions != NULL || io_fail(error, "out of memory")) &&
+           answers_open(&c->recording, &c->ignored, !c->options->answers.no_depths, &c->answers, error) &&
+           answers_prepare(&c->answers, c->detector, error);
+}
+
+/* Everything that can fail before the work begins. */
+static bool prepare_check(check_run *c, io_error *error) {
+    const check_options *o = c->options;
+    c->unit = answer_options_unit(&o->answers, &c->recording);
+    return frame_range_choose(&o->frames, c->recording.frame_numbers, c->recording.frame_count, &c->frames,
+                              error) &&
+           fail_rules_create(&o->answers.fail, &c->unit, &c->rules, error) &&
+           ignore_pairs_prepare(&o->ignored, &c->recording, &c->ignored, error) &&
+           create_detector(c, error) &&
+           exports_open(&o->exports, &c->recording, &c->ignored.parts, NULL, &c->exports, error) &&
+           answer_outputs_open(&o->answers, &c->files, error) &&
+           check_output_open(o->json_path, o->csv_path, &c->output, error);
+}
+
+static bool check_frames(check_run *c, io_error *error) {
+    uint32_t count = frame_choice_count(&c->frames);
+    for (uint32_t i = 0; i < count && !interrupted(); i++) {
+        terminal_progress_update(&c->progress, i, count, "check");
+        if (!check_frame(c, c->frames.first + i * c->frames.step, error)) return false;
+    }
+    return true;
+}
+
+static void print_answers(const check_run *c) {
+    if (c->options->quiet || frames_done(c) == 0) return;
+    answers_print_sentence(stdout, &c->answers, &c->unit);
+    answers_print_events(&c->answers, &c->unit);
+    if (c->options->answers.timings) answers_print_frames(&c->answers, &c->unit);
+}
+
+/* Writes what was found, be it of all frames or not. */
+static bool close_check(check_run *c, const char *stopped_by, io_error *error) {
+    const check_options *o = c->options;
+    const char *suite = recording_options_path(&o->source);
+    bool finished = answers_finish(&c->answers, error);
+    if (finished) print_answers(c);
+    if (!o->quiet) {
+        recording_warn(&c->recording);
+        recording_note_animations(&c->recording);
+    }
+    bool closed = check_output_close(&c->output, &c->answers, &c->unit, stopped_by, finished ? error : NULL);
+    bool written = answer_outputs_close(&c->files, finished ? &c->answers : NULL, &c->rules, suite,
+                                        finished && closed ? error : NULL);
+    bool exported = exports_close(&c->exports, finished && closed && written ? error : NULL);
+    return finished && closed && written && exported;
+}
+
+static void tell_interrupt(const check_run *c) {
+    const check_options *o = c->options;
+    const uint32_t done = (uint32_t)frames_done(c);
+    const int32_t *numbers = c->recording.frame_numbers;
+    const char *const paths[] = {o->json_path,          o->csv_path,         o->answers.events_path,
+                                 o->answers.junit_path, o->exports.vtk_path, o->exports.ply_path,
+                                 o->exports.select_path};
+    interrupt_tell(
+        &(interrupt_kept){.done = done,
+                          .whole = frame_choice_count(&c->frames),
+                          .what = "frames",
+                          .first = numbers[c->frames.first],
+                          .last = numbers[c->frames.first + (done > 0 ? done - 1 : 0) * c->frames.step],
+                          .paths = paths,
+                          .path_count = sizeof paths / sizeof *paths});
+}
+
+static int end_check(check_run *c, bool ran, const io_error *error) {
+    io_error close_error = {""};
+    if (!close_check(c, ran ? (interrupted() ? "interrupted" : NULL) : error->text, &close_error) && ran)
+        return fail_input("%s", close_error.text);
+    if (!ran) return fail_input("%s", error->text);
+    if (interrupted()) {
+        if (c->job == NULL) tell_interrupt(c);
+        return interrupt_exit_code();
+    }
+    if (c->job != NULL) {
+        recording_answer_write(c->name, &c->answers, &c->unit, &c->rules, c->job);
+        return EXIT_RAN;
+    }
+    return fail_rules_apply(&c->rules, &c->answers) ? EXIT_CONTACT : EXIT_RAN;
+}
+
+int check_run_on(const check_options *options, const char *name, job_output *job) {
+    check_run c = {.options = options, .name = name, .job = job};
+    io_error error = {""};
+    int code;
+    if (!recording_open(&options->source, &c.recording, &error)) return fail_input("%s", error.text);
+    interrupt_catch();
+    if (prepare_check(&c, &error)) {
+        terminal_progress_begin(&c.progress, options->quiet);
+        bool ran = check_frames(&c, &error);
+        terminal_progress_end(&c.progress);
+        code = end_check(&c, ran, &error);
+    } else {
+        check_output_abandon(&c.output);
+        answer_outputs_close(&c.files, NULL, &c.rules, NULL, NULL);
+        code = fail_input("%s", error.text);
+    }
+    exports_close(&c.exports, NULL);
+    answers_close(&c.answers);
+    cscd_detector_destroy(c.detector);
+    ignore_pairs_free(&c.ignored);
+    recording_close(&c.recording);
+    free(c.positions);
+    return code;
+}

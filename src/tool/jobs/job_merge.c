@@ -1,0 +1,168 @@
+/* Finds the line of each job in the results of all shards, and copies them in order. */
+#include "src/tool/jobs/job_merge.h"
+
+#include "src/io/file_reader.h"
+#include "src/tool/common/terminal.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+
+/* ---- one file ------------------------------------------------------------------------------------------------------ */
+
+static bool begin_merge(job_merge *m, const job_record *first, io_error *error) {
+    m->list = first->list;
+    m->jobs = first->jobs;
+    m->lines = calloc(m->jobs, sizeof *m->lines);
+    return m->lines != NULL || io_fail(error, "out of memory for %u jobs", m->jobs);
+}
+
+/* A job that failed may have been run again, by the same shard. */
+static bool replaces_failure(const merged_line *before, uint32_t file) {
+    return before->file == file && before->record.outcome == JOB_FAILED;
+}
+
+static bool place_line(job_merge *m, const merged_line *line, size_t number, io_error *error) {
+    const job_record *record = &line->record;
+    const char *path = m->paths[line->file];
+    if (m->lines == NULL && !begin_merge(m, record, error)) return false;
+    if (record->list != m->list || record->jobs != m->jobs)
+        return io_fail(error,
+                       "%s:%zu: these are results of another list or of other options than those of %s", path,
+                       number, m->paths[0]);
+    merged_line *place = &m->lines[record->job];
+    if (place->length > 0 && place->file != line->file && strcmp(m->paths[place->file], path) == 0)
+        return io_fail(error, "%s is named twice", path);
+    if (place->length > 0 && !replaces_failure(place, line->file))
+        return io_fail(error, "%s:%zu: job %u is in %s as well", path, number, record->job + 1,
+                       m->paths[place->file]);
+    *place = *line;
+    return true;
+}
+
+static bool read_line(job_merge *m, const file_reader *reader, merged_line *line, size_t number,
+                      io_error *error) {
+    const char *text = reader->bytes + line->offset, *end = memchr(text, '\n', reader->size - line->offset);
+    if (end == NULL)
+        return io_fail(error, "%s:%zu: the line is torn; go on with this shard by --resume", reader->path,
+                       number);
+    if (end - text >= UINT32_MAX || !job_record_read(text, (size_t)(end - text), &line->record))
+        return io_fail(error, "%s:%zu: this is no line of results", reader->path, number);
+    line->length = (uint32_t)(end - text) + 1;
+    return place_line(m, line, number, error);
+}
+
+static bool read_file(job_merge *m, uint32_t file, io_error *error) {
+    file_reader reader;
+    if (!file_reader_open(&reader, m->paths[file], error)) return false;
+    bool good = true;
+    size_t number = 1;
+    for (uint64_t at = 0; at < reader.size && good; number++) {
+        merged_line line = {.offset = at, .file = file};
+        good = read_line(m, &reader, &line, number, error);
+        at += line.length;
+    }
+    file_reader_close(&reader);
+    return good;
+}
+
+/* ---- all of them --------------------------------------------------------------------------------------------------- */
+
+enum { RANGES_NAMED = 5 };
+
+/* "3, 6, 9 to 21 and others". */
+static uint32_t name_missing(const job_merge *m, char *text, size_t size) {
+    uint32_t missing = 0, ranges = 0;
+    size_t used = 0;
+    text[0] = '\0';
+    for (uint32_t i = 0, end; i < m->jobs; i = end) {
+        end = i + 1;
+        if (m->lines[i].length > 0) continue;
+        while (end < m->jobs && m->lines[end].length == 0) end++;
+        missing += end - i;
+        if (++ranges > RANGES_NAMED) continue;
+        used += (size_t)snprintf(text + used, size - used, "%s%u", ranges > 1 ? ", " : "", i + 1);
+        if (end - i > 1) used += (size_t)snprintf(text + used, size - used, " to %u", end);
+    }
+    if (ranges > RANGES_NAMED) snprintf(text + used, size - used, " and others");
+    return missing;
+}
+
+static bool prove_whole(const job_merge *m, io_error *error) {
+    char named[RANGES_NAMED * 32 + 16];
+    if (m->lines == NULL) return io_fail(error, "%s: there are no results", m->paths[0]);
+    const uint32_t missing = name_missing(m, named, sizeof named);
+    return missing == 0 ||
+           io_fail(
+               error,
+               "%u of %u jobs are missing: %s; is a shard not named, or not done? (--resume goes on with one)",
+               missing, m->jobs, named);
+}
+
+bool job_merge_read(const char *const *paths, size_t count, job_merge *out, io_error *error) {
+    job_merge m = {.paths = paths, .path_count = count};
+    bool good = true;
+    for (uint32_t i = 0; i < count && good; i++) good = read_file(&m, i, error);
+    good = good && prove_whole(&m, error);
+    for (uint32_t i = 0; i < m.jobs && good; i++) job_sums_add(&m.sums, &m.lines[i].record);
+    if (!good) job_merge_free(&m);
+    if (good) *out = m;
+    return good;
+}
+
+/* ---- copying ------------------------------------------------------------------------------------------------------- */
+
+typedef struct line_copier {
+    FILE **files; /* opened when the first of their lines comes */
+    char *text;
+    size_t capacity;
+} line_copier;
+
+static bool copy_line(const job_merge *m, line_copier *c, const merged_line *line, FILE *out,
+                      io_error *error) {
+    const char *path = m->paths[line->file];
+    if (line->length > c->capacity) {
+        char *room = realloc(c->text, line->length);
+        if (room == NULL) return io_fail(error, "out of memory");
+        c->text = room;
+        c->capacity = line->length;
+    }
+    FILE **file = &c->files[line->file];
+    if (*file == NULL) *file = fopen(path, "rb");
+    if (*file == NULL) return io_fail(error, "%s: cannot open: %s", path, strerror(errno));
+    if (ftello(*file) != (off_t)line->offset && fseeko(*file, (off_t)line->offset, SEEK_SET) != 0)
+        return io_fail(error, "%s: cannot read: %s", path, strerror(errno));
+    job_record record;
+    if (fread(c->text, 1, line->length, *file) != line->length ||
+        !job_record_read(c->text, line->length - 1, &record) || record.job != line->record.job)
+        return io_fail(error, "%s: has changed while it was read; is its shard still running?", path);
+    fwrite(c->text, 1, line->length, out);
+    return true;
+}
+
+/* A file of a shard each, all of them open at once. */
+static void allow_files(size_t count) {
+    struct rlimit limit;
+    if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur > count + 16) return;
+    limit.rlim_cur = limit.rlim_max;
+    setrlimit(RLIMIT_NOFILE, &limit);
+}
+
+bool job_merge_write(const job_merge *m, FILE *out, io_error *error) {
+    allow_files(m->path_count);
+    line_copier c = {.files = calloc(m->path_count, sizeof *c.files)};
+    bool good = c.files != NULL || io_fail(error, "out of memory");
+    for (uint32_t i = 0; i < m->jobs && good && !interrupted(); i++)
+        good = copy_line(m, &c, &m->lines[i], out, error);
+    for (size_t i = 0; i < m->path_count && c.files != NULL; i++)
+        if (c.files[i] != NULL) fclose(c.files[i]);
+    free(c.files);
+    free(c.text);
+    return good;
+}
+
+void job_merge_free(job_merge *m) {
+    free(m->lines);
+    *m = (job_merge){.paths = NULL};
+}

@@ -1,0 +1,29 @@
+/* Brings the results of all shards of a list together, and proves that each job has one. */
+#pragma once
+
+#include "src/tool/jobs/job_record.h"
+
+/* Where a job's line stands. */
+typedef struct merged_line {
+    uint64_t offset;
+    uint32_t file, length; /* with its '\n'; 0: there is none */
+    job_record record;
+} merged_line;
+
+typedef struct job_merge {
+    const char *const *paths;
+    size_t path_count;
+    merged_line *lines; /* of each job */
+    uint32_t jobs;
+    uint64_t list;
+    job_sums sums;
+} job_merge;
+
+/* Reads the files. False: a job is missing or there twice, a file is of another list, or a line is none of results; the error names
+ * file, line and job. *out holds nothing to free then. The paths outlive the merge. */
+bool job_merge_read(const char *const *paths, size_t count, job_merge *out, io_error *error);
+
+/* Writes all lines in the order of the jobs, unchanged. */
+bool job_merge_write(const job_merge *merge, FILE *out, io_error *error);
+
+void job_merge_free(job_merge *merge);

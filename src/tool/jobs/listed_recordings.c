@@ -1,0 +1,128 @@
+/* Jobs that are commands of the tool: their options are those of the command line and their own. */
+#include "src/tool/jobs/listed_recordings.h"
+
+#include "src/tool/common/command.h"
+#include "src/tool/common/terminal.h"
+#include "src/tool/jobs/recording_answer.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- what may stand where ---------------------------------------------------------------------------------------- */
+
+static bool name_among(const char *name, const char *const *names) {
+    while (*names != NULL && strcmp(*names, name) != 0) names++;
+    return *names != NULL;
+}
+
+/* Files that a command writes. */
+static const char *const outputs[] = {"json",  "csv", "contacts", "report", "events",
+                                      "junit", "vtk", "ply",      "select", NULL};
+
+/* Options of the whole run. */
+static const char *const of_run[] = {"list", "shard",   "results", "resume", "job-timeout",
+                                     "each", "threads", "quiet",   NULL};
+
+static bool option_fits_job(const job_option *option, io_error *error) {
+    if (name_among(option->name, of_run))
+        return io_fail(error, "--%s is for the whole list; give it on the command line", option->name);
+    if (option->value != NULL && strcmp(option->value, "-") == 0 && name_among(option->name, outputs))
+        return io_fail(error, "--%s: a job among many has no standard output; name a file", option->name);
+    return true;
+}
+
+static bool take_options(const list_command *c, const job_line *line, void *options, given_options *given,
+                         io_error *error) {
+    for (size_t i = 0; i < line->option_count; i++) {
+        const job_option *option = &line->options[i];
+        if (!option_fits_job(option, error) ||
+            !option_table_set(c->table, option->name, option->value, options, given, error))
+            return false;
+    }
+    given->inputs = line->inputs;
+    given->input_count = line->input_count;
+    return true;
+}
+
+/* ---- a job ------------------------------------------------------------------------------------------------------- */
+
+static bool run_command(const void *user, const job_line *line, cscd_context *context, job_output *out,
+                        io_error *error) {
+    const list_command *c = user;
+    given_options given = *c->given;
+    void *options = malloc(c->options_size);
+    if (options == NULL) return io_fail(error, "out of memory");
+    memcpy(options, c->options, c->options_size);
+    int code = EXIT_BAD_INPUT;
+    if (take_options(c, line, options, &given, error)) {
+        failures_keep(error);
+        code = c->run(options, &given, line->name, context, out);
+        failures_keep(NULL);
+    }
+    free(options);
+    out->given_up = interrupted();
+    return !out->given_up && (code == EXIT_RAN || code == EXIT_CONTACT);
+}
+
+static void fail_command(const void *user, const char *name, const char *reason, job_output *out) {
+    (void)user;
+    recording_answer_fail(name, reason, out);
+}
+
+/* ---- the list ---------------------------------------------------------------------------------------------------- */
+
+/* A fault in the list is found before any job runs. */
+static bool check_lines(const list_command *c, const job_list *list, io_error *error) {
+    void *options = malloc(c->options_size);
+    if (options == NULL) return io_fail(error, "out of memory");
+    bool good = true;
+    for (uint32_t i = 0; i < list->count && good; i++) {
+        given_options given = *c->given;
+        job_line line;
+        io_error reason;
+        memcpy(options, c->options, c->options_size);
+        good = job_list_line(list, i, &line, &reason);
+        if (good) {
+            good = take_options(c, &line, options, &given, &reason);
+            job_line_free(&line);
+        }
+        if (!good) job_list_fail(list, i, reason.text, error);
+    }
+    free(options);
+    return good;
+}
+
+static int refuse_options(const list_command *c) {
+    io_error error;
+    for (const char *const *name = outputs; *name != NULL; name++)
+        if (option_table_has(c->table, *name) && option_given(c->table, c->given, *name))
+            return fail_usage(
+                c->table->command,
+                "--%s names one file, and each job of a list needs its own: write {\"outputs\": {\"%s\": ...}} "
+                "in the list",
+                *name, *name);
+    if (c->given->input_count > 0)
+        return fail_usage(c->table->command, "--list: '%s' is no input; the list has the models",
+                          c->given->inputs[0]);
+    if (!list_options_are_safe(c->list, NULL, 0, &error))
+        return fail_usage(c->table->command, "--results %s", error.text);
+    if (c->list->resume != RESUME_NOTHING && c->list->results_path == NULL)
+        return fail_usage(c->table->command, "--resume needs --results, the file that it goes on with");
+    return EXIT_RAN;
+}
+
+int run_listed_recordings(const list_command *c) {
+    job_list list;
+    io_error error;
+    int code = refuse_options(c);
+    if (code != EXIT_RAN) return code;
+    if (!job_list_read(c->list->path, &list, &error)) return fail_input("%s", error.text);
+    jobs_request request = list_options_request(c->list, &list, c->table, c->given);
+    request.thread_count = c->thread_count;
+    request.quiet = c->quiet;
+    const job_kind kind = {
+        .one = "recording", .several = "recordings", .user = c, .run = run_command, .fail = fail_command};
+    code = check_lines(c, &list, &error) ? run_jobs(&request, &kind) : fail_input("%s", error.text);
+    job_list_free(&list);
+    return code;
+}

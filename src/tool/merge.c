@@ -1,0 +1,78 @@
+/* `cscd merge`: brings the results of the shards of a list together. */
+#include "src/io/output_file.h"
+#include "src/tool/common/command.h"
+#include "src/tool/common/option_table.h"
+#include "src/tool/common/option_values.h"
+#include "src/tool/common/output_path.h"
+#include "src/tool/common/terminal.h"
+#include "src/tool/jobs/job_merge.h"
+
+#include <errno.h>
+#include <string.h>
+
+typedef struct merge_options {
+    const char *output_path;
+    bool quiet;
+} merge_options;
+
+static const option_row rows[] = {
+    {"o", "OUT.jsonl", read_text, offsetof(merge_options, output_path),
+     "the lines of all jobs in the order of the list; - is the standard output. Without it they are only proven to be "
+     "there"},
+    {"output", "OUT.jsonl", read_text, offsetof(merge_options, output_path), NULL},
+    {"quiet", NULL, read_flag, offsetof(merge_options, quiet), "nothing but errors"},
+};
+
+static const option_table table = {
+    "merge",
+    "SHARD.jsonl... [-o OUT.jsonl]",
+    "Brings together what check or replay --list --shard wrote by --results. It proves that each job of the list is there "
+    "exactly once; what is missing, there twice or of another list is named, and nothing is written then. The exit code is that "
+    "of one run of the whole list.",
+    rows,
+    sizeof rows / sizeof *rows,
+    .examples = {
+        {"merge shard-*.jsonl -o night.jsonl", "Put the results of all shards of a night in one file."},
+        {"merge shard-*.jsonl", "Find out whether all shards are done, and what is missing."},
+        {"merge shard-*.jsonl -o - --quiet", "Hand all results to another program."}}};
+
+static bool write_lines(const job_merge *merge, const char *path, io_error *error) {
+    output_file file;
+    if (path == NULL) return true;
+    if (!output_file_open(path, &file)) return io_fail(error, "%s: cannot write: %s", path, strerror(errno));
+    errno = 0;
+    const bool copied = job_merge_write(merge, file.file, error) && !interrupted();
+    if (!output_file_close(&file, copied ? OUTPUT_WHOLE : OUTPUT_ABANDONED) && copied)
+        return io_fail(error, "%s: cannot write: %s", path, strerror(errno != 0 ? errno : EIO));
+    return copied || interrupted();
+}
+
+static int end_merge(const job_merge *merge, const merge_options *o) {
+    const uint32_t failed = merge->sums.outcomes[JOB_FAILED];
+    if (interrupted()) {
+        note("interrupted; nothing was written");
+        return interrupt_exit_code();
+    }
+    if (!o->quiet) job_sums_print(stdout, &merge->sums, "job", "jobs");
+    if (failed > 0) return fail_input("%u of %u jobs have failed", failed, merge->jobs);
+    return merge->sums.found > 0 ? EXIT_CONTACT : EXIT_RAN;
+}
+
+int command_merge(int argument_count, char **arguments) {
+    merge_options o = {.output_path = NULL};
+    given_options given;
+    io_error error = {""};
+    job_merge merge;
+    int code;
+    if (!option_table_read(&table, argument_count, arguments, &o, &given, &code)) return code;
+    if (given.input_count == 0)
+        return fail_usage("merge", "no results given: what --results of check or replay wrote");
+    if (!output_path_is_safe(o.output_path, given.inputs, given.input_count, &error) ||
+        !output_path_fits(o.output_path, ".jsonl", &error))
+        return fail_usage("merge", "-o %s", error.text);
+    interrupt_catch();
+    if (!job_merge_read(given.inputs, given.input_count, &merge, &error)) return fail_input("%s", error.text);
+    code = write_lines(&merge, o.output_path, &error) ? end_merge(&merge, &o) : fail_input("%s", error.text);
+    job_merge_free(&merge);
+    return code;
+}

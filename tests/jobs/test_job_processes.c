@@ -1,0 +1,275 @@
+/* Jobs in processes: each is taken or fails once, whatever happens to the process of one of them. */
+#include "src/tool/jobs/job_processes.h"
+
+#include "src/tool/common/terminal.h"
+#include "tests/support/test.h"
+
+#include <signal.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum { JOBS = 300, WORKERS = 5 };
+
+typedef enum job_fate { FATE_NONE, FATE_KILLED, FATE_CRASH, FATE_EXIT, FATE_LATE, FATE_DEAF } job_fate;
+
+/* What all processes see. */
+typedef struct shared_counts {
+    atomic_int runs[JOBS];
+    atomic_int busy, most_busy;
+} shared_counts;
+
+typedef struct watched {
+    shared_counts *shared;
+    unsigned char fates[JOBS]; /* job_fate */
+    uint32_t taken[JOBS];
+    char reasons[JOBS][200]; /* "": the job was taken */
+    uint32_t count;
+    uint32_t stop_after; /* takes no more after so many; 0: takes all */
+    int signal;          /* sent to this process by the job behind that; 0: none */
+    const char *refusal; /* why workers cannot begin; NULL: they can */
+} watched;
+
+static watched w;
+
+static void watch_nothing(void) {
+    shared_counts *shared = w.shared;
+    w = (watched){.shared = shared};
+    memset(shared, 0, sizeof *shared);
+}
+
+static int share_counts(void **state) {
+    (void)state;
+    w.shared = mmap(NULL, sizeof *w.shared, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    assert_true(w.shared != MAP_FAILED);
+    return 0;
+}
+
+/* ---- jobs ------------------------------------------------------------------------------------------------ */
+
+static bool begin_watched(void *user, io_error *error) {
+    const watched *watch = user;
+    return watch->refusal == NULL || io_fail(error, "%s", watch->refusal);
+}
+
+/* No core dump, and no report of a sanitizer. */
+static void crash_quietly(int number) {
+    setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
+    signal(number, SIG_DFL);
+    raise(number);
+}
+
+static void meet_fate(job_fate fate) {
+    if (fate == FATE_KILLED) raise(SIGKILL);
+    if (fate == FATE_CRASH) crash_quietly(SIGSEGV);
+    if (fate == FATE_EXIT) _exit(7);
+    while (fate == FATE_LATE && !interrupted()) usleep(1000);
+    while (fate == FATE_DEAF) usleep(1000);
+}
+
+/* Some results are empty, and some larger than what a socket holds. */
+static size_t size_of(uint32_t job) {
+    return job % 7 == 0 ? 0 : job % 50 == 1 ? 700000 : 10 * (size_t)job;
+}
+
+static bool run_watched(void *user, uint32_t job, FILE *result) {
+    const watched *watch = user;
+    shared_counts *shared = watch->shared;
+    const int busy = atomic_fetch_add(&shared->busy, 1) + 1;
+    if (busy > atomic_load(&shared->most_busy)) atomic_store(&shared->most_busy, busy);
+    atomic_fetch_add(&shared->runs[job], 1);
+    if (job % 50 == 0) usleep(3000);
+    if (watch->signal != 0 && job == watch->stop_after) kill(getppid(), watch->signal);
+    atomic_fetch_sub(&shared->busy, 1);
+    meet_fate((job_fate)watch->fates[job]);
+    for (size_t i = 0; i < size_of(job); i++) fputc((int)(job + i) % 251, result);
+    return !interrupted();
+}
+
+static bool take_watched(void *user, uint32_t job, const char *result, size_t size) {
+    watched *watch = user;
+    assert_int_equal(watch->taken[job]++, 0);
+    assert_int_equal(size, size_of(job));
+    for (size_t i = 0; i < size; i++) assert_int_equal((unsigned char)result[i], (job + i) % 251);
+    watch->count++;
+    return watch->signal != 0 || watch->stop_after == 0 || watch->count < watch->stop_after;
+}
+
+static bool fail_watched(void *user, uint32_t job, const char *reason) {
+    watched *watch = user;
+    assert_int_equal(watch->taken[job]++, 0);
+    snprintf(watch->reasons[job], sizeof watch->reasons[job], "%s", reason);
+    return true;
+}
+
+static bool run_all(uint32_t count, uint32_t workers, double seconds, uint32_t *done, io_error *error) {
+    const job_set set = {.count = count,
+                         .worker_count = workers,
+                         .seconds = seconds,
+                         .user = &w,
+                         .begin = begin_watched,
+                         .run = run_watched,
+                         .take = take_watched,
+                         .fail = fail_watched};
+    *done = UINT32_MAX;
+    return jobs_run(&set, done, error);
+}
+
+/* All jobs have ended once; those with a fate, for its reason. */
+static void expect_all(const char *const *reasons) {
+    for (uint32_t i = 0; i < JOBS; i++) {
+        const char *expected = reasons[w.fates[i]];
+        assert_int_equal(w.taken[i], 1);
+        if (strncmp(w.reasons[i], expected, strlen(expected)) != 0 ||
+            (expected[0] == '\0' && w.reasons[i][0] != '\0'))
+            fail_msg("job %u: '%s' instead of '%s'", i, w.reasons[i], expected);
+    }
+}
+
+/* ---- tests ----------------------------------------------------------------------------------------------- */
+
+static void every_job_is_taken_once(void **state) {
+    (void)state;
+    for (uint32_t workers = 1; workers <= WORKERS; workers++) {
+        uint32_t done;
+        io_error error;
+        watch_nothing();
+        assert_true(run_all(JOBS, workers, 0.0, &done, &error));
+        assert_int_equal(done, JOBS);
+        expect_all((const char *const[]){""});
+        for (uint32_t i = 0; i < JOBS; i++) assert_int_equal(atomic_load(&w.shared->runs[i]), 1);
+        assert_true(atomic_load(&w.shared->most_busy) <= (int)workers);
+    }
+}
+
+static void no_jobs_are_done_at_once(void **state) {
+    (void)state;
+    uint32_t done;
+    io_error error;
+    watch_nothing();
+    assert_true(run_all(0, 3, 0.0, &done, &error));
+    assert_int_equal(done, 0);
+}
+
+/* The others are taken all the same, also those that the process of the one would have run. */
+static void a_process_that_dies_fails_its_job_alone(void **state) {
+    static const char *const reasons[] = {[FATE_NONE] = "",
+                                          [FATE_KILLED] =
+                                              "its process was killed by signal 9 (Killed), as the system",
+                                          [FATE_CRASH] = "its process was killed by signal 11",
+                                          [FATE_EXIT] = "its process ended with code 7"};
+    (void)state;
+    for (uint32_t workers = 1; workers <= 3; workers += 2) {
+        uint32_t done;
+        io_error error;
+        watch_nothing();
+        for (uint32_t i = 0; i < JOBS; i += 20) w.fates[i] = (unsigned char)(FATE_KILLED + i / 20 % 3);
+        w.fates[JOBS - 1] = FATE_KILLED;
+        assert_true(run_all(JOBS, workers, 0.0, &done, &error));
+        assert_int_equal(done, JOBS);
+        expect_all(reasons);
+    }
+}
+
+/* One that is told to stop does; one that does not listen is killed. */
+static void a_job_that_takes_too_long_fails(void **state) {
+    static const char *const reasons[] = {[FATE_NONE] = "",
+                                          [FATE_LATE] = "it took longer than 0.3 s, which is its time limit",
+                                          [FATE_DEAF] = "it took longer than 0.3 s, which is its time limit"};
+    uint32_t done;
+    io_error error;
+    (void)state;
+    interrupt_catch();
+    watch_nothing();
+    w.fates[0] = w.fates[100] = w.fates[101] = FATE_LATE;
+    w.fates[200] = FATE_DEAF;
+    assert_true(run_all(JOBS, 2, 0.3, &done, &error));
+    assert_int_equal(done, JOBS);
+    expect_all(reasons);
+}
+
+static void a_worker_that_cannot_begin_ends_the_run(void **state) {
+    uint32_t done;
+    io_error error;
+    (void)state;
+    watch_nothing();
+    w.refusal = "no threads today";
+    assert_false(run_all(JOBS, 3, 0.0, &done, &error));
+    assert_string_equal(error.text, "no threads today");
+    assert_int_equal(done, 0);
+}
+
+/* As after a full disk. */
+static void a_result_that_is_not_kept_is_the_last(void **state) {
+    uint32_t done;
+    io_error error;
+    (void)state;
+    watch_nothing();
+    w.stop_after = 40;
+    assert_true(run_all(JOBS, 2, 0.0, &done, &error));
+    assert_true(done >= 40 && done < JOBS);
+    uint32_t taken = 0;
+    for (uint32_t i = 0; i < JOBS; i++) {
+        taken += w.taken[i];
+        assert_string_equal(w.reasons[i], "");
+    }
+    assert_int_equal(taken, done);
+}
+
+/* What a killed process leaves running would compute for nobody. */
+static void workers_die_with_the_process(void **state) {
+    (void)state;
+    watch_nothing();
+    for (uint32_t i = 0; i < JOBS; i++) w.fates[i] = FATE_DEAF;
+    int ends[2];
+    assert_int_equal(pipe(ends), 0);
+    const pid_t pid = fork();
+    if (pid == 0) {
+        uint32_t done;
+        io_error error;
+        run_all(JOBS, 3, 0.0, &done, &error);
+        _exit(0);
+    }
+    close(ends[1]);
+    for (int i = 0; i < 20000 && atomic_load(&w.shared->runs[2]) == 0; i++) usleep(1000);
+    assert_int_equal(atomic_load(&w.shared->runs[2]), 1);
+    kill(pid, SIGKILL);
+    waitpid(pid, NULL, 0);
+    char byte;
+    assert_int_equal(read(ends[0], &byte, 1), 0); /* nobody is left who could write */
+    close(ends[0]);
+}
+
+/* The flag of an interrupt stays, so this comes last. */
+static void an_interrupt_keeps_what_is_done(void **state) {
+    uint32_t done;
+    io_error error;
+    (void)state;
+    interrupt_catch();
+    watch_nothing();
+    w.signal = SIGINT;
+    w.stop_after = 100;
+    assert_true(run_all(JOBS, WORKERS, 0.0, &done, &error));
+    assert_true(interrupted());
+    assert_true(done >= 50 && done < JOBS);
+    assert_int_equal(done, w.count);
+    for (uint32_t i = 0; i < JOBS; i++) assert_string_equal(w.reasons[i], "");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_job_is_taken_once),
+        cmocka_unit_test(no_jobs_are_done_at_once),
+        cmocka_unit_test(a_process_that_dies_fails_its_job_alone),
+        cmocka_unit_test(a_job_that_takes_too_long_fails),
+        cmocka_unit_test(a_worker_that_cannot_begin_ends_the_run),
+        cmocka_unit_test(a_result_that_is_not_kept_is_the_last),
+        cmocka_unit_test(workers_die_with_the_process),
+        cmocka_unit_test(an_interrupt_keeps_what_is_done),
+    };
+    return cmocka_run_group_tests(tests, share_counts, NULL);
+}
