@@ -17,7 +17,8 @@
 /* Prints a command's examples as --help shows them: the command line, and below it what it does. */
 #define EXAMPLES "\"$CSCD_TOOL\" %s --help | sed '/^$/,$d'"
 
-static const char *const commands[] = {"preprocess", "replay", "report", "sense", "check", "merge", "info", "render"};
+static const char *const commands[] = {"preprocess", "replay", "report", "sense",
+                                       "check",      "merge",  "info",   "render"};
 enum { COMMAND_COUNT = sizeof commands / sizeof *commands };
 
 static int find_tool(void **state) {
@@ -76,8 +77,9 @@ static void no_option_is_made_up(void **state) {
     expect_equal(
         "options", shell_output(0, PLAIN_PAGE " | " NAMES),
         shell_output(
-            0, "{ \"$CSCD_TOOL\" --help; for command in preprocess replay report sense check merge info render; do "
-               "\"$CSCD_TOOL\" $command --help; done; } | " NAMES));
+            0,
+            "{ \"$CSCD_TOOL\" --help; for command in preprocess replay report sense check merge info render; do "
+            "\"$CSCD_TOOL\" $command --help; done; } | " NAMES));
 }
 
 static void examples_are_those_of_the_tool(void **state) {
@@ -86,7 +88,7 @@ static void examples_are_those_of_the_tool(void **state) {
         0,
         "sed -e 's/^\\.TP//' -e 's/\\\\(aq/'\\''/g' docs/man/cscd.1 | sed -e 's/\\\\f.//g' -e 's/\\\\-/-/g' | "
         "sed -n '/^\\.SH EXAMPLES/,/^\\.SH SEE/p' | grep -v -e '^\\.SH' -e '^$'");
-    char *help = shell_output(0, "for command in preprocess replay report sense check info render; do "
+    char *help = shell_output(0, "for command in preprocess replay report sense check merge info render; do "
                                  "\"$CSCD_TOOL\" $command --help | sed -e '/^$/,$d' -e 's/^ *//'; done");
     expect_equal("examples", page, help);
     for (size_t i = 0; i < COMMAND_COUNT; i++) {
