@@ -279,6 +279,9 @@ static void expect_resumed(const char *list, const char *trap, size_t bytes, int
     struct stat status;
     assert_int_equal(stat(results.text, &status), 0);
     assert_true((size_t)status.st_size <= bytes);
+    char *left = read_whole_file(results.text, NULL);
+    assert_true(trap[0] == '\0' || left[0] == '\0' || left[strlen(left) - 1] == '\n');
+    free(left);
     tool_run again = RUN_TOOL("check", "--list", list, "--results", results.text, "--resume");
     assert_int_equal(again.code, 1);
     assert_non_null(strstr(again.out, "12 recordings: 10 clean, 2 failed\n"));
