@@ -369,7 +369,7 @@ static void two_processes_do_not_share_a_file(void **state) {
     for (int i = 0; i < 10000 && access(results.text, F_OK) != 0; i++) usleep(1000);
     usleep(100000); /* for the lock, which comes next */
     EXPECT_ERROR(1, TEXTS("results.jsonl: another process writes its results here"), "check", "--list",
-                 list.text, "--results", results.text, "--resume");
+                 list.text, "--results", results.text, "--resume", "--job-timeout", "5");
     shell("cat '%s' > '%s'", clean.text, fifo);
     tool_run run = run_tool_finish(&first);
     assert_int_equal(run.code, 0);
