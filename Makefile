@@ -165,7 +165,7 @@ COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 # What installs packages; a build that leaves expat out on purpose does not ask for it.
 PACKAGES = GSL=$(GSL) CHARGE=$(CHARGE) EXPAT=$(if $(WITHOUT_EXPAT),0,1) .ci/packages
 
-.PHONY: all python python-package wheel sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-embree referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender blender-extension test-vtk test-bridges python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces fuzz-files FORCE
+.PHONY: all python python-package wheel sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-embree referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender blender-extension test-vtk test-bridges test-farm python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces fuzz-files FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -299,6 +299,12 @@ test-vtk:
 	@$(MAKE) --no-print-directory tool
 	@BUILD=$(BUILD) tests/vtk/run.sh
 
+# Shards that xargs, GNU parallel and Slurm start, and whose node dies; nothing else needs these. As root, for the daemons.
+test-farm:
+	@.ci/packages farm
+	@$(MAKE) --no-print-directory tool
+	@CSCD=$(abspath $(BUILD)/cscd) tests/farm/run.sh
+
 # The Python package beside meshio, VTK and torch, by the blocks of docs/python/bridges.md; nothing else needs these.
 test-bridges:
 	@.ci/packages bridges
@@ -412,6 +418,7 @@ help:
 	@echo '               (installs blender); PAGE=--write puts what the steps print into the page, and draws its pictures'
 	@echo 'make blender-extension   the extension of Blender, with the Python package in it, in build/blender'
 	@echo 'make test-vtk   what --vtk writes, read by VTK and compared with the other outputs (installs python3-vtk9)'
+	@echo 'make test-farm      shards that xargs, GNU parallel and Slurm start, and whose node dies (installs these)'
 	@echo 'make test-bridges   the blocks of docs/python/bridges.md, with meshio, VTK and torch (installs these)'
 	@echo 'make test-threads   the tests that use threads, under the thread sanitizer'
 	@echo 'make           build the tool (./cscd), build/release/libcscd.a and libcscd.so; make library builds these alone'

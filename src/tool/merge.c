@@ -5,13 +5,14 @@
 #include "src/tool/common/option_values.h"
 #include "src/tool/common/output_path.h"
 #include "src/tool/common/terminal.h"
+#include "src/tool/jobs/job_junit.h"
 #include "src/tool/jobs/job_merge.h"
 
 #include <errno.h>
 #include <string.h>
 
 typedef struct merge_options {
-    const char *output_path;
+    const char *output_path, *junit_path; /* NULL: not given */
     bool quiet;
 } merge_options;
 
@@ -20,6 +21,8 @@ static const option_row rows[] = {
      "the lines of all jobs in the order of the list; - is the standard output. Without it they are only proven to be "
      "there"},
     {"output", "OUT.jsonl", read_text, offsetof(merge_options, output_path), NULL},
+    {"junit", "OUT.xml", read_text, offsetof(merge_options, junit_path),
+     "write a JUnit file for continuous integration, with a test case for each job; one fails by the rules of its run"},
     {"quiet", NULL, read_flag, offsetof(merge_options, quiet), "nothing but errors"},
 };
 
@@ -36,15 +39,45 @@ static const option_table table = {
         {"merge shard-*.jsonl", "Find out whether all shards are done, and what is missing."},
         {"merge shard-*.jsonl -o - --quiet", "Hand all results to another program."}}};
 
-static bool write_lines(const job_merge *merge, const char *path, io_error *error) {
-    output_file file;
-    if (path == NULL) return true;
-    if (!output_file_open(path, &file)) return io_fail(error, "%s: cannot write: %s", path, strerror(errno));
+/* The files that are written, as the lines come. */
+typedef struct merge_files {
+    output_file lines, junit; /* their files are NULL when not asked for */
+} merge_files;
+
+static bool open_file(const char *path, output_file *file, io_error *error) {
+    return path == NULL || output_file_open(path, file) ||
+           io_fail(error, "%s: cannot write: %s", path, strerror(errno));
+}
+
+static bool close_file(const char *path, output_file *file, bool whole, io_error *error) {
+    if (file->file == NULL) return true;
+    return output_file_close(file, whole ? OUTPUT_WHOLE : OUTPUT_ABANDONED) || !whole ||
+           io_fail(error, "%s: cannot write: %s", path, strerror(errno != 0 ? errno : EIO));
+}
+
+static bool take_line(void *user, const char *line, size_t length, const job_record *record,
+                      io_error *error) {
+    merge_files *files = user;
+    if (files->lines.file != NULL) {
+        fwrite(line, 1, length, files->lines.file);
+        fputc('\n', files->lines.file);
+    }
+    return files->junit.file == NULL || job_junit_add(files->junit.file, line, length, record) ||
+           io_fail(error, "out of memory");
+}
+
+static bool write_files(const job_merge *merge, const merge_options *o, io_error *error) {
+    merge_files files = {.lines = {.file = NULL}};
+    if (o->output_path == NULL && o->junit_path == NULL) return true;
+    bool good =
+        open_file(o->output_path, &files.lines, error) && open_file(o->junit_path, &files.junit, error);
     errno = 0;
-    const bool copied = job_merge_write(merge, file.file, error) && !interrupted();
-    if (!output_file_close(&file, copied ? OUTPUT_WHOLE : OUTPUT_ABANDONED) && copied)
-        return io_fail(error, "%s: cannot write: %s", path, strerror(errno != 0 ? errno : EIO));
-    return copied || interrupted();
+    if (good && files.junit.file != NULL) job_junit_begin(files.junit.file, merge->paths[0], &merge->sums);
+    good = good && job_merge_visit(merge, take_line, &files, error);
+    if (good && files.junit.file != NULL) job_junit_end(files.junit.file);
+    const bool whole = good && !interrupted();
+    good = close_file(o->output_path, &files.lines, whole, good ? error : NULL) && good;
+    return close_file(o->junit_path, &files.junit, whole, good ? error : NULL) && good;
 }
 
 static int end_merge(const job_merge *merge, const merge_options *o) {
@@ -70,9 +103,13 @@ int command_merge(int argument_count, char **arguments) {
     if (!output_path_is_safe(o.output_path, given.inputs, given.input_count, &error) ||
         !output_path_fits(o.output_path, ".jsonl", &error))
         return fail_usage("merge", "-o %s", error.text);
+    if (!output_path_is_safe(o.junit_path, given.inputs, given.input_count, &error) ||
+        !output_path_differs(o.junit_path, (const char *const[]){o.output_path}, 1, &error) ||
+        !output_path_fits(o.junit_path, ".xml", &error))
+        return fail_usage("merge", "--junit %s", error.text);
     interrupt_catch();
     if (!job_merge_read(given.inputs, given.input_count, &merge, &error)) return fail_input("%s", error.text);
-    code = write_lines(&merge, o.output_path, &error) ? end_merge(&merge, &o) : fail_input("%s", error.text);
+    code = write_files(&merge, &o, &error) ? end_merge(&merge, &o) : fail_input("%s", error.text);
     job_merge_free(&merge);
     return code;
 }

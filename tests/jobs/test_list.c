@@ -198,6 +198,11 @@ static void wrong_lists_and_options_are_refused(void **state) {
     EXPECT_ERROR(1, TEXTS("jobs.jsonl:1: --allow-gaps takes no value"), "check", "--list", list.text);
     list = write_list("{\"model\": \"%s\", \"options\": {\"weld\": true}}\n", clean.text);
     EXPECT_ERROR(1, TEXTS("jobs.jsonl:1: --weld needs a value"), "check", "--list", list.text);
+    list = write_list("{\"model\": \"%s\", \"outputs\": {\"json\": \"a.json\"}}\n\n{\"model\": \"%s\"}\n"
+                      "{\"model\": \"%s\", \"options\": {\"csv\": \"a.json\"}}\n",
+                      clean.text, clean.text, clean.text);
+    EXPECT_ERROR(1, TEXTS("jobs.jsonl:4: 'a.json' is written by line 1 as well"), "check", "--list",
+                 list.text);
     list = write_list("{\"model\": \"%s\"}\n", clean.text);
     EXPECT_ERROR(2, TEXTS("--json names one file, and each job"), "check", "--list", list.text, "--json",
                  "a.json");
@@ -346,7 +351,7 @@ static void failed_jobs_run_again(void **state) {
     (void)state;
     temp_path list = write_small_list(), merged = temp_file_path(&folder, "merged.jsonl");
     EXPECT_TOOL(1, "check", "--list", list.text, "--results", results.text);
-    temp_file_write(&folder, "damaged.obj", "v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\n", 35);
+    write_text("damaged.obj", "v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\n");
     EXPECT_TOOL(1, "check", "--list", list.text, "--results", results.text, "--resume");
     EXPECT_TOOL(0, "check", "--list", list.text, "--results", results.text, "--resume=failed");
     EXPECT_TOOL(0, "check", "--list", list.text, "--results", results.text, "--resume=failed");

@@ -156,6 +156,33 @@ static void a_dash_is_the_standard_output(void **state) {
     free(expected);
 }
 
+/* A job that fails itself is an error, one that found something a failure. */
+static void junit_has_a_case_for_each_job(void **state) {
+    char text[1200], *expected = text;
+    (void)state;
+    temp_path xml = temp_file_path(&folder, "night.xml"), few;
+    const char *names[] = {"clean.obj", "open.obj", "none.obj"};
+    for (int i = 0; i < 3; i++)
+        expected +=
+            sprintf(expected, "{\"model\": \"%s/%s\", \"name\": \"<%d>\"}\n", folder.path, names[i], i);
+    few = temp_file_write(&folder, "few.jsonl", text, strlen(text));
+    remove(whole.text);
+    EXPECT_TOOL(1, "check", "--list", few.text, "--results", whole.text, "--fail-on", "crossing", "--quiet");
+    EXPECT_TOOL(1, "merge", whole.text, "--junit", xml.text);
+    char *found = read_whole_file(xml.text, NULL);
+    assert_non_null(
+        strstr(found, "tests=\"3\" failures=\"1\" errors=\"1\">\n"
+                      "    <testcase classname=\"cscd\" name=\"&#60;0&#62;\"/>\n"
+                      "    <testcase classname=\"cscd\" name=\"&#60;1&#62;\">\n      <failure message=\""));
+    assert_non_null(strstr(found, " cross"));
+    assert_non_null(strstr(found, "<error message=\""));
+    assert_non_null(strstr(found, "none.obj: cannot open: No such file or directory\"/>\n    </testcase>\n"
+                                  "  </testsuite>\n</testsuites>\n"));
+    free(found);
+    EXPECT_ERROR(2, TEXTS("--junit", "would overwrite"), "merge", whole.text, "--junit", whole.text);
+    EXPECT_ERROR(2, TEXTS("--junit"), "merge", whole.text, "-o", xml.text, "--junit", xml.text);
+}
+
 /* ---- what does not --------------------------------------------------------------------------------------- */
 
 /* Nothing is written, and what was there stays. */
@@ -249,6 +276,7 @@ int main(void) {
         cmocka_unit_test(the_order_of_lines_does_not_matter),
         cmocka_unit_test(exit_codes_are_those_of_one_run),
         cmocka_unit_test(a_dash_is_the_standard_output),
+        cmocka_unit_test(junit_has_a_case_for_each_job),
         cmocka_unit_test(missing_jobs_are_named),
         cmocka_unit_test(double_jobs_are_named),
         cmocka_unit_test(foreign_results_are_named),

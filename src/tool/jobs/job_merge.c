@@ -111,7 +111,7 @@ bool job_merge_read(const char *const *paths, size_t count, job_merge *out, io_e
     return good;
 }
 
-/* ---- copying ------------------------------------------------------------------------------------------------------- */
+/* ---- the lines ------------------------------------------------------------------------------------------------------- */
 
 typedef struct line_copier {
     FILE **files; /* opened when the first of their lines comes */
@@ -119,8 +119,7 @@ typedef struct line_copier {
     size_t capacity;
 } line_copier;
 
-static bool copy_line(const job_merge *m, line_copier *c, const merged_line *line, FILE *out,
-                      io_error *error) {
+static bool read_again(const job_merge *m, line_copier *c, const merged_line *line, io_error *error) {
     const char *path = m->paths[line->file];
     if (line->length > c->capacity) {
         char *room = realloc(c->text, line->length);
@@ -134,11 +133,9 @@ static bool copy_line(const job_merge *m, line_copier *c, const merged_line *lin
     if (ftello(*file) != (off_t)line->offset && fseeko(*file, (off_t)line->offset, SEEK_SET) != 0)
         return io_fail(error, "%s: cannot read: %s", path, strerror(errno));
     job_record record;
-    if (fread(c->text, 1, line->length, *file) != line->length ||
-        !job_record_read(c->text, line->length - 1, &record) || record.job != line->record.job)
-        return io_fail(error, "%s: has changed while it was read; is its shard still running?", path);
-    fwrite(c->text, 1, line->length, out);
-    return true;
+    return (fread(c->text, 1, line->length, *file) == line->length &&
+            job_record_read(c->text, line->length - 1, &record) && record.job == line->record.job) ||
+           io_fail(error, "%s: has changed while it was read; is its shard still running?", path);
 }
 
 /* A file of a shard each, all of them open at once. */
@@ -149,12 +146,13 @@ static void allow_files(size_t count) {
     setrlimit(RLIMIT_NOFILE, &limit);
 }
 
-bool job_merge_write(const job_merge *m, FILE *out, io_error *error) {
+bool job_merge_visit(const job_merge *m, job_line_taker *take, void *user, io_error *error) {
     allow_files(m->path_count);
     line_copier c = {.files = calloc(m->path_count, sizeof *c.files)};
     bool good = c.files != NULL || io_fail(error, "out of memory");
     for (uint32_t i = 0; i < m->jobs && good && !interrupted(); i++)
-        good = copy_line(m, &c, &m->lines[i], out, error);
+        good = read_again(m, &c, &m->lines[i], error) &&
+               take(user, c.text, m->lines[i].length - 1, &m->lines[i].record, error);
     for (size_t i = 0; i < m->path_count && c.files != NULL; i++)
         if (c.files[i] != NULL) fclose(c.files[i]);
     free(c.files);

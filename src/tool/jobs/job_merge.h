@@ -23,7 +23,11 @@ typedef struct job_merge {
  * file, line and job. *out holds nothing to free then. The paths outlive the merge. */
 bool job_merge_read(const char *const *paths, size_t count, job_merge *out, io_error *error);
 
-/* Writes all lines in the order of the jobs, unchanged. */
-bool job_merge_write(const job_merge *merge, FILE *out, io_error *error);
+/* Takes a line, without its end; false, with the error, ends the visit. */
+typedef bool job_line_taker(void *user, const char *line, size_t length, const job_record *record,
+                            io_error *error);
+
+/* Hands out all lines in the order of the jobs; an interrupt ends the visit, too. */
+bool job_merge_visit(const job_merge *merge, job_line_taker *take, void *user, io_error *error);
 
 void job_merge_free(job_merge *merge);

@@ -10,6 +10,10 @@
 static const char *const outcome_names[JOB_OUTCOMES] = {"clean", "crossing", "touching", "duplicate",
                                                         "failed"};
 
+const char *job_outcome_name(job_outcome outcome) {
+    return outcome_names[outcome];
+}
+
 void job_record_write(json *line, const job_record *r) {
     char digits[17];
     snprintf(digits, sizeof digits, "%016" PRIx64, r->list);
@@ -17,7 +21,7 @@ void job_record_write(json *line, const job_record *r) {
     json_string(line, "list", digits);
     json_integer(line, "jobs", r->jobs);
     json_integer(line, "job", (uint64_t)r->job + 1);
-    json_string(line, "result", outcome_names[r->outcome]);
+    json_string(line, "result", job_outcome_name(r->outcome));
     json_boolean(line, "found", r->found);
 }
 

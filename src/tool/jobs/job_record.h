@@ -18,6 +18,9 @@ typedef enum job_outcome {
     JOB_OUTCOMES
 } job_outcome;
 
+/* As lines of results have it: "crossing". */
+const char *job_outcome_name(job_outcome outcome);
+
 typedef struct job_record {
     uint64_t list; /* the hash of the list and of the options that all its jobs share */
     uint32_t jobs; /* in the list */

@@ -3,6 +3,7 @@
 
 #include "src/tool/common/command.h"
 #include "src/tool/common/terminal.h"
+#include "src/tool/jobs/output_names.h"
 #include "src/tool/jobs/recording_answer.h"
 
 #include <stdlib.h>
@@ -15,10 +16,6 @@ static bool name_among(const char *name, const char *const *names) {
     return *names != NULL;
 }
 
-/* Files that a command writes. */
-static const char *const outputs[] = {"json",  "csv", "contacts", "report", "events",
-                                      "junit", "vtk", "ply",      "select", NULL};
-
 /* Options of the whole run. */
 static const char *const of_run[] = {"list", "shard",   "results", "resume", "job-timeout",
                                      "each", "threads", "quiet",   NULL};
@@ -26,7 +23,7 @@ static const char *const of_run[] = {"list", "shard",   "results", "resume", "jo
 static bool option_fits_job(const job_option *option, io_error *error) {
     if (name_among(option->name, of_run))
         return io_fail(error, "--%s is for the whole list; give it on the command line", option->name);
-    if (option->value != NULL && strcmp(option->value, "-") == 0 && name_among(option->name, outputs))
+    if (option->value != NULL && strcmp(option->value, "-") == 0 && option_is_output(option->name))
         return io_fail(error, "--%s: a job among many has no standard output; name a file", option->name);
     return true;
 }
@@ -71,30 +68,50 @@ static void fail_command(const void *user, const char *name, const char *reason,
 
 /* ---- the list ---------------------------------------------------------------------------------------------------- */
 
+/* The files of all jobs together, and the options that one is tried on. */
+typedef struct list_check {
+    output_names names;
+    void *options;
+} list_check;
+
+static bool check_line(const list_command *c, const job_list *list, uint32_t job, list_check *check,
+                       io_error *error) {
+    given_options given = *c->given;
+    job_line line;
+    io_error reason;
+    memcpy(check->options, c->options, c->options_size);
+    if (!job_list_line(list, job, &line, &reason)) return job_list_fail(list, job, reason.text, error);
+    bool good = take_options(c, &line, check->options, &given, &reason);
+    if (good && !output_names_add(&check->names, &line, job)) good = io_fail(&reason, "out of memory");
+    job_line_free(&line);
+    return good || job_list_fail(list, job, reason.text, error);
+}
+
+static bool check_outputs(list_check *check, const job_list *list, io_error *error) {
+    const char *path;
+    uint32_t first, second;
+    char reason[sizeof error->text];
+    if (!output_names_collide(&check->names, &path, &first, &second)) return true;
+    snprintf(reason, sizeof reason,
+             "'%.800s' is written by line %zu as well; give each job a file of its own", path,
+             list->jobs[first].line);
+    return job_list_fail(list, second, reason, error);
+}
+
 /* A fault in the list is found before any job runs. */
 static bool check_lines(const list_command *c, const job_list *list, io_error *error) {
-    void *options = malloc(c->options_size);
-    if (options == NULL) return io_fail(error, "out of memory");
-    bool good = true;
-    for (uint32_t i = 0; i < list->count && good; i++) {
-        given_options given = *c->given;
-        job_line line;
-        io_error reason;
-        memcpy(options, c->options, c->options_size);
-        good = job_list_line(list, i, &line, &reason);
-        if (good) {
-            good = take_options(c, &line, options, &given, &reason);
-            job_line_free(&line);
-        }
-        if (!good) job_list_fail(list, i, reason.text, error);
-    }
-    free(options);
+    list_check check = {.names = output_names_begin(), .options = malloc(c->options_size)};
+    bool good = check.options != NULL || io_fail(error, "out of memory");
+    for (uint32_t i = 0; i < list->count && good; i++) good = check_line(c, list, i, &check, error);
+    good = good && check_outputs(&check, list, error);
+    output_names_free(&check.names);
+    free(check.options);
     return good;
 }
 
 static int refuse_options(const list_command *c) {
     io_error error;
-    for (const char *const *name = outputs; *name != NULL; name++)
+    for (const char *const *name = output_options; *name != NULL; name++)
         if (option_table_has(c->table, *name) && option_given(c->table, c->given, *name))
             return fail_usage(
                 c->table->command,

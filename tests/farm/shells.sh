@@ -1,0 +1,30 @@
+#!/bin/sh
+# Shards that xargs and GNU parallel start give what one run gives.
+set -eu
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+. "$(dirname "$0")/jobs.sh"
+make_jobs 60
+run_whole
+export CSCD folder
+
+seq 5 | xargs -P 3 -I I "$CSCD" check --list "$folder/jobs.jsonl" --shard I/5 --threads 1 --results "$folder/shard-I.jsonl" --quiet \
+    2>/dev/null || true # a job of the list fails
+"$CSCD" merge "$folder"/shard-*.jsonl -o "$folder/all.jsonl" --quiet 2>/dev/null || [ $? = 1 ]
+expect_merged "$folder/all.jsonl"
+echo 'farm: xargs'
+
+# A log of GNU parallel, by which it runs again what was stopped.
+rm "$folder"/shard-*.jsonl "$folder/all.jsonl"
+run_parallel() {
+    seq 5 | parallel --jobs 3 --joblog "$folder/log" "$@" \
+        "$CSCD" check --list "$folder/jobs.jsonl" --shard {}/5 --threads 1 --results "$folder/shard-{}.jsonl" --resume --quiet \
+        2>/dev/null || true
+}
+run_parallel
+head -c -30 "$folder/shard-2.jsonl" >"$folder/torn" && cp "$folder/torn" "$folder/shard-2.jsonl"
+sed -i '/shard 2/d' "$folder/log"
+run_parallel --resume
+"$CSCD" merge "$folder"/shard-*.jsonl -o "$folder/all.jsonl" --quiet 2>/dev/null || [ $? = 1 ]
+expect_merged "$folder/all.jsonl"
+echo 'farm: GNU parallel'
