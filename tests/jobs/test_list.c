@@ -270,15 +270,11 @@ static void expect_whole_results(void) {
     free_results(&lines);
 }
 
-static const char *tool_path(void) {
-    return getenv("CSCD_TOOL");
-}
-
 /* The system ends the program in the middle of a line, at any byte; with `trap` it reports a full disk instead. */
 static void expect_resumed(const char *list, const char *trap, size_t bytes, int code, const char *text) {
     char *output =
         shell_output(code, "%s prlimit --core=0 --fsize=%zu '%s' check --list '%s' --results '%s' --quiet",
-                     trap, bytes, tool_path(), list, results.text);
+                     trap, bytes, getenv("CSCD_TOOL"), list, results.text);
     if (strstr(output, text) == NULL) fail_msg("%zu bytes: %s", bytes, output);
     free(output);
     struct stat status;

@@ -161,7 +161,10 @@ static void junit_has_a_case_for_each_job(void **state) {
     char text[1200], *expected = text;
     (void)state;
     temp_path xml = temp_file_path(&folder, "night.xml"), few;
-    const char *names[] = {"clean.obj", "open.obj", "none.obj"};
+    static const char crossing[] =
+        "v 0 0 0\nv 4 0 0\nv 0 4 0\nv 1 1 -1\nv 1 1 1\nv 2 1 1\nf 1 2 3\nf 4 5 6\n";
+    const char *names[] = {"clean.obj", "crossing.obj", "none.obj"};
+    temp_file_write(&folder, "crossing.obj", crossing, strlen(crossing));
     for (int i = 0; i < 3; i++)
         expected +=
             sprintf(expected, "{\"model\": \"%s/%s\", \"name\": \"<%d>\"}\n", folder.path, names[i], i);
@@ -180,7 +183,7 @@ static void junit_has_a_case_for_each_job(void **state) {
                                   "  </testsuite>\n</testsuites>\n"));
     free(found);
     EXPECT_ERROR(2, TEXTS("--junit", "would overwrite"), "merge", whole.text, "--junit", whole.text);
-    EXPECT_ERROR(2, TEXTS("--junit"), "merge", whole.text, "-o", xml.text, "--junit", xml.text);
+    EXPECT_ERROR(2, TEXTS("--junit"), "merge", whole.text, "-o", merged.text, "--junit", merged.text);
 }
 
 /* ---- what does not --------------------------------------------------------------------------------------- */
