@@ -61,10 +61,10 @@ wait_for '"frame": 12, "view": "PERSP", "selected": \["Body"\]' 20
 click 1113 593 # Colours
 sleep 2
 touch "$folder/page-wanted"
-tries=150
+tries=600
 until [ -s "$folder/page.html" ]; do
     tries=$((tries - 1))
-    [ $tries -gt 0 ] || { echo 'window: waited 30 s for the page'; tail -5 "$folder/log"; exit 1; }
+    [ $tries -gt 0 ] || { echo 'window: waited 120 s for the page'; tail -5 "$folder/log"; exit 1; }
     sleep 0.2
 done
 wait_for '"frame": 12,' 5
