@@ -8,7 +8,7 @@ make_jobs 60
 run_whole
 export CSCD folder
 
-seq 5 | xargs -P 3 -I I "$CSCD" check --list "$folder/jobs.jsonl" --shard I/5 --threads 1 --results "$folder/shard-I.jsonl" --quiet \
+seq 5 | xargs -P 3 -I {} "$CSCD" check --list "$folder/jobs.jsonl" --shard {}/5 --threads 1 --results "$folder/shard-{}.jsonl" --quiet \
     2>/dev/null || true # a job of the list fails
 "$CSCD" merge "$folder"/shard-*.jsonl -o "$folder/all.jsonl" --quiet 2>/dev/null || [ $? = 1 ]
 expect_merged "$folder/all.jsonl"
