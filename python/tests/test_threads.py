@@ -267,7 +267,8 @@ def test_no_control_c_is_lost(alarm: Any) -> None:
 
     def handle(number: int, frame: Any) -> None:
         nonlocal raised
-        if not frame.f_globals["__name__"].startswith("numpy"):  # which drops what is raised while it looks at records
+        # numpy drops what is raised while it looks at records, Python what is raised while a thread leaves its weak set
+        if not frame.f_globals["__name__"].startswith(("numpy", "_weakrefset")):
             raised += 1
             interrupt_repeat(number, frame)
             raised -= 1  # it has not
@@ -299,10 +300,19 @@ def test_other_handlers(alarm: Any) -> None:
     detector, other = cscd.Detector(faces), cscd.Detector(F)
     truth = detector.check(x)
     seen: List[int] = []
-    signal.signal(signal.SIGALRM, lambda *_: seen.append(len(other.step(V, DOWN))))
-    signal.setitimer(signal.ITIMER_REAL, 0.002, 0.004)
-    assert np.array_equal(detector.check(x), truth) and len(seen) > 3 and min(seen) > 0
+    running = True
+
+    def ask(*_: Any) -> None:
+        seen.append(len(other.step(V, DOWN)))
+        if running:
+            signal.setitimer(signal.ITIMER_REAL, 0.004)  # not before this step has returned: its object is busy until then
+
+    signal.signal(signal.SIGALRM, ask)
+    signal.setitimer(signal.ITIMER_REAL, 0.002)
+    assert np.array_equal(detector.check(x), truth)
+    running = False
     signal.setitimer(signal.ITIMER_REAL, 0)
+    assert len(seen) > 3 and min(seen) > 0
 
     def fail(*_: Any) -> None:
         raise LookupError("from a handler")
