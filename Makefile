@@ -299,7 +299,7 @@ test-vtk:
 	@$(MAKE) --no-print-directory tool
 	@BUILD=$(BUILD) tests/vtk/run.sh
 
-# Shards that xargs, GNU parallel and Slurm start, and whose node dies; nothing else needs these. As root, for the daemons.
+# Shards that the engines of docs/engines.md start, and whose node dies; nothing else needs these. As root, for the daemons.
 test-farm:
 	@.ci/packages farm
 	@$(MAKE) --no-print-directory tool
@@ -418,7 +418,7 @@ help:
 	@echo '               (installs blender); PAGE=--write puts what the steps print into the page, and draws its pictures'
 	@echo 'make blender-extension   the extension of Blender, with the Python package in it, in build/blender'
 	@echo 'make test-vtk   what --vtk writes, read by VTK and compared with the other outputs (installs python3-vtk9)'
-	@echo 'make test-farm      shards that xargs, GNU parallel and Slurm start, and whose node dies (installs these)'
+	@echo 'make test-farm      shards that the engines of docs/engines.md start, and whose node dies (installs these)'
 	@echo 'make test-bridges   the blocks of docs/python/bridges.md, with meshio, VTK and torch (installs these)'
 	@echo 'make test-threads   the tests that use threads, under the thread sanitizer'
 	@echo 'make           build the tool (./cscd), build/release/libcscd.a and libcscd.so; make library builds these alone'
