@@ -15,6 +15,7 @@ import re
 import shlex
 import subprocess
 import sys
+import tempfile
 from typing import Any, Dict, Iterator, List, Set, Tuple
 
 NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,63}\Z")
@@ -160,7 +161,8 @@ def run(template: Any, given: Dict[str, str]) -> bool:
             print(f"{name}: left out")
             done[name] = False
             continue
-        codes = [subprocess.run(line, shell=True, check=False).returncode for line in lines[name]]
+        with tempfile.TemporaryDirectory() as session:
+            codes = [subprocess.run(line, shell=True, check=False, cwd=session).returncode for line in lines[name]]
         print("\n".join(f"{name}: {code}" for code in codes))
         done[name] = not any(codes)
     return all(done.values())

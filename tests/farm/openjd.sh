@@ -8,13 +8,16 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 . ./jobs.sh
 make_jobs 60
+engine=$(realpath openjd.py)
+cd "$folder"
+sed -i "s|$folder/||" jobs.jsonl # names that count from here, though tasks run elsewhere
 run_whole
 
 run_template() { # run_template RESULTS NAME=VALUE...: its exit code is in $code, what it printed in $folder/log
     results=$1
     shift
     code=0
-    python3 openjd.py "$scripts/cscd.openjd.json" List="$folder/jobs.jsonl" Results="$results" "$@" >"$folder/log" 2>"$folder/errors" || code=$?
+    python3 "$engine" "$scripts/cscd.openjd.json" List=jobs.jsonl Folder=. Results="$results" "$@" >"$folder/log" 2>"$folder/errors" || code=$?
 }
 expect_tasks() { # expect_tasks CODE LINE...: how the engine ended, and `COUNT TASK: CODE` for its tasks
     [ "$code" = "$1" ] || { echo "openjd: ended with $code, not $1"; cat "$folder/log" "$folder/errors"; exit 1; }
@@ -24,19 +27,19 @@ expect_tasks() { # expect_tasks CODE LINE...: how the engine ended, and `COUNT T
 }
 
 # A job of the list has failed, so that the shard with it ends with 1, and so does the merge; all others are taken as they are.
-run_template "$folder/an 'odd' \$folder" Cscd="$CSCD" Shards=5
+run_template "an 'odd' \$folder" Cscd="$CSCD" Shards=5
 expect_tasks 1 '1 Merge: 1' '5 Shards: 0'
 expect_merged "$folder/an 'odd' \$folder/all.jsonl"
-run_template "$folder/many" Cscd="$CSCD" Shards=80 Options='--threads 1'
+run_template many Cscd="$CSCD" Shards=80 Options='--threads 1'
 expect_tasks 1 '1 Merge: 1' '80 Shards: 0'
 expect_merged "$folder/many/all.jsonl"
 
 # Without that job, and with a rule, it is 3.
 cp "$folder/jobs.jsonl" "$folder/all_jobs.jsonl"
 sed -i '/damaged/d' "$folder/jobs.jsonl"
-run_template "$folder/rule" Cscd="$CSCD" Shards=4 Options='--fail-on crossing --threads 1'
+run_template rule Cscd="$CSCD" Shards=4 Options='--fail-on crossing --threads 1'
 expect_tasks 1 '1 Merge: 3' '4 Shards: 0'
-run_template "$folder/clean" Cscd="$CSCD" Shards=4
+run_template clean Cscd="$CSCD" Shards=4
 expect_tasks 0 '1 Merge: 0' '4 Shards: 0'
 mv "$folder/all_jobs.jsonl" "$folder/jobs.jsonl"
 echo 'farm: Open Job Description'
@@ -45,10 +48,10 @@ echo 'farm: Open Job Description'
 printf '#!/bin/sh\ncase "$*" in *"--shard 2/3"*) %s "$@"; printf %s >>%s; kill -9 $$ ;; *) exec %s "$@" ;; esac\n' \
     "$CSCD" "'{\"list\":\"0123'" "$folder/died/shard-2.jsonl" "$CSCD" >"$folder/dies"
 chmod +x "$folder/dies"
-run_template "$folder/died" Cscd="$folder/dies" Shards=3
+run_template died Cscd="$folder/dies" Shards=3
 expect_tasks 1 '1 Merge: left out' '2 Shards: 0' '1 Shards: 137'
 if [ -e "$folder/died/all.jsonl" ]; then echo 'openjd: it was merged'; exit 1; fi
-run_template "$folder/died" Cscd="$CSCD" Shards=3
+run_template died Cscd="$CSCD" Shards=3
 expect_tasks 1 '1 Merge: 1' '3 Shards: 0'
 expect_merged "$folder/died/all.jsonl"
 echo 'farm: Open Job Description, a shard dies'
@@ -59,6 +62,6 @@ for fault in 's/"PATH"/"FOLDER"/' 's/Param.Shards}}",/Param.Parts}}",/' 's/"depe
     sed "$fault" "$scripts/cscd.openjd.json" >"$folder/wrong.json"
     cmp -s "$folder/wrong.json" "$scripts/cscd.openjd.json" && { echo "openjd: $fault changes nothing"; exit 1; }
     code=0
-    python3 openjd.py "$folder/wrong.json" List="$folder/jobs.jsonl" Results="$folder/wrong" Cscd="$CSCD" >"$folder/log" || code=$?
+    python3 "$engine" "$folder/wrong.json" List=jobs.jsonl Folder=. Results="$folder/wrong" Cscd="$CSCD" >"$folder/log" || code=$?
     if [ "$code" != 2 ] || [ -e "$folder/wrong" ]; then echo "openjd: $fault was taken"; cat "$folder/log"; exit 1; fi
 done
