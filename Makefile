@@ -303,7 +303,8 @@ test-vtk:
 test-farm:
 	@.ci/packages farm
 	@$(MAKE) --no-print-directory tool
-	@CSCD=$(abspath $(BUILD)/cscd) tests/farm/run.sh
+	@$(MAKE) --no-print-directory python
+	@CSCD=$(abspath $(BUILD)/cscd) PYTHONPATH=$(abspath $(BUILD_ROOT)/python) tests/farm/run.sh
 
 # The Python package beside meshio, VTK and torch, by the blocks of docs/python/bridges.md; nothing else needs these.
 test-bridges:

@@ -4,7 +4,7 @@ set -eu
 cd "$(dirname "$0")"
 passed=0
 failed=0
-for script in shells.sh opencue.sh openjd.sh slurm.sh; do
+for script in shells.sh opencue.sh openjd.sh python.sh slurm.sh; do
     if ./$script; then passed=$((passed + 1)); else
         echo "farm: $script failed"
         failed=$((failed + 1))
