@@ -120,14 +120,18 @@ static void find_worst(const shown_depths *shown, const cscd_intersection_pairs 
     frame->worst_parts[1] = worst.b;
 }
 
-bool answers_add_frame(answers *a, cscd_detector *detector, uint32_t frame, const double *positions,
-                       cscd_intersection_pairs *found, io_error *error) {
+bool answers_find(const answers *a, cscd_detector *detector, const double *positions,
+                  cscd_intersection_pairs *found, io_error *error) {
     cscd_intersection_options options = cscd_intersection_defaults();
     options.parts = true;
     options.curves = options.patches = options.depths = a->depths;
     const cscd_view *view = CSCD_DOUBLES(positions, cscd_mesh_vertex_count(a->recording->mesh));
-    if (cscd_detector_find_intersections(detector, view, &options, found) != CSCD_OK)
-        return api_failed(a, error);
+    return cscd_detector_find_intersections(detector, view, &options, found) == CSCD_OK ||
+           api_failed(a, error);
+}
+
+bool answers_add_found(answers *a, uint32_t frame, cscd_intersection_pairs *found, double ms,
+                       io_error *error) {
     if (!shown_depths_choose(&a->shown, found)) return io_fail(error, "out of memory");
     frame_answer *added = push_frame(a, frame, error);
     if (added == NULL) return false;
@@ -135,10 +139,16 @@ bool answers_add_frame(answers *a, cscd_detector *detector, uint32_t frame, cons
     added->crossing = found->crossing;
     added->touching = found->coplanar + found->folded + found->touching;
     added->duplicates = found->duplicate;
-    added->ms = cscd_detector_timings(detector).check_ms;
+    added->ms = ms;
     count_faces(a, found, added);
     find_worst(&a->shown, found, added);
     return cscd_event_tracker_add_frame(a->tracker, frame, found) == CSCD_OK || api_failed(a, error);
+}
+
+bool answers_add_frame(answers *a, cscd_detector *detector, uint32_t frame, const double *positions,
+                       cscd_intersection_pairs *found, io_error *error) {
+    return answers_find(a, detector, positions, found, error) &&
+           answers_add_found(a, frame, found, cscd_detector_timings(detector).check_ms, error);
 }
 
 bool answers_skip_frame(answers *a, uint32_t frame, io_error *error) {

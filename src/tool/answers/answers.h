@@ -44,8 +44,16 @@ bool answers_prepare(const answers *a, cscd_detector *detector, io_error *error)
 /* The contacts of an interval, before the frame at its end. */
 bool answers_add_contacts(answers *a, const cscd_contacts *contacts, io_error *error);
 
-/* Finds what intersects in a frame, which comes after those before. *found is the detector's and ours, until the next call. The
- * error does not name the frame. */
+/* Finds what intersects in a frame, for answers_add_found. *found is the detector's. The error does not name the frame. */
+bool answers_find(const answers *a, cscd_detector *detector, const double *positions,
+                  cscd_intersection_pairs *found, io_error *error);
+
+/* Adds what was found in a frame, which comes after those before, and how long that took. *found is the detector's and ours
+ * from then on, until the next call: what is not looked at with each other is left out. */
+bool answers_add_found(answers *a, uint32_t frame, cscd_intersection_pairs *found, double ms,
+                       io_error *error);
+
+/* Both. */
 bool answers_add_frame(answers *a, cscd_detector *detector, uint32_t frame, const double *positions,
                        cscd_intersection_pairs *found, io_error *error);
 

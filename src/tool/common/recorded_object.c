@@ -116,9 +116,9 @@ void recorded_object_rest(const recorded_object *o, double *positions) {
                3 * sizeof *positions);
 }
 
-void recorded_object_hash_frame(recorded_object *o) {
-    size_t size = (size_t)o->file.vertex_count * 3 * sizeof *o->file_positions;
-    o->frames_hash = provenance_hash(o->frames_hash, o->file_positions, size);
+uint64_t recorded_object_hash_frame(const recorded_object *o) {
+    const size_t size = (size_t)o->file.vertex_count * 3 * sizeof *o->file_positions;
+    return provenance_hash(PROVENANCE_HASH_START, o->file_positions, size);
 }
 
 const uint32_t *recorded_object_triangles(const recorded_object *o) {

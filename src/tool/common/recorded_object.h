@@ -34,7 +34,7 @@ typedef struct recorded_object {
     double *file_positions;                /* of the frame read last */
     uint32_t vertex_count, triangle_count; /* welded, as in the mesh */
     uint32_t first_vertex, first_triangle; /* in the mesh of the recording */
-    uint64_t frames_hash;
+    uint64_t frames_hash;                  /* of the hashes of its frames so far */
 } recorded_object;
 
 /* What the model's format is called if it stores a vertex once for each face (STL), or for each of its normals (glTF); else
@@ -58,8 +58,8 @@ void recorded_object_rest(const recorded_object *object, double *positions);
 /* The hash of the model file's triangles and positions. */
 uint64_t recorded_object_hash_model(const recorded_object *object);
 
-/* Adds the file's positions of the frame read last to frames_hash. */
-void recorded_object_hash_frame(recorded_object *object);
+/* The hash of the file's positions of the frame read last. */
+uint64_t recorded_object_hash_frame(const recorded_object *object);
 
 /* The corners of its triangles, counted from 0 within the object; triangle_count * 3 of them. */
 const uint32_t *recorded_object_triangles(const recorded_object *object);

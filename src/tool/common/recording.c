@@ -4,6 +4,7 @@
 #include "src/io/gltf.h"
 #include "src/io/path_name.h"
 #include "src/tool/common/command.h"
+#include "src/tool/common/provenance.h"
 
 #include <assert.h>
 #include <stdlib.h>
@@ -253,8 +254,15 @@ void recording_rest(const recording *r, double *positions) {
         recorded_object_rest(&r->objects[i], positions + (size_t)r->objects[i].first_vertex * 3);
 }
 
-void recording_hash_frame(recording *r) {
-    for (uint32_t i = 0; i < r->object_count; i++) recorded_object_hash_frame(&r->objects[i]);
+void recording_hash_frame(const recording *r, uint64_t hashes[RECORDING_OBJECTS_MAX + 1]) {
+    for (uint32_t i = 0; i < r->object_count; i++) hashes[i] = recorded_object_hash_frame(&r->objects[i]);
+}
+
+void recording_add_hashes(recording *r, const uint64_t hashes[RECORDING_OBJECTS_MAX + 1]) {
+    for (uint32_t i = 0; i < r->object_count; i++) {
+        recorded_object *o = &r->objects[i];
+        o->frames_hash = provenance_hash(o->frames_hash, &hashes[i], sizeof hashes[i]);
+    }
 }
 
 double recording_fps(const recording *r) {

@@ -72,8 +72,9 @@ bool recording_read(recording *r, uint32_t frame, double *positions, io_error *e
 /* Copies the positions of the model files themselves, unchecked; positions as above. */
 void recording_rest(const recording *r, double *positions);
 
-/* Adds the files' positions of the frame read last to the objects' hashes. */
-void recording_hash_frame(recording *r);
+/* The hashes of the files' positions of the frame read last, per object; and adds those of a frame to the objects' hashes. */
+void recording_hash_frame(const recording *r, uint64_t hashes[RECORDING_OBJECTS_MAX + 1]);
+void recording_add_hashes(recording *r, const uint64_t hashes[RECORDING_OBJECTS_MAX + 1]);
 
 /* Frames a second: as --fps says, or 24 where a glTF file was sampled; 0: nobody knows. */
 double recording_fps(const recording *r);

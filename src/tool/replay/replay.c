@@ -8,11 +8,6 @@
 
 #include <stdlib.h>
 
-static bool api_failed(const replay *r, uint32_t frame, io_error *error) {
-    return io_fail(error, "frame %d: %s", r->recording.frame_numbers[frame],
-                   cscd_context_detail(r->recording.context));
-}
-
 static bool choose_frames(replay *r, io_error *error) {
     const int32_t *numbers = r->recording.frame_numbers;
     frame_choice frames;
@@ -40,29 +35,22 @@ static bool prepare_plan(replay *r, io_error *error) {
     return chosen;
 }
 
-static bool prepare_detector(replay *r, io_error *error) {
-    cscd_detector_options options = cscd_detector_defaults();
-    options.method = r->plan.method;
-    options.mode = r->options->mode;
-    options.start = r->options->start;
-    options.volume = r->options->volume;
-    options.min_separation = r->options->min_separation;
-    ignore_pairs_choose(&r->ignored, &options);
-    if (cscd_detector_create(r->recording.context, r->recording.mesh, r->plan.plan, &options, &r->detector) !=
-        CSCD_OK)
-        return io_fail(error, "%s", cscd_context_detail(r->recording.context));
-    size_t size = (size_t)cscd_mesh_vertex_count(r->recording.mesh) * 3 * sizeof *r->x0;
-    r->x0 = malloc(size);
-    r->x1 = malloc(size);
-    return (r->x0 != NULL && r->x1 != NULL) || io_fail(error, "out of memory");
-}
-
 static bool prepare_answers(replay *r, io_error *error) {
     const answer_options *o = &r->options->answers;
     r->unit = answer_options_unit(o, &r->recording);
     return fail_rules_create(&o->fail, &r->unit, &r->rules, error) &&
-           answers_open(&r->recording, &r->ignored, !o->no_depths, &r->answers, error) &&
-           answers_prepare(&r->answers, r->detector, error);
+           answers_open(&r->recording, &r->ignored, !o->no_depths, &r->answers, error);
+}
+
+static bool prepare_source(replay *r, io_error *error) {
+    r->source.detector = (replay_detector){.options = r->options,
+                                           .recording = &r->recording,
+                                           .plan = r->plan.plan,
+                                           .method = r->plan.method,
+                                           .ignored = &r->ignored,
+                                           .answers = &r->answers,
+                                           .takes_orientations = r->options->report.path != NULL};
+    return replay_source_open(&r->source, &r->recording, r->first, error);
 }
 
 /* Checks the outputs before anything takes time and before any file is truncated. */
@@ -87,7 +75,8 @@ static bool open_outputs(replay *r, io_error *error) {
         (o->contacts_path != NULL && !open_contacts(r, error)))
         return false;
     return replay_report_open(&r->report, &o->report, recording_options_path(&o->source), &r->recording,
-                              r->plan.plan, r->detector, r->first, r->last, &r->unit, error) &&
+                              r->plan.plan, replay_detector_is_oriented(&r->source.detector), r->first,
+                              r->last, &r->unit, error) &&
            answer_outputs_open(&o->answers, &r->files, error) &&
            summary_open(o->json_path, o->report.path != NULL, r->recording.mesh, &r->summary, error);
 }
@@ -96,14 +85,8 @@ static bool open_outputs(replay *r, io_error *error) {
 static bool begin_replay(replay *r, io_error *error) {
     return recording_open(&r->options->source, &r->recording, error) && choose_frames(r, error) &&
            ignore_pairs_prepare(&r->options->ignored, &r->recording, &r->ignored, error) &&
-           outputs_open(r->options, error) && prepare_plan(r, error) && prepare_detector(r, error) &&
-           prepare_answers(r, error) && open_outputs(r, error);
-}
-
-static bool read_frame(replay *r, uint32_t frame, double *positions, io_error *error) {
-    if (!recording_read(&r->recording, frame, positions, error)) return false;
-    recording_hash_frame(&r->recording);
-    return true;
+           outputs_open(r->options, error) && prepare_plan(r, error) && prepare_answers(r, error) &&
+           prepare_source(r, error) && open_outputs(r, error);
 }
 
 static void warn_of_zero_area(const replay *r, uint32_t frame, const cscd_intersection_pairs *found) {
@@ -112,14 +95,14 @@ static void warn_of_zero_area(const replay *r, uint32_t frame, const cscd_inters
              found->zero_area_triangles, recording_file_triangle(&r->recording, found->first_zero_area));
 }
 
-/* What intersects in a frame, unless nothing is to be looked for. */
-static bool check_frame(replay *r, uint32_t frame, const double *positions, frame_state *state,
-                        io_error *error) {
+/* What intersects in a frame, unless nothing was looked for. */
+static bool take_frame(replay *r, uint32_t frame, frame_check *check, frame_state *state, io_error *error) {
     *state = FRAME_UNCHECKED;
+    recording_add_hashes(&r->recording, check->hashes);
+    if (!check->checked) return answers_skip_frame(&r->answers, frame, error);
     io_error reason;
-    cscd_intersection_pairs found;
-    if (r->options->no_check) return answers_skip_frame(&r->answers, frame, error);
-    if (!answers_add_frame(&r->answers, r->detector, frame, positions, &found, &reason))
+    cscd_intersection_pairs found = check->found;
+    if (!answers_add_found(&r->answers, frame, &found, check->ms, &reason))
         return io_fail(error, "frame %d: %s", r->recording.frame_numbers[frame], reason.text);
     const bool meets = found.count > found.duplicate;
     *state = meets ? FRAME_CROSSING : FRAME_EMBEDDED;
@@ -127,7 +110,7 @@ static bool check_frame(replay *r, uint32_t frame, const double *positions, fram
     r->totals.frames_crossing += meets;
     warn_of_zero_area(r, frame, &found);
     replay_report_add_found(&r->report, frame, &found);
-    return exports_add_frame(&r->exports, frame, positions, &found, error);
+    return exports_add_frame(&r->exports, frame, r->source.x0, &found, error);
 }
 
 static interval_state state_of(const replay *r, size_t contact_count) {
@@ -159,26 +142,25 @@ static bool write_contacts(replay *r, uint32_t frame, const cscd_contacts *conta
     return contact_file_flush(r->contacts, error);
 }
 
-/* The interval from frame k, whose positions are in x0, to frame k + 1. The frame at its end is checked after
- * the step, so that the detector knows it when the next interval starts there. */
+/* An interval, and the frame at its end. */
 static bool run_interval(replay *r, uint32_t k, io_error *error) {
-    cscd_contacts contacts;
-    if (!read_frame(r, k + 1, r->x1, error)) return false;
-    if (cscd_detector_step(r->detector, CSCD_DOUBLES(r->x0, cscd_mesh_vertex_count(r->recording.mesh)),
-                           CSCD_DOUBLES(r->x1, cscd_mesh_vertex_count(r->recording.mesh)),
-                           &contacts) != CSCD_OK)
-        return api_failed(r, k, error);
+    interval_step step;
+    if (!replay_source_step(&r->source, k, &step, error)) return false;
+    const cscd_contacts *contacts = &step.contacts;
     interval_result result = {.frame = r->recording.frame_numbers[k],
-                              .contact_count = contacts.count,
-                              .earliest_toi = contacts.count > 0 ? contacts.items[0].toi : 0.0,
-                              .detector = r->detector,
-                              .counters = cscd_detector_counters(r->detector)};
-    replay_report_add(&r->report, r->detector, &contacts, r->x1);
-    exports_add_contacts(&r->exports, &contacts);
-    if (!write_contacts(r, k, &contacts, error) || !answers_add_contacts(&r->answers, &contacts, error) ||
-        !check_frame(r, k + 1, r->x1, &r->end_state, error))
+                              .contact_count = contacts->count,
+                              .earliest_toi = contacts->count > 0 ? contacts->items[0].toi : 0.0,
+                              .guarantees = step.guarantees,
+                              .timings = step.timings,
+                              .counters = step.counters};
+    replay_report_add(&r->report, step.orientations, contacts, r->source.x1);
+    exports_add_contacts(&r->exports, contacts);
+    frame_check check;
+    if (!write_contacts(r, k, contacts, error) || !answers_add_contacts(&r->answers, contacts, error) ||
+        !replay_source_check(&r->source, k, &check, error) ||
+        !take_frame(r, k + 1, &check, &r->end_state, error))
         return false;
-    result.timings = cscd_detector_timings(r->detector);
+    result.timings.check_ms = check.ms;
     result.state = state_of(r, result.contact_count);
     totals_add(&r->totals, &result, r->recording.mesh);
     alarm_contradiction(r, &result);
@@ -188,15 +170,13 @@ static bool run_interval(replay *r, uint32_t k, io_error *error) {
 }
 
 static bool run_intervals(replay *r, io_error *error) {
-    if (!read_frame(r, r->first, r->x0, error)) return false;
-    replay_report_begin(&r->report, r->x0);
-    if (!check_frame(r, r->first, r->x0, &r->start_state, error)) return false;
+    frame_check check;
+    if (!replay_source_begin(&r->source, r->first, &check, error)) return false;
+    replay_report_begin(&r->report, r->source.x0);
+    if (!take_frame(r, r->first, &check, &r->start_state, error)) return false;
     for (uint32_t k = r->first; k < r->last && !interrupted(); k++) {
         terminal_progress_update(&r->progress, k - r->first, r->last - r->first, "replay");
         if (!run_interval(r, k, error)) return false;
-        double *swap = r->x0;
-        r->x0 = r->x1;
-        r->x1 = swap;
         r->start_state = r->end_state;
     }
     return true;
@@ -265,14 +245,12 @@ static void tell_interrupt(const replay *r) {
 static void end_replay(replay *r) {
     replay_report_close(&r->report);
     exports_close(&r->exports, NULL);
+    replay_source_close(&r->source);
     answers_close(&r->answers);
-    cscd_detector_destroy(r->detector);
     plan_choice_free(&r->plan);
     ignore_pairs_free(&r->ignored);
     if (r->recording.mesh != NULL) recording_close(&r->recording);
     frame_list_free(&r->contact_frames);
-    free(r->x0);
-    free(r->x1);
 }
 
 /* Says so when no report was written: an older page may lie at its path. */

@@ -20,8 +20,8 @@ static bool open_scenery(replay_report *r, io_error *error) {
 }
 
 bool replay_report_open(replay_report *out, const report_request *request, const char *model_path,
-                        recording *r, const cscd_plan *plan, const cscd_detector *detector, uint32_t first,
-                        uint32_t last, const length_unit *unit, io_error *error) {
+                        recording *r, const cscd_plan *plan, bool oriented, uint32_t first, uint32_t last,
+                        const length_unit *unit, io_error *error) {
     *out = (replay_report){.request = request, .model_path = model_path, .recording = r};
     if (request->path == NULL) return true;
     if (!open_scenery(out, error)) return false;
@@ -36,7 +36,7 @@ bool replay_report_open(replay_report *out, const report_request *request, const
                               .frame_numbers = r->frame_numbers,
                               .first = first,
                               .last = last,
-                              .oriented = cscd_detector_region_count(detector) > 0,
+                              .oriented = oriented,
                               .up_axis = (int)up_axis_choose(request->up, model_path),
                               .scenery = {out->scenery.mesh.vertex_count, out->scenery.mesh.triangle_count,
                                           out->scenery.mesh.triangles, out->scenery.frame_count > 1},
@@ -57,10 +57,10 @@ void replay_report_begin(replay_report *r, const double *positions) {
     if (r->report != NULL) keep_or_give_up(r, report_begin(r->report, positions, &r->failure));
 }
 
-void replay_report_add(replay_report *r, const cscd_detector *detector, const cscd_contacts *contacts,
+void replay_report_add(replay_report *r, const orientation_row *orientations, const cscd_contacts *contacts,
                        const double *end) {
     if (r->report != NULL)
-        keep_or_give_up(r, report_add_interval(r->report, detector, contacts, end, &r->failure));
+        keep_or_give_up(r, report_add_interval(r->report, orientations, contacts, end, &r->failure));
 }
 
 void replay_report_add_found(replay_report *r, uint32_t frame, const cscd_intersection_pairs *found) {

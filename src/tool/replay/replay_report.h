@@ -18,17 +18,17 @@ typedef struct replay_report {
     io_error failure; /* "" while all is well */
 } replay_report;
 
-/* Opens the scenery, and the report if one is asked for. The frames to come are first to last. unit: of the files.
+/* Opens the scenery, and the report if one is asked for. oriented: there will be orientations. The frames to come are first to last. unit: of the files.
  * Whatever this returns, replay_report_close is due. */
 bool replay_report_open(replay_report *out, const report_request *request, const char *model_path,
-                        recording *r, const cscd_plan *plan, const cscd_detector *detector, uint32_t first,
-                        uint32_t last, const length_unit *unit, io_error *error);
+                        recording *r, const cscd_plan *plan, bool oriented, uint32_t first, uint32_t last,
+                        const length_unit *unit, io_error *error);
 
 /* The positions of the first frame. */
 void replay_report_begin(replay_report *r, const double *positions);
 
-/* An interval, right after the detector's step, and the positions at its end. */
-void replay_report_add(replay_report *r, const cscd_detector *detector, const cscd_contacts *contacts,
+/* An interval, and the positions at its end. */
+void replay_report_add(replay_report *r, const orientation_row *orientations, const cscd_contacts *contacts,
                        const double *end);
 
 /* What was found in a frame, after the interval that it ends. */

@@ -8,6 +8,7 @@
 #include "src/tool/export/exports.h"
 #include "src/tool/replay/replay_options.h"
 #include "src/tool/replay/replay_report.h"
+#include "src/tool/replay/replay_source.h"
 #include "src/tool/replay/summary.h"
 
 /* What is known of a frame. */
@@ -21,8 +22,7 @@ typedef struct replay {
     recording recording;
     ignore_pairs ignored;
     plan_choice plan;
-    cscd_detector *detector;
-    double *x0, *x1;
+    replay_source source;
     uint32_t first, last; /* frames */
     frame_state start_state, end_state;
     contact_file *contacts; /* NULL when not asked for */

@@ -70,10 +70,10 @@ static bool forward_text(summary_writer *w, io_error *error) {
     return written || write_failed(w, error);
 }
 
-static void write_guarantees(summary_writer *w, const cscd_detector *detector) {
+static void write_guarantees(summary_writer *w, const cscd_guarantee *guarantees) {
     json_begin_array(&w->out, "guarantee");
     for (uint32_t i = 0; i < cscd_mesh_component_count(w->mesh); i++) {
-        cscd_guarantee guarantee = cscd_detector_guarantee(detector, i);
+        cscd_guarantee guarantee = guarantees[i];
         json_begin_object(&w->out, NULL);
         json_integer(&w->out, "component", i);
         json_string(&w->out, "mode", cscd_mode_name(guarantee.complete ? CSCD_MODE_ALL : CSCD_MODE_EARLIEST));
@@ -110,7 +110,7 @@ bool summary_add_interval(summary_writer *w, const interval_result *result, io_e
         json_null(out, "earliest_toi");
     write_counters(out, &result->counters, false);
     json_string(out, "state", interval_state_name(result->state));
-    write_guarantees(w, result->detector);
+    write_guarantees(w, result->guarantees);
     write_times(out, &result->timings);
     json_end_object(out);
     return forward_text(w, error);

@@ -3,9 +3,9 @@
 
 #include <stdio.h>
 
-static bool all_complete(const cscd_detector *detector, const cscd_mesh *mesh) {
+static bool all_complete(const cscd_guarantee *guarantees, const cscd_mesh *mesh) {
     for (uint32_t i = 0; i < cscd_mesh_component_count(mesh); i++) {
-        if (!cscd_detector_guarantee(detector, i).complete) return false;
+        if (!guarantees[i].complete) return false;
     }
     return true;
 }
@@ -14,7 +14,7 @@ void totals_add(replay_totals *t, const interval_result *r, const cscd_mesh *mes
     if (r->contact_count > 0 && t->intervals_with_contact++ == 0) t->first_contact_frame = r->frame;
     t->intervals++;
     t->states[r->state]++;
-    t->intervals_complete += all_complete(r->detector, mesh);
+    t->intervals_complete += all_complete(r->guarantees, mesh);
     timings_add(&t->time_sum, &t->time_max, &r->timings);
     counters_add(&t->counter_sum, &t->counter_max, &r->counters);
 }

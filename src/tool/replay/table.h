@@ -10,9 +10,9 @@ typedef struct interval_result {
     int32_t frame; /* its number */
     interval_state state;
     size_t contact_count;
-    double earliest_toi;           /* of the contacts, where there are any */
-    const cscd_detector *detector; /* for the guarantees of this, its last step */
-    cscd_timings timings;          /* check_ms: of the frame at the interval's end */
+    double earliest_toi;              /* of the contacts, where there are any */
+    const cscd_guarantee *guarantees; /* per component */
+    cscd_timings timings;             /* check_ms: of the frame at the interval's end */
     cscd_counters counters;
 } interval_result;
 

@@ -1,13 +1,15 @@
 /* How triangles faced their regions' detector points, and where these points were, as arrays of a report. */
 #pragma once
 
+#include "src/tool/report/orientation_row.h"
 #include "src/tool/report/packed_array.h"
 #include "src/tool/report/report.h"
 
 typedef struct orientation_arrays {
     packed_array *orientations, *points; /* NULL: left out */
     uint32_t triangle_count, interval_count;
-    uint8_t *last, *row; /* the orientations added last, four triangles a byte, and the next */
+    uint8_t *last,
+        *change; /* the orientations added last, four triangles a byte, and what the next change of it */
 } orientation_arrays;
 
 /* Room is left for the orientations of kept_count intervals and the points of interval_count. What would take
@@ -16,9 +18,8 @@ bool orientation_arrays_create(uint32_t triangle_count, uint32_t kept_count, uin
                                orientation_arrays *out);
 void orientation_arrays_free(orientation_arrays *arrays); /* a zeroed struct is fine */
 
-/* Adds the orientations of the detector's last step: 0 for S0, 1 for S+, 2 for S- in the bits 2 (t mod 4)
- * and up of byte t / 4, XORed with the bytes added before. False: out of memory. */
-bool orientation_arrays_add(orientation_arrays *arrays, const cscd_detector *detector);
+/* Adds how the triangles face, XORed with the bytes added before. False: out of memory. */
+bool orientation_arrays_add(orientation_arrays *arrays, const orientation_row *row);
 
-/* Adds each region's detector point at the start and at the end of the last step, times scale. */
-bool orientation_arrays_add_points(orientation_arrays *arrays, const cscd_detector *detector, double scale);
+/* Adds each region's detector point at the start and at the end of the interval, times scale. */
+bool orientation_arrays_add_points(orientation_arrays *arrays, const orientation_row *row, double scale);

@@ -108,13 +108,13 @@ bool report_begin(report *r, const double *positions, io_error *error) {
     return begun || out_of_memory(error);
 }
 
-bool report_add_interval(report *r, const cscd_detector *detector, const cscd_contacts *contacts,
+bool report_add_interval(report *r, const orientation_row *orientations, const cscd_contacts *contacts,
                          const double *end, io_error *error) {
     double scale = 1.0 / r->unit;
     bool added = contact_arrays_add(&r->contacts, &r->options, r->last, contacts, scale);
     if (added && r->options.oriented) {
-        added = orientation_arrays_add_points(&r->orientations, detector, scale) &&
-                (!is_due(r, r->last) || orientation_arrays_add(&r->orientations, detector));
+        added = orientation_arrays_add_points(&r->orientations, orientations, scale) &&
+                (!is_due(r, r->last) || orientation_arrays_add(&r->orientations, orientations));
     }
     return (added && add_frame(r, r->last + 1, end)) || out_of_memory(error);
 }

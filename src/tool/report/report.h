@@ -3,6 +3,7 @@
 
 #include "cscd/cscd.h"
 #include "src/io/io_error.h"
+#include "src/tool/report/orientation_row.h"
 
 typedef enum report_kind { REPORT_REPLAY, REPORT_PREPROCESS, REPORT_COMPARE } report_kind;
 
@@ -58,9 +59,10 @@ void report_destroy(report *r);
 /* The positions of the first frame. */
 bool report_begin(report *r, const double *positions, io_error *error);
 
-/* The next interval, right after the detector's step: its contacts, and the positions of the frame at its
- * end. The report ends with the last frame that it was given here, be it earlier than expected. */
-bool report_add_interval(report *r, const cscd_detector *detector, const cscd_contacts *contacts,
+/* The next interval: how its triangles faced their detector points (NULL where the options say that there are no
+ * orientations), its contacts, and the positions of the frame at its end. The report ends with the last frame that it was
+ * given here, be it earlier than expected. */
+bool report_add_interval(report *r, const orientation_row *orientations, const cscd_contacts *contacts,
                          const double *end, io_error *error);
 
 /* What intersects in a frame: pairs and, if they were asked for, curves and depths of vertices. Frames come in their

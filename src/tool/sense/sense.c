@@ -110,7 +110,9 @@ static bool begin_sense(sense *s, io_error *error) {
 
 static bool read_frame(sense *s, uint32_t frame, double *positions, io_error *error) {
     if (!recording_read(&s->recording, frame, positions, error)) return false;
-    recording_hash_frame(&s->recording);
+    uint64_t hashes[RECORDING_OBJECTS_MAX + 1];
+    recording_hash_frame(&s->recording, hashes);
+    recording_add_hashes(&s->recording, hashes);
     return true;
 }
 

@@ -42,7 +42,13 @@ bool report_rig_replay(const report_rig *rig, report *r, io_error *error) {
         const double *start = recorded_position(&rig->shape, k, 0),
                      *end = recorded_position(&rig->shape, k + 1, 0);
         assert_int_equal(step_packed(rig->detector, start, end, &contacts), CSCD_OK);
-        if (!report_add_interval(r, rig->detector, &contacts, end, error)) return false;
+        orientation_row row;
+        if (!orientation_row_create(rig->detector, rig->mesh, &row))
+            return io_fail(error, "out of memory for the report");
+        orientation_row_take(&row, rig->detector);
+        const bool added = report_add_interval(r, &row, &contacts, end, error);
+        orientation_row_free(&row);
+        if (!added) return false;
     }
     return true;
 }
