@@ -1,4 +1,4 @@
-/* `cscd merge`: brings the results of the shards of a list together. */
+/* `cscd merge`: brings the results of shards together, of a list or of one recording. */
 #include "src/io/output_file.h"
 #include "src/tool/common/command.h"
 #include "src/tool/common/option_table.h"
@@ -7,13 +7,16 @@
 #include "src/tool/common/terminal.h"
 #include "src/tool/jobs/job_junit.h"
 #include "src/tool/jobs/job_merge.h"
+#include "src/tool/replay/replay_merge.h"
+#include "src/tool/replay/shard_file.h"
 
 #include <errno.h>
 #include <string.h>
 
 typedef struct merge_options {
-    const char *output_path, *junit_path; /* NULL: not given */
-    bool quiet;
+    const char *output_path, *junit_path;                                      /* NULL: not given */
+    const char *contacts_path, *json_path, *events_path, *report_path, *title; /* of a recording */
+    bool quiet, reproducible;
 } merge_options;
 
 static const option_row rows[] = {
@@ -23,15 +26,23 @@ static const option_row rows[] = {
     {"output", "OUT.jsonl", read_text, offsetof(merge_options, output_path), NULL},
     {"junit", "OUT.xml", read_text, offsetof(merge_options, junit_path),
      "write a JUnit file for continuous integration, with a test case for each job; one fails by the rules of its run"},
+    {"contacts", "OUT.csv|OUT.jsonl", read_text, offsetof(merge_options, contacts_path),
+     "of a recording: what cscd replay writes by the same option"},
+    {"json", "OUT.json", read_text, offsetof(merge_options, json_path), "the same"},
+    {"events", "OUT.csv|OUT.json", read_text, offsetof(merge_options, events_path), "the same"},
+    {"report", "OUT.html", read_text, offsetof(merge_options, report_path), "the same"},
+    {"title", "TEXT", read_text, offsetof(merge_options, title), "of the report"},
+    {"reproducible", NULL, read_flag, offsetof(merge_options, reproducible),
+     "of a recording: leave times, dates, the machine and the command line out of --json and --report"},
     {"quiet", NULL, read_flag, offsetof(merge_options, quiet), "nothing but errors"},
 };
 
 static const option_table table = {
     "merge",
-    "SHARD.jsonl... [-o OUT.jsonl]",
-    "Brings together what check or replay --list --shard wrote by --results. It proves that each job of the list is there "
-    "exactly once; what is missing, there twice or of another list is named, and nothing is written then. The exit code is that "
-    "of one run of the whole list.",
+    "SHARD... [options]",
+    "Brings together what shards wrote by --results: of a list (check or replay --list --shard) or of one recording (replay "
+    "--shard). It proves that each job or interval is there exactly once; what is missing, there twice or of something else is "
+    "named, and nothing is written then. The exit code is that of one run of the whole.",
     rows,
     sizeof rows / sizeof *rows,
     .examples = {
@@ -91,11 +102,45 @@ static int end_merge(const job_merge *merge, const merge_options *o) {
     return merge->sums.found > 0 ? EXIT_CONTACT : EXIT_RAN;
 }
 
+static int merge_recording(const merge_options *o, const given_options *given, int argument_count,
+                           char **arguments) {
+    const merged_output outputs[] = {{"contacts", o->contacts_path}, {"json", o->json_path},
+                                     {"events", o->events_path},     {"junit", o->junit_path},
+                                     {"report", o->report_path},     {"title", o->title}};
+    if (o->output_path != NULL)
+        return fail_usage("merge", "-o is for the results of a list; a recording has --contacts, --json, "
+                                   "--events, --junit and --report");
+    const merge_request request = {.paths = given->inputs,
+                                   .path_count = given->input_count,
+                                   .outputs = outputs,
+                                   .output_count = sizeof outputs / sizeof *outputs,
+                                   .quiet = o->quiet,
+                                   .reproducible = o->reproducible,
+                                   .argument_count = argument_count,
+                                   .arguments = arguments};
+    return replay_merge(&request);
+}
+
+static int merge_list(const merge_options *o, const given_options *given) {
+    static const char *const of_lists[] = {"o", "output", "junit", "quiet"};
+    io_error error = {""};
+    job_merge merge;
+    const char *other = option_given_beside(&table, given, of_lists, sizeof of_lists / sizeof *of_lists);
+    if (other != NULL)
+        return fail_usage("merge", "--%s is for the shards of one recording, and %s has results of a list",
+                          other, given->inputs[0]);
+    interrupt_catch();
+    if (!job_merge_read(given->inputs, given->input_count, &merge, &error))
+        return fail_input("%s", error.text);
+    const int code = write_files(&merge, o, &error) ? end_merge(&merge, o) : fail_input("%s", error.text);
+    job_merge_free(&merge);
+    return code;
+}
+
 int command_merge(int argument_count, char **arguments) {
     merge_options o = {.output_path = NULL};
     given_options given;
     io_error error = {""};
-    job_merge merge;
     int code;
     if (!option_table_read(&table, argument_count, arguments, &o, &given, &code)) return code;
     if (given.input_count == 0)
@@ -107,9 +152,6 @@ int command_merge(int argument_count, char **arguments) {
         !output_path_differs(o.junit_path, (const char *const[]){o.output_path}, 1, &error) ||
         !output_path_fits(o.junit_path, ".xml", &error))
         return fail_usage("merge", "--junit %s", error.text);
-    interrupt_catch();
-    if (!job_merge_read(given.inputs, given.input_count, &merge, &error)) return fail_input("%s", error.text);
-    code = write_files(&merge, &o, &error) ? end_merge(&merge, &o) : fail_input("%s", error.text);
-    job_merge_free(&merge);
-    return code;
+    if (shard_file_recognise(given.inputs[0])) return merge_recording(&o, &given, argument_count, arguments);
+    return merge_list(&o, &given);
 }

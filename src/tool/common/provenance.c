@@ -65,16 +65,20 @@ static void write_machine(json *out) {
     json_end_object(out);
 }
 
+void provenance_write_build(json *out) {
+    json_string(out, "version", cscd_version_string());
+    json_string(out, "commit", provenance_commit());
+    json_string(out, "compiler", CSCD_COMPILER);
+    json_string(out, "flags", CSCD_FLAGS);
+}
+
 void provenance_write(json *out, int argument_count, char **arguments, uint32_t thread_count) {
     char date[32];
     time_t now = time(NULL);
     struct tm utc;
     gmtime_r(&now, &utc);
     strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", &utc);
-    json_string(out, "version", cscd_version_string());
-    json_string(out, "commit", provenance_commit());
-    json_string(out, "compiler", CSCD_COMPILER);
-    json_string(out, "flags", CSCD_FLAGS);
+    provenance_write_build(out);
     json_string(out, "date", date);
     write_machine(out);
     json_integer(out, "threads", thread_count);

@@ -18,7 +18,10 @@ void provenance_generator(char text[PROVENANCE_GENERATOR_SIZE]);
 #define PROVENANCE_HASH_START 0xcbf29ce484222325u
 uint64_t provenance_hash(uint64_t hash, const void *bytes, size_t size);
 
-/* Writes the members "version", "commit", "date", "machine" and "arguments" into the open object. */
+/* Writes the members "version", "commit", "compiler" and "flags" into the open object: what does not change from run to run. */
+void provenance_write_build(json *out);
+
+/* The same, and "date", "machine", "threads" and "arguments". */
 void provenance_write(json *out, int argument_count, char **arguments, uint32_t thread_count);
 
 /* Writes {"name": ..., "fnv1a64": ...} into the open array. */

@@ -5,6 +5,7 @@
 #include "src/tool/jobs/listed_recordings.h"
 #include "src/tool/jobs/recording_answer.h"
 #include "src/tool/replay/replay_print.h"
+#include "src/tool/replay/replay_shard.h"
 
 #include <stdlib.h>
 
@@ -13,8 +14,8 @@ static bool choose_frames(replay *r, io_error *error) {
     frame_choice frames;
     if (!frame_range_choose(&r->options->frames, numbers, r->recording.frame_count, &frames, error))
         return false;
-    r->first = frames.first;
-    r->last = frames.last;
+    r->first = r->whole_first = frames.first;
+    r->last = r->whole_last = frames.last;
     if (r->first >= r->last)
         return io_fail(error, "an interval needs two frames, and %d to %d leave one; the recording has %u",
                        numbers[r->first], numbers[r->last], r->recording.frame_count);
@@ -49,8 +50,14 @@ static bool prepare_source(replay *r, io_error *error) {
                                            .method = r->plan.method,
                                            .ignored = &r->ignored,
                                            .answers = &r->answers,
-                                           .takes_orientations = r->options->report.path != NULL};
-    return replay_source_open(&r->source, &r->recording, r->first, error);
+                                           .takes_orientations = r->options->report.path != NULL ||
+                                                                 r->options->list.shard.count > 0};
+    r->source.recording = &r->recording;
+    r->source.first = r->whole_first;
+    r->source.shards = r->merged;
+    r->source.reads_frames = r->options->report.path != NULL || export_request_any(&r->options->exports);
+    return replay_shard_matches(r, error) && replay_shard_prepare(r, error) &&
+           replay_source_open(&r->source, error);
 }
 
 /* Checks the outputs before anything takes time and before any file is truncated. */
@@ -78,7 +85,8 @@ static bool open_outputs(replay *r, io_error *error) {
                               r->plan.plan, replay_detector_is_oriented(&r->source.detector), r->first,
                               r->last, &r->unit, error) &&
            answer_outputs_open(&o->answers, &r->files, error) &&
-           summary_open(o->json_path, o->report.path != NULL, r->recording.mesh, &r->summary, error);
+           summary_open(o->json_path, o->report.path != NULL, !o->reproducible, r->recording.mesh,
+                        &r->summary, error);
 }
 
 /* Opens everything that can fail before the work begins. */
@@ -171,6 +179,7 @@ static bool run_interval(replay *r, uint32_t k, io_error *error) {
 
 static bool run_intervals(replay *r, io_error *error) {
     frame_check check;
+    if (r->first == r->last) return true; /* a shard without intervals */
     if (!replay_source_begin(&r->source, r->first, &check, error)) return false;
     replay_report_begin(&r->report, r->source.x0);
     if (!take_frame(r, r->first, &check, &r->start_state, error)) return false;
@@ -202,6 +211,7 @@ static bool close_summary(replay *r, const char *stopped_by, char **text, io_err
                              .mode = cscd_mode_name(o->mode),
                              .volume = o->volume,
                              .min_separation = o->min_separation,
+                             .reproducible = o->reproducible,
                              .argument_count = o->argument_count,
                              .arguments = o->arguments,
                              .stopped_by = stopped_by};
@@ -232,7 +242,8 @@ static void tell_interrupt(const replay *r) {
     const char *page = r->totals.intervals > 0 ? o->report.path : NULL;
     const char *const paths[] = {
         o->contacts_path,    o->json_path,        o->answers.events_path, o->answers.junit_path,
-        o->exports.vtk_path, o->exports.ply_path, o->exports.select_path, page};
+        o->exports.vtk_path, o->exports.ply_path, o->exports.select_path, page,
+        o->list.results_path};
     interrupt_tell(&(interrupt_kept){.done = r->totals.intervals,
                                      .whole = r->last - r->first,
                                      .what = "intervals",
@@ -246,6 +257,7 @@ static void end_replay(replay *r) {
     replay_report_close(&r->report);
     exports_close(&r->exports, NULL);
     replay_source_close(&r->source);
+    shard_series_close(&r->resumed);
     answers_close(&r->answers);
     plan_choice_free(&r->plan);
     ignore_pairs_free(&r->ignored);
@@ -259,8 +271,8 @@ static int fail_replay(const replay *r, bool begun, const char *reason) {
     return fail_input("%s%s", reason, unreported ? "; no report was written" : "");
 }
 
-static int run_replay(const replay_options *options, const char *name, job_output *job) {
-    replay r = {.options = options, .name = name, .job = job};
+int replay_run(const replay_options *options, shard_series *merged, const char *name, job_output *job) {
+    replay r = {.options = options, .merged = merged, .name = name, .job = job};
     io_error error = {""}, close_error = {""};
     int code = EXIT_RAN;
     bool begun = begin_replay(&r, &error), ran = false;
@@ -271,7 +283,8 @@ static int run_replay(const replay_options *options, const char *name, job_outpu
         terminal_progress_end(&r.progress);
     }
     const char *stopped_by = ran ? (interrupted() ? "interrupted" : NULL) : error.text;
-    bool closed = close_outputs(&r, stopped_by, &close_error);
+    bool closed = replay_shard_close(&r, &close_error);
+    closed = close_outputs(&r, stopped_by, closed ? &close_error : NULL) && closed;
     if (!options->quiet && r.totals.intervals > 0) replay_print_results(&r);
     if (begun && !options->quiet) replay_print_remarks(&r);
     if (!ran) code = fail_replay(&r, begun, error.text);
@@ -294,7 +307,7 @@ static int run_listed(void *options, given_options *given, const char *name, csc
     o->source.context = context;
     o->quiet = true;
     const int code = replay_options_finish(o, given);
-    return code == EXIT_RAN ? run_replay(o, name, out) : code;
+    return code == EXIT_RAN ? replay_run(o, NULL, name, out) : code;
 }
 
 static int run_list(const replay_options *options, const given_options *given) {
@@ -315,8 +328,6 @@ int command_replay(int argument_count, char **arguments) {
     int code;
     if (!replay_options_read(argument_count, arguments, &options, &given, &code)) return code;
     if (options.list.path != NULL) return run_list(&options, &given);
-    const char *lone = list_option_without_list(&replay_table, &given);
-    if (lone != NULL) return fail_usage("replay", "--%s is for --list", lone);
     code = replay_options_finish(&options, &given);
-    return code == EXIT_RAN ? run_replay(&options, NULL, NULL) : code;
+    return code == EXIT_RAN ? replay_run(&options, NULL, NULL, NULL) : code;
 }

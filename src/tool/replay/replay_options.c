@@ -97,6 +97,8 @@ static const option_row rows[] = {
      "two frames"},
     {"fail-on-contact", NULL, fail_on_contact, offsetof(replay_options, answers.fail.kind),
      "another name of --fail-on contact"},
+    {"reproducible", NULL, read_flag, offsetof(replay_options, reproducible),
+     "leave times, dates, the machine and the command line out of --json and --report, so that two runs write the same bytes"},
     {"quiet", NULL, read_flag, offsetof(replay_options, quiet), "no progress, no warnings, no table"},
 };
 
@@ -172,6 +174,40 @@ static int check_options(const replay_options *o, size_t input_count) {
     return EXIT_RAN;
 }
 
+/* A shard of one recording, or all of it as one. What it finds is in its results, and written by merge. */
+static int check_shard(replay_options *o, const given_options *given, const char *const *inputs,
+                       size_t input_count) {
+    static const char *const alone[] = {
+        "contacts", "csv",   "json", "report", "title",  "scenery", "scenery-frames",
+        "events",   "junit", "vtk",  "ply",    "select", "up"};
+    const list_options *list = &o->list;
+    io_error error;
+    if (option_given(&replay_table, given, "job-timeout"))
+        return fail_usage("replay", "--job-timeout is for --list");
+    if (list->results_path == NULL && (list->shard.count > 0 || list->resume != RESUME_NOTHING))
+        return fail_usage("replay", "--%s needs --results OUT, the file of what is found",
+                          list->shard.count > 0 ? "shard" : "resume");
+    if (list->results_path == NULL) return EXIT_RAN;
+    if (list->resume == RESUME_FAILED) return fail_usage("replay", "--resume=failed is for --list");
+    for (size_t i = 0; i < sizeof alone / sizeof *alone; i++)
+        if (option_given(&replay_table, given, alone[i]))
+            return fail_usage(
+                "replay", "--%s: with --results it is written by cscd merge, from the files of all shards",
+                alone[i]);
+    const char *files[] = {o->plan_path, o->ignored.path, o->ignored.parts_path};
+    if (!output_path_is_safe(list->results_path, inputs, input_count, &error) ||
+        !output_path_is_safe(list->results_path, files, 3, &error))
+        return fail_usage("replay", "--results %s", error.text);
+    if (list->shard.count == 0) o->list.shard = (shard_choice){1, 1};
+    return EXIT_RAN;
+}
+
+static uint64_t hash_options(const given_options *given) {
+    static const char *const harmless[] = {"shard", "results", "resume", "threads",      "quiet",
+                                           "simd",  "plan",    "frames", "reproducible", "timings"};
+    return option_hash_beside(&replay_table, given, harmless, sizeof harmless / sizeof *harmless);
+}
+
 bool replay_options_read(int argument_count, char **arguments, replay_options *out, given_options *given,
                          int *code) {
     *out = (replay_options){.method = CSCD_METHOD_AUTO,
@@ -179,7 +215,9 @@ bool replay_options_read(int argument_count, char **arguments, replay_options *o
                             .frames = frame_range_all(),
                             .argument_count = argument_count,
                             .arguments = arguments};
-    return option_table_read(&replay_table, argument_count, arguments, out, given, code);
+    if (!option_table_read(&replay_table, argument_count, arguments, out, given, code)) return false;
+    out->hash = hash_options(given);
+    return true;
 }
 
 int replay_options_finish(replay_options *o, given_options *given) {
@@ -191,6 +229,8 @@ int replay_options_finish(replay_options *o, given_options *given) {
         given->input_count = 2;
     }
     int code = check_options(o, given->input_count);
+    if (code == EXIT_RAN && o->list.path == NULL)
+        code = check_shard(o, given, given->inputs, given->input_count);
     if (code == EXIT_RAN) code = check_outputs(o, given->inputs, given->input_count);
     recording_options_take(&o->source, given);
     o->exports.no_depths = o->answers.no_depths;

@@ -18,6 +18,8 @@ typedef struct replay_options {
     frame_range frames;
     double min_separation;
     bool no_check, quiet;
+    bool reproducible; /* nothing is written of times, dates, the machine and the command line */
+    uint64_t hash;     /* of the options that shards of one replay have in common */
     answer_options answers;
     export_request exports;
     ignore_options ignored;

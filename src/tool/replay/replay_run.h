@@ -23,7 +23,11 @@ typedef struct replay {
     ignore_pairs ignored;
     plan_choice plan;
     replay_source source;
-    uint32_t first, last; /* frames */
+    uint32_t first, last;             /* frames; of a shard its own, */
+    uint32_t whole_first, whole_last; /* and those of the whole replay */
+    append_file results;              /* of a shard */
+    shard_series resumed;             /* what it had already */
+    shard_series *merged;             /* all shards, to be brought together; NULL: this is something else */
     frame_state start_state, end_state;
     contact_file *contacts; /* NULL when not asked for */
     const char *object_names[RECORDING_OBJECTS_MAX + 1];
@@ -38,3 +42,7 @@ typedef struct replay {
     frame_list contact_frames;
     terminal_progress progress;
 } replay;
+
+/* Runs a replay. merged: all shards of it, which have been done; NULL: there are none. name and job: of a job among many, and its
+ * output; NULL: it is none. Returns the exit code. */
+int replay_run(const replay_options *options, shard_series *merged, const char *name, job_output *job);

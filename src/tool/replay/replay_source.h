@@ -1,19 +1,26 @@
-/* Where a replay has its intervals and frames from, one after the other: the detector finds them, or the files of shards have
- * them already. */
+/* Where a replay has its intervals and frames from, one after the other: from the files of shards, as far as these have them,
+ * and from the detector. */
 #pragma once
 
 #include "src/tool/replay/replay_detector.h"
+#include "src/tool/replay/shard_series.h"
 
 typedef struct replay_source {
+    /* These are set by whoever opens it. */
     recording *recording;
+    uint32_t first;       /* frame of the whole replay: chunks are counted from it */
+    shard_series *shards; /* what they have is not found again; NULL: nothing is there */
+    bool reads_frames;    /* positions are wanted of what shards have, too */
+    append_file *results; /* what is found is added to it; NULL: to nothing */
     replay_detector detector;
-    uint32_t first;  /* frame of the whole replay: chunks are counted from it */
+
     double *x0, *x1; /* positions at the start and at the end of the interval */
     uint64_t hashes[RECORDING_OBJECTS_MAX + 1];
+    packed_bytes bytes; /* of the record to come */
 } replay_source;
 
-/* The members of the detector that it needs are set, and nothing else is. Whatever this returns, replay_source_close is due. */
-bool replay_source_open(replay_source *s, recording *r, uint32_t first, io_error *error);
+/* Whatever this returns, replay_source_close is due. */
+bool replay_source_open(replay_source *s, io_error *error);
 void replay_source_close(replay_source *s); /* a zeroed struct is fine */
 
 /* The first frame; its positions are in x0. */

@@ -15,6 +15,7 @@ struct summary_writer {
     char *text;
     size_t size;
     bool keeps_text;  /* all of it, for summary_close */
+    bool times;       /* are written */
     size_t forwarded; /* bytes of it that the file has */
     const cscd_mesh *mesh;
     json out;
@@ -37,7 +38,7 @@ static bool open_file(summary_writer *w, const char *path, io_error *error) {
            io_fail(error, "%s: cannot write: %s", path, strerror(errno));
 }
 
-bool summary_open(const char *path, bool keep_text, const cscd_mesh *mesh, summary_writer **out,
+bool summary_open(const char *path, bool keep_text, bool times, const cscd_mesh *mesh, summary_writer **out,
                   io_error *error) {
     summary_writer *w = calloc(1, sizeof *w);
     if (w != NULL) w->memory = open_memstream(&w->text, &w->size);
@@ -51,6 +52,7 @@ bool summary_open(const char *path, bool keep_text, const cscd_mesh *mesh, summa
     }
     w->mesh = mesh;
     w->keeps_text = keep_text;
+    w->times = times;
     w->out.file = w->memory;
     json_begin_object(&w->out, NULL);
     json_begin_array(&w->out, "intervals");
@@ -111,7 +113,7 @@ bool summary_add_interval(summary_writer *w, const interval_result *result, io_e
     write_counters(out, &result->counters, false);
     json_string(out, "state", interval_state_name(result->state));
     write_guarantees(w, result->guarantees);
-    write_times(out, &result->timings);
+    if (w->times) write_times(out, &result->timings);
     json_end_object(out);
     return forward_text(w, error);
 }
@@ -140,8 +142,8 @@ static void write_column(json *out, const char *key, double sum, double max, uin
 }
 
 /* Mean and maximum per interval, of every stage and of the counters that have them. */
-static void write_columns(json *out, const replay_totals *t) {
-    for (int i = 0; i < TIMING_COUNT; i++) {
+static void write_columns(json *out, const replay_totals *t, bool times) {
+    for (int i = 0; i < TIMING_COUNT && times; i++) {
         const timing_row *row = &timing_rows[i];
         char key[32];
         snprintf(key, sizeof key, "%s_ms", row->name);
@@ -163,7 +165,7 @@ static void write_sums(json *out, const replay_totals *t) {
     }
 }
 
-static void write_plan(json *out, const plan_choice *plan) {
+static void write_plan(json *out, const plan_choice *plan, bool times) {
     json_begin_object(out, "plan");
     json_string(out, "source", plan_source_name(plan->source));
     json_string(out, "method",
@@ -173,7 +175,7 @@ static void write_plan(json *out, const plan_choice *plan) {
         json_string(out, "path", plan->path);
     else
         json_null(out, "path");
-    json_number(out, "made_ms", plan->made_ms);
+    if (times) json_number(out, "made_ms", plan->made_ms);
     json_end_object(out);
 }
 
@@ -187,9 +189,9 @@ static void write_summary(summary_writer *w, const summary_ending *e) {
     json_string(out, "method", cscd_method_name(e->plan->method));
     json_string(out, "mode", e->mode);
     json_string(out, "volume", cscd_volume_name(e->volume));
-    json_string(out, "simd", cscd_simd_name(cscd_context_simd(e->recording->context)));
+    if (!e->reproducible) json_string(out, "simd", cscd_simd_name(cscd_context_simd(e->recording->context)));
     json_number(out, "min_separation", e->min_separation);
-    write_plan(out, e->plan);
+    write_plan(out, e->plan, w->times);
     json_integer(out, "vertices", cscd_mesh_vertex_count(w->mesh));
     json_integer(out, "triangles", cscd_mesh_triangle_count(w->mesh));
     json_integer(out, "components", cscd_mesh_component_count(w->mesh));
@@ -206,7 +208,7 @@ static void write_summary(summary_writer *w, const summary_ending *e) {
         json_null(out, "first_contact_frame");
     json_integer(out, "contradictions", t->contradictions);
     write_sums(out, t);
-    write_columns(out, t);
+    write_columns(out, t, w->times);
     json_end_object(out);
 }
 
@@ -215,7 +217,10 @@ static void write_provenance(summary_writer *w, const summary_ending *e) {
     json *out = &w->out;
     json_break_line(out);
     json_begin_object(out, "provenance");
-    provenance_write(out, e->argument_count, e->arguments, cscd_context_thread_count(e->recording->context));
+    if (e->reproducible)
+        provenance_write_build(out);
+    else
+        provenance_write(out, e->argument_count, e->arguments, cscd_context_thread_count(r->context));
     json_begin_array(out, "inputs");
     for (uint32_t i = 0; i < r->object_count; i++) {
         const recorded_object *object = &r->objects[i];

@@ -6,8 +6,8 @@
 
 typedef struct summary_writer summary_writer;
 
-/* Opens a summary. path NULL: there is no file. keep_text: summary_close can return the whole text. */
-bool summary_open(const char *path, bool keep_text, const cscd_mesh *mesh, summary_writer **out,
+/* Opens a summary. path NULL: there is no file. keep_text: summary_close can return the whole text. times: intervals have them. */
+bool summary_open(const char *path, bool keep_text, bool times, const cscd_mesh *mesh, summary_writer **out,
                   io_error *error);
 /* Writes an interval, which is handed to the system at once. */
 bool summary_add_interval(summary_writer *w, const interval_result *result, io_error *error);
@@ -20,6 +20,7 @@ typedef struct summary_ending {
     const length_unit *unit;
     const char *mode;
     cscd_volume volume;
+    bool reproducible; /* without times, dates, the machine and the command line */
     int argument_count;
     char **arguments;
     double min_separation;

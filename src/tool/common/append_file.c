@@ -1,0 +1,68 @@
+/* A file that only grows, by whole records, and has one writer. */
+#include "src/tool/common/append_file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <string.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+static bool cannot_write(const append_file *f, int cause, io_error *error) {
+    return io_fail(error, "%s: cannot write: %s", f->path, strerror(cause));
+}
+
+/* File systems without locks are taken as they are. */
+static bool lock_file(const append_file *f, io_error *error) {
+    if (flock(f->file, LOCK_EX | LOCK_NB) == 0 || errno == ENOLCK || errno == EOPNOTSUPP || errno == ENOSYS)
+        return true;
+    if (errno == EWOULDBLOCK)
+        return io_fail(
+            error, "%s: another process writes its results here; give each shard a file of its own", f->path);
+    return io_fail(error, "%s: cannot lock: %s", f->path, strerror(errno));
+}
+
+bool append_file_open(const char *path, append_file *out, io_error *error) {
+    append_file f = {.path = path, .file = open(path, O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666)};
+    if (f.file < 0) return cannot_write(&f, errno, error);
+    if (!lock_file(&f, error)) {
+        append_file_drop(&f);
+        return false;
+    }
+    f.size = lseek(f.file, 0, SEEK_END);
+    *out = f;
+    return true;
+}
+
+bool append_file_cut(append_file *f, off_t size, io_error *error) {
+    if (f->size != size && ftruncate(f->file, size) != 0) return cannot_write(f, errno, error);
+    f->size = size;
+    return true;
+}
+
+bool append_file_add(append_file *f, const void *record, size_t size, io_error *error) {
+    size_t written = 0;
+    while (written < size) {
+        const ssize_t more = write(f->file, (const char *)record + written, size - written);
+        if (more < 0 && errno == EINTR) continue;
+        if (more < 0) {
+            const int cause = errno;
+            if (written > 0 && ftruncate(f->file, f->size) != 0) written = 0; /* resuming cuts it off */
+            return cannot_write(f, cause, error);
+        }
+        written += (size_t)more;
+    }
+    f->size += (off_t)size;
+    return true;
+}
+
+void append_file_drop(append_file *f) {
+    if (f->file >= 0) close(f->file);
+    f->file = -1;
+}
+
+bool append_file_close(append_file *f, io_error *error) {
+    const bool good = f->file < 0 || fsync(f->file) == 0 || errno == EINVAL || errno == EROFS;
+    const int cause = errno;
+    append_file_drop(f);
+    return good || cannot_write(f, cause, error);
+}

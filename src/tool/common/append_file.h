@@ -1,0 +1,30 @@
+/* A file that only grows, by whole records, and has one writer: what is in it stays, whatever ends the program. */
+#pragma once
+
+#include "src/io/io_error.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <sys/types.h>
+
+typedef struct append_file {
+    const char *path;
+    int file;   /* locked: nobody else appends to it. -1: none is open */
+    off_t size; /* of its whole records */
+} append_file;
+
+/* Opens a file, which is made if there is none, and locks it. On false *out holds nothing to close: it cannot be written, or another
+ * process writes it. Its size is all of it. */
+bool append_file_open(const char *path, append_file *out, io_error *error);
+
+/* Cuts off what lies behind. */
+bool append_file_cut(append_file *f, off_t size, io_error *error);
+
+/* Adds a record. After an error the file ends with the record before. */
+bool append_file_add(append_file *f, const void *record, size_t size, io_error *error);
+
+/* In a process that only inherited the file: the lock stays with the one that opened it. */
+void append_file_drop(append_file *f);
+
+/* Closes it when it is on the disk. */
+bool append_file_close(append_file *f, io_error *error);
