@@ -21,14 +21,13 @@ typedef struct member {
 
 static const member of_interval[] = {{"frame", 'i'}, {"vf", 'n'},        {"ee", 'n'},   {"earliest_toi", 'N'},
                                      {"pcp", 'n'},   {"tests", 'n'},     {"plus", 'n'}, {"minus", 'n'},
-                                     {"state", 's'}, {"guarantee", 'a'}, {"ms", 'o'},   {NULL, 0}};
+                                     {"state", 's'}, {"guarantee", 'a'}, {NULL, 0}};
 static const member of_guarantee[] = {{"component", 'n'}, {"mode", 's'}, {"reason", 's'}, {NULL, 0}};
 static const member of_frame[] = {{"frame", 'n'}, {NULL, 0}};
 static const member of_summary[] = {{"complete", 'b'},
                                     {"method", 's'},
                                     {"mode", 's'},
                                     {"volume", 's'},
-                                    {"simd", 's'},
                                     {"min_separation", 'n'},
                                     {"plan", 'o'},
                                     {"vertices", 'n'},
@@ -43,13 +42,17 @@ static const member of_summary[] = {{"complete", 'b'},
                                     {"vf", 'n'},
                                     {"ee", 'n'},
                                     {NULL, 0}};
-static const member of_plan[] = {
-    {"source", 's'}, {"method", 's'}, {"regions", 'n'}, {"made_ms", 'n'}, {NULL, 0}};
+static const member of_plan[] = {{"source", 's'}, {"method", 's'}, {"regions", 'n'}, {NULL, 0}};
+/* What --reproducible leaves out, with the times of all stages. */
+static const member of_timed_interval[] = {{"ms", 'o'}, {NULL, 0}};
+static const member of_timed_summary[] = {{"simd", 's'}, {NULL, 0}};
+static const member of_timed_plan[] = {{"made_ms", 'n'}, {NULL, 0}};
+static const member of_timed_provenance[] = {
+    {"date", 's'}, {"machine", 'o'}, {"threads", 'n'}, {"arguments", 'a'}, {NULL, 0}};
 static const member of_incomplete[] = {{"stopped_by", 's'}, {NULL, 0}};
 static const member of_column[] = {{"mean", 'n'}, {"max", 'n'}, {NULL, 0}};
-static const member of_provenance[] = {
-    {"version", 's'}, {"commit", 's'},  {"compiler", 's'},  {"flags", 's'},  {"date", 's'},
-    {"machine", 'o'}, {"threads", 'n'}, {"arguments", 'a'}, {"inputs", 'a'}, {NULL, 0}};
+static const member of_provenance[] = {{"version", 's'}, {"commit", 's'}, {"compiler", 's'},
+                                       {"flags", 's'},   {"inputs", 'a'}, {NULL, 0}};
 static const member of_machine[] = {{"system", 's'},    {"release", 's'},    {"architecture", 's'},
                                     {"processor", 's'}, {"processors", 'n'}, {NULL, 0}};
 static const member of_event[] = {{"a", 's'},     {"b", 's'},      {"first", 'i'}, {"last", 'i'},
@@ -123,22 +126,24 @@ static bool is_state(const char *name) {
     return false;
 }
 
-static bool check_interval(json_object *interval, size_t index, io_error *error) {
+static bool check_interval(json_object *interval, size_t index, bool timed, io_error *error) {
     char where[48];
     snprintf(where, sizeof where, "interval %zu of the file", index);
     if (!has_members(interval, of_interval, where, error)) return false;
     if (!is_state(json_object_get_string(find_member(interval, "state"))))
         return io_fail(error, "%s: 'state' is not what cscd writes there", where);
-    return has_times(find_member(interval, "ms"), where, error) &&
-           elements_have(find_member(interval, "guarantee"), of_guarantee, where, error);
+    if (timed && (!has_members(interval, of_timed_interval, where, error) ||
+                  !has_times(find_member(interval, "ms"), where, error)))
+        return false;
+    return elements_have(find_member(interval, "guarantee"), of_guarantee, where, error);
 }
 
 /* Frames ascend, by the numbers that their recording gives them. */
-static bool check_intervals(json_object *intervals, io_error *error) {
+static bool check_intervals(json_object *intervals, bool timed, io_error *error) {
     int64_t before = 0;
     for (size_t i = 0; i < json_object_array_length(intervals); i++) {
         json_object *interval = json_object_array_get_idx(intervals, i);
-        if (!check_interval(interval, i, error)) return false;
+        if (!check_interval(interval, i, timed, error)) return false;
         int64_t frame = json_object_get_int64(find_member(interval, "frame"));
         if (frame < INT32_MIN || frame > INT32_MAX || (i > 0 && frame <= before))
             return io_fail(error, "interval %zu of the file: 'frame' is not what cscd writes there", i);
@@ -153,8 +158,8 @@ static bool check_column(json_object *summary, const char *name, io_error *error
     return has_members(find_member(summary, name), of_column, where, error);
 }
 
-static bool check_columns(json_object *summary, io_error *error) {
-    for (int i = 0; i < TIMING_COUNT; i++) {
+static bool check_columns(json_object *summary, bool timed, io_error *error) {
+    for (int i = 0; i < TIMING_COUNT && timed; i++) {
         char name[32];
         snprintf(name, sizeof name, "%s_ms", timing_rows[i].name);
         if (!check_column(summary, name, error)) return false;
@@ -206,22 +211,31 @@ static bool check_events(json_object *root, io_error *error) {
     return has_members(root, of_unit, "the file", error);
 }
 
+/* What --reproducible leaves out is there as a whole, or not at all. */
+static bool check_moment(json_object *summary, json_object *provenance, io_error *error) {
+    return has_members(summary, of_timed_summary, "the summary", error) &&
+           has_members(find_member(summary, "plan"), of_timed_plan, "the plan", error) &&
+           has_members(provenance, of_timed_provenance, "the provenance", error) &&
+           has_members(find_member(provenance, "machine"), of_machine, "the machine", error) &&
+           strings_only(find_member(provenance, "arguments"), "the arguments", error);
+}
+
 static bool check_summary(json_object *root, io_error *error) {
     static const member parts[] = {
         {"intervals", 'a'}, {"frames", 'a'}, {"summary", 'o'}, {"provenance", 'o'}, {NULL, 0}};
     if (!has_members(root, parts, "the file", error)) return false;
     json_object *summary = find_member(root, "summary"), *provenance = find_member(root, "provenance");
-    return check_intervals(find_member(root, "intervals"), error) &&
+    const bool timed = find_member(summary, "total_ms") != NULL || find_member(provenance, "date") != NULL;
+    return check_intervals(find_member(root, "intervals"), timed, error) &&
            elements_have(find_member(root, "frames"), of_frame, "a frame", error) &&
            check_events(root, error) && has_members(summary, of_summary, "the summary", error) &&
-           check_columns(summary, error) &&
+           check_columns(summary, timed, error) &&
            has_members(find_member(summary, "plan"), of_plan, "the plan", error) &&
            (json_object_get_boolean(find_member(summary, "complete")) ||
             has_members(summary, of_incomplete, "the summary", error)) &&
            has_members(provenance, of_provenance, "the provenance", error) &&
-           has_members(find_member(provenance, "machine"), of_machine, "the machine", error) &&
            elements_have(find_member(provenance, "inputs"), of_input, "an input", error) &&
-           strings_only(find_member(provenance, "arguments"), "the arguments", error);
+           (!timed || check_moment(summary, provenance, error));
 }
 
 /* Reads the whole file and ends it with a 0, which *size does not count; NULL with the reason. */

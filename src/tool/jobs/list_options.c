@@ -18,9 +18,10 @@ static const option_row rows[] = {
      "many recordings, a job a line: {\"model\": ..., \"frames\": ..., \"options\": ..., \"outputs\": ...}; each has its "
      "answer in a line, and one that fails stops no other"},
     {"shard", "I/N", read_shard, offsetof(list_options, shard),
-     "only the I-th of N shards of the jobs, I from 1: each machine takes another, and cscd merge brings them together"},
-    {"results", "OUT.jsonl", read_text, offsetof(list_options, results_path),
-     "append a line of JSON for each job as soon as it is done; each shard has a file of its own"},
+     "only the I-th of N shards, I from 1, of the list's jobs, or of the intervals of one recording (replay): each machine takes "
+     "another, and cscd merge brings them together"},
+    {"results", "OUT", read_text, offsetof(list_options, results_path),
+     "append a line of JSON for each job as soon as it is done, or a record of each interval; each shard has a file of its own"},
     {"resume", "[=failed]", read_resume, offsetof(list_options, resume),
      "go on where the file of results ends, whatever stopped the run; =failed: run jobs again that have failed"},
     {"job-timeout", "S", read_seconds, offsetof(list_options, seconds),

@@ -96,8 +96,8 @@ bool replay_shard_matches(const replay *r, io_error *error) {
     theirs.shard.count = identity.shard.count;
     const char *difference = shard_identity_difference(&theirs, &identity);
     return difference == NULL ||
-           io_fail(error, "%s: this shard is of another %s than %s is now; has it been edited since?",
-                   entry->path, difference, recording_options_path(&r->options->source));
+           io_fail(error, "%s: the shard is of %s than %s is now; has a file been edited since?", entry->path,
+                   difference, recording_options_path(&r->options->source));
 }
 
 bool replay_shard_close(replay *r, io_error *error) {

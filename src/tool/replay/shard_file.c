@@ -26,12 +26,12 @@ typedef struct record_head {
 } record_head;
 
 const char *shard_identity_difference(const shard_identity *a, const shard_identity *b) {
-    if (a->build != b->build) return "version of cscd or kind of machine";
-    if (a->model != b->model) return "model";
-    if (a->plan != b->plan) return "plan";
-    if (a->options != b->options) return "options";
-    if (a->first != b->first || a->last != b->last) return "frames";
-    if (a->shard.count != b->shard.count) return "number of shards";
+    if (a->build != b->build) return "another version of cscd or another kind of machine";
+    if (a->model != b->model) return "another model";
+    if (a->plan != b->plan) return "another plan";
+    if (a->options != b->options) return "other options";
+    if (a->first != b->first || a->last != b->last) return "other frames";
+    if (a->shard.count != b->shard.count) return "another number of shards";
     return NULL;
 }
 
@@ -213,13 +213,12 @@ static bool resume_file(append_file *f, const shard_identity *identity, uint32_t
     if (*anew) return append_file_cut(f, 0, error);
     if (!shard_reader_open(f->path, &r, error)) return false;
     const char *difference = shard_identity_difference(&r.identity, identity);
-    if (difference == NULL && r.identity.shard.index != identity->shard.index) difference = "shard";
+    if (difference == NULL && r.identity.shard.index != identity->shard.index) difference = "another shard";
     off_t size = 0;
     if (difference == NULL) find_end(&r, next, &size);
     shard_reader_close(&r);
     if (difference != NULL)
-        return io_fail(error, "%s: these are results of another %s, so nothing can be resumed", f->path,
-                       difference);
+        return io_fail(error, "%s: these are results of %s, so nothing can be resumed", f->path, difference);
     return append_file_cut(f, size, error);
 }
 

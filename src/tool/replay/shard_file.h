@@ -17,7 +17,7 @@ typedef struct shard_identity {
     uint32_t object_count, component_count, triangle_count, reserved;
 } shard_identity;
 
-/* The first word that differs between two shards of different replays, for a sentence; NULL: they are of one. */
+/* What the second of two shards is of, if not of the same replay: "another model"; NULL: it is of the same. */
 const char *shard_identity_difference(const shard_identity *a, const shard_identity *b);
 
 typedef enum shard_record {

@@ -153,8 +153,8 @@ static bool prove_whole(const shard_series *s, io_error *error) {
         const shard_entry *entry = &s->entries[i];
         const char *difference = shard_identity_difference(&first->identity, &entry->identity);
         if (difference != NULL)
-            return io_fail(error, "%s and %s: they are of another %s, so they are not shards of one replay",
-                           first->path, entry->path, difference);
+            return io_fail(error, "%s: it is of %s than %s is, so they are not shards of one replay",
+                           entry->path, difference, first->path);
         if (entry->identity.shard.index == entry[-1].identity.shard.index)
             return io_fail(error, "%s and %s: both are shard %u/%u", entry[-1].path, entry->path,
                            entry->identity.shard.index, entry->identity.shard.count);

@@ -77,13 +77,15 @@ function circumstances(run) {
     mode: [summary.mode],
     'least separation': [String(summary.min_separation)],
     machine: [
-      `${machine.processor}, ${counted(machine.processors, 'processor')}, ` +
-        `${machine.system} ${machine.release}`,
+      machine
+        ? `${machine.processor}, ${counted(machine.processors, 'processor')}, ` +
+          `${machine.system} ${machine.release}`
+        : 'not said',
     ],
-    threads: [String(provenance.threads)],
+    threads: [String(provenance.threads ?? 'not said')],
     compiler: [`${provenance.compiler} ${provenance.flags}`],
     commit: [provenance.commit],
-    'vector instructions': [summary.simd],
+    'vector instructions': [summary.simd ?? 'not said'],
   };
 }
 

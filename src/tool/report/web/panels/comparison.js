@@ -4,6 +4,7 @@ import { element, heading, numberCell, scrollable } from '../page/dom.js';
 import { counted, decimal, integer } from '../page/format.js';
 import { nameOf } from '../page/names.js';
 import { lineOf } from './palette.js';
+import { hasTimes } from './stages.js';
 
 const note = ([grade, text]) => element('p', { class: `note ${grade}`, text });
 
@@ -14,9 +15,9 @@ function overview(report) {
     head.append(element('th', { scope: 'col', text, class: i > 1 ? 'number' : undefined })),
   );
   const body = element('tbody');
-  const base = report.summaries[0].summary.summary.total_ms.mean;
+  const base = report.summaries[0].summary.summary.total_ms?.mean;
   report.summaries.forEach(({ summary: { summary } }, index) => {
-    const ratio = summary.total_ms.mean / base;
+    const ratio = summary.total_ms?.mean / base;
     body.append(
       element(
         'tr',
@@ -26,7 +27,9 @@ function overview(report) {
         ...['intervals', 'intervals_with_contact', 'vf', 'ee'].map((key) =>
           numberCell(integer(summary[key]), summary[key]),
         ),
-        numberCell(`${decimal(summary.total_ms.mean, 3)} ms`, summary.total_ms.mean),
+        hasTimes(summary)
+          ? numberCell(`${decimal(summary.total_ms.mean, 3)} ms`, summary.total_ms.mean)
+          : numberCell('–', ''),
         Number.isFinite(ratio) ? numberCell(`${decimal(ratio, 2)} ×`, ratio) : numberCell('–', ''),
       ),
     );

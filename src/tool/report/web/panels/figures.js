@@ -2,7 +2,7 @@
 import { counted, decimal, integer, milliseconds, significant } from '../page/format.js';
 import { nameOf } from '../page/names.js';
 import { lineOf, lineStyle } from './palette.js';
-import { OTHER, otherMilliseconds, stagesOf } from './stages.js';
+import { hasTimes, OTHER, otherMilliseconds, stagesOf } from './stages.js';
 
 /** A value of each interval; null where the replay has none. */
 const column = (numbers, find, value) =>
@@ -86,7 +86,10 @@ function pairFigure({ summary: { summary } }, numbers, find) {
 
 /** The charts of one replay. If it was stopped, missing values count as 0 in a stack. */
 export function replayFigures(report, numbers, [find]) {
-  return [stageFigure, contactFigure, pairFigure].map((make) => make(report.summaries[0], numbers, find));
+  const timed = hasTimes(report.summaries[0].summary.summary);
+  return [...(timed ? [stageFigure] : []), contactFigure, pairFigure].map((make) =>
+    make(report.summaries[0], numbers, find),
+  );
 }
 
 function compareFigure(report, numbers, finders, { title, value, read, words }) {
@@ -102,8 +105,9 @@ function compareFigure(report, numbers, finders, { title, value, read, words }) 
 
 /** The charts of several replays, a line for each. */
 export function compareFigures(report, numbers, finders) {
+  const timed = report.summaries.every(({ summary: { summary } }) => hasTimes(summary));
   return [
-    {
+    timed && {
       title: 'Milliseconds per interval',
       value: ({ ms }) => ms.total,
       read: millisecondsWithUnit,
@@ -122,5 +126,7 @@ export function compareFigures(report, numbers, finders) {
       read: integer,
       words: ({ pcp }) => `mean ${decimal(pcp.mean, 1)}, maximum ${integer(pcp.max)}`,
     },
-  ].map((figure) => compareFigure(report, numbers, finders, figure));
+  ]
+    .filter(Boolean)
+    .map((figure) => compareFigure(report, numbers, finders, figure));
 }

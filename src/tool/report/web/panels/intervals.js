@@ -64,7 +64,7 @@ function fillRow(row, interval) {
   );
   setNumber(pcp, interval.pcp, integer(interval.pcp));
   setNumber(tests, interval.tests, integer(interval.tests));
-  setNumber(ms, interval.ms.total, milliseconds(interval.ms.total));
+  setNumber(ms, interval.ms?.total ?? null, interval.ms ? milliseconds(interval.ms.total) : '–');
   setText(words, guaranteeInWords(interval.guarantee));
   words.title = words.textContent;
 }

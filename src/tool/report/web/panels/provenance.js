@@ -25,20 +25,27 @@ function planWords(plan) {
   const from =
     plan.source === 'file'
       ? `from ${plan.path}`
-      : `made by this replay in ${significant(plan.made_ms, 4)} ms`;
+      : plan.made_ms === undefined
+        ? 'made by this replay'
+        : `made by this replay in ${significant(plan.made_ms, 4)} ms`;
   return `${counted(plan.regions, 'region')} by ${plan.method}, ${from}`;
 }
+
+/** What `--reproducible` leaves out. */
+const factsOfMoment = ({ date, machine, threads, arguments: words }) => [
+  ['Date', lines([date])],
+  ['Machine', lines(machineWords(machine))],
+  ['Threads', lines([integer(threads)])],
+  ['Command', [code(commandLine(words))]],
+];
 
 /** The rows [name, nodes] of one run. */
 function factsOfRun(provenance) {
   const facts = [
     ['Version', lines([`cscd ${provenance.version}, commit ${provenance.commit}`])],
     ['Compiler', lines([`${provenance.compiler} ${provenance.flags}`])],
-    ['Date', lines([provenance.date])],
-    ['Machine', lines(machineWords(provenance.machine))],
-    ['Threads', lines([integer(provenance.threads)])],
-    ['Command', [code(commandLine(provenance.arguments))]],
   ];
+  if (provenance.date !== undefined) facts.push(...factsOfMoment(provenance));
   const inputs = (provenance.inputs ?? []).map(({ name, fnv1a64 }) =>
     element('div', {}, `${name} `, code(fnv1a64)),
   );
@@ -57,7 +64,8 @@ function factsOfMethod(summary) {
       'Method',
       lines([
         `${summary.method}, mode ${summary.mode}`,
-        `bounding volumes: ${summary.volume}, vector instructions: ${summary.simd}`,
+        `bounding volumes: ${summary.volume}` +
+          (summary.simd === undefined ? '' : `, vector instructions: ${summary.simd}`),
       ]),
     ],
     [

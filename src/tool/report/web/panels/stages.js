@@ -1,5 +1,8 @@
 /** The stages of a step, which of them a method has, and the colours of their charts. */
 
+/** Has a summary times? `--reproducible` leaves them out. */
+export const hasTimes = (summary) => summary.total_ms !== undefined;
+
 export const STAGES = [
   { key: 'update', label: 'BVH update', colour: '#56b4e9' },
   { key: 'orientation', label: 'orientation', colour: '#e69f00' },

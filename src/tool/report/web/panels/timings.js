@@ -3,7 +3,7 @@ import { element, heading, numberCell, scrollable } from '../page/dom.js';
 import { decimal, integer, milliseconds } from '../page/format.js';
 import { nameOf } from '../page/names.js';
 import { lineOf } from './palette.js';
-import { hasStage, STAGES } from './stages.js';
+import { hasStage, hasTimes, STAGES } from './stages.js';
 
 const nothing = (text, title) => element('td', { class: 'number absent', text, title });
 
@@ -20,7 +20,7 @@ function cellsOf(summary, which, first) {
   cells.push(numberCell(which === 'max' ? integer(pairs) : decimal(pairs, 1), pairs));
   cells.push(milliCell(summary.total_ms, which));
   if (first) {
-    const ratio = summary.total_ms[which] / first.total_ms[which];
+    const ratio = summary.total_ms?.[which] / first.total_ms?.[which];
     cells.push(
       Number.isFinite(ratio)
         ? numberCell(`${decimal(ratio, 2)} ×`, ratio)
@@ -64,7 +64,7 @@ function rowsOf(report, index, first) {
 }
 
 export function create(container, report) {
-  container.hidden = report.summaries.length === 0;
+  container.hidden = !report.summaries.some(({ summary: { summary } }) => hasTimes(summary));
   if (container.hidden) return;
   const several = report.summaries.length > 1;
   const head = element(
