@@ -20,7 +20,7 @@ static const char *const endings[] = {"contacts.csv", "events.csv", "summary.jso
 enum { OUTPUTS = 4 };
 
 static temp_folder folder;
-static temp_path fold, cache, spindle, spindle_cache;
+static temp_path fold, cache, spindle, spindle_cache, pair, pair_cache;
 
 static int make_files(void **state) {
     (void)state;
@@ -32,6 +32,10 @@ static int make_files(void **state) {
     scene = recorded_spindle(12, 8, 14);
     spindle = recorded_write_mesh(&folder, "spindle.obj", &scene, 0);
     spindle_cache = recorded_write_cycle(&folder, "spindle.pc2", &scene, 70);
+    recorded_free(&scene);
+    scene = recorded_tetrahedra(9);
+    pair = recorded_write_mesh(&folder, "pair.obj", &scene, 0);
+    pair_cache = recorded_write_cycle(&folder, "pair.pc2", &scene, 80);
     recorded_free(&scene);
     return 0;
 }
@@ -81,6 +85,12 @@ static char *fold_with(const char *options) {
     return text;
 }
 
+static char *spindle_with(const char *options) {
+    static char text[1200];
+    snprintf(text, sizeof text, "'%s' '%s' %s", spindle.text, spindle_cache.text, options);
+    return text;
+}
+
 /* ---- the same bytes -------------------------------------------------------------------------------------- */
 
 static void expect_equal_in_shards(const char *options) {
@@ -111,12 +121,15 @@ static void of_part_of_the_frames(void **state) {
 
 /* Orientations and detector points come from the files of the shards. */
 static void of_a_closed_body_with_regions(void **state) {
+    (void)state;
+    expect_equal_in_shards(spindle_with("--method kmeans:4"));
+    expect_equal_in_shards(spindle_with("--method single --mode earliest"));
+}
+
+static void of_several_components(void **state) {
     char options[1200];
     (void)state;
-    snprintf(options, sizeof options, "'%s' '%s' --method kmeans:4", spindle.text, spindle_cache.text);
-    expect_equal_in_shards(options);
-    snprintf(options, sizeof options, "'%s' '%s' --method single --mode earliest", spindle.text,
-             spindle_cache.text);
+    snprintf(options, sizeof options, "'%s' '%s' --method single --mode earliest", pair.text, pair_cache.text);
     expect_equal_in_shards(options);
 }
 
@@ -146,27 +159,22 @@ static void with_times_all_else_is_the_same(void **state) {
 
 /* ---- stopped and resumed --------------------------------------------------------------------------------- */
 
-/* A file that ends anywhere is gone on with, and ends as if nothing had happened. */
+/* A file that ends anywhere is gone on with, and ends as if nothing had happened. A closed body, so that counters depend on where
+ * its detector started. */
 static void a_shard_that_was_stopped_goes_on(void **state) {
     char path[600];
     struct stat whole;
     (void)state;
-    whole_run(fold_with(""));
-    all_shards(fold_with(""), 2);
+    whole_run(spindle_with("--method single"));
+    all_shards(spindle_with("--method single"), 1);
     snprintf(path, sizeof path, "%s/1.shard", folder.path);
     assert_int_equal(stat(path, &whole), 0);
-    const off_t cuts[] = {1,
-                          40,
-                          80,
-                          120,
-                          whole.st_size / 3,
-                          whole.st_size / 2,
-                          whole.st_size * 2 / 3,
-                          whole.st_size - 1,
-                          whole.st_size};
+    const off_t cuts[] = {whole.st_size,         whole.st_size - 1, whole.st_size * 2 / 3, whole.st_size / 2,
+                          whole.st_size * 2 / 5, 400,               120,                   80,
+                          40,                    1};
     for (size_t i = 0; i < sizeof cuts / sizeof *cuts; i++) {
         shell("truncate -s %lld '%s'", (long long)cuts[i], path);
-        shell("\"$CSCD_TOOL\" replay %s --quiet --shard 1/2 --results '%s' --resume", fold_with(""), path);
+        shell("\"$CSCD_TOOL\" replay %s --quiet --results '%s' --resume", spindle_with("--method single"), path);
         merge_run();
         expect_same_outputs();
     }
@@ -176,19 +184,20 @@ static void a_shard_that_was_stopped_goes_on(void **state) {
 static void a_shard_that_is_killed_loses_nothing(void **state) {
     char path[600];
     (void)state;
-    whole_run(fold_with(""));
+    whole_run(spindle_with("--method single"));
     remove_shards();
     snprintf(path, sizeof path, "%s/1.shard", folder.path);
+    const char *const arguments[] = {"replay",   spindle.text, spindle_cache.text, "--quiet",  "--method",
+                                     "single",   "--results",  path,               "--resume", NULL};
     for (int i = 0; i < 12; i++) {
-        tool_process process = run_tool_start((const char *const[]){
-            "replay", fold.text, cache.text, "--quiet", "--results", path, "--resume", NULL});
+        tool_process process = run_tool_start(arguments);
         usleep(1000 * (useconds_t)(1 + 3 * i));
         kill(process.pid, SIGKILL);
         tool_run run = run_tool_finish(&process);
         assert_true(run.code == 0 || run.code == 128 + SIGKILL);
         tool_run_free(&run);
     }
-    EXPECT_TOOL(0, "replay", fold.text, cache.text, "--quiet", "--results", path, "--resume");
+    run_tool_expect(0, arguments);
     merge_run();
     expect_same_outputs();
 }
@@ -292,6 +301,7 @@ int main(void) {
         cmocka_unit_test(without_a_check_each_shard_proves_its_start),
         cmocka_unit_test(of_part_of_the_frames),
         cmocka_unit_test(of_a_closed_body_with_regions),
+        cmocka_unit_test(of_several_components),
         cmocka_unit_test(exit_code_and_words_are_those_of_one_run),
         cmocka_unit_test(with_times_all_else_is_the_same),
         cmocka_unit_test(a_shard_that_was_stopped_goes_on),
