@@ -4,6 +4,7 @@
 #include "src/io/gltf.h"
 #include "src/io/path_name.h"
 #include "src/tool/common/command.h"
+#include "src/tool/common/late_files.h"
 #include "src/tool/common/provenance.h"
 
 #include <assert.h>
@@ -214,14 +215,22 @@ static bool map_edges(recording *r, io_error *error) {
 
 /* ---- the interface ----------------------------------------------------------------------------------- */
 
-bool recording_open(const recording_options *options, recording *out, io_error *error) {
-    recording r = {.fps = options->frames.fps};
+static bool open_once(const recording_options *options, recording *out, io_error *error) {
+    recording r = {.fps = options->frames.fps, .wait_seconds = options->wait_seconds};
     if (!open_objects(options, &r, error) || !number_frames(options, &r, error) ||
         !create_context(options, &r, error) || !create_mesh(&r, error) || !map_edges(&r, error)) {
         recording_close(&r);
         return false;
     }
     *out = r;
+    return true;
+}
+
+/* A file that is not there yet, or not all of it, may be a moment later. */
+bool recording_open(const recording_options *options, recording *out, io_error *error) {
+    const late_files late = late_files_begin(options->wait_seconds);
+    while (!open_once(options, out, error))
+        if (!late_files_again(&late)) return false;
     return true;
 }
 
@@ -236,7 +245,7 @@ void recording_close(recording *r) {
     *r = (recording){0};
 }
 
-bool recording_read(recording *r, uint32_t frame, double *positions, io_error *error) {
+static bool read_once(recording *r, uint32_t frame, double *positions, io_error *error) {
     for (uint32_t i = 0; i < r->object_count; i++) {
         recorded_object *object = &r->objects[i];
         io_error reason;
@@ -246,6 +255,13 @@ bool recording_read(recording *r, uint32_t frame, double *positions, io_error *e
         if (r->object_count == 1) return io_fail(error, "frame %d: %s", r->frame_numbers[frame], reason.text);
         return io_fail(error, "frame %d: %s: %s", r->frame_numbers[frame], object->source.name, reason.text);
     }
+    return true;
+}
+
+bool recording_read(recording *r, uint32_t frame, double *positions, io_error *error) {
+    const late_files late = late_files_begin(r->wait_seconds);
+    while (!read_once(r, frame, positions, error))
+        if (!late_files_again(&late)) return false;
     return true;
 }
 

@@ -35,6 +35,7 @@ typedef struct recording_options {
     animation_options frames;       /* how frames are read; the model's path is filled in for each object */
     frame_number first_frame;       /* what the first frame is called; not given: what its file says */
     weld_choice weld;
+    double wait_seconds;   /* for files that cannot be read yet; 0: none */
     uint32_t thread_count; /* 0: one per processor, for small meshes one */
     cscd_simd simd;
     cscd_progress progress; /* of the context; NULL: none */
@@ -56,7 +57,8 @@ typedef struct recording {
     char *model_name; /* of the object without a name of its own: its file's, without folder and ending */
     uint32_t object_count;
     uint32_t frame_count;
-    double fps;                        /* that of the options; 0: not given */
+    double fps; /* that of the options; 0: not given */
+    double wait_seconds;
     int32_t *frame_numbers;            /* frame_count, ascending: what the artist calls each frame */
     uint32_t (*edge_file_vertices)[2]; /* per edge of mesh; NULL when nothing is welded */
 } recording;

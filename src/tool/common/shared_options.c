@@ -23,6 +23,8 @@ static const option_row of_frames[] = {
      "which animation of a glTF file (default: the first)"},
     {"allow-gaps", NULL, read_flag, offsetof(recording_options, frames.allow_gaps),
      "of numbered files, some may be missing; an interval then goes on to the next that exists"},
+    {"wait-for-files", "S", read_seconds, offsetof(recording_options, wait_seconds),
+     "try again for up to S seconds where a file cannot be read, as a network file system shows it late (default: not at all)"},
     {"weld", "exact|none|EPS", read_weld, offsetof(recording_options, weld),
      "join vertices that coincide, or lie within EPS, in the first frame (default: exact for STL and glTF, else "
      "none)"},

@@ -56,8 +56,9 @@ static bool prepare_source(replay *r, io_error *error) {
     r->source.first = r->whole_first;
     r->source.shards = r->merged;
     r->source.reads_frames = r->options->report.path != NULL || export_request_any(&r->options->exports);
-    return replay_shard_matches(r, error) && replay_shard_prepare(r, error) &&
-           replay_source_open(&r->source, error);
+    if (!replay_shard_matches(r, error) || !replay_shard_prepare(r, error)) return false;
+    r->source.last = r->last;
+    return replay_source_open(&r->source, error);
 }
 
 /* Checks the outputs before anything takes time and before any file is truncated. */

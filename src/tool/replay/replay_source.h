@@ -2,6 +2,7 @@
  * and from the detector. */
 #pragma once
 
+#include "src/tool/replay/read_ahead.h"
 #include "src/tool/replay/replay_detector.h"
 #include "src/tool/replay/shard_series.h"
 
@@ -9,12 +10,14 @@ typedef struct replay_source {
     /* These are set by whoever opens it. */
     recording *recording;
     uint32_t first;       /* frame of the whole replay: chunks are counted from it */
+    uint32_t last;        /* frame that is asked for */
     shard_series *shards; /* what they have is not found again; NULL: nothing is there */
     bool reads_frames;    /* positions are wanted of what shards have, too */
     append_file *results; /* what is found is added to it; NULL: to nothing */
     replay_detector detector;
 
-    double *x0, *x1; /* positions at the start and at the end of the interval */
+    read_ahead *frames; /* NULL: none was read yet */
+    double *x0, *x1;    /* positions at the start and at the end of the interval */
     uint64_t hashes[RECORDING_OBJECTS_MAX + 1];
     packed_bytes bytes; /* of the record to come */
 } replay_source;

@@ -1,0 +1,167 @@
+/* What a replay reads, and when: of a large recording its own frames only, and files that come late. */
+#include "tests/support/shell.h"
+#include "tests/support/test.h"
+#include "tests/support/tool/run_tool.h"
+#include "tests/support/tool/tool_fixture.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/types.h>
+#include <unistd.h>
+
+static temp_folder folder;
+
+static int make_folder(void **state) {
+    (void)state;
+    folder = temp_folder_make();
+    return 0;
+}
+
+static int remove_folder(void **state) {
+    (void)state;
+    temp_folder_remove(&folder);
+    return 0;
+}
+
+/* ---- a large recording ----------------------------------------------------------------------------------- */
+
+/* A point cache of 100 GB that takes no room: all frames are holes but those of one shard of 32 intervals. */
+enum { CHUNK = 32, HEADER = 32 };
+static const unsigned long long whole_size = 100ull * 1000 * 1000 * 1000;
+
+typedef struct large_recording {
+    temp_path mesh, small, large;
+    unsigned long long frame_size, chunks;
+} large_recording;
+
+/* The head of the small one with another count, its frames from frame `place` on, and holes. */
+static void write_large(const large_recording *r, unsigned long long samples, unsigned long long place) {
+    size_t size;
+    char *bytes = read_whole_file(r->small.text, &size);
+    for (int i = 0; i < 4; i++) bytes[HEADER - 4 + i] = (char)(samples >> 8 * i);
+    FILE *file = fopen(r->large.text, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(bytes, 1, HEADER, file), HEADER);
+    assert_int_equal(fseeko(file, (off_t)(HEADER + place * r->frame_size), SEEK_SET), 0);
+    assert_int_equal(fwrite(bytes + HEADER, 1, size - HEADER, file), size - HEADER);
+    fclose(file);
+    assert_int_equal(truncate(r->large.text, (off_t)(HEADER + samples * r->frame_size)), 0);
+    free(bytes);
+}
+
+static large_recording make_large(void) {
+    recorded scene = recorded_fold(120, 80, CHUNK + 1);
+    large_recording r = {.mesh = recorded_write_mesh(&folder, "wide.obj", &scene, 0),
+                         .small = recorded_write_cache(&folder, "small.pc2", &scene),
+                         .large = temp_file_path(&folder, "large.pc2"),
+                         .frame_size = scene.vertex_count * 12ull};
+    recorded_free(&scene);
+    r.chunks = (whole_size / r.frame_size - 1) / CHUNK;
+    write_large(&r, r.chunks * CHUNK + 1, r.chunks / 2 * CHUNK);
+    return r;
+}
+
+/* The bytes that a command reads: Linux counts them, those of ended children too. */
+static unsigned long long bytes_read(const char *arguments) {
+    char *found = shell_output(
+        0, "test -r /proc/self/io || exit 0; \"$CSCD_TOOL\" %s && sed -n 's/rchar: //p' /proc/$$/io",
+        arguments);
+    const unsigned long long bytes = strtoull(found, NULL, 10);
+    free(found);
+    return bytes;
+}
+
+static void a_shard_of_100_gb_reads_its_own_frames(void **state) {
+    char arguments[2000];
+    const large_recording r = make_large();
+    (void)state;
+    snprintf(arguments, sizeof arguments, "replay '%s' '%s' --quiet --no-depths --results '%s/small.shard'",
+             r.mesh.text, r.small.text, folder.path);
+    const unsigned long long least = bytes_read(arguments);
+    snprintf(arguments, sizeof arguments,
+             "replay '%s' '%s' --quiet --no-depths --shard %llu/%llu --results '%s/large.shard'", r.mesh.text,
+             r.large.text, r.chunks / 2 + 1, r.chunks, folder.path);
+    const unsigned long long most = bytes_read(arguments);
+    if (least == 0) skip(); /* nobody counts here */
+    assert_in_range(most, (CHUNK + 1) * r.frame_size, least + r.frame_size);
+}
+
+static void its_memory_is_that_of_an_interval(void **state) {
+    char shard[64];
+    const large_recording r = make_large();
+    (void)state;
+    snprintf(shard, sizeof shard, "%llu/%llu", r.chunks / 2 + 1, r.chunks);
+    temp_path results = temp_file_path(&folder, "memory.shard");
+    tool_run small = RUN_TOOL("replay", r.mesh.text, r.small.text, "--quiet", "--no-depths");
+    tool_run large = RUN_TOOL("replay", r.mesh.text, r.large.text, "--quiet", "--no-depths", "--shard", shard,
+                              "--results", results.text);
+    assert_int_equal(small.code, 0);
+    assert_int_equal(large.code, 0);
+    const long numbers = (long)(r.chunks * CHUNK * 4 / 1024); /* a frame's number takes 4 bytes */
+    assert_in_range(large.peak_kib, 0, small.peak_kib + numbers + small.peak_kib / 4);
+    tool_run_free(&small);
+    tool_run_free(&large);
+}
+
+/* ---- late files ------------------------------------------------------------------------------------------ */
+
+static temp_path make_series(void) {
+    recorded scene = recorded_tetrahedra(6);
+    temp_path pattern = recorded_write_sequence(&folder, "late_%04d.obj", &scene);
+    recorded_free(&scene);
+    return pattern;
+}
+
+static char *with_late_frame(int code, const char *options) {
+    const temp_path pattern = make_series();
+    return shell_output(
+        code,
+        "cd '%s' && mv late_0003.obj hidden && { sleep 2; mv hidden late_0003.obj; } >/dev/null 2>&1 & "
+        "sleep 0.2; \"$CSCD_TOOL\" replay '%s/late_0000.obj' '%s' --quiet --contacts - %s 2>&1; "
+        "code=$?; wait; exit $code",
+        folder.path, folder.path, pattern.text, options);
+}
+
+static void a_frame_that_comes_late_is_waited_for(void **state) {
+    (void)state;
+    const temp_path pattern = make_series();
+    char *expected = shell_output(0, "\"$CSCD_TOOL\" replay '%s/late_0000.obj' '%s' --quiet --contacts -",
+                                  folder.path, pattern.text);
+    char *found = with_late_frame(0, "--wait-for-files 60");
+    assert_string_equal(found, expected);
+    free(found);
+    free(expected);
+}
+
+static void without_waiting_it_is_an_error(void **state) {
+    (void)state;
+    char *found = with_late_frame(1, "");
+    assert_non_null(strstr(found, "late_0003"));
+    free(found);
+    found = with_late_frame(1, "--wait-for-files 0.3");
+    assert_non_null(strstr(found, "late_0003"));
+    free(found);
+}
+
+static void a_model_that_comes_late_is_waited_for(void **state) {
+    (void)state;
+    make_series();
+    free(shell_output(
+        0,
+        "cd '%s' && mv late_0000.obj hidden && { sleep 1; mv hidden late_0000.obj; } >/dev/null 2>&1 & "
+        "sleep 0.2; \"$CSCD_TOOL\" check '%s/late_0000.obj' --quiet --wait-for-files 60; code=$?; wait; "
+        "exit $code",
+        folder.path, folder.path));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_shard_of_100_gb_reads_its_own_frames),
+        cmocka_unit_test(its_memory_is_that_of_an_interval),
+        cmocka_unit_test(a_frame_that_comes_late_is_waited_for),
+        cmocka_unit_test(without_waiting_it_is_an_error),
+        cmocka_unit_test(a_model_that_comes_late_is_waited_for),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
