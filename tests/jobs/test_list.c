@@ -212,8 +212,7 @@ static void wrong_lists_and_options_are_refused(void **state) {
     EXPECT_ERROR(2, TEXTS("--resume needs --results"), "check", "--list", list.text, "--resume");
     EXPECT_ERROR(2, TEXTS("--shard cannot be '4/3'"), "check", "--list", list.text, "--shard", "4/3");
     EXPECT_ERROR(2, TEXTS("--shard is for --list"), "check", clean.text, "--shard", "1/3");
-    EXPECT_ERROR(2, TEXTS("--results is for --list"), "replay", fold.text, fold_cache.text, "--results",
-                 "a.jsonl");
+    EXPECT_ERROR(2, TEXTS("--results is for --list"), "check", clean.text, "--results", "a.jsonl");
     EXPECT_ERROR(1, TEXTS("/nowhere/r.jsonl: cannot write"), "check", "--list", list.text, "--results",
                  "/nowhere/r.jsonl");
 }
