@@ -67,3 +67,13 @@ expect_frames 1
 "$CSCD" merge died/shard-*.jsonl -o all.jsonl --quiet 2>/dev/null || [ $? = 1 ]
 expect_merged all.jsonl
 echo 'farm: command file of OpenCue, a shard dies'
+
+# The list is edited: no shard may begin in the old results, so that all frames fail, though there are lines to merge.
+grep -v damaged jobs.jsonl >edited.jsonl
+"$script" edited.jsonl edited 3 >night.txt
+run_frames night.txt 1 >codes
+expect_frames 3
+sed -i 's/job 2"/job two"/' edited.jsonl
+run_frames night.txt 1 >codes
+[ "$(tr '\n' ' ' <codes)" = '1 1 1 ' ] || { echo 'opencue: an edited list was taken'; exit 1; }
+echo 'farm: command file of OpenCue, an edited list'

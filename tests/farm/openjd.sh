@@ -56,6 +56,12 @@ expect_tasks 1 '1 Merge: 1' '3 Shards: 0'
 expect_merged "$folder/died/all.jsonl"
 echo 'farm: Open Job Description, a shard dies'
 
+# The list is edited: no shard may begin in the old results, and there is no merge.
+sed 's/job 2"/job two"/' jobs.jsonl | grep -v damaged >edited.jsonl
+run_template clean Cscd="$CSCD" Shards=4 List=edited.jsonl
+expect_tasks 1 '1 Merge: left out' '4 Shards: 1'
+echo 'farm: Open Job Description, an edited list'
+
 # The engine does refuse what the schema does not know.
 for fault in 's/"PATH"/"FOLDER"/' 's/Param.Shards}}",/Param.Parts}}",/' 's/"dependsOn": "Shards"/"dependsOn": "Merge"/' 's/1-{{/1 to {{/' \
     's/"onRun"/"run"/' 's/2023-09/2023-10/' 's/"1-{{Param.Shards/"1-{{Task.Param.Shard/' 's/mkdir/\\nmkdir/'; do
