@@ -165,7 +165,7 @@ COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 # What installs packages; a build that leaves expat out on purpose does not ask for it.
 PACKAGES = GSL=$(GSL) CHARGE=$(CHARGE) EXPAT=$(if $(WITHOUT_EXPAT),0,1) .ci/packages
 
-.PHONY: all python python-package wheel sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-embree referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender blender-extension test-vtk test-bridges test-farm python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces fuzz-files FORCE
+.PHONY: all python python-package wheel sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-embree referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender blender-extension test-vtk test-bridges test-farm cscd-mpi python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces fuzz-files FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -299,12 +299,21 @@ test-vtk:
 	@$(MAKE) --no-print-directory tool
 	@BUILD=$(BUILD) tests/vtk/run.sh
 
+# The shards of a list on the ranks of MPI; nothing else needs MPI. With another compiler wrapper: MPICC=...
+MPICC ?= mpicc
+MPI_SOURCES := $(wildcard src/mpi/*.c)
+cscd-mpi: $(BUILD)/cscd-mpi
+$(BUILD)/cscd-mpi: $(MPI_SOURCES) $(wildcard src/mpi/*.h)
+	@mkdir -p $(@D)
+	$(say) '  LD $@'
+	$(Q)OMPI_CC='$(CC)' $(MPICC) -std=c11 -D_GNU_SOURCE $(OPTIMISE_$(CONFIG)) $(WARNINGS) -I. $(CFLAGS) $(MPI_SOURCES) $(LDFLAGS) -o $@
+
 # Shards that the engines of docs/engines.md start, and whose node dies; nothing else needs these. As root, for the daemons.
 test-farm:
 	@.ci/packages farm
-	@$(MAKE) --no-print-directory tool
+	@$(MAKE) --no-print-directory tool cscd-mpi
 	@$(MAKE) --no-print-directory python
-	@CSCD=$(abspath $(BUILD)/cscd) PYTHONPATH=$(abspath $(BUILD_ROOT)/python) tests/farm/run.sh
+	@CSCD=$(abspath $(BUILD)/cscd) CSCD_MPI=$(abspath $(BUILD)/cscd-mpi) PYTHONPATH=$(abspath $(BUILD_ROOT)/python) tests/farm/run.sh
 
 # The Python package beside meshio, VTK and torch, by the blocks of docs/python/bridges.md; nothing else needs these.
 test-bridges:
@@ -419,6 +428,7 @@ help:
 	@echo '               (installs blender); PAGE=--write puts what the steps print into the page, and draws its pictures'
 	@echo 'make blender-extension   the extension of Blender, with the Python package in it, in build/blender'
 	@echo 'make test-vtk   what --vtk writes, read by VTK and compared with the other outputs (installs python3-vtk9)'
+	@echo 'make cscd-mpi       build/release/cscd-mpi, for docs/engines.md: needs MPI, as Debian has it in libopenmpi-dev'
 	@echo 'make test-farm      shards that the engines of docs/engines.md start, and whose node dies (installs these)'
 	@echo 'make test-bridges   the blocks of docs/python/bridges.md, with meshio, VTK and torch (installs these)'
 	@echo 'make test-threads   the tests that use threads, under the thread sanitizer'

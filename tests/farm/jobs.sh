@@ -16,6 +16,7 @@ make_jobs() { # make_jobs COUNT
 }
 
 run_whole() {
+    rm -f "$folder/whole.jsonl"
     "$CSCD" check --list "$folder/jobs.jsonl" --results "$folder/whole.jsonl" --threads 1 --quiet 2>/dev/null || [ $? = 1 ]
     "$CSCD" merge "$folder/whole.jsonl" -o "$folder/expected.jsonl" --quiet 2>/dev/null || [ $? = 1 ]
 }
