@@ -301,6 +301,18 @@ static void options_that_do_not_fit_are_refused(void **state) {
     free(said);
 }
 
+/* The lines of meshes have times as well. */
+static void two_checks_of_meshes_give_the_same_bytes(void **state) {
+    (void)state;
+    for (int i = 1; i <= 2; i++)
+        shell(
+            "\"$CSCD_TOOL\" check --each '%s' '%s' '%s/none.obj' --reproducible --quiet --json '%s/each%d.jsonl'; test $? = 1",
+            fold.text, spindle.text, folder.path, folder.path, i);
+    shell(
+        "cd '%s' && cmp each1.jsonl each2.jsonl && test $(wc -l <each1.jsonl) = 3 && ! grep _ms each1.jsonl",
+        folder.path);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(shards_give_what_one_run_gives),
@@ -317,6 +329,7 @@ int main(void) {
         cmocka_unit_test(files_that_have_changed_are_noticed),
         cmocka_unit_test(other_frames_are_noticed),
         cmocka_unit_test(options_that_do_not_fit_are_refused),
+        cmocka_unit_test(two_checks_of_meshes_give_the_same_bytes),
     };
     return cmocka_run_group_tests(tests, make_files, remove_files);
 }

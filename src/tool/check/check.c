@@ -35,6 +35,8 @@ static const option_row rows[] = {
      "exit with 3 when triangles cross in any frame; touching: or touch"},
     {"fail-on-contact", NULL, fail_on_touching, offsetof(check_options, answers.fail.kind),
      "another name of --fail-on touching"},
+    {"reproducible", NULL, read_flag, offsetof(check_options, reproducible),
+     "leave times out of the lines of --each, so that two runs write the same bytes; nothing else has any"},
     {"quiet", NULL, read_flag, offsetof(check_options, quiet),
      "no progress, no warnings, nothing on the standard output"},
 };
@@ -122,9 +124,10 @@ static int run_list(const check_options *options, const given_options *given) {
 }
 
 static int refuse_beside_each(const check_options *o, const given_options *given) {
-    static const char *const own[] = {
-        "each",  "json",  "weld",    "ignore-parts", "only",       "threads", "fail-on", "fail-on-contact",
-        "quiet", "shard", "results", "resume",       "job-timeout"};
+    static const char *const own[] = {"each",        "json",        "weld",    "ignore-parts",
+                                      "only",        "threads",     "fail-on", "fail-on-contact",
+                                      "quiet",       "shard",       "results", "resume",
+                                      "job-timeout", "reproducible"};
     io_error error;
     const char *foreign = option_given_beside(&table, given, own, sizeof own / sizeof *own);
     if (foreign != NULL)
@@ -144,7 +147,8 @@ static int run_each(const check_options *o, const given_options *given) {
     const mesh_kind_options meshes = {.weld = o->source.weld,
                                       .ignored = o->ignored,
                                       .fail_on_crossing = kind == FAIL_ON_CROSSING,
-                                      .fail_on_touching = kind == FAIL_ON_TOUCHING};
+                                      .fail_on_touching = kind == FAIL_ON_TOUCHING,
+                                      .reproducible = o->reproducible};
     const job_kind jobs = mesh_kind_of(&meshes);
     job_list list;
     io_error error;

@@ -15,7 +15,7 @@ typedef struct check_options {
     answer_options answers;
     export_request exports;
     list_options list;
-    bool each, quiet;
+    bool each, reproducible, quiet;
 } check_options;
 
 /* Runs the command on a recording, whose inputs the options have. name, job: of a job among many, which gets the answer; NULL: what is

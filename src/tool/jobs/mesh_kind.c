@@ -62,7 +62,8 @@ static void write_double(json *line, const mesh_answer *a, const char *key, doub
         json_null(line, key);
 }
 
-static void write_members(json *line, const char *path, const char *reason, const mesh_answer *a) {
+static void write_members(json *line, const char *path, const char *reason, const mesh_answer *a,
+                          bool reproducible) {
     json_string(line, "file", path);
     if (reason == NULL)
         json_null(line, "error");
@@ -81,6 +82,7 @@ static void write_members(json *line, const char *path, const char *reason, cons
     write_count(line, a, "shortened_faces", a->repairs.shortened);
     write_count(line, a, "dropped_faces", a->repairs.dropped);
     write_count(line, a, "fanned_faces", a->repairs.fanned);
+    if (reproducible) return;
     write_double(line, a, "read_ms", a->read_ms);
     write_double(line, a, "check_ms", a->check_ms);
 }
@@ -106,7 +108,7 @@ static bool run_mesh(const void *user, const job_line *line, cscd_context *conte
         out->found = (outcome == JOB_CROSSING && (o->fail_on_crossing || o->fail_on_touching)) ||
                      (outcome == JOB_TOUCHING && o->fail_on_touching);
         print_answer(out->text, job.path, &answer);
-        write_members(out->members, job.path, NULL, &answer);
+        write_members(out->members, job.path, NULL, &answer, o->reproducible);
     } else
         io_fail(error, "%s", mesh_answer_reason(&answer));
     const bool checked = answer.checked;
@@ -116,13 +118,13 @@ static bool run_mesh(const void *user, const job_line *line, cscd_context *conte
 
 /* The reason begins with the name of the file, as those of readers do. */
 static void fail_mesh(const void *user, const char *name, const char *reason, job_output *out) {
-    (void)user;
+    const mesh_kind_options *o = user;
     const size_t length = strlen(name);
     const bool named = strncmp(reason, name, length) == 0 && reason[length] == ':';
     char *whole = NULL;
     if (!named && asprintf(&whole, "%s: %s", name, reason) >= 0) reason = whole;
     fputs(reason, out->text);
-    write_members(out->members, name, reason, &(mesh_answer){.checked = false});
+    write_members(out->members, name, reason, &(mesh_answer){.checked = false}, o->reproducible);
     free(whole);
 }
 

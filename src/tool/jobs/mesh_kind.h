@@ -9,6 +9,7 @@ typedef struct mesh_kind_options {
     weld_choice weld;
     ignore_options ignored;                  /* pairs of parts */
     bool fail_on_crossing, fail_on_touching; /* found is what crosses; or touches as well */
+    bool reproducible;                       /* lines come without times */
 } mesh_kind_options;
 
 /* The options outlive the kind. */
