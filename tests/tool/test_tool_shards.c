@@ -301,6 +301,22 @@ static void options_that_do_not_fit_are_refused(void **state) {
     free(said);
 }
 
+/* --shard of a list says which jobs, each of which is a whole recording. */
+static void shards_of_a_list_have_whole_recordings(void **state) {
+    char text[1500];
+    (void)state;
+    snprintf(text, sizeof text, "{\"model\": \"%s\", \"frames\": \"%s\"}\n", fold.text, cache.text);
+    const temp_path list = temp_file_write(&folder, "jobs.jsonl", text, strlen(text));
+    char *one = shell_output(0, "\"$CSCD_TOOL\" replay --list '%s'", list.text),
+         *shard = shell_output(
+             0, "\"$CSCD_TOOL\" replay --list '%s' --shard 1/2 --results '%s/list-1.jsonl' --job-timeout 100",
+             list.text, folder.path);
+    assert_string_equal(one, shard);
+    assert_non_null(strstr(one, "of 150"));
+    free(one);
+    free(shard);
+}
+
 /* The lines of meshes have times as well. */
 static void two_checks_of_meshes_give_the_same_bytes(void **state) {
     (void)state;
@@ -329,6 +345,7 @@ int main(void) {
         cmocka_unit_test(files_that_have_changed_are_noticed),
         cmocka_unit_test(other_frames_are_noticed),
         cmocka_unit_test(options_that_do_not_fit_are_refused),
+        cmocka_unit_test(shards_of_a_list_have_whole_recordings),
         cmocka_unit_test(two_checks_of_meshes_give_the_same_bytes),
     };
     return cmocka_run_group_tests(tests, make_files, remove_files);

@@ -308,6 +308,7 @@ static int run_listed(void *options, given_options *given, const char *name, csc
     o->source.context = context;
     o->quiet = true;
     const int code = replay_options_finish(o, given);
+    o->list = (list_options){.path = NULL}; /* shards of the list are not shards of the recording */
     return code == EXIT_RAN ? replay_run(o, NULL, name, out) : code;
 }
 
