@@ -107,6 +107,10 @@ static int merge_recording(const merge_options *o, const given_options *given, i
     const merged_output outputs[] = {{"contacts", o->contacts_path}, {"json", o->json_path},
                                      {"events", o->events_path},     {"junit", o->junit_path},
                                      {"report", o->report_path},     {"title", o->title}};
+    io_error error;
+    for (size_t i = 0; i < sizeof outputs / sizeof *outputs; i++)
+        if (!output_path_differs(outputs[i].value, given->inputs, given->input_count, &error))
+            return fail_usage("merge", "--%s %s", outputs[i].option, error.text);
     if (o->output_path != NULL)
         return fail_usage("merge", "-o is for the results of a list; a recording has --contacts, --json, "
                                    "--events, --junit and --report");

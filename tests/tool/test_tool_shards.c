@@ -299,6 +299,10 @@ static void options_that_do_not_fit_are_refused(void **state) {
     char *said = shell_output(2, "\"$CSCD_TOOL\" merge '%s'/*.shard -o none.jsonl 2>&1", folder.path);
     assert_non_null(strstr(said, "-o is for the results of a list"));
     free(said);
+    said = shell_output(2, "cd '%s' && \"$CSCD_TOOL\" merge 1.shard --contacts 1.shard 2>&1", folder.path);
+    assert_non_null(strstr(said, "--contacts"));
+    free(said);
+    merge_run();
 }
 
 /* --shard of a list says which jobs, each of which is a whole recording. */

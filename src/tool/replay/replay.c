@@ -4,6 +4,7 @@
 #include "src/tool/common/output_path.h"
 #include "src/tool/jobs/listed_recordings.h"
 #include "src/tool/jobs/recording_answer.h"
+#include "src/tool/replay/replay_chunks.h"
 #include "src/tool/replay/replay_print.h"
 #include "src/tool/replay/replay_shard.h"
 
@@ -287,6 +288,9 @@ int replay_run(const replay_options *options, shard_series *merged, const char *
     bool closed = replay_shard_close(&r, &close_error);
     closed = close_outputs(&r, stopped_by, closed ? &close_error : NULL) && closed;
     if (!options->quiet && r.totals.intervals > 0) replay_print_results(&r);
+    if (begun && r.first == r.last && !options->quiet)
+        note("shard %u/%u has no intervals, since there are fewer chunks of %d than shards",
+             options->list.shard.index, options->list.shard.count, CHUNK_INTERVALS);
     if (begun && !options->quiet) replay_print_remarks(&r);
     if (!ran) code = fail_replay(&r, begun, error.text);
     if (!closed) code = fail_input("%s", close_error.text);
