@@ -8,5 +8,10 @@
 #SBATCH --job-name=cscd
 #SBATCH --requeue
 #SBATCH --open-mode=append
-exec "${CSCD:-cscd}" check --list "$1" --shard "$SLURM_ARRAY_TASK_ID/$SLURM_ARRAY_TASK_COUNT" \
-    --results "$2/shard-$SLURM_ARRAY_TASK_ID.jsonl" --resume --quiet
+file="$2/shard-$SLURM_ARRAY_TASK_ID.jsonl"
+code=0
+"${CSCD:-cscd}" check --list "$1" --shard "$SLURM_ARRAY_TASK_ID/$SLURM_ARRAY_TASK_COUNT" --results "$file" --resume --quiet || code=$?
+# A shard ends with 1 if a job has failed, and also if it could not begin, as with results of another list. The merge must know.
+rm -f "$file.refused"
+[ $code != 1 ] || grep -q '"result":"failed"' "$file" || : >"$file.refused"
+exit $code

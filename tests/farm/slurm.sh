@@ -103,7 +103,7 @@ make_jobs 30
 run_whole
 expected_code() { [ "$(scontrol -o show job "$merge" | grep -o 'ExitCode=[0-9]*')" = ExitCode=1 ]; }
 submit() { # submit RESULTS
-    mkdir "$1"
+    mkdir -p "$1"
     array=$(sbatch --parsable --array=1-3 --output="$1/%a.log" "$scripts/slurm-shard.sh" "$folder/jobs.jsonl" "$1")
     merge=$(sbatch --parsable --dependency=afterany:"$array" --output="$1/merge.log" "$scripts/slurm-merge.sh" "$1")
 }
@@ -112,6 +112,17 @@ await 120 test -s "$folder/first/all.jsonl"
 expect_merged "$folder/first/all.jsonl"
 await 30 expected_code # a job of the list has failed
 echo 'slurm: an array of three shards and its merge'
+
+# The list is edited, so that no shard begins in the old results, and these are not merged.
+mv "$folder/jobs.jsonl" "$folder/kept.jsonl"
+sed 's/job 2"/job two"/' "$folder/kept.jsonl" >"$folder/jobs.jsonl"
+rm "$folder/first/all.jsonl"
+submit "$folder/first"
+await 120 grep -q 'this shard could not begin' "$folder/first/merge.log"
+await 30 expected_code
+[ ! -e "$folder/first/all.jsonl" ] || { echo 'slurm: old results were merged'; exit 1; }
+mv "$folder/kept.jsonl" "$folder/jobs.jsonl"
+echo 'slurm: an edited list'
 
 # ---- a node dies
 
