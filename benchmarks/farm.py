@@ -18,7 +18,7 @@ import time
 CSCD = os.path.abspath(sys.argv[1] if len(sys.argv) > 1 else "cscd")
 JOBS = 400
 LINES = 100_000
-ROUNDS = 5
+ROUNDS = 3
 
 
 def sphere(path, rings, segments):
