@@ -43,6 +43,17 @@ static bool take_options(const list_command *c, const job_line *line, void *opti
 
 /* ---- a job ------------------------------------------------------------------------------------------------------- */
 
+/* The page of the job, for the page of all jobs. */
+static void write_report(const job_line *line, json *out) {
+    const char *path = NULL;
+    for (size_t i = 0; i < line->option_count; i++)
+        if (strcmp(line->options[i].name, "report") == 0) path = line->options[i].value;
+    if (path != NULL)
+        json_string(out, "report", path);
+    else
+        json_null(out, "report");
+}
+
 static bool run_command(const void *user, const job_line *line, cscd_context *context, job_output *out,
                         io_error *error) {
     const list_command *c = user;
@@ -58,7 +69,9 @@ static bool run_command(const void *user, const job_line *line, cscd_context *co
     }
     free(options);
     out->given_up = interrupted();
-    return !out->given_up && (code == EXIT_RAN || code == EXIT_CONTACT);
+    if (out->given_up || (code != EXIT_RAN && code != EXIT_CONTACT)) return false;
+    write_report(line, out->members);
+    return true;
 }
 
 static void fail_command(const void *user, const char *name, const char *reason, job_output *out) {

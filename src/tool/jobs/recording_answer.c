@@ -107,10 +107,10 @@ void recording_answer_write(const char *name, const answers *a, const length_uni
 
 void recording_answer_fail(const char *name, const char *reason, job_output *out) {
     static const char *const members[] = {
-        "answer",         "vertices",        "triangles",       "frames",
-        "frames_checked", "frames_crossing", "frames_touching", "crossing_pairs",
-        "touching_pairs", "duplicate_pairs", "crossing_faces",  "crossing_share",
-        "contacts",       "depth",           "events",          "worst"};
+        "answer",          "vertices",        "triangles",      "frames",         "frames_checked",
+        "frames_crossing", "frames_touching", "crossing_pairs", "touching_pairs", "duplicate_pairs",
+        "crossing_faces",  "crossing_share",  "contacts",       "depth",          "events",
+        "worst",           "report"};
     const size_t length = strlen(name);
     const bool named = strncmp(reason, name, length) == 0 && reason[length] == ':';
     fprintf(out->text, "%s%s%s", named ? "" : name, named ? "" : ": ", reason);
