@@ -52,6 +52,7 @@ static const option_table table = {
 
 /* The files that are written, as the lines come. */
 typedef struct merge_files {
+    const merge_options *options;
     output_file lines, junit; /* their files are NULL when not asked for */
 } merge_files;
 
@@ -66,6 +67,12 @@ static bool close_file(const char *path, output_file *file, bool whole, io_error
            io_fail(error, "%s: cannot write: %s", path, strerror(errno != 0 ? errno : EIO));
 }
 
+/* Looks after each line: what follows changes errno. */
+static bool still_writes(const char *path, const output_file *file, io_error *error) {
+    return file->file == NULL || !ferror(file->file) ||
+           io_fail(error, "%s: cannot write: %s", path, strerror(errno != 0 ? errno : EIO));
+}
+
 static bool take_line(void *user, const char *line, size_t length, const job_record *record,
                       io_error *error) {
     merge_files *files = user;
@@ -73,12 +80,14 @@ static bool take_line(void *user, const char *line, size_t length, const job_rec
         fwrite(line, 1, length, files->lines.file);
         fputc('\n', files->lines.file);
     }
-    return files->junit.file == NULL || job_junit_add(files->junit.file, line, length, record) ||
-           io_fail(error, "out of memory");
+    if (!still_writes(files->options->output_path, &files->lines, error)) return false;
+    if (files->junit.file != NULL && !job_junit_add(files->junit.file, line, length, record))
+        return io_fail(error, "out of memory");
+    return still_writes(files->options->junit_path, &files->junit, error);
 }
 
 static bool write_files(const job_merge *merge, const merge_options *o, io_error *error) {
-    merge_files files = {.lines = {.file = NULL}};
+    merge_files files = {.options = o};
     if (o->output_path == NULL && o->junit_path == NULL) return true;
     bool good =
         open_file(o->output_path, &files.lines, error) && open_file(o->junit_path, &files.junit, error);
@@ -134,7 +143,7 @@ static int merge_list(const merge_options *o, const given_options *given) {
         return fail_usage("merge", "--%s is for the shards of one recording, and %s has results of a list",
                           other, given->inputs[0]);
     interrupt_catch();
-    if (!job_merge_read(given->inputs, given->input_count, &merge, &error))
+    if (!job_merge_read(given->inputs, given->input_count, MERGE_WHOLE, &merge, &error))
         return fail_input("%s", error.text);
     const int code = write_files(&merge, o, &error) ? end_merge(&merge, o) : fail_input("%s", error.text);
     job_merge_free(&merge);

@@ -7,7 +7,7 @@
  * called. */
 void job_junit_begin(FILE *out, const char *suite, const job_sums *sums);
 
-/* Adds a job by its line of results. False if memory is short. */
+/* Adds a job by its line of results; NULL: the job is missing, which is an error. False if memory is short. */
 bool job_junit_add(FILE *out, const char *line, size_t length, const job_record *record);
 
 void job_junit_end(FILE *out);

@@ -44,6 +44,10 @@ static bool place_line(job_merge *m, const merged_line *line, size_t number, io_
 static bool read_line(job_merge *m, const file_reader *reader, merged_line *line, size_t number,
                       io_error *error) {
     const char *text = reader->bytes + line->offset, *end = memchr(text, '\n', reader->size - line->offset);
+    if (end == NULL && m->rule == MERGE_WHAT_IS_THERE && reader->size - line->offset < UINT32_MAX) {
+        line->length = (uint32_t)(reader->size - line->offset);
+        return true;
+    }
     if (end == NULL)
         return io_fail(error, "%s:%zu: the line is torn; go on with this shard by --resume", reader->path,
                        number);
@@ -71,41 +75,40 @@ static bool read_file(job_merge *m, uint32_t file, io_error *error) {
 
 enum { RANGES_NAMED = 5 };
 
-/* "3, 6, 9 to 21 and others". */
-static uint32_t name_missing(const job_merge *m, char *text, size_t size) {
-    uint32_t missing = 0, ranges = 0;
-    size_t used = 0;
-    text[0] = '\0';
+static void name_missing(job_merge *m) {
+    uint32_t ranges = 0;
+    char *text = m->missing;
+    size_t used = 0, size = sizeof m->missing;
     for (uint32_t i = 0, end; i < m->jobs; i = end) {
         end = i + 1;
         if (m->lines[i].length > 0) continue;
         while (end < m->jobs && m->lines[end].length == 0) end++;
-        missing += end - i;
+        m->sums.missing += end - i;
         if (++ranges > RANGES_NAMED) continue;
         used += (size_t)snprintf(text + used, size - used, "%s%u", ranges > 1 ? ", " : "", i + 1);
         if (end - i > 1) used += (size_t)snprintf(text + used, size - used, " to %u", end);
     }
     if (ranges > RANGES_NAMED) snprintf(text + used, size - used, " and others");
-    return missing;
 }
 
-static bool prove_whole(const job_merge *m, io_error *error) {
-    char named[RANGES_NAMED * 32 + 16];
+static bool prove_whole(job_merge *m, io_error *error) {
     if (m->lines == NULL) return io_fail(error, "%s: there are no results", m->paths[0]);
-    const uint32_t missing = name_missing(m, named, sizeof named);
-    return missing == 0 ||
+    name_missing(m);
+    return m->sums.missing == 0 || m->rule == MERGE_WHAT_IS_THERE ||
            io_fail(
                error,
                "%u of %u jobs are missing: %s; is a shard not named, or not done? (--resume goes on with one)",
-               missing, m->jobs, named);
+               m->sums.missing, m->jobs, m->missing);
 }
 
-bool job_merge_read(const char *const *paths, size_t count, job_merge *out, io_error *error) {
-    job_merge m = {.paths = paths, .path_count = count};
+bool job_merge_read(const char *const *paths, size_t count, job_merge_rule rule, job_merge *out,
+                    io_error *error) {
+    job_merge m = {.paths = paths, .path_count = count, .rule = rule};
     bool good = true;
     for (uint32_t i = 0; i < count && good; i++) good = read_file(&m, i, error);
     good = good && prove_whole(&m, error);
-    for (uint32_t i = 0; i < m.jobs && good; i++) job_sums_add(&m.sums, &m.lines[i].record);
+    for (uint32_t i = 0; i < m.jobs && good; i++)
+        if (m.lines[i].length > 0) job_sums_add(&m.sums, &m.lines[i].record);
     if (!good) job_merge_free(&m);
     if (good) *out = m;
     return good;
@@ -146,13 +149,21 @@ static void allow_files(size_t count) {
     setrlimit(RLIMIT_NOFILE, &limit);
 }
 
+static bool take_missing(const job_merge *m, uint32_t job, job_line_taker *take, void *user,
+                         io_error *error) {
+    const job_record record = {.list = m->list, .jobs = m->jobs, .job = job};
+    return take(user, NULL, 0, &record, error);
+}
+
 bool job_merge_visit(const job_merge *m, job_line_taker *take, void *user, io_error *error) {
     allow_files(m->path_count);
     line_copier c = {.files = calloc(m->path_count, sizeof *c.files)};
     bool good = c.files != NULL || io_fail(error, "out of memory");
     for (uint32_t i = 0; i < m->jobs && good && !interrupted(); i++)
-        good = read_again(m, &c, &m->lines[i], error) &&
-               take(user, c.text, m->lines[i].length - 1, &m->lines[i].record, error);
+        good = m->lines[i].length == 0
+                   ? take_missing(m, i, take, user, error)
+                   : read_again(m, &c, &m->lines[i], error) &&
+                         take(user, c.text, m->lines[i].length - 1, &m->lines[i].record, error);
     for (size_t i = 0; i < m->path_count && c.files != NULL; i++)
         if (c.files[i] != NULL) fclose(c.files[i]);
     free(c.files);

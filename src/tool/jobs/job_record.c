@@ -84,12 +84,13 @@ void job_sums_add(job_sums *sums, const job_record *record) {
 
 void job_sums_print(FILE *out, const job_sums *sums, const char *one, const char *several) {
     const uint32_t *of = sums->outcomes;
-    uint32_t count = 0;
+    uint32_t count = sums->missing;
     for (int i = 0; i < JOB_OUTCOMES; i++) count += of[i];
     fprintf(out, "%u %s: %u clean", count, count == 1 ? one : several, of[JOB_CLEAN]);
     if (of[JOB_CROSSING] > 0) fprintf(out, ", %u with intersections", of[JOB_CROSSING]);
     if (of[JOB_TOUCHING] > 0) fprintf(out, ", %u only touching", of[JOB_TOUCHING]);
     if (of[JOB_DUPLICATE] > 0) fprintf(out, ", %u only with duplicates", of[JOB_DUPLICATE]);
     if (of[JOB_FAILED] > 0) fprintf(out, ", %u failed", of[JOB_FAILED]);
+    if (sums->missing > 0) fprintf(out, ", %u not done", sums->missing);
     fputc('\n', out);
 }

@@ -38,6 +38,7 @@ bool job_record_read(const char *text, size_t length, job_record *out);
 /* So many jobs of a run. */
 typedef struct job_sums {
     uint32_t outcomes[JOB_OUTCOMES], found;
+    uint32_t missing; /* no result of them is there */
 } job_sums;
 
 void job_sums_add(job_sums *sums, const job_record *record);
