@@ -597,8 +597,8 @@ $(CHARGE_LIBRARY_FORMS): preprocess/charge_library.c
 	$(say) '  CC $< ($(@F))'
 	$(Q)$(CC) $(CFLAGS_ALL) -c -o $@ $<
 
-# This object contains the page of the reports.
-$(OBJECTS)/src/tool/report/template.o: src/tool/report/template.html
+# This object contains the pages of the reports.
+$(OBJECTS)/src/tool/report/template.o: src/tool/report/template.html src/tool/report/jobs.html
 
 # Only this file is compiled again when the commit changes.
 $(OBJECTS)/src/tool/common/provenance.o: CFLAGS_ALL += -DCSCD_COMMIT='"$(COMMIT)"' -DCSCD_FLAGS='"$(OPTIMISE_$(CONFIG))"'

@@ -191,7 +191,7 @@ static void names_are_never_markup(void **state) {
     assert_string_equal(json_node_string(json_node_member(p.json, "preprocess"), "b"), NAME "<!--");
     assert_null(strstr(p.text, "<img"));
     report_template built;
-    assert_true(report_template_load(&built, &error));
+    assert_true(report_template_load(TEMPLATE_REPORT, &built, &error));
     size_t arrays = json_node_member(p.scene, "arrays")->count, tail = strlen(p.text) - built.tail_size;
     assert_memory_equal(p.text, built.head, built.head_size);
     assert_string_equal(p.text + tail, built.tail);

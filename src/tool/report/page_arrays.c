@@ -15,8 +15,7 @@ static bool list_array(page_arrays *a, const char *name, const char *type, packe
     return packed_array_finish(values);
 }
 
-/* A new, empty array; NULL when out of memory. */
-static packed_array *create_array(page_arrays *a, const char *name, const char *type) {
+packed_array *page_arrays_add(page_arrays *a, const char *name, const char *type) {
     packed_array *values = packed_array_create();
     if (values == NULL) return NULL;
     assert(a->count < PAGE_ARRAYS_MAX);
@@ -25,12 +24,12 @@ static packed_array *create_array(page_arrays *a, const char *name, const char *
 }
 
 static bool list_u32(page_arrays *a, const char *name, const uint32_t *values, size_t count) {
-    packed_array *packed = create_array(a, name, "u32");
+    packed_array *packed = page_arrays_add(a, name, "u32");
     return packed != NULL && packed_array_add_u32(packed, values, count) && packed_array_finish(packed);
 }
 
 static bool list_triangles(page_arrays *a, const cscd_mesh *mesh) {
-    packed_array *packed = create_array(a, "triangles", "u32");
+    packed_array *packed = page_arrays_add(a, "triangles", "u32");
     bool added = packed != NULL;
     for (uint32_t t = 0; t < cscd_mesh_triangle_count(mesh) && added; t++) {
         uint32_t corners[3];
@@ -41,7 +40,7 @@ static bool list_triangles(page_arrays *a, const cscd_mesh *mesh) {
 }
 
 static bool list_components(page_arrays *a, const cscd_mesh *mesh) {
-    packed_array *packed = create_array(a, "component", "u32");
+    packed_array *packed = page_arrays_add(a, "component", "u32");
     bool added = packed != NULL;
     for (uint32_t t = 0; t < cscd_mesh_triangle_count(mesh) && added; t++) {
         uint32_t component = cscd_mesh_triangle_component(mesh, t);
@@ -52,8 +51,8 @@ static bool list_components(page_arrays *a, const cscd_mesh *mesh) {
 
 static bool list_charges(page_arrays *a, const cscd_plan *plan, const cscd_mesh *mesh) {
     double *ranks = charge_ranks(plan, mesh);
-    packed_array *charges = create_array(a, "charge", "f32"),
-                 *equalized = create_array(a, "equalized", "f32");
+    packed_array *charges = page_arrays_add(a, "charge", "f32"),
+                 *equalized = page_arrays_add(a, "equalized", "f32");
     bool added = ranks != NULL && charges != NULL && equalized != NULL;
     for (uint32_t t = 0; t < cscd_mesh_triangle_count(mesh) && added; t++) {
         float charge = (float)cscd_plan_triangle_charge(plan, t), rank = (float)ranks[t];
@@ -64,7 +63,7 @@ static bool list_charges(page_arrays *a, const cscd_plan *plan, const cscd_mesh 
 }
 
 static bool list_regions(page_arrays *a, const cscd_plan *plan, const cscd_mesh *mesh) {
-    packed_array *packed = create_array(a, "region", "u32");
+    packed_array *packed = page_arrays_add(a, "region", "u32");
     bool added = packed != NULL;
     for (uint32_t t = 0; t < cscd_mesh_triangle_count(mesh) && added; t++) {
         uint32_t region = cscd_plan_triangle_region(plan, t);

@@ -19,6 +19,9 @@ typedef struct page_arrays {
 
 /* Finishes all arrays of the page. False: out of memory; *out is to be freed all the same. */
 bool page_arrays_list(report *r, page_arrays *out);
+/* Lists a new, empty array, which the list owns; NULL: out of memory. */
+packed_array *page_arrays_add(page_arrays *a, const char *name, const char *type);
+
 void page_arrays_free(page_arrays *arrays);
 
 /* Values of its type. */

@@ -1,13 +1,8 @@
 /* Writes a report: the template, what the page is told as JSON, and its arrays. */
-#include "src/io/json.h"
-#include "src/io/output_file.h"
 #include "src/tool/report/collected.h"
-#include "src/tool/report/page_arrays.h"
-#include "src/tool/report/template.h"
+#include "src/tool/report/page_file.h"
 
-#include <errno.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* ---- what the page is told --------------------------------------------------------------------------- */
 
@@ -109,18 +104,6 @@ static void write_answers(json *out, const report *r) {
     json_end_object(out);
 }
 
-static void write_arrays(json *out, const page_arrays *arrays) {
-    json_begin_array(out, "arrays");
-    for (size_t i = 0; i < arrays->count; i++) {
-        json_begin_object(out, NULL);
-        json_string(out, "name", arrays->items[i].name);
-        json_string(out, "type", arrays->items[i].type);
-        json_integer(out, "count", page_array_count(&arrays->items[i]));
-        json_end_object(out);
-    }
-    json_end_array(out);
-}
-
 static void write_scene(json *out, const report *r, const page_arrays *arrays) {
     const cscd_mesh *mesh = r->options.mesh;
     if (mesh == NULL) {
@@ -151,7 +134,7 @@ static void write_scene(json *out, const report *r, const page_arrays *arrays) {
     write_plan(out, r);
     write_contacts(out, r);
     write_answers(out, r);
-    write_arrays(out, arrays);
+    page_file_list(out, arrays);
     json_end_object(out);
 }
 
@@ -206,55 +189,16 @@ static char *make_json(const report *r, const page_arrays *arrays, const attache
 
 /* ---- the file ---------------------------------------------------------------------------------------- */
 
-static bool put_text(FILE *file, const char *text, size_t size) {
-    return fwrite(text, 1, size, file) == size;
-}
-
-/* `<` could end the element around the JSON, in which it occurs in strings only. */
-static bool put_json(FILE *file, const char *text) {
-    while (*text != '\0') {
-        size_t size = strcspn(text, "<");
-        if (!put_text(file, text, size) || (text[size] == '<' && fputs("\\u003c", file) == EOF)) return false;
-        text += size + (text[size] == '<');
-    }
-    return true;
-}
-
-static bool put_array(FILE *file, const page_array *array) {
-    return fprintf(file, "<script type=\"application/octet-stream\" id=\"cscd-array-%s\">", array->name) >
-               0 &&
-           packed_array_write(array->values, file) && fputs("</script>\n", file) != EOF;
-}
-
-static bool put_page(FILE *file, const report_template *page, const char *text, const page_arrays *arrays) {
-    bool written = put_text(file, page->head, page->head_size) &&
-                   fputs("<script type=\"application/json\" id=\"cscd-report\">", file) != EOF &&
-                   put_json(file, text) && fputs("</script>\n", file) != EOF;
-    for (size_t i = 0; i < arrays->count && written; i++) written = put_array(file, &arrays->items[i]);
-    return written && put_text(file, page->tail, page->tail_size) && fflush(file) == 0;
-}
-
-static bool write_file(const char *path, const report_template *page, const char *text,
-                       const page_arrays *arrays, io_error *error) {
-    output_file out;
-    bool written = output_file_open(path, &out);
-    if (written) {
-        written = put_page(out.file, page, text, arrays);
-        written = output_file_close(&out, written ? OUTPUT_WHOLE : OUTPUT_ABANDONED);
-    }
-    return written || io_fail(error, "%s: cannot write: %s", path, strerror(errno));
-}
-
 bool report_write(report *r, const char *path, const report_summary *summaries, size_t summary_count,
                   const char *preprocess, io_error *error) {
     report_template page;
-    if (!report_template_load(&page, error)) return false;
+    if (!report_template_load(TEMPLATE_REPORT, &page, error)) return false;
     page_arrays arrays = {.count = 0};
     const attached with = {summaries, summary_count, preprocess};
     char *text = NULL;
     bool made = (r->options.mesh == NULL || report_keep_last(r)) && page_arrays_list(r, &arrays) &&
                 (text = make_json(r, &arrays, &with)) != NULL;
-    bool written = made ? write_file(path, &page, text, &arrays, error)
+    bool written = made ? page_file_write(path, &page, text, &arrays, error)
                         : io_fail(error, "%s: out of memory for the report", path);
     free(text);
     page_arrays_free(&arrays);

@@ -1,22 +1,24 @@
-/* The page without its data: src/tool/report/template.html, a part of the program. */
+/* The pages without their data: src/tool/report/template.html and jobs.html, parts of the program. */
 #include "src/tool/report/template.h"
 
 #include <string.h>
 
-/* The file as it is, between two names of this program's own; the assembler finds it from the folder of the
+/* A file as it is, between two names of this program's own; the assembler finds it from the folder of the
  * Makefile. */
-__asm__(".pushsection .rodata, \"a\"\n"
-        ".hidden cscd_report_page\n"
-        ".hidden cscd_report_page_end\n"
-        ".globl cscd_report_page\n"
-        ".globl cscd_report_page_end\n"
-        "cscd_report_page:\n"
-        ".incbin \"src/tool/report/template.html\"\n"
-        "cscd_report_page_end:\n"
-        ".byte 0\n"
-        ".popsection\n");
+#define PUT_FILE(name, path)                                                                                 \
+    __asm__(".pushsection .rodata, \"a\"\n"                                                                  \
+            ".hidden " name "\n"                                                                             \
+            ".hidden " name "_end\n"                                                                         \
+            ".globl " name "\n"                                                                              \
+            ".globl " name "_end\n" name ":\n"                                                               \
+            ".incbin \"" path "\"\n" name "_end:\n"                                                          \
+            ".byte 0\n"                                                                                      \
+            ".popsection\n")
 
-extern const char cscd_report_page[], cscd_report_page_end[];
+PUT_FILE("cscd_report_page", "src/tool/report/template.html");
+PUT_FILE("cscd_jobs_page", "src/tool/report/jobs.html");
+
+extern const char cscd_report_page[], cscd_report_page_end[], cscd_jobs_page[], cscd_jobs_page_end[];
 
 static const char mark[] = "\n<!--cscd:data-->\n";
 
@@ -34,7 +36,8 @@ bool report_template_divide(const char *page, size_t size, report_template *out,
     return true;
 }
 
-bool report_template_load(report_template *out, io_error *error) {
-    return report_template_divide(cscd_report_page, (size_t)(cscd_report_page_end - cscd_report_page), out,
-                                  error);
+bool report_template_load(template_kind kind, report_template *out, io_error *error) {
+    const char *page = kind == TEMPLATE_JOBS ? cscd_jobs_page : cscd_report_page;
+    const char *end = kind == TEMPLATE_JOBS ? cscd_jobs_page_end : cscd_report_page_end;
+    return report_template_divide(page, (size_t)(end - page), out, error);
 }

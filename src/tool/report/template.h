@@ -1,4 +1,4 @@
-/* The page without its data: src/tool/report/template.html, a part of the program. */
+/* The pages without their data: src/tool/report/template.html and jobs.html, parts of the program. */
 #pragma once
 
 #include "src/io/io_error.h"
@@ -11,8 +11,13 @@ typedef struct report_template {
     size_t head_size, tail_size;
 } report_template;
 
-/* The template that was built in. */
-bool report_template_load(report_template *out, io_error *error);
+typedef enum template_kind {
+    TEMPLATE_REPORT, /* of one recording, or of several side by side */
+    TEMPLATE_JOBS    /* a table of many */
+} template_kind;
+
+/* A template that was built in. */
+bool report_template_load(template_kind kind, report_template *out, io_error *error);
 
 /* Divides a page at its one line `<!--cscd:data-->`. */
 bool report_template_divide(const char *page, size_t size, report_template *out, io_error *error);

@@ -1,4 +1,5 @@
-// Bundles the page into ../template.html: one file, with the hash of these sources and the licences of what is in it.
+// Bundles the pages into ../template.html and ../jobs.html: a file each, with the hash of these sources and the licences of
+// what is in it.
 import { createHash } from 'node:crypto';
 import { readFileSync, readdirSync, writeFileSync } from 'node:fs';
 import { dirname, join, relative } from 'node:path';
@@ -62,31 +63,36 @@ function safeInElement(text, what) {
   return text;
 }
 
-const script = await bundle('main.js');
-const style = await bundle('style.css');
-const policy = [
-  "default-src 'none'",
-  `script-src 'sha256-${sha256(script.text, 'base64')}'`,
-  `style-src 'sha256-${sha256(style.text, 'base64')}'`,
-  'img-src data: blob:',
-].join('; ');
-const parts = {
-  policy:
-    `<meta http-equiv="Content-Security-Policy" content="${policy}">\n` +
-    `<meta name="cscd-report-sources" content="${hashOfSources()}">`,
-  style: `<style>${safeInElement(style.text, 'style')}</style>`,
-  licences:
-    `<script type="text/plain" id="licence-texts">\n` +
-    `${safeInElement(licences([...script.inputs, ...style.inputs]), 'licences')}\n</script>`,
-  script: `<script>${safeInElement(script.text, 'script')}</script>`,
-};
-let page = readFileSync(join(here, 'index.html'), 'utf8');
-for (const [name, text] of Object.entries(parts)) {
-  const mark = `<!--cscd:${name}-->`;
-  if (page.split(mark).length !== 2) throw new Error(`index.html needs ${mark} once`);
-  page = page.replace(mark, () => text);
+async function makePage(folder, html) {
+  const script = await bundle(join(folder, 'main.js'));
+  const style = await bundle(join(folder, 'style.css'));
+  const policy = [
+    "default-src 'none'",
+    `script-src 'sha256-${sha256(script.text, 'base64')}'`,
+    `style-src 'sha256-${sha256(style.text, 'base64')}'`,
+    'img-src data: blob:',
+  ].join('; ');
+  const parts = {
+    policy:
+      `<meta http-equiv="Content-Security-Policy" content="${policy}">\n` +
+      `<meta name="cscd-report-sources" content="${hashOfSources()}">`,
+    style: `<style>${safeInElement(style.text, 'style')}</style>`,
+    licences:
+      `<script type="text/plain" id="licence-texts">\n` +
+      `${safeInElement(licences([...script.inputs, ...style.inputs]), 'licences')}\n</script>`,
+    script: `<script>${safeInElement(script.text, 'script')}</script>`,
+  };
+  let page = readFileSync(join(here, folder, 'index.html'), 'utf8');
+  for (const [name, text] of Object.entries(parts)) {
+    const mark = `<!--cscd:${name}-->`;
+    if (page.split(mark).length !== 2) throw new Error(`${folder}/index.html needs ${mark} once`);
+    page = page.replace(mark, () => text);
+  }
+  const marks = page.split('\n').filter((line) => line === '<!--cscd:data-->');
+  if (marks.length !== 1) throw new Error(`${folder}/index.html needs the line <!--cscd:data--> once`);
+  writeFileSync(join(here, '..', html), page);
+  console.log(`${html}: ${page.length} characters, of which the script ${script.text.length}`);
 }
-const marks = page.split('\n').filter((line) => line === '<!--cscd:data-->');
-if (marks.length !== 1) throw new Error('index.html needs the line <!--cscd:data--> once');
-writeFileSync(join(here, '../template.html'), page);
-console.log(`template.html: ${page.length} characters, of which the script ${script.text.length}`);
+
+await makePage('.', 'template.html');
+await makePage('jobs', 'jobs.html');
