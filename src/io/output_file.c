@@ -83,8 +83,16 @@ static bool open_temporary(output_file *f, const struct stat *replaced) {
     return false;
 }
 
+/* One that was closed may be held by a file that cannot be written (main.c). */
+bool output_file_standard_opens(void) {
+    const int flags = fcntl(STDOUT_FILENO, F_GETFL);
+    if (flags >= 0 && (flags & O_ACCMODE) == O_RDONLY) errno = EBADF;
+    return flags >= 0 && (flags & O_ACCMODE) != O_RDONLY;
+}
+
 /* Takes the standard output for the file, and leaves the standard error to whatever is printed. */
 static FILE *open_standard(void) {
+    if (!output_file_standard_opens()) return NULL;
     int descriptor = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
     if (descriptor < 0) return NULL;
     FILE *file =

@@ -30,5 +30,8 @@ bool output_file_flush(output_file *file);
 /* Closes, and puts the file in its place. False: not all of it is there, and errno says why. */
 bool output_file_close(output_file *file, output_ending ending);
 
+/* Can the standard output be written to? If not, errno says why. */
+bool output_file_standard_opens(void);
+
 /* Is the path "-"? It may be NULL. */
 bool output_file_is_standard(const char *path);

@@ -137,6 +137,12 @@ static int refuse_beside_each(const check_options *o, const given_options *given
     if (!output_path_is_safe(o->json_path, given->inputs, given->input_count, &error) ||
         (!output_path_fits(o->json_path, ".json", NULL) && !output_path_fits(o->json_path, ".jsonl", &error)))
         return fail_usage("check", "--json %s", error.text);
+    if (o->json_path != NULL && o->list.resume != RESUME_NOTHING)
+        return fail_usage(
+            "check",
+            "--json would lack the meshes that --resume passes over; leave it out, and let cscd merge %s -o %s "
+            "write all lines",
+            o->list.results_path != NULL ? o->list.results_path : "RESULTS.jsonl", o->json_path);
     if (!list_options_are_safe(&o->list, given->inputs, given->input_count, &error))
         return fail_usage("check", "--results %s", error.text);
     return EXIT_RAN;

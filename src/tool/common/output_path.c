@@ -5,7 +5,6 @@
 #include "src/io/path_name.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -66,7 +65,7 @@ static void remove_created(const char *path) {
 /* A pipe is not opened: its reader would take the end of this writer for the end of the data. */
 static bool try_open(const char *path) {
     struct stat status;
-    if (output_file_is_standard(path)) return fcntl(STDOUT_FILENO, F_GETFD) >= 0;
+    if (output_file_is_standard(path)) return output_file_standard_opens();
     bool exists = stat(path, &status) == 0;
     if (exists && S_ISFIFO(status.st_mode)) return access(path, W_OK) == 0;
     FILE *file = fopen(path, "ab");

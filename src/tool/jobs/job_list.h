@@ -2,10 +2,9 @@
 #pragma once
 
 #include "src/tool/jobs/job_line.h"
+#include "src/tool/jobs/job_record.h"
 
 #include <stdbool.h>
-
-enum { JOB_COUNT_MAX = 10 * 1000 * 1000 };
 
 typedef struct listed_job {
     const char *text; /* its line, or the name, which ends with a 0 then */

@@ -25,13 +25,21 @@ void job_record_write(json *line, const job_record *r) {
     json_boolean(line, "found", r->found);
 }
 
+bool job_record_begins(const char *text, size_t length, uint64_t list, uint32_t jobs) {
+    char begin[80];
+    snprintf(begin, sizeof begin, "{\"list\":\"%016" PRIx64 "\",\"jobs\":%" PRIu32 ",\"job\":", list, jobs);
+    while (length > 0 && text[length - 1] == '\0') length--;
+    const size_t known = strlen(begin);
+    return memcmp(text, begin, length < known ? length : known) == 0;
+}
+
 /* ---- reading --------------------------------------------------------------------------------------------- */
 
 static bool read_count(json_object *root, const char *name, uint32_t *out) {
     json_object *value = json_object_object_get(root, name);
     const int64_t count = json_object_is_type(value, json_type_int) ? json_object_get_int64(value) : 0;
     *out = (uint32_t)count;
-    return count > 0 && count <= UINT32_MAX;
+    return count > 0 && count <= JOB_COUNT_MAX;
 }
 
 static bool read_hash(json_object *root, uint64_t *out) {

@@ -18,6 +18,8 @@ typedef enum job_outcome {
     JOB_OUTCOMES
 } job_outcome;
 
+enum { JOB_COUNT_MAX = 10 * 1000 * 1000 };
+
 /* As lines of results have it: "crossing". */
 const char *job_outcome_name(job_outcome outcome);
 
@@ -31,6 +33,9 @@ typedef struct job_record {
 
 /* Begins a line with these members. */
 void job_record_write(json *line, const job_record *record);
+
+/* Is this how a line of the list begins? The text may end anywhere, or with characters 0, as files do after a power cut. */
+bool job_record_begins(const char *text, size_t length, uint64_t list, uint32_t jobs);
 
 /* Reads them back; false for what is no line of results. */
 bool job_record_read(const char *text, size_t length, job_record *out);

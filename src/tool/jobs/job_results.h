@@ -7,8 +7,9 @@
 
 typedef struct job_results {
     const char *path;
-    int file;   /* locked: nobody else appends to it. -1: none is open */
-    off_t size; /* of its whole lines */
+    int file;     /* locked: nobody else appends to it. -1: none is open */
+    bool regular; /* neither a device nor a terminal */
+    off_t size;   /* of its whole lines */
     unsigned char
         *held; /* per job: what the file said of it when it was opened; 0: nothing, or it is to run again */
 } job_results;

@@ -1,6 +1,7 @@
 /* Options about lists, shards, results and time limits. */
 #include "src/tool/jobs/list_options.h"
 
+#include "src/io/output_file.h"
 #include "src/tool/common/option_values.h"
 #include "src/tool/common/output_path.h"
 #include "src/tool/common/provenance.h"
@@ -61,6 +62,8 @@ const char *list_option_without_list(const option_table *table, const given_opti
 bool list_options_are_safe(const list_options *o, const char *const *inputs, size_t input_count,
                            io_error *error) {
     const char *others[] = {o->path};
+    if (output_file_is_standard(o->results_path))
+        return io_fail(error, "-: results are kept in a file, which --resume goes on with; name one");
     return output_path_is_safe(o->results_path, inputs, input_count, error) &&
            output_path_is_safe(o->results_path, others, 1, error) &&
            output_path_fits(o->results_path, ".jsonl", error);
