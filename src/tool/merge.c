@@ -12,6 +12,7 @@
 
 #include <errno.h>
 #include <string.h>
+#include <sys/stat.h>
 
 typedef struct merge_options {
     const char *output_path, *junit_path;                                      /* NULL: not given */
@@ -86,8 +87,10 @@ static bool take_line(void *user, const char *line, size_t length, const job_rec
     return still_writes(files->options->junit_path, &files->junit, error);
 }
 
-static bool write_files(const job_merge *merge, const merge_options *o, io_error *error) {
+/* stopped: an interrupt came before the files took their places, so they do not. */
+static bool write_files(const job_merge *merge, const merge_options *o, bool *stopped, io_error *error) {
     merge_files files = {.options = o};
+    *stopped = interrupted();
     if (o->output_path == NULL && o->junit_path == NULL) return true;
     bool good =
         open_file(o->output_path, &files.lines, error) && open_file(o->junit_path, &files.junit, error);
@@ -95,15 +98,17 @@ static bool write_files(const job_merge *merge, const merge_options *o, io_error
     if (good && files.junit.file != NULL) job_junit_begin(files.junit.file, merge->paths[0], &merge->sums);
     good = good && job_merge_visit(merge, take_line, &files, error);
     if (good && files.junit.file != NULL) job_junit_end(files.junit.file);
-    const bool whole = good && !interrupted();
+    *stopped = interrupted();
+    const bool whole = good && !*stopped;
     good = close_file(o->output_path, &files.lines, whole, good ? error : NULL) && good;
     return close_file(o->junit_path, &files.junit, whole, good ? error : NULL) && good;
 }
 
-static int end_merge(const job_merge *merge, const merge_options *o) {
+static int end_merge(const job_merge *merge, const merge_options *o, bool stopped) {
     const uint32_t failed = merge->sums.outcomes[JOB_FAILED];
-    if (interrupted()) {
-        note("interrupted; nothing was written");
+    if (stopped) {
+        note("interrupted; %s was written",
+             output_file_is_standard(o->output_path) ? "not every line" : "nothing");
         return interrupt_exit_code();
     }
     if (!o->quiet) job_sums_print(stdout, &merge->sums, "job", "jobs");
@@ -138,6 +143,7 @@ static int merge_list(const merge_options *o, const given_options *given) {
     static const char *const of_lists[] = {"o", "output", "junit", "quiet"};
     io_error error = {""};
     job_merge merge;
+    bool stopped;
     const char *other = option_given_beside(&table, given, of_lists, sizeof of_lists / sizeof *of_lists);
     if (other != NULL)
         return fail_usage("merge", "--%s is for the shards of one recording, and %s has results of a list",
@@ -145,9 +151,16 @@ static int merge_list(const merge_options *o, const given_options *given) {
     interrupt_catch();
     if (!job_merge_read(given->inputs, given->input_count, MERGE_WHOLE, &merge, &error))
         return fail_input("%s", error.text);
-    const int code = write_files(&merge, o, &error) ? end_merge(&merge, o) : fail_input("%s", error.text);
+    const int code = write_files(&merge, o, &stopped, &error) ? end_merge(&merge, o, stopped)
+                                                              : fail_input("%s", error.text);
     job_merge_free(&merge);
     return code;
+}
+
+/* A pipe has the results of a list; what is read of it now would be missing later. */
+static bool is_shard_of_recording(const char *path) {
+    struct stat status;
+    return stat(path, &status) == 0 && S_ISREG(status.st_mode) && shard_file_recognise(path);
 }
 
 int command_merge(int argument_count, char **arguments) {
@@ -165,6 +178,6 @@ int command_merge(int argument_count, char **arguments) {
         !output_path_differs(o.junit_path, (const char *const[]){o.output_path}, 1, &error) ||
         !output_path_fits(o.junit_path, ".xml", &error))
         return fail_usage("merge", "--junit %s", error.text);
-    if (shard_file_recognise(given.inputs[0])) return merge_recording(&o, &given, argument_count, arguments);
+    if (is_shard_of_recording(given.inputs[0])) return merge_recording(&o, &given, argument_count, arguments);
     return merge_list(&o, &given);
 }

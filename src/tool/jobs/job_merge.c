@@ -8,10 +8,12 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 
 /* ---- one file ------------------------------------------------------------------------------------------------------ */
 
-static bool begin_merge(job_merge *m, const job_record *first, io_error *error) {
+static bool begin_merge(job_merge *m, const job_record *first, uint32_t file, io_error *error) {
+    m->first = file;
     m->list = first->list;
     m->jobs = first->jobs;
     m->lines = calloc(m->jobs, sizeof *m->lines);
@@ -26,11 +28,11 @@ static bool replaces_failure(const merged_line *before, uint32_t file) {
 static bool place_line(job_merge *m, const merged_line *line, size_t number, io_error *error) {
     const job_record *record = &line->record;
     const char *path = m->paths[line->file];
-    if (m->lines == NULL && !begin_merge(m, record, error)) return false;
+    if (m->lines == NULL && !begin_merge(m, record, line->file, error)) return false;
     if (record->list != m->list || record->jobs != m->jobs)
         return io_fail(error,
                        "%s:%zu: these are results of another list or of other options than those of %s", path,
-                       number, m->paths[0]);
+                       number, m->paths[m->first]);
     merged_line *place = &m->lines[record->job];
     if (place->length > 0 && place->file != line->file && strcmp(m->paths[place->file], path) == 0)
         return io_fail(error, "%s is named twice", path);
@@ -118,9 +120,31 @@ bool job_merge_read(const char *const *paths, size_t count, job_merge_rule rule,
 
 typedef struct line_copier {
     FILE **files; /* opened when the first of their lines comes */
+    size_t file_count;
     char *text;
     size_t capacity;
 } line_copier;
+
+static void close_files(line_copier *c) {
+    for (size_t i = 0; i < c->file_count; i++) {
+        if (c->files[i] != NULL) fclose(c->files[i]);
+        c->files[i] = NULL;
+    }
+}
+
+/* A pipe would have to be written again. Where the system has no room for all files, others are closed, and opened again later. */
+static bool open_again(const char *path, line_copier *c, uint32_t index, io_error *error) {
+    struct stat status;
+    if (stat(path, &status) == 0 && !S_ISREG(status.st_mode))
+        return io_fail(error, "%s: is read twice, so it must be a file, and no pipe", path);
+    FILE *file = fopen(path, "rb");
+    if (file == NULL && (errno == EMFILE || errno == ENFILE)) {
+        close_files(c);
+        file = fopen(path, "rb");
+    }
+    c->files[index] = file;
+    return file != NULL || io_fail(error, "%s: cannot open: %s", path, strerror(errno));
+}
 
 static bool read_again(const job_merge *m, line_copier *c, const merged_line *line, io_error *error) {
     const char *path = m->paths[line->file];
@@ -130,13 +154,12 @@ static bool read_again(const job_merge *m, line_copier *c, const merged_line *li
         c->text = room;
         c->capacity = line->length;
     }
-    FILE **file = &c->files[line->file];
-    if (*file == NULL) *file = fopen(path, "rb");
-    if (*file == NULL) return io_fail(error, "%s: cannot open: %s", path, strerror(errno));
-    if (ftello(*file) != (off_t)line->offset && fseeko(*file, (off_t)line->offset, SEEK_SET) != 0)
+    if (c->files[line->file] == NULL && !open_again(path, c, line->file, error)) return false;
+    FILE *file = c->files[line->file];
+    if (ftello(file) != (off_t)line->offset && fseeko(file, (off_t)line->offset, SEEK_SET) != 0)
         return io_fail(error, "%s: cannot read: %s", path, strerror(errno));
     job_record record;
-    return (fread(c->text, 1, line->length, *file) == line->length &&
+    return (fread(c->text, 1, line->length, file) == line->length &&
             job_record_read(c->text, line->length - 1, &record) && record.job == line->record.job) ||
            io_fail(error, "%s: has changed while it was read; is its shard still running?", path);
 }
@@ -157,15 +180,14 @@ static bool take_missing(const job_merge *m, uint32_t job, job_line_taker *take,
 
 bool job_merge_visit(const job_merge *m, job_line_taker *take, void *user, io_error *error) {
     allow_files(m->path_count);
-    line_copier c = {.files = calloc(m->path_count, sizeof *c.files)};
+    line_copier c = {.files = calloc(m->path_count, sizeof *c.files), .file_count = m->path_count};
     bool good = c.files != NULL || io_fail(error, "out of memory");
     for (uint32_t i = 0; i < m->jobs && good && !interrupted(); i++)
         good = m->lines[i].length == 0
                    ? take_missing(m, i, take, user, error)
                    : read_again(m, &c, &m->lines[i], error) &&
                          take(user, c.text, m->lines[i].length - 1, &m->lines[i].record, error);
-    for (size_t i = 0; i < m->path_count && c.files != NULL; i++)
-        if (c.files[i] != NULL) fclose(c.files[i]);
+    if (c.files != NULL) close_files(&c);
     free(c.files);
     free(c.text);
     return good;

@@ -22,8 +22,8 @@ typedef struct job_merge {
     const char *const *paths;
     size_t path_count;
     job_merge_rule rule;
-    merged_line *lines; /* of each job */
-    uint32_t jobs;
+    merged_line *lines;   /* of each job */
+    uint32_t jobs, first; /* first: the file that the first line was in */
     uint64_t list;
     job_sums sums;
     char missing[MERGE_NAMED_SIZE]; /* "3, 6, 9 to 21 and others"; "": none */
