@@ -139,6 +139,7 @@ SLOW_core          := cancel float_environment host_loop left_calls exceptions p
 SLOW_culling       := culling local_culling
 SLOW_detector      := list_cap min_separation_detector object_rules oracle threads reentry waiting_random
 SLOW_intersections := static_check_kernel pair_kind find_intersections find_intersections_calls first_pairs
+SLOW_jobs          := stopped_jobs
 SLOW_mesh          := predicates triangle_intersection
 SLOW_models        := cloth_drivers cloth_scenes ipc_scenes record_program recording_pawn recordings shape_program shape_regions shapes soft_body
 SLOW_narrow_phase  := exclusions feature_queue

@@ -56,12 +56,21 @@ static bool signal_ignored(int signal_number) {
     return sigaction(signal_number, NULL, &action) == 0 && action.sa_handler == SIG_IGN;
 }
 
+/* A second signal ends the process at once. */
+static bool second_ends = true;
+
 void interrupt_catch(void) {
-    struct sigaction action = {.sa_handler = note_interrupt, .sa_flags = (int)(SA_RESETHAND | SA_RESTART)};
+    const unsigned flags = SA_RESTART | (second_ends ? SA_RESETHAND : 0);
+    struct sigaction action = {.sa_handler = note_interrupt, .sa_flags = (int)flags};
     sigemptyset(&action.sa_mask);
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
     if (!signal_ignored(SIGHUP)) sigaction(SIGHUP, &action, NULL);
+}
+
+void interrupt_outlast(void) {
+    second_ends = false;
+    interrupt_catch();
 }
 
 bool interrupted(void) {

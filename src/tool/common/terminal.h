@@ -21,6 +21,8 @@ void terminal_progress_end(terminal_progress *p);
 /* From now on Ctrl-C (SIGINT), SIGTERM and SIGHUP only set a flag, so that a command can finish its files. A second
  * one ends the program at once. A SIGHUP that is ignored, as nohup has it, stays ignored. */
 void interrupt_catch(void);
+/* The same, but no signal ends the process: for one that is told to stop by the process that started it, and dies with it. */
+void interrupt_outlast(void);
 bool interrupted(void);
 
 /* 128 and the number of the signal, as shells have it: 130, 143, 129. Only after an interrupt. */

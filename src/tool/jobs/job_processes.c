@@ -133,12 +133,14 @@ static bool work_on_jobs(const job_pool *pool, uint32_t worker) {
     return true;
 }
 
-/* Ends without writing what the calling process has left in its buffers. */
+/* Who stops a whole group of processes signals a worker as well as the process that then tells it to stop: it closes its files all
+ * the same. Ends without writing what the calling process has left in its buffers. */
 static _Noreturn void be_worker(const job_pool *pool, uint32_t worker, pid_t parent) {
 #ifdef __linux__
     prctl(PR_SET_PDEATHSIG, SIGKILL);
 #endif
     if (getppid() != parent) _exit(EXIT_FAILURE);
+    interrupt_outlast();
     for (uint32_t i = 0; i < pool->set->worker_count; i++)
         if (i != worker && pool->workers[i].pid != 0) close(pool->workers[i].socket);
     _exit(work_on_jobs(pool, worker) ? EXIT_SUCCESS : EXIT_FAILURE);
@@ -187,6 +189,11 @@ static void fail_late_job(job_pool *pool, uint32_t job) {
     end_job(pool, job, reason);
 }
 
+/* Did the worker give the job up, or was it told to stop for the sake of another? */
+static bool job_comes_again(const job_worker *w, const job_slot *slot, int64_t job) {
+    return atomic_load(&slot->again) == job || (w->late != NO_JOB && w->late != job);
+}
+
 /* The process has ended by itself, or was killed; its job has no result then. */
 static void bury_worker(job_pool *pool, uint32_t worker) {
     job_worker *w = &pool->workers[worker];
@@ -195,9 +202,12 @@ static void bury_worker(job_pool *pool, uint32_t worker) {
     char reason[200];
     close(w->socket); /* who still wants to send ends then */
     while (waitpid(w->pid, &status, 0) < 0 && errno == EINTR) continue;
-    const int64_t job = atomic_exchange(&slot->job, NO_JOB);
+    int64_t job = atomic_exchange(&slot->job, NO_JOB);
+    if (job != NO_JOB && pool->ended[job]) job = NO_JOB; /* its result came just before */
     if (job != NO_JOB && job == w->late)
         fail_late_job(pool, (uint32_t)job);
+    else if (job != NO_JOB && job_comes_again(w, slot, job))
+        atomic_store(&slot->again, job);
     else if (job != NO_JOB && !pool->stopping) {
         const int number = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
         if (number == SIGKILL)
@@ -342,6 +352,8 @@ bool jobs_run(const job_set *set, uint32_t *done, io_error *error) {
     bool good = (pool.workers != NULL && pool.polled != NULL && pool.ended != NULL && shared != MAP_FAILED) ||
                 io_fail(error, "out of memory for %u jobs", set->count);
     pool.board = shared;
+    void (*const before)(int) =
+        signal(SIGCHLD, SIG_DFL); /* where it is ignored, nobody learns how a process ended */
     good = good && start_pool(&pool, error);
     if (good) {
         run_pool(&pool);
@@ -351,6 +363,7 @@ bool jobs_run(const job_set *set, uint32_t *done, io_error *error) {
                     pool.done, set->count);
         good = pool.refusal.text[0] == '\0' || io_fail(error, "%s", pool.refusal.text);
     }
+    if (before != SIG_ERR) signal(SIGCHLD, before);
     *done = pool.done;
     if (shared != MAP_FAILED) munmap(shared, board_size);
     free(pool.workers);

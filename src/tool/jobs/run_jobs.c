@@ -60,7 +60,10 @@ static bool run_job(void *user, uint32_t index, FILE *result) {
 
 /* ---- results ------------------------------------------------------------------------------------------------- */
 
+/* Names may hold line ends and what moves the cursor. */
 static void tell_text(const job_run *run, const waiting_result *result) {
+    for (char *c = result->text; *c != '\0'; c++)
+        if ((unsigned char)*c < ' ' || *c == 0x7f) *c = '?';
     if (!run->request->quiet)
         printf("%s\n", result->text);
     else if (result->failed)
