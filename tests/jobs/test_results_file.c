@@ -172,13 +172,14 @@ static void expect_noticed(const char *command, const char *sentence) {
 
 static void a_file_that_is_changed_is_noticed(void **state) {
     (void)state;
-    expect_noticed("rm results.jsonl", "results.jsonl: was removed or replaced while the jobs ran");
+    expect_noticed("rm results.jsonl", "results.jsonl: was removed or replaced while it was written");
     assert_int_not_equal(access(results.text, F_OK), 0);
-    expect_noticed("mv results.jsonl old.jsonl", "results.jsonl: was removed or replaced while the jobs ran");
+    expect_noticed("mv results.jsonl old.jsonl",
+                   "results.jsonl: was removed or replaced while it was written");
     expect_noticed("cp results.jsonl new && mv new results.jsonl", "results.jsonl: was removed or replaced");
-    expect_noticed(": > results.jsonl", "results.jsonl: was changed by another process while the jobs ran");
+    expect_noticed(": > results.jsonl", "results.jsonl: was changed by another process while it was written");
     expect_noticed("echo >> results.jsonl",
-                   "results.jsonl: was changed by another process while the jobs ran");
+                   "results.jsonl: was changed by another process while it was written");
     remove(results.text);
 }
 

@@ -1,15 +1,11 @@
 /* The file that a shard's results are appended to, a line for each job; whatever ends the program, whole lines stay. */
 #pragma once
 
+#include "src/tool/common/append_file.h"
 #include "src/tool/jobs/job_record.h"
 
-#include <sys/types.h>
-
 typedef struct job_results {
-    const char *path;
-    int file;     /* locked: nobody else appends to it. -1: none is open */
-    bool regular; /* neither a device nor a terminal */
-    off_t size;   /* of its whole lines */
+    append_file file; /* of lines */
     unsigned char
         *held; /* per job: what the file said of it when it was opened; 0: nothing, or it is to run again */
 } job_results;

@@ -97,7 +97,7 @@ static bool take_result(void *user, uint32_t index, const char *bytes, size_t si
     if (size == 0) return io_fail(&run->write_error, "out of memory");
     const job_result result = job_work_unpack(bytes, size);
     waiting_result *w = &run->waiting[index];
-    if (run->results.file >= 0 &&
+    if (run->results.file.file >= 0 &&
         !job_results_append(&run->results, result.line, result.line_size, &run->write_error))
         return false;
     job_sums_add(&run->sums, &result.record);
@@ -235,7 +235,7 @@ static int start_run(job_run *run) {
 int run_jobs(const jobs_request *request, const job_kind *kind) {
     job_run run = {.request = request,
                    .work = {.list = request->list, .hash = request->hash, .kind = kind},
-                   .results = {.file = -1}};
+                   .results = {.file = {.file = -1}}};
     io_error error = {""};
     interrupt_catch();
     const bool ready = prepare_run(&run, &error);
