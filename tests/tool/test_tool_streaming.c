@@ -4,6 +4,7 @@
 #include "tests/support/tool/run_tool.h"
 #include "tests/support/tool/tool_fixture.h"
 
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -156,6 +157,31 @@ static void a_model_that_comes_late_is_waited_for(void **state) {
         folder.path, folder.path));
 }
 
+/* Signals ever later, until the program has come so far that it waits. */
+static void expect_stopped_wait(const char *command, const char *text) {
+    const temp_path pattern = make_series(), model = temp_file_path(&folder, "late_0000.obj");
+    shell(": >'%s/late_0003.obj'", folder.path); /* it is there, and its content comes late */
+    for (unsigned wait = 50 * 1000;; wait *= 2) {
+        tool_process process = run_tool_start(
+            (const char *const[]){command, model.text, pattern.text, "--wait-for-files", "60", NULL});
+        usleep(wait);
+        kill(process.pid, SIGINT);
+        tool_run run = run_tool_finish(&process);
+        const bool waited = run.error[0] != '\0' && run.code == 128 + SIGINT;
+        if (!waited && (wait > 5 * 1000 * 1000 || run.error[0] != '\0'))
+            fail_msg("%s ended with %d: %s", command, run.code, run.error);
+        if (waited && strstr(run.error, text) == NULL) fail_msg("%s", run.error);
+        tool_run_free(&run);
+        if (waited) return;
+    }
+}
+
+static void an_interrupt_ends_the_wait(void **state) {
+    (void)state;
+    expect_stopped_wait("replay", "interrupted after 2 of 5 intervals");
+    expect_stopped_wait("check", "interrupted after 3 of 6 frames");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_shard_of_100_gb_reads_its_own_frames),
@@ -163,6 +189,7 @@ int main(void) {
         cmocka_unit_test(a_frame_that_comes_late_is_waited_for),
         cmocka_unit_test(without_waiting_it_is_an_error),
         cmocka_unit_test(a_model_that_comes_late_is_waited_for),
+        cmocka_unit_test(an_interrupt_ends_the_wait),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -1,5 +1,6 @@
 /* `cscd replay`: finds every contact of a recorded mesh with itself, interval by interval. */
 #include "src/tool/common/command.h"
+#include "src/tool/common/late_files.h"
 #include "src/tool/common/methods.h"
 #include "src/tool/common/output_path.h"
 #include "src/tool/jobs/listed_recordings.h"
@@ -281,7 +282,7 @@ int replay_run(const replay_options *options, shard_series *merged, const char *
     if (begun) {
         interrupt_catch();
         terminal_progress_begin(&r.progress, options->quiet);
-        ran = run_intervals(&r, &error);
+        ran = run_intervals(&r, &error) || late_files_given_up();
         terminal_progress_end(&r.progress);
     }
     const char *stopped_by = ran ? (interrupted() ? "interrupted" : NULL) : error.text;
