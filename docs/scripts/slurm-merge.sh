@@ -4,7 +4,7 @@
 #SBATCH --job-name=cscd-merge
 for mark in "$1"/*.refused; do
     [ ! -e "$mark" ] || {
-        echo "${mark%.refused}: this shard could not begin, as its log says; nothing is merged" >&2
+        echo "${mark%.refused}: not all jobs of this shard have run, as its log says; nothing is merged" >&2
         exit 1
     }
 done

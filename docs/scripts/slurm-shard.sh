@@ -11,7 +11,7 @@
 file="$2/shard-$SLURM_ARRAY_TASK_ID.jsonl"
 code=0
 "${CSCD:-cscd}" check --list "$1" --shard "$SLURM_ARRAY_TASK_ID/$SLURM_ARRAY_TASK_COUNT" --results "$file" --resume --quiet || code=$?
-# A shard ends with 1 if a job has failed, and also if it could not begin, as with results of another list. The merge must know.
+# A shard that could not begin, as with results of another list, ends with 4. The merge must know.
 rm -f "$file.refused"
-[ $code != 1 ] || grep -q '"result":"failed"' "$file" || : >"$file.refused"
+[ $code != 4 ] || : >"$file.refused"
 exit $code

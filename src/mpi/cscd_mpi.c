@@ -87,10 +87,9 @@ static void note_report(shard_board *board, const launch_options *o, const shard
     else if (r->signal != 0)
         say_line("shard %d of %d, on rank %d, was ended by signal %d", r->shard, board->count, rank,
                  r->signal);
-    else if (r->refused || (r->code != 0 && r->code != 1 && r->code != 3))
+    else if (r->code != 0 && r->code != 1 && r->code != 3)
         say_line("shard %d of %d, on rank %d, ended with %d", r->shard, board->count, rank, r->code);
-    /* So would all others. */
-    if (r->error != 0 || r->code == 2 || r->refused) board->refusal = r->code;
+    if (r->error != 0 || r->code == SHARD_USAGE || r->code == SHARD_UNDONE) board->refusal = r->code;
 }
 
 /* The next shard; 0: there is none. */
@@ -116,7 +115,7 @@ static bool answer_rank(shard_board *board, const launch_options *o) {
 static int merge_shards(const launch_options *o, int count) {
     shard_report report;
     if (merge_start(o, count, &report))
-        while (!merge_ended(&report)) take_nap();
+        while (!process_ended(&report)) take_nap();
     leave_if_stopped();
     if (report.error != 0) say_line("%s: %s", o->program, strerror(report.error));
     if (report.signal != 0) say_line("the merge was ended by signal %d", report.signal);
@@ -131,7 +130,7 @@ static int lead_ranks(const launch_options *o, int ranks) {
         while (answer_rank(&board, o)) {
         }
         if (process_runs()) {
-            if (!shard_ended(o, board.count, &own)) {
+            if (!process_ended(&own)) {
                 take_nap();
                 continue;
             }
@@ -169,7 +168,7 @@ static void follow_rank_0(const launch_options *o) {
         wait_for(&request);
         if (shard[0] == 0) return;
         if (shard_start(o, shard[0], shard[1], &report))
-            while (!shard_ended(o, shard[1], &report)) take_nap();
+            while (!process_ended(&report)) take_nap();
         leave_if_stopped();
     }
 }

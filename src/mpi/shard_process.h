@@ -5,12 +5,14 @@
 
 /* What became of a shard, as ranks tell it to rank 0. */
 typedef struct shard_report {
-    int shard;   /* 0: there was none, the rank asks for its first one */
-    int code;    /* its exit code; with `error`, 127 */
-    int signal;  /* that ended it; 0: none */
-    int error;   /* errno: it could not be started */
-    int refused; /* it ended with 1, though no job of it has failed: it could not begin */
+    int shard;  /* 0: there was none, the rank asks for its first one */
+    int code;   /* its exit code; with `error`, 127 */
+    int signal; /* that ended it; 0: none */
+    int error;  /* errno: it could not be started */
 } shard_report;
+
+/* Exit codes of a shard that did not run all its jobs; any other shard would end so too. */
+enum { SHARD_USAGE = 2, SHARD_UNDONE = 4 };
 
 /* From now on SIGINT, SIGTERM and SIGHUP only set a flag. */
 void stop_signals_catch(void);
@@ -23,5 +25,4 @@ bool merge_start(const launch_options *o, int count, shard_report *report);
 bool process_runs(void);
 
 /* Whether our process has ended; how is in *report then. Never waits. */
-bool shard_ended(const launch_options *o, int count, shard_report *report);
-bool merge_ended(shard_report *report);
+bool process_ended(shard_report *report);

@@ -34,7 +34,7 @@ static void print_help(void) {
     for (int i = 0; i < COMMAND_COUNT; i++) printf("  %-11s %s\n", commands[i].name, commands[i].summary);
     printf(
         "\ncscd COMMAND --help says more; cscd --version.\n"
-        "exit: 0 ran, 1 bad input, 2 wrong usage, 3 found what --fail-on asks for, 129, 130, 143 interrupted\n");
+        "exit: 0 ran, 1 bad input, 2 wrong usage, 3 found what --fail-on asks for, 4 not all jobs have run, 129, 130, 143 interrupted\n");
 }
 
 /* NULL: there is none of that name. */

@@ -55,8 +55,8 @@ echo 'farm: command file of OpenCue'
 
 # Shard 2 is killed while it writes, and its frame is run again.
 run_whole
-printf '#!/bin/sh\ncase "$*" in *"--shard 2/3"*) %s "$@"; printf %s >>%s; kill -9 $$ ;; *) exec %s "$@" ;; esac\n' \
-    "$CSCD" "'{\"list\":\"0123'" "$folder/died/shard-2.jsonl" "$CSCD" >dies
+printf '#!/bin/sh\ncase "$*" in *"--shard 2/3"*) %s "$@"; head -c 60 %s >>%s; kill -9 $$ ;; *) exec %s "$@" ;; esac\n' \
+    "$CSCD" "$folder/died/shard-2.jsonl" "$folder/died/shard-2.jsonl" "$CSCD" >dies
 chmod +x dies
 CSCD="$folder/dies" "$script" jobs.jsonl died 3 >night.txt
 run_frames night.txt 1 >codes
@@ -75,5 +75,5 @@ run_frames night.txt 1 >codes
 expect_frames 3
 sed -i 's/job 2"/job two"/' edited.jsonl
 run_frames night.txt 1 >codes
-[ "$(tr '\n' ' ' <codes)" = '1 1 1 ' ] || { echo 'opencue: an edited list was taken'; exit 1; }
+[ "$(tr '\n' ' ' <codes)" = '4 4 4 ' ] || { echo 'opencue: an edited list was taken'; exit 1; }
 echo 'farm: command file of OpenCue, an edited list'

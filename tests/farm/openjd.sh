@@ -45,8 +45,8 @@ mv "$folder/all_jobs.jsonl" "$folder/jobs.jsonl"
 echo 'farm: Open Job Description'
 
 # Shard 2 is killed while it writes.
-printf '#!/bin/sh\ncase "$*" in *"--shard 2/3"*) %s "$@"; printf %s >>%s; kill -9 $$ ;; *) exec %s "$@" ;; esac\n' \
-    "$CSCD" "'{\"list\":\"0123'" "$folder/died/shard-2.jsonl" "$CSCD" >"$folder/dies"
+printf '#!/bin/sh\ncase "$*" in *"--shard 2/3"*) %s "$@"; head -c 60 %s >>%s; kill -9 $$ ;; *) exec %s "$@" ;; esac\n' \
+    "$CSCD" "$folder/died/shard-2.jsonl" "$folder/died/shard-2.jsonl" "$CSCD" >"$folder/dies"
 chmod +x "$folder/dies"
 run_template died Cscd="$folder/dies" Shards=3
 expect_tasks 1 '1 Merge: left out' '2 Shards: 0' '1 Shards: 137'
@@ -59,7 +59,7 @@ echo 'farm: Open Job Description, a shard dies'
 # The list is edited: no shard may begin in the old results, and there is no merge.
 sed 's/job 2"/job two"/' jobs.jsonl | grep -v damaged >edited.jsonl
 run_template clean Cscd="$CSCD" Shards=4 List=edited.jsonl
-expect_tasks 1 '1 Merge: left out' '4 Shards: 1'
+expect_tasks 1 '1 Merge: left out' '4 Shards: 4'
 echo 'farm: Open Job Description, an edited list'
 
 # The engine does refuse what the schema does not know.

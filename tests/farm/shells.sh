@@ -28,3 +28,14 @@ run_parallel --resume
 "$CSCD" merge "$folder"/shard-*.jsonl -o "$folder/all.jsonl" --quiet 2>/dev/null || [ $? = 1 ]
 expect_merged "$folder/all.jsonl"
 echo 'farm: GNU parallel'
+
+# The list is edited: no shard may begin in the old results. The log of parallel says so by 4, and xargs stops by 255.
+sed -i 's/job 2"/job two"/' "$folder/jobs.jsonl"
+run_parallel
+[ "$(awk 'NR > 1 && $7 != 4' "$folder/log")" = '' ] || { echo 'parallel: an edited list was taken'; exit 1; }
+code=0
+# shellcheck disable=SC2016
+seq 5 | xargs -I {} sh -c '"$CSCD" check --list "$folder/jobs.jsonl" --shard {}/5 --results "$folder/shard-{}.jsonl" --resume --quiet
+    [ $? != 4 ] || exit 255' 2>/dev/null || code=$?
+[ $code = 124 ] || { echo "xargs: an edited list was taken: $code"; exit 1; }
+echo 'farm: xargs and GNU parallel, an edited list'

@@ -141,7 +141,7 @@ pkill -9 -f "$folder/second/shard-2.jsonl" || true
 kill -9 "$daemon"
 pkill -9 -f "slurmstepd: \[$job\." || true # it would tell the controller that the task has ended
 rm -f "$folder/slurmd-$node.pid"
-printf '{"list":"0123' >>"$folder/second/shard-2.jsonl"
+head -c 60 "$folder/second/shard-2.jsonl" >>"$folder/second/shard-2.jsonl"
 rm "$folder/waits.obj"
 cp "$folder/clean.obj" "$folder/waits.obj"
 echo "slurm: node $node is dead"

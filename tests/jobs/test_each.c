@@ -298,9 +298,9 @@ static void options_of_one_recording_are_refused(void **state) {
     EXPECT_ERROR(2, TEXTS("--json", "would overwrite"), "check", "--each", touching.text, clean.text,
                  "--json", clean.text);
     EXPECT_ERROR(2, TEXTS("--json", "ends in .jsonl"), "check", "--each", clean.text, "--json", "x.csv");
-    EXPECT_ERROR(1, TEXTS("/nowhere/x.jsonl", "cannot write"), "check", "--each", clean.text, "--json",
+    EXPECT_ERROR(4, TEXTS("/nowhere/x.jsonl", "cannot write"), "check", "--each", clean.text, "--json",
                  "/nowhere/x.jsonl");
-    EXPECT_ERROR(1, TEXTS("/dev/full", "No space left"), "check", "--each", clean.text, "--json",
+    EXPECT_ERROR(4, TEXTS("/dev/full", "No space left"), "check", "--each", clean.text, "--json",
                  "/dev/full");
 }
 

@@ -20,7 +20,7 @@ typedef enum job_fate { FATE_NONE, FATE_KILLED, FATE_CRASH, FATE_EXIT, FATE_LATE
 /* What all processes see. */
 typedef struct shared_counts {
     atomic_int runs[JOBS];
-    atomic_int busy, most_busy;
+    atomic_int busy, most_busy, born;
 } shared_counts;
 
 typedef struct watched {
@@ -32,6 +32,7 @@ typedef struct watched {
     uint32_t stop_after; /* takes no more after so many; 0: takes all */
     int signal;          /* sent to this process by the job behind that; 0: none */
     const char *refusal; /* why workers cannot begin; NULL: they can */
+    int32_t barren;      /* so many workers are killed before they begin; -1: all */
 } watched;
 
 static watched w;
@@ -53,6 +54,8 @@ static int share_counts(void **state) {
 
 static bool begin_watched(void *user, io_error *error) {
     const watched *watch = user;
+    const int born = atomic_fetch_add(&watch->shared->born, 1);
+    if (watch->barren < 0 || born < watch->barren) raise(SIGKILL);
     return watch->refusal == NULL || io_fail(error, "%s", watch->refusal);
 }
 
@@ -203,6 +206,22 @@ static void a_worker_that_cannot_begin_ends_the_run(void **state) {
     assert_int_equal(done, 0);
 }
 
+/* As the system does when memory is short for a moment, or for good. */
+static void workers_that_die_at_once_end_the_run(void **state) {
+    uint32_t done;
+    io_error error;
+    (void)state;
+    watch_nothing();
+    w.barren = 15;
+    assert_true(run_all(JOBS, 2, 0.0, &done, &error));
+    assert_int_equal(done, JOBS);
+    watch_nothing();
+    w.barren = -1;
+    assert_false(run_all(JOBS, 2, 0.0, &done, &error));
+    assert_int_equal(done, 0);
+    assert_non_null(strstr(error.text, "end before they begin one; the last of them was killed by signal 9"));
+}
+
 /* As after a full disk. */
 static void a_result_that_is_not_kept_is_the_last(void **state) {
     uint32_t done;
@@ -267,6 +286,7 @@ int main(void) {
         cmocka_unit_test(a_process_that_dies_fails_its_job_alone),
         cmocka_unit_test(a_job_that_takes_too_long_fails),
         cmocka_unit_test(a_worker_that_cannot_begin_ends_the_run),
+        cmocka_unit_test(workers_that_die_at_once_end_the_run),
         cmocka_unit_test(a_result_that_is_not_kept_is_the_last),
         cmocka_unit_test(workers_die_with_the_process),
         cmocka_unit_test(an_interrupt_keeps_what_is_done),

@@ -186,23 +186,33 @@ static void wrong_lists_and_options_are_refused(void **state) {
     temp_path list =
         write_list("{\"model\": \"%s\"}\n{\"model\": \"%s\", \"options\": {\"wled\": \"exact\"}}\n",
                    clean.text, clean.text);
-    EXPECT_ERROR(1, TEXTS("jobs.jsonl:2: 'wled' is no option of check"), "check", "--list", list.text);
+    EXPECT_ERROR(4, TEXTS("jobs.jsonl:2: 'wled' is no option of check"), "check", "--list", list.text);
     list = write_list("{\"model\": \"%s\", \"options\": {\"weld\": \"so\"}}\n", clean.text);
-    EXPECT_ERROR(1, TEXTS("jobs.jsonl:1: --weld cannot be 'so'"), "check", "--list", list.text);
+    EXPECT_ERROR(4, TEXTS("jobs.jsonl:1: --weld cannot be 'so'"), "check", "--list", list.text);
     list = write_list("{\"model\": \"%s\", \"options\": {\"threads\": 3}}\n", clean.text);
-    EXPECT_ERROR(1, TEXTS("jobs.jsonl:1: --threads is for the whole list"), "check", "--list", list.text);
+    EXPECT_ERROR(4, TEXTS("jobs.jsonl:1: --threads is for the whole list"), "check", "--list", list.text);
     list = write_list("{\"model\": \"%s\", \"outputs\": {\"json\": \"-\"}}\n", clean.text);
-    EXPECT_ERROR(1, TEXTS("jobs.jsonl:1: --json: a job among many has no standard output"), "check", "--list",
+    EXPECT_ERROR(4, TEXTS("jobs.jsonl:1: --json: a job among many has no standard output"), "check", "--list",
                  list.text);
     list = write_list("{\"model\": \"%s\", \"options\": {\"allow-gaps\": 1}}\n", clean.text);
-    EXPECT_ERROR(1, TEXTS("jobs.jsonl:1: --allow-gaps takes no value"), "check", "--list", list.text);
+    EXPECT_ERROR(4, TEXTS("jobs.jsonl:1: --allow-gaps takes no value"), "check", "--list", list.text);
     list = write_list("{\"model\": \"%s\", \"options\": {\"weld\": true}}\n", clean.text);
-    EXPECT_ERROR(1, TEXTS("jobs.jsonl:1: --weld needs a value"), "check", "--list", list.text);
+    EXPECT_ERROR(4, TEXTS("jobs.jsonl:1: --weld needs a value"), "check", "--list", list.text);
     list = write_list("{\"model\": \"%s\", \"outputs\": {\"json\": \"a.json\"}}\n\n{\"model\": \"%s\"}\n"
                       "{\"model\": \"%s\", \"options\": {\"csv\": \"a.json\"}}\n",
                       clean.text, clean.text, clean.text);
-    EXPECT_ERROR(1, TEXTS("jobs.jsonl:4: 'a.json' is written by line 1 as well"), "check", "--list",
+    EXPECT_ERROR(4, TEXTS("jobs.jsonl:4: 'a.json' is written by line 1 as well"), "check", "--list",
                  list.text);
+    list =
+        write_list("{\"model\": \"%s\", \"outputs\": {\"json\": \"a//b.json\", \"csv\": \"/tmp/x.csv\"}}\n"
+                   "{\"model\": \"%s\", \"outputs\": {\"json\": \"./a/./b.json\", \"csv\": \"tmp/x.csv\"}}\n",
+                   clean.text, clean.text);
+    EXPECT_ERROR(4, TEXTS("jobs.jsonl:2: 'a/b.json' is written by line 1 as well"), "check", "--list",
+                 list.text);
+    list = write_list("{\"model\": \"%s\"}\n{\"model\": \"%s\", \"outputs\": {\"events\": \"r.jsonl\"}}\n",
+                      clean.text, clean.text);
+    EXPECT_ERROR(4, TEXTS("jobs.jsonl:2: 'r.jsonl' is the list itself or its file of results"), "check",
+                 "--list", list.text, "--results", "./r.jsonl");
     list = write_list("{\"model\": \"%s\"}\n", clean.text);
     EXPECT_ERROR(2, TEXTS("--json names one file, and each job"), "check", "--list", list.text, "--json",
                  "a.json");
@@ -213,7 +223,7 @@ static void wrong_lists_and_options_are_refused(void **state) {
     EXPECT_ERROR(2, TEXTS("--shard cannot be '4/3'"), "check", "--list", list.text, "--shard", "4/3");
     EXPECT_ERROR(2, TEXTS("--shard is for --list"), "check", clean.text, "--shard", "1/3");
     EXPECT_ERROR(2, TEXTS("--results is for --list"), "check", clean.text, "--results", "a.jsonl");
-    EXPECT_ERROR(1, TEXTS("/nowhere/r.jsonl: cannot write"), "check", "--list", list.text, "--results",
+    EXPECT_ERROR(4, TEXTS("/nowhere/r.jsonl: cannot write"), "check", "--list", list.text, "--results",
                  "/nowhere/r.jsonl");
 }
 
@@ -300,7 +310,7 @@ static void a_full_disk_keeps_whole_lines(void **state) {
     (void)state;
     temp_path list = write_small_list();
     for (size_t bytes = 0; bytes < 2500; bytes += bytes < 600 ? 83 : 511)
-        expect_resumed(list.text, "trap '' XFSZ;", bytes, 1, "results.jsonl: cannot write: File too large");
+        expect_resumed(list.text, "trap '' XFSZ;", bytes, 4, "results.jsonl: cannot write: File too large");
 }
 
 /* Each run is killed later than the one before, and each goes on with what is there. */
@@ -323,18 +333,18 @@ static void results_are_not_overwritten(void **state) {
     (void)state;
     temp_path list = write_small_list(), other;
     EXPECT_TOOL(1, "check", "--list", list.text, "--results", results.text);
-    EXPECT_ERROR(1, TEXTS("results.jsonl: holds results already; --resume"), "check", "--list", list.text,
+    EXPECT_ERROR(4, TEXTS("results.jsonl: holds results already; --resume"), "check", "--list", list.text,
                  "--results", results.text);
-    EXPECT_ERROR(1, TEXTS("results.jsonl:1:", "results of another list or of other options"), "check",
+    EXPECT_ERROR(4, TEXTS("results.jsonl:1:", "results of another list or of other options"), "check",
                  "--list", list.text, "--results", results.text, "--resume", "--fail-on", "crossing");
-    EXPECT_ERROR(1, TEXTS("results.jsonl:1:", "another list"), "replay", "--list", list.text, "--results",
+    EXPECT_ERROR(4, TEXTS("results.jsonl:1:", "another list"), "replay", "--list", list.text, "--results",
                  results.text, "--resume");
     other = write_list("{\"model\": \"%s\"}\n", clean.text);
-    EXPECT_ERROR(1, TEXTS("results.jsonl:1:", "has the list been edited?"), "check", "--list", other.text,
+    EXPECT_ERROR(4, TEXTS("results.jsonl:1:", "has the list been edited?"), "check", "--list", other.text,
                  "--results", results.text, "--resume");
     expect_whole_results();
     temp_path notes = write_text("notes.jsonl", "my notes\n");
-    EXPECT_ERROR(1, TEXTS("notes.jsonl:1: this is no line of results"), "check", "--list", list.text,
+    EXPECT_ERROR(4, TEXTS("notes.jsonl:1: this is no line of results"), "check", "--list", list.text,
                  "--results", notes.text, "--resume");
     char *text = read_whole_file(notes.text, NULL);
     assert_string_equal(text, "my notes\n");
@@ -368,7 +378,7 @@ static void two_processes_do_not_share_a_file(void **state) {
         run_tool_start((const char *const[]){"check", "--list", list.text, "--results", results.text, NULL});
     for (int i = 0; i < 10000 && access(results.text, F_OK) != 0; i++) usleep(1000);
     usleep(100000); /* for the lock, which comes next */
-    EXPECT_ERROR(1, TEXTS("results.jsonl: another process writes its results here"), "check", "--list",
+    EXPECT_ERROR(4, TEXTS("results.jsonl: another process writes its results here"), "check", "--list",
                  list.text, "--results", results.text, "--resume", "--job-timeout", "5");
     shell("cat '%s' > '%s'", clean.text, fifo);
     tool_run run = run_tool_finish(&first);

@@ -65,7 +65,7 @@ static void nothing_is_printed_into_the_results(void **state) {
         expect_file(results.text, expected);
     }
     free(expected);
-    char *output = shell_output(1, "'%s' check --each '%s' --json - >&-", getenv("CSCD_TOOL"), clean.text);
+    char *output = shell_output(4, "'%s' check --each '%s' --json - >&-", getenv("CSCD_TOOL"), clean.text);
     assert_string_equal(output, "cscd: -: cannot write: Bad file descriptor\n");
     free(output);
     remove(results.text);
@@ -76,10 +76,10 @@ static void results_are_kept_in_a_file(void **state) {
     (void)state;
     snprintf(pipe, sizeof pipe, "%s/pipe.jsonl", folder.path);
     assert_int_equal(mkfifo(pipe, 0600), 0);
-    EXPECT_ERROR(1, TEXTS("pipe.jsonl: is a pipe"), "check", "--list", list.text, "--results", pipe);
-    EXPECT_ERROR(1, TEXTS("pipe.jsonl: is a pipe"), "check", "--list", list.text, "--results", pipe,
+    EXPECT_ERROR(4, TEXTS("pipe.jsonl: is a pipe"), "check", "--list", list.text, "--results", pipe);
+    EXPECT_ERROR(4, TEXTS("pipe.jsonl: is a pipe"), "check", "--list", list.text, "--results", pipe,
                  "--resume");
-    EXPECT_ERROR(1, TEXTS("Is a directory"), "check", "--list", list.text, "--results", folder.path);
+    EXPECT_ERROR(4, TEXTS("Is a directory"), "check", "--list", list.text, "--results", folder.path);
     EXPECT_ERROR(2, TEXTS("--results -: results are kept in a file"), "check", "--list", list.text,
                  "--results", "-");
     EXPECT_TOOL(1, "check", "--list", list.text, "--results", "/dev/null", "--resume", "--quiet");
@@ -92,13 +92,13 @@ static void a_torn_line_of_something_else_stays(void **state) {
     (void)state;
     for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
         write_text("results.jsonl", others[i]);
-        EXPECT_ERROR(1, TEXTS("results.jsonl:1: this line has no end, and is none of these results"), "check",
+        EXPECT_ERROR(4, TEXTS("results.jsonl:1: this line has no end, and is none of these results"), "check",
                      "--list", list.text, "--results", results.text, "--resume");
         expect_file(results.text, others[i]);
     }
     run_list();
     shell("printf notes >> '%s'", results.text);
-    EXPECT_ERROR(1, TEXTS("results.jsonl:4: this line has no end"), "check", "--list", list.text, "--results",
+    EXPECT_ERROR(4, TEXTS("results.jsonl:4: this line has no end"), "check", "--list", list.text, "--results",
                  results.text, "--resume");
     remove(results.text);
 }
@@ -122,7 +122,7 @@ static void a_damaged_line_is_named(void **state) {
     (void)state;
     run_list();
     shell("sed -i '2s/jobs/jibs/' '%s'", results.text);
-    EXPECT_ERROR(1, TEXTS("results.jsonl:2: this is no line of results", "delete the line if it is damaged"),
+    EXPECT_ERROR(4, TEXTS("results.jsonl:2: this is no line of results", "delete the line if it is damaged"),
                  "check", "--list", list.text, "--results", results.text, "--resume");
     shell("sed -i 2d '%s'", results.text);
     EXPECT_TOOL(1, "check", "--list", list.text, "--results", results.text, "--resume");
@@ -163,7 +163,7 @@ static void expect_noticed(const char *command, const char *sentence) {
     shell("cd '%s' && %s", folder.path, command);
     shell("cat '%s' > '%s'", clean.text, pipe);
     tool_run run = run_tool_finish(&process);
-    if (run.code != 1 || strstr(run.error, sentence) == NULL)
+    if (run.code != 4 || strstr(run.error, sentence) == NULL)
         fail_msg("%s: %d: %s", command, run.code, run.error);
     tool_run_free(&run);
     remove(pipe);

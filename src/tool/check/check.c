@@ -161,7 +161,7 @@ static int run_each(const check_options *o, const given_options *given) {
     const int code = refuse_beside_each(o, given);
     if (code != EXIT_RAN) return code;
     if (!job_list_of_names(given->inputs, given->input_count, &list, &error))
-        return fail_input("%s", error.text);
+        return fail_jobs("%s", error.text);
     jobs_request request = list_options_request(&o->list, &list, &table, given);
     request.lines_path = o->json_path;
     request.thread_count = o->source.thread_count;

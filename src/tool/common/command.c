@@ -42,6 +42,14 @@ int fail_input(const char *format, ...) {
     return EXIT_BAD_INPUT;
 }
 
+int fail_jobs(const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    print_failure(format, arguments);
+    va_end(arguments);
+    return EXIT_UNDONE;
+}
+
 int fail_usage(const char *command, const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);

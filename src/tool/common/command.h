@@ -10,8 +10,9 @@ typedef enum exit_code {
     EXIT_RAN = 0,
     EXIT_BAD_INPUT = 1,
     EXIT_USAGE = 2,
-    EXIT_CONTACT = 3 /* found what --fail-on, --fail-depth or --max-faces asks for */
-} exit_code;         /* or interrupt_exit_code (terminal.h) */
+    EXIT_CONTACT = 3, /* found what --fail-on, --fail-depth or --max-faces asks for */
+    EXIT_UNDONE = 4   /* not all jobs of a list have run, or their results are not kept */
+} exit_code;          /* or interrupt_exit_code (terminal.h) */
 
 /* Each command is given the arguments from its name on and returns an exit code. */
 int command_preprocess(int argument_count, char **arguments);
@@ -29,6 +30,8 @@ void failures_keep(io_error *place);
 
 /* Prints one line on stderr, "cscd: ...", and returns the exit code for it. */
 int fail_input(const char *format, ...) __attribute__((format(printf, 1, 2)));
+/* The same for jobs of which not all have a result. */
+int fail_jobs(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /* The same with a hint to COMMAND --help. */
 int fail_usage(const char *command, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* A usage error about the option that getopt_long has just refused with ':' or '?'. */

@@ -20,8 +20,9 @@
 
 enum {
     NO_JOB = -1,
-    WAKE_MS = 200,  /* a signal may come just before the wait for results */
-    GRACE_MS = 5000 /* that a job has to close its files after its time is over */
+    WAKE_MS = 200,   /* a signal may come just before the wait for results */
+    GRACE_MS = 5000, /* that a job has to close its files after its time is over */
+    BARREN_MAX = 20  /* workers in a row that die before they have taken a job */
 };
 
 /* What a worker is at; its successor goes on with it. */
@@ -60,8 +61,9 @@ typedef struct job_pool {
     unsigned char *ended; /* per job: it was taken, or has failed */
     struct pollfd *polled;
     uint32_t done;
-    bool stopping; /* no further job begins */
-    char *result;  /* of the message read last */
+    uint32_t barren; /* so many workers have died without a job since the last job ended */
+    bool stopping;   /* no further job begins */
+    char *result;    /* of the message read last */
     size_t result_size;
     io_error refusal; /* "": none */
 } job_pool;
@@ -178,6 +180,7 @@ static void end_job(job_pool *pool, uint32_t job, const char *reason) {
     if (pool->ended[job]) return;
     pool->ended[job] = 1;
     pool->done++;
+    pool->barren = 0;
     const bool kept = reason == NULL ? set->take(set->user, job, pool->result, pool->result_size)
                                      : set->fail(set->user, job, reason);
     if (!kept) pool->stopping = true;
@@ -194,12 +197,35 @@ static bool job_comes_again(const job_worker *w, const job_slot *slot, int64_t j
     return atomic_load(&slot->again) == job || (w->late != NO_JOB && w->late != job);
 }
 
+enum { DEATH_TEXT_SIZE = 200 };
+
+/* "killed by signal 11 (Segmentation fault)" */
+static void describe_death(int status, char text[DEATH_TEXT_SIZE]) {
+    const int number = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+    if (number == SIGKILL)
+        snprintf(text, DEATH_TEXT_SIZE,
+                 "was killed by signal 9 (Killed), as the system does when memory is short");
+    else if (number != 0)
+        snprintf(text, DEATH_TEXT_SIZE, "was killed by signal %d (%s)", number, strsignal(number));
+    else
+        snprintf(text, DEATH_TEXT_SIZE, "ended with code %d", WEXITSTATUS(status));
+}
+
+/* A worker that dies before it has taken a job would be started again and again. */
+static void count_barren(job_pool *pool, int status) {
+    char death[DEATH_TEXT_SIZE];
+    if (status == 0 || ++pool->barren < BARREN_MAX || pool->stopping) return;
+    describe_death(status, death);
+    io_fail(&pool->refusal, "the processes for the jobs end before they begin one; the last of them %s",
+            death);
+    pool->stopping = true;
+}
+
 /* The process has ended by itself, or was killed; its job has no result then. */
 static void bury_worker(job_pool *pool, uint32_t worker) {
     job_worker *w = &pool->workers[worker];
     job_slot *slot = &pool->board->slots[worker];
     int status = 0;
-    char reason[200];
     close(w->socket); /* who still wants to send ends then */
     while (waitpid(w->pid, &status, 0) < 0 && errno == EINTR) continue;
     int64_t job = atomic_exchange(&slot->job, NO_JOB);
@@ -209,17 +235,12 @@ static void bury_worker(job_pool *pool, uint32_t worker) {
     else if (job != NO_JOB && job_comes_again(w, slot, job))
         atomic_store(&slot->again, job);
     else if (job != NO_JOB && !pool->stopping) {
-        const int number = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
-        if (number == SIGKILL)
-            snprintf(reason, sizeof reason,
-                     "its process was killed by signal 9 (Killed), as the system does when memory is short");
-        else if (number != 0)
-            snprintf(reason, sizeof reason, "its process was killed by signal %d (%s)", number,
-                     strsignal(number));
-        else
-            snprintf(reason, sizeof reason, "its process ended with code %d", WEXITSTATUS(status));
+        char death[DEATH_TEXT_SIZE], reason[DEATH_TEXT_SIZE + 20];
+        describe_death(status, death);
+        snprintf(reason, sizeof reason, "its process %s", death);
         end_job(pool, (uint32_t)job, reason);
-    }
+    } else if (job == NO_JOB)
+        count_barren(pool, status);
     w->pid = 0;
 }
 

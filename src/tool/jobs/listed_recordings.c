@@ -100,11 +100,19 @@ static bool check_line(const list_command *c, const job_list *list, uint32_t job
     return good || job_list_fail(list, job, reason.text, error);
 }
 
-static bool check_outputs(list_check *check, const job_list *list, io_error *error) {
+static bool check_outputs(list_check *check, const list_command *c, const job_list *list, io_error *error) {
     const char *path;
     uint32_t first, second;
     char reason[sizeof error->text];
+    if (!output_names_add_of_run(&check->names, c->list->path) ||
+        !output_names_add_of_run(&check->names, c->list->results_path))
+        return io_fail(error, "out of memory");
     if (!output_names_collide(&check->names, &path, &first, &second)) return true;
+    if (second == NAME_OF_RUN) {
+        snprintf(reason, sizeof reason,
+                 "'%.800s' is the list itself or its file of results; name another file", path);
+        return job_list_fail(list, first, reason, error);
+    }
     snprintf(reason, sizeof reason,
              "'%.800s' is written by line %zu as well; give each job a file of its own", path,
              list->jobs[first].line);
@@ -116,7 +124,7 @@ static bool check_lines(const list_command *c, const job_list *list, io_error *e
     list_check check = {.names = output_names_begin(), .options = malloc(c->options_size)};
     bool good = check.options != NULL || io_fail(error, "out of memory");
     for (uint32_t i = 0; i < list->count && good; i++) good = check_line(c, list, i, &check, error);
-    good = good && check_outputs(&check, list, error);
+    good = good && check_outputs(&check, c, list, error);
     output_names_free(&check.names);
     free(check.options);
     return good;
@@ -146,13 +154,13 @@ int run_listed_recordings(const list_command *c) {
     io_error error;
     int code = refuse_options(c);
     if (code != EXIT_RAN) return code;
-    if (!job_list_read(c->list->path, &list, &error)) return fail_input("%s", error.text);
+    if (!job_list_read(c->list->path, &list, &error)) return fail_jobs("%s", error.text);
     jobs_request request = list_options_request(c->list, &list, c->table, c->given);
     request.thread_count = c->thread_count;
     request.quiet = c->quiet;
     const job_kind kind = {
         .one = "recording", .several = "recordings", .user = c, .run = run_command, .fail = fail_command};
-    code = check_lines(c, &list, &error) ? run_jobs(&request, &kind) : fail_input("%s", error.text);
+    code = check_lines(c, &list, &error) ? run_jobs(&request, &kind) : fail_jobs("%s", error.text);
     job_list_free(&list);
     return code;
 }

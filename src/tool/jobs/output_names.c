@@ -1,4 +1,4 @@
-/* Finds jobs that would write over each other's files. */
+/* Finds jobs that would write over files of each other or of the run. */
 #include "src/tool/jobs/output_names.h"
 
 #include <stdlib.h>
@@ -28,17 +28,40 @@ void output_names_free(output_names *names) {
     growable_free(&names->names);
 }
 
+/* "./a//b" is "a/b". Links and ".." stay as they are: where they lead is not looked up for each of a million names. */
+static char *plain_path(const char *path) {
+    char *plain = malloc(strlen(path) + 1), *end = plain;
+    for (const char *c = path; plain != NULL && *c != '\0'; c++) {
+        const bool begins = end == plain || end[-1] == '/';
+        while (begins && (c[0] == '/' || (c[0] == '.' && c[1] == '/')) && !(c == path && c[0] == '/'))
+            c += c[0] == '/' ? 1 : 2;
+        if (*c == '\0') break;
+        *end++ = *c;
+    }
+    if (plain != NULL) *end = '\0';
+    return plain;
+}
+
+static bool add_name(output_names *names, const char *path, uint32_t job) {
+    char *plain = plain_path(path);
+    output_name *name = plain != NULL ? growable_push(&names->names) : NULL;
+    if (name == NULL) {
+        free(plain);
+        return false;
+    }
+    *name = (output_name){plain, job};
+    return true;
+}
+
+bool output_names_add_of_run(output_names *names, const char *path) {
+    return path == NULL || add_name(names, path, NAME_OF_RUN);
+}
+
 bool output_names_add(output_names *names, const job_line *line, uint32_t job) {
     for (size_t i = 0; i < line->option_count; i++) {
         const job_option *option = &line->options[i];
         if (option->value == NULL || !option_is_output(option->name)) continue;
-        char *path = strdup(option->value);
-        output_name *name = path != NULL ? growable_push(&names->names) : NULL;
-        if (name == NULL) {
-            free(path);
-            return false;
-        }
-        *name = (output_name){path, job};
+        if (!add_name(names, option->value, job)) return false;
     }
     return true;
 }

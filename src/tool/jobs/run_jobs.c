@@ -92,9 +92,7 @@ static void tell_waiting(job_run *run, bool all) {
 }
 
 /* Keeps the line at once, and the text until it is its turn. */
-static bool take_result(void *user, uint32_t index, const char *bytes, size_t size) {
-    job_run *run = user;
-    if (size == 0) return io_fail(&run->write_error, "out of memory");
+static bool keep_result(job_run *run, uint32_t index, const char *bytes, size_t size) {
     const job_result result = job_work_unpack(bytes, size);
     waiting_result *w = &run->waiting[index];
     if (run->results.file.file >= 0 &&
@@ -115,11 +113,18 @@ static bool take_failure(void *user, uint32_t index, const char *reason) {
     char *bytes = NULL;
     size_t size = 0;
     FILE *packed = open_memstream(&bytes, &size);
-    if (packed == NULL) return io_fail(&run->write_error, "out of memory");
-    job_work_fail(&run->work, run->jobs[index], reason, packed);
-    const bool taken = fclose(packed) == 0 && take_result(user, index, bytes, size);
+    if (packed != NULL) job_work_fail(&run->work, run->jobs[index], reason, packed);
+    const bool is_packed = packed != NULL && fclose(packed) == 0 && size > 0;
+    const bool kept = is_packed ? keep_result(run, index, bytes, size)
+                                : io_fail(&run->write_error, "out of memory for the results");
     free(bytes);
-    return taken;
+    return kept;
+}
+
+/* A worker that has no memory for a result sends none. */
+static bool take_result(void *user, uint32_t index, const char *bytes, size_t size) {
+    return size > 0 ? keep_result(user, index, bytes, size)
+                    : take_failure(user, index, "out of memory for its result");
 }
 
 /* ---- preparing ------------------------------------------------------------------------------------------------ */
@@ -205,12 +210,12 @@ static int end_run(job_run *run, bool ran, uint32_t done, const io_error *error)
     io_error close_error = {""};
     tell_waiting(run, true);
     const bool closed = close_outputs(run, &close_error);
-    if (!ran) return fail_input("%s", error->text);
+    if (!ran) return fail_jobs("%s", error->text);
     if (!run->request->quiet) {
         job_sums_print(stdout, &run->sums, run->work.kind->one, run->work.kind->several);
         if (run->held > 0) note("%u of them were done before", run->held);
     }
-    if (!closed) return fail_input("%s", close_error.text);
+    if (!closed) return fail_jobs("%s", close_error.text);
     if (interrupted()) tell_stop(run, done);
     return find_exit_code(run);
 }
@@ -239,7 +244,7 @@ int run_jobs(const jobs_request *request, const job_kind *kind) {
     io_error error = {""};
     interrupt_catch();
     const bool ready = prepare_run(&run, &error);
-    int code = ready ? start_run(&run) : fail_input("%s", error.text);
+    int code = ready ? start_run(&run) : fail_jobs("%s", error.text);
     job_results_drop(&run.results);
     free(run.jobs);
     free(run.waiting);
