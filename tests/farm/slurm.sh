@@ -118,7 +118,7 @@ mv "$folder/jobs.jsonl" "$folder/kept.jsonl"
 sed 's/job 2"/job two"/' "$folder/kept.jsonl" >"$folder/jobs.jsonl"
 rm "$folder/first/all.jsonl"
 submit "$folder/first"
-await 120 grep -q 'this shard could not begin' "$folder/first/merge.log"
+await 120 grep -q 'not all jobs of this shard have run' "$folder/first/merge.log"
 await 30 expected_code
 [ ! -e "$folder/first/all.jsonl" ] || { echo 'slurm: old results were merged'; exit 1; }
 mv "$folder/kept.jsonl" "$folder/jobs.jsonl"

@@ -1,7 +1,7 @@
-/* `check --list` and `replay --list`: each job is what its own command would be, and results survive whatever ends the program. */
+/* `check --list` and `replay --list`: each job is what its own command would be. */
 #include "tests/support/shell.h"
 #include "tests/support/test.h"
-#include "tests/support/tool/json_reader.h"
+#include "tests/support/tool/result_lines.h"
 #include "tests/support/tool/run_tool.h"
 #include "tests/support/tool/tool_fixture.h"
 
@@ -52,38 +52,6 @@ static temp_path write_list(const char *format, ...) {
     return write_text("jobs.jsonl", text);
 }
 
-enum { LINES_MAX = 64 };
-
-/* Lines by their jobs, from 1; NULL where there is none. */
-typedef struct result_lines {
-    json_node *of[LINES_MAX + 1];
-    size_t count;
-} result_lines;
-
-static result_lines read_results(void) {
-    result_lines lines = {.count = 0};
-    size_t size, at;
-    char *text = read_whole_file(results.text, &size);
-    for (char *line = text; line < text + size; lines.count++) {
-        char *end = strchr(line, '\n');
-        assert_non_null(end);
-        json_node *node = json_node_parse(line, (size_t)(end - line), &at);
-        assert_non_null(node);
-        const size_t job = (size_t)json_node_number(node, "job");
-        assert_true(job >= 1 && job <= LINES_MAX);
-        assert_null(lines.of[job]);
-        lines.of[job] = node;
-        line = end + 1;
-    }
-    free(text);
-    return lines;
-}
-
-static void free_results(result_lines *lines) {
-    for (size_t i = 0; i <= LINES_MAX; i++) json_node_free(lines->of[i]);
-    remove(results.text);
-}
-
 static void expect_same_file(const char *a, const char *b) {
     size_t size_a, size_b;
     char *text_a = read_whole_file(a, &size_a), *text_b = read_whole_file(b, &size_b);
@@ -113,7 +81,7 @@ static void a_replay_of_a_list_is_a_replay(void **state) {
     temp_path listed = temp_file_path(&folder, "all.csv"), events = temp_file_path(&folder, "all-events.csv");
     expect_same_file(path, listed.text);
     expect_same_file(list_path, events.text);
-    result_lines lines = read_results();
+    result_lines lines = result_lines_take(results.text);
     assert_int_equal(lines.count, 2);
     assert_string_equal(json_node_string(lines.of[1], "name"), "all");
     assert_int_equal(json_node_number(lines.of[1], "frames"), 12);
@@ -124,7 +92,7 @@ static void a_replay_of_a_list_is_a_replay(void **state) {
     assert_int_equal(strncmp(one.out, answer, strlen(answer)), 0);
     assert_int_equal(one.out[strlen(answer)], '\n');
     assert_non_null(strstr(many.out, answer));
-    free_results(&lines);
+    result_lines_free(&lines);
     tool_run_free(&many);
     tool_run_free(&one);
 }
@@ -138,7 +106,7 @@ static void a_job_that_fails_stops_no_other(void **state) {
     tool_run run = RUN_TOOL("check", "--list", list.text, "--results", results.text, "--fail-on", "crossing");
     assert_int_equal(run.code, 1);
     assert_string_equal(run.error, "cscd: 3 of 5 recordings could not be checked\n");
-    result_lines lines = read_results();
+    result_lines lines = result_lines_take(results.text);
     assert_int_equal(lines.count, 5);
     static const char *const expected[] = {NULL, "failed", "clean", "failed", "failed", "crossing"};
     for (int i = 1; i <= 5; i++) assert_string_equal(json_node_string(lines.of[i], "result"), expected[i]);
@@ -147,7 +115,7 @@ static void a_job_that_fails_stops_no_other(void **state) {
     assert_non_null(strstr(json_node_string(lines.of[4], "error"), "there is no part 'Arm'"));
     assert_true(json_node_boolean(lines.of[5], "found"));
     assert_int_equal(json_node_member(lines.of[1], "frames")->kind, JSON_NULL);
-    free_results(&lines);
+    result_lines_free(&lines);
     tool_run_free(&run);
 }
 
@@ -161,7 +129,7 @@ static void a_check_of_a_list_is_a_check(void **state) {
     EXPECT_TOOL(0, "check", "--list", list.text, "--results", results.text, "--quiet");
     EXPECT_TOOL(0, "check", fold.text, fold_cache.text, "--json", own.text);
     expect_same_file(own.text, listed.text);
-    result_lines lines = read_results();
+    result_lines lines = result_lines_take(results.text);
     json_node *root = json_node_read_file(own.text);
     const json_node *frames = json_node_member(root, "frames");
     double pairs = 0.0, touching = 0.0, faces = 0.0, depth = 0.0;
@@ -178,7 +146,7 @@ static void a_check_of_a_list_is_a_check(void **state) {
     assert_true(json_node_number(lines.of[1], "depth") == depth);
     assert_true(json_node_number(lines.of[1], "events") == json_node_member(root, "events")->count);
     json_node_free(root);
-    free_results(&lines);
+    result_lines_free(&lines);
 }
 
 static void wrong_lists_and_options_are_refused(void **state) {
@@ -239,153 +207,17 @@ static void a_job_has_a_time_limit(void **state) {
                    model.text, cache.text, folder.path, fold.text, fold_cache.text);
     EXPECT_TOOL(1, "replay", "--list", list.text, "--results", results.text, "--method", "brute",
                 "--job-timeout", "2", "--threads", "2");
-    result_lines lines = read_results();
+    result_lines lines = result_lines_take(results.text);
     assert_string_equal(json_node_string(lines.of[1], "error"),
                         "it took longer than 2 s, which is its time limit");
     assert_int_equal(json_node_member(lines.of[2], "error")->kind, JSON_NULL);
-    free_results(&lines);
+    result_lines_free(&lines);
     /* What it had found until then is in its own file. */
     temp_path part = temp_file_path(&folder, "part.json");
     json_node *root = json_node_read_file(part.text);
     assert_true(json_node_member(root, "intervals")->count > 0);
     assert_false(json_node_boolean(json_node_member(root, "summary"), "complete"));
     json_node_free(root);
-}
-
-/* ---- results that go on ---------------------------------------------------------------------------------- */
-
-enum { SMALL = 12 };
-
-/* A list of so many jobs, two of which fail. */
-static temp_path write_small_list(void) {
-    char text[LINES_MAX * 300];
-    size_t used = 0;
-    for (int i = 0; i < SMALL; i++)
-        used +=
-            (size_t)snprintf(text + used, sizeof text - used, "{\"model\": \"%s\", \"name\": \"job %d\"}\n",
-                             i == 3 || i == 7 ? damaged.text : clean.text, i + 1);
-    return write_text("small.jsonl", text);
-}
-
-static void expect_whole_results(void) {
-    result_lines lines = read_results();
-    assert_int_equal(lines.count, SMALL);
-    for (int i = 1; i <= SMALL; i++) {
-        char name[16];
-        snprintf(name, sizeof name, "job %d", i);
-        assert_string_equal(json_node_string(lines.of[i], "name"), name);
-        assert_string_equal(json_node_string(lines.of[i], "result"), i == 4 || i == 8 ? "failed" : "clean");
-    }
-    free_results(&lines);
-}
-
-/* The system ends the program in the middle of a line, at any byte; with `trap` it reports a full disk instead. */
-static void expect_resumed(const char *list, const char *trap, size_t bytes, int code, const char *text) {
-    char *output =
-        shell_output(code, "%s prlimit --core=0 --fsize=%zu '%s' check --list '%s' --results '%s' --quiet",
-                     trap, bytes, getenv("CSCD_TOOL"), list, results.text);
-    if (strstr(output, text) == NULL) fail_msg("%zu bytes: %s", bytes, output);
-    free(output);
-    struct stat status;
-    assert_int_equal(stat(results.text, &status), 0);
-    assert_true((size_t)status.st_size <= bytes);
-    char *left = read_whole_file(results.text, NULL);
-    assert_true(trap[0] == '\0' || left[0] == '\0' || left[strlen(left) - 1] == '\n');
-    free(left);
-    tool_run again = RUN_TOOL("check", "--list", list, "--results", results.text, "--resume");
-    assert_int_equal(again.code, 1);
-    assert_non_null(strstr(again.out, "12 recordings: 10 clean, 2 failed\n"));
-    tool_run_free(&again);
-    expect_whole_results();
-}
-
-static void a_program_that_is_killed_is_resumed(void **state) {
-    (void)state;
-    temp_path list = write_small_list();
-    for (size_t bytes = 0; bytes < 2500; bytes += bytes < 600 ? 41 : 307)
-        expect_resumed(list.text, "", bytes, 128 + SIGXFSZ, "");
-}
-
-static void a_full_disk_keeps_whole_lines(void **state) {
-    (void)state;
-    temp_path list = write_small_list();
-    for (size_t bytes = 0; bytes < 2500; bytes += bytes < 600 ? 83 : 511)
-        expect_resumed(list.text, "trap '' XFSZ;", bytes, 4, "results.jsonl: cannot write: File too large");
-}
-
-/* Each run is killed later than the one before, and each goes on with what is there. */
-static void kills_at_any_time_lose_nothing(void **state) {
-    (void)state;
-    temp_path list = write_small_list();
-    for (useconds_t wait = 0; wait < 12000; wait += 400) {
-        tool_process process = run_tool_start((const char *const[]){
-            "check", "--list", list.text, "--results", results.text, "--resume", "--threads", "2", NULL});
-        usleep(wait);
-        kill(process.pid, SIGKILL);
-        tool_run run = run_tool_finish(&process);
-        tool_run_free(&run);
-    }
-    EXPECT_TOOL(1, "check", "--list", list.text, "--results", results.text, "--resume");
-    expect_whole_results();
-}
-
-static void results_are_not_overwritten(void **state) {
-    (void)state;
-    temp_path list = write_small_list(), other;
-    EXPECT_TOOL(1, "check", "--list", list.text, "--results", results.text);
-    EXPECT_ERROR(4, TEXTS("results.jsonl: holds results already; --resume"), "check", "--list", list.text,
-                 "--results", results.text);
-    EXPECT_ERROR(4, TEXTS("results.jsonl:1:", "results of another list or of other options"), "check",
-                 "--list", list.text, "--results", results.text, "--resume", "--fail-on", "crossing");
-    EXPECT_ERROR(4, TEXTS("results.jsonl:1:", "another list"), "replay", "--list", list.text, "--results",
-                 results.text, "--resume");
-    other = write_list("{\"model\": \"%s\"}\n", clean.text);
-    EXPECT_ERROR(4, TEXTS("results.jsonl:1:", "has the list been edited?"), "check", "--list", other.text,
-                 "--results", results.text, "--resume");
-    expect_whole_results();
-    temp_path notes = write_text("notes.jsonl", "my notes\n");
-    EXPECT_ERROR(4, TEXTS("notes.jsonl:1: this is no line of results"), "check", "--list", list.text,
-                 "--results", notes.text, "--resume");
-    char *text = read_whole_file(notes.text, NULL);
-    assert_string_equal(text, "my notes\n");
-    free(text);
-}
-
-/* Only those that failed run again, and their last lines count. */
-static void failed_jobs_run_again(void **state) {
-    (void)state;
-    temp_path list = write_small_list(), merged = temp_file_path(&folder, "merged.jsonl");
-    EXPECT_TOOL(1, "check", "--list", list.text, "--results", results.text);
-    write_text("damaged.obj", "v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\n");
-    EXPECT_TOOL(1, "check", "--list", list.text, "--results", results.text, "--resume");
-    EXPECT_TOOL(0, "check", "--list", list.text, "--results", results.text, "--resume=failed");
-    EXPECT_TOOL(0, "check", "--list", list.text, "--results", results.text, "--resume=failed");
-    EXPECT_TOOL(0, "merge", results.text, "-o", merged.text);
-    char *text = read_whole_file(merged.text, NULL);
-    assert_null(strstr(text, "\"failed\""));
-    free(text);
-    damaged = write_text("damaged.obj", "v 0 0 0\nf 1 2 9\n");
-    remove(results.text);
-}
-
-static void two_processes_do_not_share_a_file(void **state) {
-    (void)state;
-    char fifo[400];
-    snprintf(fifo, sizeof fifo, "%s/waits.obj", folder.path);
-    assert_int_equal(mkfifo(fifo, 0600), 0);
-    temp_path list = write_list("{\"model\": \"%s\"}\n", fifo);
-    tool_process first =
-        run_tool_start((const char *const[]){"check", "--list", list.text, "--results", results.text, NULL});
-    for (int i = 0; i < 10000 && access(results.text, F_OK) != 0; i++) usleep(1000);
-    usleep(100000); /* for the lock, which comes next */
-    EXPECT_ERROR(4, TEXTS("results.jsonl: another process writes its results here"), "check", "--list",
-                 list.text, "--results", results.text, "--resume", "--job-timeout", "5");
-    shell("cat '%s' > '%s'", clean.text, fifo);
-    tool_run run = run_tool_finish(&first);
-    assert_int_equal(run.code, 0);
-    tool_run_free(&run);
-    remove(fifo);
-    remove(results.text);
 }
 
 int main(void) {
@@ -395,12 +227,6 @@ int main(void) {
         cmocka_unit_test(a_check_of_a_list_is_a_check),
         cmocka_unit_test(wrong_lists_and_options_are_refused),
         cmocka_unit_test(a_job_has_a_time_limit),
-        cmocka_unit_test(a_program_that_is_killed_is_resumed),
-        cmocka_unit_test(a_full_disk_keeps_whole_lines),
-        cmocka_unit_test(kills_at_any_time_lose_nothing),
-        cmocka_unit_test(results_are_not_overwritten),
-        cmocka_unit_test(failed_jobs_run_again),
-        cmocka_unit_test(two_processes_do_not_share_a_file),
     };
     return cmocka_run_group_tests(tests, make_files, remove_files);
 }
