@@ -147,7 +147,7 @@ SLOW_preprocess    := charge partition regions
 SLOW_report        := report_browser
 SLOW_sensors       := exact_check sensor_recall sensor_scenes
 SLOW_solver        := floors max_step proximity
-SLOW_tool          := tool_preprocess tool_render tool_stop tool_figure
+SLOW_tool          := tool_shards tool_streaming tool_preprocess tool_render tool_stop tool_figure
 TEST_ROOMS := $(sort $(notdir $(patsubst %/,%,$(dir $(wildcard tests/*/test_*.c*)))))
 SLOW_TESTS := $(foreach room,$(TEST_ROOMS),$(addprefix $(room)/test_,$(SLOW_$(room))))
 $(foreach test,$(SLOW_TESTS),$(if $(wildcard tests/$(test).c*),,$(warning tests/$(test).c is called slow, but there is none)))

@@ -122,6 +122,13 @@ static void of_a_closed_body_with_regions(void **state) {
     expect_equal_in_shards(spindle_with("--method single --mode earliest"));
 }
 
+static void by_every_method(void **state) {
+    (void)state;
+    expect_equal_in_shards(spindle_with("--method charge"));
+    expect_equal_in_shards(spindle_with("--method iccd"));
+    expect_equal_in_shards(spindle_with("--method brute"));
+}
+
 /* Two objects, one closed and at rest, of which more is promised than of the open one. */
 static void of_several_components(void **state) {
     char options[700];
@@ -339,6 +346,7 @@ int main(void) {
         cmocka_unit_test(without_a_check_each_shard_proves_its_start),
         cmocka_unit_test(of_part_of_the_frames),
         cmocka_unit_test(of_a_closed_body_with_regions),
+        cmocka_unit_test(by_every_method),
         cmocka_unit_test(of_several_components),
         cmocka_unit_test(exit_code_and_words_are_those_of_one_run),
         cmocka_unit_test(with_times_all_else_is_the_same),
