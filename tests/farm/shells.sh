@@ -39,3 +39,20 @@ seq 5 | xargs -I {} sh -c '"$CSCD" check --list "$folder/jobs.jsonl" --shard {}/
     [ $? != 4 ] || exit 255' 2>/dev/null || code=$?
 [ $code = 124 ] || { echo "xargs: an edited list was taken: $code"; exit 1; }
 echo 'farm: xargs and GNU parallel, an edited list'
+
+# One recording of 100 frames, in which a triangle sinks through another and comes back, in shards.
+awk -v folder="$folder" 'BEGIN {
+    for (i = 0; i < 100; i++) {
+        z = i % 20 < 10 ? 5 - i % 20 : i % 20 - 15
+        printf "v 0 0 0\nv 4 0 0\nv 0 4 0\nv 1 1 %g\nv 1 1 %g\nv 2 1 %g\nf 1 2 3\nf 4 5 6\n", z - .5, z + .5, z + .3 \
+            >sprintf("%s/sinks_%03d.obj", folder, i)
+    }
+}'
+cd "$folder"
+"$CSCD" replay sinks_000.obj 'sinks_%03d.obj' --quiet --contacts one.csv --events one-events.csv
+[ "$(grep -c . one.csv)" -gt 20 ]
+seq 3 | parallel --jobs 2 "$CSCD" replay sinks_000.obj "'sinks_%03d.obj'" --shard {}/3 --results sinks-{}.shard --resume --quiet
+"$CSCD" merge sinks-*.shard --quiet --contacts all.csv --events all-events.csv
+cmp one.csv all.csv
+cmp one-events.csv all-events.csv
+echo 'farm: GNU parallel, one recording'
