@@ -4,6 +4,7 @@
 #include "src/tool/common/terminal.h"
 #include "tests/support/test.h"
 
+#include <poll.h>
 #include <signal.h>
 #include <stdatomic.h>
 #include <stdlib.h>
@@ -66,12 +67,16 @@ static void crash_quietly(int number) {
     raise(number);
 }
 
-static void meet_fate(job_fate fate) {
+enum { RUNS_MOST = 5 }; /* of a job that its worker gives up; it would be run again for ever otherwise */
+
+static void meet_fate(job_fate fate, int runs) {
+    if (fate == FATE_LATE && runs > RUNS_MOST) _exit(8);
     if (fate == FATE_KILLED) raise(SIGKILL);
     if (fate == FATE_CRASH) crash_quietly(SIGSEGV);
     if (fate == FATE_EXIT) _exit(7);
     while (fate == FATE_LATE && !interrupted()) usleep(1000);
-    while (fate == FATE_DEAF) usleep(1000);
+    for (int i = 0; i < 60000 && fate == FATE_DEAF; i++)
+        usleep(1000); /* whoever forgets it has no process for ever */
 }
 
 /* Some results are empty, and some larger than what a socket holds. */
@@ -84,11 +89,11 @@ static bool run_watched(void *user, uint32_t job, FILE *result) {
     shared_counts *shared = watch->shared;
     const int busy = atomic_fetch_add(&shared->busy, 1) + 1;
     if (busy > atomic_load(&shared->most_busy)) atomic_store(&shared->most_busy, busy);
-    atomic_fetch_add(&shared->runs[job], 1);
+    const int runs = atomic_fetch_add(&shared->runs[job], 1) + 1;
     if (job % 50 == 0) usleep(3000);
     if (watch->signal != 0 && job == watch->stop_after) kill(getppid(), watch->signal);
     atomic_fetch_sub(&shared->busy, 1);
-    meet_fate((job_fate)watch->fates[job]);
+    meet_fate((job_fate)watch->fates[job], runs);
     for (size_t i = 0; i < size_of(job); i++) fputc((int)(job + i) % 251, result);
     return !interrupted();
 }
@@ -259,7 +264,9 @@ static void workers_die_with_the_process(void **state) {
     kill(pid, SIGKILL);
     waitpid(pid, NULL, 0);
     char byte;
-    assert_int_equal(read(ends[0], &byte, 1), 0); /* nobody is left who could write */
+    struct pollfd end = {.fd = ends[0], .events = POLLIN};
+    assert_int_equal(poll(&end, 1, 20000), 1); /* nobody is left who could write */
+    assert_int_equal(read(ends[0], &byte, 1), 0);
     close(ends[0]);
 }
 

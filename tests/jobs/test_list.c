@@ -205,8 +205,11 @@ static void a_job_has_a_time_limit(void **state) {
         write_list("{\"model\": \"%s\", \"frames\": \"%s\", \"outputs\": {\"json\": \"%s/part.json\"}}\n"
                    "{\"model\": \"%s\", \"frames\": \"%s\"}\n",
                    model.text, cache.text, folder.path, fold.text, fold_cache.text);
-    EXPECT_TOOL(1, "replay", "--list", list.text, "--results", results.text, "--method", "brute",
-                "--job-timeout", "2", "--threads", "2");
+    free(shell_output(
+        1,
+        "timeout 60 \"$CSCD_TOOL\" replay --list '%s' --results '%s' --method brute --job-timeout 2 "
+        "--threads 2",
+        list.text, results.text));
     result_lines lines = result_lines_take(results.text);
     assert_string_equal(json_node_string(lines.of[1], "error"),
                         "it took longer than 2 s, which is its time limit");

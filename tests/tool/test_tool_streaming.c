@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <sys/types.h>
 #include <unistd.h>
 
@@ -29,12 +30,20 @@ static int remove_folder(void **state) {
 
 /* A point cache of 100 GB that takes no room: all frames are holes but those of one shard of 32 intervals. */
 enum { CHUNK = 32, HEADER = 32 };
+enum { ROOM_KIB = 64 * 1024 }; /* what a sanitizer keeps of memory that was freed */
 static const unsigned long long whole_size = 100ull * 1000 * 1000 * 1000;
 
 typedef struct large_recording {
     temp_path mesh, small, large;
     unsigned long long frame_size, chunks;
+    unsigned long long small_size; /* of the mesh and the small cache together */
 } large_recording;
+
+static unsigned long long file_size(const char *path) {
+    struct stat status;
+    assert_int_equal(stat(path, &status), 0);
+    return (unsigned long long)status.st_size;
+}
 
 /* The head of the small one with another count, its frames from frame `place` on, and holes. */
 static void write_large(const large_recording *r, unsigned long long samples, unsigned long long place) {
@@ -59,6 +68,7 @@ static large_recording make_large(void) {
                          .frame_size = scene.vertex_count * 12ull};
     recorded_free(&scene);
     r.chunks = (whole_size / r.frame_size - 1) / CHUNK;
+    r.small_size = file_size(r.mesh.text) + file_size(r.small.text);
     write_large(&r, r.chunks * CHUNK + 1, r.chunks / 2 * CHUNK);
     return r;
 }
@@ -84,8 +94,9 @@ static void a_shard_of_100_gb_reads_its_own_frames(void **state) {
              "replay '%s' '%s' --quiet --no-depths --shard %llu/%llu --results '%s/large.shard'", r.mesh.text,
              r.large.text, r.chunks / 2 + 1, r.chunks, folder.path);
     const unsigned long long most = bytes_read(arguments);
-    if (least == 0) skip(); /* nobody counts here */
-    assert_in_range(most, (CHUNK + 1) * r.frame_size, least + r.frame_size);
+    if (least == 0) skip();                                                /* nobody counts here */
+    assert_in_range(least, r.small_size, r.small_size + 2 * r.frame_size); /* each frame once */
+    assert_in_range(most, (CHUNK + 1) * r.frame_size, least + r.frame_size / 2);
 }
 
 static void its_memory_is_that_of_an_interval(void **state) {
@@ -100,8 +111,24 @@ static void its_memory_is_that_of_an_interval(void **state) {
     assert_int_equal(small.code, 0);
     assert_int_equal(large.code, 0);
     const long numbers = (long)(r.chunks * CHUNK * 4 / 1024); /* a frame's number takes 4 bytes */
-    const long room = 64 * 1024; /* what a sanitizer keeps of memory that was freed */
-    assert_in_range(large.peak_kib, 0, small.peak_kib + numbers + room);
+    assert_in_range(large.peak_kib, 0, small.peak_kib + numbers + ROOM_KIB);
+    tool_run_free(&small);
+    tool_run_free(&large);
+}
+
+/* Sixteen times as many frames need no more memory: they would take nearly twice the room that a sanitizer gets. */
+static void frames_are_not_kept(void **state) {
+    recorded scene = recorded_fold(120, 80, 1);
+    const temp_path mesh = recorded_write_mesh(&folder, "kept.obj", &scene, 0),
+                    few = recorded_write_cycle(&folder, "few.pc2", &scene, CHUNK + 1),
+                    many = recorded_write_cycle(&folder, "many.pc2", &scene, 16 * CHUNK + 1);
+    recorded_free(&scene);
+    (void)state;
+    tool_run small = RUN_TOOL("replay", mesh.text, few.text, "--quiet", "--no-check");
+    tool_run large = RUN_TOOL("replay", mesh.text, many.text, "--quiet", "--no-check");
+    assert_int_equal(small.code, 0);
+    assert_int_equal(large.code, 0);
+    assert_in_range(large.peak_kib, 0, small.peak_kib + ROOM_KIB);
     tool_run_free(&small);
     tool_run_free(&large);
 }
@@ -134,6 +161,36 @@ static void a_frame_that_comes_late_is_waited_for(void **state) {
     assert_string_equal(found, expected);
     free(found);
     free(expected);
+}
+
+/* Waiting for each of the files would take an hour. */
+static void what_is_there_is_not_waited_for(void **state) {
+    (void)state;
+    const temp_path pattern = make_series();
+    shell("timeout 60 \"$CSCD_TOOL\" replay '%s/late_0000.obj' '%s' --quiet --wait-for-files 600",
+          folder.path, pattern.text);
+}
+
+/* While the main thread waits for the frame, another one tries to read it. */
+static void frames_are_read_on_a_thread_of_their_own(void **state) {
+    (void)state;
+    const temp_path pattern = make_series();
+    shell("mv '%s/late_0003.obj' '%s/hidden'", folder.path, folder.path);
+    char model[600];
+    snprintf(model, sizeof model, "%s/late_0000.obj", folder.path);
+    tool_process process = run_tool_start((const char *const[]){
+        "replay", model, pattern.text, "--quiet", "--threads", "1", "--wait-for-files", "60", NULL});
+    char *found =
+        shell_output(0,
+                     "cd /proc/%d/task || exit 0; for i in $(seq 400); do test $(ls | wc -l) -ge 2 && break; "
+                     "sleep 0.05; done; ls | wc -l",
+                     (int)process.pid);
+    shell("mv '%s/hidden' '%s/late_0003.obj'", folder.path, folder.path);
+    tool_run run = run_tool_finish(&process);
+    assert_int_equal(run.code, 0);
+    tool_run_free(&run);
+    if (strtol(found, NULL, 10) == 1) fail_msg("one thread does all");
+    free(found);
 }
 
 static void without_waiting_it_is_an_error(void **state) {
@@ -186,7 +243,10 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_shard_of_100_gb_reads_its_own_frames),
         cmocka_unit_test(its_memory_is_that_of_an_interval),
+        cmocka_unit_test(frames_are_not_kept),
         cmocka_unit_test(a_frame_that_comes_late_is_waited_for),
+        cmocka_unit_test(what_is_there_is_not_waited_for),
+        cmocka_unit_test(frames_are_read_on_a_thread_of_their_own),
         cmocka_unit_test(without_waiting_it_is_an_error),
         cmocka_unit_test(a_model_that_comes_late_is_waited_for),
         cmocka_unit_test(an_interrupt_ends_the_wait),
