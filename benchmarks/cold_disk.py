@@ -101,7 +101,7 @@ def seconds(commands, tasks, cold):
 
 
 def main():
-    with tempfile.TemporaryDirectory(dir=".") as folder:
+    with tempfile.TemporaryDirectory(dir=os.path.dirname(CSCD)) as folder:
         for name, (words, files) in write_recordings(folder).items():
             size = sum(os.path.getsize(path) for path in files) / 1e6
             replay = [[CSCD, "replay", *words, "--method", "none", "--no-check", "--quiet", "--threads", "1"]]

@@ -26,6 +26,8 @@ typedef struct animation_reader {
     int32_t (*number)(const void *source, uint32_t frame);
     const char *(*note)(const void *source); /* NULL: never says anything */
     bool (*read)(void *source, uint32_t frame, double *positions, io_error *error);
+    void (*expect)(void *source,
+                   uint32_t frame); /* NULL: nothing to do, frames follow each other in one file */
     void (*close)(void *source);
 } animation_reader;
 
@@ -105,6 +107,10 @@ static bool read_files(void *source, uint32_t frame, double *positions, io_error
     return frame_files_read(source, frame, positions, error);
 }
 
+static void expect_file(void *source, uint32_t frame) {
+    frame_files_expect(source, frame);
+}
+
 static void close_files(void *source) {
     frame_files_close(source);
 }
@@ -142,11 +148,14 @@ static void close_gltf(void *source) {
 enum { POINT_CACHE, GLTF_FILE, FILE_PATTERN, FILE_FOLDER, FILE_LIST };
 
 static const animation_reader readers[] = {
-    [POINT_CACHE] = {open_cache, count_cache, number_in_cache, NULL, read_cache, close_cache},
-    [GLTF_FILE] = {open_gltf, count_gltf, number_in_gltf, note_on_gltf, read_gltf, close_gltf},
-    [FILE_PATTERN] = {open_pattern, count_files, number_of_file, note_on_files, read_files, close_files},
-    [FILE_FOLDER] = {open_folder, count_files, number_of_file, note_on_files, read_files, close_files},
-    [FILE_LIST] = {open_list, count_files, number_of_file, note_on_files, read_files, close_files},
+    [POINT_CACHE] = {open_cache, count_cache, number_in_cache, NULL, read_cache, NULL, close_cache},
+    [GLTF_FILE] = {open_gltf, count_gltf, number_in_gltf, note_on_gltf, read_gltf, NULL, close_gltf},
+    [FILE_PATTERN] = {open_pattern, count_files, number_of_file, note_on_files, read_files, expect_file,
+                      close_files},
+    [FILE_FOLDER] = {open_folder, count_files, number_of_file, note_on_files, read_files, expect_file,
+                     close_files},
+    [FILE_LIST] = {open_list, count_files, number_of_file, note_on_files, read_files, expect_file,
+                   close_files},
 };
 
 /* ---- the interface ----------------------------------------------------------------------------------- */
@@ -217,4 +226,8 @@ bool animation_read(animation *opened, uint32_t frame, double *positions, io_err
         return io_fail(error, "%s: no frame %" PRIu32 ", expected one from 0 to %" PRIu32, opened->name,
                        frame, count - 1);
     return opened->reader->read(opened->source, frame, positions, error);
+}
+
+void animation_expect(animation *opened, uint32_t frame) {
+    if (opened->reader->expect != NULL) opened->reader->expect(opened->source, frame);
 }

@@ -43,3 +43,7 @@ const char *animation_note(const animation *animation);
 /* Reads a frame, by its index from 0, into positions, vertex_count * 3. The memory in use does not grow with the frames
  * read. On false *error names the frame; positions are then undefined. */
 bool animation_read(animation *animation, uint32_t frame, double *positions, io_error *error);
+
+/* Says that a frame, which must be there, is read soon: the system begins to fetch it from its disk, where it can, and the caller does not
+ * wait. A frame that is not there or not whole is no error. */
+void animation_expect(animation *animation, uint32_t frame);

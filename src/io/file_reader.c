@@ -4,12 +4,14 @@
 #include "src/io/growable.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 /* A longer path would leave no room for what is wrong, so only its end is shown. */
 enum { SHOWN_PATH_LENGTH = 500, MESSAGE_SIZE = sizeof((io_error *)0)->text };
@@ -110,4 +112,18 @@ bool file_reader_open(file_reader *reader, const char *path, io_error *error) {
 void file_reader_close(file_reader *reader) {
     free(reader->bytes);
     *reader = (file_reader){0};
+}
+
+void file_reader_expect(const char *path) {
+#ifdef POSIX_FADV_WILLNEED
+    struct stat status;
+    /* Whoever writes a pipe would take this for its reader. */
+    if (stat(path, &status) != 0 || !S_ISREG(status.st_mode)) return;
+    const int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    if (file < 0) return;
+    posix_fadvise(file, 0, 0, POSIX_FADV_WILLNEED);
+    close(file);
+#else
+    (void)path;
+#endif
 }

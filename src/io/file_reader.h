@@ -23,6 +23,9 @@ typedef struct file_reader {
 bool file_reader_open(file_reader *reader, const char *path, io_error *error);
 void file_reader_close(file_reader *reader);
 
+/* Asks the system to begin to fetch the file from its disk, without waiting for it. Where that cannot be, nothing happens. */
+void file_reader_expect(const char *path);
+
 /* Write "path: message" to reader->error, or, with the place where the reader is, "path:LINE: message", as compilers do, or
  * "path: byte N: message". The message is always one line; the result is always false. */
 bool file_reader_fail(file_reader *reader, const char *format, ...) __attribute__((format(printf, 2, 3)));

@@ -36,3 +36,6 @@ const char *frame_files_note(const frame_files *files);
 
 /* frame is below the count; positions takes vertex_count * 3 and is undefined on false. */
 bool frame_files_read(frame_files *files, uint32_t frame, double *positions, io_error *error);
+
+/* As animation_expect. */
+void frame_files_expect(frame_files *files, uint32_t frame);

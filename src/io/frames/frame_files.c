@@ -1,6 +1,7 @@
 /* Plays a sequence of mesh files: keeps their names and reads one file for each frame asked for. */
 #include "src/io/frame_files.h"
 
+#include "src/io/file_reader.h"
 #include "src/io/foreign_format.h"
 #include "src/io/frames/frame_folder.h"
 #include "src/io/frames/frame_names.h"
@@ -254,12 +255,21 @@ static bool same_faces(frame_files *files, uint32_t frame, const mesh_file *mesh
     return true;
 }
 
-bool frame_files_read(frame_files *files, uint32_t frame, double *positions, io_error *error) {
+static void write_path(frame_files *files, uint32_t frame) {
     snprintf(files->path, files->path_size, "%s%s", files->folder, frame_names_at(&files->list, frame));
+}
+
+bool frame_files_read(frame_files *files, uint32_t frame, double *positions, io_error *error) {
+    write_path(files, frame);
     mesh_file mesh = {0};
     if (!mesh_file_read(files->path, &mesh, error)) return false;
     const bool copied =
         copy_positions(files, &mesh, positions, error) && same_faces(files, frame, &mesh, error);
     mesh_file_free(&mesh);
     return copied;
+}
+
+void frame_files_expect(frame_files *files, uint32_t frame) {
+    write_path(files, frame);
+    file_reader_expect(files->path);
 }

@@ -265,6 +265,11 @@ bool recording_read(recording *r, uint32_t frame, double *positions, io_error *e
     return true;
 }
 
+void recording_expect(recording *r, uint32_t frame) {
+    for (uint32_t i = 0; i < r->object_count; i++)
+        if (r->objects[i].frames != NULL) animation_expect(r->objects[i].frames, frame);
+}
+
 void recording_rest(const recording *r, double *positions) {
     for (uint32_t i = 0; i < r->object_count; i++)
         recorded_object_rest(&r->objects[i], positions + (size_t)r->objects[i].first_vertex * 3);

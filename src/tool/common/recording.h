@@ -71,6 +71,9 @@ void recording_close(recording *r);
  * as the file numbers them. */
 bool recording_read(recording *r, uint32_t frame, double *positions, io_error *error);
 
+/* Says that a frame is read soon, as animation_expect. */
+void recording_expect(recording *r, uint32_t frame);
+
 /* Copies the positions of the model files themselves, unchecked; positions as above. */
 void recording_rest(const recording *r, double *positions);
 

@@ -1,0 +1,128 @@
+/* Frames that are said to be read soon: the system fetches their files from the disk meanwhile. */
+#include "tests/support/io/frame_fixture.h"
+#include "tests/support/test.h"
+
+#include <fcntl.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { VERTICES = 4, FRAME_BYTES = 1 << 20, PAGES_MAX = FRAME_BYTES / 4096 };
+
+static void rest(long milliseconds) {
+    const struct timespec time = {.tv_nsec = milliseconds * 1000 * 1000};
+    nanosleep(&time, NULL);
+}
+
+/* A frame with empty lines behind it, so that it has many pages. */
+static temp_path write_large(const char *name, uint32_t frame) {
+    const temp_path path = frame_fixture_write_mesh(&frame_fixture_folder, name, VERTICES, frame);
+    static char lines[FRAME_BYTES];
+    memset(lines, '\n', sizeof lines);
+    FILE *file = fopen(path.text, "ab");
+    assert_non_null(file);
+    const size_t left = FRAME_BYTES - (size_t)ftell(file);
+    assert_int_equal(fwrite(lines, 1, left, file), left);
+    assert_int_equal(fclose(file), 0);
+    return path;
+}
+
+/* How many of the file's pages are in memory. */
+static size_t pages_in_memory(const char *path) {
+    unsigned char in_memory[PAGES_MAX] = {0};
+    size_t count = 0;
+    const int file = open(path, O_RDONLY);
+    assert_true(file >= 0);
+    void *bytes = mmap(NULL, FRAME_BYTES, PROT_READ, MAP_SHARED, file, 0);
+    assert_ptr_not_equal(bytes, MAP_FAILED);
+    assert_int_equal(mincore(bytes, FRAME_BYTES, in_memory), 0);
+    for (size_t i = 0; i < PAGES_MAX; i++) count += in_memory[i] & 1;
+    munmap(bytes, FRAME_BYTES);
+    close(file);
+    return count;
+}
+
+/* False where the file lives in memory only. */
+static bool forget(const char *path) {
+    const int file = open(path, O_RDONLY);
+    assert_true(file >= 0);
+    assert_int_equal(fsync(file), 0);
+    assert_int_equal(posix_fadvise(file, 0, 0, POSIX_FADV_DONTNEED), 0);
+    close(file);
+    return pages_in_memory(path) == 0;
+}
+
+static void an_expected_frame_comes_from_its_disk(void **state) {
+    (void)state;
+    if (sysconf(_SC_PAGESIZE) != 4096) skip();
+    write_large("f_0.obj", 0);
+    const temp_path expected = write_large("f_1.obj", 1), other = write_large("f_2.obj", 2);
+    animation *opened = frame_fixture_open(frame_fixture_folder.path, VERTICES);
+    const bool forgotten = forget(expected.text) && forget(other.text);
+    animation_expect(opened, 1);
+    for (int tries = 0; forgotten && pages_in_memory(expected.text) < PAGES_MAX && tries < 1000; tries++)
+        rest(10);
+    if (forgotten) assert_int_equal(pages_in_memory(expected.text), PAGES_MAX);
+    if (forgotten) assert_int_equal(pages_in_memory(other.text), 0);
+    frame_fixture_check(opened, VERTICES, 1, 1);
+    animation_close(opened);
+    if (!forgotten) skip();
+}
+
+static void an_expected_frame_need_not_be_there(void **state) {
+    (void)state;
+    const temp_path path = write_large("f_0.obj", 0);
+    animation *opened = frame_fixture_open(frame_fixture_folder.path, VERTICES);
+    assert_int_equal(unlink(path.text), 0);
+    animation_expect(opened, 0);
+    write_large("f_0.obj", 0);
+    frame_fixture_check(opened, VERTICES, 0, 0);
+    animation_close(opened);
+}
+
+static void *write_pipe(void *path) {
+    const int file = open(path, O_WRONLY); /* waits for who reads */
+    const bool written = file >= 0 && write(file, "v 0 0 0\n", 8) == 8;
+    close(file);
+    return written ? path : NULL;
+}
+
+/* Who writes a pipe waits for its reader, and would be left by one that only looks. */
+static void a_pipe_is_left_alone(void **state) {
+    (void)state;
+    temp_path path = frame_fixture_write_mesh(&frame_fixture_folder, "f_0.obj", VERTICES, 0);
+    animation *opened = frame_fixture_open(frame_fixture_folder.path, VERTICES);
+    char text[9] = "";
+    pthread_t writer;
+    void *written;
+    assert_int_equal(unlink(path.text), 0);
+    assert_int_equal(mkfifo(path.text, 0600), 0);
+    assert_int_equal(pthread_create(&writer, NULL, write_pipe, path.text), 0);
+    rest(100); /* so that it waits */
+    signal(SIGPIPE, SIG_IGN);
+    animation_expect(opened, 0);
+    rest(100); /* so that it writes, if it takes this for its reader */
+    const int file = open(path.text, O_RDONLY | O_NONBLOCK);
+    for (int tries = 0; read(file, text, 8) <= 0 && tries < 1000; tries++) rest(10);
+    assert_int_equal(pthread_join(writer, &written), 0);
+    close(file);
+    assert_string_equal(text, "v 0 0 0\n");
+    assert_ptr_equal(written, path.text);
+    animation_close(opened);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+#define TEST(name)                                                                                           \
+    cmocka_unit_test_setup_teardown(name, frame_fixture_make_folder, frame_fixture_remove_folder)
+        TEST(an_expected_frame_comes_from_its_disk),
+        TEST(an_expected_frame_need_not_be_there),
+        TEST(a_pipe_is_left_alone),
+    };
+    return cmocka_run_group_tests_name("frames_expected", tests, NULL, NULL);
+}
