@@ -14,7 +14,7 @@
 
 enum { VERTICES = 4, FRAME_BYTES = 1 << 20, PAGES_MAX = FRAME_BYTES / 4096 };
 
-static void rest(long milliseconds) {
+static void wait_for(long milliseconds) {
     const struct timespec time = {.tv_nsec = milliseconds * 1000 * 1000};
     nanosleep(&time, NULL);
 }
@@ -48,7 +48,7 @@ static size_t pages_in_memory(const char *path) {
 }
 
 /* False where the file lives in memory only. */
-static bool forget(const char *path) {
+static bool drop_pages(const char *path) {
     const int file = open(path, O_RDONLY);
     assert_true(file >= 0);
     assert_int_equal(fsync(file), 0);
@@ -63,10 +63,10 @@ static void an_expected_frame_comes_from_its_disk(void **state) {
     write_large("f_0.obj", 0);
     const temp_path expected = write_large("f_1.obj", 1), other = write_large("f_2.obj", 2);
     animation *opened = frame_fixture_open(frame_fixture_folder.path, VERTICES);
-    const bool forgotten = forget(expected.text) && forget(other.text);
+    const bool forgotten = drop_pages(expected.text) && drop_pages(other.text);
     animation_expect(opened, 1);
     for (int tries = 0; forgotten && pages_in_memory(expected.text) < PAGES_MAX && tries < 1000; tries++)
-        rest(10);
+        wait_for(10);
     if (forgotten) assert_int_equal(pages_in_memory(expected.text), PAGES_MAX);
     if (forgotten) assert_int_equal(pages_in_memory(other.text), 0);
     frame_fixture_check(opened, VERTICES, 1, 1);
@@ -103,12 +103,12 @@ static void a_pipe_is_left_alone(void **state) {
     assert_int_equal(unlink(path.text), 0);
     assert_int_equal(mkfifo(path.text, 0600), 0);
     assert_int_equal(pthread_create(&writer, NULL, write_pipe, path.text), 0);
-    rest(100); /* so that it waits */
+    wait_for(100); /* so that it waits */
     signal(SIGPIPE, SIG_IGN);
     animation_expect(opened, 0);
-    rest(100); /* so that it writes, if it takes this for its reader */
+    wait_for(100); /* so that it writes, if it takes this for its reader */
     const int file = open(path.text, O_RDONLY | O_NONBLOCK);
-    for (int tries = 0; read(file, text, 8) <= 0 && tries < 1000; tries++) rest(10);
+    for (int tries = 0; read(file, text, 8) <= 0 && tries < 1000; tries++) wait_for(10);
     assert_int_equal(pthread_join(writer, &written), 0);
     close(file);
     assert_string_equal(text, "v 0 0 0\n");
