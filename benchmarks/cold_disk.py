@@ -16,7 +16,7 @@ import sys
 import tempfile
 import time
 
-CSCD = os.path.abspath(sys.argv[1] if len(sys.argv) > 1 else "cscd")
+CSCD = os.path.realpath(sys.argv[1] if len(sys.argv) > 1 else "cscd")
 FRAMES = 120
 RINGS, SEGMENTS = 300, 150
 SPEEDS = (None, 100, 50, 25)  # MB/s; None: what the disk gives

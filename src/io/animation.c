@@ -26,8 +26,7 @@ typedef struct animation_reader {
     int32_t (*number)(const void *source, uint32_t frame);
     const char *(*note)(const void *source); /* NULL: never says anything */
     bool (*read)(void *source, uint32_t frame, double *positions, io_error *error);
-    void (*expect)(void *source,
-                   uint32_t frame); /* NULL: nothing to do, frames follow each other in one file */
+    void (*expect)(void *source, uint32_t frame); /* NULL: all frames are in one file */
     void (*close)(void *source);
 } animation_reader;
 

@@ -44,6 +44,6 @@ const char *animation_note(const animation *animation);
  * read. On false *error names the frame; positions are then undefined. */
 bool animation_read(animation *animation, uint32_t frame, double *positions, io_error *error);
 
-/* Says that a frame, which must be there, is read soon: the system begins to fetch it from its disk, where it can, and the caller does not
- * wait. A frame that is not there or not whole is no error. */
+/* Says that a frame, by its index below the count, is read soon: the system begins to fetch its file from the disk, and the caller
+ * does not wait. A file that is missing is no error here. Does nothing where all frames are in one file. */
 void animation_expect(animation *animation, uint32_t frame);

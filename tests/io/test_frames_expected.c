@@ -1,5 +1,6 @@
 /* Frames that are said to be read soon: the system fetches their files from the disk meanwhile. */
 #include "tests/support/io/frame_fixture.h"
+#include "tests/support/page_cache.h"
 #include "tests/support/test.h"
 
 #include <fcntl.h>
@@ -7,12 +8,11 @@
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/mman.h>
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
-enum { VERTICES = 4, FRAME_BYTES = 1 << 20, PAGES_MAX = FRAME_BYTES / 4096 };
+enum { VERTICES = 4, FRAME_BYTES = 1 << 20 };
 
 static void wait_for(long milliseconds) {
     const struct timespec time = {.tv_nsec = milliseconds * 1000 * 1000};
@@ -32,46 +32,18 @@ static temp_path write_large(const char *name, uint32_t frame) {
     return path;
 }
 
-/* How many of the file's pages are in memory. */
-static size_t pages_in_memory(const char *path) {
-    unsigned char in_memory[PAGES_MAX] = {0};
-    size_t count = 0;
-    const int file = open(path, O_RDONLY);
-    assert_true(file >= 0);
-    void *bytes = mmap(NULL, FRAME_BYTES, PROT_READ, MAP_SHARED, file, 0);
-    assert_ptr_not_equal(bytes, MAP_FAILED);
-    assert_int_equal(mincore(bytes, FRAME_BYTES, in_memory), 0);
-    for (size_t i = 0; i < PAGES_MAX; i++) count += in_memory[i] & 1;
-    munmap(bytes, FRAME_BYTES);
-    close(file);
-    return count;
-}
-
-/* False where the file lives in memory only. */
-static bool drop_pages(const char *path) {
-    const int file = open(path, O_RDONLY);
-    assert_true(file >= 0);
-    assert_int_equal(fsync(file), 0);
-    assert_int_equal(posix_fadvise(file, 0, 0, POSIX_FADV_DONTNEED), 0);
-    close(file);
-    return pages_in_memory(path) == 0;
-}
-
 static void an_expected_frame_comes_from_its_disk(void **state) {
     (void)state;
-    if (sysconf(_SC_PAGESIZE) != 4096) skip();
     write_large("f_0.obj", 0);
     const temp_path expected = write_large("f_1.obj", 1), other = write_large("f_2.obj", 2);
     animation *opened = frame_fixture_open(frame_fixture_folder.path, VERTICES);
-    const bool forgotten = drop_pages(expected.text) && drop_pages(other.text);
+    const bool dropped = page_cache_drop(expected.text) && page_cache_drop(other.text);
     animation_expect(opened, 1);
-    for (int tries = 0; forgotten && pages_in_memory(expected.text) < PAGES_MAX && tries < 1000; tries++)
-        wait_for(10);
-    if (forgotten) assert_int_equal(pages_in_memory(expected.text), PAGES_MAX);
-    if (forgotten) assert_int_equal(pages_in_memory(other.text), 0);
+    if (dropped) page_cache_expect(expected.text);
+    if (dropped) assert_int_equal(page_cache_count(other.text), 0);
     frame_fixture_check(opened, VERTICES, 1, 1);
     animation_close(opened);
-    if (!forgotten) skip();
+    if (!dropped) skip();
 }
 
 static void an_expected_frame_need_not_be_there(void **state) {
@@ -86,13 +58,13 @@ static void an_expected_frame_need_not_be_there(void **state) {
 }
 
 static void *write_pipe(void *path) {
-    const int file = open(path, O_WRONLY); /* waits for who reads */
+    const int file = open(path, O_WRONLY); /* waits for its reader */
     const bool written = file >= 0 && write(file, "v 0 0 0\n", 8) == 8;
     close(file);
     return written ? path : NULL;
 }
 
-/* Who writes a pipe waits for its reader, and would be left by one that only looks. */
+/* The writer of a pipe waits for its reader, and one that only looks would leave it alone. */
 static void a_pipe_is_left_alone(void **state) {
     (void)state;
     temp_path path = frame_fixture_write_mesh(&frame_fixture_folder, "f_0.obj", VERTICES, 0);

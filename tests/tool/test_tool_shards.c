@@ -218,6 +218,31 @@ static void a_shard_that_is_killed_loses_nothing(void **state) {
     expect_same_outputs();
 }
 
+/* The disk is full after ever more bytes: what is whole is kept, and the next run goes on with it. */
+static void a_full_disk_loses_nothing(void **state) {
+    char path[600];
+    struct stat status;
+    (void)state;
+    whole_run(spindle_with("--method single"));
+    remove_shards();
+    snprintf(path, sizeof path, "%s/1.shard", folder.path);
+    shell("\"$CSCD_TOOL\" replay %s --quiet --results '%s'", spindle_with("--method single"), path);
+    assert_int_equal(stat(path, &status), 0);
+    const off_t whole = status.st_size, sizes[] = {0, 1, 100, whole / 3, whole / 2, whole - 1};
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+        remove_shards();
+        char *output = shell_output(
+            1, "trap '' XFSZ; prlimit --fsize=%lld \"$CSCD_TOOL\" replay %s --quiet --results '%s'",
+            (long long)sizes[i], spindle_with("--method single"), path);
+        if (strstr(output, "1.shard: cannot write: File too large") == NULL) fail_msg("%s", output);
+        free(output);
+        shell("\"$CSCD_TOOL\" replay %s --quiet --results '%s' --resume", spindle_with("--method single"),
+              path);
+        merge_run();
+        expect_same_outputs();
+    }
+}
+
 static void results_are_not_written_over(void **state) {
     char path[600];
     (void)state;
@@ -355,6 +380,7 @@ int main(void) {
         cmocka_unit_test(with_times_all_else_is_the_same),
         cmocka_unit_test(a_shard_that_was_stopped_goes_on),
         cmocka_unit_test(a_shard_that_is_killed_loses_nothing),
+        cmocka_unit_test(a_full_disk_loses_nothing),
         cmocka_unit_test(results_are_not_written_over),
         cmocka_unit_test(missing_doubled_and_foreign_shards_are_named),
         cmocka_unit_test(files_that_have_changed_are_noticed),

@@ -1,4 +1,5 @@
 /* What a replay reads, and when: of a large recording its own frames only, and files that come late. */
+#include "tests/support/page_cache.h"
 #include "tests/support/shell.h"
 #include "tests/support/test.h"
 #include "tests/support/tool/run_tool.h"
@@ -133,6 +134,37 @@ static void frames_are_not_kept(void **state) {
     tool_run_free(&large);
 }
 
+/* ---- a cold disk ----------------------------------------------------------------------------------------- */
+
+/* Stops at a frame that is no mesh: the one behind it was asked of the disk before. */
+static void the_disk_brings_the_next_frame(void **state) {
+    (void)state;
+    recorded scene = recorded_fold(60, 40, 6);
+    const temp_path pattern = recorded_write_sequence(&folder, "cold_%04d.obj", &scene),
+                    model = temp_file_path(&folder, "cold_0000.obj"),
+                    next = temp_file_path(&folder, "cold_0004.obj");
+    recorded_free(&scene);
+    shell("echo nothing >'%s/cold_0003.obj'", folder.path);
+    const bool dropped = page_cache_drop(next.text);
+    EXPECT_ERROR(1, TEXTS("cold_0003.obj"), "replay", model.text, pattern.text, "--quiet");
+    if (!dropped) skip();
+    page_cache_expect(next.text);
+}
+
+/* No frame is brought that this machine does not need. */
+static void the_disk_brings_no_frame_of_others(void **state) {
+    (void)state;
+    recorded scene = recorded_fold(60, 40, 6);
+    const temp_path pattern = recorded_write_sequence(&folder, "own_%04d.obj", &scene),
+                    model = temp_file_path(&folder, "own_0000.obj"),
+                    behind = temp_file_path(&folder, "own_0004.obj");
+    recorded_free(&scene);
+    const bool dropped = page_cache_drop(behind.text);
+    EXPECT_TOOL(0, "replay", model.text, pattern.text, "--quiet", "--frames", "0:3");
+    if (!dropped) skip();
+    assert_int_equal(page_cache_count(behind.text), 0);
+}
+
 /* ---- late files ------------------------------------------------------------------------------------------ */
 
 static temp_path make_series(void) {
@@ -244,6 +276,8 @@ int main(void) {
         cmocka_unit_test(a_shard_of_100_gb_reads_its_own_frames),
         cmocka_unit_test(its_memory_is_that_of_an_interval),
         cmocka_unit_test(frames_are_not_kept),
+        cmocka_unit_test(the_disk_brings_the_next_frame),
+        cmocka_unit_test(the_disk_brings_no_frame_of_others),
         cmocka_unit_test(a_frame_that_comes_late_is_waited_for),
         cmocka_unit_test(what_is_there_is_not_waited_for),
         cmocka_unit_test(frames_are_read_on_a_thread_of_their_own),

@@ -22,7 +22,7 @@ struct read_ahead {
     io_error error;
 };
 
-/* While this one is parsed, the disk brings the next one. */
+/* While this frame is parsed, the disk brings the next one. */
 static void read_next(read_ahead *a) {
     if (a->next < a->last) recording_expect(a->recording, a->next + 1);
     a->good = recording_read(a->recording, a->next++, a->positions, &a->error);
