@@ -27,6 +27,20 @@ typedef struct root_outcomes {
 typedef void root_kernel(const feature_source *source, const uint32_t *a, const uint32_t *b,
                          root_outcomes *out);
 
+/* Eight pairs that touch, and for each the begin of the root interval in which it does. */
+typedef struct touching_pairs {
+    uint32_t a[LANES], b[LANES];
+    double begin[LANES];
+} touching_pairs;
+
+/* Their contacts, with members as in elementary_contact. */
+typedef struct described_contacts {
+    double toi[LANES], u[LANES], v[LANES], point[3][LANES], normal[3][LANES];
+} described_contacts;
+
+typedef void describe_kernel(const feature_source *source, const touching_pairs *pairs,
+                             described_contacts *out);
+
 /* The limits of eight pairs; see separation. */
 typedef struct separations_x8 {
     double distance[LANES], tolerance[LANES];
@@ -54,6 +68,9 @@ typedef struct ccd_kernels {
 
     /* and these pairs whose cubic certainly has two roots, or none. */
     root_kernel *two_roots_vf, *two_roots_ee;
+
+    /* The same bits as contact_frame_describe. */
+    describe_kernel *describe_vf, *describe_ee;
 
     /* Distances of pairs a[0], b[0] to a[7], b[7]. */
     proximity_kernel *proximity_vf, *proximity_ee;

@@ -8,6 +8,8 @@ const ccd_kernels SIMD_NAME(ccd_kernels) = {
     .roots_ee = SIMD_NAME(roots_ee),
     .two_roots_vf = SIMD_NAME(two_roots_vf),
     .two_roots_ee = SIMD_NAME(two_roots_ee),
+    .describe_vf = SIMD_NAME(describe_vf),
+    .describe_ee = SIMD_NAME(describe_ee),
     .proximity_vf = SIMD_NAME(proximity_vf),
     .proximity_ee = SIMD_NAME(proximity_ee),
 };

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "runtime/ccd/feature_pairs_simd.h"
+#include "runtime/ccd/vectors_simd.h"
 
 typedef struct vectors_x8 {
     f64w a[2][3], b[2][3], c[2][3]; /* as in point_vectors */
@@ -26,16 +27,6 @@ static inline void vectors_between(const points_x8 *points, cscd_contact_kind ki
     subtract_at_ends(points, vf ? 2 : 1, vf ? 1 : 0, out->a, out->size_a);
     subtract_at_ends(points, 3, vf ? 1 : 2, out->b, out->size_b);
     subtract_at_ends(points, vf ? 0 : 2, vf ? 1 : 0, out->c, out->size_c);
-}
-
-static inline void cross_x8(const f64w a[3], const f64w b[3], f64w out[3]) {
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static inline f64w dot_x8(const f64w a[3], const f64w b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 static inline void cubics_of(const vectors_x8 *v, cubics_x8 *f) {

@@ -53,11 +53,3 @@ elementary_verdict elementary_after_signs(const elementary_query *query, cscd_co
     coplanarity f = coplanarity_cubic(&vectors);
     return decide_at_roots(query, &vectors, kind, &f, contact);
 }
-
-void elementary_describe(const elementary_query *query, cscd_contact_kind kind, double toi,
-                         elementary_contact *contact) {
-    point_vectors vectors;
-    point_vectors_from(query, kind, &vectors);
-    coplanarity f = coplanarity_cubic(&vectors);
-    contact_frame_describe(query, kind, &f, toi, contact);
-}

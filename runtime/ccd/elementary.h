@@ -42,8 +42,3 @@ typedef struct elementary_verdict {
  */
 elementary_verdict elementary_after_signs(const elementary_query *query, cscd_contact_kind kind,
                                           elementary_contact *contact);
-
-/* Describes the contact of a pair for which a kernel found a root interval that begins at toi, and a contact
- * in it. */
-void elementary_describe(const elementary_query *query, cscd_contact_kind kind, double toi,
-                         elementary_contact *contact);

@@ -50,16 +50,53 @@ static uint32_t lanes_from(const feature_pairs *pairs, uint32_t i) {
     return rest < LANES ? (1u << rest) - 1 : (1u << LANES) - 1;
 }
 
-static void describe_contacts(const swept_interval *interval, cscd_contact_kind kind,
-                              const feature_pairs *pairs, uint32_t i, const root_outcomes *roots,
-                              uint32_t lanes, contact_lane *lane) {
+/* Pairs that touch, until they are eight. */
+typedef struct pairs_to_describe {
+    touching_pairs pairs;
+    uint32_t count;
+} pairs_to_describe;
+
+static elementary_contact described_contact(const described_contacts *described, uint32_t i) {
+    elementary_contact contact = {described->toi[i], described->u[i], described->v[i], {0}, {0}};
+    for (int k = 0; k < 3; k++) {
+        contact.point[k] = described->point[k][i];
+        contact.normal[k] = described->normal[k][i];
+    }
+    return contact;
+}
+
+/* Adds their contacts to the lane. The places that are left over describe the last pair again. */
+static void describe_pairs(const swept_interval *interval, cscd_contact_kind kind,
+                           pairs_to_describe *touching, contact_lane *lane) {
+    const ccd_kernels *table = ccd_kernels_of(interval->mesh->context);
+    feature_source source = swept_interval_source(interval);
+    touching_pairs *pairs = &touching->pairs;
+    feature_pairs named = {pairs->a, pairs->b, touching->count};
+    described_contacts described;
+    if (touching->count == 0) return;
+    for (uint32_t i = touching->count; i < LANES; i++) {
+        pairs->a[i] = pairs->a[touching->count - 1];
+        pairs->b[i] = pairs->b[touching->count - 1];
+        pairs->begin[i] = pairs->begin[touching->count - 1];
+    }
+    (kind == CSCD_CONTACT_VF ? table->describe_vf : table->describe_ee)(&source, pairs, &described);
+    for (uint32_t i = 0; i < touching->count; i++) {
+        elementary_contact contact = described_contact(&described, i);
+        add_contact(interval, kind, &named, i, &contact, false, lane);
+    }
+    touching->count = 0;
+}
+
+/* The pairs in a set of lanes, of the eight from i on, touch. */
+static void note_touching(const swept_interval *interval, cscd_contact_kind kind, const feature_pairs *pairs,
+                          uint32_t i, const root_outcomes *roots, uint32_t lanes, pairs_to_describe *touching,
+                          contact_lane *lane) {
     for (; lanes != 0; lanes &= lanes - 1) {
-        uint32_t at = (uint32_t)__builtin_ctz(lanes);
-        elementary_query query;
-        elementary_contact contact;
-        swept_interval_load(interval, kind, pairs->a[i + at], pairs->b[i + at], &query);
-        elementary_describe(&query, kind, roots->begin[at], &contact);
-        add_contact(interval, kind, pairs, i + at, &contact, false, lane);
+        uint32_t at = (uint32_t)__builtin_ctz(lanes), to = touching->count++;
+        touching->pairs.a[to] = pairs->a[i + at];
+        touching->pairs.b[to] = pairs->b[i + at];
+        touching->pairs.begin[to] = roots->begin[at];
+        if (touching->count == LANES) describe_pairs(interval, kind, touching, lane);
     }
 }
 
@@ -67,15 +104,17 @@ static void describe_contacts(const swept_interval *interval, cscd_contact_kind 
 static void decide_by_roots(const swept_interval *interval, cscd_contact_kind kind, root_kernel *kernel,
                             feature_pairs *pairs, contact_lane *lane) {
     feature_source source = swept_interval_source(interval);
+    pairs_to_describe touching = {.count = 0};
     uint32_t kept = 0;
     if (pairs->count > 0) repeat_last(pairs);
     for (uint32_t i = 0; i < pairs->count; i += LANES) {
         root_outcomes roots;
         uint32_t real = lanes_from(pairs, i);
         kernel(&source, pairs->a + i, pairs->b + i, &roots);
-        describe_contacts(interval, kind, pairs, i, &roots, real & roots.contacts, lane);
+        note_touching(interval, kind, pairs, i, &roots, real & roots.contacts, &touching, lane);
         kept = keep_lanes(pairs, i, real & ~roots.contacts & ~roots.apart, kept);
     }
+    describe_pairs(interval, kind, &touching, lane);
     lane->decided[ELEMENTARY_ROOTS] += pairs->count - kept;
     pairs->count = kept;
 }
