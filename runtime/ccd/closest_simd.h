@@ -58,7 +58,8 @@ static inline f64w triangle_distance_x8(const f64w p[3], const f64w a[3], const 
     return dot_x8(offset, offset);
 }
 
-static inline f64w closest_on_sides_x8(const f64w p[3], const f64w a[3], const f64w b[3], parameters_x8 *out) {
+static inline f64w closest_on_sides_x8(const f64w p[3], const f64w a[3], const f64w b[3],
+                                       parameters_x8 *out) {
     const f64w zero = f64w_all(0.0), one = f64w_all(1.0), origin[3] = {zero, zero, zero};
     f64w on_a = nearest_on_segment_x8(p, origin, a), on_ab = nearest_on_segment_x8(p, a, b),
          on_b = nearest_on_segment_x8(p, b, origin), best = f64w_all((double)INFINITY);
@@ -70,21 +71,23 @@ static inline f64w closest_on_sides_x8(const f64w p[3], const f64w a[3], const f
 }
 
 /* Adds the projection of the residual in the given lanes, and returns those of them that it changes. */
-static inline uint32_t add_projection_x8(const f64w p[3], const f64w a[3], const f64w b[3], const f64w normal[3],
-                                         f64w area, uint32_t lanes, parameters_x8 *at) {
+static inline uint32_t add_projection_x8(const f64w p[3], const f64w a[3], const f64w b[3],
+                                         const f64w normal[3], f64w area, uint32_t lanes, parameters_x8 *at) {
     f64w residual[3], side[3];
     for (int k = 0; k < 3; k++) residual[k] = p[k] - at->u * a[k] - at->v * b[k];
     cross_x8(residual, b, side);
     f64w u = f64w_select(lanes, at->u + dot_x8(side, normal) / area, at->u);
     cross_x8(a, residual, side);
     f64w v = f64w_select(lanes, at->v + dot_x8(side, normal) / area, at->v);
-    uint32_t same = f64w_at_most(u, at->u) & f64w_at_most(at->u, u) & f64w_at_most(v, at->v) & f64w_at_most(at->v, v);
+    uint32_t same =
+        f64w_at_most(u, at->u) & f64w_at_most(at->u, u) & f64w_at_most(v, at->v) & f64w_at_most(at->v, v);
     *at = (parameters_x8){u, v};
     return lanes & ~same;
 }
 
 /* Lanes that no further projection leads into the triangle; closest.c derives the bound. */
-static inline uint32_t stays_outside_x8(const f64w p[3], const f64w a[3], const f64w b[3], f64w area, parameters_x8 at) {
+static inline uint32_t stays_outside_x8(const f64w p[3], const f64w a[3], const f64w b[3], f64w area,
+                                        parameters_x8 at) {
     f64w offset = f64w_all(0.0), long_a = offset, long_b = offset, one = f64w_all(1.0);
     for (int k = 0; k < 3; k++) {
         offset += f64w_abs(p[k]);
@@ -102,7 +105,8 @@ static inline uint32_t stays_outside_x8(const f64w p[3], const f64w a[3], const 
 }
 
 /* Returns infinity in the lanes in which the nearest point of the plane is not in the triangle. */
-static inline f64w closest_in_plane_x8(const f64w p[3], const f64w a[3], const f64w b[3], parameters_x8 *at, f64w *size) {
+static inline f64w closest_in_plane_x8(const f64w p[3], const f64w a[3], const f64w b[3], parameters_x8 *at,
+                                       f64w *size) {
     const f64w zero = f64w_all(0.0), one = f64w_all(1.0);
     f64w normal[3];
     cross_x8(a, b, normal);
@@ -154,7 +158,8 @@ static inline f64w closest_on_lines_x8(const segments_x8 *s, parameters_x8 *at, 
     at->v = nearest_on_segment_x8(point, s->b0, s->b1);
     add_scaled_x8(s->b0, at->v, along_b, point);
     at->u = nearest_on_segment_x8(point, s->a0, s->a1);
-    return f64w_select(f64w_below(f64w_all(0.0), area), segment_distance_x8(s, *at), f64w_all((double)INFINITY));
+    return f64w_select(f64w_below(f64w_all(0.0), area), segment_distance_x8(s, *at),
+                       f64w_all((double)INFINITY));
 }
 
 static inline f64w closest_ends_x8(const segments_x8 *s, parameters_x8 *out) {

@@ -105,14 +105,14 @@ static inline parameters_x8 find_parameters_x8(const moment_x8 *m, cscd_contact_
     return kind == CSCD_CONTACT_VF ? closest_point_triangle_x8(c, a, b) : parameters_on_edges(a, b, c);
 }
 
-static inline void connect_points_x8(const f64w a[3], const f64w b[3], const f64w c[3], cscd_contact_kind kind,
-                                     parameters_x8 at, f64w out[3]) {
+static inline void connect_points_x8(const f64w a[3], const f64w b[3], const f64w c[3],
+                                     cscd_contact_kind kind, parameters_x8 at, f64w out[3]) {
     double sign = kind == CSCD_CONTACT_VF ? 1.0 : -1.0;
     for (int k = 0; k < 3; k++) out[k] = sign * (c[k] - at.u * a[k]) - at.v * b[k];
 }
 
-static inline void contact_normals(const vectors_x8 *v, const moment_x8 *m, cscd_contact_kind kind, parameters_x8 at,
-                                   f64w normal[3]) {
+static inline void contact_normals(const vectors_x8 *v, const moment_x8 *m, cscd_contact_kind kind,
+                                   parameters_x8 at, f64w normal[3]) {
     const f64w zero = f64w_all(0.0), one = f64w_all(1.0);
     f64w cross[3], start[3], end[3], motion[3];
     scaled_cross_x8(m, cross);
@@ -155,8 +155,8 @@ static inline void describe_some(const points_x8 *points, cscd_contact_kind kind
     }
 }
 
-static inline void describe_eight(const feature_source *source, const touching_pairs *pairs, cscd_contact_kind kind,
-                                  described_contacts *out) {
+static inline void describe_eight(const feature_source *source, const touching_pairs *pairs,
+                                  cscd_contact_kind kind, described_contacts *out) {
     for (int i = 0; i < LANES; i += WIDTH) {
         points_x8 points;
         f64w begin;
@@ -166,10 +166,12 @@ static inline void describe_eight(const feature_source *source, const touching_p
     }
 }
 
-void SIMD_NAME(describe_vf)(const feature_source *source, const touching_pairs *pairs, described_contacts *out) {
+void SIMD_NAME(describe_vf)(const feature_source *source, const touching_pairs *pairs,
+                            described_contacts *out) {
     describe_eight(source, pairs, CSCD_CONTACT_VF, out);
 }
 
-void SIMD_NAME(describe_ee)(const feature_source *source, const touching_pairs *pairs, described_contacts *out) {
+void SIMD_NAME(describe_ee)(const feature_source *source, const touching_pairs *pairs,
+                            described_contacts *out) {
     describe_eight(source, pairs, CSCD_CONTACT_EE, out);
 }

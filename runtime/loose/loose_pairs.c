@@ -33,7 +33,7 @@ void loose_pairs_with_triangle(const swept_interval *interval, const loose_eleme
         if ((element->ends >> i & 1) != 0) test_end(interval, mesh->edges[element->edge][i], triangle, lane);
     }
     if (edge_is_point(mesh, element->edge)) return;
-    uint32_t owned = (uint32_t)interval->representatives->owned[triangle] >> 3;
+    uint32_t owned = represented_features(interval->representatives, triangle) >> 3;
     for (int i = 0; i < 3; i++) {
         if ((owned >> i & 1) != 0)
             test_edges(interval, element->edge, mesh->triangle_edges[triangle][i], lane);

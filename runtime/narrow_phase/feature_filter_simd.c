@@ -186,18 +186,27 @@ static inline void load_pairs(const swept_interval *interval, const triangle_pai
     }
 }
 
+/* None in the lanes from `lanes` on. */
+static inline i32x8 load_features(const uint16_t *features, uint32_t lanes) {
+    uint32_t all[LANES] = {0};
+    for (uint32_t i = 0; i < lanes; i++) all[i] = features[i];
+    return i32x8_load(all);
+}
+
 static inline bool any_feature(i32x8 features) {
     return i32x8_negative(-features) != 0;
 }
 
 void SIMD_NAME(feature_filter)(const swept_interval *interval, const triangle_pair *pairs, uint32_t count,
-                               uint16_t *features) {
+                               bool apart, uint16_t *features) {
     tree_pair trees = {.a = UINT32_MAX};
     for (uint32_t p = 0; p < count; p += LANES) {
         uint32_t lanes = count - p < LANES ? count - p : LANES;
         pairs_x8 o;
         load_pairs(interval, pairs + p, lanes, &trees, &o);
-        i32x8 kept = near_along_axes(&o, ~sharing_vertex(&o) & FEATURE_ALL);
+        i32x8 kept = load_features(features + p, lanes);
+        if (!apart) kept &= ~sharing_vertex(&o);
+        kept = near_along_axes(&o, kept);
         if (any_feature(kept)) kept = near_along_diagonals(&o, kept);
         for (uint32_t i = 0; i < lanes; i++) features[p + i] = (uint16_t)kept[i];
     }

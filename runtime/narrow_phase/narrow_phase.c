@@ -75,26 +75,61 @@ static bool triangles_look(const swept_interval *interval, triangle_pair pair) {
     return components_look(interval, components[pair.a], components[pair.b]);
 }
 
+/* Pairs of triangles, by slots and by numbers, and the pairs of their features that they may have to test. */
+typedef struct chosen_pairs {
+    triangle_pair slots[PAIRS_AT_ONCE], pairs[PAIRS_AT_ONCE];
+    uint16_t features[PAIRS_AT_ONCE];
+    uint32_t count;
+} chosen_pairs;
+
+/* Most pairs are far from each other on the surface: whatever they represent is theirs. The others are `open`. */
+static void choose_pairs(const swept_interval *interval, const triangle_pair *slots, uint32_t count,
+                         chosen_pairs *settled, chosen_pairs *open) {
+    const bvh *f = interval->bvh;
+    bool trees_mix = interval->rules != NULL && f->trees_mix_objects;
+    settled->count = open->count = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        triangle_pair pair = {bvh_triangle(f, slots[i].a), bvh_triangle(f, slots[i].b)};
+        pair_selection selection = representatives_select_early(interval, pair);
+        chosen_pairs *to = selection.settled ? settled : open;
+        if (trees_mix && !triangles_look(interval, pair)) continue;
+        to->slots[to->count] = slots[i];
+        to->pairs[to->count] = pair;
+        to->features[to->count] = selection.features;
+        to->count += selection.features != 0;
+    }
+}
+
+/* Drops what the volumes keep apart, and what is at rest. */
+static void filter_features(const swept_interval *interval, bool settled, chosen_pairs *chosen) {
+    uint32_t kept = 0;
+    narrow_phase_kernels_of(interval->mesh->context)
+        ->feature_filter(interval, chosen->slots, chosen->count, settled, chosen->features);
+    for (uint32_t i = 0; i < chosen->count; i++) {
+        uint16_t features = chosen->features[i];
+        if (interval->active != NULL && features != 0)
+            features &= (uint16_t)active_features(interval, chosen->pairs[i]);
+        chosen->pairs[kept] = chosen->pairs[i];
+        chosen->features[kept] = features;
+        kept += features != 0;
+    }
+    chosen->count = kept;
+}
+
+static void queue_pairs(const swept_interval *interval, const chosen_pairs *chosen, contact_lane *lane) {
+    for (uint32_t i = 0; i < chosen->count; i++)
+        queue_features(interval, chosen->pairs[i], chosen->features[i], lane);
+}
+
 static void test_some(const swept_interval *interval, const triangle_pair *slots, uint32_t count,
                       contact_lane *lane) {
-    const bvh *f = interval->bvh;
-    const narrow_phase_kernels *kernels = narrow_phase_kernels_of(interval->mesh->context);
-    uint16_t features[PAIRS_AT_ONCE];
-    triangle_pair pairs[PAIRS_AT_ONCE];
-    uint32_t kept = 0;
-    bool trees_mix = interval->rules != NULL && f->trees_mix_objects;
-    kernels->feature_filter(interval, slots, count, features);
-    for (uint32_t i = 0; i < count; i++) {
-        if (features[i] == 0) continue;
-        triangle_pair pair = {bvh_triangle(f, slots[i].a), bvh_triangle(f, slots[i].b)};
-        if (trees_mix && !triangles_look(interval, pair)) continue;
-        pairs[kept] = pair;
-        features[kept] = features[i];
-        if (interval->active != NULL) features[kept] &= (uint16_t)active_features(interval, pair);
-        kept++;
-    }
-    representatives_select(interval, pairs, kept, features);
-    for (uint32_t i = 0; i < kept; i++) queue_features(interval, pairs[i], features[i], lane);
+    chosen_pairs settled, open;
+    choose_pairs(interval, slots, count, &settled, &open);
+    filter_features(interval, true, &settled);
+    filter_features(interval, false, &open);
+    representatives_select(interval, open.pairs, open.count, open.features);
+    queue_pairs(interval, &settled, lane);
+    queue_pairs(interval, &open, lane);
 }
 
 void narrow_phase_test(const swept_interval *interval, const triangle_pair *pairs, uint32_t count,

@@ -11,10 +11,10 @@
  * of b. */
 enum { FEATURE_VERTEX_B = 3, FEATURE_EDGES = 6, FEATURE_ALL = (1 << 15) - 1 };
 
-/* Of the pairs of features of two triangles, in slots, those that may touch, or come within their distance, by
- * their volumes, and that share no vertex. */
+/* Keeps, of the given pairs of features of two triangles, in slots, those that may touch, or come within their distance, by
+ * their volumes, and that share no vertex. apart: the caller knows that the triangles share none. */
 typedef void feature_filter_kernel(const swept_interval *interval, const triangle_pair *pairs, uint32_t count,
-                                   uint16_t *features);
+                                   bool apart, uint16_t *features);
 
 /* Of features of pairs of triangles, those that these represent; open: those whose representatives share a
  * vertex, where the features share none. */

@@ -11,7 +11,7 @@
 enum { PAIRS_AT_ONCE = 256 };
 
 static array_list list_arrays(const cscd_mesh *mesh, representatives *r) {
-    return (array_list){{ARRAY(r->owned, mesh->triangle_count), ARRAY(r->others, mesh->vertex_count),
+    return (array_list){{ARRAY(r->marks, mesh->triangle_count), ARRAY(r->others, mesh->vertex_count),
                          ARRAY(r->opposite, mesh->edge_count)}};
 }
 
@@ -23,7 +23,7 @@ static void represent_features(const cscd_mesh *mesh, uint32_t begin, uint32_t e
             uint32_t vertex = corners[i], edge = mesh->triangle_edges[t][i];
             bool first_at_vertex = mesh->vertex_stars[mesh->vertex_star_offsets[vertex]] == t;
             bool first_at_edge = mesh->edge_stars[mesh->edge_star_offsets[edge]] == t;
-            r->owned[t] |= (uint8_t)(first_at_vertex << i | first_at_edge << (3 + i));
+            r->marks[t] |= (uint64_t)first_at_vertex << i | (uint64_t)first_at_edge << (3 + i);
             for (int k = 0; first_at_vertex && k < 2; k++) r->others[vertex][k] = corners[(i + 1 + k) % 3];
             if (first_at_edge) r->opposite[edge] = corners[(i + 2) % 3];
         }
@@ -32,15 +32,21 @@ static void represent_features(const cscd_mesh *mesh, uint32_t begin, uint32_t e
 
 cscd_status representatives_create(const cscd_mesh *mesh, representatives *out) {
     representatives r;
+    const object_range all = {.vertex_count = mesh->vertex_count, .triangle_count = mesh->triangle_count};
     if (!context_allocate_all(mesh->context, list_arrays(mesh, &r))) return CSCD_OUT_OF_MEMORY;
     represent_features(mesh, 0, mesh->triangle_count, &r);
-    *out = r;
-    return CSCD_OK;
+    cscd_status status = ring_marks_add(mesh, &all, r.marks);
+    if (status == CSCD_OK)
+        *out = r;
+    else
+        representatives_free(mesh->context, &r);
+    return status;
 }
 
 static void copy_run(const representatives *r, const object_run *run, representatives *out) {
     uint32_t by = run->to.vertex - run->from.vertex;
-    memcpy(out->owned + run->to.triangle, r->owned + run->from.triangle, run->from.triangle_count);
+    memcpy(out->marks + run->to.triangle, r->marks + run->from.triangle,
+           run->from.triangle_count * sizeof *r->marks);
     copy_shifted(r->others[run->from.vertex], (size_t)run->from.vertex_count * 2, by,
                  out->others[run->to.vertex]);
     copy_shifted(r->opposite + run->from.edge, run->from.edge_count, by, out->opposite + run->to.edge);
@@ -49,16 +55,21 @@ static void copy_run(const representatives *r, const object_run *run, representa
 cscd_status representatives_move(const representatives *r, const cscd_mesh *mesh,
                                  const cscd_mesh_change *change, representatives *out) {
     representatives moved;
+    cscd_status status = CSCD_OK;
     if (!context_reserve_all(mesh->context, list_arrays(mesh, &moved))) return CSCD_OUT_OF_MEMORY;
     for (uint32_t i = 0; i < change->run_count; i++) copy_run(r, &change->runs[i], &moved);
-    for (uint32_t i = 0; i < change->described_count; i++) {
+    for (uint32_t i = 0; i < change->described_count && status == CSCD_OK; i++) {
         const object_range *range = &change->described[i];
-        memset(moved.owned + range->triangle, 0, range->triangle_count);
+        memset(moved.marks + range->triangle, 0, range->triangle_count * sizeof *moved.marks);
         memset(moved.others + range->vertex, 0, range->vertex_count * sizeof *moved.others);
         represent_features(mesh, range->triangle, range->triangle + range->triangle_count, &moved);
+        status = ring_marks_add(mesh, range, moved.marks);
     }
-    *out = moved;
-    return CSCD_OK;
+    if (status == CSCD_OK)
+        *out = moved;
+    else
+        representatives_free(mesh->context, &moved);
+    return status;
 }
 
 cscd_status representatives_copy(const representatives *r, const cscd_mesh *mesh, representatives *out) {
@@ -69,10 +80,10 @@ cscd_status representatives_copy(const representatives *r, const cscd_mesh *mesh
 }
 
 void representatives_free(cscd_context *context, representatives *r) {
-    context_free(context, r->owned);
+    context_free(context, r->marks);
     context_free(context, r->others);
     context_free(context, r->opposite);
-    *r = (representatives){.owned = NULL};
+    *r = (representatives){.marks = NULL};
 }
 
 /* ---- without culling ----------------------------------------------------------------------------------- */
@@ -206,6 +217,23 @@ static bool flags_choose(const swept_interval *interval, triangle_pair pair) {
     const uint32_t *components = interval->mesh->triangle_components;
     return !interval->skip_adjacent ||
            (components[pair.a] == components[pair.b] && interval->culled[components[pair.a]]);
+}
+
+/* Bits 0, 1 and 2 go to places 0, 3 and 6. */
+static uint32_t spread_by_three(uint32_t edges) {
+    return (edges & 1u) | (edges & 2u) << 2 | (edges & 4u) << 4;
+}
+
+pair_selection representatives_select_early(const swept_interval *interval, triangle_pair pair) {
+    const representatives *r = interval->representatives;
+    if (interval->culling != NULL && flags_choose(interval, pair))
+        return (pair_selection){FEATURE_ALL, false};
+    if (interval->skip_adjacent && rings_may_touch(r->marks[pair.a], r->marks[pair.b]))
+        return (pair_selection){FEATURE_ALL, false};
+    uint32_t a = represented_features(r, pair.a), b = represented_features(r, pair.b);
+    uint32_t features =
+        (a & 7u) | (b & 7u) << FEATURE_VERTEX_B | (spread_by_three(a >> 3) * (b >> 3)) << FEATURE_EDGES;
+    return (pair_selection){(uint16_t)features, interval->skip_adjacent};
 }
 
 void representatives_select(const swept_interval *interval, const triangle_pair *pairs, uint32_t count,

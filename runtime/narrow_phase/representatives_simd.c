@@ -75,7 +75,7 @@ void SIMD_NAME(represent)(const cscd_mesh *mesh, const representatives *r, const
         uint32_t lanes = count - p < LANES ? count - p : LANES;
         for (uint32_t i = 0; i < LANES; i++) {
             triangle_pair pair = pairs[i < lanes ? p + i : p];
-            uint32_t a = r->owned[pair.a], b = r->owned[pair.b];
+            uint32_t a = represented_features(r, pair.a), b = represented_features(r, pair.b);
             load_triangle(mesh, r, pair.a, 0, i, &o);
             load_triangle(mesh, r, pair.b, 1, i, &o);
             o.represented[i] = (a & 7u) | (b & 7u) << FEATURE_VERTEX_B |

@@ -108,9 +108,9 @@ static void feature_filter_in_runs(const bvh *f, double distance, uint16_t *out)
     for (uint32_t i = 0; i < PAIR_COUNT; i += run, run = run % 20 + 1) {
         uint32_t count = PAIR_COUNT - i < run ? PAIR_COUNT - i : run;
         uint16_t some[32];
-        for (int k = 0; k < 32; k++) some[k] = UNWRITTEN;
+        for (uint32_t k = 0; k < 32; k++) some[k] = k < count ? FEATURE_ALL : UNWRITTEN;
         swept_interval interval = {.bvh = f, .limit = {distance, 0.0}};
-        narrow_phase_kernels_of(f->mesh->context)->feature_filter(&interval, pairs + i, count, some);
+        narrow_phase_kernels_of(f->mesh->context)->feature_filter(&interval, pairs + i, count, false, some);
         for (uint32_t k = count; k < 32; k++) assert_int_equal(some[k], UNWRITTEN);
         memcpy(out + i, some, count * sizeof *some);
     }
@@ -179,8 +179,9 @@ static void keeps_what_just_touches(void **state) {
             pairs[p] = (triangle_pair){slots[2 * p + i % 2], slots[2 * p + 1 - i % 2]};
         }
         swept_interval interval = {.bvh = &levels[0].bvh};
+        for (uint32_t p = 0; p < count; p++) features[0][p] = FEATURE_ALL;
         narrow_phase_kernels_of(levels[0].bvh.mesh->context)
-            ->feature_filter(&interval, pairs, count, features[0]);
+            ->feature_filter(&interval, pairs, count, false, features[0]);
         for (uint32_t p = 0; p < count; p++) check_features(p, 0.0);
         close_levels();
     }
