@@ -28,18 +28,17 @@ typedef void root_kernel(const feature_source *source, const uint32_t *a, const 
                          root_outcomes *out);
 
 /* Eight pairs that touch, and for each the begin of the root interval in which it does. */
-typedef struct touching_pairs {
+typedef struct found_pairs {
     uint32_t a[LANES], b[LANES];
     double begin[LANES];
-} touching_pairs;
+} found_pairs;
 
 /* Their contacts, with members as in elementary_contact. */
 typedef struct described_contacts {
     double toi[LANES], u[LANES], v[LANES], point[3][LANES], normal[3][LANES];
 } described_contacts;
 
-typedef void describe_kernel(const feature_source *source, const touching_pairs *pairs,
-                             described_contacts *out);
+typedef void describe_kernel(const feature_source *source, const found_pairs *pairs, described_contacts *out);
 
 /* The limits of eight pairs; see separation. */
 typedef struct separations_x8 {

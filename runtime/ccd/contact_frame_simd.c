@@ -155,7 +155,7 @@ static inline void describe_some(const points_x8 *points, cscd_contact_kind kind
     }
 }
 
-static inline void describe_eight(const feature_source *source, const touching_pairs *pairs,
+static inline void describe_eight(const feature_source *source, const found_pairs *pairs,
                                   cscd_contact_kind kind, described_contacts *out) {
     for (int i = 0; i < LANES; i += WIDTH) {
         points_x8 points;
@@ -166,12 +166,10 @@ static inline void describe_eight(const feature_source *source, const touching_p
     }
 }
 
-void SIMD_NAME(describe_vf)(const feature_source *source, const touching_pairs *pairs,
-                            described_contacts *out) {
+void SIMD_NAME(describe_vf)(const feature_source *source, const found_pairs *pairs, described_contacts *out) {
     describe_eight(source, pairs, CSCD_CONTACT_VF, out);
 }
 
-void SIMD_NAME(describe_ee)(const feature_source *source, const touching_pairs *pairs,
-                            described_contacts *out) {
+void SIMD_NAME(describe_ee)(const feature_source *source, const found_pairs *pairs, described_contacts *out) {
     describe_eight(source, pairs, CSCD_CONTACT_EE, out);
 }

@@ -52,7 +52,7 @@ static uint32_t lanes_from(const feature_pairs *pairs, uint32_t i) {
 
 /* Pairs that touch, until they are eight. */
 typedef struct pairs_to_describe {
-    touching_pairs pairs;
+    found_pairs pairs;
     uint32_t count;
 } pairs_to_describe;
 
@@ -70,7 +70,7 @@ static void describe_pairs(const swept_interval *interval, cscd_contact_kind kin
                            pairs_to_describe *touching, contact_lane *lane) {
     const ccd_kernels *table = ccd_kernels_of(interval->mesh->context);
     feature_source source = swept_interval_source(interval);
-    touching_pairs *pairs = &touching->pairs;
+    found_pairs *pairs = &touching->pairs;
     feature_pairs named = {pairs->a, pairs->b, touching->count};
     described_contacts described;
     if (touching->count == 0) return;

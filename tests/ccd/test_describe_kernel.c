@@ -15,7 +15,7 @@ typedef struct described_batch {
     elementary_query queries[LANES];
     double x0[POINTS][3], x1[POINTS][3];
     uint32_t triangles[LANES][3], edges[2 * LANES][2];
-    touching_pairs pairs;
+    found_pairs pairs;
 } described_batch;
 
 static double random_time(random_stream *random) {
@@ -23,7 +23,8 @@ static double random_time(random_stream *random) {
     return kind < 2 ? (double)kind : (double)stream_below(random, 1u << 30) * 0x1p-30;
 }
 
-static void make_batch(random_stream *random, cscd_contact_kind kind, query_family family, described_batch *b) {
+static void make_batch(random_stream *random, cscd_contact_kind kind, query_family family,
+                       described_batch *b) {
     for (uint32_t i = 0; i < LANES; i++) {
         b->queries[i] = generate_query(random, kind, family);
         memcpy(b->x0[4 * i], b->queries[i].x0, sizeof b->queries[i].x0);
@@ -66,7 +67,8 @@ static void same_bits_as_one_pair(cscd_contact_kind kind) {
     random_stream random = stream_start(71 + (uint64_t)kind);
     for (int n = 0; n < FAMILY_COUNT * BATCHES_PER_FAMILY; n++) {
         make_batch(&random, kind, (query_family)(n % FAMILY_COUNT), &b);
-        const feature_source source = {b.x0[0], b.x1[0], (const uint32_t(*)[3])b.triangles, (const uint32_t(*)[2])b.edges};
+        const feature_source source = {b.x0[0], b.x1[0], (const uint32_t(*)[3])b.triangles,
+                                       (const uint32_t(*)[2])b.edges};
         for (int level = 0; level < LEVEL_COUNT; level++) {
             described_contacts found;
             if (contexts[level] == NULL) continue;
