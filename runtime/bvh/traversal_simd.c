@@ -154,6 +154,13 @@ static inline uint32_t near_lane(const leaf_volumes *volumes, const float *bound
     return ~lanes_apart(bounds, (const float *)volumes->swept, i, BOX_AXES, d) & ALL_LANES;
 }
 
+static inline void add_pairs(traversal_lane *lane, uint32_t slot, uint32_t first, uint32_t lanes) {
+    while (lanes != 0) {
+        lane->pairs[lane->pair_count++] = (triangle_pair){slot, first + (uint32_t)__builtin_ctz(lanes)};
+        lanes &= lanes - 1;
+    }
+}
+
 typedef struct leaf_pair {
     uint32_t a, b;
     const leaf_volumes *volumes_a, *volumes_b;
@@ -183,14 +190,8 @@ static inline uint32_t lanes_without_shared_vertex(const bvh *f, const leaf_pair
     return kept;
 }
 
-/* Sets of pairs of the triangles of two leaves: byte i has the lanes of b that are compared with triangle i of a. Rows are
- * decided one after the other without a branch in between, since what becomes of each of them is unpredictable. */
-
-static inline uint32_t row_of(uint64_t pairs, int i) {
-    return (uint32_t)(pairs >> (LANES * i)) & ALL_LANES;
-}
-
-static inline uint64_t pairs_to_compare(const traversal *t, const leaf_pair *pair, bool one_tree) {
+static inline void compare_leaves(const traversal *t, traversal_lane *lane, const leaf_pair *pair,
+                                  bool skip_adjacent, bool one_tree, const displacement *d) {
     const bvh *f = t->bvh;
     const lane_comparison c = {.a = f->leaf_flags[pair->a],
                                .b = f->leaf_flags[pair->b],
@@ -202,58 +203,20 @@ static inline uint64_t pairs_to_compare(const traversal *t, const leaf_pair *pai
                                .one_tree = one_tree,
                                .leaves = true,
                                .pass = t->pass};
-    uint64_t pairs = 0;
     for (uint32_t rows = pair->rows & c.a.used; rows != 0; rows &= rows - 1) {
         int i = __builtin_ctz(rows);
-        pairs |= (uint64_t)(lanes_to_compare(&c, i) & pair->columns) << (LANES * i);
-    }
-    return pairs;
-}
-
-/* The rows of a set that are not empty. */
-static inline uint32_t rows_of(uint64_t pairs) {
-    uint32_t rows = 0;
-    for (int i = 0; i < LANES; i++) rows |= (uint32_t)(row_of(pairs, i) != 0) << i;
-    return rows;
-}
-
-static inline uint64_t pairs_near(const leaf_pair *pair, uint64_t pairs, int first, int axis_end,
-                                  const displacement *d) {
-    uint64_t apart = 0;
-    for (uint32_t rows = rows_of(pairs); rows != 0; rows &= rows - 1) {
-        int i = __builtin_ctz(rows);
-        apart |= (uint64_t)apart_at_ends(pair->volumes_a, pair->volumes_b, i, first, axis_end, d)
-                 << (LANES * i);
-    }
-    return pairs & ~apart;
-}
-
-static inline uint64_t pairs_without_shared_vertex(const bvh *f, const leaf_pair *pair, uint64_t pairs,
-                                                   bool one_tree) {
-    uint64_t kept = 0;
-    for (uint32_t rows = rows_of(pairs); rows != 0; rows &= rows - 1) {
-        int i = __builtin_ctz(rows);
-        kept |= (uint64_t)lanes_without_shared_vertex(f, pair, i, row_of(pairs, i), one_tree) << (LANES * i);
-    }
-    return kept;
-}
-
-static inline void compare_leaves(const traversal *t, traversal_lane *lane, const leaf_pair *pair,
-                                  bool skip_adjacent, bool one_tree, const displacement *d) {
-    uint64_t pairs = pairs_to_compare(t, pair, one_tree);
-    lane->boxes_tested += (uint32_t)__builtin_popcountll(pairs);
-    pairs = pairs_near(pair, pairs, 0, BOX_AXES, d);
-    if (pairs == 0) return;
-    if (skip_adjacent) {
-        uint64_t kept = pairs_without_shared_vertex(t->bvh, pair, pairs, one_tree);
-        lane->adjacent += (uint32_t)__builtin_popcountll(pairs & ~kept);
-        pairs = kept;
-    }
-    pairs = pairs_near(pair, pairs, BOX_AXES, KDOP_AXES, d);
-    for (; pairs != 0; pairs &= pairs - 1) {
-        uint32_t at = (uint32_t)__builtin_ctzll(pairs);
-        lane->pairs[lane->pair_count++] =
-            (triangle_pair){pair->a * LANES + at / LANES, pair->b * LANES + at % LANES};
+        uint32_t lanes = lanes_to_compare(&c, i) & pair->columns;
+        if (lanes == 0) continue;
+        lane->boxes_tested += (uint32_t)__builtin_popcount(lanes);
+        lanes &= ~apart_at_ends(pair->volumes_a, pair->volumes_b, i, 0, BOX_AXES, d);
+        if (lanes != 0 && skip_adjacent) {
+            uint32_t kept = lanes_without_shared_vertex(f, pair, i, lanes, one_tree);
+            lane->adjacent += (uint32_t)__builtin_popcount(lanes & ~kept);
+            lanes = kept;
+        }
+        if (lanes == 0) continue;
+        lanes &= ~apart_at_ends(pair->volumes_a, pair->volumes_b, i, BOX_AXES, KDOP_AXES, d);
+        add_pairs(lane, pair->a * LANES + (uint32_t)i, pair->b * LANES, lanes);
     }
 }
 

@@ -7,6 +7,8 @@
 
 #include "src/core/vec3.h"
 
+#include <string.h>
+
 enum { DIAGONAL_COUNT = 4 };
 
 /* Returns 1 when the first feature lies beyond the second along axis k, -1 when it lies before it, and 0
@@ -71,11 +73,19 @@ bool separated_by_diagonals(const elementary_query *query, cscd_contact_kind kin
     return false;
 }
 
+/* A query whose points may lie elsewhere by as much as slack / 2 along each axis. */
+typedef struct loose_query {
+    elementary_query points;
+    double slack;
+} loose_query;
+
 /* Does every point of the first feature lie beyond every point of the second along n? A gap is three
  * differences, three products and two sums: 4 roundings of parts that add up to `size`, below 4.1 u size with
- * u = 2^-53. The bound 8 u size leaves room for computing it. Underflow loses 3 times 2^-1075 at most. */
-static bool beyond_along(const double x[4][3], cscd_contact_kind kind, const double n[3]) {
+ * u = 2^-53. The bound 8 u size leaves room for computing it. Underflow loses 3 times 2^-1075 at most. Slack makes a gap
+ * smaller by its share of the sum of |n|; what computing that loses, its maker has added. */
+static bool beyond_along(const double x[4][3], cscd_contact_kind kind, const double n[3], double slack) {
     int first = points_of_first(kind);
+    double loose = slack * (fabs(n[0]) + fabs(n[1]) + fabs(n[2]));
     for (int i = 0; i < first; i++) {
         for (int j = first; j < 4; j++) {
             double gap = 0.0, size = 0.0;
@@ -84,18 +94,19 @@ static bool beyond_along(const double x[4][3], cscd_contact_kind kind, const dou
                 gap += part;
                 size += fabs(part);
             }
-            if (!(gap > 0x1p-50 * size + 0x1p-1060)) return false;
+            if (!(gap > 0x1p-50 * size + (loose + 0x1p-1060))) return false;
         }
     }
     return true;
 }
 
-static bool separated_along(const elementary_query *query, cscd_contact_kind kind, const double n[3]) {
-    return beyond_along(query->x0, kind, n) && beyond_along(query->x1, kind, n);
+static bool separated_along(const loose_query *query, cscd_contact_kind kind, const double n[3]) {
+    return beyond_along(query->points.x0, kind, n, query->slack) &&
+           beyond_along(query->points.x1, kind, n, query->slack);
 }
 
 /* Tries the direction times * n, at a size at which nothing over- or underflows. */
-static bool separated_along_scaled(const elementary_query *query, cscd_contact_kind kind, double times,
+static bool separated_along_scaled(const loose_query *query, cscd_contact_kind kind, double times,
                                    const double n[3]) {
     int exponent;
     double scaled[3], largest = vec3_largest(n);
@@ -105,14 +116,18 @@ static bool separated_along_scaled(const elementary_query *query, cscd_contact_k
     return separated_along(query, kind, scaled);
 }
 
+static bool separated_either_way(const loose_query *query, cscd_contact_kind kind, const double n[3]) {
+    return separated_along_scaled(query, kind, 1.0, n) || separated_along_scaled(query, kind, -1.0, n);
+}
+
 /* Writes twice the vector between two points at t = 1/2. */
-static void between_at_middle(const elementary_query *query, int from, int to, double out[3]) {
-    for (int k = 0; k < 3; k++)
-        out[k] = (query->x0[to][k] - query->x0[from][k]) + (query->x1[to][k] - query->x1[from][k]);
+static void between_at_middle(const loose_query *query, int from, int to, double out[3]) {
+    const elementary_query *q = &query->points;
+    for (int k = 0; k < 3; k++) out[k] = (q->x0[to][k] - q->x0[from][k]) + (q->x1[to][k] - q->x1[from][k]);
 }
 
 /* Tries the directions along which the vertex lies beyond a side of the face at mid-interval. */
-static bool vertex_outside_face(const elementary_query *query) {
+static bool vertex_outside_face(const loose_query *query) {
     double sides[3][3], normal[3];
     for (int i = 0; i < 3; i++) between_at_middle(query, 1 + i, 1 + (i + 1) % 3, sides[i]);
     vec3_cross(sides[0], sides[1], normal);
@@ -128,7 +143,7 @@ static bool vertex_outside_face(const elementary_query *query) {
 }
 
 /* Tries the directions along which both ends of one edge lie on one side of the other at mid-interval. */
-static bool edges_beside(const elementary_query *query) {
+static bool edges_beside(const loose_query *query) {
     double a[3], b[3], normal[3];
     between_at_middle(query, 0, 1, a);
     between_at_middle(query, 2, 3, b);
@@ -146,6 +161,67 @@ static bool edges_beside(const elementary_query *query) {
     return false;
 }
 
-bool separated_in_plane(const elementary_query *query, cscd_contact_kind kind) {
+static bool separated_in_common_plane(const loose_query *query, cscd_contact_kind kind) {
     return kind == CSCD_CONTACT_VF ? vertex_outside_face(query) : edges_beside(query);
+}
+
+bool separated_in_plane(const elementary_query *query, cscd_contact_kind kind) {
+    const loose_query exact = {*query, 0.0};
+    return separated_in_common_plane(&exact, kind);
+}
+
+/* ---- in a part of the interval ------------------------------------------------------------------------------- */
+
+static double blend_ends(double start, double end, double t) {
+    return (1.0 - t) * start + t * end;
+}
+
+/* The points from begin to end. A coordinate there is off by three roundings of numbers up to the largest coordinate C, less
+ * than 3.1 u C, so that a difference of two is off by less than 6.2 u C; 8 u C is the slack. Nothing underflows: coordinates
+ * are multiples of 2^-352, and times of 2^-103. */
+static loose_query part_of_query(const elementary_query *query, double begin, double end) {
+    loose_query part;
+    double largest = 0.0;
+    for (int i = 0; i < 4; i++) {
+        for (int k = 0; k < 3; k++) {
+            part.points.x0[i][k] = blend_ends(query->x0[i][k], query->x1[i][k], begin);
+            part.points.x1[i][k] = blend_ends(query->x0[i][k], query->x1[i][k], end);
+        }
+        largest = max_of(largest, max_of(vec3_largest(query->x0[i]), vec3_largest(query->x1[i])));
+    }
+    part.slack = 0x1p-50 * largest;
+    return part;
+}
+
+static bool separated_along_axes(const loose_query *query, cscd_contact_kind kind) {
+    static const double axes[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    for (int k = 0; k < 3; k++) {
+        if (separated_either_way(query, kind, axes[k])) return true;
+    }
+    return false;
+}
+
+/* Parallel edges, and a vertex and a face that is all but a segment, have no normal. Tries the direction along the longest
+ * side, and the one across it to the other feature. */
+static bool separated_beside_longest(const loose_query *query, cscd_contact_kind kind) {
+    static const int sides_of_face[3][3] = {{1, 2, 0}, {2, 3, 0}, {3, 1, 0}},
+                     edges[2][3] = {{0, 1, 2}, {2, 3, 0}};
+    const int(*sides)[3] = kind == CSCD_CONTACT_VF ? sides_of_face : edges;
+    double along[3] = {0.0}, to_other[3] = {0.0}, normal[3], across[3];
+    for (int i = 0; i < (kind == CSCD_CONTACT_VF ? 3 : 2); i++) {
+        double side[3];
+        between_at_middle(query, sides[i][0], sides[i][1], side);
+        if (!(vec3_largest(side) > vec3_largest(along))) continue;
+        memcpy(along, side, sizeof along);
+        between_at_middle(query, sides[i][0], sides[i][2], to_other);
+    }
+    vec3_cross(to_other, along, normal);
+    vec3_cross(along, normal, across);
+    return separated_either_way(query, kind, across) || separated_either_way(query, kind, along);
+}
+
+bool separated_in_part(const elementary_query *query, cscd_contact_kind kind, double begin, double end) {
+    loose_query part = part_of_query(query, begin, end);
+    return separated_along_axes(&part, kind) || separated_in_common_plane(&part, kind) ||
+           separated_beside_longest(&part, kind);
 }

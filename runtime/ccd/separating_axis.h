@@ -11,3 +11,7 @@ bool separated_by_diagonals(const elementary_query *query, cscd_contact_kind kin
 
 /* Tries directions in the features' common plane at mid-interval, for points that are nearly coplanar. */
 bool separated_in_plane(const elementary_query *query, cscd_contact_kind kind);
+
+/* The same from one time to another, both in [0, 1], also for features that have no common normal: parallel edges, and a face
+ * that is a segment. The shorter the part, the fewer pairs that stay apart are left. */
+bool separated_in_part(const elementary_query *query, cscd_contact_kind kind, double begin, double end);

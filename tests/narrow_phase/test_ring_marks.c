@@ -17,10 +17,12 @@ static void collect_sets(const cscd_mesh *mesh) {
     memset(rings, 0, sizeof rings);
     for (uint32_t t = 0; t < mesh->triangle_count; t++) {
         const uint32_t *corners = mesh->triangles[t];
-        for (int i = 0; i < 9; i++) stars[corners[i / 3]][corners[i % 3] / 64] |= (uint64_t)1 << corners[i % 3] % 64;
+        for (int i = 0; i < 9; i++)
+            stars[corners[i / 3]][corners[i % 3] / 64] |= (uint64_t)1 << corners[i % 3] % 64;
     }
     for (uint32_t t = 0; t < mesh->triangle_count; t++) {
-        for (int i = 0; i < 3 * WORDS; i++) rings[t][i % WORDS] |= stars[mesh->triangles[t][i / WORDS]][i % WORDS];
+        for (int i = 0; i < 3 * WORDS; i++)
+            rings[t][i % WORDS] |= stars[mesh->triangles[t][i / WORDS]][i % WORDS];
     }
 }
 
