@@ -65,13 +65,15 @@ static void edges_of_rings_need_no_integers(void **state) {
     uint64_t by_integers = 0;
     (void)state;
     for (int n = 0; n < RINGS; n++) {
-        double angle = 0.01 * n, along[2] = {cos(angle), sin(angle)}, shift = 0.1 * (double)(1 + stream_below(&random, 9));
+        double angle = 0.01 * n, along[2] = {cos(angle), sin(angle)},
+               shift = 0.1 * (double)(1 + stream_below(&random, 9));
         double rise[2] = {0.3, 0.3 + 0.01 * (double)stream_below(&random, 5)};
         elementary_query query;
         elementary_contact contact;
         for (int i = 0; i < 4; i++) {
             double s = i % 2 == 0 ? -0.5 : 0.5, side = i < 2 ? 0.0 : shift;
-            const double start[3] = {s * along[0] - side * along[1], s * along[1] + side * along[0], i < 2 ? 0.0 : 0.001};
+            const double start[3] = {s * along[0] - side * along[1], s * along[1] + side * along[0],
+                                     i < 2 ? 0.0 : 0.001};
             for (int k = 0; k < 3; k++) {
                 query.x0[i][k] = start[k];
                 query.x1[i][k] = start[k] + (k == 2 ? rise[1 - i / 2] : 0.0);
