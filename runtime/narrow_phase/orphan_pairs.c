@@ -13,6 +13,7 @@ typedef struct orphan_search {
     growing_list vf, ee;
     size_t most;
     bool out_of_memory;
+    const uint8_t *features; /* per triangle, as first_features says; or NULL */
 
     /* In a mesh that was made from another one: pairs of features that are what they were are known. */
     const cscd_mesh_change *change; /* NULL: nothing is known */
@@ -85,27 +86,43 @@ static bool ee_is_known(const orphan_search *f, uint32_t a, uint32_t b) {
     return f->change != NULL && edge_is_same(f, a) && edge_is_same(f, b);
 }
 
-/* Pairs a feature whose star begins with t with a feature of triangle u; for edges u is the first of the
+/* The features whose stars begin with a triangle: bit i for its vertex i, bit 3 + i for its edge i. */
+static uint32_t first_features(const cscd_mesh *mesh, uint32_t t) {
+    uint32_t features = 0;
+    for (int i = 0; i < 3; i++) {
+        uint32_t vertex = mesh->triangles[t][i], edge = mesh->triangle_edges[t][i];
+        features |= (uint32_t)(mesh->vertex_stars[mesh->vertex_star_offsets[vertex]] == t) << i;
+        features |= (uint32_t)(mesh->edge_stars[mesh->edge_star_offsets[edge]] == t) << (3 + i);
+    }
+    return features;
+}
+
+/* Where all triangles are looked at, these are known for all of them. */
+static uint32_t features_of(const orphan_search *f, uint32_t t) {
+    return f->features != NULL ? f->features[t] : first_features(f->mesh, t);
+}
+
+static void find_edges_between(orphan_search *f, uint32_t t, uint32_t edges_t, uint32_t u, uint32_t edges_u) {
+    const cscd_mesh *mesh = f->mesh;
+    for (int i = 0; i < 9; i++) {
+        if ((edges_t >> i / 3 & edges_u >> i % 3 & 1) == 0) continue;
+        uint32_t a = mesh->triangle_edges[t][i / 3], b = mesh->triangle_edges[u][i % 3];
+        if (ee_is_known(f, a, b) || edges_share_vertex(mesh->edges[a], mesh->edges[b])) continue;
+        if (are_orphan_edges(mesh, a, b)) add_pair(f, &f->ee, a < b ? a : b, a < b ? b : a);
+    }
+}
+
+/* Pairs the features of t, whose stars begin with it, with features of triangle u; for edges u is the first of the
  * other star, too. So each pair is looked at once. */
-static void find_between(orphan_search *f, uint32_t t, uint32_t u) {
+static void find_between(orphan_search *f, uint32_t t, uint32_t features, uint32_t u) {
     const cscd_mesh *mesh = f->mesh;
     for (int i = 0; i < 3; i++) {
         uint32_t v = mesh->triangles[t][i];
-        bool first = mesh->vertex_stars[mesh->vertex_star_offsets[v]] == t;
-        if (first && !vf_is_known(f, v, u) && !triangle_contains(mesh->triangles[u], v) &&
+        if ((features >> i & 1) != 0 && !vf_is_known(f, v, u) && !triangle_contains(mesh->triangles[u], v) &&
             is_orphan_vertex(mesh, v, u))
             add_pair(f, &f->vf, v, u);
     }
-    for (int i = 0; t < u && i < 3; i++) {
-        uint32_t a = mesh->triangle_edges[t][i];
-        if (mesh->edge_stars[mesh->edge_star_offsets[a]] != t) continue;
-        for (int j = 0; j < 3; j++) {
-            uint32_t b = mesh->triangle_edges[u][j];
-            if (mesh->edge_stars[mesh->edge_star_offsets[b]] != u || ee_is_known(f, a, b)) continue;
-            if (!edges_share_vertex(mesh->edges[a], mesh->edges[b]) && are_orphan_edges(mesh, a, b))
-                add_pair(f, &f->ee, a < b ? a : b, a < b ? b : a);
-        }
-    }
+    if (t < u && features >> 3 != 0) find_edges_between(f, t, features >> 3, u, features_of(f, u) >> 3);
 }
 
 static uint8_t marks_of(const orphan_search *f, uint32_t t) {
@@ -122,7 +139,8 @@ static bool pairs_are_known(const orphan_search *f, uint32_t t, uint32_t u) {
 static void find_around(orphan_search *f, uint32_t t) {
     const cscd_mesh *mesh = f->mesh;
     const uint32_t *corners = mesh->triangles[t];
-    for (int i = 0; i < 3; i++) {
+    uint32_t features = features_of(f, t);
+    for (int i = 0; features != 0 && i < 3; i++) {
         uint32_t begin = mesh->vertex_star_offsets[corners[i]];
         uint32_t end = mesh->vertex_star_offsets[corners[i] + 1];
         for (uint32_t s = begin; s < end; s++) {
@@ -130,7 +148,7 @@ static void find_around(orphan_search *f, uint32_t t) {
             const uint32_t *other = mesh->triangles[u];
             bool seen = (i > 0 && triangle_contains(other, corners[0])) ||
                         (i > 1 && triangle_contains(other, corners[1]));
-            if (u != t && !seen && !pairs_are_known(f, t, u)) find_between(f, t, u);
+            if (u != t && !seen && !pairs_are_known(f, t, u)) find_between(f, t, features, u);
         }
         if (has_enough(f)) return;
     }
@@ -138,9 +156,14 @@ static void find_around(orphan_search *f, uint32_t t) {
 
 cscd_status orphan_pairs_create(const cscd_mesh *mesh, orphan_pairs *out, bool *too_many) {
     orphan_search f = {.mesh = mesh, .most = (size_t)mesh->triangle_count * PAIRS_PER_TRIANGLE};
+    uint8_t *features = context_reserve(mesh->context, mesh->triangle_count, sizeof *features);
+    if (features == NULL) return CSCD_OUT_OF_MEMORY;
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) features[t] = (uint8_t)first_features(mesh, t);
+    f.features = features;
     for (uint32_t t = 0; t < mesh->triangle_count && !has_enough(&f); t++) {
         if (!triangle_of_obstacle(mesh, t)) find_around(&f, t);
     }
+    context_free(mesh->context, features);
     return end_search(&f, out, too_many);
 }
 
