@@ -13,7 +13,8 @@ typedef struct orphan_search {
     growing_list vf, ee;
     size_t most;
     bool out_of_memory;
-    const uint8_t *features; /* per triangle, as first_features says; or NULL */
+    uint8_t *features;        /* per triangle, as first_features says; or NULL */
+    uint32_t (*opposites)[2]; /* per edge, as find_opposites says; or NULL */
 
     /* In a mesh that was made from another one: pairs of features that are what they were are known. */
     const cscd_mesh_change *change; /* NULL: nothing is known */
@@ -38,6 +39,49 @@ static bool are_orphan_edges(const cscd_mesh *mesh, uint32_t a, uint32_t b) {
     }
     return true;
 }
+
+/* ---- by the corners opposite edges ------------------------------------------------------------------------ */
+
+enum { NO_CORNER = UINT32_MAX, MANY_CORNERS = UINT32_MAX - 1 };
+
+/* Writes the corners opposite an edge: NO_CORNER in the second place for an edge of one triangle, MANY_CORNERS for one of more
+ * than two. */
+static void find_opposites(const cscd_mesh *mesh, uint32_t edge, uint32_t out[2]) {
+    uint32_t begin = mesh->edge_star_offsets[edge], count = mesh->edge_star_offsets[edge + 1] - begin;
+    out[0] = out[1] = NO_CORNER;
+    for (uint32_t i = 0; i < count && i < 2; i++) {
+        const uint32_t *corners = mesh->triangles[mesh->edge_stars[begin + i]], *ends = mesh->edges[edge];
+        for (int k = 0; k < 3; k++) {
+            if (corners[k] != ends[0] && corners[k] != ends[1]) out[i] = corners[k];
+        }
+    }
+    if (count > 2) out[1] = MANY_CORNERS;
+}
+
+static bool is_end(const uint32_t edge[2], uint32_t vertex) {
+    return edge[0] == vertex || edge[1] == vertex;
+}
+
+/* Two triangles at edges that share no vertex share one if the corner opposite the one edge is an end of the other, or both
+ * corners are the same. As are_orphan_edges, without a look at the triangles. */
+static bool opposites_say_orphan(const orphan_search *f, uint32_t a, uint32_t b) {
+    const uint32_t *ends_a = f->mesh->edges[a], *ends_b = f->mesh->edges[b], *p = f->opposites[a],
+                   *q = f->opposites[b];
+    if (p[1] == MANY_CORNERS || q[1] == MANY_CORNERS) return are_orphan_edges(f->mesh, a, b);
+    for (int i = 0; i < 2; i++) {
+        if (p[i] == NO_CORNER || is_end(ends_b, p[i])) continue;
+        for (int j = 0; j < 2; j++) {
+            if (q[j] != NO_CORNER && !is_end(ends_a, q[j]) && p[i] != q[j]) return false;
+        }
+    }
+    return true;
+}
+
+static bool edges_are_orphans(const orphan_search *f, uint32_t a, uint32_t b) {
+    return f->opposites != NULL ? opposites_say_orphan(f, a, b) : are_orphan_edges(f->mesh, a, b);
+}
+
+/* ---- the search --------------------------------------------------------------------------------------------- */
 
 /* There are too many, or memory has run out. */
 static bool has_enough(const orphan_search *f) {
@@ -108,7 +152,7 @@ static void find_edges_between(orphan_search *f, uint32_t t, uint32_t edges_t, u
         if ((edges_t >> i / 3 & edges_u >> i % 3 & 1) == 0) continue;
         uint32_t a = mesh->triangle_edges[t][i / 3], b = mesh->triangle_edges[u][i % 3];
         if (ee_is_known(f, a, b) || edges_share_vertex(mesh->edges[a], mesh->edges[b])) continue;
-        if (are_orphan_edges(mesh, a, b)) add_pair(f, &f->ee, a < b ? a : b, a < b ? b : a);
+        if (edges_are_orphans(f, a, b)) add_pair(f, &f->ee, a < b ? a : b, a < b ? b : a);
     }
 }
 
@@ -156,14 +200,16 @@ static void find_around(orphan_search *f, uint32_t t) {
 
 cscd_status orphan_pairs_create(const cscd_mesh *mesh, orphan_pairs *out, bool *too_many) {
     orphan_search f = {.mesh = mesh, .most = (size_t)mesh->triangle_count * PAIRS_PER_TRIANGLE};
-    uint8_t *features = context_reserve(mesh->context, mesh->triangle_count, sizeof *features);
-    if (features == NULL) return CSCD_OUT_OF_MEMORY;
-    for (uint32_t t = 0; t < mesh->triangle_count; t++) features[t] = (uint8_t)first_features(mesh, t);
-    f.features = features;
+    *out = (orphan_pairs){.vf = NULL};
+    array_list arrays = {{ARRAY(f.features, mesh->triangle_count), ARRAY(f.opposites, mesh->edge_count)}};
+    if (!context_reserve_all(mesh->context, arrays)) return CSCD_OUT_OF_MEMORY;
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) f.features[t] = (uint8_t)first_features(mesh, t);
+    for (uint32_t e = 0; e < mesh->edge_count; e++) find_opposites(mesh, e, f.opposites[e]);
     for (uint32_t t = 0; t < mesh->triangle_count && !has_enough(&f); t++) {
         if (!triangle_of_obstacle(mesh, t)) find_around(&f, t);
     }
-    context_free(mesh->context, features);
+    context_free(mesh->context, f.features);
+    context_free(mesh->context, f.opposites);
     return end_search(&f, out, too_many);
 }
 
