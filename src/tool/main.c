@@ -1,4 +1,5 @@
 /* The program `cscd`. */
+#include "src/tool/common/blas_kernels.h"
 #include "src/tool/tool.h"
 
 #include <fcntl.h>
@@ -13,5 +14,6 @@ static void hold_standard_files(void) {
 
 int main(int argument_count, char **arguments) {
     hold_standard_files();
+    blas_kernels_run_again(arguments);
     return tool_run(argument_count, arguments);
 }

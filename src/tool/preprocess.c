@@ -2,6 +2,7 @@
 #include "cscd/research.h"
 #include "src/io/path_name.h"
 #include "src/io/plan_file.h"
+#include "src/tool/common/blas_kernels.h"
 #include "src/tool/common/command.h"
 #include "src/tool/common/methods.h"
 #include "src/tool/common/option_table.h"
@@ -163,6 +164,7 @@ static bool show_progress(void *user, const char *stage, double fraction) {
 static bool make_plan(const preprocess_options *o, recording *r, const double *positions, io_error *error) {
     cscd_plan *plan = NULL;
     cscd_plan_options options = o->plan;
+    if (options.method == CSCD_METHOD_CHARGE && !o->quiet) blas_kernels_warn();
     options.variant = o->published ? CSCD_PLAN_VARIANT_PUBLISHED : 0;
     cscd_status status = cscd_plan_create(
         r->context, r->mesh, CSCD_DOUBLES(positions, cscd_mesh_vertex_count(r->mesh)), &options, &plan);
