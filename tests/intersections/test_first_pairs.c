@@ -25,20 +25,22 @@ static void compare_first_pairs(bool ignores) {
     static cscd_intersection_pair before[1000];
     cscd_detector_options options = cscd_detector_defaults();
     options.ignore = ignores ? ignore_a_third : NULL;
+    rig rigs[4];
+    for (uint32_t threads = 1; threads <= 4; threads++) rigs[threads - 1] = rig_create(&s, threads, &options);
     for (size_t stop_after = 1; stop_after <= 1000; stop_after = stop_after * 3 - stop_after / 2) {
         for (uint32_t threads = 1; threads <= 4; threads++) {
-            rig r = rig_create(&s, threads, &options);
-            cscd_intersection_pairs found = find_kinds_of(&s, r.detector, CSCD_ANSWER_LIST, stop_after);
+            cscd_detector *detector = rigs[threads - 1].detector;
+            cscd_intersection_pairs found = find_kinds_of(&s, detector, CSCD_ANSWER_LIST, stop_after);
             if (threads == 1) memcpy(before, found.items, found.count * sizeof *before);
             assert_true(found.stopped || stop_after > 300);
             assert_int_equal(found.count == stop_after, found.stopped);
             assert_memory_equal(before, found.items, found.count * sizeof *before);
             for (size_t i = 0; i < found.count && ignores; i++)
                 assert_true((found.items[i].a + found.items[i].b) % 3 != 0);
-            assert_int_equal(find_kinds_of(&s, r.detector, CSCD_ANSWER_ANY, stop_after).count, 1);
-            rig_destroy(&r);
+            assert_int_equal(find_kinds_of(&s, detector, CSCD_ANSWER_ANY, stop_after).count, 1);
         }
     }
+    for (int i = 0; i < 4; i++) rig_destroy(&rigs[i]);
 }
 
 static void first_pairs_are_the_same(void **state) {

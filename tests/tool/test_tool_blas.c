@@ -82,7 +82,8 @@ static void it_runs_itself_again(void **state) {
     if (!has_avx2()) skip();
     tool_run run = preprocess_with_old_openblas("charge");
     assert_int_equal(run.code, 0);
-    const char *first = strstr(run.error, "started with nothing\n"), *second = strstr(run.error, "started with ");
+    const char *first = strstr(run.error, "started with nothing\n"),
+               *second = strstr(run.error, "started with ");
     assert_true(first != NULL && first == second);
     second = strstr(first + 1, "started with ");
     assert_true(second != NULL && strstr(second, "nothing") == NULL);

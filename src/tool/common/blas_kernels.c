@@ -15,9 +15,9 @@ __attribute__((weak)) char *openblas_get_corename(void);
 
 /* The kernels of OpenBLAS (cpuid_x86.c, dynamic.c) that do not use AVX2. Others, and those of later processors, do. */
 static const char *const old_cores[] = {
-    "Katmai",  "Coppermine", "Northwood", "Prescott",     "Banias",    "Atom",   "Core2",     "Penryn",
-    "Dunnington", "Nehalem", "Athlon",    "Opteron",      "Opteron_SSE3", "Barcelona", "Bobcat", "Nano",
-    "Sandybridge", "Bulldozer", "Piledriver", "Steamroller",
+    "Katmai", "Coppermine", "Northwood",   "Prescott",  "Banias",     "Atom",         "Core2",
+    "Penryn", "Dunnington", "Nehalem",     "Athlon",    "Opteron",    "Opteron_SSE3", "Barcelona",
+    "Bobcat", "Nano",       "Sandybridge", "Bulldozer", "Piledriver", "Steamroller",
 };
 
 const char *blas_kernels_better(const char *core, bool avx2, bool avx512) {
