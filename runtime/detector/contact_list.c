@@ -109,18 +109,14 @@ typedef struct sorted_contacts {
     size_t count;
 } sorted_contacts;
 
-static void name_vertices(const cscd_mesh *mesh, cscd_contact *contact) {
-    cscd_stencil stencil = mesh_stencil(mesh, contact->kind, contact->a, contact->b, 0.0, 0.0);
-    memcpy(contact->vertices, stencil.vertices, sizeof contact->vertices);
-}
-
 static void copy_contacts(void *data, uint32_t index) {
     const sorted_contacts *s = data;
     size_t begin = (size_t)index * CONTACTS_PER_COPY, end = begin + CONTACTS_PER_COPY;
     for (size_t i = begin; i < end && i < s->count; i++) {
         memcpy(&s->items[i], s->keys[i].contact,
                sizeof *s->items); /* with its padding: lists are compared bit for bit */
-        name_vertices(s->mesh, &s->items[i]);
+        cscd_contact *item = &s->items[i];
+        mesh_vertices_of_pair(s->mesh, item->kind, item->a, item->b, item->vertices);
     }
 }
 

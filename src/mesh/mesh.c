@@ -369,17 +369,10 @@ uint32_t cscd_mesh_vertex_object(const cscd_mesh *mesh, uint32_t vertex) {
     return low;
 }
 
-static void copy_vertices(const uint32_t *from, int count, uint32_t *to) {
-    for (int i = 0; i < count; i++) to[i] = from[i];
-}
-
 cscd_stencil mesh_stencil(const cscd_mesh *mesh, cscd_contact_kind kind, uint32_t a, uint32_t b, double u,
                           double v) {
-    uint32_t last = kind == CSCD_CONTACT_VH ? mesh->objects[b].first_vertex : b;
-    cscd_stencil s = {.vertices = {a, last, last, last}};
-    if (kind == CSCD_CONTACT_EE || kind == CSCD_CONTACT_EV) copy_vertices(mesh->edges[a], 2, s.vertices);
-    if (kind == CSCD_CONTACT_EE) copy_vertices(mesh->edges[b], 2, s.vertices + 2);
-    if (kind == CSCD_CONTACT_VF) copy_vertices(mesh->triangles[b], 3, s.vertices + 1);
+    cscd_stencil s = {.weights = {0.0}};
+    mesh_vertices_of_pair(mesh, kind, a, b, s.vertices);
     stencil_weights(kind, u, v, s.weights);
     return s;
 }

@@ -50,6 +50,21 @@ static inline bool mesh_is_same(const cscd_mesh *a, const cscd_mesh *b) {
 void mesh_objects_of_pair(const cscd_mesh *mesh, cscd_contact_kind kind, uint32_t a, uint32_t b,
                           uint32_t out[2]);
 
+static inline void copy_vertices(const uint32_t *from, int count, uint32_t *to) {
+    for (int i = 0; i < count; i++) to[i] = from[i];
+}
+
+/* The vertices of cscd_mesh_stencil. */
+static inline void mesh_vertices_of_pair(const cscd_mesh *mesh, cscd_contact_kind kind, uint32_t a,
+                                         uint32_t b, uint32_t out[4]) {
+    uint32_t last = kind == CSCD_CONTACT_VH ? mesh->objects[b].first_vertex : b;
+    out[0] = a;
+    out[1] = out[2] = out[3] = last;
+    if (kind == CSCD_CONTACT_EE || kind == CSCD_CONTACT_EV) copy_vertices(mesh->edges[a], 2, out);
+    if (kind == CSCD_CONTACT_EE) copy_vertices(mesh->edges[b], 2, out + 2);
+    if (kind == CSCD_CONTACT_VF) copy_vertices(mesh->triangles[b], 3, out + 1);
+}
+
 /* cscd_mesh_stencil, in whatever floating-point environment is set. Not inline, so that no arithmetic leaves it. */
 cscd_stencil mesh_stencil(const cscd_mesh *mesh, cscd_contact_kind kind, uint32_t a, uint32_t b, double u,
                           double v) __attribute__((noinline));
