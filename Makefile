@@ -101,8 +101,10 @@ CPP_MODEL_SOURCES := $(wildcard models/*.cpp)
 CPP_MODEL_PARTS   := $(wildcard models/*/*.cpp)
 BENCHMARK_SOURCES := $(filter-out $(if $(HAS_BASELINES),,benchmarks/published_rules.c),$(wildcard benchmarks/*.c))
 BENCHMARK_PARTS   := $(filter-out %_simd.c,$(wildcard benchmarks/lib/*.c))
+PEER_SOURCES      := $(wildcard benchmarks/peers/*.c benchmarks/peers/*.cpp)
 SOURCES := $(CORE_SOURCES) $(CHARGE_SOURCES) $(KERNEL_SOURCES) $(COMMON_SOURCES) $(COMMAND_SOURCES) $(NATIVE_SOURCES) $(SUPPORT_SOURCES) $(TEST_SOURCES) $(FUZZ_SOURCES) \
-           $(MODEL_SOURCES) $(MODEL_PARTS) $(CPP_MODEL_SOURCES) $(CPP_MODEL_PARTS) $(BENCHMARK_SOURCES) $(BENCHMARK_PARTS)
+           $(MODEL_SOURCES) $(MODEL_PARTS) $(CPP_MODEL_SOURCES) $(CPP_MODEL_PARTS) $(BENCHMARK_SOURCES) $(BENCHMARK_PARTS) \
+           $(PEER_SOURCES)
 
 # One short line per file; V=1 shows the commands.
 V ?= 0
@@ -159,14 +161,14 @@ FAST_TESTS := $(filter-out $(addprefix $(BUILD)/tests/,$(SLOW_TESTS)),$(TESTS))
 C_MODELS   := $(patsubst models/%.c,$(BUILD)/models/%,$(MODEL_SOURCES))
 CPP_MODELS := $(patsubst models/%.cpp,$(BUILD)/models/%,$(CPP_MODEL_SOURCES))
 MODELS  := $(C_MODELS) $(CPP_MODELS)
-BENCHMARKS := $(filter-out %/embree,$(patsubst benchmarks/%.c,$(BUILD)/benchmarks/%,$(BENCHMARK_SOURCES)))
+BENCHMARKS := $(filter-out %/peers,$(patsubst benchmarks/%.c,$(BUILD)/benchmarks/%,$(BENCHMARK_SOURCES)))
 
 COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 
 # What installs packages; a build that leaves expat out on purpose does not ask for it.
 PACKAGES = GSL=$(GSL) CHARGE=$(CHARGE) EXPAT=$(if $(WITHOUT_EXPAT),0,1) .ci/packages
 
-.PHONY: all python python-package wheel sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-embree referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender blender-extension test-vtk test-bridges test-farm cscd-mpi python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces fuzz-files FORCE
+.PHONY: all python python-package wheel sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-peers referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender blender-extension test-vtk test-bridges test-farm cscd-mpi python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces fuzz-files FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -377,11 +379,13 @@ performance: packages
 	@for program in $(PERFORMANCE_PROGRAMS); do \
 	    echo; echo "== $$program"; $(BUILD)/benchmarks/$$program $(PERFORMANCE) || exit 1; done
 
-# The broad phase beside that of Embree (Debian: libembree-dev), which nothing else needs.
-bench-embree:
-	@$(PACKAGES) embree
-	@$(MAKE) --no-print-directory $(BUILD)/benchmarks/embree
-	@$(BUILD)/benchmarks/embree $(EMBREE)
+# Embree's broad phase and CGAL's check beside ours (Debian: libembree-dev, libcgal-dev), which nothing else needs. PEERS: options
+# of benchmarks/peers, or pairs of mesh files.
+PEERS ?= --json build/peers.json
+bench-peers:
+	@$(PACKAGES) peers
+	@$(MAKE) --no-print-directory $(BUILD)/benchmarks/peers
+	@$(BUILD)/benchmarks/peers $(PEERS)
 
 # Our pairs of triangles beside those of CGAL, tetgen and MeshLab, which nothing else needs: docs/referee.md. REFEREE: options of
 # benchmarks/referee/compare.py, such as --quick.
@@ -444,7 +448,7 @@ help:
 	@echo 'make bench     all methods on all recordings, as in the thesis (BENCH=--quick: 30 s); make bench-plot draws its charts'
 	@echo 'make performance   machine limits, cost per triangle by size, threads, bulk motion, cloth, new meshes (PERFORMANCE=--quick)'
 	@echo 'make benchmarks   build all programs that print tables: docs/measurements.md'
-	@echo 'make bench-embree   the broad phase beside that of Embree (installs libembree-dev)'
+	@echo 'make bench-peers   steps beside Embree'"'"'s broad phase, checks beside CGAL'"'"'s (installs these; PEERS="--quick", or FIRST SECOND of frames)'
 	@echo 'make referee   pairs of triangles beside those of CGAL, tetgen and MeshLab (installs these; REFEREE=--quick)'
 	@echo 'make fuzz-elementary   elementary tests against exact answers, [SECONDS=60] [QUERIES=0] [SEED=1] [KIND=both]'
 	@echo 'make fuzz-surfaces   curves, patches and winding numbers against exact answers, [SCENES=1000000] [SEED=1]'
@@ -523,11 +527,15 @@ $(BUILD)/benchmarks/lib.a: $(call objects,$(BENCHMARK_PARTS)) $(MACHINE_LEVELS)
 	@rm -f $@
 	$(Q)ar rcs $@ $^
 
-$(BUILD)/benchmarks/embree: EMBREE_LIBS := -lembree3
-$(BENCHMARKS) $(BUILD)/benchmarks/embree: $(BUILD)/benchmarks/%: $(OBJECTS)/benchmarks/%.o $(BUILD)/benchmarks/lib.a $(BUILD)/inside.a
+# benchmarks/peers/ has the other programs, one of them in C++.
+PEER_OBJECTS := $(addprefix $(OBJECTS)/,$(addsuffix .o,$(basename $(PEER_SOURCES))))
+$(BUILD)/benchmarks/peers: $(PEER_OBJECTS)
+$(BUILD)/benchmarks/peers: PEER_LIBS := -lembree3 -lmpfr -lstdc++
+$(OBJECTS)/benchmarks/peers/cgal_peer.o: OPTIMISE_$(CONFIG) += -DNDEBUG -frounding-math
+$(BENCHMARKS) $(BUILD)/benchmarks/peers: $(BUILD)/benchmarks/%: $(OBJECTS)/benchmarks/%.o $(BUILD)/benchmarks/lib.a $(BUILD)/inside.a
 	@mkdir -p $(@D)
 	$(say) '  LD $@'
-	$(Q)$(CC) $(LINK_ALL) -Wl,--as-needed -o $@ $^ $(TOOL_LIBS) -lgmp $(EMBREE_LIBS)
+	$(Q)$(CC) $(LINK_ALL) -Wl,--as-needed -o $@ $(filter %.o,$^) $(filter %.a,$^) $(TOOL_LIBS) -lgmp $(PEER_LIBS)
 
 # Tests use internals: they link the objects and libraries that they need and no others, because a test of the tool's
 # memory must be smaller than the tool.
