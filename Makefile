@@ -64,7 +64,8 @@ TOOL_LIBS   := $(call packaged,--libs libpng zlib json-c,-lpng -lz -ljson-c) $(E
 TEST_LIBS   := -lcmocka -lflint-arb -lflint -lgmp $(TOOL_LIBS) $(CHARGE_LIBS)
 
 # A file that ends in _simd.c is compiled once per instruction set. Charge is a library of its own.
-CHARGE_SOURCES  := $(wildcard preprocess/charge/*.c)
+# src/blas says which kernels OpenBLAS runs, to it and to the tool.
+CHARGE_SOURCES  := $(wildcard preprocess/charge/*.c src/blas/*.c)
 CORE_FILES      := $(wildcard src/core/*.c src/mesh/*.c preprocess/*.c preprocess/*/*.c runtime/*/*.c runtime/*/*/*.c)
 CORE_SOURCES    := $(filter-out %_simd.c runtime/ccd/cubic_guess_$(if $(filter 0,$(GSL)),gsl,own).c \
                      preprocess/charge_library.c $(CHARGE_SOURCES),$(CORE_FILES))
@@ -72,7 +73,7 @@ KERNEL_SOURCES  := $(filter %_simd.c,$(CORE_FILES))
 # What commands of the tool share, and the commands.
 WITHOUT_GIFTI   := src/io/gifti/no_gifti.c
 COMMON_SOURCES  := $(filter-out $(if $(filter 0,$(EXPAT)),$(filter-out $(WITHOUT_GIFTI),$(wildcard src/io/gifti/*.c)),$(WITHOUT_GIFTI)), \
-                     $(wildcard src/io/*.c src/io/*/*.c src/tool/picture/*.c src/tool/common/*.c src/tool/answers/*.c \
+                     $(wildcard src/blas/*.c src/io/*.c src/io/*/*.c src/tool/picture/*.c src/tool/common/*.c src/tool/answers/*.c \
                      src/tool/jobs/*.c src/tool/export/*.c src/tool/report/*.c))
 COMMAND_SOURCES := $(wildcard src/tool/*.c src/tool/check/*.c src/tool/replay/*.c src/tool/render/*.c src/tool/sense/*.c)
 NATIVE_SOURCES  := $(wildcard python/native/*.c)

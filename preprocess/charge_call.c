@@ -90,3 +90,9 @@ cscd_status charge_solve(const cscd_mesh *mesh, const double *positions, double 
                          charge_timings *timings) {
     return solve_within(mesh, positions, NULL, density, capacitance, timings);
 }
+
+charge_kernels charge_kernels_here(cscd_context *context) {
+    const charge_functions *library;
+    return charge_library_find(context, &library) == CSCD_OK ? library->kernels()
+                                                             : (charge_kernels){NULL, NULL};
+}

@@ -27,6 +27,9 @@ cscd_status charge_solve(const cscd_mesh *mesh, const double *positions, double 
 cscd_status charge_solve_within(const cscd_mesh *mesh, const double *positions, size_t memory_limit,
                                 double *density, double *capacitance, charge_timings *timings);
 
+/* The kernels of the BLAS that charge_solve runs; without a charge library nothing is known. */
+charge_kernels charge_kernels_here(cscd_context *context);
+
 /* Writes the functions of the charge library, which is linked or opened (charge_library.c). Without
  * it, fails with SYSTEM_ERROR and a sentence that says how to get it. */
 cscd_status charge_library_find(cscd_context *context, const charge_functions **out);

@@ -33,6 +33,7 @@ typedef struct draft {
     uint32_t region_count;
     double *detector_points, *charges, *capacitances;
     cscd_preprocess_timings timings;
+    charge_kernels kernels;
 } draft;
 
 static bool makes_plans(cscd_method method) {
@@ -67,6 +68,7 @@ static cscd_status solve_charge(draft *d) {
                    : charge_solve_within(d->mesh, d->positions, limit, d->charges, d->capacitances, &timings);
     d->timings.assembly_ms = timings.assembly_ms;
     d->timings.solve_ms = timings.factor_ms + timings.refine_ms;
+    if (status == CSCD_OK) d->kernels = charge_kernels_here(d->mesh->context);
     return status;
 }
 
@@ -191,6 +193,7 @@ static cscd_status run_draft(draft *d, cscd_plan **out) {
     timer_lap(&since, &d->timings.regions_ms);
     timer_lap(&start, &d->timings.total_ms);
     (*out)->timings = d->timings;
+    (*out)->info = (cscd_plan_info){d->kernels.used, d->kernels.better};
     return CSCD_OK;
 }
 

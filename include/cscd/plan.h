@@ -145,6 +145,27 @@ static inline cscd_preprocess_timings cscd_plan_timings(const cscd_plan *plan) {
     return timings;
 }
 
+/* How a plan was made. The names belong to OpenBLAS and the library, and live as long as these are loaded. */
+typedef struct cscd_plan_info {
+    const char
+        *charge_kernels; /* the kernels with which OpenBLAS solved the charge system, by its own name, such
+                                 * as "SkylakeX". NULL: the plan is not by cscd_plan_create with CHARGE, or the
+                                 * BLAS is another one */
+    const char
+        *better_kernels; /* the kernels that this processor deserves, "Haswell" or "SkylakeX": OpenBLAS did
+                                 * not know it and took old ones, which take about three times as long. Set the
+                                 * environment variable OPENBLAS_CORETYPE to this before the program starts. NULL:
+                                 * the kernels will do, or are not known */
+} cscd_plan_info;
+
+/* Which kernels made the plan. */
+CSCD_API void cscd_plan_describe_sized(const cscd_plan *plan, cscd_plan_info *out, size_t size);
+static inline cscd_plan_info cscd_plan_describe(const cscd_plan *plan) {
+    cscd_plan_info info;
+    cscd_plan_describe_sized(plan, &info, sizeof info);
+    return info;
+}
+
 #ifdef __cplusplus
 }
 #endif

@@ -82,6 +82,9 @@ class plan : public detail::owner<cscd_plan, cscd_plan_destroy> {
     cscd_preprocess_timings timings() const noexcept {
         return cscd_plan_timings(get());
     }
+    cscd_plan_info info() const noexcept {
+        return cscd_plan_describe(get());
+    }
 
   private:
     static void expect_size(const char *name, std::size_t size, std::uint32_t expected) {

@@ -1,6 +1,7 @@
 /* The charge density of a conductor in the shape of the mesh: collocation at triangle centroids. */
 #include "preprocess/charge/available_memory.h"
 #include "preprocess/charge/charge_system.h"
+#include "src/blas/blas_choice.h"
 #include "src/core/timer.h"
 
 #include <string.h>
@@ -140,7 +141,11 @@ static cscd_status solve_problem(const charge_problem *problem, double *density,
     return status;
 }
 
+static charge_kernels kernels_here(void) {
+    return (charge_kernels){blas_choice_name(), blas_choice_better()};
+}
+
 const charge_functions *charge_functions_of(uint32_t interface) {
-    static const charge_functions functions = {memory_needed, available_memory, solve_problem};
+    static const charge_functions functions = {memory_needed, available_memory, solve_problem, kernels_here};
     return interface == CHARGE_INTERFACE ? &functions : NULL;
 }

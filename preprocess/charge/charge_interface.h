@@ -5,7 +5,7 @@
 
 #include "cscd/cscd.h"
 
-#define CHARGE_INTERFACE 1u
+#define CHARGE_INTERFACE 2u
 
 /* What the charge library asks of its caller, each with `context`. run, part, stage and go_on are parallel_run and the
  * functions of progress.h, and progress is context_progress_status. */
@@ -39,12 +39,18 @@ typedef struct charge_timings { /* sums over the components */
     double total_ms; /* with all checks and the sorting */
 } charge_timings;
 
+/* Names of kernels of OpenBLAS, in static storage; see src/blas/blas_choice.h. */
+typedef struct charge_kernels {
+    const char *used, *better; /* NULL: unknown; used will do */
+} charge_kernels;
+
 /* The functions behind those of preprocess/charge_call.h, which says what they do. */
 typedef struct charge_functions {
     size_t (*memory)(const charge_problem *problem);
     size_t (*available_memory)(void);
     cscd_status (*solve)(const charge_problem *problem, double *density, double *capacitance,
                          charge_timings *timings);
+    charge_kernels (*kernels)(void);
 } charge_functions;
 
 /* Returns the functions of an interface, or NULL for one that this library does not know. */

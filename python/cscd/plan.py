@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import os
+import warnings
 from typing import Any, Callable, Dict, Optional, Tuple, Union
 
 import numpy as np
@@ -35,6 +36,8 @@ class Plan:
         Inside each region, at rest.
     charges : (t,) float64 or None
         Charge densities of triangles, in Gaussian units.
+    charge_kernels, better_kernels : str or None
+        See there.
     """
 
     mesh: Mesh
@@ -55,13 +58,24 @@ class Plan:
         memory_limit : int
             Bytes that the dense system may take; 0: what the system has.
 
+        Warns
+        -----
+        RuntimeWarning
+            OpenBLAS runs kernels that are slow on this processor; ``better_kernels`` names others.
+
         Raises
         ------
         Error
             This installation has no charge library; the text says how to get it.
         """
-        return cls._create(mesh, V, threads, progress, method=code_of("method", "charge"), threshold=threshold,
+        plan = cls._create(mesh, V, threads, progress, method=code_of("method", "charge"), threshold=threshold,
                            memory_limit=memory_limit)
+        better = plan.better_kernels
+        if better is not None:
+            warnings.warn(f"OpenBLAS ran its kernels for {plan.charge_kernels}, which are slow on this processor: with "
+                          f"OPENBLAS_CORETYPE={better} in the environment of Python, from its start, a plan by charge takes "
+                          "about a third of the time", RuntimeWarning, stacklevel=2)
+        return plan
 
     @classmethod
     def kmeans(cls, mesh: Mesh, V: Any, k: int = 4, *, seed: int = 1, threads: int = 0,
@@ -211,6 +225,24 @@ class Plan:
         if self.method != "charge":
             return None
         return np.array([library.cscd_plan_capacitance(self.pointer, c) for c in range(self.mesh.component_count)])
+
+    @property
+    def charge_kernels(self) -> Optional[str]:
+        """The kernels with which OpenBLAS solved the charge system, by its own name, such as "SkylakeX". None: the plan is
+        not made by ``Plan.charge`` in this process, or the BLAS is another one."""
+        return self._kernels("charge_kernels")
+
+    @property
+    def better_kernels(self) -> Optional[str]:
+        """What ``OPENBLAS_CORETYPE`` should be set to before Python starts, because OpenBLAS did not know the processor and
+        took old kernels, which take about three times as long. None: the kernels will do, or are not known."""
+        return self._kernels("better_kernels")
+
+    def _kernels(self, member: str) -> Optional[str]:
+        found = new_struct("plan_info")
+        library.cscd_plan_describe_sized(self.pointer, address_of(found), found.nbytes)
+        name = ctypes.c_char_p(int(found[member][0])).value
+        return name.decode() if name is not None else None
 
     def __repr__(self) -> str:
         return f"Plan(method {self.method!r}, {self.region_count} regions)"

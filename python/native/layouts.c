@@ -86,6 +86,7 @@ FIELDS(region, FIELD(cscd_region, component), FIELD(cscd_region, triangle_count)
 FIELDS(preprocess_timings, FIELD(cscd_preprocess_timings, assembly_ms),
        FIELD(cscd_preprocess_timings, solve_ms), FIELD(cscd_preprocess_timings, regions_ms),
        FIELD(cscd_preprocess_timings, total_ms))
+FIELDS(plan_info, FIELD(cscd_plan_info, charge_kernels), FIELD(cscd_plan_info, better_kernels))
 FIELDS(object_rule, FIELD(cscd_object_rule, category), FIELD(cscd_object_rule, mask),
        FIELD(cscd_object_rule, thickness), FIELD(cscd_object_rule, thickness_class),
        FIELD(cscd_object_rule, self), FIELD(cscd_object_rule, obstacle_pairs))
@@ -232,6 +233,7 @@ static const struct_layout layouts[] = {LAYOUT(view),
                                         LAYOUT(plan_parts),
                                         LAYOUT(region),
                                         LAYOUT(preprocess_timings),
+                                        LAYOUT(plan_info),
                                         LAYOUT(object_rule),
                                         LAYOUT(detector_options),
                                         LAYOUT(contact),

@@ -124,3 +124,7 @@ double cscd_plan_capacitance(const cscd_plan *plan, uint32_t component) {
 void cscd_plan_timings_sized(const cscd_plan *plan, cscd_preprocess_timings *out, size_t size) {
     struct_give(out, size, &plan->timings, sizeof plan->timings);
 }
+
+void cscd_plan_describe_sized(const cscd_plan *plan, cscd_plan_info *out, size_t size) {
+    struct_give(out, size, &plan->info, sizeof plan->info);
+}

@@ -20,6 +20,7 @@ struct cscd_plan {
 
     double *charges, *capacitances; /* NULL without charge */
     cscd_preprocess_timings timings;
+    cscd_plan_info info;
 };
 
 /* Returns the first fault of a plan as a sentence, or NULL. See live_objects.h. */

@@ -115,6 +115,7 @@ void plans(void **) {
     const cscd::plan plan(context, mesh, body_positions);
     assert_int_equal(plan.method(), CSCD_METHOD_CHARGE);
     assert_int_equal(plan.region_count(), cscd_plan_region_count(plan.get()));
+    assert_true(plan.info().charge_kernels == cscd_plan_describe(plan.get()).charge_kernels);
     assert_true(plan.capacitance(0) > 0.0 && plan.triangle_charge(0) > 0.0 && plan.timings().total_ms > 0.0);
 
     std::vector<std::uint32_t> regions;

@@ -1,6 +1,6 @@
 /* The tool sees to it that OpenBLAS runs kernels for the processor. A library that is loaded before it plays an OpenBLAS that does
  * not know the processor: it names old kernels unless the variable says otherwise. */
-#include "src/tool/common/blas_kernels.h"
+#include "src/blas/blas_choice.h"
 #include "tests/support/test.h"
 #include "tests/support/tool/run_tool.h"
 #include "tests/support/tool/tool_fixture.h"
@@ -51,15 +51,15 @@ static int remove_files(void **state) {
 
 static void the_processor_decides(void **state) {
     (void)state;
-    assert_string_equal(blas_kernels_better("Prescott", true, true), "SkylakeX");
-    assert_string_equal(blas_kernels_better("Prescott", true, false), "Haswell");
-    assert_string_equal(blas_kernels_better("Sandybridge", true, false), "Haswell");
-    assert_null(blas_kernels_better("Prescott", false, false));
-    assert_null(blas_kernels_better("Haswell", true, true));
-    assert_null(blas_kernels_better("Zen", true, true));
-    assert_null(blas_kernels_better("Cooperlake", true, true));
-    assert_null(blas_kernels_better("neoversen1", false, false));
-    assert_null(blas_kernels_better("a core to come", true, true));
+    assert_string_equal(blas_better_core("Prescott", true, true), "SkylakeX");
+    assert_string_equal(blas_better_core("Prescott", true, false), "Haswell");
+    assert_string_equal(blas_better_core("Sandybridge", true, false), "Haswell");
+    assert_null(blas_better_core("Prescott", false, false));
+    assert_null(blas_better_core("Haswell", true, true));
+    assert_null(blas_better_core("Zen", true, true));
+    assert_null(blas_better_core("Cooperlake", true, true));
+    assert_null(blas_better_core("neoversen1", false, false));
+    assert_null(blas_better_core("a core to come", true, true));
 }
 
 #if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)

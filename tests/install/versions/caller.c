@@ -130,6 +130,9 @@ static void create_plan(caller_state *s) {
     GUARDED(cscd_preprocess_timings, timings);
     cscd_plan_timings_sized(s->plan, &timings.value, sizeof timings.value);
     EXPECT_FILLED(cscd_preprocess_timings, timings);
+    GUARDED(cscd_plan_info, info);
+    cscd_plan_describe_sized(s->plan, &info.value, sizeof info.value);
+    EXPECT_FILLED(cscd_plan_info, info);
 }
 
 static void create_plan_from_parts(caller_state *s) {

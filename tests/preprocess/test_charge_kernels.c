@@ -1,0 +1,100 @@
+/* A plan says with which kernels OpenBLAS has made it. The program runs itself again behind a library that plays an OpenBLAS that
+ * does not know the processor. */
+#include "src/blas/blas_choice.h"
+#include "tests/support/models/body_of.h"
+#include "tests/support/packed.h"
+#include "tests/support/temp_file.h"
+#include "tests/support/test.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char *program;
+
+/* Writes what the plan of a method says, as "charge_kernels better_kernels", with - for NULL. */
+static void describe_plan(cscd_method method, char text[128]) {
+    body shape = body_of(BODY_SPHERE, 200);
+    cscd_context *context;
+    cscd_mesh *mesh;
+    cscd_plan *plan;
+    cscd_plan_options options = cscd_plan_defaults();
+    cscd_object_desc desc =
+        cscd_object_of_triangles(shape.vertex_count, shape.triangle_count, shape.triangles);
+    assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
+    options.method = method;
+    assert_int_equal(plan_create_packed(mesh, shape.positions, &options, &plan), CSCD_OK);
+    cscd_plan_info info = cscd_plan_describe(plan);
+    snprintf(text, 128, "%s %s", info.charge_kernels != NULL ? info.charge_kernels : "-",
+             info.better_kernels != NULL ? info.better_kernels : "-");
+    cscd_plan_destroy(plan);
+    cscd_mesh_destroy(mesh);
+    cscd_context_destroy(context);
+    body_free(&shape);
+}
+
+static void charge_names_its_kernels(void **state) {
+    char text[128], expected[128];
+    const char *name = blas_choice_name(), *better = blas_choice_better();
+    (void)state;
+    describe_plan(CSCD_METHOD_CHARGE, text);
+    snprintf(expected, sizeof expected, "%s %s", name != NULL ? name : "-", better != NULL ? better : "-");
+    assert_string_equal(text, expected);
+}
+
+static void others_have_none(void **state) {
+    char text[128];
+    (void)state;
+    describe_plan(CSCD_METHOD_SINGLE, text);
+    assert_string_equal(text, "- -");
+    describe_plan(CSCD_METHOD_KMEANS, text);
+    assert_string_equal(text, "- -");
+}
+
+#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+
+/* What this program says behind such a library. */
+static void old_kernels_are_named(void **state) {
+    char command[8192], text[128] = "";
+    (void)state;
+    __builtin_cpu_init();
+    if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) skip();
+    temp_folder folder = temp_folder_make();
+    temp_path library = temp_file_path(&folder, "old_openblas.so");
+    snprintf(command, sizeof command,
+             "echo 'char *openblas_get_corename(void) {return \"Prescott\";}' | "
+             "${CC:-cc} -xc -shared -fPIC - -o '%s'",
+             library.text);
+    assert_int_equal(system(command), 0);
+    setenv("LD_PRELOAD", library.text, 1);
+    snprintf(command, sizeof command, "'%s' describe", program);
+    FILE *told = popen(command, "r");
+    unsetenv("LD_PRELOAD");
+    assert_non_null(told);
+    assert_non_null(fgets(text, sizeof text, told));
+    pclose(told);
+    text[strcspn(text, "\n")] = '\0';
+    assert_true(strcmp(text, "Prescott SkylakeX") == 0 || strcmp(text, "Prescott Haswell") == 0);
+    temp_folder_remove(&folder);
+}
+
+#endif
+
+int main(int argument_count, char **arguments) {
+    program = arguments[0];
+    if (argument_count == 2 && strcmp(arguments[1], "describe") == 0) {
+        char text[128];
+        describe_plan(CSCD_METHOD_CHARGE, text);
+        puts(text);
+        return 0;
+    }
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(charge_names_its_kernels),
+        cmocka_unit_test(others_have_none),
+#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+        cmocka_unit_test(old_kernels_are_named),
+#endif
+    };
+    return cmocka_run_group_tests_name("charge_kernels", tests, NULL, NULL);
+}
