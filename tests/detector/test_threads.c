@@ -13,9 +13,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { INTERVALS = 4, COUNTS = 4, TASKS_MAX = 1000 };
+enum { INTERVALS = 4, COUNTS = 5, TASKS_MAX = 1000 };
 
-static const uint32_t thread_counts[COUNTS] = {1, 2, 3, 8};
+static const uint32_t thread_counts[COUNTS] = {1, 2, 3, 8, 16};
 
 static scene s; /* large; one test at a time */
 
