@@ -1,6 +1,7 @@
 /* The gain of a second thread, beside its gain on this machine for arithmetic that shares nothing. */
 #include "benchmarks/lib/fixed_arithmetic.h"
 #include "benchmarks/lib/options.h"
+#include "benchmarks/lib/serial_share.h"
 #include "benchmarks/lib/stages.h"
 #include "cscd/research.h"
 #include "src/core/timer.h"
@@ -19,6 +20,10 @@ static const char help[] =
     "times over, of which the least counts, interval by interval: other programs only ever cost time.\n"
     "Speedup: one thread's time over that of two. Efficiency: the speedup over the machine's own. --threads\n"
     "means nothing here.\n"
+    "The second table is about machines with more processors: a step that is cut up for 2, 8 or 16 threads, run on\n"
+    "one. Serial: the part of the step outside of parallel loops, in percent; loops: how many of these a step has; by:\n"
+    "the speedup by so many processors if the loops divide evenly and cost nothing to start (Amdahl); KiB: what\n"
+    "context, mesh and detector hold then, and with one thread.\n"
     "\n";
 
 /* ---- the machine's own factor ------------------------------------------------------------------------ */
@@ -149,6 +154,62 @@ static bool run_method(const deforming_body *b, const bench_options *o, cscd_met
     return good;
 }
 
+/* ---- more threads than processors ---------------------------------------------------------------------- */
+
+static bool print_serial_share(const deforming_body *b, const bench_options *o, cscd_method method, json *out,
+                               io_error *error) {
+    enum { COUNTS = 4 };
+    static const uint32_t counts[COUNTS] = {1, 2, 8, 16};
+    serial_share shares[COUNTS];
+    for (int k = 0; k < COUNTS; k++) {
+        if (!serial_share_measure(b, method, counts[k], bench_intervals(o, b->triangle_count),
+                                  o->quick ? 3 : ROUNDS, &shares[k], error))
+            return false;
+    }
+    printf("  %9u %-7s", b->triangle_count, cscd_method_name(method));
+    for (int k = 1; k < COUNTS; k++)
+        printf(" %8.1f %5.1f %6.2f", 100.0 * (1.0 - shares[k].loops_ms / shares[k].total_ms), shares[k].loops,
+               serial_share_speedup(&shares[k], counts[k]));
+    for (int k = 0; k < COUNTS; k++) printf(" %7.0f", (double)shares[k].held / 1024.0);
+    puts("");
+    fflush(stdout);
+    if (out->file == NULL) return true;
+    json_break_line(out);
+    json_begin_object(out, NULL);
+    json_integer(out, "triangles", b->triangle_count);
+    json_string(out, "method", cscd_method_name(method));
+    json_begin_array(out, "cut_up");
+    for (int k = 0; k < COUNTS; k++) {
+        json_begin_object(out, NULL);
+        json_integer(out, "threads", counts[k]);
+        json_number(out, "total_ms", shares[k].total_ms);
+        json_number(out, "loops_ms", shares[k].loops_ms);
+        json_number(out, "loops", shares[k].loops);
+        json_number(out, "tasks", shares[k].tasks);
+        json_integer(out, "held", shares[k].held);
+        json_end_object(out);
+    }
+    json_end_array(out);
+    json_end_object(out);
+    return true;
+}
+
+static bool run_serial_shares(const bench_options *o, json *out, io_error *error) {
+    static const cscd_method methods[] = {CSCD_METHOD_NONE, CSCD_METHOD_SINGLE};
+    bool good = true;
+    printf("\ncut up for 2, 8 and 16 threads, run on one\n  %9s %-7s", "triangles", "method");
+    for (int k = 0; k < 3; k++)
+        printf(" %8s %5s %6s", "serial %", "loops", k == 0 ? "by 2" : k == 1 ? "by 8" : "by 16");
+    printf(" %7s %7s %7s %7s\n", "KiB, 1", "2", "8", "16");
+    for (uint32_t i = 0; good && i < o->size_count; i++) {
+        deforming_body b;
+        if (!deforming_body_make(o->kind, o->sizes[i], DEFORM_WAVE, o->shuffled, &b, error)) return false;
+        for (int k = 0; good && k < 2; k++) good = print_serial_share(&b, o, methods[k], out, error);
+        deforming_body_free(&b);
+    }
+    return good;
+}
+
 /* ---- the program ------------------------------------------------------------------------------------- */
 
 static bool run_duels(const bench_options *o, json *out, io_error *error) {
@@ -166,7 +227,7 @@ static bool run_duels(const bench_options *o, json *out, io_error *error) {
         for (int k = 0; good && k < 3; k++) good = run_method(&b, o, methods[k], out, error);
         deforming_body_free(&b);
     }
-    return good;
+    return good && run_serial_shares(o, out, error);
 }
 
 int main(int argument_count, char **arguments) {
