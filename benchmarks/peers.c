@@ -12,7 +12,7 @@
 static const char help[] =
     "usage: peers [options] [FIRST SECOND]...\n"
     "\n"
-    "One thread, milliseconds of the wall clock; the programs take turns in every round. Each number is the least\n"
+    "One thread, milliseconds of processor time; the programs take turns in every round. Each number is the least\n"
     "of the rounds; --json has the medians too. Scenes: each two mesh files with the same triangles; without files,\n"
     "scenes that are made here and, where they are at hand, published frames and recordings.\n"
     "\n"

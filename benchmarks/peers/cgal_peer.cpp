@@ -1,13 +1,14 @@
 /* CGAL's check of one moment: PMP::self_intersections (boxes in order, then exact predicates) on the calling thread. */
 #include "benchmarks/peers/cgal_peer.h"
 
+#include "benchmarks/peers/peer_clock.h"
+
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/version.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdlib>
 #include <exception>
 #include <iterator>
@@ -20,13 +21,8 @@ using kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using surface = CGAL::Surface_mesh<kernel::Point_3>;
 using face = surface::Face_index;
 using face_pair = std::pair<face, face>;
-using watch = std::chrono::steady_clock;
 
 const char cgal_peer_version[] = CGAL_VERSION_STR;
-
-static double milliseconds_since(watch::time_point since) {
-    return std::chrono::duration<double, std::milli>(watch::now() - since).count();
-}
 
 /* Returns how many triangles have no place. */
 static uint32_t fill_surface(const double *positions, uint32_t vertex_count, const uint32_t *triangles,
@@ -47,14 +43,14 @@ static uint32_t fill_surface(const double *positions, uint32_t vertex_count, con
 static void find_pairs(const double *positions, uint32_t vertex_count, const uint32_t *triangles,
                        uint32_t triangle_count, cgal_pairs &out) {
     surface mesh;
-    watch::time_point since = watch::now();
+    double since = peer_clock_ms();
     out.left_out = fill_surface(positions, vertex_count, triangles, triangle_count, mesh);
-    out.setup_ms = milliseconds_since(since);
+    out.setup_ms = peer_clock_ms() - since;
     if (out.left_out > 0) return;
     std::vector<face_pair> pairs;
-    since = watch::now();
+    since = peer_clock_ms();
     CGAL::Polygon_mesh_processing::self_intersections(mesh, std::back_inserter(pairs));
-    out.find_ms = milliseconds_since(since);
+    out.find_ms = peer_clock_ms() - since;
     std::vector<std::pair<uint32_t, uint32_t>> sorted;
     for (const face_pair &pair : pairs) {
         uint32_t a = pair.first, b = pair.second;

@@ -3,8 +3,8 @@
  * twice, once in each order, and pairs of neighbours too. */
 #include "benchmarks/peers/embree_peer.h"
 
+#include "benchmarks/peers/peer_clock.h"
 #include "models/shapes/body.h"
-#include "src/core/timer.h"
 
 #include <embree3/rtcore.h>
 #include <math.h>
@@ -111,16 +111,17 @@ void embree_peer_close(embree_peer *p) {
 }
 
 bool embree_peer_step(embree_peer *p, embree_pairs *out, io_error *error) {
-    double since = timer_now_ms();
+    double since = peer_clock_ms();
     *out = (embree_pairs){.update_ms = 0.0};
     rtcCommitGeometry(p->geometry);
     if (!p->attached) rtcAttachGeometry(p->scene, p->geometry);
     p->attached = true;
     rtcCommitScene(p->scene);
-    timer_lap(&since, &out->update_ms);
+    out->update_ms = peer_clock_ms() - since;
+    since = peer_clock_ms();
     p->reported = p->pairs = 0;
     rtcCollide(p->scene, p->scene, take_pairs, p);
-    timer_lap(&since, &out->find_ms);
+    out->find_ms = peer_clock_ms() - since;
     out->reported = p->reported;
     out->pairs = p->pairs;
     return rtcGetDeviceError(p->device) == RTC_ERROR_NONE || io_fail(error, "Embree reports an error");
