@@ -1,5 +1,7 @@
-"""Plans by charge say with which kernels OpenBLAS has made them, and warn of old ones. A library that is loaded before Python plays an
-OpenBLAS that does not know the processor."""
+"""Plans by charge say with which kernels OpenBLAS has made them, and warn of old ones.
+
+A library that is loaded before Python plays an OpenBLAS that does not know the processor.
+"""
 
 from __future__ import annotations
 
@@ -31,8 +33,8 @@ print(caught[0].message if caught else "")
 def charge_behind(core: str, folder: Path) -> "list[str]":
     """The two lines that the program prints behind an OpenBLAS that says it has these kernels."""
     library = folder / "openblas.so"
-    subprocess.run([*os.environ.get("CC", "cc").split(), "-xc", "-shared", "-fPIC", "-", "-o", str(library)], check=True, text=True,
-                   input=f'char *openblas_get_corename(void) {{return "{core}";}}')
+    subprocess.run([*os.environ.get("CC", "cc").split(), "-xc", "-shared", "-fPIC", "-", "-o", str(library)], check=True,
+                   text=True, input=f'char *openblas_get_corename(void) {{return "{core}";}}')
     ended = subprocess.run([sys.executable, "-c", PROGRAM], check=True, text=True, stdout=subprocess.PIPE,
                            env={**os.environ, "LD_PRELOAD": str(library)})
     return ended.stdout.splitlines()
