@@ -23,11 +23,10 @@ typedef struct cscd_detector cscd_detector;
  * for the published methods, nor after a start that was vouched for and is not embedded. */
 typedef enum cscd_mode {
     CSCD_MODE_ALL,      /* every contact of the interval, on any mesh, whatever its state at the start */
-    CSCD_MODE_EARLIEST, /* for a component that is embedded at the start: of its contacts with itself at
-                        * least one that has the earliest time. All other contacts, and all contacts when
-                        * there are pairs to leave out, as in ALL. After such a contact the whole next
-                        * start is checked, so that over a recording ALL costs less. See
-                        * cscd_detector_guarantee */
+    CSCD_MODE_EARLIEST, /* of the contacts of a component with itself those whose toi is the least, or at most
+                        * 1e-9 more. All other contacts, and all contacts when there are pairs to leave
+                        * out, as in ALL. After such a contact the whole next start is checked, so that
+                        * over a recording ALL costs less. See cscd_detector_guarantee */
     CSCD_MODE_MAX_ENUM = 0x7fffffff
 } cscd_mode;
 
@@ -280,8 +279,7 @@ typedef enum cscd_reason {
     CSCD_REASON_FINISHED,  /* complete: the start is embedded, there are contacts, and mode ALL found all */
     CSCD_REASON_PUBLISHED, /* contacts may be missing: the method is PUBLISHED or ICCD_PUBLISHED */
     CSCD_REASON_CONTOUR,   /* complete: method ICCD, which needs no embedded start */
-    CSCD_REASON_EARLIEST,  /* later contacts may be missing: the start is embedded, and the mode is
-                            * EARLIEST */
+    CSCD_REASON_EARLIEST,  /* later contacts are left out, because the mode is EARLIEST */
     CSCD_REASON_OBSTACLE,  /* an obstacle: its contacts with itself are not looked for */
     CSCD_REASON_MASK,      /* its object's rule has self = false: contacts with itself are not looked for */
     CSCD_REASON_MAX_ENUM = 0x7fffffff

@@ -37,7 +37,7 @@ class Detector(LiveSettings):
     method : str
         "auto", "none", "single", "kmeans" or "charge" (docs/tuning.md).
     mode : str
-        "all": every contact; "earliest": of each embedded component at least one with the earliest time.
+        "all": every contact; "earliest": of each component with itself, the first ones only.
     start : str
         "prove", "vouched" (you say that every start is free of intersections) or "unknown".
     volume : str

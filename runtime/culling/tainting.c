@@ -3,8 +3,7 @@
 
 uint32_t tainting_triangle(const tainting *t, uint32_t triangle) {
     start_states_taint(t->starts, triangle);
-    return t->wants_all_contacts[t->mesh->triangle_components[triangle]] &&
-           culling_taint(t->culling, triangle);
+    return t->closes[t->mesh->triangle_components[triangle]] && culling_taint(t->culling, triangle);
 }
 
 static uint32_t taint_star(const tainting *t, const uint32_t *star, uint32_t count) {
@@ -31,8 +30,7 @@ static bool is_loose(const cscd_mesh *mesh, const cscd_contact *contact) {
            edge_is_loose(mesh, contact->b);
 }
 
-/* Returns the component that both features belong to; UINT32_MAX if they do not belong to one. */
-static uint32_t common_component(const cscd_mesh *mesh, const cscd_contact *contact) {
+uint32_t tainting_component(const cscd_mesh *mesh, const cscd_contact *contact) {
     bool vf = contact->kind == CSCD_CONTACT_VF;
     if (is_loose(mesh, contact)) return UINT32_MAX;
     uint32_t first = vf ? mesh->vertex_stars[mesh->vertex_star_offsets[contact->a]]
@@ -42,13 +40,22 @@ static uint32_t common_component(const cscd_mesh *mesh, const cscd_contact *cont
     return a == b ? a : UINT32_MAX;
 }
 
+void tainting_note(const cscd_mesh *mesh, const cscd_contact *contacts, size_t count, double *earliest) {
+    for (size_t i = 0; i < count; i++) {
+        uint32_t component = tainting_component(mesh, &contacts[i]);
+        if (component != UINT32_MAX && contacts[i].toi < earliest[component])
+            earliest[component] = contacts[i].toi;
+    }
+}
+
 uint32_t tainting_look(const tainting *t, const cscd_contact *contacts, size_t count) {
     uint32_t newly_kept = 0;
     for (size_t i = 0; i < count; i++) {
         const cscd_contact *contact = &contacts[i];
-        uint32_t component = common_component(t->mesh, contact);
+        uint32_t component = tainting_component(t->mesh, contact);
         if (component == UINT32_MAX) continue;
         t->touched[component] = true;
+        if (contact->toi - t->within > t->earliest[component]) continue;
         if (contact->kind == CSCD_CONTACT_VF)
             newly_kept += taint_vertex(t, contact->a) + tainting_triangle(t, contact->b);
         else
@@ -62,7 +69,7 @@ static void mark_star(const uint32_t *stars, const uint32_t *offsets, uint32_t f
 }
 
 void tainting_mark(const cscd_mesh *mesh, const cscd_contact *contact, bool *triangles, bool *touched) {
-    uint32_t component = common_component(mesh, contact);
+    uint32_t component = tainting_component(mesh, contact);
     if (component == UINT32_MAX) return;
     touched[component] = true;
     if (contact->kind == CSCD_CONTACT_VF) {

@@ -9,9 +9,17 @@ typedef struct tainting {
     const cscd_mesh *mesh;
     start_states *starts;
     culling *culling;
-    const bool *wants_all_contacts; /* per component: tainted triangles lose their orientations */
-    bool *touched;                  /* per component: does it have a contact with itself? */
+    const bool *closes; /* per component: tainted triangles lose their orientations */
+    bool *touched;      /* per component: does it have a contact with itself? */
+    double *earliest;   /* per component: the least toi of a contact with itself that was noted */
+    double within;      /* contacts that are later than the earliest by more than this taint nothing */
 } tainting;
+
+/* Returns the component that both features of a contact belong to; UINT32_MAX if they do not belong to one. */
+uint32_t tainting_component(const cscd_mesh *mesh, const cscd_contact *contact);
+
+/* Notes the earliest contact of each component with itself. */
+void tainting_note(const cscd_mesh *mesh, const cscd_contact *contacts, size_t count, double *earliest);
 
 /* Taints the stars of both features of every contact of a component with itself, also of contacts that the caller
  * ignores. Returns how many triangles have lost their orientations, so that pairs of them are newly kept. */

@@ -67,10 +67,11 @@ static cscd_status choose_method(const cscd_mesh *mesh, const cscd_plan *plan,
 
 array_list detector_arrays(cscd_detector *d) {
     size_t components = d->mesh->component_count, lanes = d->space.traversal.lane_count;
-    return (array_list){{ARRAY(d->culled, components), ARRAY(d->wants_all_contacts, components),
+    return (array_list){{ARRAY(d->culled, components), ARRAY(d->closes, components),
                          ARRAY(d->touched, components), ARRAY(d->incomplete, components),
-                         ARRAY(d->guarantees, components), ARRAY(d->reached_scalars, d->mesh->object_count),
-                         ARRAY(d->contacts_seen, lanes), ARRAY(d->never_culled, components)}};
+                         ARRAY(d->earliest, components), ARRAY(d->guarantees, components),
+                         ARRAY(d->reached_scalars, d->mesh->object_count), ARRAY(d->contacts_seen, lanes),
+                         ARRAY(d->never_culled, components)}};
 }
 
 void detector_choose_regions(cscd_detector *d) {

@@ -56,10 +56,11 @@ struct cscd_detector {
     } cap;
 
     /* Per component, in the current interval: */
-    bool *culled;             /* its pairs are culled */
-    bool *wants_all_contacts; /* it is culled, and the closing pass finds all its contacts */
-    bool *touched;            /* it has a contact with itself */
-    bool *incomplete;         /* some of its contacts may be missing */
+    bool *culled;  /* its pairs are culled */
+    bool *closes;  /* it is culled, and closing passes find all its contacts, or all that are early enough */
+    bool *touched; /* it has a contact with itself */
+    bool *incomplete; /* some of its contacts may be missing */
+    double *earliest; /* the least toi of its contacts with itself, where only the earliest are wanted */
 
     size_t *contacts_seen;      /* per lane: so many of its contacts have tainted triangles */
     cscd_guarantee *guarantees; /* per component, of the last step */

@@ -178,8 +178,9 @@ static void exchange_parts(cscd_detector *a, cscd_detector *b) {
     EXCHANGE(before);
     EXCHANGE(cap);
     EXCHANGE(culled);
-    EXCHANGE(wants_all_contacts);
+    EXCHANGE(closes);
     EXCHANGE(touched);
+    EXCHANGE(earliest);
     EXCHANGE(incomplete);
     EXCHANGE(contacts_seen);
     EXCHANGE(guarantees);

@@ -1,6 +1,8 @@
 /* A cap on the length of lists: contacts that find no room are counted, and leave nothing behind but taint. */
 #include "runtime/detector/list_cap.h"
 
+#include "runtime/detector/earliest_contacts.h"
+
 #include <string.h>
 
 /* Room that a lane has beside its share of the cap, so that lanes are seldom suspended. */
@@ -26,7 +28,7 @@ cscd_status list_cap_fail(const cscd_detector *d, size_t count) {
                         count, d->options.longest_list);
 }
 
-static size_t lane_limit(const cscd_detector *d) {
+size_t list_cap_lane(const cscd_detector *d) {
     return d->options.longest_list / d->space.traversal.lane_count + d->cap.beside;
 }
 
@@ -66,7 +68,7 @@ static void spill_lanes(void *data) {
         empty_lanes(d);
     }
     for (uint32_t i = 0; i < s->traversal.lane_count; i++) {
-        s->lanes[i].limit = s->lanes[i].settled + lane_limit(d);
+        s->lanes[i].limit = s->lanes[i].settled + list_cap_lane(d);
         d->contacts_seen[i] = s->lanes[i].settled;
     }
     d->cap.any_tainted = true;
@@ -78,9 +80,9 @@ void list_cap_begin(cscd_detector *d, interval_search *search, cap_taint taint) 
     d->cap.taint = (int)taint;
     d->cap.any_tainted = false;
     memset(d->cap.tainted, false, d->mesh->triangle_count * sizeof *d->cap.tainted);
-    search->spill = spill_lanes;
+    search->spill = taint == CAP_KEEPS_EARLIEST ? earliest_spill : spill_lanes;
     search->spill_data = d;
-    for (uint32_t i = 0; i < d->space.traversal.lane_count; i++) d->space.lanes[i].limit = lane_limit(d);
+    for (uint32_t i = 0; i < d->space.traversal.lane_count; i++) d->space.lanes[i].limit = list_cap_lane(d);
 }
 
 uint32_t list_cap_taint(cscd_detector *d, const tainting *t) {
@@ -122,14 +124,14 @@ void list_cap_begin_check(cscd_detector *d, const double *positions) {
     d->cap.counted = 0;
     if (d->options.longest_list == 0) return;
     d->cap.positions = positions;
-    d->check.limit = lane_limit(d);
+    d->check.limit = list_cap_lane(d);
     d->check.spill = positions != NULL ? spill_pairs : NULL;
     d->check.spill_data = d;
 }
 
 void list_cap_begin_pairs(cscd_detector *d, bool counted_only, void (*spill)(void *data), void *data) {
     if (d->options.longest_list == 0 && !counted_only) return;
-    d->check.limit = counted_only ? d->cap.beside : lane_limit(d);
+    d->check.limit = counted_only ? d->cap.beside : list_cap_lane(d);
     d->check.spill = spill;
     d->check.spill_data = data;
 }

@@ -5,11 +5,15 @@
 #include "runtime/detector/detector.h"
 
 /* Which contacts that leave the lanes taint triangles: all of them, or, in a search of a moment, those that are left
- * out and may touch on the way of a motion that begins there. */
-typedef enum cap_taint { CAP_TAINTS_ALL, CAP_TAINTS_LEFT_OUT } cap_taint;
+ * out and may touch on the way of a motion that begins there. Where only the earliest contacts are listed, those leave the
+ * lanes that neither taint nor are listed. */
+typedef enum cap_taint { CAP_TAINTS_ALL, CAP_TAINTS_LEFT_OUT, CAP_KEEPS_EARLIEST } cap_taint;
 
 /* Sets the cap of the options from now on; 0: none. */
 cscd_status list_cap_set(cscd_detector *d, size_t longest);
+
+/* The number of contacts that a lane has room for before it is suspended. */
+size_t list_cap_lane(const cscd_detector *d);
 
 /* Lets the search that has just begun keep no more contacts than the cap allows. */
 void list_cap_begin(cscd_detector *d, interval_search *search, cap_taint taint);

@@ -3,6 +3,7 @@
 
 #include "runtime/culling/tainting.h"
 #include "runtime/detector/contact_list.h"
+#include "runtime/detector/earliest_contacts.h"
 #include "runtime/detector/interval_search.h"
 #include "runtime/detector/list_cap.h"
 #include "runtime/detector/waiting.h"
@@ -10,6 +11,8 @@
 #include "src/core/timer.h"
 #include "src/mesh/positions.h"
 #include "src/mesh/views.h"
+
+#include <math.h>
 
 /* ---- one interval ---------------------------------------------------------------------------------- */
 
@@ -29,7 +32,8 @@ static void begin_interval(step_work *work) {
     d->rebuild.rebuilt = false;
     culling_clear(&d->culling);
     for (uint32_t c = 0; c < d->mesh->component_count; c++)
-        d->culled[c] = d->wants_all_contacts[c] = d->touched[c] = false;
+        d->culled[c] = d->closes[c] = d->touched[c] = false;
+    earliest_begin(d);
     for (uint32_t i = 0; i < d->space.traversal.lane_count; i++) d->contacts_seen[i] = 0;
     if (detector_culls(d) && d->options.start == CSCD_START_VOUCHED) start_states_vouch(&d->starts);
     start_states_count(&d->starts);
@@ -111,6 +115,11 @@ static bool finds_all_contacts(const step_work *work) {
     return work->mode == CSCD_MODE_ALL || exclusions_any(&work->detector->exclusions);
 }
 
+/* Are only the earliest contacts of each component with itself listed? The published methods promise nothing. */
+static bool lists_earliest(const step_work *work) {
+    return !finds_all_contacts(work) && !work->detector->traits->loses_contacts;
+}
+
 static bool is_culled(const cscd_detector *d, uint32_t component, uint32_t clean, uint32_t triangle_count) {
     if (!detector_culls(d) || d->never_culled[component]) return false;
     if (d->rules.assumes_clean) return true;
@@ -118,8 +127,7 @@ static bool is_culled(const cscd_detector *d, uint32_t component, uint32_t clean
     return start_states_pay(&d->starts, clean, triangle_count);
 }
 
-/* Culls closed components in which nearly all triangles are clean. In either mode, those in which not all are clean
- * want all their contacts. */
+/* Culls closed components in which nearly all triangles are clean. */
 static cscd_status choose_culled(step_work *work) {
     cscd_detector *d = work->detector;
     if (detector_hides_pairs(d)) return CSCD_OK; /* instead of culling */
@@ -130,8 +138,7 @@ static cscd_status choose_culled(step_work *work) {
         uint32_t clean = component->closed_manifold ? d->starts.of[c].clean : 0;
         bool embedded = clean == component->triangle_count;
         d->culled[c] = is_culled(d, c, clean, component->triangle_count);
-        d->wants_all_contacts[c] =
-            d->culled[c] && !d->traits->loses_contacts && (finds_all_contacts(work) || !embedded);
+        d->closes[c] = d->culled[c] && !d->traits->loses_contacts;
         work->any_culled |= d->culled[c];
         work->any_not_culled |= !d->culled[c];
         work->all_clean &= !d->culled[c] || embedded;
@@ -174,12 +181,20 @@ static cscd_status traverse_pairs(step_work *work) {
     return interval_search_traverse(&work->search, TRAVERSAL_KEPT);
 }
 
-/* Taints triangles by the contacts that the lanes have gained since the last call. Returns how many tainted
- * triangles had culled pairs. */
+/* Taints triangles by the contacts that the lanes have gained since the last call, or by the earliest of them: what the
+ * lanes have found together is the same for any number of threads, so all are noted before any taints. Returns how many
+ * tainted triangles had culled pairs. */
 static uint32_t taint_by_contacts(const step_work *work) {
     cscd_detector *d = work->detector;
-    const tainting t = {d->mesh, &d->starts, &d->culling, d->wants_all_contacts, d->touched};
+    const tainting t = {d->mesh,
+                        &d->starts,
+                        &d->culling,
+                        d->closes,
+                        d->touched,
+                        d->earliest,
+                        lists_earliest(work) ? earliest_tainting : INFINITY};
     uint32_t newly_kept = 0;
+    if (lists_earliest(work)) earliest_note(d);
     for (uint32_t i = 0; detector_culls(d) && i < d->space.traversal.lane_count; i++) {
         const contact_lane *lane = &d->space.lanes[i];
         newly_kept +=
@@ -190,8 +205,8 @@ static uint32_t taint_by_contacts(const step_work *work) {
     return newly_kept;
 }
 
-/* Tests the pairs that contacts have uncovered until they bring no more contacts. Then every component that wants
- * all its contacts has them (docs/theory/culling.md). */
+/* Tests the pairs that contacts have uncovered until they bring no more contacts that taint. Then every component has all
+ * the contacts that are to be listed (docs/theory/culling.md). */
 static cscd_status close_contacts(step_work *work) {
     cscd_detector *d = work->detector;
     if (!work->any_culled || d->traits->loses_contacts) return CSCD_OK;
@@ -224,6 +239,7 @@ static cscd_status collect_contacts(step_work *work) {
     cscd_detector *d = work->detector;
     work->search.counters.rebuilds = d->rebuild.rebuilt;
     taint_by_contacts(work);
+    if (lists_earliest(work)) earliest_drop_later(d, earliest_share);
     double since = timer_now_ms();
     cscd_status status = contact_list_collect(&d->space, &d->exclusions, &d->contacts, &work->search.counters,
                                               &work->contacts);
@@ -255,12 +271,11 @@ static cscd_status run_stages(step_stage *const *stages, step_work *work) {
 /* ---- guarantees ------------------------------------------------------------------------------------ */
 
 /* Returns the reason in a component's guarantee, for a method that culls. */
-static cscd_reason culling_reason(const step_work *work, uint32_t component, bool embedded) {
-    const cscd_detector *d = work->detector;
+static cscd_reason culling_reason(const cscd_detector *d, uint32_t component, bool embedded) {
+    if (d->never_culled[component]) return CSCD_REASON_METHOD;
     if (!d->mesh->components[component].closed_manifold) return CSCD_REASON_SURFACE;
     if (!embedded) return d->starts.of[component].crossing > 0 ? CSCD_REASON_CROSSING : CSCD_REASON_UNPROVEN;
-    if (!d->touched[component]) return CSCD_REASON_CLEAN;
-    return finds_all_contacts(work) ? CSCD_REASON_FINISHED : CSCD_REASON_EARLIEST;
+    return d->touched[component] ? CSCD_REASON_FINISHED : CSCD_REASON_CLEAN;
 }
 
 static cscd_guarantee guarantee_of(const step_work *work, uint32_t component) {
@@ -269,13 +284,14 @@ static cscd_guarantee guarantee_of(const step_work *work, uint32_t component) {
     if (component_is_obstacle(d->mesh, component))
         return (cscd_guarantee){false, false, CSCD_REASON_OBSTACLE};
     if (detector_masks(d, component)) return (cscd_guarantee){false, false, CSCD_REASON_MASK};
-    if (!detector_culls(d) && !detector_hides_pairs(d))
-        return (cscd_guarantee){true, embedded, CSCD_REASON_METHOD};
-    if (d->traits->loses_contacts) return (cscd_guarantee){false, embedded, CSCD_REASON_PUBLISHED};
+    bool hides = detector_hides_pairs(d), by_method = detector_culls(d) || hides;
+    if (by_method && d->traits->loses_contacts)
+        return (cscd_guarantee){false, embedded, CSCD_REASON_PUBLISHED};
+    if (lists_earliest(work) && d->earliest[component] < INFINITY)
+        return (cscd_guarantee){false, embedded, CSCD_REASON_EARLIEST};
+    if (!by_method) return (cscd_guarantee){true, embedded, CSCD_REASON_METHOD};
     if (!detector_culls(d)) return (cscd_guarantee){true, embedded, CSCD_REASON_CONTOUR};
-    if (d->never_culled[component]) return (cscd_guarantee){true, embedded, CSCD_REASON_METHOD};
-    cscd_reason reason = culling_reason(work, component, embedded);
-    return (cscd_guarantee){reason != CSCD_REASON_EARLIEST, embedded, reason};
+    return (cscd_guarantee){true, embedded, culling_reason(d, component, embedded)};
 }
 
 cscd_status step_find(cscd_detector *d, const double *x0, const double *x1, cscd_mode mode, bool rehearsal,
@@ -287,7 +303,8 @@ cscd_status step_find(cscd_detector *d, const double *x0, const double *x1, cscd
                       .rehearsal = rehearsal,
                       .all_clean = true};
     begin_interval(&work);
-    if (!rehearsal) list_cap_begin(d, &work.search, CAP_TAINTS_ALL);
+    if (!rehearsal)
+        list_cap_begin(d, &work.search, lists_earliest(&work) ? CAP_KEEPS_EARLIEST : CAP_TAINTS_ALL);
     cscd_status status = run_stages(d->stages->brute_force ? stages_by_brute_force : stages_by_trees, &work);
     if (status == CSCD_LIST_TOO_LONG) out->contacts = work.contacts;
     if (status != CSCD_OK) return status;

@@ -177,8 +177,8 @@ static size_t keep_held(const division_planes *planes, cscd_proximity *items) {
 /* Pairs that the caller leaves out may touch on the way, so their triangles lose what is known of them. */
 static void taint_left_out(cscd_detector *d) {
     const search_space *s = &d->space;
-    tainting t = {d->mesh, &d->starts, &d->culling, d->wants_all_contacts, d->touched};
-    memset(d->wants_all_contacts, 0, d->mesh->component_count * sizeof *d->wants_all_contacts);
+    tainting t = {d->mesh, &d->starts, &d->culling, d->closes, d->touched, d->earliest, INFINITY};
+    memset(d->closes, 0, d->mesh->component_count * sizeof *d->closes);
     for (uint32_t i = 0; exclusions_any(&d->exclusions) && i < s->traversal.lane_count; i++) {
         for (size_t j = 0; j < s->lanes[i].count; j++) {
             const cscd_contact *near = &s->lanes[i].contacts[j];

@@ -69,7 +69,7 @@ static const char *const reasons[] = {
     [CSCD_REASON_FINISHED] = "embedded at the start; all contacts found",
     [CSCD_REASON_PUBLISHED] = "culled as published, which loses contacts",
     [CSCD_REASON_CONTOUR] = "pairs in patches that cannot touch themselves are left out; all contacts found",
-    [CSCD_REASON_EARLIEST] = "embedded at the start; later contacts may be missing",
+    [CSCD_REASON_EARLIEST] = "only the earliest are listed; later contacts may be missing",
     [CSCD_REASON_OBSTACLE] = "an obstacle; contacts with itself are not looked for",
     [CSCD_REASON_MASK] = "masked by its rule; contacts with itself are not looked for"};
 

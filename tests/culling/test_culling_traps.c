@@ -77,8 +77,8 @@ static cscd_detector_options with_mode(cscd_method method, cscd_mode mode) {
     return options;
 }
 
-/* Checks that mode all equals no culling and mode earliest has the same first contact, with one region and
- * several. */
+/* Checks that mode all equals no culling, for the expected reason, and mode earliest has the same first contact, with one
+ * region and several. */
 static void check_first_contact(cscd_reason expected) {
     trap_result truth = run_trap(with_mode(CSCD_METHOD_NONE, CSCD_MODE_ALL), 0);
     for (uint32_t k = 0; k <= 4; k++) {
@@ -87,8 +87,10 @@ static void check_first_contact(cscd_reason expected) {
         assert_int_equal(all.count, truth.count);
         assert_true(isinf(truth.earliest) == isinf(earliest.earliest));
         if (truth.count > 0) assert_true(fabs(earliest.earliest - truth.earliest) <= 1e-9);
-        assert_int_equal(earliest.guarantee.reason, expected);
-        assert_true(all.guarantee.complete);
+        assert_true(earliest.count <= truth.count && all.guarantee.complete);
+        assert_int_equal(all.guarantee.reason, expected);
+        bool itself = expected != CSCD_REASON_CLEAN; /* it touches itself */
+        assert_int_equal(earliest.guarantee.reason, itself ? CSCD_REASON_EARLIEST : CSCD_REASON_CLEAN);
     }
 }
 
@@ -162,7 +164,7 @@ static void vertex_meets_silhouette_edge(void **state) {
     (void)state;
     add_horseshoe();
     move_to(2 * 3, -1, 8, 2);
-    check_first_contact(CSCD_REASON_EARLIEST);
+    check_first_contact(CSCD_REASON_FINISHED);
     assert_true(fabs(run_trap(with_mode(CSCD_METHOD_SINGLE, CSCD_MODE_EARLIEST), 0).earliest - 0.5) <= 1e-9);
 }
 
@@ -181,13 +183,13 @@ static void side_comes_to_lie_on_side(void **state) {
     add_horseshoe();
     move_to(2 * 3, 3, 8, 0);
     move_to(2 * 3 + 1, 3, 8, 4);
-    check_first_contact(CSCD_REASON_EARLIEST);
+    check_first_contact(CSCD_REASON_FINISHED);
     add_horseshoe();
     move_to(2 * 3, 3, 8, 0);
     move_to(2 * 3 + 1, 3, 8, 4);
     move_to(2 * 4, 3.5, 3, 0);
     move_to(2 * 4 + 1, 3.5, 3, 4);
-    check_first_contact(CSCD_REASON_EARLIEST);
+    check_first_contact(CSCD_REASON_FINISHED);
 }
 
 static uint32_t nearest_vertex(double x, double y, double z) {
@@ -213,7 +215,7 @@ static void three_sheets_at_one_point(void **state) {
     keep_still();
     for (int i = 0; i < 3; i++)
         move_to(nearest_vertex(cos(2.0 * PI * i / 3.0), sin(2.0 * PI * i / 3.0), 0.0), 0, 0, 0);
-    check_first_contact(CSCD_REASON_EARLIEST);
+    check_first_contact(CSCD_REASON_FINISHED);
     assert_true(run_trap(with_mode(CSCD_METHOD_SINGLE, CSCD_MODE_EARLIEST), 0).earliest > 1.0 - 1e-9);
 }
 
@@ -250,8 +252,8 @@ static void groove_with_minimum_separation(void **state) {
     options.method = CSCD_METHOD_BRUTE;
     trap_result truth = run_trap(options, 0);
     assert_true(found.count > 0 && found.count == truth.count && found.earliest == truth.earliest);
-    assert_int_equal(found.guarantee.reason, CSCD_REASON_METHOD);
-    assert_true(found.guarantee.complete && found.counters.plus == 0);
+    assert_int_equal(found.guarantee.reason, CSCD_REASON_EARLIEST);
+    assert_true(!found.guarantee.complete && found.counters.plus == 0);
 }
 
 /* ---- starts ---------------------------------------------------------------------------------------- */
