@@ -14,9 +14,10 @@ extern "C" {
 /* How triangle pairs that need no test are found and left out. Methods differ in time only: every method
  * promises what the mode says. Later versions may add values; cscd/research.h has methods to compare with. */
 typedef enum cscd_method {
-    CSCD_METHOD_AUTO,   /* the method of the plan, or NONE without a plan. A later version may choose better,
-                         * for each component and interval, with the same results */
-    CSCD_METHOD_NONE,   /* bounding volumes only */
+    CSCD_METHOD_AUTO, /* by the regions of the plan, without a plan as SINGLE; but only in the components and
+                         * intervals in which culling pays, as counts of work tell, else as NONE. A later version
+                         * may choose better, with the same results */
+    CSCD_METHOD_NONE, /* bounding volumes only */
     CSCD_METHOD_SINGLE, /* culling by orientation, one region for each component */
     CSCD_METHOD_KMEANS, /* culling by orientation, regions by k-means */
     CSCD_METHOD_CHARGE, /* culling by orientation, regions by charge density */

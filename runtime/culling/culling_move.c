@@ -156,21 +156,25 @@ static void move_states_of_object(const start_states *s, const object_range *ran
 
 cscd_status start_states_move(const start_states *s, const cscd_mesh *mesh, const cscd_mesh_change *change,
                               start_states *out) {
-    if (!s->known) return start_states_create(mesh, out);
+    if (!s->known) {
+        cscd_status status = start_states_create(mesh, out);
+        if (status == CSCD_OK) out->adapts = s->adapts;
+        return status;
+    }
     start_states moved = {.context = mesh->context, .mesh = mesh, .known = true};
     if (!context_reserve_all(moved.context, start_states_arrays(&moved))) return CSCD_OUT_OF_MEMORY;
-    memset(moved.of, 0, mesh->component_count * sizeof *moved.of);
+    for (uint32_t c = 0; c < mesh->component_count; c++) component_start_begin(&moved.of[c]);
     moved.partly = s->partly || change->described_count > 0;
     moved.vouched = s->vouched;
     moved.share_worth_it = s->share_worth_it;
+    moved.adapts = s->adapts;
     for (uint32_t i = 0; i < change->run_count; i++) move_states_of_run(s, &change->runs[i], &moved);
     for (uint32_t i = 0; i < change->described_count; i++)
         move_states_of_object(s, &change->described[i], change, &moved);
     for (uint32_t c = 0; c < change->components.new_count; c++) {
         uint32_t origin = change->components.to_old[c];
         if (origin == UINT32_MAX) continue;
-        moved.of[c].waiting = s->of[origin].waiting;
-        moved.of[c].backoff = s->of[origin].backoff;
+        moved.of[c] = s->of[origin];
     }
     *out = moved;
     return CSCD_OK;

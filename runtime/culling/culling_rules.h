@@ -6,10 +6,11 @@
 /* With none of these rules every pair is tested, and by_orientation alone loses no contact. Each of the others comes
  * from the literature and may lose contacts. */
 typedef struct culling_rules {
-    bool by_orientation;        /* pairs of triangles of one region are culled by their orientation */
-    bool assumes_clean;         /* every triangle counts as clean at the start; nothing is proven */
-    bool embedded_only;         /* a component is culled only if all its triangles are clean */
-    bool still_points;          /* detector points stay where they are at the start */
+    bool by_orientation; /* pairs of triangles of one region are culled by their orientation */
+    bool where_it_pays;  /* ... in the components and intervals in which culling pays (culling_choice.h) */
+    bool assumes_clean;  /* every triangle counts as clean at the start; nothing is proven */
+    bool embedded_only;  /* a component is culled only if all its triangles are clean */
+    bool still_points;   /* detector points stay where they are at the start */
     bool fixed_representatives; /* the first triangle at a feature tests it, whatever the orientations */
     bool skips_adjacent;        /* triangles that share a vertex are not tested, and orphan pairs neither */
     bool joins_components;      /* all components form one region, and all obstacles another */

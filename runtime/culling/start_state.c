@@ -18,9 +18,14 @@ array_list start_states_arrays(start_states *s) {
                          ARRAY(s->component_scratch, components), ARRAY(s->largest, components)}};
 }
 
+void component_start_begin(component_start *start) {
+    *start = (component_start){.moved = true, .culls = true};
+}
+
 cscd_status start_states_create(const cscd_mesh *mesh, start_states *out) {
     start_states s = {.context = mesh->context, .mesh = mesh, .share_worth_it = share_worth_it};
     if (!context_allocate_all(s.context, start_states_arrays(&s))) return CSCD_OUT_OF_MEMORY;
+    for (uint32_t c = 0; c < mesh->component_count; c++) component_start_begin(&s.of[c]);
     *out = s;
     return CSCD_OK;
 }
@@ -95,7 +100,8 @@ static void begin_object(start_states *s, const double *x, const cscd_object *ob
     uint32_t begin = object->first_triangle, end = begin + object->triangle_count;
     if (memcmp(s->positions + first, x + first, size) == 0) return;
     for (uint32_t t = begin; t < end; t++) {
-        for (int i = 0; i < 3; i++) moved[components[t]] |= vertex_moved(s, x, mesh->triangles[t][i]);
+        bool *whole = &moved[components[t]];
+        for (int i = 0; i < 3 && !*whole; i++) *whole = vertex_moved(s, x, mesh->triangles[t][i]);
     }
     for (uint32_t t = begin; t < end; t++) {
         if (moved[components[t]]) s->triangles[t] = TRIANGLE_UNKNOWN;
@@ -109,6 +115,7 @@ void start_states_begin(start_states *s, const double *x) {
     if (!s->known) memset(s->triangles, TRIANGLE_UNKNOWN, mesh->triangle_count);
     for (uint32_t i = 0; s->known && i < mesh->object_count; i++)
         begin_object(s, x, &mesh->objects[i], moved);
+    for (uint32_t c = 0; c < mesh->component_count; c++) s->of[c].moved |= moved[c];
     s->counted = false;
     remember_positions(s, x);
 }
@@ -268,6 +275,7 @@ uint32_t start_states_mark_unproven(start_states *s, bool *unproven) {
         component_start *start = &s->of[c];
         bool may_be_culled = mesh->components[c].closed_manifold && !component_is_obstacle(mesh, c) &&
                              !(s->never_culled != NULL && s->never_culled[c]);
+        if (s->adapts) may_be_culled &= start->chosen;
         wanted[c] = may_be_culled && start->unknown > 0 && start->waiting == 0;
         if (start->unknown > 0 && start->waiting > 0) start->waiting--;
         any |= wanted[c];

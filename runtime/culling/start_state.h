@@ -18,6 +18,20 @@ typedef enum triangle_state {
 typedef struct component_start {
     uint32_t unknown, crossing, clean; /* numbers of triangles in these states */
     uint32_t waiting, backoff;         /* in intervals: until the next check, and between the last two */
+
+    /* Of culling_choice.c, with costs in its unit. In this interval: */
+    bool moved;          /* its start is not the end of the last one */
+    bool chosen;         /* it is culled, if enough of it is clean */
+    double proof;        /* what the proof of the start costs, if it is culled */
+    double unproven_now; /* `unproven`, with this interval */
+    /* From one interval to the next: */
+    bool seen, culls, has_been_plain; /* the last interval, its choice, and whether it was ever not to cull */
+    uint32_t distrust;                /* what culling would save counts for 2^-distrust */
+    double regret;                    /* what the other way would have saved */
+    double stay;                      /* what culling has saved since it was chosen */
+    double kept;                      /* pairs that it keeps, for each triangle */
+    double unproven;                  /* mean share of triangles that an interval has to prove anew */
+    double touched;                   /* about that share of triangles was tainted in the last interval */
 } component_start;
 
 /* A run of start_states.queue that holds free triangles connected over edges. */
@@ -42,6 +56,9 @@ typedef struct start_states {
     uint32_t *queue;          /* scratch, per triangle */
     free_patch *largest;      /* scratch, per component */
     bool *component_scratch;
+    uint32_t *counts; /* scratch, per component */
+    bool
+        adapts; /* components are culled where it pays (culling_choice.h), and checks wait for nothing else */
     double share_worth_it; /* below this share of clean triangles neither culling nor a check pays */
 } start_states;
 
@@ -50,6 +67,9 @@ typedef struct start_states {
 static inline bool start_states_pay(const start_states *s, uint32_t clean, uint32_t triangle_count) {
     return clean > 0 && (double)clean >= s->share_worth_it * (double)triangle_count;
 }
+
+/* Nothing is known, and nothing has been seen. */
+void component_start_begin(component_start *start);
 
 /* Its arrays, for those who copy them. */
 array_list start_states_arrays(start_states *s);

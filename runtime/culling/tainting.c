@@ -54,7 +54,7 @@ uint32_t tainting_look(const tainting *t, const cscd_contact *contacts, size_t c
         const cscd_contact *contact = &contacts[i];
         uint32_t component = tainting_component(t->mesh, contact);
         if (component == UINT32_MAX) continue;
-        t->touched[component] = true;
+        t->touched[component]++;
         if (contact->toi - t->within > t->earliest[component]) continue;
         if (contact->kind == CSCD_CONTACT_VF)
             newly_kept += taint_vertex(t, contact->a) + tainting_triangle(t, contact->b);
@@ -68,10 +68,10 @@ static void mark_star(const uint32_t *stars, const uint32_t *offsets, uint32_t f
     for (uint32_t i = offsets[feature]; i < offsets[feature + 1]; i++) triangles[stars[i]] = true;
 }
 
-void tainting_mark(const cscd_mesh *mesh, const cscd_contact *contact, bool *triangles, bool *touched) {
+void tainting_mark(const cscd_mesh *mesh, const cscd_contact *contact, bool *triangles, uint32_t *touched) {
     uint32_t component = tainting_component(mesh, contact);
     if (component == UINT32_MAX) return;
-    touched[component] = true;
+    touched[component]++;
     if (contact->kind == CSCD_CONTACT_VF) {
         mark_star(mesh->vertex_stars, mesh->vertex_star_offsets, contact->a, triangles);
         triangles[contact->b] = true;

@@ -10,7 +10,7 @@ typedef struct tainting {
     start_states *starts;
     culling *culling;
     const bool *closes; /* per component: tainted triangles lose their orientations */
-    bool *touched;      /* per component: does it have a contact with itself? */
+    uint32_t *touched;  /* per component: how many contacts it has with itself */
     double *earliest;   /* per component: the least toi of a contact with itself that was noted */
     double within;      /* contacts that are later than the earliest by more than this taint nothing */
 } tainting;
@@ -26,6 +26,6 @@ void tainting_note(const cscd_mesh *mesh, const cscd_contact *contacts, size_t c
 uint32_t tainting_look(const tainting *t, const cscd_contact *contacts, size_t count);
 
 /* The same in two parts, for a contact that is not kept: first the triangles that it taints are marked, and its
- * component as touched; later each is tainted, which returns 1 if its pairs are newly kept, else 0. */
-void tainting_mark(const cscd_mesh *mesh, const cscd_contact *contact, bool *triangles, bool *touched);
+ * component as touched once more; later each is tainted, which returns 1 if its pairs are newly kept, else 0. */
+void tainting_mark(const cscd_mesh *mesh, const cscd_contact *contact, bool *triangles, uint32_t *touched);
 uint32_t tainting_triangle(const tainting *t, uint32_t triangle);

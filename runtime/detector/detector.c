@@ -43,7 +43,14 @@ static cscd_status check_options(cscd_context *context, const cscd_detector_opti
     return separation_check(context, options->min_separation, options->tolerance);
 }
 
-/* Without a plan only SINGLE culls; a plan must be the mesh's, and of the method asked for. */
+static bool any_may_be_culled(const cscd_mesh *mesh) {
+    for (uint32_t c = 0; c < mesh->component_count; c++) {
+        if (mesh->components[c].closed_manifold && !component_is_obstacle(mesh, c)) return true;
+    }
+    return false;
+}
+
+/* Without a plan only SINGLE and AUTO cull, with a region for each component; a plan must be the mesh's, and of the method asked for. */
 static cscd_status choose_method(const cscd_mesh *mesh, const cscd_plan *plan,
                                  cscd_detector_options *options) {
     cscd_context *context = mesh->context;
@@ -52,7 +59,7 @@ static cscd_status choose_method(const cscd_mesh *mesh, const cscd_plan *plan,
                             "the plan was made for another mesh (hash %016llx, this one has %016llx)",
                             (unsigned long long)plan->mesh_hash, (unsigned long long)cscd_mesh_hash(mesh));
     cscd_method method = options->method;
-    if (method == CSCD_METHOD_AUTO) method = plan != NULL ? plan->method : CSCD_METHOD_NONE;
+    if (method == CSCD_METHOD_AUTO && plan == NULL && !any_may_be_culled(mesh)) method = CSCD_METHOD_NONE;
     options->method = method;
     if (method_stages_of(method)->rules == NULL)
         return context_fail(context, CSCD_INVALID_ARGUMENT,
@@ -69,9 +76,10 @@ array_list detector_arrays(cscd_detector *d) {
     size_t components = d->mesh->component_count, lanes = d->space.traversal.lane_count;
     return (array_list){{ARRAY(d->culled, components), ARRAY(d->closes, components),
                          ARRAY(d->touched, components), ARRAY(d->incomplete, components),
-                         ARRAY(d->earliest, components), ARRAY(d->guarantees, components),
-                         ARRAY(d->reached_scalars, d->mesh->object_count), ARRAY(d->contacts_seen, lanes),
-                         ARRAY(d->never_culled, components)}};
+                         ARRAY(d->earliest, components), ARRAY(d->kept, components),
+                         ARRAY_IF(d->rules.where_it_pays, d->kept_by_lanes, components * lanes),
+                         ARRAY(d->guarantees, components), ARRAY(d->reached_scalars, d->mesh->object_count),
+                         ARRAY(d->contacts_seen, lanes), ARRAY(d->never_culled, components)}};
 }
 
 void detector_choose_regions(cscd_detector *d) {
@@ -97,6 +105,7 @@ static cscd_status create_parts(cscd_detector *d, const cscd_plan *plan) {
     if (status == CSCD_OK && d->rules.joins_components) culling_join_components(&d->culling);
     if (status == CSCD_OK) detector_choose_regions(d);
     if (status == CSCD_OK) status = start_states_create(d->mesh, &d->starts);
+    d->starts.adapts = d->rules.where_it_pays;
     if (status == CSCD_OK) status = static_check_create(d->mesh, d->space.traversal.lane_count, &d->check);
     if (status == CSCD_OK) status = detector_create_hider(d);
     if (status == CSCD_OK) status = rollback_create(d->mesh, &d->before);

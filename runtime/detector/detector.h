@@ -56,12 +56,19 @@ struct cscd_detector {
     } cap;
 
     /* Per component, in the current interval: */
-    bool *culled;  /* its pairs are culled */
-    bool *closes;  /* it is culled, and closing passes find all its contacts, or all that are early enough */
-    bool *touched; /* it has a contact with itself */
-    bool *incomplete; /* some of its contacts may be missing */
+    bool *culled; /* its pairs are culled */
+    bool *closes; /* it is culled, and closing passes find all its contacts, or all that are early enough */
+    uint32_t *touched; /* so many contacts it has with itself */
+    bool *incomplete;  /* some of its contacts may be missing */
+    uint32_t
+        *kept; /* so many pairs of its triangles were not culled, where that decides (culling_choice.h) */
+    uint32_t *kept_by_lanes; /* the same for each lane in turn */
     double *earliest; /* the least toi of its contacts with itself, where only the earliest are wanted */
 
+    uint32_t intervals; /* that the vertices have gone through */
+    bool counts_kept;   /* ... and of the current interval: */
+    bool lists_earliest;
+    uint64_t passes;            /* its closing passes */
     size_t *contacts_seen;      /* per lane: so many of its contacts have tainted triangles */
     cscd_guarantee *guarantees; /* per component, of the last step */
 

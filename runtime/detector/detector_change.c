@@ -181,6 +181,8 @@ static void exchange_parts(cscd_detector *a, cscd_detector *b) {
     EXCHANGE(closes);
     EXCHANGE(touched);
     EXCHANGE(earliest);
+    EXCHANGE(kept);
+    EXCHANGE(kept_by_lanes);
     EXCHANGE(incomplete);
     EXCHANGE(contacts_seen);
     EXCHANGE(guarantees);

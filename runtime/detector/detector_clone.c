@@ -60,6 +60,7 @@ static cscd_status clone_lists(const cscd_detector *from, cscd_detector *d) {
     memcpy(d->never_culled, from->never_culled, components * sizeof *d->never_culled);
     memcpy(d->guarantees, from->guarantees, components * sizeof *d->guarantees);
     d->all_never_culled = from->all_never_culled;
+    d->intervals = from->intervals;
     return CSCD_OK;
 }
 

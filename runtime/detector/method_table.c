@@ -12,8 +12,10 @@
 
 static const culling_rules tests_every_pair = {.by_orientation = false};
 static const culling_rules culls_by_orientation = {.by_orientation = true};
+static const culling_rules culls_where_it_pays = {.by_orientation = true, .where_it_pays = true};
 
 static const method_stages stages[] = {
+    {CSCD_METHOD_AUTO, .rules = &culls_where_it_pays},
     {CSCD_METHOD_NONE, .rules = &tests_every_pair},
     {CSCD_METHOD_BRUTE, .rules = &tests_every_pair, .brute_force = true},
     {CSCD_METHOD_SINGLE, .rules = &culls_by_orientation},
@@ -44,8 +46,7 @@ bool cscd_method_describe_sized(cscd_method method, cscd_method_info *out, size_
                              .loses_contacts = found->loses_contacts,
                              .by_orientation = found->by_orientation,
                              .by_contours = found->by_contours,
-                             .available =
-                                 method == CSCD_METHOD_AUTO || method_stages_of(method)->rules != NULL};
+                             .available = method_stages_of(method)->rules != NULL};
     struct_give(out, size, &info, sizeof info);
     return true;
 }

@@ -2,8 +2,10 @@
 #include "runtime/detector/step.h"
 
 #include "runtime/culling/tainting.h"
+#include "runtime/detector/adaptive.h"
 #include "runtime/detector/contact_list.h"
 #include "runtime/detector/earliest_contacts.h"
+#include "runtime/detector/guarantee.h"
 #include "runtime/detector/interval_search.h"
 #include "runtime/detector/list_cap.h"
 #include "runtime/detector/waiting.h"
@@ -27,16 +29,27 @@ typedef struct step_work {
     cscd_contacts contacts;
 } step_work;
 
+/* A first contact that is to be left out may hide the one to report: then mode EARLIEST finds all contacts, too. */
+static bool finds_all_contacts(const step_work *work) {
+    return work->mode == CSCD_MODE_ALL || exclusions_any(&work->detector->exclusions);
+}
+
+/* Are only the earliest contacts of each component with itself listed? The published methods promise nothing. */
+static bool lists_earliest(const step_work *work) {
+    return !finds_all_contacts(work) && !work->detector->traits->loses_contacts;
+}
+
 static void begin_interval(step_work *work) {
     cscd_detector *d = work->detector;
     d->rebuild.rebuilt = false;
     culling_clear(&d->culling);
-    for (uint32_t c = 0; c < d->mesh->component_count; c++)
-        d->culled[c] = d->closes[c] = d->touched[c] = false;
+    for (uint32_t c = 0; c < d->mesh->component_count; c++) d->culled[c] = d->closes[c] = false;
+    d->lists_earliest = lists_earliest(work);
     earliest_begin(d);
     for (uint32_t i = 0; i < d->space.traversal.lane_count; i++) d->contacts_seen[i] = 0;
     if (detector_culls(d) && d->options.start == CSCD_START_VOUCHED) start_states_vouch(&d->starts);
     start_states_count(&d->starts);
+    adaptive_begin(d);
     if (work->rehearsal) start_states_save(&d->starts);
 }
 
@@ -110,20 +123,11 @@ static cscd_status hide_pairs(step_work *work) {
     return status;
 }
 
-/* A first contact that is to be left out may hide the one to report: then mode EARLIEST finds all contacts, too. */
-static bool finds_all_contacts(const step_work *work) {
-    return work->mode == CSCD_MODE_ALL || exclusions_any(&work->detector->exclusions);
-}
-
-/* Are only the earliest contacts of each component with itself listed? The published methods promise nothing. */
-static bool lists_earliest(const step_work *work) {
-    return !finds_all_contacts(work) && !work->detector->traits->loses_contacts;
-}
-
 static bool is_culled(const cscd_detector *d, uint32_t component, uint32_t clean, uint32_t triangle_count) {
     if (!detector_culls(d) || d->never_culled[component]) return false;
     if (d->rules.assumes_clean) return true;
     if (d->rules.embedded_only) return clean == triangle_count;
+    if (d->rules.where_it_pays && !d->starts.of[component].chosen) return false;
     return start_states_pay(&d->starts, clean, triangle_count);
 }
 
@@ -192,9 +196,9 @@ static uint32_t taint_by_contacts(const step_work *work) {
                         d->closes,
                         d->touched,
                         d->earliest,
-                        lists_earliest(work) ? earliest_tainting : INFINITY};
+                        d->lists_earliest ? earliest_tainting : INFINITY};
     uint32_t newly_kept = 0;
-    if (lists_earliest(work)) earliest_note(d);
+    if (d->lists_earliest) earliest_note(d);
     for (uint32_t i = 0; detector_culls(d) && i < d->space.traversal.lane_count; i++) {
         const contact_lane *lane = &d->space.lanes[i];
         newly_kept +=
@@ -220,6 +224,7 @@ static cscd_status close_contacts(step_work *work) {
         cscd_status status = interval_search_traverse(&work->search, TRAVERSAL_NEWLY_KEPT);
         if (status != CSCD_OK) return status;
         work->search.counters.passes++;
+        d->passes++;
     }
 }
 
@@ -239,7 +244,7 @@ static cscd_status collect_contacts(step_work *work) {
     cscd_detector *d = work->detector;
     work->search.counters.rebuilds = d->rebuild.rebuilt;
     taint_by_contacts(work);
-    if (lists_earliest(work)) earliest_drop_later(d, earliest_share);
+    if (d->lists_earliest) earliest_drop_later(d, earliest_share);
     double since = timer_now_ms();
     cscd_status status = contact_list_collect(&d->space, &d->exclusions, &d->contacts, &work->search.counters,
                                               &work->contacts);
@@ -268,32 +273,6 @@ static cscd_status run_stages(step_stage *const *stages, step_work *work) {
     return status;
 }
 
-/* ---- guarantees ------------------------------------------------------------------------------------ */
-
-/* Returns the reason in a component's guarantee, for a method that culls. */
-static cscd_reason culling_reason(const cscd_detector *d, uint32_t component, bool embedded) {
-    if (d->never_culled[component]) return CSCD_REASON_METHOD;
-    if (!d->mesh->components[component].closed_manifold) return CSCD_REASON_SURFACE;
-    if (!embedded) return d->starts.of[component].crossing > 0 ? CSCD_REASON_CROSSING : CSCD_REASON_UNPROVEN;
-    return d->touched[component] ? CSCD_REASON_FINISHED : CSCD_REASON_CLEAN;
-}
-
-static cscd_guarantee guarantee_of(const step_work *work, uint32_t component) {
-    const cscd_detector *d = work->detector;
-    bool embedded = d->starts.of[component].clean == d->mesh->components[component].triangle_count;
-    if (component_is_obstacle(d->mesh, component))
-        return (cscd_guarantee){false, false, CSCD_REASON_OBSTACLE};
-    if (detector_masks(d, component)) return (cscd_guarantee){false, false, CSCD_REASON_MASK};
-    bool hides = detector_hides_pairs(d), by_method = detector_culls(d) || hides;
-    if (by_method && d->traits->loses_contacts)
-        return (cscd_guarantee){false, embedded, CSCD_REASON_PUBLISHED};
-    if (lists_earliest(work) && d->earliest[component] < INFINITY)
-        return (cscd_guarantee){false, embedded, CSCD_REASON_EARLIEST};
-    if (!by_method) return (cscd_guarantee){true, embedded, CSCD_REASON_METHOD};
-    if (!detector_culls(d)) return (cscd_guarantee){true, embedded, CSCD_REASON_CONTOUR};
-    return (cscd_guarantee){true, embedded, culling_reason(d, component, embedded)};
-}
-
 cscd_status step_find(cscd_detector *d, const double *x0, const double *x1, cscd_mode mode, bool rehearsal,
                       step_outcome *out) {
     step_work work = {.detector = d,
@@ -303,12 +282,11 @@ cscd_status step_find(cscd_detector *d, const double *x0, const double *x1, cscd
                       .rehearsal = rehearsal,
                       .all_clean = true};
     begin_interval(&work);
-    if (!rehearsal)
-        list_cap_begin(d, &work.search, lists_earliest(&work) ? CAP_KEEPS_EARLIEST : CAP_TAINTS_ALL);
+    if (!rehearsal) list_cap_begin(d, &work.search, d->lists_earliest ? CAP_KEEPS_EARLIEST : CAP_TAINTS_ALL);
     cscd_status status = run_stages(d->stages->brute_force ? stages_by_brute_force : stages_by_trees, &work);
     if (status == CSCD_LIST_TOO_LONG) out->contacts = work.contacts;
     if (status != CSCD_OK) return status;
-    for (uint32_t c = 0; c < d->mesh->component_count; c++) d->guarantees[c] = guarantee_of(&work, c);
+    for (uint32_t c = 0; c < d->mesh->component_count; c++) d->guarantees[c] = guarantee_of(d, c);
     out->contacts = work.contacts;
     out->timings = work.search.timings;
     out->counters = work.search.counters;
@@ -326,6 +304,7 @@ void step_take(cscd_detector *d, const double *end) {
         const cscd_guarantee *g = &d->guarantees[c];
         d->incomplete[c] = !g->complete && g->reason != CSCD_REASON_OBSTACLE;
     }
+    adaptive_learn(d);
     start_states_end(&d->starts, end, d->incomplete);
 }
 

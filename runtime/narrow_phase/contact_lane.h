@@ -45,6 +45,8 @@ typedef struct contact_lane {
     uint64_t decided[ELEMENTARY_LEVEL_COUNT]; /* elementary tests, by the level that decided them */
     uint64_t separations;                     /* tests for minimum separation */
     bool out_of_memory;
+    uint32_t
+        *kept; /* per component that is culled: pairs of its triangles that came here; NULL: nobody asks */
     feature_list queue[2];        /* by cscd_contact_kind; see feature_queue.h */
     candidate_list candidates[2]; /* by cscd_contact_kind */
 } contact_lane;

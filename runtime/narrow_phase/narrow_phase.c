@@ -132,8 +132,20 @@ static void test_some(const swept_interval *interval, const triangle_pair *slots
     queue_pairs(interval, &open, lane);
 }
 
+/* Counts the pairs of components that are culled with themselves. */
+static void count_kept(const swept_interval *interval, const triangle_pair *slots, uint32_t count,
+                       uint32_t *kept) {
+    const uint32_t *components = interval->mesh->triangle_components;
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t a = components[bvh_triangle(interval->bvh, slots[i].a)],
+                 b = components[bvh_triangle(interval->bvh, slots[i].b)];
+        kept[a] += a == b && interval->culled[a];
+    }
+}
+
 void narrow_phase_test(const swept_interval *interval, const triangle_pair *pairs, uint32_t count,
                        contact_lane *lane) {
+    if (interval->culling != NULL && lane->kept != NULL) count_kept(interval, pairs, count, lane->kept);
     for (uint32_t i = 0; i < count && !lane->out_of_memory; i += PAIRS_AT_ONCE)
         test_some(interval, pairs + i, count - i < PAIRS_AT_ONCE ? count - i : PAIRS_AT_ONCE, lane);
 }

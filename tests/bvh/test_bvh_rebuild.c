@@ -49,10 +49,12 @@ typedef struct rebuild_run {
 
 static void open_run_on(rebuild_run *r, uint32_t threads, cscd_object_desc desc) {
     cscd_context_options options = cscd_context_defaults();
+    cscd_detector_options detector_options = cscd_detector_defaults();
     options.thread_count = threads;
+    detector_options.method = CSCD_METHOD_NONE; /* so that boxes count what trees are like */
     assert_int_equal(cscd_context_create(&options, &r->context), CSCD_OK);
     assert_int_equal(cscd_mesh_create(r->context, &desc, 1, &r->mesh), CSCD_OK);
-    assert_int_equal(detector_create_here(r->mesh, NULL, NULL, &r->detector), CSCD_OK);
+    assert_int_equal(detector_create_here(r->mesh, NULL, &detector_options, &r->detector), CSCD_OK);
 }
 
 static void open_run(rebuild_run *r, uint32_t threads) {

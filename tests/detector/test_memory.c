@@ -119,7 +119,8 @@ static void expect_steady_state(cscd_method method) {
     assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
     assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
     assert_int_equal(detector_create_here(mesh, NULL, &detector_options, &detector), CSCD_OK);
-    assert_int_equal(use_detector(detector, &out), CSCD_OK);
+    for (int i = 0; i < 8; i++) /* a change of what is culled allocates, too */
+        assert_int_equal(use_detector(detector, &out), CSCD_OK);
     size_t calls = counter.calls;
     for (int i = 0; i < 20; i++) assert_int_equal(use_detector(detector, &out), CSCD_OK);
     assert_int_equal(counter.calls, calls);

@@ -162,6 +162,8 @@ bool plan_choose(const plan_request *request, const recording *r, plan_choice *o
             chosen =
                 any_plan ? make_best(request, r, &choice, error) : make_requested(request, r, &choice, error);
     }
+    bool adapts = request->method == CSCD_METHOD_AUTO && choice.plan != NULL;
+    choice.steps_by = adapts ? CSCD_METHOD_AUTO : choice.method;
     if (chosen) *out = choice;
     return chosen;
 }

@@ -25,8 +25,9 @@ typedef enum plan_source { PLAN_FROM_NONE, PLAN_FROM_FILE, PLAN_FROM_MEMORY } pl
 const char *plan_source_name(plan_source source);
 
 typedef struct plan_choice {
-    cscd_plan *plan;    /* NULL: none */
-    cscd_method method; /* for the detector */
+    cscd_plan *plan;      /* NULL: none */
+    cscd_method method;   /* for the detector */
+    cscd_method steps_by; /* the same, or AUTO: culled by it where that pays */
     plan_source source;
     char *path;       /* of the file */
     double made_ms;   /* in memory */

@@ -49,7 +49,7 @@ static bool prepare_source(replay *r, io_error *error) {
     r->source.detector = (replay_detector){.options = r->options,
                                            .recording = &r->recording,
                                            .plan = r->plan.plan,
-                                           .method = r->plan.method,
+                                           .method = r->plan.steps_by,
                                            .ignored = &r->ignored,
                                            .answers = &r->answers,
                                            .takes_orientations = r->options->report.path != NULL ||

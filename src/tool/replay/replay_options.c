@@ -70,14 +70,13 @@ static const option_row rows[] = {
      "the regions that cscd preprocess found (default: MODEL.plan.ply if it fits, else made on the way: by "
      "charge up to 6000 triangles, else single)"},
     {"method", "charge|kmeans:K|single", read_method, 0,
-     "leave out pairs by such a plan, that of --plan or made on the way"},
+     "leave out pairs by such a plan, that of --plan or made on the way (default: by any plan, where it pays)"},
     {"method", "none|brute", .help = "leave out none; test all pairs of features, slow"},
     {"method", "iccd",
      .help = "leave out pairs by normal cones and contours (Tang et al. 2009): to compare with"},
     {"method", "published|iccd-published", .help = "as published, which loses contacts: for comparison only"},
     {"mode", "all|earliest", read_mode, offsetof(replay_options, mode),
-     "what is promised (default all: every contact; earliest: of each closed component that starts free of "
-     "intersections, the first contact with itself)"},
+     "what is promised (default all: every contact; earliest: of each component with itself, the first ones only)"},
     {"start", "prove", read_start, offsetof(replay_options, start),
      "leave out pairs only where it is proven that the mesh does not intersect itself when the interval starts "
      "(default)"},

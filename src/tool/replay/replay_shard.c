@@ -43,7 +43,7 @@ static uint64_t hash_model(const replay *r) {
 /* Of what a step depends on: regions and their points. */
 static uint64_t hash_plan(const replay *r) {
     const cscd_plan *plan = r->plan.plan;
-    const cscd_method method = r->plan.method;
+    const cscd_method method = r->plan.steps_by;
     uint64_t hash = provenance_hash(PROVENANCE_HASH_START, &method, sizeof method);
     if (plan == NULL) return hash;
     for (uint32_t i = 0; i < cscd_plan_region_count(plan); i++) {
