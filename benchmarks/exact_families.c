@@ -35,15 +35,15 @@ typedef enum family_motion {
     MOTION_MIRRORED /* as the other body, in the mirror x = 0 */
 } family_motion;
 
-typedef struct family {
+typedef struct motion_family {
     const char *name;
     family_shape shapes[2];
     family_motion motions[2];
     double offset[3]; /* of the second body */
     bool mirrored;    /* the second body is the first one in the mirror x = 0, without the offset along x */
-} family;
+} motion_family;
 
-static const family families[] = {
+static const motion_family families[] = {
     {"rings move evenly", {SHAPE_SPHERE, SHAPE_SPHERE}, {MOTION_WAVES, MOTION_UP}, {0.3, 0.2, 1.9}, false},
     {"rings, squashed", {SHAPE_SPHERE, SHAPE_SPHERE}, {MOTION_SQUASH, MOTION_SQUASH}, {0.3, 0.2, 1.7}, false},
     {"along an axis", {SHAPE_SPHERE, SHAPE_SPHERE}, {MOTION_STILL, MOTION_UP}, {0.1, 0.2, 2.1}, false},
@@ -167,7 +167,7 @@ typedef struct family_scene {
     double *ends[2];
 } family_scene;
 
-static void place_vertex(const family *f, int object, double far, const double at[3], double *start,
+static void place_vertex(const motion_family *f, int object, double far, const double at[3], double *start,
                          double *end) {
     bool mirrored = object == 1 && f->mirrored;
     double p[3] = {at[0], at[1], at[2]};
@@ -182,7 +182,7 @@ static void place_vertex(const family *f, int object, double far, const double a
     }
 }
 
-static void make_scene(const family *f, uint32_t triangle_count, double far, family_scene *out) {
+static void make_scene(const motion_family *f, uint32_t triangle_count, double far, family_scene *out) {
     static const double nowhere[3] = {0, 0, 0};
     *out = (family_scene){.ends = {NULL, NULL}};
     uint32_t first[3] = {0, 0, 0};
@@ -208,10 +208,10 @@ static void free_scene(family_scene *s) {
 
 /* ---- counting -------------------------------------------------------------------------------------------- */
 
-typedef struct family_tally {
+typedef struct exact_tally {
     uint64_t tests, exact;         /* of steps */
     uint64_t touching, flat, rest; /* of those that reach exact arithmetic */
-} family_tally;
+} exact_tally;
 
 /* Is the cubic, which has degree 3, 0 at four moments? */
 static bool is_always_flat(const elementary_query *q) {
@@ -227,7 +227,7 @@ static bool is_always_flat(const elementary_query *q) {
 
 /* Decides one pair again, which the step has decided before. */
 static void count_pair(const family_scene *s, const cscd_mesh *mesh, cscd_contact_kind kind,
-                       const uint32_t pair[2], family_tally *sum) {
+                       const uint32_t pair[2], exact_tally *sum) {
     elementary_query query;
     elementary_contact contact;
     uint32_t vertices[POINTS];
@@ -250,7 +250,7 @@ static void count_pair(const family_scene *s, const cscd_mesh *mesh, cscd_contac
     sum->rest += !verdict.touching && !is_always_flat(&query);
 }
 
-static cscd_status count_scene(cscd_context *context, const family_scene *s, family_tally *sum) {
+static cscd_status count_scene(cscd_context *context, const family_scene *s, exact_tally *sum) {
     const body *b = &s->whole;
     const cscd_object_desc object =
         cscd_object_of_triangles(b->vertex_count, b->triangle_count, b->triangles);
@@ -283,7 +283,7 @@ static cscd_status count_scene(cscd_context *context, const family_scene *s, fam
 
 /* ---- rows ------------------------------------------------------------------------------------------------ */
 
-static void report_family(const family *f, uint32_t triangle_count, const family_tally *t, json *out) {
+static void report_family(const motion_family *f, uint32_t triangle_count, const exact_tally *t, json *out) {
     double share = t->tests > 0 ? 100.0 * (double)t->rest / (double)t->tests : 0.0;
     printf("  %-22s %9u %10llu %8llu %9llu %8llu %8llu %9.3f %%\n", f->name, triangle_count,
            (unsigned long long)t->tests, (unsigned long long)t->exact, (unsigned long long)t->touching,
@@ -310,7 +310,7 @@ static bool run_families(const bench_options *o, json *out, io_error *error) {
            "flat", "rest", "rest/tests");
     for (uint32_t k = 0; k < o->size_count; k++) {
         for (size_t i = 0; status == CSCD_OK && i < sizeof families / sizeof *families; i++) {
-            family_tally sum = {0};
+            exact_tally sum = {0};
             uint32_t triangles = 0;
             for (uint32_t n = 0; status == CSCD_OK && n < scenes; n++) {
                 family_scene s;
