@@ -1,28 +1,10 @@
 /* Pairs of features that only triangles with a common vertex contain. */
-#include "runtime/narrow_phase/orphan_pairs.h"
+#include "runtime/narrow_phase/orphan_search.h"
 
-enum { PAIRS_PER_TRIANGLE = 8 };
-
-typedef struct growing_list {
-    uint32_t (*items)[2];
-    size_t count, capacity;
-} growing_list;
-
-typedef struct orphan_search {
-    const cscd_mesh *mesh;
-    growing_list vf, ee;
-    size_t most;
-    bool out_of_memory;
-    uint8_t *features;        /* per triangle, as first_features says; or NULL */
-    uint32_t (*opposites)[2]; /* per edge, as find_opposites says; or NULL */
-
-    /* In a mesh that was made from another one: pairs of features that are what they were are known. */
-    const cscd_mesh_change *change; /* NULL: nothing is known */
-    uint8_t *marks;                 /* per vertex, of objects that have changed */
-} orphan_search;
+#include "runtime/narrow_phase/orphan_edges.h"
 
 /* Does every triangle at vertex v share a vertex with triangle f? */
-static bool is_orphan_vertex(const cscd_mesh *mesh, uint32_t v, uint32_t f) {
+bool orphan_search_says_vertex(const cscd_mesh *mesh, uint32_t v, uint32_t f) {
     for (uint32_t i = mesh->vertex_star_offsets[v]; i < mesh->vertex_star_offsets[v + 1]; i++) {
         if (!triangles_share_vertex(mesh->triangles[mesh->vertex_stars[i]], mesh->triangles[f])) return false;
     }
@@ -41,8 +23,6 @@ static bool are_orphan_edges(const cscd_mesh *mesh, uint32_t a, uint32_t b) {
 }
 
 /* ---- by the corners opposite edges ------------------------------------------------------------------------ */
-
-enum { NO_CORNER = UINT32_MAX, MANY_CORNERS = UINT32_MAX - 1 };
 
 /* Writes the corners opposite an edge: NO_CORNER in the second place for an edge of one triangle, MANY_CORNERS for one of more
  * than two. */
@@ -77,25 +57,25 @@ static bool opposites_say_orphan(const orphan_search *f, uint32_t a, uint32_t b)
     return true;
 }
 
-static bool edges_are_orphans(const orphan_search *f, uint32_t a, uint32_t b) {
+bool orphan_search_says(const orphan_search *f, uint32_t a, uint32_t b) {
     return f->opposites != NULL ? opposites_say_orphan(f, a, b) : are_orphan_edges(f->mesh, a, b);
 }
 
 /* ---- the search --------------------------------------------------------------------------------------------- */
 
 /* There are too many, or memory has run out. */
-static bool has_enough(const orphan_search *f) {
+bool orphan_search_has_enough(const orphan_search *f) {
     return f->out_of_memory || f->vf.count + f->ee.count > f->most;
 }
 
 static cscd_status end_search(const orphan_search *f, orphan_pairs *out, bool *too_many) {
     *out = (orphan_pairs){f->vf.items, f->ee.items, f->vf.count, f->ee.count};
-    *too_many = has_enough(f) && !f->out_of_memory;
-    if (has_enough(f)) orphan_pairs_free(f->mesh->context, out);
+    *too_many = orphan_search_has_enough(f) && !f->out_of_memory;
+    if (orphan_search_has_enough(f)) orphan_pairs_free(f->mesh->context, out);
     return f->out_of_memory ? CSCD_OUT_OF_MEMORY : CSCD_OK;
 }
 
-static void add_pair(orphan_search *f, growing_list *list, uint32_t a, uint32_t b) {
+void orphan_search_add(orphan_search *f, growing_list *list, uint32_t a, uint32_t b) {
     if (list->count == list->capacity) {
         size_t capacity = list->capacity * 2 + 64;
         uint32_t(*grown)[2] =
@@ -151,8 +131,9 @@ static void find_edges_between(orphan_search *f, uint32_t t, uint32_t edges_t, u
     for (int i = 0; i < 9; i++) {
         if ((edges_t >> i / 3 & edges_u >> i % 3 & 1) == 0) continue;
         uint32_t a = mesh->triangle_edges[t][i / 3], b = mesh->triangle_edges[u][i % 3];
+        if (f->even != NULL && f->even[a] && f->even[b]) continue;
         if (ee_is_known(f, a, b) || edges_share_vertex(mesh->edges[a], mesh->edges[b])) continue;
-        if (edges_are_orphans(f, a, b)) add_pair(f, &f->ee, a < b ? a : b, a < b ? b : a);
+        if (orphan_search_says(f, a, b)) orphan_search_add(f, &f->ee, a < b ? a : b, a < b ? b : a);
     }
 }
 
@@ -163,8 +144,8 @@ static void find_between(orphan_search *f, uint32_t t, uint32_t features, uint32
     for (int i = 0; i < 3; i++) {
         uint32_t v = mesh->triangles[t][i];
         if ((features >> i & 1) != 0 && !vf_is_known(f, v, u) && !triangle_contains(mesh->triangles[u], v) &&
-            is_orphan_vertex(mesh, v, u))
-            add_pair(f, &f->vf, v, u);
+            orphan_search_says_vertex(mesh, v, u))
+            orphan_search_add(f, &f->vf, v, u);
     }
     if (t < u && features >> 3 != 0) find_edges_between(f, t, features >> 3, u, features_of(f, u) >> 3);
 }
@@ -194,22 +175,32 @@ static void find_around(orphan_search *f, uint32_t t) {
                         (i > 1 && triangle_contains(other, corners[1]));
             if (u != t && !seen && !pairs_are_known(f, t, u)) find_between(f, t, features, u);
         }
-        if (has_enough(f)) return;
+        if (orphan_search_has_enough(f)) return;
     }
 }
 
 cscd_status orphan_pairs_create(const cscd_mesh *mesh, orphan_pairs *out, bool *too_many) {
-    orphan_search f = {.mesh = mesh, .most = (size_t)mesh->triangle_count * PAIRS_PER_TRIANGLE};
+    orphan_search f = {.mesh = mesh, .most = (size_t)mesh->triangle_count * ORPHANS_PER_TRIANGLE};
+    bool *uneven;
     *out = (orphan_pairs){.vf = NULL};
-    array_list arrays = {{ARRAY(f.features, mesh->triangle_count), ARRAY(f.opposites, mesh->edge_count)}};
+    array_list arrays = {{ARRAY(f.features, mesh->triangle_count), ARRAY(f.opposites, mesh->edge_count),
+                          ARRAY(f.even, mesh->edge_count), ARRAY(uneven, mesh->vertex_count)}};
     if (!context_reserve_all(mesh->context, arrays)) return CSCD_OUT_OF_MEMORY;
     for (uint32_t t = 0; t < mesh->triangle_count; t++) f.features[t] = (uint8_t)first_features(mesh, t);
     for (uint32_t e = 0; e < mesh->edge_count; e++) find_opposites(mesh, e, f.opposites[e]);
-    for (uint32_t t = 0; t < mesh->triangle_count && !has_enough(&f); t++) {
-        if (!triangle_of_obstacle(mesh, t)) find_around(&f, t);
+    orphan_edges_mark(&f, uneven);
+    for (uint32_t t = 0; t < mesh->triangle_count && !orphan_search_has_enough(&f); t++) {
+        if (triangle_of_obstacle(mesh, t)) continue;
+        if (orphan_edges_near(mesh, uneven, t))
+            find_around(&f, t);
+        else
+            orphan_edges_vertices(&f, t);
+        orphan_edges_of(&f, t);
     }
     context_free(mesh->context, f.features);
     context_free(mesh->context, f.opposites);
+    context_free(mesh->context, f.even);
+    context_free(mesh->context, uneven);
     return end_search(&f, out, too_many);
 }
 
@@ -250,37 +241,37 @@ static void find_in_object(orphan_search *f, const object_range *range) {
         for (int i = 0; (marks_of(f, t) & VERTEX_CHANGED) != 0 && i < 3; i++)
             f->marks[f->mesh->triangles[t][i]] |= VERTEX_NEAR;
     }
-    for (uint32_t t = range->triangle; t < end && !has_enough(f); t++) {
+    for (uint32_t t = range->triangle; t < end && !orphan_search_has_enough(f); t++) {
         if ((marks_of(f, t) & VERTEX_NEAR) != 0 && !triangle_of_obstacle(f->mesh, t)) find_around(f, t);
     }
 }
 
 static void keep_vf(orphan_search *f, uint32_t v, uint32_t t) {
     if (v != UINT32_MAX && t != UINT32_MAX && vf_is_known(f, v, t) && !triangle_of_obstacle(f->mesh, t))
-        add_pair(f, &f->vf, v, t);
+        orphan_search_add(f, &f->vf, v, t);
 }
 
 static void keep_ee(orphan_search *f, uint32_t a, uint32_t b) {
     if (a == UINT32_MAX || b == UINT32_MAX || !ee_is_known(f, a, b)) return;
     if (!triangle_of_obstacle(f->mesh, f->mesh->edge_stars[f->mesh->edge_star_offsets[a]]))
-        add_pair(f, &f->ee, a < b ? a : b, a < b ? b : a);
+        orphan_search_add(f, &f->ee, a < b ? a : b, a < b ? b : a);
 }
 
 /* Objects that have not changed keep all of their pairs. */
 static void keep_known(orphan_search *f, const orphan_pairs *pairs) {
     const number_map *vertices = &f->change->vertices, *edges = &f->change->edges,
                      *triangles = &f->change->triangles;
-    for (size_t i = 0; i < pairs->vf_count && !has_enough(f); i++) {
+    for (size_t i = 0; i < pairs->vf_count && !orphan_search_has_enough(f); i++) {
         uint32_t v = pairs->vf[i][0], t = pairs->vf[i][1];
         if (number_map_run(triangles, t) != NULL)
-            add_pair(f, &f->vf, number_map_to_new(vertices, v), number_map_to_new(triangles, t));
+            orphan_search_add(f, &f->vf, number_map_to_new(vertices, v), number_map_to_new(triangles, t));
         else
             keep_vf(f, vertices->to_new[v], triangles->to_new[t]);
     }
-    for (size_t i = 0; i < pairs->ee_count && !has_enough(f); i++) {
+    for (size_t i = 0; i < pairs->ee_count && !orphan_search_has_enough(f); i++) {
         uint32_t a = pairs->ee[i][0], b = pairs->ee[i][1];
         if (number_map_run(edges, a) != NULL)
-            add_pair(f, &f->ee, number_map_to_new(edges, a), number_map_to_new(edges, b));
+            orphan_search_add(f, &f->ee, number_map_to_new(edges, a), number_map_to_new(edges, b));
         else
             keep_ee(f, edges->to_new[a], edges->to_new[b]);
     }
@@ -289,7 +280,7 @@ static void keep_known(orphan_search *f, const orphan_pairs *pairs) {
 cscd_status orphan_pairs_move(const orphan_pairs *pairs, const cscd_mesh *mesh,
                               const cscd_mesh_change *change, orphan_pairs *out, bool *too_many) {
     orphan_search f = {.mesh = mesh,
-                       .most = (size_t)mesh->triangle_count * PAIRS_PER_TRIANGLE,
+                       .most = (size_t)mesh->triangle_count * ORPHANS_PER_TRIANGLE,
                        .change = change,
                        .marks = context_allocate(mesh->context, mesh->vertex_count, sizeof *f.marks)};
     if (f.marks == NULL) return CSCD_OUT_OF_MEMORY;
