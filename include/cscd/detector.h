@@ -166,7 +166,8 @@ typedef struct cscd_detector_options {
     /* The most items that a list of contacts, intersections or proximities may have; 0, the default: any number. The
      * call whose list would be longer fails with LIST_TOO_LONG and changes nothing, as one that is cancelled; *out
      * then has no items, but the number that there would be, counted without keeping them. So memory is bounded by
-     * this number. Of lists in the form CSCD_NEAR_UNIQUE it bounds the pairs that the items stand for, and of
+     * this number; in mode EARLIEST, where later contacts are dropped instead, only as far as contacts are not
+     * between components or at the same time. Of lists in the form CSCD_NEAR_UNIQUE it bounds the pairs that the items stand for, and of
      * displacement bounds and truncation the near pairs. Functions without a list, as cscd_detector_max_step,
      * know no cap. `ignore` is asked for each pair that is found, also where the list becomes too long. */
     size_t longest_list;

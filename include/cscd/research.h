@@ -28,7 +28,7 @@ typedef struct cscd_method_info {
     bool loses_contacts; /* it follows published rules that lose contacts */
     bool available;      /* this build has it: baselines can be left out */
     bool
-        by_orientation; /* culls by orientation, so it takes a plan and gains from one; AUTO: if it has one */
+        by_orientation; /* culls by orientation, so it takes a plan and gains from one; AUTO: where that pays */
     bool by_contours;   /* culls by normal cones and contours */
     uint8_t reserved[2]; /* 0 */
 } cscd_method_info;

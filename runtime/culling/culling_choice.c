@@ -3,8 +3,8 @@
  * Culling saves most pairs of a component with itself, and costs the orientation of its triangles, pairs of neighbours where
  * orientations differ, and the proof of what is not known to be clean at the start. A component is culled, or it is not,
  * until what the other way would have saved covers the price of changing over: the proof of its start, or the list of
- * orphan pairs. This is the rule for renting or buying skis: whatever comes, the cost is at most about twice that of who
- * knows it in advance, and near to it when things go on as they are. Each time that culling has lost, its hopes count for
+ * orphan pairs. This is the rule for renting or buying skis: whatever comes, the cost is at most about twice that of someone
+ * who knows it in advance, and near to it when things go on as they are. Each time that culling has lost, its hopes count for
  * half, so that tries become rare. */
 #include "runtime/culling/culling_choice.h"
 
@@ -45,8 +45,8 @@ static double proof_of(const component_start *start) {
 
 /* The share of its triangles that an interval like this one has to prove beside those that earlier ones have left. */
 static double fresh_share(const component_start *start, double triangles) {
-    if (start->moved) return 1.0;
-    return start->culls ? (start->unknown + start->crossing) / triangles : smaller_of(start->touched, 1.0);
+    if (start->moved || start->culls) return (start->unknown + start->crossing) / triangles;
+    return smaller_of(start->touched, 1.0);
 }
 
 /* What culling may be hoped to save in each interval, for each triangle, once the start is proven. */
@@ -79,7 +79,7 @@ void culling_choice_decide(start_states *s, bool proves) {
 
 /* ---- at the end --------------------------------------------------------------------------------------- */
 
-/* Who has chosen culling in vain, because too little was clean, has paid for the proof alone. */
+/* A component that chose culling in vain, because too little of it was clean, has paid only for the proof. */
 static void learn_from_culling(component_start *start, double triangles, bool culled, uint64_t passes) {
     double each = price_of_pairs - price_of_orientation - price_of_kept * start->kept -
                   price_of_pass * (double)(passes < 16 ? passes : 16);

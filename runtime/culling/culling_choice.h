@@ -5,7 +5,7 @@
 
 /* Decides which components are culled in the interval that begins, where their starts turn out to be clean enough
  * (component_start.chosen). The numbers of triangles are counted. proves: the interval proves its start; otherwise a start that
- * is not known costs nothing, and is not culled. Changes nothing that a repetition of the interval would see. */
+ * is not known costs nothing, and is not culled. A repetition of the interval decides the same. */
 void culling_choice_decide(start_states *s, bool proves);
 
 /* Is a component culled that was not in the last interval? */

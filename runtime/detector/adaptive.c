@@ -24,8 +24,10 @@ void adaptive_learn(cscd_detector *d) {
     size_t components = d->mesh->component_count, lanes = d->space.traversal.lane_count;
     if (!d->rules.where_it_pays) return;
     memset(d->kept, 0, components * sizeof *d->kept);
-    for (size_t i = 0; d->counts_kept && i < lanes * components; i++)
-        d->kept[i % components] += d->kept_by_lanes[i];
+    for (size_t i = 0; d->counts_kept && i < lanes; i++) {
+        const uint32_t *kept = d->kept_by_lanes + i * components;
+        for (size_t c = 0; c < components; c++) d->kept[c] += kept[c];
+    }
     const culling_outcome outcome = {d->culled, d->counts_kept ? d->kept : NULL, d->touched,
                                      d->lists_earliest, d->passes};
     culling_choice_learn(&d->starts, &outcome);
