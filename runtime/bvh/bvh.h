@@ -104,6 +104,7 @@ typedef struct bvh {
     bvh_level levels[BVH_LEVEL_MAX];
     int tree_level, level_count;
     double scale;
+    bool still;             /* the last refit was to a moment: both ends of everything are the same */
     bool trees_mix_objects; /* some tree holds several objects */
     uint32_t *slots;        /* per triangle, where it is: 8 * leaf + lane */
 } bvh;
@@ -190,6 +191,9 @@ static inline bool bvh_can_hide(const bvh *f) {
 
 /* Makes the traversal leave out pairs of adjacent triangles in the given components; NULL: in none. */
 void bvh_skip_adjacent(bvh *f, const bool *components);
+
+/* The same in all components. */
+void bvh_skip_all_adjacent(bvh *f);
 
 /* Orientation of a triangle as seen from a detector point d during a whole interval. PLUS (MINUS) certifies that
  * (p0 - d) . n > 0 (< 0) at every moment, with n = (p1 - p0) x (p2 - p0); ZERO is everything else. */

@@ -208,6 +208,7 @@ void bvh_show_all(bvh *f) {
 
 void bvh_refit(bvh *f, const double *x0, const double *x1, volume_growth growth) {
     moving now = {f, x0, x1, growth, 0};
+    f->still = x0 == x1;
     move_records(&now);
     for (; now.level < f->level_count; now.level++) {
         if (now.level == f->tree_level)
@@ -229,4 +230,8 @@ void bvh_skip_adjacent(bvh *f, const bool *components) {
         uint32_t component = f->mesh->triangle_components[f->leaves[tree->first_leaf].triangles[0]];
         tree->skip_adjacent = components != NULL && components[component];
     }
+}
+
+void bvh_skip_all_adjacent(bvh *f) {
+    for (uint32_t i = 0; i < f->tree_count; i++) f->trees[i].skip_adjacent = true;
 }

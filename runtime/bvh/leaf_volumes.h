@@ -42,9 +42,10 @@ static inline void enclose_corners(const f32x8 *a, const f32x8 *b, const f32x8 *
     }
 }
 
-/* slack[0] is for axes, slack[1] for diagonals. */
-static inline void volumes_of(leaf_corners corners, const float slack[2], leaf_volumes *v) {
-    for (int e = 0; e < 2; e++) {
+/* slack[0] is for axes, slack[1] for diagonals. still: both ends are the same moment, and only the start is written. */
+static inline void volumes_of(leaf_corners corners, const float slack[2], bool still, leaf_volumes *v) {
+    int last = still ? 0 : 1;
+    for (int e = 0; e <= last; e++) {
         f32x8 diagonals[3][KDOP_AXES - BOX_AXES];
         for (int i = 0; i < 3; i++) diagonals_of(corners[i][e], diagonals[i]);
         enclose_corners(corners[0][e], corners[1][e], corners[2][e], BOX_AXES, slack[0], v->low[e],
@@ -53,7 +54,7 @@ static inline void volumes_of(leaf_corners corners, const float slack[2], leaf_v
                         v->low[e] + BOX_AXES, v->high[e] + BOX_AXES);
     }
     for (int k = 0; k < BOX_AXES; k++) {
-        v->swept[k][0] = f32x8_min(v->low[0][k], v->low[1][k]);
-        v->swept[k][1] = f32x8_max(v->high[0][k], v->high[1][k]);
+        v->swept[k][0] = f32x8_min(v->low[0][k], v->low[last][k]);
+        v->swept[k][1] = f32x8_max(v->high[0][k], v->high[last][k]);
     }
 }

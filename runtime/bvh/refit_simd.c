@@ -31,7 +31,7 @@ static void store_boxes(f32x8 low[8], f32x8 high[8], float slack, float *bounds)
 /* Stores the bounds of one child along the diagonals. */
 static void store_diagonals(leaf_corners corners, const float slack[2], int lane, float *bounds) {
     leaf_volumes v;
-    volumes_of(corners, slack, &v);
+    volumes_of(corners, slack, false, &v);
     for (int k = BOX_AXES; k < KDOP_AXES; k++) {
         bounds[2 * k * LANES + lane] = f32x8_least(f32x8_min(v.low[0][k], v.low[1][k]));
         bounds[(2 * k + 1) * LANES + lane] = f32x8_greatest(f32x8_max(v.high[0][k], v.high[1][k]));

@@ -63,13 +63,13 @@ static inline uint32_t lanes_apart(const float *a, const float *b, int i, int ax
 }
 
 /* Returns the lanes of b that lie on one side of lane i of a at both ends, along one of the axes from first on. They
- * do so throughout the interval, because points move linearly. */
+ * do so throughout the interval, because points move linearly. still: both ends are the same. */
 static inline uint32_t apart_at_ends(const leaf_volumes *a, const leaf_volumes *b, int i, int first,
-                                     int axis_end, const displacement *d) {
+                                     int axis_end, bool still, const displacement *d) {
     uint32_t lanes = 0;
     for (int k = first; k < axis_end; k++) {
         uint32_t before = ALL_LANES, behind = ALL_LANES;
-        for (int e = 0; e < 2; e++) {
+        for (int e = 0; e < (still ? 1 : 2); e++) {
             float low = a->low[e][k][i], high = a->high[e][k][i];
             if (d != NULL) {
                 low -= d->at[e][k] + d->slack;
@@ -143,7 +143,10 @@ static const leaf_volumes *leaf_volumes_of(const bvh *f, leaf_cache *cache, uint
     if (cache->tags[place] == index + 1) return out;
     leaf_corners corners;
     load_corners(f, &f->leaves[index], corners);
-    volumes_of(corners, tree->slack, out);
+    if (f->still)
+        volumes_of(corners, tree->slack, true, out);
+    else
+        volumes_of(corners, tree->slack, false, out);
     cache->tags[place] = index + 1;
     return out;
 }
@@ -191,7 +194,7 @@ static inline uint32_t lanes_without_shared_vertex(const bvh *f, const leaf_pair
 }
 
 static inline void compare_leaves(const traversal *t, traversal_lane *lane, const leaf_pair *pair,
-                                  bool skip_adjacent, bool one_tree, const displacement *d) {
+                                  bool skip_adjacent, bool one_tree, bool still, const displacement *d) {
     const bvh *f = t->bvh;
     const lane_comparison c = {.a = f->leaf_flags[pair->a],
                                .b = f->leaf_flags[pair->b],
@@ -208,23 +211,21 @@ static inline void compare_leaves(const traversal *t, traversal_lane *lane, cons
         uint32_t lanes = lanes_to_compare(&c, i) & pair->columns;
         if (lanes == 0) continue;
         lane->boxes_tested += (uint32_t)__builtin_popcount(lanes);
-        lanes &= ~apart_at_ends(pair->volumes_a, pair->volumes_b, i, 0, BOX_AXES, d);
+        lanes &= ~apart_at_ends(pair->volumes_a, pair->volumes_b, i, 0, BOX_AXES, still, d);
         if (lanes != 0 && skip_adjacent) {
             uint32_t kept = lanes_without_shared_vertex(f, pair, i, lanes, one_tree);
             lane->adjacent += (uint32_t)__builtin_popcount(lanes & ~kept);
             lanes = kept;
         }
         if (lanes == 0) continue;
-        lanes &= ~apart_at_ends(pair->volumes_a, pair->volumes_b, i, BOX_AXES, KDOP_AXES, d);
+        lanes &= ~apart_at_ends(pair->volumes_a, pair->volumes_b, i, BOX_AXES, KDOP_AXES, still, d);
         add_pairs(lane, pair->a * LANES + (uint32_t)i, pair->b * LANES, lanes);
     }
 }
 
-/* First the active triangles of a with all of b, then the others with the active ones of b. Not inline, so that nothing of
- * it is in the way of passes that skip nothing. */
-static __attribute__((noinline)) void compare_active(const traversal *t, traversal_lane *lane,
-                                                     const leaf_pair *pair, bool skip_adjacent,
-                                                     const displacement *d) {
+/* First the active triangles of a with all of b, then the others with the active ones of b. */
+static void compare_active(const traversal *t, traversal_lane *lane, const leaf_pair *pair,
+                           bool skip_adjacent, const displacement *d) {
     uint32_t inactive_a = t->bvh->leaf_inactive[pair->a], inactive_b = t->bvh->leaf_inactive[pair->b];
     for (int i = 0; i < 2; i++) {
         leaf_pair part = *pair;
@@ -232,10 +233,23 @@ static __attribute__((noinline)) void compare_active(const traversal *t, travers
         if (i == 1) part.columns &= ~inactive_b;
         if (part.rows == 0 || part.columns == 0) continue;
         if (d == NULL)
-            compare_leaves(t, lane, &part, skip_adjacent, true, NULL);
+            compare_leaves(t, lane, &part, skip_adjacent, true, false, NULL);
         else
-            compare_leaves(t, lane, &part, skip_adjacent, false, d);
+            compare_leaves(t, lane, &part, skip_adjacent, false, false, d);
     }
+}
+
+/* Where inactive triangles are skipped, or volumes are those of a moment, of which one end is enough. Not inline, so that
+ * nothing of it is in the way of other passes. */
+static __attribute__((noinline)) void compare_leaves_otherwise(const traversal *t, traversal_lane *lane,
+                                                               const leaf_pair *pair, bool skip_adjacent,
+                                                               const displacement *d) {
+    if (t->skips_inactive)
+        compare_active(t, lane, pair, skip_adjacent, d);
+    else if (d == NULL)
+        compare_leaves(t, lane, pair, skip_adjacent, true, true, NULL);
+    else
+        compare_leaves(t, lane, pair, skip_adjacent, false, true, d);
 }
 
 /* ---- blocks -------------------------------------------------------------------------------------------- */
@@ -248,6 +262,7 @@ static inline void visit_children(const traversal *t, traversal_lane *lane, cons
     uint32_t child_a = level->first_children[at->a] + (uint32_t)i, first_b = level->first_children[at->b];
     /* Tree b belongs to the same component, or no triangle of it is adjacent to one of tree a. */
     bool skip_adjacent = f->trees[at->tree_a].skip_adjacent;
+    bool otherwise = t->skips_inactive || f->still;
     size_t stride = (size_t)f->axis_count * 2 * LANES;
     for (; lanes != 0; lanes &= lanes - 1) {
         int j = __builtin_ctz(lanes);
@@ -271,12 +286,12 @@ static inline void visit_children(const traversal *t, traversal_lane *lane, cons
             if (pair.columns == 0) continue;
             if (d == NULL) pair.rows = near_lane(pair.volumes_a, level->bounds + at->b * stride, j, NULL);
         }
-        if (t->skips_inactive)
-            compare_active(t, lane, &pair, skip_adjacent, d);
+        if (otherwise)
+            compare_leaves_otherwise(t, lane, &pair, skip_adjacent, d);
         else if (d == NULL) /* compiled separately, because it is most of the work */
-            compare_leaves(t, lane, &pair, skip_adjacent, true, NULL);
+            compare_leaves(t, lane, &pair, skip_adjacent, true, false, NULL);
         else
-            compare_leaves(t, lane, &pair, skip_adjacent, false, d);
+            compare_leaves(t, lane, &pair, skip_adjacent, false, false, d);
     }
 }
 
