@@ -63,7 +63,7 @@ static corner_list from_lone(const corner_list *t, int lone, bool turn_over) {
     return (corner_list){{t->at[lone], t->at[(lone + next) % 3], t->at[(lone + 3 - next) % 3]}};
 }
 
-/* Lemma 11. Neither are all corners of one in the plane of the other. */
+/* Lemma 12. Neither are all corners of one in the plane of the other. */
 static pair_meeting meet_across(const corner_list *a, const int a_sides[3], const corner_list *b,
                                 const int b_sides[3]) {
     int lone_a = lone_corner(a_sides), lone_b = lone_corner(b_sides);
@@ -102,7 +102,7 @@ static int parted_by_edges(const corner_list *a, const corner_list *b, int axis)
     return best;
 }
 
-/* Lemma 12. All corners of each lie in the plane of the other, if it has an area. */
+/* Lemma 13. All corners of each lie in the plane of the other, if it has an area. */
 static pair_meeting meet_in_plane(const corner_list *a, const corner_list *b) {
     int axis = 0;
     while (axis < 3 && own_turn(a, axis) == 0) axis++;
@@ -113,7 +113,7 @@ static pair_meeting meet_in_plane(const corner_list *a, const corner_list *b) {
     return parted > 0 ? MEETING_APART : parted == 0 ? MEETING_TOUCHING : MEETING_IN_PLANE;
 }
 
-/* Lemma 10. */
+/* Lemma 11. */
 static pair_meeting how_triangles_meet(const corner_list *a, const corner_list *b) {
     int a_sides[3], b_sides[3];
     find_sides(a, b, b_sides);
@@ -146,7 +146,7 @@ static uint32_t count_named(const uint32_t a[3], const uint32_t b[3], const uint
 }
 
 /* The two counts differ where a seam unites two corners of one triangle. */
-static uint32_t count_shared(const uint32_t a[3], const uint32_t b[3], const uint32_t *names) {
+uint32_t pair_kind_count_shared(const uint32_t a[3], const uint32_t b[3], const uint32_t *names) {
     uint32_t of_a = count_named(a, b, names), of_b = count_named(b, a, names);
     return of_a < of_b ? of_a : of_b;
 }
@@ -177,7 +177,7 @@ static bool has_area(const uint32_t triangle[3], const double *positions) {
 
 bool pair_kind_find(const uint32_t a[3], const uint32_t b[3], const uint32_t *names, const double *positions,
                     pair_kind *out) {
-    uint32_t shared = count_shared(a, b, names);
+    uint32_t shared = pair_kind_count_shared(a, b, names);
     if (shared == 3 && at_same_places(a, b, names, positions) && has_area(a, positions)) {
         *out = (pair_kind){CSCD_INTERSECTION_DUPLICATE, shared};
         return true;

@@ -13,3 +13,6 @@ typedef struct pair_kind {
  * and have not the same three vertices and an area. *out is written only if they do. */
 bool pair_kind_find(const uint32_t a[3], const uint32_t b[3], const uint32_t *names, const double *positions,
                     pair_kind *out);
+
+/* How many corners of the one have a name that the other has too: what pair_kind_find writes. */
+uint32_t pair_kind_count_shared(const uint32_t a[3], const uint32_t b[3], const uint32_t *names);

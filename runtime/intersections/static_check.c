@@ -16,19 +16,21 @@ static array_list list_arrays(static_check *c) {
 
 cscd_status static_check_create(const cscd_mesh *mesh, uint32_t lane_count, static_check *out) {
     static_check c = {.mesh = mesh, .lane_count = lane_count, .limit = SIZE_MAX};
-    if (!context_allocate_all(mesh->context, list_arrays(&c))) return CSCD_OUT_OF_MEMORY;
-    *out = c;
-    return CSCD_OK;
+    cscd_status status = vertex_stars_create(mesh, &c.stars);
+    if (status == CSCD_OK && !context_allocate_all(mesh->context, list_arrays(&c))) {
+        vertex_stars_destroy(&c.stars);
+        status = CSCD_OUT_OF_MEMORY;
+    }
+    if (status == CSCD_OK) *out = c;
+    return status;
 }
 
 void static_check_destroy(static_check *c) {
     if (c->mesh == NULL) return;
     cscd_context *context = c->mesh->context;
-    for (uint32_t i = 0; i < c->lane_count; i++) {
-        context_free(context, c->lanes[i].items);
-        context_free(context, c->lanes[i].notes);
-    }
+    for (uint32_t i = 0; i < c->lane_count; i++) intersection_lane_free(context, &c->lanes[i]);
     context_free_all(context, list_arrays(c));
+    vertex_stars_destroy(&c->stars);
     *c = (static_check){0};
 }
 
@@ -36,62 +38,6 @@ void static_check_destroy(static_check *c) {
 
 static const uint32_t (*triangles_of(const check_work *work))[3] {
     return (const uint32_t(*)[3])work->check->mesh->triangles;
-}
-
-enum { ROOM_LEAST = 256, EVEN_ROOM_MOST = 1 << 16 };
-
-static bool grow_items(cscd_context *context, intersection_lane *lane, size_t capacity) {
-    found_pair *grown = context_grow(context, lane->items, lane->count, capacity, sizeof *lane->items);
-    if (grown == NULL) return false;
-    lane->items = grown;
-    lane->capacity = capacity;
-    return true;
-}
-
-static bool make_room(cscd_context *context, intersection_lane *lane) {
-    return grow_items(context, lane, lane->capacity == 0 ? ROOM_LEAST : 2 * lane->capacity);
-}
-
-static bool make_room_for_notes(cscd_context *context, intersection_lane *lane) {
-    pair_note *grown = context_grow(context, lane->notes, lane->count, lane->capacity, sizeof *lane->notes);
-    if (grown == NULL) return false;
-    lane->notes = grown;
-    lane->note_capacity = lane->capacity;
-    return true;
-}
-
-static void add_pair(cscd_context *context, intersection_lane *lane, triangle_pair t) {
-    if (lane->count == lane->capacity && !make_room(context, lane))
-        lane->out_of_memory = true;
-    else
-        lane->items[lane->count++] = (found_pair){t.a < t.b ? t.a : t.b, t.a < t.b ? t.b : t.a};
-}
-
-static void add_noted_pair(cscd_context *context, intersection_lane *lane, triangle_pair t, pair_note note) {
-    bool room = lane->count < lane->capacity || make_room(context, lane);
-    if (room && lane->note_capacity < lane->capacity) room = make_room_for_notes(context, lane);
-    if (room) lane->notes[lane->count] = note;
-    if (room)
-        add_pair(context, lane, t);
-    else
-        lane->out_of_memory = true;
-}
-
-/* Which lane finds what depends on when threads come for work, so that a lane might need more room in any call. Once a call
- * has found its pairs, each lane has room for all of them or, if they are very many, for as many as any lane. */
-static bool even_out_room(static_check *c) {
-    size_t total = 0, room = ROOM_LEAST;
-    for (uint32_t i = 0; i < c->lane_count; i++) total += c->lanes[i].count;
-    for (uint32_t i = 0; i < c->lane_count && total > EVEN_ROOM_MOST; i++)
-        room = c->lanes[i].capacity > room ? c->lanes[i].capacity : room;
-    while (room < total && total <= EVEN_ROOM_MOST) room *= 2;
-    for (uint32_t i = 0; i < c->lane_count && total > 0; i++) {
-        intersection_lane *lane = &c->lanes[i];
-        if (lane->capacity < room && !grow_items(c->mesh->context, lane, room)) return false;
-        if (c->kinds && lane->note_capacity < lane->capacity && !make_room_for_notes(c->mesh->context, lane))
-            return false;
-    }
-    return true;
 }
 
 static bool same_triangle(const uint32_t a[3], const uint32_t b[3]) {
@@ -105,7 +51,7 @@ static void test_kind(const check_work *work, intersection_lane *lane, triangle_
     if (!pair_kind_find(a, b, work->names, work->positions, &found)) return;
     const pair_note note = {(uint8_t)found.kind, (uint8_t)found.shared,
                             found.kind == CSCD_INTERSECTION_DUPLICATE && same_triangle(a, b)};
-    add_noted_pair(work->check->mesh->context, lane, t, note);
+    intersection_lane_add_noted(work->check->mesh->context, lane, t, note);
 }
 
 static bool pair_counts(const check_work *work, uint32_t a, uint32_t b) {
@@ -128,26 +74,101 @@ static void name_triangles(const check_work *work, traversal_lane *batch) {
     batch->pair_count = kept;
 }
 
-void static_check_test_batch(const check_work *work, uint32_t index) {
+/* An edge of one certainly passes through the inside of the other: if both have an area, they cross. */
+static void add_crossing(const check_work *work, intersection_lane *lane, triangle_pair t) {
     cscd_context *context = work->check->mesh->context;
+    const uint8_t *normals = work->check->stars.normals;
+    if (!work->check->kinds) {
+        intersection_lane_add(context, lane, t);
+    } else if (normals[t.a] == 0 || normals[t.b] == 0) {
+        test_kind(work, lane, t);
+    } else {
+        const uint32_t(*triangles)[3] = triangles_of(work);
+        uint32_t shared = pair_kind_count_shared(triangles[t.a], triangles[t.b], work->names);
+        const pair_note note = {CSCD_INTERSECTION_CROSSING, (uint8_t)shared, false};
+        intersection_lane_add_noted(context, lane, t, note);
+    }
+}
+
+static void test_pair(const check_work *work, intersection_lane *lane, triangle_pair t) {
+    const uint32_t(*triangles)[3] = triangles_of(work);
+    if (work->check->kinds)
+        test_kind(work, lane, t);
+    else if (triangles_intersect(triangles[t.a], triangles[t.b], work->positions))
+        intersection_lane_add(work->check->mesh->context, lane, t);
+}
+
+enum { PAIRS_AT_ONCE = 1024 };
+
+/* Adds those pairs of triangles of a batch that intersect to the lane of the same number. */
+static void test_pairs(const check_work *work, uint32_t index) {
+    const intersection_kernels *kernels = intersection_kernels_of(work->check->mesh->context);
     traversal_lane *batch = &work->traversal->lanes[index];
     intersection_lane *lane = &work->check->lanes[index];
-    const uint32_t(*triangles)[3] = triangles_of(work);
-    bool kinds = work->check->kinds;
-    name_triangles(work, batch);
-    uint32_t undecided = intersection_kernels_of(context)->reject_disjoint(
-        triangles, work->positions, batch->pairs, batch->pair_count, kinds);
-    for (uint32_t i = 0; i < undecided; i++) {
-        triangle_pair t = batch->pairs[i];
-        if (kinds)
-            test_kind(work, lane, t);
-        else if (triangles_intersect(triangles[t.a], triangles[t.b], work->positions))
-            add_pair(context, lane, t);
+    for (uint32_t begin = 0; begin < batch->pair_count; begin += PAIRS_AT_ONCE) {
+        triangle_pair *pairs = batch->pairs + begin, crossing[PAIRS_AT_ONCE];
+        uint32_t rest = batch->pair_count - begin, crossing_count;
+        uint32_t undecided = kernels->reject_disjoint(triangles_of(work), work->positions, pairs,
+                                                      rest < PAIRS_AT_ONCE ? rest : PAIRS_AT_ONCE,
+                                                      work->check->kinds, crossing, &crossing_count);
+        for (uint32_t i = 0; i < crossing_count; i++) add_crossing(work, lane, crossing[i]);
+        for (uint32_t i = 0; i < undecided; i++) test_pair(work, lane, pairs[i]);
     }
+}
+
+void static_check_test_batch(const check_work *work, uint32_t index) {
+    name_triangles(work, &work->traversal->lanes[index]);
+    test_pairs(work, index);
 }
 
 static void test_batch(void *data, uint32_t index) {
     static_check_test_batch(data, index);
+}
+
+/* ---- pairs that share a vertex -------------------------------------------------------------------------- */
+
+/* Is a component looked at with itself? The traversal asks the same of trees. */
+static bool component_counts(const check_work *work, uint32_t component) {
+    const static_check *c = work->check;
+    if (c->objects == NULL) return !component_is_obstacle(c->mesh, component);
+    const object_set *own = &c->objects[c->component_objects[component]];
+    return object_sets_may_meet(own, own);
+}
+
+static bool is_inactive(const bvh *f, uint32_t triangle) {
+    uint32_t slot = f->slots[triangle];
+    return (f->leaf_inactive[slot / LANES] >> slot % LANES & 1) != 0;
+}
+
+static bool adjacent_pair_counts(const check_work *work, const uint32_t pair[2]) {
+    const static_check *c = work->check;
+    if (!c->unproven[pair[0]] || !c->unproven[pair[1]]) return false;
+    if (!component_counts(work, c->mesh->triangle_components[pair[0]])) return false;
+    return !work->traversal->skips_inactive || !is_inactive(work->bvh, pair[0]) ||
+           !is_inactive(work->bvh, pair[1]);
+}
+
+static void test_stars(void *data, uint32_t index) {
+    const check_work *work = data;
+    traversal_lane *batch = &work->traversal->lanes[index];
+    star_cursor *cursor = &work->check->lanes[index].stars;
+    uint32_t pair[2];
+    batch->pair_count = 0;
+    while (batch->pair_count < TRAVERSAL_BATCH_SIZE &&
+           vertex_stars_next_pair(&work->check->stars, cursor, pair)) {
+        batch->pairs[batch->pair_count] = (triangle_pair){pair[0], pair[1]};
+        batch->pair_count += adjacent_pair_counts(work, pair);
+    }
+    test_pairs(work, index);
+}
+
+static void mark_clear_stars(void *data, uint32_t index) {
+    const check_work *work = data;
+    static_check *check = work->check;
+    uint64_t count = check->mesh->vertex_count, lanes = check->lane_count;
+    uint32_t begin = (uint32_t)(count * index / lanes), end = (uint32_t)(count * (index + 1) / lanes);
+    check->lanes[index].stars = star_cursor_over(begin, end);
+    vertex_stars_mark_clear(&check->stars, begin, end);
 }
 
 /* ---- triangles without area ----------------------------------------------------------------------------- */
@@ -161,20 +182,23 @@ static bool has_no_area(const check_work *work, uint32_t triangle) {
 
 enum { AREA_BATCH = 512 };
 
-/* Marks those of the unproven triangles begin to end - 1, at most AREA_BATCH, that have no area. */
+/* Finds the signs of the triangles begin to end - 1, at most AREA_BATCH, and marks those of the unproven ones that have no
+ * area. */
 static void mark_zero_area(const check_work *work, intersection_lane *lane, uint32_t begin, uint32_t end) {
     const static_check *check = work->check;
+    const vertex_stars *stars = &check->stars;
     uint32_t list[AREA_BATCH], count = 0;
     assert(end - begin <= AREA_BATCH);
     for (uint32_t t = begin; t < end; t++) {
         list[count] = t;
-        count += check->unproven[t];
+        count += check->unproven[t] || work->by_stars;
     }
     memset(check->crossing + begin, false, (end - begin) * sizeof *check->crossing);
-    count = intersection_kernels_of(check->mesh->context)
-                ->reject_with_area(triangles_of(work), work->positions, list, count);
+    intersection_kernels_of(check->mesh->context)
+        ->sign_normals(triangles_of(work), work->positions, list, count, stars->normals, stars->rises);
     for (uint32_t i = 0; i < count; i++) {
-        if (!has_no_area(work, list[i])) continue;
+        if (stars->normals[list[i]] != 0 || !check->unproven[list[i]] || !has_no_area(work, list[i]))
+            continue;
         check->crossing[list[i]] = true;
         if (lane->zero_area_triangles++ == 0) lane->first_zero_area = list[i];
     }
@@ -223,33 +247,80 @@ void static_check_begin(check_work *work) {
     parallel_run(work->check->mesh->context->threads, work->check->lane_count, count_zero_area, work);
 }
 
-static cscd_status compare_triangles(check_work *work, bvh *f, traversal_pass pass) {
+static bool any_pairs(const traversal *t, uint32_t lane_count) {
+    for (uint32_t i = 0; i < lane_count; i++) {
+        if (t->lanes[i].pair_count > 0) return true;
+    }
+    return false;
+}
+
+static cscd_status end_round(static_check *check) {
+    for (uint32_t i = 0; i < check->lane_count; i++) {
+        if (check->lanes[i].out_of_memory) return CSCD_OUT_OF_MEMORY;
+    }
+    spill_pairs(check);
+    return CSCD_OK;
+}
+/* Lanes whose batches are not full find nothing in the next round; in the last one nobody finds anything. */
+static cscd_status compare_adjacent(check_work *work) {
     static_check *check = work->check;
     cscd_context *context = check->mesh->context;
-    traversal *t = work->traversal;
-    assert(check->lane_count == t->lane_count);
+    cscd_status status = CSCD_OK;
+    parallel_run(context->threads, check->lane_count, mark_clear_stars, work);
+    for (bool more = true; more && status == CSCD_OK;) {
+        if (!progress_go_on(&context->progress, 0.0)) break;
+        parallel_run(context->threads, check->lane_count, test_stars, work);
+        more = any_pairs(work->traversal, check->lane_count);
+        status = end_round(check);
+    }
+    return status;
+}
+
+static cscd_status compare_found(check_work *work) {
+    static_check *check = work->check;
+    cscd_context *context = check->mesh->context;
+    cscd_status status = CSCD_OK;
+    for (bool more = true; more && status == CSCD_OK;) {
+        if (!progress_go_on(&context->progress, traversal_done(work->traversal))) break;
+        status = traversal_round(work->traversal, &more);
+        if (status != CSCD_OK) break;
+        parallel_run(context->threads, check->lane_count, test_batch, work);
+        status = end_round(check);
+    }
+    return status;
+}
+
+static cscd_status compare_triangles(check_work *work, bvh *f, traversal_pass pass) {
+    static_check *check = work->check;
+    assert(check->lane_count == work->traversal->lane_count);
     static_check_begin(work);
     if (check->mesh->triangle_count == 0) return CSCD_OK;
-    bvh_skip_adjacent(f, NULL);
-    traversal_begin(t, f, pass);
-    for (bool more = true; more;) {
-        if (!progress_go_on(&context->progress, traversal_done(t))) break;
-        cscd_status status = traversal_round(t, &more);
-        if (status != CSCD_OK) return status;
-        parallel_run(context->threads, check->lane_count, test_batch, work);
-        for (uint32_t i = 0; i < check->lane_count; i++) {
-            if (check->lanes[i].out_of_memory) return CSCD_OUT_OF_MEMORY;
-        }
-        spill_pairs(check);
-    }
-    if (!even_out_room(check)) return CSCD_OUT_OF_MEMORY;
-    return context_progress_status(context); /* before the caller believes that nothing more was found */
+    if (work->by_stars)
+        bvh_skip_all_adjacent(f);
+    else
+        bvh_skip_adjacent(f, NULL);
+    traversal_begin(work->traversal, f, pass);
+    cscd_status status = work->by_stars ? compare_adjacent(work) : CSCD_OK;
+    if (status == CSCD_OK) status = compare_found(work);
+    if (status != CSCD_OK) return status;
+    if (!intersection_lanes_even_out(check->mesh->context, check->lanes, check->lane_count, check->kinds))
+        return CSCD_OUT_OF_MEMORY;
+    return context_progress_status(
+        check->mesh->context); /* before the caller believes that nothing more was found */
+}
+
+/* Stars are seen as a whole, so that they pay where most triangles are compared. */
+static bool most_are_unproven(const static_check *c) {
+    uint32_t count = 0, all = c->mesh->triangle_count;
+    for (uint32_t t = 0; t < all; t++) count += c->unproven[t];
+    return count > all / 2;
 }
 
 cscd_status static_check_unproven(static_check *c, traversal *t, bvh *f, const double *positions) {
     check_work work = {
         .check = c, .traversal = t, .bvh = f, .positions = positions, .own_component_only = true};
     bvh_mark_unproven(f, c->unproven);
+    work.by_stars = most_are_unproven(c);
     cscd_status status = compare_triangles(&work, f, TRAVERSAL_UNPROVEN);
     if (status == CSCD_OK) mark_crossing(c);
     return status;
@@ -258,6 +329,7 @@ cscd_status static_check_unproven(static_check *c, traversal *t, bvh *f, const d
 static cscd_status compare_all(check_work *work, bvh *f) {
     static_check *c = work->check;
     memset(c->unproven, true, c->mesh->triangle_count * sizeof *c->unproven);
+    work->by_stars = true;
     cscd_status status = compare_triangles(work, f, TRAVERSAL_KEPT);
     if (status == CSCD_OK) mark_crossing(c);
     return status;

@@ -2,29 +2,8 @@
 #pragma once
 
 #include "runtime/bvh/traversal.h"
-
-/* Two triangles a < b that intersect, or are duplicates of each other. */
-typedef struct found_pair {
-    uint32_t a, b;
-} found_pair;
-
-/* What is known of a pair, where kinds are asked for: see pair_kind.h. */
-typedef struct pair_note {
-    uint8_t kind, shared;
-    bool
-        unlisted; /* a duplicate that the check without kinds does not know, since features that share a vertex do
-                    * not intersect */
-} pair_note;
-
-/* The findings of one thread. */
-typedef struct intersection_lane {
-    _Alignas(CACHE_LINE_SIZE) found_pair *items;
-    pair_note *notes; /* one for each item where kinds are asked for */
-    size_t count, capacity, note_capacity;
-    size_t settled; /* so many of the first ones are there to stay: they do not count for the limit */
-    uint32_t zero_area_triangles, first_zero_area; /* UINT32_MAX: none */
-    bool out_of_memory;
-} intersection_lane;
+#include "runtime/intersections/intersection_lane.h"
+#include "runtime/intersections/vertex_stars.h"
 
 /* The outcome of the last check, and the memory of all checks. */
 typedef struct static_check {
@@ -34,6 +13,7 @@ typedef struct static_check {
     intersection_lane
         *lanes; /* one per lane of the traversal; their pairs include those that the caller ignores */
     uint32_t lane_count;
+    vertex_stars stars;
     bool kinds; /* the check asks for them: lanes have notes, and duplicates */
 
     /* With a limit, lanes that have so many pairs beside settled ones are asked to be emptied, on the calling thread, after the triangles of
@@ -73,6 +53,7 @@ typedef struct check_work {
     const bvh *bvh;
     const double *positions;
     bool own_component_only; /* pairs of triangles of two components do not count */
+    bool by_stars;           /* pairs that share a vertex come from the stars, and not from the traversal */
     const uint32_t *names;   /* where kinds are asked for; NULL: each vertex has its own */
 } check_work;
 
@@ -81,9 +62,3 @@ void static_check_begin(check_work *work);
 
 /* Adds the pairs of a batch that intersect to the lane of the same number. */
 void static_check_test_batch(const check_work *work, uint32_t lane);
-
-/* Copies a pair of a lane whose notes are kept to another place in it. */
-static inline void intersection_lane_move(intersection_lane *lane, size_t from, size_t to) {
-    lane->items[to] = lane->items[from];
-    lane->notes[to] = lane->notes[from];
-}

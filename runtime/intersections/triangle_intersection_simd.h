@@ -210,12 +210,12 @@ static inline uint32_t disjoint_undecided_by_planes(const vector_x8 corners[6]) 
     return ALL_WIDTH & ~(apart | same_sign_of_three(sides));
 }
 
-/* Lemma 9 (c). */
-static inline uint32_t disjoint_undecided_by_edges(const vector_x8 corners[6]) {
+/* Lemma 9 (c). *crossing: the lanes in which an edge certainly passes through the other face (e). */
+static inline uint32_t disjoint_undecided_by_edges(const vector_x8 corners[6], uint32_t *crossing) {
     const vector_x8 *a = corners, *b = corners + 3;
     vector_x8 edges_a[3], edges_b[3];
     sign_x8 sides_a[3], sides_b[3], passes[3][3];
-    uint32_t miss = ALL_WIDTH;
+    uint32_t miss = ALL_WIDTH, hit = 0;
     edges_of(a, edges_a);
     edges_of(b, edges_b);
     sides_of(a, b, sides_b);
@@ -233,8 +233,12 @@ static inline uint32_t disjoint_undecided_by_edges(const vector_x8 corners[6]) {
         int next = (i + 1) % 3;
         miss &= same_sign(sides_a[i], sides_a[next]) | mixed_signs(passes[i][0], passes[i][1], passes[i][2]);
         miss &= same_sign(sides_b[i], sides_b[next]) | mixed_signs(passes[0][i], passes[1][i], passes[2][i]);
+        const sign_x8 of_b[3] = {passes[0][i], passes[1][i], passes[2][i]};
+        hit |= opposite_signs(sides_a[i], sides_a[next]) & same_sign_of_three(passes[i]);
+        hit |= opposite_signs(sides_b[i], sides_b[next]) & same_sign_of_three(of_b);
     }
-    return ALL_WIDTH & ~miss;
+    *crossing = hit;
+    return ALL_WIDTH & ~(miss | hit);
 }
 
 /* Returns the lanes in which the line of an edge of a has b strictly on one side, and the third corner of a on the

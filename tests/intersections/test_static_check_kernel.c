@@ -1,6 +1,6 @@
 /* The kernels of the static check, compared with exact predicates: pairs that they reject never intersect,
- * and triangles that they reject have an area. All levels that this machine has leave the same pairs, and
- * few of these are disjoint. */
+ * and the signs of normals are right. All levels that this machine has find the same, and few pairs that are left
+ * are disjoint. */
 #include "runtime/intersections/intersection_kernels.h"
 #include "src/mesh/predicates.h"
 #include "src/mesh/triangle_intersection.h"
@@ -79,10 +79,31 @@ static bool do_intersect(uint32_t i) {
 }
 
 /* Runs the kernel of a level on all pairs; returns how many pairs it leaves. */
-static uint32_t reject_disjoint(int level, bool keep_duplicates, triangle_pair *pairs) {
+static uint32_t find_crossing(int level, bool keep_duplicates, triangle_pair *pairs, triangle_pair *crossing,
+                              uint32_t *crossing_count) {
     for (uint32_t i = 0; i < work.count; i++) pairs[i] = (triangle_pair){2 * i, 2 * i + 1};
     return intersection_kernels_of(contexts[level])
-        ->reject_disjoint(triangles_of_work(), work.positions, pairs, work.count, keep_duplicates);
+        ->reject_disjoint(triangles_of_work(), work.positions, pairs, work.count, keep_duplicates, crossing,
+                          crossing_count);
+}
+
+/* The same, with those that certainly intersect behind the others. */
+static uint32_t reject_disjoint(int level, bool keep_duplicates, triangle_pair *pairs) {
+    triangle_pair crossing[BATCH_MAX];
+    uint32_t crossing_count, open = find_crossing(level, keep_duplicates, pairs, crossing, &crossing_count);
+    assert_true(open + crossing_count <= work.count);
+    memcpy(pairs + open, crossing, crossing_count * sizeof *pairs);
+    return open + crossing_count;
+}
+
+/* Adds the number of pairs that meet, and how many of these the kernel finds. It finds no others. */
+static void check_crossing(int level, uint64_t *meeting, uint64_t *found) {
+    triangle_pair pairs[BATCH_MAX], crossing[BATCH_MAX];
+    uint32_t crossing_count;
+    find_crossing(level, false, pairs, crossing, &crossing_count);
+    for (uint32_t i = 0; i < crossing_count; i++) assert_true(do_intersect(crossing[i].a / 2));
+    for (uint32_t i = 0; i < work.count; i++) *meeting += do_intersect(i);
+    *found += crossing_count;
 }
 
 /* Adds the number of disjoint pairs, and how many of these the kernel leaves undecided. */
@@ -154,6 +175,22 @@ static void near_pairs(void **state) {
     check_family(NEAR, -1, 0.1);
 }
 
+static void crossing_pairs(void **state) {
+    (void)state;
+    for (family f = NEAR; f < FAMILY_COUNT; f++) {
+        uint64_t meeting = 0, found = 0;
+        for (int i = 0; i < BATCHES / 6; i++) {
+            make_batch(f, i % 4 == 0 ? 1 : 0);
+            for (int level = 0; level < LEVEL_COUNT; level++) {
+                if (contexts[level] != NULL) check_crossing(level, &meeting, &found);
+            }
+        }
+        print_message("  %s: %llu meet, %llu of them found\n", family_names[f], (unsigned long long)meeting,
+                      (unsigned long long)found);
+        assert_true(meeting > 1000 && (f != NEAR || found * 10 > meeting * 6));
+    }
+}
+
 static void degenerate_pairs(void **state) {
     (void)state;
     for (int shared = -1; shared < 4; shared++) {
@@ -182,58 +219,86 @@ static void overflow_certifies_nothing(void **state) {
         assert_true(meeting > 10);
         for (size_t k = 0; k < BATCH_MAX * 18; k++) work.positions[k] *= scale;
         for (int level = 0; level < LEVEL_COUNT; level++) {
-            if (contexts[level] != NULL) assert_int_equal(reject_disjoint(level, false, pairs), meeting);
+            if (contexts[level] == NULL) continue;
+            uint64_t meet = 0, found = 0;
+            assert_int_equal(reject_disjoint(level, false, pairs), meeting);
+            check_crossing(level, &meet, &found);
         }
     }
 }
 
 /* ---- single triangles -------------------------------------------------------------------------------- */
 
-static uint32_t reject_with_area(int level, uint32_t *list) {
-    for (uint32_t i = 0; i < 2 * work.count; i++) list[i] = i;
-    return intersection_kernels_of(contexts[level])
-        ->reject_with_area(triangles_of_work(), work.positions, list, 2 * work.count);
+/* Every other triangle from the last one on is asked for; the bytes of the rest stay as they are. */
+static void sign_normals(int level, uint8_t *normals, uint8_t *rises) {
+    uint32_t list[BATCH_MAX], count = 0;
+    for (uint32_t i = 0; i < work.count; i++) list[count++] = 2 * (work.count - 1 - i) + i % 2;
+    memset(normals, 0xaa, (size_t)2 * BATCH_MAX);
+    memset(rises, 0xaa, (size_t)2 * BATCH_MAX);
+    intersection_kernels_of(contexts[level])
+        ->sign_normals(triangles_of_work(), work.positions, list, count, normals, rises);
 }
 
-static bool has_no_area(uint32_t triangle) {
+static int sign_of_normal(const double *const p[3], int axis) {
+    int x = (axis + 1) % 3, y = (axis + 2) % 3;
+    return orient2d(p[0][x], p[0][y], p[1][x], p[1][y], p[2][x], p[2][y]);
+}
+
+static uint8_t exact_rises(const double *const p[3]) {
+    uint8_t rises = 0;
+    for (int i = 0; i < 6; i++) {
+        const double *at = p[i % 3], *next = p[(i + 1) % 3], *last = p[(i + 2) % 3];
+        int y = i < RISES_ALONG_Y ? 2 : 1;
+        rises |= (uint8_t)((next[y] < at[y] && last[y] >= at[y]) << i);
+    }
+    return rises;
+}
+
+/* Counts the axes along which the exact sign is not 0, and those whose sign was found. */
+static void check_signs(uint32_t triangle, uint8_t normals, uint64_t *signs, uint64_t *found) {
     const double *p[3];
     for (int i = 0; i < 3; i++) p[i] = work.positions + (size_t)work.triangles[triangle][i] * 3;
-    return collinear(p[0], p[1], p[2]);
+    for (int k = 0; k < 3; k++) {
+        int exact = sign_of_normal(p, k), claimed = normals >> (2 * k) & 3;
+        assert_true(claimed == 0 || claimed == (exact > 0 ? 1 : exact < 0 ? 2 : 3));
+        *signs += exact != 0;
+        *found += claimed != 0;
+    }
 }
 
-static void thin_triangles(void **state) {
+static void signs_of_normals(void **state) {
     (void)state;
-    uint64_t all = 0, thin = 0, open = 0;
+    uint64_t signs = 0, found = 0;
     for (int i = 0; i < BATCHES; i++) {
-        uint32_t first[2 * BATCH_MAX], other[2 * BATCH_MAX], next = 0;
+        static uint8_t normals[2][2 * BATCH_MAX], rises[2][2 * BATCH_MAX];
         make_batch((family)(i % FAMILY_COUNT), -1);
-        uint32_t count = reject_with_area(0, first);
+        sign_normals(0, normals[0], rises[0]);
         for (uint32_t t = 0; t < 2 * work.count; t++) {
-            bool kept = next < count && first[next] == t, flat = has_no_area(t);
-            assert_true(kept || !flat);
-            next += kept;
-            thin += flat;
-            open += kept && !flat;
+            const double *p[3];
+            for (int k = 0; k < 3; k++) p[k] = work.positions + (size_t)work.triangles[t][k] * 3;
+            bool asked = (work.count - 1 - t / 2) % 2 == t % 2;
+            if (asked) check_signs(t, normals[0][t], &signs, &found);
+            assert_int_equal(rises[0][t], asked ? exact_rises(p) : 0xaa);
+            assert_true(asked || normals[0][t] == 0xaa);
         }
-        assert_int_equal(next, count);
-        all += 2 * work.count;
         for (int level = 1; level < LEVEL_COUNT; level++) {
             if (contexts[level] == NULL) continue;
-            assert_int_equal(reject_with_area(level, other), count);
-            assert_memory_equal(first, other, count * sizeof *first);
+            sign_normals(level, normals[1], rises[1]);
+            assert_memory_equal(normals[0], normals[1], sizeof normals[0]);
+            assert_memory_equal(rises[0], rises[1], sizeof rises[0]);
         }
     }
-    printf("%llu triangles, %llu without area, %llu others left open\n", (unsigned long long)all,
-           (unsigned long long)thin, (unsigned long long)open);
-    assert_true(thin > 1000 && open * 10 < all);
+    print_message("  %llu signs, %llu of them found\n", (unsigned long long)signs, (unsigned long long)found);
+    assert_true(signs > 1000 && found * 10 > signs * 9);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(near_pairs, seed_random),
+        cmocka_unit_test_setup(crossing_pairs, seed_random),
         cmocka_unit_test_setup(degenerate_pairs, seed_random),
         cmocka_unit_test_setup(overflow_certifies_nothing, seed_random),
-        cmocka_unit_test_setup(thin_triangles, seed_random),
+        cmocka_unit_test_setup(signs_of_normals, seed_random),
     };
     return cmocka_run_group_tests_name("static_kernel", tests, open_levels, close_levels);
 }
