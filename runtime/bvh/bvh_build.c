@@ -10,34 +10,63 @@ typedef struct builder {
     cscd_context *context;
     const cscd_mesh *mesh;
     bvh_regions given;
-    ordering triangles, regions;
-    const uint32_t *names;    /* the triangles that items of `triangles` stand for; NULL: each for itself */
-    uint32_t *region_offsets; /* the triangles of region r: items[offsets[r] .. offsets[r + 1]) */
+    placed_item *triangles, *regions;
+    uint32_t *region_offsets; /* the triangles of region r: triangles[offsets[r] .. offsets[r + 1]) */
     uint32_t *record_of;      /* per vertex: its last record; in an earlier tree if below the tree's first */
 } builder;
 
 /* ---- order ------------------------------------------------------------------------------------------- */
 
+/* What threads share to find centres. */
+typedef struct centre_work {
+    const cscd_mesh *mesh;
+    const double *positions;
+    double scale;
+    placed_item *items;
+    uint32_t count;
+} centre_work;
+
+enum { CENTRES_PER_TASK = 4096 };
+
 /* Computes the centre of a triangle relative to the first corner, scaled to floats. */
-static void find_centre(const cscd_mesh *mesh, const double *positions, double scale, uint32_t triangle,
-                        float *centre) {
-    const double *origin = positions + (size_t)mesh->triangles[0][0] * 3;
+static void find_centre(const centre_work *work, placed_item *item) {
+    const uint32_t *corners = work->mesh->triangles[item->name];
+    const double *origin = work->positions + (size_t)work->mesh->triangles[0][0] * 3;
     for (size_t k = 0; k < 3; k++) {
         double sum = 0.0;
-        for (int i = 0; i < 3; i++)
-            sum += positions[(size_t)mesh->triangles[triangle][i] * 3 + k] - origin[k];
-        centre[k] = (float)(sum / 3.0 * scale);
+        for (int i = 0; i < 3; i++) sum += work->positions[(size_t)corners[i] * 3 + k] - origin[k];
+        item->centre[k] = (float)(sum / 3.0 * work->scale);
     }
 }
 
+static void find_some_centres(void *data, uint32_t index) {
+    const centre_work *work = data;
+    uint32_t begin = index * CENTRES_PER_TASK, rest = work->count - begin;
+    for (uint32_t i = 0; i < rest && i < CENTRES_PER_TASK; i++) find_centre(work, &work->items[begin + i]);
+}
+
+static void find_centres(const builder *b, const double *positions, double scale, uint32_t count) {
+    centre_work work = {b->mesh, positions, scale, b->triangles, count};
+    parallel_run(b->context->threads, (count + CENTRES_PER_TASK - 1) / CENTRES_PER_TASK, find_some_centres,
+                 &work);
+}
+
 /* The centres of regions are the means of those of their triangles. */
-static void find_centres(builder *b, const double *positions, double scale) {
-    for (uint32_t t = 0; t < b->mesh->triangle_count; t++) {
-        uint32_t region = b->given.of_triangle[t];
-        float share = 1.0f / (float)(b->region_offsets[region + 1] - b->region_offsets[region]);
-        find_centre(b->mesh, positions, scale, t, b->triangles.centres[t]);
-        for (size_t k = 0; k < 3; k++) b->regions.centres[region][k] += share * b->triangles.centres[t][k];
+static void place_regions(builder *b) {
+    for (uint32_t r = 0; r < b->given.count; r++) {
+        uint32_t begin = b->region_offsets[r], end = b->region_offsets[r + 1];
+        float share = 1.0f / (float)(end - begin);
+        for (uint32_t i = begin; i < end; i++) {
+            for (size_t k = 0; k < 3; k++) b->regions[r].centre[k] += share * b->triangles[i].centre[k];
+        }
     }
+}
+
+/* An order of the regions is one run. */
+static bool order_items(builder *b) {
+    const uint32_t all[2] = {0, b->given.count};
+    return bvh_order_runs(b->context, (item_runs){b->regions, all, 1}) &&
+           bvh_order_runs(b->context, (item_runs){b->triangles, b->region_offsets, b->given.count});
 }
 
 /* Sorts the triangles by region. */
@@ -49,11 +78,11 @@ static void list_triangles(builder *b) {
     for (uint32_t t = 0; t < triangle_count; t++) next[b->given.of_triangle[t]]++;
     for (uint32_t r = 0; r < b->given.count; r++) {
         uint32_t size = next[r];
-        b->regions.items[r] = r;
+        b->regions[r].name = r;
         next[r] = sum;
         sum += size;
     }
-    for (uint32_t t = 0; t < triangle_count; t++) b->triangles.items[next[b->given.of_triangle[t]]++] = t;
+    for (uint32_t t = 0; t < triangle_count; t++) b->triangles[next[b->given.of_triangle[t]]++].name = t;
 }
 
 /* ---- trees, leaves, records ---------------------------------------------------------------------------- */
@@ -69,17 +98,13 @@ static uint32_t record_of(builder *b, bvh *f, const bvh_tree *tree, uint32_t ver
     return b->record_of[vertex] = f->record_count++;
 }
 
-static uint32_t triangle_of(const builder *b, uint32_t item) {
-    return b->names != NULL ? b->names[item] : item;
-}
-
-static void fill_leaf(builder *b, bvh *f, const bvh_tree *tree, const uint32_t *items, uint32_t count) {
+static void fill_leaf(builder *b, bvh *f, const bvh_tree *tree, const placed_item *items, uint32_t count) {
     uint32_t index = f->leaf_count++;
     bvh_leaf *out = &f->leaves[index];
     f->leaf_trees[index] = (uint32_t)(tree - f->trees);
     f->leaf_flags[index] = (lane_flags){.used = (uint8_t)((1u << count) - 1)};
     for (uint32_t lane = 0; lane < LANES; lane++) {
-        uint32_t t = triangle_of(b, items[lane < count ? lane : 0]);
+        uint32_t t = items[lane < count ? lane : 0].name;
         out->triangles[lane] = lane < count ? t : UINT32_MAX;
         for (int i = 0; i < 3; i++) {
             uint32_t record = record_of(b, f, tree, b->mesh->triangles[t][i]);
@@ -103,13 +128,12 @@ static void cut_chunks(bvh *f) {
 }
 
 static void fill_run(builder *b, bvh *f, bvh_tree *tree, uint32_t region, uint32_t begin, uint32_t end) {
-    bvh_order_run(&b->triangles, begin, end);
     *tree = (bvh_tree){.region = region,
                        .object = OBJECT_UNKNOWN,
                        .first_leaf = f->leaf_count,
                        .first_record = f->record_count};
     for (uint32_t i = begin; i < end; i += LANES)
-        fill_leaf(b, f, tree, b->triangles.items + i, end - i < LANES ? end - i : LANES);
+        fill_leaf(b, f, tree, b->triangles + i, end - i < LANES ? end - i : LANES);
     tree->leaf_count = f->leaf_count - tree->first_leaf;
     while (f->record_count % LANES != 0)
         f->record_vertices[f->record_count++] = f->record_vertices[tree->first_record];
@@ -121,20 +145,16 @@ static void fill_run(builder *b, bvh *f, bvh_tree *tree, uint32_t region, uint32
 static bool allocate_builder(builder *b) {
     cscd_context *context = b->context;
     uint32_t triangle_count = b->mesh->triangle_count, region_count = b->given.count;
-    b->triangles.items = context_allocate(context, triangle_count, sizeof(uint32_t));
-    b->triangles.centres = context_allocate(context, triangle_count, sizeof(float[3]));
-    b->regions.items = context_allocate(context, region_count, sizeof(uint32_t));
-    b->regions.centres = context_allocate(context, region_count, sizeof(float[3]));
+    b->triangles = context_allocate(context, triangle_count, sizeof *b->triangles);
+    b->regions = context_allocate(context, region_count, sizeof *b->regions);
     b->region_offsets = context_allocate(context, (size_t)region_count + 1, sizeof(uint32_t));
     b->record_of = context_allocate(context, b->mesh->vertex_count, sizeof(uint32_t));
     if (b->record_of != NULL) memset(b->record_of, 0xff, b->mesh->vertex_count * sizeof(uint32_t));
-    return b->triangles.items != NULL && b->triangles.centres != NULL && b->regions.items != NULL &&
-           b->regions.centres != NULL && b->region_offsets != NULL && b->record_of != NULL;
+    return b->triangles != NULL && b->regions != NULL && b->region_offsets != NULL && b->record_of != NULL;
 }
 
 static void free_builder(builder *b) {
-    void *blocks[] = {b->triangles.items, b->triangles.centres, b->regions.items,
-                      b->regions.centres, b->region_offsets,    b->record_of};
+    void *blocks[] = {b->triangles, b->regions, b->region_offsets, b->record_of};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(b->context, blocks[i]);
 }
 
@@ -181,14 +201,14 @@ static bool allocate_bvh(const builder *b, bvh *f) {
            f->records != NULL && f->chunks != NULL && f->slots != NULL;
 }
 
-/* Returns the power of two that brings the extent of these triangles' positions near 1; names NULL: of all. */
-static double scale_for(const cscd_mesh *mesh, const double *positions, const uint32_t *names,
+/* Returns the power of two that brings the extent of these triangles' positions near 1. */
+static double scale_for(const cscd_mesh *mesh, const double *positions, const placed_item *items,
                         uint32_t count) {
     const double *origin = positions + (size_t)mesh->triangles[0][0] * 3;
     double extent = 0.0;
     int exponent = 0;
     for (size_t i = 0; i < (size_t)count * 3; i++) {
-        const uint32_t *corners = mesh->triangles[names != NULL ? names[i / 3] : i / 3];
+        const uint32_t *corners = mesh->triangles[items[i / 3].name];
         for (size_t k = 0; k < 3; k++) {
             double distance = fabs(positions[(size_t)corners[i % 3] * 3 + k] - origin[k]);
             extent = distance > extent ? distance : extent;
@@ -204,20 +224,20 @@ cscd_status bvh_build(const cscd_mesh *mesh, bvh_regions regions, const double *
     bvh f = {.mesh = mesh,
              .kernels = bvh_kernels_of(mesh->context),
              .axis_count = axis_count,
-             .tree_count = regions.count,
-             .scale = scale_for(mesh, positions, NULL, mesh->triangle_count)};
+             .tree_count = regions.count};
     bool made = allocate_builder(&b);
     if (made) {
         list_triangles(&b);
-        find_centres(&b, positions, f.scale);
-        bvh_order_run(&b.regions, 0, regions.count);
-        made = allocate_bvh(&b, &f);
+        f.scale = scale_for(mesh, positions, b.triangles, mesh->triangle_count);
+        find_centres(&b, positions, f.scale, mesh->triangle_count);
+        place_regions(&b);
+        made = order_items(&b) && allocate_bvh(&b, &f);
         for (uint32_t p = 0; made && p < f.tree_count; p++) {
-            uint32_t region = b.regions.items[p];
+            uint32_t region = b.regions[p].name;
             fill_run(&b, &f, &f.trees[p], region, b.region_offsets[region], b.region_offsets[region + 1]);
         }
         if (made) cut_chunks(&f);
-        made = made && bvh_build_levels(&f, b.regions.items) && bvh_mark_objects(&f);
+        made = made && bvh_build_levels(&f, b.region_offsets) && bvh_mark_objects(&f);
     }
     free_builder(&b);
     if (!made) {
@@ -237,9 +257,9 @@ uint32_t bvh_count_missing(const bvh *f) {
     return sum;
 }
 
-/* Lists the triangles of missing trees, tree by tree. */
-static void list_missing(builder *b, const bvh *f, uint32_t *names) {
-    uint32_t sum = 0, *next = b->region_offsets + 1;
+/* Lists the triangles of missing trees by region, as runs; other regions have empty ones. */
+static void list_missing(builder *b, const bvh *f) {
+    uint32_t sum = 0, *offsets = b->region_offsets, *next = offsets + 1;
     for (uint32_t i = 0; i < f->tree_count; i++) next[f->trees[i].region] = f->trees[i].missing;
     for (uint32_t r = 0; r < b->given.count; r++) {
         uint32_t size = next[r];
@@ -248,20 +268,15 @@ static void list_missing(builder *b, const bvh *f, uint32_t *names) {
     }
     for (uint32_t t = f->missing_begin; t < f->missing_end; t++) {
         uint32_t *place = &next[b->given.of_triangle[t]];
-        if (*place != UINT32_MAX) names[(*place)++] = t;
+        if (*place != UINT32_MAX) b->triangles[(*place)++].name = t;
     }
-    for (uint32_t i = 0; i < sum; i++) b->triangles.items[i] = i;
-    /* Now next has the end of each run, and the run before a missing one need not be missing. */
-    for (uint32_t i = 0; i < f->tree_count; i++) {
-        const bvh_tree *tree = &f->trees[i];
-        if (tree->missing > 0) b->regions.items[i] = next[tree->region] - tree->missing;
-    }
+    for (uint32_t r = 0; r < b->given.count; r++) next[r] = next[r] == UINT32_MAX ? offsets[r] : next[r];
 }
 
 /* Fills the place that a missing tree has been given. */
 static void fill_missing(builder *b, bvh *f, uint32_t index) {
     bvh_tree place = f->trees[index], *tree = &f->trees[index];
-    uint32_t leaves = f->leaf_count, records = f->record_count, begin = b->regions.items[index];
+    uint32_t leaves = f->leaf_count, records = f->record_count, begin = b->region_offsets[place.region];
     memset(f->record_weights + place.first_record, 0, place.record_count * sizeof *f->record_weights);
     f->leaf_count = place.first_leaf;
     f->record_count = place.first_record;
@@ -280,47 +295,43 @@ static void drop_levels(bvh *f) {
     f->level_count = 0;
 }
 
-static bool allocate_missing(builder *b, bvh *f, uint32_t missing, uint32_t **names) {
+static bool allocate_missing(builder *b, bvh *f, uint32_t missing) {
     cscd_context *context = b->context;
-    b->triangles.items = context_allocate(context, missing, sizeof(uint32_t));
-    b->triangles.centres = context_allocate(context, missing, sizeof(float[3]));
-    b->regions.items = context_allocate(context, f->tree_count, sizeof(uint32_t));
+    b->triangles = context_allocate(context, missing, sizeof *b->triangles);
     b->region_offsets = context_allocate(context, (size_t)b->given.count + 1, sizeof(uint32_t));
     b->record_of = context_reserve(context, b->mesh->vertex_count, sizeof(uint32_t));
-    b->names = *names = context_allocate(context, missing, sizeof(uint32_t));
     if (f->records == NULL) {
         f->record_capacity = f->record_count + f->record_count / 16;
         f->records = context_allocate(context, f->record_capacity, sizeof *f->records);
     }
-    return b->triangles.items != NULL && b->triangles.centres != NULL && b->regions.items != NULL &&
-           b->region_offsets != NULL && b->record_of != NULL && b->names != NULL && f->records != NULL;
+    return b->triangles != NULL && b->region_offsets != NULL && b->record_of != NULL && f->records != NULL;
 }
 
-static void fill_all_missing(builder *b, bvh *f, const double *positions, uint32_t *names, uint32_t missing) {
+static bool fill_all_missing(builder *b, bvh *f, const double *positions, uint32_t missing) {
     memset(b->record_of, 0xff, b->mesh->vertex_count * sizeof(uint32_t));
-    list_missing(b, f, names);
-    f->scale = fmin(f->scale, scale_for(b->mesh, positions, names, missing));
-    for (uint32_t i = 0; i < missing; i++)
-        find_centre(b->mesh, positions, f->scale, names[i], b->triangles.centres[i]);
+    list_missing(b, f);
+    f->scale = fmin(f->scale, scale_for(b->mesh, positions, b->triangles, missing));
+    find_centres(b, positions, f->scale, missing);
+    if (!bvh_order_runs(b->context, (item_runs){b->triangles, b->region_offsets, b->given.count}))
+        return false;
     for (uint32_t i = 0; i < f->tree_count; i++) {
         if (f->trees[i].missing > 0) fill_missing(b, f, i);
     }
+    return true;
 }
 
 cscd_status bvh_finish(bvh *f, bvh_regions regions, const object_set *sets, const bool *active,
                        const double *positions) {
     builder b = {.context = f->mesh->context, .mesh = f->mesh, .given = regions};
-    uint32_t missing = bvh_count_missing(f), *names = NULL;
-    bool made = allocate_missing(&b, f, missing, &names);
+    uint32_t missing = bvh_count_missing(f);
+    bool made = allocate_missing(&b, f, missing) && fill_all_missing(&b, f, positions, missing);
     if (made) {
-        fill_all_missing(&b, f, positions, names, missing);
         cut_chunks(f);
-        made = bvh_build_levels(f, b.regions.items) && bvh_mark_objects(f) && bvh_set_objects(f, sets) &&
+        made = bvh_build_levels(f, b.region_offsets) && bvh_mark_objects(f) && bvh_set_objects(f, sets) &&
                bvh_set_active(f, active);
         if (!made) drop_levels(f);
     }
     free_builder(&b);
-    context_free(b.context, names);
     assert(!made || bvh_validate(f, false) == NULL);
     return made ? CSCD_OK : CSCD_OUT_OF_MEMORY;
 }

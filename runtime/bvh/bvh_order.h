@@ -1,13 +1,21 @@
 /* Orders items in space, so that neighbours in the order are near each other. */
 #pragma once
 
-#include <stdint.h>
+#include "src/core/context.h"
 
-/* Items to be ordered: the triangles of a region, or regions. */
-typedef struct ordering {
-    uint32_t *items;
-    float (*centres)[3]; /* indexed by what items holds */
-} ordering;
+/* A triangle of a region, or a region. */
+typedef struct placed_item {
+    float centre[3];
+    uint32_t name;
+} placed_item;
 
-/* Splits items begin to end - 1 at the middle of the longest extent, then each side, down to single items. */
-void bvh_order_run(const ordering *o, uint32_t begin, uint32_t end);
+/* Runs of items: run r is items[offsets[r] .. offsets[r + 1]). */
+typedef struct item_runs {
+    placed_item *items;
+    const uint32_t *offsets;
+    uint32_t count;
+} item_runs;
+
+/* Splits each run at the middle of its longest extent, then each side, down to LANES items. All threads share the work, and
+ * the order is the same for any number of them. False: no memory. */
+bool bvh_order_runs(cscd_context *context, item_runs runs);
