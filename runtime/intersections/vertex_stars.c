@@ -17,18 +17,13 @@ static const uint32_t *star_of(const cscd_mesh *mesh, uint32_t vertex, uint32_t 
 
 /* ---- closed stars --------------------------------------------------------------------------------------- */
 
-/* Does the triangle run through an edge from its smaller vertex to the greater one? */
-static bool runs_up(const uint32_t t[3], const uint32_t edge[2]) {
-    return (t[0] == edge[0] && t[1] == edge[1]) || (t[1] == edge[0] && t[2] == edge[1]) ||
-           (t[2] == edge[0] && t[0] == edge[1]);
-}
-
 /* A wire is no edge of a triangle. */
 static bool parts_two_triangles(const cscd_mesh *mesh, uint32_t edge) {
     const uint32_t(*triangles)[3] = (const uint32_t(*)[3])mesh->triangles;
     const uint32_t *star = mesh->edge_stars + mesh->edge_star_offsets[edge], *ends = mesh->edges[edge];
     uint32_t size = edge_star_size(mesh, edge);
-    return size == 0 || (size == 2 && runs_up(triangles[star[0]], ends) != runs_up(triangles[star[1]], ends));
+    return size == 0 || (size == 2 && triangle_runs_along(triangles[star[0]], ends) !=
+                                          triangle_runs_along(triangles[star[1]], ends));
 }
 
 static void mark_closed(vertex_stars *s) {

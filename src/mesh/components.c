@@ -39,12 +39,6 @@ static uint32_t corner_at(const cscd_mesh *mesh, uint32_t triangle, uint32_t ver
     return triangle * 3 + (v[0] == vertex ? 0u : v[1] == vertex ? 1u : 2u);
 }
 
-/* Does the triangle run along the edge from its smaller to its larger vertex? */
-static bool runs_forward(const cscd_mesh *mesh, uint32_t triangle, const uint32_t edge[2]) {
-    const uint32_t *v = mesh->triangles[triangle];
-    return v[(corner_at(mesh, triangle, edge[0]) % 3 + 1) % 3] == edge[1];
-}
-
 static void count_edge(const cscd_mesh *mesh, uint32_t edge) {
     const uint32_t *star = mesh->edge_stars + mesh->edge_star_offsets[edge];
     const uint32_t *ends = mesh->edges[edge];
@@ -54,7 +48,8 @@ static void count_edge(const cscd_mesh *mesh, uint32_t edge) {
     component->edge_count++;
     if (size == 1) count_one(&component->open_edges, &component->first_open_edge, edge);
     if (size > 2) count_one(&component->non_manifold_edges, &component->first_non_manifold_edge, edge);
-    if (size == 2 && runs_forward(mesh, star[0], ends) == runs_forward(mesh, star[1], ends))
+    if (size == 2 && triangle_runs_along(mesh->triangles[star[0]], ends) ==
+                         triangle_runs_along(mesh->triangles[star[1]], ends))
         count_one(&component->inconsistent_edges, &component->first_inconsistent_edge, edge);
 }
 

@@ -146,6 +146,13 @@ static inline bool edge_is_loose(const cscd_mesh *mesh, uint32_t edge) {
     return edge_is_point(mesh, edge) || edge_star_size(mesh, edge) == 0;
 }
 
+/* Does the triangle run along one of its edges from edge[0] to edge[1]? */
+static inline bool triangle_runs_along(const uint32_t triangle[3], const uint32_t edge[2]) {
+    const uint32_t *t = triangle;
+    return (t[0] == edge[0] && t[1] == edge[1]) || (t[1] == edge[0] && t[2] == edge[1]) ||
+           (t[2] == edge[0] && t[0] == edge[1]);
+}
+
 static inline bool triangle_contains(const uint32_t triangle[3], uint32_t vertex) {
     return triangle[0] == vertex || triangle[1] == vertex || triangle[2] == vertex;
 }

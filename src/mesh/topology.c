@@ -1,111 +1,188 @@
-/* Edges and stars of a mesh, by counting sorts: linear in its size. */
+/* Edges and stars of a mesh: sides of triangles are put to their smaller vertices, and sorted there. */
+#include "src/core/sort.h"
 #include "src/mesh/mesh.h"
 
 #include <string.h>
 
-/* A corner c = 3 * triangle + i stands for the triangle's side from its vertex i to its vertex i + 1. */
-static uint32_t corner_vertex(const cscd_mesh *mesh, uint32_t corner) {
-    return mesh->triangles[corner / 3][corner % 3];
+/* A corner c = 3 * triangle + i stands for the triangle's side from its vertex i to its vertex i + 1. In the order of
+ * these numbers sides go by their larger vertices, and those of one edge by their triangles. */
+static uint64_t side_number(uint32_t larger, uint32_t corner) {
+    return (uint64_t)larger << 32 | corner;
 }
 
-static uint32_t side_end(const cscd_mesh *mesh, uint32_t corner) {
-    return mesh->triangles[corner / 3][(corner % 3 + 1) % 3];
+static uint32_t larger_of(uint64_t side) {
+    return (uint32_t)(side >> 32);
 }
 
-static uint32_t side_smaller(const cscd_mesh *mesh, uint32_t corner) {
-    uint32_t a = corner_vertex(mesh, corner), b = side_end(mesh, corner);
+static uint32_t corner_of(uint64_t side) {
+    return (uint32_t)side;
+}
+
+/* A list for each vertex lies between the mesh's vertex_star_offsets: first of the sides whose smaller vertex it is, and in
+ * the end its star. */
+typedef struct topology_work {
+    cscd_mesh *mesh;
+    uint64_t *sides, *spare; /* per corner; spare: where a vertex has many sides, otherwise NULL */
+    uint32_t *first_edges;   /* per task, first the number of its edges */
+} topology_work;
+
+/* ---- lists of vertices ---------------------------------------------------------------------------------- */
+
+static uint32_t smaller_of(uint32_t a, uint32_t b) {
     return a < b ? a : b;
 }
 
-static uint32_t side_larger(const cscd_mesh *mesh, uint32_t corner) {
-    uint32_t a = corner_vertex(mesh, corner), b = side_end(mesh, corner);
-    return a > b ? a : b;
-}
-
-/* A stable counting sort of corners by key. in == NULL stands for 0, 1, 2, ... The mesh's vertex_star_offsets end
- * as the bounds of the buckets. */
-static void sort_corners(const cscd_mesh *mesh, uint32_t (*key)(const cscd_mesh *, uint32_t),
-                         const uint32_t *in, uint32_t *out) {
-    uint32_t corner_count = mesh->triangle_count * 3, *offsets = mesh->vertex_star_offsets;
-    memset(offsets, 0, ((size_t)mesh->vertex_count + 1) * sizeof *offsets);
-    for (uint32_t i = 0; i < corner_count; i++) offsets[key(mesh, in != NULL ? in[i] : i)]++;
-    uint32_t sum = 0;
-    for (uint32_t v = 0; v <= mesh->vertex_count; v++) {
-        uint32_t size = offsets[v];
-        offsets[v] = sum;
+/* Turns counts into the beginnings of lists; returns the most. */
+static uint32_t begin_lists(uint32_t *counts, uint32_t count) {
+    uint32_t sum = 0, most = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t size = counts[i];
+        most = size > most ? size : most;
+        counts[i] = sum;
         sum += size;
     }
-    for (uint32_t i = 0; i < corner_count; i++) {
-        uint32_t corner = in != NULL ? in[i] : i;
-        out[offsets[key(mesh, corner)]++] = corner;
+    return most;
+}
+
+/* Offsets are counted and moved on one place further, so that in the end each is where its list begins. Returns the length
+ * of the longest list. */
+static uint32_t list_sides(const topology_work *work) {
+    cscd_mesh *mesh = work->mesh;
+    uint32_t *next = mesh->vertex_star_offsets + 1;
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+        const uint32_t *v = mesh->triangles[t];
+        for (int i = 0; i < 3; i++) next[smaller_of(v[i], v[(i + 1) % 3])]++;
     }
-    for (uint32_t v = mesh->vertex_count; v > 0; v--) offsets[v] = offsets[v - 1];
-    offsets[0] = 0;
-}
-
-static void corners_to_triangles(uint32_t *corners, uint32_t count) {
-    for (uint32_t i = 0; i < count; i++) corners[i] /= 3;
-}
-
-static bool same_edge(const cscd_mesh *mesh, uint32_t a, uint32_t b) {
-    return side_smaller(mesh, a) == side_smaller(mesh, b) && side_larger(mesh, a) == side_larger(mesh, b);
-}
-
-/* sides lists all corners, with those of one edge next to each other. */
-static uint32_t count_edges(const cscd_mesh *mesh, const uint32_t *sides) {
-    uint32_t corner_count = mesh->triangle_count * 3, edge_count = corner_count > 0;
-    for (uint32_t i = 1; i < corner_count; i++) edge_count += !same_edge(mesh, sides[i - 1], sides[i]);
-    return edge_count;
-}
-
-static void number_edges(cscd_mesh *mesh, const uint32_t *sides) {
-    uint32_t corner_count = mesh->triangle_count * 3, next = 0;
-    for (uint32_t i = 0; i < corner_count; i++) {
-        if (i == 0 || !same_edge(mesh, sides[i - 1], sides[i])) {
-            mesh->edges[next][0] = side_smaller(mesh, sides[i]);
-            mesh->edges[next][1] = side_larger(mesh, sides[i]);
-            mesh->edge_star_offsets[next++] = i;
+    uint32_t longest = begin_lists(next, mesh->vertex_count);
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+        const uint32_t *v = mesh->triangles[t];
+        for (uint32_t i = 0; i < 3; i++) {
+            uint32_t a = v[i], b = v[(i + 1) % 3];
+            work->sides[next[smaller_of(a, b)]++] = side_number(a > b ? a : b, 3 * t + i);
         }
-        mesh->triangle_edges[sides[i] / 3][sides[i] % 3] = next - 1;
     }
-    mesh->edge_star_offsets[next] = corner_count;
-}
-
-/* by_larger is scratch: one number per corner. */
-static cscd_status build_edges(cscd_mesh *mesh, uint32_t *by_larger) {
-    cscd_context *context = mesh->context;
-    uint32_t corner_count = mesh->triangle_count * 3;
-    array_list by_side = {
-        {ARRAY(mesh->edge_stars, corner_count), ARRAY(mesh->triangle_edges, mesh->triangle_count)}};
-    if (!context_allocate_all(context, by_side)) return CSCD_OUT_OF_MEMORY;
-    uint32_t *sides = mesh->edge_stars;
-    sort_corners(mesh, side_larger, NULL, by_larger);
-    sort_corners(mesh, side_smaller, by_larger, sides);
-
-    mesh->edge_count = count_edges(mesh, sides);
-    array_list by_edge = {
-        {ARRAY(mesh->edges, mesh->edge_count), ARRAY(mesh->edge_star_offsets, (size_t)mesh->edge_count + 1)}};
-    if (!context_allocate_all(context, by_edge)) return CSCD_OUT_OF_MEMORY;
-    number_edges(mesh, sides);
-    corners_to_triangles(sides, corner_count);
-    return CSCD_OK;
+    return longest;
 }
 
 static void build_vertex_stars(cscd_mesh *mesh) {
-    sort_corners(mesh, corner_vertex, NULL, mesh->vertex_stars);
-    corners_to_triangles(mesh->vertex_stars, mesh->triangle_count * 3);
+    uint32_t *next = mesh->vertex_star_offsets + 1, corner_count = 3 * mesh->triangle_count;
+    const uint32_t *corners = (const uint32_t *)mesh->triangles;
+    memset(mesh->vertex_star_offsets, 0, ((size_t)mesh->vertex_count + 1) * sizeof *next);
+    for (uint32_t c = 0; c < corner_count; c++) next[corners[c]]++;
+    begin_lists(next, mesh->vertex_count);
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+        for (int i = 0; i < 3; i++) mesh->vertex_stars[next[mesh->triangles[t][i]]++] = t;
+    }
+}
+
+/* ---- edges ---------------------------------------------------------------------------------------------- */
+
+/* Sides are sorted by insertion where they are few. */
+enum { TASKS_MOST = 128, VERTICES_LEAST = 1024, INSERTED_MOST = 32 };
+
+static uint32_t vertices_per_task(const cscd_mesh *mesh) {
+    uint32_t share = mesh->vertex_count / TASKS_MOST + 1;
+    return share < VERTICES_LEAST ? VERTICES_LEAST : share;
+}
+
+static uint32_t task_begin(const cscd_mesh *mesh, uint32_t task) {
+    uint64_t begin = (uint64_t)task * vertices_per_task(mesh);
+    return begin < mesh->vertex_count ? (uint32_t)begin : mesh->vertex_count;
+}
+
+static uint32_t task_count(const cscd_mesh *mesh) {
+    return mesh->vertex_count / vertices_per_task(mesh) + 1;
+}
+
+static void sort_sides(const topology_work *work, uint32_t begin, uint32_t end) {
+    uint64_t *sides = work->sides;
+    if (end - begin > INSERTED_MOST) {
+        sort_by_number(sides + begin, work->spare + begin, end - begin, sizeof *sides);
+        return;
+    }
+    for (uint32_t i = begin + 1; i < end; i++) {
+        uint64_t side = sides[i];
+        uint32_t j = i;
+        for (; j > begin && sides[j - 1] > side; j--) sides[j] = sides[j - 1];
+        sides[j] = side;
+    }
+}
+
+static bool begins_edge(const uint64_t *sides, uint32_t begin, uint32_t i) {
+    return i == begin || larger_of(sides[i - 1]) != larger_of(sides[i]);
+}
+
+static void sort_and_count(void *data, uint32_t task) {
+    const topology_work *work = data;
+    const uint32_t *offsets = work->mesh->vertex_star_offsets;
+    uint32_t count = 0;
+    for (uint32_t v = task_begin(work->mesh, task); v < task_begin(work->mesh, task + 1); v++) {
+        uint32_t begin = offsets[v], end = offsets[v + 1];
+        sort_sides(work, begin, end);
+        for (uint32_t i = begin; i < end; i++) count += begins_edge(work->sides, begin, i);
+    }
+    work->first_edges[task] = count;
+}
+
+static void number_edges(void *data, uint32_t task) {
+    const topology_work *work = data;
+    cscd_mesh *mesh = work->mesh;
+    uint32_t next = work->first_edges[task];
+    for (uint32_t v = task_begin(mesh, task); v < task_begin(mesh, task + 1); v++) {
+        uint32_t begin = mesh->vertex_star_offsets[v];
+        for (uint32_t i = begin; i < mesh->vertex_star_offsets[v + 1]; i++) {
+            uint32_t corner = corner_of(work->sides[i]);
+            if (begins_edge(work->sides, begin, i)) {
+                mesh->edges[next][0] = v;
+                mesh->edges[next][1] = larger_of(work->sides[i]);
+                mesh->edge_star_offsets[next++] = i;
+            }
+            mesh->edge_stars[i] = corner / 3;
+            mesh->triangle_edges[corner / 3][corner % 3] = next - 1;
+        }
+    }
+}
+
+static cscd_status build_edges(topology_work *work) {
+    cscd_mesh *mesh = work->mesh;
+    cscd_context *context = mesh->context;
+    uint32_t corner_count = mesh->triangle_count * 3, tasks = task_count(mesh);
+    parallel_run(context->threads, tasks, sort_and_count, work);
+    for (uint32_t i = 0; i < tasks; i++) mesh->edge_count += work->first_edges[i];
+    begin_lists(work->first_edges, tasks);
+    array_list arrays = {
+        {ARRAY(mesh->edges, mesh->edge_count), ARRAY(mesh->edge_star_offsets, (size_t)mesh->edge_count + 1),
+         ARRAY(mesh->edge_stars, corner_count), ARRAY(mesh->triangle_edges, mesh->triangle_count)}};
+    if (!context_allocate_all(context, arrays)) return CSCD_OUT_OF_MEMORY;
+    parallel_run(context->threads, tasks, number_edges, work);
+    mesh->edge_star_offsets[mesh->edge_count] = corner_count;
+    return CSCD_OK;
+}
+
+static cscd_status build_all(topology_work *work) {
+    cscd_mesh *mesh = work->mesh;
+    cscd_context *context = mesh->context;
+    if (list_sides(work) > INSERTED_MOST) {
+        work->spare = context_reserve(context, (size_t)mesh->triangle_count * 3, sizeof *work->spare);
+        if (work->spare == NULL) return CSCD_OUT_OF_MEMORY;
+    }
+    cscd_status status = build_edges(work);
+    context_free(context, work->spare);
+    if (status == CSCD_OK) build_vertex_stars(mesh);
+    return status;
 }
 
 /* Offsets by vertex are the only memory that vertices without a triangle cost. */
 cscd_status mesh_build_topology(cscd_mesh *mesh) {
-    size_t corner_count = (size_t)mesh->triangle_count * 3;
-    array_list stars = {{ARRAY(mesh->vertex_stars, corner_count),
-                         ARRAY(mesh->vertex_star_offsets, (size_t)mesh->vertex_count + 1)}};
-    if (!context_allocate_all(mesh->context, stars)) return CSCD_OUT_OF_MEMORY;
-    uint32_t *by_larger = context_allocate(mesh->context, corner_count, sizeof *by_larger);
-    if (by_larger == NULL) return CSCD_OUT_OF_MEMORY;
-    cscd_status status = build_edges(mesh, by_larger);
-    context_free(mesh->context, by_larger);
-    if (status == CSCD_OK) build_vertex_stars(mesh);
+    cscd_context *context = mesh->context;
+    size_t corners = (size_t)mesh->triangle_count * 3;
+    topology_work work = {.mesh = mesh};
+    array_list stars = {{ARRAY(mesh->vertex_stars, corners),
+                         ARRAY(mesh->vertex_star_offsets, (size_t)mesh->vertex_count + 1)}},
+               scratch = {{ARRAY(work.sides, corners), ARRAY(work.first_edges, task_count(mesh))}};
+    if (!context_allocate_all(context, stars)) return CSCD_OUT_OF_MEMORY;
+    if (!context_allocate_all(context, scratch)) return CSCD_OUT_OF_MEMORY;
+    cscd_status status = build_all(&work);
+    context_free_all(context, scratch);
     return status;
 }

@@ -144,6 +144,7 @@ static void closed_surfaces(void **state) {
     static const expected_component tetrahedron = {4, 6, 4, 0, 0, 0, 0, 2, NO_EDGES, NONE};
     static const expected_component cube = {8, 18, 12, 0, 0, 0, 0, 2, NO_EDGES, NONE};
     static const expected_component torus = {30, 90, 60, 0, 0, 0, 0, 0, NO_EDGES, NONE};
+    static const expected_component cones = {102, 300, 200, 0, 0, 0, 0, 2, NO_EDGES, NONE};
     (void)state;
     shape s = {0};
     shape_add_tetrahedron(&s, 0, 1, 2, 3);
@@ -154,6 +155,13 @@ static void closed_surfaces(void **state) {
     s = (shape){0};
     shape_add_grid(&s, 5, 6, true, true);
     check_shape(&s, 1, &torus);
+    s = (shape){0};
+    for (uint32_t i = 0; i < 100; i++) { /* two cones over one rim, jumping around it; tips 0 and 101 */
+        uint32_t a = 37 * i % 100, b = (a + 1) % 100;
+        shape_add_triangle(&s, 0, 1 + a, 1 + b);
+        shape_add_triangle(&s, 1 + b, 1 + a, 101);
+    }
+    check_shape(&s, 1, &cones);
 }
 
 static void isolated_vertices(void **state) {
