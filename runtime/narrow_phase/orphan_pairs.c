@@ -24,9 +24,7 @@ static bool are_orphan_edges(const cscd_mesh *mesh, uint32_t a, uint32_t b) {
 
 /* ---- by the corners opposite edges ------------------------------------------------------------------------ */
 
-/* Writes the corners opposite an edge: NO_CORNER in the second place for an edge of one triangle, MANY_CORNERS for one of more
- * than two. */
-static void find_opposites(const cscd_mesh *mesh, uint32_t edge, uint32_t out[2]) {
+void orphan_search_opposites(const cscd_mesh *mesh, uint32_t edge, uint32_t out[2]) {
     uint32_t begin = mesh->edge_star_offsets[edge], count = mesh->edge_star_offsets[edge + 1] - begin;
     out[0] = out[1] = NO_CORNER;
     for (uint32_t i = 0; i < count && i < 2; i++) {
@@ -63,9 +61,13 @@ bool orphan_search_says(const orphan_search *f, uint32_t a, uint32_t b) {
 
 /* ---- the search --------------------------------------------------------------------------------------------- */
 
+static bool all_have_enough(const orphan_search *f) {
+    return f->grown != NULL && atomic_load_explicit(f->grown, memory_order_relaxed) > 2 * f->most;
+}
+
 /* There are too many, or memory has run out. */
 bool orphan_search_has_enough(const orphan_search *f) {
-    return f->out_of_memory || f->vf.count + f->ee.count > f->most;
+    return f->out_of_memory || f->vf.count + f->ee.count > f->most || all_have_enough(f);
 }
 
 static cscd_status end_search(const orphan_search *f, orphan_pairs *out, bool *too_many) {
@@ -82,6 +84,7 @@ void orphan_search_add(orphan_search *f, growing_list *list, uint32_t a, uint32_
             context_grow(f->mesh->context, list->items, list->count, capacity, sizeof *list->items);
         f->out_of_memory |= grown == NULL;
         if (grown == NULL) return;
+        if (f->grown != NULL) atomic_fetch_add(f->grown, list->count);
         list->items = grown;
         list->capacity = capacity;
     }
@@ -110,8 +113,7 @@ static bool ee_is_known(const orphan_search *f, uint32_t a, uint32_t b) {
     return f->change != NULL && edge_is_same(f, a) && edge_is_same(f, b);
 }
 
-/* The features whose stars begin with a triangle: bit i for its vertex i, bit 3 + i for its edge i. */
-static uint32_t first_features(const cscd_mesh *mesh, uint32_t t) {
+uint32_t orphan_search_features(const cscd_mesh *mesh, uint32_t t) {
     uint32_t features = 0;
     for (int i = 0; i < 3; i++) {
         uint32_t vertex = mesh->triangles[t][i], edge = mesh->triangle_edges[t][i];
@@ -123,7 +125,7 @@ static uint32_t first_features(const cscd_mesh *mesh, uint32_t t) {
 
 /* Where all triangles are looked at, these are known for all of them. */
 static uint32_t features_of(const orphan_search *f, uint32_t t) {
-    return f->features != NULL ? f->features[t] : first_features(f->mesh, t);
+    return f->features != NULL ? f->features[t] : orphan_search_features(f->mesh, t);
 }
 
 static void find_edges_between(orphan_search *f, uint32_t t, uint32_t edges_t, uint32_t u, uint32_t edges_u) {
@@ -160,8 +162,7 @@ static bool pairs_are_known(const orphan_search *f, uint32_t t, uint32_t u) {
     return f->change != NULL && ((marks_of(f, t) | marks_of(f, u)) & VERTEX_CHANGED) == 0;
 }
 
-/* Looks at the pairs of one triangle with those adjacent to it. */
-static void find_around(orphan_search *f, uint32_t t) {
+void orphan_search_around(orphan_search *f, uint32_t t) {
     const cscd_mesh *mesh = f->mesh;
     const uint32_t *corners = mesh->triangles[t];
     uint32_t features = features_of(f, t);
@@ -177,31 +178,6 @@ static void find_around(orphan_search *f, uint32_t t) {
         }
         if (orphan_search_has_enough(f)) return;
     }
-}
-
-cscd_status orphan_pairs_create(const cscd_mesh *mesh, orphan_pairs *out, bool *too_many) {
-    orphan_search f = {.mesh = mesh, .most = (size_t)mesh->triangle_count * ORPHANS_PER_TRIANGLE};
-    bool *uneven;
-    *out = (orphan_pairs){.vf = NULL};
-    array_list arrays = {{ARRAY(f.features, mesh->triangle_count), ARRAY(f.opposites, mesh->edge_count),
-                          ARRAY(f.even, mesh->edge_count), ARRAY(uneven, mesh->vertex_count)}};
-    if (!context_reserve_all(mesh->context, arrays)) return CSCD_OUT_OF_MEMORY;
-    for (uint32_t t = 0; t < mesh->triangle_count; t++) f.features[t] = (uint8_t)first_features(mesh, t);
-    for (uint32_t e = 0; e < mesh->edge_count; e++) find_opposites(mesh, e, f.opposites[e]);
-    orphan_edges_mark(&f, uneven);
-    for (uint32_t t = 0; t < mesh->triangle_count && !orphan_search_has_enough(&f); t++) {
-        if (triangle_of_obstacle(mesh, t)) continue;
-        if (orphan_edges_near(mesh, uneven, t))
-            find_around(&f, t);
-        else
-            orphan_edges_vertices(&f, t);
-        orphan_edges_of(&f, t);
-    }
-    context_free(mesh->context, f.features);
-    context_free(mesh->context, f.opposites);
-    context_free(mesh->context, f.even);
-    context_free(mesh->context, uneven);
-    return end_search(&f, out, too_many);
 }
 
 /* ---- a mesh that was made from another one --------------------------------------------------------------- */
@@ -242,7 +218,8 @@ static void find_in_object(orphan_search *f, const object_range *range) {
             f->marks[f->mesh->triangles[t][i]] |= VERTEX_NEAR;
     }
     for (uint32_t t = range->triangle; t < end && !orphan_search_has_enough(f); t++) {
-        if ((marks_of(f, t) & VERTEX_NEAR) != 0 && !triangle_of_obstacle(f->mesh, t)) find_around(f, t);
+        if ((marks_of(f, t) & VERTEX_NEAR) != 0 && !triangle_of_obstacle(f->mesh, t))
+            orphan_search_around(f, t);
     }
 }
 

@@ -3,6 +3,8 @@
 
 #include "runtime/narrow_phase/orphan_pairs.h"
 
+#include <stdatomic.h>
+
 typedef struct growing_list {
     uint32_t (*items)[2];
     size_t count, capacity;
@@ -12,8 +14,11 @@ typedef struct orphan_search {
     const cscd_mesh *mesh;
     growing_list vf, ee;
     size_t most;
+    atomic_size_t
+        *grown; /* what the lists of all that share a search held whenever one grew, added up: at most twice
+                           * what they hold now; NULL: nobody shares it */
     bool out_of_memory;
-    uint8_t *features;        /* per triangle, as first_features says; or NULL */
+    uint8_t *features;        /* per triangle, as orphan_search_features says; or NULL */
     uint32_t (*opposites)[2]; /* per edge: the corners opposite it; or NULL */
     bool *even;               /* per edge: orphan_edges.c finds its pairs with others of these; or NULL */
 
@@ -37,3 +42,13 @@ void orphan_search_add(orphan_search *f, growing_list *list, uint32_t a, uint32_
 
 /* There are too many, or memory has run out. */
 bool orphan_search_has_enough(const orphan_search *f);
+
+/* The features whose stars begin with a triangle: bit i for its vertex i, bit 3 + i for its edge i. */
+uint32_t orphan_search_features(const cscd_mesh *mesh, uint32_t t);
+
+/* Writes the corners opposite an edge: NO_CORNER in the second place for an edge of one triangle, MANY_CORNERS for one of more
+ * than two. */
+void orphan_search_opposites(const cscd_mesh *mesh, uint32_t edge, uint32_t out[2]);
+
+/* Looks at the pairs of one triangle with those adjacent to it. */
+void orphan_search_around(orphan_search *f, uint32_t t);

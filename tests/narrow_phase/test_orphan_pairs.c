@@ -187,7 +187,109 @@ static void pairs_are_those_of_the_definition(void **state) {
     assert_true(sum[0] > 1000 && sum[1] > 1000);
 }
 
+/* ---- large meshes --------------------------------------------------------------------------------------- */
+
+enum { LARGE_MAX = 100000, PAIRS_MAX = 8 * LARGE_MAX };
+
+/* Surfaces side by side, and the pairs of each, found in it alone, in their numbers here. */
+static struct {
+    uint32_t triangles[LARGE_MAX][3], triangle_count, vertex_count, edge_count;
+    uint32_t vf[PAIRS_MAX][2], ee[PAIRS_MAX][2];
+    size_t vf_count, ee_count;
+} large;
+
+static void add_surface(const cscd_mesh *mesh, const orphan_pairs *pairs) {
+    for (size_t i = 0; i < pairs->vf_count; i++) {
+        large.vf[large.vf_count][0] = pairs->vf[i][0] + large.vertex_count;
+        large.vf[large.vf_count++][1] = pairs->vf[i][1] + large.triangle_count;
+    }
+    for (size_t i = 0; i < pairs->ee_count; i++) {
+        large.ee[large.ee_count][0] = pairs->ee[i][0] + large.edge_count;
+        large.ee[large.ee_count++][1] = pairs->ee[i][1] + large.edge_count;
+    }
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+        for (int i = 0; i < 3; i++)
+            large.triangles[large.triangle_count][i] = mesh->triangles[t][i] + large.vertex_count;
+        large.triangle_count++;
+    }
+    large.vertex_count += mesh->vertex_count;
+    large.edge_count += mesh->edge_count;
+}
+
+static void make_large(cscd_context *context) {
+    for (uint64_t seed = 0; large.triangle_count + TRIANGLES_MAX <= LARGE_MAX; seed++) {
+        cscd_mesh *mesh = NULL;
+        orphan_pairs pairs;
+        bool too_many;
+        make_surface(seed % SURFACES);
+        const cscd_object_desc desc =
+            cscd_object_of_triangles(s.vertex_count, s.triangle_count, &s.triangles[0][0]);
+        assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
+        assert_int_equal(orphan_pairs_create(mesh, &pairs, &too_many), CSCD_OK);
+        if (!too_many) add_surface(mesh, &pairs);
+        if (!too_many) orphan_pairs_free(mesh->context, &pairs);
+        cscd_mesh_destroy(mesh);
+    }
+}
+
+/* Tasks of several thousand triangles find what the surfaces have, in the same order, whoever does them. */
+static void tasks_find_all_pairs(void **state) {
+    (void)state;
+    for (uint32_t threads = 1; threads <= 3; threads++) {
+        cscd_context *context = NULL;
+        cscd_context_options options = cscd_context_defaults();
+        cscd_mesh *mesh = NULL;
+        orphan_pairs pairs;
+        bool too_many;
+        options.thread_count = threads;
+        assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
+        if (threads == 1) make_large(context);
+        const cscd_object_desc desc =
+            cscd_object_of_triangles(large.vertex_count, large.triangle_count, &large.triangles[0][0]);
+        assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
+        assert_int_equal(orphan_pairs_create(mesh, &pairs, &too_many), CSCD_OK);
+        assert_false(too_many);
+        assert_int_equal(pairs.vf_count, large.vf_count);
+        assert_int_equal(pairs.ee_count, large.ee_count);
+        assert_memory_equal(pairs.vf, large.vf, large.vf_count * sizeof *large.vf);
+        assert_memory_equal(pairs.ee, large.ee, large.ee_count * sizeof *large.ee);
+        orphan_pairs_free(mesh->context, &pairs);
+        cscd_mesh_destroy(mesh);
+        cscd_context_destroy(context);
+    }
+    print_message("  %u triangles, %zu and %zu pairs\n", large.triangle_count, large.vf_count,
+                  large.ee_count);
+    assert_true(large.vf_count > 1000 && large.ee_count > 1000);
+}
+
+/* All triangles of a fan are adjacent: no task finds more than all may have, but all tasks together do. */
+static void too_many_in_all_tasks(void **state) {
+    (void)state;
+    for (uint32_t threads = 1; threads <= 3; threads++) {
+        cscd_context *context = NULL;
+        cscd_context_options options = cscd_context_defaults();
+        cscd_mesh *mesh = NULL;
+        orphan_pairs pairs;
+        bool too_many;
+        options.thread_count = threads;
+        assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
+        for (uint32_t t = 0; t < LARGE_MAX; t++) {
+            const uint32_t tip = t / 30 * 32, corners[3] = {tip, tip + 1 + t % 30, tip + 2 + t % 30};
+            memcpy(large.triangles[t], corners, sizeof corners);
+        }
+        const cscd_object_desc desc =
+            cscd_object_of_triangles(LARGE_MAX / 30 * 32 + 32, LARGE_MAX, &large.triangles[0][0]);
+        assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
+        assert_int_equal(orphan_pairs_create(mesh, &pairs, &too_many), CSCD_OK);
+        assert_true(too_many && pairs.vf == NULL && pairs.ee == NULL);
+        cscd_mesh_destroy(mesh);
+        cscd_context_destroy(context);
+    }
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(pairs_are_those_of_the_definition)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(pairs_are_those_of_the_definition),
+                                       cmocka_unit_test(tasks_find_all_pairs),
+                                       cmocka_unit_test(too_many_in_all_tasks)};
     return cmocka_run_group_tests_name("orphan_pairs", tests, NULL, NULL);
 }
