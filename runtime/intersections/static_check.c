@@ -143,7 +143,6 @@ static bool is_inactive(const bvh *f, uint32_t triangle) {
 static bool adjacent_pair_counts(const check_work *work, const uint32_t pair[2]) {
     const static_check *c = work->check;
     if (!c->unproven[pair[0]] || !c->unproven[pair[1]]) return false;
-    if (!component_counts(work, c->mesh->triangle_components[pair[0]])) return false;
     return !work->traversal->skips_inactive || !is_inactive(work->bvh, pair[0]) ||
            !is_inactive(work->bvh, pair[1]);
 }
@@ -162,6 +161,21 @@ static void test_stars(void *data, uint32_t index) {
     test_pairs(work, index);
 }
 
+/* Does any pair of a star count? */
+static bool star_counts(const check_work *work, uint32_t vertex) {
+    const cscd_mesh *mesh = work->check->mesh;
+    uint32_t begin = mesh->vertex_star_offsets[vertex], end = mesh->vertex_star_offsets[vertex + 1];
+    if (begin == end || !component_counts(work, mesh->triangle_components[mesh->vertex_stars[begin]]))
+        return false;
+    for (uint32_t i = begin; i < end; i++) {
+        uint32_t t = mesh->vertex_stars[i];
+        if (work->check->unproven[t] && (!work->traversal->skips_inactive || !is_inactive(work->bvh, t)))
+            return true;
+    }
+    return false;
+}
+
+/* What nobody asks for is not listed either. */
 static void mark_clear_stars(void *data, uint32_t index) {
     const check_work *work = data;
     static_check *check = work->check;
@@ -169,6 +183,9 @@ static void mark_clear_stars(void *data, uint32_t index) {
     uint32_t begin = (uint32_t)(count * index / lanes), end = (uint32_t)(count * (index + 1) / lanes);
     check->lanes[index].stars = star_cursor_over(begin, end);
     vertex_stars_mark_clear(&check->stars, begin, end);
+    for (uint32_t v = begin; v < end; v++) {
+        if (!check->stars.clear[v] && !star_counts(work, v)) check->stars.clear[v] = true;
+    }
 }
 
 /* ---- triangles without area ----------------------------------------------------------------------------- */

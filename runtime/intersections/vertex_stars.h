@@ -13,7 +13,8 @@ typedef struct vertex_stars {
     const cscd_mesh *mesh;
     bool *closed; /* per vertex: each edge at it belongs to two triangles, which run through it in opposite
                    * directions; whatever the moment */
-    bool *clear;  /* per vertex: no two triangles at it intersect, nor are they duplicates */
+    bool *clear;  /* per vertex: no two triangles at it intersect, nor are they duplicates; or nobody wants
+                   * to know */
     uint8_t *normals, *rises; /* per triangle */
 } vertex_stars;
 
