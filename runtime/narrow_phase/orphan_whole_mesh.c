@@ -110,9 +110,12 @@ cscd_status orphan_pairs_create(const cscd_mesh *mesh, orphan_pairs *out, bool *
     array_list arrays = {{ARRAY(known.features, mesh->triangle_count),
                           ARRAY(known.opposites, mesh->edge_count), ARRAY(known.even, mesh->edge_count),
                           ARRAY(whole.uneven, mesh->vertex_count), ARRAY(whole.tasks, whole.task_count)}};
-    if (!context_reserve_all(mesh->context, arrays)) return CSCD_OUT_OF_MEMORY;
+    /* Zeros say of a triangle or an edge that a host's loop has left out that nothing is to be found there. */
+    if (!context_allocate_all(mesh->context, arrays)) return CSCD_OUT_OF_MEMORY;
     search_whole(&whole, &known);
     cscd_status status = end_whole(&whole, out, too_many);
+    if (status == CSCD_OK) status = context_progress_status(mesh->context);
+    if (status != CSCD_OK) orphan_pairs_free(mesh->context, out);
     context_free_all(mesh->context, arrays);
     return status;
 }

@@ -23,7 +23,6 @@ static uint32_t corner_of(uint64_t side) {
 typedef struct topology_work {
     cscd_mesh *mesh;
     uint64_t *sides, *spare; /* per corner; spare: where a vertex has many sides, otherwise NULL */
-    uint32_t *first_edges;   /* per task, first the number of its edges */
 } topology_work;
 
 /* ---- lists of vertices ---------------------------------------------------------------------------------- */
@@ -78,21 +77,7 @@ static void build_vertex_stars(cscd_mesh *mesh) {
 /* ---- edges ---------------------------------------------------------------------------------------------- */
 
 /* Sides are sorted by insertion where they are few. */
-enum { TASKS_MOST = 128, VERTICES_LEAST = 1024, INSERTED_MOST = 32 };
-
-static uint32_t vertices_per_task(const cscd_mesh *mesh) {
-    uint32_t share = mesh->vertex_count / TASKS_MOST + 1;
-    return share < VERTICES_LEAST ? VERTICES_LEAST : share;
-}
-
-static uint32_t task_begin(const cscd_mesh *mesh, uint32_t task) {
-    uint64_t begin = (uint64_t)task * vertices_per_task(mesh);
-    return begin < mesh->vertex_count ? (uint32_t)begin : mesh->vertex_count;
-}
-
-static uint32_t task_count(const cscd_mesh *mesh) {
-    return mesh->vertex_count / vertices_per_task(mesh) + 1;
-}
+enum { INSERTED_MOST = 32 };
 
 static void sort_sides(const topology_work *work, uint32_t begin, uint32_t end) {
     uint64_t *sides = work->sides;
@@ -112,23 +97,22 @@ static bool begins_edge(const uint64_t *sides, uint32_t begin, uint32_t i) {
     return i == begin || larger_of(sides[i - 1]) != larger_of(sides[i]);
 }
 
-static void sort_and_count(void *data, uint32_t task) {
-    const topology_work *work = data;
+/* Returns the number of edges. */
+static uint32_t sort_all_sides(const topology_work *work) {
     const uint32_t *offsets = work->mesh->vertex_star_offsets;
     uint32_t count = 0;
-    for (uint32_t v = task_begin(work->mesh, task); v < task_begin(work->mesh, task + 1); v++) {
+    for (uint32_t v = 0; v < work->mesh->vertex_count; v++) {
         uint32_t begin = offsets[v], end = offsets[v + 1];
         sort_sides(work, begin, end);
         for (uint32_t i = begin; i < end; i++) count += begins_edge(work->sides, begin, i);
     }
-    work->first_edges[task] = count;
+    return count;
 }
 
-static void number_edges(void *data, uint32_t task) {
-    const topology_work *work = data;
+static void number_edges(const topology_work *work) {
     cscd_mesh *mesh = work->mesh;
-    uint32_t next = work->first_edges[task];
-    for (uint32_t v = task_begin(mesh, task); v < task_begin(mesh, task + 1); v++) {
+    uint32_t next = 0;
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
         uint32_t begin = mesh->vertex_star_offsets[v];
         for (uint32_t i = begin; i < mesh->vertex_star_offsets[v + 1]; i++) {
             uint32_t corner = corner_of(work->sides[i]);
@@ -141,21 +125,18 @@ static void number_edges(void *data, uint32_t task) {
             mesh->triangle_edges[corner / 3][corner % 3] = next - 1;
         }
     }
+    mesh->edge_star_offsets[next] = 3 * mesh->triangle_count;
 }
 
 static cscd_status build_edges(topology_work *work) {
     cscd_mesh *mesh = work->mesh;
-    cscd_context *context = mesh->context;
-    uint32_t corner_count = mesh->triangle_count * 3, tasks = task_count(mesh);
-    parallel_run(context->threads, tasks, sort_and_count, work);
-    for (uint32_t i = 0; i < tasks; i++) mesh->edge_count += work->first_edges[i];
-    begin_lists(work->first_edges, tasks);
-    array_list arrays = {
-        {ARRAY(mesh->edges, mesh->edge_count), ARRAY(mesh->edge_star_offsets, (size_t)mesh->edge_count + 1),
-         ARRAY(mesh->edge_stars, corner_count), ARRAY(mesh->triangle_edges, mesh->triangle_count)}};
-    if (!context_allocate_all(context, arrays)) return CSCD_OUT_OF_MEMORY;
-    parallel_run(context->threads, tasks, number_edges, work);
-    mesh->edge_star_offsets[mesh->edge_count] = corner_count;
+    mesh->edge_count = sort_all_sides(work);
+    array_list arrays = {{ARRAY(mesh->edges, mesh->edge_count),
+                          ARRAY(mesh->edge_star_offsets, (size_t)mesh->edge_count + 1),
+                          ARRAY(mesh->edge_stars, (size_t)mesh->triangle_count * 3),
+                          ARRAY(mesh->triangle_edges, mesh->triangle_count)}};
+    if (!context_allocate_all(mesh->context, arrays)) return CSCD_OUT_OF_MEMORY;
+    number_edges(work);
     return CSCD_OK;
 }
 
@@ -178,11 +159,11 @@ cscd_status mesh_build_topology(cscd_mesh *mesh) {
     size_t corners = (size_t)mesh->triangle_count * 3;
     topology_work work = {.mesh = mesh};
     array_list stars = {{ARRAY(mesh->vertex_stars, corners),
-                         ARRAY(mesh->vertex_star_offsets, (size_t)mesh->vertex_count + 1)}},
-               scratch = {{ARRAY(work.sides, corners), ARRAY(work.first_edges, task_count(mesh))}};
+                         ARRAY(mesh->vertex_star_offsets, (size_t)mesh->vertex_count + 1)}};
     if (!context_allocate_all(context, stars)) return CSCD_OUT_OF_MEMORY;
-    if (!context_allocate_all(context, scratch)) return CSCD_OUT_OF_MEMORY;
+    work.sides = context_reserve(context, corners, sizeof *work.sides);
+    if (work.sides == NULL) return CSCD_OUT_OF_MEMORY;
     cscd_status status = build_all(&work);
-    context_free_all(context, scratch);
+    context_free(context, work.sides);
     return status;
 }
