@@ -232,17 +232,22 @@ static void make_large(cscd_context *context) {
     }
 }
 
+static cscd_context *context_of_threads(uint32_t count) {
+    cscd_context *context = NULL;
+    cscd_context_options options = cscd_context_defaults();
+    options.thread_count = count;
+    assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
+    return context;
+}
+
 /* Tasks of several thousand triangles find what the surfaces have, in the same order, whoever does them. */
 static void tasks_find_all_pairs(void **state) {
     (void)state;
     for (uint32_t threads = 1; threads <= 3; threads++) {
-        cscd_context *context = NULL;
-        cscd_context_options options = cscd_context_defaults();
+        cscd_context *context = context_of_threads(threads);
         cscd_mesh *mesh = NULL;
         orphan_pairs pairs;
         bool too_many;
-        options.thread_count = threads;
-        assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
         if (threads == 1) make_large(context);
         const cscd_object_desc desc =
             cscd_object_of_triangles(large.vertex_count, large.triangle_count, &large.triangles[0][0]);
@@ -266,13 +271,10 @@ static void tasks_find_all_pairs(void **state) {
 static void too_many_in_all_tasks(void **state) {
     (void)state;
     for (uint32_t threads = 1; threads <= 3; threads++) {
-        cscd_context *context = NULL;
-        cscd_context_options options = cscd_context_defaults();
+        cscd_context *context = context_of_threads(threads);
         cscd_mesh *mesh = NULL;
         orphan_pairs pairs;
         bool too_many;
-        options.thread_count = threads;
-        assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
         for (uint32_t t = 0; t < LARGE_MAX; t++) {
             const uint32_t tip = t / 30 * 32, corners[3] = {tip, tip + 1 + t % 30, tip + 2 + t % 30};
             memcpy(large.triangles[t], corners, sizeof corners);
