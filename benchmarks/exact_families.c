@@ -2,7 +2,7 @@
 #include "benchmarks/lib/options.h"
 #include "models/shapes/body.h"
 #include "runtime/ccd/ccd_kernels.h"
-#include "runtime/solver/candidates.h"
+#include "runtime/detector/candidates.h"
 #include "src/mesh/predicates.h"
 
 #include <math.h>

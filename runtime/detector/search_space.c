@@ -48,3 +48,10 @@ cscd_status search_space_status(const search_space *s) {
     }
     return CSCD_OK;
 }
+
+bool search_space_found_any(const search_space *s) {
+    for (uint32_t i = 0; i < s->traversal.lane_count; i++) {
+        if (s->lanes[i].count > 0) return true;
+    }
+    return false;
+}

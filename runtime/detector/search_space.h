@@ -34,3 +34,6 @@ void search_space_destroy(search_space *s);
 
 /* OUT_OF_MEMORY: a lane had no room for a contact. */
 cscd_status search_space_status(const search_space *s);
+
+/* Does any lane have a contact? */
+bool search_space_found_any(const search_space *s);

@@ -1,7 +1,7 @@
 /* A line search: the candidates of one motion serve every shorter step and every moment on it. */
+#include "runtime/detector/candidates.h"
 #include "runtime/detector/contact_list.h"
 #include "runtime/detector/waiting.h"
-#include "runtime/solver/candidates.h"
 #include "runtime/solver/free_step.h"
 #include "runtime/solver/proximity.h"
 #include "src/core/check.h"
@@ -325,17 +325,10 @@ static cscd_status test_candidates_on_motion(void *of, const double *from, const
                              : status;
 }
 
-static bool lanes_are_empty(const search_space *s) {
-    for (uint32_t i = 0; i < s->traversal.lane_count; i++) {
-        if (s->lanes[i].count > 0) return false;
-    }
-    return true;
-}
-
 /* Without any contact, contacts that the caller ignores included, the states of triangles are what they were. */
 static void carry_states_over(cscd_line_search *line) {
     cscd_detector *d = line->detector;
-    if (!line->states_known || !detector_culls(d) || !lanes_are_empty(&d->space)) return;
+    if (!line->states_known || !detector_culls(d) || search_space_found_any(&d->space)) return;
     for (uint32_t c = 0; c < d->mesh->component_count; c++) d->incomplete[c] = false;
     memcpy(d->starts.triangles, line->states, d->mesh->triangle_count);
     d->starts.vouched |= line->vouched;

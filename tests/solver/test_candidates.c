@@ -1,6 +1,6 @@
 /* The candidates of a motion contain every contact of it and of every shorter motion. */
+#include "runtime/detector/candidates.h"
 #include "runtime/detector/contact_list.h"
-#include "runtime/solver/candidates.h"
 #include "runtime/solver/free_step.h"
 #include "tests/support/packed.h"
 #include "tests/support/rig.h"

@@ -1,7 +1,7 @@
 /* Pairs of features that may come near each other on a motion, kept for every shorter motion. */
-#include "runtime/solver/candidates.h"
+#include "runtime/detector/candidates.h"
 
-#include "runtime/bvh/bvh_rebuild.h"
+#include "runtime/detector/detector.h"
 #include "runtime/loose/loose_pairs.h"
 #include "runtime/narrow_phase/swept_box.h"
 
@@ -28,6 +28,12 @@ static bool join_lists(const search_space *s, cscd_contact_kind kind, candidate_
     return true;
 }
 
+cscd_status candidates_take(const search_space *s, candidates *out) {
+    bool taken = join_lists(s, CSCD_CONTACT_VF, &out->lists[CSCD_CONTACT_VF]) &&
+                 join_lists(s, CSCD_CONTACT_EE, &out->lists[CSCD_CONTACT_EE]);
+    return taken ? CSCD_OK : CSCD_OUT_OF_MEMORY;
+}
+
 cscd_status candidates_collect(cscd_detector *d, const double *x0, const double *x1, double reach,
                                double margin, candidates *out) {
     interval_search search = interval_search_begin(&d->space, x0, x1, (separation){reach, reach});
@@ -38,10 +44,7 @@ cscd_status candidates_collect(cscd_detector *d, const double *x0, const double 
     cscd_status status = bvh_rebuild_move(&d->rebuild, &d->space.bvh, x0, x1, growth, detector_growth(d));
     if (status == CSCD_OK) status = interval_search_everything(&search);
     if (status == CSCD_OK) status = interval_search_loose(&search);
-    if (status != CSCD_OK) return status;
-    bool taken = join_lists(&d->space, CSCD_CONTACT_VF, &out->lists[CSCD_CONTACT_VF]) &&
-                 join_lists(&d->space, CSCD_CONTACT_EE, &out->lists[CSCD_CONTACT_EE]);
-    return taken ? CSCD_OK : CSCD_OUT_OF_MEMORY;
+    return status == CSCD_OK ? candidates_take(&d->space, out) : status;
 }
 
 void candidates_free(cscd_context *context, candidates *c) {
