@@ -205,12 +205,23 @@ static inline bool orientations_may_touch(uint8_t a, uint8_t b) {
     return (a | b) == ORIENTATION_ZERO;
 }
 
+/* How much orientations have to endure (runtime/bvh/bvh_skin.h): by how much vertices may be off, and the least by which two
+ * corners of a triangle may differ in this. Scaled. */
+typedef struct orientation_lasting {
+    float distance, stretch;
+    float *of_leaves; /* written: by how much they may differ in each leaf; infinity where all are ZERO */
+} orientation_lasting;
+
 /* Says which triangles are oriented, and from which points. */
 typedef struct orientation_query {
     const bool *culled;                  /* per component: only triangles of these are oriented */
     const bool *clean;                   /* per triangle: all others are ZERO; NULL: all are clean */
     const double (*detector_offsets)[3]; /* per region: from the weighted mean to the detector point */
     bool still;                          /* detector points stay where they are at the start */
+
+    /* After a refit to a moment: orientations last while vertices and detector points stay near their places in the frames
+     * of their trees, the latter exactly there. NULL: they are those of the interval. */
+    const orientation_lasting *lasting;
 } orientation_query;
 
 /* Writes where the detector point of each region is at both ends of the last interval, up to rounding. */

@@ -5,7 +5,9 @@
 #include "src/core/kernels.h"
 
 struct bvh;
+struct bvh_skin;
 struct bvh_tree;
+struct orientation_lasting;
 struct traversal;
 struct traversal_lane;
 
@@ -35,6 +37,20 @@ typedef struct bvh_kernels {
      * element per triangle of the mesh, and triangles that are not clean become ZERO; NULL: all are clean. */
     void (*orient)(const struct bvh *f, const struct bvh_tree *tree, uint32_t begin, uint32_t end,
                    const bool *clean, uint8_t *orientations);
+
+    /* The same for orientations that last: see orientation_query. */
+    void (*orient_lasting)(const struct bvh *f, const struct bvh_tree *tree, uint32_t begin, uint32_t end,
+                           const bool *clean, const struct orientation_lasting *lasting,
+                           uint8_t *orientations);
+
+    /* Writes how far records begin to end - 1, multiples of 8, are from their reference at positions x, in a frame with
+     * this origin; returns the square of the greatest distance. */
+    double (*skin_move)(struct bvh_skin *s, uint32_t begin, uint32_t end, const double *x,
+                        const double origin[3]);
+
+    /* Do the signs of leaves begin to end - 1 last throughout an interval, after skin_move to its end? */
+    bool (*skin_signs)(const struct bvh_skin *s, uint32_t begin, uint32_t end, const double *x0,
+                       const double *x1);
 
     /* Visits block pairs of the lane's stack, at most visits_max, until it is empty or there is no room for
      * what another visit may add. */

@@ -6,5 +6,8 @@ const bvh_kernels SIMD_NAME(bvh_kernels) = {
     .refit = SIMD_NAME(refit),
     .extents_at_start = SIMD_NAME(extents_at_start),
     .orient = SIMD_NAME(orient),
+    .orient_lasting = SIMD_NAME(orient_lasting),
+    .skin_move = SIMD_NAME(skin_move),
+    .skin_signs = SIMD_NAME(skin_signs),
     .search = SIMD_NAME(search),
 };

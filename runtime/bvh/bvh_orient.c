@@ -59,8 +59,12 @@ static void orient_task(void *data, uint32_t index) {
         const bvh_tree *tree = &f->trees[i];
         if (!now->view->culled[component_of(f, tree)]) continue;
         uint32_t stop = tree->first_leaf + tree->leaf_count;
-        f->kernels->orient(f, tree, begin > tree->first_leaf ? begin : tree->first_leaf,
-                           end < stop ? end : stop, now->view->clean, now->orientations);
+        uint32_t first = begin > tree->first_leaf ? begin : tree->first_leaf, last = end < stop ? end : stop;
+        if (now->view->lasting != NULL)
+            f->kernels->orient_lasting(f, tree, first, last, now->view->clean, now->view->lasting,
+                                       now->orientations);
+        else
+            f->kernels->orient(f, tree, first, last, now->view->clean, now->orientations);
     }
 }
 

@@ -1,5 +1,6 @@
 /* Refits the BVH to an interval: frames, records, bounds, flags. */
 #include "runtime/bvh/bvh.h"
+#include "src/core/floating.h"
 
 #include <assert.h>
 #include <float.h>
@@ -56,11 +57,6 @@ static double copy_records(moving *now) {
     for (uint32_t i = 0; i < f->chunk_count; i++)
         reach = f->chunks[i].copied.reach > reach ? f->chunks[i].copied.reach : reach;
     return reach;
-}
-
-/* Returns a float that is not below x. */
-static float float_above(double x) {
-    return (float)(x + x * 0x1p-23 + 0x1p-120);
 }
 
 /* Chooses the slack. With u = 2^-24 and M the reach, records are off by u M, and rounding a bound outward rounds it

@@ -34,8 +34,33 @@ static f32x8 dot_f32x8(const f32x8 a[3], const f32x8 b[3]) {
     return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
 }
 
-/* Writes which lanes are PLUS and MINUS; corners[i][end][axis]. */
-static void orient_lanes(const bvh_tree *tree, f32x8 (*corners)[2][3], uint32_t *plus, uint32_t *minus) {
+/* ---- signs that last --------------------------------------------------------------------------------- */
+
+/* No less than the length of v, and never 0. */
+static f32x8 length_above(const f32x8 v[3]) {
+    f32x8 sum = dot_f32x8(v, v) * f32x8_all(1.0f + 0x1p-20f) + f32x8_all(0x1p-100f);
+    return f32x8_sqrt(sum) * f32x8_all(1.0f + 0x1p-20f);
+}
+
+/* Returns the E up to which a and b may change while c changes by up to R, so that s = c . (a x b) changes by less than its
+ * magnitude (runtime/bvh/bvh_skin.h); below 0 where R alone is too much. n = a x b changes by at most E (L + E), with
+ * L = |a| + |b|, so s by at most |n| R + E (L + E) (|c| + R). This is |s| without the bound on its error where
+ * E (L + E) = K, which is (|s| - bound - |n| R) / (|c| + R), and E = 2 K / (L + sqrt(L^2 + 4 K)). */
+static f32x8 lasting_stretch(const f32x8 a[3], const f32x8 b[3], const f32x8 c[3], const f32x8 normal[3],
+                             f32x8 margin, float distance) {
+    f32x8 r = f32x8_all(distance), sum = length_above(a) + length_above(b), none = f32x8_all(0.0f);
+    f32x8 k = (margin - length_above(normal) * r * f32x8_all(1.0f + 0x1p-20f)) / (length_above(c) + r);
+    f32x8 root = f32x8_sqrt(sum * sum + f32x8_all(4.0f) * f32x8_max(k, none));
+    return (k + k) / (sum + root) * f32x8_all(1.0f - 0x1p-18f);
+}
+
+/* ---- leaves -------------------------------------------------------------------------------------------- */
+
+/* Writes which lanes are PLUS and MINUS; corners[i][end][axis]. lasting: see orientation_query, and then the stretches that
+ * signs last for are written, too; NULL: for the interval. */
+static inline void orient_lanes(const bvh_tree *tree, f32x8 (*corners)[2][3],
+                                const orientation_lasting *lasting, uint32_t *plus, uint32_t *minus,
+                                f32x8 *stretches) {
     f32x8 a[2][3], b[2][3], c[2][3], start[3], end[3], one[3], other[3], mixed[3];
     float detector_reach = 0.0f;
     for (int e = 0; e < 2; e++) {
@@ -62,6 +87,12 @@ static void orient_lanes(const bvh_tree *tree, f32x8 (*corners)[2][3], uint32_t 
     f32x8 greatest = f32x8_max(f32x8_max(s[0], s[3]), f32x8_max(s[1], s[2]));
     *plus = f32x8_below(bound, least);
     *minus = f32x8_below(greatest, -bound);
+    if (lasting == NULL) return;
+    *stretches =
+        lasting_stretch(a[0], b[0], c[0], start, f32x8_max(least, -greatest) - bound, lasting->distance);
+    uint32_t last = f32x8_below(f32x8_all(lasting->stretch), *stretches);
+    *plus &= last;
+    *minus &= last;
 }
 
 static uint32_t clean_lanes(const bvh_leaf *l, uint32_t used, const bool *clean) {
@@ -86,22 +117,38 @@ static void store_orientations(const bvh_leaf *l, uint32_t used, uint32_t plus, 
     }
 }
 
-static void orient_leaf(const bvh *f, const bvh_tree *tree, uint32_t index, const bool *clean,
-                        uint8_t *orientations) {
+static inline void orient_leaf(const bvh *f, const bvh_tree *tree, uint32_t index, const bool *clean,
+                               const orientation_lasting *lasting, uint8_t *orientations) {
     const bvh_leaf *l = &f->leaves[index];
+    f32x8 stretches;
     uint32_t plus, minus, used = f->leaf_flags[index].used;
     uint32_t counted = clean != NULL ? clean_lanes(l, used, clean) : used;
     leaf_corners corners;
     load_corners(f, l, corners);
-    orient_lanes(tree, corners, &plus, &minus);
+    orient_lanes(tree, corners, lasting, &plus, &minus, &stretches);
     plus &= counted;
     minus &= counted;
     f->leaf_flags[index].plus = (uint8_t)plus;
     f->leaf_flags[index].minus = (uint8_t)minus;
     store_orientations(l, used, plus, minus, orientations);
+    if (lasting == NULL) return;
+    float least = __builtin_inff();
+    for (uint32_t lanes = plus | minus; lanes != 0; lanes &= lanes - 1)
+        least = stretches[__builtin_ctz(lanes)] < least ? stretches[__builtin_ctz(lanes)] : least;
+    lasting->of_leaves[index] = least;
 }
 
 void SIMD_NAME(orient)(const bvh *f, const bvh_tree *tree, uint32_t begin, uint32_t end, const bool *clean,
                        uint8_t *orientations) {
-    for (uint32_t i = begin; i < end; i++) orient_leaf(f, tree, i, clean, orientations);
+    for (uint32_t i = begin; i < end; i++) orient_leaf(f, tree, i, clean, NULL, orientations);
+}
+
+void SIMD_NAME(orient_lasting)(const bvh *f, const bvh_tree *tree, uint32_t begin, uint32_t end,
+                               const bool *clean, const orientation_lasting *lasting, uint8_t *orientations) {
+    for (uint32_t i = begin; i < end; i++) orient_leaf(f, tree, i, clean, lasting, orientations);
+}
+
+void SIMD_NAME(orient_corners)(const bvh_tree *tree, f32x8 (*corners)[2][3], uint32_t *plus,
+                               uint32_t *minus) {
+    orient_lanes(tree, corners, NULL, plus, minus, NULL);
 }

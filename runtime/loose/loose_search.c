@@ -3,6 +3,7 @@
 
 #include "runtime/loose/loose_pairs.h"
 #include "runtime/narrow_phase/narrow_phase.h"
+#include "src/core/floating.h"
 
 /* A lane takes so many elements at a time, which are neighbours in space. */
 enum { ELEMENTS_AT_ONCE = 64 };
@@ -13,14 +14,6 @@ enum { ELEMENTS_AT_ONCE = 64 };
 typedef struct framed_box {
     float low[2][3], high[2][3];
 } framed_box;
-
-static float float_below(double x) {
-    return (float)(x - fabs(x) * 0x1p-23 - 0x1p-120);
-}
-
-static float float_above(double x) {
-    return (float)(x + fabs(x) * 0x1p-23 + 0x1p-120);
-}
 
 /* In doubles the coordinates are off by 2^-51 of themselves, which the floats' 2^-23 cover. */
 static framed_box box_in_frame(const swept_interval *interval, const loose_element *element,

@@ -17,6 +17,15 @@ static inline double min_of(double a, double b) {
     return a < b ? a : b;
 }
 
+/* Return a float that is not below x, and one that is not above it. */
+static inline float float_above(double x) {
+    return (float)(x + __builtin_fabs(x) * 0x1p-23 + 0x1p-120);
+}
+
+static inline float float_below(double x) {
+    return (float)(x - __builtin_fabs(x) * 0x1p-23 - 0x1p-120);
+}
+
 /* Returns the e of x = m 2^e with m in [1/2, 1), as frexp does; 0 for numbers below the normal range. */
 static inline int exponent_of(double x) {
     uint64_t bits;

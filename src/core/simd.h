@@ -26,7 +26,8 @@
  *     below (lanes with a < b)      x                    x      x      loop over the lanes
  *     at_most (lanes with a <= b)                               x      loop over the lanes
  *     negative (lanes)                     x                           loop over the lanes
- *     select, sqrt                                              x      masks; sqrt of each lane
+ *     select                                                    x      masks
+ *     sqrt                          x                           x      sqrt of each lane
  *     load_point                                  x                    three loads
  *     load_points                                        x      x      the same; two points
  *
@@ -118,6 +119,10 @@ static inline f64x8 f64x8_from(f32x8 v) {
 
 #if SIMD_LEVEL != SIMD_SCALAR
 
+static inline f32x8 f32x8_sqrt(f32x8 v) {
+    return _mm256_sqrt_ps(v);
+}
+
 /* All of these give b if one of the two is NaN. */
 static inline f32x8 f32x8_min(f32x8 a, f32x8 b) {
     return _mm256_min_ps(a, b);
@@ -128,6 +133,11 @@ static inline f32x8 f32x8_max(f32x8 a, f32x8 b) {
 }
 
 #else
+
+static inline f32x8 f32x8_sqrt(f32x8 v) {
+    for (int i = 0; i < LANES; i++) v[i] = sqrtf(v[i]);
+    return v;
+}
 
 static inline f32x8 f32x8_min(f32x8 a, f32x8 b) {
     i32x8 below = a < b;

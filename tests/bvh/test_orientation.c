@@ -267,7 +267,8 @@ static void detector_points_follow_their_regions(void **state) {
         assert_true(bvh_rig_create(&shape, (bvh_setup){CSCD_SIMD_AUTO, 2, BOX_AXES, region_count}, &r));
         bvh_refit(&r.bvh, shape.x0, shape.x1, uniform_growth(0.0));
         for (int still = 0; still < 2; still++) {
-            orientation_query view = {culled, NULL, (const double(*)[3])offsets, still != 0};
+            orientation_query view = {
+                .culled = culled, .detector_offsets = (const double(*)[3])offsets, .still = still != 0};
             bvh_orient(&r.bvh, &view, flags);
             check_points(&r, (const double(*)[3])offsets, still != 0);
         }
