@@ -56,7 +56,8 @@ static void expect_broken(throwing_host *h, const char *name) {
 /* Returns false when there is no such call any more. */
 static bool throw_and_look(host_callback from, uint32_t thread_count, uint32_t at) {
     throwing_host h = {.host = {.from = from, .stop = throw_it}};
-    callback_host_open(&h.host, 40, thread_count);
+    uint32_t size = from == HOST_PROGRESS ? 64 : 40; /* progress is reported every 4 ms */
+    callback_host_open(&h.host, size, thread_count);
     h.host.at = at;
     bool caught = call_catching(step_of_host, &h);
     h.host.at = 0;
