@@ -60,6 +60,15 @@ typedef enum cscd_volume {
 CSCD_API const char *cscd_volume_name(cscd_volume volume);
 CSCD_API bool cscd_volume_from_name(const char *name, cscd_volume *out);
 
+/* What a step makes of it that vertices have hardly moved since the one before. Contacts and guarantees are the same either
+ * way, counters are not. Later versions may add values. */
+typedef enum cscd_coherence {
+    CSCD_COHERENCE_AUTO, /* in a closed mesh where nothing touches and little moves, the pairs that may come together
+                          * are listed once, and tested alone for as long as vertices stay near (docs/tuning.md) */
+    CSCD_COHERENCE_OFF, /* every step looks at the whole mesh */
+    CSCD_COHERENCE_MAX_ENUM = 0x7fffffff
+} cscd_coherence;
+
 /* A vertex and a face, or two edges; for the static check two triangles; with points and wires, and in lists of
  * proximities without repetitions, also two vertices, and an edge and a vertex; a vertex and a half-space. Later
  * versions may add values. */
@@ -171,6 +180,9 @@ typedef struct cscd_detector_options {
      * displacement bounds and truncation the near pairs. Functions without a list, as cscd_detector_max_step,
      * know no cap. `ignore` is asked for each pair that is found, also where the list becomes too long. */
     size_t longest_list;
+
+    cscd_coherence coherence; /* AUTO by default */
+    uint32_t reserved;        /* 0 */
 } cscd_detector_options;
 
 /* The default options. */
@@ -359,6 +371,9 @@ typedef struct cscd_counters {
     uint64_t vf, ee;           /* contacts reported */
     uint64_t bounded;          /* contacts that are marked as bounded */
     uint64_t loose;            /* contacts of other kinds reported: VV, EV and VH */
+    uint64_t
+        coherent; /* 1 if the interval was answered from a list of pairs (cscd_coherence), else 0: then no
+                                * boxes are tested, and S+ and S- are the triangles that stay so while the list holds */
 } cscd_counters;
 
 /* The timings of the last step, and of the last check. */

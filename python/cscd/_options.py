@@ -17,6 +17,7 @@ __all__ = ["DetectorOptions", "in_python", "matrix_of", "rules_of"]
 Array = Any
 
 _STARTS = {"prove": 0, "vouched": 1, "unknown": 2}
+_COHERENCES = {"auto": 0, "off": 1}
 _DEFAULT_RULE = {"category": 1, "mask": 2**64 - 1, "thickness": 0.0, "thickness_class": 0, "self": True,
                  "obstacle_pairs": False}
 
@@ -34,6 +35,9 @@ class DetectorOptions:
         if inputs["start"] not in _STARTS:
             raise ValueError(f"start: expected one of {', '.join(_STARTS)}; got {inputs['start']!r}")
         self._struct["start"] = _STARTS[inputs["start"]]
+        if inputs["coherence"] not in _COHERENCES:
+            raise ValueError(f"coherence: expected one of {', '.join(_COHERENCES)}; got {inputs['coherence']!r}")
+        self._struct["coherence"] = _COHERENCES[inputs["coherence"]]
         for name in ("min_separation", "tolerance", "step_factor", "floor_ratio", "seam_reach", "longest_list"):
             self._set_number(name, inputs[name])
         self._set_pairs("seams", "seam_count", inputs["seams"], mesh.vertex_count, "vertices")

@@ -59,6 +59,8 @@ class Detector(LiveSettings):
     seam_reach : float, optional
     longest_list : int
         Lists that would be longer raise ``ListTooLong``; 0: any length.
+    coherence : str
+        "auto": steps in which little moves test a list of pairs; "off": each looks at the whole mesh.
     threads : int
         0: one per processor.
     progress : function (stage, fraction), optional
@@ -81,16 +83,16 @@ class Detector(LiveSettings):
                  start: str = "prove", volume: str = "box", min_separation: float = 0.0, tolerance: float = 0.0,
                  step_factor: float = 0.8, floor_ratio: float = 0.9, seams: Any = None, ignored: Any = None,
                  ignore: Optional[Callable[[str, int, int], bool]] = None, rules: Any = None,
-                 thickness_matrix: Any = None, seam_reach: float = 0.0, longest_list: int = 0, threads: int = 1,
-                 simd: str = "auto", progress: Optional[Callable[[str, float], Any]] = None,
-                 _left_out: Optional[Handle] = None) -> None:
+                 thickness_matrix: Any = None, seam_reach: float = 0.0, longest_list: int = 0,
+                 coherence: str = "auto", threads: int = 1, simd: str = "auto",
+                 progress: Optional[Callable[[str, float], Any]] = None, _left_out: Optional[Handle] = None) -> None:
         self._left_out = _left_out  # of a replay; it outlives the detector
         self.mesh: Mesh = mesh if isinstance(mesh, Mesh) else Mesh(as_faces("mesh", mesh))
         self._inputs = dict(plan=plan, method=method, mode=mode, start=start, volume=volume,
                             min_separation=min_separation, tolerance=tolerance, step_factor=step_factor,
                             floor_ratio=floor_ratio, seams=seams, ignored=ignored, rules=rules,
                             thickness_matrix=thickness_matrix, seam_reach=seam_reach, longest_list=longest_list,
-                            threads=threads, simd=simd)
+                            coherence=coherence, threads=threads, simd=simd)
         if plan is not None and not isinstance(plan, Plan):
             raise ValueError(f"plan: expected a Plan, got {type(plan).__name__}")
         pointer = self.mesh.pointer

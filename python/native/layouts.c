@@ -100,7 +100,7 @@ FIELDS(detector_options, FIELD(cscd_detector_options, struct_size), FIELD(cscd_d
        FIELD(cscd_detector_options, rules), FIELD(cscd_detector_options, thickness_matrix),
        FIELD(cscd_detector_options, rule_count), FIELD(cscd_detector_options, thickness_class_count),
        FIELD(cscd_detector_options, floor_ratio), FIELD(cscd_detector_options, seam_reach),
-       FIELD(cscd_detector_options, longest_list))
+       FIELD(cscd_detector_options, longest_list), FIELD(cscd_detector_options, coherence))
 FIELDS(contact, FIELD(cscd_contact, kind), FIELD(cscd_contact, a), FIELD(cscd_contact, b),
        FIELD(cscd_contact, bounded), FIELD(cscd_contact, vertices), FIELD(cscd_contact, toi),
        FIELD(cscd_contact, u), FIELD(cscd_contact, v), FIELD(cscd_contact, point),
@@ -121,7 +121,8 @@ FIELDS(counters, FIELD(cscd_counters, static_checks), FIELD(cscd_counters, clean
        FIELD(cscd_counters, boxes_tested), FIELD(cscd_counters, pcp), FIELD(cscd_counters, adjacent),
        FIELD(cscd_counters, feature_pairs), FIELD(cscd_counters, tests), FIELD(cscd_counters, by_signs),
        FIELD(cscd_counters, by_roots), FIELD(cscd_counters, by_exact), FIELD(cscd_counters, vf),
-       FIELD(cscd_counters, ee), FIELD(cscd_counters, bounded), FIELD(cscd_counters, loose))
+       FIELD(cscd_counters, ee), FIELD(cscd_counters, bounded), FIELD(cscd_counters, loose),
+       FIELD(cscd_counters, coherent))
 FIELDS(start_knowledge, FIELD(cscd_start_knowledge, clean), FIELD(cscd_start_knowledge, free),
        FIELD(cscd_start_knowledge, crossing), FIELD(cscd_start_knowledge, unknown))
 FIELDS(intersection_options, FIELD(cscd_intersection_options, struct_size),

@@ -22,7 +22,7 @@ WRONG_OPTIONS: Dict[str, List[Any]] = {
     "min_separation": [-1e-3, np.nan, np.inf, "near", None, [1.0], 1j, np.complex128(1 + 2j), np.True_],
     "tolerance": [-1.0, np.nan, 2.0, "fine", None], "step_factor": [0.0, -1.0, 1.5, np.nan, None],
     "floor_ratio": [0.0, 1.0, np.nan, -0.5, "half"], "seam_reach": [-1.0, np.nan, "far"],
-    "longest_list": [-1, 2**70, "long", None, 1.5],
+    "longest_list": [-1, 2**70, "long", None, 1.5], "coherence": ["on", None, 1, True],
     "seams": [[[0, 6]], [[0, -1]], [[0, 1, 2]], [0, 1], [[0.5, 1]], "seam", [[0, 0]], 5, [[True, False]], [[None, 1]]],
     "ignored": [[[0, 2]], [[-1, 0]], [[0, 1, 1]], [0, 1], [[0.0, 1.0]], 7, "pair"],
     "rules": [[], [{}, {}], [{"mask": -1}], [{"self": "maybe", "colour": 3}], [{"thickness": -1.0}],

@@ -75,6 +75,7 @@ static void run_over_vertices(parallel_task *task, position_work *work) {
 static void remember_positions(start_states *s, const double *x) {
     position_work work = {.s = s, .x = x};
     run_over_vertices(copy_task, &work);
+    s->revision++;
     s->known = true;
     s->partly = false;
 }

@@ -44,6 +44,7 @@ typedef struct start_states {
     cscd_context *context;
     const cscd_mesh *mesh;
     double *positions;
+    uint64_t revision;        /* so many times positions have been seen */
     bool known;               /* positions have been seen */
     bool partly;              /* ... but not those of all vertices; the others are no numbers */
     bool vouched;             /* some triangles are clean only because the caller says so */

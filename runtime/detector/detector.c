@@ -29,6 +29,8 @@ static cscd_status check_options(cscd_context *context, const cscd_detector_opti
         return context_fail(context, CSCD_INVALID_ARGUMENT, "unknown start %d", (int)options->start);
     if ((unsigned)options->volume > CSCD_VOLUME_KDOP14)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "unknown volume %d", (int)options->volume);
+    if ((unsigned)options->coherence > CSCD_COHERENCE_OFF)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "unknown coherence %d", (int)options->coherence);
     if (!(options->step_factor > 0.0 && options->step_factor < 1.0))
         return context_fail(context, CSCD_INVALID_ARGUMENT, "step_factor is %g, expected a number in (0,1)",
                             options->step_factor);
@@ -120,6 +122,7 @@ void detector_free(cscd_detector *d) {
     if (d->culling.mesh != NULL) culling_destroy(&d->culling);
     if (d->starts.mesh != NULL) start_states_destroy(&d->starts);
     static_check_destroy(&d->check);
+    verlet_list_free(context, &d->verlet);
     search_space_destroy(&d->space);
     bvh_free(&d->rebuild.kept);
     exclusions_free(context, &d->exclusions);
@@ -315,6 +318,7 @@ void detector_begin_call(cscd_detector *d) {
 cscd_status detector_fail_call(cscd_detector *d, cscd_status status) {
     if (status == CSCD_IN_CONTACT) return status;
     rollback_restore(&d->before, &d->starts, &d->rebuild);
+    verlet_list_drop(&d->verlet);
     return status == CSCD_LIST_TOO_LONG ? status : context_explain(d->context, status);
 }
 

@@ -10,6 +10,7 @@
 #include "runtime/detector/result_buffer.h"
 #include "runtime/detector/rollback.h"
 #include "runtime/detector/search_space.h"
+#include "runtime/detector/verlet_list.h"
 #include "runtime/intersections/curve_changes.h"
 #include "runtime/intersections/part_sums.h"
 #include "runtime/intersections/static_check.h"
@@ -43,6 +44,7 @@ struct cscd_detector {
     culling culling;
     start_states starts;
     static_check check;
+    verlet_list verlet;
     void *hider_state; /* of stages->hider */
     rollback before;   /* the current call */
 

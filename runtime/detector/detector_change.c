@@ -208,6 +208,7 @@ static void end_move(const detector_move *m) {
     if (trees->mesh != NULL && m->to->rebuild.kept.mesh != NULL)
         bvh_take_records(&m->to->rebuild.kept, trees);
     exchange_parts(d, m->to);
+    verlet_list_free(d->context, &d->verlet);
     d->space.rules = d->pair_rules.sets != NULL ? &d->pair_rules : NULL;
     d->exclusions.waiting = &d->waiting.pairs;
     d->mesh_revision++;

@@ -154,8 +154,10 @@ static cscd_status choose_culled(step_work *work) {
 static orientation_query orientation_query_of(const step_work *work) {
     const cscd_detector *d = work->detector;
     bool all = work->all_clean || d->rules.assumes_clean;
-    return (orientation_query){d->culled, all ? NULL : start_states_clean(&d->starts),
-                               (const double(*)[3])d->culling.detector_offsets, d->rules.still_points};
+    return (orientation_query){.culled = d->culled,
+                               .clean = all ? NULL : start_states_clean(&d->starts),
+                               .detector_offsets = (const double(*)[3])d->culling.detector_offsets,
+                               .still = d->rules.still_points};
 }
 
 static cscd_status orient_triangles(step_work *work) {
@@ -275,6 +277,10 @@ static cscd_status run_stages(step_stage *const *stages, step_work *work) {
 
 cscd_status step_find(cscd_detector *d, const double *x0, const double *x1, cscd_mode mode, bool rehearsal,
                       step_outcome *out) {
+    bool answered;
+    if (rehearsal) start_states_save(&d->starts);
+    cscd_status status = verlet_list_answer(d, x0, x1, out, &answered);
+    if (status != CSCD_OK || answered) return status;
     step_work work = {.detector = d,
                       .search =
                           rehearsal ? detector_search_floors(d, x0, x1) : detector_search_begin(d, x0, x1),
@@ -283,10 +289,11 @@ cscd_status step_find(cscd_detector *d, const double *x0, const double *x1, cscd
                       .all_clean = true};
     begin_interval(&work);
     if (!rehearsal) list_cap_begin(d, &work.search, d->lists_earliest ? CAP_KEEPS_EARLIEST : CAP_TAINTS_ALL);
-    cscd_status status = run_stages(d->stages->brute_force ? stages_by_brute_force : stages_by_trees, &work);
+    status = run_stages(d->stages->brute_force ? stages_by_brute_force : stages_by_trees, &work);
     if (status == CSCD_LIST_TOO_LONG) out->contacts = work.contacts;
     if (status != CSCD_OK) return status;
     for (uint32_t c = 0; c < d->mesh->component_count; c++) d->guarantees[c] = guarantee_of(d, c);
+    d->verlet.was_quiet = work.contacts.count == 0;
     out->contacts = work.contacts;
     out->timings = work.search.timings;
     out->counters = work.search.counters;
@@ -304,8 +311,9 @@ void step_take(cscd_detector *d, const double *end) {
         const cscd_guarantee *g = &d->guarantees[c];
         d->incomplete[c] = !g->complete && g->reason != CSCD_REASON_OBSTACLE;
     }
-    adaptive_learn(d);
+    if (!d->verlet.serving) adaptive_learn(d);
     start_states_end(&d->starts, end, d->incomplete);
+    verlet_list_take(d);
 }
 
 void step_withdraw(cscd_detector *d) {

@@ -48,9 +48,10 @@ static void add_counters(cscd_counters *sum, const cscd_counters *more) {
     sum->ee += more->ee;
     sum->bounded += more->bounded;
     sum->loose += more->loose;
+    sum->coherent += more->coherent;
 }
 
-_Static_assert(sizeof(cscd_counters) == 20 * sizeof(uint64_t), "add_counters adds every counter");
+_Static_assert(sizeof(cscd_counters) == 21 * sizeof(uint64_t), "add_counters adds every counter");
 
 /* Withdraws the previous try first, because the vertices did not go to its end. */
 static cscd_status try_motion(void *of, const double *from, const double *to, cscd_contacts *out) {

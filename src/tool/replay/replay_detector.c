@@ -15,6 +15,7 @@ static bool create_detector(replay_detector *d, io_error *error) {
     options.start = o->start;
     options.volume = o->volume;
     options.min_separation = o->min_separation;
+    options.coherence = CSCD_COHERENCE_OFF; /* counters say what each interval costs by itself */
     ignore_pairs_choose(d->ignored, &options);
     if (cscd_detector_create(d->recording->context, d->recording->mesh, d->plan, &options, &d->detector) !=
         CSCD_OK)
