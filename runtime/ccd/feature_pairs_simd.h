@@ -2,7 +2,7 @@
 #pragma once
 
 #include "runtime/ccd/ccd_kernels.h"
-#include "src/core/simd.h"
+#include "src/core/simd_wide.h"
 
 typedef struct points_x8 {
     f64w x0[4][3], x1[4][3]; /* points as in elementary_query, then coordinates */

@@ -6,7 +6,7 @@
  * that are left undecided here. */
 #pragma once
 
-#include "src/core/simd.h"
+#include "src/core/simd_wide.h"
 
 /* ---- signs ------------------------------------------------------------------------------------------- */
 

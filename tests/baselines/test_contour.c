@@ -50,7 +50,8 @@ static void place_vertex(const polygon *p, double *x, uint32_t corner, double ri
 
 static bool stays_simple(const polygon *p, uint32_t skipped, bool published) {
     uint32_t edges[CORNERS_MAX][2], numbers[CORNERS_MAX];
-    static contour_edge scratch[CORNERS_MAX];
+    static contour_edge projected[CORNERS_MAX];
+    static contour_key keys[CORNERS_MAX];
     for (uint32_t i = 0; i < p->count; i++) {
         uint32_t next = (i + 1) % p->count;
         edges[i][0] = i < next ? i : next;
@@ -59,7 +60,7 @@ static bool stays_simple(const polygon *p, uint32_t skipped, bool published) {
     }
     const cscd_mesh mesh = {.vertex_count = p->count, .edge_count = p->count, .edges = edges};
     const contour_query query = {&mesh, numbers, p->count, p->x0, p->x1, p->axis, skipped, published};
-    return contour_stays_simple(&query, scratch);
+    return contour_stays_simple(&query, projected, keys);
 }
 
 /* ---- the reference --------------------------------------------------------------------------------- */

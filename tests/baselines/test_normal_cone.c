@@ -1,6 +1,7 @@
 /* Normal cones contain every normal of moving triangles, by a reference in long double; as published they
  * do not. */
 #include "runtime/baselines/iccd/normal_cone.h"
+#include "tests/support/levels.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/test.h"
 
@@ -9,15 +10,46 @@
 
 enum { TRIANGLES = 40000, MOMENTS = 17 };
 
-static const uint32_t corners[3] = {0, 1, 2};
-
 typedef struct moving_triangle {
     double x0[9], x1[9];
 } moving_triangle;
 
-static normal_cone cone_of(const moving_triangle *m) {
-    return normal_cone_of(corners, m->x0, m->x1);
+/* ---- one cone, by every level and in every lane -------------------------------------------------------- */
+
+static normal_cone same_in_all_lanes(const normal_cone cones[LANES], const normal_cone *before) {
+    for (int i = 0; i < LANES; i++)
+        assert_memory_equal(&cones[i], before != NULL ? before : cones, sizeof *cones);
+    return cones[0];
 }
+
+static normal_cone cone_between(const double *x0, const double *x1, bool published) {
+    static const uint32_t triangles[1][3] = {{0, 1, 2}}, which[LANES] = {0};
+    normal_cone cones[LANES], cone = {{0.0f, 0.0f, 0.0f}, 0.0f};
+    for (int level = 0; level < LEVEL_COUNT; level++) {
+        if (contexts[level] == NULL) continue;
+        normal_cone_kernels_of(contexts[level])->of_triangles(triangles, which, x0, x1, published, cones);
+        cone = same_in_all_lanes(cones, level > 0 ? &cone : NULL);
+    }
+    return cone;
+}
+
+static normal_cone cone_of(const moving_triangle *m) {
+    return cone_between(m->x0, m->x1, false);
+}
+
+static normal_cone union_of(const normal_cone *a, const normal_cone *b) {
+    static const uint32_t first[LANES] = {0}, second[LANES] = {1, 1, 1, 1, 1, 1, 1, 1};
+    const normal_cone both[2] = {*a, *b};
+    normal_cone cones[LANES], cone = *a;
+    for (int level = 0; level < LEVEL_COUNT; level++) {
+        if (contexts[level] == NULL) continue;
+        normal_cone_kernels_of(contexts[level])->of_unions(both, first, second, normal_cone_limit, cones);
+        cone = same_in_all_lanes(cones, level > 0 ? &cone : NULL);
+    }
+    return cone;
+}
+
+/* ---- the reference ------------------------------------------------------------------------------------- */
 
 /* Computes the normal up to a factor. */
 static void normal_at(const moving_triangle *m, long double t, long double out[3]) {
@@ -103,7 +135,7 @@ static void published_cones_lose_normals(void **state) {
     (void)state;
     for (int i = 0; i < TRIANGLES; i++) {
         moving_triangle m = random_triangle(&random, random_change(&random));
-        normal_cone cone = normal_cone_of_ends(corners, m.x0, m.x1);
+        normal_cone cone = cone_between(m.x0, m.x1, true);
         if (!(cone.angle < INFINITY)) continue;
         exist++;
         lost += excess_angle(&cone, &m) > 1e-3L;
@@ -131,8 +163,7 @@ static void unions_hold_all_normals(void **state) {
             cones[j] = cone_of(&all[j]);
         }
         for (int step = 1; step < 8; step *= 2) {
-            for (int j = 0; j < 8; j += 2 * step)
-                cones[j] = normal_cone_union(&cones[j], &cones[j + step], normal_cone_limit);
+            for (int j = 0; j < 8; j += 2 * step) cones[j] = union_of(&cones[j], &cones[j + step]);
         }
         if (!normal_cone_exists(&cones[0])) continue;
         exist++;
@@ -162,7 +193,7 @@ static void opposite_normals_have_no_cone(void **state) {
         double direction = stream_between(&random, 0.0, 6.3);
         moving_triangle m[2] = {tilted_triangle(angle, direction), tilted_triangle(-angle, direction)};
         normal_cone a = cone_of(&m[0]), b = cone_of(&m[1]);
-        normal_cone both = normal_cone_union(&a, &b, normal_cone_limit);
+        normal_cone both = union_of(&a, &b);
         assert_true(angle > 1.569 || normal_cone_exists(&both));
         if (!normal_cone_exists(&both)) continue;
         exist++;
@@ -206,16 +237,16 @@ static void without_area_there_is_no_cone(void **state) {
     const double *ends[][2] = {{line, line},  {flat, line},   {line, flat}, {flat, point},
                                {point, flat}, {flat, turned}, {flat, over}};
     for (size_t i = 0; i < sizeof ends / sizeof *ends; i++) {
-        normal_cone cone = normal_cone_of(corners, ends[i][0], ends[i][1]);
+        normal_cone cone = cone_between(ends[i][0], ends[i][1], false);
         assert_false(normal_cone_exists(&cone));
-        normal_cone up = normal_cone_of(corners, flat, flat);
+        normal_cone up = cone_between(flat, flat, false);
         assert_true(normal_cone_exists(&up) && up.angle < 1e-5f);
-        cone = normal_cone_union(&cone, &up, normal_cone_limit);
+        cone = union_of(&cone, &up);
         assert_false(normal_cone_exists(&cone));
-        cone = normal_cone_union(&up, &cone, normal_cone_limit);
+        cone = union_of(&up, &cone);
         assert_false(normal_cone_exists(&cone));
     }
-    normal_cone quarter = normal_cone_of(corners, flat, steep);
+    normal_cone quarter = cone_between(flat, steep, false);
     assert_true(normal_cone_exists(&quarter) && quarter.angle > 0.785398f && quarter.angle < 0.792f);
 }
 
@@ -225,5 +256,5 @@ int main(void) {
         cmocka_unit_test(unions_hold_all_normals), cmocka_unit_test(opposite_normals_have_no_cone),
         cmocka_unit_test(scales_change_no_cone),   cmocka_unit_test(without_area_there_is_no_cone),
     };
-    return cmocka_run_group_tests_name("normal_cone", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("normal_cone", tests, open_levels, close_levels);
 }

@@ -12,6 +12,7 @@ typedef struct simd_operations {
     void (*f32_min)(const float *a, const float *b, float *out);
     void (*f32_max)(const float *a, const float *b, float *out);
     void (*f32_abs)(const float *a, float *out);
+    void (*f32_sqrt)(const float *a, float *out);
     uint32_t (*f32_below)(const float *a, const float *b);
     float (*f32_least)(const float *a);
     float (*f32_greatest)(const float *a);
@@ -22,6 +23,7 @@ typedef struct simd_operations {
     void (*f64_min)(const double *a, const double *b, double *out);
     void (*f64_max)(const double *a, const double *b, double *out);
     void (*f64_abs)(const double *a, double *out);
+    void (*f64_sqrt)(const double *a, double *out);
     uint32_t (*f64_below)(const double *a, const double *b);
     void (*to_f32)(const double *a, float *out);
     void (*to_f64)(const float *a, double *out);

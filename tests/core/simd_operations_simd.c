@@ -2,6 +2,7 @@
 #include "tests/core/simd_operations.h"
 
 #include "src/core/simd_lanes.h"
+#include "src/core/simd_wide.h"
 
 static f64x8 load_f64(const double *from) {
     f64x8 v;
@@ -35,6 +36,10 @@ static void f32_max(const float *a, const float *b, float *out) {
 
 static void f32_abs(const float *a, float *out) {
     f32x8_store(out, f32x8_abs(f32x8_load(a)));
+}
+
+static void f32_sqrt(const float *a, float *out) {
+    f32x8_store(out, f32x8_sqrt(f32x8_load(a)));
 }
 
 static uint32_t f32_below(const float *a, const float *b) {
@@ -72,6 +77,10 @@ static void f64_max(const double *a, const double *b, double *out) {
 
 static void f64_abs(const double *a, double *out) {
     store_f64(out, f64x8_abs(load_f64(a)));
+}
+
+static void f64_sqrt(const double *a, double *out) {
+    store_f64(out, f64x8_sqrt(load_f64(a)));
 }
 
 static uint32_t f64_below(const double *a, const double *b) {
@@ -145,6 +154,7 @@ const simd_operations SIMD_NAME(simd_operations) = {
     .f32_min = f32_min,
     .f32_max = f32_max,
     .f32_abs = f32_abs,
+    .f32_sqrt = f32_sqrt,
     .f32_below = f32_below,
     .f32_least = f32_least,
     .f32_greatest = f32_greatest,
@@ -153,6 +163,7 @@ const simd_operations SIMD_NAME(simd_operations) = {
     .f64_min = f64_min,
     .f64_max = f64_max,
     .f64_abs = f64_abs,
+    .f64_sqrt = f64_sqrt,
     .f64_below = f64_below,
     .to_f32 = to_f32,
     .to_f64 = to_f64,

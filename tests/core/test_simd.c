@@ -78,15 +78,17 @@ static void on_all_levels(void (*check)(const simd_operations *, random_stream *
 
 static void check_floats(const simd_operations *o, random_stream *random) {
     numbers wide = random_numbers(random);
-    floats a = to_floats(wide), b = to_floats(half_equal_numbers(random, wide)), least, greatest, size;
+    floats a = to_floats(wide), b = to_floats(half_equal_numbers(random, wide)), least, greatest, size, root;
     o->f32_min(a.x, b.x, least.x);
     o->f32_max(a.x, b.x, greatest.x);
     o->f32_abs(a.x, size.x);
+    o->f32_sqrt(a.x, root.x);
     uint32_t below = o->f32_below(a.x, b.x);
     for (int i = 0; i < LANES; i++) {
         assert_number(least.x[i], a.x[i] < b.x[i] ? a.x[i] : b.x[i]);
         assert_number(greatest.x[i], a.x[i] > b.x[i] ? a.x[i] : b.x[i]);
         assert_number(size.x[i], fabsf(a.x[i]));
+        assert_number(root.x[i], sqrtf(a.x[i]));
         assert_int_equal(lane_of(below, i), a.x[i] < b.x[i]);
     }
     assert_int_equal(below >> LANES, 0);
@@ -150,20 +152,22 @@ static void check_min_max(binary *min, binary *max, comparison *below, numbers a
 }
 
 static void check_doubles(const simd_operations *o, random_stream *random) {
-    numbers a = random_numbers(random), b = half_equal_numbers(random, a), size, wide_size, root, chosen,
-            same;
+    numbers a = random_numbers(random), b = half_equal_numbers(random, a), size, wide_size, root, wide_root,
+            chosen, same;
     uint32_t lanes = (uint32_t)stream_bits(random) & 255, at_most = o->f64w_at_most(a.x, b.x);
     check_min_max(o->f64_min, o->f64_max, o->f64_below, a, b);
     check_min_max(o->f64w_min, o->f64w_max, o->f64w_below, a, b);
     o->f64_abs(a.x, size.x);
     o->f64w_abs(a.x, wide_size.x);
-    o->f64w_sqrt(a.x, root.x);
+    o->f64_sqrt(a.x, root.x);
+    o->f64w_sqrt(a.x, wide_root.x);
     o->f64w_select(lanes, a.x, b.x, chosen.x);
     o->f64w_all(a.x[0], same.x);
     for (int i = 0; i < LANES; i++) {
         assert_number(size.x[i], fabs(a.x[i]));
         assert_number(wide_size.x[i], fabs(a.x[i]));
         assert_number(root.x[i], sqrt(a.x[i]));
+        assert_number(wide_root.x[i], sqrt(a.x[i]));
         assert_number(chosen.x[i], lane_of(lanes, i) ? a.x[i] : b.x[i]);
         assert_number(same.x[i], a.x[0]);
         assert_int_equal(lane_of(at_most, i), a.x[i] <= b.x[i]);

@@ -2,6 +2,7 @@
  * vertex-edge tests), or when they cross from the start. */
 #include "runtime/baselines/iccd/contour.h"
 
+#include "src/core/floating.h"
 #include "src/core/vec3.h"
 
 #include <float.h>
@@ -53,28 +54,26 @@ static void project_vertex(plane *p, const double *x, int time, double out[2]) {
     }
     out[0] = p->right[0] * from[0] + p->right[1] * from[1] + p->right[2] * from[2];
     out[1] = p->up[0] * from[0] + p->up[1] * from[1] + p->up[2] * from[2];
-    p->error = fmax(p->error, 8.0 * DBL_EPSILON * size);
+    p->error = max_of(p->error, 8.0 * DBL_EPSILON * size);
 }
 
-static void set_boxes(contour_edge *e, double error) {
+static void set_box(contour_edge *e, double error) {
     for (int k = 0; k < 2; k++) {
-        e->start_low[k] = fmin(e->a[0][k], e->b[0][k]) - error;
-        e->start_high[k] = fmax(e->a[0][k], e->b[0][k]) + error;
-        e->low[k] = fmin(e->start_low[k], fmin(e->a[1][k], e->b[1][k]) - error);
-        e->high[k] = fmax(e->start_high[k], fmax(e->a[1][k], e->b[1][k]) + error);
+        e->low[k] = min_of(min_of(e->a[0][k], e->b[0][k]), min_of(e->a[1][k], e->b[1][k])) - error;
+        e->high[k] = max_of(max_of(e->a[0][k], e->b[0][k]), max_of(e->a[1][k], e->b[1][k])) + error;
     }
 }
 
 /* Shell sort by the left ends of the boxes. */
-static void sort_edges(contour_edge *edges, uint32_t count) {
+static void sort_keys(contour_key *keys, uint32_t count) {
     uint32_t gap = 1;
     while (gap < count / 3) gap = 3 * gap + 1;
     for (; gap > 0; gap /= 3) {
         for (uint32_t i = gap; i < count; i++) {
-            contour_edge moved = edges[i];
+            contour_key moved = keys[i];
             uint32_t at = i;
-            for (; at >= gap && edges[at - gap].low[0] > moved.low[0]; at -= gap) edges[at] = edges[at - gap];
-            edges[at] = moved;
+            for (; at >= gap && keys[at - gap].low > moved.low; at -= gap) keys[at] = keys[at - gap];
+            keys[at] = moved;
         }
     }
 }
@@ -97,7 +96,7 @@ static quadratic product_of(double a[2][2], double b[2][2], double (*of)(const d
 }
 
 static double largest_coordinate(double a[2][2]) {
-    return fmax(fmax(fabs(a[0][0]), fabs(a[0][1])), fmax(fabs(a[1][0]), fabs(a[1][1])));
+    return max_of(max_of(fabs(a[0][0]), fabs(a[0][1])), max_of(fabs(a[1][0]), fabs(a[1][1])));
 }
 
 /* The error of a coefficient of a product of two such differences. With eps the error of a coordinate, each
@@ -149,15 +148,20 @@ static bool vertex_stays_off(const plane *p, double vertex[2][2], contour_edge *
     subtract_motions(vertex, edge->a, from_a);
     subtract_motions(vertex, edge->b, from_b);
     double error = product_error(
-        p, fmax(largest_coordinate(along), fmax(largest_coordinate(from_a), largest_coordinate(from_b))));
+        p, max_of(largest_coordinate(along), max_of(largest_coordinate(from_a), largest_coordinate(from_b))));
     quadratic area = product_of(along, from_a, cross_planar);
     *start = area.b[0] > error ? 1 : area.b[0] < -error ? -1 : 0;
     return is_excluded(area, product_of(from_a, from_b, dot_planar), error);
 }
 
-static bool boxes_overlap(const double low_a[2], const double high_a[2], const double low_b[2],
-                          const double high_b[2]) {
-    return low_a[0] <= high_b[0] && low_b[0] <= high_a[0] && low_a[1] <= high_b[1] && low_b[1] <= high_a[1];
+/* Do the boxes of two edges overlap at the start? */
+static bool begin_together(const plane *p, contour_edge *e, contour_edge *f) {
+    for (int k = 0; k < 2; k++) {
+        double gap = max_of(min_of(e->a[0][k], e->b[0][k]) - max_of(f->a[0][k], f->b[0][k]),
+                            min_of(f->a[0][k], f->b[0][k]) - max_of(e->a[0][k], e->b[0][k]));
+        if (gap > 3.0 * p->error) return false;
+    }
+    return true;
 }
 
 /* Do two planar edges without a common vertex stay apart? Whether they cross changes only when an end of one comes
@@ -167,13 +171,13 @@ static bool stay_apart(const plane *p, contour_edge *e, contour_edge *f, bool pu
     if (!vertex_stays_off(p, e->a, f, &sides[0]) || !vertex_stays_off(p, e->b, f, &sides[1]) ||
         !vertex_stays_off(p, f->a, e, &sides[2]) || !vertex_stays_off(p, f->b, e, &sides[3]))
         return false;
-    if (published || !boxes_overlap(e->start_low, e->start_high, f->start_low, f->start_high)) return true;
+    if (published || !begin_together(p, e, f)) return true;
     return sides[0] * sides[1] > 0 || sides[2] * sides[3] > 0;
 }
 
 /* Edges with a common vertex need no test of their own: where they fold onto each other, the other end of the
  * shorter one lies on the longer one, and the edge that begins there has no vertex in common with the longer one. */
-bool contour_stays_simple(const contour_query *query, contour_edge *scratch) {
+bool contour_stays_simple(const contour_query *query, contour_edge *edges, contour_key *keys) {
     const cscd_mesh *mesh = query->mesh;
     uint32_t count = query->edge_count;
     if (count == 0) return true;
@@ -181,23 +185,25 @@ bool contour_stays_simple(const contour_query *query, contour_edge *scratch) {
     plane p = make_plane(query->axis, query->x0 + first, query->x1 + first);
     for (uint32_t i = 0; i < count; i++) {
         const uint32_t *v = mesh->edges[query->edges[i]];
-        contour_edge *e = &scratch[i];
+        contour_edge *e = &edges[i];
         project_vertex(&p, query->x0 + (size_t)v[0] * 3, 0, e->a[0]);
         project_vertex(&p, query->x1 + (size_t)v[0] * 3, 1, e->a[1]);
         project_vertex(&p, query->x0 + (size_t)v[1] * 3, 0, e->b[0]);
         project_vertex(&p, query->x1 + (size_t)v[1] * 3, 1, e->b[1]);
         e->vertices[0] = v[0];
         e->vertices[1] = v[1];
-        e->index = i;
     }
-    for (uint32_t i = 0; i < count; i++) set_boxes(&scratch[i], p.error);
-    sort_edges(scratch, count);
     for (uint32_t i = 0; i < count; i++) {
-        contour_edge *e = &scratch[i];
-        for (uint32_t j = i + 1; j < count && scratch[j].low[0] <= e->high[0]; j++) {
-            contour_edge *f = &scratch[j];
+        set_box(&edges[i], p.error);
+        keys[i] = (contour_key){edges[i].low[0], i};
+    }
+    sort_keys(keys, count);
+    for (uint32_t i = 0; i < count; i++) {
+        contour_edge *e = &edges[keys[i].edge];
+        for (uint32_t j = i + 1; j < count && keys[j].low <= e->high[0]; j++) {
+            contour_edge *f = &edges[keys[j].edge];
             if (f->low[1] > e->high[1] || e->low[1] > f->high[1]) continue;
-            if (e->index < query->skipped && f->index < query->skipped) continue;
+            if (keys[i].edge < query->skipped && keys[j].edge < query->skipped) continue;
             if (edges_share_vertex(e->vertices, f->vertices)) continue;
             if (!stay_apart(&p, e, f, query->published)) return false;
         }

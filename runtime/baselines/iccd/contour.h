@@ -5,12 +5,16 @@
 
 /* An edge of a contour, projected: ends a and b, at both ends of the interval. */
 typedef struct contour_edge {
-    double a[2][2], b[2][2];            /* [time][axis] */
-    double low[2], high[2];             /* the box that it stays in, rounding included */
-    double start_low[2], start_high[2]; /* the same for its place at the start */
+    double a[2][2], b[2][2]; /* [time][axis] */
+    double low[2], high[2];  /* the box that it stays in, rounding included */
     uint32_t vertices[2];
-    uint32_t index; /* in the list of edges */
 } contour_edge;
+
+/* Where an edge's box begins, for sorting. */
+typedef struct contour_key {
+    double low;
+    uint32_t edge; /* in the list of edges */
+} contour_key;
 
 /* A contour and its motion. */
 typedef struct contour_query {
@@ -25,5 +29,5 @@ typedef struct contour_query {
 
 /* Certified for edges that form one loop: true only if no two of them touch in the projection at any moment of the
  * interval, except neighbours at their common vertices. For a loop of three edges it tests nothing, because such a
- * loop is simple as long as its projection has an area. scratch: room for edge_count edges. */
-bool contour_stays_simple(const contour_query *query, contour_edge *scratch);
+ * loop is simple as long as its projection has an area. edges, keys: room for edge_count of them. */
+bool contour_stays_simple(const contour_query *query, contour_edge *edges, contour_key *keys);

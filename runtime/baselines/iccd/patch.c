@@ -7,7 +7,7 @@
 
 /* One thread tests a whole subtree of at most 2^SMALL_HEIGHT triangles; nodes above are tested level
  * by level. */
-enum { SMALL_HEIGHT = 6 };
+enum { SMALL_HEIGHT = 6, CONES_PER_TASK = 512 };
 
 /* Lists of edge numbers, one per node, while they are made: the last node's first. */
 typedef struct contour_lists {
@@ -162,6 +162,16 @@ static void find_small(patches *p, const uint32_t *ends) {
     }
 }
 
+static void sort_by_height(patches *p) {
+    const patch_tree *tree = &p->tree;
+    uint32_t *begins = p->height_begins;
+    for (uint32_t i = 0; i < tree->node_count; i++) begins[tree->nodes[i].height + 1]++;
+    for (int h = 0; h < PATCH_HEIGHTS; h++) begins[h + 1] += begins[h];
+    for (uint32_t i = tree->node_count; i-- > 0;) p->by_height[--begins[tree->nodes[i].height + 1]] = i;
+    memmove(begins, begins + 1, PATCH_HEIGHTS * sizeof *begins);
+    begins[PATCH_HEIGHTS] = tree->node_count;
+}
+
 static bool fill_patches(patches *p, const cscd_mesh *mesh, const patch_tree *tree, contour_lists *l,
                          vertex_visit *visits) {
     uint32_t longest = 0;
@@ -174,7 +184,8 @@ static bool fill_patches(patches *p, const cscd_mesh *mesh, const patch_tree *tr
     p->longest = (size_t)longest + 1;
     size_t lanes = parallel_thread_count(l->context->threads);
     p->scratch = context_allocate(l->context, lanes * p->longest, sizeof *p->scratch);
-    if (p->contour_edges == NULL || p->scratch == NULL) return false;
+    p->keys = context_allocate(l->context, lanes * p->longest, sizeof *p->keys);
+    if (p->contour_edges == NULL || p->scratch == NULL || p->keys == NULL) return false;
     for (uint32_t i = 0; i < p->tree.node_count; i++) {
         p->contour_offsets[i] = total;
         total += l->sizes[i];
@@ -188,15 +199,16 @@ static bool fill_patches(patches *p, const cscd_mesh *mesh, const patch_tree *tr
     }
     find_disks(p, mesh, tree, l, visits);
     find_small(p, p->stack);
+    sort_by_height(p);
     return true;
 }
 
 static array_list list_arrays(patches *p) {
     size_t count = p->tree.node_count;
     return (array_list){{ARRAY(p->contour_offsets, count + 1), ARRAY(p->inherited, count),
-                         ARRAY(p->disks, count), ARRAY(p->cones, count), ARRAY(p->stack, count),
-                         ARRAY(p->parent_tested, count), ARRAY(p->passed, count), ARRAY(p->tested, count),
-                         ARRAY(p->reached, count), ARRAY(p->small_roots, count),
+                         ARRAY(p->disks, count), ARRAY(p->cones, count), ARRAY(p->by_height, count),
+                         ARRAY(p->stack, count), ARRAY(p->parent_tested, count), ARRAY(p->passed, count),
+                         ARRAY(p->tested, count), ARRAY(p->reached, count), ARRAY(p->small_roots, count),
                          ARRAY(p->small_ends, count)}};
 }
 
@@ -228,6 +240,7 @@ void patches_free(cscd_context *context, patches *p) {
     context_free_all(context, list_arrays(p));
     context_free(context, p->contour_edges);
     context_free(context, p->scratch);
+    context_free(context, p->keys);
     patch_tree_free(context, &p->tree);
     *p = (patches){0};
 }
@@ -245,32 +258,52 @@ typedef struct sealing {
     atomic_uint next;
 } sealing;
 
-static void set_cone(const sealing *s, uint32_t node) {
+/* Nodes of one height do not depend on each other. */
+typedef struct cone_work {
+    const sealing *sealing;
+    uint32_t height;
+} cone_work;
+
+/* Sets the cones of up to eight nodes of one height. */
+static void set_cones(const sealing *s, const uint32_t *nodes, uint32_t count, bool leaves) {
     const float pi = 3.14159265f, limit = s->published ? pi : normal_cone_limit;
-    const patch_node *n = &s->p->tree.nodes[node];
-    normal_cone *cones = s->p->cones;
-    if (patch_is_leaf(n)) {
-        const uint32_t *corners = s->mesh->triangles[n->triangle];
-        cones[node] = (s->published ? normal_cone_of_ends : normal_cone_of)(corners, s->x0, s->x1);
-    } else {
-        cones[node] = normal_cone_union(&cones[node + 1], &cones[n->right], limit);
+    const normal_cone_kernels *kernels = normal_cone_kernels_of(s->mesh->context);
+    const patch_node *all = s->p->tree.nodes;
+    uint32_t first[LANES], second[LANES];
+    normal_cone cones[LANES];
+    for (uint32_t i = 0; i < LANES; i++) {
+        uint32_t node = nodes[i < count ? i : count - 1];
+        first[i] = leaves ? all[node].triangle : node + 1;
+        second[i] = all[node].right;
+    }
+    if (leaves)
+        kernels->of_triangles((const uint32_t(*)[3])s->mesh->triangles, first, s->x0, s->x1, s->published,
+                              cones);
+    else
+        kernels->of_unions(s->p->cones, first, second, limit, cones);
+    for (uint32_t i = 0; i < count; i++) s->p->cones[nodes[i]] = cones[i];
+}
+
+static void merge_some_cones(void *data, uint32_t index) {
+    const cone_work *work = data;
+    const patches *p = work->sealing->p;
+    uint32_t begin = p->height_begins[work->height] + index * CONES_PER_TASK;
+    uint32_t end = p->height_begins[work->height + 1];
+    if (end - begin > CONES_PER_TASK) end = begin + CONES_PER_TASK;
+    for (uint32_t i = begin; i < end; i += LANES)
+        set_cones(work->sealing, p->by_height + i, end - i < LANES ? end - i : LANES, work->height == 0);
+}
+
+static void merge_cones(const sealing *s) {
+    for (uint32_t h = 0; h < PATCH_HEIGHTS; h++) {
+        cone_work work = {s, h};
+        uint32_t count = s->p->height_begins[h + 1] - s->p->height_begins[h];
+        parallel_run(s->mesh->context->threads, (count + CONES_PER_TASK - 1) / CONES_PER_TASK,
+                     merge_some_cones, &work);
     }
 }
 
-static void merge_small_cones(void *data, uint32_t index) {
-    const sealing *s = data;
-    for (uint32_t i = s->p->small_ends[index]; i-- > s->p->small_roots[index];) set_cone(s, i);
-}
-
-static void merge_cones(sealing *s) {
-    patches *p = s->p;
-    parallel_run(s->mesh->context->threads, p->small_count, merge_small_cones, s);
-    for (uint32_t i = p->tree.node_count; i-- > 0;) {
-        if (p->tree.nodes[i].height > SMALL_HEIGHT) set_cone(s, i);
-    }
-}
-
-static bool passes_test(const sealing *s, uint32_t node, contour_edge *scratch) {
+static bool passes_test(const sealing *s, uint32_t node, uint32_t lane) {
     const patches *p = s->p;
     size_t first = p->contour_offsets[node];
     const contour_query query = {.mesh = s->mesh,
@@ -281,17 +314,17 @@ static bool passes_test(const sealing *s, uint32_t node, contour_edge *scratch) 
                                  .axis = p->cones[node].axis,
                                  .skipped = s->published && p->parent_tested[node] ? p->inherited[node] : 0,
                                  .published = s->published};
-    return contour_stays_simple(&query, scratch);
+    return contour_stays_simple(&query, p->scratch + lane * p->longest, p->keys + lane * p->longest);
 }
 
 /* Returns true if the children are to be decided, too. */
-static bool decide_node(const sealing *s, uint32_t node, contour_edge *scratch) {
+static bool decide_node(const sealing *s, uint32_t node, uint32_t lane) {
     patches *p = s->p;
     const patch_node *n = &p->tree.nodes[node];
     if (patch_is_leaf(n)) return false;
     bool tested = p->cones[node].angle < INFINITY && (s->published || p->disks[node]);
     p->tested[node] = tested;
-    p->passed[node] = tested && passes_test(s, node, scratch);
+    p->passed[node] = tested && passes_test(s, node, lane);
     if (p->passed[node]) return false;
     p->parent_tested[node + 1] = p->parent_tested[n->right] = tested;
     p->reached[node + 1] = p->reached[n->right] = true;
@@ -304,7 +337,7 @@ static void decide_wave(void *data, uint32_t lane) {
     for (;;) {
         uint32_t at = atomic_fetch_add(&s->next, 1);
         if (at >= s->wave_end) return;
-        decide_node(s, p->stack[at], p->scratch + lane * p->longest);
+        decide_node(s, p->stack[at], lane);
     }
 }
 
@@ -315,7 +348,7 @@ static void decide_small(void *data, uint32_t lane) {
         uint32_t at = atomic_fetch_add(&s->next, 1);
         if (at >= p->small_count) return;
         for (uint32_t i = p->small_roots[at]; i < p->small_ends[at]; i++) {
-            if (p->reached[i]) decide_node(s, i, p->scratch + lane * p->longest);
+            if (p->reached[i]) decide_node(s, i, lane);
         }
     }
 }

@@ -5,6 +5,9 @@
 #include "runtime/baselines/iccd/normal_cone.h"
 #include "runtime/baselines/iccd/patch_tree.h"
 
+/* A mesh has fewer than 2^32 triangles. */
+enum { PATCH_HEIGHTS = 34 };
+
 /* A patch is the set of triangles below a node. Contours are fixed, the rest belongs to the current interval. */
 typedef struct patches {
     patch_tree tree;
@@ -13,9 +16,12 @@ typedef struct patches {
     uint32_t *inherited;     /* per node: how many edges its parent's contour has, too */
     bool *disks;             /* per node: connected, oriented, and its contour is one loop */
     normal_cone *cones;
-    contour_edge *scratch;        /* `longest` of them for each thread */
-    size_t longest;               /* the most edges of a contour */
-    uint32_t *stack;              /* large nodes that wait for their turn */
+    uint32_t *by_height;                       /* nodes, those of height 0 first */
+    uint32_t height_begins[PATCH_HEIGHTS + 1]; /* where those of each height begin there */
+    contour_edge *scratch;                     /* `longest` of them for each thread */
+    contour_key *keys;                         /* the same */
+    size_t longest;                            /* the most edges of a contour */
+    uint32_t *stack;                           /* large nodes that wait for their turn */
     uint32_t *small_roots;        /* roots of the largest small subtrees, in the order of nodes */
     uint32_t small_count;         /* the number of these subtrees */
     uint32_t *small_ends;         /* one past the last node of each of them */

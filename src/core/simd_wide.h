@@ -1,0 +1,141 @@
+/* Vectors of as many doubles as the processor takes at once: see simd.h, which knows processors, too. They serve loops whose
+ * lanes do not depend on each other, so that their number changes no result. */
+#pragma once
+
+#include "src/core/simd.h"
+
+#if SIMD_LEVEL == SIMD_AVX512
+enum { WIDTH = 8 };
+#elif SIMD_LEVEL == SIMD_AVX2
+enum { WIDTH = 4 };
+#else
+enum { WIDTH = 2 };
+#endif
+
+typedef double f64w __attribute__((vector_size(WIDTH * sizeof(double))));
+typedef int64_t i64w __attribute__((vector_size(WIDTH * sizeof(int64_t))));
+
+#if SIMD_LEVEL == SIMD_AVX512
+
+static inline f64w f64w_min(f64w a, f64w b) {
+    return _mm512_min_pd(a, b);
+}
+
+static inline f64w f64w_max(f64w a, f64w b) {
+    return _mm512_max_pd(a, b);
+}
+
+static inline uint32_t f64w_below(f64w a, f64w b) {
+    return _cvtmask8_u32(_mm512_cmp_pd_mask(a, b, _CMP_LT_OQ));
+}
+
+static inline uint32_t f64w_at_most(f64w a, f64w b) {
+    return _cvtmask8_u32(_mm512_cmp_pd_mask(a, b, _CMP_LE_OQ));
+}
+
+/* Takes a in the lanes whose bit is set, and b in the others. */
+static inline f64w f64w_select(uint32_t lanes, f64w a, f64w b) {
+    return _mm512_mask_blend_pd(_cvtu32_mask8(lanes), b, a);
+}
+
+static inline f64w f64w_abs(f64w v) {
+    return _mm512_abs_pd(v);
+}
+
+static inline f64w f64w_sqrt(f64w v) {
+    return _mm512_sqrt_pd(v);
+}
+
+/* Loads WIDTH points of positions (packed x, y, z); out[k] holds their coordinates k. */
+static inline void f64w_load_points(const double *positions, const uint32_t indices[WIDTH], f64w out[3]) {
+    f64x8_load_points(positions, indices, out);
+}
+
+#elif SIMD_LEVEL == SIMD_AVX2
+
+static inline f64w f64w_min(f64w a, f64w b) {
+    return _mm256_min_pd(a, b);
+}
+
+static inline f64w f64w_max(f64w a, f64w b) {
+    return _mm256_max_pd(a, b);
+}
+
+static inline uint32_t f64w_below(f64w a, f64w b) {
+    return (uint32_t)_mm256_movemask_pd(_mm256_cmp_pd(a, b, _CMP_LT_OQ));
+}
+
+static inline uint32_t f64w_at_most(f64w a, f64w b) {
+    return (uint32_t)_mm256_movemask_pd(_mm256_cmp_pd(a, b, _CMP_LE_OQ));
+}
+
+static inline f64w f64w_select(uint32_t lanes, f64w a, f64w b) {
+    __m256i bits = _mm256_setr_epi64x(1, 2, 4, 8), all = _mm256_set1_epi64x(lanes);
+    __m256i chosen = _mm256_cmpeq_epi64(_mm256_and_si256(all, bits), bits);
+    return _mm256_blendv_pd(b, a, _mm256_castsi256_pd(chosen));
+}
+
+static inline f64w f64w_abs(f64w v) {
+    return _mm256_andnot_pd(_mm256_set1_pd(-0.0), v);
+}
+
+static inline f64w f64w_sqrt(f64w v) {
+    return _mm256_sqrt_pd(v);
+}
+
+static inline void f64w_load_points(const double *positions, const uint32_t indices[WIDTH], f64w out[3]) {
+    f64x4 p[4];
+    for (int i = 0; i < 4; i++) p[i] = f64x4_load_point(positions + (size_t)indices[i] * 3);
+    f64x4 xz01 = _mm256_unpacklo_pd(p[0], p[1]), y01 = _mm256_unpackhi_pd(p[0], p[1]);
+    f64x4 xz23 = _mm256_unpacklo_pd(p[2], p[3]), y23 = _mm256_unpackhi_pd(p[2], p[3]);
+    out[0] = _mm256_permute2f128_pd(xz01, xz23, 0x20);
+    out[1] = _mm256_permute2f128_pd(y01, y23, 0x20);
+    out[2] = _mm256_permute2f128_pd(xz01, xz23, 0x31);
+}
+
+#else
+
+static inline f64w f64w_min(f64w a, f64w b) {
+    i64w below = a < b;
+    return (f64w)(((i64w)a & below) | ((i64w)b & ~below));
+}
+
+static inline f64w f64w_max(f64w a, f64w b) {
+    i64w above = a > b;
+    return (f64w)(((i64w)a & above) | ((i64w)b & ~above));
+}
+
+static inline uint32_t f64w_below(f64w a, f64w b) {
+    return (uint32_t)(a[0] < b[0]) | (uint32_t)(a[1] < b[1]) << 1;
+}
+
+static inline uint32_t f64w_at_most(f64w a, f64w b) {
+    return (uint32_t)(a[0] <= b[0]) | (uint32_t)(a[1] <= b[1]) << 1;
+}
+
+static inline f64w f64w_select(uint32_t lanes, f64w a, f64w b) {
+    i64w chosen = {-(int64_t)(lanes & 1), -(int64_t)(lanes >> 1 & 1)};
+    return (f64w)(((i64w)a & chosen) | ((i64w)b & ~chosen));
+}
+
+static inline f64w f64w_abs(f64w v) {
+    return (f64w)((i64w)v & INT64_MAX);
+}
+
+static inline f64w f64w_sqrt(f64w v) {
+    return (f64w){sqrt(v[0]), sqrt(v[1])};
+}
+
+static inline void f64w_load_points(const double *positions, const uint32_t indices[WIDTH], f64w out[3]) {
+    const double *a = positions + (size_t)indices[0] * 3, *b = positions + (size_t)indices[1] * 3;
+    for (int k = 0; k < 3; k++) out[k] = (f64w){a[k], b[k]};
+}
+
+#endif
+
+enum { ALL_WIDTH = (1 << WIDTH) - 1 };
+
+static inline f64w f64w_all(double x) {
+    f64w zero = {0.0};
+    return x - zero;
+}
