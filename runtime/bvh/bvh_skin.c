@@ -93,6 +93,7 @@ static array_list skin_arrays(bvh_skin *s) {
     return (array_list){{ARRAY(s->trees, s->tree_count), ARRAY(s->vertices, s->record_count),
                          ARRAY(s->items, s->record_count), ARRAY(s->leaves, s->leaf_count),
                          ARRAY(s->chunks, s->chunk_count), ARRAY(s->stretches, s->leaf_count),
+                         ARRAY(s->strayed, s->leaf_count), ARRAY(s->strays, s->leaf_count),
                          ARRAY(s->within, leaf_task_count(s))}};
 }
 
@@ -163,8 +164,11 @@ void bvh_skin_set(bvh_skin *s, const bvh *f, double distance) {
     memcpy(s->items, f->records, s->record_count * sizeof *s->items);
     for (uint32_t i = 0; i < s->leaf_count; i++) {
         take_leaf(s, f, i);
-        s->stretches[i] = squared_stretch(s->stretches[i], scaled);
+        bool any =
+            (s->leaves[i].plus | s->leaves[i].minus) != 0; /* otherwise it may not have been oriented */
+        s->stretches[i] = any ? squared_stretch(s->stretches[i], scaled) : INFINITY;
     }
+    memset(s->strayed, 0, s->leaf_count * sizeof *s->strayed);
     s->scale = f->scale;
     s->distance = distance;
 }
@@ -231,6 +235,12 @@ bool bvh_skin_holds(bvh_skin *s, const double *x0, const double *x1) {
     skin_look look = {s, x0, x1};
     place_ends(s, x0, x1);
     return is_near(s, &look) && keeps_signs(s, &look);
+}
+
+void bvh_skin_take(bvh_skin *s) {
+    bool *strays = s->strays;
+    s->strays = s->strayed;
+    s->strayed = strays;
 }
 
 void bvh_skin_points(const bvh_skin *s, double (*points)[2][3]) {

@@ -2,8 +2,8 @@
  *
  * The skin of a Verlet list (Verlet 1967) for triangles. At the reference every vertex has a place in the frame of its tree.
  * Later it is off by at most `distance`, the same for all. Signs of triangles last while, besides, two corners of one
- * triangle are off by almost the same: where in a leaf they differ by more than its `stretch`, the signs are computed
- * again. Frames move linearly within an interval, so what holds at both ends of it holds throughout. */
+ * triangle are off by almost the same. Frames move linearly within an interval, so both bounds hold throughout if they hold at
+ * both ends. Where corners in a leaf differ by more than its `stretch` at either end, its signs are computed for the interval. */
 #pragma once
 
 #include "runtime/bvh/bvh.h"
@@ -38,7 +38,9 @@ typedef struct bvh_skin {
     float (*items)[8];  /* per record: x y z . at the reference, and how far it is from there: x y z . */
     skin_leaf *leaves;
     float *stretches; /* per leaf, scaled and squared */
-    bool *within;     /* per SKIN_LEAVES leaves: the outcome */
+    bool *strayed,
+        *strays;  /* per leaf: its corners differ by more, at the start of the interval, and at its end */
+    bool *within; /* per SKIN_LEAVES leaves: the outcome */
     skin_chunk *chunks;
     double scale;
     double distance; /* a length */
@@ -60,6 +62,9 @@ void bvh_skin_free(bvh_skin *s);
 
 /* Are all vertices near their places throughout an interval, at the start of which they are, and do all signs last? */
 bool bvh_skin_holds(bvh_skin *s, const double *x0, const double *x1);
+
+/* The interval that bvh_skin_holds has looked at last was gone through: its end is the start of the next one. */
+void bvh_skin_take(bvh_skin *s);
 
 /* Writes where the detector points of regions are in the interval that bvh_skin_holds has looked at last. */
 void bvh_skin_points(const bvh_skin *s, double (*points)[2][3]);

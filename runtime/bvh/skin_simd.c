@@ -61,7 +61,8 @@ static __attribute__((noinline)) bool keeps_signs(const bvh_skin *s, const skin_
     return (leaf->plus & ~plus) == 0 && (leaf->minus & ~minus) == 0;
 }
 
-/* The extents of what the corners of a leaf are off by bound what any two of them differ by. */
+/* The extents of what the corners of a leaf are off by bound what any two of them differ by. Signs last where these are small
+ * at both ends; what they were at the start is known from the interval before. */
 bool SIMD_NAME(skin_signs)(const bvh_skin *s, uint32_t begin, uint32_t end, const double *x0,
                            const double *x1) {
     for (uint32_t i = begin; i < end; i++) {
@@ -74,7 +75,8 @@ bool SIMD_NAME(skin_signs)(const bvh_skin *s, uint32_t begin, uint32_t end, cons
         }
         f32x8 extent = high - low;
         float sum = (extent[4] * extent[4] + extent[5] * extent[5]) + extent[6] * extent[6];
-        if (!(sum < s->stretches[i]) && !keeps_signs(s, leaf, x0, x1)) return false;
+        s->strays[i] = !(sum < s->stretches[i]);
+        if ((s->strayed[i] || s->strays[i]) && !keeps_signs(s, leaf, x0, x1)) return false;
     }
     return true;
 }

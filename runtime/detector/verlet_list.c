@@ -14,8 +14,8 @@
  * there is no list. Measured: docs/theory/coherence.md. */
 static const double thinnest = 0.1, thickest = 0.15, intervals_wanted = 16.0, intervals_least = 8.0;
 
-/* A list that served fewer intervals was of no use, and the next one waits, for twice as long each time. A list of more
- * pairs for each triangle costs more than it saves. */
+/* A list that served fewer intervals was of no use. Then, or where a motion is too fast, the next one waits, for twice as
+ * long each time. A list of more pairs for each triangle costs more than it saves. */
 enum { SERVED_LEAST = 8, BACKOFF_FIRST = 4, BACKOFF_MOST = 64, EDGE_SAMPLES = 4096 };
 static const double most_pairs = 0.5;
 
@@ -97,12 +97,14 @@ static cscd_status collect_pairs(cscd_detector *d, const double *x, const skin_m
     search.interval.beyond = apart;
     search.interval.culling = &d->culling;
     search.interval.culled = d->culled;
+    for (uint32_t i = 0; i < d->space.traversal.lane_count; i++) d->space.lanes[i].kept = NULL;
     interval_search_skip_adjacent(&search, false);
     status = interval_search_traverse(&search, TRAVERSAL_KEPT);
     return status == CSCD_OK ? candidates_take(&d->space, &d->verlet.pairs) : status;
 }
 
 static void back_off(verlet_list *v) {
+    v->edge = 0.0; /* which may have changed by then */
     v->backoff = v->backoff == 0 ? BACKOFF_FIRST : v->backoff < BACKOFF_MOST ? v->backoff * 2 : BACKOFF_MOST;
     v->waiting = v->backoff;
 }
@@ -132,7 +134,7 @@ static cscd_status make_list(cscd_detector *d, const double *x0, const double *x
     if (v->edge == 0.0) v->edge = mean_edge(d->mesh, x0);
     skin_motion skin;
     if (!choose_skin(d, x0, x1, &skin) || !bvh_skin_reserve(&v->skin, &d->space.bvh)) {
-        v->waiting = BACKOFF_FIRST;
+        back_off(v);
         return CSCD_OK;
     }
     cull_everything(d);
@@ -220,6 +222,7 @@ void verlet_list_take(cscd_detector *d) {
     if (!v->serving) return;
     v->served++;
     v->revision = d->starts.revision;
+    bvh_skin_take(&v->skin);
 }
 
 void verlet_list_free(cscd_context *context, verlet_list *v) {

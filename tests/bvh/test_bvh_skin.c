@@ -28,18 +28,22 @@ typedef struct skin_rig {
     double distance;
 } skin_rig;
 
-static bool skin_rig_begin(cscd_simd simd, uint32_t region_count, double distance, double least,
+/* The detector points of all regions are so far below the middles of these. */
+static bool skin_rig_begin(cscd_simd simd, uint32_t region_count, double distance, double least, double below,
                            skin_rig *out) {
     static uint8_t facing[SCENE_TRIANGLES_MAX];
-    static const double offsets[8][3] = {{0.0}};
-    const bool culled[8] = {true, true, true, true, true, true, true, true};
+    double offsets[8][3] = {{0.0}};
+    for (int i = 0; i < 8; i++) offsets[i][2] = -below;
+    static bool culled[SCENE_TRIANGLES_MAX]; /* components */
+    memset(culled, true, sizeof culled);
     *out = (skin_rig){.distance = distance};
     if (!bvh_rig_create(&shape, (bvh_setup){simd, 2, BOX_AXES, region_count}, &out->rig)) return false;
     bvh *f = &out->rig.bvh;
     bvh_refit(f, shape.x0, shape.x0, uniform_growth(2.0 * distance));
     assert_true(bvh_skin_reserve(&out->skin, f));
     const orientation_lasting lasting = bvh_skin_lasting(&out->skin, f, distance, least);
-    const orientation_query query = {.culled = culled, .detector_offsets = offsets, .lasting = &lasting};
+    const orientation_query query = {
+        .culled = culled, .detector_offsets = (const double(*)[3])offsets, .lasting = &lasting};
     bvh_orient(f, &query, facing);
     bvh_skin_set(&out->skin, f, distance);
     return true;
@@ -176,11 +180,14 @@ static void what_holds_is_true(void **state) {
         skin_rig r;
         scene_make(kinds[i % 3], 100 + (uint64_t)i, &shape);
         double distance = extent_of_edges() * ldexp(1.0, -random_integer(1, 6));
-        assert_true(skin_rig_begin(CSCD_SIMD_AUTO, i % 2 == 0 ? 0 : 3, distance, 0.02 * distance, &r));
+        assert_true(skin_rig_begin(CSCD_SIMD_AUTO, i % 2 == 0 ? 0 : 3, distance, 0.02 * distance, 0.0, &r));
         for (int k = 0; k < 8; k++) {
             double size = 0.5 * distance * fabs(random_unit());
             move_from(shape.x0, size, middle);
+            memset(r.skin.strayed, 0,
+                   r.skin.leaf_count * sizeof *r.skin.strayed); /* at the reference again */
             if (!look_at(&r, shape.x0, middle, &count)) continue;
+            bvh_skin_take(&r.skin);
             move_from(middle, size, end); /* the second interval starts where the first one has ended */
             look_at(&r, middle, end, &count);
         }
@@ -191,15 +198,56 @@ static void what_holds_is_true(void **state) {
     assert_true(count.held > 200 && count.too_far > 100 && count.too_bent > 5 && count.shy < count.held / 10);
 }
 
+/* A flat triangle far in front of its detector point, among others that do not move. */
+static void place_flat_triangle(double x1, double y1, double x2, double y2, double *x) {
+    memcpy(x, shape.x0, shape.vertex_count * sizeof(double[3]));
+    x[3] = x1;
+    x[4] = y1;
+    x[6] = x2;
+    x[7] = y2;
+}
+
+/* It turns away by more than its signs last for, in so small intervals that each of them is seen to keep the sign, and comes
+ * back in one interval, in the midst of which it is turned over. Its end alone says nothing of that. */
+static void out_slowly_and_back_at_once(void **state) {
+    enum { OTHERS = 23, WAY = 20 };
+    skin_rig r;
+    (void)state;
+    scene_clear(&shape);
+    shape.vertex_count = 3 * (OTHERS + 1);
+    shape.triangle_count = OTHERS + 1;
+    for (uint32_t i = 0; i < shape.vertex_count; i++) shape.triangles[i] = i;
+    for (uint32_t t = 0; t <= OTHERS; t++) {
+        const double corners[9] = {0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.5, t == 0 ? 0.004 : 0.5, 0.0};
+        for (size_t i = 0; i < 9; i++)
+            shape.x0[9 * (size_t)t + i] = corners[i] + (i % 3 == 1 ? -0.1 * t : 0.0);
+    }
+    assert_true(skin_rig_begin(CSCD_SIMD_AUTO, 1, 0.2, 0.0005, 40.0, &r));
+    memcpy(end, shape.x0, sizeof end);
+    for (int i = 1; i <= WAY; i++) {
+        double u = (double)i / WAY, y1 = -0.08 * u, x2 = 0.5 + 0.08 * u;
+        memcpy(middle, end, sizeof middle);
+        place_flat_triangle(1.0, y1, x2, y1 * x2 + 0.004 - 0.0035 * u, end);
+        assert_true(bvh_skin_holds(&r.skin, middle, end) && all_signs_are_right(&r, middle, end));
+        bvh_skin_take(&r.skin);
+    }
+    memcpy(middle, end, sizeof middle);
+    place_flat_triangle(1.0, 0.0, 0.5, 0.002, end);
+    bool holds = bvh_skin_holds(&r.skin, middle, end);
+    assert_false(all_signs_are_right(&r, middle, end));
+    assert_false(holds);
+    skin_rig_end(&r);
+}
+
 static void levels_agree(void **state) {
     (void)state;
     scene_make(SCENE_LINKED_TORI, 7, &shape);
     double distance = 0.2 * extent_of_edges();
     skin_rig first;
-    assert_true(skin_rig_begin(CSCD_SIMD_SCALAR, 3, distance, 0.1 * distance, &first));
+    assert_true(skin_rig_begin(CSCD_SIMD_SCALAR, 3, distance, 0.1 * distance, 0.0, &first));
     for (int simd = CSCD_SIMD_SCALAR + 1; simd <= CSCD_SIMD_AVX512; simd++) {
         skin_rig r;
-        if (!skin_rig_begin((cscd_simd)simd, 3, distance, 0.1 * distance, &r)) continue;
+        if (!skin_rig_begin((cscd_simd)simd, 3, distance, 0.1 * distance, 0.0, &r)) continue;
         assert_memory_equal(r.skin.stretches, first.skin.stretches,
                             first.skin.leaf_count * sizeof *first.skin.stretches);
         for (int k = 0; k < 20; k++) {
@@ -217,6 +265,7 @@ static void levels_agree(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(what_holds_is_true, seed_random),
+        cmocka_unit_test(out_slowly_and_back_at_once),
         cmocka_unit_test_setup(levels_agree, seed_random),
     };
     return cmocka_run_group_tests_name("bvh skin", tests, NULL, NULL);
