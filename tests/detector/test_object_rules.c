@@ -11,7 +11,7 @@
 #include <string.h>
 
 #ifdef __SANITIZE_ADDRESS__
-enum { SCENES = 7 };
+enum { SCENES = 4 };
 #else
 enum { SCENES = 10 };
 #endif

@@ -9,7 +9,7 @@
 #include <string.h>
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-enum { REPETITIONS = 2 };
+enum { REPETITIONS = 1 };
 #else
 enum { REPETITIONS = 8 };
 #endif
