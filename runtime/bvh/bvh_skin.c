@@ -93,7 +93,7 @@ static array_list skin_arrays(bvh_skin *s) {
     return (array_list){{ARRAY(s->trees, s->tree_count), ARRAY(s->vertices, s->record_count),
                          ARRAY(s->items, s->record_count), ARRAY(s->leaves, s->leaf_count),
                          ARRAY(s->chunks, s->chunk_count), ARRAY(s->stretches, s->leaf_count),
-                         ARRAY(s->strayed, s->leaf_count), ARRAY(s->strays, s->leaf_count),
+                         ARRAY(s->stray_at_start, s->leaf_count), ARRAY(s->stray_at_end, s->leaf_count),
                          ARRAY(s->within, leaf_task_count(s))}};
 }
 
@@ -168,7 +168,7 @@ void bvh_skin_set(bvh_skin *s, const bvh *f, double distance) {
             (s->leaves[i].plus | s->leaves[i].minus) != 0; /* otherwise it may not have been oriented */
         s->stretches[i] = any ? squared_stretch(s->stretches[i], scaled) : INFINITY;
     }
-    memset(s->strayed, 0, s->leaf_count * sizeof *s->strayed);
+    memset(s->stray_at_start, 0, s->leaf_count * sizeof *s->stray_at_start);
     s->scale = f->scale;
     s->distance = distance;
 }
@@ -238,9 +238,9 @@ bool bvh_skin_holds(bvh_skin *s, const double *x0, const double *x1) {
 }
 
 void bvh_skin_take(bvh_skin *s) {
-    bool *strays = s->strays;
-    s->strays = s->strayed;
-    s->strayed = strays;
+    bool *stray_at_end = s->stray_at_end;
+    s->stray_at_end = s->stray_at_start;
+    s->stray_at_start = stray_at_end;
 }
 
 void bvh_skin_points(const bvh_skin *s, double (*points)[2][3]) {

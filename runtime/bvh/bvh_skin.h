@@ -16,8 +16,8 @@ typedef struct skin_chunk {
 
 typedef struct skin_tree {
     uint32_t region, first_record, record_count;
-    double origin[3],
-        ends[2][3]; /* of its frame: at the reference, and at both ends of the interval looked at */
+    double origin[3];  /* of its frame at the reference, and */
+    double ends[2][3]; /* at both ends of the interval looked at */
     double reach;
     float detector[3]; /* in the frame, where it stays */
 } skin_tree;
@@ -38,9 +38,9 @@ typedef struct bvh_skin {
     float (*items)[8];  /* per record: x y z . at the reference, and how far it is from there: x y z . */
     skin_leaf *leaves;
     float *stretches; /* per leaf, scaled and squared */
-    bool *strayed,
-        *strays;  /* per leaf: its corners differ by more, at the start of the interval, and at its end */
-    bool *within; /* per SKIN_LEAVES leaves: the outcome */
+    bool *stray_at_start,
+        *stray_at_end; /* per leaf: its corners differ by more at that end of the interval */
+    bool *within;      /* per SKIN_LEAVES leaves: the outcome */
     skin_chunk *chunks;
     double scale;
     double distance; /* a length */

@@ -75,8 +75,8 @@ bool SIMD_NAME(skin_signs)(const bvh_skin *s, uint32_t begin, uint32_t end, cons
         }
         f32x8 extent = high - low;
         float sum = (extent[4] * extent[4] + extent[5] * extent[5]) + extent[6] * extent[6];
-        s->strays[i] = !(sum < s->stretches[i]);
-        if ((s->strayed[i] || s->strays[i]) && !keeps_signs(s, leaf, x0, x1)) return false;
+        s->stray_at_end[i] = !(sum < s->stretches[i]);
+        if ((s->stray_at_start[i] || s->stray_at_end[i]) && !keeps_signs(s, leaf, x0, x1)) return false;
     }
     return true;
 }

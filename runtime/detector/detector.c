@@ -313,12 +313,13 @@ void detector_begin_call(cscd_detector *d) {
     d->exclusions.marked_wait = false;
     progress_begin(&d->context->progress);
     rollback_save(&d->before, &d->starts, &d->rebuild);
+    verlet_list_begin_call(&d->verlet);
 }
 
 cscd_status detector_fail_call(cscd_detector *d, cscd_status status) {
     if (status == CSCD_IN_CONTACT) return status;
     rollback_restore(&d->before, &d->starts, &d->rebuild);
-    verlet_list_drop(&d->verlet);
+    verlet_list_undo(&d->verlet);
     return status == CSCD_LIST_TOO_LONG ? status : context_explain(d->context, status);
 }
 

@@ -287,13 +287,14 @@ cscd_status step_find(cscd_detector *d, const double *x0, const double *x1, cscd
                       .mode = mode,
                       .rehearsal = rehearsal,
                       .all_clean = true};
+    work.search.timings.update_ms = d->verlet.spent_ms;
     begin_interval(&work);
     if (!rehearsal) list_cap_begin(d, &work.search, d->lists_earliest ? CAP_KEEPS_EARLIEST : CAP_TAINTS_ALL);
     status = run_stages(d->stages->brute_force ? stages_by_brute_force : stages_by_trees, &work);
     if (status == CSCD_LIST_TOO_LONG) out->contacts = work.contacts;
     if (status != CSCD_OK) return status;
     for (uint32_t c = 0; c < d->mesh->component_count; c++) d->guarantees[c] = guarantee_of(d, c);
-    d->verlet.was_quiet = work.contacts.count == 0;
+    d->verlet.now.was_quiet = work.contacts.count == 0;
     out->contacts = work.contacts;
     out->timings = work.search.timings;
     out->counters = work.search.counters;

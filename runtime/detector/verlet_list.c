@@ -57,7 +57,7 @@ static double mean_edge(const cscd_mesh *mesh, const double *x) {
 /* Chooses how far vertices may go for a motion like this, and what signs have to last for at least: the stretch of one
  * interval, since those that last no longer are hardly worth to be computed again in each. False: the motion is too fast. */
 static bool choose_skin(const cscd_detector *d, const double *x0, const double *x1, skin_motion *out) {
-    double edge = d->verlet.edge, most = thickest * edge;
+    double edge = d->verlet.now.edge, most = thickest * edge;
     *out = bvh_skin_estimate(&d->space.bvh, x0, x1);
     if (!(out->distance * intervals_least <= most && most > 0.0 && isfinite(most))) return false;
     out->distance = fmin(most, fmax(intervals_wanted * out->distance, thinnest * edge));
@@ -104,9 +104,11 @@ static cscd_status collect_pairs(cscd_detector *d, const double *x, const skin_m
 }
 
 static void back_off(verlet_list *v) {
-    v->edge = 0.0; /* which may have changed by then */
-    v->backoff = v->backoff == 0 ? BACKOFF_FIRST : v->backoff < BACKOFF_MOST ? v->backoff * 2 : BACKOFF_MOST;
-    v->waiting = v->backoff;
+    v->now.edge = 0.0; /* which may have changed by then */
+    v->now.backoff = v->now.backoff == 0             ? BACKOFF_FIRST
+                     : v->now.backoff < BACKOFF_MOST ? v->now.backoff * 2
+                                                     : BACKOFF_MOST;
+    v->now.waiting = v->now.backoff;
 }
 
 static bool is_short(const cscd_detector *d) {
@@ -130,9 +132,10 @@ static bool keep_list(cscd_detector *d, double distance) {
 /* Makes a list at the start of an interval, if it promises to be of use. */
 static cscd_status make_list(cscd_detector *d, const double *x0, const double *x1) {
     verlet_list *v = &d->verlet;
-    if (!v->was_quiet || (v->waiting > 0 && v->waiting-- > 0)) return CSCD_OK;
-    if (v->edge == 0.0) v->edge = mean_edge(d->mesh, x0);
+    if (!v->now.was_quiet || (v->now.waiting > 0 && v->now.waiting-- > 0)) return CSCD_OK;
+    if (v->now.edge == 0.0) v->now.edge = mean_edge(d->mesh, x0);
     skin_motion skin;
+    v->remade = true;
     if (!choose_skin(d, x0, x1, &skin) || !bvh_skin_reserve(&v->skin, &d->space.bvh)) {
         back_off(v);
         return CSCD_OK;
@@ -140,18 +143,18 @@ static cscd_status make_list(cscd_detector *d, const double *x0, const double *x
     cull_everything(d);
     cscd_status status = collect_pairs(d, x0, &skin);
     if (status != CSCD_OK && status != CSCD_OUT_OF_MEMORY) return status;
-    v->served = 0;
-    v->revision = d->starts.revision;
-    v->exists = status == CSCD_OK && is_short(d) && keep_list(d, skin.distance);
-    if (!v->exists) back_off(v);
+    v->now.served = 0;
+    v->now.revision = d->starts.revision;
+    v->now.exists = status == CSCD_OK && is_short(d) && keep_list(d, skin.distance);
+    if (!v->now.exists) back_off(v);
     return CSCD_OK;
 }
 
 /* Ends a list that does not hold any longer, and notes whether it was of use. */
 static void end_list(verlet_list *v) {
-    v->exists = false;
-    if (v->served >= SERVED_LEAST)
-        v->backoff = 0;
+    v->now.exists = false;
+    if (v->now.served >= SERVED_LEAST)
+        v->now.backoff = 0;
     else
         back_off(v);
 }
@@ -193,11 +196,11 @@ static cscd_status test_list(cscd_detector *d, interval_search *search, step_out
 /* Is there a list that holds throughout the interval? Makes one if it promises to be of use. */
 static cscd_status find_list(cscd_detector *d, const double *x0, const double *x1, bool *holds) {
     verlet_list *v = &d->verlet;
-    *holds = v->exists && v->revision == d->starts.revision && bvh_skin_holds(&v->skin, x0, x1);
+    *holds = v->now.exists && v->now.revision == d->starts.revision && bvh_skin_holds(&v->skin, x0, x1);
     if (*holds) return CSCD_OK;
-    if (v->exists) end_list(v); /* it has ended now, or in an interval that was not answered from it */
+    if (v->now.exists) end_list(v); /* it has ended now, or in an interval that was not answered from it */
     cscd_status status = make_list(d, x0, x1);
-    *holds = v->exists && bvh_skin_holds(&v->skin, x0, x1);
+    *holds = v->now.exists && bvh_skin_holds(&v->skin, x0, x1);
     return status;
 }
 
@@ -206,22 +209,35 @@ cscd_status verlet_list_answer(cscd_detector *d, const double *x0, const double 
     double since = timer_now_ms(), update_ms = 0.0;
     bool holds;
     d->verlet.serving = *answered = false;
+    d->verlet.spent_ms = 0.0;
     if (!is_usable(d)) return CSCD_OK;
     cscd_status status = find_list(d, x0, x1, &holds);
     timer_lap(&since, &update_ms);
+    d->verlet.spent_ms = update_ms;
     if (status != CSCD_OK || !holds) return status;
     interval_search search = detector_search_begin(d, x0, x1);
     search.timings.update_ms = update_ms;
     status = test_list(d, &search, out, answered);
-    if (*answered) timer_lap(&since, &out->timings.contact_ms);
+    timer_lap(&since, *answered ? &out->timings.contact_ms : &d->verlet.spent_ms);
     return status;
+}
+
+void verlet_list_begin_call(verlet_list *v) {
+    v->before = v->now;
+    v->remade = false;
+}
+
+void verlet_list_undo(verlet_list *v) {
+    v->now = v->before;
+    if (v->remade) v->now.revision = UINT64_MAX; /* that of no positions */
+    v->serving = false;
 }
 
 void verlet_list_take(cscd_detector *d) {
     verlet_list *v = &d->verlet;
     if (!v->serving) return;
-    v->served++;
-    v->revision = d->starts.revision;
+    v->now.served++;
+    v->now.revision = d->starts.revision;
     bvh_skin_take(&v->skin);
 }
 
@@ -229,5 +245,5 @@ void verlet_list_free(cscd_context *context, verlet_list *v) {
     candidates_free(context, &v->pairs);
     bvh_skin_free(&v->skin);
     context_free(context, v->facing);
-    *v = (verlet_list){.exists = false};
+    *v = (verlet_list){.serving = false};
 }

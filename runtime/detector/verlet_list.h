@@ -11,33 +11,39 @@
 
 struct step_outcome;
 
+/* What a call that fails puts back. */
+typedef struct verlet_state {
+    bool exists;       /* there is a list, which holds at the positions of this revision */
+    uint64_t revision; /* of start_states */
+    bool was_quiet;    /* the last interval that was not answered from a list had no contacts */
+    uint32_t served;   /* intervals that were answered since the list was made */
+    uint32_t waiting;  /* intervals until the next list may be made */
+    uint32_t backoff;  /* intervals that the last list of no use was followed by without one */
+    double edge;       /* the mean length of some edges; 0: it is not known */
+} verlet_state;
+
 typedef struct verlet_list {
     candidates pairs;
     bvh_skin skin;
-    uint8_t *facing;      /* per triangle: orientations that last within the skin */
-    uint64_t plus, minus; /* how many of each */
-    bool exists;          /* it holds at the positions of this revision */
-    uint64_t revision;    /* of start_states */
-    bool serving;         /* the last interval was answered from it, and so its end is within the skin */
-    bool was_quiet;       /* the last interval that was not had no contacts */
-    uint32_t served;      /* intervals that were answered since it was made */
-    uint32_t waiting,
-        backoff; /* in intervals: until the next list, and after the last one that was of no use */
-    double edge; /* the mean length of some edges; 0: not measured yet */
+    uint8_t *facing;          /* per triangle: orientations that last within the skin */
+    uint64_t plus, minus;     /* how many of each */
+    verlet_state now, before; /* before: at the begin of the call */
+    bool remade;              /* in this call the list has been replaced, or its memory given away */
+    bool serving;    /* the last interval was answered from the list, so that its end is within the skin */
+    double spent_ms; /* on a list in the last interval, where that was not answered */
 } verlet_list;
+
+/* Begins a call of the detector, and puts back what the call has changed. A list that is gone counts as one that has ended. */
+void verlet_list_begin_call(verlet_list *v);
+void verlet_list_undo(verlet_list *v);
 
 /* Looks at an interval of which the states of the start are known, and answers it if it can: then nothing touches in it, and
  * contacts, timings, counters and guarantees are written. If it cannot, *answered is false, and the trees are to be refitted,
- * as ever. CANCELLED, OUT_OF_MEMORY: see verlet_list_drop. */
+ * as ever. */
 cscd_status verlet_list_answer(cscd_detector *d, const double *x0, const double *x1, struct step_outcome *out,
                                bool *answered);
 
 /* The vertices have gone to the end of the interval. */
 void verlet_list_take(cscd_detector *d);
-
-/* A call has failed, so the list is not used again. */
-static inline void verlet_list_drop(verlet_list *v) {
-    v->exists = v->serving = false;
-}
 
 void verlet_list_free(cscd_context *context, verlet_list *v);

@@ -184,8 +184,8 @@ static void what_holds_is_true(void **state) {
         for (int k = 0; k < 8; k++) {
             double size = 0.5 * distance * fabs(random_unit());
             move_from(shape.x0, size, middle);
-            memset(r.skin.strayed, 0,
-                   r.skin.leaf_count * sizeof *r.skin.strayed); /* at the reference again */
+            memset(r.skin.stray_at_start, 0,
+                   r.skin.leaf_count * sizeof *r.skin.stray_at_start); /* at the reference again */
             if (!look_at(&r, shape.x0, middle, &count)) continue;
             bvh_skin_take(&r.skin);
             move_from(middle, size, end); /* the second interval starts where the first one has ended */

@@ -123,6 +123,7 @@ static void options_of_detectors(void **state) {
     EXPECT_NO_DETECTOR(mode, (cscd_mode)7, "unknown mode 7");
     EXPECT_NO_DETECTOR(start, (cscd_start)-1, "unknown start -1");
     EXPECT_NO_DETECTOR(volume, (cscd_volume)9, "unknown volume 9");
+    EXPECT_NO_DETECTOR(coherence, (cscd_coherence)2, "unknown coherence 2");
     EXPECT_NO_DETECTOR(min_separation, (double)NAN, "min_separation is nan, expected 0 or a length");
     EXPECT_NO_DETECTOR(min_separation, (double)INFINITY, "min_separation is inf, expected 0 or a length");
     EXPECT_NO_DETECTOR(tolerance, 1.5, "tolerance is 1.5, expected a share in (0,1]");

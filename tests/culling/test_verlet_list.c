@@ -165,11 +165,52 @@ static void take_certified_step(marching *a) {
     memcpy(a->x1, a->reached[0], a->m.vertex_count * sizeof(double[3]));
 }
 
+typedef cscd_status change_detector(cscd_detector *d, const marching *a, bool back);
+
+static cscd_status change_separation(cscd_detector *d, const marching *a, bool back) {
+    return cscd_detector_set_separation(d, back ? 0.0 : 0.05 * a->m.edge, 0.0);
+}
+
+/* The first vertices are those that a motion of nothing moves. */
+static cscd_status change_active(cscd_detector *d, const marching *a, bool back) {
+    static const uint32_t some[4] = {0, 1, 2, 3};
+    (void)a;
+    return cscd_detector_set_active(d, back ? NULL : some, back ? 0 : 4);
+}
+
+static cscd_status change_rules(cscd_detector *d, const marching *a, bool back) {
+    const cscd_object_rule rules[MARCH_OBJECTS_MAX] = {cscd_object_rule_default(),
+                                                       cscd_object_rule_default()};
+    return cscd_detector_set_rules(d, back ? NULL : rules, back ? 0 : a->m.object_count, NULL, 0);
+}
+
+static cscd_status change_seams(cscd_detector *d, const marching *a, bool back) {
+    static const uint32_t seam[2] = {0, 1};
+    (void)a;
+    return cscd_detector_set_seams(d, back ? NULL : seam, back ? 0 : 1);
+}
+
+/* A step by other settings, which go back to what they were: away from where the list was, or in place. */
+static void step_by_other_settings(marching *a) {
+    static change_detector *const changes[] = {change_separation, change_active, change_rules, change_seams};
+    int which = random_integer(0, 3);
+    cscd_contacts found[DETECTORS];
+    memcpy(a->x0, a->x1, a->m.vertex_count * sizeof(double[3]));
+    if (which != 1) march_place(&a->m, -0.2, a->x1);
+    for (int k = 0; k < DETECTORS; k++) {
+        assert_int_equal(changes[which](a->detectors[k], a, false), CSCD_OK);
+        assert_int_equal(step_packed(a->detectors[k], a->x0, a->x1, &found[k]), CSCD_OK);
+        assert_int_equal(changes[which](a->detectors[k], a, true), CSCD_OK);
+    }
+    assert_same_contacts(&found[0], &found[1]);
+    a->answered_last = false;
+}
+
 /* Other calls between two steps. */
 static void call_otherwise(marching *a) {
     cscd_intersections found;
     cscd_detector *clone;
-    switch (random_integer(0, 2)) {
+    switch (random_integer(0, 3)) {
     case 0: /* a check of other positions, so that the next start is not the last end; of two bodies, behind the other */
         march_place(&a->m, a->m.object_count == 2 ? 4.0 * (a->m.high[0] - a->m.low[0]) / a->m.edge : -0.1,
                     a->x1);
@@ -179,6 +220,9 @@ static void call_otherwise(marching *a) {
     case 1: /* a check where everything is, which moves the trees */
         assert_int_equal(check_packed(a->detectors[WITH_LISTS], a->x1, &found), CSCD_OK);
         assert_int_equal(check_packed(a->detectors[WITHOUT], a->x1, &found), CSCD_OK);
+        break;
+    case 2:
+        step_by_other_settings(a);
         break;
     default:
         assert_int_equal(cscd_detector_clone(a->context, a->detectors[WITH_LISTS], &clone), CSCD_OK);
