@@ -1,5 +1,6 @@
 /* Lists of pairs and calls that fail: whatever a cancelled call, or one without memory, was about to do, the call that is made
  * again does what it would have done at once. */
+#include "runtime/detector/verlet_list.h"
 #include "src/core/context.h"
 #include "tests/support/counting_allocator.h"
 #include "tests/support/culling/march.h"
@@ -116,6 +117,21 @@ static void cancelled_calls_leave_lists_as_they_were(void **state) {
     march_free(&m);
 }
 
+/* Then what is there may be of two lists. */
+static void a_list_that_was_replaced_has_ended(void **state) {
+    (void)state;
+    for (int replaced = 0; replaced < 2; replaced++) {
+        verlet_list v = {.now = {.exists = true, .revision = 7, .served = 5, .was_quiet = true}};
+        verlet_list_begin_call(&v);
+        v.now = (verlet_state){.exists = true, .revision = 7, .waiting = 4};
+        v.serving = true;
+        v.remade = replaced != 0;
+        verlet_list_undo(&v);
+        assert_true(v.now.exists && v.now.was_quiet && v.now.served == 5 && v.now.waiting == 0 && !v.serving);
+        assert_int_equal(v.now.revision == 7, !replaced);
+    }
+}
+
 /* The first list takes memory. Where an allocation fails, the interval goes the usual way. */
 static void without_memory_there_is_no_list(void **state) {
     march m = march_make(MARCH_APPROACH);
@@ -164,6 +180,7 @@ static int seed_walk(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(cancelled_calls_leave_lists_as_they_were, seed_walk),
+        cmocka_unit_test(a_list_that_was_replaced_has_ended),
         cmocka_unit_test(without_memory_there_is_no_list),
     };
     return cmocka_run_group_tests_name("verlet calls", tests, NULL, NULL);
