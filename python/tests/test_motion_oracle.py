@@ -104,6 +104,27 @@ def test_steps_of_a_detector(threads: int) -> None:
     assert count > 2000
 
 
+def test_slow_steps() -> None:
+    """Steps in which little moves are answered from lists of pairs, unless coherence is off, and are the same."""
+    answered, touching = 0, 0
+    for i, (_, scene) in enumerate([(name, scene) for name, scene in SCENES if name == "two spheres"]):
+        edges = scene.x0[mesh_of(scene).edges]
+        length = np.linalg.norm(edges[:, 1] - edges[:, 0], axis=1).mean()
+        way = scene.x1 - scene.x0
+        step = 0.01 * length / np.linalg.norm(way, axis=1).max()
+        lists, none = (cscd.Detector(mesh_of(scene), method="single", coherence=c) for c in ("auto", "off"))
+        for k in range(60):
+            a, b = (scene.x0 + min(j * step, 1.0) * way for j in (k, k + 1))
+            found, same = lists.step(a, b), none.step(a, b)
+            assert np.array_equal(names_of(found), names_of(same)) and np.array_equal(found.toi, same.toi)
+            if k % 20 == 0:
+                expect_contacts(found, scene, oracle.contacts(a, b, scene.F), (i, k))
+            answered += lists.counters["coherent"]
+            touching += len(found)
+            assert none.counters["coherent"] == 0
+    assert answered > 60
+
+
 def test_pairs_that_are_near() -> None:
     """Every pair of features within the distance, and the nearest points that its weights name."""
     count = 0
