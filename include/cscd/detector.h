@@ -60,8 +60,8 @@ typedef enum cscd_volume {
 CSCD_API const char *cscd_volume_name(cscd_volume volume);
 CSCD_API bool cscd_volume_from_name(const char *name, cscd_volume *out);
 
-/* What a step makes of it that vertices have hardly moved since the one before. Contacts and guarantees are the same either
- * way, counters are not. Later versions may add values. */
+/* What a step makes of it that vertices have hardly moved since the one before. Contacts are the same either way, counters
+ * are not, nor are the components that AUTO culls. Later versions may add values. */
 typedef enum cscd_coherence {
     CSCD_COHERENCE_AUTO, /* in a closed mesh where nothing touches and little moves, the pairs that may come together
                           * are listed once, and tested alone for as long as vertices stay near (docs/tuning.md) */
@@ -371,9 +371,9 @@ typedef struct cscd_counters {
     uint64_t vf, ee;           /* contacts reported */
     uint64_t bounded;          /* contacts that are marked as bounded */
     uint64_t loose;            /* contacts of other kinds reported: VV, EV and VH */
-    uint64_t
-        coherent; /* 1 if the interval was answered from a list of pairs (cscd_coherence), else 0: then no
-                                * boxes are tested, and S+ and S- are the triangles that stay so while the list holds */
+    uint64_t coherent;         /* 1: the interval was answered from a list of pairs (cscd_coherence). Then
+                                * boxes_tested and pcp are 0, and S+ and S- are those that last as long as
+                                * the list; else 0 */
 } cscd_counters;
 
 /* The timings of the last step, and of the last check. */

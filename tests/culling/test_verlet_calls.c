@@ -51,18 +51,18 @@ static void walker_end(walker *w) {
     assert_int_equal(w->memory.live, 0);
 }
 
-typedef struct outcome {
+typedef struct walked_interval {
     cscd_contacts found;
     cscd_counters counters;
-} outcome;
+} walked_interval;
 
-static cscd_status walk(walker *w, const double *x0, const double *x1, outcome *out) {
+static cscd_status walk_once(walker *w, const double *x0, const double *x1, walked_interval *out) {
     cscd_status status = step_packed(w->detector, x0, x1, &out->found);
     if (status == CSCD_OK) out->counters = cscd_detector_counters(w->detector);
     return status;
 }
 
-static void assert_same_outcome(const outcome *a, const outcome *b) {
+static void assert_same_intervals(const walked_interval *a, const walked_interval *b) {
     assert_int_equal(a->found.count, b->found.count);
     if (a->found.count > 0)
         assert_memory_equal(a->found.items, b->found.items, a->found.count * sizeof *a->found.items);
@@ -76,10 +76,10 @@ static double *make_positions(const march *m) {
 }
 
 /* Makes a call again until it is not cancelled; returns how often it was. */
-static uint32_t walk_at_last(walker *w, const double *x0, const double *x1, outcome *out) {
+static uint32_t walk_at_last(walker *w, const double *x0, const double *x1, walked_interval *out) {
     for (uint32_t cancelled = 0;; cancelled++) {
         w->reports_left = cancelled < 3 && random_integer(0, 1) == 0 ? random_integer(0, 4) : -1;
-        cscd_status status = walk(w, x0, x1, out);
+        cscd_status status = walk_once(w, x0, x1, out);
         w->reports_left = -1;
         if (status == CSCD_OK) return cancelled;
         assert_int_equal(status, CSCD_CANCELLED);
@@ -97,13 +97,13 @@ static void cancelled_calls_leave_lists_as_they_were(void **state) {
     walker_begin(&stopped, &m);
     march_place(&m, s, x1);
     for (int i = 0; i < INTERVALS; i++) {
-        outcome expected, found;
+        walked_interval expected, found;
         memcpy(x0, x1, m.vertex_count * sizeof(double[3]));
         s += ldexp(0.02, -random_integer(0, 3)) * (i < 2 * INTERVALS / 3 ? 1.0 : -1.0);
         march_place(&m, s, x1);
-        assert_int_equal(walk(&whole, x0, x1, &expected), CSCD_OK);
+        assert_int_equal(walk_once(&whole, x0, x1, &expected), CSCD_OK);
         cancelled += walk_at_last(&stopped, x0, x1, &found);
-        assert_same_outcome(&found, &expected);
+        assert_same_intervals(&found, &expected);
         answered += found.counters.coherent != 0;
         with_contacts += found.found.count > 0;
     }
@@ -144,23 +144,24 @@ static void without_memory_there_is_no_list(void **state) {
     }
     for (size_t at = 0;; at++) {
         walker w;
-        outcome found = {.found = {.count = 1}};
+        walked_interval found = {.found = {.count = 1}};
         assert_true(at < ALLOCATIONS_MAX);
         walker_begin(&w, &m);
-        for (int i = 0; i + 1 < FIRST_LIST; i++) assert_int_equal(walk(&w, x[i], x[i + 1], &found), CSCD_OK);
+        for (int i = 0; i + 1 < FIRST_LIST; i++)
+            assert_int_equal(walk_once(&w, x[i], x[i + 1], &found), CSCD_OK);
         w.memory.fail_at = w.memory.calls + at;
-        cscd_status status = walk(&w, x[FIRST_LIST - 1], x[FIRST_LIST], &found);
+        cscd_status status = walk_once(&w, x[FIRST_LIST - 1], x[FIRST_LIST], &found);
         bool reached = w.memory.calls > w.memory.fail_at;
         w.memory.fail_at = SIZE_MAX;
         if (status != CSCD_OK) {
             assert_int_equal(status, CSCD_OUT_OF_MEMORY);
             failed++;
-            assert_int_equal(walk(&w, x[FIRST_LIST - 1], x[FIRST_LIST], &found), CSCD_OK);
+            assert_int_equal(walk_once(&w, x[FIRST_LIST - 1], x[FIRST_LIST], &found), CSCD_OK);
         }
         assert_int_equal(found.found.count, 0);
         without += found.counters.coherent == 0;
         if (!reached) assert_true(found.counters.coherent == 1);
-        assert_int_equal(walk(&w, x[FIRST_LIST], x[FIRST_LIST + 1], &found), CSCD_OK);
+        assert_int_equal(walk_once(&w, x[FIRST_LIST], x[FIRST_LIST + 1], &found), CSCD_OK);
         assert_int_equal(found.found.count, 0);
         walker_end(&w);
         if (!reached) break;

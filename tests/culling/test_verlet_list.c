@@ -281,13 +281,13 @@ static void march_on(marching *a, bool disturbed) {
 }
 
 /* What several marches have met. */
-typedef struct march_tally {
+typedef struct marches_met {
     uint32_t ended_by_contact;
     uint64_t strays;
-} march_tally;
+} marches_met;
 
 static void run_march(march_kind kind, cscd_method method, cscd_mode mode, double shake, bool disturbed,
-                      march_tally *sum) {
+                      marches_met *sum) {
     static const char *const names[MARCH_KINDS] = {"approach", "land", "turn", "jaws", "fold"};
     marching a = marching_begin(kind, method, mode, shake, kind % 2 == 0 ? 1 : 3);
     march_on(&a, disturbed);
@@ -302,7 +302,7 @@ static void run_march(march_kind kind, cscd_method method, cscd_mode mode, doubl
 }
 
 static void smooth_marches(void **state) {
-    march_tally sum = {0, 0};
+    marches_met sum = {0, 0};
     (void)state;
     for (int kind = 0; kind < MARCH_KINDS; kind++)
         run_march((march_kind)kind, CSCD_METHOD_SINGLE, CSCD_MODE_ALL, 0.0, false, &sum);
@@ -310,14 +310,14 @@ static void smooth_marches(void **state) {
 }
 
 static void rough_marches(void **state) {
-    march_tally sum = {0, 0};
+    marches_met sum = {0, 0};
     (void)state;
     for (int kind = 0; kind < MARCH_KINDS; kind++)
         run_march((march_kind)kind, CSCD_METHOD_AUTO, CSCD_MODE_ALL, 0.002, false, &sum);
 }
 
 static void marches_by_regions(void **state) {
-    march_tally sum = {0, 0};
+    marches_met sum = {0, 0};
     (void)state;
     for (int kind = MARCH_JAWS; kind < MARCH_KINDS; kind++) {
         run_march((march_kind)kind, CSCD_METHOD_KMEANS, CSCD_MODE_ALL, 0.0, false, &sum);
@@ -326,7 +326,7 @@ static void marches_by_regions(void **state) {
 }
 
 static void disturbed_marches(void **state) {
-    march_tally sum = {0, 0};
+    marches_met sum = {0, 0};
     (void)state;
     for (int kind = 0; kind < MARCH_KINDS; kind++)
         run_march((march_kind)kind, CSCD_METHOD_SINGLE, CSCD_MODE_ALL, 0.0, true, &sum);
