@@ -321,8 +321,8 @@ static inline cscd_guarantee cscd_detector_guarantee(const cscd_detector *detect
 }
 
 /* How a triangle faced the detector point of its region during the whole last step: 1, away from it (S+);
- * -1, towards it (S-); 0, neither, or the triangle was not clean at the start. Without meaning after a
- * step that failed. */
+ * -1, towards it (S-); 0, neither, or the triangle was not clean at the start, or the step was answered from a
+ * list (cscd_coherence) and the triangle may not stay so. Without meaning after a step that failed. */
 CSCD_API int cscd_detector_orientation(const cscd_detector *detector, uint32_t triangle);
 
 /* The number of regions that the detector culls by: those of its plan, or else the components; 0 if it
