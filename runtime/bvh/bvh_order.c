@@ -3,99 +3,126 @@
 
 #include "src/core/kernels.h"
 
-#include <math.h>
+#include <assert.h>
+#include <string.h>
 
-/* ---- selection ------------------------------------------------------------------------------------------ */
+/* ---- the axis ------------------------------------------------------------------------------------------- */
 
-static int longest_axis(const placed_item *items, uint32_t count) {
-    float low[3], high[3];
-    for (int k = 0; k < 3; k++) low[k] = high[k] = items[0].centre[k];
+/* The longest of the extents along the axes. */
+typedef struct longest_extent {
+    int axis;
+    float least, greatest;
+} longest_extent;
+
+/* Names are compared as well, as whatever floats they are: four lanes take no longer than three. */
+static longest_extent find_longest(const placed_item *items, uint32_t count) {
+    float low[4], high[4], at[4];
+    memcpy(low, items, sizeof low);
+    memcpy(high, items, sizeof high);
     for (uint32_t i = 1; i < count; i++) {
-        for (int k = 0; k < 3; k++) {
-            float value = items[i].centre[k];
-            low[k] = value < low[k] ? value : low[k];
-            high[k] = value > high[k] ? value : high[k];
+        memcpy(at, &items[i], sizeof at);
+        for (int k = 0; k < 4; k++) {
+            low[k] = at[k] < low[k] ? at[k] : low[k];
+            high[k] = at[k] > high[k] ? at[k] : high[k];
         }
     }
     int longest = 0;
     for (int k = 1; k < 3; k++) longest = high[k] - low[k] > high[longest] - low[longest] ? k : longest;
-    return longest;
+    return (longest_extent){longest, low[longest], high[longest]};
 }
 
-/* Items of one coordinate are told apart by their names, so that the order of any two is the same in every run. */
-static bool comes_before(const placed_item *a, const placed_item *b, int axis) {
-    float x = a->centre[axis], y = b->centre[axis];
-    return (x < y) | ((x == y) & (a->name < b->name));
+/* ---- the limit ------------------------------------------------------------------------------------------ */
+
+/* What the first items of an order are below. Of those that are at the limit itself, the first few are among them. */
+typedef struct order_limit {
+    float value;
+    uint32_t at_limit;
+} order_limit;
+
+/* The place of a float among all floats. Zeros of both signs have the same. */
+static int32_t number_of_float(float value) {
+    int32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return bits < 0 ? INT32_MIN - bits : bits;
 }
 
-static void swap_items(placed_item *a, placed_item *b) {
-    placed_item item = *a;
-    *a = *b;
-    *b = item;
+static float float_of_number(int32_t number) {
+    int32_t bits = number < 0 ? INT32_MIN - number : number;
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
 }
 
-enum { SAMPLE_MOST = 48, SORTED_MOST = 12 };
+static uint32_t count_below(const float *values, uint32_t count, float limit) {
+    uint32_t below = 0;
+    for (uint32_t i = 0; i < count; i++) below += values[i] < limit;
+    return below;
+}
 
-static void sort_few(placed_item *items, uint32_t count, int axis) {
-    for (uint32_t i = 1; i < count; i++) {
-        placed_item item = items[i];
-        uint32_t j = i;
-        for (; j > 0 && comes_before(&item, &items[j - 1], axis); j--) items[j] = items[j - 1];
-        items[j] = item;
+/* A limit that is too low or too high, and how many values are below it. */
+typedef struct limit_bound {
+    int32_t number;
+    uint32_t below;
+} limit_bound;
+
+/* Returns a limit between two bounds, which are not neighbours: where it is by their counts, or half way between them in the order
+ * of floats. */
+static int32_t guess_limit(limit_bound low, limit_bound high, uint32_t first, bool half_way) {
+    int32_t middle = (int32_t)(((int64_t)low.number + high.number) >> 1);
+    if (half_way) return middle;
+    float from = float_of_number(low.number), to = float_of_number(high.number);
+    float share = (float)(first - low.below) / (float)(high.below - low.below);
+    int32_t guess = number_of_float(from + (to - from) * share);
+    return guess > low.number && guess < high.number ? guess : middle;
+}
+
+enum { GUESSES_PER_HALVING = 4 };
+
+/* Finds what exactly the first of the values are below, by counting: that takes less time than to move them. Halvings end it
+ * after 128 rounds at most, guesses after two to nine. */
+static order_limit find_limit(const float *values, uint32_t count, uint32_t first, longest_extent extent) {
+    limit_bound low = {number_of_float(extent.least), 0},
+                high = {number_of_float(extent.greatest) + 1, count};
+    for (int round = 1; high.number - (int64_t)low.number > 1; round++) {
+        int32_t number = guess_limit(low, high, first, round % GUESSES_PER_HALVING == 0);
+        uint32_t below = count_below(values, count, float_of_number(number));
+        if (below == first) return (order_limit){float_of_number(number), 0};
+        *(below < first ? &low : &high) = (limit_bound){number, below};
     }
+    return (order_limit){float_of_number(low.number), first - low.below};
 }
 
-/* Returns the place of an item that is probably near rank nth, on the side of it where more items lie: then what is left is
- * short, or a half whose end is near. */
-static uint32_t choose_pivot(const placed_item *items, uint32_t count, uint32_t nth, int axis) {
-    placed_item sample[SAMPLE_MOST];
-    uint32_t size = count / 8 < 3             ? 3
-                    : count / 8 < SAMPLE_MOST ? count / 8
-                                              : SAMPLE_MOST,
-             step = count / size;
-    for (uint32_t i = 0; i < size; i++) {
-        sample[i] = items[i * step + step / 2];
-        sample[i].name = i * step + step / 2;
-    }
-    sort_few(sample, size, axis);
-    uint32_t rank = (uint32_t)((uint64_t)nth * size / count), margin = size / 16;
-    if (nth < count / 2)
-        rank += margin + 1;
-    else
-        rank -= rank < margin + 1 ? rank : margin + 1;
-    return sample[rank < size ? rank : size - 1].name;
-}
+/* ---- moving --------------------------------------------------------------------------------------------- */
 
-/* Moves what comes before the pivot, an item of the run, to its front; returns how many these are. Without branches, because
- * they would be foretold wrong half of the time. */
-static uint32_t part_items(placed_item *items, uint32_t count, uint32_t pivot, int axis) {
-    swap_items(&items[pivot], &items[count - 1]);
-    const placed_item last = items[count - 1];
-    uint32_t front = 0;
-    for (uint32_t i = 0; i + 1 < count; i++) {
+/* Without branches, because they would be foretold wrong half of the time: an item goes to both sides, and the next one
+ * overwrites it on one of them. */
+static inline uint32_t part_items(placed_item *items, placed_item *spare, uint32_t count, order_limit limit,
+                                  const int axis, const bool any_at_limit) {
+    uint32_t front = 0, at_limit = limit.at_limit;
+    for (uint32_t i = 0; i < count; i++) {
         placed_item item = items[i];
-        items[i] = items[front];
+        bool first = item.centre[axis] < limit.value;
+        if (any_at_limit) {
+            bool taken = (item.centre[axis] == limit.value) & (at_limit > 0);
+            at_limit -= taken;
+            first |= taken;
+        }
         items[front] = item;
-        front += comes_before(&item, &last, axis);
+        spare[i - front] = item;
+        front += first;
     }
-    swap_items(&items[front], &items[count - 1]);
     return front;
 }
 
-/* Moves the first nth items of the order along an axis to the front. */
-static void select_nth(placed_item *items, uint32_t count, uint32_t nth, int axis) {
-    while (count > SORTED_MOST) {
-        uint32_t front = part_items(items, count, choose_pivot(items, count, nth, axis), axis);
-        if (front == nth) return;
-        if (nth < front) {
-            count = front;
-        } else {
-            items += front + 1;
-            count -= front + 1;
-            nth -= front + 1;
-        }
-    }
-    sort_few(items, count, axis);
+/* Moves what is below the limit to the front, and the others behind it; both keep their order. */
+static uint32_t move_items(placed_item *items, placed_item *spare, uint32_t count, int axis,
+                           order_limit limit) {
+    uint32_t front = limit.at_limit > 0 ? part_items(items, spare, count, limit, axis, true)
+                     : axis == 0        ? part_items(items, spare, count, limit, 0, false)
+                     : axis == 1        ? part_items(items, spare, count, limit, 1, false)
+                                        : part_items(items, spare, count, limit, 2, false);
+    memcpy(items + front, spare, (count - front) * sizeof *items);
+    return front;
 }
 
 /* ---- runs ----------------------------------------------------------------------------------------------- */
@@ -108,25 +135,30 @@ static uint32_t first_share(uint32_t count) {
     return share;
 }
 
-/* Returns where the second half begins. */
-static uint32_t split_run(placed_item *items, uint32_t count) {
+/* Returns where the second half begins. There is room for as many spare items, which hold the coordinates first. */
+static uint32_t split_run(placed_item *items, placed_item *spare, uint32_t count) {
     uint32_t middle = first_share(count);
-    select_nth(items, count, middle, longest_axis(items, count));
-    return middle;
+    longest_extent extent = find_longest(items, count);
+    float *values = (float *)spare;
+    for (uint32_t i = 0; i < count; i++) values[i] = items[i].centre[extent.axis];
+    uint32_t front = move_items(items, spare, count, extent.axis, find_limit(values, count, middle, extent));
+    assert(front == middle);
+    return front;
 }
 
 typedef struct item_run {
     uint32_t begin, end;
 } item_run;
 
-static void order_run(placed_item *items, item_run run) {
+static void order_run(placed_item *items, placed_item *spare, item_run run) {
     item_run open[64];
     uint32_t depth = 0;
     open[depth++] = run;
     while (depth > 0) {
         item_run next = open[--depth];
         if (next.end - next.begin <= LANES) continue;
-        uint32_t middle = next.begin + split_run(items + next.begin, next.end - next.begin);
+        uint32_t middle =
+            next.begin + split_run(items + next.begin, spare + next.begin, next.end - next.begin);
         /* The longer side is pushed first, so the stack holds at most one side per halving. */
         item_run sides[2] = {{next.begin, middle}, {middle, next.end}};
         bool first_longer = middle - next.begin > next.end - middle;
@@ -141,7 +173,7 @@ static void order_run(placed_item *items, item_run run) {
 enum { TASK_ITEMS = 1 << 14 };
 
 typedef struct order_work {
-    placed_item *items;
+    placed_item *items, *spare;
     item_run *long_runs, *halves, *tasks; /* halves: two of each long run */
     uint32_t long_count, task_count;
 } order_work;
@@ -149,14 +181,15 @@ typedef struct order_work {
 static void split_long_run(void *data, uint32_t index) {
     const order_work *work = data;
     item_run run = work->long_runs[index];
-    uint32_t middle = run.begin + split_run(work->items + run.begin, run.end - run.begin);
+    uint32_t middle =
+        run.begin + split_run(work->items + run.begin, work->spare + run.begin, run.end - run.begin);
     work->halves[2 * index] = (item_run){run.begin, middle};
     work->halves[2 * index + 1] = (item_run){middle, run.end};
 }
 
 static void order_task(void *data, uint32_t index) {
     const order_work *work = data;
-    order_run(work->items, work->tasks[index]);
+    order_run(work->items, work->spare, work->tasks[index]);
 }
 
 static void add_run(order_work *work, item_run run) {
@@ -179,12 +212,16 @@ static void order_all(order_work *work, parallel *threads, const uint32_t *offse
 
 /* A long run has more than TASK_ITEMS items, and each split of one makes at most one task more. */
 bool bvh_order_runs(cscd_context *context, item_runs runs) {
-    order_work work = {.items = runs.items};
-    size_t long_most = (runs.offsets[runs.count] - runs.offsets[0]) / TASK_ITEMS + 1;
+    uint32_t end = runs.offsets[runs.count];
+    order_work work = {.items = runs.items, .spare = context_reserve(context, end, sizeof *work.spare)};
+    size_t long_most = (end - runs.offsets[0]) / TASK_ITEMS + 1;
     array_list lists = {{ARRAY(work.long_runs, long_most), ARRAY(work.halves, 2 * long_most),
                          ARRAY(work.tasks, runs.count + 2 * long_most)}};
-    if (!context_allocate_all(context, lists)) return false;
-    order_all(&work, context->threads, runs.offsets, runs.count);
-    context_free_all(context, lists);
-    return true;
+    bool enough = work.spare != NULL && context_allocate_all(context, lists);
+    if (enough) {
+        order_all(&work, context->threads, runs.offsets, runs.count);
+        context_free_all(context, lists);
+    }
+    context_free(context, work.spare);
+    return enough;
 }

@@ -16,6 +16,7 @@ typedef struct item_runs {
     uint32_t count;
 } item_runs;
 
-/* Splits each run at the middle of its longest extent, then each side, down to LANES items. All threads share the work, and
- * the order is the same for any number of them. False: no memory. */
+/* Splits each run at the middle of its longest extent, then each side, down to LANES items; items of one coordinate, and those
+ * that end up together, keep their order. All threads share the work, and the result is the same for any number of them.
+ * False: no memory. */
 bool bvh_order_runs(cscd_context *context, item_runs runs);
