@@ -2,6 +2,7 @@
 #include "runtime/narrow_phase/feature_queue.h"
 
 #include "runtime/ccd/separation_floor.h"
+#include "runtime/narrow_phase/still_pair.h"
 
 #include <assert.h>
 
@@ -125,7 +126,9 @@ static void decide_one_by_one(const swept_interval *interval, cscd_contact_kind 
         elementary_query query;
         elementary_contact contact;
         swept_interval_load(interval, kind, pairs->a[i], pairs->b[i], &query);
-        elementary_verdict verdict = elementary_after_signs(&query, kind, &contact);
+        elementary_verdict verdict;
+        if (!still_pair_decide(&query, kind, &verdict, &contact))
+            verdict = elementary_after_signs(&query, kind, &contact);
         lane->decided[verdict.level]++;
         if (verdict.touching) add_contact(interval, kind, pairs, i, &contact, false, lane);
     }
