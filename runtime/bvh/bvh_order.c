@@ -14,7 +14,7 @@ typedef struct longest_extent {
     float least, greatest;
 } longest_extent;
 
-/* Names are compared as well, as whatever floats they are: four lanes take no longer than three. */
+/* The name of an item is compared as if it were a float as well: four lanes take no longer than three. */
 static longest_extent find_longest(const placed_item *items, uint32_t count) {
     float low[4], high[4], at[4];
     memcpy(low, items, sizeof low);
@@ -33,7 +33,7 @@ static longest_extent find_longest(const placed_item *items, uint32_t count) {
 
 /* ---- the limit ------------------------------------------------------------------------------------------ */
 
-/* What the first items of an order are below. Of those that are at the limit itself, the first few are among them. */
+/* The first items of an order are below this value; at_limit more of them are at the value itself. */
 typedef struct order_limit {
     float value;
     uint32_t at_limit;
@@ -78,8 +78,8 @@ static int32_t guess_limit(limit_bound low, limit_bound high, uint32_t first, bo
 
 enum { GUESSES_PER_HALVING = 4 };
 
-/* Finds what exactly the first of the values are below, by counting: that takes less time than to move them. Halvings end it
- * after 128 rounds at most, guesses after two to nine. */
+/* Finds the limit of the first values by counting, which takes less time than moving them. Two to nine rounds are usual; the
+ * halvings among them end it after 128. */
 static order_limit find_limit(const float *values, uint32_t count, uint32_t first, longest_extent extent) {
     limit_bound low = {number_of_float(extent.least), 0},
                 high = {number_of_float(extent.greatest) + 1, count};
@@ -143,7 +143,8 @@ static uint32_t split_run(placed_item *items, placed_item *spare, uint32_t count
     for (uint32_t i = 0; i < count; i++) values[i] = items[i].centre[extent.axis];
     uint32_t front = move_items(items, spare, count, extent.axis, find_limit(values, count, middle, extent));
     assert(front == middle);
-    return front;
+    (void)front;
+    return middle;
 }
 
 typedef struct item_run {

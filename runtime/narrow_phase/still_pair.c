@@ -7,8 +7,9 @@
  * A projection along an axis is one-to-one on the plane of the points if it keeps three of them from being collinear. There
  *     a vertex is in the face if it is beyond none of the sides, as seen from within;
  *     two edges meet if neither has both ends strictly on one side of the other.
- * If no projection does so for the face or the edges, the face is the union of its sides, and a vertex is in it if it is on
- * one of these; edges that meet are on one line or points, and an end of one is on the other. */
+ * If no projection does so, the face, or both edges together, are on one line or in one point. Then any two sides of the face
+ * cover it, and a vertex is in it if it is on one of them. Edges meet if an end of the first is on the second, or if the first
+ * reaches beyond the second on both sides: then either end of the second is on the first. */
 #include "runtime/narrow_phase/still_pair.h"
 
 #include "runtime/ccd/contact_frame.h"
@@ -56,14 +57,8 @@ static bool on_segment(const double point[3], const double from[3], const double
 }
 
 static bool collapsed_touch(const double x[4][3], cscd_contact_kind kind) {
-    static const int vf[3][3] = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}};
-    static const int ee[4][3] = {{0, 2, 3}, {1, 2, 3}, {2, 0, 1}, {3, 0, 1}};
-    bool touching = false;
-    for (int i = 0; i < (kind == CSCD_CONTACT_VF ? 3 : 4) && !touching; i++) {
-        const int *p = kind == CSCD_CONTACT_VF ? vf[i] : ee[i];
-        touching = on_segment(x[p[0]], x[p[1]], x[p[2]]);
-    }
-    return touching;
+    if (kind == CSCD_CONTACT_VF) return on_segment(x[0], x[1], x[2]) || on_segment(x[0], x[2], x[3]);
+    return on_segment(x[0], x[2], x[3]) || on_segment(x[1], x[2], x[3]) || on_segment(x[2], x[0], x[1]);
 }
 
 /* For points in one plane. */
