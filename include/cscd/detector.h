@@ -366,8 +366,8 @@ typedef struct cscd_counters {
     uint64_t by_signs;         /* tests that orientation signs have rejected */
     uint64_t by_roots;         /* tests that intervals around the roots of the coplanarity cubic have
                                 * decided */
-    uint64_t by_exact;         /* tests that took exact arithmetic; the three add up to all tests, and with
-                                * min_separation they are 0 */
+    uint64_t by_exact;         /* tests that took exact arithmetic, also those of features at rest; the three
+                                * add up to all tests, and with min_separation they are 0 */
     uint64_t vf, ee;           /* contacts reported */
     uint64_t bounded;          /* contacts that are marked as bounded */
     uint64_t loose;            /* contacts of other kinds reported: VV, EV and VH */
