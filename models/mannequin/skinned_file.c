@@ -112,8 +112,10 @@ static void write_bounds(json *out, const char *key, const float *values, uint32
     json_begin_array(out, key);
     for (int k = 0; k < width; k++) {
         double most = -INFINITY;
-        for (uint32_t i = 0; i < count; i++)
-            most = fmax(most, sign * values[i * (uint32_t)width + (uint32_t)k]);
+        for (uint32_t i = 0; i < count; i++) {
+            double value = sign * values[i * (uint32_t)width + (uint32_t)k];
+            if (value > most) most = value;
+        }
         json_number(out, NULL, sign * most);
     }
     json_end_array(out);

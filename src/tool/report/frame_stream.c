@@ -98,9 +98,10 @@ static double measure_axis(const frame_stream *s, const double *positions, size_
     for (size_t v = 0; v < s->vertex_count; v++) {
         double x = positions[v * 3 + axis] * s->scale;
         float local = (float)(position_of(s, axis, values[v]) - centre);
-        error = fmax(error, fabs(local + centre - x));
-        least = fmin(least, x);
-        most = fmax(most, x);
+        double off = fabs(local + centre - x);
+        if (off > error) error = off;
+        if (x < least) least = x;
+        if (x > most) most = x;
     }
     *length = most - least;
     return error;
