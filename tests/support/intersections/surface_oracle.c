@@ -1,6 +1,8 @@
 /* Events, pieces and winding numbers of a small scene by brute force. */
 #include "tests/support/intersections/surface_oracle.h"
 
+#include "tests/support/float113.h"
+
 #include <assert.h>
 #include <stdlib.h>
 
@@ -107,7 +109,7 @@ static void keep_least(const leading_term *terms, int count, __int128 *out) {
 /* The wide format has 113 bits: what is rounded there and then to double is the nearest double, but for quotients within
  * about 2^-111 of the middle between two doubles. */
 static double rounded_quotient(__int128 a, __int128 b) {
-    return (double)((__float128)a / (__float128)b);
+    return (double)((float113)a / (float113)b);
 }
 
 void surface_oracle_point(surface_oracle *o, uint32_t edge, uint32_t triangle, double out[6]) {

@@ -2,6 +2,7 @@
  * features by itself, without a tree and without the rules of the library. */
 #include "tests/support/loose/loose_scene.h"
 
+#include "tests/support/float113.h"
 #include "tests/support/test.h"
 
 #include <math.h>
@@ -294,10 +295,10 @@ static cscd_contact_kind points_of(const loose_scene *s, const loose_pair *pair,
 /* With 64 bits more than a double the products are exact, and the sum nearly. */
 static long double scaled_height(const loose_scene *s, const loose_pair *pair, const double *x) {
     cscd_object object = cscd_mesh_object(s->mesh, pair->b);
-    __float128 sum = 0;
+    float113 sum = 0;
     for (size_t k = 0; k < 3; k++) {
-        __float128 offset = (__float128)x[pair->a * 3 + k] - (__float128)x[object.first_vertex * 3 + k];
-        sum += offset * (__float128)s->objects[pair->b].normal[k];
+        float113 offset = (float113)x[pair->a * 3 + k] - (float113)x[object.first_vertex * 3 + k];
+        sum += offset * (float113)s->objects[pair->b].normal[k];
     }
     return (long double)sum;
 }
