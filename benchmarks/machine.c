@@ -1,6 +1,7 @@
 /* The limits of this machine on one thread: bandwidth, arithmetic, random reads, latency. */
 #include "benchmarks/lib/machine_kernels.h"
 #include "models/shapes/body.h"
+#include "src/core/processor.h"
 #include "src/core/timer.h"
 
 #include <stdbool.h>
@@ -183,11 +184,11 @@ static int find_levels(const machine_kernels *levels[3]) {
     int count = 1;
     levels[0] = &machine_scalar;
 #ifdef CSCD_WITH_AVX
-    __builtin_cpu_init();
-    if (__builtin_cpu_supports("avx2")) levels[count++] = &machine_avx2;
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-        __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw"))
-        levels[count++] = &machine_avx512;
+    if (processor_has_simd(CSCD_SIMD_AVX2)) levels[count++] = &machine_avx2;
+    if (processor_has_simd(CSCD_SIMD_AVX512)) levels[count++] = &machine_avx512;
+#endif
+#ifdef CSCD_WITH_NEON
+    levels[count++] = &machine_neon;
 #endif
     return count;
 }

@@ -25,3 +25,6 @@ extern const machine_kernels machine_scalar;
 #ifdef CSCD_WITH_AVX
 extern const machine_kernels machine_avx2, machine_avx512;
 #endif
+#ifdef CSCD_WITH_NEON
+extern const machine_kernels machine_neon;
+#endif

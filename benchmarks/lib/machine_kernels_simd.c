@@ -124,7 +124,8 @@ static uint64_t test_boxes(uint32_t steps) {
     return found;
 }
 
-#define NAME_OF_LEVEL(level) (level == SIMD_AVX512 ? "avx512" : level == SIMD_AVX2 ? "avx2" : "scalar")
+#define NAME_OF_LEVEL(level)                                                                                 \
+    (level == SIMD_NEON ? "neon" : level == SIMD_AVX512 ? "avx512" : level == SIMD_AVX2 ? "avx2" : "scalar")
 
 const machine_kernels SIMD_NAME(machine) = {.name = NAME_OF_LEVEL(SIMD_LEVEL),
                                             .f32_lanes = F32_LANES,

@@ -14,7 +14,7 @@ static const char options_help[] =
     "  --body NAME      pawn (default), dumbbell, figure, ... as in docs/models.md\n"
     "  --shuffled       vertices and triangles in random order; default: the model's\n"
     "  --threads N      default 1\n"
-    "  --simd LEVEL     auto (default), scalar, avx2, avx512\n"
+    "  --simd LEVEL     auto (default), scalar, avx2, avx512, neon\n"
     "  --volume NAME    box (default), kdop14\n"
     "  --data FOLDER    with cloth_ball92.ply and so on (default: frames/ in CSCD_DATA, if that is set)\n"
     "  --json OUT.json  the rows, and where they come from\n";

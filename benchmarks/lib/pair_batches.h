@@ -4,8 +4,9 @@
 
 #include "runtime/narrow_phase/contact_lane.h"
 #include "runtime/narrow_phase/swept_interval.h"
+#include "src/core/processor.h"
 
-enum { PAIR_BATCH_LEVELS = CSCD_SIMD_AVX512, PAIR_BATCH_MAX = FEATURE_LIST_CAPACITY - 1 };
+enum { PAIR_BATCH_LEVELS = SIMD_LAST, PAIR_BATCH_MAX = FEATURE_LIST_CAPACITY - 1 };
 
 typedef struct query_answer {
     bool touching;

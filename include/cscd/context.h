@@ -84,10 +84,11 @@ typedef enum cscd_simd {
     CSCD_SIMD_SCALAR, /* what every processor of the architecture has */
     CSCD_SIMD_AVX2,
     CSCD_SIMD_AVX512, /* AVX-512 F, VL, DQ and BW */
+    CSCD_SIMD_NEON,   /* what every processor of aarch64 has */
     CSCD_SIMD_MAX_ENUM = 0x7fffffff
 } cscd_simd;
 
-/* The names are "auto", "scalar", "avx2" and "avx512"; static storage, never NULL. cscd_simd_from_name
+/* The names are "auto", "scalar", "avx2", "avx512" and "neon"; static storage, never NULL. cscd_simd_from_name
  * returns false for any other text and then leaves *out untouched. */
 CSCD_API const char *cscd_simd_name(cscd_simd simd);
 CSCD_API bool cscd_simd_from_name(const char *name, cscd_simd *out);

@@ -178,7 +178,7 @@ static inline uint32_t lanes_without_shared_vertex(const bvh *f, const leaf_pair
         i32x8 shared = {0};
         for (int j = 0; j < 3; j++) {
             i32x8 corner = i32x8_load(b->corners[j]);
-            for (int k = 0; k < 3; k++) shared |= corner == (int32_t)a->corners[k][i];
+            for (int k = 0; k < 3; k++) shared |= i32x8_equal(corner, i32x8_all((int32_t)a->corners[k][i]));
         }
         return lanes & ~i32x8_negative(shared);
     }

@@ -33,8 +33,10 @@ static inline void find_shared(const uint32_t (*triangles)[3], const triangle_pa
     memcpy(a, vertices, sizeof a);
     memcpy(b, vertices + 3, sizeof b);
     /* A true comparison is -1. */
-    for (int i = 2; i >= 0; i--) sets = sets + sets - ((a[0] == b[i]) | (a[1] == b[i]) | (a[2] == b[i]));
-    for (int i = 2; i >= 0; i--) sets = sets + sets - ((a[i] == b[0]) | (a[i] == b[1]) | (a[i] == b[2]));
+    for (int i = 2; i >= 0; i--)
+        sets = sets + sets - (i32x8_equal(a[0], b[i]) | i32x8_equal(a[1], b[i]) | i32x8_equal(a[2], b[i]));
+    for (int i = 2; i >= 0; i--)
+        sets = sets + sets - (i32x8_equal(a[i], b[0]) | i32x8_equal(a[i], b[1]) | i32x8_equal(a[i], b[2]));
     memcpy(shared, &sets, sizeof sets);
 }
 

@@ -73,7 +73,7 @@ static inline void widen_gaps(const coordinates at, f32x8 gaps[FEATURE_COUNT]) {
 
 /* Keeps the features whose gaps do not exceed `least`. */
 static inline i32x8 keep_near(const f32x8 gaps[FEATURE_COUNT], f32x8 least, i32x8 features) {
-    for (int i = 0; i < FEATURE_COUNT; i++) features &= ~((gaps[i] > least) & i32x8_all(1 << i));
+    for (int i = 0; i < FEATURE_COUNT; i++) features &= ~(f32x8_above(gaps[i], least) & i32x8_all(1 << i));
     return features;
 }
 
@@ -111,7 +111,7 @@ static inline i32x8 near_along_diagonals(const pairs_x8 *o, i32x8 features) {
 static inline i32x8 sharing_vertex(const pairs_x8 *o) {
     i32x8 corners[6], same[3][3], features = {0};
     for (int i = 0; i < 6; i++) corners[i] = i32x8_load(o->vertices[i]);
-    for (int i = 0; i < 9; i++) same[i / 3][i % 3] = corners[i / 3] == corners[3 + i % 3];
+    for (int i = 0; i < 9; i++) same[i / 3][i % 3] = i32x8_equal(corners[i / 3], corners[3 + i % 3]);
     for (int i = 0; i < 3; i++) {
         i32x8 of_a = same[i][0] | same[i][1] | same[i][2], of_b = same[0][i] | same[1][i] | same[2][i];
         features |= (of_a & i32x8_all(1 << i)) | (of_b & i32x8_all(1 << (FEATURE_VERTEX_B + i)));

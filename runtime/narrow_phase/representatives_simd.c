@@ -25,7 +25,8 @@ static inline void load_triangle(const cscd_mesh *mesh, const representatives *r
 }
 
 static inline i32x8 is_corner(const lane_set corners, i32x8 vertex) {
-    return (corners[0] == vertex) | (corners[1] == vertex) | (corners[2] == vertex);
+    return i32x8_equal(corners[0], vertex) | i32x8_equal(corners[1], vertex) |
+           i32x8_equal(corners[2], vertex);
 }
 
 /* The corners of t whose representatives share a vertex with the other triangle. */
@@ -51,12 +52,12 @@ static inline i32x8 adjacent_edges(const represented_x8 *o) {
         over[i / 3][i % 3] = i32x8_load(o->opposite[i / 3][i % 3]);
     }
     for (int t = 0; t < 2; t++) {
-        for (int i = 0; i < 9; i++) at[t][i / 3][i % 3] = corners[t][i % 3] == over[1 - t][i / 3];
+        for (int i = 0; i < 9; i++) at[t][i / 3][i % 3] = i32x8_equal(corners[t][i % 3], over[1 - t][i / 3]);
     }
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++) {
-            i32x8 adjacent = (over[0][i] == over[1][j]) | at[1][i][j] | at[1][i][(j + 1) % 3] | at[0][j][i] |
-                             at[0][j][(i + 1) % 3];
+            i32x8 adjacent = i32x8_equal(over[0][i], over[1][j]) | at[1][i][j] | at[1][i][(j + 1) % 3] |
+                             at[0][j][i] | at[0][j][(i + 1) % 3];
             features |= adjacent & i32x8_all(1 << (FEATURE_EDGES + 3 * i + j));
         }
     }

@@ -40,12 +40,13 @@ static cscd_status check_options(cscd_context *context, const cscd_context_optio
     if (options->thread_count > THREAD_COUNT_MAX)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "thread_count is %u, expected at most %d",
                             options->thread_count, THREAD_COUNT_MAX);
-    if ((unsigned)options->simd > CSCD_SIMD_AVX512)
+    if ((unsigned)options->simd > SIMD_LAST)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "unknown simd %d", (int)options->simd);
-    if (options->simd > processor_best_simd())
-        return context_fail(context, CSCD_INVALID_ARGUMENT,
-                            "simd is %s, but the best that this processor has is %s: use CSCD_SIMD_AUTO",
-                            cscd_simd_name(options->simd), cscd_simd_name(processor_best_simd()));
+    if (options->simd != CSCD_SIMD_AUTO && !processor_has_simd(options->simd))
+        return context_fail(
+            context, CSCD_INVALID_ARGUMENT,
+            "simd is %s, which this processor has not; the best that it has is %s: use CSCD_SIMD_AUTO",
+            cscd_simd_name(options->simd), cscd_simd_name(processor_best_simd()));
     return CSCD_OK;
 }
 

@@ -17,6 +17,9 @@ enum { LANES = 8, ALL_LANES = 255 };
     ((context)->simd == CSCD_SIMD_AVX512 ? &type##_avx512                                                    \
      : (context)->simd == CSCD_SIMD_AVX2 ? &type##_avx2                                                      \
                                          : &type##_scalar)
+#elif defined(CSCD_WITH_NEON)
+#define DECLARE_KERNELS(type)     extern const type type##_scalar, type##_neon
+#define KERNELS_OF(context, type) ((context)->simd == CSCD_SIMD_NEON ? &type##_neon : &type##_scalar)
 #else
 #define DECLARE_KERNELS(type)     extern const type type##_scalar
 #define KERNELS_OF(context, type) ((void)(context), &type##_scalar)

@@ -4,10 +4,10 @@
 #include <stddef.h>
 #include <string.h>
 
-static const char *const simd_names[] = {"auto", "scalar", "avx2", "avx512"};
+static const char *const simd_names[] = {"auto", "scalar", "avx2", "avx512", "neon"};
 
 const char *cscd_simd_name(cscd_simd simd) {
-    return (unsigned)simd <= CSCD_SIMD_AVX512 ? simd_names[simd] : "unknown";
+    return (unsigned)simd <= SIMD_LAST ? simd_names[simd] : "unknown";
 }
 
 bool cscd_simd_from_name(const char *name, cscd_simd *out) {
@@ -19,13 +19,34 @@ bool cscd_simd_from_name(const char *name, cscd_simd *out) {
     return false;
 }
 
-cscd_simd processor_best_simd(void) {
-#ifdef CSCD_WITH_AVX
+#if defined(CSCD_WITH_AVX)
+
+bool processor_has_simd(cscd_simd simd) {
     __builtin_cpu_init();
-    bool avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-                  __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw");
-    if (avx512) return CSCD_SIMD_AVX512;
-    if (__builtin_cpu_supports("avx2")) return CSCD_SIMD_AVX2;
+    if (simd == CSCD_SIMD_AVX512)
+        return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+               __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw");
+    if (simd == CSCD_SIMD_AVX2) return __builtin_cpu_supports("avx2");
+    return simd == CSCD_SIMD_SCALAR;
+}
+
+#elif defined(CSCD_WITH_NEON)
+
+/* Every aarch64 processor has NEON. */
+bool processor_has_simd(cscd_simd simd) {
+    return simd == CSCD_SIMD_SCALAR || simd == CSCD_SIMD_NEON;
+}
+
+#else
+
+bool processor_has_simd(cscd_simd simd) {
+    return simd == CSCD_SIMD_SCALAR;
+}
+
 #endif
-    return CSCD_SIMD_SCALAR;
+
+cscd_simd processor_best_simd(void) {
+    cscd_simd simd = SIMD_LAST;
+    while (!processor_has_simd(simd)) simd = (cscd_simd)(simd - 1);
+    return simd;
 }

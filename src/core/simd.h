@@ -1,4 +1,4 @@
-/* Vectors of eight numbers: the one place that knows processors, together with simd_wide.h.
+/* Vectors of eight numbers: the one place that knows processors, together with simd_neon.h and simd_wide.h.
  *
  * A source that includes this is compiled once per level (see the Makefile). It does the same IEEE operations
  * in the same order on each, none of them fused, so results do not depend on the level. Vectors are the
@@ -7,14 +7,14 @@
  *
  * All types and operations exist on every level, as this:
  *
- *     type   elements     scalar                 AVX2            AVX-512
- *     f32x8  8 floats     compiler's vectors     one register    one register
- *     i32x8  8 int32_t    compiler's vectors     one register    one register
- *     f64x4  4 doubles    compiler's vectors     one register    one register
- *     f64x8  8 doubles    compiler's vectors     two registers   one register
- *     i64x8  8 int64_t    compiler's vectors     two registers   one register
- *     f64w   WIDTH        2 doubles              4 doubles       8 doubles
- *     i64w   WIDTH        2 int64_t              4 int64_t       8 int64_t
+ *     type   elements     scalar                 AVX2            AVX-512         NEON
+ *     f32x8  8 floats     compiler's vectors     one register    one register    two registers
+ *     i32x8  8 int32_t    compiler's vectors     one register    one register    two registers
+ *     f64x4  4 doubles    compiler's vectors     one register    one register    two registers
+ *     f64x8  8 doubles    compiler's vectors     two registers   one register    four registers
+ *     i64x8  8 int64_t    compiler's vectors     two registers   one register    four registers
+ *     f64w   WIDTH        2 doubles              4 doubles       8 doubles       2 doubles
+ *     i64w   WIDTH        2 int64_t              4 int64_t       8 int64_t       2 int64_t
  *
  *     operation                     f32x8  i32x8  f64x4  f64x8  f64w   on the scalar level
  *     load                          x      x                           memcpy
@@ -26,6 +26,7 @@
  *     below (lanes with a < b)      x                    x      x      loop over the lanes
  *     at_most (lanes with a <= b)                               x      loop over the lanes
  *     negative (lanes)                     x                           loop over the lanes
+ *     equal, above (masks of bits)  above  equal                       the same
  *     select                                                    x      masks
  *     sqrt                          x                    x      x      sqrt of each lane
  *     load_point                                  x                    three loads
@@ -46,13 +47,16 @@
 #define SIMD_SCALAR 0
 #define SIMD_AVX2   1
 #define SIMD_AVX512 2
+#define SIMD_NEON   3
 
 #ifndef SIMD_LEVEL
 #define SIMD_LEVEL SIMD_SCALAR
 #endif
 
 /* The name that a function or table has on the level that is compiled. */
-#if SIMD_LEVEL == SIMD_AVX512
+#if SIMD_LEVEL == SIMD_NEON
+#define SIMD_NAME(name) name##_neon
+#elif SIMD_LEVEL == SIMD_AVX512
 #define SIMD_NAME(name) name##_avx512
 #elif SIMD_LEVEL == SIMD_AVX2
 #define SIMD_NAME(name) name##_avx2
@@ -60,7 +64,7 @@
 #define SIMD_NAME(name) name##_scalar
 #endif
 
-#if SIMD_LEVEL != SIMD_SCALAR
+#if SIMD_LEVEL == SIMD_AVX2 || SIMD_LEVEL == SIMD_AVX512
 #include <immintrin.h>
 #endif
 
@@ -98,14 +102,6 @@ static inline f64x8 f64x8_all(double x) {
     return (f64x8){x, x, x, x, x, x, x, x};
 }
 
-static inline f32x8 f32x8_abs(f32x8 v) {
-    return (f32x8)((i32x8)v & INT32_MAX);
-}
-
-static inline f64x8 f64x8_abs(f64x8 v) {
-    return (f64x8)((i64x8)v & INT64_MAX);
-}
-
 /* Rounds to nearest. */
 static inline f32x8 f32x8_from(f64x8 v) {
     return __builtin_convertvector(v, f32x8);
@@ -115,7 +111,30 @@ static inline f64x8 f64x8_from(f32x8 v) {
     return __builtin_convertvector(v, f64x8);
 }
 
+#if SIMD_LEVEL == SIMD_NEON
+
+#include "src/core/simd_neon.h"
+
+#else
+
+static inline f32x8 f32x8_abs(f32x8 v) {
+    return (f32x8)((i32x8)v & INT32_MAX);
+}
+
+static inline f64x8 f64x8_abs(f64x8 v) {
+    return (f64x8)((i64x8)v & INT64_MAX);
+}
+
 /* ---- minimum, maximum, comparison -------------------------------------------------------------------- */
+
+/* All bits of a lane are set, or none. */
+static inline i32x8 i32x8_equal(i32x8 a, i32x8 b) {
+    return a == b;
+}
+
+static inline i32x8 f32x8_above(f32x8 a, f32x8 b) {
+    return a > b;
+}
 
 #if SIMD_LEVEL != SIMD_SCALAR
 
@@ -268,3 +287,5 @@ static inline void f64x8_load_points(const double *positions, const uint32_t ind
     out[1] = __builtin_shufflevector(pairs[2], pairs[3], 0, 1, 8, 9, 4, 5, 12, 13);
     out[2] = __builtin_shufflevector(pairs[0], pairs[1], 2, 3, 10, 11, 6, 7, 14, 15);
 }
+
+#endif

@@ -93,6 +93,52 @@ static inline void f64w_load_points(const double *positions, const uint32_t indi
     out[2] = _mm256_permute2f128_pd(xz01, xz23, 0x31);
 }
 
+#elif SIMD_LEVEL == SIMD_NEON
+
+/* vminq and vmaxq return a NaN where there is one; these return b, as on the other levels. */
+static inline f64w f64w_min(f64w a, f64w b) {
+    return vbslq_f64(vcltq_f64(a, b), a, b);
+}
+
+static inline f64w f64w_max(f64w a, f64w b) {
+    return vbslq_f64(vcgtq_f64(a, b), a, b);
+}
+
+/* All bits of a lane are equal. */
+static inline uint32_t lanes_of_pair(uint64x2_t v) {
+    const uint64x2_t bits = {1, 2};
+    return (uint32_t)vaddvq_u64(vandq_u64(v, bits));
+}
+
+static inline uint32_t f64w_below(f64w a, f64w b) {
+    return lanes_of_pair(vcltq_f64(a, b));
+}
+
+static inline uint32_t f64w_at_most(f64w a, f64w b) {
+    return lanes_of_pair(vcleq_f64(a, b));
+}
+
+static inline f64w f64w_select(uint32_t lanes, f64w a, f64w b) {
+    const uint64x2_t bits = {1, 2};
+    return vbslq_f64(vtstq_u64(vdupq_n_u64(lanes), bits), a, b);
+}
+
+static inline f64w f64w_abs(f64w v) {
+    return vabsq_f64(v);
+}
+
+static inline f64w f64w_sqrt(f64w v) {
+    return vsqrtq_f64(v);
+}
+
+static inline void f64w_load_points(const double *positions, const uint32_t indices[WIDTH], f64w out[3]) {
+    const double *first = positions + (size_t)indices[0] * 3, *second = positions + (size_t)indices[1] * 3;
+    float64x2_t a = vld1q_f64(first), b = vld1q_f64(second);
+    out[0] = vzip1q_f64(a, b);
+    out[1] = vzip2q_f64(a, b);
+    out[2] = vcombine_f64(vld1_f64(first + 2), vld1_f64(second + 2));
+}
+
 #else
 
 static inline f64w f64w_min(f64w a, f64w b) {

@@ -286,7 +286,7 @@ static void same_on_all_levels_and_threads(void **state) {
         bvh_setup setup = {CSCD_SIMD_SCALAR, 1, axis_counts[i % 2], region_counts[i]};
         assert_true(bvh_rig_create(&shape, setup, &one));
         bvh_refit(&one.bvh, shape.x0, shape.x1, uniform_growth(0.0));
-        for (int simd = CSCD_SIMD_SCALAR; simd <= CSCD_SIMD_AVX512; simd++) {
+        for (int simd = CSCD_SIMD_SCALAR; simd <= SIMD_LAST; simd++) {
             setup.simd = (cscd_simd)simd;
             setup.thread_count = (uint32_t)simd;
             if (!bvh_rig_create(&shape, setup, &other)) continue;

@@ -245,7 +245,7 @@ static void levels_agree(void **state) {
     double distance = 0.2 * extent_of_edges();
     skin_rig first;
     assert_true(skin_rig_begin(CSCD_SIMD_SCALAR, 3, distance, 0.1 * distance, 0.0, &first));
-    for (int simd = CSCD_SIMD_SCALAR + 1; simd <= CSCD_SIMD_AVX512; simd++) {
+    for (int simd = CSCD_SIMD_SCALAR + 1; simd <= SIMD_LAST; simd++) {
         skin_rig r;
         if (!skin_rig_begin((cscd_simd)simd, 3, distance, 0.1 * distance, 0.0, &r)) continue;
         assert_memory_equal(r.skin.stretches, first.skin.stretches,

@@ -140,9 +140,9 @@ static void place_detector(bvh *f, double speed, bool near_zero) {
 }
 
 /* Creates a BVH for each level of vector instructions that the processor has; returns how many there are. */
-static uint32_t open_levels(bvh_rig levels[CSCD_SIMD_AVX512]) {
+static uint32_t open_levels(bvh_rig levels[SIMD_LAST]) {
     uint32_t count = 0;
-    for (int simd = CSCD_SIMD_SCALAR; simd <= CSCD_SIMD_AVX512; simd++)
+    for (int simd = CSCD_SIMD_SCALAR; simd <= SIMD_LAST; simd++)
         count += bvh_rig_create(&shape, (bvh_setup){(cscd_simd)simd, 1, BOX_AXES, 1}, &levels[count]);
     return count;
 }
@@ -165,13 +165,13 @@ static void check_batch(const bvh *f, const uint8_t *flags, int count[4], int *l
 
 static void signs_are_exact(void **state) {
     int count[4] = {0}, lost = 0;
-    bvh_rig levels[CSCD_SIMD_AVX512];
+    bvh_rig levels[SIMD_LAST];
     (void)state;
     make_triangles(BATCH_SIZE);
     uint32_t level_count = open_levels(levels);
     for (int i = 0; i < BATCH_COUNT; i++) {
         double speed = ldexp(1.0, -random_integer(0, 12));
-        uint8_t flags[CSCD_SIMD_AVX512][BATCH_SIZE];
+        uint8_t flags[SIMD_LAST][BATCH_SIZE];
         move_triangles(random_integer(0, 1) ? 0.0 : ldexp(random_unit(), random_integer(0, 20)), speed);
         for (uint32_t l = 0; l < level_count; l++) {
             bvh *f = &levels[l].bvh;

@@ -164,7 +164,7 @@ static void check_all_ways(uint32_t region_count) {
     bvh_refit(&r.bvh, shape.x0, shape.x1, uniform_growth(0.0));
     traverse_all(&r, TRAVERSAL_KEPT, &all);
     bvh_rig_destroy(&r);
-    for (int simd = CSCD_SIMD_SCALAR; simd <= CSCD_SIMD_AVX512; simd++) {
+    for (int simd = CSCD_SIMD_SCALAR; simd <= SIMD_LAST; simd++) {
         for (uint32_t threads = 1; threads <= 3; threads++)
             check_same((bvh_setup){(cscd_simd)simd, threads, BOX_AXES, region_count});
     }

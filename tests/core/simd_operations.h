@@ -19,6 +19,8 @@ typedef struct simd_operations {
     void (*f32_transpose)(const float (*rows)[8], float (*out)[8]);
 
     uint32_t (*i32_negative)(const uint32_t *a);
+    void (*i32_equal)(const uint32_t *a, const uint32_t *b, int32_t *out);
+    void (*f32_above)(const float *a, const float *b, int32_t *out);
 
     void (*f64_min)(const double *a, const double *b, double *out);
     void (*f64_max)(const double *a, const double *b, double *out);
@@ -43,4 +45,7 @@ typedef struct simd_operations {
 extern const simd_operations simd_operations_scalar;
 #ifdef CSCD_WITH_AVX
 extern const simd_operations simd_operations_avx2, simd_operations_avx512;
+#endif
+#ifdef CSCD_WITH_NEON
+extern const simd_operations simd_operations_neon;
 #endif

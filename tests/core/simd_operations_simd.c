@@ -65,6 +65,16 @@ static uint32_t i32_negative(const uint32_t *a) {
     return i32x8_negative(i32x8_load(a));
 }
 
+static void i32_equal(const uint32_t *a, const uint32_t *b, int32_t *out) {
+    i32x8 equal = i32x8_equal(i32x8_load(a), i32x8_load(b));
+    memcpy(out, &equal, sizeof equal);
+}
+
+static void f32_above(const float *a, const float *b, int32_t *out) {
+    i32x8 above = f32x8_above(f32x8_load(a), f32x8_load(b));
+    memcpy(out, &above, sizeof above);
+}
+
 /* ---- eight doubles ------------------------------------------------------------------------------------- */
 
 static void f64_min(const double *a, const double *b, double *out) {
@@ -160,6 +170,8 @@ const simd_operations SIMD_NAME(simd_operations) = {
     .f32_greatest = f32_greatest,
     .f32_transpose = f32_transpose,
     .i32_negative = i32_negative,
+    .i32_equal = i32_equal,
+    .f32_above = f32_above,
     .f64_min = f64_min,
     .f64_max = f64_max,
     .f64_abs = f64_abs,

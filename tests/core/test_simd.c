@@ -61,15 +61,16 @@ static bool lane_of(uint32_t lanes, int i) {
 
 /* Calls `check` with the operations of every level. */
 static void on_all_levels(void (*check)(const simd_operations *, random_stream *)) {
-    const simd_operations *levels[] = {
-        &simd_operations_scalar,
+    const simd_operations *levels[SIMD_LAST] = {&simd_operations_scalar};
 #ifdef CSCD_WITH_AVX
-        &simd_operations_avx2,
-        &simd_operations_avx512,
+    levels[CSCD_SIMD_AVX2 - CSCD_SIMD_SCALAR] = &simd_operations_avx2;
+    levels[CSCD_SIMD_AVX512 - CSCD_SIMD_SCALAR] = &simd_operations_avx512;
 #endif
-    };
-    int count = (int)(processor_best_simd() - CSCD_SIMD_SCALAR) + 1;
-    for (int i = 0; i < count; i++) {
+#ifdef CSCD_WITH_NEON
+    levels[CSCD_SIMD_NEON - CSCD_SIMD_SCALAR] = &simd_operations_neon;
+#endif
+    for (int i = 0; i < SIMD_LAST; i++) {
+        if (!processor_has_simd((cscd_simd)(CSCD_SIMD_SCALAR + i))) continue;
         random_stream random = stream_start(7);
         assert_int_equal(levels[i]->level, i);
         for (int round = 0; round < ROUNDS; round++) check(levels[i], &random);
@@ -130,9 +131,34 @@ static void check_negative(const simd_operations *o, random_stream *random) {
     assert_int_equal(negative >> LANES, 0);
 }
 
+static void check_equal(const simd_operations *o, random_stream *random) {
+    uint32_t a[LANES], b[LANES];
+    int32_t equal[LANES];
+    for (int i = 0; i < LANES; i++) {
+        a[i] = (uint32_t)stream_bits(random);
+        b[i] = stream_below(random, 2) == 0 ? a[i] : a[i] ^ 1u << stream_below(random, 32);
+    }
+    o->i32_equal(a, b, equal);
+    for (int i = 0; i < LANES; i++) assert_int_equal(equal[i], a[i] == b[i] ? -1 : 0);
+}
+
+static void check_above(const simd_operations *o, random_stream *random) {
+    numbers wide = random_numbers(random);
+    floats a = to_floats(wide), b = to_floats(half_equal_numbers(random, wide));
+    int32_t above[LANES];
+    o->f32_above(a.x, b.x, above);
+    for (int i = 0; i < LANES; i++) assert_int_equal(above[i], a.x[i] > b.x[i] ? -1 : 0);
+}
+
 static void integers_as_in_c(void **state) {
     (void)state;
     on_all_levels(check_negative);
+    on_all_levels(check_equal);
+}
+
+static void masks_as_in_c(void **state) {
+    (void)state;
+    on_all_levels(check_above);
 }
 
 typedef void binary(const double *a, const double *b, double *out);
@@ -227,9 +253,13 @@ static void points_and_no_more_are_read(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(floats_as_in_c),      cmocka_unit_test(across_lanes_as_in_c),
-        cmocka_unit_test(integers_as_in_c),    cmocka_unit_test(doubles_as_in_c),
-        cmocka_unit_test(conversions_as_in_c), cmocka_unit_test(points_and_no_more_are_read),
+        cmocka_unit_test(floats_as_in_c),
+        cmocka_unit_test(across_lanes_as_in_c),
+        cmocka_unit_test(integers_as_in_c),
+        cmocka_unit_test(masks_as_in_c),
+        cmocka_unit_test(doubles_as_in_c),
+        cmocka_unit_test(conversions_as_in_c),
+        cmocka_unit_test(points_and_no_more_are_read),
     };
     return cmocka_run_group_tests_name("simd", tests, NULL, NULL);
 }

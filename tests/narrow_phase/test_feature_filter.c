@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { PAIR_COUNT = 1500, LEVELS_MAX = CSCD_SIMD_AVX512 };
+enum { PAIR_COUNT = 1500, LEVELS_MAX = SIMD_LAST };
 
 static scene shape; /* large; one test at a time */
 static triangle_pair pairs[PAIR_COUNT];
@@ -19,7 +19,7 @@ static uint64_t kept_count, dropped_count;
 /* Levels of vector instructions that the processor has not are left out. */
 static void open_levels(uint32_t region_count, double distance) {
     level_count = 0;
-    for (int simd = CSCD_SIMD_SCALAR; simd <= CSCD_SIMD_AVX512; simd++) {
+    for (int simd = CSCD_SIMD_SCALAR; simd <= SIMD_LAST; simd++) {
         bvh_rig *r = &levels[level_count];
         if (!bvh_rig_create(&shape, (bvh_setup){(cscd_simd)simd, 1, BOX_AXES, region_count}, r)) continue;
         bvh_refit(&r->bvh, shape.x0, shape.x1, uniform_growth(distance));

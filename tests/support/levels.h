@@ -1,9 +1,9 @@
 /* A context for each level of vector instructions that this processor has. */
 #pragma once
 
-#include "cscd/cscd.h"
+#include "src/core/processor.h"
 
-enum { LEVEL_COUNT = CSCD_SIMD_AVX512 };
+enum { LEVEL_COUNT = SIMD_LAST };
 
 /* There is one context per level, from SCALAR on; NULL when the processor lacks the level. */
 extern cscd_context *contexts[LEVEL_COUNT];

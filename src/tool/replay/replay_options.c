@@ -89,7 +89,7 @@ static const option_row rows[] = {
      "skip the static check of every frame; how intervals start is then unknown"},
     {"volume", "box|kdop14", read_volume, offsetof(replay_options, volume),
      "bounding volumes of the trees (default box); the contacts are the same"},
-    {"simd", "auto|scalar|avx2|avx512", read_simd, offsetof(replay_options, source.simd),
+    {"simd", "auto|scalar|avx2|avx512|neon", read_simd, offsetof(replay_options, source.simd),
      "vector instructions (default: the best here); the contacts are the same"},
     {"fail-on", "crossing|touching|contact", read_fail_kind, offsetof(replay_options, answers.fail.kind),
      "exit with 3 when triangles cross in any frame; touching: or touch; contact: or come into contact between "
