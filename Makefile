@@ -1,25 +1,33 @@
 # cscd: `make demo` and `make test` do all their own set-up; `make help` lists the rest.
 #
-#   CONFIG=release|debug|sanitize|tsan|scalar   CC=gcc|clang   GSL=0   CHARGE=0   EXPAT=0   WERROR=1   `make -j` as usual
+#   CONFIG=release|debug|sanitize|tsan|scalar   CC=gcc|clang   GSL=0   CHARGE=0   EXPAT=0   WERROR=1   HOST=...   `make -j` as usual
 # GSL=0 builds without GSL (GPL-3): with our own guesses of cubic roots, and the same results, bit for bit.
 # CHARGE=0 leaves out what makes charge plans, and with it LAPACKE and OpenBLAS; plan files with charge are read all the same.
 # EXPAT=0 builds a tool that does not read GIFTI surfaces, as on a machine where pkg-config finds no expat; the library never needs it.
+# HOST=aarch64-linux-gnu builds by that cross compiler, in build/aarch64-linux-gnu, with the libraries in SYSROOT if that is set.
 # One build folder per configuration; the release tool is also linked as ./cscd.
 
 CONFIG  ?= release
+HOST    ?=
+SYSROOT ?=
+TOOLS   := $(if $(HOST),$(HOST)-)
 ifeq ($(origin CC),default)
-CC      := gcc
+CC      := $(TOOLS)gcc
+endif
+ifeq ($(origin CXX),default)
+CXX     := $(TOOLS)g++
 endif
 WERROR  ?= 0
 GSL     ?= 1
 CHARGE  ?= 1
-BUILD_ROOT ?= build
+BUILD_ROOT ?= build$(if $(HOST),/$(HOST))
 # A machine without expat builds in the same folder as one with it; only who leaves it out on purpose has another.
 WITHOUT_EXPAT := $(if $(filter 0,$(EXPAT)),-without-expat)
 BUILD   := $(BUILD_ROOT)/$(CONFIG)$(if $(filter 0,$(GSL)),-without-gsl)$(if $(filter 0,$(CHARGE)),-without-charge)$(WITHOUT_EXPAT)
 # The flags of a package that pkg-config finds, else those given here.
-packaged = $(shell pkg-config $(1) 2>/dev/null || echo $(2))
-EXPAT   ?= $(if $(shell pkg-config --modversion expat 2>/dev/null),1,0)
+PKG_CONFIG := $(if $(HOST),PKG_CONFIG_SYSROOT_DIR='$(SYSROOT)' PKG_CONFIG_LIBDIR='$(SYSROOT)/usr/lib/$(HOST)/pkgconfig:$(SYSROOT)/usr/share/pkgconfig') pkg-config
+packaged = $(shell $(PKG_CONFIG) $(1) 2>/dev/null || echo $(2))
+EXPAT   ?= $(if $(shell $(PKG_CONFIG) --modversion expat 2>/dev/null),1,0)
 
 OPTIMISE_release  := -O3 -g -DNDEBUG
 OPTIMISE_debug    := -O0 -g3
@@ -38,15 +46,20 @@ WARNINGS += -Werror
 CPP_WARNINGS += -Werror
 endif
 # Inner loops are compiled once per instruction set; at run time the processor decides which ones run.
-ifneq ($(filter x86_64%,$(shell $(CC) -dumpmachine)),)
+MACHINE := $(shell $(CC) -dumpmachine)
+ifneq ($(filter x86_64%,$(MACHINE)),)
 LEVELS := scalar avx2 avx512
 CORE_DEFINITIONS := -DCSCD_WITH_AVX
+else ifneq ($(filter aarch64%,$(MACHINE)),)
+LEVELS := scalar neon
+CORE_DEFINITIONS := -DCSCD_WITH_NEON
 else
 LEVELS := scalar
 endif
 LEVEL_scalar := -DSIMD_LEVEL=0
 LEVEL_avx2   := -DSIMD_LEVEL=1 -mavx2
 LEVEL_avx512 := -DSIMD_LEVEL=2 -mavx512f -mavx512vl -mavx512dq -mavx512bw
+LEVEL_neon   := -DSIMD_LEVEL=3
 
 # -ffp-contract=off: error bounds are derived for separate multiplications and additions. -fPIC: both libraries are
 # made of the same objects, which run no slower for it. -fexceptions: a callback of the host may throw a C++ exception
@@ -169,7 +182,7 @@ COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 # What installs packages; a build that leaves expat out on purpose does not ask for it.
 PACKAGES = GSL=$(GSL) CHARGE=$(CHARGE) EXPAT=$(if $(WITHOUT_EXPAT),0,1) .ci/packages
 
-.PHONY: all python python-package wheel sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-peers referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender blender-extension test-vtk test-bridges test-farm cscd-mpi python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces fuzz-files FORCE
+.PHONY: all python python-package wheel sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-peers referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender blender-extension test-vtk test-bridges test-farm test-aarch64 test-s390x cscd-mpi python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces fuzz-files FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -325,6 +338,17 @@ test-bridges:
 	@$(MAKE) --no-print-directory python $(BUILD)/models/folds
 	@BUILD=$(BUILD) /usr/bin/python3 python/tests/run.py bridges
 
+# The tests on other processors, by emulation: about an hour on two cores. Nothing is installed for these processors; Debian's
+# libraries are unpacked into build/sysroot.
+test-aarch64:
+	@.ci/packages aarch64
+	@tests/cross/emulated.sh arm64 $(or $(ONLY),all)
+
+# Big-endian: the tests of what reads files, and of the detector.
+test-s390x:
+	@.ci/packages s390x
+	@tests/cross/emulated.sh s390x $(or $(ONLY),rooms)
+
 # What is left without runtime/baselines builds, and passes its tests: about a minute.
 test-without-baselines: packages
 	@tests/without_baselines.sh
@@ -437,6 +461,8 @@ help:
 	@echo 'make cscd-mpi       build/release/cscd-mpi, for docs/engines.md: needs MPI, as Debian has it in libopenmpi-dev'
 	@echo 'make test-farm      shards that the engines of docs/engines.md start, and whose node dies (installs these)'
 	@echo 'make test-bridges   the blocks of docs/python/bridges.md, with meshio, VTK and torch (installs these)'
+	@echo 'make test-aarch64   every test under qemu-user, and the same bits as on this machine: about an hour (installs cross compilers, qemu);'
+	@echo '               make test-s390x: those of readers and detector on a big-endian processor; ONLY=quick, ONLY="core/test_simd"'
 	@echo 'make test-threads   the tests that use threads, under the thread sanitizer'
 	@echo 'make           build the tool (./cscd), build/release/libcscd.a and libcscd.so; make library builds these alone'
 	@echo '               GSL=0: without GSL; CHARGE=0: without LAPACKE and OpenBLAS, so without charge plans; EXPAT=0: a tool'
@@ -463,10 +489,10 @@ help:
 $(LIBRARY): $(if $(filter 0,$(CHARGE)),$(OPENED_OBJECTS),$(LINKED_OBJECTS))
 	@mkdir -p $(@D)
 	$(say) '  AR $@'
-	$(Q)ld -r -o $(BUILD)/cscd.o $^
-	$(Q)objcopy --localize-hidden $(BUILD)/cscd.o
+	$(Q)$(TOOLS)ld -r -o $(BUILD)/cscd.o $^
+	$(Q)$(TOOLS)objcopy --localize-hidden $(BUILD)/cscd.o
 	@rm -f $@
-	$(Q)ar rcs $@ $(BUILD)/cscd.o
+	$(Q)$(TOOLS)ar rcs $@ $(BUILD)/cscd.o
 
 # The shared library names the libraries that it needs, so that a user links -lcscd alone. The functions of sanitizers
 # come with the program.
@@ -526,7 +552,7 @@ $(MACHINE_LEVELS): CFLAGS_ALL += -fno-tree-vectorize -fno-tree-slp-vectorize
 $(BUILD)/benchmarks/lib.a: $(call objects,$(BENCHMARK_PARTS)) $(MACHINE_LEVELS)
 	@mkdir -p $(@D)
 	@rm -f $@
-	$(Q)ar rcs $@ $^
+	$(Q)$(TOOLS)ar rcs $@ $^
 
 # benchmarks/peers/ has the other programs, one of them in C++.
 PEER_OBJECTS := $(addprefix $(OBJECTS)/,$(addsuffix .o,$(basename $(PEER_SOURCES))))
@@ -565,13 +591,13 @@ $(BUILD)/tests/core/test_exceptions $(CPP_TESTS): TEST_LIBS += -lstdc++
 $(BUILD)/tests/support.a: $(call objects,$(SUPPORT_SOURCES) benchmarks/lib/pair_batches.c)
 	@mkdir -p $(@D)
 	@rm -f $@
-	$(Q)ar rcs $@ $^
+	$(Q)$(TOOLS)ar rcs $@ $^
 
 # q: objects of different folders may have the same name.
 $(BUILD)/inside.a: $(LINKED_OBJECTS) $(COMMON_OBJECTS) $(MODEL_PART_OBJECTS)
 	@mkdir -p $(@D)
 	@rm -f $@
-	$(Q)ar qcs $@ $^
+	$(Q)$(TOOLS)ar qcs $@ $^
 
 define compile_level
 $$(OBJECTS)/%.$(1).o: %.c
