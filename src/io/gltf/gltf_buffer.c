@@ -33,6 +33,16 @@ static bool decode_percents(char *text, size_t *length) {
     return true;
 }
 
+/* A file of a stranger must not bring others from somewhere on the disk into what is written. Windows has two separators. */
+static bool leaves_folder(const char *path) {
+    for (const char *part = path;; part++) {
+        const size_t length = strcspn(part, "/\\");
+        if (length == 2 && memcmp(part, "..", 2) == 0) return true;
+        part += length;
+        if (*part == '\0') return false;
+    }
+}
+
 /* The folder of the glTF file with the URI behind it, percents decoded; NULL after an error. */
 static char *path_of_uri(const gltf_element *buffer, const char *uri) {
     const char *file = buffer->reader->path;
@@ -42,9 +52,14 @@ static char *path_of_uri(const gltf_element *buffer, const char *uri) {
     memcpy(path, file, folder_length);
     memcpy(path + folder_length, uri, uri_length + 1);
     size_t length;
-    if (decode_percents(path + folder_length, &length)) return path;
-    gltf_fail(buffer, "uri %.*s has a percent sign without two hexadecimal digits of a character",
-              TEXT_CUT(uri, 80));
+    if (!decode_percents(path + folder_length, &length))
+        gltf_fail(buffer, "uri %.*s has a percent sign without two hexadecimal digits of a character",
+                  TEXT_CUT(uri, 80));
+    else if (leaves_folder(path + folder_length))
+        gltf_fail(buffer, "uri %.*s, expected a file in the folder of the glTF file or below",
+                  TEXT_CUT(uri, 80));
+    else
+        return path;
     free(path);
     return NULL;
 }
@@ -52,7 +67,7 @@ static char *path_of_uri(const gltf_element *buffer, const char *uri) {
 static bool load_file(const gltf_element *buffer, const char *uri, gltf_buffer *out) {
     const size_t scheme = strcspn(uri, ":/?#");
     if (uri[0] == '/' || uri[scheme] == ':')
-        return gltf_fail(buffer, "uri %.*s, expected a file in the folder of the glTF file",
+        return gltf_fail(buffer, "uri %.*s, expected a file in the folder of the glTF file or below",
                          TEXT_CUT(uri, 80));
     char *path = path_of_uri(buffer, uri);
     if (path == NULL) return false;
