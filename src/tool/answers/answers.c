@@ -182,5 +182,7 @@ bool answers_finish(answers *a, io_error *error) {
     if (a->waiting_contacts > 0 && !answers_skip_frame(a, next, error)) return false;
     cscd_events events;
     if (cscd_event_tracker_finish(a->tracker, &events) != CSCD_OK) return api_failed(a, error);
-    return (copy_events(a, &events) && order_events(a)) || io_fail(error, "out of memory for the events");
+    if (copy_events(a, &events) && order_events(a)) return true;
+    a->event_count = 0; /* who looks at them goes by their order */
+    return io_fail(error, "out of memory for the events");
 }
