@@ -108,7 +108,7 @@ ifneq ($(strip $(ONLY)),)
 TEST_SOURCES    := $(sort $(foreach word,$(ONLY),$(filter $(TEST_SOURCES),\
                      $(wildcard tests/*/test_*$(word)*.c* tests/$(word)/test_*.c*))))
 endif
-FUZZ_SOURCES    := $(wildcard tests/*/fuzz_*.c)
+FUZZ_SOURCES    := $(wildcard tests/fuzz/fuzz_*.c)
 MODEL_SOURCES   := $(wildcard models/*.c)
 MODEL_PARTS     := $(wildcard models/*/*.c)
 CPP_MODEL_SOURCES := $(wildcard models/*.cpp)
@@ -182,7 +182,7 @@ COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 # What installs packages; a build that leaves expat out on purpose does not ask for it.
 PACKAGES = GSL=$(GSL) CHARGE=$(CHARGE) EXPAT=$(if $(WITHOUT_EXPAT),0,1) .ci/packages
 
-.PHONY: all python python-package wheel sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-peers referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender blender-extension test-vtk test-bridges test-farm test-aarch64 test-s390x cscd-mpi python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces fuzz-files FORCE
+.PHONY: all python python-package wheel sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-peers bench-instructions referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender blender-extension test-vtk test-bridges test-farm test-aarch64 test-s390x cscd-mpi python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces test-fuzz test-faults FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -370,20 +370,34 @@ QUERIES ?= 0
 SEED    ?= 1
 KIND    ?= both
 fuzz-elementary: packages
-	@$(MAKE) --no-print-directory $(BUILD)/tests/ccd/fuzz_elementary
-	@$(BUILD)/tests/ccd/fuzz_elementary $(SECONDS) $(QUERIES) $(SEED) $(KIND)
+	@$(MAKE) --no-print-directory $(BUILD)/tests/fuzz/fuzz_elementary
+	@$(BUILD)/tests/fuzz/fuzz_elementary $(SECONDS) $(QUERIES) $(SEED) $(KIND)
 
 # Curves, patches and winding numbers of random small scenes against the exact oracle.
 SCENES ?= 1000000
 fuzz-surfaces: packages
-	@$(MAKE) --no-print-directory $(BUILD)/tests/intersections/fuzz_surfaces
-	@$(BUILD)/tests/intersections/fuzz_surfaces $(SCENES) $(SEED)
+	@$(MAKE) --no-print-directory $(BUILD)/tests/fuzz/fuzz_surfaces
+	@$(BUILD)/tests/fuzz/fuzz_surfaces $(SCENES) $(SEED)
 
-# Mesh files with random damage, FILES="a.glb b.gii"; CONFIG=sanitize is what it is for.
-ROUNDS ?= 10000
-fuzz-files: packages
-	@$(MAKE) --no-print-directory $(BUILD)/tests/io/fuzz_files
-	@$(BUILD)/tests/io/fuzz_files $(ROUNDS) $(SEED) $(FILES)
+# Files of every format with random damage, and random scenes against exact answers, SECONDS for each kind; SEED: hexadecimal.
+FUZZERS := $(patsubst %.c,$(BUILD_ROOT)/sanitize/%,$(FUZZ_SOURCES))
+test-fuzz: packages
+	@$(MAKE) --no-print-directory tool $(BUILD)/models/shape $(BUILD)/models/mannequin
+	@$(MAKE) --no-print-directory CONFIG=sanitize $(FUZZERS)
+	@MAKERS=$(BUILD) BUILD=$(BUILD_ROOT)/sanitize tests/fuzz/run.sh $(SECONDS) $(SEED)
+
+# Every command when memory or the disk runs out at each place, and when inputs end at each byte. SHARE=N: at every N-th place, from one
+# that SEED chooses, a hexadecimal number.
+SHARE ?= 1
+FAILING_MEMORY := $(BUILD)/tests/faults/failing_memory.so
+test-faults: packages
+	@$(MAKE) --no-print-directory tool $(BUILD)/models/shape $(BUILD)/models/mannequin $(FAILING_MEMORY)
+	@PYTHONDONTWRITEBYTECODE=1 tests/faults/run.py $(BUILD) $(FAILING_MEMORY) $(SHARE) $(SEED)
+
+$(FAILING_MEMORY): tests/faults/failing_memory.c
+	@mkdir -p $(@D)
+	$(say) '  LD $@'
+	$(Q)$(CC) -std=c11 -O2 $(WARNINGS) -fPIC -shared $(CFLAGS) -o $@ $< $(LDFLAGS) -ldl
 
 benchmarks: packages
 	@$(MAKE) --no-print-directory $(BENCHMARKS)
@@ -423,6 +437,13 @@ $(BUILD)/benchmarks/cgal_pairs: benchmarks/referee/cgal_pairs.cpp
 	@mkdir -p $(@D)
 	$(say) '  CXX $<'
 	$(Q)$(CXX) -std=c++17 -O3 -DNDEBUG -frounding-math $(CXXFLAGS) -o $@ $< -lmpfr -lgmp
+
+# Instructions by kernel and by room on x86-64 and on aarch64, counted by an emulator: the same on every machine. About two minutes.
+bench-instructions:
+	@.ci/packages aarch64
+	@tests/cross/emulated.sh arm64 build
+	@$(MAKE) --no-print-directory tool $(BUILD)/models/record
+	@BUILD=$(BUILD) CC='$(CC)' benchmarks/instructions/run.sh
 
 # The charts of docs/measurements.md, from the last make bench.
 bench-plot:
@@ -476,10 +497,12 @@ help:
 	@echo 'make performance   machine limits, cost per triangle by size, threads, bulk motion, cloth, new meshes (PERFORMANCE=--quick)'
 	@echo 'make benchmarks   build all programs that print tables: docs/measurements.md'
 	@echo 'make bench-peers   steps beside Embree'"'"'s broad phase, checks beside CGAL'"'"'s (installs these; PEERS="--quick", or FIRST SECOND of frames)'
+	@echo 'make bench-instructions   instructions by kernel on x86-64 and aarch64, counted under qemu-user (installs it, and a cross compiler)'
 	@echo 'make referee   pairs of triangles beside those of CGAL, tetgen and MeshLab (installs these; REFEREE=--quick)'
 	@echo 'make fuzz-elementary   elementary tests against exact answers, [SECONDS=60] [QUERIES=0] [SEED=1] [KIND=both]'
 	@echo 'make fuzz-surfaces   curves, patches and winding numbers against exact answers, [SCENES=1000000] [SEED=1]'
-	@echo 'make fuzz-files   mesh files with random damage, FILES="a.glb b.gii" [ROUNDS=10000] [SEED=1], best with CONFIG=sanitize'
+	@echo 'make test-fuzz   damaged files of every format, and the two above, [SECONDS=60] for each kind, [SEED=1]'
+	@echo 'make test-faults   every command when memory, disk or an input ends early, [SHARE=1] of the places, from [SEED=1] on'
 	@echo 'make template  bundle the page of the reports, after changes in src/tool/report/web (needs node and npm)'
 	@echo 'make lint      format, file sizes, rooms, names, exported symbols'
 	@echo 'make examples  compile and run the examples of README and docs'
@@ -569,7 +592,7 @@ $(BENCHMARKS) $(BUILD)/benchmarks/peers: $(BUILD)/benchmarks/%: $(OBJECTS)/bench
 $(BUILD)/tests/%: $(OBJECTS)/tests/%.o $(BUILD)/tests/support.a $(BUILD)/inside.a
 	@mkdir -p $(@D)
 	$(say) '  LD $@'
-	$(Q)$(CC) $(LINK_ALL) -Wl,--as-needed -o $@ $^ $(TEST_LIBS)
+	$(Q)$(CC) $(LINK_ALL) -Wl,--as-needed -o $@ $(filter %.o,$^) $(filter %.a,$^) $(TEST_LIBS)
 
 # Brute force for the tests of the Python package, which load it.
 PYTHON_ORACLE := $(BUILD)/tests/python/oracle.so
@@ -582,6 +605,9 @@ $(PYTHON_ORACLE): $(OBJECTS)/tests/python/oracle.o $(BUILD)/tests/support.a $(BU
 # Parts of tests that are compiled once per instruction set.
 TEST_LEVELS := $(foreach level,$(LEVELS),$(OBJECTS)/tests/core/simd_operations_simd.$(level).o)
 $(BUILD)/tests/core/test_simd: $(TEST_LEVELS)
+
+# A reader that one command has for itself.
+$(BUILD)/tests/fuzz/fuzz_readers: $(OBJECTS)/src/tool/summary_file.o
 
 # A host in C++, which throws; and tests in C++.
 $(BUILD)/tests/core/test_exceptions: $(OBJECTS)/tests/core/throwing_host.o

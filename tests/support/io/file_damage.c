@@ -1,38 +1,13 @@
 /* Mesh files with random damage, read as meshes and as animations. */
 #include "tests/support/io/file_damage.h"
 #include "src/io/animation.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/io/byte_damage.h"
 #include "tests/support/temp_file.h"
 #include "tests/support/test.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Copies the file into bytes with one more fault: a flipped bit, another byte, a byte doubled or dropped, or its end cut
- * off. */
-static size_t damage_once(random_stream *random, unsigned char *bytes, size_t size) {
-    const size_t at = stream_below(random, (uint32_t)size);
-    switch (stream_below(random, 8)) {
-    case 0:
-        return stream_below(random, 4) == 0 && at > 0 ? at : size;
-    case 1:
-        memmove(bytes + at + 1, bytes + at, size - at);
-        return size + 1;
-    case 2:
-        memmove(bytes + at, bytes + at + 1, size - at - 1);
-        return size > 1 ? size - 1 : size;
-    case 3:
-        bytes[at] = (unsigned char)stream_bits(random);
-        return size;
-    case 4: /* numbers stay numbers */
-        if (bytes[at] >= '0' && bytes[at] <= '9') bytes[at] = (unsigned char)('0' + stream_below(random, 10));
-        return size;
-    default:
-        bytes[at] ^= (unsigned char)(1u << stream_below(random, 8));
-        return size;
-    }
-}
 
 static void check_mesh(const mesh_file *mesh) {
     assert_true(mesh->vertex_count > 0 && mesh->triangle_count > 0);
@@ -83,13 +58,13 @@ file_damage_counts file_damage_rounds(file_bytes file, uint32_t round_count, uin
     file_damage_counts counts = {0};
     random_stream random = stream_start(seed);
     const temp_folder folder = temp_folder_make();
-    unsigned char *bytes = malloc(file.size + 8);
+    unsigned char *bytes = malloc(file.size + 4 * DAMAGE_GROWTH_MAX);
     assert_non_null(bytes);
     for (uint32_t round = 0; round < round_count; round++) {
         size_t size = file.size;
         memcpy(bytes, file.bytes, size);
         for (uint32_t fault = 1 + stream_below(&random, 4); fault > 0; fault--)
-            size = damage_once(&random, bytes, size);
+            size = damage_bytes(&random, bytes, size);
         const temp_path path = temp_file_write(&folder, file.name, bytes, size);
         mesh_file mesh = {0};
         io_error error = {""};
