@@ -1,6 +1,6 @@
 #!/bin/sh
 # Builds for another processor and runs test programs there under qemu-user, with Debian's libraries of that architecture:
-# emulated.sh arm64|s390x all|rooms|quick|TEST..., where a TEST is room/test_name, and rooms are those of the readers and of the
+# emulated.sh arm64|s390x all|rooms|quick|build|TEST..., where a TEST is room/test_name, and rooms are those of the readers and of the
 # detector. `make test-aarch64` and `make test-s390x` call it.
 #
 # Programs become scripts that start the emulator on them, so that tests start the tool and the models as they do elsewhere. Then
@@ -19,15 +19,17 @@ s390x) host=s390x-linux-gnu emulator=qemu-s390x ;;
     exit 2
     ;;
 esac
+unset MAKEFLAGS
 build=build/$host/release
+case ${CC:-} in ccache*) cache='ccache ' ;; *) cache='' ;; esac
 sysroot=$PWD/build/sysroot/$architecture
 tests/cross/sysroot.sh "$architecture" "$sysroot" libc6-dev libstdc++-12-dev libpng-dev zlib1g-dev libjson-c-dev libexpat1-dev \
     libgsl-dev liblapacke-dev libopenblas-dev libcmocka-dev libflint-dev libflint-arb-dev libgmp-dev
 
-# cross TARGET...: makes them for the other processor. MAKEFLAGS of the caller say how many at a time.
+# cross TARGET...: makes them for the other processor.
 cross() {
-    make --no-print-directory HOST=$host SYSROOT="$sysroot" WERROR="${WERROR:-0}" ${CCACHE:+CCACHE="$CCACHE"} \
-        CC="${CCACHE:-} $host-gcc --sysroot=$sysroot" CXX="$host-g++ --sysroot=$sysroot" CFLAGS='-DTESTS_EMULATED' "$@"
+    make -j"$(nproc)" --no-print-directory HOST=$host SYSROOT="$sysroot" WERROR="${WERROR:-0}" \
+        CC="$cache$host-gcc --sysroot=$sysroot" CXX="$host-g++ --sysroot=$sysroot" "$@"
 }
 
 # Makes programs into scripts that start the emulator; a program that is linked again is made into one again.
@@ -45,6 +47,11 @@ left_out() {
     awk -v architecture="$1" -v name="$2" '$1 == name && ($2 == "*" || $2 == architecture) {
         $1 = $2 = ""; sub(/^ +/, ""); print; exit }' tests/cross/left_out.txt
 }
+
+if [ "$1" = build ]; then
+    cross tool
+    exit 0
+fi
 
 # ---- which tests
 
