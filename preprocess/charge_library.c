@@ -1,5 +1,5 @@
 /* Where the charge library is. Compiled twice: with CHARGE_LINKED it is linked, in libcscd.a, in the tool and in tests;
- * without, it is opened at the first call that needs it, by libcscd.so and by builds with CHARGE=0. */
+ * without, it is opened at the first call that needs it, by libcscd.so and by builds with CHARGE=0; Windows has none. */
 #include "preprocess/charge_call.h"
 
 #ifdef CHARGE_LINKED
@@ -8,6 +8,17 @@ cscd_status charge_library_find(cscd_context *context, const charge_functions **
     (void)context;
     *out = charge_functions_of(CHARGE_INTERFACE);
     return CSCD_OK;
+}
+
+#elif defined(_WIN32)
+
+/* Its solver, LAPACKE, is not built for Windows; the charges are needed for making a plan, and not for using it. */
+cscd_status charge_library_find(cscd_context *context, const charge_functions **out) {
+    *out = NULL;
+    return context_fail(
+        context, CSCD_SYSTEM_ERROR,
+        "method charge makes no plans on Windows: make the plan on Linux and load its file here, "
+        "or take kmeans or single, which need nothing");
 }
 
 #else

@@ -2,6 +2,7 @@
 #include "src/core/entry.h"
 
 #include "src/core/context.h"
+#include "src/core/system.h"
 
 #include <pthread.h>
 #include <stdio.h>
@@ -35,13 +36,9 @@ static uintptr_t this_thread(void) {
 
 /* Is an address on the stack that the system has given this thread, and not on one of a fiber? */
 static bool on_thread_stack(uintptr_t address) {
-    pthread_attr_t attributes;
-    void *lowest = NULL;
+    uintptr_t lowest = 0;
     size_t size = 0;
-    if (pthread_getattr_np(pthread_self(), &attributes) != 0) return false;
-    bool known = pthread_attr_getstack(&attributes, &lowest, &size) == 0;
-    pthread_attr_destroy(&attributes);
-    return known && address - (uintptr_t)lowest < size;
+    return system_thread_stack(&lowest, &size) && address - lowest < size;
 }
 
 /* Has a callback of the call inside been left by longjmp? A frame that is alive lies above all that came after it; so a

@@ -80,8 +80,10 @@ typedef struct host_call {
 } host_call;
 
 /* Cleanups need the routine with which a C++ runtime unwinds C. Whoever throws has that runtime, and whoever does not
- * shall not need its library: so both references are weak, and without it nothing is unwound. */
+ * shall not need its library: so both references are weak, and without it nothing is unwound. (Windows unwinds by itself.) */
+#ifdef __ELF__
 __asm__(".weak __gcc_personality_v0\n\t.weak _Unwind_Resume");
+#endif
 
 #define HOST_CALL(name, state, callback)                                                                     \
     __attribute__((cleanup(host_call_left))) host_call name =                                                \

@@ -1,8 +1,9 @@
 /* Blocks of memory from the host's allocator: zeroed, aligned, counted. */
 #include "src/core/memory.h"
 
+#include "src/core/system.h"
+
 #include <assert.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Precedes each block and fills one alignment unit, so that the block itself is aligned. */
@@ -15,13 +16,13 @@ _Static_assert(sizeof(memory_block) <= MEMORY_ALIGNMENT, "a header fills one ali
 
 static void *system_allocate(void *user, size_t size, size_t alignment) {
     (void)user;
-    return aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+    return system_memory(size, alignment);
 }
 
 static void system_release(void *user, void *block, size_t size) {
     (void)user;
     (void)size;
-    free(block);
+    system_memory_free(block);
 }
 
 cscd_allocator memory_system_allocator(void) {

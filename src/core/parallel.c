@@ -3,6 +3,7 @@
 
 #include "src/core/entry.h"
 #include "src/core/host_loop.h"
+#include "src/core/system.h"
 #include "src/core/timer.h"
 
 #include <assert.h>
@@ -10,7 +11,6 @@
 #include <sched.h>
 #include <setjmp.h>
 #include <stdatomic.h>
-#include <unistd.h>
 
 /* A waiting thread looks for work this often before it yields the processor, and for this long before it
  * sleeps: the stages of an interval follow each other more closely, and waking up takes about as long. */
@@ -226,13 +226,6 @@ void parallel_rest(parallel *threads) {
 
 /* ---- the crew ---------------------------------------------------------------------------------------- */
 
-static uint32_t processors_for_us(void) {
-    cpu_set_t set;
-    if (sched_getaffinity(0, sizeof set, &set) == 0) return (uint32_t)CPU_COUNT(&set);
-    long online = sysconf(_SC_NPROCESSORS_ONLN);
-    return online < 1 ? 1 : (uint32_t)online;
-}
-
 static cscd_status start_helpers(parallel *threads) {
     for (uint32_t i = 0; i + 1 < threads->thread_count; i++) {
         helper *h = &threads->helpers[i];
@@ -246,14 +239,14 @@ static cscd_status start_helpers(parallel *threads) {
 
 cscd_status parallel_create(host_memory *m, uint32_t thread_count, cscd_parallel_for host, parallel **out) {
     if (thread_count == 0) {
-        long processors = sysconf(_SC_NPROCESSORS_ONLN);
-        thread_count = processors < 1 ? 1 : processors > 256 ? 256 : (uint32_t)processors;
+        const uint32_t processors = system_processors();
+        thread_count = processors > 256 ? 256 : processors;
     }
     parallel *threads = memory_allocate(m, 1, sizeof *threads);
     if (threads == NULL) return CSCD_OUT_OF_MEMORY;
     threads->thread_count = thread_count;
     threads->host = host_loop_of(m, host);
-    threads->patience_ms = thread_count <= processors_for_us() ? patience_ms : 0.0;
+    threads->patience_ms = thread_count <= system_processors_for_us() ? patience_ms : 0.0;
     pthread_mutex_init(&threads->lock, NULL);
     pthread_cond_init(&threads->work_ready, NULL);
     pthread_cond_init(&threads->work_done, NULL);

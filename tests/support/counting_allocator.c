@@ -1,6 +1,8 @@
 /* An allocator that counts its calls and can be told to fail. */
 #include "tests/support/counting_allocator.h"
 
+#include "src/core/system.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,8 +16,7 @@ counting_allocator counting_allocator_start(void) {
 static void *count_and_allocate(void *user, size_t size, size_t alignment) {
     counting_allocator *counter = user;
     if (counter->calls++ == counter->fail_at) return NULL;
-    unsigned char *block =
-        aligned_alloc(alignment, (size + GUARD_SIZE + alignment - 1) / alignment * alignment);
+    unsigned char *block = system_memory(size + GUARD_SIZE, alignment);
     if (block == NULL) return NULL;
     memset(block + size, GUARD_BYTE, GUARD_SIZE);
     counter->live++;
@@ -40,7 +41,7 @@ static void count_and_release(void *user, void *block, size_t size) {
     counter->bytes -= size;
     memset(block, GUARD_BYTE, size); /* so that what is read after its release is noticed */
     __asm__ volatile("" : : "r"(block) : "memory");
-    free(block);
+    system_memory_free(block);
 }
 
 cscd_allocator counting_allocator_interface(counting_allocator *counter) {

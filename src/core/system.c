@@ -1,0 +1,115 @@
+/* What the library asks of the operating system: Linux, Windows, macOS, FreeBSD. */
+#include "src/core/system.h"
+
+#include <stdlib.h>
+
+#if UINTPTR_MAX < UINT64_MAX && !defined(__wasm__)
+#error "cscd runs on 64-bit systems and on WebAssembly: the sizes of other 32-bit systems are not tested"
+#endif
+
+#ifdef _WIN32
+
+#include <malloc.h>
+#include <windows.h>
+
+void *system_memory(size_t size, size_t alignment) {
+    return _aligned_malloc(size, alignment);
+}
+
+void system_memory_free(void *block) {
+    _aligned_free(block);
+}
+
+uint32_t system_processors(void) {
+    const DWORD count = GetActiveProcessorCount(ALL_PROCESSOR_GROUPS);
+    return count < 1 ? 1 : (uint32_t)count;
+}
+
+/* The mask is that of one group of processors, and 0 where a process has threads in several groups. */
+uint32_t system_processors_for_us(void) {
+    DWORD_PTR ours = 0, all = 0;
+    if (!GetProcessAffinityMask(GetCurrentProcess(), &ours, &all) || ours == 0 || ours == all)
+        return system_processors();
+    return (uint32_t)__builtin_popcountll(ours);
+}
+
+bool system_thread_stack(uintptr_t *lowest, size_t *size) {
+    ULONG_PTR low = 0, high = 0;
+    GetCurrentThreadStackLimits(&low, &high);
+    *lowest = (uintptr_t)low;
+    *size = (size_t)(high - low);
+    return high > low;
+}
+
+#else
+
+#include <pthread.h>
+#include <sched.h>
+#include <unistd.h>
+#ifdef __FreeBSD__
+#include <pthread_np.h>
+#endif
+
+/* aligned_alloc of C11 came late to macOS. */
+void *system_memory(size_t size, size_t alignment) {
+    void *block = NULL;
+    return posix_memalign(&block, alignment, size) == 0 ? block : NULL;
+}
+
+void system_memory_free(void *block) {
+    free(block);
+}
+
+uint32_t system_processors(void) {
+    const long online = sysconf(_SC_NPROCESSORS_ONLN);
+    return online < 1 ? 1 : (uint32_t)online;
+}
+
+uint32_t system_processors_for_us(void) {
+#ifdef __linux__
+    cpu_set_t set;
+    if (sched_getaffinity(0, sizeof set, &set) == 0) return (uint32_t)CPU_COUNT(&set);
+#endif
+    return system_processors();
+}
+
+#if defined(__APPLE__)
+
+bool system_thread_stack(uintptr_t *lowest, size_t *size) {
+    *size = pthread_get_stacksize_np(pthread_self());
+    *lowest = (uintptr_t)pthread_get_stackaddr_np(pthread_self()) - *size;
+    return *size > 0;
+}
+
+#elif defined(__linux__) || defined(__FreeBSD__)
+
+static bool read_attributes(pthread_attr_t *attributes) {
+#ifdef __FreeBSD__
+    return pthread_attr_get_np(pthread_self(), attributes) == 0;
+#else
+    return pthread_getattr_np(pthread_self(), attributes) == 0;
+#endif
+}
+
+bool system_thread_stack(uintptr_t *lowest, size_t *size) {
+    pthread_attr_t attributes;
+    void *low = NULL;
+#ifdef __FreeBSD__
+    if (pthread_attr_init(&attributes) != 0) return false;
+#endif
+    if (!read_attributes(&attributes)) return false;
+    const bool known = pthread_attr_getstack(&attributes, &low, size) == 0;
+    pthread_attr_destroy(&attributes);
+    *lowest = (uintptr_t)low;
+    return known;
+}
+
+#else
+
+bool system_thread_stack(uintptr_t *lowest, size_t *size) {
+    (void)lowest, (void)size;
+    return false;
+}
+
+#endif
+#endif

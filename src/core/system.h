@@ -1,0 +1,21 @@
+/* What the library asks of the operating system beyond C11 and POSIX threads; system.c alone knows which system it is. */
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Memory whose address is a multiple of alignment, a power of two; NULL: there is none. */
+void *system_memory(size_t size, size_t alignment);
+
+/* Takes back what system_memory gave; NULL does nothing. */
+void system_memory_free(void *block);
+
+/* The processors of the machine, at least 1. */
+uint32_t system_processors(void);
+
+/* Those of them on which this process may run, at least 1. */
+uint32_t system_processors_for_us(void);
+
+/* The stack that the system has given the calling thread: size bytes from *lowest on. False: it is not known. */
+bool system_thread_stack(uintptr_t *lowest, size_t *size);
