@@ -7,10 +7,6 @@
 
 enum { FIRST_CAPACITY = 64 };
 
-__attribute__((weak)) void *io_realloc(void *memory, size_t size) {
-    return realloc(memory, size);
-}
-
 growable growable_of(size_t element_size) {
     return (growable){.element_size = element_size};
 }

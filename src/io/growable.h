@@ -24,7 +24,7 @@ void *growable_push(growable *array);
 /* Hands the data over, trimmed to count, and leaves the array empty. */
 void *growable_take(growable *array);
 
-/* realloc: the one place where the mesh readers get memory. It is weak, so that a test can put a failing one
+/* realloc: the one place where the mesh readers get memory. It has a file of its own, so that a test can put a failing one
  * in its place. */
 void *io_realloc(void *memory, size_t size);
 

@@ -1,6 +1,8 @@
 /* A file that takes another's place only when it is complete; "-" is the standard output. */
 #include "src/io/output_file.h"
 
+#include "src/io/path_name.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
@@ -13,7 +15,7 @@ enum { LINKS_MAX = 40, NAMES_MAX = 1000 };
 
 /* The folder of path, with its slash, and then name; to be freed. */
 static char *name_beside(const char *path, const char *name) {
-    const char *slash = strrchr(path, '/');
+    const char *slash = path_last_separator(path);
     size_t folder_size = slash != NULL ? (size_t)(slash - path) + 1 : 0, name_size = strlen(name) + 1;
     char *joined = malloc(folder_size + name_size);
     if (joined == NULL) return NULL;

@@ -4,8 +4,25 @@
 #include <string.h>
 #include <strings.h>
 
+const char *path_last_separator(const char *path) {
+    const char *last = NULL;
+    for (const char *c = path; *c != '\0'; c++)
+        if (path_is_separator(*c)) last = c;
+    return last;
+}
+
+size_t path_drive_length(const char *path) {
+#ifdef _WIN32
+    const char letter = (char)(path[0] | 0x20);
+    return letter >= 'a' && letter <= 'z' && path[1] == ':' ? 2 : 0;
+#else
+    (void)path;
+    return 0;
+#endif
+}
+
 const char *path_file_name(const char *path) {
-    const char *slash = strrchr(path, '/');
+    const char *slash = path_last_separator(path);
     return slash != NULL ? slash + 1 : path;
 }
 

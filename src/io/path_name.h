@@ -14,7 +14,25 @@ bool path_has_extension(const char *path, const char *extension);
 /* The length of the ending if it is that of a mesh file, else 0. */
 size_t path_mesh_ending(const char *path);
 
-/* Returns the part after the last '/'. */
+/* What separates the names of a path: on Windows either slash does, and drives have letters. */
+#ifdef _WIN32
+#define PATH_SEPARATORS "/\\"
+#else
+#define PATH_SEPARATORS "/"
+#endif
+
+static inline bool path_is_separator(char c) {
+    return c == PATH_SEPARATORS[0] ||
+           (sizeof PATH_SEPARATORS > 2 && c == PATH_SEPARATORS[sizeof PATH_SEPARATORS - 2]);
+}
+
+/* The last separator; NULL: there is none. */
+const char *path_last_separator(const char *path);
+
+/* The length of the drive at the beginning, "C:" on Windows, else 0. */
+size_t path_drive_length(const char *path);
+
+/* Returns the part after the last separator. */
 const char *path_file_name(const char *path);
 
 static inline bool path_is_digit(char c) {

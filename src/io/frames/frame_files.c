@@ -80,7 +80,8 @@ static char *with_slash(const char *folder) {
     const size_t length = strlen(folder);
     char *copy = io_realloc(NULL, length + 2);
     if (copy != NULL)
-        snprintf(copy, length + 2, "%s%s", folder, length > 0 && folder[length - 1] != '/' ? "/" : "");
+        snprintf(copy, length + 2, "%s%s", folder,
+                 length > 0 && !path_is_separator(folder[length - 1]) ? "/" : "");
     return copy;
 }
 

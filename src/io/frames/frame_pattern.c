@@ -45,7 +45,7 @@ static bool parse_pattern(frame_pattern *pattern, const char *source, io_error *
     size_t length = 0, conversion_count = 0, conversion_at = 0;
     for (size_t at = 0; source[at] != '\0';) {
         if (source[at] != '%') {
-            if (source[at] == '/') pattern->name_start = length + 1;
+            if (path_is_separator(source[at])) pattern->name_start = length + 1;
             pattern->text[length++] = source[at++];
         } else if (source[at + 1] == '%') {
             pattern->text[length++] = '%';

@@ -16,7 +16,7 @@ static bool same_place(const char *a, const char *b) {
     const char *names[2] = {a, b};
     char *folders[2] = {NULL, NULL};
     for (int i = 0; i < 2; i++) {
-        const char *slash = strrchr(names[i], '/');
+        const char *slash = path_last_separator(names[i]);
         char *folder = slash != NULL ? strndup(names[i], (size_t)(slash - names[i]) + 1) : strdup(".");
         folders[i] = folder != NULL ? realpath(folder, NULL) : NULL;
         free(folder);

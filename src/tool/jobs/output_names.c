@@ -1,6 +1,8 @@
 /* Finds jobs that would write over files of each other or of the run. */
 #include "src/tool/jobs/output_names.h"
 
+#include "src/io/path_name.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -33,10 +35,11 @@ static char *plain_path(const char *path) {
     char *plain = malloc(strlen(path) + 1), *end = plain;
     for (const char *c = path; plain != NULL && *c != '\0'; c++) {
         const bool begins = end == plain || end[-1] == '/';
-        while (begins && (c[0] == '/' || (c[0] == '.' && c[1] == '/')) && !(c == path && c[0] == '/'))
-            c += c[0] == '/' ? 1 : 2;
+        while (begins && (path_is_separator(c[0]) || (c[0] == '.' && path_is_separator(c[1]))) &&
+               !(c == path && path_is_separator(c[0])))
+            c += path_is_separator(c[0]) ? 1 : 2;
         if (*c == '\0') break;
-        *end++ = *c;
+        *end++ = path_is_separator(*c) ? '/' : *c;
     }
     if (plain != NULL) *end = '\0';
     return plain;

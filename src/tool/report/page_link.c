@@ -1,6 +1,9 @@
 /* Links from a page to other files, relative to its own place. */
 #include "src/tool/report/page_link.h"
 
+#include "src/io/path_name.h"
+
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -15,7 +18,7 @@ static size_t parent_length(const char *path, size_t length) {
 static void add_names(char *folder, const char *path) {
     size_t length = strlen(folder);
     while (*path != '\0') {
-        const size_t size = strcspn(path, "/");
+        const size_t size = strcspn(path, PATH_SEPARATORS);
         const bool stays = size == 0 || (size == 1 && path[0] == '.');
         if (size == 2 && memcmp(path, "..", 2) == 0)
             length = parent_length(folder, length);
@@ -24,7 +27,7 @@ static void add_names(char *folder, const char *path) {
             memcpy(folder + length, path, size);
             length += size;
         }
-        path += size + (path[size] == '/');
+        path += size + path_is_separator(path[size]);
     }
     folder[length] = '\0';
 }
@@ -32,8 +35,10 @@ static void add_names(char *folder, const char *path) {
 static char *absolute_path(const char *here, const char *path) {
     char *whole = malloc(strlen(here) + strlen(path) + 2);
     if (whole == NULL) return NULL;
-    strcpy(whole, path[0] == '/' ? "" : here);
-    add_names(whole, path);
+    const size_t drive = path_drive_length(path);
+    strcpy(whole, drive > 0 || path_is_separator(path[0]) ? "" : here);
+    if (drive > 0) snprintf(whole, drive + 1, "%s", path);
+    add_names(whole, path + drive);
     return whole;
 }
 
@@ -41,12 +46,13 @@ static char *absolute_path(const char *here, const char *path) {
 static char *real_folder(const char *here, const char *folder) {
     char *found = realpath(folder, NULL);
     if (found == NULL) return absolute_path(here, folder);
-    if (strcmp(found, "/") == 0) found[0] = '\0';
+    const size_t drive = path_drive_length(found);
+    if (strcmp(found + drive, "/") == 0) found[drive] = '\0';
     return found;
 }
 
 bool page_folder_find(const char *page, page_folder *out) {
-    const char *slash = strrchr(page, '/');
+    const char *slash = path_last_separator(page);
     char *folder = slash != NULL ? strndup(page, (size_t)(slash - page) + 1) : strdup(".");
     out->here = real_folder("", ".");
     out->page = folder != NULL && out->here != NULL ? real_folder(out->here, folder) : NULL;
