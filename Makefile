@@ -5,12 +5,16 @@
 # CHARGE=0 leaves out what makes charge plans, and with it LAPACKE and OpenBLAS; plan files with charge are read all the same.
 # EXPAT=0 builds a tool that does not read GIFTI surfaces, as on a machine where pkg-config finds no expat; the library never needs it.
 # HOST=aarch64-linux-gnu builds by that cross compiler, in build/aarch64-linux-gnu, with the libraries in SYSROOT if that is set.
+# HOST=x86_64-w64-mingw32 builds for Windows, in build/x86_64-w64-mingw32: see src/windows/windows.mk.
 # One build folder per configuration; the release tool is also linked as ./cscd.
 
 CONFIG  ?= release
 HOST    ?=
 SYSROOT ?=
 TOOLS   := $(if $(HOST),$(HOST)-)
+ifneq ($(findstring mingw,$(HOST)),)
+include src/windows/choices.mk
+endif
 ifeq ($(origin CC),default)
 CC      := $(TOOLS)gcc
 endif
@@ -23,7 +27,7 @@ CHARGE  ?= 1
 BUILD_ROOT ?= build$(if $(HOST),/$(HOST))
 # A machine without expat builds in the same folder as one with it; only who leaves it out on purpose has another.
 WITHOUT_EXPAT := $(if $(filter 0,$(EXPAT)),-without-expat)
-BUILD   := $(BUILD_ROOT)/$(CONFIG)$(if $(filter 0,$(GSL)),-without-gsl)$(if $(filter 0,$(CHARGE)),-without-charge)$(WITHOUT_EXPAT)
+BUILD   := $(BUILD_ROOT)/$(CONFIG)$(if $(WINDOWS),,$(if $(filter 0,$(GSL)),-without-gsl)$(if $(filter 0,$(CHARGE)),-without-charge)$(WITHOUT_EXPAT))
 # The flags of a package that pkg-config finds, else those given here.
 PKG_CONFIG := $(if $(HOST),PKG_CONFIG_SYSROOT_DIR='$(SYSROOT)' PKG_CONFIG_LIBDIR='$(SYSROOT)/usr/lib/$(HOST)/pkgconfig:$(SYSROOT)/usr/share/pkgconfig') pkg-config
 packaged = $(shell $(PKG_CONFIG) $(1) 2>/dev/null || echo $(2))
@@ -85,12 +89,13 @@ CORE_SOURCES    := $(filter-out %_simd.c runtime/ccd/cubic_guess_$(if $(filter 0
 KERNEL_SOURCES  := $(filter %_simd.c,$(CORE_FILES))
 # What commands of the tool share, and the commands.
 WITHOUT_GIFTI   := src/io/gifti/no_gifti.c
-COMMON_SOURCES  := $(filter-out $(if $(filter 0,$(EXPAT)),$(filter-out $(WITHOUT_GIFTI),$(wildcard src/io/gifti/*.c)),$(WITHOUT_GIFTI)), \
+OTHER_PROCESSES := src/tool/jobs/job_processes$(if $(WINDOWS),,_windows).c
+COMMON_SOURCES  := $(filter-out $(OTHER_PROCESSES) $(if $(filter 0,$(EXPAT)),$(filter-out $(WITHOUT_GIFTI),$(wildcard src/io/gifti/*.c)),$(WITHOUT_GIFTI)), \
                      $(wildcard src/blas/*.c src/io/*.c src/io/*/*.c src/tool/picture/*.c src/tool/common/*.c src/tool/answers/*.c \
                      src/tool/jobs/*.c src/tool/export/*.c src/tool/report/*.c))
 COMMAND_SOURCES := $(wildcard src/tool/*.c src/tool/check/*.c src/tool/replay/*.c src/tool/render/*.c src/tool/sense/*.c)
 NATIVE_SOURCES  := $(wildcard python/native/*.c)
-SUPPORT_SOURCES := $(wildcard tests/support/*.c tests/support/*/*.c)
+SUPPORT_SOURCES := $(filter-out tests/support/tool/tool_process$(if $(WINDOWS),,_windows).c,$(wildcard tests/support/*.c tests/support/*/*.c))
 # `rm -r runtime/baselines`, and its lines in runtime/detector/method_table.c: what needs them is not built then.
 HAS_BASELINES   := $(wildcard runtime/baselines/*.h)
 # The browser's tests look at pages, which no other configuration writes differently. Only a release is installed.
@@ -107,6 +112,9 @@ ONLY ?=
 ifneq ($(strip $(ONLY)),)
 TEST_SOURCES    := $(sort $(foreach word,$(ONLY),$(filter $(TEST_SOURCES),\
                      $(wildcard tests/*/test_*$(word)*.c* tests/$(word)/test_*.c*))))
+endif
+ifneq ($(findstring mingw,$(HOST)),)
+include src/windows/windows.mk
 endif
 FUZZ_SOURCES    := $(wildcard tests/fuzz/fuzz_*.c)
 MODEL_SOURCES   := $(wildcard models/*.c)
@@ -141,7 +149,7 @@ OPENED_OBJECTS := $(CORE_OBJECTS) $(OBJECTS)/preprocess/charge_library.opened.o
 COMMON_OBJECTS := $(call objects,$(COMMON_SOURCES))
 IO_OBJECTS     := $(call objects,$(filter src/io/%,$(COMMON_SOURCES)))
 LIBRARY := $(BUILD)/libcscd.a
-SHARED  := $(BUILD)/libcscd.so.$(VERSION)
+SHARED  := $(BUILD)/$(if $(WINDOWS),libcscd-$(MAJOR).dll,libcscd.so.$(VERSION))
 CHARGE_SHARED := $(if $(filter 0,$(CHARGE)),,$(BUILD)/libcscd-charge.so.$(VERSION))
 TOOL    := $(BUILD)/cscd
 TESTS   := $(addprefix $(BUILD)/,$(basename $(TEST_SOURCES)))
@@ -182,7 +190,7 @@ COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 # What installs packages; a build that leaves expat out on purpose does not ask for it.
 PACKAGES = GSL=$(GSL) CHARGE=$(CHARGE) EXPAT=$(if $(WITHOUT_EXPAT),0,1) .ci/packages
 
-.PHONY: all python python-package wheel sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-peers bench-instructions referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender blender-extension test-vtk test-bridges test-farm test-aarch64 test-s390x cscd-mpi python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces test-fuzz test-faults FORCE
+.PHONY: all python python-package wheel sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-peers bench-instructions referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender blender-extension test-vtk windows windows-libraries windows-zip test-windows test-windows-run test-bridges test-farm test-aarch64 test-s390x cscd-mpi python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces test-fuzz test-faults FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -282,6 +290,30 @@ gallery: models
 # All programs and all tests, without running them.
 programs: tool library $(MODELS) $(BENCHMARKS)
 test-programs: $(TESTS)
+
+# Everything for Windows, by the compiler and the libraries of Debian's packages, in build/x86_64-w64-mingw32: programs and tests are
+# compiled, and nothing is run. The archive to give away: make windows-zip.
+CACHE := $(if $(findstring ccache,$(CC)),ccache )
+ON_WINDOWS = $(MAKE) --no-print-directory HOST=x86_64-w64-mingw32 CC='$(CACHE)x86_64-w64-mingw32-gcc-posix' \
+             CXX='$(CACHE)x86_64-w64-mingw32-g++-posix'
+windows-libraries:
+	@.ci/packages windows
+	@src/packaging/windows/libraries.sh
+
+windows: windows-libraries
+	@$(ON_WINDOWS) tool library
+
+windows-zip: windows
+	@mkdir -p build/dist
+	@src/packaging/windows/pack.py build/x86_64-w64-mingw32/release build/windows/libraries $(VERSION) \
+	    build/dist/cscd-$(VERSION)-windows-x86_64.zip
+
+# The tests under wine. What needs FLINT and Arb is asked from answers that Linux has written.
+ANSWERS := build/windows/answers
+test-windows: packages windows-libraries
+	@$(MAKE) --no-print-directory $(BUILD)/tests/windows/write_answers
+	@$(BUILD)/tests/windows/write_answers $(ANSWERS) 20000
+	@ANSWERS=$(abspath $(ANSWERS)) $(ON_WINDOWS) test-windows-run
 
 test: packages
 	@$(if $(filter tests/report/test_report_browser.c,$(TEST_SOURCES)),.ci/packages browser)
@@ -481,6 +513,8 @@ help:
 	@echo 'make test-vtk   what --vtk writes, read by VTK and compared with the other outputs (installs python3-vtk9)'
 	@echo 'make cscd-mpi       build/release/cscd-mpi, for docs/engines.md: needs MPI, as Debian has it in libopenmpi-dev'
 	@echo 'make test-farm      shards that the engines of docs/engines.md start, and whose node dies (installs these)'
+	@echo 'make windows   the tool and the library for Windows, in build/x86_64-w64-mingw32 (installs mingw-w64); make windows-zip: to give'
+	@echo '               away, in build/dist; make test-windows: the tests under wine (installs wine64)'
 	@echo 'make test-bridges   the blocks of docs/python/bridges.md, with meshio, VTK and torch (installs these)'
 	@echo 'make test-aarch64   every test under qemu-user, and the same bits as on this machine: about an hour (installs cross compilers, qemu);'
 	@echo '               make test-s390x: those of readers and detector on a big-endian processor; ONLY=quick, ONLY="core/test_simd"'
@@ -509,6 +543,7 @@ help:
 	@echo 'make format    clang-format all sources; make clean removes build/'
 
 # The library is one relocatable object in which everything but the public API is local.
+ifndef WINDOWS
 $(LIBRARY): $(if $(filter 0,$(CHARGE)),$(OPENED_OBJECTS),$(LINKED_OBJECTS))
 	@mkdir -p $(@D)
 	$(say) '  AR $@'
@@ -516,10 +551,12 @@ $(LIBRARY): $(if $(filter 0,$(CHARGE)),$(OPENED_OBJECTS),$(LINKED_OBJECTS))
 	$(Q)$(TOOLS)objcopy --localize-hidden $(BUILD)/cscd.o
 	@rm -f $@
 	$(Q)$(TOOLS)ar rcs $@ $(BUILD)/cscd.o
+endif
 
 # The shared library names the libraries that it needs, so that a user links -lcscd alone. The functions of sanitizers
 # come with the program.
 SHARED_FLAGS := -shared -Wl,--as-needed $(if $(findstring -fsanitize,$(OPTIMISE_$(CONFIG))),,-Wl,-z,defs)
+ifndef WINDOWS
 $(SHARED): $(OPENED_OBJECTS) $(BUILD)/cscd.map
 	@mkdir -p $(@D)
 	$(say) '  LD $@'
@@ -527,6 +564,7 @@ $(SHARED): $(OPENED_OBJECTS) $(BUILD)/cscd.map
 	    -o $@ $(OPENED_OBJECTS) $(SHARED_LIBS)
 	@ln -sfn $(@F) $(BUILD)/libcscd.so.$(MAJOR)
 	@ln -sfn libcscd.so.$(MAJOR) $(BUILD)/libcscd.so
+endif
 
 # All of the tool but its program, and what Python calls. Its own functions are meant wherever it calls one of the library, whatever
 # else the process has loaded.
@@ -669,6 +707,10 @@ $(BUILD)/commit: FORCE
 	@mkdir -p $(@D)
 	@echo $(COMMIT) | cmp -s - $@ || echo $(COMMIT) > $@
 FORCE:
+
+ifdef WINDOWS
+include src/windows/rules.mk
+endif
 
 -include $(addprefix $(OBJECTS)/,$(addsuffix .d,$(basename $(SOURCES)))) $(KERNEL_OBJECTS:.o=.d) \
          $(CHARGE_LIBRARY_FORMS:.o=.d) $(MACHINE_LEVELS:.o=.d) $(TEST_LEVELS:.o=.d) $(OBJECTS)/tests/blender/print_frames.d $(OBJECTS)/tests/python/oracle.d

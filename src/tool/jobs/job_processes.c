@@ -18,6 +18,11 @@
 #include <sys/prctl.h>
 #endif
 
+/* macOS lacks it; the tool ignores SIGPIPE anyway. */
+#ifndef MSG_NOSIGNAL
+#define MSG_NOSIGNAL 0
+#endif
+
 enum {
     NO_JOB = -1,
     WAKE_MS = 200,   /* a signal may come just before the wait for results */

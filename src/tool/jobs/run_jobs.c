@@ -130,8 +130,10 @@ static bool take_result(void *user, uint32_t index, const char *bytes, size_t si
 /* ---- preparing ------------------------------------------------------------------------------------------------ */
 
 static uint32_t processor_count(void) {
+#ifdef CPU_COUNT
     cpu_set_t set;
     if (sched_getaffinity(0, sizeof set, &set) == 0) return (uint32_t)CPU_COUNT(&set);
+#endif
     const long online = sysconf(_SC_NPROCESSORS_ONLN);
     return online > 0 ? (uint32_t)online : 1;
 }

@@ -3,22 +3,38 @@
 
 #include <string.h>
 
+/* Where constants lie, in words of the assembler; only ELF has names that are hidden. */
+#if defined(__ELF__)
+#define IN_CONSTANTS ".pushsection .rodata, \"a\"\n"
+#define IN_CODE      ".popsection\n"
+#define HIDE(name)   ".hidden " name "\n"
+#elif defined(_WIN32)
+#define IN_CONSTANTS ".section .rdata, \"dr\"\n"
+#define IN_CODE      ".text\n"
+#define HIDE(name)   ""
+#elif defined(__APPLE__)
+#define IN_CONSTANTS ".section __TEXT, __const\n"
+#define IN_CODE      ".text\n"
+#define HIDE(name)   ".private_extern " name "\n"
+#else
+#error "say here where the assembler of this system puts constants"
+#endif
+
 /* A file as it is, between two names of this program's own; the assembler finds it from the folder of the
  * Makefile. */
 #define PUT_FILE(name, path)                                                                                 \
-    __asm__(".pushsection .rodata, \"a\"\n"                                                                  \
-            ".hidden " name "\n"                                                                             \
-            ".hidden " name "_end\n"                                                                         \
-            ".globl " name "\n"                                                                              \
-            ".globl " name "_end\n" name ":\n"                                                               \
-            ".incbin \"" path "\"\n" name "_end:\n"                                                          \
-            ".byte 0\n"                                                                                      \
-            ".popsection\n")
+    __asm__(IN_CONSTANTS HIDE(name) HIDE(name "_end") ".globl " name "\n"                                    \
+                                                      ".globl " name "_end\n" name ":\n"                     \
+                                                      ".incbin \"" path "\"\n" name "_end:\n"                \
+                                                      ".byte 0\n" IN_CODE)
 
 PUT_FILE("cscd_report_page", "src/tool/report/template.html");
 PUT_FILE("cscd_jobs_page", "src/tool/report/jobs.html");
 
-extern const char cscd_report_page[], cscd_report_page_end[], cscd_jobs_page[], cscd_jobs_page_end[];
+/* By the names that the assembler sees; those of C begin with another character on some systems. */
+extern const char cscd_report_page[] __asm__("cscd_report_page"), cscd_jobs_page[] __asm__("cscd_jobs_page");
+extern const char cscd_report_page_end[] __asm__("cscd_report_page_end");
+extern const char cscd_jobs_page_end[] __asm__("cscd_jobs_page_end");
 
 static const char mark[] = "\n<!--cscd:data-->\n";
 

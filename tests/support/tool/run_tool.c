@@ -6,50 +6,14 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-enum { ARGUMENTS_MAX = 2048, NOT_STARTED = 127 };
-
-static const char *tool_path(void) {
+const char *run_tool_path(void) {
     const char *path = getenv("CSCD_TOOL");
     if (path == NULL || access(path, X_OK) != 0)
         fail_msg("CSCD_TOOL must name the built tool, but is %s; run the tests through tests/run.sh",
                  path != NULL ? path : "not set");
     return path;
-}
-
-/* Opens a file without a name. */
-static int open_capture(void) {
-    FILE *file = tmpfile();
-    assert_non_null(file);
-    int descriptor = dup(fileno(file));
-    assert_true(descriptor >= 0);
-    fclose(file);
-    return descriptor;
-}
-
-tool_process run_tool_start(const char *const *arguments) {
-    const char *path = tool_path();
-    char *list[ARGUMENTS_MAX] = {strdup("cscd")};
-    int count = 1;
-    for (; arguments[count - 1] != NULL; count++) {
-        assert_true(count + 1 < ARGUMENTS_MAX);
-        list[count] = strdup(arguments[count - 1]);
-    }
-    tool_process process = {.out = open_capture(), .error = open_capture()};
-    fflush(NULL);
-    process.pid = fork();
-    assert_true(process.pid >= 0);
-    if (process.pid == 0) {
-        dup2(process.out, STDOUT_FILENO);
-        dup2(process.error, STDERR_FILENO);
-        execv(path, list);
-        _exit(NOT_STARTED);
-    }
-    for (int i = 0; i < count; i++) free(list[i]);
-    return process;
 }
 
 static char *read_capture(int descriptor, size_t *size) {
@@ -65,14 +29,11 @@ static char *read_capture(int descriptor, size_t *size) {
 }
 
 tool_run run_tool_finish(tool_process *process) {
-    int status = 0;
-    struct rusage usage = {0};
-    assert_int_equal(wait4(process->pid, &status, 0, &usage), process->pid);
-    tool_run run = {.code = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status),
-                    .peak_kib = usage.ru_maxrss};
+    tool_run run = {.code = 0};
+    run_tool_wait(process, &run);
     run.out = read_capture(process->out, &run.out_size);
     run.error = read_capture(process->error, NULL);
-    if (run.code == NOT_STARTED) fail_msg("the tool %s cannot be started", tool_path());
+    if (run.code == RUN_TOOL_NOT_STARTED) fail_msg("the tool %s cannot be started", run_tool_path());
     return run;
 }
 

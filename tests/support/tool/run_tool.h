@@ -33,12 +33,18 @@ void run_tool_expect_error(int code, const char *const *texts, const char *const
 
 /* These functions run the tool in two steps, so that a test can act while it runs. */
 typedef struct tool_process {
-    pid_t pid;
+    pid_t pid;      /* on Windows the handle of the process, which fits */
     int out, error; /* open files */
 } tool_process;
 
 tool_process run_tool_start(const char *const *arguments);
 tool_run run_tool_finish(tool_process *process);
+
+/* For the file that starts processes: what CSCD_TOOL names, and the exit code of a tool that could not be started. */
+enum { RUN_TOOL_NOT_STARTED = 127 };
+const char *run_tool_path(void);
+/* Waits for its end, and fills in exit code and peak. */
+void run_tool_wait(const tool_process *process, tool_run *run);
 
 /* Reads a whole file as a string, which the caller frees; the test fails when it cannot be read. size may
  * be NULL. */

@@ -1,0 +1,30 @@
+# What a build for Windows makes otherwise.
+
+# The DLL, its import library, and the list of its functions, of which other compilers make an import library of their own.
+$(SHARED): $(OPENED_OBJECTS) include/cscd/cscd.h
+	@mkdir -p $(@D)
+	$(say) '  LD $@'
+	@{ echo EXPORTS; $(TOOLS)nm -g --defined-only $(OPENED_OBJECTS) | awk '$$2 == "T" && $$3 ~ /^cscd_/ {print "    " $$3}' | sort -u; } \
+	    >$(BUILD)/libcscd-$(MAJOR).def
+	$(Q)$(CC) $(OPTIMISE_$(CONFIG)) -shared -static -pthread -Wl,--out-implib,$(BUILD)/libcscd.dll.a -o $@ $(OPENED_OBJECTS) \
+	    $(BUILD)/libcscd-$(MAJOR).def $(LDFLAGS)
+
+# Objects of Windows have no hidden names, so what is not of the public API gets a prefix that no program has, with the pointers by
+# which other objects reach it.
+$(LIBRARY): $(OPENED_OBJECTS)
+	@mkdir -p $(@D)
+	$(say) '  AR $@'
+	@rm -f $@
+	$(Q)$(TOOLS)ar qcs $@ $^
+	@$(TOOLS)nm -g --defined-only $@ | awk 'NF == 3 && $$3 !~ /^(\.refptr\.)?cscd_/ && $$3 !~ /^\.refptr\.(__|_)/ { \
+	    name = $$3; own = sub(/^\.refptr\./, "", name) ? ".refptr.cscd_own_" name : "cscd_own_" name; print $$3, own}' | \
+	    sort -u >$(BUILD)/own_names.txt
+	$(Q)$(TOOLS)objcopy --redefine-syms=$(BUILD)/own_names.txt $@
+
+# ANSWERS: the file that a Linux run wrote.
+test-windows-run: tool library $(TESTS) $(BUILD)/tests/windows/compare_answers
+	@cp -p $(TOOL) $(TOOL).exe
+	@BUILD=$(BUILD) tests/windows/run.sh $(TESTS) $(BUILD)/tests/windows/compare_answers
+
+# The macros of cmocka take the formats of Microsoft for granted; and what runs once need not be fast, but soon compiled.
+$(addprefix $(OBJECTS)/,tests/% benchmarks/%): CFLAGS_ALL += -Wno-format -Wno-format-extra-args -O1 -g0

@@ -1,0 +1,59 @@
+#!/bin/sh
+# Runs the test programs that are its arguments, built for Windows, under wine, and adds up their totals; `make test-windows` calls it.
+# BUILD is the build folder, ANSWERS the file that a Linux run wrote. Says how many programs ran, and of each that did not, why:
+# tests/windows/left_out.txt. Ends non-zero when anything failed; its last line is `N passed, M failed`.
+set -u
+cd "$(dirname "$0")/../.." || exit 1
+: "${BUILD:?BUILD must name the build folder}"
+BUILD=$(cd "$BUILD" && pwd) || exit 1
+WINE=${WINE:-$(command -v wine64 || echo /usr/lib/wine/wine64)}
+SERVER=${WINESERVER:-$(command -v wineserver64 || echo /usr/lib/wine/wineserver64)}
+[ -x "$WINE" ] || { echo 'run.sh: there is no wine64 (Debian: wine64)' >&2; exit 1; }
+logs=$(mktemp -d) || exit 1
+
+# A prefix of its own, without the windows and menus that a new one asks for; it is short, as sockets want it.
+WINEPREFIX=$BUILD/wine
+WINEDEBUG=-all
+WINEDLLOVERRIDES='winemenubuilder.exe,mscoree,mshtml='
+CSCD_TOOL=$BUILD/cscd.exe
+CSCD_MODELS=$BUILD/models
+TMPDIR=$logs/files
+CSCD_ANSWERS=${ANSWERS:-}
+export WINEPREFIX WINEDEBUG WINEDLLOVERRIDES CSCD_TOOL CSCD_MODELS TMPDIR CSCD_ANSWERS
+mkdir "$TMPDIR"
+trap '"$SERVER" -k 2>/dev/null; rm -rf "$logs"' EXIT
+"$SERVER" -p
+"$WINE" wineboot -i >/dev/null 2>&1 || "$WINE" cmd /c exit >/dev/null 2>&1
+
+passed=0 failed=0 ran=0 failures=''
+total() { # total WORD LOG: the N of cmocka's line `[  WORD  ] N test(s)`
+    tr -d '\r' <"$2" | sed -n "s/^\[  $1  \] \(.*: \)\{0,1\}\([0-9][0-9]*\) test(s).*/\2/p" | tail -1
+}
+add_up() {
+    name=$(echo "$1" | sed 's:.*/\([^/]*/[^/]*\)$:\1:')
+    log=$logs/$(echo "$1" | tr / :)
+    status=$(cat "$log.status")
+    good=$(total PASSED "$log")
+    bad=$(total FAILED "$log")
+    if [ -z "$good$bad" ] || { [ "$status" != 0 ] && [ "${bad:-0}" = 0 ]; }; then
+        echo "$name: ended with status $status"
+        bad=1
+    fi
+    passed=$((passed + ${good:-0}))
+    failed=$((failed + ${bad:-0}))
+    ran=$((ran + 1))
+    [ "${bad:-0}" = 0 ] || { failures="$failures $name"; grep -aE 'ERROR|error|FAILED|\.c:[0-9]|exit code|std(out|err):|Unhandled|rip:' "$log" | head -20; }
+}
+
+printf '%s\n' "$@" | WINE=$WINE xargs -P "${JOBS:-$(nproc)}" -I PROGRAM sh -c '
+    log=$2/$(echo "$1" | tr / :)
+    timeout 600 "$WINE" "$1" >"$log" 2>&1
+    echo "$?" >"$log.status"' sh PROGRAM "$logs"
+for program in "$@"; do add_up "$program"; done
+
+left=$(grep -c '^tests/' tests/windows/left_out.txt)
+echo "$ran programs ran under $("$WINE" --version); $left did not:"
+sed -n 's/^tests\//  /p' tests/windows/left_out.txt
+[ -z "$failures" ] || echo "failed:$failures"
+echo "$passed passed, $failed failed"
+[ "$failed" = 0 ]
