@@ -71,17 +71,17 @@ LEVEL_neon   := -DSIMD_LEVEL=3
 CFLAGS_ALL := -std=c11 -D_GNU_SOURCE $(OPTIMISE_$(CONFIG)) $(WARNINGS) -ffp-contract=off -fvisibility=hidden -fPIC -fexceptions \
               -Wno-psabi -pthread -MMD -MP -Iinclude -I. $(CORE_DEFINITIONS) $(CFLAGS)
 LINK_ALL   := $(OPTIMISE_$(CONFIG)) -pthread $(LDFLAGS)
-# libcscd.so opens libcscd-charge.so when it needs it; libcscd.a has it inside, unless CHARGE=0. (Where dlopen is in libc,
-# -ldl is an empty archive.)
+# libcscd.so and the tool open libcscd-charge.so when they need it; libcscd.a has it inside, unless CHARGE=0. (Where dlopen is
+# in libc, -ldl is an empty archive.)
 SHARED_LIBS := $(if $(filter 0,$(GSL)),,-lgsl) -lm -ldl
 CHARGE_LIBS := -llapacke -lopenblas -lm
 STATIC_LIBS := $(if $(filter 0,$(GSL)),,-lgsl) $(if $(filter 0,$(CHARGE)),-lm -ldl,$(CHARGE_LIBS))
 EXPAT_LIBS  := $(if $(filter 0,$(EXPAT)),,$(call packaged,--libs expat,-lexpat))
-TOOL_LIBS   := $(call packaged,--libs libpng zlib json-c,-lpng -lz -ljson-c) $(EXPAT_LIBS) $(STATIC_LIBS)
+TOOL_LIBS   := $(call packaged,--libs libpng zlib json-c,-lpng -lz -ljson-c) $(EXPAT_LIBS) $(SHARED_LIBS)
 TEST_LIBS   := -lcmocka -lflint-arb -lflint -lgmp $(TOOL_LIBS) $(CHARGE_LIBS)
 
 # A file that ends in _simd.c is compiled once per instruction set. Charge is a library of its own.
-# src/blas says which kernels OpenBLAS runs, to it and to the tool.
+# src/blas says which kernels OpenBLAS runs.
 CHARGE_SOURCES  := $(wildcard preprocess/charge/*.c src/blas/*.c)
 CORE_FILES      := $(wildcard src/core/*.c src/mesh/*.c preprocess/*.c preprocess/*/*.c runtime/*/*.c runtime/*/*/*.c)
 CORE_SOURCES    := $(filter-out %_simd.c runtime/ccd/cubic_guess_$(if $(filter 0,$(GSL)),gsl,own).c \
@@ -91,7 +91,7 @@ KERNEL_SOURCES  := $(filter %_simd.c,$(CORE_FILES))
 WITHOUT_GIFTI   := src/io/gifti/no_gifti.c
 OTHER_PROCESSES := src/tool/jobs/job_processes$(if $(WINDOWS),,_windows).c
 COMMON_SOURCES  := $(filter-out $(OTHER_PROCESSES) $(if $(filter 0,$(EXPAT)),$(filter-out $(WITHOUT_GIFTI),$(wildcard src/io/gifti/*.c)),$(WITHOUT_GIFTI)), \
-                     $(wildcard src/blas/*.c src/io/*.c src/io/*/*.c src/tool/picture/*.c src/tool/common/*.c src/tool/answers/*.c \
+                     $(wildcard src/io/*.c src/io/*/*.c src/tool/picture/*.c src/tool/common/*.c src/tool/answers/*.c \
                      src/tool/jobs/*.c src/tool/export/*.c src/tool/report/*.c))
 COMMAND_SOURCES := $(wildcard src/tool/*.c src/tool/check/*.c src/tool/replay/*.c src/tool/render/*.c src/tool/sense/*.c)
 NATIVE_SOURCES  := $(wildcard python/native/*.c)
@@ -149,6 +149,8 @@ OPENED_OBJECTS := $(CORE_OBJECTS) $(OBJECTS)/preprocess/charge_library.opened.o
 COMMON_OBJECTS := $(call objects,$(COMMON_SOURCES))
 IO_OBJECTS     := $(call objects,$(filter src/io/%,$(COMMON_SOURCES)))
 LIBRARY := $(BUILD)/libcscd.a
+# The library of the tool and of the programs of models/ in C, which is not installed.
+OPENING_LIBRARY := $(if $(WINDOWS),$(LIBRARY),$(BUILD)/libcscd-opening.a)
 SHARED  := $(BUILD)/$(if $(WINDOWS),libcscd-$(MAJOR).dll,libcscd.so.$(VERSION))
 CHARGE_SHARED := $(if $(filter 0,$(CHARGE)),,$(BUILD)/libcscd-charge.so.$(VERSION))
 TOOL    := $(BUILD)/cscd
@@ -542,15 +544,17 @@ help:
 	@echo 'make examples  compile and run the examples of README and docs'
 	@echo 'make format    clang-format all sources; make clean removes build/'
 
-# The library is one relocatable object in which everything but the public API is local.
+# A static library is one relocatable object in which everything but the public API is local.
 ifndef WINDOWS
 $(LIBRARY): $(if $(filter 0,$(CHARGE)),$(OPENED_OBJECTS),$(LINKED_OBJECTS))
+$(OPENING_LIBRARY): $(OPENED_OBJECTS)
+$(LIBRARY) $(OPENING_LIBRARY):
 	@mkdir -p $(@D)
 	$(say) '  AR $@'
-	$(Q)$(TOOLS)ld -r -o $(BUILD)/cscd.o $^
-	$(Q)$(TOOLS)objcopy --localize-hidden $(BUILD)/cscd.o
+	$(Q)$(TOOLS)ld -r -o $(@:.a=.o) $^
+	$(Q)$(TOOLS)objcopy --localize-hidden $(@:.a=.o)
 	@rm -f $@
-	$(Q)$(TOOLS)ar rcs $@ $(BUILD)/cscd.o
+	$(Q)$(TOOLS)ar rcs $@ $(@:.a=.o)
 endif
 
 # The shared library names the libraries that it needs, so that a user links -lcscd alone. The functions of sanitizers
@@ -588,15 +592,16 @@ $(BUILD)/cscd.map: src/packaging/cscd.map.in include/cscd/cscd.h
 	@mkdir -p $(@D)
 	@sed 's/@MAJOR@/$(MAJOR)/g' $< > $@
 
-# The tool uses the public API alone, so it links the library and not its objects.
-$(TOOL): $(call objects,$(COMMAND_SOURCES)) $(COMMON_OBJECTS) $(LIBRARY)
+# The tool uses the public API alone, so it links the library and not its objects. It opens the charge library, which stands
+# beside it here, and in the prefix where it is installed.
+$(TOOL): $(call objects,$(COMMAND_SOURCES)) $(COMMON_OBJECTS) $(OPENING_LIBRARY) | $(CHARGE_SHARED)
 	@mkdir -p $(@D)
 	$(say) '  LD $@'
 	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
 
 # models/*.c are programs, and models/*/ has their parts; they use the public API alone, too.
 MODEL_PART_OBJECTS := $(call objects,$(MODEL_PARTS))
-$(C_MODELS): $(BUILD)/models/%: $(OBJECTS)/models/%.o $(MODEL_PART_OBJECTS) $(IO_OBJECTS) $(LIBRARY)
+$(C_MODELS): $(BUILD)/models/%: $(OBJECTS)/models/%.o $(MODEL_PART_OBJECTS) $(IO_OBJECTS) $(OPENING_LIBRARY)
 	@mkdir -p $(@D)
 	$(say) '  LD $@'
 	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
@@ -623,7 +628,7 @@ $(OBJECTS)/benchmarks/peers/cgal_peer.o: OPTIMISE_$(CONFIG) += -DNDEBUG -froundi
 $(BENCHMARKS) $(BUILD)/benchmarks/peers: $(BUILD)/benchmarks/%: $(OBJECTS)/benchmarks/%.o $(BUILD)/benchmarks/lib.a $(BUILD)/inside.a
 	@mkdir -p $(@D)
 	$(say) '  LD $@'
-	$(Q)$(CC) $(LINK_ALL) -Wl,--as-needed -o $@ $(filter %.o,$^) $(filter %.a,$^) $(TOOL_LIBS) -lgmp $(PEER_LIBS)
+	$(Q)$(CC) $(LINK_ALL) -Wl,--as-needed -o $@ $(filter %.o,$^) $(filter %.a,$^) $(TOOL_LIBS) $(CHARGE_LIBS) -lgmp $(PEER_LIBS)
 
 # Tests use internals: they link the objects and libraries that they need and no others, because a test of the tool's
 # memory must be smaller than the tool.
@@ -689,9 +694,11 @@ $(OBJECTS)/%.o: %.cpp
 # Without errno in square roots and without traps in comparisons; otherwise its loops are not vectorised.
 $(OBJECTS)/preprocess/charge/potential.o: CFLAGS_ALL += -fno-math-errno -fno-trapping-math
 
-# One file, compiled twice.
+# One file, compiled twice. Some systems have the libraries of a prefix in a folder for their machine.
+MULTIARCH := $(shell $(CC) -print-multiarch 2>/dev/null)
 CHARGE_LIBRARY_FORMS := $(foreach form,linked opened,$(OBJECTS)/preprocess/charge_library.$(form).o)
 $(OBJECTS)/preprocess/charge_library.linked.o: CFLAGS_ALL += -DCHARGE_LINKED
+$(OBJECTS)/preprocess/charge_library.opened.o: CFLAGS_ALL += $(if $(MULTIARCH),-DCHARGE_MULTIARCH='"$(MULTIARCH)"')
 $(CHARGE_LIBRARY_FORMS): preprocess/charge_library.c
 	@mkdir -p $(@D)
 	$(say) '  CC $< ($(@F))'

@@ -46,7 +46,7 @@ static uint32_t charged_triangles(const void *data, uint32_t component) {
 static charge_problem problem_of(const cscd_mesh *mesh, const double *positions, size_t memory_limit) {
     return (charge_problem){
         .host = {mesh->context, allocate_block, release_block, run_tasks, enter_part, enter_stage, go_on,
-                 progress_status, explain_failure},
+                 progress_status, explain_failure, parallel_thread_count(mesh->context->threads)},
         .triangles = (const uint32_t(*)[3])mesh->triangles,
         .triangle_components = mesh->triangle_components,
         .positions = positions,

@@ -1,5 +1,7 @@
-/* Where the charge library is. Compiled twice: with CHARGE_LINKED it is linked, in libcscd.a, in the tool and in tests;
- * without, it is opened at the first call that needs it, by libcscd.so and by builds with CHARGE=0; Windows has none. */
+/* Where the charge library is. Compiled twice: with CHARGE_LINKED it is linked, in libcscd.a and in tests; without, it
+ * is opened at the first call that needs it, by libcscd.so, by the tool, and by builds with CHARGE=0. OpenBLAS starts
+ * threads as soon as it is loaded, which takes tens of milliseconds, and hangs where a limit (`ulimit -v`) leaves them
+ * no memory. Windows has none. */
 #include "preprocess/charge_call.h"
 
 #ifdef CHARGE_LINKED
@@ -24,8 +26,12 @@ cscd_status charge_library_find(cscd_context *context, const charge_functions **
 #else
 
 #include <dlfcn.h>
+#include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #define TEXT_OF_VALUE(x) #x
@@ -34,34 +40,97 @@ cscd_status charge_library_find(cscd_context *context, const charge_functions **
 
 enum { PATH_SIZE = 4096 };
 
-/* Writes where the library is if it stands in the folder of the file that this function is in. */
-static bool path_beside(char path[PATH_SIZE]) {
-    Dl_info here;
-    if (dladdr((void *)(uintptr_t)path_beside, &here) == 0 || here.dli_fname == NULL) return false;
-    const char *slash = strrchr(here.dli_fname, '/');
+/* Writes where the library would be that stands in the folder of a file, or in one that `beside` leads to from there.
+ * Does it? */
+static bool stands_by(const char *file, const char *beside, char path[PATH_SIZE]) {
+    const char *slash = strrchr(file, '/');
     if (slash == NULL) return false;
-    int folder = (int)(slash - here.dli_fname);
-    int length = snprintf(path, PATH_SIZE, "%.*s/" LIBRARY_NAME, folder, here.dli_fname);
-    return length > 0 && length < PATH_SIZE;
+    int length = snprintf(path, PATH_SIZE, "%.*s/%s" LIBRARY_NAME, (int)(slash - file), file, beside);
+    return length > 0 && length < PATH_SIZE && access(path, F_OK) == 0;
+}
+
+/* Returns the path of a file that was loaded under this name, without links on the way; NULL: unknown. A program has
+ * the name that its caller has typed, so the system is asked where it is. To be freed. */
+static char *own_path(const char *name) {
+#ifdef __GLIBC__
+    if (strcmp(name, program_invocation_name) == 0) return realpath("/proc/self/exe", NULL);
+#endif
+    return realpath(name, NULL);
+}
+
+/* A program in PREFIX/bin has it in PREFIX/lib, or wherever a system has the libraries of a prefix. */
+static bool stands_in_prefix(const char *file, char path[PATH_SIZE]) {
+    const char *slash = strrchr(file, '/');
+    if (slash == NULL || slash - file < 4 || strncmp(slash - 4, "/bin", 4) != 0) return false;
+#ifdef CHARGE_MULTIARCH
+    if (stands_by(file, "../lib/" CHARGE_MULTIARCH "/", path)) return true;
+#endif
+    return stands_by(file, "../lib/", path) || stands_by(file, "../lib64/", path);
+}
+
+/* Looks beside the file that this function is in, under the name by which it was loaded and under its own. */
+static bool find_library(char path[PATH_SIZE]) {
+    Dl_info here;
+    if (dladdr((void *)(uintptr_t)find_library, &here) == 0 || here.dli_fname == NULL) return false;
+    if (stands_by(here.dli_fname, "", path)) return true;
+    char *file = own_path(here.dli_fname);
+    bool found = file != NULL && (stands_by(file, "", path) || stands_in_prefix(file, path));
+    free(file);
+    return found;
+}
+
+/* OpenBLAS starts so many threads when it is loaded, and nothing but these variables changes that. */
+static size_t blas_threads(void) {
+    static const char *const variables[] = {"OPENBLAS_NUM_THREADS", "GOTO_NUM_THREADS", "OMP_NUM_THREADS"};
+    long count = 0;
+    for (int i = 0; i < 3 && count <= 0; i++) {
+        const char *value = getenv(variables[i]);
+        if (value != NULL) count = strtol(value, NULL, 10);
+    }
+    if (count <= 0) count = sysconf(_SC_NPROCESSORS_ONLN);
+    return count > 0 ? (size_t)count : 1;
+}
+
+/* Measured with OpenBLAS 0.3.21: what it takes of the address space in all, and for each thread that it starts. */
+enum { BLAS_MEBIBYTES = 60, BLAS_THREAD_MEBIBYTES = 140 };
+
+/* Where a limit (`ulimit -v`) leaves less, OpenBLAS hangs as it is loaded. */
+static bool has_room(size_t mebibytes) {
+    struct rlimit limit;
+    if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return true;
+    void *room = mmap(NULL, mebibytes << 20, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (room != MAP_FAILED) munmap(room, mebibytes << 20);
+    return room != MAP_FAILED;
 }
 
 /* RTLD_NODELETE: it stays when it is closed, so nothing has to be remembered here, and the threads of its BLAS never
  * lose their code. RTLD_LOCAL: its BLAS does not become that of the program. */
-static void *open_library(void) {
+static cscd_status open_library(cscd_context *context, void **out) {
     const int flags = RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE;
     char path[PATH_SIZE];
-    bool beside = path_beside(path) && access(path, F_OK) == 0;
-    return dlopen(beside ? path : LIBRARY_NAME, flags);
+    const char *name = find_library(path) ? path : LIBRARY_NAME;
+    size_t threads = blas_threads(), needed = BLAS_MEBIBYTES + BLAS_THREAD_MEBIBYTES * (threads - 1);
+    *out = dlopen(name, flags | RTLD_NOLOAD);
+    if (*out != NULL) return CSCD_OK;
+    if (!has_room(needed))
+        return context_fail(
+            context, CSCD_OUT_OF_MEMORY,
+            "method charge: OpenBLAS, with %zu threads, takes %zu MiB of address space, and a limit "
+            "(ulimit -v) leaves less; raise it, or set OPENBLAS_NUM_THREADS=1 before the program starts",
+            threads, needed);
+    *out = dlopen(name, flags);
+    if (*out != NULL) return CSCD_OK;
+    return context_fail(
+        context, CSCD_SYSTEM_ERROR,
+        "method charge needs " LIBRARY_NAME
+        " beside libcscd.so (a build with CHARGE=1 makes it; kmeans and single need nothing): %s",
+        dlerror());
 }
 
 cscd_status charge_library_find(cscd_context *context, const charge_functions **out) {
-    void *library = open_library();
-    if (library == NULL)
-        return context_fail(
-            context, CSCD_SYSTEM_ERROR,
-            "method charge needs " LIBRARY_NAME
-            " beside libcscd.so (a build with CHARGE=1 makes it; kmeans and single need nothing): %s",
-            dlerror());
+    void *library;
+    cscd_status status = open_library(context, &library);
+    if (status != CSCD_OK) return status;
     charge_entry *entry;
     void *symbol = dlsym(library, CHARGE_ENTRY_NAME);
     memcpy(&entry, &symbol, sizeof entry);

@@ -5,7 +5,7 @@
 
 #include "cscd/cscd.h"
 
-#define CHARGE_INTERFACE 2u
+#define CHARGE_INTERFACE 3u
 
 /* What the charge library asks of its caller, each with `context`. run, part, stage and go_on are parallel_run and the
  * functions of progress.h, and progress is context_progress_status. */
@@ -19,6 +19,7 @@ typedef struct charge_host {
     bool (*go_on)(void *context, double share); /* from any thread, as run's tasks */
     cscd_status (*progress)(void *context);
     void (*explain)(void *context, cscd_status status, const char *sentence); /* of a failure */
+    uint32_t threads; /* so many tasks run at a time, at most */
 } charge_host;
 
 /* Triangles of all components, of which those are charged that `charged_triangles` gives a count for: all triangles of

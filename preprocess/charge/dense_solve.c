@@ -8,17 +8,27 @@
  * cancelled. */
 #include "preprocess/charge/dense_solve.h"
 
-#include <cblas.h>
 #include <lapacke.h>
 #include <pthread.h>
 #include <stddef.h>
+#include <stdio.h>
+#include <sys/mman.h>
 
 _Static_assert(sizeof(lapack_int) == sizeof(int32_t), "LAPACKE with 64-bit integers");
 
 /* Measured (docs/theory/charge.md): narrower panels make the products thin, wider ones leave few tasks. */
 enum { PANEL_WIDTH = 256 };
 
-/* ---- OpenBLAS's threads ------------------------------------------------------------------------------- */
+/* BLAS by its Fortran names. GSL's own library has its C names (cblas_sgemm), and where GSL is loaded before OpenBLAS,
+ * which libcscd-charge.so brings, those would be found: right, but some seven times slower. */
+void sgemm_(const char *transposes_a, const char *transposes_b, const lapack_int *m, const lapack_int *n,
+            const lapack_int *k, const float *alpha, const float *a, const lapack_int *lda, const float *b,
+            const lapack_int *ldb, const float *beta, float *c, const lapack_int *ldc);
+void strsm_(const char *side, const char *triangle, const char *transposes, const char *diagonal,
+            const lapack_int *m, const lapack_int *n, const float *alpha, const float *a,
+            const lapack_int *lda, float *b, const lapack_int *ldb);
+
+/* ---- OpenBLAS's threads and buffers ------------------------------------------------------------------- */
 
 /* OpenBLAS keeps one thread count for the whole process. While we are in it, on any thread, it is 1, since
  * the tasks are ours; the first to come stores the count and the last to go restores it. The lock is held for
@@ -31,19 +41,41 @@ static pthread_mutex_t blas_lock = PTHREAD_MUTEX_INITIALIZER;
 static uint32_t blas_users;
 static int blas_threads_before;
 
-static void begin_single_thread(void) {
-    if (openblas_set_num_threads == NULL || openblas_get_num_threads == NULL) return;
+/* Each thread that computes in OpenBLAS takes a buffer of this size (BUFFER_SIZE of common_x86_64.h; less elsewhere),
+ * which OpenBLAS then keeps. Where the system has no room for it, as under `ulimit -v`, OpenBLAS asks again and again,
+ * for ever. So we ask first, for those that it has not had room for before. */
+static const size_t blas_buffer_size = (size_t)128 << 20;
+static size_t buffers_wanted, buffers_had;
+
+static bool buffers_fit(size_t lanes) {
+    if (buffers_wanted + lanes <= buffers_had) return true;
+    size_t more = buffers_wanted + lanes - buffers_had;
+    void *room =
+        mmap(NULL, more * blas_buffer_size, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (room == MAP_FAILED) return false;
+    munmap(room, more * blas_buffer_size);
+    buffers_had += more;
+    return true;
+}
+
+/* lanes: so many threads will compute at a time. False: there is no room for their buffers. */
+static bool begin_single_thread(size_t lanes) {
+    if (openblas_set_num_threads == NULL || openblas_get_num_threads == NULL) return true;
     pthread_mutex_lock(&blas_lock);
-    if (blas_users++ == 0) {
+    bool fit = buffers_fit(lanes);
+    if (fit) buffers_wanted += lanes;
+    if (fit && blas_users++ == 0) {
         blas_threads_before = openblas_get_num_threads();
         openblas_set_num_threads(1);
     }
     pthread_mutex_unlock(&blas_lock);
+    return fit;
 }
 
-static void end_single_thread(void) {
+static void end_single_thread(size_t lanes) {
     if (openblas_set_num_threads == NULL || openblas_get_num_threads == NULL) return;
     pthread_mutex_lock(&blas_lock);
+    buffers_wanted -= lanes;
     if (--blas_users == 0) openblas_set_num_threads(blas_threads_before);
     pthread_mutex_unlock(&blas_lock);
 }
@@ -88,10 +120,13 @@ static void update_columns(const factoring *f, uint32_t first, uint32_t last) {
     lapack_int n = (lapack_int)f->count, width = (lapack_int)(end - begin);
     lapack_int columns = (lapack_int)(last - first);
     swap_rows(f, begin, end, first, last);
-    cblas_strsm(CblasColMajor, CblasLeft, CblasLower, CblasNoTrans, CblasUnit, width, columns, 1.0f,
-                entry_at(f, begin, begin), n, entry_at(f, begin, first), n);
-    cblas_sgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, n - (lapack_int)end, columns, width, -1.0f,
-                entry_at(f, end, begin), n, entry_at(f, begin, first), n, 1.0f, entry_at(f, end, first), n);
+    const float one = 1.0f, minus_one = -1.0f;
+    lapack_int below = n - (lapack_int)end;
+    strsm_("L", "L", "N", "U", &width, &columns, &one, entry_at(f, begin, begin), &n,
+           entry_at(f, begin, first), &n);
+    if (below == 0) return;
+    sgemm_("N", "N", &below, &columns, &width, &minus_one, entry_at(f, end, begin), &n,
+           entry_at(f, begin, first), &n, &one, entry_at(f, end, first), &n);
 }
 
 /* A task: updates one of the panels to come; the next one is factored, too. */
@@ -117,9 +152,13 @@ static double share_done(const factoring *f) {
     return 1.0 - left * left * left;
 }
 
+static uint32_t panels_of(uint32_t count) {
+    return count / PANEL_WIDTH + (count % PANEL_WIDTH != 0);
+}
+
 static cscd_status factor_panels(factoring *f) {
     const charge_host *host = f->host;
-    uint32_t panels = f->count / PANEL_WIDTH + (f->count % PANEL_WIDTH != 0);
+    uint32_t panels = panels_of(f->count);
     f->end = smaller_count(f->count, PANEL_WIDTH);
     factor_panel(f, 0, f->end);
     for (uint32_t left = panels - 1; left > 0; left--) {
@@ -135,19 +174,31 @@ static cscd_status factor_panels(factoring *f) {
     return CSCD_OK;
 }
 
+static cscd_status fail_without_room(const charge_host *host, uint32_t lanes) {
+    char sentence[256];
+    snprintf(
+        sentence, sizeof sentence,
+        "charge: OpenBLAS needs %zu MiB of address space for buffers, one for each of %u threads, and a limit "
+        "(ulimit -v) leaves less; raise it, or use fewer threads",
+        lanes * (blas_buffer_size >> 20), (unsigned)lanes);
+    host->explain(host->context, CSCD_OUT_OF_MEMORY, sentence);
+    return CSCD_OUT_OF_MEMORY;
+}
+
 cscd_status dense_factor(const charge_host *host, float *matrix, uint32_t count, int32_t *pivots,
                          uint32_t *zero_pivot) {
     factoring f = {.host = host, .matrix = matrix, .pivots = pivots, .count = count};
-    begin_single_thread();
+    uint32_t lanes = smaller_count(host->threads, panels_of(count));
+    if (!begin_single_thread(lanes)) return fail_without_room(host, lanes);
     cscd_status status = factor_panels(&f);
-    end_single_thread();
+    end_single_thread(lanes);
     *zero_pivot = f.zero_pivot;
     return status;
 }
 
 void dense_substitute(const float *factors, uint32_t count, const int32_t *pivots, float *vector) {
     lapack_int n = (lapack_int)count;
-    begin_single_thread();
+    begin_single_thread(0); /* there is a buffer since the factors were made */
     LAPACKE_sgetrs_work(LAPACK_COL_MAJOR, 'N', n, 1, factors, n, pivots, vector, n);
-    end_single_thread();
+    end_single_thread(0);
 }

@@ -14,6 +14,6 @@ static void hold_standard_files(void) {
 
 int main(int argument_count, char **arguments) {
     hold_standard_files();
-    blas_kernels_run_again(arguments);
+    blas_kernels_own_process();
     return tool_run(argument_count, arguments);
 }

@@ -164,7 +164,7 @@ static bool show_progress(void *user, const char *stage, double fraction) {
 static bool make_plan(const preprocess_options *o, recording *r, const double *positions, io_error *error) {
     cscd_plan *plan = NULL;
     cscd_plan_options options = o->plan;
-    if (options.method == CSCD_METHOD_CHARGE && !o->quiet) blas_kernels_warn();
+    if (options.method == CSCD_METHOD_CHARGE) blas_kernels_prepare(!o->quiet);
     options.variant = o->published ? CSCD_PLAN_VARIANT_PUBLISHED : 0;
     cscd_status status = cscd_plan_create(
         r->context, r->mesh, CSCD_DOUBLES(positions, cscd_mesh_vertex_count(r->mesh)), &options, &plan);

@@ -1,5 +1,6 @@
-/* The shared library opens libcscd-charge.so when a plan by charge is made: beside itself, or where the system looks.
- * Without it, or with a wrong one, that call fails with a sentence and everything else works. */
+/* The shared library opens libcscd-charge.so when a plan by charge is made: beside itself, or where the system looks; and
+ * so does the tool, beside itself or in its prefix. Without it, or with a wrong one, that call fails with a sentence and
+ * everything else works, also where OpenBLAS would hang. */
 #include "cscd/cscd.h"
 #include "tests/support/shell.h"
 #include "tests/support/temp_file.h"
@@ -113,6 +114,101 @@ static void is_opened_when_it_is_needed(void **state) {
     shell("rm '%s/lib/%s'", folder.path, charge_name);
 }
 
+/* GSL, which libcscd.so needs, has its own cblas_sgemm, which would be found first. */
+static void takes_no_blas_of_others(void **state) {
+    (void)state;
+    char *names =
+        shell_output(0, "nm -D --undefined-only '%s/%s' | grep -c cblas_ || true", build, charge_name);
+    assert_string_equal(names, "0\n");
+    free(names);
+}
+
+/* A plan fails with a sentence where OpenBLAS would hang as it is loaded, which each of its threads makes likelier, or
+ * where it would hang as it computes. */
+static void a_host_needs_little_memory(void **state) {
+    static const char *const sentences[] = {"takes 60 MiB of address space", "takes 340 MiB of address space",
+                                            "128 MiB of address space for buffers"};
+    static const int mebibytes[] = {50, 320, 150}, threads[] = {1, 3, 1};
+    (void)state;
+    shell("cp '%s/%s' '%s/lib'", build, charge_name, folder.path);
+    for (int i = 0; i < 3; i++) {
+        char *printed = shell_output(0, "ulimit -v %d; OPENBLAS_NUM_THREADS=%d timeout 20 '%s/opens'",
+                                     mebibytes[i] * 1024, threads[i], folder.path);
+        if (strstr(printed, sentences[i]) == NULL) fail_msg("%d MiB: %s", mebibytes[i], printed);
+        assert_non_null(strstr(printed, "from parts"));
+        free(printed);
+    }
+    shell("rm '%s/lib/%s'", folder.path, charge_name);
+}
+
+/* ---- the tool --------------------------------------------------------------------------------------- */
+
+/* Writes the model, and a prefix with the tool alone. */
+static void lay_out_prefix(const char *libraries) {
+    shell("mkdir -p '%s/prefix/bin' '%s/prefix/%s' && cp '%s/cscd' '%s/prefix/bin'", folder.path, folder.path,
+          libraries, build, folder.path);
+    shell(
+        "printf 'v 0 0 0\\nv 1 0 0\\nv 0 1 0\\nv 0 0 1\\nf 1 3 2\\nf 1 2 4\\nf 2 3 4\\nf 1 4 3\\n' >'%s/model.obj'",
+        folder.path);
+}
+
+/* Runs the tool, as the shell finds it by `call`, in the prefix' folder of programs; returns what it says. */
+static char *make_plan_by(const char *call, int status) {
+    return shell_output(
+        status,
+        "cd '%s/prefix/bin' && PATH=.:$PATH %s preprocess ../../model.obj -o ../../plan.ply --method "
+        "charge 2>&1",
+        folder.path, call);
+}
+
+static void expect_plan_by(const char *call) {
+    char *said = make_plan_by(call, 0);
+    if (strncmp(said, "written: ", 9) != 0 && strstr(said, "\nwritten: ") == NULL)
+        fail_msg("%s: %s", call, said);
+    free(said);
+}
+
+/* By its path, by its name alone, by a link from another folder, and under another name than its own. */
+static void the_tool_looks_in_its_prefix(void **state) {
+    char *machine = shell_output(0, "echo lib/$(${CC:-cc} -print-multiarch)");
+    machine[strcspn(machine, "\n")] = '\0'; /* lib/ where the system has no such folders */
+    const char *libraries[] = {"bin", "lib", "lib64", machine};
+    (void)state;
+    for (int i = 0; i < 4; i++) {
+        lay_out_prefix(libraries[i]);
+        char *said = make_plan_by("cscd", 1);
+        assert_non_null(strstr(said, charge_name));
+        free(said);
+        shell("cp '%s/%s' '%s/prefix/%s'", build, charge_name, folder.path, libraries[i]);
+        shell("ln -sfn prefix/bin/cscd '%s/link'", folder.path);
+        expect_plan_by("./cscd");
+        expect_plan_by("cscd");
+        expect_plan_by("../../link");
+        expect_plan_by("bash -c 'exec -a other ./cscd \"$@\"' -");
+        shell("rm -rf '%s/prefix'", folder.path);
+    }
+    free(machine);
+}
+
+/* OpenBLAS hangs in so little memory when it is loaded, and when a thread computes in it. */
+static void the_tool_needs_little_memory(void **state) {
+    (void)state;
+    lay_out_prefix("lib");
+    shell("cp '%s/%s' '%s/prefix/lib'", build, charge_name, folder.path);
+    for (int mebibytes = 60; mebibytes <= 140; mebibytes += 40) {
+        shell("ulimit -v %d; timeout 20 '%s/prefix/bin/cscd' info '%s/model.obj' >'%s/printed'",
+              mebibytes * 1024, folder.path, folder.path, folder.path);
+        char *said =
+            shell_output(1,
+                         "ulimit -v %d; timeout 20 '%s/prefix/bin/cscd' preprocess '%s/model.obj' -o "
+                         "'%s/plan.ply' --method charge 2>&1",
+                         mebibytes * 1024, folder.path, folder.path, folder.path);
+        assert_non_null(strstr(said, "MiB of address space"));
+        free(said);
+    }
+    shell("rm -rf '%s/prefix'", folder.path);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(is_looked_for_beside_the_library),
@@ -121,6 +217,10 @@ int main(void) {
         cmocka_unit_test(is_damaged),
         cmocka_unit_test(is_of_another_version),
         cmocka_unit_test(is_opened_when_it_is_needed),
+        cmocka_unit_test(takes_no_blas_of_others),
+        cmocka_unit_test(a_host_needs_little_memory),
+        cmocka_unit_test(the_tool_looks_in_its_prefix),
+        cmocka_unit_test(the_tool_needs_little_memory),
     };
     return cmocka_run_group_tests_name("charge_library", tests, build_clients, remove_all);
 }

@@ -5,6 +5,7 @@
 #include "src/io/path_name.h"
 #include "src/io/plan_file.h"
 #include "src/io/text_escape.h"
+#include "src/tool/common/blas_kernels.h"
 #include "src/tool/common/methods.h"
 
 #include <stdio.h>
@@ -93,6 +94,7 @@ static bool make_plan(const plan_request *request, cscd_method method, const rec
     if (positions == NULL) return io_fail(error, "out of memory");
     cscd_plan *plan = NULL;
     recording_rest(r, positions);
+    if (method == CSCD_METHOD_CHARGE) blas_kernels_prepare(false);
     bool made =
         cscd_plan_create(r->context, r->mesh, CSCD_DOUBLES(positions, cscd_mesh_vertex_count(r->mesh)),
                          &options, &plan) == CSCD_OK;
