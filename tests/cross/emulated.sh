@@ -75,7 +75,7 @@ done
 
 # ---- run
 
-make --no-print-directory tool build/release/models/record
+make --no-print-directory tool build/release/models/record build/release/models/shape build/release/models/mannequin
 if [ "$1" = all ]; then
     cross programs
 else
@@ -89,5 +89,5 @@ status=0
 # shellcheck disable=SC2086
 CSCD_DATA='' BUILD=$build tests/run.sh $programs || status=1
 [ "$skipped" = 0 ] || echo "$skipped programs left out, with reasons above"
-tests/cross/same_bits.sh build/release/cscd $build/cscd build/release/models/record "$1" || status=1
+tests/cross/same_bits.sh build/release/cscd $build/cscd build/release/models/record "$1" build/release || status=1
 exit $status

@@ -1,8 +1,10 @@
 #!/bin/sh
-# Two builds of the tool replay recordings that are files, and must write the same bytes: same_bits.sh TOOL OTHER RECORD all|quick.
+# Two builds of the tool replay recordings that are files, and must write the same bytes: same_bits.sh TOOL OTHER RECORD all|quick
+# BUILD, whose tool and models make a file of every format.
 # RECORD is models/record of this machine: it makes the recordings, because the two processors have mathematical functions that
 # round differently. CSCD_DATA names a folder with more recordings (all of them, unless quick).
 set -eu
+cd "$(dirname "$0")/../.."
 
 tool=$1
 other=$2
@@ -36,6 +38,30 @@ compare() {
     echo "$name: the same, $(($(wc -l <"$folder/one.csv") - 1)) contacts"
 }
 
+# ---- every format that is read
+
+tests/fuzz/corpus.sh "$5" "$folder/corpus"
+for file in "$folder"/corpus/*; do
+    name=$(basename "$file")
+    case $name in
+    *.jsonl | *.json | *.pc2 | *.mdd) continue ;;
+    esac
+    for side in one two; do
+        program=$tool
+        [ "$side" = one ] || program=$other
+        "$program" info "$file" --json "$folder/$side.json" >"$folder/$side.out" 2>&1 || echo "ended with $?" >>"$folder/$side.out"
+    done
+    if cmp "$folder/one.json" "$folder/two.json" && cmp "$folder/one.out" "$folder/two.out"; then
+        same=$((same + 1))
+    else
+        echo "$name is not read alike"
+        different=$((different + 1))
+    fi
+done
+for frames in body.pc2 body.mdd; do compare "$frames" "$folder/corpus/body.obj" "$folder/corpus/$frames"; done
+
+# ---- recordings
+
 # The plan is made here as well: it comes from LAPACK, whose last bits depend on the processor.
 scenes='pawn-drop'
 [ "$4" = quick ] || scenes='pawn-drop dumbbell-stairs figure-balls'
@@ -62,5 +88,5 @@ if [ "$4" != quick ] && [ -n "${CSCD_DATA:-}" ]; then
         compare "$pair" "$CSCD_DATA/frames/${pair%:*}.ply" "$CSCD_DATA/frames/${pair%:*}.ply" "$CSCD_DATA/frames/${pair#*:}.ply"
     done
 fi
-echo "$same recordings give the same bytes, $different do not"
+echo "$same files and recordings give the same bytes, $different do not"
 [ "$different" = 0 ]
