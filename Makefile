@@ -60,6 +60,10 @@ CORE_DEFINITIONS := -DCSCD_WITH_NEON
 else
 LEVELS := scalar
 endif
+# On s390x gcc takes strict C to mean that floats are computed as doubles; this leaves them floats.
+ifneq ($(filter s390x%,$(MACHINE)),)
+CORE_DEFINITIONS := -fexcess-precision=fast
+endif
 LEVEL_scalar := -DSIMD_LEVEL=0
 LEVEL_avx2   := -DSIMD_LEVEL=1 -mavx2
 LEVEL_avx512 := -DSIMD_LEVEL=2 -mavx512f -mavx512vl -mavx512dq -mavx512bw

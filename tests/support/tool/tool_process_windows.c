@@ -17,9 +17,9 @@ static int open_capture(void) {
     char folder[MAX_PATH + 1], name[MAX_PATH + 1];
     SECURITY_ATTRIBUTES inherited = {sizeof inherited, NULL, TRUE};
     assert_true(GetTempPathA(MAX_PATH + 1, folder) > 0 && GetTempFileNameA(folder, "cst", 0, name) > 0);
-    const HANDLE handle =
-        CreateFileA(name, GENERIC_READ | GENERIC_WRITE, FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE, &inherited,
-                    CREATE_ALWAYS, FILE_ATTRIBUTE_TEMPORARY | FILE_FLAG_DELETE_ON_CLOSE, NULL);
+    const HANDLE handle = CreateFileA(
+        name, GENERIC_READ | GENERIC_WRITE, FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE,
+        &inherited, CREATE_ALWAYS, FILE_ATTRIBUTE_TEMPORARY | FILE_FLAG_DELETE_ON_CLOSE, NULL);
     assert_ptr_not_equal(handle, INVALID_HANDLE_VALUE);
     return _open_osfhandle((intptr_t)handle, _O_RDWR | _O_BINARY);
 }
