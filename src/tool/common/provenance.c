@@ -35,6 +35,16 @@ uint64_t provenance_hash(uint64_t hash, const void *bytes, size_t size) {
     return hash;
 }
 
+uint64_t provenance_hash_numbers(uint64_t hash, const void *numbers, size_t count, size_t size) {
+    const unsigned char *b = numbers;
+    const uint16_t one = 1;
+    const bool lowest_first = *(const unsigned char *)&one == 1;
+    if (lowest_first) return provenance_hash(hash, numbers, count * size);
+    for (size_t i = 0; i < count; i++)
+        for (size_t k = size; k-- > 0;) hash = (hash ^ b[i * size + k]) * 0x100000001b3u;
+    return hash;
+}
+
 /* The "model name" of the first processor, "" if the system does not give it. */
 static void read_processor(char *name, size_t size) {
     name[0] = '\0';

@@ -63,9 +63,10 @@ static bool weld_first_frame(weld_choice welding, recorded_object *o, io_error *
 
 uint64_t recorded_object_hash_model(const recorded_object *o) {
     const mesh_file *file = &o->file;
-    uint64_t hash = provenance_hash(PROVENANCE_HASH_START, file->triangles,
-                                    (size_t)file->triangle_count * 3 * sizeof *file->triangles);
-    return provenance_hash(hash, file->positions, (size_t)file->vertex_count * 3 * sizeof *file->positions);
+    uint64_t hash = provenance_hash_numbers(PROVENANCE_HASH_START, file->triangles,
+                                            (size_t)file->triangle_count * 3, sizeof *file->triangles);
+    return provenance_hash_numbers(hash, file->positions, (size_t)file->vertex_count * 3,
+                                   sizeof *file->positions);
 }
 
 bool recorded_object_open(const recorded_source *source, weld_choice welding, const animation_options *frames,
@@ -117,8 +118,8 @@ void recorded_object_rest(const recorded_object *o, double *positions) {
 }
 
 uint64_t recorded_object_hash_frame(const recorded_object *o) {
-    const size_t size = (size_t)o->file.vertex_count * 3 * sizeof *o->file_positions;
-    return provenance_hash(PROVENANCE_HASH_START, o->file_positions, size);
+    return provenance_hash_numbers(PROVENANCE_HASH_START, o->file_positions, (size_t)o->file.vertex_count * 3,
+                                   sizeof *o->file_positions);
 }
 
 const uint32_t *recorded_object_triangles(const recorded_object *o) {

@@ -282,7 +282,7 @@ void recording_hash_frame(const recording *r, uint64_t hashes[RECORDING_OBJECTS_
 void recording_add_hashes(recording *r, const uint64_t hashes[RECORDING_OBJECTS_MAX + 1]) {
     for (uint32_t i = 0; i < r->object_count; i++) {
         recorded_object *o = &r->objects[i];
-        o->frames_hash = provenance_hash(o->frames_hash, &hashes[i], sizeof hashes[i]);
+        o->frames_hash = provenance_hash_numbers(o->frames_hash, &hashes[i], 1, sizeof hashes[i]);
     }
 }
 

@@ -40,7 +40,7 @@ static uint64_t hash_work(const job_list *list, const option_table *table, const
                                            "each", "threads", "quiet",   "json"};
     const uint64_t options = option_hash_beside(table, given, harmless, sizeof harmless / sizeof *harmless);
     const uint64_t hash = provenance_hash(list->hash, table->command, strlen(table->command) + 1);
-    return provenance_hash(hash, &options, sizeof options);
+    return provenance_hash_numbers(hash, &options, 1, sizeof options);
 }
 
 jobs_request list_options_request(const list_options *o, const job_list *list, const option_table *table,
