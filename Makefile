@@ -1,9 +1,10 @@
 # cscd: `make demo` and `make test` do all their own set-up; `make help` lists the rest.
 #
-#   CONFIG=release|debug|sanitize|tsan|scalar   CC=gcc|clang   GSL=0   CHARGE=0   EXPAT=0   WERROR=1   HOST=...   `make -j` as usual
+#   CONFIG=release|debug|sanitize|tsan|scalar   CC=gcc|clang   GSL=0   CHARGE=0   EXPAT=0   DYNAMIC=1   WERROR=1   HOST=...   `make -j` as usual
 # GSL=0 builds without GSL (GPL-3): with our own guesses of cubic roots, and the same results, bit for bit.
 # CHARGE=0 leaves out what makes charge plans, and with it LAPACKE and OpenBLAS; plan files with charge are read all the same.
 # EXPAT=0 builds a tool that does not read GIFTI surfaces, as on a machine where pkg-config finds no expat; the library never needs it.
+# DYNAMIC=1 is for distributions: the tool and the Python package link libcscd.so and the libraries of the system in place of archives.
 # HOST=aarch64-linux-gnu builds by that cross compiler, in build/aarch64-linux-gnu, with the libraries in SYSROOT if that is set.
 # HOST=x86_64-w64-mingw32 builds for Windows, in build/x86_64-w64-mingw32: see src/windows/windows.mk.
 # One build folder per configuration; the release tool is also linked as ./cscd.
@@ -24,10 +25,11 @@ endif
 WERROR  ?= 0
 GSL     ?= 1
 CHARGE  ?= 1
+DYNAMIC ?= 0
 BUILD_ROOT ?= build$(if $(HOST),/$(HOST))
 # A machine without expat builds in the same folder as one with it; only who leaves it out on purpose has another.
 WITHOUT_EXPAT := $(if $(filter 0,$(EXPAT)),-without-expat)
-BUILD   := $(BUILD_ROOT)/$(CONFIG)$(if $(WINDOWS),,$(if $(filter 0,$(GSL)),-without-gsl)$(if $(filter 0,$(CHARGE)),-without-charge)$(WITHOUT_EXPAT))
+BUILD   := $(BUILD_ROOT)/$(CONFIG)$(if $(WINDOWS),,$(if $(filter 0,$(GSL)),-without-gsl)$(if $(filter 0,$(CHARGE)),-without-charge)$(WITHOUT_EXPAT)$(if $(filter 1,$(DYNAMIC)),-dynamic))
 # The flags of a package that pkg-config finds, else those given here.
 PKG_CONFIG := $(if $(HOST),PKG_CONFIG_SYSROOT_DIR='$(SYSROOT)' PKG_CONFIG_LIBDIR='$(SYSROOT)/usr/lib/$(HOST)/pkgconfig:$(SYSROOT)/usr/share/pkgconfig') pkg-config
 packaged = $(shell $(PKG_CONFIG) $(1) 2>/dev/null || echo $(2))
@@ -42,6 +44,14 @@ OPTIMISE_scalar   := -O2 -g -DCSCD_SCALAR -fno-tree-vectorize
 ifeq ($(OPTIMISE_$(CONFIG)),)
 $(error CONFIG=$(CONFIG) is unknown: use release, debug, sanitize, tsan or scalar)
 endif
+
+# The headers refuse these, too (src/core/floating.h), but clang does not tell them of each.
+OTHER_ARITHMETIC := -Ofast -ffast-math -funsafe-math-optimizations -fassociative-math -freciprocal-math -ffinite-math-only -fno-signed-zeros
+ifneq ($(filter $(OTHER_ARITHMETIC),$(CC) $(CPPFLAGS) $(CFLAGS)),)
+$(error cscd proves what it says by IEEE arithmetic: leave out $(filter $(OTHER_ARITHMETIC),$(CC) $(CPPFLAGS) $(CFLAGS)); -O3 is the default)
+endif
+# The static library is made by objcopy, of machine code, so whoever asks for link-time optimisation gets the same library.
+allowed = $(filter-out -flto% -ffat-lto-objects -ffp-contract=%,$(1))
 
 CPP_WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wshadow
 WARNINGS := -Wall -Wextra -Wconversion -Wshadow -Wmissing-prototypes -Wstrict-prototypes -Wvla
@@ -73,7 +83,7 @@ LEVEL_neon   := -DSIMD_LEVEL=3
 # made of the same objects, which run no slower for it. -fexceptions: a callback of the host may throw a C++ exception
 # through the library, whose frames then unwind on every machine and run the cleanups of src/core/entry.h.
 CFLAGS_ALL := -std=c11 -D_GNU_SOURCE $(OPTIMISE_$(CONFIG)) $(WARNINGS) -ffp-contract=off -fvisibility=hidden -fPIC -fexceptions \
-              -Wno-psabi -pthread -MMD -MP -Iinclude -I. $(CORE_DEFINITIONS) $(CFLAGS)
+              -Wno-psabi -pthread -MMD -MP -Iinclude -I. $(CORE_DEFINITIONS) $(CPPFLAGS) $(call allowed,$(CFLAGS))
 LINK_ALL   := $(OPTIMISE_$(CONFIG)) -pthread $(LDFLAGS)
 # libcscd.so and the tool open libcscd-charge.so when they need it; libcscd.a has it inside, unless CHARGE=0. (Where dlopen is
 # in libc, -ldl is an empty archive.)
@@ -81,7 +91,8 @@ SHARED_LIBS := $(if $(filter 0,$(GSL)),,-lgsl) -lm -ldl
 CHARGE_LIBS := -llapacke -lopenblas -lm
 STATIC_LIBS := $(if $(filter 0,$(GSL)),,-lgsl) $(if $(filter 0,$(CHARGE)),-lm -ldl,$(CHARGE_LIBS))
 EXPAT_LIBS  := $(if $(filter 0,$(EXPAT)),,$(call packaged,--libs expat,-lexpat))
-TOOL_LIBS   := $(call packaged,--libs libpng zlib json-c,-lpng -lz -ljson-c) $(EXPAT_LIBS) $(SHARED_LIBS)
+FILE_LIBS   := $(call packaged,--libs libpng zlib json-c,-lpng -lz -ljson-c) $(EXPAT_LIBS)
+TOOL_LIBS   := $(FILE_LIBS) $(SHARED_LIBS)
 TEST_LIBS   := -lcmocka -lflint-arb -lflint -lgmp $(TOOL_LIBS) $(CHARGE_LIBS)
 
 # A file that ends in _simd.c is compiled once per instruction set. Charge is a library of its own.
@@ -107,7 +118,7 @@ NOT_HERE        := $(if $(filter 0,$(GSL)),tests/ccd/test_cubic_guess.c tests/cc
                    $(if $(filter %/release,$(BUILD)),,tests/install/test_charge_library.c tests/install/test_embedding.c \
                      tests/install/test_header_examples.c tests/install/test_header_versions.c) \
                    $(if $(filter %/release,$(BUILD)),,tests/report/test_report_browser.c) \
-                   $(if $(filter release,$(CONFIG)),,tests/install/test_install.c) \
+                   $(if $(filter release,$(CONFIG)),,tests/install/test_flags.c tests/install/test_install.c tests/install/test_places.c) \
                    $(if $(filter 0,$(EXPAT)),tests/io/test_gifti.c) \
                    $(if $(HAS_BASELINES),,$(wildcard tests/baselines/*.c))
 TEST_SOURCES    := $(filter-out $(NOT_HERE),$(wildcard tests/*/test_*.c tests/*/test_*.cpp))
@@ -217,11 +228,11 @@ python:
 
 PYTHON_PACKAGE := $(BUILD_ROOT)/python/cscd
 PYTHON_SOURCES := $(wildcard python/cscd/*.py python/cscd/py.typed)
-PACKED_CHARGE  := $(if $(CHARGE_SHARED),$(PYTHON_PACKAGE)/libcscd-charge.so.$(MAJOR))
+PACKED_CHARGE  := $(if $(filter-out 1,$(DYNAMIC)),$(if $(CHARGE_SHARED),$(PYTHON_PACKAGE)/libcscd-charge.so.$(MAJOR)))
 # What an older version, or a build with charge, has left there goes.
 python-package: $(PYTHON_PACKAGE)/libcscd-python.so $(CHARGE_SHARED)
 	@cp -p $(PYTHON_SOURCES) $(PYTHON_PACKAGE)
-	@$(if $(CHARGE_SHARED),cp -p $(CHARGE_SHARED) $(PACKED_CHARGE))
+	@$(if $(PACKED_CHARGE),cp -p $(CHARGE_SHARED) $(PACKED_CHARGE))
 	@rm -rf $(filter-out $(addprefix $(PYTHON_PACKAGE)/,$(notdir $(PYTHON_SOURCES))) $(PACKED_CHARGE) $<,$(wildcard $(PYTHON_PACKAGE)/*))
 
 # The interpreter that builds wheels and is tested: the first that has numpy.
@@ -248,9 +259,12 @@ BINDIR     ?= $(PREFIX)/bin
 LIBDIR     ?= $(PREFIX)/lib
 INCLUDEDIR ?= $(PREFIX)/include
 MANDIR     ?= $(PREFIX)/share/man
-INSTALLER = BUILD='$(BUILD)' VERSION='$(VERSION)' STATIC_LIBS='$(strip $(STATIC_LIBS)) -pthread' CHARGE='$(CHARGE)' \
-            POINTER_SIZE='$(shell echo __SIZEOF_POINTER__ | $(CC) $(CFLAGS) -E -P -)' DESTDIR='$(DESTDIR)' \
-            BINDIR='$(BINDIR)' LIBDIR='$(LIBDIR)' INCLUDEDIR='$(INCLUDEDIR)' MANDIR='$(MANDIR)' src/packaging/install.sh
+# One word of the shell, whatever is in it.
+quoted = '$(subst ','\'',$(1))'
+INSTALLER = BUILD=$(call quoted,$(BUILD)) VERSION='$(VERSION)' STATIC_LIBS='$(strip $(STATIC_LIBS)) -pthread' CHARGE='$(CHARGE)' \
+            POINTER_SIZE='$(shell echo __SIZEOF_POINTER__ | $(CC) $(CFLAGS) -E -P -)' DESTDIR=$(call quoted,$(DESTDIR)) \
+            BINDIR=$(call quoted,$(BINDIR)) LIBDIR=$(call quoted,$(LIBDIR)) INCLUDEDIR=$(call quoted,$(INCLUDEDIR)) \
+            MANDIR=$(call quoted,$(MANDIR)) src/packaging/install.sh
 install: $(TOOL) library
 	@$(INSTALLER) install
 
@@ -576,13 +590,13 @@ endif
 
 # All of the tool but its program, and what Python calls. Its own functions are meant wherever it calls one of the library, whatever
 # else the process has loaded.
-NATIVE_OBJECTS := $(OPENED_OBJECTS) $(COMMON_OBJECTS) $(call objects,$(filter-out src/tool/main.c,$(COMMAND_SOURCES)) $(NATIVE_SOURCES))
-NATIVE_FILE_LIBS = $(call packaged,--static --libs libpng zlib json-c,-lpng -lz -ljson-c -lm) $(EXPAT_LIBS)
+NATIVE_OBJECTS := $(if $(filter 1,$(DYNAMIC)),$(SHARED),$(OPENED_OBJECTS)) $(COMMON_OBJECTS) $(call objects,$(filter-out src/tool/main.c,$(COMMAND_SOURCES)) $(NATIVE_SOURCES))
+NATIVE_FILE_LIBS = $(if $(filter 1,$(DYNAMIC)),$(FILE_LIBS),$(call packaged,--static --libs libpng zlib json-c,-lpng -lz -ljson-c -lm) $(EXPAT_LIBS))
 $(PYTHON_PACKAGE)/libcscd-python.so: $(NATIVE_OBJECTS) python/native/link.sh
 	@mkdir -p $(@D)
 	$(say) '  LD $@'
 	$(Q)LINK='$(CC) $(LINK_ALL) $(SHARED_FLAGS) -Wl,-Bsymbolic' FILE_LIBS='$(NATIVE_FILE_LIBS)' OTHER_LIBS='$(SHARED_LIBS)' \
-	    python/native/link.sh $@ $(NATIVE_OBJECTS)
+	    DYNAMIC='$(DYNAMIC)' python/native/link.sh $@ $(NATIVE_OBJECTS)
 
 # The charge library exports one function, and needs two more files of the core.
 CHARGE_LIBRARY_OBJECTS := $(call objects,$(CHARGE_SOURCES) src/core/sort.c src/core/timer.c)
@@ -598,10 +612,10 @@ $(BUILD)/cscd.map: src/packaging/cscd.map.in include/cscd/cscd.h
 
 # The tool uses the public API alone, so it links the library and not its objects. It opens the charge library, which stands
 # beside it here, and in the prefix where it is installed.
-$(TOOL): $(call objects,$(COMMAND_SOURCES)) $(COMMON_OBJECTS) $(OPENING_LIBRARY) | $(CHARGE_SHARED)
+$(TOOL): $(call objects,$(COMMAND_SOURCES)) $(COMMON_OBJECTS) $(if $(filter 1,$(DYNAMIC)),$(SHARED),$(OPENING_LIBRARY)) | $(CHARGE_SHARED)
 	@mkdir -p $(@D)
 	$(say) '  LD $@'
-	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
+	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(if $(filter 1,$(DYNAMIC)),$(FILE_LIBS) -lm,$(TOOL_LIBS))
 
 # models/*.c are programs, and models/*/ has their parts; they use the public API alone, too.
 MODEL_PART_OBJECTS := $(call objects,$(MODEL_PARTS))
@@ -693,7 +707,7 @@ $(OBJECTS)/%.o: %.c
 $(OBJECTS)/%.o: %.cpp
 	@mkdir -p $(@D)
 	$(say) '  CXX $<'
-	$(Q)$(CXX) -std=c++17 $(OPTIMISE_$(CONFIG)) $(CPP_WARNINGS) -fPIC -pthread -MMD -MP -Iinclude -I. $(CXXFLAGS) -c -o $@ $<
+	$(Q)$(CXX) -std=c++17 $(OPTIMISE_$(CONFIG)) $(CPP_WARNINGS) -fPIC -pthread -MMD -MP -Iinclude -I. $(CPPFLAGS) $(call allowed,$(CXXFLAGS)) -c -o $@ $<
 
 # Without errno in square roots and without traps in comparisons; otherwise its loops are not vectorised.
 $(OBJECTS)/preprocess/charge/potential.o: CFLAGS_ALL += -fno-math-errno -fno-trapping-math

@@ -1,8 +1,8 @@
 /* Doubles: minimum, maximum, exponent and powers of two without a function call. */
 #pragma once
 
-#ifdef __FAST_MATH__
-#error "cscd proves what it says by IEEE arithmetic: compile it without -ffast-math"
+#if defined(__FAST_MATH__) || __FINITE_MATH_ONLY__ || defined(__NO_SIGNED_ZEROS__)
+#error "cscd proves what it says by IEEE arithmetic: compile it without -Ofast and -ffast-math"
 #endif
 
 #include <stdint.h>

@@ -5,12 +5,12 @@ set -eu
 cd "$(dirname "$0")/../.."
 : "${BUILD:?}" "${VERSION:?}" "${STATIC_LIBS:?}" "${POINTER_SIZE:?}"
 : "${CHARGE:?}" "${BINDIR:?}" "${LIBDIR:?}" "${INCLUDEDIR:?}" "${MANDIR:?}"
-DESTDIR=${DESTDIR:-}
+plain() { realpath -ms -- "$1"; } # plain PATH: absolute, and one of the ways to write it
+DESTDIR=${DESTDIR:+$(plain "$DESTDIR")}
+[ "$DESTDIR" != / ] || DESTDIR=''
 major=${VERSION%%.*}
-pc_folder=$LIBDIR/pkgconfig
-cmake_folder=$LIBDIR/cmake/cscd
 templates=src/packaging
-made=$BUILD/installed-folders.$(id -u) # the folders that install made, one a line; by user, for root makes some
+made=$BUILD/installed-folders.$(id -u) # the folders that install made, a line each; by user, for root makes some
 
 for folder in "$BINDIR" "$LIBDIR" "$INCLUDEDIR" "$MANDIR"; do
     case $folder in
@@ -21,6 +21,9 @@ for folder in "$BINDIR" "$LIBDIR" "$INCLUDEDIR" "$MANDIR"; do
         ;;
     esac
 done
+BINDIR=$(plain "$BINDIR") LIBDIR=$(plain "$LIBDIR") INCLUDEDIR=$(plain "$INCLUDEDIR") MANDIR=$(plain "$MANDIR")
+pc_folder=$LIBDIR/pkgconfig
+cmake_folder=$LIBDIR/cmake/cscd
 
 # The tool and the library; only the library.
 what=all
@@ -50,26 +53,39 @@ each_file() {
 
 from() { realpath -ms --relative-to="$1" "$2"; } # from FOLDER TARGET: the way to TARGET
 
+for_sed() { sed 's/[&\\|]/\\&/g'; }
+way() { from "$1" "$2" | for_sed; }
+
+# pkg-config takes words apart as a shell does, and where its own place has quotes in it, it cannot say where that is.
+pc_way() {
+    case $pc_folder in
+    *[\"\'\\]*) printf '%s\n' "$1" ;;
+    *) printf '${pcfiledir}/%s\n' "$(from "$pc_folder" "$1")" ;;
+    esac | sed "s/[\"'\\\\ ]/\\\\&/g" | for_sed
+}
+
 fill_in() { # fill_in TEMPLATE: its text with this installation's values
     sed -e "s|@VERSION@|$VERSION|g" -e "s|@MAJOR@|$major|g" -e "s|@POINTER_SIZE@|$POINTER_SIZE|g" \
         -e "s|@STATIC_LIBS@|$STATIC_LIBS|g" -e "s|@STATIC_LIBS_LIST@|$(echo "$STATIC_LIBS" | tr -s ' ' ';')|g" \
-        -e "s|@LIB_FROM_PC@|$(from "$pc_folder" "$LIBDIR")|g" \
-        -e "s|@INCLUDE_FROM_PC@|$(from "$pc_folder" "$INCLUDEDIR")|g" \
-        -e "s|@LIB_FROM_CMAKE@|$(from "$cmake_folder" "$LIBDIR")|g" \
-        -e "s|@INCLUDE_FROM_CMAKE@|$(from "$cmake_folder" "$INCLUDEDIR")|g" "$1"
+        -e "s|@LIBDIR@|$(pc_way "$LIBDIR")|g" -e "s|@INCLUDEDIR@|$(pc_way "$INCLUDEDIR")|g" \
+        -e "s|@LIB_FROM_CMAKE@|$(way "$cmake_folder" "$LIBDIR")|g" \
+        -e "s|@INCLUDE_FROM_CMAKE@|$(way "$cmake_folder" "$INCLUDEDIR")|g" "$1"
 }
+
+# A folder of this name that somebody makes later is another one.
+identity() { printf '%s %s\n' "$(stat -c '%d:%i:%W' -- "$1")" "$1"; }
 
 make_folder() { # with those above it, and notes which are new
     [ ! -d "$1" ] || return 0
     make_folder "$(dirname "$1")"
     mkdir "$1"
     chmod 755 "$1"
-    echo "$1" >>"$made"
+    identity "$1" >>"$made"
 }
 
 put() {
     target=$DESTDIR$3
-    make_folder "$(dirname "$target")"
+    make_folder "${target%/*}"
     case $1 in
     link) ln -sfn "$2" "$target" ;;
     template)
@@ -80,17 +96,22 @@ put() {
     esac
 }
 
-remove() { rm -f "$DESTDIR$3"; }
+folder_before=''
+remove() { # and the folder before, when it is the turn of another one
+    folder=$DESTDIR${3%/*}
+    [ "$folder" = "$folder_before" ] || leave_folder "$folder"
+    rm -f "$DESTDIR$3"
+}
 
-# Only folders that install made, and only where nothing else has come into them. Deeper ones come first.
-remove_folders() {
+leave_folder() {
+    [ -z "$folder_before" ] || remove_folder "$folder_before"
+    folder_before=$1
+}
+
+remove_folder() { # with those above it: only folders that install made, and only where nothing else has come into them
     [ -e "$made" ] || return 0
-    sort -ru "$made" >"$made.old"
-    : >"$made"
-    while IFS= read -r folder; do
-        [ ! -d "$folder" ] || rmdir "$folder" 2>/dev/null || echo "$folder" >>"$made"
-    done <"$made.old"
-    rm -f "$made.old"
+    [ ! -d "$1" ] || { grep -qxF -e "$(identity "$1")" "$made" && rmdir "$1" 2>/dev/null; } || return 0
+    [ "$1" = / ] || remove_folder "$(dirname "$1")"
 }
 
 case ${1:-} in
@@ -101,7 +122,7 @@ install-library)
     ;;
 uninstall)
     each_file remove
-    remove_folders
+    leave_folder ''
     # The library's own folders go even where another build folder made them.
     for folder in "$DESTDIR$INCLUDEDIR/cscd" "$DESTDIR$cmake_folder"; do
         [ ! -d "$folder" ] || rmdir "$folder" 2>/dev/null || echo "uninstall: $folder holds other files: left" >&2

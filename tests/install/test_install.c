@@ -2,44 +2,21 @@
  * uninstall. */
 #include "cscd/cscd.h"
 #include "tests/support/install/api_names.h"
+#include "tests/support/install/built_tree.h"
 #include "tests/support/shell.h"
 #include "tests/support/temp_file.h"
 #include "tests/support/test.h"
 
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* The build that is installed, as arguments of make. */
-static struct {
-    char root[4096], config[64];
-    bool gsl;
-} build;
+static built_tree build;
 static temp_folder folder;
 static char prefix[512]; /* DESTDIR and PREFIX: the folder of the files */
 
-/* Reads the build from the path of the tool: ROOT/CONFIG[-without-gsl]/cscd. */
-static void find_build(void) {
-    static const char without[] = "-without-gsl";
-    const char *tool = getenv("CSCD_TOOL");
-    if (tool == NULL) fail_msg("CSCD_TOOL must name the built tool; run the tests through tests/run.sh");
-    snprintf(build.root, sizeof build.root, "%s", tool);
-    *strrchr(build.root, '/') = '\0';
-    char *name = strrchr(build.root, '/');
-    assert_non_null(name);
-    *name++ = '\0';
-    char *suffix = strstr(name, without);
-    build.gsl = suffix == NULL;
-    if (suffix != NULL) *suffix = '\0';
-    snprintf(build.config, sizeof build.config, "%s", name);
-}
-
-/* Runs the target for the tree in `place`, independently of the make that may run this test. */
 static void run_make(const char *target, const char *place, const char *variables) {
-    shell("env -u MAKEFLAGS -u MAKELEVEL -u MAKEOVERRIDES make -s %s BUILD_ROOT='%s' CONFIG=%s GSL=%d "
-          "DESTDIR='%s' %s",
-          target, build.root, build.config, build.gsl, place, variables);
+    built_tree_make(&build, target, place, variables);
 }
 
 static void expect_output(const char *what, char *found, const char *expected) {
@@ -49,11 +26,7 @@ static void expect_output(const char *what, char *found, const char *expected) {
 
 static int install_release(void **state) {
     (void)state;
-    find_build();
-    if (strcmp(build.config, "release") != 0) {
-        print_error("only a release is installed, and this is the configuration %s\n", build.config);
-        return -1;
-    }
+    if (!built_tree_find(&build)) return -1;
     folder = temp_folder_make();
     snprintf(prefix, sizeof prefix, "%s/stage/opt/cscd", folder.path);
     char place[512];
