@@ -241,11 +241,45 @@ static void a_preprocess_has_one_frame(void **state) {
     report_rig_destroy(&rig);
 }
 
+/* ---- the policy ---------------------------------------------------------------------------------------- */
+
+/* Is the directive one of the policy, word for word? */
+static bool policy_has(const char *policy, size_t size, const char *directive) {
+    const size_t length = strlen(directive);
+    for (size_t i = 0; i + length <= size; i++) {
+        const char before = i > 0 ? policy[i - 1] : ' ', after = i + length < size ? policy[i + length] : ';';
+        if (before == ' ' && after == ';' && strncmp(policy + i, directive, length) == 0) return true;
+    }
+    return false;
+}
+
+/* default-src says nothing about the base of links and the targets of forms. */
+static void pages_load_send_and_move_nothing(void **state) {
+    (void)state;
+    static const char begin[] = "<meta http-equiv=\"Content-Security-Policy\" content=\"";
+    static const char *const directives[] = {"default-src 'none'", "base-uri 'none'", "form-action 'none'"};
+    for (template_kind kind = TEMPLATE_REPORT; kind <= TEMPLATE_JOBS; kind++) {
+        report_template built;
+        assert_true(report_template_load(kind, &built, NULL));
+        const char *policy = memmem(built.head, built.head_size, begin, sizeof begin - 1);
+        assert_non_null(policy);
+        policy += sizeof begin - 1;
+        const size_t left = built.head_size - (size_t)(policy - built.head);
+        const char *end = memchr(policy, '"', left);
+        assert_non_null(end);
+        for (size_t i = 0; i < sizeof directives / sizeof *directives; i++)
+            if (!policy_has(policy, (size_t)(end - policy), directives[i]))
+                fail_msg("page %d has no %s", (int)kind, directives[i]);
+        /* A policy holds for what stands behind it. */
+        assert_null(memmem(built.head, (size_t)(policy - built.head), "<script", 7));
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(scene_and_plan_come_back),   cmocka_unit_test(huge_scenes_have_a_unit),
         cmocka_unit_test(names_are_never_markup),     cmocka_unit_test(a_comparison_has_no_scene),
-        cmocka_unit_test(a_preprocess_has_one_frame),
+        cmocka_unit_test(a_preprocess_has_one_frame), cmocka_unit_test(pages_load_send_and_move_nothing),
     };
     return cmocka_run_group_tests_name("report_page", tests, make_folder, remove_folder);
 }

@@ -71,6 +71,10 @@ async function makePage(folder, html) {
     `script-src 'sha256-${sha256(script.text, 'base64')}'`,
     `style-src 'sha256-${sha256(style.text, 'base64')}'`,
     'img-src data: blob:',
+    // Neither of these falls back to default-src: a name in a recording could otherwise move what links
+    // lead to, or send a form.
+    "base-uri 'none'",
+    "form-action 'none'",
   ].join('; ');
   const parts = {
     policy:
