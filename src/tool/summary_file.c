@@ -22,7 +22,9 @@ typedef struct member {
 static const member of_interval[] = {{"frame", 'i'}, {"vf", 'n'},        {"ee", 'n'},   {"earliest_toi", 'N'},
                                      {"pcp", 'n'},   {"tests", 'n'},     {"plus", 'n'}, {"minus", 'n'},
                                      {"state", 's'}, {"guarantee", 'a'}, {NULL, 0}};
-static const member of_guarantee[] = {{"component", 'n'}, {"mode", 's'}, {"reason", 's'}, {NULL, 0}};
+static const member of_guarantee[] = {{"mode", 's'}, {"reason", 's'}, {NULL, 0}};
+static const member of_guarantee_group[] = {{"count", 'n'}, {NULL, 0}};
+static const member of_exceptions[] = {{"components", 'a'}, {NULL, 0}};
 static const member of_frame[] = {{"frame", 'n'}, {NULL, 0}};
 static const member of_summary[] = {{"complete", 'b'},
                                     {"method", 's'},
@@ -126,6 +128,19 @@ static bool is_state(const char *name) {
     return false;
 }
 
+/* One object per component, as version 1 has it, or per group of components, of which the first names none. */
+static bool check_guarantees(json_object *guarantees, const char *where, io_error *error) {
+    if (!elements_have(guarantees, of_guarantee, where, error)) return false;
+    for (size_t i = 0; i < json_object_array_length(guarantees); i++) {
+        json_object *group = json_object_array_get_idx(guarantees, i);
+        if (find_member(group, "component") != NULL) continue;
+        if (!has_members(group, of_guarantee_group, where, error) ||
+            (i > 0 && !has_members(group, of_exceptions, where, error)))
+            return false;
+    }
+    return true;
+}
+
 static bool check_interval(json_object *interval, size_t index, bool timed, io_error *error) {
     char where[48];
     snprintf(where, sizeof where, "interval %zu of the file", index);
@@ -135,7 +150,7 @@ static bool check_interval(json_object *interval, size_t index, bool timed, io_e
     if (timed && (!has_members(interval, of_timed_interval, where, error) ||
                   !has_times(find_member(interval, "ms"), where, error)))
         return false;
-    return elements_have(find_member(interval, "guarantee"), of_guarantee, where, error);
+    return check_guarantees(find_member(interval, "guarantee"), where, error);
 }
 
 /* Frames ascend, by the numbers that their recording gives them. */

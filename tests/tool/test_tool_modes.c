@@ -207,6 +207,57 @@ static void small_meshes_get_one_thread(void **state) {
     recorded_free(&fold);
 }
 
+/* ---- many components ------------------------------------------------------------------------------------- */
+
+enum { COMPONENTS = 300 };
+
+static const uint32_t open_components[] = {0, 7, 299};
+
+static bool is_open(uint32_t component) {
+    for (size_t i = 0; i < sizeof open_components / sizeof *open_components; i++)
+        if (open_components[i] == component) return true;
+    return false;
+}
+
+/* Tetrahedra apart from each other, some of which lack a face. */
+static temp_path write_many_components(const char *name) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *file = open_memstream(&text, &size);
+    assert_non_null(file);
+    for (uint32_t i = 0; i < COMPONENTS; i++)
+        fprintf(file, "v %u 0 0\nv %u.5 0 0\nv %u 0.5 0\nv %u 0 0.5\nf -4 -2 -3\nf -4 -3 -1\nf -3 -2 -1\n%s",
+                i, i, i, i, is_open(i) ? "" : "f -4 -1 -2\n");
+    assert_int_equal(fclose(file), 0);
+    const temp_path path = temp_file_write(&folder, name, text, size);
+    free(text);
+    return path;
+}
+
+/* What holds for most components is said once, so that a file does not grow with their number. */
+static void guarantees_are_written_by_exception(void **state) {
+    (void)state;
+    const temp_path many = write_many_components("many.obj"), first = write_many_components("frame_1.obj"),
+                    second = write_many_components("frame_2.obj");
+    EXPECT_TOOL(0, "replay", many.text, first.text, second.text, "--method", "single", "--quiet", "--json",
+                summary.text);
+    json_node *root = json_node_read_file(summary.text);
+    const json_node *groups = json_node_member(interval_of(root, 0), "guarantee");
+    assert_int_equal(groups->count, 2);
+    const json_node *most = json_node_item(groups, 0), *others = json_node_item(groups, 1);
+    const size_t others_count = sizeof open_components / sizeof *open_components;
+    assert_non_null(strstr(json_node_string(most, "reason"), "embedded at the start"));
+    assert_true(json_node_number(most, "count") == (double)(COMPONENTS - others_count));
+    assert_null(json_node_find(most, "components"));
+    assert_non_null(strstr(json_node_string(others, "reason"), "open"));
+    assert_true(json_node_number(others, "count") == (double)others_count);
+    const json_node *named = json_node_member(others, "components");
+    assert_int_equal(named->count, others_count);
+    for (size_t i = 0; i < others_count; i++)
+        assert_true(json_node_item(named, i)->number == (double)open_components[i]);
+    json_node_free(root);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(methods_agree_in_mode_all),
@@ -214,6 +265,7 @@ int main(void) {
         cmocka_unit_test(counters_tell_that_culling_is_on),
         cmocka_unit_test(starts_are_proven_once),
         cmocka_unit_test(tables_have_a_column_for_orientation),
+        cmocka_unit_test(guarantees_are_written_by_exception),
         cmocka_unit_test(small_meshes_get_one_thread),
     };
     return cmocka_run_group_tests_name("tool_modes", tests, make_files, remove_files);

@@ -120,11 +120,37 @@ static void a_summary_without_events_is_read(void **state) {
     assert_true(file_exists(page.text));
 }
 
+/* Version 1 wrote an object for each component, and now there is one for each group of components. */
+static void guarantees_of_version_1_are_read(void **state) {
+    (void)state;
+    static const struct {
+        const char *part, *instead;
+        int code;
+    } cases[] = {{"\"count\":", "\"component\":", 0}, {"\"count\":", "\"number\":", 1}};
+    EXPECT_TOOL(0, "replay", model.text, cache.text, "--json", summary.text);
+    char *text = read_whole_file(summary.text, NULL);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        const char *place = strstr(text, cases[i].part);
+        assert_non_null(place);
+        char *changed = NULL;
+        const int size = asprintf(&changed, "%.*s%s%s", (int)(place - text), text, cases[i].instead,
+                                  place + strlen(cases[i].part));
+        temp_path path = temp_file_write(&folder, "changed.json", changed, (size_t)size);
+        free(changed);
+        tool_run run = RUN_TOOL("report", path.text, "-o", page.text);
+        assert_int_equal(run.code, cases[i].code);
+        if (run.code != 0) assert_non_null(strstr(run.error, "interval 0 of the file has no member 'count'"));
+        tool_run_free(&run);
+    }
+    free(text);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_no_summary_is_named),
         cmocka_unit_test(a_changed_summary_is_refused),
         cmocka_unit_test(a_summary_without_events_is_read),
+        cmocka_unit_test(guarantees_of_version_1_are_read),
     };
     return cmocka_run_group_tests_name("tool_summary_file", tests, make_files, remove_files);
 }

@@ -72,14 +72,58 @@ static bool forward_text(summary_writer *w, io_error *error) {
     return written || write_failed(w, error);
 }
 
+/* Components with the same guarantee. */
+typedef struct guarantee_group {
+    cscd_guarantee guarantee; /* of its first component */
+    uint32_t count;
+} guarantee_group;
+
+/* More than there are reasons, complete and not. */
+enum { GROUPS_MAX = 64 };
+
+static bool same_guarantee(cscd_guarantee a, cscd_guarantee b) {
+    return a.complete == b.complete && a.reason == b.reason;
+}
+
+/* In the order of their first components. */
+static int group_guarantees(const cscd_guarantee *guarantees, uint32_t count,
+                            guarantee_group groups[GROUPS_MAX]) {
+    int group_count = 0, g = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        if (g == group_count ||
+            !same_guarantee(groups[g].guarantee, guarantees[i])) /* else as the one before */
+            for (g = 0; g < group_count && !same_guarantee(groups[g].guarantee, guarantees[i]);) g++;
+        if (g == group_count) groups[group_count++] = (guarantee_group){.guarantee = guarantees[i]};
+        groups[g].count++;
+    }
+    return group_count;
+}
+
+static void write_members(json *out, const cscd_guarantee *guarantees, uint32_t count,
+                          cscd_guarantee shared) {
+    json_begin_array(out, "components");
+    for (uint32_t i = 0; i < count; i++)
+        if (same_guarantee(guarantees[i], shared)) json_integer(out, NULL, i);
+    json_end_array(out);
+}
+
+/* By exception, because a mesh may have very many components: the largest group comes first and names none. */
 static void write_guarantees(summary_writer *w, const cscd_guarantee *guarantees) {
+    guarantee_group groups[GROUPS_MAX];
+    const uint32_t count = cscd_mesh_component_count(w->mesh);
+    const int group_count = group_guarantees(guarantees, count, groups);
+    int largest = 0;
+    for (int g = 1; g < group_count; g++)
+        if (groups[g].count > groups[largest].count) largest = g;
     json_begin_array(&w->out, "guarantee");
-    for (uint32_t i = 0; i < cscd_mesh_component_count(w->mesh); i++) {
-        cscd_guarantee guarantee = guarantees[i];
+    for (int k = 0; k < group_count; k++) {
+        const int g = k == 0 ? largest : k <= largest ? k - 1 : k;
+        const cscd_guarantee shared = groups[g].guarantee;
         json_begin_object(&w->out, NULL);
-        json_integer(&w->out, "component", i);
-        json_string(&w->out, "mode", cscd_mode_name(guarantee.complete ? CSCD_MODE_ALL : CSCD_MODE_EARLIEST));
-        json_string(&w->out, "reason", cscd_reason_text(guarantee.reason));
+        json_string(&w->out, "mode", cscd_mode_name(shared.complete ? CSCD_MODE_ALL : CSCD_MODE_EARLIEST));
+        json_string(&w->out, "reason", cscd_reason_text(shared.reason));
+        json_integer(&w->out, "count", groups[g].count);
+        if (k > 0) write_members(&w->out, guarantees, count, shared);
         json_end_object(&w->out);
     }
     json_end_array(&w->out);

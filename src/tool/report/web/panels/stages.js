@@ -34,14 +34,17 @@ export function otherMilliseconds(ms) {
   );
 }
 
-/** Whether contacts of an interval may be missing, in words; components with the same guarantee are put together. */
+/** Whether contacts of an interval may be missing, in words; components with the same guarantee are put together.
+ *  Files of version 1 have an entry without a count for each component. */
 export function guaranteeInWords(guarantee) {
   const counts = new Map();
-  for (const { mode, reason } of guarantee) {
+  let components = 0;
+  for (const { mode, reason, count = 1 } of guarantee) {
     const words = `${mode === 'all' ? 'none' : 'perhaps'}: ${reason}`;
-    counts.set(words, (counts.get(words) ?? 0) + 1);
+    counts.set(words, (counts.get(words) ?? 0) + count);
+    components += count;
   }
   const parts = [...counts];
   if (parts.length === 1) return parts[0][0];
-  return parts.map(([words, count]) => `${count} of ${guarantee.length} components, ${words}`).join('; ');
+  return parts.map(([words, count]) => `${count} of ${components} components, ${words}`).join('; ');
 }
