@@ -215,6 +215,37 @@ static void letters_with_bridged_holes_are_filled(void **state) {
     check_shape(eight, 12, eight_corners, 16);
 }
 
+/* Returns the most triangles that a corner of a regular polygon has, on a circle of whole numbers. */
+static uint32_t most_at_corner(uint32_t count) {
+    double(*positions)[3] = malloc(count * sizeof *positions);
+    uint32_t *corners = malloc(count * sizeof *corners), *sizes = calloc(count, sizeof *sizes), most = 0;
+    uint32_t(*triangles)[3] = malloc(count * sizeof *triangles);
+    assert_true(positions != NULL && corners != NULL && sizes != NULL && triangles != NULL);
+    for (uint32_t i = 0; i < count; i++) {
+        const double angle = 2.0 * 3.14159265358979323846 * i / count;
+        positions[i][0] = round(0x1p40 * cos(angle));
+        positions[i][1] = round(0x1p40 * sin(angle));
+        positions[i][2] = 0.0;
+        corners[i] = i;
+    }
+    assert_int_equal(polygon_fill(&positions[0][0], corners, count, triangles), POLYGON_FILLED);
+    for (uint32_t i = 0; i < 3 * (count - 2); i++) sizes[triangles[i / 3][i % 3]]++;
+    for (uint32_t i = 0; i < count; i++) most = sizes[i] > most ? sizes[i] : most;
+    free(positions);
+    free(corners);
+    free(sizes);
+    free(triangles);
+    return most;
+}
+
+/* What looks at all pairs of triangles at a corner would take the square of their number. */
+static void convex_polygons_of_many_corners_are_no_fans(void **state) {
+    (void)state;
+    assert_int_equal(most_at_corner(128), 126);
+    assert_true(most_at_corner(129) < 24);
+    assert_true(most_at_corner(20000) < 48);
+}
+
 static void check_fanned(const double (*positions)[3], uint32_t count) {
     uint32_t corners[8], triangles[8][3];
     for (uint32_t i = 0; i < count; i++) corners[i] = i;
@@ -253,6 +284,7 @@ int main(int argument_count, char **arguments) {
         cmocka_unit_test(random_polygons_are_filled),
         cmocka_unit_test(shapes_on_which_fans_fail_are_filled),
         cmocka_unit_test(letters_with_bridged_holes_are_filled),
+        cmocka_unit_test(convex_polygons_of_many_corners_are_no_fans),
         cmocka_unit_test(polygons_without_a_shape_become_fans),
         cmocka_unit_test(corners_at_one_place_keep_their_edges),
     };

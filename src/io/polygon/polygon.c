@@ -118,11 +118,15 @@ static bool crosses_itself(const polygon_places *places) {
     return false;
 }
 
+/* A fan gives its first corner a triangle for each side, and what looks at all pairs of triangles at a vertex takes the square
+ * of their number. Clipped ears give a corner about the logarithm. */
+enum { FAN_CORNERS_MOST = 128 };
+
 /* Fills in one plane; false: its triangles would overlap there. */
 static bool fill_in_plane(const double *positions, const uint32_t *corners, polygon_plane plane,
                           polygon_places *places, uint32_t (*triangles)[3], bool *out_of_memory) {
     project_places(positions, corners, plane, places);
-    if (!is_convex(places))
+    if (places->count > FAN_CORNERS_MOST || !is_convex(places))
         return ear_clipping_fill((const double(*)[2])places->points, places->count, triangles,
                                  out_of_memory) &&
                !crosses_itself(places);
