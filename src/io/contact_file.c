@@ -6,7 +6,6 @@
 #include "src/io/path_name.h"
 #include "src/io/text_escape.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,7 +20,7 @@ struct contact_file {
 };
 
 static bool write_failed(const contact_file *file, io_error *error) {
-    return io_fail(error, "%s: cannot write: %s", file->path, strerror(errno));
+    return io_fail_write(error, file->path);
 }
 
 static void free_contact_file(contact_file *file) {
@@ -127,7 +126,7 @@ bool contact_file_write(contact_file *file, const contact_record *record, io_err
         write_csv(file->out.file, record, &file->columns);
     else
         write_json_line(file->out.file, record, &file->columns);
-    return !ferror(file->out.file) || write_failed(file, error);
+    return output_file_writes(&file->out) || write_failed(file, error);
 }
 
 bool contact_file_flush(contact_file *file, io_error *error) {

@@ -116,5 +116,5 @@ bool mesh_file_write_obj(const char *path, const mesh_file *mesh, io_error *erro
         return file_reader_fail(&place, "cannot open for writing: %s", strerror(errno));
     const bool printed = print_obj(out.file, mesh);
     if (output_file_close(&out, printed ? OUTPUT_WHOLE : OUTPUT_ABANDONED)) return true;
-    return file_reader_fail(&place, "cannot write: %s", strerror(errno));
+    return file_reader_fail(&place, "cannot write: %s", io_write_reason());
 }

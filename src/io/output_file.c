@@ -136,8 +136,19 @@ bool output_file_open(const char *path, output_file *out) {
     return true;
 }
 
+/* A stream knows only that it has failed, and errno soon is of something else. */
+static bool note_cause(output_file *f) {
+    if (f->cause == 0) f->cause = errno != 0 ? errno : EIO;
+    errno = f->cause;
+    return false;
+}
+
+bool output_file_writes(output_file *f) {
+    return !ferror(f->file) || note_cause(f);
+}
+
 bool output_file_flush(output_file *f) {
-    if (fflush(f->file) != 0 || ferror(f->file)) return false;
+    if (fflush(f->file) != 0 || ferror(f->file)) return note_cause(f);
     off_t size = f->temporary != NULL ? ftello(f->file) : -1;
     if (size >= 0) f->whole_size = size;
     return true;
@@ -149,8 +160,8 @@ static bool cut_to_whole(const output_file *f) {
 }
 
 bool output_file_close(output_file *f, output_ending ending) {
+    bool written = output_file_writes(f);
     int cause = errno;
-    bool written = !ferror(f->file);
     if (fclose(f->file) != 0 && written) {
         written = false;
         cause = errno;

@@ -10,6 +10,7 @@ typedef struct output_file {
     char *target;     /* where symbolic links lead */
     char *temporary;  /* in its folder; NULL: the target is a pipe or a device, and written to itself */
     off_t whole_size; /* bytes up to the last flush */
+    int cause;        /* errno of the first failure that was seen; 0: none was */
 } output_file;
 
 /* How a file ends. Whatever a path held before stays until a file takes its place. */
@@ -24,7 +25,10 @@ typedef enum output_ending {
  * *out holds nothing to close, and errno says why. */
 bool output_file_open(const char *path, output_file *out);
 
-/* Passes everything written so far to the system. */
+/* Could everything so far be written, as far as is known yet? If not, errno says why, the same at each look and at the end. */
+bool output_file_writes(output_file *file);
+
+/* Passes everything written so far to the system. The same answer. */
 bool output_file_flush(output_file *file);
 
 /* Closes, and puts the file in its place. False: not all of it is there, and errno says why. */

@@ -2,7 +2,6 @@
 #include "src/io/output_file.h"
 #include "src/io/plan_file.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
@@ -94,12 +93,11 @@ static void write_components(FILE *file, const cscd_mesh *mesh, const cscd_plan 
 bool plan_file_write(const char *path, const cscd_mesh *mesh, const double *positions, const cscd_plan *plan,
                      const uint8_t *colours, io_error *error) {
     output_file out;
-    if (!output_file_open(path, &out)) return io_fail(error, "%s: cannot write: %s", path, strerror(errno));
+    if (!output_file_open(path, &out)) return io_fail_write(error, path);
     write_header(out.file, mesh, plan);
     write_vertices(out.file, mesh, positions);
     write_faces(out.file, mesh, plan, colours);
     write_regions(out.file, plan);
     write_components(out.file, mesh, plan);
-    return output_file_close(&out, OUTPUT_WHOLE) ||
-           io_fail(error, "%s: cannot write: %s", path, strerror(errno));
+    return output_file_close(&out, OUTPUT_WHOLE) || io_fail_write(error, path);
 }

@@ -42,9 +42,8 @@ static void abandon_file(point_cache_writer *writer) {
 
 static bool write_bytes(point_cache_writer *writer, size_t size, io_error *error) {
     if (fwrite(writer->chunk, 1, size, writer->out.file) == size) return true;
-    const int cause = errno;
     return io_fail(error, "%s: cannot write frame %" PRIu32 ": %s", writer->path, writer->written_count,
-                   strerror(cause));
+                   io_write_reason());
 }
 
 static bool write_pc2_header(point_cache_writer *writer, io_error *error) {
@@ -138,8 +137,7 @@ static bool finish_file(point_cache_writer *writer, io_error *error) {
     if (writer->written_count < writer->frame_count)
         return io_fail(error, "%s: only %" PRIu32 " frames were written, expected %" PRIu32, writer->path,
                        writer->written_count, writer->frame_count);
-    return output_file_close(&writer->out, OUTPUT_WHOLE) ||
-           io_fail(error, "%s: cannot write: %s", writer->path, strerror(errno));
+    return output_file_close(&writer->out, OUTPUT_WHOLE) || io_fail_write(error, writer->path);
 }
 
 bool point_cache_writer_close(point_cache_writer *writer, io_error *error) {

@@ -7,10 +7,8 @@
 #include "src/tool/common/output_path.h"
 #include "src/tool/common/recording.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 typedef struct info_options {
     recording_options source;
@@ -245,14 +243,13 @@ static void write_facts(json *out, const recording *r, const mesh_facts *facts) 
 static bool say_facts(const info_options *options, recording *r, const mesh_facts *facts, io_error *error) {
     output_file file = {.file = NULL};
     if (options->json_path != NULL && !output_file_open(options->json_path, &file))
-        return io_fail(error, "%s: cannot write: %s", options->json_path, strerror(errno));
+        return io_fail_write(error, options->json_path);
     print_facts(r, facts);
     recording_warn(r);
     if (file.file == NULL) return true;
     json out = {.file = file.file};
     write_facts(&out, r, facts);
-    return output_file_close(&file, OUTPUT_WHOLE) ||
-           io_fail(error, "%s: cannot write: %s", options->json_path, strerror(errno));
+    return output_file_close(&file, OUTPUT_WHOLE) || io_fail_write(error, options->json_path);
 }
 
 int command_info(int argument_count, char **arguments) {

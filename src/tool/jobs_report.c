@@ -85,9 +85,8 @@ static bool add_row(jobs_page *page, const char *line, size_t length, const job_
 }
 
 /* Looks after each line: what follows changes errno. */
-static bool still_writes(const char *path, const output_file *file, io_error *error) {
-    return file->file == NULL || !ferror(file->file) ||
-           io_fail(error, "%s: cannot write: %s", path, strerror(errno != 0 ? errno : EIO));
+static bool still_writes(const char *path, output_file *file, io_error *error) {
+    return file->file == NULL || output_file_writes(file) || io_fail_write(error, path);
 }
 
 static bool take_line(void *user, const char *line, size_t length, const job_record *record,
@@ -112,14 +111,13 @@ static bool create_page(const jobs_report_request *r, const job_merge *merge, co
 }
 
 static bool open_junit(const char *path, output_file *file, io_error *error) {
-    return path == NULL || output_file_open(path, file) ||
-           io_fail(error, "%s: cannot write: %s", path, strerror(errno));
+    return path == NULL || output_file_open(path, file) || io_fail_write(error, path);
 }
 
 static bool close_junit(const char *path, output_file *file, bool whole, io_error *error) {
     if (file->file == NULL) return true;
     return output_file_close(file, whole ? OUTPUT_WHOLE : OUTPUT_ABANDONED) || !whole ||
-           io_fail(error, "%s: cannot write: %s", path, strerror(errno != 0 ? errno : EIO));
+           io_fail_write(error, path);
 }
 
 static bool write_files(const jobs_report_request *r, const job_merge *merge, io_error *error) {

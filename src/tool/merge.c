@@ -11,7 +11,6 @@
 #include "src/tool/replay/shard_file.h"
 
 #include <errno.h>
-#include <string.h>
 #include <sys/stat.h>
 
 typedef struct merge_options {
@@ -58,20 +57,18 @@ typedef struct merge_files {
 } merge_files;
 
 static bool open_file(const char *path, output_file *file, io_error *error) {
-    return path == NULL || output_file_open(path, file) ||
-           io_fail(error, "%s: cannot write: %s", path, strerror(errno));
+    return path == NULL || output_file_open(path, file) || io_fail_write(error, path);
 }
 
 static bool close_file(const char *path, output_file *file, bool whole, io_error *error) {
     if (file->file == NULL) return true;
     return output_file_close(file, whole ? OUTPUT_WHOLE : OUTPUT_ABANDONED) || !whole ||
-           io_fail(error, "%s: cannot write: %s", path, strerror(errno != 0 ? errno : EIO));
+           io_fail_write(error, path);
 }
 
 /* Looks after each line: what follows changes errno. */
-static bool still_writes(const char *path, const output_file *file, io_error *error) {
-    return file->file == NULL || !ferror(file->file) ||
-           io_fail(error, "%s: cannot write: %s", path, strerror(errno != 0 ? errno : EIO));
+static bool still_writes(const char *path, output_file *file, io_error *error) {
+    return file->file == NULL || output_file_writes(file) || io_fail_write(error, path);
 }
 
 static bool take_line(void *user, const char *line, size_t length, const job_record *record,

@@ -5,7 +5,6 @@
 #include "src/tool/common/command.h"
 #include "src/tool/common/provenance.h"
 
-#include <errno.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
@@ -70,10 +69,14 @@ static int run_command(int argument_count, char **arguments) {
 }
 
 int tool_run(int argument_count, char **arguments) {
-    signal(SIGPIPE, SIG_IGN); /* a closed pipe is then a write error like any other, so that files still
-                               * get finished */
+    /* A closed pipe and a file that may not grow (ulimit -f) are then write errors like any other, so that files still get
+     * finished. */
+    signal(SIGPIPE, SIG_IGN);
+    signal(SIGXFSZ, SIG_IGN);
     int code = run_command(argument_count, arguments);
-    if ((fflush(stdout) != 0 || ferror(stdout)) && code != EXIT_BAD_INPUT)
-        code = fail_input("standard output: %s", strerror(errno));
+    if ((fflush(stdout) != 0 || ferror(stdout)) && code != EXIT_BAD_INPUT) {
+        const int failed = fail_input("standard output: cannot write: %s", io_write_reason());
+        code = code < EXIT_INTERRUPTED ? failed : code; /* the reader of a pipe hears the same signal */
+    }
     return code;
 }

@@ -6,9 +6,6 @@
 #include "src/tool/common/option_values.h"
 #include "src/tool/common/output_path.h"
 
-#include <errno.h>
-#include <string.h>
-
 static bool read_unit(const char *text, void *place) {
     return length_unit_from_name(text, place);
 }
@@ -68,8 +65,7 @@ length_unit answer_options_unit(const answer_options *o, const recording *r) {
 }
 
 static bool open_file(const char *path, output_file *out, io_error *error) {
-    return path == NULL || output_file_open(path, out) ||
-           io_fail(error, "%s: cannot write: %s", path, strerror(errno));
+    return path == NULL || output_file_open(path, out) || io_fail_write(error, path);
 }
 
 bool answer_outputs_open(const answer_options *o, answer_outputs *out, io_error *error) {
@@ -79,7 +75,7 @@ bool answer_outputs_open(const answer_options *o, answer_outputs *out, io_error 
 
 static bool close_file(const char *path, output_file *file, output_ending ending, io_error *error) {
     if (file->file == NULL || output_file_close(file, ending) || ending == OUTPUT_ABANDONED) return true;
-    return io_fail(error, "%s: cannot write: %s", path, strerror(errno));
+    return io_fail_write(error, path);
 }
 
 bool answer_outputs_close(answer_outputs *outputs, const answers *a, const fail_rules *rules,

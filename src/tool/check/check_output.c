@@ -3,12 +3,10 @@
 
 #include "src/io/text_escape.h"
 
-#include <errno.h>
 #include <inttypes.h>
-#include <string.h>
 
 static bool write_failed(const char *path, io_error *error) {
-    return io_fail(error, "%s: cannot write: %s", path, strerror(errno));
+    return io_fail_write(error, path);
 }
 
 bool check_output_open(const char *json_path, const char *csv_path, check_output *out, io_error *error) {

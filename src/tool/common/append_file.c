@@ -9,7 +9,8 @@
 #include <unistd.h>
 
 static bool cannot_write(const append_file *f, int cause, io_error *error) {
-    return io_fail(error, "%s: cannot write: %s", f->path, strerror(cause));
+    errno = cause;
+    return io_fail_write(error, f->path);
 }
 
 /* File systems without locks are taken as they are. */

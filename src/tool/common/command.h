@@ -12,7 +12,10 @@ typedef enum exit_code {
     EXIT_USAGE = 2,
     EXIT_CONTACT = 3, /* found what --fail-on, --fail-depth or --max-faces asks for */
     EXIT_UNDONE = 4   /* not all jobs of a list have run, or their results are not kept */
-} exit_code;          /* or interrupt_exit_code (terminal.h) */
+} exit_code;
+
+/* After an interrupt the exit code is above this: interrupt_exit_code (terminal.h). */
+enum { EXIT_INTERRUPTED = 128 };
 
 /* Each command is given the arguments from its name on and returns an exit code. */
 int command_preprocess(int argument_count, char **arguments);

@@ -4,7 +4,6 @@
 #include "src/io/output_file.h"
 #include "src/io/path_name.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -76,7 +75,7 @@ static bool try_open(const char *path) {
 }
 
 bool output_path_opens(const char *path, io_error *error) {
-    return path == NULL || try_open(path) || io_fail(error, "%s: cannot write: %s", path, strerror(errno));
+    return path == NULL || try_open(path) || io_fail_write(error, path);
 }
 
 bool output_path_differs(const char *path, const char *const *others, size_t other_count, io_error *error) {

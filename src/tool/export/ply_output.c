@@ -21,7 +21,7 @@ void ply_output_free(ply_output *p) {
 static bool may_write(const char *path, io_error *error) {
     char start[sizeof beginning] = "";
     FILE *file = fopen(path, "rb");
-    if (file == NULL) return errno == ENOENT || io_fail(error, "%s: cannot write: %s", path, strerror(errno));
+    if (file == NULL) return errno == ENOENT || io_fail_write(error, path);
     const size_t size = fread(start, 1, sizeof beginning - 1, file);
     fclose(file);
     return (size == sizeof beginning - 1 && memcmp(start, beginning, size) == 0) ||
@@ -119,7 +119,7 @@ bool ply_output_add_frame(const ply_output *p, int32_t number, const double *pos
         write_elements(out.file, p, positions);
         written = output_file_close(&out, OUTPUT_WHOLE);
     }
-    if (!written) io_fail(error, "%s: cannot write: %s", path, strerror(errno));
+    if (!written) io_fail_write(error, path);
     free(path);
     return written;
 }

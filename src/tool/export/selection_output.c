@@ -1,9 +1,7 @@
 /* Lists of what to select in a modelling program: vertices and polygons of triangles that cross, part by part. */
 #include "src/tool/export/selection_output.h"
 
-#include <errno.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* What a triangle is listed for: crossing another one, or meeting one otherwise. */
 enum { LISTED_CROSSING = 1, LISTED_TOUCHING = 2 };
@@ -110,8 +108,7 @@ bool selection_output_open(const char *path, recording *r, const part_names *par
     s.numbers = malloc(3 * count * sizeof *s.numbers);
     bool opened = (s.now != NULL && s.ever != NULL && s.listed != NULL && s.numbers != NULL) ||
                   io_fail(error, "out of memory for the lists of --select");
-    if (opened && !output_file_open(path, &s.file))
-        opened = io_fail(error, "%s: cannot write: %s", path, strerror(errno));
+    if (opened && !output_file_open(path, &s.file)) opened = io_fail_write(error, path);
     s.out.file = s.file.file;
     if (opened && !write_beginning(&s)) {
         opened = io_fail(error, "out of memory for the lists of --select");
@@ -218,7 +215,7 @@ bool selection_output_add_frame(selection_output *s, int32_t number, const cscd_
     write_groups(s, "parts", count, s->now);
     json_end_object(&s->out);
     for (size_t i = 0; i < count; i++) s->now[s->listed[i]] = 0;
-    return output_file_flush(&s->file) || io_fail(error, "%s: cannot write: %s", s->path, strerror(errno));
+    return output_file_flush(&s->file) || io_fail_write(error, s->path);
 }
 
 bool selection_output_close(selection_output *s, bool kept, io_error *error) {
@@ -232,7 +229,7 @@ bool selection_output_close(selection_output *s, bool kept, io_error *error) {
     json_end_object(&s->out);
     fputc('\n', s->out.file);
     const bool written = output_file_close(&s->file, kept ? OUTPUT_WHOLE : OUTPUT_ABANDONED) || !kept ||
-                         io_fail(error, "%s: cannot write: %s", s->path, strerror(errno));
+                         io_fail_write(error, s->path);
     free_arrays(s);
     return written;
 }

@@ -7,7 +7,6 @@
 #include "src/tool/export/vtk_curves.h"
 #include "src/tool/export/vtp_file.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
@@ -165,12 +164,10 @@ static bool finish_kind(const vtk_output *v, const char *kind, io_error *error) 
     char *path = stem != NULL ? export_names_join(stem, ".pvd") : NULL;
     output_file out;
     bool written = path != NULL || no_memory(error);
-    if (written && !output_file_open(path, &out))
-        written = io_fail(error, "%s: cannot write: %s", path, strerror(errno));
+    if (written && !output_file_open(path, &out)) written = io_fail_write(error, path);
     if (written) {
         write_collection(out.file, v, stem);
-        written = output_file_close(&out, OUTPUT_WHOLE) ||
-                  io_fail(error, "%s: cannot write: %s", path, strerror(errno));
+        written = output_file_close(&out, OUTPUT_WHOLE) || io_fail_write(error, path);
     }
     free(path);
     free(stem);

@@ -4,10 +4,8 @@
 #include "src/io/output_file.h"
 
 #include <assert.h>
-#include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
-#include <string.h>
 
 static const char *const type_names[] = {"UInt8", "Int32", "UInt32", "Int64", "Float64", "String"};
 static const uint64_t type_sizes[] = {1, 4, 4, 8, 8, 1};
@@ -72,8 +70,7 @@ static void write_file(FILE *out, const vtp_file *file) {
 
 bool vtp_write(const vtp_file *file, const char *path, io_error *error) {
     output_file out;
-    if (!output_file_open(path, &out)) return io_fail(error, "%s: cannot write: %s", path, strerror(errno));
+    if (!output_file_open(path, &out)) return io_fail_write(error, path);
     write_file(out.file, file);
-    return output_file_close(&out, OUTPUT_WHOLE) ||
-           io_fail(error, "%s: cannot write: %s", path, strerror(errno));
+    return output_file_close(&out, OUTPUT_WHOLE) || io_fail_write(error, path);
 }

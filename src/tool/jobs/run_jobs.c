@@ -74,9 +74,7 @@ static void write_line(job_run *run, const char *line) {
     if (run->lines.file == NULL || run->write_error.text[0] != '\0') return;
     errno = 0;
     fputs(line, run->lines.file);
-    if (!output_file_flush(&run->lines))
-        io_fail(&run->write_error, "%s: cannot write: %s", run->request->lines_path,
-                strerror(errno != 0 ? errno : EIO));
+    if (!output_file_flush(&run->lines)) io_fail_write(&run->write_error, run->request->lines_path);
 }
 
 /* Prints the results that wait for none before them; all: the others too. */
@@ -162,7 +160,7 @@ static bool open_results(job_run *run, io_error *error) {
         skip_held(run);
     }
     return r->lines_path == NULL || output_file_open(r->lines_path, &run->lines) ||
-           io_fail(error, "%s: cannot write: %s", r->lines_path, strerror(errno));
+           io_fail_write(error, r->lines_path);
 }
 
 /* Jobs have a process each; where there are fewer jobs than threads, each has several. */
@@ -183,7 +181,7 @@ static bool prepare_run(job_run *run, io_error *error) {
 static bool close_outputs(job_run *run, io_error *error) {
     bool good = run->write_error.text[0] == '\0' || io_fail(error, "%s", run->write_error.text);
     if (run->lines.file != NULL && !output_file_close(&run->lines, OUTPUT_WHOLE_LINES) && good)
-        good = io_fail(error, "%s: cannot write: %s", run->request->lines_path, strerror(errno));
+        good = io_fail_write(error, run->request->lines_path);
     return job_results_close(&run->results, good ? error : NULL) && good;
 }
 

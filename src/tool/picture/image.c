@@ -112,7 +112,7 @@ static bool write_file(const char *path, const uint8_t *bytes, size_t size, io_e
         return io_fail(error, "%s: cannot open for writing: %s", path, strerror(errno));
     fwrite(bytes, 1, size, out.file);
     return output_file_close(&out, OUTPUT_WHOLE) ||
-           io_fail(error, "%s: cannot write %zu bytes: %s", path, size, strerror(errno));
+           io_fail(error, "%s: cannot write %zu bytes: %s", path, size, io_write_reason());
 }
 
 bool picture_image_write_png(const char *path, const picture_image *image, io_error *error) {

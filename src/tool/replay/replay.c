@@ -10,6 +10,7 @@
 #include "src/tool/replay/replay_shard.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 static bool choose_frames(replay *r, io_error *error) {
     const int32_t *numbers = r->recording.frame_numbers;
@@ -294,7 +295,8 @@ int replay_run(const replay_options *options, shard_series *merged, const char *
              options->list.shard.index, options->list.shard.count, CHUNK_INTERVALS);
     if (begun && !options->quiet) replay_print_remarks(&r);
     if (!ran) code = fail_replay(&r, begun, error.text);
-    if (!closed) code = fail_input("%s", close_error.text);
+    if (!closed && (ran || strcmp(close_error.text, error.text) != 0)) /* what ended the run was said above */
+        code = fail_input("%s", close_error.text);
     if (code == EXIT_RAN && interrupted()) {
         if (job == NULL) tell_interrupt(&r);
         code = interrupt_exit_code();

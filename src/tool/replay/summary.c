@@ -4,7 +4,6 @@
 #include "src/io/output_file.h"
 #include "src/tool/common/provenance.h"
 
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,7 +21,7 @@ struct summary_writer {
 };
 
 static bool write_failed(const summary_writer *w, io_error *error) {
-    return io_fail(error, "%s: cannot write: %s", w->path, strerror(errno));
+    return io_fail_write(error, w->path);
 }
 
 static void free_summary(summary_writer *w) {
@@ -34,8 +33,7 @@ static void free_summary(summary_writer *w) {
 
 static bool open_file(summary_writer *w, const char *path, io_error *error) {
     w->path = strdup(path);
-    return (w->path != NULL && output_file_open(path, &w->file)) ||
-           io_fail(error, "%s: cannot write: %s", path, strerror(errno));
+    return (w->path != NULL && output_file_open(path, &w->file)) || io_fail_write(error, path);
 }
 
 bool summary_open(const char *path, bool keep_text, bool times, const cscd_mesh *mesh, summary_writer **out,

@@ -3,7 +3,6 @@
 
 #include "src/io/output_file.h"
 
-#include <errno.h>
 #include <string.h>
 
 void page_file_list(json *out, const page_arrays *arrays) {
@@ -54,5 +53,5 @@ bool page_file_write(const char *path, const report_template *page, const char *
         written = put_page(out.file, page, text, arrays);
         written = output_file_close(&out, written ? OUTPUT_WHOLE : OUTPUT_ABANDONED);
     }
-    return written || io_fail(error, "%s: cannot write: %s", path, strerror(errno));
+    return written || io_fail_write(error, path);
 }

@@ -9,6 +9,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* A run under way. */
 typedef struct sense {
@@ -276,7 +277,8 @@ static int run_sense(const sense_options *options) {
     bool closed = sense_files_close(&s.files, &subject, &s.totals, stopped_by, &close_error);
     if (!options->quiet && s.totals.intervals > 0) print_results(&s);
     if (!ran) code = fail_input("%s", error.text);
-    if (!closed) code = fail_input("%s", close_error.text);
+    if (!closed && (ran || strcmp(close_error.text, error.text) != 0)) /* what ended the run was said above */
+        code = fail_input("%s", close_error.text);
     if (code == EXIT_RAN && interrupted()) {
         tell_interrupt(&s);
         code = interrupt_exit_code();

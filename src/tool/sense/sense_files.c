@@ -3,13 +3,10 @@
 #include "src/tool/common/provenance.h"
 #include "src/tool/sense/sense_result.h"
 
-#include <errno.h>
 #include <stdio.h>
-#include <string.h>
 
 static bool open_one(const char *path, output_file *out, io_error *error) {
-    return path == NULL || output_file_open(path, out) ||
-           io_fail(error, "%s: cannot write: %s", path, strerror(errno));
+    return path == NULL || output_file_open(path, out) || io_fail_write(error, path);
 }
 
 bool sense_files_open(const sense_options *o, sense_files *out, io_error *error) {
@@ -78,12 +75,10 @@ bool sense_files_add(sense_files *f, const sense_subject *subject, const sense_i
                      io_error *error) {
     const sense_options *o = subject->options;
     if (f->csv.file != NULL) write_warnings(f->csv.file, subject, interval);
-    if (f->csv.file != NULL && !output_file_flush(&f->csv))
-        return io_fail(error, "%s: cannot write: %s", o->csv_path, strerror(errno));
+    if (f->csv.file != NULL && !output_file_flush(&f->csv)) return io_fail_write(error, o->csv_path);
     if (f->out.file == NULL) return true;
     write_interval(&f->out, o, interval);
-    return output_file_flush(&f->json) ||
-           io_fail(error, "%s: cannot write: %s", o->json_path, strerror(errno));
+    return output_file_flush(&f->json) || io_fail_write(error, o->json_path);
 }
 
 static void write_recall(json *out, const sense_totals *t) {
@@ -149,8 +144,7 @@ static void write_provenance(json *out, const sense_subject *s) {
 }
 
 static bool close_one(output_file *file, output_ending ending, const char *path, io_error *error) {
-    return file->file == NULL || output_file_close(file, ending) ||
-           io_fail(error, "%s: cannot write: %s", path, strerror(errno));
+    return file->file == NULL || output_file_close(file, ending) || io_fail_write(error, path);
 }
 
 bool sense_files_close(sense_files *f, const sense_subject *subject, const sense_totals *t,
