@@ -15,7 +15,8 @@ def main() -> int:
     """Runs the tool on the arguments of this process, and returns its exit code."""
     library = ctypes.PyDLL(os.path.join(os.path.dirname(os.path.abspath(__file__)), "libcscd-python.so"))
     arguments = [b"cscd", *(os.fsencode(argument) for argument in sys.argv[1:])]
-    signal.signal(signal.SIGINT, signal.SIG_DFL)  # the tool has a handler of its own, and ends with 128 and its number
+    if signal.getsignal(signal.SIGINT) != signal.SIG_IGN:  # as a shell has it for what runs in its background
+        signal.signal(signal.SIGINT, signal.SIG_DFL)  # the tool has a handler of its own, and ends with 128 and its number
     sys.stdout.flush()
     values = (ctypes.c_char_p * (len(arguments) + 1))(*arguments, None)
     library.cscdpy_run_tool.restype = ctypes.c_int

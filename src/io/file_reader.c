@@ -2,6 +2,7 @@
 #include "src/io/file_reader.h"
 
 #include "src/io/growable.h"
+#include "src/io/pipe_file.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -80,8 +81,8 @@ out_of_memory:
 }
 
 static bool read_file(file_reader *reader, FILE *file) {
-    struct stat status;
-    if (fstat(fileno(file), &status) != 0)
+    struct stat status = {.st_mode = S_IFIFO};
+    if (fileno(file) >= 0 && fstat(fileno(file), &status) != 0)
         return file_reader_fail(reader, "cannot open: %s", strerror(errno));
     if (S_ISDIR(status.st_mode)) return file_reader_fail(reader, "is a directory, expected a file");
     if (S_ISCHR(status.st_mode) || S_ISBLK(status.st_mode)) {
@@ -102,7 +103,7 @@ static bool read_file(file_reader *reader, FILE *file) {
 
 bool file_reader_open(file_reader *reader, const char *path, io_error *error) {
     *reader = (file_reader){.path = path, .error = error, .line = 1};
-    FILE *file = fopen(path, "rb");
+    FILE *file = pipe_file_read(path);
     if (file == NULL) return file_reader_fail(reader, "cannot open: %s", strerror(errno));
     bool done = read_file(reader, file);
     fclose(file);

@@ -2,6 +2,7 @@
 #include "src/io/output_file.h"
 
 #include "src/io/path_name.h"
+#include "src/io/pipe_file.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -124,6 +125,8 @@ bool output_file_open(const char *path, output_file *out) {
     bool standard = output_file_is_standard(path), exists = !standard && stat(path, &status) == 0;
     if (standard)
         f.file = open_standard();
+    else if (exists && S_ISFIFO(status.st_mode))
+        f.file = pipe_file_write(path);
     else if (exists && (!S_ISREG(status.st_mode) || names_descriptor(path)))
         f.file = fopen(path, "wb");
     else if ((f.target = follow_links(path)) != NULL)

@@ -63,8 +63,15 @@ static int64_t read_at(int file, unsigned char *bytes, size_t size, int64_t offs
     return (int64_t)done;
 }
 
+/* A named pipe is not opened: whoever writes it would take this for its reader, and until somebody does, opening waits. */
+static bool is_regular(const char *path) {
+    struct stat status;
+    return stat(path, &status) == 0 && S_ISREG(status.st_mode);
+}
+
 bool point_cache_recognise(const char *path) {
     if (path_has_extension(path, ".pc2") || path_has_extension(path, ".mdd")) return true;
+    if (!is_regular(path)) return false;
     const int file = open(path, O_RDONLY | O_CLOEXEC);
     if (file < 0) return false;
     unsigned char start[POINT_CACHE_PC2_MAGIC_SIZE];
@@ -180,13 +187,16 @@ static bool read_header(point_cache *cache, io_error *error) {
 /* ---- the interface --------------------------------------------------------------------------------- */
 
 static bool open_file(point_cache *cache, io_error *error) {
-    cache->file = open(cache->path, O_RDONLY | O_CLOEXEC);
-    if (cache->file < 0) return io_fail(error, "%s: cannot open: %s", cache->path, strerror(errno));
     struct stat status;
-    if (fstat(cache->file, &status) != 0)
-        return io_fail(error, "%s: cannot tell its size: %s", cache->path, strerror(errno));
+    cache->file = -1;
+    if (stat(cache->path, &status) != 0)
+        return io_fail(error, "%s: cannot open: %s", cache->path, strerror(errno));
     if (!S_ISREG(status.st_mode))
         return io_fail(error, "%s: not a regular file, expected a point cache", cache->path);
+    cache->file = open(cache->path, O_RDONLY | O_CLOEXEC);
+    if (cache->file < 0) return io_fail(error, "%s: cannot open: %s", cache->path, strerror(errno));
+    if (fstat(cache->file, &status) != 0)
+        return io_fail(error, "%s: cannot tell its size: %s", cache->path, strerror(errno));
     cache->file_size = status.st_size;
     return true;
 }

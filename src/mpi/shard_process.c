@@ -18,14 +18,18 @@ static pid_t child;                       /* 0: none runs */
 
 /* Whoever starts ranks signals their processes as well, and a second signal would end cscd at once. */
 static void on_signal(int number) {
-    stop_signal = number;
+    if (stop_signal == 0) stop_signal = number;
 }
 
+/* What is ignored at the start, as nohup has it with SIGHUP, stays so, here and in the shards. */
 void stop_signals_catch(void) {
+    static const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
     const struct sigaction catch = {.sa_handler = on_signal};
-    sigaction(SIGINT, &catch, NULL);
-    sigaction(SIGTERM, &catch, NULL);
-    sigaction(SIGHUP, &catch, NULL);
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        struct sigaction before;
+        if (sigaction(numbers[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN)
+            sigaction(numbers[i], &catch, NULL);
+    }
 }
 
 int stop_signal_seen(void) {

@@ -14,7 +14,7 @@ typedef struct shard_report {
 /* Exit codes of a shard that did not run all its jobs; any other shard would end so too. */
 enum { SHARD_USAGE = 2, SHARD_UNDONE = 4 };
 
-/* From now on SIGINT, SIGTERM and SIGHUP only set a flag. */
+/* From now on SIGINT, SIGTERM and SIGHUP only set a flag, those aside that are ignored. */
 void stop_signals_catch(void);
 int stop_signal_seen(void); /* 0: none has come */
 

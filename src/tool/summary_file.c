@@ -1,6 +1,7 @@
 /* Reads back what `cscd replay --json` wrote. */
 #include "src/tool/summary_file.h"
 
+#include "src/io/pipe_file.h"
 #include "src/tool/common/stages.h"
 
 #include <errno.h>
@@ -255,7 +256,7 @@ static bool check_summary(json_object *root, io_error *error) {
 
 /* Reads the whole file and ends it with a 0, which *size does not count; NULL with the reason. */
 static char *read_text(const char *path, size_t *size, io_error *error) {
-    FILE *file = fopen(path, "rb");
+    FILE *file = pipe_file_read(path);
     char *text = NULL, buffer[65536];
     size_t length = 0;
     FILE *memory = open_memstream(&text, &length);

@@ -4,6 +4,7 @@
 #include "cscd/cscd.h"
 #include "src/tool/common/command.h"
 #include "src/tool/common/provenance.h"
+#include "src/tool/common/terminal.h"
 
 #include <signal.h>
 #include <stdio.h>
@@ -74,6 +75,9 @@ int tool_run(int argument_count, char **arguments) {
     signal(SIGPIPE, SIG_IGN);
     signal(SIGXFSZ, SIG_IGN);
     int code = run_command(argument_count, arguments);
+    /* What an interrupt has kept from being opened is no bad input. */
+    if ((code == EXIT_BAD_INPUT || code == EXIT_UNDONE) && interrupt_ended_wait())
+        code = interrupt_exit_code();
     if ((fflush(stdout) != 0 || ferror(stdout)) && code != EXIT_BAD_INPUT) {
         const int failed = fail_input("standard output: cannot write: %s", io_write_reason());
         code = code < EXIT_INTERRUPTED ? failed : code; /* the reader of a pipe hears the same signal */

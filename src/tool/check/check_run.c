@@ -4,7 +4,6 @@
 #include "src/tool/answers/answer_words.h"
 #include "src/tool/check/check_output.h"
 #include "src/tool/common/command.h"
-#include "src/tool/common/late_files.h"
 #include "src/tool/common/terminal.h"
 #include "src/tool/jobs/recording_answer.h"
 
@@ -143,7 +142,7 @@ int check_run_on(const check_options *options, const char *name, job_output *job
     interrupt_catch();
     if (prepare_check(&c, &error)) {
         terminal_progress_begin(&c.progress, options->quiet);
-        bool ran = check_frames(&c, &error) || late_files_given_up();
+        bool ran = check_frames(&c, &error) || interrupt_ended_wait();
         terminal_progress_end(&c.progress);
         code = end_check(&c, ran, &error);
     } else {

@@ -3,6 +3,7 @@
 #include "src/tool/common/ignore_pairs.h"
 
 #include "src/io/growable.h"
+#include "src/io/pipe_file.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -108,7 +109,7 @@ static bool read_line(ignore_pairs *pairs, const recording *r, char *line, const
 }
 
 static bool read_list(ignore_pairs *pairs, const recording *r, const char *path, io_error *error) {
-    FILE *file = fopen(path, "r");
+    FILE *file = pipe_file_read(path);
     if (file == NULL) return io_fail(error, "%s: cannot open: %s", path, strerror(errno));
     char *line = NULL;
     size_t size = 0;

@@ -3,10 +3,7 @@
 
 #include "src/tool/common/terminal.h"
 
-#include <stdatomic.h>
 #include <time.h>
-
-static atomic_bool given_up; /* set by the thread that reads */
 
 /* Of a clock that nobody sets. */
 static double now_ms(void) {
@@ -22,14 +19,7 @@ late_files late_files_begin(double seconds) {
 bool late_files_again(const late_files *late) {
     const struct timespec rest = {.tv_nsec = 50 * 1000 * 1000};
     if (late->seconds <= 0.0 || now_ms() - late->began_ms >= late->seconds * 1e3) return false;
-    if (interrupted()) {
-        atomic_store(&given_up, true);
-        return false;
-    }
+    if (interrupt_ends_wait()) return false;
     nanosleep(&rest, NULL);
     return true;
-}
-
-bool late_files_given_up(void) {
-    return atomic_load(&given_up);
 }

@@ -13,6 +13,3 @@ late_files late_files_begin(double seconds);
 
 /* After a failure: rests for a moment and returns true if there is to be another try. An interrupt ends it. */
 bool late_files_again(const late_files *late);
-
-/* Has an interrupt ended a wait? The file that was waited for is no fault then. */
-bool late_files_given_up(void);

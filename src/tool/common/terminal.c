@@ -1,6 +1,8 @@
 /* A line on the terminal that shows how far a long command is, and signals that interrupt it. */
 #include "src/tool/common/terminal.h"
 
+#include "src/io/pipe_file.h"
+
 #include <signal.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -44,16 +46,18 @@ void terminal_progress_end(terminal_progress *p) {
 
 /* Any thread may get the signal, and all may ask. The number of the first signal; 0: none has come. */
 static atomic_int interrupt_signal;
+static atomic_bool wait_ended; /* by it; in whatever thread */
 
 static void note_interrupt(int signal_number) {
     int none = 0;
     atomic_compare_exchange_strong(&interrupt_signal, &none, signal_number);
 }
 
-/* Is the signal ignored because whoever started the program wants that? */
-static bool signal_ignored(int signal_number) {
-    struct sigaction action;
-    return sigaction(signal_number, NULL, &action) == 0 && action.sa_handler == SIG_IGN;
+/* Whoever starts the program with the signal ignored wants it to go on. */
+static void catch_signal(int signal_number, const struct sigaction *action) {
+    struct sigaction before;
+    if (sigaction(signal_number, NULL, &before) == 0 && before.sa_handler != SIG_IGN)
+        sigaction(signal_number, action, NULL);
 }
 
 /* A second signal ends the process at once. */
@@ -63,9 +67,10 @@ void interrupt_catch(void) {
     const unsigned flags = SA_RESTART | (second_ends ? SA_RESETHAND : 0);
     struct sigaction action = {.sa_handler = note_interrupt, .sa_flags = (int)flags};
     sigemptyset(&action.sa_mask);
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
-    if (!signal_ignored(SIGHUP)) sigaction(SIGHUP, &action, NULL);
+    catch_signal(SIGINT, &action);
+    catch_signal(SIGTERM, &action);
+    catch_signal(SIGHUP, &action);
+    pipe_file_ask(interrupt_ends_wait);
 }
 
 void interrupt_outlast(void) {
@@ -75,6 +80,16 @@ void interrupt_outlast(void) {
 
 bool interrupted(void) {
     return atomic_load(&interrupt_signal) != 0;
+}
+
+bool interrupt_ends_wait(void) {
+    if (!interrupted()) return false;
+    atomic_store(&wait_ended, true);
+    return true;
+}
+
+bool interrupt_ended_wait(void) {
+    return atomic_load(&wait_ended);
 }
 
 int interrupt_exit_code(void) {

@@ -18,12 +18,18 @@ void terminal_progress_say(terminal_progress *p, const char *text);
 /* Clears the line. */
 void terminal_progress_end(terminal_progress *p);
 
-/* From now on Ctrl-C (SIGINT), SIGTERM and SIGHUP only set a flag, so that a command can finish its files. A second
- * one ends the program at once. A SIGHUP that is ignored, as nohup has it, stays ignored. */
+/* From now on Ctrl-C (SIGINT), SIGTERM and SIGHUP only set a flag, so that a command can finish its files, and end a wait for the
+ * other side of a pipe. A second one ends the program at once. Those that are ignored, as nohup has it with SIGHUP and a shell
+ * with SIGINT of what runs in its background, stay ignored. */
 void interrupt_catch(void);
 /* The same, but no signal ends the process: for one that is told to stop by the process that started it, and dies with it. */
 void interrupt_outlast(void);
 bool interrupted(void);
+
+/* Asked by whoever waits for a file: is the wait to end, because an interrupt has come? */
+bool interrupt_ends_wait(void);
+/* Has an interrupt ended a wait? What was waited for is no fault then. */
+bool interrupt_ended_wait(void);
 
 /* 128 and the number of the signal, as shells have it: 130, 143, 129. Only after an interrupt. */
 int interrupt_exit_code(void);

@@ -8,6 +8,7 @@
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 /* Where the header says whose file it is. */
 static const char beginning[] = "ply\nformat binary_little_endian 1.0\ncomment cscd export 1\n";
@@ -20,6 +21,9 @@ void ply_output_free(ply_output *p) {
 /* A pattern or a folder of frames may hold any mesh, so only files of an earlier export are written over. */
 static bool may_write(const char *path, io_error *error) {
     char start[sizeof beginning] = "";
+    struct stat status;
+    if (stat(path, &status) == 0 && !S_ISREG(status.st_mode)) /* what is read of a pipe is gone */
+        return io_fail(error, "'%s' exists and is no file; choose another name", path);
     FILE *file = fopen(path, "rb");
     if (file == NULL) return errno == ENOENT || io_fail_write(error, path);
     const size_t size = fread(start, 1, sizeof beginning - 1, file);

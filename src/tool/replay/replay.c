@@ -1,6 +1,5 @@
 /* `cscd replay`: finds every contact of a recorded mesh with itself, interval by interval. */
 #include "src/tool/common/command.h"
-#include "src/tool/common/late_files.h"
 #include "src/tool/common/methods.h"
 #include "src/tool/common/output_path.h"
 #include "src/tool/jobs/listed_recordings.h"
@@ -80,8 +79,10 @@ static bool open_contacts(replay *r, io_error *error) {
     return contact_file_open(r->options->contacts_path, columns, &r->contacts, error);
 }
 
+/* From here on a signal may not end the process by itself, or what is half written would lie about. */
 static bool open_outputs(replay *r, io_error *error) {
     const replay_options *o = r->options;
+    interrupt_catch();
     if (!exports_open(&o->exports, &r->recording, &r->ignored.parts, r->plan.plan, &r->exports, error) ||
         (o->contacts_path != NULL && !open_contacts(r, error)))
         return false;
@@ -281,9 +282,8 @@ int replay_run(const replay_options *options, shard_series *merged, const char *
     int code = EXIT_RAN;
     bool begun = begin_replay(&r, &error), ran = false;
     if (begun) {
-        interrupt_catch();
         terminal_progress_begin(&r.progress, options->quiet);
-        ran = run_intervals(&r, &error) || late_files_given_up();
+        ran = run_intervals(&r, &error) || interrupt_ended_wait();
         terminal_progress_end(&r.progress);
     }
     const char *stopped_by = ran ? (interrupted() ? "interrupted" : NULL) : error.text;

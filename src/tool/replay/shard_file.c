@@ -1,6 +1,7 @@
 /* The file of a shard of a recording: who it is, then a record for each of its intervals, in order. */
 #include "src/tool/replay/shard_file.h"
 
+#include "src/io/pipe_file.h"
 #include "src/tool/common/provenance.h"
 #include "src/tool/replay/replay_chunks.h"
 
@@ -114,7 +115,7 @@ static bool read_identity(shard_reader *r) {
 }
 
 bool shard_reader_open(const char *path, shard_reader *out, io_error *error) {
-    shard_reader r = {.path = path, .file = fopen(path, "rb"), .whole_size = TITLE_SIZE};
+    shard_reader r = {.path = path, .file = pipe_file_read(path), .whole_size = TITLE_SIZE};
     if (r.file == NULL) return io_fail(error, "%s: cannot read: %s", path, strerror(errno));
     if (!read_title(r.file) || !read_identity(&r)) {
         shard_reader_close(&r);

@@ -103,10 +103,16 @@ static bool outputs_open(const sense_options *o, io_error *error) {
            output_path_opens(o->picture_path, error);
 }
 
+/* From here on a signal may not end the process by itself, or what is half written would lie about. */
+static bool open_files(sense *s, io_error *error) {
+    interrupt_catch();
+    return sense_files_open(s->options, &s->files, error);
+}
+
 static bool begin_sense(sense *s, io_error *error) {
     return recording_open(&s->options->source, &s->recording, error) && choose_frames(s, error) &&
            outputs_open(s->options, error) && prepare_plan(s, error) && prepare_sensors(s, error) &&
-           prepare_detector(s, error) && sense_files_open(s->options, &s->files, error);
+           prepare_detector(s, error) && open_files(s, error);
 }
 
 static bool read_frame(sense *s, uint32_t frame, double *positions, io_error *error) {
@@ -267,9 +273,8 @@ static int run_sense(const sense_options *options) {
     bool begun = begin_sense(&s, &error), ran = false;
     if (begun) {
         if (!options->quiet) recording_warn(&s.recording);
-        interrupt_catch();
         terminal_progress_begin(&s.progress, options->quiet);
-        ran = run_intervals(&s, &error);
+        ran = run_intervals(&s, &error) || interrupt_ended_wait();
         terminal_progress_end(&s.progress);
     }
     const char *stopped_by = ran ? (interrupted() ? "interrupted" : NULL) : error.text;

@@ -2,6 +2,7 @@
 #include "tests/support/test.h"
 #include "tests/support/tool/run_tool.h"
 
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,6 +22,9 @@ static int open_capture(void) {
     return descriptor;
 }
 
+/* Whoever runs the tests in the background, or by nohup, ignores some of these. */
+static const int interrupts[] = {SIGINT, SIGTERM, SIGHUP};
+
 tool_process run_tool_start(const char *const *arguments) {
     const char *path = run_tool_path();
     char *list[ARGUMENTS_MAX] = {strdup("cscd")};
@@ -34,6 +38,7 @@ tool_process run_tool_start(const char *const *arguments) {
     process.pid = fork();
     assert_true(process.pid >= 0);
     if (process.pid == 0) {
+        for (size_t i = 0; i < sizeof interrupts / sizeof *interrupts; i++) signal(interrupts[i], SIG_DFL);
         dup2(process.out, STDOUT_FILENO);
         dup2(process.error, STDERR_FILENO);
         execv(path, list);
