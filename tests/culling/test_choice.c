@@ -1,5 +1,6 @@
 /* Method auto culls where it pays: whatever it chooses, and whenever, results are the same. */
 #include "runtime/detector/detector.h"
+#include "tests/support/culling/exact_numbers.h"
 #include "tests/support/packed.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/rig.h"
@@ -77,6 +78,7 @@ static void compare_steps(const rig *r, cscd_mode mode, uint32_t k, random_strea
         choose_at_random(chosen, random);
         assert_int_equal(step_packed(truth, from, path[i + 1], &expected), CSCD_OK);
         assert_int_equal(step_packed(chosen, from, path[i + 1], &found), CSCD_OK);
+        expect_one_number(chosen, "a path");
         expect_equal(&found, &expected);
         sum->contacts += expected.count;
         bool culled = cscd_detector_counters(chosen).plus + cscd_detector_counters(chosen).minus > 0;

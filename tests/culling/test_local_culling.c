@@ -6,6 +6,7 @@
 #include "src/mesh/predicates.h"
 #include "src/mesh/triangle_intersection.h"
 #include "tests/support/bvh/direction_gap.h"
+#include "tests/support/culling/exact_numbers.h"
 #include "tests/support/packed.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/sequences.h"
@@ -293,6 +294,7 @@ static void check_interval(ways *w, const double *start, const double *end, loca
     for (int i = 0; i < CULLING_COUNT; i++) {
         cscd_detector *d = w->culling[i];
         assert_int_equal(step_packed(d, start, end, &found), CSCD_OK);
+        expect_one_number(d, "a walk");
         check_contacts(w, d, &found, &truth);
         if (i != EARLIEST_SCATTERED) assert_int_equal(found.count, truth.count);
         cscd_counters n = cscd_detector_counters(d);

@@ -3,6 +3,7 @@
 #include "cscd/cscd.h"
 #include "cscd/research.h"
 #include "runtime/detector/detector.h"
+#include "tests/support/culling/exact_numbers.h"
 #include "tests/support/culling/march.h"
 #include "tests/support/packed.h"
 #include "tests/support/random.h"
@@ -155,8 +156,10 @@ static void check_strays(marching *a) {
 
 static void take_step(marching *a, uint32_t i) {
     cscd_contacts found[DETECTORS];
-    for (int k = 0; k < DETECTORS; k++)
+    for (int k = 0; k < DETECTORS; k++) {
         assert_int_equal(step_packed(a->detectors[k], a->x0, a->x1, &found[k]), CSCD_OK);
+        expect_one_number(a->detectors[k], "a march");
+    }
     bool answered = cscd_detector_counters(a->detectors[WITH_LISTS]).coherent != 0;
     assert_same_contacts(&found[0], &found[1]);
     assert_int_equal(cscd_detector_counters(a->detectors[WITHOUT]).coherent, 0);
@@ -223,6 +226,7 @@ static void step_by_other_settings(marching *a) {
         assert_int_equal(changes[which](a->detectors[k], a, false), CSCD_OK);
         for (int i = 0; i < (which == 1 ? 3 : 1); i++)
             assert_int_equal(step_packed(a->detectors[k], a->x0, a->x1, &found[k]), CSCD_OK);
+        expect_one_number(a->detectors[k], "a march");
         assert_int_equal(changes[which](a->detectors[k], a, true), CSCD_OK);
     }
     assert_same_contacts(&found[0], &found[1]);

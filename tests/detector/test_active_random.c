@@ -3,6 +3,7 @@
 #include "cscd/cscd.h"
 #include "cscd/research.h"
 #include "tests/support/active_twins.h"
+#include "tests/support/culling/exact_numbers.h"
 #include "tests/support/loose/loose_scene.h"
 #include "tests/support/methods.h"
 #include "tests/support/object_scene.h"
@@ -121,6 +122,7 @@ static void compare_scene(uint64_t seed, random_stream *random, filtered_tally *
         oracle_find(&motion, &truth);
         sum->dropped += filter_truth(&twins, &truth);
         assert_int_equal(step_packed(m.detector, motion.x0, motion.x1, &found), CSCD_OK);
+        expect_one_number(m.detector, "active objects");
         sum->later += compare_with_truth(&truth, &found, options.mode == CSCD_MODE_EARLIEST);
         sum->contacts += found.count;
         for (uint32_t t = 0; t < s.triangle_count; t++)

@@ -1,6 +1,7 @@
 /* Random changes of seams, ignored pairs and rules on a live detector, against brute force and a list of what waits. */
 #include "cscd/cscd.h"
 #include "cscd/research.h"
+#include "tests/support/culling/exact_numbers.h"
 #include "tests/support/methods.h"
 #include "tests/support/object_scene.h"
 #include "tests/support/packed.h"
@@ -168,6 +169,7 @@ static void compare_step(waiting_run *q) {
     oracle_find_by_rules(&objects_motion, &q->oracle.now.what.rules, &q->truth);
     waiting_oracle_filter(&q->oracle, &q->truth);
     assert_int_equal(step_packed(q->s.detector, objects_motion.x0, objects_motion.x1, &found), CSCD_OK);
+    expect_one_number(q->s.detector, "objects at random");
     rules_rig_compare(&q->s, &q->truth, &found, &q->sum->steps);
     assert_int_equal(found.waiting, waiting_oracle_features(&q->oracle));
     for (uint32_t t = 0; t < objects_joined.triangle_count; t++)

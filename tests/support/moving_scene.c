@@ -1,5 +1,6 @@
 /* Detectors whose scenes tear, are refined, come and go, with all that they have been told. */
 #include "tests/support/moving_scene.h"
+#include "tests/support/culling/exact_numbers.h"
 
 #include "tests/support/packed.h"
 #include "tests/support/test.h"
@@ -181,6 +182,7 @@ void moving_move_scene(double speed) {
 /* The end becomes the start. */
 void moving_go_on(void) {
     uint32_t vertex = 0;
+    expect_one_number(moving.detector, "a changing scene");
     for (uint32_t i = 0; i < moving.shape.object_count; i++) {
         changing_object *o = &moving.shape.objects[i];
         memcpy(o->positions, moving.x1 + 3 * vertex, o->vertex_count * sizeof(double[3]));
