@@ -153,6 +153,7 @@ int windows_fflush(FILE *file);
 int windows_fclose(FILE *file);
 ssize_t windows_getline(char **line, size_t *size, FILE *file);
 char *windows_strndup(const char *text, size_t length);
+char *windows_strsep(char **rest, const char *separators);
 void *windows_memmem(const void *text, size_t size, const void *word, size_t word_size);
 
 /* The sentence for errno that other systems have. */
@@ -164,6 +165,7 @@ char *windows_strerror(int cause);
 #define getline        windows_getline
 #define strndup        windows_strndup
 #define memmem         windows_memmem
+#define strsep         windows_strsep
 #define strerror       windows_strerror
 
 /* ---- times and orders --------------------------------------------------------------------------------- */
@@ -213,6 +215,8 @@ char *windows_getenv(const char *name);
 
 #define _SC_NPROCESSORS_ONLN 84
 #define _SC_PAGESIZE         30
+#define _SC_AVPHYS_PAGES     86
+#define _SC_PHYS_PAGES       85
 long windows_sysconf(int name);
 #define sysconf windows_sysconf
 

@@ -5,6 +5,7 @@
 
 #include <errno.h>
 #include <stdatomic.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/utsname.h>
 #include <windows.h>
@@ -113,7 +114,18 @@ char *windows_getenv(const char *name) {
 long windows_sysconf(int name) {
     SYSTEM_INFO info;
     GetSystemInfo(&info);
-    return name == _SC_PAGESIZE ? (long)info.dwPageSize : (long)GetActiveProcessorCount(ALL_PROCESSOR_GROUPS);
+    MEMORYSTATUSEX memory = {.dwLength = sizeof memory};
+    GlobalMemoryStatusEx(&memory);
+    switch (name) {
+    case _SC_PAGESIZE:
+        return (long)info.dwPageSize;
+    case _SC_PHYS_PAGES:
+        return (long)(memory.ullTotalPhys / info.dwPageSize);
+    case _SC_AVPHYS_PAGES:
+        return (long)(memory.ullAvailPhys / info.dwPageSize);
+    default:
+        return (long)GetActiveProcessorCount(ALL_PROCESSOR_GROUPS);
+    }
 }
 
 int uname(struct utsname *out) {
@@ -138,4 +150,23 @@ int getrlimit(int resource, struct rlimit *out) {
 int setrlimit(int resource, const struct rlimit *limit) {
     (void)resource;
     return _setmaxstdio((int)limit->rlim_cur) < 0 ? -1 : 0;
+}
+
+void *mmap(void *address, size_t size, int protection, int flags, int file, long offset) {
+    (void)address, (void)protection, (void)flags, (void)file, (void)offset;
+    void *pages = VirtualAlloc(NULL, size, MEM_RESERVE | MEM_COMMIT, PAGE_READWRITE);
+    return pages != NULL ? pages : MAP_FAILED;
+}
+
+int mprotect(void *address, size_t size, int protection) {
+    DWORD before;
+    const DWORD now = protection == PROT_NONE          ? PAGE_NOACCESS
+                      : (protection & PROT_WRITE) != 0 ? PAGE_READWRITE
+                                                       : PAGE_READONLY;
+    return VirtualProtect(address, size, now, &before) ? 0 : wide_failure();
+}
+
+int munmap(void *address, size_t size) {
+    (void)size;
+    return VirtualFree(address, 0, MEM_RELEASE) ? 0 : wide_failure();
 }

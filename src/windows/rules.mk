@@ -28,3 +28,4 @@ test-windows-run: tool library $(TESTS) $(BUILD)/tests/windows/compare_answers
 
 # The macros of cmocka take the formats of Microsoft for granted; and what runs once need not be fast, but soon compiled.
 $(addprefix $(OBJECTS)/,tests/% benchmarks/%): CFLAGS_ALL += -Wno-format -Wno-format-extra-args -O1 -g0
+$(TESTS): LINK_ALL += -Wl,--strip-debug

@@ -112,6 +112,15 @@ char *windows_strndup(const char *text, size_t length) {
     return copy;
 }
 
+char *windows_strsep(char **rest, const char *separators) {
+    char *word = *rest;
+    if (word == NULL) return NULL;
+    char *end = word + strcspn(word, separators);
+    *rest = *end != '\0' ? end + 1 : NULL;
+    *end = '\0';
+    return word;
+}
+
 void *windows_memmem(const void *text, size_t size, const void *word, size_t word_size) {
     const char *at = text, *end = at + size;
     for (; word_size <= (size_t)(end - at); at++) {

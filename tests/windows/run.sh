@@ -20,7 +20,7 @@ CSCD_MODELS=$BUILD/models
 TMPDIR=$logs/files
 CSCD_ANSWERS=${ANSWERS:-}
 export WINEPREFIX WINEDEBUG WINEDLLOVERRIDES CSCD_TOOL CSCD_MODELS TMPDIR CSCD_ANSWERS
-mkdir "$TMPDIR"
+mkdir -p "$TMPDIR" "$WINEPREFIX"
 trap '"$SERVER" -k 2>/dev/null; rm -rf "$logs"' EXIT
 "$SERVER" -p
 "$WINE" wineboot -i >/dev/null 2>&1 || "$WINE" cmd /c exit >/dev/null 2>&1

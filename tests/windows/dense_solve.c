@@ -1,0 +1,58 @@
+/* Dense linear systems for the tests on Windows, which has no LAPACKE: plain elimination with partial pivoting, on one thread. Many
+ * tests are about plans by charge, which product and tool do not make there. */
+#include "preprocess/charge/dense_solve.h"
+
+#include <math.h>
+
+static void swap_rows(float *matrix, uint32_t count, uint32_t a, uint32_t b) {
+    for (uint32_t column = 0; a != b && column < count; column++) {
+        float *of_column = matrix + (size_t)column * count;
+        const float kept = of_column[a];
+        of_column[a] = of_column[b];
+        of_column[b] = kept;
+    }
+}
+
+static uint32_t find_pivot(const float *column, uint32_t begin, uint32_t count) {
+    uint32_t best = begin;
+    for (uint32_t row = begin + 1; row < count; row++)
+        if (fabsf(column[row]) > fabsf(column[best])) best = row;
+    return best;
+}
+
+cscd_status dense_factor(const charge_host *host, float *matrix, uint32_t count, int32_t *pivots,
+                         uint32_t *zero_pivot) {
+    *zero_pivot = 0;
+    for (uint32_t k = 0; k < count; k++) {
+        if (!host->go_on(host->context, (double)k / count)) return host->progress(host->context);
+        float *column = matrix + (size_t)k * count;
+        const uint32_t pivot = find_pivot(column, k, count);
+        pivots[k] = (int32_t)pivot;
+        swap_rows(matrix, count, k, pivot);
+        if (column[k] == 0.0f) {
+            *zero_pivot = *zero_pivot == 0 ? k + 1 : *zero_pivot;
+            continue;
+        }
+        for (uint32_t row = k + 1; row < count; row++) column[row] /= column[k];
+        for (uint32_t j = k + 1; j < count; j++) {
+            float *other = matrix + (size_t)j * count;
+            const float factor = other[k];
+            for (uint32_t row = k + 1; row < count; row++) other[row] -= column[row] * factor;
+        }
+    }
+    return host->progress(host->context);
+}
+
+void dense_substitute(const float *factors, uint32_t count, const int32_t *pivots, float *vector) {
+    for (uint32_t k = 0; k < count; k++) {
+        const float kept = vector[k];
+        vector[k] = vector[pivots[k]];
+        vector[pivots[k]] = kept;
+    }
+    for (uint32_t k = 0; k < count; k++)
+        for (uint32_t row = k + 1; row < count; row++) vector[row] -= factors[(size_t)k * count + row] * vector[k];
+    for (uint32_t k = count; k-- > 0;) {
+        vector[k] /= factors[(size_t)k * count + k];
+        for (uint32_t row = 0; row < k; row++) vector[row] -= factors[(size_t)k * count + row] * vector[k];
+    }
+}
