@@ -3,10 +3,20 @@
  * waiting, poll(2) waits for their bytes, and both end soon enough to look again. */
 #include "src/io/pipe_file.h"
 
+#include <stdatomic.h>
+
+/* Signals belong to the process, and so does whom to ask about them. */
+static _Atomic(bool (*)(void)) asked;
+
+void pipe_file_ask(bool (*stopped)(void)) {
+    atomic_store(&asked, stopped);
+}
+
+#ifdef __linux__
+
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
-#include <stdatomic.h>
 #include <stdlib.h>
 #include <sys/stat.h>
 #include <time.h>
@@ -17,13 +27,6 @@ enum {
     FIRST_NAP = 1, /* ms, until the first look for a reader; */
     LONGEST_NAP = 50 /* they grow to this */
 };
-
-/* Signals belong to the process, and so does whom to ask about them. */
-static _Atomic(bool (*)(void)) asked;
-
-void pipe_file_ask(bool (*stopped)(void)) {
-    atomic_store(&asked, stopped);
-}
 
 /* Sets errno when the program is to stop. */
 static bool goes_on(void) {
@@ -39,8 +42,6 @@ static bool is_pipe(const char *path) {
 }
 
 /* ---- reading ------------------------------------------------------------------------------------------- */
-
-#ifdef __linux__
 
 /* Until there are bytes, or nobody is left to write any. That nobody has come yet is neither, as poll has it. */
 static bool await_bytes(int file) {
@@ -89,15 +90,6 @@ FILE *pipe_file_read(const char *path) {
     return descriptor >= 0 ? stream_of(descriptor) : NULL;
 }
 
-#else
-
-/* Streams of one's own are made otherwise elsewhere; there a second signal ends the wait, and the process. */
-FILE *pipe_file_read(const char *path) {
-    return fopen(path, "rb");
-}
-
-#endif
-
 /* ---- writing ------------------------------------------------------------------------------------------- */
 
 /* Without a reader a pipe cannot be opened without waiting, and nothing tells when one comes. */
@@ -122,3 +114,16 @@ FILE *pipe_file_write(const char *path) {
     errno = cause;
     return NULL;
 }
+
+#else
+
+/* Pipes are others elsewhere, and so are streams of one's own; there a second signal ends the wait, and the process. */
+FILE *pipe_file_read(const char *path) {
+    return fopen(path, "rb");
+}
+
+FILE *pipe_file_write(const char *path) {
+    return fopen(path, "wb");
+}
+
+#endif
