@@ -590,7 +590,8 @@ endif
 
 # All of the tool but its program, and what Python calls. Its own functions are meant wherever it calls one of the library, whatever
 # else the process has loaded.
-NATIVE_OBJECTS := $(if $(filter 1,$(DYNAMIC)),$(SHARED),$(OPENED_OBJECTS)) $(COMMON_OBJECTS) $(call objects,$(filter-out src/tool/main.c,$(COMMAND_SOURCES)) $(NATIVE_SOURCES))
+NATIVE_OBJECTS := $(if $(filter 1,$(DYNAMIC)),,$(OPENED_OBJECTS)) $(COMMON_OBJECTS) $(call objects,$(filter-out src/tool/main.c,$(COMMAND_SOURCES)) $(NATIVE_SOURCES)) \
+                  $(if $(filter 1,$(DYNAMIC)),$(SHARED))
 NATIVE_FILE_LIBS = $(if $(filter 1,$(DYNAMIC)),$(FILE_LIBS),$(call packaged,--static --libs libpng zlib json-c,-lpng -lz -ljson-c -lm) $(EXPAT_LIBS))
 $(PYTHON_PACKAGE)/libcscd-python.so: $(NATIVE_OBJECTS) python/native/link.sh
 	@mkdir -p $(@D)
