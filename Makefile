@@ -207,7 +207,7 @@ COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 # What installs packages; a build that leaves expat out on purpose does not ask for it.
 PACKAGES = GSL=$(GSL) CHARGE=$(CHARGE) EXPAT=$(if $(WITHOUT_EXPAT),0,1) .ci/packages
 
-.PHONY: all python python-package wheel sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-peers bench-instructions referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender blender-extension test-vtk windows windows-libraries windows-zip test-windows test-windows-run test-bridges test-farm test-aarch64 test-s390x cscd-mpi python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces test-fuzz test-faults FORCE
+.PHONY: all python python-package wheel sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-peers bench-instructions referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender blender-extension test-vtk windows windows-libraries windows-zip test-windows test-windows-run test-bridges test-farm test-mutants test-aarch64 test-s390x cscd-mpi python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces test-fuzz test-faults FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -405,6 +405,12 @@ test-s390x:
 test-without-baselines: packages
 	@tests/without_baselines.sh
 
+# Faults planted one at a time in a copy of the sources, and the tests that catch them: some minutes. SAMPLE=HASH: a few of them, the
+# same for the same commit; ONLY="word word": those with one of these words in their names.
+SAMPLE ?=
+test-mutants: packages
+	@CC='$(CC)' SAMPLE='$(SAMPLE)' ONLY='$(ONLY)' $(PYTHON) tests/mutants/run.py
+
 # The tests that use threads, under the thread sanitizer.
 THREAD_TESTS := $(addprefix $(BUILD)/tests/,detector/test_threads bvh/test_traversal core/test_progress \
                   core/test_parallel_for core/test_contexts core/test_host_loop core/test_exceptions detector/test_reentry \
@@ -527,6 +533,7 @@ help:
 	@echo 'make check     build and run the tests that take less than a second each, for the inner loop'
 	@echo 'make test      build and run every test (CONFIG=sanitize: with sanitizers; ONLY="bvh line_search": of these rooms or names)'
 	@echo 'make test-without-baselines   build and test what is left when runtime/baselines is removed'
+	@echo 'make test-mutants   plant faults in a copy of the sources, and show which test catches each (SAMPLE=HASH: a few; ONLY="word word")'
 	@echo 'make test-blender   frames of glTF files beside those that Blender evaluates, faces selected in it, the extension, and the steps of docs/from-your-program.md'
 	@echo '               (installs blender); PAGE=--write puts what the steps print into the page, and draws its pictures'
 	@echo 'make blender-extension   the extension of Blender, with the Python package in it, in build/blender'
