@@ -50,7 +50,8 @@ void dense_substitute(const float *factors, uint32_t count, const int32_t *pivot
         vector[pivots[k]] = kept;
     }
     for (uint32_t k = 0; k < count; k++)
-        for (uint32_t row = k + 1; row < count; row++) vector[row] -= factors[(size_t)k * count + row] * vector[k];
+        for (uint32_t row = k + 1; row < count; row++)
+            vector[row] -= factors[(size_t)k * count + row] * vector[k];
     for (uint32_t k = count; k-- > 0;) {
         vector[k] /= factors[(size_t)k * count + k];
         for (uint32_t row = 0; row < k; row++) vector[row] -= factors[(size_t)k * count + row] * vector[k];
