@@ -4,7 +4,7 @@
 # the build folder, so that the machine's sources stay as they are. Needs cmake and the compiler of `make windows`.
 set -eu
 cd "$(dirname "$0")/../../.."
-compiler=${CC:-x86_64-w64-mingw32-gcc-posix}
+compiler=x86_64-w64-mingw32-gcc-posix # not CC, which is the compiler of this machine
 root=$(pwd)/${1:-build/windows/libraries}
 suite=$(. /etc/os-release && echo "$VERSION_CODENAME")
 mkdir -p "$root/apt/parts" "$root/apt/lists/partial" "$root/apt/cache" "$root/sources" "$root/logs"
