@@ -104,7 +104,7 @@ CORE_SOURCES    := $(filter-out %_simd.c runtime/ccd/cubic_guess_$(if $(filter 0
 KERNEL_SOURCES  := $(filter %_simd.c,$(CORE_FILES))
 # What commands of the tool share, and the commands.
 WITHOUT_GIFTI   := src/io/gifti/no_gifti.c
-OTHER_PROCESSES := src/tool/jobs/job_processes$(if $(WINDOWS),,_windows).c
+OTHER_PROCESSES := $(foreach file,jobs/job_processes common/blas_kernels,src/tool/$(file)$(if $(WINDOWS),,_windows).c)
 COMMON_SOURCES  := $(filter-out $(OTHER_PROCESSES) $(if $(filter 0,$(EXPAT)),$(filter-out $(WITHOUT_GIFTI),$(wildcard src/io/gifti/*.c)),$(WITHOUT_GIFTI)), \
                      $(wildcard src/io/*.c src/io/*/*.c src/tool/picture/*.c src/tool/common/*.c src/tool/answers/*.c \
                      src/tool/jobs/*.c src/tool/export/*.c src/tool/report/*.c))

@@ -79,7 +79,7 @@ static double tree_distance(const bvh *f, const bvh_tree *tree, const volume_gro
     if (growth->of_objects != NULL) {
         bool several = tree->object == OBJECT_SEVERAL;
         uint32_t first = several ? 0 : tree->object, last = several ? f->mesh->object_count - 1 : first;
-        for (uint32_t i = first; i <= last; i++) distance = max_of(distance, growth->of_objects[i]);
+        for (uint32_t i = first; i <= last; i++) distance = max_of(growth->of_objects[i], distance);
     }
     return distance + growth->beyond;
 }
@@ -157,8 +157,9 @@ static void place_tree(const bvh *f, const bvh_tree *tree, const float *own, con
         double low = INFINITY, high = -INFINITY;
         double start = kdop_along(from[0], k), end = kdop_along(from[1], k);
         for (int i = 0; i < LANES; i++) {
-            low = min_of(low, (double)own[2 * k * LANES + i]);
-            high = max_of(high, (double)own[(2 * k + 1) * LANES + i]);
+            /* In this order a NaN, of an unused lane that has grown without bounds, is passed over. */
+            low = min_of((double)own[2 * k * LANES + i], low);
+            high = max_of((double)own[(2 * k + 1) * LANES + i], high);
         }
         bounds[2 * k * LANES] = low_bound(low + fmin(start, end) - 0x1p-20 * size);
         bounds[(2 * k + 1) * LANES] = high_bound(high + fmax(start, end) + 0x1p-20 * size);
