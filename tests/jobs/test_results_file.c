@@ -66,7 +66,7 @@ static void nothing_is_printed_into_the_results(void **state) {
     }
     free(expected);
     char *output = shell_output(4, "'%s' check --each '%s' --json - >&-", getenv("CSCD_TOOL"), clean.text);
-    assert_string_equal(output, "cscd: -: cannot write: Bad file descriptor\n");
+    assert_string_equal(output, "cscd: standard output: cannot write: Bad file descriptor\n");
     free(output);
     remove(results.text);
 }
