@@ -203,11 +203,12 @@ static void what_is_there_is_not_waited_for(void **state) {
           folder.path, pattern.text);
 }
 
-/* While the main thread waits for the frame, another one tries to read it. */
+/* While the main thread waits for the frame, whose file is still empty, another one tries to read it. */
 static void frames_are_read_on_a_thread_of_their_own(void **state) {
     (void)state;
     const temp_path pattern = make_series();
-    shell("mv '%s/late_0003.obj' '%s/hidden'", folder.path, folder.path);
+    shell("cp '%s/late_0003.obj' '%s/hidden' && : >'%s/late_0003.obj'", folder.path, folder.path,
+          folder.path);
     char model[600];
     snprintf(model, sizeof model, "%s/late_0000.obj", folder.path);
     tool_process process = run_tool_start((const char *const[]){
