@@ -9,9 +9,14 @@ enum { MEASURE_EVERY = 16, USELESS_MAX = 4 };
  * shrunk the spread by more than the factor `of_use`. */
 static const double decayed = 1.25, of_use = 1.1;
 
+static const char stage_of_trees[] = "trees";
+
 static cscd_status build_trees(const bvh_rebuild *r, const double *positions, bvh *out) {
     bvh built;
+    progress *asked = &r->mesh->context->progress;
+    progress_outer outer = progress_enter(asked, stage_of_trees);
     cscd_status status = bvh_build(r->mesh, r->regions, positions, r->axis_count, &built);
+    progress_leave(asked, outer);
     if (status != CSCD_OK) return status;
     if (!bvh_set_objects(&built, r->objects) || !bvh_set_active(&built, r->active)) {
         bvh_free(&built);
@@ -64,7 +69,10 @@ static bool same_growth(const volume_growth *a, const volume_growth *b) {
 }
 
 static cscd_status finish_kept(bvh_rebuild *r, const double *positions, bvh *out) {
+    progress *asked = &r->mesh->context->progress;
+    progress_outer outer = progress_enter(asked, stage_of_trees);
     cscd_status status = bvh_finish(&r->kept, r->regions, r->objects, r->active, positions);
+    progress_leave(asked, outer);
     if (status != CSCD_OK) return status;
     *out = r->kept;
     r->kept = (bvh){0};

@@ -112,7 +112,9 @@ cscd_status orphan_pairs_create(const cscd_mesh *mesh, orphan_pairs *out, bool *
                           ARRAY(whole.uneven, mesh->vertex_count), ARRAY(whole.tasks, whole.task_count)}};
     /* Zeros say of a triangle or an edge that a host's loop has left out that nothing is to be found there. */
     if (!context_allocate_all(mesh->context, arrays)) return CSCD_OUT_OF_MEMORY;
+    progress_outer outer = progress_enter(&mesh->context->progress, "orphan pairs");
     search_whole(&whole, &known);
+    progress_leave(&mesh->context->progress, outer);
     cscd_status status = end_whole(&whole, out, too_many);
     if (status == CSCD_OK) status = context_progress_status(mesh->context);
     if (status != CSCD_OK) orphan_pairs_free(mesh->context, out);

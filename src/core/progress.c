@@ -52,6 +52,16 @@ void progress_stage(progress *p, const char *stage, double begin, double end) {
     p->end = end;
 }
 
+progress_outer progress_enter(progress *p, const char *stage) {
+    progress_outer outer = {p->stage, p->begin, p->end};
+    progress_stage(p, stage, p->begin, p->begin);
+    return outer;
+}
+
+void progress_leave(progress *p, progress_outer outer) {
+    progress_stage(p, outer.stage, outer.begin, outer.end);
+}
+
 /* Estimates may fall; the number that is reported does not. */
 static void advance_report(progress *p, double share) {
     double part = p->begin + (p->end - p->begin) * share;

@@ -44,6 +44,16 @@ void progress_part(progress *p, double begin, double end);
  * neither this nor progress_part. */
 void progress_stage(progress *p, const char *stage, double begin, double end);
 
+/* Work in the middle of a stage that has a name of its own: the fraction that is reported stands still meanwhile. */
+typedef struct progress_outer {
+    const char *stage;
+    double begin, end;
+} progress_outer;
+
+/* Returns the stage that progress_leave goes back to. Tasks call neither. */
+progress_outer progress_enter(progress *p, const char *stage);
+void progress_leave(progress *p, progress_outer outer);
+
 /* Says which share of the stage is done, from 0 to 1, and asks the host when it is time. Returns false when
  * the call is cancelled: the caller then returns as soon as it can, and unfinished results must not be used.
  * Any thread may ask, in a task too, but only the one that made the call reaches the host; on the others, and
