@@ -127,17 +127,25 @@ static void cut_chunks(bvh *f) {
     }
 }
 
-static void fill_run(builder *b, bvh *f, bvh_tree *tree, uint32_t region, uint32_t begin, uint32_t end) {
+enum { TRIANGLES_PER_ASK = 1 << 13 };
+
+/* Asks whether the call goes on; false: it does not, and the tree is not whole. */
+static bool fill_run(builder *b, bvh *f, bvh_tree *tree, uint32_t region, uint32_t begin, uint32_t end,
+                     progress *asked) {
     *tree = (bvh_tree){.region = region,
                        .object = OBJECT_UNKNOWN,
                        .first_leaf = f->leaf_count,
                        .first_record = f->record_count};
-    for (uint32_t i = begin; i < end; i += LANES)
+    for (uint32_t i = begin; i < end; i += LANES) {
+        if ((i - begin) % TRIANGLES_PER_ASK == 0 && asked != NULL && !progress_go_on(asked, 0.0))
+            return false;
         fill_leaf(b, f, tree, b->triangles + i, end - i < LANES ? end - i : LANES);
+    }
     tree->leaf_count = f->leaf_count - tree->first_leaf;
     while (f->record_count % LANES != 0)
         f->record_vertices[f->record_count++] = f->record_vertices[tree->first_record];
     tree->record_count = f->record_count - tree->first_record;
+    return true;
 }
 
 /* ---- all of it ----------------------------------------------------------------------------------------- */
@@ -218,6 +226,12 @@ static double scale_for(const cscd_mesh *mesh, const double *positions, const pl
     return ldexp(1.0, -exponent);
 }
 
+/* Why there are no trees. */
+static cscd_status failure_of(cscd_context *context) {
+    cscd_status status = context_progress_status(context);
+    return status != CSCD_OK ? status : CSCD_OUT_OF_MEMORY;
+}
+
 cscd_status bvh_build(const cscd_mesh *mesh, bvh_regions regions, const double *positions, int axis_count,
                       bvh *out) {
     builder b = {.context = mesh->context, .mesh = mesh, .given = regions};
@@ -234,7 +248,8 @@ cscd_status bvh_build(const cscd_mesh *mesh, bvh_regions regions, const double *
         made = order_items(&b) && allocate_bvh(&b, &f);
         for (uint32_t p = 0; made && p < f.tree_count; p++) {
             uint32_t region = b.regions[p].name;
-            fill_run(&b, &f, &f.trees[p], region, b.region_offsets[region], b.region_offsets[region + 1]);
+            made = fill_run(&b, &f, &f.trees[p], region, b.region_offsets[region],
+                            b.region_offsets[region + 1], &mesh->context->progress);
         }
         if (made) cut_chunks(&f);
         made = made && bvh_build_levels(&f, b.region_offsets) && bvh_mark_objects(&f);
@@ -242,7 +257,7 @@ cscd_status bvh_build(const cscd_mesh *mesh, bvh_regions regions, const double *
     free_builder(&b);
     if (!made) {
         bvh_free(&f);
-        return CSCD_OUT_OF_MEMORY;
+        return failure_of(mesh->context);
     }
     assert(bvh_validate(&f, false) == NULL);
     *out = f;
@@ -280,7 +295,7 @@ static void fill_missing(builder *b, bvh *f, uint32_t index) {
     memset(f->record_weights + place.first_record, 0, place.record_count * sizeof *f->record_weights);
     f->leaf_count = place.first_leaf;
     f->record_count = place.first_record;
-    fill_run(b, f, tree, place.region, begin, begin + place.missing);
+    fill_run(b, f, tree, place.region, begin, begin + place.missing, NULL);
     assert(tree->leaf_count == place.leaf_count && tree->record_count == place.record_count);
     f->leaf_count = leaves;
     f->record_count = records;
@@ -333,7 +348,7 @@ cscd_status bvh_finish(bvh *f, bvh_regions regions, const object_set *sets, cons
     }
     free_builder(&b);
     assert(!made || bvh_validate(f, false) == NULL);
-    return made ? CSCD_OK : CSCD_OUT_OF_MEMORY;
+    return made ? CSCD_OK : failure_of(f->mesh->context);
 }
 
 void bvh_free(bvh *f) {

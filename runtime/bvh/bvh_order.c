@@ -174,6 +174,8 @@ static void order_run(placed_item *items, placed_item *spare, item_run run) {
 enum { TASK_ITEMS = 1 << 14 };
 
 typedef struct order_work {
+    progress *
+        progress; /* of the call, which may be cancelled between two splits of long runs and between two tasks */
     placed_item *items, *spare;
     item_run *long_runs, *halves, *tasks; /* halves: two of each long run */
     uint32_t long_count, task_count;
@@ -182,6 +184,7 @@ typedef struct order_work {
 static void split_long_run(void *data, uint32_t index) {
     const order_work *work = data;
     item_run run = work->long_runs[index];
+    if (!progress_go_on(work->progress, 0.0)) return;
     uint32_t middle =
         run.begin + split_run(work->items + run.begin, work->spare + run.begin, run.end - run.begin);
     work->halves[2 * index] = (item_run){run.begin, middle};
@@ -190,7 +193,7 @@ static void split_long_run(void *data, uint32_t index) {
 
 static void order_task(void *data, uint32_t index) {
     const order_work *work = data;
-    order_run(work->items, work->spare, work->tasks[index]);
+    if (progress_go_on(work->progress, 0.0)) order_run(work->items, work->spare, work->tasks[index]);
 }
 
 static void add_run(order_work *work, item_run run) {
@@ -200,27 +203,32 @@ static void add_run(order_work *work, item_run run) {
         work->tasks[work->task_count++] = run;
 }
 
-static void order_all(order_work *work, parallel *threads, const uint32_t *offsets, uint32_t count) {
+/* False: the call is cancelled. */
+static bool order_all(order_work *work, parallel *threads, const uint32_t *offsets, uint32_t count) {
     for (uint32_t r = 0; r < count; r++) add_run(work, (item_run){offsets[r], offsets[r + 1]});
     while (work->long_count > 0) {
         uint32_t halves = 2 * work->long_count;
         parallel_run(threads, work->long_count, split_long_run, work);
+        if (progress_cancelled(work->progress)) return false;
         work->long_count = 0;
         for (uint32_t i = 0; i < halves; i++) add_run(work, work->halves[i]);
     }
     parallel_run(threads, work->task_count, order_task, work);
+    return !progress_cancelled(work->progress);
 }
 
 /* A long run has more than TASK_ITEMS items, and each split of one makes at most one task more. */
 bool bvh_order_runs(cscd_context *context, item_runs runs) {
     uint32_t end = runs.offsets[runs.count];
-    order_work work = {.items = runs.items, .spare = context_reserve(context, end, sizeof *work.spare)};
+    order_work work = {.progress = &context->progress,
+                       .items = runs.items,
+                       .spare = context_reserve(context, end, sizeof *work.spare)};
     size_t long_most = (end - runs.offsets[0]) / TASK_ITEMS + 1;
     array_list lists = {{ARRAY(work.long_runs, long_most), ARRAY(work.halves, 2 * long_most),
                          ARRAY(work.tasks, runs.count + 2 * long_most)}};
     bool enough = work.spare != NULL && context_allocate_all(context, lists);
     if (enough) {
-        order_all(&work, context->threads, runs.offsets, runs.count);
+        enough = order_all(&work, context->threads, runs.offsets, runs.count);
         context_free_all(context, lists);
     }
     context_free(context, work.spare);

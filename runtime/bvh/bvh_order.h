@@ -18,5 +18,5 @@ typedef struct item_runs {
 
 /* Splits each run at the middle of its longest extent, then each side, down to LANES items; items of one coordinate, and those
  * that end up together, keep their order. All threads share the work, and the result is the same for any number of them.
- * False: no memory. */
+ * False: no memory, or the call is cancelled, and the items of a run are in any order. */
 bool bvh_order_runs(cscd_context *context, item_runs runs);
