@@ -54,6 +54,9 @@ typedef struct bvh_level {
      * hold none that are looked at are not compared; obstacle_lanes is not read then. NULL: there are no rules. */
     object_set *child_sets;
 
+    /* Per child of a block, how its triangles lie around a vertex of very many triangles; NULL: there is no such vertex. */
+    struct hub_volume *child_hubs;
+
     /* The children of each block without any active triangle, which are not compared with each other; NULL: all
      * triangles are active. */
     uint8_t *inactive_lanes;
@@ -105,6 +108,8 @@ typedef struct bvh {
     int tree_level, level_count;
     double scale;
     bool still;             /* the last refit was to a moment: both ends of everything are the same */
+    bool keeps_hub_pairs;   /* the traversal leaves out no pair because of a vertex of very many triangles */
+    double hub_distance;    /* for which child_hubs tell triangles apart */
     bool trees_mix_objects; /* some tree holds several objects */
     uint32_t *slots;        /* per triangle, where it is: 8 * leaf + lane */
 } bvh;
@@ -118,7 +123,7 @@ typedef struct bvh_regions {
 } bvh_regions;
 
 /* Orders the triangles and shapes the trees by positions; bounds and records are undefined before the first
- * bvh_refit. *out is untouched unless CSCD_OK. */
+ * bvh_refit. *out is untouched unless CSCD_OK; CANCELLED: the call that builds them is. */
 cscd_status bvh_build(const cscd_mesh *mesh, bvh_regions regions, const double *positions, int axis_count,
                       bvh *out);
 void bvh_free(bvh *f);
@@ -192,7 +197,8 @@ static inline bool bvh_can_hide(const bvh *f) {
 /* Makes the traversal leave out pairs of adjacent triangles in the given components; NULL: in none. */
 void bvh_skip_adjacent(bvh *f, const bool *components);
 
-/* The same in all components. */
+/* The same in all components, but pairs whose common vertices are all shared by very many triangles are kept: their number
+ * grows with its square, and the traversal can tell most of them apart. */
 void bvh_skip_all_adjacent(bvh *f);
 
 /* Orientation of a triangle as seen from a detector point d during a whole interval. PLUS (MINUS) certifies that

@@ -1,5 +1,6 @@
 /* Builds the trees: the order of triangles, leaves, blocks and records. */
 #include "runtime/bvh/bvh.h"
+#include "runtime/bvh/bvh_hubs.h"
 #include "runtime/bvh/bvh_order.h"
 
 #include <assert.h>
@@ -252,7 +253,8 @@ cscd_status bvh_build(const cscd_mesh *mesh, bvh_regions regions, const double *
                             b.region_offsets[region + 1], &mesh->context->progress);
         }
         if (made) cut_chunks(&f);
-        made = made && bvh_build_levels(&f, b.region_offsets) && bvh_mark_objects(&f);
+        made =
+            made && bvh_build_levels(&f, b.region_offsets) && bvh_mark_objects(&f) && bvh_allocate_hubs(&f);
     }
     free_builder(&b);
     if (!made) {
@@ -304,6 +306,7 @@ static void fill_missing(builder *b, bvh *f, uint32_t index) {
 static void drop_levels(bvh *f) {
     cscd_context *context = f->mesh->context;
     bvh_free_objects(f);
+    bvh_free_hubs(f);
     bvh_free_levels(f);
     context_free(context, f->block_trees);
     f->block_trees = NULL;
@@ -342,8 +345,8 @@ cscd_status bvh_finish(bvh *f, bvh_regions regions, const object_set *sets, cons
     bool made = allocate_missing(&b, f, missing) && fill_all_missing(&b, f, positions, missing);
     if (made) {
         cut_chunks(f);
-        made = bvh_build_levels(f, b.region_offsets) && bvh_mark_objects(f) && bvh_set_objects(f, sets) &&
-               bvh_set_active(f, active);
+        made = bvh_build_levels(f, b.region_offsets) && bvh_mark_objects(f) && bvh_allocate_hubs(f) &&
+               bvh_set_objects(f, sets) && bvh_set_active(f, active);
         if (!made) drop_levels(f);
     }
     free_builder(&b);
@@ -360,6 +363,7 @@ void bvh_free(bvh *f) {
                       f->leaf_inactive};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(context, blocks[i]);
     bvh_free_objects(f);
+    bvh_free_hubs(f);
     bvh_free_levels(f);
     *f = (bvh){0};
 }

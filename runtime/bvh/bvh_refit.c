@@ -1,5 +1,6 @@
 /* Refits the BVH to an interval: frames, records, bounds, flags. */
 #include "runtime/bvh/bvh.h"
+#include "runtime/bvh/bvh_hubs.h"
 #include "src/core/floating.h"
 
 #include <assert.h>
@@ -82,6 +83,13 @@ static double tree_distance(const bvh *f, const bvh_tree *tree, const volume_gro
         for (uint32_t i = first; i <= last; i++) distance = max_of(growth->of_objects[i], distance);
     }
     return distance + growth->beyond;
+}
+
+static double greatest_distance(const bvh *f, const volume_growth *growth) {
+    double greatest = 0.0;
+    for (uint32_t i = 0; i < f->tree_count; i++)
+        greatest = fmax(greatest, tree_distance(f, &f->trees[i], growth));
+    return greatest;
 }
 
 /* Chunks are sorted by tree. */
@@ -215,6 +223,7 @@ void bvh_refit(bvh *f, const double *x0, const double *x1, volume_growth growth)
         clear_flags(f->levels[now.level].flags, f->levels[now.level].block_count);
     }
     clear_flags(f->leaf_flags, f->leaf_count);
+    bvh_refit_hubs(f, x0, x1, greatest_distance(f, &growth));
     bvh_show_all(f);
     /* A distance that floats cannot hold leaves the bounds of empty lanes without a value, so bounds are checked
      * only where no distance widens them. */
@@ -227,8 +236,10 @@ void bvh_skip_adjacent(bvh *f, const bool *components) {
         uint32_t component = f->mesh->triangle_components[f->leaves[tree->first_leaf].triangles[0]];
         tree->skip_adjacent = components != NULL && components[component];
     }
+    f->keeps_hub_pairs = false;
 }
 
 void bvh_skip_all_adjacent(bvh *f) {
     for (uint32_t i = 0; i < f->tree_count; i++) f->trees[i].skip_adjacent = true;
+    f->keeps_hub_pairs = f->levels[0].child_hubs != NULL;
 }

@@ -13,6 +13,7 @@
  * of two trees are in two frames: a displacement moves the volumes of a into the frame of b. */
 #include "runtime/bvh/bvh_kernels_simd.h"
 
+#include "runtime/bvh/bvh_hubs.h"
 #include "runtime/bvh/leaf_volumes.h"
 
 /* The place of tree b relative to tree a: per axis at both ends of the interval, off by at most slack, and between
@@ -170,6 +171,23 @@ typedef struct leaf_pair {
     uint32_t rows, columns; /* the lanes of a and of b that are compared */
 } leaf_pair;
 
+/* As lanes_without_shared_vertex, but a hub does not count as shared. */
+static __attribute__((noinline)) uint32_t lanes_without_small_star(const bvh *f, const leaf_pair *pair, int i,
+                                                                   uint32_t lanes) {
+    const cscd_mesh *mesh = f->mesh;
+    const uint32_t *corners = mesh->triangles[f->leaves[pair->a].triangles[i]];
+    uint32_t kept = lanes;
+    for (uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
+        int lane = __builtin_ctz(rest);
+        const uint32_t *others = mesh->triangles[f->leaves[pair->b].triangles[lane]];
+        bool shared = false;
+        for (int j = 0; j < 3; j++)
+            shared |= triangle_contains(others, corners[j]) && !vertex_is_hub(mesh, corners[j]);
+        kept ^= (uint32_t)shared << lane;
+    }
+    return kept;
+}
+
 /* Returns the given lanes of b, without those whose triangles share a vertex with triangle i of a. */
 static inline uint32_t lanes_without_shared_vertex(const bvh *f, const leaf_pair *pair, int i, uint32_t lanes,
                                                    bool one_tree) {
@@ -213,7 +231,8 @@ static inline void compare_leaves(const traversal *t, traversal_lane *lane, cons
         lane->boxes_tested += (uint32_t)__builtin_popcount(lanes);
         lanes &= ~apart_at_ends(pair->volumes_a, pair->volumes_b, i, 0, BOX_AXES, still, d);
         if (lanes != 0 && skip_adjacent) {
-            uint32_t kept = lanes_without_shared_vertex(f, pair, i, lanes, one_tree);
+            uint32_t kept = f->keeps_hub_pairs ? lanes_without_small_star(f, pair, i, lanes)
+                                               : lanes_without_shared_vertex(f, pair, i, lanes, one_tree);
             lane->adjacent += (uint32_t)__builtin_popcount(lanes & ~kept);
             lanes = kept;
         }
@@ -250,6 +269,17 @@ static __attribute__((noinline)) void compare_leaves_otherwise(const traversal *
         compare_leaves(t, lane, pair, skip_adjacent, true, true, NULL);
     else
         compare_leaves(t, lane, pair, skip_adjacent, false, true, d);
+}
+
+/* Returns those of the lanes of b whose hub volumes do not overlap that of lane i of a. */
+static __attribute__((noinline)) uint32_t lanes_apart_at_hub(const bvh *f, const hub_volume *a,
+                                                             const hub_volume *b, uint32_t lanes) {
+    uint32_t apart = 0;
+    for (uint32_t rest = a->hub != NO_HUB ? lanes : 0; rest != 0; rest &= rest - 1) {
+        int lane = __builtin_ctz(rest);
+        apart |= (uint32_t)hub_volumes_apart(a, &b[lane], f->hub_distance) << lane;
+    }
+    return apart;
 }
 
 /* ---- blocks -------------------------------------------------------------------------------------------- */
@@ -305,6 +335,7 @@ static inline void visit_blocks(const traversal *t, traversal_lane *lane, block_
     size_t stride = (size_t)f->axis_count * 2 * LANES;
     const float *bounds_a = level->bounds + at.a * stride, *bounds_b = level->bounds + at.b * stride;
     const object_set *sets = level->child_sets;
+    const hub_volume *hubs = level->child_hubs;
     bool obstacles = level->obstacle_lanes != NULL && sets == NULL;
     uint32_t obstacles_a = obstacles ? level->obstacle_lanes[at.a] : 0;
     uint32_t inactive_a = t->skips_inactive ? level->inactive_lanes[at.a] : 0;
@@ -328,6 +359,9 @@ static inline void visit_blocks(const traversal *t, traversal_lane *lane, block_
             lane->boxes_tested += (uint32_t)__builtin_popcount(lanes);
             lanes &= ~lanes_apart(bounds_a, bounds_b, i, f->axis_count, d);
         }
+        if (hubs != NULL && lanes != 0)
+            lanes &= ~lanes_apart_at_hub(f, &hubs[(size_t)at.a * LANES + (size_t)i],
+                                         hubs + (size_t)at.b * LANES, lanes);
         if (c.itself) {
             bool own = (c.self_pairs >> (9 * i) & 1) != 0 && ((c.a.plus | c.a.minus) >> i & 1) == 0;
             if (t->pass != TRAVERSAL_KEPT) own = (c.a.newly_kept >> i & 1) != 0;

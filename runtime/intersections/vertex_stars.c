@@ -75,7 +75,8 @@ void vertex_stars_mark_clear(vertex_stars *s, uint32_t begin, uint32_t end) {
 
 static bool comes_from(const vertex_stars *s, uint32_t vertex, const uint32_t a[3], const uint32_t b[3]) {
     for (int i = 0; i < 3; i++) {
-        if ((a[i] < vertex || s->clear[a[i]]) && triangle_contains(b, a[i])) return false;
+        bool earlier = a[i] < vertex && !vertex_is_hub(s->mesh, a[i]);
+        if ((earlier || s->clear[a[i]]) && triangle_contains(b, a[i])) return false;
     }
     return true;
 }
@@ -85,7 +86,7 @@ bool vertex_stars_next_pair(const vertex_stars *s, star_cursor *c, uint32_t pair
     for (; c->vertex < c->end; *c = star_cursor_over(c->vertex + 1, c->end)) {
         uint32_t size;
         const uint32_t *star = star_of(s->mesh, c->vertex, &size);
-        if (s->clear[c->vertex]) continue;
+        if (s->clear[c->vertex] || vertex_is_hub(s->mesh, c->vertex)) continue;
         for (; c->first + 1 < size; c->second = ++c->first + 1) {
             while (c->second < size) {
                 pair[0] = star[c->first];

@@ -35,5 +35,5 @@ static inline star_cursor star_cursor_over(uint32_t begin, uint32_t end) {
 }
 
 /* Moves on to the next pair of triangles that share a vertex, but none that is clear. A pair comes once in all: at the least
- * of these vertices. False: there is none left. */
+ * of these vertices. Where very many triangles share all of these, the traversal finds it (bvh_skip_all_adjacent). False: there is none left. */
 bool vertex_stars_next_pair(const vertex_stars *s, star_cursor *cursor, uint32_t pair[2]);

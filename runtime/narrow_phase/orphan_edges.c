@@ -66,6 +66,10 @@ static uint32_t edge_between(const cscd_mesh *mesh, uint32_t v, uint32_t w) {
     return NO_EDGE;
 }
 
+static uint32_t star_size_of(const cscd_mesh *mesh, uint32_t v) {
+    return mesh->vertex_star_offsets[v + 1] - mesh->vertex_star_offsets[v];
+}
+
 static uint32_t other_of(const uint32_t two[2], uint32_t one) {
     return two[0] == one ? two[1] : two[0];
 }
@@ -77,6 +81,7 @@ static void add_edges(orphan_search *f, uint32_t a, uint32_t b) {
 /* The corners opposite a are the ends of b. Where it is so the other way as well, the pair is found twice. */
 static void find_across(orphan_search *f, uint32_t a) {
     const uint32_t *ends = f->mesh->edges[a], *p = f->opposites[a];
+    orphan_search_look(f, star_size_of(f->mesh, p[0]));
     uint32_t b = edge_between(f->mesh, p[0], p[1]);
     if (b == NO_EDGE || !f->even[b]) return;
     const uint32_t *q = f->opposites[b];
@@ -116,6 +121,7 @@ void orphan_edges_of(orphan_search *f, uint32_t t) {
 /* Looks at the triangles at one corner of a triangle at v that have neither v nor the other corner, if there is one. */
 static void find_faces_at(orphan_search *f, uint32_t v, uint32_t corner, uint32_t other) {
     const cscd_mesh *mesh = f->mesh;
+    orphan_search_look(f, star_size_of(mesh, corner));
     for (uint32_t i = mesh->vertex_star_offsets[corner]; i < mesh->vertex_star_offsets[corner + 1]; i++) {
         uint32_t u = mesh->vertex_stars[i];
         const uint32_t *corners = mesh->triangles[u];

@@ -65,9 +65,22 @@ static bool all_have_enough(const orphan_search *f) {
     return f->grown != NULL && atomic_load_explicit(f->grown, memory_order_relaxed) > 2 * f->most;
 }
 
-/* There are too many, or memory has run out. */
+static bool takes_too_long(const orphan_search *f) {
+    return f->looks > f->looks_most ||
+           (f->all_looks != NULL && atomic_load_explicit(f->all_looks, memory_order_relaxed) > f->looks_most);
+}
+
 bool orphan_search_has_enough(const orphan_search *f) {
-    return f->out_of_memory || f->vf.count + f->ee.count > f->most || all_have_enough(f);
+    return f->out_of_memory || f->vf.count + f->ee.count > f->most || all_have_enough(f) || takes_too_long(f);
+}
+
+enum { LOOKS_NOTED = 1 << 14 };
+
+void orphan_search_look(orphan_search *f, size_t triangles) {
+    f->looks += triangles;
+    if (f->all_looks == NULL || f->looks - f->noted < LOOKS_NOTED) return;
+    atomic_fetch_add_explicit(f->all_looks, f->looks - f->noted, memory_order_relaxed);
+    f->noted = f->looks;
 }
 
 static cscd_status end_search(const orphan_search *f, orphan_pairs *out, bool *too_many) {
@@ -169,6 +182,7 @@ void orphan_search_around(orphan_search *f, uint32_t t) {
     for (int i = 0; features != 0 && i < 3; i++) {
         uint32_t begin = mesh->vertex_star_offsets[corners[i]];
         uint32_t end = mesh->vertex_star_offsets[corners[i] + 1];
+        orphan_search_look(f, end - begin);
         for (uint32_t s = begin; s < end; s++) {
             uint32_t u = mesh->vertex_stars[s];
             const uint32_t *other = mesh->triangles[u];
@@ -258,6 +272,7 @@ cscd_status orphan_pairs_move(const orphan_pairs *pairs, const cscd_mesh *mesh,
                               const cscd_mesh_change *change, orphan_pairs *out, bool *too_many) {
     orphan_search f = {.mesh = mesh,
                        .most = (size_t)mesh->triangle_count * ORPHANS_PER_TRIANGLE,
+                       .looks_most = (size_t)mesh->triangle_count * LOOKS_PER_TRIANGLE,
                        .change = change,
                        .marks = context_allocate(mesh->context, mesh->vertex_count, sizeof *f.marks)};
     if (f.marks == NULL) return CSCD_OUT_OF_MEMORY;

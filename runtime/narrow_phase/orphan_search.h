@@ -17,6 +17,9 @@ typedef struct orphan_search {
     atomic_size_t
         *grown; /* what the lists of all that share a search held whenever one grew, added up: at most twice
                            * what they hold now; NULL: nobody shares it */
+    size_t looks, noted,
+        looks_most;           /* triangles and stars that were looked at; how many *all_looks knows of */
+    atomic_size_t *all_looks; /* of all that share the search; NULL: nobody shares it */
     bool out_of_memory;
     uint8_t *features;        /* per triangle, as orphan_search_features says; or NULL */
     uint32_t (*opposites)[2]; /* per edge: the corners opposite it; or NULL */
@@ -27,7 +30,10 @@ typedef struct orphan_search {
     uint8_t *marks;                 /* per vertex, of objects that have changed */
 } orphan_search;
 
-enum { ORPHANS_PER_TRIANGLE = 8 };
+/* Where a vertex has very many triangles, looking takes the square of their number, whatever is found. Then it is given up as
+ * well: steps test pairs of adjacent triangles instead, of which the traversal leaves out most there. An ordinary mesh takes
+ * some twenty looks for each triangle. */
+enum { ORPHANS_PER_TRIANGLE = 8, LOOKS_PER_TRIANGLE = 256 };
 
 /* In the place of an opposite corner: an edge of one triangle has no second one, and an edge of more than two has many. */
 enum { NO_CORNER = UINT32_MAX, MANY_CORNERS = UINT32_MAX - 1 };
@@ -40,7 +46,10 @@ bool orphan_search_says(const orphan_search *f, uint32_t a, uint32_t b);
 
 void orphan_search_add(orphan_search *f, growing_list *list, uint32_t a, uint32_t b);
 
-/* There are too many, or memory has run out. */
+/* Counts looks at so many triangles. */
+void orphan_search_look(orphan_search *f, size_t triangles);
+
+/* There are too many, it takes too long, memory has run out, or the call is cancelled. */
 bool orphan_search_has_enough(const orphan_search *f);
 
 /* The features whose stars begin with a triangle: bit i for its vertex i, bit 3 + i for its edge i. */

@@ -1,7 +1,7 @@
 /* The search for the orphan pairs of a whole mesh, on all threads. */
 #include "runtime/narrow_phase/orphan_edges.h"
 
-enum { TRIANGLES_PER_TASK = 1 << 14, EDGES_PER_TASK = 3 * TRIANGLES_PER_TASK / 2 };
+enum { TRIANGLES_PER_ASK = 256, TRIANGLES_PER_TASK = 1 << 14, EDGES_PER_TASK = 3 * TRIANGLES_PER_TASK / 2 };
 
 /* Each task looks at some triangles. What it knows is the same for all tasks, and its lists are its own. */
 typedef struct whole_search {
@@ -9,7 +9,7 @@ typedef struct whole_search {
     orphan_search *tasks;
     bool *uneven;
     uint32_t task_count;
-    atomic_size_t grown;
+    atomic_size_t grown, looks;
 } whole_search;
 
 typedef struct feature_range {
@@ -39,7 +39,9 @@ static void search_triangles(void *data, uint32_t task) {
     const whole_search *whole = data;
     orphan_search *f = &whole->tasks[task];
     feature_range range = range_of_task(task, TRIANGLES_PER_TASK, whole->mesh->triangle_count);
+    progress *p = &whole->mesh->context->progress;
     for (uint32_t t = range.begin; t < range.end && !orphan_search_has_enough(f); t++) {
+        if ((t - range.begin) % TRIANGLES_PER_ASK == 0 && !progress_go_on(p, 0.0)) return;
         if (triangle_of_obstacle(whole->mesh, t)) continue;
         if (orphan_edges_near(whole->mesh, whole->uneven, t))
             orphan_search_around(f, t);
@@ -73,15 +75,16 @@ static cscd_status join_lists(const whole_search *whole, orphan_pairs *out) {
 
 static cscd_status end_whole(const whole_search *whole, orphan_pairs *out, bool *too_many) {
     cscd_context *context = whole->mesh->context;
-    size_t count = 0;
+    size_t count = 0, looks = 0;
     bool failed = false, enough = false;
     for (uint32_t i = 0; i < whole->task_count; i++) {
         const orphan_search *f = &whole->tasks[i];
         count += f->vf.count + f->ee.count;
+        looks += f->looks;
         failed |= f->out_of_memory;
         enough |= orphan_search_has_enough(f);
     }
-    *too_many = !failed && (enough || count > whole->tasks[0].most);
+    *too_many = !failed && (enough || count > whole->tasks[0].most || looks > whole->tasks[0].looks_most);
     cscd_status status = failed ? CSCD_OUT_OF_MEMORY : CSCD_OK;
     if (status == CSCD_OK && !*too_many) status = join_lists(whole, out);
     for (uint32_t i = 0; i < whole->task_count; i++) {
@@ -103,9 +106,13 @@ static void search_whole(whole_search *whole, const orphan_search *known) {
 
 cscd_status orphan_pairs_create(const cscd_mesh *mesh, orphan_pairs *out, bool *too_many) {
     whole_search whole = {.mesh = mesh, .task_count = mesh->triangle_count / TRIANGLES_PER_TASK + 1};
-    orphan_search known = {
-        .mesh = mesh, .most = (size_t)mesh->triangle_count * ORPHANS_PER_TRIANGLE, .grown = &whole.grown};
+    orphan_search known = {.mesh = mesh,
+                           .most = (size_t)mesh->triangle_count * ORPHANS_PER_TRIANGLE,
+                           .looks_most = (size_t)mesh->triangle_count * LOOKS_PER_TRIANGLE,
+                           .grown = &whole.grown,
+                           .all_looks = &whole.looks};
     atomic_init(&whole.grown, 0);
+    atomic_init(&whole.looks, 0);
     *out = (orphan_pairs){.vf = NULL};
     array_list arrays = {{ARRAY(known.features, mesh->triangle_count),
                           ARRAY(known.opposites, mesh->edge_count), ARRAY(known.even, mesh->edge_count),

@@ -135,6 +135,13 @@ static inline bool vertex_has_no_triangle(const cscd_mesh *mesh, uint32_t vertex
     return mesh->vertex_star_offsets[vertex + 1] == mesh->vertex_star_offsets[vertex];
 }
 
+/* Pairs of triangles at a vertex grow with the square of their number, so from this one on they are looked for otherwise. */
+enum { HUB_TRIANGLES = 256 };
+
+static inline bool vertex_is_hub(const cscd_mesh *mesh, uint32_t vertex) {
+    return mesh->vertex_star_offsets[vertex + 1] - mesh->vertex_star_offsets[vertex] >= HUB_TRIANGLES;
+}
+
 /* The number of wires at a vertex. */
 static inline uint32_t wires_at_vertex(const cscd_mesh *mesh, uint32_t vertex) {
     const uint32_t *offsets = mesh->loose.wire_star_offsets;

@@ -289,9 +289,38 @@ static void too_many_in_all_tasks(void **state) {
     }
 }
 
+/* Two tips over a ring have few orphan pairs, but looking for them takes the square of the ring's size: it is given up. */
+static void looks_are_limited(void **state) {
+    (void)state;
+    enum { RINGS = 2 };
+    static const uint32_t rings[RINGS] = {96, 1 << 12};
+    static uint32_t triangles[1 << 13][3];
+    cscd_context *context = NULL;
+    assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
+    for (int i = 0; i < RINGS; i++) {
+        const uint32_t ring = rings[i];
+        cscd_mesh *mesh = NULL;
+        orphan_pairs pairs;
+        bool too_many = false;
+        for (uint32_t t = 0; t < 2 * ring; t++) {
+            const uint32_t a = t / 2, b = (a + 1) % ring;
+            triangles[t][0] = ring + t % 2;
+            triangles[t][1] = t % 2 == 0 ? a : b;
+            triangles[t][2] = t % 2 == 0 ? b : a;
+        }
+        const cscd_object_desc desc = cscd_object_of_triangles(ring + 2, 2 * ring, triangles[0]);
+        assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
+        assert_int_equal(orphan_pairs_create(mesh, &pairs, &too_many), CSCD_OK);
+        assert_int_equal(too_many, i == 1);
+        orphan_pairs_free(context, &pairs);
+        cscd_mesh_destroy(mesh);
+    }
+    cscd_context_destroy(context);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(pairs_are_those_of_the_definition),
-                                       cmocka_unit_test(tasks_find_all_pairs),
-                                       cmocka_unit_test(too_many_in_all_tasks)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(pairs_are_those_of_the_definition), cmocka_unit_test(tasks_find_all_pairs),
+        cmocka_unit_test(too_many_in_all_tasks), cmocka_unit_test(looks_are_limited)};
     return cmocka_run_group_tests_name("orphan_pairs", tests, NULL, NULL);
 }

@@ -1,0 +1,293 @@
+/* Finds the directions in which triangles lie as seen from a vertex that very many of them share. */
+#include "runtime/bvh/bvh_hubs.h"
+#include "src/core/floating.h"
+#include "src/mesh/surface.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A vector of the box may be off by this much: floats by 2^-24, unit vectors by a few times 2^-53. */
+static const double direction_slack = 0x1p-22;
+
+/* Directions that differ by more than an angle with this cosine say nothing of what lies between them. */
+static const double least_cosine = 0.5;
+
+/* ---- which children -------------------------------------------------------------------------------------- */
+
+static bool has_hubs(const cscd_mesh *mesh) {
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        if (vertex_is_hub(mesh, v)) return true;
+    }
+    return false;
+}
+
+static bool leaf_shares(const bvh *f, const bvh_leaf *leaf, uint32_t vertex) {
+    for (int lane = 1; lane < LANES && leaf->triangles[lane] != UINT32_MAX; lane++) {
+        if (!triangle_contains(f->mesh->triangles[leaf->triangles[lane]], vertex)) return false;
+    }
+    return true;
+}
+
+static uint32_t hub_of_leaf(const bvh *f, uint32_t index) {
+    const bvh_leaf *leaf = &f->leaves[index];
+    const uint32_t *corners = f->mesh->triangles[leaf->triangles[0]];
+    for (int i = 0; i < 3; i++) {
+        if (vertex_is_hub(f->mesh, corners[i]) && leaf_shares(f, leaf, corners[i])) return corners[i];
+    }
+    return NO_HUB;
+}
+
+static uint32_t lane_count(const bvh_level *level, uint32_t block) {
+    return (uint32_t)__builtin_popcount(level->flags[block].used);
+}
+
+static uint32_t hub_of_block(const bvh_level *level, uint32_t block) {
+    const hub_volume *children = level->child_hubs + (size_t)block * LANES;
+    for (uint32_t i = 1; i < lane_count(level, block); i++) {
+        if (children[i].hub != children[0].hub) return NO_HUB;
+    }
+    return children[0].hub;
+}
+
+bool bvh_allocate_hubs(bvh *f) {
+    if (!has_hubs(f->mesh)) return true;
+    for (int i = 0; i < f->level_count; i++) {
+        bvh_level *level = &f->levels[i];
+        level->child_hubs =
+            context_allocate(f->mesh->context, (size_t)level->block_count * LANES, sizeof *level->child_hubs);
+        if (level->child_hubs == NULL) return false;
+    }
+    return true;
+}
+
+void bvh_free_hubs(bvh *f) {
+    for (int i = 0; i < BVH_LEVEL_MAX; i++) {
+        context_free(f->mesh->context, f->levels[i].child_hubs);
+        f->levels[i].child_hubs = NULL;
+    }
+}
+
+/* ---- directions ------------------------------------------------------------------------------------------ */
+
+/* What is known of a triangle seen from the hub: unit vectors towards its other corners at both ends, and the least
+ * distance of one. */
+typedef struct corner_view {
+    double towards[4][3], nearest;
+    int count;
+} corner_view;
+
+static bool look_at_corner(const double *hub, const double *corner, corner_view *view) {
+    double side[3], *towards = view->towards[view->count++];
+    vec3_subtract(corner, hub, side);
+    const double length = surface_norm(side);
+    if (!(length > 0.0) || !isfinite(length)) return false;
+    for (int k = 0; k < 3; k++) towards[k] = side[k] / length;
+    view->nearest = fmin(view->nearest, length);
+    return true;
+}
+
+static bool look_at_triangle(const bvh *f, uint32_t triangle, uint32_t hub, const double *const ends[2],
+                             corner_view *view) {
+    *view = (corner_view){.nearest = INFINITY};
+    for (int e = 0; e < (f->still ? 1 : 2); e++) {
+        for (int i = 0; i < 3; i++) {
+            const uint32_t corner = f->mesh->triangles[triangle][i];
+            if (corner != hub &&
+                !look_at_corner(ends[e] + (size_t)hub * 3, ends[e] + (size_t)corner * 3, view))
+                return false;
+        }
+    }
+    return true;
+}
+
+static double cosine_between(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* Points of the moving triangle, relative to the hub, are sums of the vectors towards its corners with weights of 0 or more,
+ * because corners and hub move linearly. Let c be such a sum of the unit vectors whose weights add up to 1: it lies in
+ * their box, and c . c is the least cosine m at least. So the direction c / |c| is at most 1 - sqrt m away from the box,
+ * and a point on the side opposite the hub is sqrt m times the nearest corner's distance away at least. */
+static void add_view(const corner_view *view, hub_volume *out) {
+    double least = 1.0;
+    for (int i = 0; i < view->count; i++)
+        for (int j = 0; j < i; j++) least = fmin(least, cosine_between(view->towards[i], view->towards[j]));
+    if (!(least >= least_cosine)) {
+        out->hub = NO_HUB;
+        return;
+    }
+    const double around = 1.0 - sqrt(least) + direction_slack;
+    out->reach = fminf(out->reach, float_below(view->nearest * sqrt(least) * (1.0 - direction_slack)));
+    for (int k = 0; k < 3; k++) {
+        for (int i = 0; i < view->count; i++) {
+            out->low[k] = fminf(out->low[k], (float)(view->towards[i][k] - around));
+            out->high[k] = fmaxf(out->high[k], (float)(view->towards[i][k] + around));
+        }
+    }
+}
+
+static hub_volume nothing_seen(uint32_t hub) {
+    hub_volume v = {.hub = hub, .reach = INFINITY};
+    for (int k = 0; k < 3; k++) {
+        v.low[k] = INFINITY;
+        v.high[k] = -INFINITY;
+        for (int e = 0; e < 2; e++) {
+            v.sides[e][0][k] = INFINITY;
+            v.sides[e][1][k] = -INFINITY;
+        }
+    }
+    return v;
+}
+
+static void add_sides(const bvh *f, uint32_t triangle, const double *const ends[2], hub_volume *out) {
+    for (int i = 0; i < 6; i++) {
+        const uint32_t corner = f->mesh->triangles[triangle][i % 3];
+        for (int k = 0; corner != out->hub && k < 3; k++) {
+            const double x = ends[i / 3][(size_t)corner * 3 + (size_t)k];
+            out->sides[i / 3][0][k] = fmin(out->sides[i / 3][0][k], x);
+            out->sides[i / 3][1][k] = fmax(out->sides[i / 3][1][k], x);
+        }
+    }
+}
+
+/* One wide triangle leaves nothing known of its leaf. */
+static void view_leaf(const bvh *f, uint32_t index, const double *const ends[2], hub_volume *out) {
+    const bvh_leaf *leaf = &f->leaves[index];
+    *out = nothing_seen(hub_of_leaf(f, index));
+    if (out->hub == NO_HUB) return;
+    for (int e = 0; e < 2; e++) memcpy(out->place[e], ends[e] + (size_t)out->hub * 3, sizeof out->place[e]);
+    for (int lane = 0; lane < LANES && leaf->triangles[lane] != UINT32_MAX && out->hub != NO_HUB; lane++) {
+        corner_view view;
+        add_sides(f, leaf->triangles[lane], ends, out);
+        if (look_at_triangle(f, leaf->triangles[lane], out->hub, ends, &view))
+            add_view(&view, out);
+        else
+            out->hub = NO_HUB;
+    }
+}
+
+static void join_child(const hub_volume *child, hub_volume *out) {
+    out->reach = fminf(out->reach, child->reach);
+    memcpy(out->place, child->place, sizeof out->place);
+    for (int k = 0; k < 3; k++) {
+        out->low[k] = fminf(out->low[k], child->low[k]);
+        out->high[k] = fmaxf(out->high[k], child->high[k]);
+        for (int e = 0; e < 2; e++) {
+            out->sides[e][0][k] = fmin(out->sides[e][0][k], child->sides[e][0][k]);
+            out->sides[e][1][k] = fmax(out->sides[e][1][k], child->sides[e][1][k]);
+        }
+    }
+}
+
+static void join_children(const bvh_level *level, uint32_t block, hub_volume *out) {
+    *out = nothing_seen(hub_of_block(level, block));
+    for (uint32_t i = 0; i < lane_count(level, block) && out->hub != NO_HUB; i++)
+        join_child(&level->child_hubs[(size_t)block * LANES + i], out);
+}
+
+/* ---- comparing ------------------------------------------------------------------------------------------- */
+
+/* Of two volumes with one hub. A feature of a pair of features without a common vertex is a side opposite the hub, or an end
+ * of one: it is at least reach away from there, and the other triangle lies in directions that differ by a chord of c at
+ * least. So they are apart by reach times the sine of the angle, which is above 0.7 c for the part of c up to a right
+ * angle. */
+static bool directions_apart(const hub_volume *a, const hub_volume *b, double distance) {
+    double chord = 0.0; /* squared */
+    for (int k = 0; k < 3; k++) {
+        const double gap = (double)fmaxf(a->low[k] - b->high[k], b->low[k] - a->high[k]);
+        if (gap > 0.0) chord += gap * gap;
+    }
+    if (distance == 0.0) return chord > 0.0;
+    return 0.7 * sqrt(fmin(chord, 2.0)) * (double)fminf(a->reach, b->reach) > distance;
+}
+
+/* The middle line of a volume, from the hub to the middle of the sides opposite it. */
+static void middle_line(const hub_volume *v, double way[3]) {
+    for (int k = 0; k < 3; k++) way[k] = 0.5 * (v->sides[0][0][k] + v->sides[0][1][k]) - v->place[0][k];
+}
+
+static double within_line(double at) {
+    return fmin(fmax(at, 0.0), 1.0);
+}
+
+/* Finds a vector from the middle line of a to that of b at the start, about where they are nearest. */
+static void way_between(const hub_volume *a, const hub_volume *b, double way[3]) {
+    double from[3], to[3], between[3];
+    middle_line(a, from);
+    middle_line(b, to);
+    vec3_subtract(b->place[0], a->place[0], between);
+    const double ff = vec3_dot(from, from), tt = vec3_dot(to, to), ft = vec3_dot(from, to);
+    const double fb = vec3_dot(from, between), tb = vec3_dot(to, between), area = ff * tt - ft * ft;
+    double s = area > 0.0 ? within_line((fb * tt - tb * ft) / area) : 0.0;
+    const double t = tt > 0.0 ? within_line((s * ft - tb) / tt) : 0.0;
+    s = ff > 0.0 ? within_line((t * ft + fb) / ff) : 0.0;
+    for (int k = 0; k < 3; k++) way[k] = between[k] + t * to[k] - s * from[k];
+}
+
+/* Returns the most that a volume reaches along a vector at one end; *size: the sum of what was added up, by magnitude. */
+static double reach_along(const hub_volume *v, int end, const double way[3], double *size) {
+    double of_hub = 0.0, of_sides = 0.0;
+    for (int k = 0; k < 3; k++) {
+        const double low = v->sides[end][0][k], high = v->sides[end][1][k];
+        of_hub += way[k] * v->place[end][k];
+        of_sides += way[k] > 0.0 ? way[k] * high : way[k] * low;
+        *size += fabs(way[k]) * (fabs(v->place[end][k]) + fabs(low) + fabs(high));
+    }
+    return fmax(of_hub, of_sides);
+}
+
+/* Of two hubs: a plane that parts the volumes at both ends parts them throughout, because points move linearly. Sums of three
+ * products are off by less than 2^-50 of their terms. A NaN parts nothing. */
+static bool plane_between(const hub_volume *a, const hub_volume *b, double distance) {
+    double way[3], back[3];
+    way_between(a, b, way);
+    for (int k = 0; k < 3; k++) back[k] = -way[k];
+    const double wide = distance * (1.0 + 0x1p-40) * surface_norm(way);
+    for (int e = 0; e < 2; e++) {
+        double size = 0.0;
+        const double reach_a = reach_along(a, e, way, &size), reach_b = -reach_along(b, e, back, &size);
+        if (!(reach_b - reach_a > wide + 0x1p-48 * size + 0x1p-1000)) return false;
+    }
+    return true;
+}
+
+bool hub_volumes_apart(const hub_volume *a, const hub_volume *b, double distance) {
+    if (a->hub == NO_HUB || b->hub == NO_HUB) return false;
+    return a->hub == b->hub ? directions_apart(a, b, distance) : plane_between(a, b, distance);
+}
+
+/* ---- all of it ------------------------------------------------------------------------------------------- */
+
+enum { BLOCKS_PER_TASK = 16 };
+
+typedef struct hub_work {
+    bvh *bvh;
+    const double *ends[2];
+    int level;
+} hub_work;
+
+static void view_some_blocks(void *data, uint32_t index) {
+    const hub_work *work = data;
+    bvh_level *level = &work->bvh->levels[work->level];
+    const uint32_t begin = index * BLOCKS_PER_TASK, rest = level->block_count - begin;
+    const uint32_t end = begin + (rest < BLOCKS_PER_TASK ? rest : BLOCKS_PER_TASK);
+    for (uint32_t block = begin; block < end; block++) {
+        for (uint32_t i = 0; i < lane_count(level, block); i++) {
+            hub_volume *out = &level->child_hubs[(size_t)block * LANES + i];
+            if (work->level == 0)
+                view_leaf(work->bvh, level->first_children[block] + i, work->ends, out);
+            else
+                join_children(level - 1, level->first_children[block] + i, out);
+        }
+    }
+}
+
+void bvh_refit_hubs(bvh *f, const double *x0, const double *x1, double distance) {
+    hub_work work = {f, {x0, x1}, 0};
+    if (f->levels[0].child_hubs == NULL) return;
+    f->hub_distance = distance;
+    for (; work.level < f->level_count; work.level++)
+        parallel_run(f->mesh->context->threads,
+                     (f->levels[work.level].block_count + BLOCKS_PER_TASK - 1) / BLOCKS_PER_TASK,
+                     view_some_blocks, &work);
+}

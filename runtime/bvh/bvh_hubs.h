@@ -1,0 +1,30 @@
+/* Vertices that very many triangles share. The volumes of these triangles all overlap there, so what tells them apart is in
+ * which directions they lie as seen from the vertex. */
+#pragma once
+
+#include "runtime/bvh/bvh.h"
+
+enum { NO_HUB = UINT32_MAX };
+
+/* Where the triangles below a child lie, as seen from a vertex that all of them share. */
+typedef struct hub_volume {
+    uint32_t hub;          /* the vertex; NO_HUB: they share none, or nothing is known of their directions */
+    float low[3], high[3]; /* a box around all unit vectors towards them during the interval */
+    float reach;           /* the sides opposite the hub come no nearer to it; not scaled, as what follows */
+    double place[2][3];    /* of the hub, at both ends */
+    double sides[2][2][3]; /* at both ends, the least and the greatest coordinates of the sides opposite it */
+} hub_volume;
+
+/* Are features of the triangles of a farther than the distance from those of b, throughout the interval? Features with a
+ * common vertex aside. */
+bool hub_volumes_apart(const hub_volume *a, const hub_volume *b, double distance);
+
+/* Makes room for hub volumes, as a step of bvh_build; where the mesh has no hub, none is needed. False: no memory. */
+bool bvh_allocate_hubs(bvh *f);
+
+/* Frees them, as a step of bvh_free. */
+void bvh_free_hubs(bvh *f);
+
+/* Finds the volumes for the interval from x0 to x1, as a step of bvh_refit. distance: features that are so far apart are
+ * still to be found. */
+void bvh_refit_hubs(bvh *f, const double *x0, const double *x1, double distance);
