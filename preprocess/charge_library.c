@@ -68,13 +68,15 @@ static bool stands_in_prefix(const char *file, char path[PATH_SIZE]) {
     return stands_by(file, "../lib/", path) || stands_by(file, "../lib64/", path);
 }
 
-/* Looks beside the file that this function is in, under the name by which it was loaded and under its own. */
+/* Looks beside the file that this function is in, under the name by which it was loaded and under its own, and in the
+ * folder cscd there, since distributions keep libraries that nothing links out of the folder of all libraries. */
 static bool find_library(char path[PATH_SIZE]) {
     Dl_info here;
     if (dladdr((void *)(uintptr_t)find_library, &here) == 0 || here.dli_fname == NULL) return false;
     if (stands_by(here.dli_fname, "", path)) return true;
     char *file = own_path(here.dli_fname);
-    bool found = file != NULL && (stands_by(file, "", path) || stands_in_prefix(file, path));
+    bool found = file != NULL && (stands_by(file, "", path) || stands_by(file, "cscd/", path) ||
+                                  stands_in_prefix(file, path));
     free(file);
     return found;
 }

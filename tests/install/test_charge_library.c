@@ -70,6 +70,14 @@ static void is_looked_for_beside_the_library(void **state) {
     shell("rm '%s/lib/%s'", folder.path, charge_name);
 }
 
+/* As distributions lay it out; the library has its own name there, and is loaded by a link. */
+static void is_looked_for_in_a_folder_of_its_own(void **state) {
+    (void)state;
+    shell("mkdir '%s/lib/cscd' && cp '%s/%s' '%s/lib/cscd'", folder.path, build, charge_name, folder.path);
+    expect_charge("");
+    shell("rm -r '%s/lib/cscd'", folder.path);
+}
+
 static void is_looked_for_where_the_system_looks(void **state) {
     char elsewhere[512];
     (void)state;
@@ -212,6 +220,7 @@ static void the_tool_needs_little_memory(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(is_looked_for_beside_the_library),
+        cmocka_unit_test(is_looked_for_in_a_folder_of_its_own),
         cmocka_unit_test(is_looked_for_where_the_system_looks),
         cmocka_unit_test(is_missing),
         cmocka_unit_test(is_damaged),
