@@ -207,7 +207,7 @@ COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 # What installs packages; a build that leaves expat out on purpose does not ask for it.
 PACKAGES = GSL=$(GSL) CHARGE=$(CHARGE) EXPAT=$(if $(WITHOUT_EXPAT),0,1) .ci/packages
 
-.PHONY: all python python-package wheel sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-peers bench-instructions referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender blender-extension test-vtk windows windows-libraries windows-zip test-windows test-windows-run test-bridges test-farm test-mutants test-aarch64 test-s390x cscd-mpi python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces test-fuzz test-faults FORCE
+.PHONY: all python python-package wheel sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-peers bench-instructions referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender blender-extension test-vtk windows windows-libraries windows-zip test-windows test-windows-run test-bridges test-farm test-mutants test-aarch64 test-s390x deb test-deb test-builds cscd-mpi python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces test-fuzz test-faults FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -401,6 +401,20 @@ test-s390x:
 	@.ci/packages s390x
 	@tests/cross/emulated.sh s390x $(or $(ONLY),rooms)
 
+# Debian's packages of the last commit, in build/deb; test-deb builds them twice, installs them, tests them and purges them.
+deb:
+	@.ci/packages deb
+	@src/packaging/deb.sh build/deb
+
+test-deb:
+	@.ci/packages deb
+	@tests/deb/run.sh build/test-deb
+
+# Builds and installations in the ways that users ask for, each in a copy of the sources, as root: some minutes.
+test-builds: packages
+	@.ci/packages checks
+	@tests/builds/run.sh build/test-builds
+
 # What is left without runtime/baselines builds, and passes its tests: about a minute.
 test-without-baselines: packages
 	@tests/without_baselines.sh
@@ -545,6 +559,9 @@ help:
 	@echo 'make test-bridges   the blocks of docs/python/bridges.md, with meshio, VTK and torch (installs these)'
 	@echo 'make test-aarch64   every test under qemu-user, and the same bits as on this machine: about an hour (installs cross compilers, qemu);'
 	@echo '               make test-s390x: those of readers and detector on a big-endian processor; ONLY=quick, ONLY="core/test_simd"'
+	@echo 'make deb       Debian packages of the last commit, in build/deb (installs debhelper, doxygen); make test-deb: built twice, installed,'
+	@echo '               tested and purged, as root (installs lintian, autopkgtest)'
+	@echo 'make test-builds   other compilers, flags, users and folders, and without each optional library; as root: some minutes'
 	@echo 'make test-threads   the tests that use threads, under the thread sanitizer'
 	@echo 'make           build the tool (./cscd), build/release/libcscd.a and libcscd.so; make library builds these alone'
 	@echo '               GSL=0: without GSL; CHARGE=0: without LAPACKE and OpenBLAS, so without charge plans; EXPAT=0: a tool'
