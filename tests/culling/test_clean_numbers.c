@@ -65,16 +65,26 @@ static void step_both(const rig *culled, const rig *plain, const char *where) {
     assert_true(found.count == 0 || memcmp(found.items, truth.items, found.count * sizeof *found.items) == 0);
 }
 
-/* Each start is checked, and all that is clean is culled, however little that is. */
-static void run_chain(scene_family family, uint64_t seed, chain_tally *sum) {
+/* Intervals that begin elsewhere than the last one has ended: apart, then where parts go through each other, and back. */
+static const double jumps[][2] = {{0.0, 0.5}, {2.0, 1.2}, {0.2, 0.6}, {1.9, 2.1}, {0.0, 0.3}, {2.1, 1.4}};
+
+enum { JUMPS = sizeof jumps / sizeof *jumps };
+
+/* All that is clean is culled, however little that is. */
+static void make_rigs(rig *plain, rig *culled) {
     cscd_detector_options options = cscd_detector_defaults();
+    *plain = rig_create(&motion, 1, &options);
+    options.method = CSCD_METHOD_SINGLE;
+    *culled = rig_create(&motion, 1, &options);
+    culled->detector->starts.share_worth_it = 0.0;
+}
+
+/* Each start is checked. */
+static void run_chain(scene_family family, uint64_t seed, chain_tally *sum) {
     rig plain, culled;
     scene_make(family, seed, &motion);
     interval = motion;
-    plain = rig_create(&motion, 1, &options);
-    options.method = CSCD_METHOD_SINGLE;
-    culled = rig_create(&motion, 1, &options);
-    culled.detector->starts.share_worth_it = 0.0;
+    make_rigs(&plain, &culled);
     for (int i = 0; i + 1 < SHARES; i++) {
         char where[128];
         cscd_intersections crossing;
@@ -90,9 +100,35 @@ static void run_chain(scene_family family, uint64_t seed, chain_tally *sum) {
     rig_destroy(&plain);
 }
 
+static void run_jumps(scene_family family, uint64_t seed, chain_tally *sum) {
+    rig plain, culled;
+    scene_make(family, seed, &motion);
+    interval = motion;
+    make_rigs(&plain, &culled);
+    for (int i = 0; i < JUMPS; i++) {
+        char where[128];
+        snprintf(where, sizeof where, "%s, seed %u, %.1f to %.1f", scene_family_name(family), (unsigned)seed,
+                 jumps[i][0], jumps[i][1]);
+        place_interval(jumps[i][0], jumps[i][1]);
+        step_both(&culled, &plain, where);
+        check_moment(culled.detector, where, sum);
+    }
+    rig_destroy(&culled);
+    rig_destroy(&plain);
+}
+
+static const scene_family families[] = {SCENE_NOISY_SPHERE, SCENE_BENT_CAPSULE, SCENE_SQUASHED_TORUS,
+                                        SCENE_NESTED_SPHERES, SCENE_SPIKE};
+
+static void intervals_begin_elsewhere(void **state) {
+    chain_tally sum = {0, 0, 0};
+    (void)state;
+    for (size_t f = 0; f < sizeof families / sizeof *families; f++)
+        for (uint64_t seed = 0; seed < SEEDS; seed++) run_jumps(families[f], seed, &sum);
+    assert_true(sum.clean > 0);
+}
+
 static void clean_triangles_have_one_number(void **state) {
-    static const scene_family families[] = {SCENE_NOISY_SPHERE, SCENE_BENT_CAPSULE, SCENE_SQUASHED_TORUS,
-                                            SCENE_NESTED_SPHERES, SCENE_SPIKE};
     chain_tally all = {0, 0, 0};
     (void)state;
     for (size_t f = 0; f < sizeof families / sizeof *families; f++) {
@@ -108,6 +144,9 @@ static void clean_triangles_have_one_number(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(clean_triangles_have_one_number)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(clean_triangles_have_one_number),
+        cmocka_unit_test(intervals_begin_elsewhere),
+    };
     return cmocka_run_group_tests_name("clean_numbers", tests, NULL, NULL);
 }
