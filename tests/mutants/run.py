@@ -17,8 +17,9 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 TREE = ROOT / "build/mutants/tree"
 COPIED = ("Makefile", ".ci/packages", "include", "src", "preprocess", "runtime", "models", "benchmarks", "tests")
-# Optimised a little, without symbols: the quickest to build and to run together.
-MAKE = ("make", "-s", f"-j{os.cpu_count()}", "CFLAGS=-O1 -g0 -w")
+# A compiler that remembers gives what make test has compiled. Others optimise a little, without symbols: the quickest to build and run.
+REMEMBERS = "ccache" in os.environ.get("CC", "")
+MAKE = ("make", "-s", f"-j{os.cpu_count()}", *(() if REMEMBERS else ("CFLAGS=-O1 -g0 -w",)))
 SAMPLE_SIZE = 3
 # So many seconds more than without a fault, and so many times as long, before a test counts as hanging.
 PATIENCE, PATIENCE_FACTOR = 5.0, 10.0
