@@ -47,15 +47,39 @@ static int remove_files(void **state) {
     return 0;
 }
 
-/* Is the process asleep, and no longer the copy of this program that it begins as? */
-static bool process_sleeps(pid_t pid) {
-    char path[64], text[256] = "";
-    snprintf(path, sizeof path, "/proc/%d/stat", (int)pid);
+/* Is a thread asleep, and no longer one of the copy of this program that the process begins as? */
+static bool thread_sleeps(pid_t pid, const char *thread) {
+    char path[320], text[256] = "";
+    snprintf(path, sizeof path, "/proc/%d/task/%s/stat", (int)pid, thread);
     FILE *file = fopen(path, "r");
     if (file == NULL) return false;
     const bool got = fgets(text, sizeof text, file) != NULL;
     fclose(file);
     return got && strstr(text, "(cscd) S ") != NULL;
+}
+
+/* Are all its threads asleep? One that waits for another sleeps too, but that one does not. */
+static bool process_sleeps(pid_t pid) {
+    char path[64];
+    snprintf(path, sizeof path, "/proc/%d/task", (int)pid);
+    DIR *threads = opendir(path);
+    bool asleep = threads != NULL;
+    for (struct dirent *thread; asleep && (thread = readdir(threads)) != NULL;)
+        asleep = thread->d_name[0] == '.' || thread_sleeps(pid, thread->d_name);
+    if (threads != NULL) closedir(threads);
+    return asleep;
+}
+
+/* Has it a handler of its own for a signal? */
+static bool process_catches(pid_t pid, int number) {
+    char path[64], line[256];
+    unsigned long long caught = 0;
+    snprintf(path, sizeof path, "/proc/%d/status", (int)pid);
+    FILE *file = fopen(path, "r");
+    while (file != NULL && fgets(line, sizeof line, file) != NULL)
+        if (sscanf(line, "SigCgt: %llx", &caught) == 1) break;
+    if (file != NULL) fclose(file);
+    return (caught >> (number - 1) & 1) != 0;
 }
 
 /* Until it has slept for some moments on end, as it does nowhere but at the pipe: all else here is done in a few milliseconds. */
@@ -81,8 +105,13 @@ static tool_run finish_in_time(tool_process *process) {
     return run;
 }
 
-static tool_run signal_waiting(const char *const *arguments, int number) {
+/* at_work: it waits with a handler of its own, for work to keep what it has found. */
+static tool_run signal_waiting(const char *const *arguments, int number, bool at_work) {
     tool_process process = run_tool_start(arguments);
+    for (int looks = 0; at_work && !process_catches(process.pid, number); looks++) {
+        if (looks > 1000 * ENDS_WITHIN_S) fail_msg("the tool does not begin to work");
+        usleep(1000);
+    }
     wait_until_it_waits(process.pid);
     kill(process.pid, number);
     tool_run run = finish_in_time(&process);
@@ -102,7 +131,7 @@ static void expect_nothing_half(void) {
 static void expect_ended(const char *const *arguments) {
     static const int signals[] = {SIGHUP, SIGINT, SIGTERM};
     static int next;
-    tool_run run = signal_waiting(arguments, signals[next++ % 3]);
+    tool_run run = signal_waiting(arguments, signals[next++ % 3], false);
     tool_run_free(&run);
     expect_nothing_half();
 }
@@ -152,7 +181,7 @@ static void a_signal_ends_a_read(void **state) {
     writer = open(pipe_in.text, O_RDWR | O_CLOEXEC); /* so that opening waits for nobody */
     assert_true(writer >= 0);
     assert_int_equal(write(writer, begin, sizeof begin - 1), sizeof begin - 1);
-    tool_run run = signal_waiting((const char *const[]){"preprocess", pipe_in.text, NULL}, SIGTERM);
+    tool_run run = signal_waiting((const char *const[]){"preprocess", pipe_in.text, NULL}, SIGTERM, false);
     if (strstr(run.error, "pipe.obj: cannot read: Interrupted") == NULL) fail_msg("%s", run.error);
     tool_run_free(&run);
 }
@@ -185,7 +214,8 @@ static void frames_before_a_pipe_are_kept(void **state) {
     assert_int_equal(mkfifo(fifth.text, 0600), 0);
     for (size_t i = 0; i < sizeof commands / sizeof *commands; i++) {
         tool_run run = signal_waiting(
-            (const char *const[]){commands[i], model.text, pattern.text, "--json", out.text, NULL}, SIGHUP);
+            (const char *const[]){commands[i], model.text, pattern.text, "--json", out.text, NULL}, SIGHUP,
+            true);
         if (strstr(run.error,
                    i == 0 ? "interrupted after 5 of 8 frames" : "interrupted after 4 of 7 intervals") == NULL)
             fail_msg("%s", run.error);
