@@ -201,8 +201,8 @@ static void make_triangles(scene *s, random_stream *random, uint32_t vertex_coun
 }
 
 static void make_soup(scene *s, random_stream *random) {
-    make_triangles(s, random, 12 + stream_below(random, 60),
-                   1 + stream_below(random, 2 + stream_below(random, 60)));
+    const uint32_t triangle_count = 1 + stream_below(random, 2 + stream_below(random, 60));
+    make_triangles(s, random, 12 + stream_below(random, 60), triangle_count);
     double spread = stream_between(random, 2.0, 60.0);
     double centres[SCENE_VERTICES_MAX];
     fill_parameters(centres, (int)s->vertex_count, random, -spread, spread);
@@ -213,7 +213,8 @@ static void make_soup(scene *s, random_stream *random) {
 }
 
 static void make_grid(scene *s, random_stream *random) {
-    make_triangles(s, random, 6 + stream_below(random, 10), 2 + stream_below(random, 8));
+    const uint32_t triangle_count = 2 + stream_below(random, 8);
+    make_triangles(s, random, 6 + stream_below(random, 10), triangle_count);
     uint32_t extent = 3 + stream_below(random, 12);
     for (uint32_t i = 0; i < s->vertex_count * 3; i++) {
         s->x0[i] = stream_below(random, extent);

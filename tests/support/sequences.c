@@ -43,8 +43,8 @@ static void make_scene(sequence *q, random_stream *random) {
     static const scene_family families[] = {SCENE_NOISY_SPHERE, SCENE_BENT_CAPSULE,   SCENE_SQUASHED_TORUS,
                                             SCENE_TWO_SPHERES,  SCENE_NESTED_SPHERES, SCENE_LINKED_TORI,
                                             SCENE_SPIKE,        SCENE_SPIKE,          SCENE_FAR_AWAY};
-    scene_make(families[stream_below(random, sizeof families / sizeof *families)], stream_bits(random) >> 40,
-               &q->shape);
+    const uint64_t seed = stream_bits(random) >> 40;
+    scene_make(families[stream_below(random, sizeof families / sizeof *families)], seed, &q->shape);
     dent dents[DENTS];
     for (int i = 0; i < DENTS; i++) dents[i] = make_dent(&q->shape, random);
     double at = stream_between(random, -0.5, 0.5), noise = 0.0;
@@ -107,9 +107,10 @@ static void add_grid_shape(scene *s, random_stream *random) {
     uint32_t kind = stream_below(random, 6), first = s->vertex_count;
     if (kind < 3)
         add_polyhedron(s, kind, centre);
-    else if (kind < 5)
-        scene_add_sphere(s, centre, 5.0, 3 + (int)stream_below(random, 3), 4 + (int)stream_below(random, 4));
-    else
+    else if (kind < 5) {
+        const int columns = 4 + (int)stream_below(random, 4);
+        scene_add_sphere(s, centre, 5.0, 3 + (int)stream_below(random, 3), columns);
+    } else
         scene_add_torus(s, centre, 6.0, 3.0, 5 + (int)stream_below(random, 3), 4, false);
     for (uint32_t i = first * 3; i < s->vertex_count * 3; i++) s->x0[i] = round(s->x0[i]);
 }

@@ -67,7 +67,10 @@ static void add_half_space(loose_scene *s, random_stream *random) {
 static void describe_objects(loose_scene *s, random_stream *random) {
     if (s->recipe.half_spaces) add_half_space(s, random);
     if (s->recipe.points) add_object(s, cscd_object_of_points(4 + stream_below(random, 6)));
-    if (s->recipe.triangles) add_tetrahedra(s, 1 + stream_below(random, 3), stream_below(random, 2) == 0);
+    if (s->recipe.triangles) {
+        const bool is_obstacle = stream_below(random, 2) == 0;
+        add_tetrahedra(s, 1 + stream_below(random, 3), is_obstacle);
+    }
     if (s->recipe.wires) add_wires(s, 2 + stream_below(random, 6));
     if (s->recipe.triangles) add_sheet(s, 3);
     if (s->recipe.points) add_object(s, cscd_object_of_points(10 + stream_below(random, 8)));
