@@ -10,7 +10,8 @@
 # One build folder per configuration; the release tool is also linked as ./cscd.
 
 CONFIG  ?= release
-HOST    ?=
+# Not from the environment, where some shells keep the name of the machine.
+HOST    :=
 SYSROOT ?=
 TOOLS   := $(if $(HOST),$(HOST)-)
 ifneq ($(findstring mingw,$(HOST)),)
@@ -207,7 +208,7 @@ COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 # What installs packages; a build that leaves expat out on purpose does not ask for it.
 PACKAGES = GSL=$(GSL) CHARGE=$(CHARGE) EXPAT=$(if $(WITHOUT_EXPAT),0,1) .ci/packages
 
-.PHONY: all python python-package wheel sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-peers bench-instructions referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender blender-extension test-vtk windows windows-libraries windows-zip test-windows test-windows-run test-bridges test-farm test-mutants test-aarch64 test-s390x deb test-deb test-builds cscd-mpi python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces test-fuzz test-faults FORCE
+.PHONY: all python python-package wheel wheels test-wheels sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-peers bench-instructions referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender blender-extension test-vtk windows windows-libraries windows-zip test-windows test-windows-run test-bridges test-farm test-mutants test-aarch64 test-s390x deb test-deb test-builds cscd-mpi python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces test-fuzz test-faults FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -228,9 +229,10 @@ python:
 
 PYTHON_PACKAGE := $(BUILD_ROOT)/python/cscd
 PYTHON_SOURCES := $(wildcard python/cscd/*.py python/cscd/py.typed)
+NATIVE_LIBRARY := $(PYTHON_PACKAGE)/libcscd-python.$(if $(WINDOWS),dll,so)
 PACKED_CHARGE  := $(if $(filter-out 1,$(DYNAMIC)),$(if $(CHARGE_SHARED),$(PYTHON_PACKAGE)/libcscd-charge.so.$(MAJOR)))
 # What an older version, or a build with charge, has left there goes.
-python-package: $(PYTHON_PACKAGE)/libcscd-python.so $(CHARGE_SHARED)
+python-package: $(NATIVE_LIBRARY) $(CHARGE_SHARED)
 	@cp -p $(PYTHON_SOURCES) $(PYTHON_PACKAGE)
 	@$(if $(PACKED_CHARGE),cp -p $(CHARGE_SHARED) $(PACKED_CHARGE))
 	@rm -rf $(filter-out $(addprefix $(PYTHON_PACKAGE)/,$(notdir $(PYTHON_SOURCES))) $(PACKED_CHARGE) $<,$(wildcard $(PYTHON_PACKAGE)/*))
@@ -242,7 +244,19 @@ BACK_END = PYTHONPATH=python PYTHONDONTWRITEBYTECODE=1 CC='$(CC)' $(PYTHON) -m b
 
 # The wheel to give away, without charge, and the archive of the sources.
 wheel:
-	@$(BACK_END) wheel build/dist
+	@$(BACK_END) wheel build/dist $(if $(HOST),$(HOST) '$(or $(WINDOWS_LIBRARIES),$(SYSROOT))')
+
+# The wheels of all platforms, by the cross compilers and the libraries of Debian; and their tests, in emulators.
+wheels: wheel windows-libraries
+	@.ci/packages aarch64
+	@src/packaging/sysroot.sh arm64 $(ARM64_SYSROOT) libc6-dev libpng-dev zlib1g-dev libjson-c-dev libexpat1-dev
+	@$(MAKE) --no-print-directory wheel HOST=aarch64-linux-gnu SYSROOT=$(abspath $(ARM64_SYSROOT)) \
+	    CC='$(CACHE)aarch64-linux-gnu-gcc --sysroot=$(abspath $(ARM64_SYSROOT))'
+	@$(ON_WINDOWS) wheel
+
+ARM64_SYSROOT := build/sysroot/arm64-wheel
+test-wheels: packages wheels
+	@CC='$(CC)' tests/wheels/run.sh build/dist
 
 sdist:
 	@$(BACK_END) sdist build/dist
@@ -357,10 +371,12 @@ test-blender:
 	@$(MAKE) --no-print-directory python blender-extension
 	@BUILD=$(BUILD) PYTHON_PACKAGE=$(BUILD_ROOT)/python PAGE=$(PAGE) tests/blender/run.sh
 
-# The extension as an archive that Blender installs, with the wheel in it: build/blender/cscd_blender-VERSION.zip.
-blender-extension:
-	@$(MAKE) --no-print-directory wheel
-	@python3 blender/pack.py "$$(ls -t $(BUILD_ROOT)/dist/cscd-$(VERSION)-*.whl | head -1)" $(BUILD_ROOT)/blender
+# The extension as an archive that Blender installs, with the wheels of all platforms in it: build/blender/cscd_blender-VERSION.zip.
+# WHEELS="FILE..." packs these instead, such as the one of `make wheel`.
+WHEELS ?=
+blender-extension: $(if $(WHEELS),,wheels)
+	@python3 blender/pack.py build/blender $(or $(WHEELS),build/dist/cscd-$(VERSION)-py3-none-linux_x86_64.whl \
+	    build/dist/cscd-$(VERSION)-py3-none-linux_aarch64.whl build/dist/cscd-$(VERSION)-py3-none-win_amd64.whl)
 
 # What --vtk writes, read by VTK itself and compared with the other outputs; nothing else needs VTK.
 test-vtk:
@@ -568,6 +584,8 @@ help:
 	@echo '               without GIFTI surfaces'
 	@echo 'make python    the Python package, in build/python; make wheel: a wheel to give away, make sdist: its sources, in build/dist;'
 	@echo '               make test-python: its tests, types and archives (installs pytest, mypy, venv); PYTHON=python3'
+	@echo 'make wheels    the wheels of Linux (x86-64, aarch64) and Windows, in build/dist (installs cross compilers); make test-wheels:'
+	@echo '               what is in them, and that they work in emulators (installs qemu-user, wine64)'
 	@echo 'make install   [PREFIX=/usr/local] [DESTDIR=] tool, library, man pages; make install-library; make uninstall'
 	@echo 'make reference   the functions of the library as HTML, in build/reference (installs doxygen)'
 	@echo 'make freeze-api   write down what the public headers promise, when functions or members were added'
@@ -617,11 +635,13 @@ endif
 NATIVE_OBJECTS := $(if $(filter 1,$(DYNAMIC)),,$(OPENED_OBJECTS)) $(COMMON_OBJECTS) $(call objects,$(filter-out src/tool/main.c,$(COMMAND_SOURCES)) $(NATIVE_SOURCES)) \
                   $(if $(filter 1,$(DYNAMIC)),$(SHARED))
 NATIVE_FILE_LIBS = $(if $(filter 1,$(DYNAMIC)),$(FILE_LIBS),$(call packaged,--static --libs libpng zlib json-c,-lpng -lz -ljson-c -lm) $(EXPAT_LIBS))
-$(PYTHON_PACKAGE)/libcscd-python.so: $(NATIVE_OBJECTS) python/native/link.sh
+ifndef WINDOWS
+$(NATIVE_LIBRARY): $(NATIVE_OBJECTS) python/native/link.sh
 	@mkdir -p $(@D)
 	$(say) '  LD $@'
 	$(Q)LINK='$(CC) $(LINK_ALL) $(SHARED_FLAGS) -Wl,-Bsymbolic' FILE_LIBS='$(NATIVE_FILE_LIBS)' OTHER_LIBS='$(SHARED_LIBS)' \
-	    DYNAMIC='$(DYNAMIC)' python/native/link.sh $@ $(NATIVE_OBJECTS)
+	    DYNAMIC='$(DYNAMIC)' OBJCOPY=$(TOOLS)objcopy python/native/link.sh $@ $(NATIVE_OBJECTS)
+endif
 
 # The charge library exports one function, and needs two more files of the core.
 CHARGE_LIBRARY_OBJECTS := $(call objects,$(CHARGE_SOURCES) src/core/sort.c src/core/timer.c)

@@ -1,7 +1,7 @@
-"""Packs the extension as a zip: `pack.py WHEEL FOLDER` writes FOLDER/cscd_blender-VERSION.zip and prints its path.
+"""Packs the extension as a zip: `pack.py FOLDER WHEEL...` writes FOLDER/cscd_blender-VERSION.zip and prints its path.
 
-All files lie in one folder within the archive, which Blender 4.2 takes as an extension and Blender 3.4 as an add-on. The wheel of
-the Python package is in it. The same files make the same bytes.
+All files lie in one folder within the archive, which Blender 4.2 takes as an extension and Blender 3.4 as an add-on. The wheels of
+the Python package are in it, and the manifest in it names no platform but theirs. The same files make the same bytes.
 """
 import os
 import re
@@ -11,32 +11,49 @@ import zipfile
 HERE = os.path.dirname(os.path.abspath(__file__))
 NAME = 'cscd_blender'
 TIME = (2026, 1, 1, 0, 0, 0)
+# What Blender calls the platforms that wheels name.
+PLATFORMS = {'linux_x86_64': 'linux-x64', 'linux_aarch64': 'linux-arm64', 'win_amd64': 'windows-x64'}
 
 
-def read_version():
-    with open(os.path.join(HERE, NAME, 'blender_manifest.toml'), encoding='utf-8') as file:
-        return re.search(r'^version = "([^"]+)"', file.read(), re.MULTILINE)[1]
+def contents(path):
+    with open(path, 'rb') as file:
+        return file.read()
 
 
-def pack(wheel, folder):
+def read_manifest(wheels):
+    """The manifest for these wheels: a line for each platform and wheel that is not packed is left out."""
+    text = contents(os.path.join(HERE, NAME, 'blender_manifest.toml')).decode()
+    packed = {os.path.basename(wheel) for wheel in wheels}
+    for name in re.findall(r'"\./wheels/(.+)"', text):
+        if name not in packed:
+            platform = PLATFORMS[name[:-len('.whl')].rsplit('-', 1)[1]]
+            text = re.sub(rf'^ *"(\./wheels/{re.escape(name)}|{platform})",\n', '', text, flags=re.MULTILINE)
+        packed.discard(name)
+    if packed or '"./wheels/' not in text:
+        sys.exit(f'pack.py: blender_manifest.toml names no wheel {" and ".join(sorted(packed))}')
+    return text
+
+
+def pack(folder, wheels):
     """Writes the archive, which takes the place of an older one when it is whole."""
+    manifest = read_manifest(wheels)
     os.makedirs(folder, exist_ok=True)
-    path = os.path.join(folder, f'{NAME}-{read_version()}.zip')
+    version = re.search(r'^version = "([^"]+)"', manifest, re.MULTILINE)[1]
+    path = os.path.join(folder, f'{NAME}-{version}.zip')
     source = os.path.join(HERE, NAME)
-    members = [(f'{NAME}/{name}', os.path.join(source, name)) for name in sorted(os.listdir(source))
-               if name.endswith(('.py', '.toml'))]
-    members.append((f'{NAME}/LICENSE', os.path.join(HERE, '..', 'LICENSE')))
-    members.append((f'{NAME}/wheels/{os.path.basename(wheel)}', wheel))
+    members = {name: contents(os.path.join(source, name)) for name in sorted(os.listdir(source)) if name.endswith('.py')}
+    members['blender_manifest.toml'] = manifest.encode()
+    members['LICENSE'] = contents(os.path.join(HERE, '..', 'LICENSE'))
+    members.update({f'wheels/{os.path.basename(wheel)}': contents(wheel) for wheel in sorted(wheels)})
     beside = f'{path}.{os.getpid()}.part'
     with zipfile.ZipFile(beside, 'w', zipfile.ZIP_DEFLATED) as archive:
-        for name, file_path in members:
-            with open(file_path, 'rb') as file:
-                archive.writestr(zipfile.ZipInfo(name, TIME), file.read(), zipfile.ZIP_DEFLATED)
+        for name, data in members.items():
+            archive.writestr(zipfile.ZipInfo(f'{NAME}/{name}', TIME), data, zipfile.ZIP_DEFLATED)
     os.replace(beside, path)
     return path
 
 
 if __name__ == '__main__':
-    if len(sys.argv) != 3:
-        sys.exit('usage: pack.py WHEEL FOLDER')
-    print(pack(*sys.argv[1:]))
+    if len(sys.argv) < 3:
+        sys.exit('usage: pack.py FOLDER WHEEL...')
+    print(pack(sys.argv[1], sys.argv[2:]))

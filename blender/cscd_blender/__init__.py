@@ -5,6 +5,7 @@ from __future__ import annotations
 import glob
 import os
 import sys
+import sysconfig
 import zipfile
 from typing import Any, Tuple
 
@@ -20,19 +21,21 @@ bl_info = {
 
 
 def _find_package() -> None:
-    """Makes the Python package importable. Blender 4.2 installs the wheel that lies beside; here older versions unpack it."""
+    """Makes the Python package importable. Blender 4.2 installs the wheel of its platform; here older versions unpack it."""
     try:
         import cscd  # noqa: F401
         return
     except ImportError:
         folder = os.path.join(os.path.dirname(os.path.abspath(__file__)), "wheels")
-        wheels = sorted(glob.glob(os.path.join(folder, "cscd-*.whl")))
+        platform = sysconfig.get_platform().replace("-", "_").replace(".", "_")
+        wheels = glob.glob(os.path.join(folder, f"cscd-*-{platform}.whl"))
         if not wheels:
-            raise
+            packed = " and ".join(sorted(os.listdir(folder))) if os.path.isdir(folder) else "nothing"
+            raise ImportError(f"cscd: this archive has no Python package for {platform}; it has {packed}") from None
     unpacked = os.path.join(folder, "unpacked")
     if not os.path.isdir(unpacked):
         beside = f"{unpacked}.{os.getpid()}"
-        with zipfile.ZipFile(wheels[-1]) as archive:
+        with zipfile.ZipFile(wheels[0]) as archive:
             archive.extractall(beside)
         os.rename(beside, unpacked)
     sys.path.append(unpacked)

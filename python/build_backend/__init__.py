@@ -13,6 +13,7 @@ from typing import Dict, List, Optional
 
 from . import native, sdist, wheel
 from .project import ROOT, Failure, Project
+from .target import Target
 
 Settings = Optional[Dict[str, object]]
 
@@ -54,11 +55,15 @@ def build_wheel(
     fails.
     """
     try:
-        project = Project.read(ROOT)
-        with native.built_package(ROOT, native.charge_setting(config_settings)) as package:
-            return wheel.write_wheel(project, package, wheel_directory)
+        return build_wheel_for(Target(), wheel_directory, native.charge_setting(config_settings))
     except Failure as failure:
         raise SystemExit(f"cscd: {failure}") from None
+
+
+def build_wheel_for(target: Target, wheel_directory: str, charge: Optional[bool]) -> str:
+    """The same for any platform, but a failure is raised."""
+    with native.built_package(ROOT, charge, target) as package:
+        return wheel.write_wheel(Project.read(ROOT), package, wheel_directory, target)
 
 
 def build_editable(

@@ -1,7 +1,8 @@
-"""Makes the archives without pip: `PYTHONPATH=python python3 -m build_backend wheel FOLDER`, or `sdist FOLDER`.
+"""Makes the archives without pip: `PYTHONPATH=python python3 -m build_backend wheel FOLDER [HOST LIBRARIES]`, or `sdist FOLDER`.
 
 The wheel is the one to give away: it has no charge. This ends with status 1 if its library needs one that a bare system
-lacks.
+lacks. With HOST, such as aarch64-linux-gnu, it is for that platform; CC names the cross compiler, and LIBRARIES the folder
+with the libraries of that platform.
 """
 from __future__ import annotations
 
@@ -12,49 +13,51 @@ import zipfile
 from pathlib import Path
 from typing import List
 
-from . import build_sdist, build_wheel, requirements
+from . import build_sdist, build_wheel_for, requirements
 from .project import Failure
+from .target import Target
 from .wheel import whole_file
 
-# The C library and its loader.
-EVERYWHERE = ("libc.so.", "libm.so.", "libdl.so.", "libpthread.so.", "ld-linux")
 
-
-def libraries_of(wheel: Path) -> List[str]:
+def libraries_of(wheel: Path, target: Target) -> List[str]:
     """The shared libraries that the native library of a wheel needs."""
     with tempfile.TemporaryDirectory() as folder, zipfile.ZipFile(wheel) as archive:
-        native = archive.extract("cscd/libcscd-python.so", folder)
-        printed = subprocess.run(["readelf", "-d", native], check=True, capture_output=True, text=True).stdout
-    return [line.split("[")[1].rstrip("]") for line in printed.splitlines() if "(NEEDED)" in line]
+        command = [f"{target.platform.tools}objdump", "-p", archive.extract(f"cscd/{target.library}", folder)]
+        printed = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    return [line.split()[-1] for line in printed.splitlines() if line.split()[:1] == ["NEEDED"] or "DLL Name:" in line]
+
+
+def give_away(made: Path, target: Target, folder: Path) -> int:
+    """Puts a wheel that needs nothing else into the folder, and prints its path."""
+    foreign = [library for library in libraries_of(made, target) if not library.startswith(target.platform.everywhere)]
+    if foreign:
+        print(f"cscd: the wheel would need {' and '.join(foreign)} wherever it is installed, because this machine has "
+              "no archives of them that link into a shared library; `pip install .` works all the same",
+              file=sys.stderr)
+        return 1
+    with whole_file(folder / made.name) as out:
+        out.write(made.read_bytes())
+    print(folder / made.name)
+    return 0
 
 
 def main(words: List[str]) -> int:
     """Runs one command, and prints the path of what it has made."""
-    if len(words) != 2 or words[0] not in ("wheel", "sdist"):
+    if (words[:1], len(words)) not in ((["wheel"], 2), (["wheel"], 4), (["sdist"], 2)):
         print(__doc__, file=sys.stderr)
         return 2
-    command, folder = words
+    command, folder = words[:2]
     if command == "sdist":
         print(Path(folder, build_sdist(folder)))
         return 0
     try:
-        requirements.check(False, whole=True)
+        target = Target(*words[2:])
+        requirements.check(False, whole=True, target=target)
+        with tempfile.TemporaryDirectory() as place:
+            return give_away(Path(place, build_wheel_for(target, place, False)), target, Path(folder))
     except Failure as failure:
         print(f"cscd: {failure}", file=sys.stderr)
         return 1
-    with tempfile.TemporaryDirectory() as place:
-        made = Path(place, build_wheel(place, {"charge": "0"}))
-        foreign = [library for library in libraries_of(made) if not library.startswith(EVERYWHERE)]
-        if foreign:
-            print(f"cscd: the wheel would need {' and '.join(foreign)} wherever it is installed, because this machine has "
-                  "no archives of them that link into a shared library; `pip install .` works all the same",
-                  file=sys.stderr)
-            return 1
-        target = Path(folder, made.name)
-        with whole_file(target) as out:
-            out.write(made.read_bytes())
-    print(target)
-    return 0
 
 
 if __name__ == "__main__":

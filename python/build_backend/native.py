@@ -18,6 +18,7 @@ from typing import Dict, Iterator, List, Optional
 
 from . import requirements, sdist
 from .project import Failure
+from .target import Target
 
 # What make takes from the environment although it means another build, and what another make has left there.
 NOT_FOR_MAKE = {"BUILD", "BUILD_ROOT", "GNUMAKEFLAGS", "MAKEFLAGS", "MAKELEVEL", "MAKEOVERRIDES", "MFLAGS", "ONLY"}
@@ -35,22 +36,22 @@ def charge_setting(settings: Optional[Dict[str, object]]) -> Optional[bool]:
 
 
 @contextmanager
-def built_package(root: Path, charge: Optional[bool]) -> Iterator[Path]:
+def built_package(root: Path, charge: Optional[bool], target: Target = Target()) -> Iterator[Path]:
     """Builds the package of the tree `root` into a folder `cscd` that is there until the block ends.
 
     `charge` says whether the library that makes plans by charge is part of it; None means where its libraries are
     installed.
     """
-    parts = requirements.check(charge)
+    parts = requirements.check(charge, target=target)
     with writable_tree(root) as tree, alone(tree) as lock:
         for rest in (tree / "build").glob("package.*"):
             shutil.rmtree(rest)  # of a build that was killed: no other one holds the lock
         with tempfile.TemporaryDirectory(dir=tree / "build", prefix="package.") as folder:
             package = Path(folder, "cscd")
             # Relative, because make takes no names with spaces in them.
-            settings = [f"PYTHON_PACKAGE={package.relative_to(tree)}", f"LDFLAGS={stripped()}"]
+            settings = [f"PYTHON_PACKAGE={package.relative_to(tree)}", f"LDFLAGS={stripped()}", *target.settings]
             run_make(tree, commit_of(root), parts, lock, *settings)
-            check_package(package, parts.charge)
+            check_package(package, parts.charge, target.library)
             yield package
 
 
@@ -117,9 +118,9 @@ def environment() -> Dict[str, str]:
     return {name: value for name, value in os.environ.items() if name not in NOT_FOR_MAKE}
 
 
-def check_package(package: Path, with_charge: bool) -> None:
+def check_package(package: Path, with_charge: bool, library: str) -> None:
     """Fails unless what the package cannot do without is there."""
-    needed: List[str] = ["__init__.py", "__main__.py", "py.typed", "libcscd-python.so"]
+    needed: List[str] = ["__init__.py", "__main__.py", "py.typed", library]
     if with_charge:
         needed.append("libcscd-charge.so.*")
     missing = [name for name in needed if not list(package.glob(name))]

@@ -9,6 +9,7 @@ import tempfile
 from typing import List, NamedTuple, Optional
 
 from .project import Failure
+from .target import Target
 
 
 class Parts(NamedTuple):
@@ -45,17 +46,17 @@ def compiler() -> List[str]:
     return shlex.split(os.environ.get("CC", "")) or ["gcc"]
 
 
-def is_there(need: Need) -> bool:
+def is_there(need: Need, target: Target = Target()) -> bool:
     """Whether a program compiles and links with a library."""
     program = f"#include <stddef.h>\n#include <stdio.h>\n#include <{need.header}>\nint main(void) {{ return 0; }}\n"
     flags = [shlex.split(os.environ.get(name, "")) for name in ("CFLAGS", "LDFLAGS")]
-    words = [*compiler(), *flags[0], "-x", "c", "-", *flags[1]]
+    words = [*compiler(), *flags[0], *target.flags(), "-x", "c", "-", *flags[1]]
     with tempfile.TemporaryDirectory() as folder:
         command = [*words, need.flag, "-o", os.path.join(folder, "program")]
         return subprocess.run(command, input=program.encode(), capture_output=True).returncode == 0
 
 
-def check(charge: Optional[bool], whole: bool = False) -> Parts:
+def check(charge: Optional[bool], whole: bool = False, target: Target = Target()) -> Parts:
     """Fails with a sentence when something is missing, and returns what else can be built.
 
     `charge` is what the caller asks for: True, False, or None for "where it can be built"; `whole` asks for everything
@@ -65,10 +66,10 @@ def check(charge: Optional[bool], whole: bool = False) -> Parts:
     if tools:
         fail(tools, ["build-essential"])
     wanted = LIBRARIES + (CHARGE if charge else []) + ([EXPAT] if whole else [])
-    missing = [need for need in wanted if not is_there(need)]
+    missing = [need for need in wanted if not is_there(need, target)]
     if missing:
         fail([f"{need.what} ({need.header})" for need in missing], [need.package for need in missing])
-    parts = Parts(all(is_there(need) for need in CHARGE) if charge is None else charge, is_there(EXPAT))
+    parts = Parts(all(is_there(need, target) for need in CHARGE) if charge is None else charge, is_there(EXPAT, target))
     if not parts.expat:
         print("cscd: without expat (expat.h), so GIFTI surfaces are not read; Debian's package is libexpat1-dev",
               flush=True)

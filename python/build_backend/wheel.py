@@ -5,7 +5,6 @@ import base64
 import hashlib
 import os
 import stat
-import sysconfig
 import tempfile
 import zipfile
 from contextlib import contextmanager
@@ -13,26 +12,22 @@ from pathlib import Path
 from typing import BinaryIO, Dict, Iterator
 
 from .project import Project, zip_time
+from .target import Target
 
 
-def platform_tag() -> str:
-    """The platform as wheels name it, such as linux_x86_64."""
-    return sysconfig.get_platform().replace("-", "_").replace(".", "_")
-
-
-def wheel_name(project: Project) -> str:
+def wheel_name(project: Project, target: Target = Target()) -> str:
     """The file name of the wheel: it serves every Python 3, because nothing in it is compiled for one version."""
-    return f"{project.stem}-py3-none-{platform_tag()}.whl"
+    return f"{project.stem}-py3-none-{target.platform.tag}.whl"
 
 
-def information_files(project: Project) -> Dict[str, bytes]:
+def information_files(project: Project, target: Target = Target()) -> Dict[str, bytes]:
     """The files of the dist-info folder, without RECORD, by their names in it."""
     wheel = f"Wheel-Version: 1.0\nGenerator: cscd {project.version}\nRoot-Is-Purelib: false\n"
     return {
         "METADATA": project.metadata.encode(),
-        "WHEEL": f"{wheel}Tag: py3-none-{platform_tag()}\n".encode(),
+        "WHEEL": f"{wheel}Tag: py3-none-{target.platform.tag}\n".encode(),
         "entry_points.txt": project.entry_points.encode(),
-        **{f"licenses/{name}": text for name, text in project.licences.items()},
+        **{f"licenses/{name}": text for name, text in {**project.licences, **target.licences()}.items()},
     }
 
 
@@ -46,10 +41,10 @@ def write_metadata(project: Project, folder: str) -> str:
     return name
 
 
-def write_wheel(project: Project, package: Path, folder: str) -> str:
+def write_wheel(project: Project, package: Path, folder: str, target: Target = Target()) -> str:
     """Writes the wheel of a built package folder, and returns its file name."""
     files = {path.relative_to(package.parent).as_posix(): path.read_bytes() for path in package_files(package)}
-    return write_archive(project, files, folder)
+    return write_archive(project, files, folder, target)
 
 
 def write_editable(project: Project, parent: Path, folder: str) -> str:
@@ -64,14 +59,14 @@ def package_files(package: Path) -> Iterator[Path]:
             yield path
 
 
-def write_archive(project: Project, files: Dict[str, bytes], folder: str) -> str:
+def write_archive(project: Project, files: Dict[str, bytes], folder: str, target: Target = Target()) -> str:
     """Writes a wheel of these files, by their paths in it, and of what pip wants to know, and returns its file name."""
     information = f"{project.stem}.dist-info"
-    name = wheel_name(project)
+    name = wheel_name(project, target)
     record = ""
     with whole_file(Path(folder, name)) as out, zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as archive:
         # As the specification advises, the information stands at the end.
-        described = {f"{information}/{path}": contents for path, contents in information_files(project).items()}
+        described = {f"{information}/{path}": contents for path, contents in information_files(project, target).items()}
         for path, contents in [*sorted(files.items()), *sorted(described.items())]:
             add_file(archive, path, contents)
             digest = base64.urlsafe_b64encode(hashlib.sha256(contents).digest()).rstrip(b"=").decode()

@@ -13,7 +13,8 @@ import sys
 
 def main() -> int:
     """Runs the tool on the arguments of this process, and returns its exit code."""
-    library = ctypes.PyDLL(os.path.join(os.path.dirname(os.path.abspath(__file__)), "libcscd-python.so"))
+    name = "libcscd-python.dll" if os.name == "nt" else "libcscd-python.so"
+    library = ctypes.PyDLL(os.path.join(os.path.dirname(os.path.abspath(__file__)), name))
     arguments = [b"cscd", *(os.fsencode(argument) for argument in sys.argv[1:])]
     if signal.getsignal(signal.SIGINT) != signal.SIG_IGN:  # as a shell has it for what runs in its background
         signal.signal(signal.SIGINT, signal.SIG_DFL)  # the tool has a handler of its own, and ends with 128 and its number

@@ -26,7 +26,8 @@ _FROM_PYTHON = ("PyEval_SaveThread", "PyEval_RestoreThread", "PyErr_CheckSignals
 
 
 def _load() -> ctypes.PyDLL:
-    path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "libcscd-python.so")
+    name = "libcscd-python.dll" if os.name == "nt" else "libcscd-python.so"
+    path = os.path.join(os.path.dirname(os.path.abspath(__file__)), name)
     if not os.path.exists(path):
         raise ImportError(f"cscd: the compiled library {path} is missing; `pip install .` or `make python` in the "
                           "sources of cscd builds it")

@@ -269,19 +269,23 @@ def _write_parts(folder: str, mesh: Mesh, names: Optional[Sequence[str]], labels
 
 def _interpreter() -> str:
     """A Python for the tool. Where a program embeds Python, ``sys.executable`` may be that program, or empty."""
-    version = f"python{sys.version_info[0]}.{sys.version_info[1]}"
-    beside = [os.path.join(prefix, "bin", name) for prefix in (sys.exec_prefix, sys.base_exec_prefix)
-              for name in (version, "python3")]
-    for path in (sys.executable, *beside, shutil.which(version), shutil.which("python3")):
+    if os.name == "nt":
+        folders, names = ["", "Scripts", "bin"], ["python.exe"]
+    else:
+        folders, names = ["bin"], [f"python{sys.version_info[0]}.{sys.version_info[1]}", "python3"]
+    beside = [os.path.join(prefix, folder, name) for prefix in (sys.exec_prefix, sys.base_exec_prefix)
+              for folder in folders for name in names]
+    for path in (sys.executable, *beside, *map(shutil.which, names)):
         if path and "python" in os.path.basename(path).lower() and os.access(path, os.X_OK):
             return path
-    raise Error("write_report runs the tool in a process of its own, and found no Python for it; put python3 on the PATH")
+    raise Error("write_report runs the tool in a process of its own, and found no Python for it; "
+                f"put {names[-1]} on the PATH")
 
 
 def _run_tool(command: List[str]) -> str:
     """Runs the tool of this package; returns its first line."""
     program = os.path.join(os.path.dirname(os.path.abspath(__file__)), "__main__.py")
-    done = subprocess.run([_interpreter(), "-I", program, *command], text=True, stdout=subprocess.PIPE,
+    done = subprocess.run([_interpreter(), "-I", program, *command], encoding="utf-8", errors="replace", stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE, check=False)
     if done.returncode != 0:
         raise Error(done.stderr.strip() or f"the tool ended with {done.returncode}")

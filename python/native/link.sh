@@ -1,6 +1,6 @@
 #!/bin/sh
 # Links the native library of the Python module: python/native/link.sh OUTPUT OBJECT... The compiler with its flags is in LINK, the
-# libraries for files and pictures, as the tool links them, in FILE_LIBS, and all others in OTHER_LIBS.
+# libraries for files and pictures, as the tool links them, in FILE_LIBS, and all others in OTHER_LIBS; OBJCOPY is that of the compiler.
 #
 # The libraries for files and pictures go into it as archives, hidden, so that it runs on machines without them, and neither uses nor
 # disturbs other versions of them in the same process. Debian's archives are compiled for programs: hidden, they fit into a shared
@@ -25,7 +25,7 @@ for flag in ${FILE_ARCHIVES-$FILE_LIBS}; do
     case $flag:$archive in
     -lm:* | -pthread:*) rest="$rest $flag" ;;
     -lpng*:/*)
-        objcopy --redefine-sym stderr=cscdpy_standard_error "$archive" "$copy"
+        "${OBJCOPY:-objcopy}" --redefine-sym stderr=cscdpy_standard_error "$archive" "$copy"
         archives="$archives $copy"
         ;;
     -l*:/*) archives="$archives $archive" ;;

@@ -6,6 +6,7 @@
 #include "src/tool/common/part_names.h"
 #include "src/tool/common/plan_colours.h"
 #include "src/tool/tool.h"
+#include "src/windows/console.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -142,8 +143,10 @@ PYTHON_API void cscdpy_mesh_copy_positions(const mesh_file *mesh, double *positi
 PYTHON_API int cscdpy_run_tool(int argument_count, char **arguments) {
     const bool has_lock_to_give = python.save_thread != NULL; /* not where nothing but the tool is used */
     void *thread = has_lock_to_give ? python.save_thread() : NULL;
+    const unsigned page = console_begin();
     int code = tool_run(argument_count, arguments);
     fflush(NULL);
+    console_end(page);
     if (has_lock_to_give) python.restore_thread(thread);
     return code;
 }

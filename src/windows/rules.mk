@@ -21,6 +21,15 @@ $(LIBRARY): $(OPENED_OBJECTS)
 	    sort -u >$(BUILD)/own_names.txt
 	$(Q)$(TOOLS)objcopy --redefine-syms=$(BUILD)/own_names.txt $@
 
+# Python's module: the tool without its program, what Python calls, and the libraries for files and pictures. A program begins in
+# wmain.c, which a DLL has not.
+$(NATIVE_LIBRARY): $(filter-out %/src/windows/wmain.o,$(NATIVE_OBJECTS))
+	@mkdir -p $(@D)
+	$(say) '  LD $@'
+	@{ echo EXPORTS; $(TOOLS)nm -g --defined-only $^ | awk '$$2 == "T" && $$3 ~ /^cscd(py)?_/ {print "    " $$3}' | sort -u; } \
+	    >$(BUILD)/libcscd-python.def
+	$(Q)$(CC) $(OPTIMISE_$(CONFIG)) -shared -static -pthread -o $@ $^ $(BUILD)/libcscd-python.def $(TOOL_LIBS) $(LDFLAGS)
+
 # ANSWERS: the file that a Linux run wrote.
 test-windows-run: tool library $(TESTS) $(BUILD)/tests/windows/compare_answers
 	@cp -p $(TOOL) $(TOOL).exe

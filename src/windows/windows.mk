@@ -26,6 +26,7 @@ SUPPORT_SOURCES := $(filter-out tests/support/shell.c tests/support/page_cache.c
                      tests/support/solver/exact_distance.c tests/support/install/api_names.c,$(SUPPORT_SOURCES))
 TEST_SOURCES := $(filter-out $(shell sed -n 's|^\(tests/[^:]*\):.*|\1|p' tests/windows/left_out.txt),$(TEST_SOURCES))
 
-
+# Python's module is linked by a rule of its own (rules.mk), and libpng reads no variable there.
+NATIVE_SOURCES := $(filter-out %/standard_error.c,$(NATIVE_SOURCES))
 
 COMMON_SOURCES += $(wildcard src/windows/*.c)

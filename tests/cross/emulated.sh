@@ -23,7 +23,7 @@ unset MAKEFLAGS
 build=build/$host/release
 case ${CC:-} in ccache*) cache='ccache ' ;; *) cache='' ;; esac
 sysroot=$PWD/build/sysroot/$architecture
-tests/cross/sysroot.sh "$architecture" "$sysroot" libc6-dev libstdc++-12-dev libpng-dev zlib1g-dev libjson-c-dev libexpat1-dev \
+src/packaging/sysroot.sh "$architecture" "$sysroot" libc6-dev libstdc++-12-dev libpng-dev zlib1g-dev libjson-c-dev libexpat1-dev \
     libgsl-dev liblapacke-dev libopenblas-dev libcmocka-dev libflint-dev libflint-arb-dev libgmp-dev
 
 # cross TARGET...: makes them for the other processor.
