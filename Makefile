@@ -743,6 +743,10 @@ $(foreach level,$(LEVELS),$(eval $(call compile_level,$(level))))
 ifneq ($(filter sanitize tsan,$(CONFIG)),)
 $(addprefix $(OBJECTS)/,src/core/% src/mesh/% preprocess/% runtime/% models/%): CFLAGS_ALL += -O2
 endif
+# A machine on which tests repeat less, because programs take many times as long there: with sanitizers, or in an emulator.
+ifneq ($(filter sanitize tsan,$(CONFIG))$(HOST),)
+$(addprefix $(OBJECTS)/,tests/%): CFLAGS_ALL += -DSLOW_MACHINE
+endif
 
 $(OBJECTS)/%.o: %.c
 	@mkdir -p $(@D)

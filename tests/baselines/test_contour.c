@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef SLOW_MACHINE
 enum { POLYGONS = 2000 };
 #else
 enum { POLYGONS = 12000 };

@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef SLOW_MACHINE
 enum { INTERVALS_PER_FAMILY = 25 };
 #else
 enum { INTERVALS_PER_FAMILY = 200 };

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef SLOW_MACHINE
 enum { SCENES_PER_FAMILY = 3, BODY_TRIANGLES = 600 };
 #else
 enum { SCENES_PER_FAMILY = 20, BODY_TRIANGLES = 3000 };

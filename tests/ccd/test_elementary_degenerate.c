@@ -8,7 +8,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef SLOW_MACHINE
 enum { ROUND_COUNT = 5000 };
 #else
 enum { ROUND_COUNT = 20000 };

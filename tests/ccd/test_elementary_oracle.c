@@ -9,7 +9,7 @@
 #include <stdio.h>
 
 /* make fuzz-elementary asks millions; here each family comes often enough for every count below to be large. */
-#ifdef __SANITIZE_ADDRESS__
+#ifdef SLOW_MACHINE
 enum { QUERIES_A_FAMILY = 300 };
 #else
 enum { QUERIES_A_FAMILY = 1000 };

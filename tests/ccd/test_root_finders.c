@@ -70,7 +70,7 @@ int cubic_guess_roots(const double c[4], double roots[3]) {
 
 /* ---- queries of every degeneracy ---- */
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef SLOW_MACHINE
 enum { QUERIES = 100 * FAMILY_COUNT };
 #else
 enum { QUERIES = 400 * FAMILY_COUNT };

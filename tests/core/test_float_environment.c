@@ -10,7 +10,7 @@
 #include <pthread.h>
 #include <stdlib.h>
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef SLOW_MACHINE
 enum { SCENES = 10 };
 #else
 enum { SCENES = 24 };

@@ -75,7 +75,7 @@ static bool leave_and_look(host_callback from, uint32_t thread_count, int what, 
     return left;
 }
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef SLOW_MACHINE
 enum { SPARSENESS = 1 };
 #else
 enum { SPARSENESS = 4 };

@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef SLOW_MACHINE
 enum { SCENES = 4 * SCENE_FAMILY_COUNT };
 #else
 enum { SCENES = 24 * SCENE_FAMILY_COUNT };

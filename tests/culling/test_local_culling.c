@@ -16,7 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef SLOW_MACHINE
 enum { SEQUENCES = 12, EXACT_PERCENT = 85 }; /* out of so few sequences */
 #else
 enum { SEQUENCES = 60, EXACT_PERCENT = 90 };

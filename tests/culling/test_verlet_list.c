@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef SLOW_MACHINE
 enum { INTERVALS = 200, ORACLE_EVERY = 24 };
 #else
 enum { INTERVALS = 360, ORACLE_EVERY = 24 };

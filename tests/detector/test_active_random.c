@@ -14,7 +14,7 @@
 
 #include <string.h>
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef SLOW_MACHINE
 enum { SLOWER = 2 };
 #else
 enum { SLOWER = 1 };

@@ -10,7 +10,7 @@
 
 #include <string.h>
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef SLOW_MACHINE
 enum { SCENES = 4 };
 #else
 enum { SCENES = 10 };

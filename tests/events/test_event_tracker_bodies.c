@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef SLOW_MACHINE
 enum { FLIGHTS = 6 };
 #else
 enum { FLIGHTS = 40 };

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef SLOW_MACHINE
 enum { COMPARED = 30, TRACED = 300 };
 #else
 enum { COMPARED = 100, TRACED = 4000 };

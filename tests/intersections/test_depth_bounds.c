@@ -8,7 +8,7 @@
 
 #include <math.h>
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef SLOW_MACHINE
 enum { TRIANGLES = 200, SCENES = 3 };
 #else
 enum { TRIANGLES = 2000, SCENES = 12 };

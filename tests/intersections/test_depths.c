@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef SLOW_MACHINE
 enum { ROUNDS = 3, SAMPLES = 4 };
 #else
 enum { ROUNDS = 20, SAMPLES = 30 };

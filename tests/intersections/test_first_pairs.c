@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef SLOW_MACHINE
 enum { REPETITIONS = 1 };
 #else
 enum { REPETITIONS = 8 };

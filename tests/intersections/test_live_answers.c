@@ -11,7 +11,7 @@
 
 enum { SHAPES = 7, BODIES = 3, OBJECTS_MAX = 9, ROUNDS = 10, PARTS = 4 };
 
-#if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
+#ifdef SLOW_MACHINE
 enum { LIVES = 6 };
 #else
 enum { LIVES = 10 };

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef SLOW_MACHINE
 enum { LINES = 60, ROUNDS = 3 };
 #else
 enum { LINES = 200, ROUNDS = 8 };

@@ -8,7 +8,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef SLOW_MACHINE
 enum { ROUNDS = 10000 };
 #else
 enum { ROUNDS = 130000 };

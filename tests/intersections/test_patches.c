@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef SLOW_MACHINE
 enum { SEEDS = 40 };
 #else
 enum { SEEDS = 400 };

@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef SLOW_MACHINE
 enum { POINTS = 2000 };
 #else
 enum { POINTS = 10000 };

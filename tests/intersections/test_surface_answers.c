@@ -198,7 +198,7 @@ static void sway_ball(int steps) {
     }
 }
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef SLOW_MACHINE
 enum { STEADY_RUNS = 2 };
 #else
 enum { STEADY_RUNS = 5 };

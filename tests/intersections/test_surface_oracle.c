@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef SLOW_MACHINE
 enum { DETERMINANTS = 500, NUMBERS = 10, SCENES = 5 };
 #else
 enum { DETERMINANTS = 5000, NUMBERS = 40, SCENES = 60 };

@@ -10,7 +10,7 @@
 
 /* Sanitizers run only the first frames, which have no folds. Some intervals are also tested by brute
  * force. */
-#ifdef __SANITIZE_ADDRESS__
+#ifdef SLOW_MACHINE
 enum { FRAMES = 75, THREADED_FRAMES = 16, SEWN_FRAMES = 48, BRUTE_EVERY = 70 };
 #else
 enum { FRAMES = 1000, THREADED_FRAMES = 30, SEWN_FRAMES = 70, BRUTE_EVERY = 70 };

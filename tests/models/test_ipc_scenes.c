@@ -12,7 +12,7 @@
 
 /* RING_TRIANGLES is the number of triangles of all rings. The other detectors check the lines of every
  * STRIDE-th time step. */
-#ifdef __SANITIZE_ADDRESS__
+#ifdef SLOW_MACHINE
 enum { RING_TRIANGLES = 480, RING_STEPS = 60, STRIDE = 25, REPEATED = 12 };
 #else
 enum { RING_TRIANGLES = 900, RING_STEPS = 90, STRIDE = 4, REPEATED = 30 };

@@ -14,7 +14,7 @@ static const struct extent {
     uint32_t frames, repeated;
     bool runs_into_itself;
 } extents[] = {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef SLOW_MACHINE
     {"pawn-drop", 6, 4, false},        {"pawn-drop-free", 6, 2, false},
     {"dumbbell-stairs", 34, 33, true}, {"dumbbell-stairs-free", 8, 2, false},
     {"figure-balls", 6, 4, false},     {"figure-balls-free", 6, 2, false},

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef SLOW_MACHINE
 enum { SCENES_PER_FAMILY = 6, SCENES_OF_TWO = 60 };
 #else
 enum { SCENES_PER_FAMILY = 12, SCENES_OF_TWO = 60 };

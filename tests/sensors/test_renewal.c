@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef SLOW_MACHINE
 enum { ROUNDS = 5, WALKED_SCENES = 36 };
 #else
 enum { ROUNDS = 50, WALKED_SCENES = 240 };

@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef SLOW_MACHINE
 enum { MESHES = 60, INTERVALS_PER_MESH = 40, TOUCHES = 1000 };
 #else
 enum { MESHES = 60, INTERVALS_PER_MESH = 120, TOUCHES = 5000 };

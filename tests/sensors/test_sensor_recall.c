@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef SLOW_MACHINE
 enum { SEEDS = 20, FRAMES = 10 };
 #else
 enum { SEEDS = 40, FRAMES = 10 };

@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef SLOW_MACHINE
 enum { MOST_STEPS = 1000 };
 #else
 enum { MOST_STEPS = 10000 };

@@ -28,7 +28,7 @@ static pair_batches *open_batches(void) {
  * them took most of the time of such tests. That they agree on these scenes is seen in the other configurations, and on
  * single queries in all. */
 static pair_batches *open_scene_batches(void) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef SLOW_MACHINE
     if (best_batches.contexts[0] != NULL) return &best_batches;
     if (!pair_batches_open_best(&best_batches)) stop_test("memory ran out");
     atexit(close_batches);
