@@ -256,6 +256,7 @@ wheels: wheel windows-libraries
 
 ARM64_SYSROOT := build/sysroot/arm64-wheel
 test-wheels: packages wheels
+	@.ci/packages wine
 	@CC='$(CC)' tests/wheels/run.sh build/dist
 
 sdist:
@@ -345,6 +346,7 @@ windows-zip: windows
 # The tests under wine. What needs FLINT and Arb is asked from answers that Linux has written.
 ANSWERS := build/windows/answers
 test-windows: packages windows-libraries
+	@.ci/packages wine
 	@$(MAKE) --no-print-directory $(BUILD)/tests/windows/write_answers
 	@$(BUILD)/tests/windows/write_answers $(ANSWERS) 20000
 	@ANSWERS=$(abspath $(ANSWERS)) $(ON_WINDOWS) test-windows-run
