@@ -135,9 +135,9 @@ static bool same_alone(int level, cscd_contact_kind kind, size_t i, const query_
     for (int k = 0; k < ELEMENTARY_LEVEL_COUNT; k++) out->levels[k] += lane->decided[k];
     if (lane->count != (answer->touching ? 1 : 0)) return false;
     return !answer->touching ||
-           (lane->contacts[0].toi == answer->hit.toi &&
-            memcmp(lane->contacts[0].point, answer->hit.point, sizeof answer->hit.point) == 0 &&
-            memcmp(lane->contacts[0].normal, answer->hit.normal, sizeof answer->hit.normal) == 0);
+           (contact_lane_at(lane, 0)->toi == answer->hit.toi &&
+            memcmp(contact_lane_at(lane, 0)->point, answer->hit.point, sizeof answer->hit.point) == 0 &&
+            memcmp(contact_lane_at(lane, 0)->normal, answer->hit.normal, sizeof answer->hit.normal) == 0);
 }
 
 /* out->microseconds has room for all queries of the part. */

@@ -37,8 +37,9 @@ bool pair_batches_open(pair_batches *b) {
 
 void pair_batches_close(pair_batches *b) {
     for (int i = 0; i < PAIR_BATCH_LEVELS; i++) {
+        free(b->found[i]);
         if (b->contexts[i] == NULL) continue;
-        if (b->lanes[i] != NULL) context_free(b->contexts[i], b->lanes[i]->contacts);
+        if (b->lanes[i] != NULL) contact_lane_free(b->contexts[i], b->lanes[i]);
         context_free(b->contexts[i], b->lanes[i]);
         cscd_context_destroy(b->contexts[i]);
     }
@@ -123,18 +124,29 @@ static uint64_t decided_pairs(const contact_lane *lane) {
     return sum;
 }
 
+static bool sort_lane(pair_batches *b, int level) {
+    const contact_lane *lane = b->lanes[level];
+    cscd_contact *sorted = realloc(b->found[level], (lane->count + 1) * sizeof *sorted);
+    if (sorted == NULL) return false;
+    b->found[level] = sorted;
+    for (size_t i = 0; i < lane->count; i++) memcpy(&sorted[i], contact_lane_at(lane, i), sizeof *sorted);
+    qsort(sorted, lane->count, sizeof *sorted, compare_contacts);
+    return true;
+}
+
 /* Returns what is wrong with a level's lane, by itself or compared with the lowest level's; NULL: nothing. */
-static const char *find_problem(const contact_lane *first, const contact_lane *lane, size_t count) {
+static const char *find_problem(const pair_batches *b, int level, size_t count) {
+    const contact_lane *first = b->lanes[0], *lane = b->lanes[level];
+    const cscd_contact *found = b->found[level];
     if (lane->out_of_memory) return "memory ran out";
     if (decided_pairs(lane) != count) return "the queue lost pairs, or decided some twice";
     for (size_t i = 1; i < lane->count; i++) {
-        if (compare_contacts(&lane->contacts[i - 1], &lane->contacts[i]) == 0)
-            return "a pair is reported twice";
+        if (compare_contacts(&found[i - 1], &found[i]) == 0) return "a pair is reported twice";
     }
     if (lane->count != first->count) return "two instruction sets differ in the number of contacts";
     if (memcmp(lane->decided, first->decided, sizeof lane->decided) != 0)
         return "two instruction sets differ in what each elementary level decided";
-    if (lane->count > 0 && memcmp(lane->contacts, first->contacts, lane->count * sizeof *lane->contacts) != 0)
+    if (memcmp(found, b->found[0], lane->count * sizeof *found) != 0)
         return "two instruction sets differ in a contact";
     return NULL;
 }
@@ -143,11 +155,9 @@ static const char *find_problem(const contact_lane *first, const contact_lane *l
 static const char *decide_on_all_levels(pair_batches *b, cscd_contact_kind kind, size_t count) {
     const char *problem = NULL;
     for (int level = 0; level < PAIR_BATCH_LEVELS && problem == NULL; level++) {
-        contact_lane *lane = b->lanes[level];
-        if (lane == NULL) continue;
+        if (b->lanes[level] == NULL) continue;
         decide_on_level(b, level, kind, count);
-        if (lane->count > 0) qsort(lane->contacts, lane->count, sizeof *lane->contacts, compare_contacts);
-        problem = find_problem(b->lanes[0], lane, count);
+        problem = sort_lane(b, level) ? find_problem(b, level, count) : "memory ran out";
     }
     return problem;
 }
@@ -164,7 +174,6 @@ static bool reserve_pairs(pair_batches *b, size_t count) {
 const cscd_contact *pair_batches_decide(pair_batches *b, const feature_source *source, cscd_contact_kind kind,
                                         const uint32_t (*pairs)[2], size_t count, size_t *contact_count,
                                         const char **problem) {
-    static const cscd_contact none;
     *problem = "memory ran out";
     *contact_count = 0;
     if (!reserve_pairs(b, count)) return NULL;
@@ -176,7 +185,7 @@ const cscd_contact *pair_batches_decide(pair_batches *b, const feature_source *s
     *problem = decide_on_all_levels(b, kind, count);
     if (*problem != NULL) return NULL;
     *contact_count = b->lanes[0]->count;
-    return *contact_count > 0 ? b->lanes[0]->contacts : &none;
+    return b->found[0];
 }
 
 /* ---- queries --------------------------------------------------------------------------------------------- */
@@ -231,7 +240,7 @@ bool pair_batches_decide_queries(pair_batches *b, cscd_contact_kind kind, const 
     if (*problem != NULL) return false;
     for (size_t i = 0; i < count; i++) answers[i] = (query_answer){.touching = false};
     for (size_t i = 0; i < b->lanes[0]->count; i++) {
-        const cscd_contact *contact = &b->lanes[0]->contacts[i];
+        const cscd_contact *contact = &b->found[0][i];
         answers[kind == CSCD_CONTACT_VF ? contact->a / 4 : contact->a / 2] = answer_of(contact);
     }
     return true;

@@ -16,6 +16,7 @@ typedef struct query_answer {
 typedef struct pair_batches {
     cscd_context *contexts[PAIR_BATCH_LEVELS]; /* NULL: the processor lacks this level */
     contact_lane *lanes[PAIR_BATCH_LEVELS];    /* contacts, and which level decided how many pairs */
+    cscd_contact *found[PAIR_BATCH_LEVELS];    /* the contacts of each lane, sorted */
     cscd_mesh mesh;                            /* only triangles and edges */
     const double *x0, *x1;
     uint32_t (*pairs)[2]; /* in the order in which they are tested */

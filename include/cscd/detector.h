@@ -239,9 +239,9 @@ typedef struct cscd_contacts {
 } cscd_contacts;
 
 /* Finds the contacts from positions x0 to positions x1, as the mode promises. The first call
- * builds the trees, so it is slower. Later calls allocate memory only when a list has to grow, when a long
- * deformation has made the trees so loose that they are built again, or in the first interval without
- * culling. CANCELLED: see cscd_progress. */
+ * builds the trees, so it is slower. Later calls allocate memory only when a list has to grow or has 2^18
+ * contacts or more, when a long deformation has made the trees so loose that they are built again, or in the
+ * first interval without culling. CANCELLED: see cscd_progress. */
 CSCD_API cscd_status cscd_detector_step_sized(cscd_detector *detector, const cscd_view *x0,
                                               const cscd_view *x1, cscd_contacts *out, size_t size);
 static inline cscd_status cscd_detector_step(cscd_detector *detector, const cscd_view *x0,

@@ -40,28 +40,19 @@ uint32_t tainting_component(const cscd_mesh *mesh, const cscd_contact *contact) 
     return a == b ? a : UINT32_MAX;
 }
 
-void tainting_note(const cscd_mesh *mesh, const cscd_contact *contacts, size_t count, double *earliest) {
-    for (size_t i = 0; i < count; i++) {
-        uint32_t component = tainting_component(mesh, &contacts[i]);
-        if (component != UINT32_MAX && contacts[i].toi < earliest[component])
-            earliest[component] = contacts[i].toi;
-    }
+void tainting_note(const cscd_mesh *mesh, const cscd_contact *contact, double *earliest) {
+    uint32_t component = tainting_component(mesh, contact);
+    if (component != UINT32_MAX && contact->toi < earliest[component]) earliest[component] = contact->toi;
 }
 
-uint32_t tainting_look(const tainting *t, const cscd_contact *contacts, size_t count) {
-    uint32_t newly_kept = 0;
-    for (size_t i = 0; i < count; i++) {
-        const cscd_contact *contact = &contacts[i];
-        uint32_t component = tainting_component(t->mesh, contact);
-        if (component == UINT32_MAX) continue;
-        t->touched[component]++;
-        if (contact->toi - t->within > t->earliest[component]) continue;
-        if (contact->kind == CSCD_CONTACT_VF)
-            newly_kept += taint_vertex(t, contact->a) + tainting_triangle(t, contact->b);
-        else
-            newly_kept += taint_edge(t, contact->a) + taint_edge(t, contact->b);
-    }
-    return newly_kept;
+uint32_t tainting_look(const tainting *t, const cscd_contact *contact) {
+    uint32_t component = tainting_component(t->mesh, contact);
+    if (component == UINT32_MAX) return 0;
+    t->touched[component]++;
+    if (contact->toi - t->within > t->earliest[component]) return 0;
+    if (contact->kind == CSCD_CONTACT_VF)
+        return taint_vertex(t, contact->a) + tainting_triangle(t, contact->b);
+    return taint_edge(t, contact->a) + taint_edge(t, contact->b);
 }
 
 static void mark_star(const uint32_t *stars, const uint32_t *offsets, uint32_t feature, bool *triangles) {

@@ -18,12 +18,12 @@ typedef struct tainting {
 /* Returns the component that both features of a contact belong to; UINT32_MAX if they do not belong to one. */
 uint32_t tainting_component(const cscd_mesh *mesh, const cscd_contact *contact);
 
-/* Notes the earliest contact of each component with itself. */
-void tainting_note(const cscd_mesh *mesh, const cscd_contact *contacts, size_t count, double *earliest);
+/* Notes the time of a contact of a component with itself, if it is the earliest so far. */
+void tainting_note(const cscd_mesh *mesh, const cscd_contact *contact, double *earliest);
 
-/* Taints the stars of both features of every contact of a component with itself, also of contacts that the caller
- * ignores. Returns how many triangles have lost their orientations, so that pairs of them are newly kept. */
-uint32_t tainting_look(const tainting *t, const cscd_contact *contacts, size_t count);
+/* Taints the stars of both features of a contact of a component with itself, also of one that the caller ignores. Returns how
+ * many triangles have lost their orientations, so that pairs of them are newly kept. */
+uint32_t tainting_look(const tainting *t, const cscd_contact *contact);
 
 /* The same in two parts, for a contact that is not kept: first the triangles that it taints are marked, and its
  * component as touched once more; later each is tainted, which returns 1 if its pairs are newly kept, else 0. */

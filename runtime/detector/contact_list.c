@@ -21,15 +21,19 @@ static cscd_status reserve_lanes(search_space *s, size_t found) {
     uint32_t lanes = s->traversal.busy_lanes;
     size_t wanted = lanes > 1 && found > CONTACTS_FOR_ALL ? 2 * found / lanes + CONTACTS_FOR_ALL : found;
     for (uint32_t i = 0; lanes > 1 && i < lanes; i++) {
-        contact_lane *lane = &s->lanes[i];
-        if (lane->capacity >= wanted) continue;
-        size_t capacity = wanted + wanted / 2;
-        cscd_contact *grown = context_grow(s->context, lane->contacts, lane->count, capacity, sizeof *grown);
-        if (grown == NULL) return CSCD_OUT_OF_MEMORY;
-        lane->contacts = grown;
-        lane->capacity = capacity;
+        if (!contact_lane_reserve(s->context, &s->lanes[i], wanted)) return CSCD_OUT_OF_MEMORY;
     }
     return CSCD_OK;
+}
+
+static size_t count_found(const search_space *s) {
+    size_t found = 0;
+    for (uint32_t i = 0; i < s->traversal.lane_count; i++) found += s->lanes[i].count;
+    return found;
+}
+
+static bool is_too_long(const search_space *s, size_t count) {
+    return s->longest > 0 && count > s->longest;
 }
 
 static bool is_excluded(const exclusions *e, const cscd_contact *contact) {
@@ -38,8 +42,7 @@ static bool is_excluded(const exclusions *e, const cscd_contact *contact) {
 
 cscd_status contact_list_gather(search_space *s, const exclusions *e, size_t item_size, result_buffer *buffer,
                                 size_t *count) {
-    size_t found = 0, kept = 0;
-    for (uint32_t i = 0; i < s->traversal.lane_count; i++) found += s->lanes[i].count;
+    size_t found = count_found(s), kept = 0;
     cscd_status status = result_buffer_reserve(s->context, buffer, found, item_size, sizeof(contact_key));
     if (status == CSCD_OK) status = reserve_lanes(s, found);
     if (status != CSCD_OK) return status;
@@ -47,12 +50,50 @@ cscd_status contact_list_gather(search_space *s, const exclusions *e, size_t ite
     for (uint32_t i = 0; i < s->traversal.lane_count; i++) {
         const contact_lane *lane = &s->lanes[i];
         for (size_t j = 0; j < lane->count; j++) {
-            keys[kept] = (contact_key){0, &lane->contacts[j]};
-            kept += j < lane->settled || !is_excluded(e, &lane->contacts[j]);
+            const cscd_contact *contact = contact_lane_at(lane, j);
+            keys[kept] = (contact_key){0, contact};
+            kept += j < lane->settled || !is_excluded(e, contact);
         }
     }
     *count = s->counted + kept;
-    return s->longest > 0 && *count > s->longest ? CSCD_LIST_TOO_LONG : CSCD_OK;
+    return is_too_long(s, *count) ? CSCD_LIST_TOO_LONG : CSCD_OK;
+}
+
+/* Moves what is kept of a lane to the items, and gives back its memory block by block. */
+static size_t move_lane(cscd_context *context, contact_lane *lane, const exclusions *e, cscd_contact *items) {
+    size_t kept = 0, i = 0;
+    for (uint32_t block = 0; block < lane->block_count; block++) {
+        const size_t end = (size_t)LANE_FIRST_BLOCK << block;
+        for (; i < end && i < lane->count; i++) {
+            const cscd_contact *contact = contact_lane_at(lane, i);
+            if (i >= lane->settled && is_excluded(e, contact)) continue;
+            memcpy(&items[kept++], contact, sizeof *items);
+        }
+        context_free(context, lane->blocks[block]);
+        lane->blocks[block] = NULL;
+    }
+    contact_lane_free(context, lane);
+    return kept;
+}
+
+/* The same for long lists, which are never there twice: the keys name places of the items. */
+static cscd_status gather_long(search_space *s, const exclusions *e, result_buffer *buffer, size_t *count) {
+    cscd_status status =
+        result_buffer_reserve_items(s->context, buffer, count_found(s), sizeof(cscd_contact));
+    if (status != CSCD_OK) return status;
+    cscd_contact *items = buffer->items;
+    size_t kept = 0;
+    for (uint32_t i = 0; i < s->traversal.lane_count; i++) {
+        if (!progress_go_on(&s->context->progress, 1.0)) return context_progress_status(s->context);
+        kept += move_lane(s->context, &s->lanes[i], e, items + kept);
+    }
+    *count = s->counted + kept;
+    if (is_too_long(s, *count)) return CSCD_LIST_TOO_LONG;
+    status = result_buffer_reserve_keys(s->context, buffer, kept, sizeof(contact_key));
+    if (status != CSCD_OK) return status;
+    contact_key *keys = buffer->keys;
+    for (size_t i = 0; i < kept; i++) keys[i].contact = &items[i];
+    return CSCD_OK;
 }
 
 /* ---- sorting --------------------------------------------------------------------------------------- */
@@ -104,17 +145,33 @@ static void add_contact(const cscd_contact *contact, cscd_counters *counters) {
 
 typedef struct sorted_contacts {
     const cscd_mesh *mesh;
-    const contact_key *keys;
+    const contact_key *keys; /* NULL: the items are in their places already */
     cscd_contact *items;
     size_t count;
 } sorted_contacts;
+
+/* Puts the items in the order of their keys, one round of places that exchange their items after the other. */
+static void permute_items(contact_key *keys, cscd_contact *items, size_t count) {
+    for (size_t first = 0; first < count; first++) {
+        if (keys[first].contact == &items[first]) continue;
+        cscd_contact held;
+        memcpy(&held, &items[first], sizeof held);
+        for (size_t place = first, from;; place = from) {
+            from = (size_t)(keys[place].contact - items);
+            keys[place].contact = &items[place];
+            memcpy(&items[place], from == first ? &held : &items[from], sizeof held);
+            if (from == first) break;
+        }
+    }
+}
 
 static void copy_contacts(void *data, uint32_t index) {
     const sorted_contacts *s = data;
     size_t begin = (size_t)index * CONTACTS_PER_COPY, end = begin + CONTACTS_PER_COPY;
     for (size_t i = begin; i < end && i < s->count; i++) {
-        memcpy(&s->items[i], s->keys[i].contact,
-               sizeof *s->items); /* with its padding: lists are compared bit for bit */
+        if (s->keys != NULL)
+            memcpy(&s->items[i], s->keys[i].contact,
+                   sizeof *s->items); /* with its padding: lists are compared bit for bit */
         cscd_contact *item = &s->items[i];
         mesh_vertices_of_pair(s->mesh, item->kind, item->a, item->b, item->vertices);
     }
@@ -122,8 +179,10 @@ static void copy_contacts(void *data, uint32_t index) {
 
 cscd_status contact_list_collect(search_space *s, const exclusions *e, result_buffer *buffer,
                                  cscd_counters *counters, cscd_contacts *out) {
-    size_t count;
-    cscd_status status = contact_list_gather(s, e, sizeof(cscd_contact), buffer, &count);
+    size_t count = 0;
+    const bool is_long = count_found(s) >= s->moves_from;
+    cscd_status status = is_long ? gather_long(s, e, buffer, &count)
+                                 : contact_list_gather(s, e, sizeof(cscd_contact), buffer, &count);
     if (status == CSCD_LIST_TOO_LONG) *out = (cscd_contacts){.count = count};
     if (status != CSCD_OK) return status;
     contact_key *keys = buffer->keys;
@@ -133,7 +192,11 @@ cscd_status contact_list_collect(search_space *s, const exclusions *e, result_bu
         add_contact(keys[i].contact, counters);
     }
     if (count > 1) sort_contacts(keys, buffer->spare_keys, count);
-    sorted_contacts sorted = {s->mesh, keys, buffer->items, count};
+    if (is_long) {
+        permute_items(keys, buffer->items, count);
+        result_buffer_free_keys(s->context, buffer);
+    }
+    sorted_contacts sorted = {s->mesh, is_long ? NULL : keys, buffer->items, count};
     uint32_t copies = (uint32_t)((count + CONTACTS_PER_COPY - 1) / CONTACTS_PER_COPY);
     parallel_run(s->context->threads, copies, copy_contacts, &sorted);
     *out = (cscd_contacts){.items = buffer->items, .count = count};

@@ -60,8 +60,10 @@ static cscd_status contact_parts(cscd_detector *d, const cscd_contact *contacts,
                                    sizeof(contact_part_key));
     if (status != CSCD_OK) return context_explain(d->context, status);
     contact_part_key *keys = buffer->keys;
-    for (size_t i = 0; i < count; i++)
-        keys[i] = (contact_part_key){parts_of_contact(&d->parts, d->mesh, &contacts[i]), i};
+    for (size_t i = 0; i < count; i++) {
+        const cscd_contact *c = &contacts[i];
+        keys[i] = (contact_part_key){parts_of_contact(&d->parts, d->mesh, c->kind, c->a, c->b), i};
+    }
     sort_by_number(keys, buffer->spare_keys, count, sizeof *keys);
     const cscd_contact_part_pairs sums = {buffer->items, sum_contacts(keys, count, contacts, buffer->items)};
     struct_give(out, size, &sums, sizeof sums);

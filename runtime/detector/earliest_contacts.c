@@ -13,8 +13,8 @@ void earliest_begin(cscd_detector *d) {
 void earliest_note(cscd_detector *d) {
     for (uint32_t i = 0; i < d->space.traversal.lane_count; i++) {
         const contact_lane *lane = &d->space.lanes[i];
-        size_t seen = d->contacts_seen[i];
-        tainting_note(d->mesh, lane->contacts + seen, lane->count - seen, d->earliest);
+        for (size_t j = d->contacts_seen[i]; j < lane->count; j++)
+            tainting_note(d->mesh, contact_lane_at(lane, j), d->earliest);
     }
 }
 
@@ -28,9 +28,9 @@ static void drop_from_lane(cscd_detector *d, uint32_t index, double within) {
     contact_lane *lane = &d->space.lanes[index];
     size_t kept = 0, seen = 0;
     for (size_t i = 0; i < lane->count; i++) {
-        if (is_later(d, &lane->contacts[i], within)) continue;
+        if (is_later(d, contact_lane_at(lane, i), within)) continue;
         seen += i < d->contacts_seen[index];
-        lane->contacts[kept++] = lane->contacts[i];
+        *contact_lane_at(lane, kept++) = *contact_lane_at(lane, i);
     }
     lane->count = kept;
     d->contacts_seen[index] = seen;

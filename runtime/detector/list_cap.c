@@ -40,10 +40,10 @@ static void settle_lane(cscd_detector *d, contact_lane *lane) {
     bool left_out_alone = d->cap.taint == CAP_TAINTS_LEFT_OUT, any = exclusions_any(e);
     size_t kept = lane->settled;
     for (size_t i = lane->settled; i < lane->count; i++) {
-        const cscd_contact *c = &lane->contacts[i];
+        const cscd_contact *c = contact_lane_at(lane, i);
         bool left_out = any && exclusions_cover_features(e, c->kind, c->a, c->b);
         if (left_out || !left_out_alone) tainting_mark(d->mesh, c, d->cap.tainted, d->touched);
-        if (!left_out) lane->contacts[kept++] = *c;
+        if (!left_out) *contact_lane_at(lane, kept++) = *c;
     }
     lane->settled = lane->count = kept;
 }

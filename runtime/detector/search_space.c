@@ -3,7 +3,7 @@
 #include "runtime/detector/search_space.h"
 
 cscd_status search_space_create(const cscd_mesh *mesh, search_space *out) {
-    search_space s = {.context = mesh->context, .mesh = mesh};
+    search_space s = {.context = mesh->context, .mesh = mesh, .moves_from = LONG_LIST};
     cscd_status status = traversal_create(s.context, &s.traversal);
     if (status == CSCD_OK) status = representatives_create(mesh, &s.representatives);
     if (status == CSCD_OK) status = loose_elements_create(mesh, &s.loose);
@@ -22,7 +22,7 @@ cscd_status search_space_create(const cscd_mesh *mesh, search_space *out) {
 
 static void free_lanes(search_space *s) {
     for (uint32_t i = 0; s->lanes != NULL && i < s->traversal.lane_count; i++) {
-        context_free(s->context, s->lanes[i].contacts);
+        contact_lane_free(s->context, &s->lanes[i]);
         context_free(s->context, s->lanes[i].candidates[CSCD_CONTACT_VF].pairs);
         context_free(s->context, s->lanes[i].candidates[CSCD_CONTACT_EE].pairs);
     }

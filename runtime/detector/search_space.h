@@ -19,7 +19,9 @@ typedef struct search_space {
     active_set active;       /* the trees have marks of it */
     contact_lane *lanes;     /* one per lane of the traversal */
     size_t longest;          /* list of the present search; 0: there is no cap */
-    size_t counted; /* contacts of the list that found no room in the lanes; then no list is given out */
+    size_t moves_from; /* so many contacts are moved out of the lanes, which give back their memory; shorter
+                              * lists are copied, so that later steps take none from the allocator */
+    size_t counted;    /* contacts of the list that found no room in the lanes; then no list is given out */
     representatives representatives;
     orphan_pairs
         orphans; /* made by the first search that skips adjacent triangles, unless there are too many */

@@ -203,8 +203,8 @@ static uint32_t taint_by_contacts(const step_work *work) {
     if (d->lists_earliest) earliest_note(d);
     for (uint32_t i = 0; detector_culls(d) && i < d->space.traversal.lane_count; i++) {
         const contact_lane *lane = &d->space.lanes[i];
-        newly_kept +=
-            tainting_look(&t, lane->contacts + d->contacts_seen[i], lane->count - d->contacts_seen[i]);
+        for (size_t j = d->contacts_seen[i]; j < lane->count; j++)
+            newly_kept += tainting_look(&t, contact_lane_at(lane, j));
         d->contacts_seen[i] = lane->count;
     }
     if (detector_culls(d)) newly_kept += list_cap_taint(d, &t);

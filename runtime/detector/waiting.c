@@ -78,7 +78,7 @@ static void mark_share(void *data, uint32_t index) {
     }
     narrow_phase_finish(&s->search.interval, lane);
     for (size_t i = 0; i < lane->count; i++) {
-        const cscd_contact *c = &lane->contacts[i];
+        const cscd_contact *c = contact_lane_at(lane, i);
         named_pair_set_find(s->set, c->kind, c->a, c->b)->marked = 1;
     }
 }
@@ -147,7 +147,7 @@ static cscd_status add_features(settling *s) {
     for (uint32_t i = 0; i < d->space.traversal.lane_count; i++) {
         const contact_lane *lane = &d->space.lanes[i];
         for (size_t j = 0; j < lane->count; j++) {
-            const cscd_contact *c = &lane->contacts[j];
+            const cscd_contact *c = contact_lane_at(lane, j);
             if (should_wait(s, c->kind, c->a, c->b) &&
                 !named_pair_set_add(d->context, s->set, c->kind, c->a, c->b))
                 return CSCD_OUT_OF_MEMORY;

@@ -152,12 +152,21 @@ static cscd_status add_contacts(cscd_event_tracker *t, const cscd_contact *conta
     size_t before = t->contact_count;
     if (count > t->contact_capacity - before) {
         size_t capacity = room_with_spare(before + count);
-        cscd_contact *grown = context_grow(t->context, t->contacts, before, capacity, sizeof *grown);
+        tracked_contact *grown = context_reserve(t->context, capacity, sizeof *grown);
         if (grown == NULL) return context_out_of_memory(t->context);
+        if (before > 0) memcpy(grown, t->contacts, before * sizeof *grown);
+        context_free(t->context, t->contacts);
         t->contacts = grown;
         t->contact_capacity = capacity;
     }
-    memcpy(t->contacts + before, contacts, count * sizeof *contacts);
+    for (size_t i = 0; i < count; i++) {
+        const cscd_contact *c = &contacts[i];
+        t->contacts[before + i] = (tracked_contact){.toi = c->toi,
+                                                    .point = {c->point[0], c->point[1], c->point[2]},
+                                                    .a = c->a,
+                                                    .b = c->b,
+                                                    .kind = c->kind};
+    }
     t->contact_count += count;
     return CSCD_OK;
 }

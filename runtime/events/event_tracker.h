@@ -16,7 +16,7 @@ struct cscd_event_tracker {
     frame_groups groups;
 
     /* Of the interval that ends in the next frame. */
-    cscd_contact *contacts;
+    tracked_contact *contacts;
     size_t contact_count, contact_capacity;
 
     /* Memory of what was given out last. */

@@ -160,8 +160,8 @@ static void add_depths(frame_grouping *w) {
     }
 }
 
-static void add_contact(frame_grouping *w, const cscd_contact *c) {
-    uint32_t thing = begin_thing(w, parts_of_contact(w->labels, w->mesh, c));
+static void add_contact(frame_grouping *w, const tracked_contact *c) {
+    uint32_t thing = begin_thing(w, parts_of_contact(w->labels, w->mesh, c->kind, c->a, c->b));
     if (c->kind == CSCD_CONTACT_EE || c->kind == CSCD_CONTACT_EV)
         stamp_edge(w, c->a, thing);
     else

@@ -4,10 +4,17 @@
 #include "runtime/events/event_history.h"
 #include "src/mesh/given_contacts.h"
 
+/* What counts of a contact for events. */
+typedef struct tracked_contact {
+    double toi, point[3];
+    uint32_t a, b;
+    cscd_contact_kind kind;
+} tracked_contact;
+
 /* What a frame has, checked: all numbers are of the mesh. */
 typedef struct frame_input {
     const cscd_intersection_pairs *found; /* NULL: nothing */
-    const cscd_contact *contacts;
+    const tracked_contact *contacts;
     size_t contact_count;
     uint64_t frame; /* its number */
 } frame_input;

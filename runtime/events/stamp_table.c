@@ -29,7 +29,7 @@ static void place_all(stamp_table *t) {
 bool stamp_table_reserve(cscd_context *context, stamp_table *t, size_t more) {
     if (more <= t->capacity - t->count) return true;
     stamp_table grown = {.count = t->count};
-    size_t wanted = room_with_spare(t->count + more), places = 64;
+    size_t wanted = 2 * (t->count + more) + 16, places = 64;
     while (places < 2 * wanted) places *= 2;
     if (places > (size_t)UINT32_MAX + 1) return false;
     grown.capacity = wanted;

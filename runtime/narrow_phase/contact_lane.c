@@ -16,24 +16,28 @@ void contact_lane_reset(contact_lane *lane) {
     for (int kind = 0; kind < 2; kind++) lane->candidates[kind].count = 0;
 }
 
-static bool make_contact_room(cscd_context *context, contact_lane *lane) {
-    if (lane->count < lane->capacity) return true;
-    size_t capacity = lane->capacity == 0 ? 256 : lane->capacity * 2;
-    cscd_contact *grown =
-        context_grow(context, lane->contacts, lane->count, capacity, sizeof *lane->contacts);
-    if (grown == NULL) {
-        lane->out_of_memory = true;
-        return false;
+bool contact_lane_reserve(cscd_context *context, contact_lane *lane, size_t count) {
+    while (contact_lane_capacity(lane) < count) {
+        const size_t before = contact_lane_capacity(lane), room = before == 0 ? LANE_FIRST_BLOCK : before;
+        cscd_contact *block = context_reserve(context, room, sizeof *block);
+        if (block == NULL) return false;
+        lane->blocks[lane->block_count++] = block;
     }
-    lane->contacts = grown;
-    lane->capacity = capacity;
     return true;
+}
+
+void contact_lane_free(cscd_context *context, contact_lane *lane) {
+    while (lane->block_count > 0) context_free(context, lane->blocks[--lane->block_count]);
+    lane->count = lane->settled = 0;
 }
 
 void contact_lane_add(cscd_context *context, contact_lane *lane, cscd_contact_kind kind, uint32_t a,
                       uint32_t b, const elementary_contact *where, bool bounded) {
-    if (!make_contact_room(context, lane)) return;
-    cscd_contact *contact = &lane->contacts[lane->count++];
+    if (!contact_lane_reserve(context, lane, lane->count + 1)) {
+        lane->out_of_memory = true;
+        return;
+    }
+    cscd_contact *contact = contact_lane_at(lane, lane->count++);
     memset(contact, 0, sizeof *contact); /* padding too: lists are compared bit for bit */
     contact->kind = kind;
     contact->a = a;

@@ -34,9 +34,13 @@ typedef struct candidate_list {
     size_t count, capacity;
 } candidate_list;
 
+/* The first block has room for so many contacts, and each of the others for as many as all before it. */
+enum { LANE_FIRST_BLOCK = 256, LANE_BLOCKS_MAX = 8 * sizeof(size_t) - 8 };
+
 typedef struct contact_lane {
-    _Alignas(CACHE_LINE_SIZE) cscd_contact *contacts;
-    size_t count, capacity;
+    _Alignas(CACHE_LINE_SIZE) size_t count;
+    uint32_t block_count;
+    cscd_contact *blocks[LANE_BLOCKS_MAX]; /* no contact moves when there are more: see contact_lane_at */
     size_t settled; /* the first ones, of which it is known that they are in the list */
     size_t limit;   /* with so many contacts the lane is suspended as soon as it can be; SIZE_MAX: never */
     bool suspended; /* it has more to do, from the cursor on, once there is room */
@@ -51,6 +55,18 @@ typedef struct contact_lane {
     candidate_list candidates[2]; /* by cscd_contact_kind */
 } contact_lane;
 
+static inline size_t contact_lane_capacity(const contact_lane *lane) {
+    return lane->block_count == 0 ? 0 : (size_t)LANE_FIRST_BLOCK << (lane->block_count - 1);
+}
+
+/* Where a contact of the lane is; i is less than its capacity. */
+static inline cscd_contact *contact_lane_at(const contact_lane *lane, size_t i) {
+    assert(i < contact_lane_capacity(lane));
+    if (i < LANE_FIRST_BLOCK) return &lane->blocks[0][i];
+    const int block = 64 - __builtin_clzll(i / LANE_FIRST_BLOCK);
+    return &lane->blocks[block][i - ((size_t)LANE_FIRST_BLOCK << (block - 1))];
+}
+
 /* Is the lane to be suspended? */
 static inline bool contact_lane_full(const contact_lane *lane) {
     return lane->count >= lane->limit;
@@ -64,6 +80,12 @@ static inline bool contact_lane_suspend(contact_lane *lane, uint64_t cursor) {
 
 /* Empties the lane; it keeps its memory, and has no limit. */
 void contact_lane_reset(contact_lane *lane);
+
+/* Makes room for so many contacts in all. False: no memory. */
+bool contact_lane_reserve(cscd_context *context, contact_lane *lane, size_t count);
+
+/* Gives back the memory of the contacts; the lane has none then. */
+void contact_lane_free(cscd_context *context, contact_lane *lane);
 
 /* Both set lane->out_of_memory when there is no room. */
 void contact_lane_add(cscd_context *context, contact_lane *lane, cscd_contact_kind kind, uint32_t a,

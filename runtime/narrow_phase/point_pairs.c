@@ -32,6 +32,8 @@ static void queue_pairs(const swept_interval *interval, cscd_contact_kind kind, 
 }
 
 /* The lane has room for a contact of each pair, so it never asks the allocator for more. */
+_Static_assert((int)POINT_PAIRS_MAX <= (int)LANE_FIRST_BLOCK,
+               "the contacts of all pairs are one block of a lane");
 void point_pairs_test(cscd_context *context, const point_pairs *pairs, separation limit,
                       point_pair_found *found, void *user) {
     pair_features features;
@@ -40,8 +42,8 @@ void point_pairs_test(cscd_context *context, const point_pairs *pairs, separatio
     uint32_t count = (uint32_t)pairs->count;
     assert(pairs->count <= POINT_PAIRS_MAX);
     name_features(count, &features);
-    lane.contacts = contacts;
-    lane.capacity = POINT_PAIRS_MAX;
+    lane.blocks[0] = contacts;
+    lane.block_count = 1;
     contact_lane_reset(&lane);
     cscd_mesh mesh = {.context = context, .triangles = features.triangles, .edges = features.edges};
     swept_interval interval = {.mesh = &mesh, .x0 = pairs->x0, .x1 = pairs->x1, .limit = limit};

@@ -36,7 +36,7 @@ void exact_check_destroy(exact_check *check) {
     cscd_context *context = check->mesh->context;
     context_free_all(context, list_item_arrays(&check->first, 0));
     context_free_all(context, list_item_arrays(&check->second, 0));
-    if (check->lane != NULL) context_free(context, check->lane->contacts);
+    if (check->lane != NULL) contact_lane_free(context, check->lane);
     context_free_all(context, list_arrays(check));
     *check = (exact_check){0};
 }
@@ -235,7 +235,7 @@ static cscd_status test_all(exact_check *check, sweep *s) {
 static area_verdict verdict_of(const contact_lane *lane, uint64_t tests) {
     area_verdict verdict = {.contact = lane->count > 0, .tests = tests};
     for (size_t i = 0; i < lane->count; i++) {
-        double toi = lane->contacts[i].toi;
+        double toi = contact_lane_at(lane, i)->toi;
         if (i == 0 || toi < verdict.toi) verdict.toi = toi;
     }
     return verdict;

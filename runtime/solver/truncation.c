@@ -181,9 +181,9 @@ static void taint_left_out(cscd_detector *d) {
     memset(d->closes, 0, d->mesh->component_count * sizeof *d->closes);
     for (uint32_t i = 0; exclusions_any(&d->exclusions) && i < s->traversal.lane_count; i++) {
         for (size_t j = 0; j < s->lanes[i].count; j++) {
-            const cscd_contact *near = &s->lanes[i].contacts[j];
+            const cscd_contact *near = contact_lane_at(&s->lanes[i], j);
             if (exclusions_cover_features(&d->exclusions, near->kind, near->a, near->b))
-                tainting_look(&t, near, 1);
+                tainting_look(&t, near);
         }
     }
     list_cap_taint(d, &t);

@@ -78,9 +78,12 @@ static inline void context_free_all(cscd_context *context, array_list list) {
     memory_free_all(&context->memory, list);
 }
 
+/* So many items are a long list: it has little room to spare, and is not kept twice. */
+enum { LONG_LIST = 1 << 18 };
+
 /* The items to allocate where count are needed now and perhaps more in later calls: never 0. */
 static inline size_t room_with_spare(size_t count) {
-    return 2 * count + 16;
+    return count < LONG_LIST ? 2 * count + 16 : count + count / 16;
 }
 
 /* Makes sure that the arrays of a list have room for count items; the list is one of room_with_spare(count) items, and is

@@ -41,16 +41,18 @@ cscd_status given_contacts_check(cscd_context *context, const cscd_mesh *mesh, c
     return CSCD_OK;
 }
 
-uint64_t parts_of_contact(const part_labels *labels, const cscd_mesh *mesh, const cscd_contact *c) {
-    bool edge_a = c->kind == CSCD_CONTACT_EE || c->kind == CSCD_CONTACT_EV;
-    uint32_t a = edge_a ? part_of_edge(labels, mesh, c->a) : part_of_vertex(labels, mesh, c->a), b;
-    if (c->kind == CSCD_CONTACT_VF)
-        b = part_of_triangle(labels, mesh, c->b);
-    else if (c->kind == CSCD_CONTACT_EE)
-        b = part_of_edge(labels, mesh, c->b);
-    else if (c->kind == CSCD_CONTACT_VH)
-        b = labels->triangles == NULL ? c->b : UINT32_MAX;
+uint64_t parts_of_contact(const part_labels *labels, const cscd_mesh *mesh, cscd_contact_kind kind,
+                          uint32_t a, uint32_t b) {
+    const bool edge_a = kind == CSCD_CONTACT_EE || kind == CSCD_CONTACT_EV;
+    const uint32_t part_a = edge_a ? part_of_edge(labels, mesh, a) : part_of_vertex(labels, mesh, a);
+    uint32_t part_b;
+    if (kind == CSCD_CONTACT_VF)
+        part_b = part_of_triangle(labels, mesh, b);
+    else if (kind == CSCD_CONTACT_EE)
+        part_b = part_of_edge(labels, mesh, b);
+    else if (kind == CSCD_CONTACT_VH)
+        part_b = labels->triangles == NULL ? b : UINT32_MAX;
     else
-        b = part_of_vertex(labels, mesh, c->b);
-    return key_of_parts(a, b);
+        part_b = part_of_vertex(labels, mesh, b);
+    return key_of_parts(part_a, part_b);
 }

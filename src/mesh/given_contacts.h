@@ -8,4 +8,5 @@ cscd_status given_contacts_check(cscd_context *context, const cscd_mesh *mesh, c
                                  const cscd_contact *contacts, size_t count);
 
 /* The key of the parts that the two features of a contact are in. */
-uint64_t parts_of_contact(const part_labels *labels, const cscd_mesh *mesh, const cscd_contact *contact);
+uint64_t parts_of_contact(const part_labels *labels, const cscd_mesh *mesh, cscd_contact_kind kind,
+                          uint32_t a, uint32_t b);
