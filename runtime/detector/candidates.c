@@ -90,9 +90,10 @@ static void test_share(void *data, uint32_t index) {
     lane->suspended = false;
     for (int kind = 0; kind < 2; kind++) {
         const candidate_list *list = &t->candidates->lists[kind];
-        size_t begin = list->count * index / space->traversal.lane_count;
-        size_t end = list->count * (index + 1) / space->traversal.lane_count;
-        uint64_t skipped = lane->cursor - done < end - begin ? lane->cursor - done : end - begin;
+        size_t begin = parallel_share(list->count, index, space->traversal.lane_count);
+        size_t end = parallel_share(list->count, index + 1, space->traversal.lane_count);
+        uint64_t left = lane->cursor - done;
+        size_t skipped = left < end - begin ? (size_t)left : end - begin;
         for (size_t i = begin + skipped; i < end && !lane->out_of_memory; i++) {
             double share = 0.5 * (kind + (double)(i - begin) / (double)(end - begin));
             if ((i - begin) % CANDIDATES_AT_ONCE == 0 && !progress_go_on(&space->context->progress, share))

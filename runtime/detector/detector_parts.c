@@ -43,7 +43,7 @@ static size_t sum_contacts(const contact_part_key *keys, size_t count, const csc
         if (i == 0 || keys[i].parts != keys[i - 1].parts)
             items[made++] =
                 (cscd_contact_part_pair){.a = (uint32_t)(keys[i].parts >> 32), .b = (uint32_t)keys[i].parts};
-        add_contact(contacts, keys[i].place, &items[made - 1]);
+        add_contact(contacts, (size_t)keys[i].place, &items[made - 1]);
     }
     return made;
 }

@@ -70,8 +70,8 @@ static void mark_share(void *data, uint32_t index) {
     const settling *s = data;
     const search_space *space = &s->detector->space;
     contact_lane *lane = &space->lanes[index];
-    size_t begin = s->set->count * index / space->traversal.lane_count;
-    size_t end = s->set->count * (index + 1) / space->traversal.lane_count;
+    size_t begin = parallel_share(s->set->count, index, space->traversal.lane_count);
+    size_t end = parallel_share(s->set->count, index + 1, space->traversal.lane_count);
     for (size_t i = begin; i < end && !lane->out_of_memory; i++) {
         if ((i - begin) % PAIRS_PER_TASK == 0 && !progress_go_on(&space->context->progress, 0.0)) return;
         test_at_rest(s, &s->set->items[i], lane);

@@ -121,7 +121,8 @@ static void count_some_changes(void *data, uint32_t task) {
     const change_work *work = data;
     size_t begin = (size_t)task * CONTACTS_A_TASK, end = begin + CONTACTS_A_TASK;
     for (size_t rank = begin; rank < end && rank < work->contact_count; rank++)
-        work->finder->rank_first[rank] = changes_at_contact(work, work->finder->order[rank].value, NULL);
+        work->finder->rank_first[rank] =
+            changes_at_contact(work, (size_t)work->finder->order[rank].value, NULL);
 }
 
 /* Turns numbers into the places where so many items begin, and returns how many there are in all. */
@@ -142,7 +143,7 @@ static void write_some_keys(void *data, uint32_t task) {
     size_t begin = (size_t)task * CONTACTS_A_TASK, end = begin + CONTACTS_A_TASK;
     for (size_t rank = begin; rank < end && rank < work->contact_count; rank++) {
         if (f->rank_first[rank] == f->rank_first[rank + 1]) continue;
-        changes_at_contact(work, f->order[rank].value, f->keys + f->rank_first[rank]);
+        changes_at_contact(work, (size_t)f->order[rank].value, f->keys + f->rank_first[rank]);
     }
 }
 

@@ -134,7 +134,7 @@ static bool divide_triangle(const cut_off_work *work, const trace_piece *pieces,
     cut.cut.corner_numbers = numbers;
     cut.cut.slot_count = 1;
     loaded_cut_project(work->found->surface, normal, false, &cut);
-    for (size_t i = 0; i < count; i++) add_line(work, &cut, pieces[i].piece);
+    for (size_t i = 0; i < count; i++) add_line(work, &cut, (size_t)pieces[i].piece);
     loaded_cut_sort_borders(&cut, f->spare_borders);
     if (!cut_memory_reserve(f->context, &f->memory, count, 1) ||
         !cut_triangle_divide(f->context, &cut.cut, &f->memory, add_odd_part, &odd))

@@ -257,9 +257,9 @@ static size_t list_patches(depth_finder *d, size_t vertex_count) {
     for (size_t i = 0; i < keys; i++) {
         const cscd_depth *at = &d->depths[d->keys[i].item];
         if (i == 0 || d->keys[i].number != d->keys[i - 1].number)
-            d->patches[count++] = (cscd_patch_depth){at->patch, at->object, d->keys[i].item};
+            d->patches[count++] = (cscd_patch_depth){at->patch, at->object, (size_t)d->keys[i].item};
         else if (at->depth > d->depths[d->patches[count - 1].deepest].depth)
-            d->patches[count - 1].deepest = d->keys[i].item;
+            d->patches[count - 1].deepest = (size_t)d->keys[i].item;
     }
     return count;
 }

@@ -175,7 +175,7 @@ static void find_deepest(const summing *w, key_range keys, cscd_part_pair *out) 
     for (const part_key *k = keys.next; k < keys.end; k++) {
         double depth = w->found->depths->items[k->item].depth;
         if (out->deepest != SIZE_MAX && depth <= out->depth) continue;
-        out->deepest = k->item;
+        out->deepest = (size_t)k->item;
         out->depth = depth;
     }
 }

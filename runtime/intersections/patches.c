@@ -274,8 +274,8 @@ static void number_patches(void *data, uint32_t index) {
     const patch_work *work = data;
     patch_finder *p = work->finder;
     winding_lane *lane = &p->lanes[index];
-    size_t begin = p->patch_count * index / p->lane_count;
-    size_t end = p->patch_count * (index + 1) / p->lane_count;
+    size_t begin = parallel_share(p->patch_count, index, p->lane_count);
+    size_t end = parallel_share(p->patch_count, index + 1, p->lane_count);
     lane->count = 0;
     lane->out_of_memory = false;
     for (size_t i = begin; i < end && !lane->out_of_memory; i++) {
@@ -298,7 +298,8 @@ static bool join_numbers(patch_finder *p) {
     }
     p->winding_count = 0;
     for (uint32_t i = 0; i < p->lane_count; i++) {
-        size_t begin = p->patch_count * i / p->lane_count, end = p->patch_count * (i + 1) / p->lane_count;
+        size_t begin = parallel_share(p->patch_count, i, p->lane_count),
+               end = parallel_share(p->patch_count, i + 1, p->lane_count);
         for (size_t k = begin; k < end; k++) p->patches[k].first_winding += (uint32_t)p->winding_count;
         if (p->lanes[i].count > 0)
             memcpy(p->windings + p->winding_count, p->lanes[i].items,

@@ -115,7 +115,7 @@ static void add_piece(cut_load *load, const curve_key *key) {
     const cscd_mesh *mesh = load->found->surface->mesh;
     const curve_joiner *j = load->found->curves;
     cut_triangle *cut = &load->out->cut;
-    size_t number = key->end / 2;
+    size_t number = (size_t)(key->end / 2);
     bool is_b = key->end % 2 == 1;
     uint32_t other = is_b ? j->found[number].a : j->found[number].b;
     if (!mesh->components[mesh->triangle_components[other]].closed_manifold) return;
@@ -175,7 +175,7 @@ static double sum_reaches(const cut_load *load, size_t first, size_t end, int k)
         high = fmax(high, x);
     }
     for (size_t i = first; i < end; i++) {
-        size_t piece = load->cuts->keys[i].end / 2;
+        size_t piece = (size_t)(load->cuts->keys[i].end / 2);
         sum += fabs(j->points[j->end_points[2 * piece]].x[k] - j->points[j->end_points[2 * piece + 1]].x[k]);
     }
     return sum / (high - low);

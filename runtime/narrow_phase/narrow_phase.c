@@ -185,7 +185,7 @@ static void test_orphan_ee(const swept_interval *interval, const uint32_t pair[2
 void narrow_phase_test_orphan_pairs(const swept_interval *interval, const orphan_pairs *orphans,
                                     uint32_t index, uint32_t stride, contact_lane *lane) {
     size_t all = orphans->vf_count + orphans->ee_count;
-    for (size_t i = index + lane->cursor * stride; i < all; i += stride) {
+    for (size_t i = index + (size_t)lane->cursor * stride; i < all; i += stride) {
         if (i < orphans->vf_count)
             test_orphan_vf(interval, orphans->vf[i], lane);
         else

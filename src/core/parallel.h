@@ -36,3 +36,9 @@ void parallel_resume(parallel *threads);
 
 /* Called now and then in a long task: rests if there is a pause. The thread holds no lock then. */
 void parallel_rest(parallel *threads);
+
+/* Where the share of a lane begins when count things are divided among share_count lanes; that of lane share_count is count. The
+ * product would not fit into a size of 32 bits. */
+static inline size_t parallel_share(size_t count, uint32_t lane, uint32_t share_count) {
+    return (size_t)((uint64_t)count * lane / share_count);
+}
