@@ -208,7 +208,7 @@ COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 # What installs packages; a build that leaves expat out on purpose does not ask for it.
 PACKAGES = GSL=$(GSL) CHARGE=$(CHARGE) EXPAT=$(if $(WITHOUT_EXPAT),0,1) .ci/packages
 
-.PHONY: all python python-package wheel wheels test-wheels sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-peers bench-instructions referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender blender-extension test-vtk windows windows-libraries windows-zip test-windows test-windows-run test-bridges test-farm test-mutants test-aarch64 test-s390x deb test-deb test-builds cscd-mpi python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces test-fuzz test-faults FORCE
+.PHONY: all python python-package wheel wheels test-wheels sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-peers bench-instructions referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender blender-extension test-vtk windows windows-libraries windows-zip test-windows test-windows-run test-bridges test-farm test-mutants test-aarch64 test-s390x test-riscv64 deb test-deb test-builds cscd-mpi python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces test-fuzz test-faults FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -333,7 +333,7 @@ ON_WINDOWS = $(MAKE) --no-print-directory HOST=x86_64-w64-mingw32 CC='$(CACHE)x8
              CXX='$(CACHE)x86_64-w64-mingw32-g++-posix'
 windows-libraries:
 	@.ci/packages windows
-	@src/packaging/windows/libraries.sh
+	@src/packaging/libraries.sh x86_64-w64-mingw32 build/windows/libraries libpng json-c expat cmocka
 
 windows: windows-libraries
 	@$(ON_WINDOWS) tool library
@@ -418,6 +418,11 @@ test-aarch64:
 test-s390x:
 	@.ci/packages s390x
 	@tests/cross/emulated.sh s390x $(or $(ONLY),rooms)
+
+# The tool alone, with libraries that are built from Debian's sources, because Debian has no packages of them for this processor.
+test-riscv64:
+	@.ci/packages riscv64
+	@tests/cross/emulated.sh riscv64 $(or $(ONLY),all)
 
 # Debian's packages of the last commit, in build/deb; test-deb builds them twice, installs them, tests them and purges them.
 deb:
@@ -577,6 +582,7 @@ help:
 	@echo 'make test-bridges   the blocks of docs/python/bridges.md, with meshio, VTK and torch (installs these)'
 	@echo 'make test-aarch64   every test under qemu-user, and the same bits as on this machine: about an hour (installs cross compilers, qemu);'
 	@echo '               make test-s390x: those of readers and detector on a big-endian processor; ONLY=quick, ONLY="core/test_simd"'
+	@echo 'make test-riscv64   files of every format and replays give the bytes of this machine, under qemu-user; ONLY=quick'
 	@echo 'make deb       Debian packages of the last commit, in build/deb (installs debhelper, doxygen); make test-deb: built twice, installed,'
 	@echo '               tested and purged, as root (installs lintian, autopkgtest)'
 	@echo 'make test-builds   other compilers, flags, users and folders, and without each optional library; as root: some minutes'

@@ -1,7 +1,8 @@
 #!/bin/sh
 # Builds for another processor and runs test programs there under qemu-user, with Debian's libraries of that architecture:
 # emulated.sh arm64|s390x all|rooms|quick|build|TEST..., where a TEST is room/test_name, and rooms are those of the readers and of the
-# detector. `make test-aarch64` and `make test-s390x` call it.
+# detector. `make test-aarch64` and `make test-s390x` call it. emulated.sh riscv64 all|quick|build runs no test programs: Debian has
+# no libraries for that processor, so those of the tool are built from Debian's sources (`make test-riscv64`).
 #
 # Programs become scripts that start the emulator on them, so that tests start the tool and the models as they do elsewhere. Then
 # the tool of this machine and the emulated one replay the same recordings and must write the same bytes. CSCD_DATA names a folder
@@ -11,25 +12,36 @@ cd "$(dirname "$0")/../.."
 
 architecture=$1
 shift
+choices=''
 case $architecture in
 arm64) host=aarch64-linux-gnu emulator=qemu-aarch64 ;;
 s390x) host=s390x-linux-gnu emulator=qemu-s390x ;;
+riscv64) host=riscv64-linux-gnu emulator=qemu-riscv64 choices='GSL=0 CHARGE=0 EXPAT=1' ;;
 *)
-    echo "emulated.sh: $architecture is neither arm64 nor s390x" >&2
+    echo "emulated.sh: $architecture is none of arm64, s390x and riscv64" >&2
     exit 2
     ;;
 esac
 unset MAKEFLAGS
-build=build/$host/release
 case ${CC:-} in ccache*) cache='ccache ' ;; *) cache='' ;; esac
-sysroot=$PWD/build/sysroot/$architecture
-src/packaging/sysroot.sh "$architecture" "$sysroot" libc6-dev libstdc++-12-dev libpng-dev zlib1g-dev libjson-c-dev libexpat1-dev \
-    libgsl-dev liblapacke-dev libopenblas-dev libcmocka-dev libflint-dev libflint-arb-dev libgmp-dev
+if [ "$architecture" = riscv64 ]; then
+    build=build/$host/release-without-gsl-without-charge
+    libraries=build/$host/libraries
+    src/packaging/libraries.sh $host $libraries zlib libpng json-c expat
+    sysroot=/usr/$host found=''
+    choices="$choices CPPFLAGS=-I$libraries/include LDFLAGS=-L$libraries/lib"
+else
+    build=build/$host/release
+    sysroot=$PWD/build/sysroot/$architecture found=" --sysroot=$PWD/build/sysroot/$architecture"
+    src/packaging/sysroot.sh "$architecture" "$sysroot" libc6-dev libstdc++-12-dev libpng-dev zlib1g-dev libjson-c-dev libexpat1-dev \
+        libgsl-dev liblapacke-dev libopenblas-dev libcmocka-dev libflint-dev libflint-arb-dev libgmp-dev
+fi
 
 # cross TARGET...: makes them for the other processor.
 cross() {
-    make -j"$(nproc)" --no-print-directory HOST=$host SYSROOT="$sysroot" WERROR="${WERROR:-0}" \
-        CC="$cache$host-gcc --sysroot=$sysroot" CXX="$host-g++ --sysroot=$sysroot" "$@"
+    # shellcheck disable=SC2086
+    make -j"$(nproc)" --no-print-directory HOST=$host SYSROOT="$sysroot" WERROR="${WERROR:-0}" $choices \
+        CC="$cache$host-gcc$found" CXX="$host-g++$found" "$@"
 }
 
 # Makes programs into scripts that start the emulator; a program that is linked again is made into one again.
@@ -55,10 +67,11 @@ fi
 
 # ---- which tests
 
-case $1 in
-all) names=$(ls tests/*/test_*.c tests/*/test_*.cpp | sed 's:^tests/::; s:\.c.*$::') ;;
-quick) names='core/test_simd ccd/test_describe_kernel ccd/test_proximity_kernel detector/test_invariance' ;;
-rooms) names=$(ls tests/io/test_*.c tests/core/test_*.c tests/mesh/test_*.c tests/detector/test_*.c | sed 's:^tests/::; s:\.c$::') ;;
+case $architecture:$1 in
+riscv64:*) names='' ;;
+*:all) names=$(ls tests/*/test_*.c tests/*/test_*.cpp | sed 's:^tests/::; s:\.c.*$::') ;;
+*:quick) names='core/test_simd ccd/test_describe_kernel ccd/test_proximity_kernel detector/test_invariance' ;;
+*:rooms) names=$(ls tests/io/test_*.c tests/core/test_*.c tests/mesh/test_*.c tests/detector/test_*.c | sed 's:^tests/::; s:\.c$::') ;;
 *) names=$* ;;
 esac
 programs=''
@@ -76,18 +89,18 @@ done
 # ---- run
 
 make --no-print-directory tool build/release/models/record build/release/models/shape build/release/models/mannequin
-if [ "$1" = all ]; then
+if [ "$1" = all ] && [ "$architecture" != riscv64 ]; then
     cross programs
 else
     cross tool
 fi
 # shellcheck disable=SC2086
-cross $programs
+[ -z "$programs" ] || cross $programs
 # shellcheck disable=SC2046,SC2086
 wrap $build/cscd $(find $build/models $build/benchmarks -maxdepth 1 -type f -perm -u+x ! -name '*.*' 2>/dev/null) $programs
 status=0
 # shellcheck disable=SC2086
-CSCD_DATA='' BUILD=$build tests/run.sh $programs || status=1
+[ -z "$programs" ] || CSCD_DATA='' BUILD=$build tests/run.sh $programs || status=1
 [ "$skipped" = 0 ] || echo "$skipped programs left out, with reasons above"
 tests/cross/same_bits.sh build/release/cscd $build/cscd build/release/models/record "$1" build/release || status=1
 exit $status
