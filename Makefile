@@ -6,6 +6,7 @@
 # EXPAT=0 builds a tool that does not read GIFTI surfaces, as on a machine where pkg-config finds no expat; the library never needs it.
 # DYNAMIC=1 is for distributions: the tool and the Python package link libcscd.so and the libraries of the system in place of archives.
 # HOST=aarch64-linux-gnu builds by that cross compiler, in build/aarch64-linux-gnu, with the libraries in SYSROOT if that is set.
+# HOST=wasm32-emscripten builds the library for WebAssembly: see src/packaging/wasm/choices.mk.
 # HOST=x86_64-w64-mingw32 builds for Windows, in build/x86_64-w64-mingw32: see src/windows/windows.mk.
 # One build folder per configuration; the release tool is also linked as ./cscd.
 
@@ -16,6 +17,9 @@ SYSROOT ?=
 TOOLS   := $(if $(HOST),$(HOST)-)
 ifneq ($(findstring mingw,$(HOST)),)
 include src/windows/choices.mk
+endif
+ifneq ($(findstring wasm,$(HOST)),)
+include src/packaging/wasm/choices.mk
 endif
 ifeq ($(origin CC),default)
 CC      := $(TOOLS)gcc
@@ -30,7 +34,7 @@ DYNAMIC ?= 0
 BUILD_ROOT ?= build$(if $(HOST),/$(HOST))
 # A machine without expat builds in the same folder as one with it; only who leaves it out on purpose has another.
 WITHOUT_EXPAT := $(if $(filter 0,$(EXPAT)),-without-expat)
-BUILD   := $(BUILD_ROOT)/$(CONFIG)$(if $(WINDOWS),,$(if $(filter 0,$(GSL)),-without-gsl)$(if $(filter 0,$(CHARGE)),-without-charge)$(WITHOUT_EXPAT)$(if $(filter 1,$(DYNAMIC)),-dynamic))
+BUILD   := $(BUILD_ROOT)/$(CONFIG)$(if $(WINDOWS)$(WASM),,$(if $(filter 0,$(GSL)),-without-gsl)$(if $(filter 0,$(CHARGE)),-without-charge)$(WITHOUT_EXPAT)$(if $(filter 1,$(DYNAMIC)),-dynamic))
 # The flags of a package that pkg-config finds, else those given here.
 PKG_CONFIG := $(if $(HOST),PKG_CONFIG_SYSROOT_DIR='$(SYSROOT)' PKG_CONFIG_LIBDIR='$(SYSROOT)/usr/lib/$(HOST)/pkgconfig:$(SYSROOT)/usr/share/pkgconfig') pkg-config
 packaged = $(shell $(PKG_CONFIG) $(1) 2>/dev/null || echo $(2))
@@ -132,6 +136,9 @@ endif
 ifneq ($(findstring mingw,$(HOST)),)
 include src/windows/windows.mk
 endif
+ifdef WASM
+include src/packaging/wasm/wasm.mk
+endif
 FUZZ_SOURCES    := $(wildcard tests/fuzz/fuzz_*.c)
 MODEL_SOURCES   := $(wildcard models/*.c)
 MODEL_PARTS     := $(wildcard models/*/*.c)
@@ -166,7 +173,7 @@ COMMON_OBJECTS := $(call objects,$(COMMON_SOURCES))
 IO_OBJECTS     := $(call objects,$(filter src/io/%,$(COMMON_SOURCES)))
 LIBRARY := $(BUILD)/libcscd.a
 # The library of the tool and of the programs of models/ in C, which is not installed.
-OPENING_LIBRARY := $(if $(WINDOWS),$(LIBRARY),$(BUILD)/libcscd-opening.a)
+OPENING_LIBRARY := $(if $(WINDOWS)$(WASM),$(LIBRARY),$(BUILD)/libcscd-opening.a)
 SHARED  := $(BUILD)/$(if $(WINDOWS),libcscd-$(MAJOR).dll,libcscd.so.$(VERSION))
 CHARGE_SHARED := $(if $(filter 0,$(CHARGE)),,$(BUILD)/libcscd-charge.so.$(VERSION))
 TOOL    := $(BUILD)/cscd
@@ -208,7 +215,7 @@ COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 # What installs packages; a build that leaves expat out on purpose does not ask for it.
 PACKAGES = GSL=$(GSL) CHARGE=$(CHARGE) EXPAT=$(if $(WITHOUT_EXPAT),0,1) .ci/packages
 
-.PHONY: all python python-package wheel wheels test-wheels sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-peers bench-instructions referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender blender-extension test-vtk windows windows-libraries windows-zip test-windows test-windows-run test-bridges test-farm test-mutants test-aarch64 test-s390x test-riscv64 deb test-deb test-builds cscd-mpi python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces test-fuzz test-faults FORCE
+.PHONY: all python python-package wheel wheels test-wheels sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-peers bench-instructions referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender blender-extension test-vtk windows windows-libraries windows-zip test-windows test-windows-run test-bridges test-farm test-mutants test-aarch64 test-s390x wasm test-wasm test-riscv64 deb test-deb test-builds cscd-mpi python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces test-fuzz test-faults FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -414,6 +421,17 @@ test-aarch64:
 	@.ci/packages aarch64
 	@tests/cross/emulated.sh arm64 $(or $(ONLY),all)
 
+# The library for WebAssembly, by Debian's emscripten, in build/wasm32-emscripten; and what node finds with it, compared with this
+# machine.
+wasm:
+	@.ci/packages wasm
+	@$(MAKE) --no-print-directory HOST=wasm32-emscripten CC=emcc build/wasm32-emscripten/release/libcscd.a
+
+test-wasm: wasm
+	@$(MAKE) --no-print-directory $(BUILD)/tests/wasm/contacts
+	@$(MAKE) --no-print-directory HOST=wasm32-emscripten CC=emcc $(addprefix build/wasm32-emscripten/release/tests/wasm/,contacts.js sizes.js)
+	@tests/wasm/run.sh $(BUILD)/tests/wasm/contacts build/wasm32-emscripten/release/tests/wasm
+
 # Big-endian: the tests of what reads files, and of the detector.
 test-s390x:
 	@.ci/packages s390x
@@ -583,6 +601,8 @@ help:
 	@echo 'make test-aarch64   every test under qemu-user, and the same bits as on this machine: about an hour (installs cross compilers, qemu);'
 	@echo '               make test-s390x: those of readers and detector on a big-endian processor; ONLY=quick, ONLY="core/test_simd"'
 	@echo 'make test-riscv64   files of every format and replays give the bytes of this machine, under qemu-user; ONLY=quick'
+	@echo 'make wasm      the library for WebAssembly, in build/wasm32-emscripten (installs emscripten); make test-wasm: under node, its'
+	@echo '               contacts beside those of this machine, and sizes of more than 4 GiB'
 	@echo 'make deb       Debian packages of the last commit, in build/deb (installs debhelper, doxygen); make test-deb: built twice, installed,'
 	@echo '               tested and purged, as root (installs lintian, autopkgtest)'
 	@echo 'make test-builds   other compilers, flags, users and folders, and without each optional library; as root: some minutes'
@@ -613,7 +633,7 @@ help:
 	@echo 'make format    clang-format all sources; make clean removes build/'
 
 # A static library is one relocatable object in which everything but the public API is local.
-ifndef WINDOWS
+ifeq ($(WINDOWS)$(WASM),)
 $(LIBRARY): $(if $(filter 0,$(CHARGE)),$(OPENED_OBJECTS),$(LINKED_OBJECTS))
 $(OPENING_LIBRARY): $(OPENED_OBJECTS)
 $(LIBRARY) $(OPENING_LIBRARY):
@@ -733,6 +753,12 @@ $(BUILD)/tests/support.a: $(call objects,$(SUPPORT_SOURCES) benchmarks/lib/pair_
 	@rm -f $@
 	$(Q)$(TOOLS)ar rcs $@ $^
 
+# A program on the public functions alone, for two machines.
+$(BUILD)/tests/wasm/contacts: $(OBJECTS)/tests/wasm/contacts.o $(OPENING_LIBRARY)
+	@mkdir -p $(@D)
+	$(say) '  LD $@'
+	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(SHARED_LIBS)
+
 # q: objects of different folders may have the same name.
 $(BUILD)/inside.a: $(LINKED_OBJECTS) $(COMMON_OBJECTS) $(MODEL_PART_OBJECTS)
 	@mkdir -p $(@D)
@@ -792,6 +818,9 @@ FORCE:
 
 ifdef WINDOWS
 include src/windows/rules.mk
+endif
+ifdef WASM
+include src/packaging/wasm/rules.mk
 endif
 
 -include $(addprefix $(OBJECTS)/,$(addsuffix .d,$(basename $(SOURCES)))) $(KERNEL_OBJECTS:.o=.d) \

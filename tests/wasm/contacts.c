@@ -1,0 +1,178 @@
+/* Prints the bits of what a detector finds, so that builds for different machines can be compared: contacts MODEL.obj FRAMES.pc2,
+ * or contacts alone, for two sheets that wave through each other. Nothing here calls a function of mathematics, whose last bits
+ * differ from machine to machine. */
+#include <cscd/cscd.h>
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SIDE = 24, SHEET = SIDE * SIDE, FRAMES = 12, FRAMES_MAX = 1000 };
+
+typedef struct scene {
+    uint32_t vertex_count, triangle_count, frame_count;
+    uint32_t *triangles;
+    float *positions; /* of all frames */
+} scene;
+
+static void stop_with(const char *sentence) {
+    fprintf(stderr, "contacts: %s\n", sentence);
+    exit(1);
+}
+
+static void *room_for(size_t count, size_t size) {
+    void *room = calloc(count, size);
+    if (room == NULL) stop_with("there is not enough memory");
+    return room;
+}
+
+/* ---- scenes ------------------------------------------------------------------------------------------ */
+
+static void add_sheet(scene *s, uint32_t first) {
+    for (uint32_t y = 0; y + 1 < SIDE; y++) {
+        for (uint32_t x = 0; x + 1 < SIDE; x++) {
+            uint32_t a = first + y * SIDE + x,
+                     corners[6] = {a, a + 1, a + SIDE, a + 1, a + SIDE + 1, a + SIDE};
+            memcpy(s->triangles + 3 * (size_t)s->triangle_count, corners, sizeof corners);
+            s->triangle_count += 2;
+        }
+    }
+}
+
+/* Heights are parabolas with some noise of a linear congruential generator. */
+static scene waving_sheets(void) {
+    scene s = {.vertex_count = 2 * SHEET, .frame_count = FRAMES};
+    s.triangles = room_for((size_t)4 * SHEET * 3, sizeof *s.triangles);
+    s.positions = room_for((size_t)FRAMES * s.vertex_count * 3, sizeof *s.positions);
+    add_sheet(&s, 0);
+    add_sheet(&s, SHEET);
+    uint32_t noise = 1;
+    for (uint32_t i = 0; i < FRAMES * s.vertex_count; i++) {
+        uint32_t frame = i / s.vertex_count, vertex = i % s.vertex_count, x = vertex % SIDE,
+                 y = vertex / SIDE % SIDE;
+        noise = noise * 1664525u + 1013904223u;
+        float bend = (float)((x - SIDE / 2.0) * (y - SIDE / 2.0) * 0.01),
+              shake = (float)(noise >> 8) * 0x1p-25f;
+        float side = vertex < SHEET ? 1.0f : -1.0f;
+        float *p = s.positions + (size_t)i * 3;
+        p[0] = (float)x + shake;
+        p[1] = (float)y - shake;
+        p[2] = side * (4.0f - (float)frame * 0.5f) + bend * side + shake;
+    }
+    return s;
+}
+
+static void read_triangles(const char *path, scene *s) {
+    FILE *file = fopen(path, "rb");
+    if (file == NULL) stop_with("the model cannot be opened");
+    char line[256];
+    size_t room = 0;
+    while (fgets(line, sizeof line, file) != NULL) {
+        uint32_t v[3];
+        if (sscanf(line, "f %" SCNu32 "%*[^ ] %" SCNu32 "%*[^ ] %" SCNu32, &v[0], &v[1], &v[2]) != 3 &&
+            sscanf(line, "f %" SCNu32 " %" SCNu32 " %" SCNu32, &v[0], &v[1], &v[2]) != 3)
+            continue;
+        if (s->triangle_count == room) {
+            room = room == 0 ? 1024 : 2 * room;
+            s->triangles = realloc(s->triangles, room * 3 * sizeof *s->triangles);
+            if (s->triangles == NULL) stop_with("there is not enough memory");
+        }
+        for (int k = 0; k < 3; k++) s->triangles[3 * (size_t)s->triangle_count + (size_t)k] = v[k] - 1;
+        s->triangle_count++;
+    }
+    fclose(file);
+}
+
+/* Both machines are little-endian, as the file is. */
+static void read_frames(const char *path, scene *s) {
+    FILE *file = fopen(path, "rb");
+    unsigned char head[32];
+    if (file == NULL || fread(head, 1, sizeof head, file) != sizeof head ||
+        memcmp(head, "POINTCACHE2", 12) != 0)
+        stop_with("the frames are not a point cache");
+    memcpy(&s->vertex_count, head + 16, 4);
+    memcpy(&s->frame_count, head + 28, 4);
+    if (s->vertex_count > 10000000 || s->frame_count > FRAMES_MAX) stop_with("the point cache is too large");
+    size_t numbers = (size_t)s->vertex_count * 3 * s->frame_count;
+    s->positions = room_for(numbers, sizeof *s->positions);
+    if (fread(s->positions, sizeof *s->positions, numbers, file) != numbers)
+        stop_with("the point cache ends early");
+    fclose(file);
+}
+
+/* ---- what is found ----------------------------------------------------------------------------------- */
+
+static uint64_t add_bits(uint64_t hash, const void *value, size_t size) {
+    const unsigned char *bytes = value;
+    for (size_t i = 0; i < size; i++) hash = (hash ^ bytes[i]) * UINT64_C(0x100000001b3);
+    return hash;
+}
+
+static uint64_t hash_of(const cscd_contacts *contacts) {
+    uint64_t hash = UINT64_C(0xcbf29ce484222325);
+    for (size_t i = 0; i < contacts->count; i++) {
+        const cscd_contact *c = &contacts->items[i];
+        const uint32_t kind = (uint32_t)c->kind;
+        hash = add_bits(hash, &kind, sizeof kind);
+        hash = add_bits(hash, &c->a, sizeof c->a);
+        hash = add_bits(hash, &c->b, sizeof c->b);
+        hash = add_bits(hash, c->vertices, sizeof c->vertices);
+        hash = add_bits(hash, &c->toi, sizeof c->toi);
+        hash = add_bits(hash, &c->u, sizeof c->u);
+        hash = add_bits(hash, &c->v, sizeof c->v);
+        hash = add_bits(hash, c->point, sizeof c->point);
+        hash = add_bits(hash, c->normal, sizeof c->normal);
+    }
+    return hash;
+}
+
+static void check_status(cscd_context *context, cscd_status status) {
+    if (status != CSCD_OK) stop_with(cscd_context_detail(context));
+}
+
+static void run_scene(const scene *s, double min_separation) {
+    cscd_context *context = NULL;
+    cscd_mesh *mesh = NULL;
+    cscd_detector *detector = NULL;
+    if (cscd_context_create(NULL, &context) != CSCD_OK) stop_with("there is no context");
+    const cscd_object_desc object =
+        cscd_object_of_triangles(s->vertex_count, s->triangle_count, s->triangles);
+    cscd_detector_options options = cscd_detector_defaults();
+    options.min_separation = min_separation;
+    check_status(context, cscd_mesh_create(context, &object, 1, &mesh));
+    check_status(context, cscd_detector_create(context, mesh, NULL, &options, &detector));
+    const size_t numbers = (size_t)s->vertex_count * 3;
+    for (uint32_t i = 0; i + 1 < s->frame_count; i++) {
+        const float *x0 = s->positions + i * numbers, *x1 = x0 + numbers;
+        cscd_contacts contacts = {.count = 0};
+        cscd_intersections crossing = {.count = 0};
+        check_status(context, cscd_detector_step(detector, CSCD_FLOATS(x0, s->vertex_count),
+                                                 CSCD_FLOATS(x1, s->vertex_count), &contacts));
+        printf("interval %u: %zu contacts %016" PRIx64, i, contacts.count, hash_of(&contacts));
+        check_status(context, cscd_detector_check(detector, CSCD_FLOATS(x1, s->vertex_count), &crossing));
+        uint64_t hash = 0;
+        for (size_t p = 0; p < crossing.count; p++)
+            hash = add_bits(hash, &crossing.items[p], sizeof crossing.items[p]);
+        printf(", %zu intersections %016" PRIx64 "\n", crossing.count, hash);
+    }
+    cscd_detector_destroy(detector);
+    cscd_mesh_destroy(mesh);
+    cscd_context_destroy(context);
+}
+
+int main(int argc, char **argv) {
+    if (argc != 1 && argc != 3) stop_with("give a model and a point cache, or nothing");
+    scene s = {.triangle_count = 0};
+    if (argc == 1) {
+        s = waving_sheets();
+    } else {
+        read_triangles(argv[1], &s);
+        read_frames(argv[2], &s);
+    }
+    run_scene(&s, 0.0);
+    if (argc == 1) run_scene(&s, 0.01);
+    free(s.triangles);
+    free(s.positions);
+    return 0;
+}
