@@ -255,7 +255,7 @@ cscd_status parallel_create(host_memory *m, uint32_t thread_count, cscd_parallel
     threads->ranges = memory_allocate(m, thread_count, sizeof *threads->ranges);
     bool allocated = threads->helpers != NULL && threads->ranges != NULL;
     cscd_status status = allocated ? CSCD_OK : CSCD_OUT_OF_MEMORY;
-    if (status == CSCD_OK && host.run == NULL) status = start_helpers(threads);
+    if (status == CSCD_OK && host.run == NULL && system_has_threads()) status = start_helpers(threads);
     if (status != CSCD_OK) {
         parallel_destroy(m, threads);
         return status;

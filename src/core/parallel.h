@@ -10,7 +10,8 @@ enum { CACHE_LINE_SIZE = 64 };
 
 typedef struct parallel parallel;
 
-/* thread_count includes the caller; 0 means one per processor. With host.run no thread is started. */
+/* thread_count includes the caller; 0 means one per processor. With host.run no thread is started, nor where
+ * the system has none: then the caller runs all tasks. */
 cscd_status parallel_create(host_memory *m, uint32_t thread_count, cscd_parallel_for host, parallel **out);
 void parallel_destroy(host_memory *m, parallel *threads);
 

@@ -33,6 +33,10 @@ uint32_t system_processors_for_us(void) {
     return (uint32_t)__builtin_popcountll(ours);
 }
 
+bool system_has_threads(void) {
+    return true;
+}
+
 bool system_thread_stack(uintptr_t *lowest, size_t *size) {
     ULONG_PTR low = 0, high = 0;
     GetCurrentThreadStackLimits(&low, &high);
@@ -71,6 +75,14 @@ uint32_t system_processors_for_us(void) {
     if (sched_getaffinity(0, sizeof set, &set) == 0) return (uint32_t)CPU_COUNT(&set);
 #endif
     return system_processors();
+}
+
+bool system_has_threads(void) {
+#if defined(__EMSCRIPTEN__) && !defined(__EMSCRIPTEN_PTHREADS__)
+    return false;
+#else
+    return true;
+#endif
 }
 
 #if defined(__APPLE__)
