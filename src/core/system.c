@@ -1,11 +1,13 @@
 /* What the library asks of the operating system: Linux, Windows, macOS, FreeBSD. */
+
+/* Before every header: a machine may lack those of 32-bit systems, and its complaint would hide this one. */
+#if __SIZEOF_POINTER__ < 8 && !defined(_WIN64) && !defined(__wasm__)
+#error "cscd runs on 64-bit systems and on WebAssembly: the sizes of other 32-bit systems are not tested"
+#endif
+
 #include "src/core/system.h"
 
 #include <stdlib.h>
-
-#if UINTPTR_MAX < UINT64_MAX && !defined(__wasm__)
-#error "cscd runs on 64-bit systems and on WebAssembly: the sizes of other 32-bit systems are not tested"
-#endif
 
 #ifdef _WIN32
 

@@ -1,5 +1,5 @@
-/* Flags of the caller that would change what is computed are refused with a sentence, by make and by the sources; others are
- * harmless. */
+/* Flags of the caller that would change what is computed are refused with a sentence, by make and by the sources, as are those for
+ * a 32-bit system; others are harmless. */
 #include "tests/support/shell.h"
 #include "tests/support/test.h"
 
@@ -41,6 +41,23 @@ static void sources_refuse_other_arithmetic(void **state) {
     shell(compile, "${CC:-cc}", "-Os -fno-math-errno -fno-trapping-math");
 }
 
+/* The sentence comes first, also where the headers of such a system are missing. */
+static void sources_refuse_32_bits(void **state) {
+    (void)state;
+    static const char compile[] = "%s %s -Iinclude -I. -fsyntax-only src/core/system.c";
+#ifdef __x86_64__
+    static const char *const flags[] = {"-m32", "-mx32"};
+#else
+    static const char *const flags[] = {"-D__SIZEOF_POINTER__=4"};
+#endif
+    for (size_t i = 0; i < sizeof flags / sizeof *flags; i++) {
+        char *said = shell_output(1, compile, "${CC:-cc}", flags[i]);
+        if (strstr(said, "cscd runs on 64-bit systems") == NULL) fail_msg("%s: %s", flags[i], said);
+        free(said);
+    }
+    shell(compile, "${CC:-cc}", "-D_GNU_SOURCE");
+}
+
 /* Flags of the caller are passed on, but for those that the library is built without. */
 static void flags_that_are_left_out(void **state) {
     (void)state;
@@ -56,6 +73,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(make_refuses_other_arithmetic),
         cmocka_unit_test(sources_refuse_other_arithmetic),
+        cmocka_unit_test(sources_refuse_32_bits),
         cmocka_unit_test(flags_that_are_left_out),
     };
     return cmocka_run_group_tests_name("flags", tests, NULL, NULL);
