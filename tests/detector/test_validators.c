@@ -39,7 +39,7 @@ static cscd_detector *create_detector(whole_set *w) {
 }
 
 static whole_set whole_set_create(void) {
-    whole_set w = {NULL};
+    whole_set w = {.context = NULL};
     cscd_contacts found;
     scene_clear(&shape);
     for (int i = 0; i < 2; i++) scene_add_sphere(&shape, (double[3]){2.5 * i, 0, 0}, 1.0, 8, 8);

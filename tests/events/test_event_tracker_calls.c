@@ -239,6 +239,10 @@ static uint64_t number_at(const uint8_t *bytes, size_t place) {
     return number;
 }
 
+static size_t count_at(const uint8_t *bytes, size_t place) {
+    return (size_t)number_at(bytes, place);
+}
+
 static void make_known_state(known_state *s) {
     enum { HEADER = 11, OF_EVENT = 22, OF_STAMP = 4 };
     const uint8_t *bytes;
@@ -251,10 +255,10 @@ static void make_known_state(known_state *s) {
     assert_int_equal(cscd_event_tracker_save(tracker, &bytes, &s->size), CSCD_OK);
     assert_true(s->size <= sizeof s->bytes);
     memcpy(s->bytes, bytes, s->size);
-    s->first_closed = HEADER + OF_EVENT * number_at(bytes, 7);
-    s->stamps = s->first_closed + OF_EVENT * number_at(bytes, 8) + OF_STAMP * number_at(bytes, 9);
-    s->stamp_count = number_at(bytes, 10);
-    assert_true(number_at(bytes, 8) > 1 && s->stamp_count > 1);
+    s->first_closed = HEADER + OF_EVENT * count_at(bytes, 7);
+    s->stamps = s->first_closed + OF_EVENT * count_at(bytes, 8) + OF_STAMP * count_at(bytes, 9);
+    s->stamp_count = count_at(bytes, 10);
+    assert_true(count_at(bytes, 8) > 1 && s->stamp_count > 1);
     cscd_event_tracker_destroy(tracker);
 }
 
