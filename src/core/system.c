@@ -1,4 +1,4 @@
-/* What the library asks of the operating system: Linux, Windows, macOS, FreeBSD. */
+/* What the library asks of the operating system: Linux, Windows, macOS, FreeBSD, WebAssembly. */
 
 /* Before every header: a machine may lack those of 32-bit systems, and its complaint would hide this one. */
 #if __SIZEOF_POINTER__ < 8 && !defined(_WIN64) && !defined(__wasm__)
@@ -55,6 +55,9 @@ bool system_thread_stack(uintptr_t *lowest, size_t *size) {
 #ifdef __FreeBSD__
 #include <pthread_np.h>
 #endif
+#ifdef __EMSCRIPTEN__
+#include <emscripten/stack.h>
+#endif
 
 /* aligned_alloc of C11 came late to macOS. */
 void *system_memory(size_t size, size_t alignment) {
@@ -92,6 +95,15 @@ bool system_has_threads(void) {
 bool system_thread_stack(uintptr_t *lowest, size_t *size) {
     *size = pthread_get_stacksize_np(pthread_self());
     *lowest = (uintptr_t)pthread_get_stackaddr_np(pthread_self()) - *size;
+    return *size > 0;
+}
+
+#elif defined(__EMSCRIPTEN__)
+
+/* In a fiber it is the stack of that fiber. */
+bool system_thread_stack(uintptr_t *lowest, size_t *size) {
+    *lowest = emscripten_stack_get_end();
+    *size = emscripten_stack_get_base() - *lowest;
     return *size > 0;
 }
 
