@@ -422,15 +422,15 @@ test-aarch64:
 	@tests/cross/emulated.sh arm64 $(or $(ONLY),all)
 
 # The library for WebAssembly, by Debian's emscripten, in build/wasm32-emscripten; and what node finds with it, compared with this
-# machine.
+# machine, and the tests of core, mesh, preprocessing and runtime.
 wasm:
 	@.ci/packages wasm
 	@$(MAKE) --no-print-directory HOST=wasm32-emscripten CC=emcc build/wasm32-emscripten/release/libcscd.a
 
 test-wasm: wasm
 	@$(MAKE) --no-print-directory $(BUILD)/tests/wasm/contacts
-	@$(MAKE) --no-print-directory HOST=wasm32-emscripten CC=emcc $(addprefix build/wasm32-emscripten/release/tests/wasm/,contacts.js sizes.js)
-	@tests/wasm/run.sh $(BUILD)/tests/wasm/contacts build/wasm32-emscripten/release/tests/wasm
+	@src/packaging/libraries.sh wasm32-emscripten build/wasm32-emscripten/libraries cmocka
+	@$(MAKE) --no-print-directory HOST=wasm32-emscripten CC=emcc NATIVE=$(BUILD)/tests/wasm/contacts test-wasm-run
 
 # Big-endian: the tests of what reads files, and of the detector.
 test-s390x:
@@ -602,7 +602,7 @@ help:
 	@echo '               make test-s390x: those of readers and detector on a big-endian processor; ONLY=quick, ONLY="core/test_simd"'
 	@echo 'make test-riscv64   files of every format and replays give the bytes of this machine, under qemu-user; ONLY=quick'
 	@echo 'make wasm      the library for WebAssembly, in build/wasm32-emscripten (installs emscripten); make test-wasm: under node, its'
-	@echo '               contacts beside those of this machine, and sizes of more than 4 GiB'
+	@echo '               contacts beside those of this machine, sizes of more than 4 GiB, and tests of core, mesh, preprocess and runtime (ONLY="bvh")'
 	@echo 'make deb       Debian packages of the last commit, in build/deb (installs debhelper, doxygen); make test-deb: built twice, installed,'
 	@echo '               tested and purged, as root (installs lintian, autopkgtest)'
 	@echo 'make test-builds   other compilers, flags, users and folders, and without each optional library; as root: some minutes'

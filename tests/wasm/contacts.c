@@ -123,6 +123,8 @@ static uint64_t hash_of(const cscd_contacts *contacts) {
         hash = add_bits(hash, &c->v, sizeof c->v);
         hash = add_bits(hash, c->point, sizeof c->point);
         hash = add_bits(hash, c->normal, sizeof c->normal);
+        const unsigned char bounded = c->bounded;
+        hash = add_bits(hash, &bounded, sizeof bounded);
     }
     return hash;
 }

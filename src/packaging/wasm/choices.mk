@@ -10,3 +10,4 @@ CC     := emcc
 endif
 # Where emcc finds no acorn of its own.
 export NODE_PATH := /usr/share/nodejs
+WASM_LIBRARIES := build/wasm32-emscripten/libraries
