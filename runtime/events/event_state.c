@@ -143,9 +143,10 @@ static bool reserve_bytes(cscd_event_tracker *t, size_t count) {
     return context_renew_all(t->context, list, &t->byte_capacity, count);
 }
 
-static size_t byte_count_of(const state_header *h) {
-    size_t numbers = HEADER_NUMBERS + 1 + (size_t)(h->open + h->closed) * EVENT_NUMBERS;
-    return (numbers + (size_t)(h->first + h->last) * STAMP_NUMBERS) * NUMBER_SIZE;
+/* In 64 bits also where a size has fewer: the numbers of a header may come from anywhere. */
+static uint64_t byte_count_of(const state_header *h) {
+    uint64_t numbers = HEADER_NUMBERS + 1 + (h->open + h->closed) * EVENT_NUMBERS;
+    return (numbers + (h->first + h->last) * STAMP_NUMBERS) * NUMBER_SIZE;
 }
 
 cscd_status event_state_write(cscd_event_tracker *t, size_t *byte_count) {
@@ -158,14 +159,15 @@ cscd_status event_state_write(cscd_event_tracker *t, size_t *byte_count) {
     state_header header = {MAGIC,           t->options_hash, h->keeps_first, h->gap,
                            h->frame_count,  h->first_frame,  h->last_frame,  s.event_count,
                            h->closed_count, s.first_count,   s.last_count};
-    bool room = reserve_bytes(t, byte_count_of(&header));
+    const uint64_t count = byte_count_of(&header);
+    bool room = count < SIZE_MAX / 2 && reserve_bytes(t, (size_t)count);
     if (room) {
         number_stream stream = {.to = t->bytes};
         pass_header(&stream, &header);
         write_lists(h, &s, &stream);
         uint64_t hash = stream.hash;
         pass_number(&stream, &hash);
-        *byte_count = byte_count_of(&header);
+        *byte_count = (size_t)count;
     }
     context_free_all(t->context, list_arrays(h, &s));
     return room ? CSCD_OK : CSCD_OUT_OF_MEMORY;

@@ -29,9 +29,10 @@ static void place_all(stamp_table *t) {
 bool stamp_table_reserve(cscd_context *context, stamp_table *t, size_t more) {
     if (more <= t->capacity - t->count) return true;
     stamp_table grown = {.count = t->count};
-    size_t wanted = 2 * (t->count + more) + 16, places = 64;
-    while (places < 2 * wanted) places *= 2;
-    if (places > (size_t)UINT32_MAX + 1) return false;
+    const size_t needed = t->count + more, wanted = 2 * needed + 16;
+    if (needed > UINT32_MAX / 4 - 8) return false;
+    uint64_t places = 64; /* up to 2^32 */
+    while (places < 2 * (uint64_t)wanted) places *= 2;
     grown.capacity = wanted;
     grown.place_mask = (uint32_t)(places - 1);
     if (!context_allocate_all(context, list_arrays(&grown))) return false;

@@ -83,7 +83,8 @@ enum { LONG_LIST = 1 << 18 };
 
 /* The items to allocate where count are needed now and perhaps more in later calls: never 0. */
 static inline size_t room_with_spare(size_t count) {
-    return count < LONG_LIST ? 2 * count + 16 : count + count / 16;
+    if (count < LONG_LIST) return 2 * count + 16;
+    return count < SIZE_MAX - count / 16 ? count + count / 16 : SIZE_MAX;
 }
 
 /* Makes sure that the arrays of a list have room for count items; the list is one of room_with_spare(count) items, and is
