@@ -55,22 +55,26 @@ static int vertices_of(const waiting_oracle *o, cscd_contact_kind kind, uint32_t
     return first;
 }
 
-static bool is_part(const uint32_t *vertices, int count, const uint32_t triangle[3]) {
+/* A face is part of no triangle but itself, although another one may have its vertices. */
+static bool is_part(const waiting_oracle *o, uint32_t face, const uint32_t *vertices, int count,
+                    uint32_t triangle) {
+    const uint32_t *t = o->scene->triangles + (size_t)triangle * 3;
+    if (count == 3) return face == triangle;
     for (int i = 0; i < count; i++) {
-        if (vertices[i] != triangle[0] && vertices[i] != triangle[1] && vertices[i] != triangle[2])
-            return false;
+        if (vertices[i] != t[0] && vertices[i] != t[1] && vertices[i] != t[2]) return false;
     }
     return true;
 }
 
-static bool is_ignored(const waiting_oracle *o, const left_out *l, const uint32_t *vertices, int first,
-                       int second) {
+static bool is_ignored(const waiting_oracle *o, const left_out *l, const uint32_t features[2],
+                       const uint32_t *vertices, int first, int second) {
     for (size_t i = 0; i < l->ignored_count; i++) {
-        const uint32_t *s = o->scene->triangles + (size_t)l->ignored[i][0] * 3;
-        const uint32_t *t = o->scene->triangles + (size_t)l->ignored[i][1] * 3;
-        if (s == t) continue;
-        if (is_part(vertices, first, s) && is_part(vertices + first, second, t)) return true;
-        if (is_part(vertices, first, t) && is_part(vertices + first, second, s)) return true;
+        const uint32_t *pair = l->ignored[i];
+        for (int k = 0; k < 2 && pair[0] != pair[1]; k++) {
+            if (is_part(o, features[0], vertices, first, pair[k]) &&
+                is_part(o, features[1], vertices + first, second, pair[1 - k]))
+                return true;
+        }
     }
     return false;
 }
@@ -95,7 +99,8 @@ static bool leaves_out(const waiting_oracle *o, const named_left_out *l, cscd_co
     int first = vertices_of(o, kind, a, b, at), second = kind == CSCD_CONTACT_EE ? 2 : 3;
     uint32_t of_a = rules->vertex_objects[at[0]], of_b = rules->vertex_objects[at[first]];
     if (rules->distances[(size_t)of_a * rules->object_count + of_b] < 0.0) return true;
-    return is_ignored(o, &l->what, at, first, second) || is_sewn(l, kind, at, first, second, x);
+    return is_ignored(o, &l->what, (uint32_t[2]){a, b}, at, first, second) ||
+           is_sewn(l, kind, at, first, second, x);
 }
 
 /* ---- what waits ---------------------------------------------------------------------------------------- */
