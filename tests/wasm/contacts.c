@@ -10,11 +10,11 @@
 
 enum { SIDE = 24, SHEET = SIDE * SIDE, FRAMES = 12, FRAMES_MAX = 1000 };
 
-typedef struct scene {
+typedef struct played_scene {
     uint32_t vertex_count, triangle_count, frame_count;
     uint32_t *triangles;
     float *positions; /* of all frames */
-} scene;
+} played_scene;
 
 static void stop_with(const char *sentence) {
     fprintf(stderr, "contacts: %s\n", sentence);
@@ -29,7 +29,7 @@ static void *room_for(size_t count, size_t size) {
 
 /* ---- scenes ------------------------------------------------------------------------------------------ */
 
-static void add_sheet(scene *s, uint32_t first) {
+static void add_sheet(played_scene *s, uint32_t first) {
     for (uint32_t y = 0; y + 1 < SIDE; y++) {
         for (uint32_t x = 0; x + 1 < SIDE; x++) {
             uint32_t a = first + y * SIDE + x,
@@ -41,8 +41,8 @@ static void add_sheet(scene *s, uint32_t first) {
 }
 
 /* Heights are parabolas with some noise of a linear congruential generator. */
-static scene waving_sheets(void) {
-    scene s = {.vertex_count = 2 * SHEET, .frame_count = FRAMES};
+static played_scene waving_sheets(void) {
+    played_scene s = {.vertex_count = 2 * SHEET, .frame_count = FRAMES};
     s.triangles = room_for((size_t)4 * SHEET * 3, sizeof *s.triangles);
     s.positions = room_for((size_t)FRAMES * s.vertex_count * 3, sizeof *s.positions);
     add_sheet(&s, 0);
@@ -63,7 +63,7 @@ static scene waving_sheets(void) {
     return s;
 }
 
-static void read_triangles(const char *path, scene *s) {
+static void read_triangles(const char *path, played_scene *s) {
     FILE *file = fopen(path, "rb");
     if (file == NULL) stop_with("the model cannot be opened");
     char line[256];
@@ -85,7 +85,7 @@ static void read_triangles(const char *path, scene *s) {
 }
 
 /* Both machines are little-endian, as the file is. */
-static void read_frames(const char *path, scene *s) {
+static void read_frames(const char *path, played_scene *s) {
     FILE *file = fopen(path, "rb");
     unsigned char head[32];
     if (file == NULL || fread(head, 1, sizeof head, file) != sizeof head ||
@@ -133,7 +133,7 @@ static void check_status(cscd_context *context, cscd_status status) {
     if (status != CSCD_OK) stop_with(cscd_context_detail(context));
 }
 
-static void run_scene(const scene *s, double min_separation) {
+static void run_scene(const played_scene *s, double min_separation) {
     cscd_context *context = NULL;
     cscd_mesh *mesh = NULL;
     cscd_detector *detector = NULL;
@@ -165,7 +165,7 @@ static void run_scene(const scene *s, double min_separation) {
 
 int main(int argc, char **argv) {
     if (argc != 1 && argc != 3) stop_with("give a model and a point cache, or nothing");
-    scene s = {.triangle_count = 0};
+    played_scene s = {.triangle_count = 0};
     if (argc == 1) {
         s = waving_sheets();
     } else {

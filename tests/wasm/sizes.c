@@ -11,7 +11,7 @@ _Static_assert(sizeof(size_t) == 4, "these counts wrap around where a size has 3
 /* Many objects have the same triangles, so that a caller has room for them. */
 enum { SHARED = 1 << 20, OBJECTS_MAX = 400 };
 
-static void tell(bool good, const char *what, unsigned long long count) {
+static void tell_answer(bool good, const char *what, unsigned long long count) {
     printf("%s %s %llu\n", good ? "ok" : "failed", what, count);
 }
 
@@ -52,7 +52,7 @@ static void share_triangles(cscd_context *context, uint32_t count, const uint32_
         objects[object_count] = cscd_object_of_triangles(3, part, corners);
         left -= part;
     }
-    tell(is_refused(context, objects, object_count), "triangles", count);
+    tell_answer(is_refused(context, objects, object_count), "triangles", count);
 }
 
 /* Objects of SHARED triangles that have so many vertices in all. */
@@ -60,7 +60,7 @@ static void share_vertices(cscd_context *context, uint32_t count, const uint32_t
     cscd_object_desc objects[16];
     for (uint32_t i = 0; i < 16; i++)
         objects[i] = cscd_object_of_triangles(count / 16 + (i < count % 16 ? 1 : 0), SHARED, corners);
-    tell(is_refused(context, objects, 16), "vertices", count);
+    tell_answer(is_refused(context, objects, 16), "vertices", count);
 }
 
 static void check_meshes(cscd_context *context) {
@@ -89,7 +89,7 @@ static void check_blocks(host_memory *memory) {
         void *zeroed = memory_allocate(memory, sizes[i][0], sizes[i][1]);
         void *reserved = memory_reserve(memory, sizes[i][0], sizes[i][1]);
         void *grown = memory_grow(memory, NULL, 0, sizes[i][0], sizes[i][1]);
-        tell(zeroed == NULL && reserved == NULL && grown == NULL, "blocks of elements", sizes[i][0]);
+        tell_answer(zeroed == NULL && reserved == NULL && grown == NULL, "blocks of elements", sizes[i][0]);
         memory_free(memory, zeroed);
         memory_free(memory, reserved);
         memory_free(memory, grown);
@@ -99,10 +99,10 @@ static void check_blocks(host_memory *memory) {
 int main(void) {
     cscd_context *context = NULL;
     if (cscd_context_create(NULL, &context) != CSCD_OK) return 1;
-    tell(still_serves(context), "contacts before", 1);
+    tell_answer(still_serves(context), "contacts before", 1);
     check_blocks(&context->memory);
     check_meshes(context);
-    tell(still_serves(context), "contacts afterwards", 1);
+    tell_answer(still_serves(context), "contacts afterwards", 1);
     cscd_context_destroy(context);
     return 0;
 }
