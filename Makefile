@@ -343,7 +343,7 @@ windows-libraries:
 	@src/packaging/libraries.sh x86_64-w64-mingw32 build/windows/libraries libpng json-c expat cmocka
 
 windows: windows-libraries
-	@$(ON_WINDOWS) tool library
+	+@$(ON_WINDOWS) tool library
 
 windows-zip: windows
 	@mkdir -p build/dist
@@ -356,7 +356,7 @@ test-windows: packages windows-libraries
 	@.ci/packages wine
 	@$(MAKE) --no-print-directory $(BUILD)/tests/windows/write_answers
 	@$(BUILD)/tests/windows/write_answers $(ANSWERS) 20000
-	@ANSWERS=$(abspath $(ANSWERS)) $(ON_WINDOWS) test-windows-run
+	+@ANSWERS=$(abspath $(ANSWERS)) $(ON_WINDOWS) test-windows-run
 
 test: packages
 	@$(if $(filter tests/report/test_report_browser.c,$(TEST_SOURCES)),.ci/packages browser)
