@@ -247,7 +247,7 @@ static void convex_polygons_of_many_corners_are_no_fans(void **state) {
 }
 
 static void check_fanned(const double (*positions)[3], uint32_t count) {
-    uint32_t corners[8], triangles[8][3];
+    uint32_t corners[8] = {0}, triangles[8][3];
     for (uint32_t i = 0; i < count; i++) corners[i] = i;
     assert_int_equal(polygon_fill(&positions[0][0], corners, count, triangles), POLYGON_FANNED);
     for (uint32_t t = 0; t + 2 < count; t++)

@@ -1,8 +1,19 @@
 /* Dense linear systems for the tests on Windows, which has no LAPACKE: plain elimination with partial pivoting, on one thread. Many
  * tests are about plans by charge, which product and tool do not make there. */
 #include "preprocess/charge/dense_solve.h"
+#include "src/blas/blas_choice.h"
 
 #include <math.h>
+#include <stddef.h>
+
+/* No BLAS is linked here. */
+const char *blas_choice_name(void) {
+    return NULL;
+}
+
+const char *blas_choice_better(void) {
+    return NULL;
+}
 
 static void swap_rows(float *matrix, uint32_t count, uint32_t a, uint32_t b) {
     for (uint32_t column = 0; a != b && column < count; column++) {

@@ -1,12 +1,14 @@
 #!/bin/sh
 # Runs the test programs that are its arguments, built for Windows, under wine, and adds up their totals; `make test-windows` calls it.
-# BUILD is the build folder, ANSWERS the file that a Linux run wrote. Says how many programs ran, and of each that did not, why:
-# tests/windows/left_out.txt. Ends non-zero when anything failed; its last line is `N passed, M failed`.
+# BUILD is the build folder, ANSWERS the file that a Linux run wrote, LIMIT the seconds that one program may take. Says how many
+# programs ran, and of each that did not, why: tests/windows/left_out.txt. Ends non-zero when anything failed; its last line is
+# `N passed, M failed`.
 set -u
 cd "$(dirname "$0")/../.." || exit 1
 : "${BUILD:?BUILD must name the build folder}"
 BUILD=$(cd "$BUILD" && pwd) || exit 1
 WINE=${WINE:-$(command -v wine64 || echo /usr/lib/wine/wine64)}
+LIMIT=${LIMIT:-120}
 SERVER=${WINESERVER:-$(command -v wineserver64 || echo /usr/lib/wine/wineserver64)}
 [ -x "$WINE" ] || { echo 'run.sh: there is no wine64 (Debian: wine64)' >&2; exit 1; }
 logs=$(mktemp -d) || exit 1
@@ -19,13 +21,13 @@ CSCD_TOOL=$BUILD/cscd.exe
 CSCD_MODELS=$BUILD/models
 TMPDIR=$logs/files
 CSCD_ANSWERS=${ANSWERS:-}
-export WINEPREFIX WINEDEBUG WINEDLLOVERRIDES CSCD_TOOL CSCD_MODELS TMPDIR CSCD_ANSWERS
+export WINE LIMIT WINEPREFIX WINEDEBUG WINEDLLOVERRIDES CSCD_TOOL CSCD_MODELS TMPDIR CSCD_ANSWERS
 mkdir -p "$TMPDIR" "$WINEPREFIX"
 trap '"$SERVER" -k 2>/dev/null; rm -rf "$logs"' EXIT
 "$SERVER" -p
 "$WINE" wineboot -i >/dev/null 2>&1 || "$WINE" cmd /c exit >/dev/null 2>&1
 
-passed=0 failed=0 ran=0 failures=''
+passed=0 failed=0 ran=0 failures='' late=''
 total() { # total WORD LOG: the N of cmocka's line `[  WORD  ] N test(s)`
     tr -d '\r' <"$2" | sed -n "s/^\[  $1  \] \(.*: \)\{0,1\}\([0-9][0-9]*\) test(s).*/\2/p" | tail -1
 }
@@ -36,7 +38,12 @@ add_up() {
     good=$(total PASSED "$log")
     bad=$(total FAILED "$log")
     if [ -z "$good$bad" ] || { [ "$status" != 0 ] && [ "${bad:-0}" = 0 ]; }; then
-        echo "$name: ended with status $status"
+        if [ "$status" = 124 ] || [ "$status" = 137 ]; then
+            echo "$name: ran out of time, which is $LIMIT seconds"
+            late="$late $name"
+        else
+            echo "$name: ended with status $status"
+        fi
         bad=1
     fi
     passed=$((passed + ${good:-0}))
@@ -45,15 +52,16 @@ add_up() {
     [ "${bad:-0}" = 0 ] || { failures="$failures $name"; grep -aE 'ERROR|error|FAILED|\.c:[0-9]|exit code|std(out|err):|Unhandled|rip:' "$log" | head -20; }
 }
 
-printf '%s\n' "$@" | WINE=$WINE xargs -P "${JOBS:-$(nproc)}" -I PROGRAM sh -c '
+printf '%s\n' "$@" | xargs -P "${JOBS:-$(nproc)}" -I PROGRAM sh -c '
     log=$2/$(echo "$1" | tr / :)
-    timeout 600 "$WINE" "$1" >"$log" 2>&1
+    timeout -k 5 "$LIMIT" "$WINE" "$1" >"$log" 2>&1
     echo "$?" >"$log.status"' sh PROGRAM "$logs"
 for program in "$@"; do add_up "$program"; done
 
 left=$(grep -c '^tests/' tests/windows/left_out.txt)
 echo "$ran programs ran under $("$WINE" --version); $left did not:"
 sed -n 's/^tests\//  /p' tests/windows/left_out.txt
+[ -z "$late" ] || echo "ran out of time:$late"
 [ -z "$failures" ] || echo "failed:$failures"
 echo "$passed passed, $failed failed"
 [ "$failed" = 0 ]
