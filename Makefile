@@ -170,7 +170,7 @@ CHARGE_OBJECTS := $(call objects,$(filter-out %/charge_export.c,$(CHARGE_SOURCES
 LINKED_OBJECTS := $(CORE_OBJECTS) $(OBJECTS)/preprocess/charge_library.linked.o $(CHARGE_OBJECTS)
 OPENED_OBJECTS := $(CORE_OBJECTS) $(OBJECTS)/preprocess/charge_library.opened.o
 COMMON_OBJECTS := $(call objects,$(COMMON_SOURCES))
-IO_OBJECTS     := $(call objects,$(filter src/io/%,$(COMMON_SOURCES)))
+IO_OBJECTS     := $(call objects,$(filter src/io/% src/windows/%,$(COMMON_SOURCES)))
 LIBRARY := $(BUILD)/libcscd.a
 # The library of the tool and of the programs of models/ in C, which is not installed.
 OPENING_LIBRARY := $(if $(WINDOWS)$(WASM),$(LIBRARY),$(BUILD)/libcscd-opening.a)
@@ -698,7 +698,8 @@ $(C_MODELS): $(BUILD)/models/%: $(OBJECTS)/models/%.o $(MODEL_PART_OBJECTS) $(IO
 	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
 
 # Programs in C++ have parts in C++ alone.
-$(CPP_MODELS): $(BUILD)/models/%: $(OBJECTS)/models/%.o $(patsubst %.cpp,$(OBJECTS)/%.o,$(CPP_MODEL_PARTS)) $(LIBRARY)
+$(CPP_MODELS): $(BUILD)/models/%: $(OBJECTS)/models/%.o $(patsubst %.cpp,$(OBJECTS)/%.o,$(CPP_MODEL_PARTS)) \
+               $(filter $(OBJECTS)/src/windows/%,$(IO_OBJECTS)) $(LIBRARY)
 	@mkdir -p $(@D)
 	$(say) '  LD $@'
 	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(STATIC_LIBS) -lstdc++ -lm

@@ -50,8 +50,9 @@ wchar_t *wide_path(const char *path) {
         errno = ENOENT;
         return NULL;
     }
-    wchar_t *wide = wide_text(strcmp(path, "/dev/null") == 0 ? "NUL" : path);
-    if (wide == NULL || wcslen(wide) < MAX_PATH / 4) return wide;
+    if (strcmp(path, "/dev/null") == 0) return wide_text("NUL");
+    wchar_t *wide = wide_text(path);
+    if (wide == NULL) return NULL;
     wchar_t *whole = lengthen_path(wide);
     free(wide);
     return whole;

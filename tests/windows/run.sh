@@ -54,10 +54,14 @@ add_up() {
 
 printf '%s\n' "$@" | xargs -P "${JOBS:-$(nproc)}" -I PROGRAM sh -c '
     log=$2/$(echo "$1" | tr / :)
+    began=$(date +%s)
     timeout -k 5 "$LIMIT" "$WINE" "$1" >"$log" 2>&1
-    echo "$?" >"$log.status"' sh PROGRAM "$logs"
+    echo "$?" >"$log.status"
+    printf "%8d  %s\n" "$(($(date +%s) - began))" "${1#*/tests/}" >>"$2/seconds"' sh PROGRAM "$logs"
 for program in "$@"; do add_up "$program"; done
 
+echo 'slowest, in seconds:'
+sort -rn "$logs/seconds" | head -10
 left=$(grep -c '^tests/' tests/windows/left_out.txt)
 echo "$ran programs ran under $("$WINE" --version); $left did not:"
 sed -n 's/^tests\//  /p' tests/windows/left_out.txt

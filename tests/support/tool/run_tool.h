@@ -40,6 +40,9 @@ typedef struct tool_process {
 tool_process run_tool_start(const char *const *arguments);
 tool_run run_tool_finish(tool_process *process);
 
+/* On Windows: with a console of its own, which has no window, and so with its events; those of run_tool_start hear no Ctrl-C. */
+tool_process run_tool_start_in_console(const char *const *arguments);
+
 /* For the file that starts processes: what CSCD_TOOL names, and the exit code of a tool that could not be started. */
 enum { RUN_TOOL_NOT_STARTED = 127 };
 const char *run_tool_path(void);

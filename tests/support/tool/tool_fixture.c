@@ -295,7 +295,7 @@ temp_path recorded_write_sequence(const temp_folder *folder, const char *pattern
     require_done(conversion != NULL && strchr(conversion, 'd') != NULL, "a pattern needs its %0Nd");
     int digits = atoi(conversion + 1);
     for (uint32_t k = 0; k < r->frame_count; k++) {
-        char name[128];
+        char name[256];
         snprintf(name, sizeof name, "%.*s%0*u%s", (int)(conversion - pattern), pattern, digits, k,
                  strchr(conversion, 'd') + 1);
         recorded_write_mesh(folder, name, r, k);

@@ -54,7 +54,7 @@ static wchar_t *widen_text(const char *text) {
     return wide;
 }
 
-tool_process run_tool_start(const char *const *arguments) {
+static tool_process start_tool(const char *const *arguments, DWORD flags) {
     static char line[LINE_MAX_SIZE];
     size_t length = add_argument(line, 0, run_tool_path());
     for (; *arguments != NULL; arguments++) length = add_argument(line, length, *arguments);
@@ -67,12 +67,20 @@ tool_process run_tool_start(const char *const *arguments) {
     PROCESS_INFORMATION made;
     wchar_t *wide = widen_text(line);
     fflush(NULL);
-    if (!CreateProcessW(NULL, wide, NULL, NULL, TRUE, CREATE_NEW_PROCESS_GROUP, NULL, NULL, &start, &made))
+    if (!CreateProcessW(NULL, wide, NULL, NULL, TRUE, flags, NULL, NULL, &start, &made))
         fail_msg("the tool %s cannot be started", run_tool_path());
     free(wide);
     CloseHandle(made.hThread);
     process.pid = (pid_t)(intptr_t)made.hProcess;
     return process;
+}
+
+tool_process run_tool_start(const char *const *arguments) {
+    return start_tool(arguments, CREATE_NEW_PROCESS_GROUP);
+}
+
+tool_process run_tool_start_in_console(const char *const *arguments) {
+    return start_tool(arguments, CREATE_NO_WINDOW);
 }
 
 void run_tool_wait(const tool_process *process, tool_run *run) {

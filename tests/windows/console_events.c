@@ -1,0 +1,128 @@
+/* What the console says to the tool: Ctrl-C ends it with the code of SIGINT, once it has written what it has. */
+#include "tests/support/test.h"
+#include "tests/support/tool/contact_rows.h"
+#include "tests/support/tool/json_reader.h"
+#include "tests/support/tool/run_tool.h"
+#include "tests/support/tool/tool_fixture.h"
+
+#include <dirent.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <windows.h>
+
+enum { INTERVALS = 4999, WAIT_S = 60 };
+
+static temp_folder folder;
+static temp_path model, cache, csv, summary;
+
+/* Brute force over a thousand features has far more intervals to do than it can finish before the event. */
+static int make_files(void **state) {
+    (void)state;
+    folder = temp_folder_make();
+    recorded scene = recorded_fold(30, 20, 2);
+    model = recorded_write_mesh(&folder, "sheet.obj", &scene, 0);
+    cache = recorded_write_cycle(&folder, "sheet.pc2", &scene, INTERVALS + 1);
+    csv = temp_file_path(&folder, "out.csv");
+    summary = temp_file_path(&folder, "out.json");
+    recorded_free(&scene);
+    return 0;
+}
+
+static int remove_files(void **state) {
+    (void)state;
+    temp_folder_remove(&folder);
+    return 0;
+}
+
+/* How many outputs, which lie beside their places until they are whole, have that many bytes? */
+static int count_outputs(off_t size) {
+    int count = 0;
+    DIR *entries = opendir(folder.path);
+    for (struct dirent *entry = readdir(entries); entry != NULL; entry = readdir(entries)) {
+        struct stat status;
+        const temp_path path = temp_file_path(&folder, entry->d_name);
+        count += strncmp(entry->d_name, ".cscd-output-", 13) == 0 && stat(path.text, &status) == 0 &&
+                 status.st_size >= size;
+    }
+    closedir(entries);
+    return count;
+}
+
+static void end_tool(const tool_process *process, const char *why) {
+    TerminateProcess((HANDLE)(intptr_t)process->pid, 99);
+    fail_msg("%s: error %lu", why, GetLastError());
+}
+
+/* A console says to all its processes what somebody types; this one does not listen for a moment. */
+static void say_to(const tool_process *process, DWORD event) {
+    FreeConsole();
+    if (!AttachConsole(GetProcessId((HANDLE)(intptr_t)process->pid)))
+        end_tool(process, "the console of the tool is not there");
+    SetConsoleCtrlHandler(NULL, TRUE);
+    if (!GenerateConsoleCtrlEvent(event, 0)) end_tool(process, "the event cannot be made");
+    usleep(100 * 1000); /* the event comes on a thread of its own */
+    FreeConsole();
+    SetConsoleCtrlHandler(NULL, FALSE);
+}
+
+/* The JSON has the intervals so far and says that it is not complete; the CSV has whole lines of these intervals only. */
+static size_t expect_kept(void) {
+    json_node *root = json_node_read_file(summary.text);
+    const json_node *total = json_node_member(root, "summary");
+    const size_t done = json_node_member(root, "intervals")->count;
+    assert_false(json_node_boolean(total, "complete"));
+    assert_non_null(strstr(json_node_string(total, "stopped_by"), "interrupted"));
+    assert_true(done >= 1 && done < INTERVALS);
+    contact_rows rows = contact_rows_read_csv(csv.text);
+    assert_true(rows.count > 0);
+    assert_true(json_node_number(total, "vf") + json_node_number(total, "ee") == (double)rows.count);
+    for (size_t i = 0; i < rows.count; i++) assert_true(rows.items[i].frame < (int32_t)done);
+    contact_rows_free(&rows);
+    json_node_free(root);
+    return done;
+}
+
+static void wait_for_contacts(const tool_process *process) {
+    for (int looks = 0; count_outputs(400) < 2; looks++) {
+        if (looks > 100 * WAIT_S) end_tool(process, "no contacts after a minute");
+        usleep(10 * 1000);
+    }
+}
+
+static void expect_sentence(const tool_run *run, size_t done) {
+    char kept[1200];
+    snprintf(kept, sizeof kept,
+             "cscd: interrupted after %u of %u intervals (frames 0 to %u); what was found is kept in %s, %s\n",
+             (unsigned)done, (unsigned)INTERVALS, (unsigned)done, csv.text, summary.text);
+    if (strstr(run->error, kept) == NULL) fail_msg("expected '%s' in: %s", kept, run->error);
+}
+
+/* The older outputs are replaced by what was found. Wine 8 makes no Ctrl-Break (error 6), and no window to be closed. */
+static void control_c_keeps_what_is_written(void **state) {
+    (void)state;
+    static const char older[] = "what was there";
+    temp_file_write(&folder, "out.csv", older, strlen(older));
+    temp_file_write(&folder, "out.json", older, strlen(older));
+    tool_process process = run_tool_start_in_console(
+        (const char *const[]){"replay", model.text, cache.text, "--method", "brute", "--contacts", csv.text,
+                              "--json", summary.text, NULL});
+    wait_for_contacts(&process);
+    say_to(&process, CTRL_C_EVENT);
+    if (WaitForSingleObject((HANDLE)(intptr_t)process.pid, 1000 * WAIT_S) != WAIT_OBJECT_0)
+        end_tool(&process, "the event was not heard");
+    tool_run run = run_tool_finish(&process);
+    if (run.code != 130) fail_msg("code %d: %s", run.code, run.error);
+    expect_sentence(&run, expect_kept());
+    assert_int_equal(count_outputs(0), 0);
+    tool_run_free(&run);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(control_c_keeps_what_is_written),
+    };
+    return cmocka_run_group_tests_name("console_events", tests, make_files, remove_files);
+}
