@@ -20,6 +20,22 @@ static void grow_expansion(double *expansion, size_t count, double number) {
     expansion[count] = sum;
 }
 
+typedef struct split_number {
+    double high, low; /* of 26 bits each */
+} split_number;
+
+static split_number split_double(double a) {
+    const double scaled = 0x8000001p0 * a, high = scaled - (scaled - a);
+    return (split_number){high, a - high};
+}
+
+/* What is missing in the rounded product a b (Dekker 1971). Not by fma(), which some C libraries compute in two roundings, as that
+ * of mingw-w64 does. */
+static double missing_in_product(double a, double b, double product) {
+    const split_number x = split_double(a), y = split_double(b);
+    return x.low * y.low - (((product - x.high * y.high) - x.low * y.high) - x.high * y.low);
+}
+
 /* The sign of ax by - ay bx + bx cy - by cx + cx ay - cy ax, each product as a sum of two doubles. */
 static int exact_sign(const double a[2], const double b[2], const double c[2]) {
     const double *const points[4] = {a, b, c, a};
@@ -28,9 +44,9 @@ static int exact_sign(const double a[2], const double b[2], const double c[2]) {
     for (int i = 0; i < 3; i++) {
         const double *p = points[i], *q = points[i + 1];
         const double forward = p[0] * q[1], backward = -p[1] * q[0];
-        grow_expansion(expansion, count++, fma(p[0], q[1], -forward));
+        grow_expansion(expansion, count++, missing_in_product(p[0], q[1], forward));
         grow_expansion(expansion, count++, forward);
-        grow_expansion(expansion, count++, fma(-p[1], q[0], -backward));
+        grow_expansion(expansion, count++, missing_in_product(-p[1], q[0], backward));
         grow_expansion(expansion, count++, backward);
     }
     /* The components do not overlap, so the largest that is not 0 has the sign of the sum. */
