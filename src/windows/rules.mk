@@ -31,10 +31,14 @@ $(NATIVE_LIBRARY): $(filter-out %/src/windows/wmain.o,$(NATIVE_OBJECTS))
 	$(Q)$(CC) $(OPTIMISE_$(CONFIG)) -shared -static -pthread -o $@ $^ $(BUILD)/libcscd-python.def $(TOOL_LIBS) $(LDFLAGS)
 
 # ANSWERS: the file that a Linux run wrote.
-test-windows-run: tool library $(TESTS) $(BUILD)/tests/windows/compare_answers
-	@cp -p $(TOOL) $(TOOL).exe
-	@BUILD=$(BUILD) tests/windows/run.sh $(TESTS) $(BUILD)/tests/windows/compare_answers
+WINDOWS_TESTS := $(addprefix $(BUILD)/tests/windows/,compare_answers console_events wide_paths)
+test-windows-run: tool library $(MODELS) $(TESTS) $(WINDOWS_TESTS)
+	@for program in $(TOOL) $(MODELS); do cp -p $$program $$program.exe; done
+	@BUILD=$(BUILD) tests/windows/run.sh $(TESTS) $(WINDOWS_TESTS)
 
 # The macros of cmocka take the formats of Microsoft for granted; and what runs once need not be fast, but soon compiled.
 $(addprefix $(OBJECTS)/,tests/% benchmarks/%): CFLAGS_ALL += -Wno-format -Wno-format-extra-args -O1 -g0
 $(TESTS): LINK_ALL += -Wl,--strip-debug
+
+# A solver that waits for -O1 is what takes longest.
+$(OBJECTS)/tests/windows/dense_solve.o: CFLAGS_ALL += -O3

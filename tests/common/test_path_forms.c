@@ -204,6 +204,23 @@ static void backslashes_separate(void **state) {
     expect_part(&folder, "left\\right");
     temp_folder_remove(&folder);
 }
+
+/* The names have quotes, a backslash, a tab, characters beyond ASCII, and a byte that is not valid UTF-8; the JSON is valid. Names
+ * of Windows are text. */
+static void names_are_bytes(void **state) {
+    (void)state;
+    const temp_folder folder = temp_folder_make();
+    const temp_path model = recorded_write_mesh(&folder, "\"Mod\\ell\"\t\u00e4\u20ac.obj", &scene, 0);
+    const temp_path cache = recorded_write_cache(&folder, "'\xff frames\x01.pc2", &scene);
+    const temp_path summary = temp_file_path(&folder, "\u65e5 \"out\".json");
+    EXPECT_TOOL(0, "replay", model.text, cache.text, "--json", summary.text);
+    json_node *root = json_node_read_file(summary.text);
+    const json_node *inputs = json_node_member(json_node_member(root, "provenance"), "inputs");
+    assert_string_equal(json_node_string(json_node_item(inputs, 0), "name"), model.text);
+    assert_non_null(strstr(json_node_string(json_node_item(inputs, 1), "name"), "'\ufffd frames\x01.pc2"));
+    json_node_free(root);
+    temp_folder_remove(&folder);
+}
 #endif
 
 /* The same lines, each with a carriage return. */
@@ -330,6 +347,9 @@ int main(void) {
         cmocka_unit_test(paths_are_long),
         cmocka_unit_test(short_names_are_in_long_folders),
         cmocka_unit_test(backslashes_separate),
+#ifndef _WIN32
+        cmocka_unit_test(names_are_bytes),
+#endif
         cmocka_unit_test(lines_end_either_way),
         cmocka_unit_test(an_output_is_replaced_in_one_step),
     };

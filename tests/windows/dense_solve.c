@@ -31,25 +31,42 @@ static uint32_t find_pivot(const float *column, uint32_t begin, uint32_t count) 
     return best;
 }
 
+/* Columns that stay near the processor while all others pass by. */
+enum { PANEL = 32 };
+
+/* Takes column k, which is done, out of another one. */
+static void subtract_column(const float *matrix, uint32_t count, uint32_t k, float *other) {
+    const float *column = matrix + (size_t)k * count;
+    const float factor = other[k];
+    if (column[k] == 0.0f) return;
+    for (uint32_t row = k + 1; row < count; row++) other[row] -= column[row] * factor;
+}
+
+/* Its pivot, and what is below it. */
+static void finish_column(float *matrix, uint32_t count, uint32_t k, int32_t *pivots, uint32_t *zero_pivot) {
+    float *column = matrix + (size_t)k * count;
+    const uint32_t pivot = find_pivot(column, k, count);
+    pivots[k] = (int32_t)pivot;
+    swap_rows(matrix, count, k, pivot);
+    if (column[k] == 0.0f && *zero_pivot == 0) *zero_pivot = k + 1;
+    if (column[k] == 0.0f) return;
+    for (uint32_t row = k + 1; row < count; row++) column[row] /= column[k];
+}
+
 cscd_status dense_factor(const charge_host *host, float *matrix, uint32_t count, int32_t *pivots,
                          uint32_t *zero_pivot) {
     *zero_pivot = 0;
-    for (uint32_t k = 0; k < count; k++) {
-        if (!host->go_on(host->context, (double)k / count)) return host->progress(host->context);
-        float *column = matrix + (size_t)k * count;
-        const uint32_t pivot = find_pivot(column, k, count);
-        pivots[k] = (int32_t)pivot;
-        swap_rows(matrix, count, k, pivot);
-        if (column[k] == 0.0f) {
-            *zero_pivot = *zero_pivot == 0 ? k + 1 : *zero_pivot;
-            continue;
+    for (uint32_t begin = 0; begin < count; begin += PANEL) {
+        const uint32_t end = count - begin < PANEL ? count : begin + PANEL;
+        for (uint32_t k = begin; k < end; k++) {
+            if (!host->go_on(host->context, (double)k / count)) return host->progress(host->context);
+            finish_column(matrix, count, k, pivots, zero_pivot);
+            for (uint32_t j = k + 1; j < end; j++)
+                subtract_column(matrix, count, k, matrix + (size_t)j * count);
         }
-        for (uint32_t row = k + 1; row < count; row++) column[row] /= column[k];
-        for (uint32_t j = k + 1; j < count; j++) {
-            float *other = matrix + (size_t)j * count;
-            const float factor = other[k];
-            for (uint32_t row = k + 1; row < count; row++) other[row] -= column[row] * factor;
-        }
+        for (uint32_t j = end; j < count; j++)
+            for (uint32_t k = begin; k < end; k++)
+                subtract_column(matrix, count, k, matrix + (size_t)j * count);
     }
     return host->progress(host->context);
 }
