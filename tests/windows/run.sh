@@ -1,6 +1,6 @@
 #!/bin/sh
 # Runs the test programs that are its arguments, built for Windows, under wine, and adds up their totals; `make test-windows` calls it.
-# BUILD is the build folder, ANSWERS the file that a Linux run wrote, LIMIT the seconds that one program may take. Says how many
+# BUILD is the build folder, ANSWERS the file that a Linux run wrote, ARCHIVE what is given away, LIMIT the seconds that one program may take. Says how many
 # programs ran, and of each that did not, why: tests/windows/left_out.txt. Ends non-zero when anything failed; its last line is
 # `N passed, M failed`.
 set -u
@@ -75,6 +75,16 @@ printf '%s\n' "$@" | xargs -P "${JOBS:-$(nproc)}" -I PROGRAM sh -c '
     echo "$?" >"$log.status"
     printf "%8d  %s\n" "$(($(date +%s) - began))" "${1#*/tests/}" >>"$2/seconds"' sh PROGRAM "$logs"
 for program in "$@"; do add_up "$program"; done
+
+if [ -n "${ARCHIVE:-}" ]; then
+    if tests/windows/archive.sh "$ARCHIVE" "$logs/archive"; then
+        passed=$((passed + 1))
+        echo 'the archive runs from another folder'
+    else
+        failed=$((failed + 1))
+        failures="$failures windows/archive.sh"
+    fi
+fi
 
 echo 'slowest, in seconds:'
 sort -rn "$logs/seconds" | head -10
