@@ -175,16 +175,41 @@ static bool try_again(int attempt) {
     return true;
 }
 
+/* FileRenameInfoEx, which headers have from a later version of Windows on than ours. */
+static const FILE_INFO_BY_HANDLE_CLASS rename_info_ex = (FILE_INFO_BY_HANDLE_CLASS)22;
+
+/* Names the file anew as POSIX does, also where somebody has one of that name open: he keeps what he has opened. Windows 10 does so
+ * on its own file system; false: this one does not, or it went wrong. */
+static bool rename_as_posix(const wchar_t *from, const wchar_t *to) {
+    const size_t size = wcslen(to) * sizeof *to;
+    FILE_RENAME_INFO *info = calloc(1, sizeof *info + size);
+    if (info == NULL) return false;
+    info->Flags = FILE_RENAME_FLAG_REPLACE_IF_EXISTS | FILE_RENAME_FLAG_POSIX_SEMANTICS;
+    info->FileNameLength = (DWORD)size;
+    memcpy(info->FileName, to, size);
+    const HANDLE handle =
+        CreateFileW(from, DELETE, share_all, NULL, OPEN_EXISTING, FILE_FLAG_BACKUP_SEMANTICS, NULL);
+    const bool renamed =
+        handle != INVALID_HANDLE_VALUE &&
+        SetFileInformationByHandle(handle, rename_info_ex, info, (DWORD)(sizeof *info + size));
+    if (handle != INVALID_HANDLE_VALUE) CloseHandle(handle);
+    free(info);
+    return renamed;
+}
+
 /* Takes the place of a file that is there, in one step. */
+static bool rename_wide(const wchar_t *from, const wchar_t *to) {
+    if (rename_as_posix(from, to)) return true;
+    BOOL moved = FALSE;
+    for (int i = 0; !moved && (i == 0 || try_again(i)); i++)
+        moved = MoveFileExW(from, to, MOVEFILE_REPLACE_EXISTING | MOVEFILE_COPY_ALLOWED);
+    return moved;
+}
+
 int windows_rename(const char *from, const char *to) {
     wchar_t *wide_from = wide_path(from), *wide_to = wide_path(to);
     int result = -1;
-    if (wide_from != NULL && wide_to != NULL) {
-        BOOL moved = FALSE;
-        for (int i = 0; !moved && (i == 0 || try_again(i)); i++)
-            moved = MoveFileExW(wide_from, wide_to, MOVEFILE_REPLACE_EXISTING | MOVEFILE_COPY_ALLOWED);
-        result = moved ? 0 : wide_failure();
-    }
+    if (wide_from != NULL && wide_to != NULL) result = rename_wide(wide_from, wide_to) ? 0 : wide_failure();
     free(wide_from);
     free(wide_to);
     return result;

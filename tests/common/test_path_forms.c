@@ -341,6 +341,24 @@ static void an_output_is_replaced_in_one_step(void **state) {
     temp_folder_remove(&folder);
 }
 
+/* As a page that a browser shows: it keeps nobody from writing the next one, and stays as it was. */
+static void an_open_output_is_replaced(void **state) {
+    (void)state;
+    static const char older[] = "what was there";
+    char kept[64] = "";
+    const temp_folder folder = temp_folder_make();
+    const temp_path model = recorded_write_mesh(&folder, "pair.obj", &scene, 0);
+    const temp_path json = temp_file_write(&folder, "out.json", older, strlen(older));
+    FILE *reader = fopen(json.text, "rb");
+    assert_non_null(reader);
+    EXPECT_TOOL(0, "check", model.text, "--json", json.text, "--quiet");
+    json_node_free(json_node_read_file(json.text));
+    assert_int_equal(fread(kept, 1, sizeof kept - 1, reader), strlen(older));
+    assert_string_equal(kept, older);
+    fclose(reader);
+    temp_folder_remove(&folder);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(names_are_utf8),
@@ -352,6 +370,7 @@ int main(void) {
 #endif
         cmocka_unit_test(lines_end_either_way),
         cmocka_unit_test(an_output_is_replaced_in_one_step),
+        cmocka_unit_test(an_open_output_is_replaced),
     };
     return cmocka_run_group_tests_name("path_forms", tests, make_scene, free_scene);
 }
