@@ -9,11 +9,21 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* One folder for all files of a program: thousands are damaged one after the other, and on some systems a folder takes longer than
+ * its file. */
+static temp_folder folder;
+
+static void remove_folder(void) {
+    temp_folder_remove(&folder);
+}
+
 bool mesh_check_read(file_bytes file, mesh_file *mesh, io_error *error) {
-    temp_folder folder = temp_folder_make();
+    if (folder.path[0] == '\0') {
+        folder = temp_folder_make();
+        atexit(remove_folder);
+    }
     temp_path path = temp_file_write(&folder, file.name, file.bytes, file.size);
     bool done = mesh_file_read(path.text, mesh, error);
-    temp_folder_remove(&folder);
     return done;
 }
 
