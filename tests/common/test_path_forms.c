@@ -270,7 +270,8 @@ static void check_files(const checked_files *f) {
 /* Models, tables and lists, with the line ends of either system. */
 static void check_line_ends(const temp_folder *folder, const temp_folder *other, const char *model) {
     static const char ignored[] = "# rests\n0 4\n1 5\n",
-                      parts[] = "triangle,name\n0,Wall\n1,Wall\n2,Wall\n3,Wall\n4,Dart\n5,Dart\n6,Dart\n7,Dart\n";
+                      parts[] =
+                          "triangle,name\n0,Wall\n1,Wall\n2,Wall\n3,Wall\n4,Dart\n5,Dart\n6,Dart\n7,Dart\n";
     const checked_files plain = name_files(folder, model), returns = name_files(other, model);
     recorded_write_cache(folder, "frames.pc2", &scene);
     recorded_write_cache(other, "frames.pc2", &scene);
@@ -308,7 +309,8 @@ static void read_once(watched_output *w, char *bytes) {
     w->reads++;
     w->missing += file == NULL;
     if (file == NULL) return;
-    w->partial += fread(bytes, 1, w->size + 1, file) != w->size || bytes[0] != '{' || bytes[w->size - 2] != '}';
+    w->partial +=
+        fread(bytes, 1, w->size + 1, file) != w->size || bytes[0] != '{' || bytes[w->size - 2] != '}';
     fclose(file);
 }
 

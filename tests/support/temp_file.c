@@ -45,9 +45,12 @@ temp_path temp_file_path(const temp_folder *folder, const char *name) {
 
 temp_path temp_file_write(const temp_folder *folder, const char *name, const void *bytes, size_t size) {
     temp_path path = temp_file_path(folder, name);
-    FILE *file = fopen(path.text, "wb");
+    /* Where a file is emptied and written again, file systems wait for the disk; a new one takes as long under wine. */
+    FILE *file = fopen(path.text, "r+b");
+    if (file == NULL) file = fopen(path.text, "wb");
     require_done(file != NULL, "create", path.text);
-    require_done(fwrite(bytes, 1, size, file) == size, "write", path.text);
+    require_done(fwrite(bytes, 1, size, file) == size && fflush(file) == 0, "write", path.text);
+    require_done(ftruncate(fileno(file), (off_t)size) == 0, "cut", path.text);
     require_done(fclose(file) == 0, "close", path.text);
     return path;
 }

@@ -94,9 +94,10 @@ static void wait_for_contacts(const tool_process *process) {
 
 static void expect_sentence(const tool_run *run, size_t done) {
     char kept[1200];
-    snprintf(kept, sizeof kept,
-             "cscd: interrupted after %u of %u intervals (frames 0 to %u); what was found is kept in %s, %s\n",
-             (unsigned)done, (unsigned)INTERVALS, (unsigned)done, csv.text, summary.text);
+    snprintf(
+        kept, sizeof kept,
+        "cscd: interrupted after %u of %u intervals (frames 0 to %u); what was found is kept in %s, %s\n",
+        (unsigned)done, (unsigned)INTERVALS, (unsigned)done, csv.text, summary.text);
     if (strstr(run->error, kept) == NULL) fail_msg("expected '%s' in: %s", kept, run->error);
 }
 

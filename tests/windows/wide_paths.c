@@ -15,7 +15,8 @@ static void expect_wide(const char *path, const wchar_t *begin, const wchar_t *e
     wchar_t *wide = wide_path(path);
     assert_non_null(wide);
     const size_t size = wcslen(wide), end_size = wcslen(end);
-    if (wcsncmp(wide, begin, wcslen(begin)) != 0 || size < end_size || wcscmp(wide + size - end_size, end) != 0)
+    if (wcsncmp(wide, begin, wcslen(begin)) != 0 || size < end_size ||
+        wcscmp(wide + size - end_size, end) != 0)
         fail_msg("%s became %ls, which should begin by %ls and end by %ls", path, wide, begin, end);
     assert_true(size < MAX_PATH - 12 || wcsncmp(wide, L"\\\\?\\", 4) == 0);
     free(wide);
