@@ -28,12 +28,16 @@ uint32_t frame_list_frames(const frame_list *list) {
     return sum;
 }
 
+/* A long recording may have thousands of spans, which nobody reads. */
+enum { SPANS_PRINTED = 20 };
+
 void frame_list_print(const frame_list *list, const int32_t *numbers, const char *prefix) {
-    for (uint32_t i = 0; i < list->count; i++) {
+    for (uint32_t i = 0; i < list->count && i < SPANS_PRINTED; i++) {
         fputs(i == 0 ? prefix : ", ", stdout);
         printf("%d", numbers[list->spans[i].first]);
         if (list->spans[i].last > list->spans[i].first) printf("-%d", numbers[list->spans[i].last]);
     }
+    if (list->count > SPANS_PRINTED) fputs(" and others", stdout);
     putchar('\n');
 }
 
