@@ -1,7 +1,7 @@
 """Packs the extension as a zip: `pack.py FOLDER WHEEL...` writes FOLDER/cscd_blender-VERSION.zip and prints its path.
 
-All files lie in one folder within the archive, which Blender 4.2 takes as an extension and Blender 3.4 as an add-on. The wheels of
-the Python package are in it, and the manifest in it names no platform but theirs. The same files make the same bytes.
+All files lie in one folder within the archive, which Blender 4.2 takes as an extension and Blender 3.4 as an add-on. The wheels
+of the Python package are in it, and the manifest in it names no platform but theirs. The same files make the same bytes.
 """
 import os
 import re
