@@ -275,7 +275,7 @@ def _interpreter() -> str:
         folders, names = ["bin"], [f"python{sys.version_info[0]}.{sys.version_info[1]}", "python3"]
     beside = [os.path.join(prefix, folder, name) for prefix in (sys.exec_prefix, sys.base_exec_prefix)
               for folder in folders for name in names]
-    for path in (sys.executable, *beside, *map(shutil.which, names)):
+    for path in (sys.executable, *beside, *(shutil.which(name) for name in names)):
         if path and "python" in os.path.basename(path).lower() and os.access(path, os.X_OK):
             return path
     raise Error("write_report runs the tool in a process of its own, and found no Python for it; "
