@@ -242,7 +242,7 @@ static void same_as_brute_force_far_away(void **state) {
         }
         pairs += truth.count;
     }
-    assert_true(pairs > 100);
+    assert_true(pairs > 200);
     oracle_free(&truth);
 }
 
