@@ -30,43 +30,58 @@ static bool in_order(const cscd_contact *a, const cscd_contact *b) {
     return a->a != b->a ? a->a < b->a : a->b < b->b;
 }
 
-static cscd_contacts collect_from(rig *r, search_space *s, cscd_counters *counters, result_buffer *buffer,
-                                  const exclusions *e) {
+/* What a list is collected from, and into. */
+typedef struct collection {
+    rig rig;
+    search_space space;
+    exclusions excluded;
+    result_buffer buffer;
+    cscd_counters counters;
+} collection;
+
+static collection collection_begin(uint32_t threads, const cscd_detector_options *options) {
+    collection c = {.rig = rig_create(&shape, threads, NULL)};
+    assert_int_equal(search_space_create(c.rig.mesh, &c.space), CSCD_OK);
+    assert_int_equal(exclusions_create(c.rig.mesh, options, &c.excluded), CSCD_OK);
+    return c;
+}
+
+static void collection_end(collection *c) {
+    result_buffer_free(c->rig.context, &c->buffer);
+    exclusions_free(c->rig.context, &c->excluded);
+    search_space_destroy(&c->space);
+    rig_destroy(&c->rig);
+}
+
+static cscd_contacts collect_contacts(collection *c) {
     cscd_contacts found = {.count = 0};
-    *counters = (cscd_counters){.vf = 0};
-    fill_lanes(r->context, s);
-    s->lanes[0].feature_pairs = 3;
-    s->lanes[0].decided[ELEMENTARY_SIGNS] = 2;
-    assert_int_equal(contact_list_collect(s, e, buffer, counters, &found), CSCD_OK);
+    c->counters = (cscd_counters){.vf = 0};
+    fill_lanes(c->rig.context, &c->space);
+    c->space.lanes[0].feature_pairs = 3;
+    c->space.lanes[0].decided[ELEMENTARY_SIGNS] = 2;
+    assert_int_equal(contact_list_collect(&c->space, &c->excluded, &c->buffer, &c->counters, &found),
+                     CSCD_OK);
     return found;
 }
 
 static void lists_are_sorted_for_any_lane_count(void **state) {
     static cscd_contact expected[CONTACT_COUNT];
     (void)state;
+    const cscd_detector_options options = cscd_detector_defaults();
     scene_make(SCENE_SPIKE, 1, &shape);
     for (uint32_t threads = 1; threads <= 4; threads++) {
-        rig r = rig_create(&shape, threads, NULL);
-        search_space s;
-        exclusions none;
-        result_buffer buffer = {.capacity = 0};
-        cscd_counters counters;
-        cscd_detector_options options = cscd_detector_defaults();
-        assert_int_equal(search_space_create(r.mesh, &s), CSCD_OK);
-        assert_int_equal(exclusions_create(r.mesh, &options, &none), CSCD_OK);
-        cscd_contacts found = collect_from(&r, &s, &counters, &buffer, &none);
+        collection c = collection_begin(threads, &options);
+        const cscd_contacts found = collect_contacts(&c);
+        const cscd_counters *counted = &c.counters;
         assert_int_equal(found.count, CONTACT_COUNT);
         for (size_t i = 1; i < found.count; i++) assert_true(in_order(&found.items[i - 1], &found.items[i]));
-        assert_true(counters.vf == 5 && counters.ee == 3 && counters.bounded == 1);
-        assert_true(counters.feature_pairs == 3 && counters.by_signs == 2 && counters.tests == 2);
+        assert_true(counted->vf == 5 && counted->ee == 3 && counted->bounded == 1);
+        assert_true(counted->feature_pairs == 3 && counted->by_signs == 2 && counted->tests == 2);
         if (threads == 1)
             memcpy(expected, found.items, sizeof expected);
         else
             assert_memory_equal(found.items, expected, sizeof expected);
-        result_buffer_free(r.context, &buffer);
-        exclusions_free(r.context, &none);
-        search_space_destroy(&s);
-        rig_destroy(&r);
+        collection_end(&c);
     }
 }
 
@@ -76,55 +91,38 @@ static bool ignore_everything(void *user, cscd_contact_kind kind, uint32_t a, ui
 
 static void what_the_caller_ignores_is_not_counted(void **state) {
     (void)state;
-    scene_make(SCENE_SPIKE, 1, &shape);
-    rig r = rig_create(&shape, 1, NULL);
-    search_space s;
-    exclusions all;
-    result_buffer buffer = {.capacity = 0};
-    cscd_counters counters;
     cscd_detector_options options = cscd_detector_defaults();
     options.ignore = ignore_everything;
-    assert_int_equal(search_space_create(r.mesh, &s), CSCD_OK);
-    assert_int_equal(exclusions_create(r.mesh, &options, &all), CSCD_OK);
-    cscd_contacts found = collect_from(&r, &s, &counters, &buffer, &all);
-    assert_int_equal(found.count, 0);
-    assert_true(counters.vf == 0 && counters.ee == 0 && counters.bounded == 0 && counters.feature_pairs == 3);
-    result_buffer_free(r.context, &buffer);
-    exclusions_free(r.context, &all);
-    search_space_destroy(&s);
-    rig_destroy(&r);
+    scene_make(SCENE_SPIKE, 1, &shape);
+    collection c = collection_begin(1, &options);
+    assert_int_equal(collect_contacts(&c).count, 0);
+    assert_true(c.counters.vf == 0 && c.counters.ee == 0 && c.counters.bounded == 0 &&
+                c.counters.feature_pairs == 3);
+    collection_end(&c);
 }
 
 /* ---- long lists ---------------------------------------------------------------------------------------- */
 
 static void lanes_of_long_lists_give_back_their_memory(void **state) {
     (void)state;
+    const cscd_detector_options options = cscd_detector_defaults();
     scene_make(SCENE_SPIKE, 1, &shape);
     for (uint32_t threads = 1; threads <= 4; threads++) {
-        rig r = rig_create(&shape, threads, NULL);
-        search_space s;
-        exclusions none;
-        result_buffer by_copy = {.capacity = 0}, by_move = {.capacity = 0};
-        cscd_counters counted, counters;
-        cscd_detector_options options = cscd_detector_defaults();
-        assert_int_equal(search_space_create(r.mesh, &s), CSCD_OK);
-        assert_int_equal(exclusions_create(r.mesh, &options, &none), CSCD_OK);
-        const cscd_contacts expected = collect_from(&r, &s, &counted, &by_copy, &none);
-        s.moves_from = 1;
+        collection copying = collection_begin(threads, &options),
+                   moving = collection_begin(threads, &options);
+        const cscd_contacts expected = collect_contacts(&copying);
+        moving.space.moves_from = 1;
         for (int round = 0; round < 2; round++) {
-            const cscd_contacts found = collect_from(&r, &s, &counters, &by_move, &none);
+            const cscd_contacts found = collect_contacts(&moving);
             assert_int_equal(found.count, expected.count);
             assert_memory_equal(found.items, expected.items, found.count * sizeof *found.items);
-            assert_memory_equal(&counters, &counted, sizeof counters);
-            assert_true(by_move.keys == NULL && by_move.spare_keys == NULL);
-            for (uint32_t i = 0; i < s.traversal.lane_count; i++)
-                assert_true(s.lanes[i].count == 0 && s.lanes[i].block_count == 0);
+            assert_memory_equal(&moving.counters, &copying.counters, sizeof moving.counters);
+            assert_true(moving.buffer.keys == NULL && moving.buffer.spare_keys == NULL);
+            for (uint32_t i = 0; i < moving.space.traversal.lane_count; i++)
+                assert_true(moving.space.lanes[i].count == 0 && moving.space.lanes[i].block_count == 0);
         }
-        result_buffer_free(r.context, &by_copy);
-        result_buffer_free(r.context, &by_move);
-        exclusions_free(r.context, &none);
-        search_space_destroy(&s);
-        rig_destroy(&r);
+        collection_end(&copying);
+        collection_end(&moving);
     }
 }
 
