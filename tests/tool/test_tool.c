@@ -210,6 +210,34 @@ static void never_overwrites_an_input(void **state) {
     free(cache_bytes);
 }
 
+/* The line of contacts behind "; from frame ", of a recording that goes there and back for so many frames. */
+static void find_ranges(uint32_t frame_count, char line[1000]) {
+    recorded scene = recorded_tetrahedra(6);
+    const temp_path cycle = recorded_write_cycle(&folder, "cycle.pc2", &scene, frame_count);
+    recorded_free(&scene);
+    tool_run run = RUN_TOOL("replay", model.text, cycle.text);
+    const char *ranges = strstr(run.out, "; from frame ");
+    assert_non_null(ranges);
+    snprintf(line, 1000, "%.*s", (int)strcspn(ranges, "\n"), ranges);
+    tool_run_free(&run);
+}
+
+static size_t count_commas(const char *line) {
+    size_t count = 0;
+    for (; *line != '\0'; line++) count += *line == ',';
+    return count;
+}
+
+static void names_the_first_ranges_of_a_long_recording(void **state) {
+    (void)state;
+    char line[1000];
+    find_ranges(31, line);
+    assert_true(count_commas(line) < 19 && strstr(line, "others") == NULL);
+    find_ranges(1001, line);
+    assert_int_equal(count_commas(line), 19);
+    assert_string_equal(line + strlen(line) - strlen(" and others"), " and others");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(says_its_version),
@@ -222,6 +250,7 @@ int main(void) {
         cmocka_unit_test(names_the_bytes_of_a_truncated_cache),
         cmocka_unit_test(refuses_outputs_it_cannot_write),
         cmocka_unit_test(never_overwrites_an_input),
+        cmocka_unit_test(names_the_first_ranges_of_a_long_recording),
     };
     return cmocka_run_group_tests_name("tool", tests, make_files, remove_files);
 }

@@ -18,6 +18,7 @@ bool frame_list_add(frame_list *list, uint32_t frame);
 /* How many frames the list holds. */
 uint32_t frame_list_frames(const frame_list *list);
 
-/* Prints prefix, then "3, 7-12, 20", and a line end; for an empty list the line end only. numbers: of all frames. */
+/* Prints prefix, then "3, 7-12, 20", and a line end; for an empty list the line end only. Behind the first 20 ranges stands
+ * "and others". numbers: of all frames. */
 void frame_list_print(const frame_list *list, const int32_t *numbers, const char *prefix);
 void frame_list_free(frame_list *list);
