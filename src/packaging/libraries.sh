@@ -7,7 +7,8 @@ cd "$(dirname "$0")/../.."
 host=$1 folder=$2
 shift 2
 root=$(pwd)/$folder
-# The compilers are not CC, which is the compiler of this machine.
+# The compilers are not CC, which is the compiler of this machine; and who calls may be a make that was given it.
+unset CC CXX CFLAGS CXXFLAGS CPPFLAGS LDFLAGS MAKEFLAGS MAKEOVERRIDES MFLAGS
 prefix=/usr/$host
 case $host in
 x86_64-w64-mingw32)
