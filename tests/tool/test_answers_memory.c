@@ -100,7 +100,8 @@ static bool add_frames(answers *a, cscd_detector *detector, io_error *error) {
     cscd_intersection_pairs found;
     for (uint32_t frame = 0; frame < 8; frame++) {
         if (!recording_read(&scene, frame, positions, error) ||
-            !answers_add_frame(a, detector, frame, positions, &found, error))
+            !answers_find(a, detector, positions, &found, error) ||
+            !answers_add_found(a, frame, &found, 0.0, error))
             return false;
     }
     return answers_finish(a, error);

@@ -192,6 +192,57 @@ static void an_interrupt_keeps_what_is_written(void **state) {
     recorded_free(&scene);
 }
 
+/* Starts the tool, interrupts it when its outputs have been begun, and expects that nothing was finished of what it counts. */
+static void interrupt_first(const char *const *arguments, const char *kept) {
+    remove(csv.text);
+    remove(summary.text);
+    tool_process process = run_tool_start(arguments);
+    double start = now_s();
+    while (!outputs_have(0) && now_s() - start < 120) usleep(2000);
+    usleep(300 * 1000);
+    kill(process.pid, SIGINT);
+    tool_run run = run_tool_finish(&process);
+    assert_int_equal(run.code, 130);
+    if (strstr(run.error, kept) == NULL) fail_msg("expected '%s' in: %s", kept, run.error);
+    tool_run_free(&run);
+}
+
+/* Needles that lie across each other: every one of count crosses every one of another count. */
+static temp_path write_crossed_needles(uint32_t count) {
+    temp_path path = temp_file_path(&folder, "needles.obj");
+    FILE *file = fopen(path.text, "w");
+    assert_non_null(file);
+    for (uint32_t i = 0; i < count; i++) {
+        fprintf(file, "v -1 %u -0.5\nv %u %u -0.5\nv 0 %u.1 0.5\n", i, count, i, i);
+        fprintf(file, "v %u -1 -0.5\nv %u %u -0.5\nv %u.1 0 0.5\n", i, i, count, i);
+    }
+    for (uint32_t i = 0; i < 2 * count; i++) fprintf(file, "f %u %u %u\n", 3 * i + 1, 3 * i + 2, 3 * i + 3);
+    assert_int_equal(fclose(file), 0);
+    return path;
+}
+
+/* One interval, or one frame, that takes much longer than the signal needs is not waited for. */
+static void an_interrupt_ends_a_long_call(void **state) {
+    (void)state;
+    recorded scene = recorded_fold(120, 80, 2);
+    temp_path model = recorded_write_mesh(&folder, "large.obj", &scene, 0);
+    temp_path cache = recorded_write_cycle(&folder, "large.pc2", &scene, 2);
+    interrupt_first((const char *const[]){"replay", model.text, cache.text, "--method", "brute", "--no-check",
+                                          "--contacts", csv.text, "--json", summary.text, NULL},
+                    "cscd: interrupted after 0 of 1 intervals; what was found is kept in ");
+    expect_stopped(0, 1, "interrupted");
+    recorded_free(&scene);
+    temp_path needles = write_crossed_needles(1500);
+    interrupt_first(
+        (const char *const[]){"check", needles.text, "--csv", csv.text, "--json", summary.text, NULL},
+        "cscd: interrupted after 0 of 1 frames; what was found is kept in ");
+    json_node *root = json_node_read_file(summary.text);
+    assert_false(json_node_boolean(root, "complete"));
+    assert_string_equal(json_node_string(root, "stopped_by"), "interrupted");
+    assert_int_equal(json_node_member(root, "frames")->count, 0);
+    json_node_free(root);
+}
+
 /* A signal that comes before the tool has begun ends it as any program, without a sentence. */
 static tool_run interrupt_preprocess(const char *model) {
     for (useconds_t wait = 200 * 1000;; wait *= 2) {
@@ -266,6 +317,7 @@ int main(void) {
         cmocka_unit_test(a_frame_of_another_size_keeps_the_intervals_before),
         cmocka_unit_test(a_full_disk_is_an_error),
         cmocka_unit_test(an_interrupt_keeps_what_is_written),
+        cmocka_unit_test(an_interrupt_ends_a_long_call),
         cmocka_unit_test(an_interrupted_preprocess_writes_nothing),
         cmocka_unit_test(memory_does_not_grow_with_the_frames),
     };

@@ -145,12 +145,6 @@ bool answers_add_found(answers *a, uint32_t frame, cscd_intersection_pairs *foun
     return cscd_event_tracker_add_frame(a->tracker, frame, found) == CSCD_OK || api_failed(a, error);
 }
 
-bool answers_add_frame(answers *a, cscd_detector *detector, uint32_t frame, const double *positions,
-                       cscd_intersection_pairs *found, io_error *error) {
-    return answers_find(a, detector, positions, found, error) &&
-           answers_add_found(a, frame, found, cscd_detector_timings(detector).check_ms, error);
-}
-
 bool answers_skip_frame(answers *a, uint32_t frame, io_error *error) {
     return push_frame(a, frame, error) != NULL &&
            (cscd_event_tracker_add_frame(a->tracker, frame, NULL) == CSCD_OK || api_failed(a, error));

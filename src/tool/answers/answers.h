@@ -53,11 +53,7 @@ bool answers_find(const answers *a, cscd_detector *detector, const double *posit
 bool answers_add_found(answers *a, uint32_t frame, cscd_intersection_pairs *found, double ms,
                        io_error *error);
 
-/* Both. */
-bool answers_add_frame(answers *a, cscd_detector *detector, uint32_t frame, const double *positions,
-                       cscd_intersection_pairs *found, io_error *error);
-
-/* The same of a frame in which nothing is looked for. */
+/* Adds a frame in which nothing is looked for. */
 bool answers_skip_frame(answers *a, uint32_t frame, io_error *error);
 
 /* The last frame has come, be it earlier than expected: finds the events. Those of duplicates alone are left out,

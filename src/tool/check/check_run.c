@@ -36,7 +36,11 @@ static bool check_frame(check_run *c, uint32_t frame, io_error *error) {
     cscd_intersection_pairs found;
     io_error reason;
     if (!recording_read(&c->recording, frame, c->positions, error)) return false;
-    if (!answers_add_frame(&c->answers, c->detector, frame, c->positions, &found, &reason))
+    c->progress.may_stop = true; /* nothing of the frame is written yet */
+    bool looked = answers_find(&c->answers, c->detector, c->positions, &found, &reason);
+    c->progress.may_stop = false;
+    if (!looked ||
+        !answers_add_found(&c->answers, frame, &found, cscd_detector_timings(c->detector).check_ms, &reason))
         return io_fail(error, "frame %d: %s", c->recording.frame_numbers[frame], reason.text);
     return check_output_add(&c->output, &c->answers, &found, error) &&
            exports_add_frame(&c->exports, frame, c->positions, &found, error);
@@ -138,7 +142,9 @@ int check_run_on(const check_options *options, const char *name, job_output *job
     check_run c = {.options = options, .name = name, .job = job};
     io_error error = {""};
     int code;
-    if (!recording_open(&options->source, &c.recording, &error)) return fail_input("%s", error.text);
+    recording_options source = options->source;
+    source.progress = (cscd_progress){terminal_progress_within, &c.progress};
+    if (!recording_open(&source, &c.recording, &error)) return fail_input("%s", error.text);
     interrupt_catch();
     if (prepare_check(&c, &error)) {
         terminal_progress_begin(&c.progress, options->quiet);

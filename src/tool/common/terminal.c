@@ -10,7 +10,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { REDRAW_MS = 100, BAR_WIDTH = 30 };
+enum { REDRAW_MS = 100, BAR_WIDTH = 30, LONG_CALL_MS = 1000, PERCENT = 100 };
 
 static double now_ms(void) {
     struct timespec now;
@@ -22,15 +22,35 @@ void terminal_progress_begin(terminal_progress *p, bool quiet) {
     *p = (terminal_progress){.shown = !quiet && isatty(STDERR_FILENO) != 0};
 }
 
-void terminal_progress_update(terminal_progress *p, uint32_t done, uint32_t total, const char *what) {
-    if (!p->shown || (done < total && now_ms() - p->last_ms < REDRAW_MS)) return;
+/* stage: of a call that takes long, and NULL otherwise. */
+static void draw_line(terminal_progress *p, const char *stage, double fraction) {
     p->last_ms = now_ms();
     char bar[BAR_WIDTH + 1];
-    uint32_t filled = total > 0 ? (uint32_t)((uint64_t)done * BAR_WIDTH / total) : 0;
+    uint32_t filled = p->total > 0 ? (uint32_t)((uint64_t)p->done * BAR_WIDTH / p->total) : 0;
     for (uint32_t i = 0; i < BAR_WIDTH; i++) bar[i] = i < filled ? '#' : '.';
     bar[BAR_WIDTH] = '\0';
-    fprintf(stderr, "\r%s %s %u/%u\033[K", what, bar, done, total);
+    fprintf(stderr, "\r%s %s %u/%u", p->what, bar, p->done, p->total);
+    if (stage != NULL) fprintf(stderr, ", %s %d %%", stage, (int)(fraction * PERCENT));
+    fputs("\033[K", stderr);
     fflush(stderr);
+}
+
+void terminal_progress_update(terminal_progress *p, uint32_t done, uint32_t total, const char *what) {
+    if (!p->shown) return;
+    p->done = done;
+    p->total = total;
+    p->what = what;
+    p->begun_ms = now_ms();
+    if (done == total || p->begun_ms - p->last_ms >= REDRAW_MS) draw_line(p, NULL, 0.0);
+}
+
+bool terminal_progress_within(void *line, const char *stage, double fraction) {
+    terminal_progress *p = line;
+    if (p->shown && p->what != NULL) {
+        const double now = now_ms();
+        if (now - p->begun_ms >= LONG_CALL_MS && now - p->last_ms >= REDRAW_MS) draw_line(p, stage, fraction);
+    }
+    return !(p->may_stop && interrupt_ends_wait());
 }
 
 void terminal_progress_say(terminal_progress *p, const char *text) {

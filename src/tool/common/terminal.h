@@ -7,12 +7,18 @@
 
 typedef struct terminal_progress {
     bool shown;
-    double last_ms; /* of the last redraw */
+    bool may_stop; /* does an interrupt end the call of the library that runs? See terminal_progress_within */
+    double last_ms, begun_ms; /* of the last redraw, and of the last update */
+    uint32_t done, total;     /* of the last update */
+    const char *what;
 } terminal_progress;
 
 /* The line is shown only if stderr is a terminal and quiet is false. */
 void terminal_progress_begin(terminal_progress *p, bool quiet);
 void terminal_progress_update(terminal_progress *p, uint32_t done, uint32_t total, const char *what);
+/* The callback of a context (cscd_progress), whose user is the line: shows behind the bar how far a call is that takes long, and
+ * ends it when an interrupt has come and it may stop; then interrupt_ended_wait is true. */
+bool terminal_progress_within(void *line, const char *stage, double fraction);
 /* A text instead of the bar. */
 void terminal_progress_say(terminal_progress *p, const char *text);
 /* Clears the line. */

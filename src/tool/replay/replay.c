@@ -96,7 +96,9 @@ static bool open_outputs(replay *r, io_error *error) {
 
 /* Opens everything that can fail before the work begins. */
 static bool begin_replay(replay *r, io_error *error) {
-    return recording_open(&r->options->source, &r->recording, error) && choose_frames(r, error) &&
+    recording_options source = r->options->source;
+    source.progress = (cscd_progress){terminal_progress_within, &r->progress};
+    return recording_open(&source, &r->recording, error) && choose_frames(r, error) &&
            ignore_pairs_prepare(&r->options->ignored, &r->recording, &r->ignored, error) &&
            outputs_open(r->options, error) && prepare_plan(r, error) && prepare_answers(r, error) &&
            prepare_source(r, error) && open_outputs(r, error);
@@ -158,7 +160,10 @@ static bool write_contacts(replay *r, uint32_t frame, const cscd_contacts *conta
 /* An interval, and the frame at its end. */
 static bool run_interval(replay *r, uint32_t k, io_error *error) {
     interval_step step;
-    if (!replay_source_step(&r->source, k, &step, error)) return false;
+    r->progress.may_stop = true; /* nothing of the interval is written yet */
+    const bool found = replay_source_step(&r->source, k, &step, error);
+    r->progress.may_stop = false;
+    if (!found) return false;
     const cscd_contacts *contacts = &step.contacts;
     interval_result result = {.frame = r->recording.frame_numbers[k],
                               .contact_count = contacts->count,
@@ -185,7 +190,10 @@ static bool run_interval(replay *r, uint32_t k, io_error *error) {
 static bool run_intervals(replay *r, io_error *error) {
     frame_check check;
     if (r->first == r->last) return true; /* a shard without intervals */
-    if (!replay_source_begin(&r->source, r->first, &check, error)) return false;
+    r->progress.may_stop = true;
+    const bool begun = replay_source_begin(&r->source, r->first, &check, error);
+    r->progress.may_stop = false;
+    if (!begun) return false;
     replay_report_begin(&r->report, r->source.x0);
     if (!take_frame(r, r->first, &check, &r->start_state, error)) return false;
     for (uint32_t k = r->first; k < r->last && !interrupted(); k++) {
