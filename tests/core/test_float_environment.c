@@ -11,7 +11,7 @@
 #include <stdlib.h>
 
 #ifdef SLOW_MACHINE
-enum { SCENES = 10 };
+enum { SCENES = 5 };
 #else
 enum { SCENES = 24 };
 #endif
