@@ -124,6 +124,32 @@ def large_recordings_are_thinned_and_say_so(context):
     expect_equal(page.frame(), scene["last"], "last frame")
 
 
+def long_recordings_stay_small(context):
+    """Of many intervals the page has columns: the same numbers, few bytes each, and no more elements of twice as many."""
+    page = context.page
+    elements, sizes = [], []
+    for intervals in (500, 2000, 4000):
+        made = context.material.long(intervals)
+        page.open(made.page)
+        report, summary = Report(made.page), made.summary()
+        expect_equal(report.summary(), summary, f"summary of {intervals} intervals in the page")
+        shown = page.script("""
+            const plain = (row) => row === null || typeof row !== 'object' || Array.isArray(row) ? row : Object.fromEntries(
+              [...new Set([...Object.keys(row), ...Object.keys(Object.getPrototypeOf(row))])].map((key) => [key, plain(row[key])]));
+            const { intervals, frames } = window.cscd.report.summaries[0].summary;
+            return [intervals, frames].map((rows) => rows.map(plain));""")
+        expect_equal(shown, [summary["intervals"], summary["frames"]], f"{intervals} intervals as the page reads them")
+        expect_equal(len(page.table("Intervals")) > 20, True, "rows of intervals are shown")
+        page.click("button", "Last frame")
+        expect_equal(page.frame(), intervals, "last frame")
+        elements.append(page.script("return document.querySelectorAll('*').length;"))
+        sizes.append(len(report.page))
+    bytes_each = (sizes[2] - sizes[1]) / 2000
+    print(f"long recordings: {bytes_each:.0f} bytes an interval, {elements} elements")
+    expect(bytes_each < 150, f"an interval takes {bytes_each:.0f} bytes of the page")
+    expect(elements[2] < elements[1] + 100, f"{elements} elements of 500, 2000 and 4000 intervals")
+
+
 SCENARIOS = (names_are_text, part_of_a_recording_keeps_its_numbers, nothing_touches, a_single_interval,
              y_may_point_up, damaged_pages_say_so, pages_without_webgl_show_the_rest,
-             large_recordings_are_thinned_and_say_so)
+             large_recordings_are_thinned_and_say_so, long_recordings_stay_small)

@@ -193,6 +193,21 @@ class Material:
         self.replay_files(made, "--method", "single", "--no-check")
         return made
 
+    def long(self, intervals):
+        """Makes a pyramid that goes in and out of a triangle for so many intervals."""
+        return self.once(f"long-{intervals}", lambda name: self._long(name, intervals))
+
+    def _long(self, name, intervals):
+        made = Made(self.folder, name)
+        sheet = [(-9.0, -9.0, 0.0), (9.0, -9.0, 0.0), (0.0, 9.0, 0.0)]
+        pyramid = [(-1.0, -1.0, 1.0), (1.0, -1.0, 1.0), (0.0, 1.0, 1.0), (0.0, 0.0, 0.5)]
+        heights = [0.6 * math.sin(0.1 * k) - 0.3 for k in range(intervals + 1)]
+        frames = [sheet + [(x, y, z + height) for x, y, z in pyramid] for height in heights]
+        recording_file.write_obj(made.model, frames[0], [(0, 1, 2), (3, 5, 4), (3, 4, 6), (4, 5, 6), (5, 3, 6)])
+        recording_file.write_pc2(made.frames, [recording_file.flat(frame) for frame in frames])
+        self.replay_files(made)
+        return made
+
 
 def limbs_at(tips):
     """Returns the positions of the body and of limbs whose tips are at these x."""

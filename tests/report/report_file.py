@@ -8,7 +8,7 @@ from array import array
 from itertools import accumulate
 
 FORMATS = {"u8": "B", "u32": "I", "f32": "f", "f64": "d"}
-BLOCK = re.compile(rb'<script type="application/([a-z-]+)" id="cscd-(report|array-[a-z_]+)">(.*?)</script>', re.DOTALL)
+BLOCK = re.compile(rb'<script type="application/([a-z-]+)" id="cscd-(report|array-[a-z0-9_-]+)">(.*?)</script>', re.DOTALL)
 
 
 class Report:
@@ -26,11 +26,37 @@ class Report:
         self.document = json.loads(documents[0])
         self.scene = self.document["scene"]
         packed = {name.decode()[len("array-"):]: text for kind, name, text in blocks if name != b"report"}
-        stated = self.scene["arrays"] if self.scene else []
+        stated = (self.scene["arrays"] if self.scene else []) + self.table_arrays()
         if sorted(packed) != sorted(entry["name"] for entry in stated):
             raise ValueError(f"{path}: arrays {sorted(packed)} are not those that the document states")
         self.arrays = {entry["name"]: unpack(packed[entry["name"]], entry) for entry in stated}
         self.packed_sizes = {name: len(text) for name, text in packed.items()}
+        for summary, name, table in list(self.tables()):
+            summary[name] = self.rows(table)
+
+    def tables(self):
+        """Returns (summary, name, table) of every long array that the page holds as columns."""
+        for entry in self.document["summaries"]:
+            for name, value in entry["summary"].items():
+                if isinstance(value, dict) and "columns" in value:
+                    yield entry["summary"], name, value
+
+    def table_arrays(self):
+        return [column["array"] for _, _, table in self.tables() for column in table["columns"]]
+
+    def rows(self, table):
+        """Returns the rows of such an array as they were in the summary."""
+        rows = [{} for _ in range(table["count"])]
+        for column in table["columns"]:
+            for row, value in zip(rows, self.arrays[column["array"]["name"]]):
+                if "texts" in column:
+                    value = column["texts"][value]
+                elif value != value:
+                    value = None
+                for key in column["path"][:-1]:
+                    row = row.setdefault(key, {})
+                row[column["path"][-1]] = value
+        return rows
 
     def summary(self):
         return self.document["summaries"][0]["summary"]

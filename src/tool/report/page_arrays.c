@@ -7,20 +7,29 @@
 #include <assert.h>
 #include <stdlib.h>
 
+static void put_array(page_arrays *a, const char *name, const char *type, packed_array *values, bool owned) {
+    assert(a->count < PAGE_ARRAYS_MAX);
+    page_array *array = &a->items[a->count++];
+    *array = (page_array){.type = type, .values = values, .owned = owned};
+    snprintf(array->name, sizeof array->name, "%s", name);
+}
+
 /* Lists an array of the report; with values NULL the page has none. */
 static bool list_array(page_arrays *a, const char *name, const char *type, packed_array *values) {
     if (values == NULL) return true;
-    assert(a->count < PAGE_ARRAYS_MAX);
-    a->items[a->count++] = (page_array){name, type, values, false};
+    put_array(a, name, type, values, false);
     return packed_array_finish(values);
 }
 
 packed_array *page_arrays_add(page_arrays *a, const char *name, const char *type) {
     packed_array *values = packed_array_create();
     if (values == NULL) return NULL;
-    assert(a->count < PAGE_ARRAYS_MAX);
-    a->items[a->count++] = (page_array){name, type, values, true};
+    put_array(a, name, type, values, true);
     return values;
+}
+
+size_t page_arrays_room(const page_arrays *a) {
+    return PAGE_ARRAYS_MAX - a->count;
 }
 
 static bool list_u32(page_arrays *a, const char *name, const uint32_t *values, size_t count) {

@@ -4,10 +4,11 @@
 #include "src/tool/report/packed_array.h"
 #include "src/tool/report/report.h"
 
-enum { PAGE_ARRAYS_MAX = 30 };
+enum { PAGE_ARRAYS_MAX = 240, PAGE_ARRAY_NAME_SIZE = 80 };
 
 typedef struct page_array {
-    const char *name, *type; /* u8, u32, f32 or f64 */
+    char name[PAGE_ARRAY_NAME_SIZE];
+    const char *type; /* u8, u32, f32 or f64 */
     packed_array *values;
     bool owned; /* by the list, not by the report */
 } page_array;
@@ -21,6 +22,9 @@ typedef struct page_arrays {
 bool page_arrays_list(report *r, page_arrays *out);
 /* Lists a new, empty array, which the list owns; NULL: out of memory. */
 packed_array *page_arrays_add(page_arrays *a, const char *name, const char *type);
+
+/* So many more may be listed. */
+size_t page_arrays_room(const page_arrays *a);
 
 void page_arrays_free(page_arrays *arrays);
 

@@ -1,5 +1,6 @@
 /* Writes a report: the template, what the page is told as JSON, and its arrays. */
 #include "src/tool/report/collected.h"
+#include "src/tool/report/json_table.h"
 #include "src/tool/report/page_file.h"
 
 #include <stdlib.h>
@@ -145,18 +146,25 @@ typedef struct attached {
     const char *preprocess;
 } attached;
 
-static void write_summaries(json *out, const attached *with) {
+/* Long tables of theirs become arrays of the page. False: out of memory. */
+static bool write_summaries(json *out, const attached *with, page_arrays *arrays) {
+    bool made = true;
     json_begin_array(out, "summaries");
-    for (size_t i = 0; i < with->summary_count; i++) {
+    for (size_t i = 0; i < with->summary_count && made; i++) {
+        char prefix[32], *moved = NULL;
+        snprintf(prefix, sizeof prefix, "summary-%zu", i);
+        made = json_table_move(with->summaries[i].text, prefix, arrays, &moved);
         json_begin_object(out, NULL);
         json_string(out, "name", with->summaries[i].name);
-        json_verbatim(out, "summary", with->summaries[i].text);
+        json_verbatim(out, "summary", moved != NULL ? moved : with->summaries[i].text);
         json_end_object(out);
+        free(moved);
     }
     json_end_array(out);
+    return made;
 }
 
-static void write_json(FILE *file, const report *r, const page_arrays *arrays, const attached *with) {
+static bool write_json(FILE *file, const report *r, page_arrays *arrays, const attached *with) {
     static const char *const kinds[] = {"replay", "preprocess", "compare"};
     json out = {.file = file};
     json_begin_object(&out, NULL);
@@ -165,22 +173,22 @@ static void write_json(FILE *file, const report *r, const page_arrays *arrays, c
     json_string(&out, "title", r->options.title);
     json_string(&out, "generator", r->options.generator);
     write_scene(&out, r, arrays);
-    write_summaries(&out, with);
+    const bool made = write_summaries(&out, with, arrays);
     if (with->preprocess != NULL)
         json_verbatim(&out, "preprocess", with->preprocess);
     else
         json_null(&out, "preprocess");
     json_end_object(&out);
+    return made;
 }
 
 /* The text, to be freed; NULL: out of memory. */
-static char *make_json(const report *r, const page_arrays *arrays, const attached *with) {
+static char *make_json(const report *r, page_arrays *arrays, const attached *with) {
     char *text = NULL;
     size_t size;
     FILE *memory = open_memstream(&text, &size);
     if (memory == NULL) return NULL;
-    write_json(memory, r, arrays, with);
-    bool whole = !ferror(memory);
+    bool whole = write_json(memory, r, arrays, with) && !ferror(memory);
     whole = fclose(memory) == 0 && whole;
     if (whole) return text;
     free(text);

@@ -3,6 +3,7 @@
 import { answersOf } from './answers.js';
 import { BlockError, readArray, readDocument } from './decode.js';
 import { FrameStore } from './frames.js';
+import { readTables } from './tables.js';
 import { lastAtOrBefore } from '../page/intervals.js';
 
 function below(array, bound, name) {
@@ -177,6 +178,7 @@ async function sceneOf(told) {
 /** All but the frames after the first, which `positions.readAll` reads. */
 export async function readReport() {
   const content = readDocument();
+  await readTables(content.summaries);
   return {
     kind: content.kind,
     title: content.title,

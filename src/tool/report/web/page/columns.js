@@ -19,6 +19,12 @@ export function columnsOf(begin, end, width) {
 /** The number from begin to end that has the most weight; the first of several. */
 export function heaviest(begin, end, weight) {
   let best = begin;
-  for (let i = begin + 1; i < end; i++) if (!(weight(i) <= weight(best))) best = i;
+  let most = weight(begin);
+  for (let i = begin + 1; i < end; i++) {
+    const own = weight(i);
+    if (own <= most) continue;
+    best = i;
+    most = own;
+  }
   return best;
 }

@@ -67,8 +67,17 @@ export function timeWithin(interval, fraction, { numbers }) {
   return interval + fraction * ((numbers[i + 1] ?? interval) - interval);
 }
 
+const frameLists = new WeakMap();
+
 /** Returns a function from a frame to the interval's record; undefined if the replay ended before it. */
 export function finder(summary) {
-  const byFrame = new Map((summary?.intervals ?? []).map((interval) => [interval.frame, interval]));
-  return (frame) => byFrame.get(frame);
+  const intervals = summary?.intervals ?? [];
+  if (!frameLists.has(intervals)) frameLists.set(intervals, Float64Array.from(intervals, ({ frame }) => frame));
+  const frames = frameLists.get(intervals);
+  let next = 0; // most callers ask for one after the other
+  return (frame) => {
+    const i = frames[next] === frame ? next : lastAtOrBefore(frames, frame);
+    next = i + 1;
+    return frames[i] === frame ? intervals[i] : undefined;
+  };
 }

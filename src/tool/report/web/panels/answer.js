@@ -2,6 +2,7 @@
 import { button, element, heading, scrollable, setText } from '../page/dom.js';
 import { counted, integer, ranges } from '../page/format.js';
 import { kindOf, whoOf, worseThan } from '../page/events.js';
+import { createRows } from './rows.js';
 
 const PARTS_MOST = 14; // rows of the matrix
 const FORWARD = 'M6 2.5v11l7-5.5zM3 2.5h2v11H3z';
@@ -79,30 +80,34 @@ function matrixOf(events, choose) {
 }
 
 /** @param {boolean} single all events are of one part, so that its name says nothing */
-function eventRow(event, number, single, go) {
+function fillRow(row, event, number, single) {
+  if (row.dataset.event === String(number)) return; // what has the focus in it stays
   const [state, word] = kindOf(event);
   const words = single
     ? [word]
     : [element('span', { class: 'visually-hidden' }, `${word}: `), whoOf(event)];
-  const row = element('tr', { class: 'item', 'data-event': number });
-  row.append(
+  row.dataset.event = String(number);
+  row.replaceChildren(
     element('td', {}, element('button', { type: 'button', 'aria-label': `Event ${number + 1}` }, String(number + 1))),
     element('td', { class: 'who', title: `${whoOf(event)}: ${word}` },
       element('span', { class: `state ${state}` }, element('i'), ...words)),
     element('td', { class: 'number' }, event.first === event.last ? `${event.first}` : `${event.first} to ${event.last}`),
     element('td', { class: 'number', 'data-value': event.depth, title: event.depth }, event.depth > 0 ? event.deep : '–'),
   );
-  row.addEventListener('click', () => go(number));
+}
+
+function makeRow(go) {
+  const row = element('tr', { class: 'item' });
+  row.addEventListener('click', () => go(Number(row.dataset.event)));
   return row;
 }
 
 const COLUMNS = [['no.'], ['what'], ['frames', true], ['depth', true, 'The greatest depth']];
 
-function tableOf(events, single, go) {
+function createTable() {
   const head = element('tr');
   for (const [text, number, title] of COLUMNS) head.append(element('th', { scope: 'col', text, title, class: number ? 'number' : null }));
-  const body = element('tbody', {}, ...events.map((event, number) => eventRow(event, number, single, go)));
-  return element('table', { class: 'events', 'aria-label': 'Events' }, element('thead', {}, head), body);
+  return element('table', { class: 'events', 'aria-label': 'Events' }, element('thead', {}, head), element('tbody'));
 }
 
 /** What was left out of the page to keep it small. */
@@ -132,27 +137,39 @@ export function create(container, report, store, player) {
   const previous = button('Previous event', { glyph: BACK, key: 'P' }, () => player.stepEvent(-1));
   const next = button('Next event', { glyph: FORWARD, key: 'N' }, () => player.stepEvent(1));
   const names = new Set(events.flatMap(({ a, b }) => [a, b]));
-  const table = tableOf(events, names.size === 1, (number) => player.toEvent(number));
+  const single = names.size === 1;
+  const table = createTable();
   const list = scrollable(table);
+  const all = events.map((_, number) => number);
+  let listed = all;
   let chosen = null;
+  let current = null;
+  const mark = (row) => row.setAttribute('aria-current', String(Number(row.dataset.event) === current));
+  const rows = createRows(list, table, {
+    columns: COLUMNS.length,
+    height: 32,
+    printed: 2000,
+    make: () => makeRow((number) => player.toEvent(number)),
+    fill(row, index) {
+      fillRow(row, events[listed[index]], listed[index], single);
+      mark(row);
+    },
+  });
   function choose(a, b, cell) {
     chosen = chosen === cell ? null : cell;
     for (const other of container.querySelectorAll('.matrix .cell')) other.setAttribute('aria-pressed', String(other === chosen));
-    events.forEach((event, i) => {
-      const fits = chosen === null || (event.a === a && event.b === b) || (event.a === b && event.b === a);
-      table.tBodies[0].rows[i].hidden = !fits;
+    listed = all.filter((number) => {
+      const event = events[number];
+      return chosen === null || (event.a === a && event.b === b) || (event.a === b && event.b === a);
     });
+    rows.show(listed.length);
   }
   function show({ event }) {
     setText(position, event === null ? counted(events.length, 'event') : `${event + 1} of ${counted(events.length, 'event')}`);
-    [...table.tBodies[0].rows].forEach((row, i) => row.setAttribute('aria-current', String(i === event)));
-    if (event === null) return;
-    const row = table.tBodies[0].rows[event];
-    const head = table.tHead.offsetHeight;
-    if (row.offsetTop - head < list.scrollTop) list.scrollTop = row.offsetTop - head;
-    else if (row.offsetTop + row.offsetHeight > list.scrollTop + list.clientHeight) {
-      list.scrollTop = row.offsetTop + row.offsetHeight - list.clientHeight;
-    }
+    current = event;
+    for (const row of table.querySelectorAll('tr.item')) mark(row);
+    const index = listed.indexOf(event);
+    if (index >= 0) rows.reveal(index);
   }
   container.append(
     heading('Events', position, previous, next),
@@ -160,6 +177,7 @@ export function create(container, report, store, player) {
     list,
     ...leftOut(answers),
   );
+  rows.show(listed.length);
   store.on(['event'], show);
   show(store.get());
 }

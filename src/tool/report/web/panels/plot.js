@@ -15,10 +15,14 @@ const colourOf = (colour) => (colour.startsWith('--') ? token(colour) : colour);
 
 /** The value that 98 % of the intervals stay below, so that a few peaks do not flatten the rest. */
 function usualLimit({ numbers, series, stacked }) {
-  const heights = Float64Array.from({ length: numbers.length - 1 }, (_, i) => {
-    const values = series.map((one) => one.values[i] ?? 0);
-    return stacked ? values.reduce((sum, value) => sum + value, 0) : Math.max(...values);
-  }).sort();
+  const heights = new Float64Array(numbers.length - 1);
+  for (const { values } of series) {
+    for (let i = 0; i < heights.length; i++) {
+      const value = values[i] ?? 0;
+      heights[i] = stacked ? heights[i] + value : Math.max(heights[i], value);
+    }
+  }
+  heights.sort();
   return heights[Math.floor(0.98 * (heights.length - 1))] * 1.2;
 }
 
@@ -36,7 +40,11 @@ function stepsOf({ series, stacked }, from, to, pixels) {
     return column;
   };
   if (!stacked) return [x, ...series.map(({ values }) => at(values, kept((i) => values[i] ?? -1)))];
-  const places = kept((i) => series.reduce((sum, { values }) => sum + values[i], 0));
+  const places = kept((i) => {
+    let sum = 0;
+    for (const { values } of series) sum += values[i];
+    return sum;
+  });
   const sums = new Float64Array(places.length + 1);
   const areas = series.map(({ values }) => at(values, places).map((value, i) => (sums[i] += value)));
   return [x, ...areas.reverse()];
@@ -113,7 +121,7 @@ export function createPlot(host, plot, attach) {
   let range = [0, numbers.length - 1];
   let logarithmic = false;
   let cut = false;
-  const usual = usualLimit(plot);
+  let usual = null; // until it is asked for
   let chart = null;
   let time = 0;
   let hover = null;
@@ -123,6 +131,7 @@ export function createPlot(host, plot, attach) {
 
   /** The labels of the scale when the highest value shown is `high`. */
   function topOf(high) {
+    if (cut) usual ??= usualLimit(plot);
     const top = cut && usual > 0 ? Math.min(high, usual) : high;
     return top > 0 ? top * 1.04 : 1;
   }
