@@ -118,7 +118,8 @@ export class FrameStore {
   }
 
   readNext() {
-    this.records.push(this.reader.next(this.records.length));
+    const number = this.records.length;
+    this.records.push({ number, ...this.reader.next(number) });
   }
 
   /** Reads all records, a slice at a time; a promise that fails when they are damaged. */

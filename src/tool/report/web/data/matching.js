@@ -1,5 +1,6 @@
 /** Which events of two runs are the same: what is fixed, what is new, and what is still there. */
 import { worseThan } from '../page/events.js';
+import { lastAtOrBefore } from '../page/intervals.js';
 
 const NEAREST = 64; // so many candidates of an event are looked at, the nearest ones
 
@@ -14,7 +15,8 @@ function byParts(events) {
   const groups = new Map();
   for (const event of events) {
     const key = JSON.stringify([event.a, event.b].sort());
-    groups.set(key, [...(groups.get(key) ?? []), event]);
+    if (!groups.has(key)) groups.set(key, []);
+    groups.get(key).push(event);
   }
   return groups;
 }
@@ -65,13 +67,22 @@ function joined(event, partners, seen) {
 
 export const worstOf = (events) => events.reduce((most, event) => (worseThan(event, most) ? event : most));
 
-/** Whether a run has looked at all frames of an event that the run which found it looked at: else it cannot say that the
- * event is not there. Intersections are seen in frames that were checked, contacts in all that were replayed. */
-function lookedAt(event, finder, other) {
-  const checked = event.pairs > 0 || event.depth > 0;
+/** The frames, ascending, that one run has looked at and the other has not. Intersections are seen in frames that were
+ * checked, contacts in all that were replayed. */
+function unseenFrames(finder, other, checked) {
   const framesOf = (run) => run.frames.filter(({ crossing }) => !checked || crossing !== null).map(({ frame }) => frame);
   const seen = new Set(framesOf(other));
-  return framesOf(finder).every((frame) => frame < event.first || frame > event.last || seen.has(frame));
+  return framesOf(finder).filter((frame) => !seen.has(frame));
+}
+
+/** Returns whether the other run has looked at all frames of an event that the run which found it looked at: else it cannot
+ * say that the event is not there. */
+function witnessOf(finder, other) {
+  const unseen = [false, true].map((checked) => unseenFrames(finder, other, checked));
+  return (event) => {
+    const frames = unseen[Number(event.pairs > 0 || event.depth > 0)];
+    return !(frames[lastAtOrBefore(frames, event.last)] >= event.first);
+  };
 }
 
 const RANK = { new: 0, still: 1, fixed: 2, unknown: 3 };
@@ -85,6 +96,8 @@ const RANK = { new: 0, still: 1, fixed: 2, unknown: 3 };
 export function matchEvents(before, after) {
   const first = byParts(before.events);
   const second = byParts(after.events);
+  const lookedAtAfter = witnessOf(before, after);
+  const lookedAtBefore = witnessOf(after, before);
   const rows = [];
   for (const key of new Set([...first.keys(), ...second.keys()])) {
     const mine = first.get(key) ?? [];
@@ -96,8 +109,8 @@ export function matchEvents(before, after) {
       const group = joined(event, partners, seen);
       const row = { before: group.filter((one) => own.has(one)), after: group.filter((one) => !own.has(one)) };
       if (row.before.length > 0 && row.after.length > 0) rows.push({ ...row, state: 'still' });
-      else if (row.before.length > 0) rows.push({ ...row, state: lookedAt(event, before, after) ? 'fixed' : 'unknown' });
-      else rows.push({ ...row, state: lookedAt(event, after, before) ? 'new' : 'unknown' });
+      else if (row.before.length > 0) rows.push({ ...row, state: lookedAtAfter(event) ? 'fixed' : 'unknown' });
+      else rows.push({ ...row, state: lookedAtBefore(event) ? 'new' : 'unknown' });
     }
   }
   const worst = ({ before: a, after: b }) => worstOf(b.length > 0 ? b : a);

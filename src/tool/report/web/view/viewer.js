@@ -237,7 +237,7 @@ export class Viewer {
     const place = answers === null ? -1 : answers.placeOf(state.time);
     const found = answers !== null && state.answers ? answers.at(place) : null;
     const { record, fraction } = this.body.shown;
-    const key = found === null ? 'none' : `${place} ${this.data.positions.records.indexOf(record)} ${fraction}`;
+    const key = found === null ? 'none' : `${place} ${record?.number} ${fraction}`;
     this.curves.setState(found, this.body.local, key, state.through);
   }
 
