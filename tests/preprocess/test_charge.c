@@ -8,7 +8,7 @@
 #include <string.h>
 
 /* How often shapes are split: to 5,120 and 3,072 triangles, or, where the build is slow, to 1,280 and 768. */
-#ifdef NDEBUG
+#if defined(NDEBUG) && !defined(SLOW_MACHINE)
 enum { FINEST = 4 };
 #else
 enum { FINEST = 3 };
