@@ -47,7 +47,7 @@ static int remove_files(void **state) {
     return 0;
 }
 
-/* Is a thread asleep, and no longer one of the copy of this program that the process begins as? */
+/* Is a thread asleep, and no longer one of the copy of this program that the process begins as? An emulator has its own name. */
 static bool thread_sleeps(pid_t pid, const char *thread) {
     char path[320], text[256] = "";
     snprintf(path, sizeof path, "/proc/%d/task/%s/stat", (int)pid, thread);
@@ -55,7 +55,9 @@ static bool thread_sleeps(pid_t pid, const char *thread) {
     if (file == NULL) return false;
     const bool got = fgets(text, sizeof text, file) != NULL;
     fclose(file);
-    return got && strstr(text, "(cscd) S ") != NULL;
+    const char *name = strchr(text, '('), *state = strrchr(text, ')');
+    const bool is_tool = name != NULL && (strncmp(name, "(cscd)", 6) == 0 || strncmp(name, "(qemu-", 6) == 0);
+    return got && is_tool && state != NULL && strncmp(state, ") S ", 4) == 0;
 }
 
 /* Are all its threads asleep? One that waits for another sleeps too, but that one does not. */
