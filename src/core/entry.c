@@ -181,7 +181,7 @@ void context_free_object(cscd_context *context, reference_count *object) {
     atomic_compare_exchange_strong(&context->entry.half_made, &half_made, NULL);
     live_objects_remove(&context->live, object);
     for (;;) {
-        if (claim_context(context, &entry, (uintptr_t)__builtin_frame_address(0))) {
+        if (claim_context(context, &entry, FRAME_END())) {
             free_claimed(context, object);
             return;
         }

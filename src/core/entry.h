@@ -44,9 +44,17 @@ typedef struct context_entry {
     cscd_status status; /* why the call may not enter */
 } context_entry;
 
+/* The upper end of this function's frame, which is where its frame address lies but for gcc on some processors, as aarch64: there it
+ * is the lower end, and a second call whose frame is larger would look deeper than what the first has called. */
+#if defined(__GNUC__) && !defined(__clang__)
+#define FRAME_END() ((uintptr_t)__builtin_dwarf_cfa())
+#else
+#define FRAME_END() ((uintptr_t)__builtin_frame_address(0))
+#endif
+
 /* Begins a call. False: it must return entry->status, and has changed nothing: CSCD_BUSY if another call is inside,
  * CSCD_BROKEN if a callback has left one. */
-#define context_enter(context, entry) context_enter_at(context, entry, (uintptr_t)__builtin_frame_address(0))
+#define context_enter(context, entry) context_enter_at(context, entry, FRAME_END())
 bool context_enter_at(cscd_context *context, context_entry *entry, uintptr_t frame);
 
 /* The same for a call with an object of the context, of which debug builds notice that it was freed. */
