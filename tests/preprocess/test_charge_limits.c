@@ -200,7 +200,8 @@ static void sheets_near_each_other(void **state) {
         uint32_t triangles[9] = {0, 1, 2, 3, 4, 5, 0, 1, 4};
         conductor s = {6, 3, positions, triangles};
         if (digits > 8) {
-            assert_refused(&s, "of triangle 1: some triangles there lie (almost) on each other");
+            assert_refused(
+                &s, ": some triangles there lie (almost) on each other"); /* which one, rounding decides */
         } else {
             charge_rig r = charge_rig_solve(&s, 1);
             assert_true(r.capacitance[0] > 0.2 && r.capacitance[0] < 0.4);
