@@ -207,9 +207,11 @@ static void late_bytes_are_read(void **state) {
     free(output);
 }
 
-/* What was found before the frame that did not come is kept. */
+/* What was found before the frame that did not come is kept. (An emulator catches every signal, so that nobody sees whether the tool
+ * is at work.) */
 static void frames_before_a_pipe_are_kept(void **state) {
     (void)state;
+    if (getenv("CSCD_EMULATED") != NULL) skip();
     temp_path fifth = temp_file_path(&folder, "walk_005.obj");
     static const char *const commands[] = {"check", "replay"};
     remove(fifth.text);

@@ -100,7 +100,7 @@ fi
 wrap $build/cscd $(find $build/models $build/benchmarks -maxdepth 1 -type f -perm -u+x ! -name '*.*' 2>/dev/null) $programs
 status=0
 # shellcheck disable=SC2086
-[ -z "$programs" ] || CSCD_DATA='' BUILD=$build tests/run.sh $programs || status=1
+[ -z "$programs" ] || CSCD_EMULATED=1 CSCD_DATA='' BUILD=$build tests/run.sh $programs || status=1
 [ "$skipped" = 0 ] || echo "$skipped programs left out, with reasons above"
 tests/cross/same_bits.sh build/release/cscd $build/cscd build/release/models/record "$1" build/release || status=1
 exit $status
