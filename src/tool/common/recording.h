@@ -63,7 +63,7 @@ typedef struct recording {
     uint32_t (*edge_file_vertices)[2]; /* per edge of mesh; NULL when nothing is welded */
 } recording;
 
-/* On false *out holds nothing to close. */
+/* The options are used as long as the recording is open. On false *out holds nothing to close. */
 bool recording_open(const recording_options *options, recording *out, io_error *error);
 void recording_close(recording *r);
 

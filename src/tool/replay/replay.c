@@ -96,9 +96,9 @@ static bool open_outputs(replay *r, io_error *error) {
 
 /* Opens everything that can fail before the work begins. */
 static bool begin_replay(replay *r, io_error *error) {
-    recording_options source = r->options->source;
-    source.progress = (cscd_progress){terminal_progress_within, &r->progress};
-    return recording_open(&source, &r->recording, error) && choose_frames(r, error) &&
+    r->inputs = r->options->source;
+    r->inputs.progress = (cscd_progress){terminal_progress_within, &r->progress};
+    return recording_open(&r->inputs, &r->recording, error) && choose_frames(r, error) &&
            ignore_pairs_prepare(&r->options->ignored, &r->recording, &r->ignored, error) &&
            outputs_open(r->options, error) && prepare_plan(r, error) && prepare_answers(r, error) &&
            prepare_source(r, error) && open_outputs(r, error);

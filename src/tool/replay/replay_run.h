@@ -17,8 +17,9 @@ typedef enum frame_state { FRAME_UNCHECKED, FRAME_EMBEDDED, FRAME_CROSSING } fra
 /* A replay under way. */
 typedef struct replay {
     const replay_options *options;
-    const char *name; /* of a job among many, */
-    job_output *job;  /* and its output; NULL: it is none */
+    const char *name;         /* of a job among many, */
+    job_output *job;          /* and its output; NULL: it is none */
+    recording_options inputs; /* of the options, with the progress of ours; the recording uses it */
     recording recording;
     ignore_pairs ignored;
     plan_choice plan;
