@@ -41,7 +41,8 @@ typedef struct text_table {
 /* ---- JSON ------------------------------------------------------------------------------------------------ */
 
 static const char *skip_blanks(const char *p) {
-    return p + strspn(p, " \t\r\n");
+    while (*p == ' ' || *p == '\n' || *p == '\t' || *p == '\r') p++;
+    return p;
 }
 
 /* The end of the string that begins at p; NULL: it does not end. */
