@@ -319,7 +319,8 @@ static bool is_table(text_span key) {
 /* Copies the object, with tables in place of its long arrays. */
 static bool copy_members(FILE *file, const char *text, const char *prefix, page_arrays *arrays, bool *moved) {
     const char *p = skip_blanks(text), *copied = p;
-    bool more = *p == '{';
+    bool more = true;
+    if (*p != '{') return true;
     for (p = skip_blanks(p + 1); more;) {
         text_span key;
         const char *end = NULL;
