@@ -1,7 +1,7 @@
 /* Loaded before a program, refuses memory once: LD_PRELOAD=failing_memory.so FAIL_ALLOCATION=N. The N-th request after main has begun,
  * of whatever library, gets NULL. Requests of json-c are spared, because version 0.16 goes on with a NULL where it copies the name of
- * a member, and those of libgfortran, which ends the program when it cannot begin. When the program ends, COUNT_ALLOCATIONS names a file
- * for how many requests there were. */
+ * a member, and those of OpenBLAS, because version 0.3.21 does so in a kernel for small matrices; so are those of libgfortran, which ends
+ * the program when it cannot begin. When the program ends, COUNT_ALLOCATIONS names a file for how many requests there were. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -36,9 +36,10 @@ static bool is_early(const void *block) {
 static bool is_refused(void *caller) {
     Dl_info object;
     if (!atomic_load(&started)) return false;
-    if (dladdr(caller, &object) != 0 &&
-        (strstr(object.dli_fname, "libjson-c") != NULL || strstr(object.dli_fname, "libgfortran") != NULL))
-        return false;
+    static const char *const spared[] = {"libjson-c", "libopenblas", "libgfortran"};
+    const bool known = dladdr(caller, &object) != 0;
+    for (int i = 0; known && i < 3; i++)
+        if (strstr(object.dli_fname, spared[i]) != NULL) return false;
     if (atomic_fetch_add(&requests, 1) + 1 != failing) return false;
     errno = ENOMEM;
     return true;
