@@ -111,7 +111,7 @@ static bool work_on_job(const job_pool *pool, int socket, uint32_t job) {
     size_t size = 0;
     FILE *result = open_memstream(&text, &size);
     const bool done = result != NULL && pool->set->run(pool->set->user, job, result);
-    if (result == NULL || ferror(result) || fclose(result) != 0) {
+    if (result == NULL || ferror(result) || fclose(result) != 0 || text == NULL) {
         static const char reason[] = "out of memory for its result";
         return send_message(socket, MESSAGE_FAILED, job, reason, sizeof reason - 1);
     }

@@ -24,7 +24,7 @@ static bool open_text(memory_text *t) {
 }
 
 static bool close_text(memory_text *t) {
-    const bool good = t->file != NULL && fclose(t->file) == 0;
+    const bool good = t->file != NULL && fclose(t->file) == 0 && t->text != NULL;
     t->file = NULL;
     return good;
 }

@@ -93,7 +93,7 @@ void recording_answer_write(const char *name, const answers *a, const length_uni
     if (stream != NULL) {
         answers_print_sentence(stream, a, unit);
         fclose(stream);
-        sentence[strcspn(sentence, "\n")] = '\0';
+        if (sentence != NULL) sentence[strcspn(sentence, "\n")] = '\0';
     }
     out->outcome = find_outcome(&sums);
     out->found = rules_fail(rules, a);

@@ -124,6 +124,7 @@ bool jobs_page_write(jobs_page *p, io_error *error) {
     if (memory != NULL) write_document(p, memory);
     bool written = memory != NULL && !ferror(memory);
     written = (memory == NULL || fclose(memory) == 0) && written;
+    written = written && text != NULL; /* as it is when the last bytes found no room */
     written = written ? page_file_write(p->options.path, &page, text, &p->arrays, error)
                       : io_fail(error, "%s: out of memory for the report", p->options.path);
     free(text);

@@ -351,7 +351,7 @@ bool json_table_move(const char *text, const char *prefix, page_arrays *arrays, 
     if (file == NULL) return false;
     bool made = copy_members(file, text, prefix, arrays, &moved) && !ferror(file);
     made = fclose(file) == 0 && made;
-    if (made && moved) return true;
+    if (made && moved) return *out != NULL;
     free(*out);
     *out = NULL;
     return made;
