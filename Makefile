@@ -102,7 +102,7 @@ TEST_LIBS   := -lcmocka -lflint-arb -lflint -lgmp $(TOOL_LIBS) $(CHARGE_LIBS)
 
 # A file that ends in _simd.c is compiled once per instruction set. Charge is a library of its own.
 # src/blas says which kernels OpenBLAS runs.
-CHARGE_SOURCES  := $(wildcard preprocess/charge/*.c src/blas/*.c)
+CHARGE_SOURCES  := $(wildcard preprocess/dense/*.c src/blas/*.c)
 CORE_FILES      := $(wildcard src/core/*.c src/mesh/*.c preprocess/*.c preprocess/*/*.c runtime/*/*.c runtime/*/*/*.c)
 CORE_SOURCES    := $(filter-out %_simd.c runtime/ccd/cubic_guess_$(if $(filter 0,$(GSL)),gsl,own).c \
                      preprocess/charge_library.c $(CHARGE_SOURCES),$(CORE_FILES))
@@ -166,7 +166,7 @@ OBJECTS := $(BUILD_ROOT)/$(CONFIG)/objects
 objects = $(patsubst %.c,$(OBJECTS)/%.o,$(1))
 KERNEL_OBJECTS := $(foreach level,$(LEVELS),$(patsubst %.c,$(OBJECTS)/%.$(level).o,$(KERNEL_SOURCES)))
 CORE_OBJECTS := $(call objects,$(CORE_SOURCES)) $(KERNEL_OBJECTS)
-CHARGE_OBJECTS := $(call objects,$(filter-out %/charge_export.c,$(CHARGE_SOURCES)))
+CHARGE_OBJECTS := $(call objects,$(filter-out %/dense_export.c,$(CHARGE_SOURCES)))
 LINKED_OBJECTS := $(CORE_OBJECTS) $(OBJECTS)/preprocess/charge_library.linked.o $(CHARGE_OBJECTS)
 OPENED_OBJECTS := $(CORE_OBJECTS) $(OBJECTS)/preprocess/charge_library.opened.o
 COMMON_OBJECTS := $(call objects,$(COMMON_SOURCES))
@@ -672,7 +672,7 @@ $(NATIVE_LIBRARY): $(NATIVE_OBJECTS) python/native/link.sh
 endif
 
 # The charge library exports one function, and needs two more files of the core.
-CHARGE_LIBRARY_OBJECTS := $(call objects,$(CHARGE_SOURCES) src/core/sort.c src/core/timer.c)
+CHARGE_LIBRARY_OBJECTS := $(call objects,$(CHARGE_SOURCES) preprocess/charge/potential.c src/core/timer.c)
 $(BUILD)/libcscd-charge.so.$(VERSION): $(CHARGE_LIBRARY_OBJECTS)
 	@mkdir -p $(@D)
 	$(say) '  LD $@'

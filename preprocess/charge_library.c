@@ -1,26 +1,24 @@
-/* Where the charge library is. Compiled twice: with CHARGE_LINKED it is linked, in libcscd.a and in tests; without, it
+/* Where the charge library is, which has the dense solution. Compiled twice: with CHARGE_LINKED it is linked, in libcscd.a and in tests; without, it
  * is opened at the first call that needs it, by libcscd.so, by the tool, and by builds with CHARGE=0. OpenBLAS starts
  * threads as soon as it is loaded, which takes tens of milliseconds, and hangs where a limit (`ulimit -v`) leaves them
  * no memory. Windows has none. */
-#include "preprocess/charge_call.h"
+#include "preprocess/charges.h"
 
 #ifdef CHARGE_LINKED
 
-cscd_status charge_library_find(cscd_context *context, const charge_functions **out) {
+cscd_status charge_library_find(cscd_context *context, const dense_functions **out) {
     (void)context;
-    *out = charge_functions_of(CHARGE_INTERFACE);
+    *out = dense_functions_of(DENSE_INTERFACE);
     return CSCD_OK;
 }
 
 #elif defined(_WIN32)
 
-/* Its solver, LAPACKE, is not built for Windows; the charges are needed for making a plan, and not for using it. */
-cscd_status charge_library_find(cscd_context *context, const charge_functions **out) {
+cscd_status charge_library_find(cscd_context *context, const dense_functions **out) {
     *out = NULL;
     return context_fail(
         context, CSCD_SYSTEM_ERROR,
-        "method charge makes no plans on Windows: make the plan on Linux and load its file here, "
-        "or take kmeans or single, which need nothing");
+        "charge, dense: there is no LAPACK on Windows; the tree, which is the default, needs none");
 }
 
 #else
@@ -117,26 +115,26 @@ static cscd_status open_library(cscd_context *context, void **out) {
     if (!has_room(needed))
         return context_fail(
             context, CSCD_OUT_OF_MEMORY,
-            "method charge: OpenBLAS, with %zu threads, takes %zu MiB of address space, and a limit "
+            "charge, dense: OpenBLAS, with %zu threads, takes %zu MiB of address space, and a limit "
             "(ulimit -v) leaves less; raise it, or set OPENBLAS_NUM_THREADS=1 before the program starts",
             threads, needed);
     *out = dlopen(name, flags);
     if (*out != NULL) return CSCD_OK;
     return context_fail(
         context, CSCD_SYSTEM_ERROR,
-        "method charge needs " LIBRARY_NAME
-        " beside libcscd.so (a build with CHARGE=1 makes it; kmeans and single need nothing): %s",
+        "charge, dense: it needs " LIBRARY_NAME
+        " beside libcscd.so (a build with CHARGE=1 makes it; the tree, which is the default, needs none): %s",
         dlerror());
 }
 
-cscd_status charge_library_find(cscd_context *context, const charge_functions **out) {
+cscd_status charge_library_find(cscd_context *context, const dense_functions **out) {
     void *library;
     cscd_status status = open_library(context, &library);
     if (status != CSCD_OK) return status;
-    charge_entry *entry;
-    void *symbol = dlsym(library, CHARGE_ENTRY_NAME);
+    dense_entry *entry;
+    void *symbol = dlsym(library, DENSE_ENTRY_NAME);
     memcpy(&entry, &symbol, sizeof entry);
-    *out = entry != NULL ? entry(CHARGE_INTERFACE) : NULL;
+    *out = entry != NULL ? entry(DENSE_INTERFACE) : NULL;
     dlclose(library);
     if (*out != NULL) return CSCD_OK;
     return context_fail(context, CSCD_SYSTEM_ERROR,

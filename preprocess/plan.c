@@ -3,7 +3,7 @@
 #include "src/mesh/plan.h"
 
 #include "cscd/research.h"
-#include "preprocess/charge_call.h"
+#include "preprocess/charges.h"
 #include "preprocess/regions/kmeans.h"
 #include "preprocess/regions/regions.h"
 #include "preprocess/regions/visibility.h"
@@ -50,6 +50,9 @@ static cscd_status check_options(cscd_context *context, const cscd_plan_options 
         return context_fail(context, CSCD_INVALID_ARGUMENT,
                             "threshold is %g, expected a share of the triangles between 0 and 1",
                             options->threshold);
+    if (options->charge_solver > CSCD_CHARGE_COARSE)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "unknown solver %u of the charge",
+                            options->charge_solver);
     if (options->variant > CSCD_PLAN_VARIANT_PUBLISHED)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "unknown variant %llu of the plan",
                             (unsigned long long)options->variant);
@@ -57,18 +60,16 @@ static cscd_status check_options(cscd_context *context, const cscd_plan_options 
 }
 
 static cscd_status solve_charge(draft *d) {
-    charge_timings timings = {0};
+    charge_report report = {{0}, {NULL, NULL}};
     d->charges = context_allocate(d->mesh->context, d->mesh->triangle_count, sizeof *d->charges);
     d->capacitances = context_allocate(d->mesh->context, d->mesh->component_count, sizeof *d->capacitances);
     if (d->charges == NULL || d->capacitances == NULL) return context_out_of_memory(d->mesh->context);
     uint64_t asked = d->options.memory_limit;
-    size_t limit = asked < SIZE_MAX ? (size_t)asked : SIZE_MAX;
-    cscd_status status =
-        limit == 0 ? charge_solve(d->mesh, d->positions, d->charges, d->capacitances, &timings)
-                   : charge_solve_within(d->mesh, d->positions, limit, d->charges, d->capacitances, &timings);
-    d->timings.assembly_ms = timings.assembly_ms;
-    d->timings.solve_ms = timings.factor_ms + timings.refine_ms;
-    if (status == CSCD_OK) d->kernels = charge_kernels_here(d->mesh->context);
+    const charge_options options = {d->options.charge_solver, asked < SIZE_MAX ? (size_t)asked : SIZE_MAX};
+    cscd_status status = charge_solve(d->mesh, d->positions, &options, d->charges, d->capacitances, &report);
+    d->timings.assembly_ms = report.timings.assembly_ms;
+    d->timings.solve_ms = report.timings.factor_ms + report.timings.refine_ms;
+    d->kernels = report.kernels;
     return status;
 }
 

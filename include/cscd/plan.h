@@ -33,6 +33,17 @@ CSCD_API bool cscd_method_from_name(const char *name, cscd_method *out);
 /* The regions of a mesh and their detector points. */
 typedef struct cscd_plan cscd_plan;
 
+/* How the equations for the charge of a component are solved. The regions that follow differ by few triangles. Later
+ * versions may add values. */
+typedef enum cscd_charge_solver {
+    CSCD_CHARGE_TREE, /* iterations of a treecode: memory, about 2 kB a triangle, and time grow about as the number of
+                         * triangles; densities within 1e-3 of the mean. The same bits on every processor */
+    CSCD_CHARGE_DENSE, /* a dense matrix, by LAPACK: 4 bytes for each pair of triangles of the largest component, and
+                         * time with the cube of their number; densities exact. To compare with */
+    CSCD_CHARGE_COARSE, /* as TREE with half the iterations: densities within some percent of the mean */
+    CSCD_CHARGE_MAX_ENUM = 0x7fffffff
+} cscd_charge_solver;
+
 /* Options of a plan; start from cscd_plan_defaults. */
 typedef struct cscd_plan_options {
     uint32_t struct_size;  /* set by cscd_plan_defaults */
@@ -42,8 +53,9 @@ typedef struct cscd_plan_options {
     double threshold;      /* CHARGE: the share of the triangles, those of least density, from which cuts
                            * grow; in (0,1), 0.1 by default */
     uint64_t variant;      /* 0 by default; cscd/research.h has others to compare with */
-    uint64_t memory_limit; /* CHARGE: bytes that the dense system may take; 0, the default: what the system
-                           * has */
+    uint64_t memory_limit; /* CHARGE: bytes that the solution may take; 0, the default: what the system has */
+    cscd_charge_solver charge_solver; /* CHARGE: TREE by default */
+    uint32_t reserved;                /* 0 */
 } cscd_plan_options;
 
 /* The default options. */
@@ -54,12 +66,11 @@ static inline cscd_plan_options cscd_plan_defaults(void) {
     return options;
 }
 
-/* Cuts a mesh into regions. positions: the mesh at rest. options may be NULL. CHARGE solves a dense
- * system: it takes 4 bytes for each pair of triangles of the largest component, and time with the cube of
- * their number. libcscd.so opens libcscd-charge.so for it, beside itself or where the system looks; libcscd.a has
- * it inside. OUT_OF_MEMORY: the sentence gives the amount. SYSTEM_ERROR: there is no libcscd-charge.so, or one of
- * another version; plans from parts do not need it. CANCELLED: see cscd_progress. Obstacles are left whole. INVALID_MESH: it has no
- * triangles; wires, points and half-spaces beside them do not matter. */
+/* Cuts a mesh into regions. positions: the mesh at rest. options may be NULL. Obstacles are left whole.
+ * OUT_OF_MEMORY: where CHARGE is solved, the sentence gives the amount. SYSTEM_ERROR: CSCD_CHARGE_DENSE alone is in
+ * libcscd-charge.so, which libcscd.so opens beside itself or where the system looks (libcscd.a has it inside), and there is
+ * none, or one of another version. CANCELLED: see cscd_progress. INVALID_MESH: it has no triangles; wires, points and
+ * half-spaces beside them do not matter. */
 CSCD_API cscd_status cscd_plan_create(cscd_context *context, const cscd_mesh *mesh,
                                       const cscd_view *positions, const cscd_plan_options *options,
                                       cscd_plan **out);

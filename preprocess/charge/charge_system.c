@@ -4,54 +4,28 @@
 #include "src/core/sort.h"
 
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
-
-/* Takes the next count elements of memory, on a cache line of their own; *used grows, up to SIZE_MAX. */
-static void *take_array(char *memory, size_t *used, size_t count, size_t size) {
-    void *taken = memory != NULL ? memory + *used : NULL;
-    size_t room = (SIZE_MAX / 2 - *used) / size;
-    *used = *used > SIZE_MAX / 2 || count > room
-                ? SIZE_MAX
-                : (*used + count * size + CHARGE_ALIGNMENT - 1) / CHARGE_ALIGNMENT * CHARGE_ALIGNMENT;
-    return taken;
-}
 
 size_t charge_system_lay_out(charge_system *system, uint32_t capacity, char *memory) {
     size_t n = capacity, used = 0;
-    system->points = take_array(memory, &used, n, sizeof *system->points);
-    system->scratch = take_array(memory, &used, n, sizeof *system->scratch);
-    system->sources = take_array(memory, &used, n, sizeof *system->sources);
-    system->x = take_array(memory, &used, n, sizeof *system->x);
-    system->y = take_array(memory, &used, n, sizeof *system->y);
-    system->z = take_array(memory, &used, n, sizeof *system->z);
-    system->charges = take_array(memory, &used, n, sizeof *system->charges);
-    system->residual = take_array(memory, &used, n, sizeof *system->residual);
-    system->correction = take_array(memory, &used, n, sizeof *system->correction);
-    system->pivots = take_array(memory, &used, n, sizeof *system->pivots);
-    system->matrix = take_array(memory, &used, n * n, sizeof *system->matrix);
+    system->points = charge_take_array(memory, &used, n, sizeof *system->points);
+    system->scratch = charge_take_array(memory, &used, n, sizeof *system->scratch);
+    system->sources = charge_take_array(memory, &used, n, sizeof *system->sources);
+    system->x = charge_take_array(memory, &used, n, sizeof *system->x);
+    system->y = charge_take_array(memory, &used, n, sizeof *system->y);
+    system->z = charge_take_array(memory, &used, n, sizeof *system->z);
+    system->charges = charge_take_array(memory, &used, n, sizeof *system->charges);
     return used;
 }
 
-cscd_status charge_fail(const charge_problem *problem, cscd_status status, const char *format, ...) {
-    char sentence[512];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(sentence, sizeof sentence, format, arguments);
-    va_end(arguments);
-    problem->host.explain(problem->host.context, status, sentence);
-    return status;
-}
-
 /* Finds the middle of the component's box, and the scale. */
-static void find_frame(charge_system *system, const charge_problem *problem, const uint32_t *triangles,
+static void find_frame(charge_system *system, const charge_surface *surface, const uint32_t *triangles,
                        uint32_t triangle_count, double middle[3]) {
     double extent = 0.0;
     for (int k = 0; k < 3; k++) {
         double low = INFINITY, high = -INFINITY;
         for (size_t i = 0; i < (size_t)triangle_count * 3; i++) {
             double p =
-                problem->positions[(size_t)problem->triangles[triangles[i / 3]][i % 3] * 3 + (size_t)k];
+                surface->positions[(size_t)surface->triangles[triangles[i / 3]][i % 3] * 3 + (size_t)k];
             low = p < low ? p : low;
             high = p > high ? p : high;
         }
@@ -63,10 +37,10 @@ static void find_frame(charge_system *system, const charge_problem *problem, con
     system->scale = extent > 0.0 ? ldexp(1.0, -exponent) : 1.0;
 }
 
-static void scaled_corners(const charge_system *system, const charge_problem *problem, const double middle[3],
+static void scaled_corners(const charge_system *system, const charge_surface *surface, const double middle[3],
                            uint32_t triangle, double corners[3][3]) {
     for (int i = 0; i < 3; i++) {
-        const double *p = problem->positions + (size_t)problem->triangles[triangle][i] * 3;
+        const double *p = surface->positions + (size_t)surface->triangles[triangle][i] * 3;
         for (int k = 0; k < 3; k++) corners[i][k] = (p[k] - middle[k]) * system->scale;
     }
 }
@@ -99,12 +73,12 @@ static bool same_position(const double a[3], const double b[3]) {
 }
 
 /* Does each corner of a lie at a corner of b? Both have an area. */
-static bool triangles_coincide(const charge_problem *problem, uint32_t a, uint32_t b) {
+static bool triangles_coincide(const charge_surface *surface, uint32_t a, uint32_t b) {
     for (int i = 0; i < 3; i++) {
-        const double *p = problem->positions + (size_t)problem->triangles[a][i] * 3;
+        const double *p = surface->positions + (size_t)surface->triangles[a][i] * 3;
         bool found = false;
         for (int j = 0; j < 3; j++) {
-            const double *q = problem->positions + (size_t)problem->triangles[b][j] * 3;
+            const double *q = surface->positions + (size_t)surface->triangles[b][j] * 3;
             found = found || same_position(p, q);
         }
         if (!found) return false;
@@ -113,13 +87,13 @@ static bool triangles_coincide(const charge_problem *problem, uint32_t a, uint32
 }
 
 /* Collects the points of all triangles that have an area, sorted. */
-static void collect_points(charge_system *system, const charge_problem *problem, const double middle[3],
+static void collect_points(charge_system *system, const charge_surface *surface, const double middle[3],
                            const uint32_t *triangles, uint32_t triangle_count) {
     system->point_count = 0;
     for (uint32_t i = 0; i < triangle_count; i++) {
         double corners[3][3];
         potential_source source;
-        scaled_corners(system, problem, middle, triangles[i], corners);
+        scaled_corners(system, surface, middle, triangles[i], corners);
         if (!potential_source_set(&source, corners)) continue;
         charge_point *point = &system->points[system->point_count++];
         for (int k = 0; k < 3; k++)
@@ -137,29 +111,40 @@ static void add_unknown(charge_system *system, const double corners[3][3], const
     system->z[k] = position[2];
 }
 
-cscd_status charge_system_collect(charge_system *system, const charge_problem *problem, uint32_t component,
+cscd_status charge_system_collect(charge_system *system, const charge_surface *surface, uint32_t component,
                                   const uint32_t *triangles, uint32_t triangle_count) {
     double middle[3];
-    system->problem = problem;
     system->component = component;
     system->count = 0;
-    find_frame(system, problem, triangles, triangle_count, middle);
-    collect_points(system, problem, middle, triangles, triangle_count);
+    find_frame(system, surface, triangles, triangle_count, middle);
+    collect_points(system, surface, middle, triangles, triangle_count);
     for (uint32_t i = 0; i < system->point_count; i++) {
         charge_point *point = &system->points[i], *before = point - 1;
         bool same = i > 0 && same_position(point->position, before->position);
-        if (same && !triangles_coincide(problem, point->triangle, before->triangle))
-            return charge_fail(
-                problem, CSCD_INVALID_ARGUMENT,
+        if (same && !triangles_coincide(surface, point->triangle, before->triangle))
+            return context_fail(
+                surface->context, CSCD_INVALID_ARGUMENT,
                 "charge: triangles %u and %u of component %u have the same centroid but not the "
                 "same corners, so their charges cannot be told apart; move or remove one",
                 before->triangle, point->triangle, component);
         if (!same) {
             double corners[3][3];
-            scaled_corners(system, problem, middle, point->triangle, corners);
+            scaled_corners(system, surface, middle, point->triangle, corners);
             add_unknown(system, corners, point->position);
         }
         point->unknown = system->count - 1;
     }
     return CSCD_OK;
+}
+
+void charge_system_store(const charge_system *system, double *density, double *capacitance) {
+    double sum = 0.0;
+    for (uint32_t begin = 0, end; begin < system->point_count; begin = end) {
+        uint32_t k = system->points[begin].unknown;
+        for (end = begin; end < system->point_count && system->points[end].unknown == k; end++) continue;
+        double shared = system->charges[k] / (system->sources[k].area * (double)(end - begin));
+        for (uint32_t i = begin; i < end; i++) density[system->points[i].triangle] = shared * system->scale;
+        sum += system->charges[k];
+    }
+    *capacitance = sum / system->scale;
 }

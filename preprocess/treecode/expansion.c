@@ -108,14 +108,16 @@ static void list_powers(const expansion_tables *t, const double v[3], double pow
     }
 }
 
-void expansion_add_charge(const expansion_tables *tables, const double place[3], double charge, double *full) {
+void expansion_add_charge(const expansion_tables *tables, const double place[3], double charge,
+                          double *full) {
     const double from_place[3] = {-place[0], -place[1], -place[2]};
     double powers[FULL_COUNT];
     list_powers(tables, from_place, powers);
     for (int i = 0; i < FULL_COUNT; i++) full[i] += charge * powers[i];
 }
 
-void expansion_add_moments(const expansion_tables *tables, const double place[3], const double *moments, double *full) {
+void expansion_add_moments(const expansion_tables *tables, const double place[3], const double *moments,
+                           double *full) {
     const double from_place[3] = {-place[0], -place[1], -place[2]};
     double powers[FULL_COUNT];
     list_powers(tables, from_place, powers);
@@ -140,8 +142,8 @@ void expansion_unfold(const expansion_tables *tables, const double *harmonic, do
         if (tables->exponents[i][2] >= 2) full[i] = -full[tables->folds[i][0]] - full[tables->folds[i][1]];
 }
 
-void expansion_add_coefficients(const expansion_tables *tables, const double place[3], const double *coefficients,
-                                double *shifted) {
+void expansion_add_coefficients(const expansion_tables *tables, const double place[3],
+                                const double *coefficients, double *shifted) {
     double powers[FULL_COUNT], full[FULL_COUNT];
     list_powers(tables, place, powers);
     expansion_unfold(tables, coefficients, full);

@@ -15,7 +15,8 @@ enum {
     FULL_COUNT = 84,     /* multi-indices of that degree and below */
     HARMONIC_COUNT = 49, /* of these the harmonic ones */
     SHIFT_COUNT = 714,   /* pairs of a harmonic and any multi-index whose sum is one */
-    PRODUCT_COUNT = 1092 /* pairs of harmonic ones whose sum is one of degree 0, 1, .. or 6: 1 + 7 + .. + 532 */
+    PRODUCT_COUNT =
+        1092 /* pairs of harmonic ones whose sum is one of degree 0, 1, .. or 6: 1 + 7 + .. + 532 */
 };
 
 /* Multi-index i is its parent and 1 more along an axis. */
@@ -41,7 +42,8 @@ typedef struct expansion_tables {
     uint8_t harmonic_end[EXPANSION_ORDER + 1]; /* and how many harmonic ones */
     uint8_t exponents[FULL_COUNT][3];          /* ordered by degree, then by z */
     uint8_t harmonic[HARMONIC_COUNT];          /* their places among all */
-    uint8_t folds[FULL_COUNT][2];              /* of those with z of 2 or more: the two with 2 less along z and 2 more along x, y */
+    uint8_t folds[FULL_COUNT]
+                 [2]; /* of those with z of 2 or more: the two with 2 less along z and 2 more along x, y */
     index_step steps[FULL_COUNT];
     tensor_step tensor_steps[FULL_COUNT];
     index_sum shifts[SHIFT_COUNT];
@@ -56,14 +58,15 @@ void expansion_tables_set(expansion_tables *tables);
 void expansion_add_charge(const expansion_tables *tables, const double place[3], double charge, double *full);
 
 /* Adds all moments of harmonic ones about another centre, from which theirs is at `place`. */
-void expansion_add_moments(const expansion_tables *tables, const double place[3], const double *moments, double *full);
+void expansion_add_moments(const expansion_tables *tables, const double place[3], const double *moments,
+                           double *full);
 
 /* Expresses all moments by the harmonic ones; destroys the others. */
 void expansion_fold(const expansion_tables *tables, double *full, double *harmonic);
 
 /* Adds coefficients about another centre, at `place` from the present one. */
-void expansion_add_coefficients(const expansion_tables *tables, const double place[3], const double *coefficients,
-                                double *shifted);
+void expansion_add_coefficients(const expansion_tables *tables, const double place[3],
+                                const double *coefficients, double *shifted);
 
 /* Finds all coefficients from the harmonic ones. */
 void expansion_unfold(const expansion_tables *tables, const double *harmonic, double *full);

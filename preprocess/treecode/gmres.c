@@ -118,24 +118,32 @@ static cscd_status find_residual(gmres *g, const double *right, const double *so
     return CSCD_OK;
 }
 
+/* Every iteration makes the residual smaller by about the same factor. */
+static void tell_progress(const gmres *g, double left, double enough, double whole) {
+    const linear_equations *e = g->equations;
+    e->tell(e->data, left > enough ? log(left / whole) / log(enough / whole) : 1.0);
+}
+
 /* Fills the basis, as long as the residual is above `enough`. */
-static cscd_status run_cycle(gmres *g, double length, double enough, uint32_t iterations_most, double *solution,
-                             uint32_t *iterations) {
+static cscd_status run_cycle(gmres *g, double whole, double length, double enough, uint32_t iterations_most,
+                             double *solution, uint32_t *iterations) {
     cscd_status status = CSCD_OK;
     uint32_t size = 0;
     scale_vector(g, 1.0 / length, g->basis[0]);
     g->rotated[0] = length;
-    for (double left = length; size < BASIS_MOST && left > enough && *iterations < iterations_most; size++, ++*iterations) {
+    for (double left = length; size < BASIS_MOST && left > enough && *iterations < iterations_most;
+         size++, ++*iterations) {
         status = extend_basis(g, size);
         if (status != CSCD_OK) return status;
         left = rotate_column(g, size);
+        tell_progress(g, left, enough, whole);
     }
     add_combination(g, size, solution);
     return CSCD_OK;
 }
 
-static cscd_status solve_equations(gmres *g, const double *right, double tolerance, uint32_t iterations_most, double *solution,
-                                   gmres_result *result) {
+static cscd_status solve_equations(gmres *g, const double *right, double tolerance, uint32_t iterations_most,
+                                   double *solution, gmres_result *result) {
     const uint32_t count = g->equations->count;
     memcpy(g->basis[0], right, count * sizeof *right);
     memset(solution, 0, count * sizeof *solution);
@@ -144,9 +152,11 @@ static cscd_status solve_equations(gmres *g, const double *right, double toleran
     cscd_status status = CSCD_OK;
     *result = (gmres_result){0, whole > 0.0 ? 1.0 : 0.0};
     /* A cycle that wins less than a tenth will not come to an end. */
-    while (status == CSCD_OK && length > tolerance * whole && length < 0.9 * before && result->iterations < iterations_most) {
+    while (status == CSCD_OK && length > tolerance * whole && length < 0.9 * before &&
+           result->iterations < iterations_most) {
         before = length;
-        status = run_cycle(g, length, tolerance * whole, iterations_most, solution, &result->iterations);
+        status =
+            run_cycle(g, whole, length, tolerance * whole, iterations_most, solution, &result->iterations);
         if (status == CSCD_OK) status = find_residual(g, right, solution, &length);
         result->residual = length / whole;
     }
@@ -158,10 +168,11 @@ static array_list list_vectors(gmres *g) {
     return list;
 }
 
-cscd_status gmres_solve(const linear_equations *equations, const double *right, double tolerance, uint32_t iterations_most,
-                        double *solution, gmres_result *result) {
+cscd_status gmres_solve(const linear_equations *equations, const double *right, double tolerance,
+                        uint32_t iterations_most, double *solution, gmres_result *result) {
     cscd_context *context = equations->context;
-    const uint32_t blocks = equations->count / NUMBERS_PER_BLOCK + (equations->count % NUMBERS_PER_BLOCK != 0);
+    const uint32_t blocks =
+        equations->count / NUMBERS_PER_BLOCK + (equations->count % NUMBERS_PER_BLOCK != 0);
     gmres g = {.equations = equations, .block_count = blocks};
     double *basis = context_reserve(context, (size_t)(BASIS_MOST + 1) * equations->count, sizeof *basis);
     cscd_status status = CSCD_OUT_OF_MEMORY;

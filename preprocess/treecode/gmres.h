@@ -9,6 +9,7 @@ typedef struct linear_equations {
     void *data;
     cscd_status (*multiply)(void *data, const double *in, double *out);
     void (*precondition)(void *data, const double *in, double *out); /* about the inverse of multiply */
+    void (*tell)(void *data, double share); /* how far the solution has come, after each iteration */
 } linear_equations;
 
 typedef struct gmres_result {
@@ -16,7 +17,7 @@ typedef struct gmres_result {
     double residual; /* over that of 0, in the Euclidean norm */
 } gmres_result;
 
-/* Begins at 0, and ends when the residual is at most the tolerance, or after iterations_most: the result says which. progress is the
- * stage's. The same bits for any number of threads. */
-cscd_status gmres_solve(const linear_equations *equations, const double *right, double tolerance, uint32_t iterations_most,
-                        double *solution, gmres_result *result);
+/* Begins at 0, and ends when the residual is at most the tolerance, or after iterations_most: the result says which. The same
+ * bits for any number of threads. */
+cscd_status gmres_solve(const linear_equations *equations, const double *right, double tolerance,
+                        uint32_t iterations_most, double *solution, gmres_result *result);

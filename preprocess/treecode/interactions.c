@@ -19,12 +19,13 @@ typedef struct interaction_search {
 } interaction_search;
 
 static array_list list_begins(interactions *lists) {
-    return (array_list){
-        {ARRAY(lists->far_begins, lists->node_count + 1), ARRAY(lists->near_begins, 2 * lists->leaf_count + 1)}};
+    return (array_list){{ARRAY(lists->far_begins, lists->node_count + 1),
+                         ARRAY(lists->near_begins, 2 * lists->leaf_count + 1)}};
 }
 
 static array_list list_items(interactions *lists) {
-    return (array_list){{ARRAY(lists->far_items, lists->far_count), ARRAY(lists->near_sources, lists->near_count)}};
+    return (array_list){
+        {ARRAY(lists->far_items, lists->far_count), ARRAY(lists->near_sources, lists->near_count)}};
 }
 
 /* ---- pairs of nodes -------------------------------------------------------------------------------------- */
@@ -44,7 +45,8 @@ static uint32_t order_for(double ratio) {
 }
 
 static bool is_exact(const source_node *target, const tree_source *source) {
-    return distance_of(target->center, source->centroid) < target->target_radius + EXACT_RADII * source->radius;
+    return distance_of(target->center, source->centroid) <
+           target->target_radius + EXACT_RADII * source->radius;
 }
 
 /* Begins of lists are counts first, and then move on to their ends. */
@@ -138,7 +140,8 @@ static cscd_status list_interactions(const source_tree *tree, interactions *list
 }
 
 cscd_status interactions_create(const source_tree *tree, interactions *out) {
-    *out = (interactions){.context = tree->context, .node_count = tree->node_count, .leaf_count = tree->leaf_count};
+    *out = (interactions){
+        .context = tree->context, .node_count = tree->node_count, .leaf_count = tree->leaf_count};
     if (!context_allocate_all(tree->context, list_begins(out))) return context_out_of_memory(tree->context);
     const cscd_status status = list_interactions(tree, out);
     if (status != CSCD_OK) interactions_destroy(out);

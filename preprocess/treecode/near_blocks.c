@@ -4,9 +4,9 @@
 #include <math.h>
 #include <string.h>
 
-enum { AROUND_MOST = 64, BLOCK_MOST = SOURCES_PER_LEAF + AROUND_MOST, LEAVES_PER_TASK = 8 };
+enum { AROUND_MOST = 64, BLOCK_MOST = SOURCES_PER_LEAF + AROUND_MOST };
 
-/* Room for one leaf at a time. */
+/* Room of a lane for one leaf at a time. */
 typedef struct block_room {
     /* The transposed equations of the block, and beside them the unit vectors of the leaf's own; then the solutions. */
     double equations[BLOCK_MOST][BLOCK_MOST + SOURCES_PER_LEAF];
@@ -91,7 +91,8 @@ static void list_block(near_blocks *b, uint32_t l) {
 
 /* ---- rows of the inverse --------------------------------------------------------------------------------- */
 
-static void set_equations(const near_blocks *b, const uint32_t *members, uint32_t count, uint32_t own, block_room *room) {
+static void set_equations(const near_blocks *b, const uint32_t *members, uint32_t count, uint32_t own,
+                          block_room *room) {
     const source_tree *tree = &b->t->tree;
     for (uint32_t i = 0; i < count; i++) {
         const double *p = tree->sources[members[i]].centroid;
@@ -144,7 +145,8 @@ static void substitute_back(block_room *room, uint32_t count, uint32_t width) {
 }
 
 /* Where the block has no inverse, each triangle is taken alone. */
-static void take_alone(block_room *room, const near_blocks *b, const uint32_t *members, uint32_t count, uint32_t own) {
+static void take_alone(block_room *room, const near_blocks *b, const uint32_t *members, uint32_t count,
+                       uint32_t own) {
     set_equations(b, members, count, own, room);
     for (uint32_t k = 0; k < own; k++) room->equations[k][count + k] = 1.0 / room->equations[k][k];
 }
@@ -154,38 +156,49 @@ static void invert_block(near_blocks *b, uint32_t l, block_room *room) {
     const uint32_t *members = b->members + b->begins[l];
     float *rows = b->rows + b->row_begins[l];
     set_equations(b, members, count, own, room);
-    if (eliminate_columns(room, count, count + own)) substitute_back(room, count, count + own);
-    else take_alone(room, b, members, count, own);
+    if (eliminate_columns(room, count, count + own))
+        substitute_back(room, count, count + own);
+    else
+        take_alone(room, b, members, count, own);
     for (uint32_t k = 0; k < count; k++)
         for (uint32_t i = 0; i < own; i++) *rows++ = (float)room->equations[k][count + i];
 }
 
-static void invert_blocks(void *data, uint32_t task) {
-    near_blocks *b = data;
-    cscd_context *context = b->t->context;
-    const uint32_t begin = task * LEAVES_PER_TASK, leaves = b->t->tree.leaf_count;
-    if (!progress_go_on(&context->progress, (double)begin / leaves)) return;
-    block_room *room = context_reserve(context, 1, sizeof *room);
-    for (uint32_t l = begin; l < leaves && l < begin + LEAVES_PER_TASK; l++) {
-        list_block(b, l);
-        if (room != NULL) invert_block(b, l, room);
+typedef struct block_inversion {
+    near_blocks *blocks;
+    block_room *rooms; /* of each lane */
+    uint32_t lane_count;
+} block_inversion;
+
+static void invert_share(void *data, uint32_t lane) {
+    const block_inversion *inversion = data;
+    near_blocks *b = inversion->blocks;
+    const size_t leaves = b->t->tree.leaf_count,
+                 end = parallel_share(leaves, lane + 1, inversion->lane_count);
+    for (size_t l = parallel_share(leaves, lane, inversion->lane_count); l < end; l++) {
+        if (!progress_go_on(&b->t->context->progress, (double)l / (double)leaves)) return;
+        list_block(b, (uint32_t)l);
+        invert_block(b, (uint32_t)l, &inversion->rooms[lane]);
     }
-    context_free(context, room);
+}
+
+static cscd_status invert_blocks(near_blocks *b) {
+    cscd_context *context = b->t->context;
+    block_inversion inversion = {b, NULL, parallel_thread_count(context->threads)};
+    inversion.rooms = context_reserve(context, inversion.lane_count, sizeof *inversion.rooms);
+    if (inversion.rooms == NULL) return context_out_of_memory(context);
+    parallel_run(context->threads, inversion.lane_count, invert_share, &inversion);
+    context_free(context, inversion.rooms);
+    return context_progress_status(context);
 }
 
 cscd_status near_blocks_create(const treecode *t, near_blocks *out) {
     cscd_context *context = t->context;
     *out = (near_blocks){.t = t};
-    cscd_status status = CSCD_OK;
     if (!context_reserve_all(context, list_begins(out))) return context_out_of_memory(context);
     begin_blocks(out);
-    if (context_reserve_all(context, list_members(out))) {
-        const uint32_t tasks = t->tree.leaf_count / LEAVES_PER_TASK + (t->tree.leaf_count % LEAVES_PER_TASK != 0);
-        parallel_run(context->threads, tasks, invert_blocks, out);
-        status = context_progress_status(context);
-    } else {
-        status = context_out_of_memory(context);
-    }
+    const cscd_status status =
+        context_reserve_all(context, list_members(out)) ? invert_blocks(out) : context_out_of_memory(context);
     if (status != CSCD_OK) near_blocks_destroy(out);
     return status;
 }

@@ -5,9 +5,10 @@
 
 typedef struct near_blocks {
     const treecode *t;
-    size_t *begins;        /* leaf l has the block members[begins[l] .. begins[l + 1]), its own sources first */
-    size_t *row_begins;    /* and rows[row_begins[l] ..], the inverse's rows of its own sources by columns of the block */
-    uint32_t *members;     /* places in the tree's order */
+    size_t *begins; /* leaf l has the block members[begins[l] .. begins[l + 1]), its own sources first */
+    size_t *
+        row_begins; /* and rows[row_begins[l] ..], the inverse's rows of its own sources by columns of the block */
+    uint32_t *members; /* places in the tree's order */
     float *rows;
     size_t member_count, row_count;
 } near_blocks;

@@ -38,8 +38,10 @@ static uint32_t shape_subtree(source_tree *tree, uint32_t begin, uint32_t end, i
     source_node *node = &tree->nodes[number];
     const bool is_leaf = end - begin <= SOURCES_PER_LEAF;
     *node = (source_node){.begin = begin, .end = end, .leaf = tree->leaf_count};
-    if (level == TASK_LEVEL || (level < TASK_LEVEL && is_leaf)) tree->task_nodes[tree->task_count++] = number;
-    else if (level < TASK_LEVEL) tree->above_nodes[tree->above_count++] = number;
+    if (level == TASK_LEVEL || (level < TASK_LEVEL && is_leaf))
+        tree->task_nodes[tree->task_count++] = number;
+    else if (level < TASK_LEVEL)
+        tree->above_nodes[tree->above_count++] = number;
     if (is_leaf) {
         tree->leaves[tree->leaf_count++] = number;
     } else {
@@ -73,9 +75,12 @@ static void select_first(placed_source *items, uint32_t count, uint32_t wanted, 
             while (comes_before(&pivot, &items[j], axis)) j--;
             if (i <= j) swap_placed(&items[i++], &items[j--]);
         }
-        if (wanted <= j) last = j;
-        else if (wanted >= i) first = i;
-        else return;
+        if (wanted <= j)
+            last = j;
+        else if (wanted >= i)
+            first = i;
+        else
+            return;
     }
 }
 
@@ -156,10 +161,13 @@ static void build_subtree(void *data, uint32_t task) {
 static void build_tree(tree_build *build) {
     const source_tree *tree = build->tree;
     for (uint32_t i = 0; i < tree->count; i++)
-        build->placed[i] = (placed_source){{build->system->x[i], build->system->y[i], build->system->z[i]}, i};
-    for (uint32_t i = 0; i < tree->above_count; i++) split_node(build, &build->tree->nodes[tree->above_nodes[i]]);
+        build->placed[i] =
+            (placed_source){{build->system->x[i], build->system->y[i], build->system->z[i]}, i};
+    for (uint32_t i = 0; i < tree->above_count; i++)
+        split_node(build, &build->tree->nodes[tree->above_nodes[i]]);
     parallel_run(tree->context->threads, tree->task_count, build_subtree, build);
-    for (uint32_t i = 0; i < tree->above_count; i++) set_radii(tree, &build->tree->nodes[tree->above_nodes[i]]);
+    for (uint32_t i = 0; i < tree->above_count; i++)
+        set_radii(tree, &build->tree->nodes[tree->above_nodes[i]]);
 }
 
 cscd_status source_tree_create(cscd_context *context, const charge_system *system, source_tree *out) {

@@ -19,9 +19,10 @@ typedef struct source_node {
 /* A triangle as the tree holds it, in its order. */
 typedef struct tree_source {
     double centroid[3];
-    double points[SOURCE_POINTS][3]; /* the middles of its edges: a third of the charge at each has the right moments up to
+    double points[SOURCE_POINTS]
+                 [3]; /* the middles of its edges: a third of the charge at each has the right moments up to
                                       * degree 2 */
-    double radius;                   /* of a ball around the triangle, about its centroid */
+    double radius;    /* of a ball around the triangle, about its centroid */
     uint32_t unknown;
 } tree_source;
 

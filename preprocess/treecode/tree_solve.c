@@ -5,7 +5,7 @@
 #include "preprocess/treecode/near_blocks.h"
 #include "src/core/timer.h"
 
-static const double TOLERANCE = 1e-5;
+#include <math.h>
 
 enum { ITERATIONS_MOST = 300 };
 
@@ -13,14 +13,11 @@ enum { ITERATIONS_MOST = 300 };
 typedef struct tree_equations {
     treecode t;
     near_blocks blocks;
-    uint32_t multiplied;
+    double tolerance;
 } tree_equations;
 
 static cscd_status multiply_charges(void *data, const double *charges, double *potentials) {
     tree_equations *e = data;
-    const double usual = 14.0; /* iterations; from there on the bar stands still */
-    progress_go_on(&e->t.context->progress, e->multiplied < usual ? e->multiplied / usual : 1.0);
-    e->multiplied++;
     return treecode_evaluate(&e->t, charges, potentials);
 }
 
@@ -29,39 +26,64 @@ static void precondition_potentials(void *data, const double *potentials, double
     near_blocks_apply(&e->blocks, potentials, charges);
 }
 
-static cscd_status fail_singular(const tree_equations *e, const charge_system *system, gmres_result result) {
-    return context_fail(e->t.context, CSCD_INVALID_ARGUMENT,
-                        "charge: the charges of component %u cannot be told apart in its %u equations: after %u iterations the "
-                        "potential still differs by %.2g of what it should be; some triangles there lie (almost) on each other or "
-                        "on one line; move or remove them",
-                        system->component, system->count, result.iterations, result.residual);
+/* The iterations are the stage from 0.4 on; while one runs, its progress is that of the last. */
+static void tell_share(void *data, double share) {
+    const tree_equations *e = data;
+    progress_stage(&e->t.context->progress, "charge: iteration", 0.4 + 0.6 * share, 1.0);
+}
+
+/* The one whose potential is farthest from 1. */
+static uint32_t worst_triangle(const tree_equations *e, const charge_system *system,
+                               const double *potentials) {
+    uint32_t worst = 0, i = 0;
+    for (uint32_t k = 1; k < system->count; k++)
+        if (fabs(potentials[k] - 1.0) > fabs(potentials[worst] - 1.0)) worst = k;
+    while (system->points[i].unknown != e->t.tree.sources[worst].unknown) i++;
+    return system->points[i].triangle;
+}
+
+static cscd_status fail_singular(tree_equations *e, const charge_system *system, gmres_result result,
+                                 const double *charges, double *potentials) {
+    const cscd_status status = treecode_evaluate(&e->t, charges, potentials);
+    if (status != CSCD_OK) return status;
+    return context_fail(
+        e->t.context, CSCD_INVALID_ARGUMENT,
+        "charge: the charges of component %u cannot be told apart in its %u equations: after %u iterations the "
+        "potential still differs by %.2g of what it should be, most at triangle %u; some triangles there lie "
+        "(almost) on each other or on one line; move or remove them",
+        system->component, system->count, result.iterations, result.residual,
+        worst_triangle(e, system, potentials));
 }
 
 static cscd_status find_charges(tree_equations *e, charge_system *system) {
     cscd_context *context = e->t.context;
-    const linear_equations equations = {context, system->count, e, multiply_charges, precondition_potentials};
+    const linear_equations equations = {context,          system->count,           e,
+                                        multiply_charges, precondition_potentials, tell_share};
     gmres_result result;
     double *right = context_reserve(context, 2 * (size_t)system->count, sizeof *right);
     if (right == NULL) return context_out_of_memory(context);
     double *charges = right + system->count;
     for (uint32_t i = 0; i < system->count; i++) right[i] = 1.0;
-    progress_stage(&context->progress, "charge: iteration", 0.2, 1.0);
-    cscd_status status = gmres_solve(&equations, right, TOLERANCE, ITERATIONS_MOST, charges, &result);
-    if (status == CSCD_OK && !(result.residual <= TOLERANCE)) status = fail_singular(e, system, result);
+    tell_share(e, 0.0);
+    cscd_status status = gmres_solve(&equations, right, e->tolerance, ITERATIONS_MOST, charges, &result);
+    if (status == CSCD_OK && !(result.residual <= e->tolerance))
+        status = fail_singular(e, system, result, charges, right);
     if (status == CSCD_OK)
-        for (uint32_t i = 0; i < system->count; i++) system->charges[e->t.tree.sources[i].unknown] = charges[i];
+        for (uint32_t i = 0; i < system->count; i++)
+            system->charges[e->t.tree.sources[i].unknown] = charges[i];
     context_free(context, right);
     return status;
 }
 
-cscd_status tree_solve(cscd_context *context, charge_system *system, size_t memory_limit, charge_timings *timings) {
-    tree_equations e = {.multiplied = 0};
+cscd_status tree_solve(cscd_context *context, charge_system *system, size_t memory_limit, double tolerance,
+                       charge_timings *timings) {
+    tree_equations e = {.tolerance = tolerance};
     double clock = timer_now_ms();
     if (system->count == 0) return CSCD_OK;
-    progress_stage(&context->progress, "charge: tree", 0.0, 0.1);
+    progress_stage(&context->progress, "charge: tree", 0.0, 0.15);
     cscd_status status = treecode_create(context, system, memory_limit, &e.t);
     if (status != CSCD_OK) return status;
-    progress_stage(&context->progress, "charge: blocks", 0.1, 0.2);
+    progress_stage(&context->progress, "charge: blocks", 0.15, 0.4);
     status = near_blocks_create(&e.t, &e.blocks);
     timer_lap(&clock, &timings->assembly_ms);
     if (status == CSCD_OK) status = find_charges(&e, system);

@@ -64,10 +64,11 @@ static cscd_status check_limit(const treecode *t, size_t memory_limit) {
                          (double)t->lists.far_count * sizeof *t->lists.far_items +
                          2.0 * HARMONIC_COUNT * sizeof(double) * t->tree.node_count;
     if (bytes <= (double)memory_limit) return CSCD_OK;
-    return context_fail(t->context, CSCD_OUT_OF_MEMORY,
-                        "charge: a component of %u triangles takes %.4g GiB of memory, and %.4g GiB are available; "
-                        "simplify the mesh or use a machine with more memory",
-                        t->tree.count, bytes / gibibyte, (double)memory_limit / gibibyte);
+    return context_fail(
+        t->context, CSCD_OUT_OF_MEMORY,
+        "charge: a component of %u triangles takes %.4g GiB of memory, and %.4g GiB are available; "
+        "simplify the mesh or use a machine with more memory",
+        t->tree.count, bytes / gibibyte, (double)memory_limit / gibibyte);
 }
 
 static cscd_status prepare_treecode(treecode *t, const charge_system *system, size_t memory_limit) {
@@ -85,7 +86,8 @@ static cscd_status prepare_treecode(treecode *t, const charge_system *system, si
     return context_progress_status(context);
 }
 
-cscd_status treecode_create(cscd_context *context, const charge_system *system, size_t memory_limit, treecode *out) {
+cscd_status treecode_create(cscd_context *context, const charge_system *system, size_t memory_limit,
+                            treecode *out) {
     *out = (treecode){.context = context, .kernels = KERNELS_OF(context, treecode_kernels)};
     out->tree.context = out->lists.context = context;
     expansion_tables_set(&out->tables);
@@ -203,7 +205,8 @@ static void evaluate_below(void *data, uint32_t task) {
     const evaluation *e = data;
     const uint32_t root = e->t->tree.task_nodes[task], end = subtree_end(&e->t->tree, root);
     memset(expansion_of(e->t->coefficients, root), 0, HARMONIC_COUNT * sizeof(double));
-    for (uint32_t n = root; n < end && progress_go_on(&e->t->context->progress, 0.0); n++) evaluate_node(e, n);
+    for (uint32_t n = root; n < end && progress_go_on(&e->t->context->progress, 0.0); n++)
+        evaluate_node(e, n);
 }
 
 cscd_status treecode_evaluate(treecode *t, const double *charges, double *potentials) {

@@ -12,14 +12,16 @@ typedef struct treecode {
     expansion_tables tables;
     const treecode_kernels *kernels;
     double *moments, *coefficients; /* of all nodes, HARMONIC_COUNT each */
-    size_t *exact_begins;           /* leaf l has exact_potentials[exact_begins[l] .. exact_begins[l + 1]), see near_field */
+    size_t *
+        exact_begins; /* leaf l has exact_potentials[exact_begins[l] .. exact_begins[l + 1]), see near_field */
     float *exact_potentials;
     size_t exact_count;
 } treecode;
 
 /* The system is used as long as the treecode lives. OUT_OF_MEMORY, too, if it takes more bytes than the limit: that depends on
  * how large the triangles are beside their neighbours. */
-cscd_status treecode_create(cscd_context *context, const charge_system *system, size_t memory_limit, treecode *out);
+cscd_status treecode_create(cscd_context *context, const charge_system *system, size_t memory_limit,
+                            treecode *out);
 void treecode_destroy(treecode *t);
 
 /* Writes the potentials at the collocation points, in the order of the tree, as are the charges. The error of each is at most 1 % of

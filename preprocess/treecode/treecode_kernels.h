@@ -30,7 +30,8 @@ typedef struct near_field {
 
 typedef struct treecode_kernels {
     /* Adds the potential of the far items, as coefficients about the center of a node. */
-    void (*add_far_field)(const far_field *field, const double center[3], double coefficients[HARMONIC_COUNT]);
+    void (*add_far_field)(const far_field *field, const double center[3],
+                          double coefficients[HARMONIC_COUNT]);
 
     /* Writes the potential of what is near. */
     void (*near_potential)(const near_field *field, double potentials[SOURCES_PER_LEAF]);

@@ -5,7 +5,8 @@
 /* ---- far field ------------------------------------------------------------------------------------------- */
 
 /* Derivatives of 1 / r up to the order, but those with a z exponent above 2, which no product has. */
-static void list_tensors(const expansion_tables *t, uint32_t order, const f64x8 r[3], f64x8 tensors[FULL_COUNT]) {
+static void list_tensors(const expansion_tables *t, uint32_t order, const f64x8 r[3],
+                         f64x8 tensors[FULL_COUNT]) {
     const f64x8 inverse = f64x8_all(1.0) / (r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
     tensors[0] = f64x8_sqrt(inverse);
     for (int i = 1; i < t->full_end[order]; i++) {
@@ -43,7 +44,8 @@ static void add_items(const far_field *field, const far_item *items, size_t coun
     }
 }
 
-static void add_far_field(const far_field *field, const double center[3], double coefficients[HARMONIC_COUNT]) {
+static void add_far_field(const far_field *field, const double center[3],
+                          double coefficients[HARMONIC_COUNT]) {
     f64x8 sums[HARMONIC_COUNT];
     for (int l = 0; l < HARMONIC_COUNT; l++) sums[l] = f64x8_all(0.0);
     for (size_t i = 0; i < field->item_count; i += LANES) {
@@ -88,7 +90,8 @@ static void add_points(const near_field *field, f32x8 sums[LEAF_VECTORS], f64x8 
             const f32x8 py = f32x8_all((float)(source->points[p][1] - field->center[1]));
             const f32x8 pz = f32x8_all((float)(source->points[p][2] - field->center[2]));
             for (uint32_t v = 0; v < field->vector_count; v++) {
-                const f32x8 dx = f32x8_load(field->x + v * LANES) - px, dy = f32x8_load(field->y + v * LANES) - py,
+                const f32x8 dx = f32x8_load(field->x + v * LANES) - px,
+                            dy = f32x8_load(field->y + v * LANES) - py,
                             dz = f32x8_load(field->z + v * LANES) - pz;
                 sums[v] += charge / f32x8_sqrt(dx * dx + dy * dy + dz * dz);
             }

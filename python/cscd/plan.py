@@ -18,6 +18,7 @@ from .mesh import Mesh, read_surface
 __all__ = ["Plan"]
 
 Array = Any
+_SOLVERS = {"tree": 0, "dense": 1, "coarse": 2}
 
 
 class Plan:
@@ -45,8 +46,8 @@ class Plan:
     _handle: Handle
 
     @classmethod
-    def charge(cls, mesh: Mesh, V: Any, *, threshold: float = 0.1, memory_limit: int = 0, threads: int = 0,
-               progress: Optional[Callable[[str, float], Any]] = None) -> Plan:
+    def charge(cls, mesh: Mesh, V: Any, *, threshold: float = 0.1, solver: str = "tree", memory_limit: int = 0,
+               threads: int = 0, progress: Optional[Callable[[str, float], Any]] = None) -> Plan:
         """Cuts a mesh by its charge density (docs/theory/charge.md; Yeh 2012).
 
         Parameters
@@ -55,8 +56,11 @@ class Plan:
             The mesh at rest.
         threshold : float
             The share of the triangles, those of least density, from which cuts grow; in (0, 1).
+        solver : str
+            "tree": iterations of a treecode, densities within 1e-3. "coarse": half the iterations, within some percent.
+            "dense": exactly, by LAPACK, with 4 bytes for each pair of triangles and time with the cube of their number.
         memory_limit : int
-            Bytes that the dense system may take; 0: what the system has.
+            Bytes that the solution may take; 0: what the system has.
 
         Warns
         -----
@@ -66,14 +70,16 @@ class Plan:
         Raises
         ------
         Error
-            This installation has no charge library; the text says how to get it.
+            ``solver`` is "dense", and this installation has no charge library; the text says how to get it.
         """
+        if solver not in _SOLVERS:
+            raise ValueError(f"solver: expected one of {', '.join(_SOLVERS)}; got {solver!r}")
         plan = cls._create(mesh, V, threads, progress, method=code_of("method", "charge"), threshold=threshold,
-                           memory_limit=memory_limit)
+                           charge_solver=_SOLVERS[solver], memory_limit=memory_limit)
         better = plan.better_kernels
         if better is not None:
             warnings.warn(f"OpenBLAS ran its kernels for {plan.charge_kernels}, which are slow on this processor: with "
-                          f"OPENBLAS_CORETYPE={better} in the environment of Python, from its start, a plan by charge takes "
+                          f"OPENBLAS_CORETYPE={better} in the environment of Python, from its start, a dense solution takes "
                           "about a third of the time", RuntimeWarning, stacklevel=2)
         return plan
 
@@ -160,10 +166,9 @@ class Plan:
         except Error as problem:
             if "libcscd-charge" not in str(problem):
                 raise
-            raise Error(f"{problem}\nThis installation of cscd was built without charge, as wheels are. Install it "
-                        "from its sources on a machine with LAPACKE and OpenBLAS (Debian: liblapacke-dev, "
-                        "libopenblas-dev), by `pip install .` there; or make the plan with the tool's "
-                        "`cscd preprocess`, and read it by Plan.read") from None
+            raise Error(f"{problem}\nThis installation of cscd was built without LAPACK, as wheels are. Take solver=\"tree\", "
+                        "or install it from its sources on a machine with LAPACKE and OpenBLAS (Debian: liblapacke-dev, "
+                        "libopenblas-dev), by `pip install .` there") from None
 
     @classmethod
     def _made(cls, mesh: Mesh, V: Any, host: Host, create: Any, options: Array) -> Plan:

@@ -24,7 +24,7 @@ import warnings
 import numpy, cscd
 with warnings.catch_warnings(record=True) as caught:
     warnings.simplefilter("always")
-    plan = cscd.Plan.charge(cscd.Mesh({F.tolist()}, 4), numpy.array({V.tolist()}))
+    plan = cscd.Plan.charge(cscd.Mesh({F.tolist()}, 4), numpy.array({V.tolist()}), solver="dense")
 print(plan.charge_kernels, plan.better_kernels, len(caught), caught[0].category.__name__ if caught else "")
 print(caught[0].message if caught else "")
 """
@@ -63,6 +63,6 @@ def test_other_plans_have_none() -> None:
     mesh = cscd.Mesh(F, 4)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        charge = cscd.Plan.charge(mesh, V)
+        charge = cscd.Plan.charge(mesh, V, solver="dense")
     for plan in (cscd.Plan.kmeans(mesh, V, 1), pickle.loads(pickle.dumps(charge))):
         assert plan.charge_kernels is None and plan.better_kernels is None

@@ -41,6 +41,14 @@ static bool read_share(const char *text, void *place) {
     return parse_double(text, share) && *share > 0.0 && *share < 1.0;
 }
 
+static bool read_charge_solver(const char *text, void *place) {
+    static const char *const names[] = {"tree", "dense", "coarse"};
+    cscd_charge_solver *solver = place;
+    for (*solver = CSCD_CHARGE_TREE; *solver <= CSCD_CHARGE_COARSE; ++*solver)
+        if (strcmp(text, names[*solver]) == 0) return true;
+    return false;
+}
+
 static const option_row rows[] = {
     {"o", "PLAN.ply", read_text, offsetof(preprocess_options, output_path),
      "default: MODEL with .plan.ply for its ending, where replay looks for it"},
@@ -50,14 +58,19 @@ static const option_row rows[] = {
     {"up", "y|z", read_up, offsetof(preprocess_options, report.up),
      "of the report: which axis points up (default: y of OBJ and glTF, else z)"},
     {"method", "charge", read_plan_method, offsetof(preprocess_options, plan),
-     "cut where little charge gathers on the mesh as a conductor (default); takes 4 bytes for each pair of "
-     "triangles of a component, and time with the cube"},
+     "cut where little charge gathers on the mesh as a conductor (default)"},
     {"method", "kmeans:K", .help = "K regions by distance"},
     {"method", "single", .help = "one region per component"},
     {"seed", "N", read_unsigned, offsetof(preprocess_options, plan.seed),
      "with kmeans: another number gives other regions (default 1)"},
     {"threshold", "X", read_share, offsetof(preprocess_options, plan.threshold),
      "with charge: cuts start from the triangles of least charge; X is their share of all (default 0.1)"},
+    {"charge", "tree", read_charge_solver, offsetof(preprocess_options, plan.charge_solver),
+     "with charge: solve for it by iterations of a treecode, with about 2 kB a triangle (default)"},
+    {"charge", "coarse", .help = "the same with half the iterations, to some percent"},
+    {"charge", "dense",
+     .help = "by a dense matrix, to compare: 4 bytes for each pair of triangles of a component, "
+             "and time with the cube of their number"},
     {"published", NULL, read_flag, offsetof(preprocess_options, published),
      "with charge: sort charges into 256 classes, as published, instead of ranking each of them"},
     {"weld", "exact|none|EPS", read_weld, offsetof(preprocess_options, source.weld),
@@ -82,7 +95,7 @@ static const option_table table = {
         {"preprocess body.obj --report plan.html",
          "Also write a page that shows the regions in any browser."},
         {"preprocess scan.ply --method kmeans:8",
-         "Cut a large mesh by distance alone, which needs little time and memory."}}};
+         "Cut a mesh by distance alone, which needs even less time and memory."}}};
 
 static double total_area(const cscd_plan *plan) {
     double area = 0.0;
@@ -164,7 +177,8 @@ static bool show_progress(void *user, const char *stage, double fraction) {
 static bool make_plan(const preprocess_options *o, recording *r, const double *positions, io_error *error) {
     cscd_plan *plan = NULL;
     cscd_plan_options options = o->plan;
-    if (options.method == CSCD_METHOD_CHARGE) blas_kernels_prepare(!o->quiet);
+    if (options.method == CSCD_METHOD_CHARGE && options.charge_solver == CSCD_CHARGE_DENSE)
+        blas_kernels_prepare(!o->quiet);
     options.variant = o->published ? CSCD_PLAN_VARIANT_PUBLISHED : 0;
     cscd_status status = cscd_plan_create(
         r->context, r->mesh, CSCD_DOUBLES(positions, cscd_mesh_vertex_count(r->mesh)), &options, &plan);
@@ -172,8 +186,9 @@ static bool make_plan(const preprocess_options *o, recording *r, const double *p
     if (status == CSCD_CANCELLED)
         return io_fail(error, "%s: interrupted; no plan was written", o->source.model_path);
     if (status == CSCD_OUT_OF_MEMORY && o->plan.method == CSCD_METHOD_CHARGE)
-        return io_fail(error, "%s: %s; or give --method kmeans:8, which needs little", o->source.model_path,
-                       cscd_context_detail(r->context));
+        return io_fail(error, "%s: %s; or give %s, which needs little", o->source.model_path,
+                       cscd_context_detail(r->context),
+                       o->plan.charge_solver == CSCD_CHARGE_DENSE ? "--charge tree" : "--method kmeans:8");
     if (status != CSCD_OK)
         return io_fail(error, "%s: %s", o->source.model_path, cscd_context_detail(r->context));
     bool saved = save_plan(o, r, positions, plan, error);

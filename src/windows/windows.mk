@@ -18,7 +18,7 @@ EXPAT_LIBS  := -lexpat
 TOOL_LIBS   := -L$(WINDOWS_LIBRARIES)/lib -lpng -lz -ljson-c -lexpat -lm
 TEST_LIBS   := -L$(WINDOWS_LIBRARIES)/lib -lcmocka-static $(TOOL_LIBS)
 # Tests alone make plans by charge, with a solver of theirs.
-CHARGE_SOURCES := $(filter-out src/blas/% %/dense_solve.c %/charge_export.c,$(CHARGE_SOURCES)) tests/windows/dense_solve.c
+CHARGE_SOURCES := $(filter-out src/blas/% %/dense_solve.c %/dense_export.c,$(CHARGE_SOURCES)) tests/windows/dense_solve.c
 
 # Without a library for Windows: GMP, FLINT and Arb. Without a meaning there: what Unix alone has. tests/windows/left_out.txt says
 # why each program is missing, and which tests of others are known to fail.

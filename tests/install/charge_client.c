@@ -1,4 +1,4 @@
-/* A program that makes plans, in C99: by charge, from the parts of a plan by charge, and by k-means. */
+/* A program that makes plans, in C99: by charge, solved densely and by a tree, and from the parts of such a plan. */
 #include <cscd/cscd.h>
 
 #include <stdio.h>
@@ -26,15 +26,16 @@ int main(void) {
     if (cscd_context_create(NULL, &context) != CSCD_OK ||
         cscd_mesh_create(context, &object, 1, &mesh) != CSCD_OK)
         return 1;
+    options.charge_solver = CSCD_CHARGE_DENSE;
     cscd_status status = cscd_plan_create(context, mesh, CSCD_DOUBLES(corners, 4), &options, &plan);
     print_plan("solved", context, status, plan);
     plan = NULL;
     status = cscd_plan_create_from_parts(context, mesh, CSCD_DOUBLES(corners, 4), &parts, &plan);
     print_plan("from parts", context, status, plan);
     plan = NULL;
-    options.method = CSCD_METHOD_KMEANS;
+    options.charge_solver = CSCD_CHARGE_TREE;
     status = cscd_plan_create(context, mesh, CSCD_DOUBLES(corners, 4), &options, &plan);
-    print_plan("k-means", context, status, plan);
+    print_plan("by a tree", context, status, plan);
     cscd_mesh_destroy(mesh);
     cscd_context_destroy(context);
     return 0;

@@ -1,4 +1,4 @@
-/* The shared library opens libcscd-charge.so when a plan by charge is made: beside itself, or where the system looks; and
+/* The shared library opens libcscd-charge.so when charge is solved for by a dense matrix: beside itself, or where the system looks; and
  * so does the tool, beside itself or in its prefix. Without it, or with a wrong one, that call fails with a sentence and
  * everything else works, also where OpenBLAS would hang. */
 #include "cscd/cscd.h"
@@ -46,7 +46,7 @@ static char *run_opening(const char *library_folders) {
     return shell_output(0, "LD_LIBRARY_PATH='%s' '%s/opens'", library_folders, folder.path);
 }
 
-/* Plans by charge fail with a sentence that has these words; all else is as it was. */
+/* Dense solutions fail with a sentence that has these words; all else is as it was. */
 static void expect_sentence(const char *words) {
     char *printed = run_opening("");
     const char *others = strstr(linked, "from parts"), *found = strstr(printed, "from parts");
@@ -164,8 +164,8 @@ static void lay_out_prefix(const char *libraries) {
 static char *make_plan_by(const char *call, int status) {
     return shell_output(
         status,
-        "cd '%s/prefix/bin' && PATH=.:$PATH %s preprocess ../../model.obj -o ../../plan.ply --method "
-        "charge 2>&1",
+        "cd '%s/prefix/bin' && PATH=.:$PATH %s preprocess ../../model.obj -o ../../plan.ply --charge "
+        "dense 2>&1",
         folder.path, call);
 }
 
@@ -209,7 +209,7 @@ static void the_tool_needs_little_memory(void **state) {
         char *said =
             shell_output(1,
                          "ulimit -v %d; timeout 20 '%s/prefix/bin/cscd' preprocess '%s/model.obj' -o "
-                         "'%s/plan.ply' --method charge 2>&1",
+                         "'%s/plan.ply' --charge dense 2>&1",
                          mebibytes * 1024, folder.path, folder.path, folder.path);
         assert_non_null(strstr(said, "MiB of address space"));
         free(said);

@@ -1,4 +1,4 @@
-/* A plan says with which kernels OpenBLAS has made it. The program runs itself again behind a library that plays an OpenBLAS that
+/* A plan whose charge was solved for by a dense matrix says with which kernels OpenBLAS has done that. The program runs itself again behind a library that plays an OpenBLAS that
  * does not know the processor. */
 #include "src/blas/blas_choice.h"
 #include "tests/support/models/body_of.h"
@@ -13,7 +13,7 @@
 static const char *program;
 
 /* Writes what the plan of a method says, as "charge_kernels better_kernels", with - for NULL. */
-static void describe_plan(cscd_method method, char text[128]) {
+static void describe_plan(cscd_method method, cscd_charge_solver solver, char text[128]) {
     body shape = body_of(BODY_SPHERE, 200);
     cscd_context *context;
     cscd_mesh *mesh;
@@ -24,6 +24,7 @@ static void describe_plan(cscd_method method, char text[128]) {
     assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
     assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
     options.method = method;
+    options.charge_solver = solver;
     assert_int_equal(plan_create_packed(mesh, shape.positions, &options, &plan), CSCD_OK);
     cscd_plan_info info = cscd_plan_describe(plan);
     snprintf(text, 128, "%s %s", info.charge_kernels != NULL ? info.charge_kernels : "-",
@@ -38,7 +39,7 @@ static void charge_names_its_kernels(void **state) {
     char text[128], expected[128];
     const char *name = blas_choice_name(), *better = blas_choice_better();
     (void)state;
-    describe_plan(CSCD_METHOD_CHARGE, text);
+    describe_plan(CSCD_METHOD_CHARGE, CSCD_CHARGE_DENSE, text);
     snprintf(expected, sizeof expected, "%s %s", name != NULL ? name : "-", better != NULL ? better : "-");
     assert_string_equal(text, expected);
 }
@@ -46,9 +47,9 @@ static void charge_names_its_kernels(void **state) {
 static void others_have_none(void **state) {
     char text[128];
     (void)state;
-    describe_plan(CSCD_METHOD_SINGLE, text);
+    describe_plan(CSCD_METHOD_CHARGE, CSCD_CHARGE_TREE, text);
     assert_string_equal(text, "- -");
-    describe_plan(CSCD_METHOD_KMEANS, text);
+    describe_plan(CSCD_METHOD_KMEANS, CSCD_CHARGE_DENSE, text);
     assert_string_equal(text, "- -");
 }
 
@@ -85,7 +86,7 @@ int main(int argument_count, char **arguments) {
     program = arguments[0];
     if (argument_count == 2 && strcmp(arguments[1], "describe") == 0) {
         char text[128];
-        describe_plan(CSCD_METHOD_CHARGE, text);
+        describe_plan(CSCD_METHOD_CHARGE, CSCD_CHARGE_DENSE, text);
         puts(text);
         return 0;
     }

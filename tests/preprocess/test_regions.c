@@ -1,5 +1,5 @@
 /* Bodies are cut where one would expect it, and detector points see more after it. */
-#include "preprocess/charge_call.h"
+#include "preprocess/charges.h"
 #include "preprocess/regions/kmeans.h"
 #include "preprocess/regions/regions.h"
 #include "preprocess/regions/visibility.h"
@@ -40,7 +40,8 @@ static int make_bodies(void **state) {
         c->shape = body_of((body_kind)kind, 2000);
         if (c->shape.triangle_count > TRIANGLES_MAX) return -1;
         cscd_mesh *mesh = body_mesh(&c->shape, 1);
-        cscd_status status = charge_solve(mesh, c->shape.positions, c->density, capacitance, NULL);
+        cscd_status status = charge_solve(mesh, c->shape.positions, &(charge_options){CSCD_CHARGE_TREE, 0},
+                                          c->density, capacitance, NULL);
         body_mesh_destroy(mesh);
         if (status != CSCD_OK) return -1;
     }
@@ -183,7 +184,9 @@ static void repeatable_regions(void **state) {
     double capacitance[1], *density = malloc(c->shape.triangle_count * sizeof *density);
     divide_body(&c->shape, c->density, &found);
     cscd_mesh *mesh = body_mesh(&c->shape, 1);
-    assert_int_equal(charge_solve(mesh, c->shape.positions, density, capacitance, NULL), CSCD_OK);
+    assert_int_equal(charge_solve(mesh, c->shape.positions, &(charge_options){CSCD_CHARGE_TREE, 0}, density,
+                                  capacitance, NULL),
+                     CSCD_OK);
     body_mesh_destroy(mesh);
     divide_body(&c->shape, density, &other);
     assert_same(&found, &other);

@@ -1,6 +1,6 @@
 /* Dense linear systems for the tests on Windows, which has no LAPACKE: plain elimination with partial pivoting, on one thread. Many
  * tests are about plans by charge, which product and tool do not make there. */
-#include "preprocess/charge/dense_solve.h"
+#include "preprocess/dense/dense_solve.h"
 #include "src/blas/blas_choice.h"
 
 #include <math.h>
@@ -53,7 +53,7 @@ static void finish_column(float *matrix, uint32_t count, uint32_t k, int32_t *pi
     for (uint32_t row = k + 1; row < count; row++) column[row] /= column[k];
 }
 
-cscd_status dense_factor(const charge_host *host, float *matrix, uint32_t count, int32_t *pivots,
+cscd_status dense_factor(const dense_host *host, float *matrix, uint32_t count, int32_t *pivots,
                          uint32_t *zero_pivot) {
     *zero_pivot = 0;
     for (uint32_t begin = 0; begin < count; begin += PANEL) {

@@ -38,6 +38,7 @@ static kernel_names kernels_of_small_plan(void) {
     cscd_plan *plan = NULL;
     one_thread.thread_count = 1;
     options.method = CSCD_METHOD_CHARGE;
+    options.charge_solver = CSCD_CHARGE_DENSE;
     if (cscd_context_create(&one_thread, &context) == CSCD_OK &&
         cscd_mesh_create(context, &tetrahedron, 1, &mesh) == CSCD_OK &&
         cscd_plan_create(context, mesh, CSCD_DOUBLES(positions, 4), &options, &plan) == CSCD_OK)
@@ -86,6 +87,6 @@ void blas_kernels_prepare(bool warns) {
         setenv(CORE_VARIABLE, names.better, 1);
     else
         warn("OpenBLAS runs its kernels for %s, which are slow on this processor: with " CORE_VARIABLE
-             "=%s a plan by charge takes about a third of the time",
+             "=%s it takes about a third of the time",
              names.used, names.better);
 }

@@ -5,7 +5,6 @@
 #include "src/io/path_name.h"
 #include "src/io/plan_file.h"
 #include "src/io/text_escape.h"
-#include "src/tool/common/blas_kernels.h"
 #include "src/tool/common/methods.h"
 
 #include <stdio.h>
@@ -94,7 +93,6 @@ static bool make_plan(const plan_request *request, cscd_method method, const rec
     if (positions == NULL) return io_fail(error, "out of memory");
     cscd_plan *plan = NULL;
     recording_rest(r, positions);
-    if (method == CSCD_METHOD_CHARGE) blas_kernels_prepare(false);
     bool made =
         cscd_plan_create(r->context, r->mesh, CSCD_DOUBLES(positions, cscd_mesh_vertex_count(r->mesh)),
                          &options, &plan) == CSCD_OK;
@@ -119,32 +117,31 @@ static void add_remark(plan_choice *choice, const char *text) {
     if (choice->remark[0] == '\0') snprintf(choice->remark, sizeof choice->remark, "%s", text);
 }
 
+/* By numbers of triangles and intervals, never by clock, so that all shards of a recording choose the same. */
+static bool charge_pays(const recording *r) {
+    return cscd_mesh_triangle_count(r->mesh) <= PLAN_FEW_TRIANGLES ||
+           r->frame_count > 10 * PLAN_PRICE_INTERVALS; /* intervals: one less */
+}
+
 /* No plan was asked for, so failures are not errors: if charge fails, there is one region per component;
  * if that fails too, nothing is culled. */
 static bool make_best(const plan_request *request, const recording *r, plan_choice *choice, io_error *error) {
-    bool small = cscd_mesh_triangle_count(r->mesh) <= PLAN_IN_MEMORY_TRIANGLES;
+    char text[160];
     if (!insists_on_plan(request) && !any_closed(r->mesh)) {
         add_remark(choice, "no component is a closed surface, so there is nothing to cull");
         return true;
     }
-    if (small) {
+    if (charge_pays(r)) {
         if (make_plan(request, CSCD_METHOD_CHARGE, r, choice, error)) return true;
         snprintf(choice->remark, sizeof choice->remark, "%.*s", TEXT_CUT(error->text, 590));
     } else {
-        add_remark(choice, "more than 6000 triangles; cscd preprocess makes a better plan, once");
+        snprintf(
+            text, sizeof text,
+            "a plan by charge takes as long as %d intervals, and here are %u; cscd preprocess makes it once",
+            PLAN_PRICE_INTERVALS, r->frame_count - (r->frame_count > 0));
+        add_remark(choice, text);
     }
     return make_plan(request, CSCD_METHOD_SINGLE, r, choice, error) || !insists_on_plan(request);
-}
-
-static bool make_requested(const plan_request *request, const recording *r, plan_choice *choice,
-                           io_error *error) {
-    uint32_t triangles = cscd_mesh_triangle_count(r->mesh);
-    if (request->method == CSCD_METHOD_CHARGE && triangles > PLAN_IN_MEMORY_TRIANGLES)
-        return io_fail(error,
-                       "%s: %u triangles are too many for a plan of method charge on the way (at most %d); "
-                       "make one with cscd preprocess, or choose another method",
-                       request->model_path, triangles, PLAN_IN_MEMORY_TRIANGLES);
-    return make_plan(request, request->method, r, choice, error);
 }
 
 bool plan_choose(const plan_request *request, const recording *r, plan_choice *out, io_error *error) {
@@ -161,8 +158,8 @@ bool plan_choose(const plan_request *request, const recording *r, plan_choice *o
         bool any_plan = !facts.makes_plan;
         if (any_plan || request->method == CSCD_METHOD_CHARGE) try_model_plan(request, r, &choice);
         if (choice.plan == NULL)
-            chosen =
-                any_plan ? make_best(request, r, &choice, error) : make_requested(request, r, &choice, error);
+            chosen = any_plan ? make_best(request, r, &choice, error)
+                              : make_plan(request, request->method, r, &choice, error);
     }
     bool adapts = request->method == CSCD_METHOD_AUTO && choice.plan != NULL;
     choice.steps_by = adapts ? CSCD_METHOD_AUTO : choice.method;

@@ -4,8 +4,9 @@
 
 #include "src/tool/common/recording.h"
 
-/* Up to this number of triangles a plan of method charge is made without being asked for. */
-enum { PLAN_IN_MEMORY_TRIANGLES = 6000 };
+/* A plan of method charge takes as long as some 200 intervals of the same triangles. It is made without being asked for where
+ * that is a tenth of all intervals of the recording, and for few triangles, where it is a fraction of a second. */
+enum { PLAN_PRICE_INTERVALS = 200, PLAN_FEW_TRIANGLES = 6000 };
 
 /* pawn.obj -> pawn.plan.ply, in the same folder; to be freed, NULL when out of memory. */
 char *plan_path_of_model(const char *model_path);

@@ -68,7 +68,7 @@ static const option_row rows[] = {
      "only from frame A to frame B, both included (A: and :B are open ends)"},
     {"plan", "PLAN.ply", read_text, offsetof(replay_options, plan_path),
      "the regions that cscd preprocess found (default: MODEL.plan.ply if it fits, else made on the way: by "
-     "charge up to 6000 triangles, else single)"},
+     "charge where that takes a tenth of the intervals at most or the triangles are few, else single)"},
     {"method", "charge|kmeans:K|single", read_method, 0,
      "leave out pairs by such a plan, that of --plan or made on the way (default: by any plan, where it pays)"},
     {"method", "none|brute", .help = "leave out none; test all pairs of features, slow"},

@@ -4,6 +4,9 @@
 
 #include <stdlib.h>
 
+const charge_options by_dense_system = {CSCD_CHARGE_DENSE, 0}, by_tree = {CSCD_CHARGE_TREE, 0},
+                     by_coarse_tree = {CSCD_CHARGE_COARSE, 0};
+
 charge_rig charge_rig_create(const conductor *s, uint32_t thread_count, const cscd_allocator *allocator) {
     charge_rig r = {NULL, NULL, NULL, NULL};
     cscd_context_options options = cscd_context_defaults();
@@ -23,8 +26,12 @@ charge_rig charge_rig_create(const conductor *s, uint32_t thread_count, const cs
 }
 
 charge_rig charge_rig_solve(const conductor *s, uint32_t thread_count) {
+    return charge_rig_solve_by(&by_dense_system, s, thread_count);
+}
+
+charge_rig charge_rig_solve_by(const charge_options *options, const conductor *s, uint32_t thread_count) {
     charge_rig r = charge_rig_create(s, thread_count, NULL);
-    if (charge_solve(r.mesh, s->positions, r.density, r.capacitance, NULL) != CSCD_OK)
+    if (charge_solve(r.mesh, s->positions, options, r.density, r.capacitance, NULL) != CSCD_OK)
         fail_msg("%s", cscd_context_detail(r.context));
     return r;
 }

@@ -6,7 +6,7 @@
  * but the size, so the factors are the same whoever runs the tasks. The next panel's task factors it at once:
  * nobody else touches it, and the others need not wait for it. Between two rounds the solve can be
  * cancelled. */
-#include "preprocess/charge/dense_solve.h"
+#include "preprocess/dense/dense_solve.h"
 
 #include <lapacke.h>
 #include <pthread.h>
@@ -83,7 +83,7 @@ static void end_single_thread(size_t lanes) {
 /* ---- factors ------------------------------------------------------------------------------------------ */
 
 typedef struct factoring {
-    const charge_host *host;
+    const dense_host *host;
     float *matrix;
     lapack_int *pivots; /* from 1, and until all are done, from the panel's first row on */
     uint32_t count, zero_pivot;
@@ -157,7 +157,7 @@ static uint32_t panels_of(uint32_t count) {
 }
 
 static cscd_status factor_panels(factoring *f) {
-    const charge_host *host = f->host;
+    const dense_host *host = f->host;
     uint32_t panels = panels_of(f->count);
     f->end = smaller_count(f->count, PANEL_WIDTH);
     factor_panel(f, 0, f->end);
@@ -174,7 +174,7 @@ static cscd_status factor_panels(factoring *f) {
     return CSCD_OK;
 }
 
-static cscd_status fail_without_room(const charge_host *host, uint32_t lanes) {
+static cscd_status fail_without_room(const dense_host *host, uint32_t lanes) {
     char sentence[256];
     snprintf(
         sentence, sizeof sentence,
@@ -185,7 +185,7 @@ static cscd_status fail_without_room(const charge_host *host, uint32_t lanes) {
     return CSCD_OUT_OF_MEMORY;
 }
 
-cscd_status dense_factor(const charge_host *host, float *matrix, uint32_t count, int32_t *pivots,
+cscd_status dense_factor(const dense_host *host, float *matrix, uint32_t count, int32_t *pivots,
                          uint32_t *zero_pivot) {
     factoring f = {.host = host, .matrix = matrix, .pivots = pivots, .count = count};
     uint32_t lanes = smaller_count(host->threads, panels_of(count));

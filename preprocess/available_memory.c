@@ -1,5 +1,5 @@
 /* How much memory the system would give us now. */
-#include "preprocess/charge/available_memory.h"
+#include "preprocess/available_memory.h"
 
 #include <inttypes.h>
 #include <stdbool.h>

@@ -1,0 +1,202 @@
+/* The charges of a mesh, component by component: by a dense system in the charge library, or by a treecode. */
+#include "preprocess/charges.h"
+
+#include "preprocess/available_memory.h"
+#include "preprocess/treecode/tree_solve.h"
+#include "src/core/timer.h"
+#include "src/mesh/positions.h"
+
+#include <string.h>
+
+/* The charge's share of cscd_plan_create, by estimate; the regions take the rest. */
+static const double part_of_call = 0.95;
+
+typedef struct charge_work {
+    const cscd_mesh *mesh;
+    cscd_context *context;
+    const double *positions;
+    const dense_functions *dense; /* NULL: it is not asked for */
+    cscd_charge_solver solver;
+    size_t memory_limit;
+    uint32_t *triangles; /* sorted by component */
+    uint32_t *offsets;   /* component c has triangles[offsets[c] .. offsets[c + 1]) */
+    double *density, *capacitance;
+    charge_system system;
+    void *system_memory;
+    charge_report report;
+} charge_work;
+
+static array_list list_arrays(charge_work *w) {
+    const size_t components = w->mesh->component_count;
+    return (array_list){{ARRAY(w->triangles, w->mesh->triangle_count), ARRAY(w->offsets, components + 1),
+                         ARRAY(w->density, w->mesh->triangle_count), ARRAY(w->capacitance, components)}};
+}
+
+/* ---- components ------------------------------------------------------------------------------------------ */
+
+/* Obstacles are not charged, since they are not cut. */
+static uint32_t charged_triangles(const cscd_mesh *mesh, uint32_t component) {
+    return component_is_obstacle(mesh, component) ? 0 : mesh->components[component].triangle_count;
+}
+
+static uint32_t largest_component(const cscd_mesh *mesh) {
+    uint32_t largest = 0;
+    for (uint32_t c = 0; c < mesh->component_count; c++) {
+        uint32_t count = charged_triangles(mesh, c);
+        largest = count > largest ? count : largest;
+    }
+    return largest;
+}
+
+static void sort_by_component(charge_work *w) {
+    const cscd_mesh *mesh = w->mesh;
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) w->offsets[mesh->triangle_components[t] + 1]++;
+    for (uint32_t c = 0; c < mesh->component_count; c++) w->offsets[c + 1] += w->offsets[c];
+    for (uint32_t t = 0; t < mesh->triangle_count; t++)
+        w->triangles[w->offsets[mesh->triangle_components[t]]++] = t;
+    for (uint32_t c = mesh->component_count; c > 0; c--) w->offsets[c] = w->offsets[c - 1];
+    w->offsets[0] = 0;
+}
+
+/* ---- the dense solution ---------------------------------------------------------------------------------- */
+
+static void *allocate_block(void *context, size_t size) {
+    void *block = context_allocate(context, size, 1);
+    if (block == NULL) context_out_of_memory(context);
+    return block;
+}
+
+static void release_block(void *context, void *block) {
+    context_free(context, block);
+}
+
+static void run_tasks(void *context, uint32_t task_count, parallel_task *task, void *data) {
+    parallel_run(((cscd_context *)context)->threads, task_count, task, data);
+}
+
+static void enter_stage(void *context, const char *name, double begin, double end) {
+    progress_stage(&((cscd_context *)context)->progress, name, begin, end);
+}
+
+static bool go_on(void *context, double share) {
+    return progress_go_on(&((cscd_context *)context)->progress, share);
+}
+
+static cscd_status progress_status(void *context) {
+    return context_progress_status(context);
+}
+
+static void explain_failure(void *context, cscd_status status, const char *sentence) {
+    context_fail(context, status, "%s", sentence);
+}
+
+static cscd_status solve_dense(charge_work *w) {
+    cscd_context *context = w->context;
+    const dense_host host = {context,         allocate_block,  release_block,
+                             run_tasks,       enter_stage,     go_on,
+                             progress_status, explain_failure, parallel_thread_count(context->threads)};
+    w->report.kernels = w->dense->kernels();
+    return w->dense->solve(&host, &w->system, &w->report.timings);
+}
+
+static size_t dense_memory(const charge_work *w) {
+    charge_system system;
+    const uint32_t largest = largest_component(w->mesh);
+    const size_t common = charge_system_lay_out(&system, largest, NULL), matrix = w->dense->memory(largest);
+    return matrix < SIZE_MAX - common ? common + matrix : SIZE_MAX;
+}
+
+static cscd_status check_memory(const charge_work *w) {
+    const double gibibyte = 0x1p30;
+    const size_t needed = w->dense != NULL ? dense_memory(w) : 0;
+    if (needed <= w->memory_limit) return CSCD_OK;
+    return context_fail(w->context, CSCD_OUT_OF_MEMORY,
+                        "charge: a component of %u triangles takes %.4g GiB of memory, and %.4g GiB are "
+                        "available; simplify the mesh or use a machine with more memory",
+                        largest_component(w->mesh), (double)needed / gibibyte,
+                        (double)w->memory_limit / gibibyte);
+}
+
+static double tolerance_of(cscd_charge_solver solver) {
+    return solver == CSCD_CHARGE_COARSE ? 3e-3 : 1e-5;
+}
+
+/* ---- all components -------------------------------------------------------------------------------------- */
+
+static cscd_status solve_component(charge_work *w, uint32_t component) {
+    const charge_surface surface = {w->context, (const uint32_t(*)[3])w->mesh->triangles, w->positions};
+    uint32_t begin = w->offsets[component], count = w->offsets[component + 1] - begin;
+    cscd_status status = charge_system_collect(&w->system, &surface, component, w->triangles + begin, count);
+    if (status == CSCD_OK)
+        status = w->dense != NULL ? solve_dense(w)
+                                  : tree_solve(w->context, &w->system, w->memory_limit,
+                                               tolerance_of(w->solver), &w->report.timings);
+    if (status == CSCD_OK) charge_system_store(&w->system, w->density, &w->capacitance[component]);
+    return status;
+}
+
+/* Work is estimated in ns on one thread: of a dense system an entry takes some 10 in the matrix and in three residuals, and a
+ * multiplication of the factors a hundredth of that; of a tree a triangle takes some 100,000. */
+static double work_of(const charge_work *w, double count) {
+    return w->dense != NULL ? 40.0 * count * count + count * count * count / 300.0 : 1e5 * count;
+}
+
+static cscd_status solve_components(charge_work *w) {
+    const cscd_mesh *mesh = w->mesh;
+    progress *told = &w->context->progress;
+    cscd_status status = CSCD_OK;
+    double whole = 0.0, done = 0.0;
+    for (uint32_t c = 0; c < mesh->component_count; c++) whole += work_of(w, charged_triangles(mesh, c));
+    for (uint32_t c = 0; c < mesh->component_count && status == CSCD_OK; c++) {
+        if (charged_triangles(mesh, c) == 0) continue;
+        double begin = part_of_call * done / whole;
+        done += work_of(w, charged_triangles(mesh, c));
+        progress_part(told, begin, part_of_call * done / whole);
+        status = solve_component(w, c);
+    }
+    progress_part(told, part_of_call, 1.0);
+    return status;
+}
+
+static cscd_status solve_mesh(charge_work *w) {
+    const uint32_t largest = largest_component(w->mesh);
+    cscd_status status = check_memory(w);
+    if (status != CSCD_OK) return status;
+    w->system_memory = context_reserve(w->context, charge_system_lay_out(&w->system, largest, NULL), 1);
+    if (w->system_memory == NULL || !context_allocate_all(w->context, list_arrays(w)))
+        return context_out_of_memory(w->context);
+    charge_system_lay_out(&w->system, largest, w->system_memory);
+    sort_by_component(w);
+    return solve_components(w);
+}
+
+cscd_status charge_solve(const cscd_mesh *mesh, const double *positions, const charge_options *options,
+                         double *density, double *capacitance, charge_report *report) {
+    if (mesh == NULL) return CSCD_INVALID_ARGUMENT;
+    cscd_context *context = mesh->context;
+    charge_work w = {.mesh = mesh,
+                     .context = context,
+                     .positions = positions,
+                     .solver = options->solver,
+                     .memory_limit = options->memory_limit > 0 ? options->memory_limit : available_memory()};
+    const double start = timer_now_ms();
+    if (density == NULL || capacitance == NULL)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "charge: density or capacitance is NULL");
+    cscd_status status = positions_check(context, positions, mesh->vertex_count, "charge");
+    if (status == CSCD_OK && w.solver == CSCD_CHARGE_DENSE) status = charge_library_find(context, &w.dense);
+    if (status == CSCD_OK) status = solve_mesh(&w);
+    if (status == CSCD_OK) {
+        memcpy(density, w.density, mesh->triangle_count * sizeof *density);
+        memcpy(capacitance, w.capacitance, mesh->component_count * sizeof *capacitance);
+        w.report.timings.total_ms = timer_now_ms() - start;
+        if (report != NULL) *report = w.report;
+    }
+    context_free_all(context, list_arrays(&w));
+    context_free(context, w.system_memory);
+    return status;
+}
+
+size_t charge_memory(const cscd_mesh *mesh) {
+    charge_work w = {.mesh = mesh};
+    return charge_library_find(mesh->context, &w.dense) == CSCD_OK ? dense_memory(&w) : SIZE_MAX;
+}

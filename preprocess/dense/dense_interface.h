@@ -1,0 +1,44 @@
+/* What libcscd and libcscd-charge, which has LAPACK, know of each other: one function, which is looked up by its name, and what it
+ * returns. They may come from different builds, so nothing else is shared but charge_system, and DENSE_INTERFACE counts the changes of
+ * these files. */
+#pragma once
+
+#include "preprocess/charge/charge_system.h"
+
+#define DENSE_INTERFACE 4u
+
+/* What the library asks of its caller, each with `context`. run, stage and go_on are parallel_run and the functions of progress.h, and
+ * progress is context_progress_status. */
+typedef struct dense_host {
+    void *context;
+    void *(*allocate)(void *context, size_t size); /* aligned to a cache line; NULL: there is none */
+    void (*release)(void *context, void *block);
+    void (*run)(void *context, uint32_t task_count, void (*task)(void *data, uint32_t task), void *data);
+    void (*stage)(void *context, const char *name, double begin, double end);
+    bool (*go_on)(void *context, double share); /* from any thread, as run's tasks */
+    cscd_status (*progress)(void *context);
+    void (*explain)(void *context, cscd_status status, const char *sentence); /* of a failure */
+    uint32_t threads; /* so many tasks run at a time, at most */
+} dense_host;
+
+/* Names of kernels of OpenBLAS, in static storage; see src/blas/blas_choice.h. */
+typedef struct charge_kernels {
+    const char *used, *better; /* NULL: unknown; used will do */
+} charge_kernels;
+
+typedef struct dense_functions {
+    /* The bytes that a solution takes; SIZE_MAX: too many. */
+    size_t (*memory)(uint32_t count);
+    /* Writes system->charges, and adds to timings. CANCELLED: nothing is solved. INVALID_ARGUMENT: charges cannot be told apart. */
+    cscd_status (*solve)(const dense_host *host, const charge_system *system, charge_timings *timings);
+    charge_kernels (*kernels)(void);
+} dense_functions;
+
+/* Returns the functions of an interface, or NULL for one that this library does not know. */
+typedef const dense_functions *dense_entry(uint32_t interface);
+
+/* The name under which libcscd-charge exports it. */
+#define DENSE_ENTRY_NAME "cscd_charge_functions"
+
+/* The same function inside; a program that links the library statically calls it at once. */
+dense_entry dense_functions_of;

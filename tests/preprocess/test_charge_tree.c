@@ -1,0 +1,312 @@
+/* Charges by the treecode against those of the dense system, and what may go wrong on the way. */
+#include "tests/support/counting_allocator.h"
+#include "tests/support/preprocess/charge_rig.h"
+#include "tests/support/test.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#if defined(NDEBUG) && !defined(SLOW_MACHINE)
+enum { FINE = 4 };
+#else
+enum { FINE = 3 };
+#endif
+
+typedef struct ranked_density {
+    double density;
+    uint32_t triangle;
+} ranked_density;
+
+static int by_density(const void *left, const void *right) {
+    const ranked_density *a = left, *b = right;
+    if (a->density != b->density) return a->density < b->density ? -1 : 1;
+    return a->triangle < b->triangle ? -1 : 1;
+}
+
+static uint32_t *ranks_of(const charge_rig *r, uint32_t count) {
+    ranked_density *sorted = malloc(count * sizeof *sorted);
+    uint32_t *ranks = malloc(count * sizeof *ranks);
+    assert_true(sorted != NULL && ranks != NULL);
+    for (uint32_t t = 0; t < count; t++) sorted[t] = (ranked_density){r->density[t], t};
+    qsort(sorted, count, sizeof *sorted, by_density);
+    for (uint32_t i = 0; i < count; i++) ranks[sorted[i].triangle] = i;
+    free(sorted);
+    return ranks;
+}
+
+/* The correlation of ranks (Spearman), and the share of the lowest tenth that is the lowest tenth of the other, too. */
+static void compare_ranks(const charge_rig *a, const charge_rig *b, uint32_t count, double *correlation,
+                          double *overlap) {
+    uint32_t *of_a = ranks_of(a, count), *of_b = ranks_of(b, count);
+    const double n = count;
+    double squares = 0.0, both = 0.0;
+    for (uint32_t t = 0; t < count; t++) {
+        const double d = (double)of_a[t] - (double)of_b[t];
+        squares += d * d;
+        both += of_a[t] < count / 10 && of_b[t] < count / 10;
+    }
+    *correlation = 1.0 - 6.0 * squares / (n * (n * n - 1.0));
+    *overlap = both / (count / 10);
+    free(of_a);
+    free(of_b);
+}
+
+static conductor bent_body(int level) {
+    conductor s = conductor_sphere(level);
+    const double axes[3] = {2.0, 0.5, 0.7}, nowhere[3] = {0.0, 0.0, 0.0};
+    conductor_transform(&s, axes, nowhere);
+    for (uint32_t v = 0; v < s.vertex_count; v++) {
+        double *p = s.positions + (size_t)v * 3;
+        p[1] += 0.4 * p[0] * p[0];
+        p[2] *= 1.0 + 0.6 * cos(3.0 * p[0]);
+    }
+    return s;
+}
+
+static void agrees_with_the_dense_system(void **state) {
+    (void)state;
+    conductor crowded = conductor_cube(FINE), bent = bent_body(FINE), sphere = conductor_sphere(FINE);
+    conductor_crowd_edges(&crowded);
+    const conductor *all[] = {&bent, &crowded, &sphere};
+    static const char *const names[] = {"bent body", "crowded cube", "sphere"};
+    for (int i = 0; i < 3; i++) {
+        const uint32_t count = all[i]->triangle_count;
+        charge_rig a = charge_rig_solve(all[i], 2), b = charge_rig_solve_by(&by_tree, all[i], 2);
+        double correlation, overlap, worst = 0.0, mean = 0.0;
+        compare_ranks(&a, &b, count, &correlation, &overlap);
+        for (uint32_t t = 0; t < count; t++) {
+            worst = fmax(worst, fabs(a.density[t] - b.density[t]));
+            mean += a.density[t] / count;
+        }
+        print_message(
+            "%s, %u triangles: capacitance within %.1e, densities within %.1e, ranks %.7f, lowest tenth %.4f\n",
+            names[i], count, fabs(b.capacitance[0] / a.capacitance[0] - 1.0), worst / mean, correlation,
+            overlap);
+        assert_true(fabs(b.capacitance[0] / a.capacitance[0] - 1.0) < 1e-5);
+        assert_true(worst < 0.02 * mean);
+        if (i < 2) assert_true(correlation > 0.9995 && overlap >= 0.97);
+        charge_rig coarse = charge_rig_solve_by(&by_coarse_tree, all[i], 2);
+        compare_ranks(&a, &coarse, count, &correlation, &overlap);
+        print_message("    coarse: capacitance within %.1e, ranks %.5f, lowest tenth %.4f\n",
+                      fabs(coarse.capacitance[0] / a.capacitance[0] - 1.0), correlation, overlap);
+        assert_true(fabs(coarse.capacitance[0] / a.capacitance[0] - 1.0) < 1e-3);
+        if (i < 2) assert_true(correlation > 0.98 && overlap >= 0.85);
+        charge_rig_destroy(&coarse);
+        charge_rig_destroy(&a);
+        charge_rig_destroy(&b);
+    }
+    conductor_free(&crowded);
+    conductor_free(&bent);
+    conductor_free(&sphere);
+}
+
+/* A millionth and a million times as large, somewhere else: the same densities but for the scale. */
+static void scale_and_place_do_not_matter(void **state) {
+    (void)state;
+    conductor s = bent_body(2);
+    charge_rig a = charge_rig_solve_by(&by_tree, &s, 1);
+    for (int exponent = -20; exponent <= 20; exponent += 40) {
+        conductor moved = bent_body(2);
+        const double scale = ldexp(1.0, exponent), scales[3] = {scale, scale, scale},
+                     nowhere[3] = {0.0, 0.0, 0.0};
+        conductor_transform(&moved, scales, nowhere);
+        charge_rig b = charge_rig_solve_by(&by_tree, &moved, 1);
+        assert_true(b.capacitance[0] == a.capacitance[0] * scale);
+        for (uint32_t t = 0; t < s.triangle_count; t++) assert_true(b.density[t] * scale == a.density[t]);
+        charge_rig_destroy(&b);
+        conductor_free(&moved);
+    }
+    charge_rig_destroy(&a);
+    conductor_free(&s);
+}
+
+static void components_are_solved_alone(void **state) {
+    (void)state;
+    conductor one = bent_body(2), both = bent_body(2), other = conductor_cube(2);
+    conductor_append(&both, &other);
+    charge_rig a = charge_rig_solve_by(&by_tree, &one, 2), b = charge_rig_solve_by(&by_tree, &both, 2);
+    assert_memory_equal(a.density, b.density, one.triangle_count * sizeof *a.density);
+    assert_true(a.capacitance[0] == b.capacitance[0]);
+    assert_true(fabs(b.capacitance[1] - 0.66) < 0.01);
+    charge_rig_destroy(&a);
+    charge_rig_destroy(&b);
+    conductor_free(&one);
+    conductor_free(&both);
+    conductor_free(&other);
+}
+
+static void threads_give_the_same_bits(void **state) {
+    (void)state;
+    conductor s = bent_body(3);
+    charge_rig a = charge_rig_solve_by(&by_tree, &s, 1);
+    for (uint32_t threads = 2; threads <= 3; threads++) {
+        charge_rig b = charge_rig_solve_by(&by_tree, &s, threads);
+        assert_memory_equal(a.density, b.density, s.triangle_count * sizeof *a.density);
+        charge_rig_destroy(&b);
+    }
+    charge_rig_destroy(&a);
+    conductor_free(&s);
+}
+
+enum {
+    SHEET_SIDE = 8,
+    SHEET_VERTICES = (SHEET_SIDE + 1) * (SHEET_SIDE + 1),
+    SHEET_TRIANGLES = 2 * SHEET_SIDE * SHEET_SIDE
+};
+
+/* Adds a square sheet beside the body, which hangs on it by a triangle. */
+static void hang_sheet(conductor *s, double height) {
+    double positions[SHEET_VERTICES * 3];
+    uint32_t triangles[(SHEET_TRIANGLES + 1) * 3], count = 0;
+    const uint32_t body_vertices = s->vertex_count;
+    conductor sheet = {SHEET_VERTICES, SHEET_TRIANGLES, positions, triangles};
+    for (int i = 0; i < SHEET_VERTICES; i++) {
+        positions[i * 3] = 3.0 + i % (SHEET_SIDE + 1) * 0.1;
+        positions[i * 3 + 1] = i / (SHEET_SIDE + 1) * 0.1;
+        positions[i * 3 + 2] = height;
+    }
+    for (uint32_t i = 0; i < SHEET_SIDE * SHEET_SIDE; i++) {
+        const uint32_t a = i / SHEET_SIDE * (SHEET_SIDE + 1) + i % SHEET_SIDE, b = a + SHEET_SIDE + 1;
+        const uint32_t both[6] = {a, a + 1, b, b, a + 1, b + 1};
+        memcpy(triangles + count, both, sizeof both);
+        count += 6;
+    }
+    conductor_append(s, &sheet);
+    const uint32_t hanger[3] = {0, 1, body_vertices};
+    s->triangles = realloc(s->triangles, (size_t)(s->triangle_count + 1) * sizeof hanger);
+    assert_non_null(s->triangles);
+    memcpy(s->triangles + (size_t)s->triangle_count * 3, hanger, sizeof hanger);
+    s->triangle_count++;
+}
+
+static void says_where_charges_cannot_be_told_apart(void **state) {
+    (void)state;
+    conductor s = conductor_sphere(2);
+    const uint32_t body = s.triangle_count;
+    hang_sheet(&s, 0.0);
+    hang_sheet(&s, 1e-13);
+    charge_rig r = charge_rig_create(&s, 1, NULL);
+    assert_int_equal(charge_solve(r.mesh, s.positions, &by_tree, r.density, r.capacitance, NULL),
+                     CSCD_INVALID_ARGUMENT);
+    const char *where = strstr(cscd_context_detail(r.context), "most at triangle ");
+    assert_non_null(where);
+    assert_true(strtoul(where + strlen("most at triangle "), NULL, 10) >= body);
+    charge_rig_destroy(&r);
+    conductor_free(&s);
+}
+
+/* Sheets that lie almost on each other have no charges that can be told apart, and the sentence says so; the others are solved. */
+static void sheets_near_each_other(void **state) {
+    (void)state;
+    for (int digits = 2; digits <= 14; digits += 4) {
+        double h = pow(10.0, -digits);
+        double positions[18] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, h, 1, 0, h, 0, 1, h};
+        uint32_t triangles[9] = {0, 1, 2, 3, 4, 5, 0, 1, 4};
+        conductor s = {6, 3, positions, triangles};
+        charge_rig r = charge_rig_create(&s, 1, NULL);
+        const cscd_status status =
+            charge_solve(r.mesh, s.positions, &by_tree, r.density, r.capacitance, NULL);
+        print_message("%g apart: %s %s\n", h, cscd_status_string(status),
+                      status == CSCD_OK ? "" : cscd_context_detail(r.context));
+        if (status == CSCD_OK)
+            assert_true(r.capacitance[0] > 0.2 && r.capacitance[0] < 0.4);
+        else
+            assert_non_null(strstr(cscd_context_detail(r.context), "lie (almost) on each other"));
+        charge_rig_destroy(&r);
+    }
+}
+
+static void keeps_to_the_limit(void **state) {
+    (void)state;
+    conductor s = bent_body(3);
+    charge_rig r = charge_rig_create(&s, 2, NULL);
+    const size_t held = cscd_context_bytes(r.context);
+    const charge_options little = {CSCD_CHARGE_TREE, 100000};
+    assert_int_equal(charge_solve(r.mesh, s.positions, &little, r.density, r.capacitance, NULL),
+                     CSCD_OUT_OF_MEMORY);
+    assert_non_null(strstr(cscd_context_detail(r.context), "a component of 1280 triangles takes"));
+    assert_true(charge_rig_untouched(&r));
+    assert_int_equal(cscd_context_bytes(r.context), held);
+    charge_rig_destroy(&r);
+    conductor_free(&s);
+}
+
+static void memory_may_run_out(void **state) {
+    (void)state;
+    conductor s = bent_body(2);
+    counting_allocator counter = counting_allocator_start();
+    const cscd_allocator allocator = counting_allocator_interface(&counter);
+    charge_rig r = charge_rig_create(&s, 2, &allocator);
+    const size_t held = cscd_context_bytes(r.context);
+    cscd_status status = CSCD_OUT_OF_MEMORY;
+    size_t refused = 0;
+    for (; status != CSCD_OK; refused++) {
+        counter.fail_at = counter.calls + refused;
+        status = charge_solve(r.mesh, s.positions, &by_tree, r.density, r.capacitance, NULL);
+        counter.fail_at = SIZE_MAX;
+        assert_int_equal(cscd_context_bytes(r.context), held);
+        if (status == CSCD_OK) break;
+        assert_int_equal(status, CSCD_OUT_OF_MEMORY);
+        assert_true(charge_rig_untouched(&r));
+    }
+    print_message("memory was refused in %zu places\n", refused);
+    assert_true(refused > 10);
+    charge_rig_destroy(&r);
+    conductor_free(&s);
+}
+
+/* The host's answers: false from so many calls on. */
+typedef struct patience {
+    uint32_t calls, most;
+    double fraction;
+} patience;
+
+static bool is_patient(void *user, const char *stage, double fraction) {
+    patience *p = user;
+    (void)stage;
+    assert_true(fraction >= p->fraction && fraction <= 1.0);
+    p->fraction = fraction;
+    return ++p->calls <= p->most;
+}
+
+static void a_host_may_end_it(void **state) {
+    (void)state;
+    conductor s = bent_body(2);
+    patience p = {0, UINT32_MAX, 0.0};
+    charge_rig r = charge_rig_create(&s, 1, NULL);
+    r.context->progress.host = (cscd_progress){is_patient, &p};
+    r.context->progress.interval_ms = 0.0;
+    progress_begin(&r.context->progress);
+    assert_int_equal(charge_solve(r.mesh, s.positions, &by_tree, r.density, r.capacitance, NULL), CSCD_OK);
+    const uint32_t calls = p.calls;
+    for (uint32_t t = 0; t < s.triangle_count; t++) r.density[t] = -1.0;
+    r.capacitance[0] = -1.0;
+    for (uint32_t most = 0; most < calls; most += 1 + most / 4) {
+        p = (patience){0, most, 0.0};
+        progress_begin_call(&r.context->progress);
+        progress_begin(&r.context->progress);
+        assert_int_equal(charge_solve(r.mesh, s.positions, &by_tree, r.density, r.capacitance, NULL),
+                         CSCD_CANCELLED);
+        assert_true(charge_rig_untouched(&r));
+    }
+    print_message("the host was asked %u times\n", calls);
+    assert_true(calls > 20);
+    charge_rig_destroy(&r);
+    conductor_free(&s);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(agrees_with_the_dense_system),
+        cmocka_unit_test(scale_and_place_do_not_matter),
+        cmocka_unit_test(components_are_solved_alone),
+        cmocka_unit_test(threads_give_the_same_bits),
+        cmocka_unit_test(sheets_near_each_other),
+        cmocka_unit_test(says_where_charges_cannot_be_told_apart),
+        cmocka_unit_test(keeps_to_the_limit),
+        cmocka_unit_test(memory_may_run_out),
+        cmocka_unit_test(a_host_may_end_it),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

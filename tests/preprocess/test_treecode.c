@@ -1,0 +1,186 @@
+/* The treecode against sums over all triangles: on even meshes, on slivers, and where large triangles lie beside small ones. */
+#include "preprocess/treecode/treecode.h"
+#include "tests/support/preprocess/charge_shapes.h"
+#include "tests/support/random.h"
+#include "tests/support/test.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#ifdef SLOW_MACHINE
+enum { LEVEL = 3 };
+#else
+enum { LEVEL = 4 };
+#endif
+
+/* A component's system, and the treecode of it. */
+typedef struct treecode_rig {
+    cscd_context *context;
+    void *memory;
+    charge_system system;
+    treecode t;
+} treecode_rig;
+
+static cscd_context *make_context(uint32_t threads, cscd_simd simd) {
+    cscd_context_options options = cscd_context_defaults();
+    cscd_context *context;
+    options.thread_count = threads;
+    options.simd = simd;
+    assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
+    return context;
+}
+
+static treecode_rig make_rig(const conductor *s, uint32_t threads, cscd_simd simd) {
+    treecode_rig r = {.context = make_context(threads, simd)};
+    const charge_surface surface = {r.context, (const uint32_t(*)[3])(const void *)s->triangles,
+                                    s->positions};
+    uint32_t *list = malloc(s->triangle_count * sizeof *list);
+    r.memory = aligned_alloc(CHARGE_ALIGNMENT, charge_system_lay_out(&r.system, s->triangle_count, NULL));
+    assert_true(list != NULL && r.memory != NULL);
+    for (uint32_t t = 0; t < s->triangle_count; t++) list[t] = t;
+    charge_system_lay_out(&r.system, s->triangle_count, r.memory);
+    assert_int_equal(charge_system_collect(&r.system, &surface, 0, list, s->triangle_count), CSCD_OK);
+    free(list);
+    assert_int_equal(treecode_create(r.context, &r.system, SIZE_MAX, &r.t), CSCD_OK);
+    return r;
+}
+
+static void free_rig(treecode_rig *r) {
+    treecode_destroy(&r->t);
+    cscd_context_destroy(r->context);
+    free(r->memory);
+}
+
+/* Charges of even density, a quarter more or less. In the tree's order. */
+static double *make_charges(const treecode_rig *r) {
+    double *charges = malloc(r->system.count * sizeof *charges);
+    assert_non_null(charges);
+    random_seed(7);
+    for (uint32_t i = 0; i < r->system.count; i++)
+        charges[i] = triangle_of(&r->t.tree, i)->area * (1.0 + 0.25 * random_unit());
+    return charges;
+}
+
+/* The exact potential at one collocation point. */
+static double exact_at(const treecode_rig *r, const double *charges, uint32_t target) {
+    const double *p = r->t.tree.sources[target].centroid;
+    double sum = 0.0, potential;
+    for (uint32_t i = 0; i < r->system.count; i++) {
+        const potential_source *triangle = triangle_of(&r->t.tree, i);
+        potential_at(triangle, &p[0], &p[1], &p[2], 1, &potential);
+        sum += charges[i] / triangle->area * potential;
+    }
+    return sum;
+}
+
+static void expect_close(const char *name, const conductor *s, double tolerance) {
+    treecode_rig r = make_rig(s, 2, CSCD_SIMD_AUTO);
+    double *charges = make_charges(&r), *potentials = malloc(r.system.count * sizeof *potentials),
+           worst = 0.0;
+    assert_non_null(potentials);
+    assert_int_equal(treecode_evaluate(&r.t, charges, potentials), CSCD_OK);
+    const uint32_t step = r.system.count / 300 + 1;
+    for (uint32_t i = 0; i < r.system.count; i += step)
+        worst = fmax(worst, fabs(potentials[i] / exact_at(&r, charges, i) - 1.0));
+    print_message("%s, %u triangles: %zu far pairs, %zu near; within %.1e\n", name, r.system.count,
+                  r.t.lists.far_count, r.t.lists.near_count, worst);
+    assert_true(worst <= tolerance);
+    free(charges);
+    free(potentials);
+    free_rig(&r);
+}
+
+static conductor flat_ellipsoid(int level, double z) {
+    const double axes[3] = {1.5, 1.0, z}, nowhere[3] = {0.0, 0.0, 0.0};
+    conductor s = conductor_sphere(level);
+    conductor_transform(&s, axes, nowhere);
+    return s;
+}
+
+/* A cube of twelve triangles around a fine sphere, and one beside a corner. */
+static conductor large_beside_small(void) {
+    conductor s = conductor_cube(0), inner = conductor_sphere(LEVEL), outer = conductor_sphere(LEVEL - 1);
+    const double small[3] = {0.3, 0.3, 0.3}, middle[3] = {0.5, 0.5, 0.5}, tiny[3] = {0.01, 0.01, 0.01},
+                 corner[3] = {1.02, 1.0, 1.0};
+    conductor_transform(&inner, small, middle);
+    conductor_transform(&outer, tiny, corner);
+    conductor_append(&s, &inner);
+    conductor_append(&s, &outer);
+    conductor_free(&inner);
+    conductor_free(&outer);
+    return s;
+}
+
+static void potentials_are_those_of_all_triangles(void **state) {
+    (void)state;
+    conductor one = conductor_tetrahedron(), sphere = conductor_sphere(LEVEL),
+              disc = flat_ellipsoid(LEVEL, 0.01), mixed = large_beside_small(),
+              crowded = conductor_cube(LEVEL);
+    conductor_crowd_edges(&crowded);
+    expect_close("tetrahedron", &one, 1e-6);
+    expect_close("sphere", &sphere, 1e-5);
+    expect_close("disc with slivers at its edge", &disc, 1e-4);
+    expect_close("cube with slivers", &crowded, 1e-4);
+    expect_close("large beside small", &mixed, 1e-4);
+    conductor *all[] = {&one, &sphere, &disc, &mixed, &crowded};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) conductor_free(all[i]);
+}
+
+/* Every source reaches every target once: by the far items of the nodes above it, or in its leaf's list. */
+static void pairs_are_taken_once(void **state) {
+    (void)state;
+    conductor s = large_beside_small();
+    treecode_rig r = make_rig(&s, 1, CSCD_SIMD_AUTO);
+    const source_tree *tree = &r.t.tree;
+    const interactions *lists = &r.t.lists;
+    uint8_t *reached = malloc(tree->count);
+    assert_non_null(reached);
+    for (uint32_t l = 0; l < tree->leaf_count; l++) {
+        const source_node *leaf = &tree->nodes[tree->leaves[l]];
+        memset(reached, 0, tree->count);
+        for (uint32_t n = 0; n < tree->node_count; n++) {
+            if (tree->nodes[n].begin > leaf->begin || tree->nodes[n].end < leaf->end) continue;
+            for (size_t i = lists->far_begins[n]; i < lists->far_begins[n + 1]; i++) {
+                const source_node *source = &tree->nodes[lists->far_items[i] & ((1u << FAR_NODE_BITS) - 1)];
+                for (uint32_t k = source->begin; k < source->end; k++) reached[k]++;
+            }
+        }
+        for (size_t i = lists->near_begins[2 * l]; i < lists->near_begins[2 * l + 2]; i++)
+            reached[lists->near_sources[i]]++;
+        for (uint32_t k = 0; k < tree->count; k++) assert_int_equal(reached[k], 1);
+    }
+    free(reached);
+    free_rig(&r);
+    conductor_free(&s);
+}
+
+static void threads_and_levels_give_the_same_bits(void **state) {
+    (void)state;
+    conductor s = large_beside_small();
+    treecode_rig expected = make_rig(&s, 1, CSCD_SIMD_SCALAR);
+    double *charges = make_charges(&expected),
+           *potentials = malloc(2 * s.triangle_count * sizeof *potentials);
+    assert_non_null(potentials);
+    double *found = potentials + s.triangle_count;
+    assert_int_equal(treecode_evaluate(&expected.t, charges, potentials), CSCD_OK);
+    for (uint32_t threads = 1; threads <= 3; threads++) {
+        treecode_rig r = make_rig(&s, threads, CSCD_SIMD_AUTO);
+        assert_int_equal(treecode_evaluate(&r.t, charges, found), CSCD_OK);
+        assert_memory_equal(found, potentials, expected.system.count * sizeof *found);
+        free_rig(&r);
+    }
+    free(charges);
+    free(potentials);
+    free_rig(&expected);
+    conductor_free(&s);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(potentials_are_those_of_all_triangles),
+        cmocka_unit_test(pairs_are_taken_once),
+        cmocka_unit_test(threads_and_levels_give_the_same_bits),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
