@@ -2,7 +2,7 @@
 #
 #   CONFIG=release|debug|sanitize|tsan|scalar   CC=gcc|clang   GSL=0   CHARGE=0   EXPAT=0   DYNAMIC=1   WERROR=1   HOST=...   `make -j` as usual
 # GSL=0 builds without GSL (GPL-3): with our own guesses of cubic roots, and the same results, bit for bit.
-# CHARGE=0 leaves out what makes charge plans, and with it LAPACKE and OpenBLAS; plan files with charge are read all the same.
+# CHARGE=0 leaves out the dense solver of plans by charge, and with it LAPACKE and OpenBLAS; plans by charge are made all the same.
 # EXPAT=0 builds a tool that does not read GIFTI surfaces, as on a machine where pkg-config finds no expat; the library never needs it.
 # DYNAMIC=1 is for distributions: the tool and the Python package link libcscd.so and the libraries of the system in place of archives.
 # HOST=aarch64-linux-gnu builds by that cross compiler, in build/aarch64-linux-gnu, with the libraries in SYSROOT if that is set.
@@ -100,7 +100,7 @@ FILE_LIBS   := $(call packaged,--libs libpng zlib json-c,-lpng -lz -ljson-c) $(E
 TOOL_LIBS   := $(FILE_LIBS) $(SHARED_LIBS)
 TEST_LIBS   := -lcmocka -lflint-arb -lflint -lgmp $(TOOL_LIBS) $(CHARGE_LIBS)
 
-# A file that ends in _simd.c is compiled once per instruction set. Charge is a library of its own.
+# A file that ends in _simd.c is compiled once per instruction set. The dense solver is a library of its own.
 # src/blas says which kernels OpenBLAS runs.
 CHARGE_SOURCES  := $(wildcard preprocess/dense/*.c src/blas/*.c)
 CORE_FILES      := $(wildcard src/core/*.c src/mesh/*.c preprocess/*.c preprocess/*/*.c runtime/*/*.c runtime/*/*/*.c)
@@ -229,8 +229,8 @@ tool: $(TOOL)
 
 library: $(LIBRARY) $(SHARED) $(CHARGE_SHARED)
 
-# The Python package as it is imported: PYTHONPATH=build/python. It has no GSL in it, and charge from the library beside it, which
-# CHARGE=0 leaves out.
+# The Python package as it is imported: PYTHONPATH=build/python. It has no GSL in it, and the dense solver in the library beside it,
+# which CHARGE=0 leaves out.
 python:
 	@$(MAKE) --no-print-directory GSL=0 python-package
 
@@ -238,7 +238,7 @@ PYTHON_PACKAGE := $(BUILD_ROOT)/python/cscd
 PYTHON_SOURCES := $(wildcard python/cscd/*.py python/cscd/py.typed)
 NATIVE_LIBRARY := $(PYTHON_PACKAGE)/libcscd-python.$(if $(WINDOWS),dll,so)
 PACKED_CHARGE  := $(if $(filter-out 1,$(DYNAMIC)),$(if $(CHARGE_SHARED),$(PYTHON_PACKAGE)/libcscd-charge.so.$(MAJOR)))
-# What an older version, or a build with charge, has left there goes.
+# What an older version, or a build with the dense solver, has left there goes.
 python-package: $(NATIVE_LIBRARY) $(CHARGE_SHARED)
 	@cp -p $(PYTHON_SOURCES) $(PYTHON_PACKAGE)
 	@$(if $(PACKED_CHARGE),cp -p $(CHARGE_SHARED) $(PACKED_CHARGE))
@@ -249,7 +249,7 @@ PYTHON ?= $(or $(shell for python in python3 /usr/bin/python3; do \
               $$python -c 'import numpy' 2>/dev/null && echo $$python && break; done),/usr/bin/python3)
 BACK_END = PYTHONPATH=python PYTHONDONTWRITEBYTECODE=1 CC='$(CC)' $(PYTHON) -m build_backend
 
-# The wheel to give away, without charge, and the archive of the sources.
+# The wheel to give away, without the dense solver, and the archive of the sources.
 wheel:
 	@$(BACK_END) wheel build/dist $(if $(HOST),$(HOST) '$(or $(WINDOWS_LIBRARIES),$(SYSROOT))')
 
@@ -608,7 +608,7 @@ help:
 	@echo 'make test-builds   other compilers, flags, users and folders, and without each optional library; as root: some minutes'
 	@echo 'make test-threads   the tests that use threads, under the thread sanitizer'
 	@echo 'make           build the tool (./cscd), build/release/libcscd.a and libcscd.so; make library builds these alone'
-	@echo '               GSL=0: without GSL; CHARGE=0: without LAPACKE and OpenBLAS, so without charge plans; EXPAT=0: a tool'
+	@echo '               GSL=0: without GSL; CHARGE=0: without LAPACKE and OpenBLAS (--charge dense); EXPAT=0: a tool'
 	@echo '               without GIFTI surfaces'
 	@echo 'make python    the Python package, in build/python; make wheel: a wheel to give away, make sdist: its sources, in build/dist;'
 	@echo '               make test-python: its tests, types and archives (installs pytest, mypy, venv); PYTHON=python3'

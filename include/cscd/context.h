@@ -26,7 +26,7 @@ typedef enum cscd_status {
     CSCD_INVALID_ARGUMENT, /* NULL, out of range, not finite, or options that no _defaults() function made */
     CSCD_INVALID_MESH,     /* no triangle, too many, an index beyond vertex_count, a triangle with a vertex
                             * twice */
-    CSCD_SYSTEM_ERROR,     /* the system refused a thread, or has no libcscd-charge.so: cscd_plan_create */
+    CSCD_SYSTEM_ERROR,     /* the system refused a thread, or has no libcscd-charge.so: CSCD_CHARGE_DENSE */
     CSCD_CANCELLED,     /* the callback in cscd_progress returned false, or cscd_context_cancel was called */
     CSCD_IN_CONTACT,    /* no step is free of contact, because the start is not: cscd_detector_max_step */
     CSCD_BUSY,          /* another call with this context is running: see the rules of callbacks */
@@ -64,7 +64,7 @@ typedef struct cscd_context cscd_context;
  *             callback; until then, and on fibers, calls fail with CSCD_BUSY, and destroyed objects stay. release
  *             must always return; so must the allocator on threads of the library, as nobody could catch there, and
  *             in cscd_context_create, which would lose what it has allocated. OpenBLAS may be left with one
- *             thread if a plan by charge is left */
+ *             thread if CSCD_CHARGE_DENSE is left */
 
 /* The host's allocator. Set both functions, or neither for aligned_alloc and free. allocate returns NULL
  * when it fails; alignment is a power of two. release is given the size that was asked for. They are never

@@ -23,17 +23,18 @@ needs() {
     done
 }
 needs "libcscd$major" Depends 'libc6 (>='
-needs "libcscd$major" Recommends liblapacke libopenblas0
+needs "libcscd$major" Suggests liblapacke libopenblas0
 needs libcscd-dev Depends "libcscd$major (= "
 needs cscd Depends "libcscd$major (>=" libpng16 zlib1g libjson-c5 libexpat1
 needs python3-cscd Depends "libcscd$major (>=" python3-numpy
 needs "libcscd$major" Multi-Arch same
 needs libcscd-dev Multi-Arch same
 
-# Linear algebra is recommended and never needed; GSL, which is under another licence, is in none.
+# Linear algebra is suggested, and never installed without being asked for; GSL, which is under another licence, is in none.
 for package in $expected; do
-    case $(field "$package" Depends) in *lapack* | *blas*) complain "$package depends on linear algebra" ;; esac
-    case $(field "$package" Depends)$(field "$package" Recommends) in *gsl*) complain "$package asks for GSL" ;; esac
+    asked=$(field "$package" Depends)$(field "$package" Recommends)
+    case $asked in *lapack* | *blas*) complain "$package asks for linear algebra" ;; esac
+    case $asked in *gsl*) complain "$package asks for GSL" ;; esac
 done
 
 # A program's dependency comes from the symbols that it uses, of which each has the version that brought it.
