@@ -350,13 +350,13 @@ windows-zip: windows
 	@mkdir -p build/dist
 	@src/packaging/windows/pack.py build/x86_64-w64-mingw32/release build/windows/libraries $(VERSION) $(WINDOWS_ARCHIVE)
 
-# The tests under wine. What needs FLINT and Arb is asked from answers that Linux has written.
+# The tests under wine. What needs FLINT and Arb is asked from answers that Linux has written, and plans are compared with its own.
 ANSWERS := build/windows/answers
 test-windows: packages windows-zip
 	@.ci/packages wine
-	@$(MAKE) --no-print-directory $(BUILD)/tests/windows/write_answers
+	@$(MAKE) --no-print-directory $(BUILD)/tests/windows/write_answers $(TOOL) $(BUILD)/models/shape
 	@$(BUILD)/tests/windows/write_answers $(ANSWERS) 20000
-	+@ANSWERS=$(abspath $(ANSWERS)) ARCHIVE=$(WINDOWS_ARCHIVE) $(ON_WINDOWS) test-windows-run
+	+@ANSWERS=$(abspath $(ANSWERS)) NATIVE=$(abspath $(BUILD)) ARCHIVE=$(WINDOWS_ARCHIVE) $(ON_WINDOWS) test-windows-run
 
 test: packages
 	@$(if $(filter tests/report/test_report_browser.c,$(TEST_SOURCES)),.ci/packages browser)

@@ -1,8 +1,8 @@
 /* The charges of a mesh, component by component: by a dense system in the charge library, or by a treecode. */
 #include "preprocess/charges.h"
 
-#include "preprocess/available_memory.h"
 #include "preprocess/treecode/tree_solve.h"
+#include "src/core/system.h"
 #include "src/core/timer.h"
 #include "src/mesh/positions.h"
 
@@ -178,7 +178,7 @@ cscd_status charge_solve(const cscd_mesh *mesh, const double *positions, const c
                      .context = context,
                      .positions = positions,
                      .solver = options->solver,
-                     .memory_limit = options->memory_limit > 0 ? options->memory_limit : available_memory()};
+                     .memory_limit = options->memory_limit > 0 ? options->memory_limit : system_memory_left()};
     const double start = timer_now_ms();
     if (density == NULL || capacitance == NULL)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "charge: density or capacitance is NULL");

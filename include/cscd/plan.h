@@ -144,7 +144,7 @@ CSCD_API double cscd_plan_capacitance(const cscd_plan *plan, uint32_t component)
 
 /* Milliseconds that making a plan took. */
 typedef struct cscd_preprocess_timings {
-    double assembly_ms, solve_ms; /* CHARGE: of the dense system */
+    double assembly_ms, solve_ms; /* CHARGE: of its equations */
     double regions_ms;            /* cuts or k-means, detector points, visible shares */
     double total_ms;
 } cscd_preprocess_timings;
@@ -161,8 +161,8 @@ static inline cscd_preprocess_timings cscd_plan_timings(const cscd_plan *plan) {
 typedef struct cscd_plan_info {
     const char
         *charge_kernels; /* the kernels with which OpenBLAS solved the charge system, by its own name, such
-                                 * as "SkylakeX". NULL: the plan is not by cscd_plan_create with CHARGE, or the
-                                 * BLAS is another one */
+                                 * as "SkylakeX". NULL: the plan is not by cscd_plan_create with CSCD_CHARGE_DENSE,
+                                 * or the BLAS is another one */
     const char
         *better_kernels; /* the kernels that this processor deserves, "Haswell" or "SkylakeX": OpenBLAS did
                                  * not know it and took old ones, which take about three times as long. Set the

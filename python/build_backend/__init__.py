@@ -3,7 +3,7 @@
 Needs the standard library alone. pip calls these functions in the root of the source tree. `python -m build_backend`
 with this folder's parent on PYTHONPATH makes the same files without pip.
 
-Each hook takes `config_settings`, of which it knows one: charge=0 leaves out the library that makes plans by charge,
+Each hook takes `config_settings`, of which it knows one: charge=0 leaves out the dense solver of plans by charge,
 charge=1 insists on it, and without the setting it is built where LAPACKE and OpenBLAS are:
 `pip install . --config-settings charge=0`.
 """

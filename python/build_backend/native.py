@@ -39,7 +39,7 @@ def charge_setting(settings: Optional[Dict[str, object]]) -> Optional[bool]:
 def built_package(root: Path, charge: Optional[bool], target: Target = Target()) -> Iterator[Path]:
     """Builds the package of the tree `root` into a folder `cscd` that is there until the block ends.
 
-    `charge` says whether the library that makes plans by charge is part of it; None means where its libraries are
+    `charge` says whether the dense solver of plans by charge is part of it; None means where its libraries are
     installed.
     """
     parts = requirements.check(charge, target=target)

@@ -13,7 +13,7 @@ from .target import Target
 
 
 class Parts(NamedTuple):
-    """What the build can do without: the library that makes plans by charge, and the reader of GIFTI surfaces."""
+    """What the build can do without: the dense solver of plans by charge, and the reader of GIFTI surfaces."""
 
     charge: bool
     expat: bool
@@ -74,7 +74,7 @@ def check(charge: Optional[bool], whole: bool = False, target: Target = Target()
         print("cscd: without expat (expat.h), so GIFTI surfaces are not read; Debian's package is libexpat1-dev",
               flush=True)
     if not parts.charge and charge is None:
-        print("cscd: without LAPACKE and OpenBLAS, so Plan.charge is left out; Debian's packages are liblapacke-dev "
+        print("cscd: without LAPACKE and OpenBLAS, so Plan.charge has no dense solver; Debian's packages are liblapacke-dev "
               "and libopenblas-dev", flush=True)
     return parts
 

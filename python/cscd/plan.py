@@ -65,14 +65,14 @@ class Plan:
         Warns
         -----
         RuntimeWarning
-            OpenBLAS runs kernels that are slow on this processor; ``better_kernels`` names others.
+            ``solver`` is "dense", and OpenBLAS runs kernels that are slow on this processor; ``better_kernels`` names others.
 
         Raises
         ------
         Error
-            ``solver`` is "dense", and this installation has no charge library; the text says how to get it.
+            ``solver`` is "dense", and this installation is built without LAPACK, as wheels are; the text says how to get it.
         """
-        if solver not in _SOLVERS:
+        if not isinstance(solver, str) or solver not in _SOLVERS:
             raise ValueError(f"solver: expected one of {', '.join(_SOLVERS)}; got {solver!r}")
         plan = cls._create(mesh, V, threads, progress, method=code_of("method", "charge"), threshold=threshold,
                            charge_solver=_SOLVERS[solver], memory_limit=memory_limit)
@@ -234,7 +234,7 @@ class Plan:
     @property
     def charge_kernels(self) -> Optional[str]:
         """The kernels with which OpenBLAS solved the charge system, by its own name, such as "SkylakeX". None: the plan is
-        not made by ``Plan.charge`` in this process, or the BLAS is another one."""
+        not made in this process by ``Plan.charge`` with ``solver="dense"``, or the BLAS is another one."""
         return self._kernels("charge_kernels")
 
     @property

@@ -22,6 +22,14 @@ void system_memory_free(void *block) {
     _aligned_free(block);
 }
 
+/* What is promised to programs, in memory and on disk, has an end of its own. */
+size_t system_memory_left(void) {
+    MEMORYSTATUSEX memory = {.dwLength = sizeof memory};
+    if (!GlobalMemoryStatusEx(&memory)) return SIZE_MAX;
+    return (size_t)(memory.ullAvailPhys < memory.ullAvailPageFile ? memory.ullAvailPhys
+                                                                  : memory.ullAvailPageFile);
+}
+
 uint32_t system_processors(void) {
     const DWORD count = GetActiveProcessorCount(ALL_PROCESSOR_GROUPS);
     return count < 1 ? 1 : (uint32_t)count;
@@ -56,7 +64,13 @@ bool system_thread_stack(uintptr_t *lowest, size_t *size) {
 #include <pthread_np.h>
 #endif
 #ifdef __EMSCRIPTEN__
+#include <emscripten/heap.h>
 #include <emscripten/stack.h>
+#endif
+#ifdef __linux__
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
 #endif
 
 /* aligned_alloc of C11 came late to macOS. */
@@ -68,6 +82,63 @@ void *system_memory(size_t size, size_t alignment) {
 void system_memory_free(void *block) {
     free(block);
 }
+
+#if defined(__linux__)
+
+/* The number after key in a file of lines "key number"; key "" takes the first number. False when there is none. */
+static bool read_number(const char *path, const char *key, uint64_t *out) {
+    FILE *file = fopen(path, "r");
+    if (file == NULL) return false;
+    char line[256];
+    bool found = false;
+    size_t length = strlen(key);
+    while (!found && fgets(line, sizeof line, file) != NULL) {
+        if (strncmp(line, key, length) == 0) found = sscanf(line + length, "%" SCNu64, out) == 1;
+    }
+    fclose(file);
+    return found;
+}
+
+/* The memory that a control group's limit leaves; its file cache counts as free, since it can be dropped. */
+static uint64_t left_in_group(const char *limit_path, const char *usage_path, const char *stat_path) {
+    uint64_t limit, usage, cache = 0;
+    if (!read_number(limit_path, "", &limit) || !read_number(usage_path, "", &usage)) return UINT64_MAX;
+    read_number(stat_path, "inactive_file ", &cache);
+    usage -= cache < usage ? cache : usage;
+    return limit > usage ? limit - usage : 0;
+}
+
+size_t system_memory_left(void) {
+    uint64_t available = UINT64_MAX, kilobytes;
+    long pages = sysconf(_SC_AVPHYS_PAGES), page_size = sysconf(_SC_PAGESIZE);
+    if (read_number("/proc/meminfo", "MemAvailable:", &kilobytes)) {
+        available = kilobytes * 1024;
+    } else if (pages > 0 && page_size > 0) {
+        available = (uint64_t)pages * (uint64_t)page_size;
+    }
+    const uint64_t groups[] = {left_in_group("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory.current",
+                                             "/sys/fs/cgroup/memory.stat"),
+                               left_in_group("/sys/fs/cgroup/memory/memory.limit_in_bytes",
+                                             "/sys/fs/cgroup/memory/memory.usage_in_bytes",
+                                             "/sys/fs/cgroup/memory/memory.stat")};
+    for (int i = 0; i < 2; i++) available = groups[i] < available ? groups[i] : available;
+    return available < SIZE_MAX ? (size_t)available : SIZE_MAX;
+}
+
+#elif defined(__EMSCRIPTEN__)
+
+/* All that the module may ever have, because nobody tells how much of it malloc has taken back. */
+size_t system_memory_left(void) {
+    return emscripten_get_heap_max();
+}
+
+#else
+
+size_t system_memory_left(void) {
+    return SIZE_MAX;
+}
+
+#endif
 
 uint32_t system_processors(void) {
     const long online = sysconf(_SC_NPROCESSORS_ONLN);

@@ -11,6 +11,10 @@ void *system_memory(size_t size, size_t alignment);
 /* Takes back what system_memory gave; NULL does nothing. */
 void system_memory_free(void *block);
 
+/* Bytes of physical memory that are free or can be freed without swapping, within the limit of the control group (container)
+ * that the system shows; SIZE_MAX where the system does not tell. */
+size_t system_memory_left(void);
+
 /* The processors of the machine, at least 1. */
 uint32_t system_processors(void);
 

@@ -1,6 +1,5 @@
 # What a build for Windows is made with: HOST=x86_64-w64-mingw32, by the compiler of Debian's gcc-mingw-w64-x86-64-posix. Threads are
-# those of winpthreads. GSL is not built for Windows, nor what makes plans by charge; the rest comes from
-# src/packaging/libraries.sh.
+# those of winpthreads. GSL and LAPACKE are not built for Windows; the rest comes from src/packaging/libraries.sh.
 WINDOWS := 1
 GSL     := 0
 CHARGE  := 0

@@ -215,8 +215,6 @@ char *windows_getenv(const char *name);
 
 #define _SC_NPROCESSORS_ONLN 84
 #define _SC_PAGESIZE         30
-#define _SC_AVPHYS_PAGES     86
-#define _SC_PHYS_PAGES       85
 long windows_sysconf(int name);
 #define sysconf windows_sysconf
 

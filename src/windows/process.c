@@ -114,18 +114,8 @@ char *windows_getenv(const char *name) {
 long windows_sysconf(int name) {
     SYSTEM_INFO info;
     GetSystemInfo(&info);
-    MEMORYSTATUSEX memory = {.dwLength = sizeof memory};
-    GlobalMemoryStatusEx(&memory);
-    switch (name) {
-    case _SC_PAGESIZE:
-        return (long)info.dwPageSize;
-    case _SC_PHYS_PAGES:
-        return (long)(memory.ullTotalPhys / info.dwPageSize);
-    case _SC_AVPHYS_PAGES:
-        return (long)(memory.ullAvailPhys / info.dwPageSize);
-    default:
-        return (long)GetActiveProcessorCount(ALL_PROCESSOR_GROUPS);
-    }
+    return name == _SC_PAGESIZE ? (long)info.dwPageSize
+                                : (long)GetActiveProcessorCount(ALL_PROCESSOR_GROUPS);
 }
 
 int uname(struct utsname *out) {

@@ -17,7 +17,7 @@ CHARGE_LIBS :=
 EXPAT_LIBS  := -lexpat
 TOOL_LIBS   := -L$(WINDOWS_LIBRARIES)/lib -lpng -lz -ljson-c -lexpat -lm
 TEST_LIBS   := -L$(WINDOWS_LIBRARIES)/lib -lcmocka-static $(TOOL_LIBS)
-# Tests alone make plans by charge, with a solver of theirs.
+# Tests alone have a dense solver, one of their own, to compare the tree with.
 CHARGE_SOURCES := $(filter-out src/blas/% %/dense_solve.c %/dense_export.c,$(CHARGE_SOURCES)) tests/windows/dense_solve.c
 
 # Without a library for Windows: GMP, FLINT and Arb. Without a meaning there: what Unix alone has. tests/windows/left_out.txt says

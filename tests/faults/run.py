@@ -27,6 +27,7 @@ COMMANDS = [
     (["info", "body.obj", "--json", "out.json"], ["out.json"]),
     (["preprocess", "body.obj", "--method", "kmeans:3", "-o", "out.ply", "--report", "out.html"], ["out.ply", "out.html"]),
     (["preprocess", "body.obj", "-o", "out.ply"], ["out.ply"]),
+    (["preprocess", "body.obj", "-o", "out.ply", "--charge", "dense"], ["out.ply"]),
     (["check", "body.obj", "body.pc2", "--json", "out.json", "--csv", "out.csv", "--events", "out.events", "--junit", "out.xml",
       "--select", "out.select"], ["out.json", "out.csv", "out.events", "out.xml", "out.select"]),
     (["check", "--list", "body.jobs.jsonl", "--results", "out.jsonl", "--reproducible"], []),

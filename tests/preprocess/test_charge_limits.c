@@ -1,5 +1,6 @@
 /* Charge densities: repeatability, degenerate triangles, memory, bad input. */
 #include "src/core/sort.h"
+#include "src/core/system.h"
 #include "tests/support/preprocess/charge_rig.h"
 #include "tests/support/test.h"
 
@@ -223,12 +224,12 @@ static void *watching_allocate(void *user, size_t size, size_t alignment) {
     if (watcher->refuse) return NULL;
     watcher->held += size;
     watcher->most = watcher->held > watcher->most ? watcher->held : watcher->most;
-    return aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+    return system_memory(size, alignment);
 }
 
 static void watching_free(void *user, void *block, size_t size) {
     ((watching_allocator *)user)->held -= size;
-    free(block);
+    system_memory_free(block);
 }
 
 static void takes_what_it_estimates(void **state) {

@@ -1,5 +1,6 @@
 /* The treecode against sums over all triangles: on even meshes, on slivers, and where large triangles lie beside small ones. */
 #include "preprocess/treecode/treecode.h"
+#include "src/core/system.h"
 #include "tests/support/preprocess/charge_shapes.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
@@ -36,7 +37,7 @@ static treecode_rig make_rig(const conductor *s, uint32_t threads, cscd_simd sim
     const charge_surface surface = {r.context, (const uint32_t(*)[3])(const void *)s->triangles,
                                     s->positions};
     uint32_t *list = malloc(s->triangle_count * sizeof *list);
-    r.memory = aligned_alloc(CHARGE_ALIGNMENT, charge_system_lay_out(&r.system, s->triangle_count, NULL));
+    r.memory = system_memory(charge_system_lay_out(&r.system, s->triangle_count, NULL), CHARGE_ALIGNMENT);
     assert_true(list != NULL && r.memory != NULL);
     for (uint32_t t = 0; t < s->triangle_count; t++) list[t] = t;
     charge_system_lay_out(&r.system, s->triangle_count, r.memory);
@@ -49,7 +50,7 @@ static treecode_rig make_rig(const conductor *s, uint32_t threads, cscd_simd sim
 static void free_rig(treecode_rig *r) {
     treecode_destroy(&r->t);
     cscd_context_destroy(r->context);
-    free(r->memory);
+    system_memory_free(r->memory);
 }
 
 /* Charges of even density, a quarter more or less. In the tree's order. */

@@ -11,11 +11,10 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-FILES = ("results", "misuse_arrays", "misuse_calls", "moment_oracle", "motion_oracle", "lifetimes", "processes", "threads", "replay")
+FILES = ("results", "misuse_arrays", "misuse_calls", "moment_oracle", "motion_oracle", "lifetimes", "processes", "threads", "replay", "charge_solvers")
 # What is left out, and why.
 LEFT_OUT = {
     "test_memory_of_many": "counts the memory of the process, in which an emulator keeps what it has translated",
-    "test_pickled_plans_and_detectors": "makes a plan by charge, which wheels do not",
     "test_fork_with_threads": "qemu-user falls over its own locks when a process with threads forks",
     "from_several_threads": "gives a thread a minute, in which an emulator gets nowhere",
     "test_detectors_side_by_side": "as above",

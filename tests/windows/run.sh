@@ -1,8 +1,8 @@
 #!/bin/sh
 # Runs the test programs that are its arguments, built for Windows, under wine, and adds up their totals; `make test-windows` calls it.
-# BUILD is the build folder, ANSWERS the file that a Linux run wrote, ARCHIVE what is given away, LIMIT the seconds that one program may take. Says how many
-# programs ran, and of each that did not, why: tests/windows/left_out.txt. Ends non-zero when anything failed; its last line is
-# `N passed, M failed`.
+# BUILD is the build folder, ANSWERS the file that a Linux run wrote, NATIVE the build folder of Linux, ARCHIVE what is given away, LIMIT the
+# seconds that one program may take. Says how many programs ran, and of each that did not, why: tests/windows/left_out.txt. Ends
+# non-zero when anything failed; its last line is `N passed, M failed`.
 set -u
 cd "$(dirname "$0")/../.." || exit 1
 : "${BUILD:?BUILD must name the build folder}"
@@ -76,6 +76,15 @@ printf '%s\n' "$@" | xargs -P "${JOBS:-$(nproc)}" -I PROGRAM sh -c '
     printf "%8d  %s\n" "$(($(date +%s) - began))" "${1#*/tests/}" >>"$2/seconds"' sh PROGRAM "$logs"
 for program in "$@"; do add_up "$program"; done
 
+if [ -n "${NATIVE:-}" ]; then
+    if tests/windows/plans.sh "$NATIVE" "$logs/plans"; then
+        passed=$((passed + 1))
+        echo 'plans have the bytes that they have on Linux'
+    else
+        failed=$((failed + 1))
+        failures="$failures windows/plans.sh"
+    fi
+fi
 if [ -n "${ARCHIVE:-}" ]; then
     if tests/windows/archive.sh "$ARCHIVE" "$logs/archive"; then
         passed=$((passed + 1))

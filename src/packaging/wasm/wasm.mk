@@ -7,8 +7,8 @@ LINK_ALL   := -O1 -sINITIAL_MEMORY=64MB -sALLOW_MEMORY_GROWTH=1 -sMAXIMUM_MEMORY
 SHARED_LIBS :=
 STATIC_LIBS := -lm
 
-# The tests of the rooms of core, mesh, preprocessing and runtime. Readers and writers of files are not built, and plans by charge are
-# made by the solver of the tests on Windows. tests/wasm/left_out.txt says why a program is missing.
+# The tests of the rooms of core, mesh, preprocessing and runtime. Readers and writers of files are not built, and the dense
+# solver is that of the tests on Windows. tests/wasm/left_out.txt says why a program is missing.
 TEST_LIBS       := -L$(WASM_LIBRARIES)/lib -lcmocka-static
 TEST_ROOMS_HERE := core mesh ccd bvh culling narrow_phase loose intersections events baselines detector solver sensors preprocess
 CHARGE_SOURCES  := $(filter-out src/blas/% %/dense_solve.c %/dense_export.c,$(CHARGE_SOURCES)) tests/windows/dense_solve.c
