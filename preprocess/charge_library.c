@@ -1,7 +1,7 @@
-/* Where the charge library is, which has the dense solution. Compiled twice: with CHARGE_LINKED it is linked, in libcscd.a and in tests; without, it
- * is opened at the first call that needs it, by libcscd.so, by the tool, and by builds with CHARGE=0. OpenBLAS starts
- * threads as soon as it is loaded, which takes tens of milliseconds, and hangs where a limit (`ulimit -v`) leaves them
- * no memory. Windows has none. */
+/* Where the charge library is, which has the dense solution. Compiled twice: with CHARGE_LINKED it is linked, in libcscd.a
+ * and in tests; without, it is opened at the first call that needs it, by libcscd.so, by the tool, and by builds with
+ * CHARGE=0. OpenBLAS starts threads as soon as it is loaded, which takes tens of milliseconds, and hangs where a limit
+ * (`ulimit -v`) leaves them no memory. Windows and WebAssembly have none. */
 #include "preprocess/charges.h"
 
 #ifdef CHARGE_LINKED
@@ -12,13 +12,13 @@ cscd_status charge_library_find(cscd_context *context, const dense_functions **o
     return CSCD_OK;
 }
 
-#elif defined(_WIN32)
+#elif defined(_WIN32) || defined(__EMSCRIPTEN__)
 
 cscd_status charge_library_find(cscd_context *context, const dense_functions **out) {
     *out = NULL;
-    return context_fail(
-        context, CSCD_SYSTEM_ERROR,
-        "charge, dense: there is no LAPACK on Windows; the tree, which is the default, needs none");
+    return context_fail(context, CSCD_SYSTEM_ERROR,
+                        "charge, dense: it is not built for Windows and WebAssembly; take the tree, which is "
+                        "the default and there on every system");
 }
 
 #else

@@ -1,5 +1,5 @@
-/* Prints the bits of what a detector finds, so that builds for different machines can be compared: contacts MODEL.obj FRAMES.pc2,
- * or contacts alone, for two sheets that wave through each other. Nothing here calls a function of mathematics, whose last bits
+/* Prints the bits of what a detector finds, and of plans, so that builds for different machines can be compared: contacts MODEL.obj
+ * FRAMES.pc2, or contacts alone, for two sheets that wave through each other and the plan of a body. Nothing here calls a function of mathematics, whose last bits
  * differ from machine to machine. */
 #include <cscd/cscd.h>
 
@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SIDE = 24, SHEET = SIDE * SIDE, FRAMES = 12, FRAMES_MAX = 1000 };
+enum { SIDE = 24, SHEET = SIDE * SIDE, FRAMES = 12, FRAMES_MAX = 1000, LENGTH = 30, WIDTH = 10 };
 
 typedef struct played_scene {
     uint32_t vertex_count, triangle_count, frame_count;
@@ -60,6 +60,57 @@ static played_scene waving_sheets(void) {
         p[1] = (float)y - shake;
         p[2] = side * (4.0f - (float)frame * 0.5f) + bend * side + shake;
     }
+    return s;
+}
+
+/* Two boxes and a bar between them, of cubes. */
+static bool is_body(int x, int y, int z) {
+    if (x < 0 || y < 0 || z < 0 || x >= LENGTH || y >= WIDTH || z >= WIDTH) return false;
+    return x < WIDTH || x >= 2 * WIDTH || (y > 2 && y < 7 && z > 2 && z < 7);
+}
+
+/* The number of a corner of the cubes, from 0 in the order in which they are asked for. */
+static uint32_t corner_vertex(played_scene *s, uint32_t *numbers, const int corner[3]) {
+    uint32_t *number = &numbers[(corner[0] * (WIDTH + 1) + corner[1]) * (WIDTH + 1) + corner[2]];
+    if (*number == 0) {
+        for (int k = 0; k < 3; k++) s->positions[3 * (size_t)s->vertex_count + (size_t)k] = (float)corner[k];
+        *number = ++s->vertex_count;
+    }
+    return *number - 1;
+}
+
+/* The square between a cube and its neighbour along an axis, seen from outside. */
+static void add_square(played_scene *s, uint32_t *numbers, const int cube[3], int axis, int side) {
+    static const int around[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    uint32_t square[4];
+    for (int i = 0; i < 4; i++) {
+        int corner[3] = {cube[0], cube[1], cube[2]};
+        corner[axis] += side;
+        corner[(axis + 1) % 3] += around[side ? i : 3 - i][0];
+        corner[(axis + 2) % 3] += around[side ? i : 3 - i][1];
+        square[i] = corner_vertex(s, numbers, corner);
+    }
+    const uint32_t corners[6] = {square[0], square[1], square[2], square[0], square[2], square[3]};
+    memcpy(s->triangles + 3 * (size_t)s->triangle_count, corners, sizeof corners);
+    s->triangle_count += 2;
+}
+
+/* A closed body, which a plan by charge cuts where the bar begins. */
+static played_scene cube_body(void) {
+    const size_t corners = (size_t)(LENGTH + 1) * (WIDTH + 1) * (WIDTH + 1);
+    played_scene s = {.frame_count = 1};
+    s.triangles = room_for(corners * 12 * 3, sizeof *s.triangles);
+    s.positions = room_for(corners * 3, sizeof *s.positions);
+    uint32_t *numbers = room_for(corners, sizeof *numbers);
+    for (int i = 0; i < LENGTH * WIDTH * WIDTH; i++) {
+        const int cube[3] = {i / (WIDTH * WIDTH), i / WIDTH % WIDTH, i % WIDTH};
+        for (int face = 0; face < 6 && is_body(cube[0], cube[1], cube[2]); face++) {
+            int next[3] = {cube[0], cube[1], cube[2]};
+            next[face / 2] += face % 2 ? 1 : -1;
+            if (!is_body(next[0], next[1], next[2])) add_square(&s, numbers, cube, face / 2, face % 2);
+        }
+    }
+    free(numbers);
     return s;
 }
 
@@ -163,6 +214,41 @@ static void run_scene(const played_scene *s, double min_separation) {
     cscd_context_destroy(context);
 }
 
+static uint64_t hash_of_plan(const cscd_plan *plan, uint32_t triangle_count) {
+    uint64_t hash = UINT64_C(0xcbf29ce484222325);
+    for (uint32_t t = 0; t < triangle_count; t++) {
+        const double charge = cscd_plan_triangle_charge(plan, t);
+        const uint32_t region = cscd_plan_triangle_region(plan, t);
+        hash = add_bits(hash, &charge, sizeof charge);
+        hash = add_bits(hash, &region, sizeof region);
+    }
+    for (uint32_t r = 0; r < cscd_plan_region_count(plan); r++) {
+        const cscd_region region = cscd_plan_region(plan, r);
+        hash = add_bits(hash, region.detector_point, sizeof region.detector_point);
+        hash = add_bits(hash, &region.visible_share, sizeof region.visible_share);
+    }
+    return hash;
+}
+
+/* The plan by charge of the first frame; or why there is none, which is the same everywhere too. */
+static void run_plan(const played_scene *s) {
+    cscd_context *context = NULL;
+    cscd_mesh *mesh = NULL;
+    cscd_plan *plan = NULL;
+    if (cscd_context_create(NULL, &context) != CSCD_OK) stop_with("there is no context");
+    const cscd_object_desc object =
+        cscd_object_of_triangles(s->vertex_count, s->triangle_count, s->triangles);
+    check_status(context, cscd_mesh_create(context, &object, 1, &mesh));
+    if (cscd_plan_create(context, mesh, CSCD_FLOATS(s->positions, s->vertex_count), NULL, &plan) == CSCD_OK)
+        printf("plan: %u regions of %u triangles, %016" PRIx64 "\n", cscd_plan_region_count(plan),
+               s->triangle_count, hash_of_plan(plan, s->triangle_count));
+    else
+        printf("no plan: %s\n", cscd_context_detail(context));
+    cscd_plan_destroy(plan);
+    cscd_mesh_destroy(mesh);
+    cscd_context_destroy(context);
+}
+
 int main(int argc, char **argv) {
     if (argc != 1 && argc != 3) stop_with("give a model and a point cache, or nothing");
     played_scene s = {.triangle_count = 0};
@@ -173,7 +259,15 @@ int main(int argc, char **argv) {
         read_frames(argv[2], &s);
     }
     run_scene(&s, 0.0);
-    if (argc == 1) run_scene(&s, 0.01);
+    if (argc == 1) {
+        played_scene body = cube_body();
+        run_scene(&s, 0.01);
+        run_plan(&body);
+        free(body.triangles);
+        free(body.positions);
+    } else {
+        run_plan(&s);
+    }
     free(s.triangles);
     free(s.positions);
     return 0;

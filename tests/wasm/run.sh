@@ -1,6 +1,6 @@
 #!/bin/sh
 # Runs the library for WebAssembly under node: run.sh NATIVE FOLDER TEST.js... NATIVE is contacts.c of this machine, FOLDER has
-# contacts.js and sizes.js, and each TEST is a test program of a room. Both machines must print the same bits, for two sheets and for
+# contacts.js and sizes.js, and each TEST is a test program of a room. Both machines must print the same bits, for two sheets, a plan and
 # the recordings in the folder that CSCD_DATA names; and sizes that 32 bits cannot hold must be refused. Says what is left out, and why:
 # left_out.txt. Ends non-zero when anything failed; its last line is `N passed, M failed`.
 set -eu
@@ -31,7 +31,7 @@ compare() {
     fi
 }
 
-compare 'two sheets'
+compare 'two sheets and a plan'
 for model in "${CSCD_DATA:-/nowhere}"/sequences/*.obj; do
     [ ! -e "$model" ] || compare "$(basename "$model" .obj)" "$model" "${model%.obj}.pc2"
 done
