@@ -178,7 +178,8 @@ cscd_status charge_solve(const cscd_mesh *mesh, const double *positions, const c
                      .context = context,
                      .positions = positions,
                      .solver = options->solver,
-                     .memory_limit = options->memory_limit > 0 ? options->memory_limit : system_memory_left()};
+                     .memory_limit =
+                         options->memory_limit > 0 ? options->memory_limit : system_memory_left()};
     const double start = timer_now_ms();
     if (density == NULL || capacitance == NULL)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "charge: density or capacitance is NULL");

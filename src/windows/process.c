@@ -114,8 +114,7 @@ char *windows_getenv(const char *name) {
 long windows_sysconf(int name) {
     SYSTEM_INFO info;
     GetSystemInfo(&info);
-    return name == _SC_PAGESIZE ? (long)info.dwPageSize
-                                : (long)GetActiveProcessorCount(ALL_PROCESSOR_GROUPS);
+    return name == _SC_PAGESIZE ? (long)info.dwPageSize : (long)GetActiveProcessorCount(ALL_PROCESSOR_GROUPS);
 }
 
 int uname(struct utsname *out) {
