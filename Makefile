@@ -215,7 +215,7 @@ COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 # What installs packages; a build that leaves expat out on purpose does not ask for it.
 PACKAGES = GSL=$(GSL) CHARGE=$(CHARGE) EXPAT=$(if $(WITHOUT_EXPAT),0,1) .ci/packages
 
-.PHONY: all python python-package wheel wheels test-wheels sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-peers bench-instructions referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender blender-extension test-vtk windows windows-libraries windows-zip test-windows test-windows-run test-bridges test-farm test-mutants test-aarch64 test-s390x wasm test-wasm test-riscv64 deb test-deb test-builds cscd-mpi python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces test-fuzz test-faults FORCE
+.PHONY: all python python-package wheel wheels test-wheels sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-charge bench-peers bench-instructions referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender blender-extension test-vtk windows windows-libraries windows-zip test-windows test-windows-run test-bridges test-farm test-mutants test-aarch64 test-s390x wasm test-wasm test-riscv64 deb test-deb test-builds cscd-mpi python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces test-fuzz test-faults FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -558,10 +558,19 @@ bench-instructions:
 	@$(MAKE) --no-print-directory tool $(BUILD)/models/record
 	@BUILD=$(BUILD) CC='$(CC)' benchmarks/instructions/run.sh
 
-# The charts of docs/measurements.md, from the last make bench.
+# Charges: their errors, times and memory, up to 1,000,000 triangles; CHARGE_BENCH: options of benchmarks/charge, such as --quick.
+CHARGE_BENCH ?= --json build/bench-charge.json
+bench-charge: packages
+	@$(MAKE) --no-print-directory $(BUILD)/benchmarks/charge
+	@$(BUILD)/benchmarks/charge $(CHARGE_BENCH)
+
+# The charts of docs/measurements.md, from the last make bench and make bench-charge.
 bench-plot:
 	@.ci/packages plots
-	@benchmarks/plot.sh build/bench.json docs/images
+	@for kind in methods charge; do \
+	    json=build/bench$$(test $$kind = methods || echo -$$kind).json; \
+	    if [ ! -e $$json ]; then echo "$$json is missing, so nothing of it is drawn"; continue; fi; \
+	    benchmarks/plot.sh $$kind $$json docs/images || exit 1; done
 
 # Bundles the page of the reports from its sources. The result is committed, so only those who change it need node.
 template:
@@ -618,6 +627,7 @@ help:
 	@echo 'make reference   the functions of the library as HTML, in build/reference (installs doxygen)'
 	@echo 'make freeze-api   write down what the public headers promise, when functions or members were added'
 	@echo 'make bench     all methods on all recordings, as in the thesis (BENCH=--quick: 30 s); make bench-plot draws its charts'
+	@echo 'make bench-charge   errors, times and memory of charges (CHARGE_BENCH=--quick: 20 s); make bench-plot draws its charts'
 	@echo 'make performance   machine limits, cost per triangle by size, threads, bulk motion, cloth, new meshes (PERFORMANCE=--quick)'
 	@echo 'make benchmarks   build all programs that print tables: docs/measurements.md'
 	@echo 'make bench-peers   steps beside Embree'"'"'s broad phase, checks beside CGAL'"'"'s (installs these; PEERS="--quick", or FIRST SECOND of frames)'

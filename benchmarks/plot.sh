@@ -1,14 +1,17 @@
 #!/bin/sh
-# Draws the charts of docs/measurements.md from the JSON of benchmarks/methods. usage: plot.sh BENCH.json IMAGES
+# Draws the charts of docs/measurements.md from the JSON of benchmarks/methods or benchmarks/charge.
+# usage: plot.sh methods|charge BENCH.json IMAGES
 set -eu
-json=$1
-images=$2
+kind=$1
+json=$2
+images=$3
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir -p "$images"
-[ -e "$json" ] || { echo "plot.sh: $json is missing; run make bench first" >&2; exit 1; }
+[ -e "$json" ] || { echo "plot.sh: $json is missing; run make bench or make bench-charge first" >&2; exit 1; }
 
 # stages.dat: a line per recording and method, an empty line between recordings; pairs.dat: pairs per triangle.
+draw_methods() {
 python3 - "$json" "$work" <<'PYTHON'
 import json, sys
 rows = json.load(open(sys.argv[1]))["rows"]
@@ -72,3 +75,90 @@ set xtics norotate
 plot for [i=2:6] "$work/pairs.dat" using i:xtic(1) title columnheader(i)
 GNUPLOT
 echo "$images/bench-stages.png, $images/bench-pairs.png"
+}
+
+# A file of triangles and values per line of a chart. The figure's times are those of the charge alone, in seconds.
+draw_charge() {
+python3 - "$json" "$work" <<'PYTHON'
+import json, sys
+rows = json.load(open(sys.argv[1]))["rows"]
+def write(name, chosen, value):
+    points = sorted((r["triangles"], value(r)) for r in rows if chosen(r) and value(r) is not None)
+    with open(f"{sys.argv[2]}/{name}.dat", "w") as out:
+        out.writelines(f"{n} {v:.6g}\n" for n, v in points)
+for solver in ["dense", "tree", "coarse"]:
+    for body in ["sphere", "ellipsoid", "torus", "cube"]:
+        of_body = lambda r: r["table"] == "errors" and r["body"] == body and r["solver"] == solver
+        write(f"capacitance-{body}-{solver}", of_body, lambda r: r["capacitance_error"])
+        write(f"density-{body}-{solver}", of_body, lambda r: r["density_rms"])
+    for threads in [1, 2]:
+        of_threads = lambda r: r["table"] == "times" and r["solver"] == solver and r["threads"] == threads
+        write(f"seconds-{solver}-{threads}", of_threads, lambda r: r["charge_ms"] / 1e3)
+        write(f"peak-{solver}-{threads}", of_threads, lambda r: r["peak_bytes"] / 2**20)
+PYTHON
+
+gnuplot <<GNUPLOT
+set terminal pngcairo size 1200,520 font "sans,11" background "white"
+set grid xtics ytics lt 1 lc rgb "#dddddd"
+set border 3
+set tics nomirror
+set logscale xy
+set xlabel "triangles"
+set format x "10^{%T}"
+set style data linespoints
+set pointsize 0.9
+array colours[4] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7"]
+bodies = "sphere ellipsoid torus cube"
+solvers = "dense tree coarse"
+file(what, name, last) = "$work/" . what . "-" . name . "-" . last . ".dat"
+
+set output "$images/bench-charge-errors.png"
+set format y "10^{%T}"
+set key inside bottom left reverse Left
+set multiplot layout 1,2
+set xrange [700:1.5e6]
+set yrange [2e-6:2e-2]
+set title "relative error of the capacitance"
+plot for [i=1:4] file("capacitance", word(bodies, i), "tree") lc rgb colours[i] pt 7 lw 2 title word(bodies, i), \
+     for [i=1:4] file("capacitance", word(bodies, i), "coarse") lc rgb colours[i] pt 6 dt 2 notitle, \
+     for [i=1:4] file("capacitance", word(bodies, i), "dense") with points lc rgb colours[i] pt 4 ps 1.6 notitle, \
+     2 / x with lines lc rgb "#888888" dt 3 title "second order", \
+     keyentry with linespoints lc rgb "black" pt 7 lw 2 title "tree", \
+     keyentry with linespoints lc rgb "black" pt 6 dt 2 title "coarse", \
+     keyentry with points lc rgb "black" pt 4 ps 1.6 title "dense"
+set yrange [1e-4:3e-1]
+set title "relative error of the densities, root of the mean square"
+plot for [i=1:3] file("density", word(bodies, i), "tree") lc rgb colours[i] pt 7 lw 2 title word(bodies, i), \
+     for [i=1:3] file("density", word(bodies, i), "coarse") lc rgb colours[i] pt 6 dt 2 notitle, \
+     for [i=1:3] file("density", word(bodies, i), "dense") with points lc rgb colours[i] pt 4 ps 1.6 notitle, \
+     0.8 / sqrt(x) with lines lc rgb "#888888" dt 3 title "first order", \
+     keyentry with linespoints lc rgb "black" pt 7 lw 2 title "tree", \
+     keyentry with linespoints lc rgb "black" pt 6 dt 2 title "coarse", \
+     keyentry with points lc rgb "black" pt 4 ps 1.6 title "dense"
+unset multiplot
+
+set output "$images/bench-charge-times.png"
+set key inside bottom right reverse Left
+set multiplot layout 1,2
+set xrange [1500:1.5e6]
+set yrange [1e-2:1e3]
+set title "seconds for the charge"
+plot for [i=1:3] file("seconds", word(solvers, i), "1") lc rgb colours[i] pt 7 lw 2 title word(solvers, i), \
+     for [i=1:3] file("seconds", word(solvers, i), "2") lc rgb colours[i] pt 6 dt 2 notitle, \
+     1e-5 * x with lines lc rgb "#888888" dt 3 title "0.01 ms a triangle", \
+     keyentry with linespoints lc rgb "black" pt 7 lw 2 title "one thread", \
+     keyentry with linespoints lc rgb "black" pt 6 dt 2 title "two threads"
+set yrange [1:1e4]
+set title "greatest memory of the process in MiB"
+plot for [i=1:3] file("peak", word(solvers, i), "1") lc rgb colours[i] pt 7 lw 2 title word(solvers, i), \
+     x / 1024 with lines lc rgb "#888888" dt 3 title "1 KiB a triangle"
+unset multiplot
+GNUPLOT
+echo "$images/bench-charge-errors.png, $images/bench-charge-times.png"
+}
+
+case $kind in
+methods) draw_methods ;;
+charge) draw_charge ;;
+*) echo "plot.sh: $kind is neither methods nor charge" >&2; exit 2 ;;
+esac
