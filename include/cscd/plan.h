@@ -37,10 +37,12 @@ typedef struct cscd_plan cscd_plan;
  * versions may add values. */
 typedef enum cscd_charge_solver {
     CSCD_CHARGE_TREE, /* iterations of a treecode: memory, about 2 kB a triangle, and time grow about as the number of
-                         * triangles; densities within 1e-3 of the mean. The same bits on every processor */
+                         * triangles; densities are off by some 1e-4 of their mean (root of the mean square), single ones
+                         * by some 1e-3. The same bits on every processor */
     CSCD_CHARGE_DENSE, /* a dense matrix, by LAPACK: 4 bytes for each pair of triangles of the largest component, and
                          * time with the cube of their number; densities exact. To compare with */
-    CSCD_CHARGE_COARSE, /* as TREE with half the iterations: densities within some percent of the mean */
+    CSCD_CHARGE_COARSE, /* as TREE with half the iterations: densities are off by some percent of their mean (root of the
+                         * mean square), single ones by more */
     CSCD_CHARGE_MAX_ENUM = 0x7fffffff
 } cscd_charge_solver;
 
