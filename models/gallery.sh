@@ -16,7 +16,7 @@ strip() { # strip NAME VIEW COLUMNS FRAMES [OPTIONS]: contacts on the body, with
         --view "$2" --scenery "$scenery.obj" $moving ${5:-} -o "$images/$1.png"
 }
 
-for name in pawn dumbbell figure; do
+for name in pawn dumbbell figure hand octopus torus; do
     "$tool" preprocess "$models/$name.obj" -o "$models/$name.plan.ply" --quiet
     for colour in charge region; do
         "$tool" render "$models/$name.obj" --up z --colour "$colour" --view 30,12 --size 640x480 -o "$images/$name-$colour.png"

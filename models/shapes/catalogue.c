@@ -1,5 +1,6 @@
 /* Bodies by name, with any possible number of triangles. */
 #include "models/shapes/catalogue.h"
+#include "models/shapes/animals.h"
 #include "models/shapes/figure.h"
 #include "models/shapes/letters.h"
 #include "models/shapes/revolution.h"
@@ -35,6 +36,8 @@ static const entry entries[BODY_KIND_COUNT] = {
     [BODY_SLAB] = {"slab", "a flat box folded twice, like a letter", 4000, 0, .add_squares = add_slab,
                    slab_triangles, 28},
     [BODY_CHAIN] = {"chain", "five linked tori: five components", 5000, 1000, .add_rings = add_chain},
+    [BODY_HAND] = {"hand", "a palm and five fingers", 6000, 2000, .add_implicit = add_hand},
+    [BODY_OCTOPUS] = {"octopus", "eight arms that curl", 12000, 4000, .add_implicit = add_octopus},
     [BODY_LETTER_T] = {"letter-t", "a T with round edges", 1380, 600, .add_implicit = add_letter_t},
     [BODY_LETTER_U] = {"letter-u", "a U with square corners", 1380, 600, .add_implicit = add_letter_u},
     [BODY_LETTER_V] = {"letter-v", "a V", 1380, 600, .add_implicit = add_letter_v},

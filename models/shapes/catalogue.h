@@ -34,6 +34,8 @@ typedef enum body_kind {
     BODY_COIL,
     BODY_SLAB,
     BODY_CHAIN,
+    BODY_HAND,
+    BODY_OCTOPUS,
     BODY_LETTER_T,
     BODY_LETTER_U,
     BODY_LETTER_V,

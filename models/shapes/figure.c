@@ -1,34 +1,10 @@
 /* Bodies that are the zero set of a function: a person, two rings that grew together, an ellipsoid. */
 #include "models/shapes/figure.h"
+#include "models/shapes/limbs.h"
 #include "models/shapes/remesh.h"
 
 #include <math.h>
 #include <stddef.h>
-
-/* A limb: a cone with round ends. */
-typedef struct limb {
-    double a[3], b[3], radius_a, radius_b, blend; /* blend: how far its root is rounded */
-} limb;
-
-static double to_limb(const double p[3], const limb *l) {
-    double along = 0.0, length = 0.0, squared = 0.0;
-    for (int k = 0; k < 3; k++) {
-        along += (p[k] - l->a[k]) * (l->b[k] - l->a[k]);
-        length += (l->b[k] - l->a[k]) * (l->b[k] - l->a[k]);
-    }
-    double t = fmin(fmax(along / length, 0.0), 1.0);
-    for (int k = 0; k < 3; k++) {
-        double d = p[k] - l->a[k] - t * (l->b[k] - l->a[k]);
-        squared += d * d;
-    }
-    return sqrt(squared) - (l->radius_a + t * (l->radius_b - l->radius_a));
-}
-
-/* Returns the smaller of the two, smoothly where they differ by less than `blend`. */
-static double round_union(double a, double b, double blend) {
-    double h = fmax(blend - fabs(a - b), 0.0) / blend;
-    return fmin(a, b) - h * h * blend * 0.25;
-}
 
 /* Returns about the distance to the figure. Its left half mirrors the right; the first two limbs stand in
  * the middle. */
@@ -47,11 +23,8 @@ static double to_figure(const double point[3]) {
         {{0.19, 0.00, 0.50}, {0.26, 0.00, 0.12}, 0.092, 0.082, 0.02},    /* shank */
         {{0.26, 0.01, 0.09}, {0.305, -.115, 0.057}, 0.092, 0.057, 0.08}, /* foot */
     };
-    double p[3] = {fabs(point[0]), point[1], point[2]};
-    double distance = to_limb(p, &limbs[0]);
-    for (size_t i = 1; i < sizeof limbs / sizeof *limbs; i++)
-        distance = round_union(distance, to_limb(p, &limbs[i]), limbs[i].blend);
-    return distance;
+    return limbs_distance(limbs, sizeof limbs / sizeof *limbs,
+                          (double[3]){fabs(point[0]), point[1], point[2]});
 }
 
 bool add_figure(body *b, uint32_t triangle_count) {

@@ -29,6 +29,8 @@ static const struct expectation {
     [BODY_COIL] = {1, 2, 0.0, 30.0},
     [BODY_SLAB] = {1, 2, 0.0, 15.0},
     [BODY_CHAIN] = {5, 0, 5.0 * 2.0 * 9.8696044 * 0.22 * 0.22, 30.0},
+    [BODY_HAND] = {1, 2, 0.0, 20.0},
+    [BODY_OCTOPUS] = {1, 2, 0.0, 20.0},
     [BODY_LETTER_T] = {1, 2, 0.0, 30.0},
     [BODY_LETTER_U] = {1, 2, 0.0, 30.0},
     [BODY_LETTER_V] = {1, 2, 0.0, 30.0},
@@ -168,7 +170,9 @@ static void refinement_keeps_the_shape(void **state) {
     (void)state;
     for (int i = 0; i < BODY_KIND_COUNT; i++) {
         body_kind kind = (body_kind)i;
-        uint32_t first = kind == BODY_COIL || kind == BODY_CHAIN ? 4000 : 1000;
+        const bool fine =
+            kind == BODY_COIL || kind == BODY_CHAIN || kind == BODY_HAND || kind == BODY_OCTOPUS;
+        uint32_t first = fine ? 4000 : 1000;
         double volumes[3], low[3][3], high[3][3];
         for (uint32_t level = 0; level < 3; level++) {
             body b = body_of(kind, body_nearest_count(kind, first << (2 * level)));
