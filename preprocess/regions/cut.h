@@ -1,18 +1,14 @@
-/* The shortest cut through a band of triangles: a minimum cut of the dual graph, by maximum flow. */
+/* The shortest cut through a band of triangles: a minimum cut of the dual graph. */
 #pragma once
 
 #include "preprocess/regions/dual_graph.h"
+#include "preprocess/regions/min_cut.h"
 
-/* Workspace for many cuts. Capacities belong to the graph's links and are the same at both ends. */
+/* Room for many cuts. Capacities belong to the graph's links and are the same at both ends. */
 typedef struct cutter {
-    const cscd_mesh *mesh;
     const dual_graph *graph;
     const int64_t *capacities;
-    int64_t *residuals;         /* of the links that leave a triangle of the band */
-    int64_t *supplies, *drains; /* of a triangle, straight from the part and to the other parts */
-    uint32_t *levels, *current; /* distance from the part's border; the next link to try */
-    uint32_t *queue, *path;     /* triangles; links */
-    int64_t cost;               /* of the last cut */
+    min_cut cut;
 } cutter;
 
 cscd_status cutter_create(const cscd_mesh *mesh, const dual_graph *graph, const int64_t *capacities,

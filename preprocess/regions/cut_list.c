@@ -87,7 +87,7 @@ static cscd_status add_cut(cut_search *s, uint32_t part, uint32_t side_size, cut
         if (g->parts[g->reached[i]] == part) cuts->triangles[end++] = g->reached[i];
     }
     memcpy(cuts->triangles + end, s->side, side_size * sizeof *s->side);
-    cuts->costs[cuts->count] = s->cutter.cost;
+    cuts->costs[cuts->count] = s->cutter.cut.cost;
     cuts->offsets[++cuts->count] = end + side_size;
     return CSCD_OK;
 }

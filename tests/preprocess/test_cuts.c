@@ -162,7 +162,7 @@ static void cuts_of_all_parts(uint32_t *owners) {
     }
     for (uint32_t part = 1; part <= f.growth.part_count; part++) {
         uint32_t size = cutter_separate(&c, f.growth.parts, band, band_size, part, side);
-        assert_true(c.cost > 0);
+        assert_true(c.cut.cost > 0);
         for (uint32_t i = 0; i < size; i++) {
             assert_int_equal(owners[side[i]], 0); /* no other part has it */
             owners[side[i]] = part;
@@ -257,7 +257,7 @@ static void shortest_of_all_cuts(void **state) {
             if (cost < least || (cost == least && members < smallest)) smallest = members;
             if (cost < least) least = cost;
         }
-        assert_true(c.cost == least && cost_of(capacities, parts, places, found) == least);
+        assert_true(c.cut.cost == least && cost_of(capacities, parts, places, found) == least);
         assert_int_equal(size, smallest);
     }
     cutter_destroy(&c);
