@@ -80,7 +80,8 @@ static cscd_status find_regions(draft *d) {
     by_charge.published = d->options.variant == CSCD_PLAN_VARIANT_PUBLISHED;
     switch (d->options.method) {
     case CSCD_METHOD_CHARGE:
-        return regions_from_charge(mesh, d->positions, d->charges, &by_charge, d->regions, &d->region_count);
+        return regions_from_charge(mesh, d->positions, d->charges, &by_charge, d->regions, &d->region_count,
+                                   &d->detector_points);
     case CSCD_METHOD_KMEANS:
         return regions_kmeans(mesh, d->positions, d->options.k, d->options.seed, d->regions, &d->region_count,
                               d->detector_points);
@@ -91,7 +92,7 @@ static cscd_status find_regions(draft *d) {
 
 /* Finds detector points for the methods that do not bring their own. */
 static cscd_status place_detector_points(draft *d) {
-    if (d->options.method == CSCD_METHOD_KMEANS) return CSCD_OK;
+    if (d->detector_points != NULL) return CSCD_OK;
     d->detector_points = context_allocate(d->mesh->context, d->region_count, sizeof(double[3]));
     if (d->detector_points == NULL) return context_out_of_memory(d->mesh->context);
     return detector_points_from_regions(d->mesh, d->positions, d->regions, d->region_count,

@@ -52,8 +52,8 @@ typedef struct cscd_plan_options {
     cscd_method method;    /* CHARGE by default, or KMEANS, or SINGLE */
     uint32_t k;            /* KMEANS: how many regions all components have together, 4 by default */
     uint32_t seed;         /* KMEANS: of the random starts, 1 by default */
-    double threshold;      /* CHARGE: the share of the triangles, those of least density, from which cuts
-                           * grow; in (0,1), 0.1 by default */
+    double threshold;      /* CHARGE: the share of the triangles, those of least density, along which
+                           * cuts run; in (0,1), 0.1 by default */
     uint64_t variant;      /* 0 by default; cscd/research.h has others to compare with */
     uint64_t memory_limit; /* CHARGE: bytes that the solution may take; 0, the default: what the system has */
     cscd_charge_solver charge_solver; /* CHARGE: TREE by default */

@@ -12,8 +12,8 @@
 #define CSCD_METHOD_ICCD           ((cscd_method)66) /* normal cones and contours (Tang et al. 2009), corrected */
 #define CSCD_METHOD_ICCD_PUBLISHED ((cscd_method)67) /* the same as published */
 
-/* A value of cscd_plan_options.variant. CHARGE: densities are equalized with 256 bins, as published (Yeh 2012),
- * instead of by exact ranks. */
+/* A value of cscd_plan_options.variant. CHARGE: cuts by the published rules (Yeh 2012): densities are equalized with 256
+ * bins, clusters of low density grow until they part a body, and detector points are centroids. */
 #define CSCD_PLAN_VARIANT_PUBLISHED 1u
 
 #ifdef __cplusplus

@@ -1,5 +1,6 @@
 /* Finds the regions of a mesh from its charge, or takes its components. */
 #include "preprocess/regions/regions.h"
+#include "preprocess/regions/body_regions.h"
 #include "preprocess/regions/cut_selection.h"
 #include "preprocess/regions/equalize.h"
 #include "src/mesh/surface.h"
@@ -15,15 +16,17 @@ region_options region_options_defaults(void) {
     return options;
 }
 
-/* A weight of 1 for the highest charge, and this much less for the lowest. */
-#define CHARGE_FAVOUR 0.85
+/* An edge costs its length where the charge is high, and this share of it where the charge is lowest. As published the cost falls over
+ * all ranks, else from three times the threshold on: cuts run along creases, and elsewhere they are short. */
+static const double published_crease = 0.15, usual_crease = 0.1, crease_ranks = 3.0;
 
 /* Workspace: arrays over triangles, and the weights of edges. */
 typedef struct region_work {
     const cscd_mesh *mesh;
     const double *positions;
     double *areas, *equalized, *weights;
-    uint32_t *regions, *list, *scratch;
+    uint32_t *regions, *list, *scratch, *tile_of;
+    bool *marked;
     dual_graph graph;
     clusters clusters;
     cut_list cuts;
@@ -46,7 +49,8 @@ static cscd_status check_options(cscd_context *context, const region_options *o)
 static array_list list_arrays(region_work *w) {
     size_t n = w->mesh->triangle_count;
     return (array_list){{ARRAY(w->areas, n), ARRAY(w->equalized, n), ARRAY(w->weights, w->mesh->edge_count),
-                         ARRAY(w->regions, n), ARRAY(w->list, n), ARRAY(w->scratch, n)}};
+                         ARRAY(w->regions, n), ARRAY(w->list, n), ARRAY(w->scratch, n), ARRAY(w->tile_of, n),
+                         ARRAY(w->marked, n)}};
 }
 
 static void free_work(region_work *w) {
@@ -56,26 +60,26 @@ static void free_work(region_work *w) {
     cut_list_free(w->mesh, &w->cuts);
 }
 
-/* An edge costs its length, and less where the charge is low: cuts run along creases. */
-static void weigh_edges(region_work *w) {
+static void weigh_edges(region_work *w, const region_options *o) {
     const cscd_mesh *mesh = w->mesh;
+    const double crease = o->published ? published_crease : usual_crease;
+    const double high = o->published ? 1.0 : fmin(1.0, crease_ranks * o->threshold);
     for (uint32_t e = 0; e < mesh->edge_count; e++) {
         double charge = 0.0;
         for (uint32_t i = mesh->edge_star_offsets[e]; i < mesh->edge_star_offsets[e + 1]; i++)
             charge += w->equalized[mesh->edge_stars[i]] / edge_star_size(mesh, e);
-        w->weights[e] = surface_edge_length(mesh, w->positions, e) * (1.0 - CHARGE_FAVOUR * (1.0 - charge));
+        w->weights[e] = surface_edge_length(mesh, w->positions, e) *
+                        (1.0 - (1.0 - crease) * (1.0 - fmin(1.0, charge / high)));
     }
 }
 
-static cscd_status find_regions(region_work *w, const double *density, const region_options *o) {
+/* As published: clusters of low charge grow until they part the component. */
+static cscd_status find_published(region_work *w, const region_options *o) {
     const cscd_mesh *mesh = w->mesh;
     cut_limits limits = {o->growing_share, o->part_share};
-    cscd_status status = equalize(mesh, density, o->published, w->equalized);
-    if (status == CSCD_OK) status = dual_graph_build(mesh, &w->graph);
-    if (status == CSCD_OK) status = clusters_find(mesh, &w->graph, w->equalized, o->threshold, &w->clusters);
+    cscd_status status = clusters_find(mesh, &w->graph, w->equalized, o->threshold, &w->clusters);
     if (status != CSCD_OK) return status;
     for (uint32_t t = 0; t < mesh->triangle_count; t++) w->areas[t] = surface_area(mesh, w->positions, t);
-    weigh_edges(w);
     progress_stage(&mesh->context->progress, "cuts", 0.0, 0.5);
     status = cut_list_find(mesh, &w->graph, &w->clusters, w->areas, w->weights, limits, &w->cuts);
     if (status != CSCD_OK) return status;
@@ -83,20 +87,79 @@ static cscd_status find_regions(region_work *w, const double *density, const reg
     return select_cuts(mesh, &w->graph, w->positions, w->areas, &w->cuts, o->gain, o->part_share, w->regions);
 }
 
+/* Lists the triangles component by component; those of c are list[offsets[c] .. offsets[c + 1]). */
+static void sort_by_component(const region_work *w, uint32_t *offsets) {
+    const cscd_mesh *mesh = w->mesh;
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) offsets[mesh->triangle_components[t] + 1]++;
+    for (uint32_t c = 0; c < mesh->component_count; c++) offsets[c + 1] += offsets[c];
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) w->list[offsets[mesh->triangle_components[t]]++] = t;
+    for (uint32_t c = mesh->component_count; c > 0; c--) offsets[c] = offsets[c - 1];
+    offsets[0] = 0;
+}
+
+static cscd_status add_components(region_work *w, const uint32_t *offsets, body_regions *found) {
+    const cscd_mesh *mesh = w->mesh;
+    const tile_surface surface = {mesh, w->positions, w->weights, &w->graph};
+    const body_room room = {w->tile_of, w->scratch, w->marked};
+    cscd_status status = CSCD_OK;
+    for (uint32_t c = 0; c < mesh->component_count && status == CSCD_OK; c++) {
+        const uint32_t *list = w->list + offsets[c], count = offsets[c + 1] - offsets[c];
+        if (count == 0) continue;
+        progress_stage(&mesh->context->progress, "cuts", (double)offsets[c] / mesh->triangle_count,
+                       (double)offsets[c + 1] / mesh->triangle_count);
+        status = component_is_obstacle(mesh, c) ? body_regions_add_whole(found, &surface, list, count)
+                                                : body_regions_add(found, &surface, list, count, &room);
+    }
+    return status;
+}
+
+static cscd_status find_regions(region_work *w, body_regions *found) {
+    cscd_context *context = w->mesh->context;
+    uint32_t *offsets = context_allocate(context, (size_t)w->mesh->component_count + 1, sizeof *offsets);
+    if (offsets == NULL) return context_out_of_memory(context);
+    sort_by_component(w, offsets);
+    const cscd_status status = add_components(w, offsets, found);
+    context_free(context, offsets);
+    return status;
+}
+
+/* Numbers the regions by their first triangles. */
+static cscd_status number_regions(region_work *w, const body_regions *found, uint32_t *region_of_triangle,
+                                  uint32_t *region_count, double **detector_points) {
+    const cscd_mesh *mesh = w->mesh;
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) w->list[t] = t;
+    const uint32_t count =
+        dual_graph_pieces(&w->graph, w->list, mesh->triangle_count, w->regions, w->tile_of, w->scratch);
+    if (found->points != NULL) {
+        double *points = context_reserve(mesh->context, count, sizeof(double[3]));
+        if (points == NULL) return context_out_of_memory(mesh->context);
+        for (uint32_t t = 0; t < mesh->triangle_count; t++)
+            memcpy(points + (size_t)w->tile_of[t] * 3, found->points[w->regions[t]], sizeof(double[3]));
+        *detector_points = points;
+    }
+    memcpy(region_of_triangle, w->tile_of, mesh->triangle_count * sizeof *region_of_triangle);
+    *region_count = count;
+    return CSCD_OK;
+}
+
 cscd_status regions_from_charge(const cscd_mesh *mesh, const double *positions, const double *density,
                                 const region_options *options, uint32_t *region_of_triangle,
-                                uint32_t *region_count) {
+                                uint32_t *region_count, double **detector_points) {
     region_options chosen = options != NULL ? *options : region_options_defaults();
     region_work w = {.mesh = mesh, .positions = positions};
     cscd_status status = check_options(mesh->context, &chosen);
     if (status != CSCD_OK) return status;
     if (!context_allocate_all(mesh->context, list_arrays(&w))) return context_out_of_memory(mesh->context);
-    status = find_regions(&w, density, &chosen);
+    body_regions found = {.of_triangle = w.regions};
+    status = equalize(mesh, density, chosen.published, w.equalized);
+    if (status == CSCD_OK) status = dual_graph_build(mesh, &w.graph);
     if (status == CSCD_OK) {
-        for (uint32_t t = 0; t < mesh->triangle_count; t++) w.list[t] = t;
-        *region_count = dual_graph_pieces(&w.graph, w.list, mesh->triangle_count, w.regions,
-                                          region_of_triangle, w.scratch);
+        weigh_edges(&w, &chosen);
+        status = chosen.published ? find_published(&w, &chosen) : find_regions(&w, &found);
     }
+    if (status == CSCD_OK)
+        status = number_regions(&w, &found, region_of_triangle, region_count, detector_points);
+    context_free(mesh->context, found.points);
     free_work(&w);
     return status;
 }

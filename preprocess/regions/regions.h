@@ -16,10 +16,11 @@ region_options region_options_defaults(void);
 
 /* density: charge per area of each triangle, finite. Regions are connected, lie in one component each, and
  * are numbered from 0 by their first triangles. The same input gives the same regions. Both outputs are
- * written on success only. */
+ * written on success only; so are the detector points, to be freed by context_free, which are left alone where the rules are the
+ * published ones: there they are the centroids. */
 cscd_status regions_from_charge(const cscd_mesh *mesh, const double *positions, const double *density,
                                 const region_options *options, uint32_t *region_of_triangle,
-                                uint32_t *region_count);
+                                uint32_t *region_count, double **detector_points);
 
 /* One region per component, with the component's number. */
 cscd_status regions_single(const cscd_mesh *mesh, uint32_t *region_of_triangle, uint32_t *region_count);

@@ -55,7 +55,7 @@ class Plan:
         V : (n, 3)
             The mesh at rest.
         threshold : float
-            The share of the triangles, those of least density, from which cuts grow; in (0, 1).
+            The share of the triangles, those of least density, along which cuts run; in (0, 1).
         solver : str
             "tree": iterations of a treecode, densities within 1e-3. "coarse": half the iterations, within some percent.
             "dense": exactly, by LAPACK, with 4 bytes for each pair of triangles and time with the cube of their number.

@@ -64,7 +64,7 @@ static const option_row rows[] = {
     {"seed", "N", read_unsigned, offsetof(preprocess_options, plan.seed),
      "with kmeans: another number gives other regions (default 1)"},
     {"threshold", "X", read_share, offsetof(preprocess_options, plan.threshold),
-     "with charge: cuts start from the triangles of least charge; X is their share of all (default 0.1)"},
+     "with charge: cuts run along the triangles of least charge; X is their share of all (default 0.1)"},
     {"charge", "tree", read_charge_solver, offsetof(preprocess_options, plan.charge_solver),
      "with charge: solve for it by iterations of a treecode, with about 2 kB a triangle (default)"},
     {"charge", "coarse", .help = "the same with half the iterations, to some percent"},
@@ -72,7 +72,7 @@ static const option_row rows[] = {
      .help = "by a dense matrix, to compare: 4 bytes for each pair of triangles of a component, "
              "and time with the cube of their number"},
     {"published", NULL, read_flag, offsetof(preprocess_options, published),
-     "with charge: sort charges into 256 classes, as published, instead of ranking each of them"},
+     "with charge: cut by the published rules, where clusters of low charge grow until they part a body"},
     {"weld", "exact|none|EPS", read_weld, offsetof(preprocess_options, source.weld),
      "join vertices that coincide, or lie within EPS; replay needs the same"},
     {"threads", "N", read_threads, offsetof(preprocess_options, source.thread_count),

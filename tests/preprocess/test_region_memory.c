@@ -38,10 +38,19 @@ static int free_shape(void **state) {
     return 0;
 }
 
+static cscd_status divide_shape(const cscd_mesh *mesh, uint32_t *count) {
+    double *points = NULL;
+    const cscd_status status =
+        regions_from_charge(mesh, shape.positions, density, NULL, regions, count, &points);
+    assert_true((status == CSCD_OK) == (points != NULL));
+    context_free(mesh->context, points);
+    return status;
+}
+
 static cscd_status run_job(job j, const cscd_mesh *mesh, uint32_t *count, double *out) {
     switch (j) {
     case JOB_CHARGE:
-        return regions_from_charge(mesh, shape.positions, density, NULL, regions, count);
+        return divide_shape(mesh, count);
     case JOB_KMEANS:
         return regions_kmeans(mesh, shape.positions, K, 1, regions, count, out);
     case JOB_POINTS:

@@ -27,7 +27,7 @@ static charged bodies[BODIES];
 /* The regions that regions_from_charge finds, and how much of them is visible. */
 typedef struct division {
     uint32_t count, regions[TRIANGLES_MAX];
-    double share;
+    double share, points[REGIONS_MAX * 3];
 } division;
 
 static division found, other;
@@ -54,11 +54,10 @@ static int free_bodies(void **state) {
     return 0;
 }
 
-static double share_of(const cscd_mesh *mesh, const double *positions, const division *d) {
-    double points[REGIONS_MAX * 3];
+static double centroids_share(const cscd_mesh *mesh, const double *positions, division *d) {
     assert_true(d->count <= REGIONS_MAX);
-    assert_int_equal(detector_points_from_regions(mesh, positions, d->regions, d->count, points), CSCD_OK);
-    return visible_share(mesh, positions, d->regions, points);
+    assert_int_equal(detector_points_from_regions(mesh, positions, d->regions, d->count, d->points), CSCD_OK);
+    return visible_share(mesh, positions, d->regions, d->points);
 }
 
 static double single_share(const cscd_mesh *mesh, const double *positions) {
@@ -66,7 +65,7 @@ static double single_share(const cscd_mesh *mesh, const double *positions) {
     assert_int_equal(regions_single(mesh, single.regions, &single.count), CSCD_OK);
     check_regions(mesh, single.regions, single.count);
     assert_int_equal(single.count, mesh->component_count);
-    return share_of(mesh, positions, &single);
+    return centroids_share(mesh, positions, &single);
 }
 
 /* A region that was cut off, or cut from, has at least this share of its component. */
@@ -87,12 +86,18 @@ static void divide_with(const body *b, const double *density, const region_optio
     size_t bytes = cscd_context_bytes(mesh->context);
     memset(out, 0xff, sizeof *out);
     assert_true(b->triangle_count <= TRIANGLES_MAX);
-    cscd_status status = regions_from_charge(mesh, b->positions, density, options, out->regions, &out->count);
+    double *points = NULL;
+    cscd_status status =
+        regions_from_charge(mesh, b->positions, density, options, out->regions, &out->count, &points);
     assert_int_equal(status, CSCD_OK);
+    assert_true(out->count <= REGIONS_MAX && (points == NULL) == (options != NULL && options->published));
+    if (points != NULL) memcpy(out->points, points, out->count * sizeof(double[3]));
+    out->share = points != NULL ? visible_share(mesh, b->positions, out->regions, points)
+                                : centroids_share(mesh, b->positions, out);
+    context_free(mesh->context, points);
     assert_int_equal(cscd_context_bytes(mesh->context), bytes);
     check_regions(mesh, out->regions, out->count);
-    check_areas(mesh, b->positions, out, 0.02);
-    out->share = share_of(mesh, b->positions, out);
+    if (points == NULL) check_areas(mesh, b->positions, out, 0.02);
     if (options == NULL || options->gain >= 0.0) assert_true(out->share >= single_share(mesh, b->positions));
     body_mesh_destroy(mesh);
 }
@@ -147,11 +152,11 @@ static void bodies_are_divided(void **state) {
         double share, apart[6][3]; /* points of different regions */
         uint32_t apart_count;
     } expected[BODIES] = {
-        [BODY_PAWN] = {3, 4, 0.99, {{1.0, 0, 0.12}, {0.61, 0, 1.88}, {0, 0, 2.97}}, 3},
+        [BODY_PAWN] = {2, 4, 0.99, {{1.0, 0, 0.12}, {0, 0, 2.97}}, 2},
         [BODY_DUMBBELL] = {2, 3, 0.98, {{0, 0, -2.05}, {0, 0, 2.05}}, 2},
         [BODY_FIGURE] =
             {6,
-             7,
+             9,
              0.96,
              {{0, 0, 1.87}, {0, -0.16, 1.2}, {0.7, 0, 0.95}, {-0.7, 0, 0.95}, {0.3, 0, 0}, {-0.3, 0, 0}},
              6},
@@ -255,6 +260,7 @@ static void noise_does_not_cut_a_ball(void **state) {
 static void never_less_than_single(void **state) {
     (void)state;
     region_options options = region_options_defaults();
+    options.published = true;
     options.gain = 0.0;
     options.threshold = 0.2;
     double *density = malloc(TRIANGLES_MAX * sizeof *density);
@@ -284,6 +290,7 @@ static void all_cuts(void **state) {
     for (uint32_t t = 0; t < b->triangle_count; t++)
         density[t] = fabs(b->positions[b->triangles[t * 3] * 3 + 2]);
     region_options options = region_options_defaults();
+    options.published = true;
     options.gain = -1.0;
     divide_with(b, density, &options, &found);
     assert_int_equal(found.count, 2);
@@ -308,9 +315,12 @@ static void open_and_inside_out(void **state) {
         b.triangles[t * 3 + 1] = swap;
     }
     cscd_mesh *mesh = body_mesh(&b, 1);
-    assert_int_equal(regions_from_charge(mesh, b.positions, c->density, NULL, other.regions, &other.count),
-                     CSCD_OK);
+    double *points = NULL;
+    assert_int_equal(
+        regions_from_charge(mesh, b.positions, c->density, NULL, other.regions, &other.count, &points),
+        CSCD_OK);
     assert_int_equal(other.count, 2);
+    context_free(mesh->context, points);
     body_mesh_destroy(mesh);
     body_free(&b);
 }
@@ -344,16 +354,18 @@ static void refuses_bad_options(void **state) {
     const charged *c = &bodies[BODY_PAWN];
     cscd_mesh *mesh = body_mesh(&c->shape, 1);
     uint32_t count = 77, regions[1] = {78};
+    double *points = NULL;
     const double bad[] = {-0.1, 1.1, NAN, INFINITY};
     for (int i = 0; i < 16; i++) {
         region_options options = region_options_defaults();
         double *fields[] = {&options.threshold, &options.growing_share, &options.part_share, &options.gain};
         *fields[i / 4] = i / 4 == 3 && i % 4 == 0 ? -1.1 : bad[i % 4];
-        assert_int_equal(regions_from_charge(mesh, c->shape.positions, c->density, &options, regions, &count),
-                         CSCD_INVALID_ARGUMENT);
+        assert_int_equal(
+            regions_from_charge(mesh, c->shape.positions, c->density, &options, regions, &count, &points),
+            CSCD_INVALID_ARGUMENT);
         assert_non_null(strstr(cscd_context_detail(mesh->context), "threshold"));
     }
-    assert_true(count == 77 && regions[0] == 78);
+    assert_true(count == 77 && regions[0] == 78 && points == NULL);
     body_mesh_destroy(mesh);
 }
 

@@ -1,0 +1,67 @@
+/* Which region each tile of a component belongs to: of all labellings one of low cost, by expansion moves (Boykov, Veksler, Zabih
+ * 2001). */
+#pragma once
+
+#include "preprocess/regions/min_cut.h"
+#include "preprocess/regions/sight.h"
+
+enum { REGIONS_MOST = 64 };
+
+/* A labelling costs, in shares of the component's area: what is not seen, + region for each region, + border times the weight of
+ * the borders over the root of the area. */
+typedef struct labelling_prices {
+    double region, border;
+} labelling_prices;
+
+/* The regions, each with its point. Times count changes: of the region's tiles, of its point, and when it was last looked at. */
+typedef struct labelled_regions {
+    uint32_t count;
+    double points[REGIONS_MOST][3];
+    uint32_t changed[REGIONS_MOST], moved[REGIONS_MOST], expanded[REGIONS_MOST], now;
+} labelled_regions;
+
+typedef struct tile_labelling {
+    const tile_graph *g;
+    labelling_prices prices;
+    uint32_t *of_tile;
+    labelled_regions regions;
+    uint32_t *nodes, *pieces; /* room for tiles */
+    min_cut cut;
+} tile_labelling;
+
+/* All tiles are in one region. */
+cscd_status labelling_create(const tile_graph *g, const labelling_prices *prices, tile_labelling *out);
+void labelling_destroy(tile_labelling *l);
+
+double labelling_cost(const tile_labelling *l);
+
+/* The tiles of a region, or of two; valid until the next call. */
+tile_set labelling_tiles(tile_labelling *l, uint32_t a, uint32_t b);
+
+/* What the border of two regions costs; -1: they have none. */
+double labelling_border(const tile_labelling *l, uint32_t a, uint32_t b);
+
+/* Adds a region with a point, which has no tiles yet. */
+void labelling_add(tile_labelling *l, const double point[3]);
+
+/* All regions count as changed: the tiles are others than before. */
+void labelling_touch(tile_labelling *l);
+
+/* Gives tiles to a region. */
+void labelling_give(tile_labelling *l, const uint32_t *tiles, uint32_t count, uint32_t region);
+
+/* Gives tiles to other regions for as long as that costs less. Regions that become empty are left out. */
+void labelling_share_out(tile_labelling *l);
+
+/* Moves the points of regions whose tiles have changed. */
+void labelling_move_points(tile_labelling *l);
+
+/* Makes regions connected: a large piece becomes a region, with its centroid for a point, and a small one joins the neighbour with
+ * the longest border. */
+void labelling_connect(tile_labelling *l);
+
+/* Region b becomes a part of a, and the last region takes its number. */
+void labelling_join(tile_labelling *l, uint32_t a, uint32_t b);
+
+/* Each tile of the region goes to the point among the others that sees it best, and the last region takes its number. */
+void labelling_leave_out(tile_labelling *l, uint32_t region);
