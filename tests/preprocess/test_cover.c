@@ -10,36 +10,34 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Larger bodies take too long where the code is not optimised. */
+#if defined(NDEBUG) && !defined(SLOW_MACHINE)
+enum { TRIANGLES_MOST = 20000 };
+#else
+enum { TRIANGLES_MOST = 5000 };
+#endif
+
 static const double pi = 3.14159265358979323846;
 
-/* The regions of a body by its charge; *share is what the points see. They are connected, and the same again. */
+/* The regions of a body by its charge, which are connected; *share is what the points see. */
 static uint32_t divide_by_charge(const body *b, double *share) {
     cscd_mesh *mesh = body_mesh(b, 2);
-    uint32_t *regions[2], counts[2];
-    double *density = body_allocate(b->triangle_count, sizeof *density), *points[2] = {NULL, NULL};
+    uint32_t *regions = body_allocate(b->triangle_count, sizeof *regions), count;
+    double *density = body_allocate(b->triangle_count, sizeof *density), *points = NULL;
     double *capacitance = body_allocate(mesh->component_count, sizeof *capacitance);
     assert_int_equal(
         charge_solve(mesh, b->positions, &(charge_options){CSCD_CHARGE_TREE, 0}, density, capacitance, NULL),
         CSCD_OK);
-    for (int i = 0; i < 2; i++) {
-        regions[i] = body_allocate(b->triangle_count, sizeof *regions[i]);
-        assert_int_equal(
-            regions_from_charge(mesh, b->positions, density, NULL, regions[i], &counts[i], &points[i]),
-            CSCD_OK);
-    }
-    assert_int_equal(counts[0], counts[1]);
-    assert_memory_equal(regions[0], regions[1], b->triangle_count * sizeof *regions[0]);
-    assert_memory_equal(points[0], points[1], counts[0] * sizeof(double[3]));
-    check_regions(mesh, regions[0], counts[0]);
-    *share = visible_share(mesh, b->positions, regions[0], points[0]);
-    for (int i = 0; i < 2; i++) {
-        free(regions[i]);
-        context_free(mesh->context, points[i]);
-    }
+    assert_int_equal(regions_from_charge(mesh, b->positions, density, NULL, regions, &count, &points),
+                     CSCD_OK);
+    check_regions(mesh, regions, count);
+    *share = visible_share(mesh, b->positions, regions, points);
+    context_free(mesh->context, points);
+    free(regions);
     free(density);
     free(capacitance);
     body_mesh_destroy(mesh);
-    return counts[0];
+    return count;
 }
 
 /* A tube around a closed curve or an arc of a circle of radius R; an arc has round ends. */
@@ -155,6 +153,7 @@ static void bodies_of_the_catalogue(void **state) {
     };
     for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {
         const expectation *e = &expected[i];
+        if (e->triangle_count > TRIANGLES_MOST) continue;
         body b = body_of(e->kind, e->triangle_count);
         double share;
         const uint32_t count = divide_by_charge(&b, &share);
