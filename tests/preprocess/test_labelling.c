@@ -144,7 +144,8 @@ static void two_regions_cost_the_least(void **state) {
             least = fmin(least, labelling_cost(&all));
         }
         labelling_share_out(&l);
-        const double without = (2 - l.regions.count) * prices.region * b->g.area; /* an empty region is left out */
+        const double without =
+            (2 - l.regions.count) * prices.region * b->g.area; /* an empty region is left out */
         assert_true(fabs(labelling_cost(&l) + without - least) <= 1e-9 * b->g.area);
         labelling_destroy(&l);
         free_tiled(b);
@@ -173,7 +174,8 @@ static void costs_never_rise(void **state) {
         labelling_share_out(&l);
         const double after = labelling_cost(&l);
         assert_true(after <= before);
-        for (uint32_t t = 0; t < b->tile_count; t++) { /* no tile alone can make it better by more than roundings */
+        for (uint32_t t = 0; t < b->tile_count;
+             t++) { /* no tile alone can make it better by more than roundings */
             const uint32_t own = l.of_tile[t];
             for (uint32_t r = 0; r < l.regions.count && round < 4; r++) {
                 l.of_tile[t] = r;
@@ -202,7 +204,8 @@ static void regions_become_connected(void **state) {
         }
         labelling_connect(&l);
         uint32_t *pieces = body_allocate(b->tile_count, sizeof *pieces), region_pieces[REGIONS_MOST] = {0};
-        const uint32_t count = dual_graph_pieces(&b->graph, b->list, b->tile_count, l.of_tile, pieces, b->scratch);
+        const uint32_t count =
+            dual_graph_pieces(&b->graph, b->list, b->tile_count, l.of_tile, pieces, b->scratch);
         for (uint32_t i = 0, seen = 0; i < b->tile_count; i++)
             if (pieces[i] == seen) region_pieces[l.of_tile[i]]++, seen++;
         for (uint32_t r = 0; r < l.regions.count; r++) assert_int_equal(region_pieces[r], 1);
@@ -215,8 +218,11 @@ static void regions_become_connected(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(tiles_add_up),     cmocka_unit_test(halves_lie_in_their_tiles), cmocka_unit_test(two_regions_cost_the_least),
-        cmocka_unit_test(costs_never_rise), cmocka_unit_test(regions_become_connected),
+        cmocka_unit_test(tiles_add_up),
+        cmocka_unit_test(halves_lie_in_their_tiles),
+        cmocka_unit_test(two_regions_cost_the_least),
+        cmocka_unit_test(costs_never_rise),
+        cmocka_unit_test(regions_become_connected),
     };
     return cmocka_run_group_tests_name("labelling", tests, NULL, NULL);
 }

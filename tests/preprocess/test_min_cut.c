@@ -18,7 +18,8 @@ static network random_network(void) {
     bool linked[NODES_MOST][NODES_MOST] = {{false}};
     uint32_t places[NODES_MOST][NODES_MOST];
     for (uint32_t a = 0; a < n.node_count; a++)
-        for (uint32_t b = a + 1; b < n.node_count; b++) linked[a][b] = linked[b][a] = random_integer(0, 2) > 0;
+        for (uint32_t b = a + 1; b < n.node_count; b++)
+            linked[a][b] = linked[b][a] = random_integer(0, 2) > 0;
     for (uint32_t a = 0; a < n.node_count; a++) {
         n.supplies[a] = random_integer(-6, 9) > 0 ? random_integer(0, 9) : 0;
         n.drains[a] = random_integer(-6, 9) > 0 ? random_integer(0, 9) : 0;
