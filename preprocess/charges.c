@@ -118,7 +118,7 @@ static cscd_status check_memory(const charge_work *w) {
 }
 
 static double tolerance_of(cscd_charge_solver solver) {
-    return solver == CSCD_CHARGE_COARSE ? 3e-3 : 1e-5;
+    return solver == CSCD_CHARGE_COARSE ? 3e-3 : 1e-6;
 }
 
 /* ---- all components -------------------------------------------------------------------------------------- */

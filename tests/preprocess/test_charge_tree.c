@@ -1,6 +1,7 @@
 /* Charges by the treecode against those of the dense system, and what may go wrong on the way. */
 #include "tests/support/counting_allocator.h"
 #include "tests/support/preprocess/charge_rig.h"
+#include "tests/support/preprocess/treecode_rig.h"
 #include "tests/support/test.h"
 
 #include <math.h>
@@ -180,18 +181,65 @@ static void hang_sheet(conductor *s, double height) {
     s->triangle_count++;
 }
 
+enum { SPHERE_TRIANGLES = 320 };
+
+/* A sphere, and two sheets that hang on it, one above the other. */
+static conductor sphere_with_sheets(double distance) {
+    conductor s = conductor_sphere(2);
+    assert_int_equal(s.triangle_count, SPHERE_TRIANGLES);
+    hang_sheet(&s, 0.0);
+    hang_sheet(&s, distance);
+    return s;
+}
+
+static double residual_of(const conductor *s, const charge_rig *r) {
+    treecode_rig t = treecode_rig_create(s, 1, CSCD_SIMD_AUTO);
+    const double residual = treecode_rig_residual(&t, r->density);
+    treecode_rig_destroy(&t);
+    return residual;
+}
+
+/* The potential is 1 to the tolerance: densities of fine meshes need 1e-6 of it. */
+static void iterations_end_at_the_tolerance(void **state) {
+    (void)state;
+    conductor s = bent_body(FINE);
+    charge_rig fine = charge_rig_solve_by(&by_tree, &s, 2),
+               coarse = charge_rig_solve_by(&by_coarse_tree, &s, 2);
+    const double of_fine = residual_of(&s, &fine), of_coarse = residual_of(&s, &coarse);
+    print_message("residuals: %.2g, coarse %.2g\n", of_fine, of_coarse);
+    assert_true(of_fine <= 1.05e-6);
+    assert_true(of_coarse > 1e-4 && of_coarse <= 3.01e-3);
+    charge_rig_destroy(&fine);
+    charge_rig_destroy(&coarse);
+    conductor_free(&s);
+}
+
+/* The iteration comes no closer to sheets that are 1e-9 apart: what it has found is good enough. */
+static void makes_do_with_a_small_residual(void **state) {
+    (void)state;
+    conductor s = sphere_with_sheets(1e-9), wide = sphere_with_sheets(1e-6);
+    charge_rig r = charge_rig_solve_by(&by_tree, &s, 1), expected = charge_rig_solve_by(&by_tree, &wide, 1);
+    const double residual = residual_of(&s, &r);
+    print_message("residual: %.2g\n", residual);
+    assert_true(residual > 1e-5 && residual <= 1e-3);
+    assert_true(fabs(r.capacitance[0] / expected.capacitance[0] - 1.0) < 1e-5);
+    for (uint32_t t = 0; t < SPHERE_TRIANGLES; t++)
+        assert_true(fabs(r.density[t] / expected.density[t] - 1.0) < 1e-3);
+    charge_rig_destroy(&r);
+    charge_rig_destroy(&expected);
+    conductor_free(&s);
+    conductor_free(&wide);
+}
+
 static void says_where_charges_cannot_be_told_apart(void **state) {
     (void)state;
-    conductor s = conductor_sphere(2);
-    const uint32_t body = s.triangle_count;
-    hang_sheet(&s, 0.0);
-    hang_sheet(&s, 1e-13);
+    conductor s = sphere_with_sheets(1e-13);
     charge_rig r = charge_rig_create(&s, 1, NULL);
     assert_int_equal(charge_solve(r.mesh, s.positions, &by_tree, r.density, r.capacitance, NULL),
                      CSCD_INVALID_ARGUMENT);
     const char *where = strstr(cscd_context_detail(r.context), "most at triangle ");
     assert_non_null(where);
-    assert_true(strtoul(where + strlen("most at triangle "), NULL, 10) >= body);
+    assert_true(strtoul(where + strlen("most at triangle "), NULL, 10) >= SPHERE_TRIANGLES);
     charge_rig_destroy(&r);
     conductor_free(&s);
 }
@@ -209,6 +257,7 @@ static void sheets_near_each_other(void **state) {
             charge_solve(r.mesh, s.positions, &by_tree, r.density, r.capacitance, NULL);
         print_message("%g apart: %s %s\n", h, cscd_status_string(status),
                       status == CSCD_OK ? "" : cscd_context_detail(r.context));
+        assert_int_equal(status, digits < 14 ? CSCD_OK : CSCD_INVALID_ARGUMENT);
         if (status == CSCD_OK)
             assert_true(r.capacitance[0] > 0.2 && r.capacitance[0] < 0.4);
         else
@@ -303,6 +352,8 @@ int main(void) {
         cmocka_unit_test(components_are_solved_alone),
         cmocka_unit_test(threads_give_the_same_bits),
         cmocka_unit_test(sheets_near_each_other),
+        cmocka_unit_test(iterations_end_at_the_tolerance),
+        cmocka_unit_test(makes_do_with_a_small_residual),
         cmocka_unit_test(says_where_charges_cannot_be_told_apart),
         cmocka_unit_test(keeps_to_the_limit),
         cmocka_unit_test(memory_may_run_out),

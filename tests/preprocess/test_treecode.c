@@ -1,7 +1,5 @@
 /* The treecode against sums over all triangles: on even meshes, on slivers, and where large triangles lie beside small ones. */
-#include "preprocess/treecode/treecode.h"
-#include "src/core/system.h"
-#include "tests/support/preprocess/charge_shapes.h"
+#include "tests/support/preprocess/treecode_rig.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
 
@@ -14,44 +12,6 @@ enum { LEVEL = 3 };
 #else
 enum { LEVEL = 4 };
 #endif
-
-/* A component's system, and the treecode of it. */
-typedef struct treecode_rig {
-    cscd_context *context;
-    void *memory;
-    charge_system system;
-    treecode t;
-} treecode_rig;
-
-static cscd_context *make_context(uint32_t threads, cscd_simd simd) {
-    cscd_context_options options = cscd_context_defaults();
-    cscd_context *context;
-    options.thread_count = threads;
-    options.simd = simd;
-    assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
-    return context;
-}
-
-static treecode_rig make_rig(const conductor *s, uint32_t threads, cscd_simd simd) {
-    treecode_rig r = {.context = make_context(threads, simd)};
-    const charge_surface surface = {r.context, (const uint32_t(*)[3])(const void *)s->triangles,
-                                    s->positions};
-    uint32_t *list = malloc(s->triangle_count * sizeof *list);
-    r.memory = system_memory(charge_system_lay_out(&r.system, s->triangle_count, NULL), CHARGE_ALIGNMENT);
-    assert_true(list != NULL && r.memory != NULL);
-    for (uint32_t t = 0; t < s->triangle_count; t++) list[t] = t;
-    charge_system_lay_out(&r.system, s->triangle_count, r.memory);
-    assert_int_equal(charge_system_collect(&r.system, &surface, 0, list, s->triangle_count), CSCD_OK);
-    free(list);
-    assert_int_equal(treecode_create(r.context, &r.system, SIZE_MAX, &r.t), CSCD_OK);
-    return r;
-}
-
-static void free_rig(treecode_rig *r) {
-    treecode_destroy(&r->t);
-    cscd_context_destroy(r->context);
-    system_memory_free(r->memory);
-}
 
 /* Charges of even density, a quarter more or less. In the tree's order. */
 static double *make_charges(const treecode_rig *r) {
@@ -76,7 +36,7 @@ static double exact_at(const treecode_rig *r, const double *charges, uint32_t ta
 }
 
 static void expect_close(const char *name, const conductor *s, double tolerance) {
-    treecode_rig r = make_rig(s, 2, CSCD_SIMD_AUTO);
+    treecode_rig r = treecode_rig_create(s, 2, CSCD_SIMD_AUTO);
     double *charges = make_charges(&r), *potentials = malloc(r.system.count * sizeof *potentials),
            worst = 0.0;
     assert_non_null(potentials);
@@ -89,7 +49,7 @@ static void expect_close(const char *name, const conductor *s, double tolerance)
     assert_true(worst <= tolerance);
     free(charges);
     free(potentials);
-    free_rig(&r);
+    treecode_rig_destroy(&r);
 }
 
 static conductor flat_ellipsoid(int level, double z) {
@@ -132,7 +92,7 @@ static void potentials_are_those_of_all_triangles(void **state) {
 static void pairs_are_taken_once(void **state) {
     (void)state;
     conductor s = large_beside_small();
-    treecode_rig r = make_rig(&s, 1, CSCD_SIMD_AUTO);
+    treecode_rig r = treecode_rig_create(&s, 1, CSCD_SIMD_AUTO);
     const source_tree *tree = &r.t.tree;
     const interactions *lists = &r.t.lists;
     uint8_t *reached = malloc(tree->count);
@@ -152,28 +112,28 @@ static void pairs_are_taken_once(void **state) {
         for (uint32_t k = 0; k < tree->count; k++) assert_int_equal(reached[k], 1);
     }
     free(reached);
-    free_rig(&r);
+    treecode_rig_destroy(&r);
     conductor_free(&s);
 }
 
 static void threads_and_levels_give_the_same_bits(void **state) {
     (void)state;
     conductor s = large_beside_small();
-    treecode_rig expected = make_rig(&s, 1, CSCD_SIMD_SCALAR);
+    treecode_rig expected = treecode_rig_create(&s, 1, CSCD_SIMD_SCALAR);
     double *charges = make_charges(&expected),
            *potentials = malloc(2 * s.triangle_count * sizeof *potentials);
     assert_non_null(potentials);
     double *found = potentials + s.triangle_count;
     assert_int_equal(treecode_evaluate(&expected.t, charges, potentials), CSCD_OK);
     for (uint32_t threads = 1; threads <= 3; threads++) {
-        treecode_rig r = make_rig(&s, threads, CSCD_SIMD_AUTO);
+        treecode_rig r = treecode_rig_create(&s, threads, CSCD_SIMD_AUTO);
         assert_int_equal(treecode_evaluate(&r.t, charges, found), CSCD_OK);
         assert_memory_equal(found, potentials, expected.system.count * sizeof *found);
-        free_rig(&r);
+        treecode_rig_destroy(&r);
     }
     free(charges);
     free(potentials);
-    free_rig(&expected);
+    treecode_rig_destroy(&expected);
     conductor_free(&s);
 }
 
