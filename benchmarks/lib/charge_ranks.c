@@ -1,6 +1,7 @@
 /* The tree's charges beside those of the dense solution: cuts are made of the order of the densities, so that is what must agree. */
 #include "benchmarks/lib/charge_tables.h"
 #include "benchmarks/lib/charge_trial.h"
+#include "benchmarks/lib/density_ranks.h"
 #include "models/shapes/catalogue.h"
 
 #include <math.h>
@@ -12,49 +13,11 @@ typedef struct rank_target {
 } rank_target;
 
 typedef struct rank_row {
-    double correlation; /* Spearman's, of the ranks */
-    double overlap;     /* the share of the lowest tenth that is the other's lowest tenth, too */
+    rank_agreement ranks;
     double capacitance; /* relative difference */
     double largest;     /* difference of densities over their mean */
     double mean_square; /* the same, the root of the mean square */
 } rank_row;
-
-typedef struct ordered_density {
-    double density;
-    uint32_t triangle;
-} ordered_density;
-
-static int compare_densities(const void *left, const void *right) {
-    const ordered_density *a = left, *b = right;
-    if (a->density != b->density) return a->density < b->density ? -1 : 1;
-    return a->triangle < b->triangle ? -1 : 1;
-}
-
-/* Returns the rank of each triangle, to be freed. */
-static uint32_t *ranks_of(const double *density, uint32_t count) {
-    ordered_density *sorted = body_allocate(count, sizeof *sorted);
-    uint32_t *ranks = body_allocate(count, sizeof *ranks);
-    for (uint32_t t = 0; t < count; t++) sorted[t] = (ordered_density){density[t], t};
-    qsort(sorted, count, sizeof *sorted, compare_densities);
-    for (uint32_t i = 0; i < count; i++) ranks[sorted[i].triangle] = i;
-    free(sorted);
-    return ranks;
-}
-
-static void compare_ranks(const double *a, const double *b, uint32_t count, rank_row *out) {
-    uint32_t *of_a = ranks_of(a, count), *of_b = ranks_of(b, count);
-    const double n = count;
-    double squares = 0.0, both = 0.0;
-    for (uint32_t t = 0; t < count; t++) {
-        const double d = (double)of_a[t] - (double)of_b[t];
-        squares += d * d;
-        both += of_a[t] < count / 10 && of_b[t] < count / 10;
-    }
-    out->correlation = 1.0 - 6.0 * squares / (n * (n * n - 1.0));
-    out->overlap = both / (count / 10);
-    free(of_a);
-    free(of_b);
-}
 
 static void compare_densities_of(const double *exact, const double *density, uint32_t count, rank_row *out) {
     double mean = 0.0, sum = 0.0;
@@ -69,7 +32,7 @@ static void compare_densities_of(const double *exact, const double *density, uin
 }
 
 static bool meets_target(const rank_row *r, const rank_target *target) {
-    return r->correlation >= target->correlation && r->overlap >= target->overlap &&
+    return r->ranks.correlation >= target->correlation && r->ranks.overlap >= target->overlap &&
            (isnan(target->capacitance) || r->capacitance <= target->capacitance);
 }
 
@@ -78,7 +41,7 @@ static bool meets_target(const rank_row *r, const rank_target *target) {
 static void print_row(const char *name, const charge_trial *t, uint32_t triangles, const char *solver,
                       const rank_row *r, const rank_target *target) {
     printf("  %-8s %9u %-7s %9.7f %8.4f %11.2e %9.2e %9.2e %4u %9.3f  %s\n", name, triangles, solver,
-           r->correlation, r->overlap, r->capacitance, r->largest, r->mean_square, t->iterations,
+           r->ranks.correlation, r->ranks.overlap, r->capacitance, r->largest, r->mean_square, t->iterations,
            t->total_ms / 1e3, meets_target(r, target) ? "met" : "missed");
     fflush(stdout);
 }
@@ -92,8 +55,8 @@ static void write_row(json *out, const char *name, const charge_trial *t, uint32
     json_string(out, "body", name);
     json_integer(out, "triangles", triangles);
     json_string(out, "solver", solver);
-    json_number(out, "correlation", r->correlation);
-    json_number(out, "overlap", r->overlap);
+    json_number(out, "correlation", r->ranks.correlation);
+    json_number(out, "overlap", r->ranks.overlap);
     json_number(out, "capacitance_difference", r->capacitance);
     json_number(out, "density_largest", r->largest);
     json_number(out, "density_rms", r->mean_square);
@@ -124,7 +87,7 @@ static bool compare_solvers(const char *name, const body *b, double *exact, doub
         const char *solver = charge_solver_name(compared[i].solver);
         good = solve_body(b, compared[i].solver, &t, density, error);
         if (!good) break;
-        compare_ranks(exact, density, b->triangle_count, &r);
+        r.ranks = density_ranks_compare(exact, density, b->triangle_count);
         compare_densities_of(exact, density, b->triangle_count, &r);
         r.capacitance = fabs(t.capacitance / dense.capacitance - 1.0);
         print_row(name, &t, b->triangle_count, solver, &r, &compared[i].target);

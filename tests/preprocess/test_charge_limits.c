@@ -1,5 +1,5 @@
 /* Charge densities: repeatability, degenerate triangles, memory, bad input. */
-#include "src/core/sort.h"
+#include "benchmarks/lib/density_ranks.h"
 #include "src/core/system.h"
 #include "tests/support/preprocess/charge_rig.h"
 #include "tests/support/test.h"
@@ -36,22 +36,13 @@ enum { FINE = 3 };
 enum { FINE = 2 };
 #endif
 
-typedef struct ranked_charge {
-    float density;
-    uint32_t triangle;
-} ranked_charge;
-
-static int by_density(const void *left, const void *right) {
-    const ranked_charge *a = left, *b = right;
-    return a->density < b->density ? -1 : a->density > b->density;
-}
-
-/* The triangles by density rounded to 24 bits, ties in order. */
-static ranked_charge *ranks_of(const charge_rig *r, uint32_t count) {
-    ranked_charge *ranks = malloc(2 * count * sizeof *ranks);
-    assert_non_null(ranks);
-    for (uint32_t t = 0; t < count; t++) ranks[t] = (ranked_charge){(float)r->density[t], t};
-    sort_items(ranks, ranks + count, count, sizeof *ranks, by_density);
+/* The ranks by density rounded to 24 bits. */
+static uint32_t *rounded_ranks(const charge_rig *r, uint32_t count) {
+    double *rounded = malloc(count * sizeof *rounded);
+    assert_non_null(rounded);
+    for (uint32_t t = 0; t < count; t++) rounded[t] = (float)r->density[t];
+    uint32_t *ranks = density_ranks(rounded, count);
+    free(rounded);
     return ranks;
 }
 
@@ -72,10 +63,10 @@ static void thread_count_changes_no_rank(void **state) {
     (void)state;
     conductor s = odd_ellipsoid(FINE);
     charge_rig one = charge_rig_solve(&s, 1);
-    ranked_charge *expected = ranks_of(&one, s.triangle_count);
+    uint32_t *expected = rounded_ranks(&one, s.triangle_count);
     for (uint32_t threads = 2; threads <= 4; threads++) {
         charge_rig r = charge_rig_solve(&s, threads);
-        ranked_charge *ranks = ranks_of(&r, s.triangle_count);
+        uint32_t *ranks = rounded_ranks(&r, s.triangle_count);
         for (uint32_t t = 0; t < s.triangle_count; t++) assert_near(r.density[t], one.density[t], 1e-12);
         assert_memory_equal(ranks, expected, s.triangle_count * sizeof *ranks);
         free(ranks);

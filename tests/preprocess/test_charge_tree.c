@@ -1,4 +1,5 @@
 /* Charges by the treecode against those of the dense system, and what may go wrong on the way. */
+#include "benchmarks/lib/density_ranks.h"
 #include "tests/support/counting_allocator.h"
 #include "tests/support/preprocess/charge_rig.h"
 #include "tests/support/preprocess/treecode_rig.h"
@@ -13,45 +14,6 @@ enum { FINE = 4 };
 #else
 enum { FINE = 3 };
 #endif
-
-typedef struct ranked_density {
-    double density;
-    uint32_t triangle;
-} ranked_density;
-
-static int by_density(const void *left, const void *right) {
-    const ranked_density *a = left, *b = right;
-    if (a->density != b->density) return a->density < b->density ? -1 : 1;
-    return a->triangle < b->triangle ? -1 : 1;
-}
-
-static uint32_t *ranks_of(const charge_rig *r, uint32_t count) {
-    ranked_density *sorted = malloc(count * sizeof *sorted);
-    uint32_t *ranks = malloc(count * sizeof *ranks);
-    assert_true(sorted != NULL && ranks != NULL);
-    for (uint32_t t = 0; t < count; t++) sorted[t] = (ranked_density){r->density[t], t};
-    qsort(sorted, count, sizeof *sorted, by_density);
-    for (uint32_t i = 0; i < count; i++) ranks[sorted[i].triangle] = i;
-    free(sorted);
-    return ranks;
-}
-
-/* The correlation of ranks (Spearman), and the share of the lowest tenth that is the lowest tenth of the other, too. */
-static void compare_ranks(const charge_rig *a, const charge_rig *b, uint32_t count, double *correlation,
-                          double *overlap) {
-    uint32_t *of_a = ranks_of(a, count), *of_b = ranks_of(b, count);
-    const double n = count;
-    double squares = 0.0, both = 0.0;
-    for (uint32_t t = 0; t < count; t++) {
-        const double d = (double)of_a[t] - (double)of_b[t];
-        squares += d * d;
-        both += of_a[t] < count / 10 && of_b[t] < count / 10;
-    }
-    *correlation = 1.0 - 6.0 * squares / (n * (n * n - 1.0));
-    *overlap = both / (count / 10);
-    free(of_a);
-    free(of_b);
-}
 
 static conductor bent_body(int level) {
     conductor s = conductor_sphere(level);
@@ -74,25 +36,25 @@ static void agrees_with_the_dense_system(void **state) {
     for (int i = 0; i < 3; i++) {
         const uint32_t count = all[i]->triangle_count;
         charge_rig a = charge_rig_solve(all[i], 2), b = charge_rig_solve_by(&by_tree, all[i], 2);
-        double correlation, overlap, worst = 0.0, mean = 0.0;
-        compare_ranks(&a, &b, count, &correlation, &overlap);
+        double worst = 0.0, mean = 0.0;
+        rank_agreement ranks = density_ranks_compare(a.density, b.density, count);
         for (uint32_t t = 0; t < count; t++) {
             worst = fmax(worst, fabs(a.density[t] - b.density[t]));
             mean += a.density[t] / count;
         }
         print_message(
             "%s, %u triangles: capacitance within %.1e, densities within %.1e, ranks %.7f, lowest tenth %.4f\n",
-            names[i], count, fabs(b.capacitance[0] / a.capacitance[0] - 1.0), worst / mean, correlation,
-            overlap);
+            names[i], count, fabs(b.capacitance[0] / a.capacitance[0] - 1.0), worst / mean, ranks.correlation,
+            ranks.overlap);
         assert_true(fabs(b.capacitance[0] / a.capacitance[0] - 1.0) < 1e-5);
         assert_true(worst < 0.02 * mean);
-        if (i < 2) assert_true(correlation > 0.9995 && overlap >= 0.97);
+        if (i < 2) assert_true(ranks.correlation > 0.9995 && ranks.overlap >= 0.97);
         charge_rig coarse = charge_rig_solve_by(&by_coarse_tree, all[i], 2);
-        compare_ranks(&a, &coarse, count, &correlation, &overlap);
+        ranks = density_ranks_compare(a.density, coarse.density, count);
         print_message("    coarse: capacitance within %.1e, ranks %.5f, lowest tenth %.4f\n",
-                      fabs(coarse.capacitance[0] / a.capacitance[0] - 1.0), correlation, overlap);
+                      fabs(coarse.capacitance[0] / a.capacitance[0] - 1.0), ranks.correlation, ranks.overlap);
         assert_true(fabs(coarse.capacitance[0] / a.capacitance[0] - 1.0) < 1e-3);
-        if (i < 2) assert_true(correlation > 0.98 && overlap >= 0.85);
+        if (i < 2) assert_true(ranks.correlation > 0.98 && ranks.overlap >= 0.85);
         charge_rig_destroy(&coarse);
         charge_rig_destroy(&a);
         charge_rig_destroy(&b);
