@@ -1,10 +1,9 @@
 /* The charge of conductors: how exact it is, whether its solvers agree, what they cost, and what hard meshes do to them. */
 #include "benchmarks/lib/charge_tables.h"
 #include "benchmarks/lib/charge_trial.h"
+#include "benchmarks/lib/row_file.h"
 #include "models/shapes/catalogue.h"
-#include "src/tool/common/provenance.h"
 
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -88,22 +87,11 @@ static bool run_tables(const charge_run *r, json *out, io_error *error) {
 }
 
 static bool run_all(const charge_run *r, int argument_count, char **arguments, io_error *error) {
-    json out = {.file = NULL};
-    if (r->json_path == NULL) return run_tables(r, &out, error);
-    out.file = fopen(r->json_path, "w");
-    if (out.file == NULL) return io_fail(error, "%s: %s", r->json_path, strerror(errno));
-    json_begin_object(&out, NULL);
-    json_begin_array(&out, "rows");
-    const bool good = run_tables(r, &out, error);
-    json_end_array(&out);
-    json_begin_object(&out, "provenance");
-    provenance_write(&out, argument_count, arguments, 1);
-    json_end_object(&out);
-    json_end_object(&out);
-    fputc('\n', out.file);
-    const bool written = !ferror(out.file);
-    return (fclose(out.file) == 0 && written && good) ||
-           (good && io_fail(error, "%s could not be written", r->json_path));
+    json out;
+    if (!row_file_open(r->json_path, &out, error)) return false;
+    row_file_begin(&out);
+    return run_tables(r, &out, error) &&
+           row_file_close(r->json_path, argument_count, arguments, 1, &out, error);
 }
 
 int main(int argument_count, char **arguments) {

@@ -1,13 +1,12 @@
 /* The methods side by side on recordings: the tables of the thesis, and what each method loses. */
 #include "benchmarks/lib/methods_report.h"
 #include "benchmarks/lib/options.h"
+#include "benchmarks/lib/row_file.h"
 #include "benchmarks/lib/thesis_numbers.h"
 #include "cscd/research.h"
 #include "src/core/timer.h"
-#include "src/tool/common/provenance.h"
 
 #include <dirent.h>
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -172,35 +171,23 @@ static bool run_scene(const methods_options *o, const char *scene, json *out, io
 
 /* ---- the program ------------------------------------------------------------------------------------- */
 
-static bool run_scenes(const methods_options *o, int argument_count, char **arguments) {
-    json out;
-    io_error error;
-    FILE *file = o->json_path != NULL ? fopen(o->json_path, "w") : NULL;
-    if (o->json_path != NULL && file == NULL) {
-        io_fail(&error, "%s: %s", o->json_path, strerror(errno));
-        return print_failure(error.text);
-    }
-    if (file != NULL) {
-        out = (json){.file = file};
-        json_begin_object(&out, NULL);
-        json_begin_array(&out, "rows");
-    }
+static bool run_scenes(const methods_options *o, json *out, io_error *error) {
     bool good = true;
     double since = timer_now_ms(), spent = 0.0;
+    row_file_begin(out);
     for (uint32_t i = 0; good && i < o->scene_count; i++)
-        good = run_scene(o, o->scenes[i], file != NULL ? &out : NULL, &error) || print_failure(error.text);
+        good = run_scene(o, o->scenes[i], out->file != NULL ? out : NULL, error);
     timer_lap(&since, &spent);
     if (good) printf("\n%u recordings in %.0f s\n", o->scene_count, spent * 1e-3);
-    if (file == NULL) return good;
-    json_end_array(&out);
-    json_begin_object(&out, "provenance");
-    provenance_write(&out, argument_count, arguments, o->thread_count);
-    json_end_object(&out);
-    json_end_object(&out);
-    fputc('\n', file);
-    bool written = !ferror(file);
-    written = fclose(file) == 0 && written;
-    return (written || print_failure("the JSON could not be written")) && good;
+    return good;
+}
+
+static bool run_all(const methods_options *o, int argument_count, char **arguments) {
+    json out;
+    io_error error;
+    return (row_file_open(o->json_path, &out, &error) && run_scenes(o, &out, &error) &&
+            row_file_close(o->json_path, argument_count, arguments, o->thread_count, &out, &error)) ||
+           print_failure(error.text);
 }
 
 /* Parses a whole number from 1 to 999. */
@@ -253,7 +240,7 @@ int main(int argument_count, char **arguments) {
     mkdir(o.cache, 0777);
     char *data = bench_data_folder("sequences");
     if (o.data == NULL) o.data = data;
-    bool good = choose_scenes(&o) && run_scenes(&o, argument_count, arguments);
+    bool good = choose_scenes(&o) && run_all(&o, argument_count, arguments);
     free(data);
     return good ? 0 : 1;
 }

@@ -1,11 +1,10 @@
 /* Embree's broad phase and CGAL's check beside us, on the same frames and in one run. */
 #include "benchmarks/lib/options.h"
+#include "benchmarks/lib/row_file.h"
 #include "benchmarks/peers/cgal_peer.h"
 #include "benchmarks/peers/embree_peer.h"
 #include "benchmarks/peers/peer_trial.h"
-#include "src/tool/common/provenance.h"
 
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -214,24 +213,15 @@ static void write_row(const peer_result *row, json *out) {
 }
 
 static bool write_results(const peer_results *r, int argument_count, char **arguments, io_error *error) {
-    const char *path = r->options->json_path;
-    if (path == NULL) return true;
-    json out = {.file = fopen(path, "w")};
-    if (out.file == NULL) return io_fail(error, "%s: %s", path, strerror(errno));
-    json_begin_object(&out, NULL);
+    json out;
+    if (!row_file_open(r->options->json_path, &out, error)) return false;
+    if (out.file == NULL) return true;
     json_string(&out, "embree", embree_peer_version);
     json_string(&out, "cgal", cgal_peer_version);
     json_integer(&out, "rounds", r->options->rounds);
-    json_begin_array(&out, "rows");
+    row_file_begin(&out);
     for (uint32_t i = 0; i < r->count; i++) write_row(&r->items[i], &out);
-    json_end_array(&out);
-    json_begin_object(&out, "provenance");
-    provenance_write(&out, argument_count, arguments, 1);
-    json_end_object(&out);
-    json_end_object(&out);
-    fputc('\n', out.file);
-    bool written = !ferror(out.file);
-    return (fclose(out.file) == 0 && written) || io_fail(error, "%s could not be written", path);
+    return row_file_close(r->options->json_path, argument_count, arguments, 1, &out, error);
 }
 
 /* ---- the program ------------------------------------------------------------------------------------- */

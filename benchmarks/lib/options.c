@@ -1,9 +1,8 @@
 /* Options, progress and JSON that the programs on deforming bodies have in common. */
 #include "benchmarks/lib/options.h"
 
-#include "src/tool/common/provenance.h"
+#include "benchmarks/lib/row_file.h"
 
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -101,29 +100,6 @@ uint32_t bench_intervals(const bench_options *o, uint32_t triangle_count) {
 
 /* ---- programs ---------------------------------------------------------------------------------------- */
 
-static bool open_rows(const bench_options *o, json *out, io_error *error) {
-    *out = (json){.file = NULL};
-    if (o->json_path == NULL) return true;
-    out->file = fopen(o->json_path, "w");
-    if (out->file == NULL) return io_fail(error, "%s: %s", o->json_path, strerror(errno));
-    json_begin_object(out, NULL);
-    json_begin_array(out, "rows");
-    return true;
-}
-
-static bool close_rows(const bench_options *o, int argument_count, char **arguments, json *out,
-                       io_error *error) {
-    if (out->file == NULL) return true;
-    json_end_array(out);
-    json_begin_object(out, "provenance");
-    provenance_write(out, argument_count, arguments, o->thread_count);
-    json_end_object(out);
-    json_end_object(out);
-    fputc('\n', out->file);
-    bool written = !ferror(out->file);
-    return (fclose(out->file) == 0 && written) || io_fail(error, "%s could not be written", o->json_path);
-}
-
 int bench_main(const bench_program *program, int argument_count, char **arguments) {
     bench_options o = {.thread_count = 1, .kind = BODY_PAWN};
     json out;
@@ -139,8 +115,12 @@ int bench_main(const bench_program *program, int argument_count, char **argument
         o.size_count = o.quick ? program->quick_size_count : program->size_count;
         for (uint32_t i = 0; i < o.size_count; i++) o.sizes[i] = program->sizes[i];
     }
-    bool good = open_rows(&o, &out, &error) && program->run(&o, &out, &error) &&
-                close_rows(&o, argument_count, arguments, &out, &error);
+    bool good = row_file_open(o.json_path, &out, &error);
+    if (good) {
+        row_file_begin(&out);
+        good = program->run(&o, &out, &error) &&
+               row_file_close(o.json_path, argument_count, arguments, o.thread_count, &out, &error);
+    }
     if (!good) fprintf(stderr, "%s: %s\n", program->name, error.text);
     free(data);
     return good ? 0 : 1;
