@@ -1,7 +1,6 @@
 /* Capacitances and densities of bodies whose charge is known otherwise: their errors, and the order with which these fall. */
 #include "benchmarks/lib/charge_exact.h"
 #include "benchmarks/lib/charge_tables.h"
-#include "benchmarks/lib/charge_trial.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -80,22 +79,13 @@ static void print_row(body_kind kind, cscd_charge_solver solver, const error_row
 
 static void write_row(json *out, body_kind kind, cscd_charge_solver solver, const error_row *now,
                       const charge_trial *t) {
-    if (out->file == NULL) return;
-    json_break_line(out);
-    json_begin_object(out, NULL);
-    json_string(out, "table", "errors");
-    json_string(out, "body", body_kind_name(kind));
-    json_integer(out, "triangles", now->triangles);
-    json_string(out, "solver", charge_solver_name(solver));
+    if (!charge_row_begin(out, "errors", body_kind_name(kind), now->triangles, solver)) return;
     json_number(out, "capacitance", t->capacitance);
     json_number(out, "exact", exact_capacitance(kind));
     json_number(out, "capacitance_error", now->capacitance);
     json_number(out, "density_largest", now->largest);
     json_number(out, "density_rms", now->mean_square);
-    json_integer(out, "iterations", t->iterations);
-    json_number(out, "total_ms", t->total_ms);
-    json_number(out, "peak_bytes", t->peak_bytes);
-    json_end_object(out);
+    charge_row_end(out, t);
 }
 
 /* ---- the table ------------------------------------------------------------------------------------------- */

@@ -1,6 +1,5 @@
 /* Hard meshes: solved, and how well, or the sentence that says why not. */
 #include "benchmarks/lib/charge_tables.h"
-#include "benchmarks/lib/charge_trial.h"
 #include "benchmarks/lib/hard_conductors.h"
 
 #include <math.h>
@@ -25,23 +24,14 @@ static void print_row(const hard_conductor *c, const char *solver, const charge_
     fflush(stdout);
 }
 
-static void write_row(json *out, const hard_conductor *c, const char *solver, const charge_trial *t) {
-    if (out->file == NULL) return;
-    json_break_line(out);
-    json_begin_object(out, NULL);
-    json_string(out, "table", "hard");
-    json_string(out, "body", c->name);
-    json_integer(out, "triangles", c->body.triangle_count);
+static void write_row(json *out, const hard_conductor *c, cscd_charge_solver solver, const charge_trial *t) {
+    if (!charge_row_begin(out, "hard", c->name, c->body.triangle_count, solver)) return;
     json_integer(out, "components", t->components);
-    json_string(out, "solver", solver);
     json_string(out, "status", cscd_status_string(t->status));
     json_string(out, "detail", t->detail);
     json_number(out, "capacitance", t->status == CSCD_OK ? t->capacitance : NAN);
     json_number(out, "exact", c->capacitance);
-    json_integer(out, "iterations", t->iterations);
-    json_number(out, "total_ms", t->total_ms);
-    json_number(out, "peak_bytes", t->peak_bytes);
-    json_end_object(out);
+    charge_row_end(out, t);
 }
 
 static bool run_conductor(const hard_conductor *c, const charge_limits *limits, json *out, io_error *error) {
@@ -53,7 +43,7 @@ static bool run_conductor(const hard_conductor *c, const charge_limits *limits, 
         if (solvers[i] == CSCD_CHARGE_DENSE && c->body.triangle_count > limits->dense_most) continue;
         if (!charge_trial_run(&c->body, &request, &t, NULL, error)) return false;
         print_row(c, charge_solver_name(solvers[i]), &t, i == 0 ? NAN : dense);
-        write_row(out, c, charge_solver_name(solvers[i]), &t);
+        write_row(out, c, solvers[i], &t);
         if (i == 0 && t.status == CSCD_OK) dense = t.capacitance;
     }
     return true;

@@ -1,6 +1,5 @@
 /* The tree's charges beside those of the dense solution: cuts are made of the order of the densities, so that is what must agree. */
 #include "benchmarks/lib/charge_tables.h"
-#include "benchmarks/lib/charge_trial.h"
 #include "benchmarks/lib/density_ranks.h"
 #include "models/shapes/catalogue.h"
 
@@ -38,31 +37,23 @@ static bool meets_target(const rank_row *r, const rank_target *target) {
 
 /* ---- rows ------------------------------------------------------------------------------------------------ */
 
-static void print_row(const char *name, const charge_trial *t, uint32_t triangles, const char *solver,
+static void print_row(const char *name, const charge_trial *t, uint32_t triangles, cscd_charge_solver solver,
                       const rank_row *r, const rank_target *target) {
-    printf("  %-8s %9u %-7s %9.7f %8.4f %11.2e %9.2e %9.2e %4u %9.3f  %s\n", name, triangles, solver,
-           r->ranks.correlation, r->ranks.overlap, r->capacitance, r->largest, r->mean_square, t->iterations,
-           t->total_ms / 1e3, meets_target(r, target) ? "met" : "missed");
+    printf("  %-8s %9u %-7s %9.7f %8.4f %11.2e %9.2e %9.2e %4u %9.3f  %s\n", name, triangles,
+           charge_solver_name(solver), r->ranks.correlation, r->ranks.overlap, r->capacitance, r->largest,
+           r->mean_square, t->iterations, t->total_ms / 1e3, meets_target(r, target) ? "met" : "missed");
     fflush(stdout);
 }
 
 static void write_row(json *out, const char *name, const charge_trial *t, uint32_t triangles,
-                      const char *solver, const rank_row *r) {
-    if (out->file == NULL) return;
-    json_break_line(out);
-    json_begin_object(out, NULL);
-    json_string(out, "table", "ranks");
-    json_string(out, "body", name);
-    json_integer(out, "triangles", triangles);
-    json_string(out, "solver", solver);
+                      cscd_charge_solver solver, const rank_row *r) {
+    if (!charge_row_begin(out, "ranks", name, triangles, solver)) return;
     json_number(out, "correlation", r->ranks.correlation);
     json_number(out, "overlap", r->ranks.overlap);
     json_number(out, "capacitance_difference", r->capacitance);
     json_number(out, "density_largest", r->largest);
     json_number(out, "density_rms", r->mean_square);
-    json_integer(out, "iterations", t->iterations);
-    json_number(out, "total_ms", t->total_ms);
-    json_end_object(out);
+    charge_row_end(out, t);
 }
 
 /* ---- the table ------------------------------------------------------------------------------------------- */
@@ -84,8 +75,8 @@ static bool compare_solvers(const char *name, const body *b, double *exact, doub
     bool good = solve_body(b, CSCD_CHARGE_DENSE, &dense, exact, error);
     for (int i = 0; good && i < 2; i++) {
         rank_row r;
-        const char *solver = charge_solver_name(compared[i].solver);
-        good = solve_body(b, compared[i].solver, &t, density, error);
+        const cscd_charge_solver solver = compared[i].solver;
+        good = solve_body(b, solver, &t, density, error);
         if (!good) break;
         r.ranks = density_ranks_compare(exact, density, b->triangle_count);
         compare_densities_of(exact, density, b->triangle_count, &r);

@@ -1,6 +1,5 @@
 /* What plans by charge cost: milliseconds of each stage and the greatest memory, from small meshes to large ones. */
 #include "benchmarks/lib/charge_tables.h"
-#include "benchmarks/lib/charge_trial.h"
 #include "models/shapes/catalogue.h"
 
 enum { THREADS_MOST = 2 };
@@ -49,23 +48,14 @@ static void print_row(const charge_request *request, uint32_t triangles, const c
 }
 
 static void write_row(json *out, const charge_request *request, uint32_t triangles, const charge_trial *t) {
-    if (out->file == NULL) return;
-    json_break_line(out);
-    json_begin_object(out, NULL);
-    json_string(out, "table", "times");
-    json_string(out, "body", body_kind_name(BODY_FIGURE));
-    json_integer(out, "triangles", triangles);
-    json_string(out, "solver", charge_solver_name(request->solver));
+    if (!charge_row_begin(out, "times", body_kind_name(BODY_FIGURE), triangles, request->solver)) return;
     json_integer(out, "threads", request->threads);
     json_number(out, "assembly_ms", t->assembly_ms);
     json_number(out, "solve_ms", t->solve_ms);
     json_number(out, "charge_ms", charge_ms(t));
     json_number(out, "regions_ms", t->regions_ms);
-    json_number(out, "total_ms", t->total_ms);
-    json_number(out, "peak_bytes", t->peak_bytes);
-    json_integer(out, "iterations", t->iterations);
     json_integer(out, "regions", t->regions);
-    json_end_object(out);
+    charge_row_end(out, t);
 }
 
 static bool run_plan(const body *b, const charge_request *request, json *out, io_error *error) {
