@@ -68,6 +68,19 @@ count_known() {
     known_sum=$((known_sum + known))
 }
 
+# run_script NAME SENTENCE ARGUMENTS...: a script of this folder that is a test of its own; the sentence is said when it passes.
+run_script() {
+    script=tests/windows/$1 shown=$2
+    shift 2
+    if "$script" "$@"; then
+        passed=$((passed + 1))
+        echo "$shown"
+    else
+        failed=$((failed + 1))
+        failures="$failures ${script#tests/}"
+    fi
+}
+
 printf '%s\n' "$@" | xargs -P "${JOBS:-$(nproc)}" -I PROGRAM sh -c '
     log=$2/$(echo "$1" | tr / :)
     began=$(date +%s)
@@ -77,22 +90,10 @@ printf '%s\n' "$@" | xargs -P "${JOBS:-$(nproc)}" -I PROGRAM sh -c '
 for program in "$@"; do add_up "$program"; done
 
 if [ -n "${NATIVE:-}" ]; then
-    if tests/windows/plans.sh "$NATIVE" "$logs/plans"; then
-        passed=$((passed + 1))
-        echo 'plans have the bytes that they have on Linux'
-    else
-        failed=$((failed + 1))
-        failures="$failures windows/plans.sh"
-    fi
+    run_script plans.sh 'plans have the bytes that they have on Linux' "$NATIVE" "$logs/plans"
 fi
 if [ -n "${ARCHIVE:-}" ]; then
-    if tests/windows/archive.sh "$ARCHIVE" "$logs/archive"; then
-        passed=$((passed + 1))
-        echo 'the archive runs from another folder'
-    else
-        failed=$((failed + 1))
-        failures="$failures windows/archive.sh"
-    fi
+    run_script archive.sh 'the archive runs from another folder' "$ARCHIVE" "$logs/archive"
 fi
 
 echo 'slowest, in seconds:'
