@@ -40,47 +40,74 @@ static uint32_t divide_by_charge(const body *b, double *share) {
     return count;
 }
 
-/* A tube around a closed curve or an arc of a circle of radius R; an arc has round ends. */
+enum { AROUND = 24 };
+
+/* A tube around a circle of radius R, or around an arc of it, which has round ends. */
+typedef struct tube {
+    double R, r, angle;
+    const double *offset;
+    bool closed;
+    uint32_t along, caps; /* steps of the arc, and rings of a round end beyond it */
+    uint32_t first, rings;
+} tube;
+
+/* A point over the arc at the angle u: so far outside of the circle, ahead along it, and up. */
+static uint32_t add_point(body *b, const tube *t, double u, double outside, double ahead, double up) {
+    const double radius = t->R + outside;
+    return body_add_vertex(b, t->offset[0] + radius * cos(u) - ahead * sin(u),
+                           t->offset[1] + radius * sin(u) + ahead * cos(u), t->offset[2] + up);
+}
+
+static void add_ring(body *b, const tube *t, uint32_t number) {
+    const double step = (double)number - t->caps, inside = fmin(fmax(step, 0.0), t->along),
+                 u = inside / t->along * t->angle;
+    const double lift = (step - inside) * 2.0 * pi / AROUND, radius = t->r * cos(lift);
+    for (uint32_t j = 0; j < AROUND; j++) {
+        const double v = 2.0 * pi * (j + 0.5 * (number % 2)) / AROUND;
+        add_point(b, t, u, radius * cos(v), t->r * sin(lift), radius * sin(v));
+    }
+}
+
+/* The triangles between a ring and the next, which is turned by half a step. */
+static void add_band(body *b, const tube *t, uint32_t number) {
+    const uint32_t here = t->first + number * AROUND, there = t->first + (number + 1) % t->rings * AROUND;
+    for (uint32_t j = 0; j < AROUND; j++) {
+        const uint32_t k = (j + 1) % AROUND;
+        const uint32_t a = here + j, c = here + k, e = there + j, f = there + k;
+        body_add_triangle(b, a, e, number % 2 == 0 ? c : f);
+        if (number % 2 == 0)
+            body_add_triangle(b, c, e, f);
+        else
+            body_add_triangle(b, a, f, c);
+    }
+}
+
+static void add_tip(body *b, const tube *t, bool end) {
+    const uint32_t ring = t->first + (end ? (t->rings - 1) * AROUND : 0);
+    const uint32_t tip = add_point(b, t, end ? t->angle : 0.0, 0.0, end ? t->r : -t->r, 0.0);
+    for (uint32_t j = 0; j < AROUND; j++) {
+        const uint32_t k = (j + 1) % AROUND;
+        body_add_triangle(b, tip, ring + (end ? k : j), ring + (end ? j : k));
+    }
+}
+
 static void add_tube(body *b, double R, double r, double angle, const double offset[3]) {
-    enum { AROUND = 24 };
-    const bool closed = angle >= 2.0 * pi;
-    const uint32_t along = (uint32_t)(angle * R / (2.0 * pi * r) * AROUND), first = b->vertex_count;
-    const uint32_t caps = closed ? 0 : AROUND / 4 - 1, rings = along + (closed ? 0 : 1) + 2 * caps;
-    for (uint32_t i = 0; i < rings; i++) {
-        const double step = (double)i - caps, inside = fmin(fmax(step, 0.0), along),
-                     u = inside / along * angle;
-        const double lift = (step - inside) * 2.0 * pi / AROUND, radius = r * cos(lift),
-                     ahead = r * sin(lift);
-        for (uint32_t j = 0; j < AROUND; j++) {
-            const double v = 2.0 * pi * (j + 0.5 * (i % 2)) / AROUND, out = R + radius * cos(v);
-            body_add_vertex(b, offset[0] + out * cos(u) - ahead * sin(u),
-                            offset[1] + out * sin(u) + ahead * cos(u), offset[2] + radius * sin(v));
-        }
-    }
-    for (uint32_t i = 0; i < rings - !closed; i++) {
-        for (uint32_t j = 0; j < AROUND; j++) {
-            const uint32_t k = (j + 1) % AROUND, next = (i + 1) % rings;
-            const uint32_t a = first + i * AROUND + j, c = first + i * AROUND + k,
-                           e = first + next * AROUND + j, f = first + next * AROUND + k;
-            if (i % 2 == 0) {
-                body_add_triangle(b, a, e, c);
-                body_add_triangle(b, c, e, f);
-            } else {
-                body_add_triangle(b, a, e, f);
-                body_add_triangle(b, a, f, c);
-            }
-        }
-    }
-    for (int end = 0; end < 2 && !closed; end++) {
-        const uint32_t ring = first + (end ? (rings - 1) * AROUND : 0);
-        const double u = end ? angle : 0.0, ahead = end ? r : -r;
-        const uint32_t tip = body_add_vertex(b, offset[0] + R * cos(u) - ahead * sin(u),
-                                             offset[1] + R * sin(u) + ahead * cos(u), offset[2]);
-        for (uint32_t j = 0; j < AROUND; j++) {
-            const uint32_t k = (j + 1) % AROUND;
-            body_add_triangle(b, tip, ring + (end ? k : j), ring + (end ? j : k));
-        }
-    }
+    tube t = {R,
+              r,
+              angle,
+              offset,
+              angle >= 2.0 * pi,
+              (uint32_t)(angle * R / (2.0 * pi * r) * AROUND),
+              0,
+              b->vertex_count,
+              0};
+    t.caps = t.closed ? 0 : AROUND / 4 - 1;
+    t.rings = t.along + (t.closed ? 0 : 1) + 2 * t.caps;
+    for (uint32_t i = 0; i < t.rings; i++) add_ring(b, &t, i);
+    for (uint32_t i = 0; i + !t.closed < t.rings; i++) add_band(b, &t, i);
+    if (t.closed) return;
+    add_tip(b, &t, false);
+    add_tip(b, &t, true);
 }
 
 static const double nowhere[3] = {0.0, 0.0, 0.0};
