@@ -19,8 +19,18 @@ enum { TRIANGLES_MOST = 5000 };
 
 static const double pi = 3.14159265358979323846;
 
-/* The regions of a body by its charge, which are connected; *share is what the points see. */
-static uint32_t divide_by_charge(const body *b, double *share) {
+/* The length of the borders. */
+static double border_length(const cscd_mesh *mesh, const double *positions, const uint32_t *regions) {
+    double sum = 0.0;
+    for (uint32_t e = 0; e < mesh->edge_count; e++) {
+        const uint32_t *star = mesh->edge_stars + mesh->edge_star_offsets[e];
+        if (regions[star[0]] != regions[star[1]]) sum += surface_edge_length(mesh, positions, e);
+    }
+    return sum;
+}
+
+/* The regions of a body by its charge, which are connected; *share is what the points see, and *border the length of the borders. */
+static uint32_t divide_by_charge(const body *b, double *share, double *border) {
     cscd_mesh *mesh = body_mesh(b, 2);
     uint32_t *regions = body_allocate(b->triangle_count, sizeof *regions), count;
     double *density = body_allocate(b->triangle_count, sizeof *density), *points = NULL;
@@ -32,6 +42,7 @@ static uint32_t divide_by_charge(const body *b, double *share) {
                      CSCD_OK);
     check_regions(mesh, regions, count);
     *share = visible_share(mesh, b->positions, regions, points);
+    *border = border_length(mesh, b->positions, regions);
     context_free(mesh->context, points);
     free(regions);
     free(density);
@@ -118,11 +129,11 @@ static void tori_fall_into_arcs(void **state) {
     static const double radii[] = {1.5, 2.5, 4.0, 10.0};
     for (int i = 0; i < 4; i++) {
         body b = {0};
-        double share;
+        double share, border;
         add_tube(&b, radii[i], 1.0, 2.0 * pi, nowhere);
         assert_true(body_volume(&b) > 0.0);
         const uint32_t least = (uint32_t)ceil(pi / acos((radii[i] - 1.0) / (radii[i] + 1.0)));
-        const uint32_t count = divide_by_charge(&b, &share);
+        const uint32_t count = divide_by_charge(&b, &share, &border);
         print_message("  torus %g : 1, %u triangles: %u regions, at least %u; visible %.4f\n", radii[i],
                       b.triangle_count, count, least, share);
         assert_true(count >= least && count <= least + 1);
@@ -134,11 +145,11 @@ static void tori_fall_into_arcs(void **state) {
 static void each_link_of_a_chain(void **state) {
     (void)state;
     body b = {0};
-    double share, alone;
+    double share, alone, border;
     add_tube(&b, 3.0, 1.0, 2.0 * pi, nowhere);
-    const uint32_t one = divide_by_charge(&b, &alone);
+    const uint32_t one = divide_by_charge(&b, &alone, &border);
     add_tube(&b, 3.0, 1.0, 2.0 * pi, (double[3]){20.0, 0.0, 0.0});
-    assert_int_equal(divide_by_charge(&b, &share), 2 * one);
+    assert_int_equal(divide_by_charge(&b, &share, &border), 2 * one);
     assert_true(share >= 0.99);
     body_free(&b);
 }
@@ -150,10 +161,10 @@ static void bent_capsules_are_cut(void **state) {
     static const uint32_t least[] = {1, 2, 2, 2}, most[] = {1, 2, 3, 4};
     for (int i = 0; i < 4; i++) {
         body b = {0};
-        double share;
+        double share, border;
         add_tube(&b, 5.0 / angles[i], 1.0, angles[i], nowhere);
         assert_true(body_volume(&b) > 0.0);
-        const uint32_t count = divide_by_charge(&b, &share);
+        const uint32_t count = divide_by_charge(&b, &share, &border);
         print_message("  capsule bent by %g, %u triangles: %u regions; visible %.4f\n", angles[i],
                       b.triangle_count, count, share);
         assert_true(count >= least[i] && count <= most[i]);
@@ -162,32 +173,35 @@ static void bent_capsules_are_cut(void **state) {
     }
 }
 
+/* border: what the borders measure today, and about 3 % more. Where they follow large tiles, because nothing halves these, they are 4 to
+ * 50 % longer. */
 typedef struct expectation {
     body_kind kind;
     uint32_t triangle_count, least, most;
-    double share;
+    double share, border;
 } expectation;
 
 static void bodies_of_the_catalogue(void **state) {
     (void)state;
     static const expectation expected[] = {
-        {BODY_SPHERE, 2000, 1, 1, 1.0},  {BODY_ELLIPSOID, 2000, 1, 1, 1.0},
-        {BODY_CUBE, 1200, 1, 1, 1.0},    {BODY_CAPSULE, 2000, 1, 1, 1.0},
-        {BODY_PAWN, 5130, 2, 3, 0.99},   {BODY_DUMBBELL, 4000, 2, 2, 0.99},
-        {BODY_FIGURE, 4014, 6, 9, 0.99}, {BODY_FIGURE, 20000, 6, 9, 0.99},
-        {BODY_GENUS2, 3000, 5, 8, 0.99}, {BODY_COIL, 6000, 15, 25, 0.97},
-        {BODY_HAND, 6000, 6, 6, 0.99},   {BODY_OCTOPUS, 12000, 9, 17, 0.94},
+        {BODY_SPHERE, 2000, 1, 1, 1.0, 0.0},   {BODY_ELLIPSOID, 2000, 1, 1, 1.0, 0.0},
+        {BODY_CUBE, 1200, 1, 1, 1.0, 0.0},     {BODY_CAPSULE, 2000, 1, 1, 1.0, 0.0},
+        {BODY_PAWN, 5130, 2, 3, 0.99, 2.13},   {BODY_DUMBBELL, 4000, 2, 2, 0.99, 1.93},
+        {BODY_FIGURE, 4014, 6, 9, 0.99, 4.85}, {BODY_FIGURE, 20000, 6, 9, 0.99, 3.95},
+        {BODY_GENUS2, 3000, 5, 8, 0.99, 14.1}, {BODY_COIL, 6000, 15, 25, 0.97, 26.1},
+        {BODY_HAND, 6000, 6, 6, 0.99, 3.6},    {BODY_OCTOPUS, 12000, 9, 17, 0.94, 6.3},
     };
     for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {
         const expectation *e = &expected[i];
         if (e->triangle_count > TRIANGLES_MOST) continue;
         body b = body_of(e->kind, e->triangle_count);
-        double share;
-        const uint32_t count = divide_by_charge(&b, &share);
-        print_message("  %s, %u triangles: %u regions; visible %.4f\n", body_kind_name(e->kind),
-                      b.triangle_count, count, share);
+        double share, border;
+        const uint32_t count = divide_by_charge(&b, &share, &border);
+        print_message("  %s, %u triangles: %u regions; visible %.4f; borders %.3f\n", body_kind_name(e->kind),
+                      b.triangle_count, count, share, border);
         assert_true(count >= e->least && count <= e->most);
         assert_true(share >= e->share);
+        assert_true(border <= e->border);
         body_free(&b);
     }
 }
