@@ -7,10 +7,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* A sphere of 1,280 triangles errs by 1.4e-5, and one of 5,120 by half of that: the mesh makes the difference, not the processor. */
 #ifdef SLOW_MACHINE
 enum { LEVEL = 3 };
+static const double sphere_tolerance = 2e-5;
 #else
 enum { LEVEL = 4 };
+static const double sphere_tolerance = 1e-5;
 #endif
 
 /* Charges of even density, a quarter more or less. In the tree's order. */
@@ -80,7 +83,7 @@ static void potentials_are_those_of_all_triangles(void **state) {
               crowded = conductor_cube(LEVEL);
     conductor_crowd_edges(&crowded);
     expect_close("tetrahedron", &one, 1e-6);
-    expect_close("sphere", &sphere, 2e-5);
+    expect_close("sphere", &sphere, sphere_tolerance);
     expect_close("disc with slivers at its edge", &disc, 1e-4);
     expect_close("cube with slivers", &crowded, 1e-4);
     expect_close("large beside small", &mixed, 1e-4);
