@@ -4,6 +4,7 @@
 
 #include "cscd/research.h"
 #include "preprocess/charges.h"
+#include "preprocess/plan_frames.h"
 #include "preprocess/regions/kmeans.h"
 #include "preprocess/regions/regions.h"
 #include "preprocess/regions/visibility.h"
@@ -29,6 +30,7 @@ typedef struct draft {
     const cscd_mesh *mesh;
     const double *positions;
     cscd_plan_options options;
+    plan_frames frames;
     uint32_t *regions;
     uint32_t region_count;
     double *detector_points, *charges, *capacitances;
@@ -78,6 +80,8 @@ static cscd_status find_regions(draft *d) {
     region_options by_charge = region_options_defaults();
     by_charge.threshold = d->options.threshold;
     by_charge.published = d->options.variant == CSCD_PLAN_VARIANT_PUBLISHED;
+    by_charge.frames = d->frames.items;
+    by_charge.frame_count = d->frames.count;
     switch (d->options.method) {
     case CSCD_METHOD_CHARGE:
         return regions_from_charge(mesh, d->positions, d->charges, &by_charge, d->regions, &d->region_count,
@@ -208,13 +212,15 @@ static cscd_status plan_from_positions(const cscd_mesh *mesh, const double *posi
                             "the mesh has no triangles, so there is nothing to plan");
     cscd_status status = positions_check(context, positions, mesh->vertex_count, "positions");
     if (status != CSCD_OK) return status;
+    status = plan_frames_read(context, mesh, options, &d.frames);
     d.regions = context_allocate(context, mesh->triangle_count, sizeof *d.regions);
     bool allocated = d.regions != NULL;
     if (allocated && d.options.method == CSCD_METHOD_KMEANS) {
         d.detector_points = context_allocate(context, kmeans_capacity(mesh, d.options.k), sizeof(double[3]));
         allocated = d.detector_points != NULL;
     }
-    status = allocated ? run_draft(&d, out) : context_out_of_memory(context);
+    if (status == CSCD_OK) status = allocated ? run_draft(&d, out) : context_out_of_memory(context);
+    plan_frames_free(context, &d.frames);
     context_free(context, d.regions);
     context_free(context, d.detector_points);
     context_free(context, d.charges);

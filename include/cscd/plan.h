@@ -57,7 +57,11 @@ typedef struct cscd_plan_options {
     uint64_t variant;      /* 0 by default; cscd/research.h has others to compare with */
     uint64_t memory_limit; /* CHARGE: bytes that the solution may take; 0, the default: what the system has */
     cscd_charge_solver charge_solver; /* CHARGE: TREE by default */
-    uint32_t reserved;                /* 0 */
+    uint32_t frame_count;             /* of frames; 0 by default */
+    const cscd_view *const
+        *frames; /* CHARGE, AUTO: positions of the mesh in a motion that the plan is made for, each as in
+                                       * cscd_plan_create: what the detector points see in them counts as much as what they see
+                                       * at rest. Of more than 16 frames, 16 count, evenly spaced. NULL by default */
 } cscd_plan_options;
 
 /* The default options. */

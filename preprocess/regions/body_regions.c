@@ -2,6 +2,7 @@
 #include "preprocess/regions/body_regions.h"
 
 #include "preprocess/regions/cover.h"
+#include "preprocess/regions/region_motion.h"
 #include "preprocess/regions/visibility.h"
 #include "src/mesh/surface.h"
 
@@ -116,22 +117,41 @@ static cscd_status add_points(const body_work *w, body_regions *regions) {
     cscd_status status = CSCD_OK;
     for (uint32_t r = 0; r < w->l.regions.count && status == CSCD_OK; r++) {
         double point[3];
-        for (int k = 0; k < 3; k++) point[k] = w->l.regions.points[r][k] / c->scale + c->middle[k];
+        for (int k = 0; k < 3; k++) point[k] = w->l.regions.points[r].rest[k] / c->scale + c->middle[k];
         status = add_point(regions, w->surface->mesh->context, point);
     }
     return status;
 }
 
-/* The area of the triangles that the points of their regions see. */
-static double seen_area(const body_work *w, const body_regions *regions) {
-    const tile_surface *s = w->surface;
-    const tile_component *c = &w->component;
+/* The area at rest of the triangles that the points of their regions see in one frame. */
+static double seen_in_frame(const body_work *w, const region_scene *scene, const double *frame,
+                            const double (*points)[3]) {
     double seen = 0.0;
-    for (uint32_t i = 0; i < c->count; i++) {
-        const uint32_t t = c->list[i];
+    for (uint32_t i = 0; i < scene->count; i++) {
+        const uint32_t t = scene->list[i];
         const double value =
-            orientation_value(s->mesh, s->positions, t, regions->points[regions->of_triangle[t]]);
-        if (w->g.turned ? value < 0.0 : value > 0.0) seen += surface_area(s->mesh, s->positions, t);
+            orientation_value(scene->mesh, frame, t, points[scene->of_triangle[t] - scene->first]);
+        if (w->g.turned ? value < 0.0 : value > 0.0) seen += surface_area(scene->mesh, scene->positions, t);
+    }
+    return seen;
+}
+
+/* The sum of what is seen at rest and in all frames. */
+static double seen_area(const body_work *w, const body_regions *regions, uint32_t first) {
+    const tile_surface *s = w->surface;
+    const region_scene scene = {s->mesh,
+                                s->positions,
+                                w->component.list,
+                                w->component.count,
+                                regions->of_triangle,
+                                first,
+                                regions->count - first,
+                                (const double(*)[3])regions->points + first};
+    region_way ways[REGIONS_MOST + 1];
+    double moved[REGIONS_MOST + 1][3], seen = seen_in_frame(w, &scene, s->positions, scene.points);
+    for (uint32_t f = 0; f < s->frame_count; f++) {
+        region_points_move(&scene, s->frames[f], ways, moved);
+        seen += seen_in_frame(w, &scene, s->frames[f], (const double(*)[3])moved);
     }
     return seen;
 }
@@ -140,12 +160,12 @@ static double seen_area(const body_work *w, const body_regions *regions) {
 static cscd_status keep_better(const body_work *w, body_regions *regions, uint32_t first) {
     const tile_component *c = &w->component;
     const uint32_t count = regions->count - first;
-    const double seen = seen_area(w, regions);
+    const double seen = seen_area(w, regions, first);
     for (uint32_t i = 0; i < c->count; i++) w->room->scratch[c->list[i]] = regions->of_triangle[c->list[i]];
     const cscd_status status = body_regions_add_whole(regions, w->surface, c->list, c->count);
     if (status != CSCD_OK) return status;
+    const double seen_whole = seen_area(w, regions, first);
     const uint32_t whole = --regions->count;
-    const double seen_whole = seen_area(w, regions);
     if (seen > seen_whole || (seen == seen_whole && count == 1)) {
         for (uint32_t i = 0; i < c->count; i++)
             regions->of_triangle[c->list[i]] = w->room->scratch[c->list[i]];

@@ -74,9 +74,9 @@ void labelling_connect(tile_labelling *l) {
             region = longest_border(l, &odd);
         } else {
             const tile_set set = {l->g, l->nodes + odd.begin, odd.end - odd.begin};
-            double middle[3];
-            tiles_centroid(&set, middle);
-            labelling_add(l, middle);
+            sight_point middle;
+            tiles_centroid(&set, &middle);
+            labelling_add(l, &middle);
         }
         labelling_give(l, l->nodes + odd.begin, odd.end - odd.begin, region);
     }

@@ -28,7 +28,7 @@ static bool goes_on(const cover_work *w, double share) {
  * the new region gets these tiles. */
 static double gain_of(cover_work *w, uint32_t candidate, bool takes) {
     const tile_graph *g = w->l->g;
-    const double *point = w->candidates.points[candidate];
+    const sight_point *point = &w->candidates.points[candidate];
     double gain = 0.0;
     uint32_t end = 0;
     memset(w->reached, 0, g->count * sizeof *w->reached);
@@ -36,7 +36,7 @@ static double gain_of(cover_work *w, uint32_t candidate, bool takes) {
     w->reached[w->queue[0]] = true;
     for (uint32_t next = 0; next < end; next++) {
         const uint32_t t = w->queue[next];
-        const double blindness = tile_blindness(&g->items[t], point);
+        const double blindness = tile_blindness(g, t, point);
         if (blindness >= 1.0) continue;
         if (blindness < w->left[t]) {
             gain += g->items[t].area * (w->left[t] - blindness);
@@ -66,7 +66,7 @@ static bool add_candidate(cover_work *w) {
         best = c;
     }
     if (most < l->prices.region * l->g->area || l->regions.count == REGIONS_MOST) return false;
-    labelling_add(l, w->candidates.points[best]);
+    labelling_add(l, &w->candidates.points[best]);
     gain_of(w, best, true);
     return true;
 }
@@ -75,7 +75,7 @@ static bool add_candidate(cover_work *w) {
 static void find_left(cover_work *w) {
     const tile_labelling *l = w->l;
     for (uint32_t t = 0; t < l->g->count; t++)
-        w->left[t] = tile_blindness(&l->g->items[t], l->regions.points[l->of_tile[t]]);
+        w->left[t] = tile_blindness(l->g, t, &l->regions.points[l->of_tile[t]]);
 }
 
 /* ---- steps ----------------------------------------------------------------------------------------------- */
@@ -91,19 +91,20 @@ static void settle_cover(cover_work *w, int rounds) {
 /* The two regions that cost the least as one, against what they cost now; false: none cost less. */
 static bool find_pair(cover_work *w, uint32_t *first, uint32_t *second) {
     tile_labelling *l = w->l;
-    double least = 0.0, point[3];
+    double least = 0.0;
+    sight_point point;
     for (uint32_t a = 0; a < l->regions.count; a++) {
         for (uint32_t b = a + 1; b < l->regions.count; b++) {
             const double border = labelling_border(l, a, b);
             if (border < 0.0) continue;
             tile_set set = labelling_tiles(l, a, a);
             double change =
-                -border - l->prices.region * l->g->area - tiles_unseen(&set, l->regions.points[a]);
+                -border - l->prices.region * l->g->area - tiles_unseen(&set, &l->regions.points[a]);
             set = labelling_tiles(l, b, b);
-            change -= tiles_unseen(&set, l->regions.points[b]);
+            change -= tiles_unseen(&set, &l->regions.points[b]);
             set = labelling_tiles(l, a, b);
-            tiles_centroid(&set, point);
-            change += tiles_best_point(&set, point);
+            tiles_centroid(&set, &point);
+            change += tiles_best_point(&set, &point);
             if (change >= least) continue;
             least = change;
             *first = a;
@@ -179,11 +180,11 @@ cscd_status cover_find(tile_labelling *l) {
     cover_work w = {.l = l};
     if (!context_reserve_all(context, list_arrays(&w))) return context_out_of_memory(context);
     const tile_set all = labelling_tiles(l, 0, 0);
-    tiles_centroid(&all, l->regions.points[0]);
-    tiles_best_point(&all, l->regions.points[0]);
+    tiles_centroid(&all, &l->regions.points[0]);
+    tiles_best_point(&all, &l->regions.points[0]);
     cscd_status status = CSCD_OK;
-    if (tiles_unseen(&all, l->regions.points[0]) > l->prices.region * l->g->area) {
-        status = medial_points_find(l->g, l->regions.points[0], &w.candidates);
+    if (tiles_unseen(&all, &l->regions.points[0]) > l->prices.region * l->g->area) {
+        status = medial_points_find(l->g, l->regions.points[0].rest, &w.candidates);
         if (status == CSCD_OK) choose_regions(&w);
         medial_points_free(l->g, &w.candidates);
     }

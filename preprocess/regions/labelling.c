@@ -38,10 +38,11 @@ static const double distance_price = 0.01;
 
 static double tile_cost(const tile_labelling *l, uint32_t t, uint32_t region) {
     const tile *item = &l->g->items[t];
-    const double *point = l->regions.points[region];
+    const sight_point *point = &l->regions.points[region];
     double square = 0.0;
-    for (int k = 0; k < 3; k++) square += (item->centroid[k] - point[k]) * (item->centroid[k] - point[k]);
-    return item->area * (tile_blindness(item, point) + distance_price * square);
+    for (int k = 0; k < 3; k++)
+        square += (item->centroid[k] - point->rest[k]) * (item->centroid[k] - point->rest[k]);
+    return item->area * (tile_blindness(l->g, t, point) + distance_price * square);
 }
 
 static double link_cost(const tile_labelling *l, uint32_t link) {
@@ -93,9 +94,9 @@ void labelling_give(tile_labelling *l, const uint32_t *tiles, uint32_t count, ui
     for (uint32_t i = 0; i < count; i++) give_tile(l, tiles[i], region);
 }
 
-void labelling_add(tile_labelling *l, const double point[3]) {
+void labelling_add(tile_labelling *l, const sight_point *point) {
     labelled_regions *r = &l->regions;
-    memcpy(r->points[r->count], point, sizeof r->points[0]);
+    r->points[r->count] = *point;
     r->moved[r->count] = r->expanded[r->count] = 0;
     note_change(l, r->count++);
 }
@@ -106,7 +107,7 @@ static void take_number(tile_labelling *l, uint32_t number) {
     const uint32_t last = --r->count;
     for (uint32_t t = 0; t < l->g->count && number != last; t++)
         if (l->of_tile[t] == last) l->of_tile[t] = number;
-    memmove(r->points[number], r->points[last], sizeof r->points[0]);
+    r->points[number] = r->points[last];
     r->changed[number] = r->changed[last];
     r->moved[number] = r->moved[last];
     r->expanded[number] = r->expanded[last];
@@ -144,9 +145,11 @@ static void add_cost(tile_labelling *l, uint32_t t, int64_t keeping, int64_t cha
 
 /* Two tiles of different regions pay for their border unless both change: the first if it keeps its region, and else the link from it
  * to the second (Kolmogorov, Zabih 2004). */
-static void set_links(tile_labelling *l, uint32_t t, uint32_t region) {
+static void set_links(tile_labelling *l, uint32_t t, uint32_t region, uint64_t beside) {
     for (uint32_t j = l->g->offsets[t]; j < l->g->offsets[t + 1]; j++) {
         const uint32_t other = l->g->neighbours[j], its = l->of_tile[other];
+        l->cut.residuals[j] = 0;
+        if ((beside >> its & 1) == 0) continue; /* the border stays, whatever the tile does */
         const bool pays = its == region || (its != l->of_tile[t] && t < other);
         const int64_t cost = whole_cost(l, link_cost(l, j));
         l->cut.residuals[j] = its != region && (its == l->of_tile[t] || t < other) ? cost : 0;
@@ -154,26 +157,27 @@ static void set_links(tile_labelling *l, uint32_t t, uint32_t region) {
     }
 }
 
-/* Returns how many tiles may change; they are the first nodes. *keeping is what they pay if none does. */
-static uint32_t prepare_move(tile_labelling *l, uint32_t region, int64_t *keeping) {
+/* Returns how many tiles may change, those of the regions beside this one; they are the first nodes. *keeping is what they pay if none
+ * does. */
+static uint32_t prepare_move(tile_labelling *l, uint32_t region, uint64_t beside, int64_t *keeping) {
     uint32_t count = 0;
     for (uint32_t t = 0; t < l->g->count; t++) {
-        if (l->of_tile[t] == region) continue;
+        if (l->of_tile[t] == region || (beside >> l->of_tile[t] & 1) == 0) continue;
         l->nodes[count++] = t;
         l->cut.supplies[t] = l->cut.drains[t] = 0;
         add_cost(l, t, whole_cost(l, tile_cost(l, t, l->of_tile[t])), whole_cost(l, tile_cost(l, t, region)));
     }
     *keeping = 0;
     for (uint32_t i = 0; i < count; i++) {
-        set_links(l, l->nodes[i], region);
+        set_links(l, l->nodes[i], region, beside);
         *keeping += l->cut.supplies[l->nodes[i]];
     }
     return count;
 }
 
-static bool expand_region(tile_labelling *l, uint32_t region) {
+static bool expand_region(tile_labelling *l, uint32_t region, uint64_t beside) {
     int64_t keeping;
-    const uint32_t count = prepare_move(l, region, &keeping),
+    const uint32_t count = prepare_move(l, region, beside, &keeping),
                    changing = min_cut_run(&l->cut, l->nodes, count);
     l->regions.expanded[region] = ++l->regions.now;
     if (l->cut.cost >= keeping) return false;
@@ -182,12 +186,17 @@ static bool expand_region(tile_labelling *l, uint32_t region) {
     return true;
 }
 
-/* One bit for each region that a region has a border with, and for itself. */
+/* One bit for each region that a region has a border with, and for itself; all bits where it has no tiles. */
 static void find_neighbours(const tile_labelling *l, uint64_t neighbours[REGIONS_MOST]) {
-    for (uint32_t r = 0; r < REGIONS_MOST; r++) neighbours[r] = (uint64_t)1 << r;
-    for (uint32_t t = 0; t < l->g->count; t++)
+    memset(neighbours, 0, REGIONS_MOST * sizeof *neighbours);
+    for (uint32_t t = 0; t < l->g->count; t++) {
+        uint64_t *beside = &neighbours[l->of_tile[t]];
+        *beside |= (uint64_t)1 << l->of_tile[t];
         for (uint32_t j = l->g->offsets[t]; j < l->g->offsets[t + 1]; j++)
-            neighbours[l->of_tile[t]] |= (uint64_t)1 << l->of_tile[l->g->neighbours[j]];
+            *beside |= (uint64_t)1 << l->of_tile[l->g->neighbours[j]];
+    }
+    for (uint32_t r = 0; r < REGIONS_MOST; r++)
+        if (neighbours[r] == 0) neighbours[r] = UINT64_MAX;
 }
 
 /* Has nothing changed in the region, and in those beside it, since it was last expanded? */
@@ -212,19 +221,19 @@ void labelling_share_out(tile_labelling *l) {
         changed = false;
         find_neighbours(l, neighbours);
         for (uint32_t r = 0; r < l->regions.count; r++)
-            if (!is_settled(l, r, neighbours[r])) changed |= expand_region(l, r);
+            if (!is_settled(l, r, neighbours[r])) changed |= expand_region(l, r, neighbours[r]);
     }
     leave_out_empty(l);
 }
 
 void labelling_move_points(tile_labelling *l) {
     for (uint32_t r = 0; r < l->regions.count; r++) {
-        double *point = l->regions.points[r], middle[3];
+        sight_point *point = &l->regions.points[r], middle;
         if (l->regions.moved[r] >= l->regions.changed[r] && l->regions.moved[r] > 0) continue;
         const tile_set set = labelling_tiles(l, r, r);
-        tiles_centroid(&set, middle);
-        const double from_middle = tiles_best_point(&set, middle), from_here = tiles_best_point(&set, point);
-        if (from_middle <= from_here) memcpy(point, middle, sizeof middle);
+        tiles_centroid(&set, &middle);
+        const double from_middle = tiles_best_point(&set, &middle), from_here = tiles_best_point(&set, point);
+        if (from_middle <= from_here) *point = middle;
         note_change(l, r);
         l->regions.moved[r] = l->regions.now;
     }

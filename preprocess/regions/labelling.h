@@ -16,7 +16,7 @@ typedef struct labelling_prices {
 /* The regions, each with its point. Times count changes: of the region's tiles, of its point, and when it was last looked at. */
 typedef struct labelled_regions {
     uint32_t count;
-    double points[REGIONS_MOST][3];
+    sight_point points[REGIONS_MOST];
     uint32_t changed[REGIONS_MOST], moved[REGIONS_MOST], expanded[REGIONS_MOST], now;
 } labelled_regions;
 
@@ -42,7 +42,7 @@ tile_set labelling_tiles(tile_labelling *l, uint32_t a, uint32_t b);
 double labelling_border(const tile_labelling *l, uint32_t a, uint32_t b);
 
 /* Adds a region with a point, which has no tiles yet. */
-void labelling_add(tile_labelling *l, const double point[3]);
+void labelling_add(tile_labelling *l, const sight_point *point);
 
 /* All regions count as changed: the tiles are others than before. */
 void labelling_touch(tile_labelling *l);

@@ -43,6 +43,23 @@ static bool shrink_ball(const tile_graph *g, uint32_t seed, double out[3]) {
     return true;
 }
 
+/* Lets the point move with the tiles that its ball nearly touches. */
+static void follow_tiles(const tile_graph *g, uint32_t seed, sight_point *point) {
+    const double reach = 1.5 * 1.5 * square_distance(g->items[seed].centroid, point->rest);
+    double area = 0.0, ways[FRAMES_MOST][3] = {{0.0}};
+    for (uint32_t i = 0; i < g->count && g->frame_count > 0; i++) {
+        const tile *t = &g->items[i];
+        if (square_distance(t->centroid, point->rest) > reach) continue;
+        area += t->area;
+        for (uint32_t f = 0; f < g->frame_count; f++)
+            for (int k = 0; k < 3; k++)
+                ways[f][k] += t->area * (g->moved[(size_t)f * g->count + i].centroid[k] - t->centroid[k]);
+    }
+    for (uint32_t f = 0; f < g->frame_count; f++)
+        for (int k = 0; k < 3; k++)
+            point->moved[f][k] = point->rest[k] + ways[f][k] / (area > 0.0 ? area : 1.0);
+}
+
 static void find_points(const tile_graph *g, const double from[3], double *distances, medial_points *out) {
     for (uint32_t i = 0; i < g->count; i++) distances[i] = square_distance(g->items[i].centroid, from);
     for (int round = 0; round < POINTS_MOST; round++) {
@@ -55,7 +72,8 @@ static void find_points(const tile_graph *g, const double from[3], double *dista
             distances[i] = round == 0 ? square : fmin(distances[i], square);
         }
         out->tiles[out->count] = farthest;
-        out->count += shrink_ball(g, farthest, out->points[out->count]);
+        if (!shrink_ball(g, farthest, out->points[out->count].rest)) continue;
+        follow_tiles(g, farthest, &out->points[out->count++]);
     }
 }
 

@@ -1,11 +1,11 @@
 /* Points in the middle of a body: the centres of balls that touch it from inside (Ma, Bae, Choi 2012). */
 #pragma once
 
-#include "preprocess/regions/tiles.h"
+#include "preprocess/regions/sight.h"
 
 typedef struct medial_points {
     uint32_t count;
-    double (*points)[3];
+    sight_point *points;
     uint32_t *tiles; /* that the balls touch */
 } medial_points;
 

@@ -2,6 +2,7 @@
 #include "preprocess/regions/regions.h"
 #include "preprocess/regions/body_regions.h"
 #include "preprocess/regions/cut_selection.h"
+#include "preprocess/regions/edge_weights.h"
 #include "preprocess/regions/equalize.h"
 #include "src/mesh/surface.h"
 
@@ -15,10 +16,6 @@ region_options region_options_defaults(void) {
                               .gain = 0.015};
     return options;
 }
-
-/* An edge costs its length where the charge is high, and this share of it where the charge is lowest. As published the cost falls over
- * all ranks, else from three times the threshold on: cuts run along creases, and elsewhere they are short. */
-static const double published_crease = 0.15, usual_crease = 0.1, crease_ranks = 3.0;
 
 /* Workspace: arrays over triangles, and the weights of edges. */
 typedef struct region_work {
@@ -60,19 +57,6 @@ static void free_work(region_work *w) {
     cut_list_free(w->mesh, &w->cuts);
 }
 
-static void weigh_edges(region_work *w, const region_options *o) {
-    const cscd_mesh *mesh = w->mesh;
-    const double crease = o->published ? published_crease : usual_crease;
-    const double high = o->published ? 1.0 : fmin(1.0, crease_ranks * o->threshold);
-    for (uint32_t e = 0; e < mesh->edge_count; e++) {
-        double charge = 0.0;
-        for (uint32_t i = mesh->edge_star_offsets[e]; i < mesh->edge_star_offsets[e + 1]; i++)
-            charge += w->equalized[mesh->edge_stars[i]] / edge_star_size(mesh, e);
-        w->weights[e] = surface_edge_length(mesh, w->positions, e) *
-                        (1.0 - (1.0 - crease) * (1.0 - fmin(1.0, charge / high)));
-    }
-}
-
 /* As published: clusters of low charge grow until they part the component. */
 static cscd_status find_published(region_work *w, const region_options *o) {
     const cscd_mesh *mesh = w->mesh;
@@ -97,9 +81,10 @@ static void sort_by_component(const region_work *w, uint32_t *offsets) {
     offsets[0] = 0;
 }
 
-static cscd_status add_components(region_work *w, const uint32_t *offsets, body_regions *found) {
+static cscd_status add_components(region_work *w, const region_options *o, const uint32_t *offsets,
+                                  body_regions *found) {
     const cscd_mesh *mesh = w->mesh;
-    const tile_surface surface = {mesh, w->positions, w->weights, &w->graph};
+    const tile_surface surface = {mesh, w->positions, w->weights, &w->graph, o->frames, o->frame_count};
     const body_room room = {w->tile_of, w->scratch, w->marked};
     cscd_status status = CSCD_OK;
     for (uint32_t c = 0; c < mesh->component_count && status == CSCD_OK; c++) {
@@ -113,12 +98,12 @@ static cscd_status add_components(region_work *w, const uint32_t *offsets, body_
     return status;
 }
 
-static cscd_status find_regions(region_work *w, body_regions *found) {
+static cscd_status find_regions(region_work *w, const region_options *o, body_regions *found) {
     cscd_context *context = w->mesh->context;
     uint32_t *offsets = context_allocate(context, (size_t)w->mesh->component_count + 1, sizeof *offsets);
     if (offsets == NULL) return context_out_of_memory(context);
     sort_by_component(w, offsets);
-    const cscd_status status = add_components(w, offsets, found);
+    const cscd_status status = add_components(w, o, offsets, found);
     context_free(context, offsets);
     return status;
 }
@@ -154,8 +139,8 @@ cscd_status regions_from_charge(const cscd_mesh *mesh, const double *positions, 
     status = equalize(mesh, density, chosen.published, w.equalized);
     if (status == CSCD_OK) status = dual_graph_build(mesh, &w.graph);
     if (status == CSCD_OK) {
-        weigh_edges(&w, &chosen);
-        status = chosen.published ? find_published(&w, &chosen) : find_regions(&w, &found);
+        weigh_edges(mesh, positions, w.equalized, &chosen, w.weights);
+        status = chosen.published ? find_published(&w, &chosen) : find_regions(&w, &chosen, &found);
     }
     if (status == CSCD_OK)
         status = number_regions(&w, &found, region_of_triangle, region_count, detector_points);

@@ -10,6 +10,9 @@ typedef struct region_options {
     double part_share;    /* no part that is cut off has less of its component's area; default 0.02 */
     double gain;          /* a cut raises the share that is firmly visible by this much, or is not made: see
                            * select_cuts; default 0.015; -1: every cut is made */
+    const double *const
+        *frames;          /* positions in frames of a motion, in which triangles are seen or not as at rest */
+    uint32_t frame_count; /* at most FRAMES_MOST; default 0 */
 } region_options;
 
 region_options region_options_defaults(void);

@@ -9,7 +9,7 @@
 enum { CELLS_A_SIDE = 1000 };
 
 static array_list list_items(tile_graph *g) {
-    return (array_list){{ARRAY(g->items, g->count)}};
+    return (array_list){{ARRAY(g->items, g->count), ARRAY(g->moved, (size_t)g->frame_count * g->count)}};
 }
 
 static array_list list_links(tile_graph *g) {
@@ -19,34 +19,48 @@ static array_list list_links(tile_graph *g) {
 
 /* ---- scaled triangles ------------------------------------------------------------------------------------ */
 
-static void find_frame(const tile_surface *s, tile_component *c) {
+/* A component's positions in one frame, or at rest. */
+typedef struct tile_frame {
+    const double *positions;
+    double middle[3]; /* of its box */
+} tile_frame;
+
+/* Finds the middle; returns the box's longest side. */
+static double find_middle(const tile_surface *s, const tile_component *c, tile_frame *frame) {
     double extent = 0.0;
     for (int k = 0; k < 3; k++) {
         double low = INFINITY, high = -INFINITY;
         for (size_t i = 0; i < (size_t)c->count * 3; i++) {
-            const double p = surface_corner(s->mesh, s->positions, c->list[i / 3], (uint32_t)(i % 3))[k];
+            const double p = surface_corner(s->mesh, frame->positions, c->list[i / 3], (uint32_t)(i % 3))[k];
             low = fmin(low, p);
             high = fmax(high, p);
         }
-        c->middle[k] = 0.5 * low + 0.5 * high;
+        frame->middle[k] = 0.5 * low + 0.5 * high;
         extent = fmax(extent, high - low);
     }
+    return extent;
+}
+
+static tile_frame rest_of(const tile_surface *s, const tile_component *c) {
+    return (tile_frame){s->positions, {c->middle[0], c->middle[1], c->middle[2]}};
+}
+
+static void find_scale(const tile_surface *s, tile_component *c) {
+    tile_frame rest = {.positions = s->positions};
     int exponent = 0;
-    frexp(extent, &exponent);
+    frexp(find_middle(s, c, &rest), &exponent);
+    memcpy(c->middle, rest.middle, sizeof c->middle);
     c->scale = ldexp(1.0, -exponent);
 }
 
-static void scaled_corner(const tile_surface *s, const tile_component *c, uint32_t t, uint32_t corner,
-                          double out[3]) {
-    const double *p = surface_corner(s->mesh, s->positions, t, corner);
-    for (int k = 0; k < 3; k++) out[k] = (p[k] - c->middle[k]) * c->scale;
-}
-
 /* The normal is as long as the area. */
-static void scaled_triangle(const tile_surface *s, const tile_component *c, uint32_t t, double centroid[3],
-                            double normal[3]) {
+static void scaled_triangle(const tile_surface *s, const tile_component *c, const tile_frame *frame,
+                            uint32_t t, double centroid[3], double normal[3]) {
     double corners[3][3], u[3], v[3];
-    for (uint32_t corner = 0; corner < 3; corner++) scaled_corner(s, c, t, corner, corners[corner]);
+    for (uint32_t corner = 0; corner < 3; corner++) {
+        const double *p = surface_corner(s->mesh, frame->positions, t, corner);
+        for (int k = 0; k < 3; k++) corners[corner][k] = (p[k] - frame->middle[k]) * c->scale;
+    }
     vec3_subtract(corners[1], corners[0], u);
     vec3_subtract(corners[2], corners[0], v);
     vec3_cross(u, v, normal);
@@ -59,9 +73,10 @@ static void scaled_triangle(const tile_surface *s, const tile_component *c, uint
 tile_component tiles_component(const tile_surface *surface, const uint32_t *list, uint32_t count) {
     tile_component c = {.list = list, .count = count};
     double centroid[3], normal[3];
-    find_frame(surface, &c);
+    find_scale(surface, &c);
+    const tile_frame rest = rest_of(surface, &c);
     for (uint32_t i = 0; i < count; i++) {
-        scaled_triangle(surface, &c, list[i], centroid, normal);
+        scaled_triangle(surface, &c, &rest, list[i], centroid, normal);
         c.area += surface_norm(normal);
     }
     if (count <= TILES_WANTED) return c;
@@ -79,11 +94,12 @@ static uint32_t cell_along(double coordinate, double side) {
 uint32_t tiles_number(const tile_surface *surface, tile_component *component, uint32_t *tile_of,
                       uint32_t *scratch) {
     double p[3], normal[3];
+    const tile_frame rest = rest_of(surface, component);
     for (uint32_t i = 0; i < component->count; i++) {
         const uint32_t t = component->list[i];
         tile_of[t] = i;
         if (component->side == 0.0) continue;
-        scaled_triangle(surface, component, t, p, normal);
+        scaled_triangle(surface, component, &rest, t, p, normal);
         tile_of[t] = 0;
         for (int k = 0; k < 3; k++) tile_of[t] = tile_of[t] * 1024 + cell_along(p[k], component->side);
     }
@@ -94,11 +110,12 @@ uint32_t tiles_number(const tile_surface *surface, tile_component *component, ui
 uint32_t tiles_halve(const tile_surface *surface, tile_component *component, const bool *marked,
                      uint32_t *tile_of, uint32_t *scratch) {
     double p[3], normal[3];
+    const tile_frame rest = rest_of(surface, component);
     component->side *= 0.5;
     for (uint32_t i = 0; i < component->count; i++) {
         const uint32_t t = component->list[i];
         uint32_t octant = 0;
-        scaled_triangle(surface, component, t, p, normal);
+        scaled_triangle(surface, component, &rest, t, p, normal);
         for (int k = 0; k < 3 && marked[tile_of[t]]; k++)
             octant = octant * 2 + cell_along(p[k], component->side) % 2;
         tile_of[t] = tile_of[t] * 8 + octant;
@@ -108,9 +125,10 @@ uint32_t tiles_halve(const tile_surface *surface, tile_component *component, con
 
 /* ---- the tiles ------------------------------------------------------------------------------------------- */
 
-static void add_triangle(const tile_surface *s, const tile_component *c, uint32_t t, tile *to) {
+static void add_triangle(const tile_surface *s, const tile_component *c, const tile_frame *frame, uint32_t t,
+                         tile *to) {
     double centroid[3], normal[3];
-    scaled_triangle(s, c, t, centroid, normal);
+    scaled_triangle(s, c, frame, t, centroid, normal);
     const double area = surface_norm(normal);
     to->area += area;
     for (int k = 0; k < 3; k++) {
@@ -120,26 +138,40 @@ static void add_triangle(const tile_surface *s, const tile_component *c, uint32_
     }
 }
 
-/* Turns the normals of a component that is inside out. */
-static void turn_outwards(tile_graph *g) {
-    double volume = 0.0;
-    for (uint32_t i = 0; i < g->count; i++) volume += g->items[i].height;
-    g->turned = volume < 0.0;
-    for (uint32_t i = 0; i < g->count && g->turned; i++) {
-        g->items[i].height = -g->items[i].height;
-        for (int k = 0; k < 3; k++) g->items[i].normal[k] = -g->items[i].normal[k];
+/* Makes the tiles of one frame. */
+static void fill_tiles(const tile_surface *s, const tile_component *c, const tile_frame *frame,
+                       const uint32_t *tile_of, tile *items, uint32_t count) {
+    for (uint32_t i = 0; i < c->count; i++)
+        add_triangle(s, c, frame, c->list[i], &items[tile_of[c->list[i]]]);
+    for (uint32_t i = 0; i < count; i++)
+        for (int k = 0; k < 3; k++) items[i].centroid[k] /= items[i].area > 0.0 ? items[i].area : 1.0;
+}
+
+static void turn_tiles(tile *items, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        items[i].height = -items[i].height;
+        for (int k = 0; k < 3; k++) items[i].normal[k] = -items[i].normal[k];
     }
 }
 
-static void fill_tiles(const tile_surface *s, const tile_component *c, const uint32_t *tile_of,
-                       tile_graph *g) {
-    for (uint32_t i = 0; i < c->count; i++) add_triangle(s, c, c->list[i], &g->items[tile_of[c->list[i]]]);
-    for (uint32_t i = 0; i < g->count; i++) {
-        tile *p = &g->items[i];
-        g->area += p->area;
-        for (int k = 0; k < 3; k++) p->centroid[k] /= p->area > 0.0 ? p->area : 1.0;
+static void fill_frames(const tile_surface *s, const tile_component *c, const uint32_t *tile_of,
+                        tile_graph *g) {
+    const tile_frame rest = rest_of(s, c);
+    double volume = 0.0;
+    fill_tiles(s, c, &rest, tile_of, g->items, g->count);
+    for (uint32_t f = 0; f < g->frame_count; f++) {
+        tile_frame frame = {.positions = s->frames[f]};
+        find_middle(s, c, &frame);
+        fill_tiles(s, c, &frame, tile_of, g->moved + (size_t)f * g->count, g->count);
     }
-    turn_outwards(g);
+    for (uint32_t i = 0; i < g->count; i++) {
+        g->area += g->items[i].area;
+        volume += g->items[i].height;
+    }
+    g->turned = volume < 0.0;
+    if (!g->turned) return;
+    turn_tiles(g->items, g->count);
+    turn_tiles(g->moved, (size_t)g->frame_count * g->count);
 }
 
 /* ---- links ----------------------------------------------------------------------------------------------- */
@@ -226,9 +258,9 @@ static cscd_status link_tiles(const tile_surface *s, const tile_component *c, co
 cscd_status tiles_create(const tile_surface *surface, const tile_component *component,
                          const uint32_t *tile_of, uint32_t tile_count, tile_graph *out) {
     cscd_context *context = surface->mesh->context;
-    *out = (tile_graph){.context = context, .count = tile_count};
+    *out = (tile_graph){.context = context, .count = tile_count, .frame_count = surface->frame_count};
     if (!context_allocate_all(context, list_items(out))) return context_out_of_memory(context);
-    fill_tiles(surface, component, tile_of, out);
+    fill_frames(surface, component, tile_of, out);
     const cscd_status status = link_tiles(surface, component, tile_of, out);
     if (status != CSCD_OK) tiles_destroy(out);
     return status;

@@ -7,6 +7,9 @@
 /* About so many tiles a component has; smaller ones have a tile for each triangle. */
 enum { TILES_WANTED = 3000 };
 
+/* Frames of a motion that are looked at besides the rest. */
+enum { FRAMES_MOST = 8 };
+
 /* Lengths are scaled by a power of two so that the component's extent lies in [1/2, 1), about the middle of its box. Normals point
  * outwards, also where the component is inside out. */
 typedef struct tile {
@@ -18,9 +21,11 @@ typedef struct tile {
 typedef struct tile_graph {
     cscd_context *context;
     uint32_t count;
-    tile *items;
-    double area; /* of all */
-    bool turned; /* the component is inside out */
+    tile *items; /* at rest */
+    tile *moved; /* in frame f tile t is moved[f * count + t]; areas of items count, there and here */
+    uint32_t frame_count; /* besides the rest */
+    double area;          /* of all */
+    bool turned;          /* the component is inside out */
 
     /* Tiles with an edge in common are linked: flow.link_count links. */
     flow_graph flow;
@@ -33,6 +38,8 @@ typedef struct tile_surface {
     const cscd_mesh *mesh;
     const double *positions, *weights;
     const dual_graph *graph;
+    const double *const *frames; /* positions in frames besides the rest, FRAMES_MOST at most */
+    uint32_t frame_count;
 } tile_surface;
 
 /* The triangles of a component, ascending. */

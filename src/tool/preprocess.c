@@ -5,6 +5,7 @@
 #include "src/tool/common/blas_kernels.h"
 #include "src/tool/common/command.h"
 #include "src/tool/common/methods.h"
+#include "src/tool/common/motion_frames.h"
 #include "src/tool/common/option_table.h"
 #include "src/tool/common/option_values.h"
 #include "src/tool/common/output_path.h"
@@ -22,6 +23,7 @@ enum { LINES_MAX = 50 };
 
 typedef struct preprocess_options {
     recording_options source;
+    frame_range frames;
     cscd_plan_options plan;
     bool published;
     const char *output_path;
@@ -83,7 +85,7 @@ static const option_row rows[] = {
 
 static const option_table table = {
     "preprocess",
-    "MODEL [-o PLAN.ply] [options]",
+    "MODEL [FRAMES...] [-o PLAN.ply] [options]",
     "Cuts the mesh MODEL (OBJ, PLY, OFF, STL, glTF, GIFTI), at rest as in the file, into regions, each with a point that sees "
     "most of it, and saves this plan as a PLY that any viewer shows. cscd replay uses it to leave out pairs "
     "of triangles that cannot touch. Contacts are the same with any plan and with none.",
@@ -174,31 +176,65 @@ static bool show_progress(void *user, const char *stage, double fraction) {
     return !interrupted();
 }
 
-static bool make_plan(const preprocess_options *o, recording *r, const double *positions, io_error *error) {
-    cscd_plan *plan = NULL;
-    cscd_plan_options options = o->plan;
-    if (options.method == CSCD_METHOD_CHARGE && options.charge_solver == CSCD_CHARGE_DENSE)
-        blas_kernels_prepare(!o->quiet);
-    options.variant = o->published ? CSCD_PLAN_VARIANT_PUBLISHED : 0;
-    cscd_status status = cscd_plan_create(
-        r->context, r->mesh, CSCD_DOUBLES(positions, cscd_mesh_vertex_count(r->mesh)), &options, &plan);
-    terminal_progress_end(o->source.progress.user);
+static bool print_and_save(const preprocess_options *o, const recording *r, const double *positions,
+                           const cscd_plan *plan, io_error *error) {
+    if (!save_plan(o, r, positions, plan, error)) return false;
+    if (!o->quiet) {
+        print_plan(o, r, plan);
+        printf("written: %s\n", o->output_path);
+    }
+    return save_report(o, r, positions, plan, error);
+}
+
+static bool explain_failure(const preprocess_options *o, const recording *r, cscd_status status,
+                            io_error *error) {
     if (status == CSCD_CANCELLED)
         return io_fail(error, "%s: interrupted; no plan was written", o->source.model_path);
     if (status == CSCD_OUT_OF_MEMORY && o->plan.method == CSCD_METHOD_CHARGE)
         return io_fail(error, "%s: %s; or give %s, which needs little", o->source.model_path,
                        cscd_context_detail(r->context),
                        o->plan.charge_solver == CSCD_CHARGE_DENSE ? "--charge tree" : "--method kmeans:8");
-    if (status != CSCD_OK)
-        return io_fail(error, "%s: %s", o->source.model_path, cscd_context_detail(r->context));
-    bool saved = save_plan(o, r, positions, plan, error);
-    if (saved && !o->quiet) {
-        print_plan(o, r, plan);
-        printf("written: %s\n", o->output_path);
-    }
-    saved = saved && save_report(o, r, positions, plan, error);
+    return io_fail(error, "%s: %s", o->source.model_path, cscd_context_detail(r->context));
+}
+
+static bool make_plan(const preprocess_options *o, recording *r, const double *positions,
+                      const motion_frames *motion, io_error *error) {
+    cscd_plan *plan = NULL;
+    cscd_plan_options options = o->plan;
+    if (options.method == CSCD_METHOD_CHARGE && options.charge_solver == CSCD_CHARGE_DENSE)
+        blas_kernels_prepare(!o->quiet);
+    options.variant = o->published ? CSCD_PLAN_VARIANT_PUBLISHED : 0;
+    options.frames = motion->items;
+    options.frame_count = motion->count;
+    cscd_status status = cscd_plan_create(
+        r->context, r->mesh, CSCD_DOUBLES(positions, cscd_mesh_vertex_count(r->mesh)), &options, &plan);
+    terminal_progress_end(o->source.progress.user);
+    if (status != CSCD_OK) return explain_failure(o, r, status, error);
+    const bool saved = print_and_save(o, r, positions, plan, error);
     cscd_plan_destroy(plan);
     return saved;
+}
+
+/* Reads the mesh at rest: of the model's file, which is the only frame unless there are others. */
+static bool read_positions(const preprocess_options *o, recording *r, double *positions,
+                           motion_frames *motion, io_error *error) {
+    *motion = (motion_frames){0};
+    if (o->source.frame_path_count == 0) return recording_read(r, 0, positions, error);
+    recording_rest(r, positions);
+    return motion_frames_read(r, &o->frames, motion, error);
+}
+
+static bool plan_recording(const preprocess_options *o, recording *r, io_error *error) {
+    double *positions = malloc((size_t)cscd_mesh_vertex_count(r->mesh) * 3 * sizeof *positions);
+    if (positions == NULL) return io_fail(error, "out of memory");
+    motion_frames motion;
+    bool made = read_positions(o, r, positions, &motion, error);
+    if (made) {
+        made = make_plan(o, r, positions, &motion, error);
+        motion_frames_free(&motion);
+    }
+    free(positions);
+    return made;
 }
 
 static int run_preprocess(preprocess_options *o) {
@@ -210,11 +246,8 @@ static int run_preprocess(preprocess_options *o) {
     o->source.progress = (cscd_progress){show_progress, &shown};
     if (!recording_open(&o->source, &r, &error)) return fail_input("%s", error.text);
     if (!o->quiet) recording_warn(&r);
-    double *positions = malloc((size_t)cscd_mesh_vertex_count(r.mesh) * 3 * sizeof *positions);
-    bool made = positions != NULL || io_fail(&error, "out of memory");
-    made = made && output_path_opens(o->output_path, &error) && output_path_opens(o->report.path, &error) &&
-           recording_read(&r, 0, positions, &error) && make_plan(o, &r, positions, &error);
-    free(positions);
+    const bool made = output_path_opens(o->output_path, &error) &&
+                      output_path_opens(o->report.path, &error) && plan_recording(o, &r, &error);
     recording_close(&r);
     if (made) return EXIT_RAN;
     fail_input("%s", error.text);
@@ -239,12 +272,14 @@ static int check_output(const preprocess_options *o) {
 }
 
 int command_preprocess(int argument_count, char **arguments) {
-    preprocess_options options = {
-        .plan = cscd_plan_defaults(), .argument_count = argument_count, .arguments = arguments};
+    preprocess_options options = {.frames = frame_range_all(),
+                                  .plan = cscd_plan_defaults(),
+                                  .argument_count = argument_count,
+                                  .arguments = arguments};
     given_options given;
     int code;
     if (!option_table_read(&table, argument_count, arguments, &options, &given, &code)) return code;
-    if (given.input_count != 1) return fail_usage("preprocess", "expected one MODEL");
+    if (given.input_count == 0) return fail_usage("preprocess", "expected MODEL");
     recording_options_take(&options.source, &given);
     char *model_plan = NULL;
     if (options.output_path == NULL) options.output_path = model_plan = plan_path_of_model(given.inputs[0]);

@@ -72,10 +72,12 @@ static void halves_lie_in_their_tiles(void **state) {
 
 /* ---- labellings ------------------------------------------------------------------------------------------ */
 
-static void random_point(const tiled_body *b, double point[3]) {
+static sight_point random_point(const tiled_body *b) {
+    sight_point point = {.rest = {0.0}};
     const tile *t = &b->g.items[random_integer(0, (int)b->tile_count - 1)];
     const double depth = random_between(0.3, 1.2);
-    for (int k = 0; k < 3; k++) point[k] = depth * t->centroid[k];
+    for (int k = 0; k < 3; k++) point.rest[k] = depth * t->centroid[k];
+    return point;
 }
 
 /* The regions that have tiles. */
@@ -96,7 +98,7 @@ static void borders_are_parts_of_the_cost(void **state) {
     double borders = 0.0;
     random_seed(6);
     assert_int_equal(labelling_create(&b->g, &prices, &l), CSCD_OK);
-    for (int i = 0; i < 4; i++) labelling_add(&l, (double[3]){0.0, 0.0, 0.1 * i});
+    for (int i = 0; i < 4; i++) labelling_add(&l, &(sight_point){.rest = {0.0, 0.0, 0.1 * i}});
     assert_true(labelling_border(&l, 0, 1) == -1.0);
     for (uint32_t t = 0; t < b->tile_count; t++) {
         const uint32_t region = (uint32_t)random_integer(0, 4);
@@ -124,11 +126,10 @@ static void two_regions_cost_the_least(void **state) {
         const labelling_prices prices = {0.01, random_between(0.0, 0.5)};
         tiled_body *b = tiled_body_make(BODY_CUBE, 12);
         tile_labelling l;
-        double point[3];
         assert_int_equal(labelling_create(&b->g, &prices, &l), CSCD_OK);
-        random_point(b, l.regions.points[0]);
-        random_point(b, point);
-        labelling_add(&l, point);
+        l.regions.points[0] = random_point(b);
+        const sight_point point = random_point(b);
+        labelling_add(&l, &point);
         tile_labelling all = l;
         uint32_t labels[12];
         double least = INFINITY;
@@ -154,12 +155,11 @@ static void costs_never_rise(void **state) {
         const labelling_prices prices = {0.01, random_between(0.0, 0.1)};
         tiled_body *b = tiled_body_make(round % 2 ? BODY_FIGURE : BODY_TORUS, 1000);
         tile_labelling l;
-        double point[3];
         assert_int_equal(labelling_create(&b->g, &prices, &l), CSCD_OK);
-        random_point(b, l.regions.points[0]);
+        l.regions.points[0] = random_point(b);
         for (int i = 0; i < 5; i++) {
-            random_point(b, point);
-            labelling_add(&l, point);
+            const sight_point point = random_point(b);
+            labelling_add(&l, &point);
         }
         for (uint32_t t = 0; t < b->tile_count; t++) {
             const uint32_t region = (uint32_t)random_integer(0, 5);

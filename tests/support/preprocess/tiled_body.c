@@ -20,7 +20,8 @@ tiled_body *tiled_body_make(body_kind kind, uint32_t triangle_count) {
     b->tile_of = body_allocate(count, sizeof *b->tile_of);
     b->scratch = body_allocate(count, sizeof *b->scratch);
     for (uint32_t t = 0; t < count; t++) b->list[t] = t;
-    b->surface = (tile_surface){b->mesh, b->shape.positions, b->weights, &b->graph};
+    b->surface = (tile_surface){
+        .mesh = b->mesh, .positions = b->shape.positions, .weights = b->weights, .graph = &b->graph};
     b->component = tiles_component(&b->surface, b->list, count);
     b->tile_count = tiles_number(&b->surface, &b->component, b->tile_of, b->scratch);
     assert_int_equal(tiles_create(&b->surface, &b->component, b->tile_of, b->tile_count, &b->g), CSCD_OK);
