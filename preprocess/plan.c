@@ -1,12 +1,8 @@
-/* Preprocessing, step by step: from a mesh at rest to its plan, by charge, regions, detector points and what
- * these see. */
+/* Plans: of what preprocessing has found, or of parts that a program has kept. */
 #include "src/mesh/plan.h"
 
 #include "cscd/research.h"
-#include "preprocess/charges.h"
-#include "preprocess/plan_frames.h"
-#include "preprocess/regions/kmeans.h"
-#include "preprocess/regions/regions.h"
+#include "preprocess/best_draft.h"
 #include "preprocess/regions/visibility.h"
 #include "src/core/methods.h"
 #include "src/core/struct_size.h"
@@ -25,28 +21,15 @@ void cscd_plan_defaults_sized(cscd_plan_options *out, size_t size) {
     struct_give_options(out, size, &default_options, sizeof default_options);
 }
 
-/* The steps' results, before the plan is made. */
-typedef struct draft {
-    const cscd_mesh *mesh;
-    const double *positions;
-    cscd_plan_options options;
-    plan_frames frames;
-    uint32_t *regions;
-    uint32_t region_count;
-    double *detector_points, *charges, *capacitances;
-    cscd_preprocess_timings timings;
-    charge_kernels kernels;
-} draft;
-
 static bool makes_plans(cscd_method method) {
     const method_traits *traits = method_traits_of(method);
     return traits != NULL && traits->makes_plan;
 }
 
 static cscd_status check_options(cscd_context *context, const cscd_plan_options *options) {
-    if (!makes_plans(options->method))
+    if (options->method != CSCD_METHOD_AUTO && !makes_plans(options->method))
         return context_fail(context, CSCD_INVALID_ARGUMENT,
-                            "method %s makes no plan: use charge, kmeans or single",
+                            "method %s makes no plan: use charge, kmeans, single or auto",
                             cscd_method_name(options->method));
     if (!(options->threshold > 0.0 && options->threshold < 1.0))
         return context_fail(context, CSCD_INVALID_ARGUMENT,
@@ -59,48 +42,6 @@ static cscd_status check_options(cscd_context *context, const cscd_plan_options 
         return context_fail(context, CSCD_INVALID_ARGUMENT, "unknown variant %llu of the plan",
                             (unsigned long long)options->variant);
     return CSCD_OK;
-}
-
-static cscd_status solve_charge(draft *d) {
-    charge_report report = {{0}, {NULL, NULL}};
-    d->charges = context_allocate(d->mesh->context, d->mesh->triangle_count, sizeof *d->charges);
-    d->capacitances = context_allocate(d->mesh->context, d->mesh->component_count, sizeof *d->capacitances);
-    if (d->charges == NULL || d->capacitances == NULL) return context_out_of_memory(d->mesh->context);
-    uint64_t asked = d->options.memory_limit;
-    const charge_options options = {d->options.charge_solver, asked < SIZE_MAX ? (size_t)asked : SIZE_MAX};
-    cscd_status status = charge_solve(d->mesh, d->positions, &options, d->charges, d->capacitances, &report);
-    d->timings.assembly_ms = report.timings.assembly_ms;
-    d->timings.solve_ms = report.timings.factor_ms + report.timings.refine_ms;
-    d->kernels = report.kernels;
-    return status;
-}
-
-static cscd_status find_regions(draft *d) {
-    const cscd_mesh *mesh = d->mesh;
-    region_options by_charge = region_options_defaults();
-    by_charge.threshold = d->options.threshold;
-    by_charge.published = d->options.variant == CSCD_PLAN_VARIANT_PUBLISHED;
-    by_charge.frames = d->frames.items;
-    by_charge.frame_count = d->frames.count;
-    switch (d->options.method) {
-    case CSCD_METHOD_CHARGE:
-        return regions_from_charge(mesh, d->positions, d->charges, &by_charge, d->regions, &d->region_count,
-                                   &d->detector_points);
-    case CSCD_METHOD_KMEANS:
-        return regions_kmeans(mesh, d->positions, d->options.k, d->options.seed, d->regions, &d->region_count,
-                              d->detector_points);
-    default:
-        return regions_single(mesh, d->regions, &d->region_count);
-    }
-}
-
-/* Finds detector points for the methods that do not bring their own. */
-static cscd_status place_detector_points(draft *d) {
-    if (d->detector_points != NULL) return CSCD_OK;
-    d->detector_points = context_allocate(d->mesh->context, d->region_count, sizeof(double[3]));
-    if (d->detector_points == NULL) return context_out_of_memory(d->mesh->context);
-    return detector_points_from_regions(d->mesh, d->positions, d->regions, d->region_count,
-                                        d->detector_points);
 }
 
 /* ---- regions of the plan --------------------------------------------------------------------------- */
@@ -176,55 +117,47 @@ static cscd_status make_plan(const cscd_mesh *mesh, const double *positions, con
     return CSCD_OK;
 }
 
-static cscd_plan_parts parts_of_draft(const draft *d) {
-    return (cscd_plan_parts){.method = d->options.method,
-                             .region_count = d->region_count,
-                             .triangle_regions = d->regions,
-                             .detector_points = d->detector_points,
-                             .charges = d->charges,
-                             .capacitances = d->capacitances};
-}
-
-static cscd_status run_draft(draft *d, cscd_plan **out) {
-    double start = timer_now_ms(), since = start;
-    cscd_status status = d->options.method == CSCD_METHOD_CHARGE ? solve_charge(d) : CSCD_OK;
-    since = timer_now_ms();
-    if (status == CSCD_OK) status = find_regions(d);
-    if (status == CSCD_OK) status = place_detector_points(d);
-    if (status == CSCD_OK) {
-        cscd_plan_parts parts = parts_of_draft(d);
-        status = make_plan(d->mesh, d->positions, &parts, out);
-    }
+static cscd_status plan_from_draft(const plan_draft *d, const plan_candidates *candidates, cscd_plan **out) {
+    const cscd_plan_parts parts = {.method = d->options.method,
+                                   .region_count = d->region_count,
+                                   .triangle_regions = d->regions,
+                                   .detector_points = d->detector_points,
+                                   .charges = d->charges,
+                                   .capacitances = d->capacitances};
+    const cscd_status status = make_plan(d->mesh, d->positions, &parts, out);
     if (status != CSCD_OK) return status;
-    timer_lap(&since, &d->timings.regions_ms);
-    timer_lap(&start, &d->timings.total_ms);
     (*out)->timings = d->timings;
     (*out)->info = (cscd_plan_info){d->kernels.used, d->kernels.better};
+    (*out)->candidates = *candidates;
     return CSCD_OK;
+}
+
+static cscd_status make_draft(const cscd_mesh *mesh, const double *positions, const plan_frames *frames,
+                              const cscd_plan_options *options, plan_candidates *candidates,
+                              plan_draft *out) {
+    *candidates = (plan_candidates){0};
+    return options->method == CSCD_METHOD_AUTO
+               ? best_draft_make(mesh, positions, frames, options, candidates, out)
+               : plan_draft_make(mesh, positions, frames, options, out);
 }
 
 static cscd_status plan_from_positions(const cscd_mesh *mesh, const double *positions,
                                        const cscd_plan_options *options, cscd_plan **out) {
     cscd_context *context = mesh->context;
-    draft d = {.mesh = mesh, .positions = positions, .options = *options};
     if (mesh->triangle_count == 0)
         return context_fail(context, CSCD_INVALID_MESH,
                             "the mesh has no triangles, so there is nothing to plan");
+    const double start = timer_now_ms();
+    plan_frames frames = {0};
+    plan_candidates candidates;
+    plan_draft d = {0};
     cscd_status status = positions_check(context, positions, mesh->vertex_count, "positions");
-    if (status != CSCD_OK) return status;
-    status = plan_frames_read(context, mesh, options, &d.frames);
-    d.regions = context_allocate(context, mesh->triangle_count, sizeof *d.regions);
-    bool allocated = d.regions != NULL;
-    if (allocated && d.options.method == CSCD_METHOD_KMEANS) {
-        d.detector_points = context_allocate(context, kmeans_capacity(mesh, d.options.k), sizeof(double[3]));
-        allocated = d.detector_points != NULL;
-    }
-    if (status == CSCD_OK) status = allocated ? run_draft(&d, out) : context_out_of_memory(context);
-    plan_frames_free(context, &d.frames);
-    context_free(context, d.regions);
-    context_free(context, d.detector_points);
-    context_free(context, d.charges);
-    context_free(context, d.capacitances);
+    if (status == CSCD_OK) status = plan_frames_read(context, mesh, options, &frames);
+    if (status == CSCD_OK) status = make_draft(mesh, positions, &frames, options, &candidates, &d);
+    if (status == CSCD_OK) status = plan_from_draft(&d, &candidates, out);
+    if (status == CSCD_OK) (*out)->timings.total_ms = timer_now_ms() - start;
+    plan_draft_free(&d);
+    plan_frames_free(context, &frames);
     return status;
 }
 

@@ -48,10 +48,12 @@ typedef enum cscd_charge_solver {
 
 /* Options of a plan; start from cscd_plan_defaults. */
 typedef struct cscd_plan_options {
-    uint32_t struct_size;  /* set by cscd_plan_defaults */
-    cscd_method method;    /* CHARGE by default, or KMEANS, or SINGLE */
-    uint32_t k;            /* KMEANS: how many regions all components have together, 4 by default */
-    uint32_t seed;         /* KMEANS: of the random starts, 1 by default */
+    uint32_t struct_size; /* set by cscd_plan_defaults */
+    cscd_method
+        method;    /* CHARGE by default, or KMEANS, or SINGLE; or AUTO: the one of these that leaves the least
+                            * to a step, as cscd_plan_compared tells, and the plan is then of that method */
+    uint32_t k;    /* KMEANS: how many regions all components have together, 4 by default */
+    uint32_t seed; /* KMEANS: of the random starts, 1 by default */
     double threshold;      /* CHARGE: the share of the triangles, those of least density, along which
                            * cuts run; in (0,1), 0.1 by default */
     uint64_t variant;      /* 0 by default; cscd/research.h has others to compare with */
@@ -182,6 +184,29 @@ static inline cscd_plan_info cscd_plan_describe(const cscd_plan *plan) {
     cscd_plan_info info;
     cscd_plan_describe_sized(plan, &info, sizeof info);
     return info;
+}
+
+/* What CSCD_METHOD_AUTO has compared. */
+typedef struct cscd_compared_plan {
+    cscd_method method;    /* CHARGE, SINGLE or KMEANS */
+    uint32_t k;            /* KMEANS: that of the options, 4, 8 or 16 for each component; 0 otherwise */
+    uint32_t region_count; /* 0: the charge could not be solved; see failure */
+    uint32_t reserved;     /* 0 */
+    /* Predicted, in [0,1]: the share of the triangles that a step has to look at with others of their component, because
+     * they lie at the border of their region or because its detector point does not see them well; the mean of the rest and
+     * all frames of the options. The plan has the least, but charge is kept where another has less by no more than 2 %. */
+    double tested_share;
+    const char *failure; /* why the charge could not be solved; NULL: it could. Lives as long as the plan */
+} cscd_compared_plan;
+
+/* The plans that were compared, in the order in which they were tried; none where the method was not AUTO. */
+CSCD_API uint32_t cscd_plan_compared_count(const cscd_plan *plan);
+CSCD_API void cscd_plan_compared_sized(const cscd_plan *plan, uint32_t place, cscd_compared_plan *out,
+                                       size_t size);
+static inline cscd_compared_plan cscd_plan_compared(const cscd_plan *plan, uint32_t place) {
+    cscd_compared_plan found;
+    cscd_plan_compared_sized(plan, place, &found, sizeof found);
+    return found;
 }
 
 #ifdef __cplusplus

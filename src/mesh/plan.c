@@ -128,3 +128,14 @@ void cscd_plan_timings_sized(const cscd_plan *plan, cscd_preprocess_timings *out
 void cscd_plan_describe_sized(const cscd_plan *plan, cscd_plan_info *out, size_t size) {
     struct_give(out, size, &plan->info, sizeof plan->info);
 }
+
+uint32_t cscd_plan_compared_count(const cscd_plan *plan) {
+    return plan->candidates.count;
+}
+
+void cscd_plan_compared_sized(const cscd_plan *plan, uint32_t place, cscd_compared_plan *out, size_t size) {
+    assert(place < plan->candidates.count);
+    cscd_compared_plan found = plan->candidates.items[place];
+    if (found.region_count == 0) found.failure = plan->candidates.charge_failure;
+    struct_give(out, size, &found, sizeof found);
+}

@@ -3,6 +3,13 @@
 
 #include "src/mesh/mesh.h"
 
+/* What CSCD_METHOD_AUTO has compared. */
+typedef struct plan_candidates {
+    uint32_t count;
+    cscd_compared_plan items[8];
+    char charge_failure[512]; /* why there is no charge to compare; empty: there is */
+} plan_candidates;
+
 /* It says of its mesh what detectors need, and does not hold it; detectors copy what they need of the plan. */
 struct cscd_plan {
     reference_count references; /* the caller alone */
@@ -21,6 +28,7 @@ struct cscd_plan {
     double *charges, *capacitances; /* NULL without charge */
     cscd_preprocess_timings timings;
     cscd_plan_info info;
+    plan_candidates candidates;
 };
 
 /* Returns the first fault of a plan as a sentence, or NULL. See live_objects.h. */

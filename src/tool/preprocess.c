@@ -11,6 +11,7 @@
 #include "src/tool/common/output_path.h"
 #include "src/tool/common/plan_colours.h"
 #include "src/tool/common/plan_source.h"
+#include "src/tool/common/shared_options.h"
 #include "src/tool/common/terminal.h"
 #include "src/tool/plan_report.h"
 
@@ -35,7 +36,8 @@ typedef struct preprocess_options {
 
 static bool read_plan_method(const char *text, void *place) {
     cscd_plan_options *plan = place;
-    return parse_method(text, &plan->method, &plan->k) && method_facts_of(plan->method).makes_plan;
+    return parse_method(text, &plan->method, &plan->k) &&
+           (plan->method == CSCD_METHOD_AUTO || method_facts_of(plan->method).makes_plan);
 }
 
 static bool read_share(const char *text, void *place) {
@@ -63,6 +65,8 @@ static const option_row rows[] = {
      "cut where little charge gathers on the mesh as a conductor (default)"},
     {"method", "kmeans:K", .help = "K regions by distance"},
     {"method", "single", .help = "one region per component"},
+    {"method", "auto",
+     .help = "the one of these that leaves the least to test, as predicted at rest and in the FRAMES"},
     {"seed", "N", read_unsigned, offsetof(preprocess_options, plan.seed),
      "with kmeans: another number gives other regions (default 1)"},
     {"threshold", "X", read_share, offsetof(preprocess_options, plan.threshold),
@@ -75,10 +79,8 @@ static const option_row rows[] = {
              "and time with the cube of their number"},
     {"published", NULL, read_flag, offsetof(preprocess_options, published),
      "with charge: cut by the published rules, where clusters of low charge grow until they part a body"},
-    {"weld", "exact|none|EPS", read_weld, offsetof(preprocess_options, source.weld),
-     "join vertices that coincide, or lie within EPS; replay needs the same"},
-    {"threads", "N", read_threads, offsetof(preprocess_options, source.thread_count),
-     "default 0: one per processor, and one for a mesh of less than 1,000 triangles; the results are the same"},
+    {"frames", "A:B[:STEP]", read_frames, offsetof(preprocess_options, frames),
+     "of FRAMES, only those from A to B, both included (A: and :B are open ends)"},
     {"quiet", NULL, read_flag, offsetof(preprocess_options, quiet),
      "no progress, no warnings, nothing on the standard output"},
 };
@@ -88,16 +90,19 @@ static const option_table table = {
     "MODEL [FRAMES...] [-o PLAN.ply] [options]",
     "Cuts the mesh MODEL (OBJ, PLY, OFF, STL, glTF, GIFTI), at rest as in the file, into regions, each with a point that sees "
     "most of it, and saves this plan as a PLY that any viewer shows. cscd replay uses it to leave out pairs "
-    "of triangles that cannot touch. Contacts are the same with any plan and with none.",
+    "of triangles that cannot touch; it needs the same --weld. Contacts are the same with any plan and with none.\n"
+    "FRAMES: a motion that the plan is made for, of which eight frames, evenly spaced, count as the rest does: one .pc2 or .mdd "
+    "point cache, one .glb or .gltf file, a pattern like f_%04d.obj, a folder, or a list of mesh files.",
     rows,
     sizeof rows / sizeof *rows,
+    .shared = {{&frame_rows, offsetof(preprocess_options, source)}},
     .examples = {
         {"preprocess body.obj",
          "Cut a closed body into regions, once, and write them to body.plan.ply, where replay finds them."},
         {"preprocess body.obj --report plan.html",
          "Also write a page that shows the regions in any browser."},
-        {"preprocess scan.ply --method kmeans:8",
-         "Cut a mesh by distance alone, which needs even less time and memory."}}};
+        {"preprocess body.obj body.pc2 --method auto",
+         "Make the plan for this motion, by the method that leaves the least to test."}}};
 
 static double total_area(const cscd_plan *plan) {
     double area = 0.0;
@@ -107,6 +112,11 @@ static double total_area(const cscd_plan *plan) {
 
 static double percent_of(double part, double whole) {
     return whole > 0.0 ? 100.0 * part / whole : 0.0;
+}
+
+static bool is_kept(const cscd_plan *plan, const cscd_compared_plan *c) {
+    return c->failure == NULL && c->method == cscd_plan_method(plan) &&
+           c->region_count == cscd_plan_region_count(plan);
 }
 
 static void print_components(const cscd_mesh *mesh, const cscd_plan *plan) {
@@ -136,6 +146,23 @@ static void print_regions(const cscd_plan *plan) {
     printf("seen in all: %.1f %% of the area\n", percent_of(seen, whole));
 }
 
+/* What method auto has compared, the best first to be read. */
+static void print_compared(const cscd_plan *plan) {
+    const uint32_t count = cscd_plan_compared_count(plan);
+    if (count == 0) return;
+    printf("%-10s %8s %30s\n", "method", "regions", "triangles left to test");
+    for (uint32_t i = 0; i < count; i++) {
+        const cscd_compared_plan c = cscd_plan_compared(plan, i);
+        char name[24];
+        snprintf(name, sizeof name, c.k > 0 ? "%s:%u" : "%s", cscd_method_name(c.method), c.k);
+        if (c.failure != NULL)
+            printf("%-10s %s\n", name, c.failure);
+        else
+            printf("%-10s %8u %28.1f %%%s\n", name, c.region_count, 100.0 * c.tested_share,
+                   is_kept(plan, &c) ? "   kept" : "");
+    }
+}
+
 static void print_plan(const preprocess_options *o, const recording *r, const cscd_plan *plan) {
     cscd_preprocess_timings t = cscd_plan_timings(plan);
     uint32_t components = cscd_mesh_component_count(r->mesh);
@@ -143,6 +170,7 @@ static void print_plan(const preprocess_options *o, const recording *r, const cs
            cscd_mesh_vertex_count(r->mesh), cscd_mesh_triangle_count(r->mesh), components,
            components == 1 ? "" : "s");
     if (cscd_plan_method(plan) == CSCD_METHOD_CHARGE) print_components(r->mesh, plan);
+    print_compared(plan);
     print_regions(plan);
     printf("seconds: assembly %.3f, solve %.3f, regions %.3f, total %.3f\n", t.assembly_ms * 1e-3,
            t.solve_ms * 1e-3, t.regions_ms * 1e-3, t.total_ms * 1e-3);
@@ -255,13 +283,13 @@ static int run_preprocess(preprocess_options *o) {
 }
 
 /* A plan may replace a plan, but no other file. */
-static int check_output(const preprocess_options *o) {
+static int check_output(const preprocess_options *o, const given_options *given) {
     const char *path = o->output_path;
     struct stat status;
     io_error error;
     if (!path_has_extension(path, ".ply"))
         return fail_usage("preprocess", "-o '%s': expected a name that ends in .ply", path);
-    if (!output_path_differs(path, &o->source.model_path, 1, &error))
+    if (!output_path_differs(path, given->inputs, given->input_count, &error))
         return fail_usage("preprocess", "-o %s", error.text);
     if (stat(path, &status) == 0 && S_ISREG(status.st_mode) && status.st_size > 0 && !plan_file_is_plan(path))
         return fail_usage("preprocess", "-o '%s' exists and is no plan; choose another name", path);
@@ -286,7 +314,7 @@ int command_preprocess(int argument_count, char **arguments) {
     if (options.output_path == NULL)
         code = fail_input("out of memory");
     else
-        code = check_output(&options);
+        code = check_output(&options, &given);
     if (code == EXIT_RAN) code = run_preprocess(&options);
     free(model_plan);
     return code;

@@ -84,6 +84,18 @@ static void try_model_plan(const plan_request *request, const recording *r, plan
     free(path);
 }
 
+static void add_remark(plan_choice *choice, const char *text) {
+    if (choice->remark[0] == '\0') snprintf(choice->remark, sizeof choice->remark, "%s", text);
+}
+
+/* Method auto goes on without the charge where that fails. */
+static void remark_failure(plan_choice *choice, const cscd_plan *plan) {
+    for (uint32_t i = 0; i < cscd_plan_compared_count(plan); i++) {
+        const char *failure = cscd_plan_compared(plan, i).failure;
+        if (failure != NULL) add_remark(choice, failure);
+    }
+}
+
 static bool make_plan(const plan_request *request, cscd_method method, const recording *r,
                       plan_choice *choice, io_error *error) {
     cscd_plan_options options = cscd_plan_defaults();
@@ -99,6 +111,7 @@ static bool make_plan(const plan_request *request, cscd_method method, const rec
     if (made) {
         choose_plan(choice, request, plan, NULL);
         choice->made_ms = cscd_plan_timings(plan).total_ms;
+        remark_failure(choice, plan);
     } else {
         io_fail(error, "%s: %s", request->model_path, cscd_context_detail(r->context));
     }
@@ -111,10 +124,6 @@ static bool any_closed(const cscd_mesh *mesh) {
         if (cscd_mesh_component(mesh, i).closed_manifold) return true;
     }
     return false;
-}
-
-static void add_remark(plan_choice *choice, const char *text) {
-    if (choice->remark[0] == '\0') snprintf(choice->remark, sizeof choice->remark, "%s", text);
 }
 
 /* By numbers of triangles and intervals, never by clock, so that all shards of a recording choose the same. */
@@ -132,7 +141,7 @@ static bool make_best(const plan_request *request, const recording *r, plan_choi
         return true;
     }
     if (charge_pays(r)) {
-        if (make_plan(request, CSCD_METHOD_CHARGE, r, choice, error)) return true;
+        if (make_plan(request, CSCD_METHOD_AUTO, r, choice, error)) return true;
         snprintf(choice->remark, sizeof choice->remark, "%.*s", TEXT_CUT(error->text, 590));
     } else {
         snprintf(

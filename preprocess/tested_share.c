@@ -1,0 +1,103 @@
+/* Counts the triangles that culling leaves. */
+#include "preprocess/tested_share.h"
+
+#include "preprocess/regions/region_motion.h"
+#include "preprocess/regions/sight.h"
+#include "preprocess/regions/visibility.h"
+#include "src/mesh/surface.h"
+
+#include <string.h>
+
+typedef struct share_work {
+    const plan_draft *d;
+    region_scene scene;
+    bool *at_border;     /* of vertices */
+    uint32_t *region_of; /* of vertices: one of those around */
+    float *blindness;    /* of triangles, summed over the frames */
+    double *signs; /* of regions: the sum of their orientations at rest, negative where they are inside out */
+    region_way *ways;    /* of regions */
+    double (*points)[3]; /* of regions, in a frame */
+} share_work;
+
+static array_list list_arrays(share_work *w) {
+    const cscd_mesh *mesh = w->d->mesh;
+    const size_t triangles = mesh->triangle_count, vertices = mesh->vertex_count,
+                 regions = w->d->region_count;
+    return (array_list){{ARRAY(w->at_border, vertices), ARRAY(w->region_of, vertices),
+                         ARRAY(w->blindness, triangles), ARRAY(w->signs, regions), ARRAY(w->ways, regions),
+                         ARRAY(w->points, regions)}};
+}
+
+static void mark_borders(share_work *w) {
+    const cscd_mesh *mesh = w->d->mesh;
+    for (uint32_t t = 0; t < mesh->triangle_count; t++)
+        for (int i = 0; i < 3; i++) w->region_of[mesh->triangles[t][i]] = w->d->regions[t];
+    for (uint32_t t = 0; t < mesh->triangle_count; t++)
+        for (int i = 0; i < 3; i++)
+            w->at_border[mesh->triangles[t][i]] |= w->region_of[mesh->triangles[t][i]] != w->d->regions[t];
+}
+
+static void find_signs(share_work *w) {
+    for (uint32_t t = 0; t < w->d->mesh->triangle_count; t++) {
+        const uint32_t r = w->d->regions[t];
+        w->signs[r] += orientation_value(w->d->mesh, w->d->positions, t, w->scene.points[r]);
+    }
+}
+
+/* From 0, the point sees the triangle well, to 1, it does not see it. */
+static double triangle_blindness(const cscd_mesh *mesh, const double *positions, uint32_t t,
+                                 const double point[3], bool turned) {
+    const double value = orientation_value(mesh, positions, t, point);
+    double away[3], normal[3];
+    if (turned ? !(value < 0.0) : !(value > 0.0)) return 1.0;
+    for (uint32_t k = 0; k < 3; k++) {
+        away[k] = -point[k];
+        for (uint32_t corner = 0; corner < 3; corner++)
+            away[k] += surface_corner(mesh, positions, t, corner)[k] / 3.0;
+    }
+    surface_normal(mesh, positions, t, normal);
+    const double well = SEEN_WELL_SINE * surface_norm(normal) * surface_norm(away);
+    return fabs(value) < well ? GRAZING_BLINDNESS * (1.0 - fabs(value) / well) : 0.0;
+}
+
+static void add_frame(share_work *w, const double *positions, const double (*points)[3]) {
+    for (uint32_t t = 0; t < w->d->mesh->triangle_count; t++) {
+        const uint32_t r = w->d->regions[t];
+        w->blindness[t] += (float)triangle_blindness(w->d->mesh, positions, t, points[r], w->signs[r] < 0.0);
+    }
+}
+
+static double sum_share(const share_work *w) {
+    const cscd_mesh *mesh = w->d->mesh;
+    double tested = 0.0, all = 0.0;
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+        if (triangle_of_obstacle(mesh, t)) continue;
+        bool border = false;
+        for (int i = 0; i < 3; i++) border |= w->at_border[mesh->triangles[t][i]];
+        tested += border ? 1.0 : (double)w->blindness[t] / (1.0 + w->d->frames->count);
+        all += 1.0;
+    }
+    return all > 0.0 ? tested / all : 0.0;
+}
+
+cscd_status find_tested_share(const plan_draft *d, double *out) {
+    cscd_context *context = d->mesh->context;
+    share_work w = {.d = d,
+                    .scene = {.mesh = d->mesh,
+                              .positions = d->positions,
+                              .count = d->mesh->triangle_count,
+                              .of_triangle = d->regions,
+                              .region_count = d->region_count,
+                              .points = (const double(*)[3])d->detector_points}};
+    if (!context_allocate_all(context, list_arrays(&w))) return context_out_of_memory(context);
+    mark_borders(&w);
+    find_signs(&w);
+    add_frame(&w, d->positions, w.scene.points);
+    for (uint32_t f = 0; f < d->frames->count && progress_go_on(&context->progress, 1.0); f++) {
+        region_points_move(&w.scene, d->frames->items[f], w.ways, w.points);
+        add_frame(&w, d->frames->items[f], (const double(*)[3])w.points);
+    }
+    *out = sum_share(&w);
+    context_free_all(context, list_arrays(&w));
+    return context_progress_status(context);
+}

@@ -1,0 +1,9 @@
+/* Predicts how much work a plan leaves to a step. */
+#pragma once
+
+#include "preprocess/plan_draft.h"
+
+/* The share of the triangles, but for obstacles, that a step has to look at with others of their component: those at the border of
+ * their region, and those that its detector point does not see, with those that it hardly sees in part (sight.h). At rest and in all
+ * frames, in the mean. */
+cscd_status find_tested_share(const plan_draft *d, double *out);
