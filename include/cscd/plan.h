@@ -63,7 +63,7 @@ typedef struct cscd_plan_options {
     const cscd_view *const
         *frames; /* CHARGE, AUTO: positions of the mesh in a motion that the plan is made for, each as in
                                        * cscd_plan_create: what the detector points see in them counts as much as what they see
-                                       * at rest. Of more than 16 frames, 16 count, evenly spaced. NULL by default */
+                                       * at rest. Of more than 8 frames, 8 count, evenly spaced. NULL by default */
 } cscd_plan_options;
 
 /* The default options. */

@@ -85,6 +85,12 @@ class plan : public detail::owner<cscd_plan, cscd_plan_destroy> {
     cscd_plan_info info() const noexcept {
         return cscd_plan_describe(get());
     }
+    /* What CSCD_METHOD_AUTO has compared; failure lives as long as the plan. */
+    std::vector<cscd_compared_plan> compared() const {
+        std::vector<cscd_compared_plan> found(cscd_plan_compared_count(get()));
+        for (std::uint32_t i = 0; i < found.size(); i++) found[i] = cscd_plan_compared(get(), i);
+        return found;
+    }
 
   private:
     static void expect_size(const char *name, std::size_t size, std::uint32_t expected) {

@@ -104,6 +104,8 @@ _PUBLIC: Dict[str, Tuple[Any, List[Any]]] = {
     "cscd_plan_destroy": (None, [_p]),
     "cscd_plan_method": (_u32, [_p]),
     "cscd_plan_describe_sized": (None, [_p, _p, _size]),
+    "cscd_plan_compared_count": (_u32, [_p]),
+    "cscd_plan_compared_sized": (None, [_p, _u32, _p, _size]),
     "cscd_plan_region_count": (_u32, [_p]),
     "cscd_plan_region_sized": (None, [_p, _u32, _p, _size]),
     "cscd_plan_region_labels": (_u32, [_p, _p]),

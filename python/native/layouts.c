@@ -88,6 +88,9 @@ FIELDS(preprocess_timings, FIELD(cscd_preprocess_timings, assembly_ms),
        FIELD(cscd_preprocess_timings, solve_ms), FIELD(cscd_preprocess_timings, regions_ms),
        FIELD(cscd_preprocess_timings, total_ms))
 FIELDS(plan_info, FIELD(cscd_plan_info, charge_kernels), FIELD(cscd_plan_info, better_kernels))
+FIELDS(compared_plan, FIELD(cscd_compared_plan, method), FIELD(cscd_compared_plan, k),
+       FIELD(cscd_compared_plan, region_count), FIELD(cscd_compared_plan, tested_share),
+       FIELD(cscd_compared_plan, failure))
 FIELDS(object_rule, FIELD(cscd_object_rule, category), FIELD(cscd_object_rule, mask),
        FIELD(cscd_object_rule, thickness), FIELD(cscd_object_rule, thickness_class),
        FIELD(cscd_object_rule, self), FIELD(cscd_object_rule, obstacle_pairs))
@@ -236,6 +239,7 @@ static const struct_layout layouts[] = {LAYOUT(view),
                                         LAYOUT(region),
                                         LAYOUT(preprocess_timings),
                                         LAYOUT(plan_info),
+                                        LAYOUT(compared_plan),
                                         LAYOUT(object_rule),
                                         LAYOUT(detector_options),
                                         LAYOUT(contact),

@@ -80,6 +80,16 @@ static void tells_what_it_found(void **state) {
     EXPECT_OUTPUT(TEXTS("vertices    302\n"), "info", plan.text); /* a plan is a mesh */
 }
 
+static void makes_plans_for_a_motion(void **state) {
+    (void)state;
+    EXPECT_OUTPUT(TEXTS("method      regions ", "charge            1 ", "single            1 ",
+                        "kmeans:4          4 ", "%   kept\n"),
+                  "preprocess", model.text, "--method", "auto");
+    EXPECT_OUTPUT(TEXTS("charge            1 "), "preprocess", model.text, cache.text, "--frames", "0",
+                  "--method", "auto");
+    EXPECT_OUTPUT(TEXTS("charge            3 "), "preprocess", model.text, cache.text, "--method", "auto");
+}
+
 static void seeds_choose_the_regions(void **state) {
     (void)state;
     static const char *const seeds[] = {"1", "1", "2"};
@@ -117,8 +127,9 @@ static void refuses_unfit_options(void **state) {
                                            {"--weld", "0"}};
     for (size_t i = 0; i < sizeof unfit / sizeof *unfit; i++)
         EXPECT_ERROR(2, TEXTS(unfit[i][0], unfit[i][1]), "preprocess", model.text, unfit[i][0], unfit[i][1]);
-    EXPECT_ERROR(2, TEXTS("one MODEL"), "preprocess");
-    EXPECT_ERROR(2, TEXTS("one MODEL"), "preprocess", model.text, cache.text);
+    EXPECT_ERROR(2, TEXTS("expected MODEL"), "preprocess");
+    EXPECT_ERROR(2, TEXTS("-o", cache.text), "preprocess", model.text, cache.text, "-o", cache.text);
+    EXPECT_ERROR(1, TEXTS("frame 99"), "preprocess", model.text, cache.text, "--frames", "99");
     EXPECT_ERROR(2, TEXTS("ends in .ply"), "preprocess", model.text, "-o", "plan.obj");
     EXPECT_ERROR(1, TEXTS("cannot write", "no/such/"), "preprocess", model.text, "-o",
                  temp_file_path(&folder, "no/such/a.ply").text);
@@ -318,6 +329,7 @@ int main(void) {
 #define TEST(name) cmocka_unit_test_setup(name, remove_plans)
     const struct CMUnitTest tests[] = {
         TEST(tells_what_it_found),
+        TEST(makes_plans_for_a_motion),
         TEST(seeds_choose_the_regions),
         TEST(names_the_plan_after_the_model),
         TEST(refuses_unfit_options),

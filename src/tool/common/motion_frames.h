@@ -5,7 +5,7 @@
 #include "src/tool/common/recording.h"
 
 /* As many as a plan looks at. */
-enum { MOTION_FRAMES_MOST = 16 };
+enum { MOTION_FRAMES_MOST = 8 };
 
 typedef struct motion_frames {
     uint32_t count;

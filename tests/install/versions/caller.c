@@ -118,7 +118,7 @@ static void create_plan(caller_state *s) {
     const cscd_view *rest = CSCD_DOUBLES(start, VERTEX_COUNT);
     OPTIONS(cscd_plan_options, cscd_plan_defaults_sized, options);
     expect_that(options.value.threshold == 0.1, "cscd_plan_options", "the default of threshold");
-    options.value.method = CSCD_METHOD_SINGLE;
+    options.value.method = CSCD_METHOD_AUTO;
     REFUSE(cscd_plan_options, options.value,
            cscd_plan_create(s->context, s->mesh, rest, &options.value, &s->plan),
            cscd_context_detail(s->context));
@@ -133,6 +133,11 @@ static void create_plan(caller_state *s) {
     GUARDED(cscd_plan_info, info);
     cscd_plan_describe_sized(s->plan, &info.value, sizeof info.value);
     EXPECT_FILLED(cscd_plan_info, info);
+    expect_that(cscd_plan_compared_count(s->plan) > 1, "cscd_plan_compared_count", "charge and single");
+    GUARDED(cscd_compared_plan, compared);
+    cscd_plan_compared_sized(s->plan, 1, &compared.value, sizeof compared.value);
+    EXPECT_FILLED(cscd_compared_plan, compared);
+    expect_that(compared.value.method == CSCD_METHOD_SINGLE, "cscd_compared_plan", "its values");
 }
 
 static void create_plan_from_parts(caller_state *s) {
