@@ -366,10 +366,12 @@ test: packages
 check: packages
 	@$(MAKE) --no-print-directory check-run
 
-check-run: tool library $(FAST_TESTS) $(MODELS) $(BUILD)/benchmarks/queries $(BUILD)/benchmarks/methods
+# Tests run these programs, too.
+TESTED_BENCHMARKS := $(addprefix $(BUILD)/benchmarks/,queries methods volumes)
+check-run: tool library $(FAST_TESTS) $(MODELS) $(TESTED_BENCHMARKS)
 	@BUILD=$(BUILD) tests/run.sh $(FAST_TESTS)
 
-test-run: tool library $(TESTS) $(MODELS) $(BUILD)/benchmarks/queries $(BUILD)/benchmarks/methods
+test-run: tool library $(TESTS) $(MODELS) $(TESTED_BENCHMARKS)
 	@BUILD=$(BUILD) tests/run.sh $(IN_ORDER)
 
 # Frames of glTF files beside the vertices that Blender itself evaluates, and faces that its script selects; nothing else needs
@@ -717,7 +719,8 @@ $(CPP_MODELS): $(BUILD)/models/%: $(OBJECTS)/models/%.o $(patsubst %.cpp,$(OBJEC
 # Benchmarks may use internals, as tests do: benchmarks/*.c are programs, and benchmarks/lib has what they share.
 MACHINE_LEVELS := $(foreach level,$(LEVELS),$(OBJECTS)/benchmarks/lib/machine_kernels_simd.$(level).o)
 $(MACHINE_LEVELS): CFLAGS_ALL += -fno-tree-vectorize -fno-tree-slp-vectorize
-$(BUILD)/benchmarks/lib.a: $(call objects,$(BENCHMARK_PARTS)) $(MACHINE_LEVELS)
+VOLUME_LEVELS := $(foreach level,$(LEVELS),$(OBJECTS)/benchmarks/lib/volume_kernels_simd.$(level).o)
+$(BUILD)/benchmarks/lib.a: $(call objects,$(BENCHMARK_PARTS)) $(MACHINE_LEVELS) $(VOLUME_LEVELS)
 	@mkdir -p $(@D)
 	@rm -f $@
 	$(Q)$(TOOLS)ar rcs $@ $^
@@ -835,4 +838,4 @@ include src/packaging/wasm/rules.mk
 endif
 
 -include $(addprefix $(OBJECTS)/,$(addsuffix .d,$(basename $(SOURCES)))) $(KERNEL_OBJECTS:.o=.d) \
-         $(CHARGE_LIBRARY_FORMS:.o=.d) $(MACHINE_LEVELS:.o=.d) $(TEST_LEVELS:.o=.d) $(OBJECTS)/tests/blender/print_frames.d $(OBJECTS)/tests/python/oracle.d
+         $(CHARGE_LIBRARY_FORMS:.o=.d) $(MACHINE_LEVELS:.o=.d) $(VOLUME_LEVELS:.o=.d) $(TEST_LEVELS:.o=.d) $(OBJECTS)/tests/blender/print_frames.d $(OBJECTS)/tests/python/oracle.d

@@ -74,8 +74,7 @@ static bool enter_all(methods_report *r, bool every_k, uint32_t repeats, io_erro
 
 /* ---- the program ------------------------------------------------------------------------------------- */
 
-static bool run_scene(void *state, const recording_options *o, const char *scene, json *out,
-                      io_error *error) {
+static bool run_scene(void *state, const replay_choices *o, const char *scene, json *out, io_error *error) {
     (void)state;
     recording_data data;
     truth known;

@@ -11,7 +11,8 @@ CSCD_TOOL=$BUILD/cscd
 CSCD_MODELS=$BUILD/models
 CSCD_QUERIES=$BUILD/benchmarks/queries
 CSCD_METHODS=$BUILD/benchmarks/methods
-export CSCD_TOOL CSCD_MODELS CSCD_QUERIES CSCD_METHODS
+CSCD_VOLUMES=$BUILD/benchmarks/volumes
+export CSCD_TOOL CSCD_MODELS CSCD_QUERIES CSCD_METHODS CSCD_VOLUMES
 
 [ $# -gt 0 ] || { echo 'run.sh: no test program is named, so nothing is tested (does ONLY name one?)' >&2; exit 1; }
 

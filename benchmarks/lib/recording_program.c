@@ -3,6 +3,7 @@
 
 #include "benchmarks/lib/options.h"
 #include "benchmarks/lib/row_file.h"
+#include "src/core/processor.h"
 #include "src/core/timer.h"
 
 #include <dirent.h>
@@ -39,7 +40,7 @@ static int compare_names(const void *a, const void *b) {
 }
 
 /* Adds the recordings in the data folder, sorted by name. When a folder is given, it must have some. */
-static bool list_data(const recording_program *program, recording_options *o) {
+static bool list_data(const recording_program *program, replay_choices *o) {
     uint32_t first = o->scene_count;
     if (o->data == NULL) {
         printf("neither --data nor CSCD_DATA names a folder with recordings, so only our own\n");
@@ -62,14 +63,14 @@ static bool list_data(const recording_program *program, recording_options *o) {
     return true;
 }
 
-static bool choose_scenes(const recording_program *program, recording_options *o) {
+static bool choose_scenes(const recording_program *program, replay_choices *o) {
     if (o->scene_count > 0) return true;
     for (size_t i = 0; i < sizeof own_scenes / sizeof *own_scenes; i += o->quick ? 2 : 1)
         o->scenes[o->scene_count++] = own_scenes[i];
     return o->quick || list_data(program, o);
 }
 
-bool recording_program_open(const recording_options *o, const char *scene, recording_data *out,
+bool recording_program_open(const replay_choices *o, const char *scene, recording_data *out,
                             io_error *error) {
     bool own = recording_is_own(scene);
     if (!own && o->data == NULL)
@@ -83,7 +84,7 @@ bool recording_program_open(const recording_options *o, const char *scene, recor
 
 /* ---- the program ------------------------------------------------------------------------------------- */
 
-static bool run_scenes(const recording_program *program, const recording_options *o, json *out,
+static bool run_scenes(const recording_program *program, const replay_choices *o, json *out,
                        io_error *error) {
     bool good = true;
     double since = timer_now_ms(), spent = 0.0;
@@ -97,7 +98,7 @@ static bool run_scenes(const recording_program *program, const recording_options
     return good;
 }
 
-static bool run_all(const recording_program *program, const recording_options *o, int argument_count,
+static bool run_all(const recording_program *program, const replay_choices *o, int argument_count,
                     char **arguments) {
     json out;
     io_error error, of_file;
@@ -125,7 +126,7 @@ static bool has_option(const recording_program *program, const char *name, const
 }
 
 static bool parse_arguments(const recording_program *program, int count, char **arguments,
-                            recording_options *o) {
+                            replay_choices *o) {
     for (int i = 1; i < count; i++) {
         const char *name = arguments[i], *value = i + 1 < count ? arguments[i + 1] : NULL;
         const char **text = strcmp(name, "--json") == 0    ? &o->json_path
@@ -143,8 +144,9 @@ static bool parse_arguments(const recording_program *program, int count, char **
             if (!parse_threads(arguments[++i], &o->thread_count))
                 return refuse_argument(program, value, "is no number of threads");
         } else if (simd) {
-            if (!cscd_simd_from_name(arguments[++i], &o->simd))
-                return refuse_argument(program, value, "is no level of instructions");
+            if (!cscd_simd_from_name(arguments[++i], &o->simd) ||
+                (o->simd != CSCD_SIMD_AUTO && !processor_has_simd(o->simd)))
+                return refuse_argument(program, value, "is no level of instructions that this processor has");
         } else if (name[0] == '-') {
             return refuse_argument(program, name, "is no option");
         } else if (o->scene_count == RECORDINGS_MAX) {
@@ -158,7 +160,7 @@ static bool parse_arguments(const recording_program *program, int count, char **
 }
 
 int recording_program_main(const recording_program *program, int argument_count, char **arguments) {
-    recording_options o = {.cache = "build/models", .thread_count = 1};
+    replay_choices o = {.cache = "build/models", .thread_count = 1};
     if (argument_count == 2 && strcmp(arguments[1], "--help") == 0) {
         fputs(program->help, stdout);
         return 0;

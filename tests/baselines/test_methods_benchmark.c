@@ -1,7 +1,5 @@
 /* The benchmark of all methods, on a small recording: its rows, its guarantees, and its error messages. */
-#include "models/shapes/catalogue.h"
-#include "src/io/mesh_file.h"
-#include "src/io/point_cache_write.h"
+#include "tests/support/models/tiny_recording.h"
 #include "tests/support/temp_file.h"
 #include "tests/support/test.h"
 #include "tests/support/tool/json_reader.h"
@@ -12,42 +10,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FRAMES = 6 };
-
 static temp_folder folder;
-
-/* Writes a dumbbell whose balls are bent into each other. */
-static void write_recording(void) {
-    body shape;
-    io_error error;
-    point_cache_writer *writer;
-    temp_path model = temp_file_path(&folder, "tiny.obj"), frames = temp_file_path(&folder, "tiny.pc2");
-    if (!body_make(BODY_DUMBBELL, 300, &shape, &error)) fail_msg("%s", error.text);
-    const mesh_file mesh =
-        mesh_file_of(shape.vertex_count, shape.triangle_count, shape.positions, shape.triangles);
-    double *moved = malloc((size_t)shape.vertex_count * 3 * sizeof *moved);
-    if (moved == NULL || !mesh_file_write_obj(model.text, &mesh, &error) ||
-        !point_cache_writer_open(frames.text, shape.vertex_count, FRAMES, &writer, &error))
-        fail_msg("no recording");
-    for (int frame = 0; frame < FRAMES; frame++) {
-        for (uint32_t v = 0; v < shape.vertex_count; v++) {
-            const double *p = shape.positions + v * 3;
-            double angle = 0.28 * frame * fmin(fmax(p[2], -0.6), 0.6) / 0.6;
-            moved[v * 3] = p[0] * cos(angle) + fabs(p[2]) * sin(fabs(angle));
-            moved[v * 3 + 1] = p[1];
-            moved[v * 3 + 2] = p[2] * cos(angle) - p[0] * sin(angle);
-        }
-        assert_true(point_cache_writer_write(writer, moved, &error));
-    }
-    assert_true(point_cache_writer_close(writer, &error));
-    free(moved);
-    body_free(&shape);
-}
 
 static int make_folder(void **state) {
     (void)state;
     folder = temp_folder_make();
-    write_recording();
+    body shape = tiny_recording_write(&folder);
+    body_free(&shape);
     const char *program = getenv("CSCD_METHODS");
     return program != NULL && setenv("CSCD_TOOL", program, 1) == 0 ? 0 : -1;
 }
@@ -153,7 +122,7 @@ static void kmeans_runs_have_seeds_of_their_own(void **state) {
     bool differ = false;
     for (size_t i = 0; i < rows->count; i++) {
         const json_node *row = json_node_item(rows, i);
-        double sum = json_node_number(row, "pcp") * (FRAMES - 1);
+        double sum = json_node_number(row, "pcp") * (TINY_FRAMES - 1);
         if (strncmp(json_node_string(row, "method"), "kmeans", 6) == 0)
             differ |= fabs(sum - round(sum)) > 1e-6;
     }

@@ -1,0 +1,81 @@
+/* A binary tree over the triangles of a mesh, whose leaves are single triangles, and volumes of five kinds for its
+ * nodes. Only the volumes differ: they all share the nodes and the order of the search. */
+#pragma once
+
+#include "cscd/cscd.h"
+#include "src/core/kernels.h"
+
+/* The k-DOPs from the box on: each has the directions of the box; those of 26 are the ones of 14 and of 18. */
+typedef enum volume_kind {
+    VOLUME_SPHERE,
+    VOLUME_BOX,
+    VOLUME_KDOP14, /* axes and diagonals of the cube */
+    VOLUME_KDOP18, /* axes and diagonals of its faces */
+    VOLUME_KDOP26, /* all of these */
+    VOLUME_KINDS
+} volume_kind;
+
+const char *volume_kind_name(volume_kind kind);
+
+/* A k-DOP is a row of floats, the least coordinate along each of k directions that come in pairs of opposite ones, and
+ * as many fillers as make the row a multiple of eight: 8, 16, 24 and 32 floats. A sphere has its centre and radius. */
+enum { SPHERE_FLOATS = 4, VOLUME_FLOATS_MAX = 32 };
+
+/* The floats of a volume of this kind. */
+static inline size_t volume_floats(volume_kind kind) {
+    return kind == VOLUME_SPHERE ? (size_t)SPHERE_FLOATS : (size_t)LANES * (size_t)kind;
+}
+
+/* Nodes stand before their children, the first child right behind its parent. */
+typedef struct volume_node {
+    uint32_t second;   /* the second child; 0: it is a leaf */
+    uint32_t triangle; /* of a leaf */
+    uint32_t region;   /* of all its triangles; UINT32_MAX: of several */
+    uint8_t facing;    /* the orientations of all its triangles, joined by or */
+} volume_node;
+
+typedef struct volume_tree {
+    uint32_t vertex_count, triangle_count, node_count, depth;
+    const uint32_t (*triangles)[3];
+    volume_node *nodes;
+    float (*records)
+        [LANES]; /* per vertex: x y z 0 at the start, x y z 0 at the end, beside the frame's origin */
+    float *vertex_volumes; /* of k-DOPs, of what a vertex covers in the interval */
+    float *volumes;        /* of nodes */
+} volume_tree;
+
+/* As in the thesis, from the top: the range of the triangles' centres is halved along its longest axis, until each leaf
+ * has one triangle. Regions are parted first, so that no tree of a region has triangles of another one. False: no memory. */
+bool volume_tree_build(const cscd_mesh *mesh, const double *positions, const uint32_t *regions,
+                       volume_tree *out);
+void volume_tree_free(volume_tree *t);
+
+/* Takes over orientations of triangles, by which the search leaves out pairs as in culling; NULL: none are left out. */
+void volume_tree_orient(volume_tree *t, const uint8_t *orientations);
+
+/* What a search finds, in an order that is the same for all kinds but for what they leave out. */
+typedef struct volume_search {
+    uint32_t (*pairs)[2]; /* triangles whose volumes overlap, the smaller number first */
+    size_t count, capacity;
+    const bool *
+        keeps_adjacent; /* per region: pairs of its triangles that share a vertex are listed; NULL: none are */
+    uint64_t tests, adjacent; /* pairs of volumes; pairs that share a vertex, listed or not */
+    uint32_t (*stack)[2];
+    bool out_of_memory;
+} volume_search;
+
+/* False: no memory. */
+bool volume_search_open(const volume_tree *t, volume_search *out);
+void volume_search_close(volume_search *s);
+
+/* Makes room for more pairs. Called by kernels. */
+void volume_search_grow(volume_search *s);
+
+typedef struct volume_kernels {
+    /* Moves records and volumes to the interval, from the leaves to the root. */
+    void (*refit)(volume_tree *t, volume_kind kind, const double *x0, const double *x1);
+    /* Compares the tree with itself. */
+    void (*search)(const volume_tree *t, volume_kind kind, volume_search *s);
+} volume_kernels;
+
+DECLARE_KERNELS(volume_kernels);
