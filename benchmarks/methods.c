@@ -97,6 +97,6 @@ static bool run_scene(void *state, const replay_choices *o, const char *scene, j
 
 int main(int argument_count, char **arguments) {
     static const char *const options[] = {"--threads", NULL};
-    static const recording_program program = {"methods", help, options, NULL, run_scene, NULL};
+    static const recording_program program = {"methods", help, options, false, NULL, run_scene, NULL};
     return recording_program_main(&program, argument_count, arguments);
 }

@@ -23,7 +23,7 @@ static const char help[] =
     "  --simd LEVEL     auto (default), scalar, avx2, avx512, neon\n"
     "  --cache FOLDER   recordings and plans (default build/models)\n"
     "  --data FOLDER    more recordings, NAME.obj with NAME.pc2 (default: sequences/ in\n"
-    "                   CSCD_DATA, if that is set)\n";
+    "                   CSCD_DATA, if that is set; then also the cloth of frames/)\n";
 
 enum { METHODS = 3, QUICK_STRIDE = 10 };
 
@@ -191,6 +191,6 @@ static bool run_scene(void *state, const replay_choices *o, const char *scene, j
 int main(int argument_count, char **arguments) {
     static const char *const options[] = {"--simd", NULL};
     volume_summary summary = {.recordings = {0}};
-    const recording_program program = {"volumes", help, options, &summary, run_scene, print_summaries};
+    const recording_program program = {"volumes", help, options, true, &summary, run_scene, print_summaries};
     return recording_program_main(&program, argument_count, arguments);
 }

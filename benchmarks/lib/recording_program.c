@@ -11,6 +11,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
+
+enum { PATH_LENGTH = 4096 };
 
 static bool print_failure(const recording_program *program, const char *text) {
     fprintf(stderr, "%s: %s\n", program->name, text);
@@ -63,16 +66,47 @@ static bool list_data(const recording_program *program, replay_choices *o) {
     return true;
 }
 
+/* Pairs of frames that follow each other, and are named by the first one. */
+static const char *const cloth_frames[][2] = {{"cloth_ball92", "cloth_ball93"},
+                                              {"cloth_funnel227", "cloth_funnel228"}};
+
+/* Finds the frames of that name; returns whether there are some. */
+static bool find_cloth(const char *scene, char paths[2][PATH_LENGTH]) {
+    char *folder = bench_data_folder("frames");
+    bool found = false;
+    for (size_t i = 0; folder != NULL && i < sizeof cloth_frames / sizeof *cloth_frames; i++) {
+        if (strcmp(cloth_frames[i][0], scene) != 0) continue;
+        for (int k = 0; k < 2; k++) snprintf(paths[k], PATH_LENGTH, "%s/%s.ply", folder, cloth_frames[i][k]);
+        found = access(paths[0], F_OK) == 0;
+    }
+    free(folder);
+    return found;
+}
+
+static void list_cloth(replay_choices *o) {
+    char paths[2][PATH_LENGTH];
+    for (size_t i = 0; i < sizeof cloth_frames / sizeof *cloth_frames; i++) {
+        if (o->scene_count < RECORDINGS_MAX && find_cloth(cloth_frames[i][0], paths))
+            o->scenes[o->scene_count++] = cloth_frames[i][0];
+    }
+}
+
 static bool choose_scenes(const recording_program *program, replay_choices *o) {
     if (o->scene_count > 0) return true;
     for (size_t i = 0; i < sizeof own_scenes / sizeof *own_scenes; i += o->quick ? 2 : 1)
         o->scenes[o->scene_count++] = own_scenes[i];
-    return o->quick || list_data(program, o);
+    if (o->quick) return true;
+    if (!list_data(program, o)) return false;
+    if (program->takes_cloth) list_cloth(o);
+    return true;
 }
 
 bool recording_program_open(const replay_choices *o, const char *scene, recording_data *out,
                             io_error *error) {
     bool own = recording_is_own(scene);
+    char paths[2][PATH_LENGTH];
+    if (find_cloth(scene, paths))
+        return recording_data_open_frames(scene, paths[0], paths[1], o->thread_count, out, error);
     if (!own && o->data == NULL)
         return io_fail(error, "%s: neither --data nor CSCD_DATA names a folder with this recording", scene);
     if (!recording_data_open(own ? o->cache : o->data, scene, o->cache, o->thread_count, out, error))

@@ -19,6 +19,7 @@ typedef struct replay_choices {
 typedef struct recording_program {
     const char *name, *help;
     const char *const *options; /* those of --threads and --simd that it has, then NULL */
+    bool takes_cloth;           /* and the cloth of frames/ in CSCD_DATA, two frames each */
     void *state;
     /* Replays one recording, and writes its rows when out is not NULL. */
     bool (*run)(void *state, const replay_choices *o, const char *scene, json *out, io_error *error);

@@ -62,6 +62,16 @@ static bool read_frames(recording_data *r, const char *path, io_error *error) {
     return read;
 }
 
+static bool make_mesh(recording_data *r, const char *model, uint32_t thread_count, io_error *error) {
+    cscd_context_options options = cscd_context_defaults();
+    options.thread_count = thread_count;
+    const cscd_object_desc desc =
+        cscd_object_of_triangles(r->model.vertex_count, r->model.triangle_count, r->model.triangles);
+    return (cscd_context_create(&options, &r->context) == CSCD_OK &&
+            cscd_mesh_create(r->context, &desc, 1, &r->mesh) == CSCD_OK) ||
+           io_fail(error, "%s: the mesh could not be made", model);
+}
+
 static bool any_closed(const cscd_mesh *mesh) {
     for (uint32_t i = 0; i < cscd_mesh_component_count(mesh); i++) {
         if (cscd_mesh_component(mesh, i).closed_manifold) return true;
@@ -100,16 +110,42 @@ bool recording_data_open(const char *folder, const char *name, const char *cache
     bool good = make_recording(model, frames, name, error);
     timer_lap(&since, &r.made_ms);
     good = good && mesh_file_read(model, &r.model, error) && read_frames(&r, frames, error);
-    cscd_context_options options = cscd_context_defaults();
-    options.thread_count = thread_count;
-    const cscd_object_desc desc =
-        cscd_object_of_triangles(r.model.vertex_count, r.model.triangle_count, r.model.triangles);
-    if (good && (cscd_context_create(&options, &r.context) != CSCD_OK ||
-                 cscd_mesh_create(r.context, &desc, 1, &r.mesh) != CSCD_OK))
-        good = io_fail(error, "%s: the mesh could not be made", model);
+    good = good && make_mesh(&r, model, thread_count, error);
     timer_lap(&since, &ignored);
     good = good && make_plan(&r, folder, cache, error);
     timer_lap(&since, &r.made_ms);
+    if (good)
+        *out = r;
+    else
+        recording_data_close(&r);
+    return good;
+}
+
+/* Puts the positions of both files one behind the other. */
+static bool join_frames(recording_data *r, const char *end, io_error *error) {
+    mesh_file last = {0};
+    size_t size = (size_t)r->model.vertex_count * 3;
+    bool good = mesh_file_read(end, &last, error);
+    if (good && last.vertex_count != r->model.vertex_count)
+        good = io_fail(error, "%s: %u vertices, %u were expected", end, last.vertex_count,
+                       r->model.vertex_count);
+    if (good) r->frames = malloc(2 * size * sizeof *r->frames);
+    if (good && r->frames == NULL) good = io_fail(error, "%s: out of memory", end);
+    if (good) {
+        memcpy(r->frames, r->model.positions, size * sizeof *r->frames);
+        memcpy(r->frames + size, last.positions, size * sizeof *r->frames);
+        r->frame_count = 2;
+    }
+    mesh_file_free(&last);
+    return good;
+}
+
+bool recording_data_open_frames(const char *name, const char *start, const char *end, uint32_t thread_count,
+                                recording_data *out, io_error *error) {
+    recording_data r = {.frame_count = 0};
+    snprintf(r.name, sizeof r.name, "%s", name);
+    bool good = mesh_file_read(start, &r.model, error) && join_frames(&r, end, error) &&
+                make_mesh(&r, start, thread_count, error);
     if (good)
         *out = r;
     else

@@ -21,6 +21,10 @@ typedef struct recording_data {
  * it to the cache. */
 bool recording_data_open(const char *folder, const char *name, const char *cache, uint32_t thread_count,
                          recording_data *out, io_error *error);
+
+/* Two frames as mesh files, one interval; closed components or not, it has no plan. */
+bool recording_data_open_frames(const char *name, const char *start, const char *end, uint32_t thread_count,
+                                recording_data *out, io_error *error);
 void recording_data_close(recording_data *r);
 
 const double *recording_data_frame(const recording_data *r, uint32_t frame);
