@@ -113,7 +113,7 @@ OTHER_PROCESSES := $(foreach file,jobs/job_processes common/blas_kernels,src/too
 COMMON_SOURCES  := $(filter-out $(OTHER_PROCESSES) $(if $(filter 0,$(EXPAT)),$(filter-out $(WITHOUT_GIFTI),$(wildcard src/io/gifti/*.c)),$(WITHOUT_GIFTI)), \
                      $(wildcard src/io/*.c src/io/*/*.c src/tool/picture/*.c src/tool/common/*.c src/tool/answers/*.c \
                      src/tool/jobs/*.c src/tool/export/*.c src/tool/report/*.c))
-COMMAND_SOURCES := $(wildcard src/tool/*.c src/tool/check/*.c src/tool/replay/*.c src/tool/render/*.c src/tool/sense/*.c)
+COMMAND_SOURCES := $(wildcard src/tool/*.c $(patsubst %,src/tool/%/*.c,check preprocess replay render sense))
 NATIVE_SOURCES  := $(wildcard python/native/*.c)
 SUPPORT_SOURCES := $(filter-out tests/support/tool/tool_process$(if $(WINDOWS),,_windows).c,$(wildcard tests/support/*.c tests/support/*/*.c))
 # `rm -r runtime/baselines`, and its lines in runtime/detector/method_table.c: what needs them is not built then.

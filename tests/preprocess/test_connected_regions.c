@@ -147,7 +147,8 @@ static void check_patch(const tiled_body *b, patched *p, bool large) {
     assert_memory_equal(l->of_tile, before, b->tile_count * sizeof *before);
     assert_int_equal(l->regions.count, large ? 5 : 4);
     tiles_centroid(&set, &middle);
-    for (int k = 0; k < 3 && large; k++) assert_true(fabs(l->regions.points[4].rest[k] - middle.rest[k]) < 1e-12);
+    for (int k = 0; k < 3 && large; k++)
+        assert_true(fabs(l->regions.points[4].rest[k] - middle.rest[k]) < 1e-12);
     free(before);
 }
 

@@ -37,14 +37,14 @@ static int longest_axis(const body *b, double *low, double *length) {
 }
 
 /* Makes a body several times as long. */
-static void stretch(body *b, double times) {
+static void stretch_body(body *b, double times) {
     double low = 0.0, length;
     const int along = longest_axis(b, &low, &length);
     for (uint32_t v = 0; v < b->vertex_count; v++) b->positions[(size_t)v * 3 + (size_t)along] *= times;
 }
 
 /* Bends the longest axis to an arc of this angle. */
-static void bend(const body *b, double angle, double *out) {
+static void bend_body(const body *b, double angle, double *out) {
     double low = 0.0, length;
     const int along = longest_axis(b, &low, &length), side = (along + 1) % 3, other = (along + 2) % 3;
     for (uint32_t v = 0; v < b->vertex_count; v++) {
@@ -61,7 +61,7 @@ static void bend(const body *b, double angle, double *out) {
 
 static bending bending_of(body_kind kind, uint32_t triangles, double angle, int threads) {
     bending b = {.shape = body_of(kind, triangles)};
-    if (kind == BODY_CAPSULE) stretch(&b.shape, 3.0);
+    if (kind == BODY_CAPSULE) stretch_body(&b.shape, 3.0);
     cscd_context_options options = cscd_context_defaults();
     options.thread_count = (uint32_t)threads;
     assert_int_equal(cscd_context_create(&options, &b.context), CSCD_OK);
@@ -70,7 +70,7 @@ static bending bending_of(body_kind kind, uint32_t triangles, double angle, int 
     assert_int_equal(cscd_mesh_create(b.context, &desc, 1, &b.mesh), CSCD_OK);
     for (int f = 0; f < FRAMES; f++) {
         b.frames[f] = body_allocate((size_t)b.shape.vertex_count * 3, sizeof(double));
-        bend(&b.shape, angle * f / (FRAMES - 1), b.frames[f]);
+        bend_body(&b.shape, angle * f / (FRAMES - 1), b.frames[f]);
     }
     return b;
 }
@@ -165,7 +165,7 @@ static void frames_at_rest_change_nothing(void **state) {
 static void some_of_many_frames_count(void **state) {
     (void)state;
     bending b = bending_of(BODY_CAPSULE, 1000, 0.0, 1);
-    bend(&b.shape, 3.0, b.frames[FRAMES - 1]);
+    bend_body(&b.shape, 3.0, b.frames[FRAMES - 1]);
     cscd_plan *last = plan_of(&b, CSCD_METHOD_CHARGE, frames_of(&b), FRAMES),
               *without = plan_of(&b, CSCD_METHOD_CHARGE, frames_of(&b), FRAMES - 1);
     assert_int_equal(cscd_plan_region_count(without), 1);

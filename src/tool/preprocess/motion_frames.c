@@ -1,5 +1,5 @@
 /* Reads frames of a recording, evenly spaced. */
-#include "src/tool/common/motion_frames.h"
+#include "src/tool/preprocess/motion_frames.h"
 
 #include <stdlib.h>
 

@@ -1,5 +1,5 @@
 /* The report of a plan. */
-#include "src/tool/plan_report.h"
+#include "src/tool/preprocess/plan_report.h"
 
 #include "src/io/path_name.h"
 #include "src/tool/common/provenance.h"

@@ -5,7 +5,6 @@
 #include "src/tool/common/blas_kernels.h"
 #include "src/tool/common/command.h"
 #include "src/tool/common/methods.h"
-#include "src/tool/common/motion_frames.h"
 #include "src/tool/common/option_table.h"
 #include "src/tool/common/option_values.h"
 #include "src/tool/common/output_path.h"
@@ -13,14 +12,14 @@
 #include "src/tool/common/plan_source.h"
 #include "src/tool/common/shared_options.h"
 #include "src/tool/common/terminal.h"
-#include "src/tool/plan_report.h"
+#include "src/tool/preprocess/motion_frames.h"
+#include "src/tool/preprocess/plan_print.h"
+#include "src/tool/preprocess/plan_report.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-
-enum { LINES_MAX = 50 };
 
 typedef struct preprocess_options {
     recording_options source;
@@ -104,78 +103,6 @@ static const option_table table = {
         {"preprocess body.obj body.pc2 --method auto",
          "Make the plan for this motion, by the method that leaves the least to test."}}};
 
-static double total_area(const cscd_plan *plan) {
-    double area = 0.0;
-    for (uint32_t i = 0; i < cscd_plan_region_count(plan); i++) area += cscd_plan_region(plan, i).area;
-    return area;
-}
-
-static double percent_of(double part, double whole) {
-    return whole > 0.0 ? 100.0 * part / whole : 0.0;
-}
-
-static bool is_kept(const cscd_plan *plan, const cscd_compared_plan *c) {
-    return c->failure == NULL && c->method == cscd_plan_method(plan) &&
-           c->region_count == cscd_plan_region_count(plan);
-}
-
-static void print_components(const cscd_mesh *mesh, const cscd_plan *plan) {
-    uint32_t count = cscd_mesh_component_count(mesh);
-    for (uint32_t i = 0; i < count && i < LINES_MAX; i++)
-        printf("component %u: %u triangles, capacitance %.6g\n", i,
-               cscd_mesh_component(mesh, i).triangle_count, cscd_plan_capacitance(plan, i));
-    if (count > LINES_MAX) printf("and %u more components\n", count - LINES_MAX);
-}
-
-static void print_regions(const cscd_plan *plan) {
-    uint32_t count = cscd_plan_region_count(plan);
-    double whole = total_area(plan), seen = 0.0;
-    printf("%u region%s by method %s\n", count, count == 1 ? "" : "s",
-           cscd_method_name(cscd_plan_method(plan)));
-    printf("%6s %9s %9s %13s %16s   detector point\n", "region", "component", "triangles", "share of area",
-           "its point sees");
-    for (uint32_t i = 0; i < count; i++) {
-        cscd_region r = cscd_plan_region(plan, i);
-        const double *p = r.detector_point;
-        seen += r.visible_share * r.area;
-        if (i < LINES_MAX)
-            printf("%6u %9u %9u %11.1f %% %14.1f %%   (%.6g, %.6g, %.6g)\n", i, r.component, r.triangle_count,
-                   percent_of(r.area, whole), 100.0 * r.visible_share, p[0], p[1], p[2]);
-    }
-    if (count > LINES_MAX) printf("and %u more regions\n", count - LINES_MAX);
-    printf("seen in all: %.1f %% of the area\n", percent_of(seen, whole));
-}
-
-/* What method auto has compared, the best first to be read. */
-static void print_compared(const cscd_plan *plan) {
-    const uint32_t count = cscd_plan_compared_count(plan);
-    if (count == 0) return;
-    printf("%-10s %8s %30s\n", "method", "regions", "triangles left to test");
-    for (uint32_t i = 0; i < count; i++) {
-        const cscd_compared_plan c = cscd_plan_compared(plan, i);
-        char name[24];
-        snprintf(name, sizeof name, c.k > 0 ? "%s:%u" : "%s", cscd_method_name(c.method), c.k);
-        if (c.failure != NULL)
-            printf("%-10s %s\n", name, c.failure);
-        else
-            printf("%-10s %8u %28.1f %%%s\n", name, c.region_count, 100.0 * c.tested_share,
-                   is_kept(plan, &c) ? "   kept" : "");
-    }
-}
-
-static void print_plan(const preprocess_options *o, const recording *r, const cscd_plan *plan) {
-    cscd_preprocess_timings t = cscd_plan_timings(plan);
-    uint32_t components = cscd_mesh_component_count(r->mesh);
-    printf("%s: %u vertices, %u triangles, %u component%s\n", o->source.model_path,
-           cscd_mesh_vertex_count(r->mesh), cscd_mesh_triangle_count(r->mesh), components,
-           components == 1 ? "" : "s");
-    if (cscd_plan_method(plan) == CSCD_METHOD_CHARGE) print_components(r->mesh, plan);
-    print_compared(plan);
-    print_regions(plan);
-    printf("seconds: assembly %.3f, solve %.3f, regions %.3f, total %.3f\n", t.assembly_ms * 1e-3,
-           t.solve_ms * 1e-3, t.regions_ms * 1e-3, t.total_ms * 1e-3);
-}
-
 static bool save_plan(const preprocess_options *o, const recording *r, const double *positions,
                       const cscd_plan *plan, io_error *error) {
     uint32_t count = cscd_mesh_triangle_count(r->mesh);
@@ -208,7 +135,7 @@ static bool print_and_save(const preprocess_options *o, const recording *r, cons
                            const cscd_plan *plan, io_error *error) {
     if (!save_plan(o, r, positions, plan, error)) return false;
     if (!o->quiet) {
-        print_plan(o, r, plan);
+        plan_print(o->source.model_path, r->mesh, plan);
         printf("written: %s\n", o->output_path);
     }
     return save_report(o, r, positions, plan, error);
