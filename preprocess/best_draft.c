@@ -25,16 +25,17 @@ static void add_timings(const cscd_preprocess_timings *from, cscd_preprocess_tim
     to->total_ms += from->total_ms;
 }
 
-/* The kernels and times of what has been compared go with the draft that is kept. */
-static void keep_better(plan_draft *d, plan_draft *best, double share, double *least) {
+/* The kernels and times of what has been compared go with the draft that is kept; true: that is d. */
+static bool keep_better(plan_draft *d, plan_draft *best, double share, double *least) {
     const bool better = best->mesh == NULL || share < clearly_less * *least;
     plan_draft *kept = better ? d : best, *other = better ? best : d;
     add_timings(&other->timings, &kept->timings);
     if (kept->kernels.used == NULL) kept->kernels = other->kernels;
     plan_draft_free(other);
-    if (!better) return;
+    if (!better) return false;
     *best = *d;
     *least = share;
+    return true;
 }
 
 /* Tries one method; of the failures only those of the charge leave something to compare. */
@@ -48,8 +49,9 @@ static cscd_status try_method(const plan_draft *given, plan_candidates *candidat
     if (status == CSCD_OK) status = find_tested_share(&d, &candidate.tested_share);
     if (status == CSCD_OK) {
         candidate.region_count = d.region_count;
+        candidate.kept = keep_better(&d, best, candidate.tested_share, least);
+        for (uint32_t i = 0; i < candidates->count && candidate.kept; i++) candidates->items[i].kept = false;
         candidates->items[candidates->count++] = candidate;
-        keep_better(&d, best, candidate.tested_share, least);
         return CSCD_OK;
     }
     plan_draft_free(&d);

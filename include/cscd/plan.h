@@ -49,21 +49,20 @@ typedef enum cscd_charge_solver {
 /* Options of a plan; start from cscd_plan_defaults. */
 typedef struct cscd_plan_options {
     uint32_t struct_size; /* set by cscd_plan_defaults */
-    cscd_method
-        method;    /* CHARGE by default, or KMEANS, or SINGLE; or AUTO: the one of these that leaves the least
-                            * to a step, as cscd_plan_compared tells, and the plan is then of that method */
-    uint32_t k;    /* KMEANS: how many regions all components have together, 4 by default */
-    uint32_t seed; /* KMEANS: of the random starts, 1 by default */
+    /* CHARGE by default, or KMEANS, or SINGLE; or AUTO: the one of these that leaves the least to a step, as
+     * cscd_plan_compared tells, and the plan is then of that method. */
+    cscd_method method;
+    uint32_t k;            /* KMEANS: how many regions all components have together, 4 by default */
+    uint32_t seed;         /* KMEANS: of the random starts, 1 by default */
     double threshold;      /* CHARGE: the share of the triangles, those of least density, along which
                            * cuts run; in (0,1), 0.1 by default */
     uint64_t variant;      /* 0 by default; cscd/research.h has others to compare with */
     uint64_t memory_limit; /* CHARGE: bytes that the solution may take; 0, the default: what the system has */
     cscd_charge_solver charge_solver; /* CHARGE: TREE by default */
     uint32_t frame_count;             /* of frames; 0 by default */
-    const cscd_view *const
-        *frames; /* CHARGE, AUTO: positions of the mesh in a motion that the plan is made for, each as in
-                                       * cscd_plan_create: what the detector points see in them counts as much as what they see
-                                       * at rest. Of more than 8 frames, 8 count, evenly spaced. NULL by default */
+    /* CHARGE, AUTO: positions of the mesh in a motion that the plan is made for, each as in cscd_plan_create: what the detector
+     * points see in them counts as much as what they see at rest. Of more than 8 frames, 8 count, evenly spaced. NULL by default. */
+    const cscd_view *const *frames;
 } cscd_plan_options;
 
 /* The default options. */
@@ -191,7 +190,8 @@ typedef struct cscd_compared_plan {
     cscd_method method;    /* CHARGE, SINGLE or KMEANS */
     uint32_t k;            /* KMEANS: that of the options, 4, 8 or 16 for each component; 0 otherwise */
     uint32_t region_count; /* 0: the charge could not be solved; see failure */
-    uint32_t reserved;     /* 0 */
+    bool kept;             /* the plan is this one */
+    uint8_t reserved[3];   /* 0 */
     /* Predicted, in [0,1]: the share of the triangles that a step has to look at with others of their component, because
      * they lie at the border of their region or because its detector point does not see them well; the mean of the rest and
      * all frames of the options. The plan has the least, but charge is kept where another has less by no more than 2 %. */

@@ -89,8 +89,8 @@ FIELDS(preprocess_timings, FIELD(cscd_preprocess_timings, assembly_ms),
        FIELD(cscd_preprocess_timings, total_ms))
 FIELDS(plan_info, FIELD(cscd_plan_info, charge_kernels), FIELD(cscd_plan_info, better_kernels))
 FIELDS(compared_plan, FIELD(cscd_compared_plan, method), FIELD(cscd_compared_plan, k),
-       FIELD(cscd_compared_plan, region_count), FIELD(cscd_compared_plan, tested_share),
-       FIELD(cscd_compared_plan, failure))
+       FIELD(cscd_compared_plan, region_count), FIELD(cscd_compared_plan, kept),
+       FIELD(cscd_compared_plan, tested_share), FIELD(cscd_compared_plan, failure))
 FIELDS(object_rule, FIELD(cscd_object_rule, category), FIELD(cscd_object_rule, mask),
        FIELD(cscd_object_rule, thickness), FIELD(cscd_object_rule, thickness_class),
        FIELD(cscd_object_rule, self), FIELD(cscd_object_rule, obstacle_pairs))

@@ -233,8 +233,10 @@ static void keeps_the_best(void **state) {
             const cscd_compared_plan found = cscd_plan_compared(best, c);
             assert_true(found.failure == NULL && found.region_count > 0);
             least = fmin(least, found.tested_share);
-            if (found.method == cscd_plan_method(best) && found.region_count == cscd_plan_region_count(best))
-                kept = fmin(kept, found.tested_share);
+            if (!found.kept) continue;
+            assert_true(kept == 2.0 && found.method == cscd_plan_method(best));
+            assert_int_equal(found.region_count, cscd_plan_region_count(best));
+            kept = found.tested_share;
         }
         assert_true(kept <= least / 0.98);
         if (cscd_plan_method(best) == CSCD_METHOD_CHARGE) {

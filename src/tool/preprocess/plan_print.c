@@ -15,11 +15,6 @@ static double percent_of(double part, double whole) {
     return whole > 0.0 ? 100.0 * part / whole : 0.0;
 }
 
-static bool is_kept(const cscd_plan *plan, const cscd_compared_plan *c) {
-    return c->failure == NULL && c->method == cscd_plan_method(plan) &&
-           c->region_count == cscd_plan_region_count(plan);
-}
-
 static void print_components(const cscd_mesh *mesh, const cscd_plan *plan) {
     uint32_t count = cscd_mesh_component_count(mesh);
     for (uint32_t i = 0; i < count && i < LINES_MAX; i++)
@@ -60,7 +55,7 @@ static void print_compared(const cscd_plan *plan) {
             printf("%-10s %s\n", name, c.failure);
         else
             printf("%-10s %8u %28.1f %%%s\n", name, c.region_count, 100.0 * c.tested_share,
-                   is_kept(plan, &c) ? "   kept" : "");
+                   c.kept ? "   kept" : "");
     }
 }
 
