@@ -11,6 +11,7 @@
 #include "src/mesh/surface.h"
 #include "src/mesh/views.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -41,6 +42,15 @@ static cscd_status check_options(cscd_context *context, const cscd_plan_options 
     if (options->variant > CSCD_PLAN_VARIANT_PUBLISHED)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "unknown variant %llu of the plan",
                             (unsigned long long)options->variant);
+    return CSCD_OK;
+}
+
+static cscd_status check_stiffness(const cscd_mesh *mesh, const double *stiffness) {
+    for (uint32_t t = 0; stiffness != NULL && t < mesh->triangle_count; t++)
+        if (!(stiffness[t] > 0.0 && stiffness[t] <= DBL_MAX))
+            return context_fail(mesh->context, CSCD_INVALID_ARGUMENT,
+                                "the stiffness of triangle %u is %g, expected a positive finite number", t,
+                                stiffness[t]);
     return CSCD_OK;
 }
 
@@ -152,6 +162,7 @@ static cscd_status plan_from_positions(const cscd_mesh *mesh, const double *posi
     plan_candidates candidates;
     plan_draft d = {0};
     cscd_status status = positions_check(context, positions, mesh->vertex_count, "positions");
+    if (status == CSCD_OK) status = check_stiffness(mesh, options->stiffness);
     if (status == CSCD_OK) status = plan_frames_read(context, mesh, options, &frames);
     if (status == CSCD_OK) status = make_draft(mesh, positions, &frames, options, &candidates, &d);
     if (status == CSCD_OK) status = plan_from_draft(&d, &candidates, out);

@@ -27,6 +27,7 @@ static cscd_status find_charge_regions(plan_draft *d) {
     options.published = d->options.variant == CSCD_PLAN_VARIANT_PUBLISHED;
     options.frames = d->frames->items;
     options.frame_count = d->frames->count;
+    options.stiffness = d->options.stiffness;
     return regions_from_charge(d->mesh, d->positions, d->charges, &options, d->regions, &d->region_count,
                                &d->detector_points);
 }

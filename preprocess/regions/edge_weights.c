@@ -1,6 +1,7 @@
-/* Weighs edges by their charge. */
+/* Weighs edges by their charge, and by how stiff the material is. */
 #include "preprocess/regions/edge_weights.h"
 
+#include "preprocess/regions/stiffness.h"
 #include "src/mesh/surface.h"
 
 /* An edge costs its length where the charge is high, and this share of it where the charge is lowest. As published the cost falls over
@@ -16,11 +17,14 @@ static double rank_beside(const cscd_mesh *mesh, const double *ranks, uint32_t e
 }
 
 void weigh_edges(const cscd_mesh *mesh, const double *positions, const double *equalized,
-                 const region_options *options, double *weights) {
+                 const double *stiffness_shares, const region_options *options, double *weights) {
     const double crease = options->published ? published_crease : usual_crease;
     const double high = options->published ? 1.0 : fmin(1.0, crease_ranks * options->threshold);
     for (uint32_t e = 0; e < mesh->edge_count; e++) {
         const double rank = fmin(1.0, rank_beside(mesh, equalized, e) / high);
-        weights[e] = surface_edge_length(mesh, positions, e) * (1.0 - (1.0 - crease) * (1.0 - rank));
+        double share = 1.0 - (1.0 - crease) * (1.0 - rank);
+        if (stiffness_shares != NULL)
+            share = fmin(share, fmax(crease, stiffness_beside(mesh, stiffness_shares, e)));
+        weights[e] = surface_edge_length(mesh, positions, e) * share;
     }
 }

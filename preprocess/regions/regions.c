@@ -4,6 +4,7 @@
 #include "preprocess/regions/cut_selection.h"
 #include "preprocess/regions/edge_weights.h"
 #include "preprocess/regions/equalize.h"
+#include "preprocess/regions/stiffness.h"
 #include "src/mesh/surface.h"
 
 #include <string.h>
@@ -21,7 +22,7 @@ region_options region_options_defaults(void) {
 typedef struct region_work {
     const cscd_mesh *mesh;
     const double *positions;
-    double *areas, *equalized, *weights;
+    double *areas, *equalized, *weights, *stiffness; /* stiffness: shares; NULL: as stiff everywhere */
     uint32_t *regions, *list, *scratch, *tile_of;
     bool *marked;
     dual_graph graph;
@@ -55,6 +56,14 @@ static void free_work(region_work *w) {
     dual_graph_free(w->mesh, &w->graph);
     clusters_free(w->mesh, &w->clusters);
     cut_list_free(w->mesh, &w->cuts);
+    context_free(w->mesh->context, w->stiffness);
+}
+
+static cscd_status read_stiffness(region_work *w, const region_options *o) {
+    if (o->published || o->stiffness == NULL) return CSCD_OK;
+    w->stiffness = context_reserve(w->mesh->context, w->mesh->triangle_count, sizeof *w->stiffness);
+    return w->stiffness != NULL ? stiffness_shares(w->mesh, o->stiffness, w->stiffness)
+                                : context_out_of_memory(w->mesh->context);
 }
 
 /* As published: clusters of low charge grow until they part the component. */
@@ -138,8 +147,9 @@ cscd_status regions_from_charge(const cscd_mesh *mesh, const double *positions, 
     body_regions found = {.of_triangle = w.regions};
     status = equalize(mesh, density, chosen.published, w.equalized);
     if (status == CSCD_OK) status = dual_graph_build(mesh, &w.graph);
+    if (status == CSCD_OK) status = read_stiffness(&w, &chosen);
     if (status == CSCD_OK) {
-        weigh_edges(mesh, positions, w.equalized, &chosen, w.weights);
+        weigh_edges(mesh, positions, w.equalized, w.stiffness, &chosen, w.weights);
         status = chosen.published ? find_published(&w, &chosen) : find_regions(&w, &chosen, &found);
     }
     if (status == CSCD_OK)

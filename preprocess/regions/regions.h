@@ -13,6 +13,8 @@ typedef struct region_options {
     const double *const
         *frames;          /* positions in frames of a motion, in which triangles are seen or not as at rest */
     uint32_t frame_count; /* at most FRAMES_MOST; default 0 */
+    const double *
+        stiffness; /* of each triangle, positive and finite, unless the rules are the published ones; default NULL */
 } region_options;
 
 region_options region_options_defaults(void);

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 import os
 import warnings
-from typing import Any, Callable, Dict, Optional, Tuple, Union
+from typing import Any, Callable, Dict, List, Optional, Tuple, Union
 
 import numpy as np
 
@@ -47,7 +47,8 @@ class Plan:
 
     @classmethod
     def charge(cls, mesh: Mesh, V: Any, *, threshold: float = 0.1, solver: str = "tree", memory_limit: int = 0,
-               threads: int = 0, progress: Optional[Callable[[str, float], Any]] = None) -> Plan:
+               stiffness: Any = None, frames: Any = None, threads: int = 0,
+               progress: Optional[Callable[[str, float], Any]] = None) -> Plan:
         """Cuts a mesh by its charge density (docs/theory/charge.md; Yeh 2012).
 
         Parameters
@@ -61,6 +62,12 @@ class Plan:
             "dense": exactly, by LAPACK, with 4 bytes for each pair of triangles and time with the cube of their number.
         memory_limit : int
             Bytes that the solution may take; 0: what the system has.
+        stiffness : (t,) float64, optional
+            How stiff the material is at each triangle, positive and finite, in any unit: borders of regions run in soft
+            places, and a part beyond a soft place is given a detector point of its own.
+        frames : (f, n, 3) or a list of (n, 3), optional
+            Positions in a motion that the plan is made for: what the detector points see in them counts as well. Of many
+            some count, evenly spaced.
 
         Warns
         -----
@@ -74,8 +81,17 @@ class Plan:
         """
         if not isinstance(solver, str) or solver not in _SOLVERS:
             raise ValueError(f"solver: expected one of {', '.join(_SOLVERS)}; got {solver!r}")
+        if not isinstance(mesh, Mesh):
+            raise ValueError(f"mesh: expected a Mesh, got {type(mesh).__name__}")
+        members: Dict[str, int] = {}
+        if stiffness is not None:
+            values = cls._stiffness(mesh, stiffness)
+            members["stiffness"] = address_of(values)
+        if frames is not None:
+            kept = cls._frames(mesh, frames)
+            members["frames"], members["frame_count"] = address_of(kept[0]), len(kept[0])
         plan = cls._create(mesh, V, threads, progress, method=code_of("method", "charge"), threshold=threshold,
-                           charge_solver=_SOLVERS[solver], memory_limit=memory_limit)
+                           charge_solver=_SOLVERS[solver], memory_limit=memory_limit, **members)
         better = plan.better_kernels
         if better is not None:
             warnings.warn(f"OpenBLAS ran its kernels for {plan.charge_kernels}, which are slow on this processor: with "
@@ -143,6 +159,23 @@ class Plan:
         if not library.cscdpy_plan_write(os.fsencode(path), self.mesh.pointer, address_of(self.rest), self.pointer,
                                          ctypes.addressof(error)):
             raise OSError(error.value.decode(errors="replace"))
+
+    @staticmethod
+    def _stiffness(mesh: Mesh, stiffness: Any) -> Array:
+        values = as_floats("stiffness", stiffness, "an array of numbers")
+        if values.shape != (mesh.triangle_count,):
+            raise ValueError(f"stiffness: expected shape {(mesh.triangle_count,)}, got {values.shape}")
+        return np.ascontiguousarray(values, np.float64)
+
+    @staticmethod
+    def _frames(mesh: Mesh, frames: Any) -> List[Array]:
+        """The addresses of views, first, and what keeps them alive."""
+        if not isinstance(frames, (list, tuple, np.ndarray)):
+            raise ValueError(f"frames: expected an array (f, n, 3) or a list of arrays (n, 3), got {type(frames).__name__}")
+        count = sum(mesh.vertex_counts)
+        packed = [np.ascontiguousarray(as_positions(f"frames[{i}]", frame, count)) for i, frame in enumerate(frames)]
+        views = [views_of("frames", frame, mesh.vertex_counts)[0] for frame in packed]
+        return [np.array([address_of(view) for view in views], np.uintp), *views, *packed]
 
     @staticmethod
     def _check_parts(mesh: Mesh, arrays: Dict[str, Array]) -> None:

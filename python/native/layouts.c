@@ -78,7 +78,8 @@ FIELDS(component, FIELD(cscd_component, closed_manifold), FIELD(cscd_component, 
 FIELDS(plan_options, FIELD(cscd_plan_options, struct_size), FIELD(cscd_plan_options, method),
        FIELD(cscd_plan_options, k), FIELD(cscd_plan_options, seed), FIELD(cscd_plan_options, threshold),
        FIELD(cscd_plan_options, variant), FIELD(cscd_plan_options, memory_limit),
-       FIELD(cscd_plan_options, charge_solver))
+       FIELD(cscd_plan_options, charge_solver), FIELD(cscd_plan_options, frame_count),
+       FIELD(cscd_plan_options, frames), FIELD(cscd_plan_options, stiffness))
 FIELDS(plan_parts, FIELD(cscd_plan_parts, method), FIELD(cscd_plan_parts, region_count),
        FIELD(cscd_plan_parts, triangle_regions), FIELD(cscd_plan_parts, detector_points),
        FIELD(cscd_plan_parts, charges), FIELD(cscd_plan_parts, capacitances))

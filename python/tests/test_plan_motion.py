@@ -1,0 +1,58 @@
+"""Plans for a motion: how stiff the material is, and positions in frames."""
+
+from __future__ import annotations
+
+from typing import Any, List
+
+import numpy as np
+import pytest
+
+import cscd
+import oracle
+
+SCENE = oracle.make_scene("noisy sphere", 1)
+
+
+def labels(**options: Any) -> Any:
+    """The regions of a plan of the scene."""
+    return cscd.Plan.charge(cscd.Mesh(SCENE.F), SCENE.x0, **options).triangle_regions
+
+
+def test_uniform_stiffness_changes_nothing() -> None:
+    plain = labels()
+    for values in (np.ones(len(SCENE.F)), np.full(len(SCENE.F), 3, np.int64), [0.5] * len(SCENE.F)):
+        assert np.array_equal(labels(stiffness=values), plain)
+
+
+def test_bad_stiffness_is_refused() -> None:
+    for bad in (0.0, -1.0, np.inf, np.nan):
+        values = np.ones(len(SCENE.F))
+        values[7] = values[9] = bad
+        with pytest.raises(ValueError) as caught:
+            labels(stiffness=values)
+        assert f"the stiffness of triangle 7 is {bad:g}, expected a positive finite number" in str(caught.value).replace("-nan", "nan")
+    others: List[Any] = [1.0, np.ones(3), np.ones((len(SCENE.F), 1)), "soft"]
+    for other in others:
+        with pytest.raises(ValueError) as caught:
+            labels(stiffness=other)
+        assert str(caught.value).startswith("stiffness: expected ")
+
+
+def test_frames_at_rest_change_nothing() -> None:
+    plain = labels()
+    assert np.array_equal(labels(frames=[]), plain)
+    assert np.array_equal(labels(frames=[SCENE.x0]), plain)
+    assert np.array_equal(labels(frames=np.stack([SCENE.x0, SCENE.x0])), plain)
+
+
+def test_bad_frames_are_refused() -> None:
+    others: List[Any] = [3, "frames", SCENE.x0, [SCENE.x0, SCENE.x0[1:]], [None]]
+    for other in others:
+        with pytest.raises(ValueError) as caught:
+            labels(frames=other)
+        assert str(caught.value).startswith("frames")
+    beyond = SCENE.x0.copy()
+    beyond[2, 1] = np.nan
+    with pytest.raises(ValueError) as caught:
+        labels(frames=[SCENE.x0, beyond])
+    assert "frames[1]" in str(caught.value)
