@@ -64,8 +64,9 @@ typedef struct cscd_plan_options {
      * points see in them counts as much as what they see at rest. Of more than 8 frames, 8 count, evenly spaced. NULL by default. */
     const cscd_view *const *frames;
     /* CHARGE, AUTO: how stiff the material is at each triangle, positive and finite, in any unit, since only ratios within a component
-     * count: borders of regions run in soft places, and a part beyond a soft place is given a detector point of its own. NULL, the
-     * default: as stiff everywhere. INVALID_ARGUMENT names the first triangle whose value is not positive and finite. */
+     * count: what is softer than the stiffer half of its component's area is soft. Borders of regions run in soft places, and a part
+     * beyond a soft place is given a detector point of its own. NULL, the default: as stiff everywhere. INVALID_ARGUMENT names the
+     * first triangle whose value is not positive and finite. */
     const double *stiffness;
 } cscd_plan_options;
 

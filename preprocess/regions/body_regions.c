@@ -156,7 +156,7 @@ static double seen_area(const body_work *w, const body_regions *regions, uint32_
     return seen;
 }
 
-/* Takes the regions back where the centroid of the whole sees as much. */
+/* Takes the regions back where the centroid of the whole sees as much; where the material is soft in places, only where it sees more. */
 static cscd_status keep_better(const body_work *w, body_regions *regions, uint32_t first) {
     const tile_component *c = &w->component;
     const uint32_t count = regions->count - first;
@@ -166,7 +166,7 @@ static cscd_status keep_better(const body_work *w, body_regions *regions, uint32
     if (status != CSCD_OK) return status;
     const double seen_whole = seen_area(w, regions, first);
     const uint32_t whole = --regions->count;
-    if (seen > seen_whole || (seen == seen_whole && count == 1)) {
+    if (seen > seen_whole || (seen == seen_whole && (count == 1 || w->g.stiffness != NULL))) {
         for (uint32_t i = 0; i < c->count; i++)
             regions->of_triangle[c->list[i]] = w->room->scratch[c->list[i]];
         return CSCD_OK;

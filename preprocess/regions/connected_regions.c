@@ -76,7 +76,7 @@ void labelling_connect(tile_labelling *l) {
             const tile_set set = {l->g, l->nodes + odd.begin, odd.end - odd.begin};
             sight_point middle;
             tiles_centroid(&set, &middle);
-            labelling_add(l, &middle);
+            labelling_add(l, &middle, tiles_nearest(&set, middle.rest));
         }
         labelling_give(l, l->nodes + odd.begin, odd.end - odd.begin, region);
     }

@@ -8,6 +8,7 @@
 typedef struct cover_work {
     tile_labelling *l;
     medial_points candidates;
+    soft_paths paths;         /* from the tiles that candidates touch, a row for each */
     double *left;             /* of each tile: its blindness from the best point so far */
     uint32_t *queue, *before; /* tiles; their regions before a step */
     bool *reached;
@@ -36,7 +37,7 @@ static double gain_of(cover_work *w, uint32_t candidate, bool takes) {
     w->reached[w->queue[0]] = true;
     for (uint32_t next = 0; next < end; next++) {
         const uint32_t t = w->queue[next];
-        const double blindness = tile_blindness(g, t, point);
+        const double blindness = soft_paths_blindness(&w->paths, candidate, t, tile_blindness(g, t, point));
         if (blindness >= 1.0) continue;
         if (blindness < w->left[t]) {
             gain += g->items[t].area * (w->left[t] - blindness);
@@ -66,7 +67,7 @@ static bool add_candidate(cover_work *w) {
         best = c;
     }
     if (most < l->prices.region * l->g->area || l->regions.count == REGIONS_MOST) return false;
-    labelling_add(l, &w->candidates.points[best]);
+    labelling_add(l, &w->candidates.points[best], w->candidates.tiles[best]);
     gain_of(w, best, true);
     return true;
 }
@@ -74,8 +75,7 @@ static bool add_candidate(cover_work *w) {
 /* What is left to see, by the points as they are. */
 static void find_left(cover_work *w) {
     const tile_labelling *l = w->l;
-    for (uint32_t t = 0; t < l->g->count; t++)
-        w->left[t] = tile_blindness(l->g, t, &l->regions.points[l->of_tile[t]]);
+    for (uint32_t t = 0; t < l->g->count; t++) w->left[t] = labelling_blindness(l, t, l->of_tile[t]);
 }
 
 /* ---- steps ----------------------------------------------------------------------------------------------- */
@@ -88,23 +88,34 @@ static void settle_cover(cover_work *w, int rounds) {
     }
 }
 
+/* What a region does not see. */
+static double unseen_of(tile_labelling *l, uint32_t region) {
+    const tile_set set = labelling_tiles(l, region, region);
+    const sight_point *point = &l->regions.points[region];
+    return tiles_unseen(&set, point) + soft_paths_unseen(&l->paths, region, &set, point);
+}
+
+/* What two regions as one cost. */
+static double cost_of_both(tile_labelling *l, uint32_t a, uint32_t b) {
+    const tile_set set = labelling_tiles(l, a, b);
+    sight_point point;
+    tiles_centroid(&set, &point);
+    const double cost = tiles_best_point(&set, &point);
+    soft_paths_set(&l->paths, REGIONS_MOST, tiles_nearest(&set, point.rest));
+    return cost + soft_paths_unseen(&l->paths, REGIONS_MOST, &set, &point);
+}
+
 /* The two regions that cost the least as one, against what they cost now; false: none cost less. */
 static bool find_pair(cover_work *w, uint32_t *first, uint32_t *second) {
     tile_labelling *l = w->l;
     double least = 0.0;
-    sight_point point;
     for (uint32_t a = 0; a < l->regions.count; a++) {
         for (uint32_t b = a + 1; b < l->regions.count; b++) {
             const double border = labelling_border(l, a, b);
             if (border < 0.0) continue;
-            tile_set set = labelling_tiles(l, a, a);
-            double change =
-                -border - l->prices.region * l->g->area - tiles_unseen(&set, &l->regions.points[a]);
-            set = labelling_tiles(l, b, b);
-            change -= tiles_unseen(&set, &l->regions.points[b]);
-            set = labelling_tiles(l, a, b);
-            tiles_centroid(&set, &point);
-            change += tiles_best_point(&set, &point);
+            double change = -border - l->prices.region * l->g->area - unseen_of(l, a);
+            change -= unseen_of(l, b);
+            change += cost_of_both(l, a, b);
             if (change >= least) continue;
             least = change;
             *first = a;
@@ -145,7 +156,7 @@ static bool try_step(cover_work *w, cover_step *step, uint32_t region) {
     if (!step(w, region)) return false;
     settle_cover(w, 2);
     if (labelling_cost(l) < cost) return true;
-    l->regions = regions;
+    labelling_take_back(l, &regions);
     memcpy(l->of_tile, w->before, l->g->count * sizeof *w->before);
     return false;
 }
@@ -175,6 +186,15 @@ static void choose_regions(cover_work *w) {
     for (int round = 0; round < ROUNDS_MOST && improve_cover(w); round++) continue;
 }
 
+static cscd_status find_candidates(cover_work *w) {
+    tile_labelling *l = w->l;
+    cscd_status status = medial_points_find(l->g, l->regions.points[0].rest, &w->candidates);
+    if (status == CSCD_OK) status = soft_paths_create(l->g, w->candidates.count, &w->paths);
+    for (uint32_t c = 0; c < w->candidates.count && status == CSCD_OK; c++)
+        soft_paths_set(&w->paths, c, w->candidates.tiles[c]);
+    return status;
+}
+
 cscd_status cover_find(tile_labelling *l) {
     cscd_context *context = l->g->context;
     cover_work w = {.l = l};
@@ -182,10 +202,12 @@ cscd_status cover_find(tile_labelling *l) {
     const tile_set all = labelling_tiles(l, 0, 0);
     tiles_centroid(&all, &l->regions.points[0]);
     tiles_best_point(&all, &l->regions.points[0]);
+    labelling_seat(l, 0);
     cscd_status status = CSCD_OK;
-    if (tiles_unseen(&all, &l->regions.points[0]) > l->prices.region * l->g->area) {
-        status = medial_points_find(l->g, l->regions.points[0].rest, &w.candidates);
+    if (unseen_of(l, 0) > l->prices.region * l->g->area) {
+        status = find_candidates(&w);
         if (status == CSCD_OK) choose_regions(&w);
+        soft_paths_destroy(&w.paths);
         medial_points_free(l->g, &w.candidates);
     }
     context_free_all(context, list_arrays(&w));

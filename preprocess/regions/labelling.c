@@ -11,6 +11,7 @@ static array_list list_arrays(tile_labelling *l) {
 cscd_status labelling_create(const tile_graph *g, const labelling_prices *prices, tile_labelling *out) {
     *out = (tile_labelling){.g = g, .prices = *prices, .regions.count = 1};
     cscd_status status = min_cut_create(g->context, &g->flow, &out->cut);
+    if (status == CSCD_OK) status = soft_paths_create(g, REGIONS_MOST + 1, &out->paths);
     if (status == CSCD_OK && !context_allocate_all(g->context, list_arrays(out)))
         status = context_out_of_memory(g->context);
     if (status != CSCD_OK) labelling_destroy(out);
@@ -20,6 +21,7 @@ cscd_status labelling_create(const tile_graph *g, const labelling_prices *prices
 void labelling_destroy(tile_labelling *l) {
     if (l->g == NULL) return;
     context_free_all(l->g->context, list_arrays(l));
+    soft_paths_destroy(&l->paths);
     min_cut_destroy(&l->cut);
     *l = (tile_labelling){0};
 }
@@ -42,7 +44,7 @@ static double tile_cost(const tile_labelling *l, uint32_t t, uint32_t region) {
     double square = 0.0;
     for (int k = 0; k < 3; k++)
         square += (item->centroid[k] - point->rest[k]) * (item->centroid[k] - point->rest[k]);
-    return item->area * (tile_blindness(l->g, t, point) + distance_price * square);
+    return item->area * (labelling_blindness(l, t, region) + distance_price * square);
 }
 
 static double link_cost(const tile_labelling *l, uint32_t link) {
@@ -87,16 +89,36 @@ static void give_tile(tile_labelling *l, uint32_t t, uint32_t region) {
 }
 
 void labelling_touch(tile_labelling *l) {
-    for (uint32_t r = 0; r < l->regions.count; r++) note_change(l, r);
+    for (uint32_t r = 0; r < l->regions.count; r++) {
+        note_change(l, r);
+        labelling_seat(l, r);
+    }
 }
 
 void labelling_give(tile_labelling *l, const uint32_t *tiles, uint32_t count, uint32_t region) {
     for (uint32_t i = 0; i < count; i++) give_tile(l, tiles[i], region);
 }
 
-void labelling_add(tile_labelling *l, const sight_point *point) {
+static void place_seat(tile_labelling *l, uint32_t region, uint32_t seat) {
+    l->regions.seats[region] = seat;
+    soft_paths_set(&l->paths, region, seat);
+}
+
+void labelling_seat(tile_labelling *l, uint32_t region) {
+    if (l->paths.rows == NULL) return;
+    const tile_set set = labelling_tiles(l, region, region);
+    if (set.count > 0) place_seat(l, region, tiles_nearest(&set, l->regions.points[region].rest));
+}
+
+void labelling_take_back(tile_labelling *l, const labelled_regions *before) {
+    l->regions = *before;
+    for (uint32_t r = 0; r < l->regions.count; r++) place_seat(l, r, l->regions.seats[r]);
+}
+
+void labelling_add(tile_labelling *l, const sight_point *point, uint32_t seat) {
     labelled_regions *r = &l->regions;
     r->points[r->count] = *point;
+    place_seat(l, r->count, seat);
     r->moved[r->count] = r->expanded[r->count] = 0;
     note_change(l, r->count++);
 }
@@ -108,6 +130,7 @@ static void take_number(tile_labelling *l, uint32_t number) {
     for (uint32_t t = 0; t < l->g->count && number != last; t++)
         if (l->of_tile[t] == last) l->of_tile[t] = number;
     r->points[number] = r->points[last];
+    place_seat(l, number, r->seats[last]);
     r->changed[number] = r->changed[last];
     r->moved[number] = r->moved[last];
     r->expanded[number] = r->expanded[last];
@@ -234,6 +257,7 @@ void labelling_move_points(tile_labelling *l) {
         tiles_centroid(&set, &middle);
         const double from_middle = tiles_best_point(&set, &middle), from_here = tiles_best_point(&set, point);
         if (from_middle <= from_here) *point = middle;
+        labelling_seat(l, r);
         note_change(l, r);
         l->regions.moved[r] = l->regions.now;
     }

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "preprocess/regions/min_cut.h"
-#include "preprocess/regions/sight.h"
+#include "preprocess/regions/soft_paths.h"
 
 enum { REGIONS_MOST = 64 };
 
@@ -13,10 +13,11 @@ typedef struct labelling_prices {
     double region, border;
 } labelling_prices;
 
-/* The regions, each with its point. Times count changes: of the region's tiles, of its point, and when it was last looked at. */
+/* The regions, each with its point, and with its seat: the tile from which ways through soft material begin. Times count changes: of the region's tiles, of its point, and when it was last looked at. */
 typedef struct labelled_regions {
     uint32_t count;
     sight_point points[REGIONS_MOST];
+    uint32_t seats[REGIONS_MOST];
     uint32_t changed[REGIONS_MOST], moved[REGIONS_MOST], expanded[REGIONS_MOST], now;
 } labelled_regions;
 
@@ -27,11 +28,17 @@ typedef struct tile_labelling {
     labelled_regions regions;
     uint32_t *nodes, *pieces; /* room for tiles */
     min_cut cut;
+    soft_paths paths; /* a row for each region, that of its seat, and one more, for trials */
 } tile_labelling;
 
 /* All tiles are in one region. */
 cscd_status labelling_create(const tile_graph *g, const labelling_prices *prices, tile_labelling *out);
 void labelling_destroy(tile_labelling *l);
+
+/* How little the point of a region sees of a tile. */
+static inline double labelling_blindness(const tile_labelling *l, uint32_t t, uint32_t region) {
+    return soft_paths_blindness(&l->paths, region, t, tile_blindness(l->g, t, &l->regions.points[region]));
+}
 
 double labelling_cost(const tile_labelling *l);
 
@@ -41,10 +48,16 @@ tile_set labelling_tiles(tile_labelling *l, uint32_t a, uint32_t b);
 /* What the border of two regions costs; -1: they have none. */
 double labelling_border(const tile_labelling *l, uint32_t a, uint32_t b);
 
-/* Adds a region with a point, which has no tiles yet. */
-void labelling_add(tile_labelling *l, const sight_point *point);
+/* Adds a region with a point and a seat, which has no tiles yet. */
+void labelling_add(tile_labelling *l, const sight_point *point, uint32_t seat);
 
-/* All regions count as changed: the tiles are others than before. */
+/* The seat of a region that has tiles becomes the one that is nearest to its point. */
+void labelling_seat(tile_labelling *l, uint32_t region);
+
+/* The regions become what they were before; of_tile is the caller's to set. */
+void labelling_take_back(tile_labelling *l, const labelled_regions *before);
+
+/* All regions count as changed, and get seats: the tiles are others than before. */
 void labelling_touch(tile_labelling *l);
 
 /* Gives tiles to a region. */

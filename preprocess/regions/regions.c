@@ -62,7 +62,7 @@ static void free_work(region_work *w) {
 static cscd_status read_stiffness(region_work *w, const region_options *o) {
     if (o->published || o->stiffness == NULL) return CSCD_OK;
     w->stiffness = context_reserve(w->mesh->context, w->mesh->triangle_count, sizeof *w->stiffness);
-    return w->stiffness != NULL ? stiffness_shares(w->mesh, o->stiffness, w->stiffness)
+    return w->stiffness != NULL ? stiffness_shares(w->mesh, w->positions, o->stiffness, w->stiffness)
                                 : context_out_of_memory(w->mesh->context);
 }
 
@@ -93,7 +93,8 @@ static void sort_by_component(const region_work *w, uint32_t *offsets) {
 static cscd_status add_components(region_work *w, const region_options *o, const uint32_t *offsets,
                                   body_regions *found) {
     const cscd_mesh *mesh = w->mesh;
-    const tile_surface surface = {mesh, w->positions, w->weights, &w->graph, o->frames, o->frame_count};
+    const tile_surface surface = {mesh,      w->positions,   w->weights,  &w->graph,
+                                  o->frames, o->frame_count, w->stiffness};
     const body_room room = {w->tile_of, w->scratch, w->marked};
     cscd_status status = CSCD_OK;
     for (uint32_t c = 0; c < mesh->component_count && status == CSCD_OK; c++) {

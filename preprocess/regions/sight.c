@@ -20,6 +20,17 @@ double tiles_unseen(const tile_set *set, const sight_point *point) {
     return unseen;
 }
 
+uint32_t tiles_nearest(const tile_set *set, const double point[3]) {
+    uint32_t nearest = set->members[0];
+    for (uint32_t i = 1; i < set->count; i++) {
+        const uint32_t t = set->members[i];
+        if (square_distance(set->g->items[t].centroid, point) <
+            square_distance(set->g->items[nearest].centroid, point))
+            nearest = t;
+    }
+    return nearest;
+}
+
 /* The mean of the tiles' centroids, of their areas at rest, in the frame whose tiles are given. */
 static void frame_centroid(const tile_set *set, const tile *items, double out[3]) {
     double area = 0.0;

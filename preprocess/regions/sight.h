@@ -44,6 +44,9 @@ typedef struct tile_set {
 /* The sum of blindness times area. */
 double tiles_unseen(const tile_set *set, const sight_point *point);
 
+/* The tile of a set, not empty, whose centroid is nearest to a point at rest. */
+uint32_t tiles_nearest(const tile_set *set, const double point[3]);
+
 void tiles_centroid(const tile_set *set, sight_point *out);
 
 /* Moves the point, given at rest, to where it costs the least: what it does not see, and a little for each step away from the centroid, because the

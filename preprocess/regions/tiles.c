@@ -12,6 +12,10 @@ static array_list list_items(tile_graph *g) {
     return (array_list){{ARRAY(g->items, g->count), ARRAY(g->moved, (size_t)g->frame_count * g->count)}};
 }
 
+static array_list list_stiffness(tile_graph *g) {
+    return (array_list){{ARRAY(g->stiffness, g->count)}};
+}
+
 static array_list list_links(tile_graph *g) {
     return (array_list){{ARRAY(g->offsets, (size_t)g->count + 1), ARRAY(g->neighbours, g->flow.link_count),
                          ARRAY(g->twins, g->flow.link_count), ARRAY(g->weights, g->flow.link_count)}};
@@ -174,6 +178,28 @@ static void fill_frames(const tile_surface *s, const tile_component *c, const ui
     turn_tiles(g->moved, (size_t)g->frame_count * g->count);
 }
 
+static bool any_soft(const tile_surface *s, const tile_component *c) {
+    for (uint32_t i = 0; i < c->count && s->stiffness != NULL; i++)
+        if (s->stiffness[c->list[i]] < 1.0) return true;
+    return false;
+}
+
+/* Finds the means of the triangles of each tile; a tile without area is stiff. */
+static cscd_status fill_stiffness(const tile_surface *s, const tile_component *c, const uint32_t *tile_of,
+                                  tile_graph *g) {
+    const tile_frame rest = rest_of(s, c);
+    double centroid[3], normal[3];
+    if (!any_soft(s, c)) return CSCD_OK;
+    if (!context_allocate_all(g->context, list_stiffness(g))) return context_out_of_memory(g->context);
+    for (uint32_t i = 0; i < c->count; i++) {
+        scaled_triangle(s, c, &rest, c->list[i], centroid, normal);
+        g->stiffness[tile_of[c->list[i]]] += surface_norm(normal) * s->stiffness[c->list[i]];
+    }
+    for (uint32_t i = 0; i < g->count; i++)
+        g->stiffness[i] = g->items[i].area > 0.0 ? g->stiffness[i] / g->items[i].area : 1.0;
+    return CSCD_OK;
+}
+
 /* ---- links ----------------------------------------------------------------------------------------------- */
 
 typedef struct tile_link {
@@ -261,7 +287,8 @@ cscd_status tiles_create(const tile_surface *surface, const tile_component *comp
     *out = (tile_graph){.context = context, .count = tile_count, .frame_count = surface->frame_count};
     if (!context_allocate_all(context, list_items(out))) return context_out_of_memory(context);
     fill_frames(surface, component, tile_of, out);
-    const cscd_status status = link_tiles(surface, component, tile_of, out);
+    cscd_status status = fill_stiffness(surface, component, tile_of, out);
+    if (status == CSCD_OK) status = link_tiles(surface, component, tile_of, out);
     if (status != CSCD_OK) tiles_destroy(out);
     return status;
 }
@@ -269,6 +296,7 @@ cscd_status tiles_create(const tile_surface *surface, const tile_component *comp
 void tiles_destroy(tile_graph *g) {
     if (g->context == NULL) return;
     context_free_all(g->context, list_items(g));
+    context_free_all(g->context, list_stiffness(g));
     context_free_all(g->context, list_links(g));
     *g = (tile_graph){0};
 }

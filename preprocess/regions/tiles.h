@@ -25,6 +25,7 @@ typedef struct tile_graph {
     tile *moved; /* in frame f tile t is moved[f * count + t]; areas of items count, there and here */
     uint32_t frame_count; /* besides the rest */
     double area;          /* of all */
+    double *stiffness;    /* of tiles, as shares; NULL: no tile is softer than the component */
     bool turned;          /* the component is inside out */
 
     /* Tiles with an edge in common are linked: flow.link_count links. */
@@ -40,6 +41,8 @@ typedef struct tile_surface {
     const dual_graph *graph;
     const double *const *frames; /* positions in frames besides the rest, FRAMES_MOST at most */
     uint32_t frame_count;
+    const double
+        *stiffness; /* of triangles, as shares of that of their component (stiffness.h); NULL: all are 1 */
 } tile_surface;
 
 /* The triangles of a component, ascending. */

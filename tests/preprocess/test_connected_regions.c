@@ -67,7 +67,7 @@ static void regions_become_connected(void **state) {
         tile_labelling l;
         uint32_t region_pieces[REGIONS_MOST];
         assert_int_equal(labelling_create(&b->g, &prices, &l), CSCD_OK);
-        for (int i = 0; i < 3; i++) labelling_add(&l, &(sight_point){.rest = {0.0, 0.0, 0.1 * i}});
+        for (int i = 0; i < 3; i++) labelling_add(&l, &(sight_point){.rest = {0.0, 0.0, 0.1 * i}}, 0);
         for (uint32_t t = 0; t < b->tile_count; t++) { /* stripes, so that each region has several pieces */
             const double *p = b->g.items[t].centroid;
             const uint32_t region = (uint32_t)(40.0 * (p[0] + 0.3 * round * p[2] + 2.0)) % 4;
@@ -111,7 +111,7 @@ static bool make_patched(const tiled_body *b, uint32_t count, patched *p) {
     const tile_graph *g = &b->g;
     uint32_t region_pieces[REGIONS_MOST];
     assert_int_equal(labelling_create(g, &prices, &p->l), CSCD_OK);
-    for (int i = 0; i < 3; i++) labelling_add(&p->l, &(sight_point){.rest = {0.0}});
+    for (int i = 0; i < 3; i++) labelling_add(&p->l, &(sight_point){.rest = {0.0}}, 0);
     for (uint32_t t = 0; t < g->count; t++) {
         const uint32_t quarter = quarter_of(&g->items[t]);
         labelling_give(&p->l, &t, 1, quarter);

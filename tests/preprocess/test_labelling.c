@@ -98,7 +98,7 @@ static void borders_are_parts_of_the_cost(void **state) {
     double borders = 0.0;
     random_seed(6);
     assert_int_equal(labelling_create(&b->g, &prices, &l), CSCD_OK);
-    for (int i = 0; i < 4; i++) labelling_add(&l, &(sight_point){.rest = {0.0, 0.0, 0.1 * i}});
+    for (int i = 0; i < 4; i++) labelling_add(&l, &(sight_point){.rest = {0.0, 0.0, 0.1 * i}}, 0);
     assert_true(labelling_border(&l, 0, 1) == -1.0);
     for (uint32_t t = 0; t < b->tile_count; t++) {
         const uint32_t region = (uint32_t)random_integer(0, 4);
@@ -129,7 +129,7 @@ static void two_regions_cost_the_least(void **state) {
         assert_int_equal(labelling_create(&b->g, &prices, &l), CSCD_OK);
         l.regions.points[0] = random_point(b);
         const sight_point point = random_point(b);
-        labelling_add(&l, &point);
+        labelling_add(&l, &point, 0);
         tile_labelling all = l;
         uint32_t labels[12];
         double least = INFINITY;
@@ -159,7 +159,7 @@ static void costs_never_rise(void **state) {
         l.regions.points[0] = random_point(b);
         for (int i = 0; i < 5; i++) {
             const sight_point point = random_point(b);
-            labelling_add(&l, &point);
+            labelling_add(&l, &point, 0);
         }
         for (uint32_t t = 0; t < b->tile_count; t++) {
             const uint32_t region = (uint32_t)random_integer(0, 5);

@@ -12,21 +12,24 @@
 
 enum { K = 5 };
 
-typedef enum job { JOB_CHARGE, JOB_KMEANS, JOB_POINTS, JOB_SHARES, JOB_COUNT } job;
+typedef enum job { JOB_CHARGE, JOB_SOFT, JOB_KMEANS, JOB_POINTS, JOB_SHARES, JOB_COUNT } job;
 
 static body shape;
-static double *density;
+static double *density, *stiffness;
 static uint32_t *regions;
 
-/* Makes a dumbbell whose density is low at its rod. */
+/* Makes a dumbbell whose density is low at its rod, and which is soft there. */
 static int make_shape(void **state) {
     (void)state;
     shape = body_of(BODY_DUMBBELL, 1500);
     density = calloc(shape.triangle_count, sizeof *density);
     regions = calloc(shape.triangle_count, sizeof *regions);
-    if (density == NULL || regions == NULL) return -1;
-    for (uint32_t t = 0; t < shape.triangle_count; t++)
+    stiffness = calloc(shape.triangle_count, sizeof *stiffness);
+    if (density == NULL || regions == NULL || stiffness == NULL) return -1;
+    for (uint32_t t = 0; t < shape.triangle_count; t++) {
         density[t] = fabs(shape.positions[shape.triangles[t * 3] * 3 + 2]);
+        stiffness[t] = fmin(1.0, 0.1 + density[t]);
+    }
     return 0;
 }
 
@@ -34,14 +37,17 @@ static int free_shape(void **state) {
     (void)state;
     body_free(&shape);
     free(density);
+    free(stiffness);
     free(regions);
     return 0;
 }
 
-static cscd_status divide_shape(const cscd_mesh *mesh, uint32_t *count) {
+static cscd_status divide_shape(const cscd_mesh *mesh, bool is_soft, uint32_t *count) {
     double *points = NULL;
+    region_options options = region_options_defaults();
+    options.stiffness = is_soft ? stiffness : NULL;
     const cscd_status status =
-        regions_from_charge(mesh, shape.positions, density, NULL, regions, count, &points);
+        regions_from_charge(mesh, shape.positions, density, &options, regions, count, &points);
     assert_true((status == CSCD_OK) == (points != NULL));
     context_free(mesh->context, points);
     return status;
@@ -50,7 +56,8 @@ static cscd_status divide_shape(const cscd_mesh *mesh, uint32_t *count) {
 static cscd_status run_job(job j, const cscd_mesh *mesh, uint32_t *count, double *out) {
     switch (j) {
     case JOB_CHARGE:
-        return divide_shape(mesh, count);
+    case JOB_SOFT:
+        return divide_shape(mesh, j == JOB_SOFT, count);
     case JOB_KMEANS:
         return regions_kmeans(mesh, shape.positions, K, 1, regions, count, out);
     case JOB_POINTS:
