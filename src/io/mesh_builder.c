@@ -15,6 +15,7 @@ mesh_builder mesh_builder_of(file_reader *reader, uint32_t index_base) {
         .positions = growable_of(3 * sizeof(double)),
         .corners = growable_of(sizeof(uint32_t)),
         .faces = growable_of(sizeof(built_face)),
+        .stiffness = growable_of(sizeof(double)),
         .part = NO_MESH_PART,
         .faces_hash = MESH_HASH_START,
     };
@@ -24,6 +25,7 @@ void mesh_builder_free(mesh_builder *builder) {
     growable_free(&builder->positions);
     growable_free(&builder->corners);
     growable_free(&builder->faces);
+    growable_free(&builder->stiffness);
     mesh_parts_free(&builder->parts);
 }
 
@@ -125,6 +127,13 @@ bool mesh_builder_end_face(mesh_builder *builder) {
                                  MESH_COUNT_LIMIT);
 }
 
+bool mesh_builder_add_face_stiffness(mesh_builder *builder, double stiffness) {
+    double *added = push_item(builder, &builder->stiffness, "faces");
+    if (added == NULL) return false;
+    *added = stiffness;
+    return true;
+}
+
 /* ---- triangles --------------------------------------------------------------------------------------- */
 
 static bool repeats_vertex(const uint32_t triangle[3]) {
@@ -154,6 +163,8 @@ static bool cut_face(mesh_builder *builder, uint32_t face, mesh_file *out) {
         memmove(out->triangles + (size_t)out->triangle_count * 3, triangles[i], sizeof triangles[i]);
         out->polygons[out->triangle_count] = face;
         if (out->parts.count > 0) out->parts.of_triangle[out->triangle_count] = faces[face].part;
+        if (out->stiffness != NULL)
+            out->stiffness[out->triangle_count] = ((const double *)builder->stiffness.data)[face];
         out->triangle_count++;
     }
     if (out->triangle_count == first_triangle)
@@ -167,8 +178,10 @@ static bool cut_faces(mesh_builder *builder, mesh_file *out) {
     out->polygons = io_realloc(NULL, count * sizeof *out->polygons);
     if (out->parts.count > 0)
         out->parts.of_triangle = io_realloc(NULL, count * sizeof *out->parts.of_triangle);
+    if (builder->stiffness.count > 0) out->stiffness = io_realloc(NULL, count * sizeof *out->stiffness);
     if (out->triangles == NULL || out->polygons == NULL ||
-        (out->parts.count > 0 && out->parts.of_triangle == NULL))
+        (out->parts.count > 0 && out->parts.of_triangle == NULL) ||
+        (builder->stiffness.count > 0 && out->stiffness == NULL))
         return file_reader_fail(builder->reader, "out of memory for %" PRIu64 " triangles",
                                 builder->triangle_count);
     for (uint32_t face = 0; face < builder->faces.count; face++)

@@ -24,6 +24,7 @@ typedef struct mesh_builder {
     growable positions;  /* of double[3] */
     growable corners;    /* of uint32_t, face by face */
     growable faces;      /* of built_face */
+    growable stiffness;  /* of double: of all faces, or empty */
     uint32_t part;       /* of the faces to come; NO_MESH_PART: none */
     mesh_parts parts;
     mesh_repairs repairs;
@@ -47,6 +48,9 @@ bool mesh_builder_set_face_part(mesh_builder *builder, const char *name, size_t 
 bool mesh_builder_begin_face(mesh_builder *builder);
 bool mesh_builder_add_corner(mesh_builder *builder, uint32_t vertex);
 bool mesh_builder_end_face(mesh_builder *builder);
+
+/* Adds the stiffness of the face that was begun last; every face has one, or none. */
+bool mesh_builder_add_face_stiffness(mesh_builder *builder, double stiffness);
 
 /* Cuts the faces into triangles, now that all vertices are known, and moves the mesh to *out; false, and *out untouched, when it has no vertices or no triangles. */
 bool mesh_builder_finish(mesh_builder *builder, mesh_file *out);

@@ -90,6 +90,7 @@ void mesh_file_free(mesh_file *mesh) {
     free(mesh->positions);
     free(mesh->triangles);
     free(mesh->polygons);
+    free(mesh->stiffness);
     mesh_parts_free(&mesh->parts);
     *mesh = (mesh_file){0};
 }

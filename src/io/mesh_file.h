@@ -38,6 +38,7 @@ typedef struct mesh_file {
     double *positions;   /* vertex_count * 3 */
     uint32_t *triangles; /* triangle_count * 3 */
     uint32_t *polygons;  /* triangle_count: the face that each is cut from; NULL: triangle i is face i */
+    double *stiffness;   /* triangle_count: as the file has it, unchecked; NULL: it has none */
     mesh_parts parts;
     uint64_t faces_hash; /* of the faces as the file has them: their corners, face by face */
     mesh_repairs repairs;

@@ -15,6 +15,8 @@ typedef struct ply_parser {
     bool labelled;      /* the face has one */
     bool has_parts;     /* the last face with a label had part_label */
     double part_label;
+    double stiffness; /* of the current face */
+    bool is_stiff;    /* the face has one */
 } ply_parser;
 
 bool ply_recognise(const file_reader *reader) {
@@ -60,6 +62,9 @@ static bool visit_property(void *user, const ply_property *property) {
     case PLY_PART:
         ply->labelled = true;
         return ply_data_number(&ply->data, property, &ply->label);
+    case PLY_STIFFNESS:
+        ply->is_stiff = true;
+        return ply_data_number(&ply->data, property, &ply->stiffness);
     case PLY_IGNORED:
         break;
     }
@@ -79,7 +84,9 @@ static bool set_part(ply_parser *ply) {
 static bool end_row(void *user) {
     ply_parser *ply = user;
     if (ply->data.element->kind == PLY_VERTEX) return mesh_builder_add_vertex(&ply->builder, ply->position);
-    return ply->data.element->kind != PLY_FACE || !ply->labelled || set_part(ply);
+    if (ply->data.element->kind != PLY_FACE) return true;
+    if (ply->is_stiff && !mesh_builder_add_face_stiffness(&ply->builder, ply->stiffness)) return false;
+    return !ply->labelled || set_part(ply);
 }
 
 bool ply_read(file_reader *reader, mesh_file *out) {

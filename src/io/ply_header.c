@@ -105,6 +105,11 @@ static bool names_part(const ply_element *element, const ply_property *property)
            (text_equals(property->name, "part") || text_equals(property->name, "label"));
 }
 
+static bool names_stiffness(const ply_element *element, const ply_property *property) {
+    return element->kind == PLY_FACE && !property->is_list && !ply_type_is_integer(property->type) &&
+           text_equals(property->name, "stiffness");
+}
+
 static bool has_role(const ply_header *header, const ply_element *element, ply_role role) {
     const ply_property *properties = header->properties.data;
     for (size_t i = 0; i < element->property_count; i++) {
@@ -142,6 +147,8 @@ static bool read_property(header_parser *parser) {
     property.role = role_of(element->kind, property.name);
     if (names_part(element, &property) && !has_role(header, element, PLY_PART)) {
         property.role = PLY_PART;
+    } else if (names_stiffness(element, &property) && !has_role(header, element, PLY_STIFFNESS)) {
+        property.role = PLY_STIFFNESS;
     } else if (property.role != PLY_IGNORED) {
         if (property.is_list != (property.role == PLY_CORNERS)) {
             return file_reader_fail_here(

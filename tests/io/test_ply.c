@@ -193,6 +193,39 @@ static void names_parts(void **state) {
     mesh_check_error(LABELLED("", "property int part\n", "3 0 1 2 x\n"), ":15: ", "found 'x'", "an integer");
 }
 
+static void check_stiffness(file_bytes file, const double *expected) {
+    mesh_file mesh = {0};
+    io_error error = {""};
+    if (!mesh_check_read(file, &mesh, &error)) fail_msg("refused: %s", error.text);
+    assert_int_equal(mesh.triangle_count, 4);
+    if (expected == NULL)
+        assert_null(mesh.stiffness);
+    else
+        assert_memory_equal(mesh.stiffness, expected, 4 * sizeof *expected);
+    mesh_file_free(&mesh);
+}
+
+/* A face's stiffness goes to the triangles that it is cut into, and those that are left out take theirs with them. */
+static void reads_stiffness(void **state) {
+    (void)state;
+    static const double expected[] = {0.5, 0.5, 2.0, -1.0};
+    check_stiffness(
+        LABELLED("property double stiffness\n", "", "7 3 0 0 2\n.5 4 0 1 2 3\n2 3 0 1 2\n-1 3 0 2 3\n"),
+        expected);
+    check_stiffness(LABELLED("", "property float stiffness\nproperty float stiffness\n",
+                             "3 0 0 2 7 1\n4 0 1 2 3 .5 1\n3 0 1 2 2 1\n3 0 2 3 -1 1\n"),
+                    expected);
+    check_stiffness(
+        LABELLED("property int stiffness\n", "", "7 3 0 0 2\n5 4 0 1 2 3\n2 3 0 1 2\n1 3 0 2 3\n"), NULL);
+    check_stiffness(LABELLED("property list uchar float stiffness\n", "",
+                             "0 3 0 0 2\n0 4 0 1 2 3\n0 3 0 1 2\n0 3 0 2 3\n"),
+                    NULL);
+    mesh_check_error(LABELLED("", "property float stiffness\n", "3 0 1 2 x\n"), ":15: ", "found 'x'",
+                     "a number");
+    mesh_check_damage(
+        LABELLED("", "property float stiffness\n", "3 0 1 2 1\n4 0 1 2 3 2\n3 0 1 2 3\n3 0 2 3 4\n"));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(reads_text),
@@ -200,6 +233,7 @@ int main(void) {
         cmocka_unit_test(skips_what_is_not_the_mesh),
         cmocka_unit_test(reads_numbers_exactly),
         cmocka_unit_test(names_parts),
+        cmocka_unit_test(reads_stiffness),
         cmocka_unit_test(refuses_bad_headers),
         cmocka_unit_test(refuses_bad_properties),
         cmocka_unit_test(refuses_bad_rows),

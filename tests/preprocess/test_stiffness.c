@@ -1,5 +1,5 @@
 /* Plans of bodies that are soft in places: borders run there, and what lies beyond has a point of its own. */
-#include "cscd/research.h"
+#include "preprocess/regions/edge_weights.h"
 #include "preprocess/regions/stiffness.h"
 #include "src/mesh/surface.h"
 #include "tests/support/preprocess/region_check.h"
@@ -43,19 +43,17 @@ typedef struct division {
     double points[64][3];
 } division;
 
-static cscd_status try_plan(const cscd_mesh *mesh, const double *stiffness, uint64_t variant,
-                            cscd_plan **out) {
+static cscd_status try_plan(const cscd_mesh *mesh, const double *stiffness, cscd_plan **out) {
     cscd_plan_options options = cscd_plan_defaults();
     options.stiffness = stiffness;
-    options.variant = variant;
     return cscd_plan_create(mesh->context, mesh, CSCD_DOUBLES(capsule.positions, capsule.vertex_count),
                             &options, out);
 }
 
-static division divide_variant(const double *stiffness, uint32_t thread_count, uint64_t variant) {
+static division divide_by_threads(const double *stiffness, uint32_t thread_count) {
     cscd_mesh *mesh = body_mesh(&capsule, thread_count);
     cscd_plan *plan = NULL;
-    assert_int_equal(try_plan(mesh, stiffness, variant, &plan), CSCD_OK);
+    assert_int_equal(try_plan(mesh, stiffness, &plan), CSCD_OK);
     division d = {.count = cscd_plan_region_count(plan),
                   .regions = body_allocate(capsule.triangle_count, sizeof *d.regions)};
     assert_true(d.count <= 64);
@@ -69,7 +67,7 @@ static division divide_variant(const double *stiffness, uint32_t thread_count, u
 }
 
 static division divide_capsule(const double *stiffness) {
-    return divide_variant(stiffness, 1, 0);
+    return divide_by_threads(stiffness, 1);
 }
 
 /* Compares bit for bit, and frees both. */
@@ -139,12 +137,36 @@ static void nothing_soft_changes_nothing(void **state) {
     free(values);
 }
 
-static void threads_and_the_published_rules(void **state) {
+static void threads_change_nothing(void **state) {
     (void)state;
     for (uint32_t threads = 2; threads <= 3; threads++)
-        expect_same(divide_capsule(soft), divide_variant(soft, threads, 0));
-    expect_same(divide_variant(NULL, 1, CSCD_PLAN_VARIANT_PUBLISHED),
-                divide_variant(soft, 1, CSCD_PLAN_VARIANT_PUBLISHED));
+        expect_same(divide_capsule(soft), divide_by_threads(soft, threads));
+}
+
+/* An edge weighs its length times the share of the charge or of the stiffness, whichever is less. */
+static void edges_weigh_less_where_it_is_soft(void **state) {
+    (void)state;
+    const region_options options = region_options_defaults();
+    cscd_mesh *mesh = body_mesh(&capsule, 1);
+    const uint32_t triangle_count = capsule.triangle_count;
+    double *ranks = body_allocate(triangle_count, sizeof *ranks),
+           *softer = body_allocate(triangle_count, sizeof *softer),
+           *plain = body_allocate(mesh->edge_count, sizeof *plain),
+           *weights = body_allocate(mesh->edge_count, sizeof *weights);
+    for (uint32_t t = 0; t < triangle_count; t++) ranks[t] = (double)t / triangle_count;
+    for (uint32_t t = 0; t < triangle_count; t++) softer[t] = soft[t] < 1.0 ? 0.025 : 0.5;
+    weigh_edges(mesh, capsule.positions, ranks, NULL, &options, plain);
+    weigh_edges(mesh, capsule.positions, ranks, softer, &options, weights);
+    for (uint32_t e = 0; e < mesh->edge_count; e++) {
+        const double share = fmax(0.1, stiffness_beside(mesh, softer, e)),
+                     length = surface_edge_length(mesh, capsule.positions, e);
+        assert_true(fabs(weights[e] - fmin(plain[e], length * share)) <= 1e-12 * length);
+    }
+    body_mesh_destroy(mesh);
+    free(ranks);
+    free(softer);
+    free(plain);
+    free(weights);
 }
 
 static void bad_values_are_refused(void **state) {
@@ -155,7 +177,7 @@ static void bad_values_are_refused(void **state) {
         double *values = scaled_values(soft, 1.0);
         values[17] = values[2000] = bad[i];
         cscd_plan *plan = NULL;
-        assert_int_equal(try_plan(mesh, values, 0, &plan), CSCD_INVALID_ARGUMENT);
+        assert_int_equal(try_plan(mesh, values, &plan), CSCD_INVALID_ARGUMENT);
         assert_null(plan);
         assert_non_null(strstr(cscd_context_detail(mesh->context), "the stiffness of triangle 17 is "));
         free(values);
@@ -194,9 +216,10 @@ static void shares_are_of_the_component(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_soft_place_parts_a_body),    cmocka_unit_test(only_ratios_count),
-        cmocka_unit_test(nothing_soft_changes_nothing), cmocka_unit_test(threads_and_the_published_rules),
-        cmocka_unit_test(bad_values_are_refused),       cmocka_unit_test(shares_are_of_the_component),
+        cmocka_unit_test(a_soft_place_parts_a_body),         cmocka_unit_test(only_ratios_count),
+        cmocka_unit_test(nothing_soft_changes_nothing),      cmocka_unit_test(threads_change_nothing),
+        cmocka_unit_test(edges_weigh_less_where_it_is_soft), cmocka_unit_test(bad_values_are_refused),
+        cmocka_unit_test(shares_are_of_the_component),
     };
     return cmocka_run_group_tests_name("stiffness", tests, make_capsule, free_capsule);
 }

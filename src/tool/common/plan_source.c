@@ -6,6 +6,7 @@
 #include "src/io/plan_file.h"
 #include "src/io/text_escape.h"
 #include "src/tool/common/methods.h"
+#include "src/tool/common/recorded_stiffness.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -101,9 +102,15 @@ static bool make_plan(const plan_request *request, cscd_method method, const rec
     cscd_plan_options options = cscd_plan_defaults();
     options.method = method;
     if (request->k > 0) options.k = request->k;
+    recorded_stiffness stiffness = {0};
+    if (method == CSCD_METHOD_CHARGE && !recorded_stiffness_read(r, &stiffness, error)) return false;
+    options.stiffness = stiffness.of_triangle;
     double *positions = malloc((size_t)cscd_mesh_vertex_count(r->mesh) * 3 * sizeof *positions);
-    if (positions == NULL) return io_fail(error, "out of memory");
     cscd_plan *plan = NULL;
+    if (positions == NULL) {
+        recorded_stiffness_free(&stiffness);
+        return io_fail(error, "out of memory");
+    }
     recording_rest(r, positions);
     bool made =
         cscd_plan_create(r->context, r->mesh, CSCD_DOUBLES(positions, cscd_mesh_vertex_count(r->mesh)),
@@ -116,6 +123,7 @@ static bool make_plan(const plan_request *request, cscd_method method, const rec
         io_fail(error, "%s: %s", request->model_path, cscd_context_detail(r->context));
     }
     free(positions);
+    recorded_stiffness_free(&stiffness);
     return made;
 }
 

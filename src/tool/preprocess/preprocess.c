@@ -10,6 +10,7 @@
 #include "src/tool/common/output_path.h"
 #include "src/tool/common/plan_colours.h"
 #include "src/tool/common/plan_source.h"
+#include "src/tool/common/recorded_stiffness.h"
 #include "src/tool/common/shared_options.h"
 #include "src/tool/common/terminal.h"
 #include "src/tool/preprocess/motion_frames.h"
@@ -90,6 +91,7 @@ static const option_table table = {
     "Cuts the mesh MODEL (OBJ, PLY, OFF, STL, glTF, GIFTI), at rest as in the file, into regions, each with a point that sees "
     "most of it, and saves this plan as a PLY that any viewer shows. cscd replay uses it to leave out pairs "
     "of triangles that cannot touch; it needs the same --weld. Contacts are the same with any plan and with none.\n"
+    "Faces of a PLY may say how stiff they are, in a property stiffness (float or double): charge then cuts where the model is soft.\n"
     "FRAMES: a motion that the plan is made for, of which eight frames, evenly spaced, count as the rest does: one .pc2 or .mdd "
     "point cache, one .glb or .gltf file, a pattern like f_%04d.obj, a folder, or a list of mesh files.",
     rows,
@@ -179,13 +181,29 @@ static bool read_positions(const preprocess_options *o, recording *r, double *po
     return motion_frames_read(r, &o->frames, motion, error);
 }
 
-static bool plan_recording(const preprocess_options *o, recording *r, io_error *error) {
+/* Makes the plan, with the stiffness of the model's file where its method knows of one. */
+static bool make_stiff_plan(preprocess_options *o, recording *r, const double *positions,
+                            const motion_frames *motion, io_error *error) {
+    recorded_stiffness stiffness = {0};
+    const bool counts =
+        !o->published && o->plan.method != CSCD_METHOD_KMEANS && o->plan.method != CSCD_METHOD_SINGLE;
+    if (counts && !recorded_stiffness_read(r, &stiffness, error)) return false;
+    if (stiffness.of_triangle != NULL && !o->quiet)
+        printf("stiffness: from %s, %g to %g\n", stiffness.path, stiffness.least, stiffness.greatest);
+    o->plan.stiffness = stiffness.of_triangle;
+    const bool made = make_plan(o, r, positions, motion, error);
+    o->plan.stiffness = NULL;
+    recorded_stiffness_free(&stiffness);
+    return made;
+}
+
+static bool plan_recording(preprocess_options *o, recording *r, io_error *error) {
     double *positions = malloc((size_t)cscd_mesh_vertex_count(r->mesh) * 3 * sizeof *positions);
     if (positions == NULL) return io_fail(error, "out of memory");
     motion_frames motion;
     bool made = read_positions(o, r, positions, &motion, error);
     if (made) {
-        made = make_plan(o, r, positions, &motion, error);
+        made = make_stiff_plan(o, r, positions, &motion, error);
         motion_frames_free(&motion);
     }
     free(positions);
