@@ -16,16 +16,16 @@ from .intersections import Curve, Intersections, PartPairs
 from .line_search import LineSearch
 from .mesh import HalfSpace, Mesh, Points, Scene, Wires
 from .pairs import pairs_near, pairs_step
-from .plan import Plan
+from .plan import ComparedPlan, Plan
 from .questions import contacts, intersections, is_self_intersecting, self_intersecting_faces, self_intersections
 from .replay import Frame, Replay, replay
 from .results import CONTACT_KINDS, INTERSECTION_KINDS, Contacts, Events, PairContacts, PairDistances, Proximities
 
 __version__: str = _library.cscd_version_string().decode()
 
-__all__ = ["CONTACT_KINDS", "Cancelled", "Contacts", "Curve", "Detector", "Error", "Events", "Frame",
-           "FrameSequence", "HalfSpace", "INTERSECTION_KINDS", "InContact", "Intersections", "LineSearch",
-           "ListTooLong", "Mesh", "PairContacts", "PairDistances", "PartPairs", "Plan", "Points", "Proximities",
-           "Recording", "Replay", "Scene", "Wires", "__version__", "contacts", "intersections",
-           "is_self_intersecting", "pairs_near", "pairs_step", "read", "replay", "self_intersecting_faces",
-           "self_intersections", "write_report"]
+__all__ = ["CONTACT_KINDS", "Cancelled", "ComparedPlan", "Contacts", "Curve", "Detector", "Error", "Events",
+           "Frame", "FrameSequence", "HalfSpace", "INTERSECTION_KINDS", "InContact", "Intersections",
+           "LineSearch", "ListTooLong", "Mesh", "PairContacts", "PairDistances", "PartPairs", "Plan",
+           "Points", "Proximities", "Recording", "Replay", "Scene", "Wires", "__version__", "contacts",
+           "intersections", "is_self_intersecting", "pairs_near", "pairs_step", "read", "replay",
+           "self_intersecting_faces", "self_intersections", "write_report"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 import os
 import warnings
-from typing import Any, Callable, Dict, List, Optional, Tuple, Union
+from typing import Any, Callable, Dict, List, NamedTuple, Optional, Tuple, Union
 
 import numpy as np
 
@@ -15,10 +15,31 @@ from ._library import address_of, items_of, library, new_struct, structs
 from .errors import Error
 from .mesh import Mesh, read_surface
 
-__all__ = ["Plan"]
+__all__ = ["ComparedPlan", "Plan"]
 
 Array = Any
 _SOLVERS = {"tree": 0, "dense": 1, "coarse": 2}
+
+
+class ComparedPlan(NamedTuple):
+    """A plan that ``Plan.auto`` has compared with others."""
+
+    method: str
+    k: Optional[int]
+    """How many regions k-means was asked for."""
+    region_count: int
+    tested_share: float
+    """Predicted: the share of the triangles that a step has to look at with others of their component."""
+    kept: bool
+    failure: Optional[str]
+    """Why the charge could not be solved; None: it could."""
+
+
+def _compared(row: Any) -> ComparedPlan:
+    failure = ctypes.c_char_p(int(row["failure"])).value
+    return ComparedPlan(str(library.cscd_method_name(int(row["method"])).decode()), int(row["k"]) or None,
+                        int(row["region_count"]), float(row["tested_share"]), bool(row["kept"]),
+                        failure.decode() if failure is not None else None)
 
 
 class Plan:
@@ -81,17 +102,10 @@ class Plan:
         """
         if not isinstance(solver, str) or solver not in _SOLVERS:
             raise ValueError(f"solver: expected one of {', '.join(_SOLVERS)}; got {solver!r}")
-        if not isinstance(mesh, Mesh):
-            raise ValueError(f"mesh: expected a Mesh, got {type(mesh).__name__}")
-        members: Dict[str, int] = {}
-        if stiffness is not None:
-            values = cls._stiffness(mesh, stiffness)
-            members["stiffness"] = address_of(values)
-        if frames is not None:
-            kept = cls._frames(mesh, frames)
-            members["frames"], members["frame_count"] = address_of(kept[0]), len(kept[0])
+        kept, members = cls._motion(mesh, stiffness, frames)
         plan = cls._create(mesh, V, threads, progress, method=code_of("method", "charge"), threshold=threshold,
                            charge_solver=_SOLVERS[solver], memory_limit=memory_limit, **members)
+        del kept
         better = plan.better_kernels
         if better is not None:
             warnings.warn(f"OpenBLAS ran its kernels for {plan.charge_kernels}, which are slow on this processor: with "
@@ -104,6 +118,16 @@ class Plan:
                progress: Optional[Callable[[str, float], Any]] = None) -> Plan:
         """Cuts a mesh into ``k`` regions by k-means of its triangles."""
         return cls._create(mesh, V, threads, progress, method=code_of("method", "kmeans"), k=k, seed=seed)
+
+    @classmethod
+    def auto(cls, mesh: Mesh, V: Any, *, stiffness: Any = None, frames: Any = None, threads: int = 0,
+             progress: Optional[Callable[[str, float], Any]] = None) -> Plan:
+        """The plan by charge, by one region for each component or by k-means that leaves the least to test, as predicted at
+        rest and in the frames; ``compared`` lists them. The other parameters are those of ``charge``."""
+        kept, members = cls._motion(mesh, stiffness, frames)
+        plan = cls._create(mesh, V, threads, progress, method=code_of("method", "auto"), **members)
+        del kept
+        return plan
 
     @classmethod
     def from_parts(cls, mesh: Mesh, V: Any, triangle_regions: Any, detector_points: Any, *, method: str = "single",
@@ -176,6 +200,22 @@ class Plan:
         packed = [np.ascontiguousarray(as_positions(f"frames[{i}]", frame, count)) for i, frame in enumerate(frames)]
         views = [views_of("frames", frame, mesh.vertex_counts)[0] for frame in packed]
         return [np.array([address_of(view) for view in views], np.uintp), *views, *packed]
+
+    @classmethod
+    def _motion(cls, mesh: Mesh, stiffness: Any, frames: Any) -> Tuple[List[Array], Dict[str, int]]:
+        """Arrays that must live as long as the call, and the members of the options that point to them."""
+        if not isinstance(mesh, Mesh):
+            raise ValueError(f"mesh: expected a Mesh, got {type(mesh).__name__}")
+        kept: List[Array] = []
+        members: Dict[str, int] = {}
+        if stiffness is not None:
+            kept.append(cls._stiffness(mesh, stiffness))
+            members["stiffness"] = address_of(kept[0])
+        if frames is not None:
+            arrays = cls._frames(mesh, frames)
+            members["frames"], members["frame_count"] = address_of(arrays[0]), len(arrays[0])
+            kept += arrays
+        return kept, members
 
     @staticmethod
     def _check_parts(mesh: Mesh, arrays: Dict[str, Array]) -> None:
@@ -263,6 +303,15 @@ class Plan:
         if self.method != "charge":
             return None
         return np.array([library.cscd_plan_capacitance(self.pointer, c) for c in range(self.mesh.component_count)])
+
+    @property
+    def compared(self) -> List[ComparedPlan]:
+        """What ``Plan.auto`` has compared, in the order in which it was tried; of any other plan nothing."""
+        found = new_struct("compared_plan", int(library.cscd_plan_compared_count(self.pointer)))
+        size = structs["compared_plan"].itemsize
+        for i in range(len(found)):
+            library.cscd_plan_compared_sized(self.pointer, i, address_of(found) + i * size, size)
+        return [_compared(row) for row in found]
 
     @property
     def charge_kernels(self) -> Optional[str]:

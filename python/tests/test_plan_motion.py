@@ -30,7 +30,8 @@ def test_bad_stiffness_is_refused() -> None:
         values[7] = values[9] = bad
         with pytest.raises(ValueError) as caught:
             labels(stiffness=values)
-        assert f"the stiffness of triangle 7 is {bad:g}, expected a positive finite number" in str(caught.value).replace("-nan", "nan")
+        said = str(caught.value).replace("-nan", "nan")
+        assert f"the stiffness of triangle 7 is {bad:g}, expected a positive finite number" in said
     others: List[Any] = [1.0, np.ones(3), np.ones((len(SCENE.F), 1)), "soft"]
     for other in others:
         with pytest.raises(ValueError) as caught:
@@ -56,3 +57,17 @@ def test_bad_frames_are_refused() -> None:
     with pytest.raises(ValueError) as caught:
         labels(frames=[SCENE.x0, beyond])
     assert "frames[1]" in str(caught.value)
+
+
+def test_auto_keeps_one_of_what_it_compares() -> None:
+    plan = cscd.Plan.auto(cscd.Mesh(SCENE.F), SCENE.x0, frames=[SCENE.x0, SCENE.x1])
+    kept = [found for found in plan.compared if found.kept]
+    assert [found.method for found in plan.compared][:3] == ["charge", "single", "kmeans"]
+    assert len(kept) == 1 and kept[0].method == plan.method and kept[0].region_count == plan.region_count
+    assert kept[0].tested_share <= min(found.tested_share for found in plan.compared) / 0.98
+    assert all(0 <= found.tested_share <= 1 and found.failure is None for found in plan.compared)
+    assert [found.k for found in plan.compared][:3] == [None, None, 4]
+    assert cscd.Plan.charge(cscd.Mesh(SCENE.F), SCENE.x0).compared == []
+    with pytest.raises(ValueError) as caught:
+        cscd.Plan.auto("mesh", SCENE.x0)  # type: ignore[arg-type]
+    assert "expected a Mesh" in str(caught.value)
