@@ -38,10 +38,10 @@ static int free_capsule(void **state) {
 }
 
 /* A plan, taken apart. */
-typedef struct division {
+typedef struct stiff_division {
     uint32_t count, *regions;
     double points[64][3];
-} division;
+} stiff_division;
 
 static cscd_status try_plan(const cscd_mesh *mesh, const double *stiffness, cscd_plan **out) {
     cscd_plan_options options = cscd_plan_defaults();
@@ -50,11 +50,11 @@ static cscd_status try_plan(const cscd_mesh *mesh, const double *stiffness, cscd
                             &options, out);
 }
 
-static division divide_by_threads(const double *stiffness, uint32_t thread_count) {
+static stiff_division divide_by_threads(const double *stiffness, uint32_t thread_count) {
     cscd_mesh *mesh = body_mesh(&capsule, thread_count);
     cscd_plan *plan = NULL;
     assert_int_equal(try_plan(mesh, stiffness, &plan), CSCD_OK);
-    division d = {.count = cscd_plan_region_count(plan),
+    stiff_division d = {.count = cscd_plan_region_count(plan),
                   .regions = body_allocate(capsule.triangle_count, sizeof *d.regions)};
     assert_true(d.count <= 64);
     for (uint32_t t = 0; t < capsule.triangle_count; t++) d.regions[t] = cscd_plan_triangle_region(plan, t);
@@ -66,12 +66,12 @@ static division divide_by_threads(const double *stiffness, uint32_t thread_count
     return d;
 }
 
-static division divide_capsule(const double *stiffness) {
+static stiff_division divide_capsule(const double *stiffness) {
     return divide_by_threads(stiffness, 1);
 }
 
 /* Compares bit for bit, and frees both. */
-static void expect_same(division a, division b) {
+static void expect_same(stiff_division a, stiff_division b) {
     assert_int_equal(a.count, b.count);
     assert_memory_equal(a.regions, b.regions, capsule.triangle_count * sizeof *a.regions);
     assert_memory_equal(a.points, b.points, a.count * sizeof *a.points);
@@ -89,7 +89,7 @@ static double *scaled_values(const double *values, double factor) {
 /* The whole of it is seen from one point at rest, and yet it is cut. */
 static void a_soft_place_parts_a_body(void **state) {
     (void)state;
-    division plain = divide_capsule(NULL), d = divide_capsule(soft);
+    stiff_division plain = divide_capsule(NULL), d = divide_capsule(soft);
     print_message("  capsule with a soft place: %u regions\n", d.count);
     assert_int_equal(plain.count, 1);
     assert_true(d.count >= 2 && d.count <= 3);
