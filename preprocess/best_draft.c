@@ -9,8 +9,9 @@
  * good the plan has charges to show. */
 static const double clearly_less = 0.98;
 
-/* K-means regions for each component. */
+/* K-means regions for each component; where these are more in all than KMEANS_MOST they take longer than the charge. */
 static const uint32_t kmeans_counts[] = {4, 8, 16};
+enum { KMEANS_MOST = 1024 };
 
 static uint32_t count_bodies(const cscd_mesh *mesh) {
     uint32_t count = 0;
@@ -75,7 +76,7 @@ cscd_status best_draft_make(const cscd_mesh *mesh, const double *positions, cons
     given.options.method = CSCD_METHOD_KMEANS;
     for (size_t i = 0; i < sizeof kmeans_counts / sizeof *kmeans_counts && status == CSCD_OK; i++) {
         const uint64_t k = (uint64_t)kmeans_counts[i] * bodies;
-        if (bodies == 0 || k > mesh->triangle_count) break;
+        if (bodies == 0 || k > mesh->triangle_count || k > KMEANS_MOST) break;
         given.options.k = (uint32_t)k;
         status = try_method(&given, candidates, out, &least);
     }

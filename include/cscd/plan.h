@@ -192,8 +192,8 @@ static inline cscd_plan_info cscd_plan_describe(const cscd_plan *plan) {
 
 /* What CSCD_METHOD_AUTO has compared. */
 typedef struct cscd_compared_plan {
-    cscd_method method;    /* CHARGE, SINGLE or KMEANS */
-    uint32_t k;            /* KMEANS: that of the options, 4, 8 or 16 for each component; 0 otherwise */
+    cscd_method method; /* CHARGE, SINGLE or KMEANS */
+    uint32_t k; /* KMEANS: that of the options, 4, 8 or 16 for each component, 1,024 in all at most; else 0 */
     uint32_t region_count; /* 0: the charge could not be solved; see failure */
     bool kept;             /* the plan is this one */
     uint8_t reserved[3];   /* 0 */

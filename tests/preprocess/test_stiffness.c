@@ -55,7 +55,7 @@ static stiff_division divide_by_threads(const double *stiffness, uint32_t thread
     cscd_plan *plan = NULL;
     assert_int_equal(try_plan(mesh, stiffness, &plan), CSCD_OK);
     stiff_division d = {.count = cscd_plan_region_count(plan),
-                  .regions = body_allocate(capsule.triangle_count, sizeof *d.regions)};
+                        .regions = body_allocate(capsule.triangle_count, sizeof *d.regions)};
     assert_true(d.count <= 64);
     for (uint32_t t = 0; t < capsule.triangle_count; t++) d.regions[t] = cscd_plan_triangle_region(plan, t);
     for (uint32_t r = 0; r < d.count; r++)

@@ -130,6 +130,9 @@ static void refuses_unfit_options(void **state) {
         EXPECT_ERROR(2, TEXTS(unfit[i][0], unfit[i][1]), "preprocess", model.text, unfit[i][0], unfit[i][1]);
     EXPECT_ERROR(2, TEXTS("expected MODEL"), "preprocess");
     EXPECT_ERROR(2, TEXTS("-o", cache.text), "preprocess", model.text, cache.text, "-o", cache.text);
+    EXPECT_ERROR(2, TEXTS("--frames", "none are given"), "preprocess", model.text, "--frames", "0:3");
+    EXPECT_ERROR(2, TEXTS("FRAMES count with"), "preprocess", model.text, cache.text, "--published");
+    EXPECT_ERROR(2, TEXTS("FRAMES count with"), "preprocess", model.text, cache.text, "--method", "single");
     EXPECT_ERROR(1, TEXTS("frame 99"), "preprocess", model.text, cache.text, "--frames", "99");
     EXPECT_ERROR(2, TEXTS("ends in .ply"), "preprocess", model.text, "-o", "plan.obj");
     EXPECT_ERROR(1, TEXTS("cannot write", "no/such/"), "preprocess", model.text, "-o",

@@ -226,6 +226,19 @@ static int run_preprocess(preprocess_options *o) {
     return interrupted() ? interrupt_exit_code() : EXIT_BAD_INPUT;
 }
 
+/* Frames count for plans by charge alone, and those of the published rules do without. */
+static int check_frames(const preprocess_options *o, const given_options *given) {
+    const bool counts =
+        !o->published && (o->plan.method == CSCD_METHOD_CHARGE || o->plan.method == CSCD_METHOD_AUTO);
+    if (given->input_count == 1 && option_given(&table, given, "frames"))
+        return fail_usage("preprocess", "--frames chooses among FRAMES, and none are given");
+    if (given->input_count > 1 && !counts)
+        return fail_usage(
+            "preprocess",
+            "FRAMES count with --method charge or auto, and without --published; leave them out");
+    return EXIT_RAN;
+}
+
 /* A plan may replace a plan, but no other file. */
 static int check_output(const preprocess_options *o, const given_options *given) {
     const char *path = o->output_path;
@@ -258,7 +271,8 @@ int command_preprocess(int argument_count, char **arguments) {
     if (options.output_path == NULL)
         code = fail_input("out of memory");
     else
-        code = check_output(&options, &given);
+        code = check_frames(&options, &given);
+    if (code == EXIT_RAN) code = check_output(&options, &given);
     if (code == EXIT_RAN) code = run_preprocess(&options);
     free(model_plan);
     return code;
