@@ -2,6 +2,7 @@
 #include "tests/support/test.h"
 #include "tests/support/tool/json_reader.h"
 #include "tests/support/tool/run_tool.h"
+#include "tests/support/tool/soft_bar.h"
 #include "tests/support/tool/tool_fixture.h"
 
 #include <math.h>
@@ -329,47 +330,10 @@ static void without_an_answer_there_is_one_region(void **state) {
     tool_run_free(&run);
 }
 
-enum { RINGS = 40, AROUND = 12, SIDES = (RINGS - 1) * AROUND };
-
-static void print_face(FILE *file, const int *corners, int count, double stiffness) {
-    fprintf(file, "%d", count);
-    for (int i = 0; i < count; i++) fprintf(file, " %d", corners[i]);
-    fprintf(file, " %g\n", stiffness);
-}
-
-/* Writes a bar of quads with two ends: 3 stiff, soft between the rings 26 and 28, and bad at one face. */
-static temp_path write_bar(const char *name, double soft, int bad_face, double bad) {
-    temp_path path = temp_file_path(&folder, name);
-    FILE *file = fopen(path.text, "w");
-    int ends[2][AROUND];
-    assert_non_null(file);
-    fprintf(file,
-            "ply\nformat ascii 1.0\nelement vertex %d\nproperty float x\nproperty float y\nproperty float z\n"
-            "element face %d\nproperty list uchar int vertex_indices\nproperty float stiffness\nend_header\n",
-            RINGS * AROUND, SIDES + 2);
-    for (int i = 0; i < RINGS * AROUND; i++) {
-        const double angle = 0.5235987755982988 * (i % AROUND);
-        fprintf(file, "%.9g %.9g %.9g\n", cos(angle), sin(angle), 0.25 * (i / AROUND));
-    }
-    for (int face = 0; face < SIDES; face++) {
-        const int ring = face / AROUND, a = face % AROUND, b = (a + 1) % AROUND;
-        const int corners[4] = {ring * AROUND + a, ring * AROUND + b, (ring + 1) * AROUND + b,
-                                (ring + 1) * AROUND + a};
-        const double stiffness = ring >= 26 && ring < 28 ? soft : 3.0;
-        print_face(file, corners, 4, face == bad_face ? bad : stiffness);
-    }
-    for (int i = 0; i < AROUND; i++) {
-        ends[0][i] = AROUND - 1 - i;
-        ends[1][i] = (RINGS - 1) * AROUND + i;
-    }
-    for (int end = 0; end < 2; end++) print_face(file, ends[end], AROUND, 3.0);
-    assert_int_equal(fclose(file), 0);
-    return path;
-}
-
 static void a_model_may_say_where_it_is_soft(void **state) {
     (void)state;
-    temp_path even = write_bar("even.ply", 3.0, -1, 0.0), bar = write_bar("bar.ply", 0.25, -1, 0.0);
+    temp_path even = soft_bar_write(&folder, "even.ply", 3.0, -1, 0.0),
+              bar = soft_bar_write(&folder, "bar.ply", 0.25, -1, 0.0);
     char line[600];
     snprintf(line, sizeof line, "stiffness: from %s, 0.25 to 3\n", bar.text);
     EXPECT_OUTPUT(TEXTS("stiffness: from ", "even.ply, 3 to 3\n", "1 region by"), "preprocess", even.text);
@@ -382,10 +346,10 @@ static void a_model_may_say_where_it_is_soft(void **state) {
 
 static void bad_stiffness_is_refused(void **state) {
     (void)state;
-    temp_path bar = write_bar("bad.ply", 0.25, 7, 0.0);
+    temp_path bar = soft_bar_write(&folder, "bad.ply", 0.25, 7, 0.0);
     EXPECT_ERROR(1, TEXTS("bad.ply: the stiffness of face 7 is 0, expected a positive finite number"),
                  "preprocess", bar.text);
-    bar = write_bar("bad.ply", 0.25, 90, (double)INFINITY);
+    bar = soft_bar_write(&folder, "bad.ply", 0.25, 90, (double)INFINITY);
     EXPECT_ERROR(1, TEXTS("bad.ply: the stiffness of face 90 is inf, expected"), "replay", bar.text, bar.text,
                  bar.text, "--method", "charge");
 }
