@@ -217,6 +217,8 @@ static void large_meshes_go_on(void **state) {
 
 /* ---- plans --------------------------------------------------------------------------------------------- */
 
+enum { PLAN_EVERY = 16 }; /* a plan by charge has hundreds of reports */
+
 static void plans_go_on(void **state) {
     static const cscd_method methods[] = {CSCD_METHOD_CHARGE, CSCD_METHOD_KMEANS};
     (void)state;
@@ -224,7 +226,7 @@ static void plans_go_on(void **state) {
         scene_clear(&q.shape);
         scene_add_capsule(&q.shape, 5.0, 0.5, 20, 14);
         q.frame_count = 1;
-        check_interrupted(1 + i / 2, UINT32_MAX,
+        check_interrupted(1 + i / 2, PLAN_EVERY,
                           (workload){.plan = methods[i % 2],
                                      .options = of_method(methods[i % 2], CSCD_MODE_ALL, CSCD_START_PROVE)});
     }
@@ -243,6 +245,7 @@ static void plans_leave_nothing_behind(void **state) {
         cscd_object_of_triangles(q.shape.vertex_count, q.shape.triangle_count, q.shape.triangles);
     cscd_context *context = make_context(2, &host, &counter);
     context->progress.interval_ms = 0.0;
+    host.every = PLAN_EVERY;
     assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
     size_t bytes = cscd_context_bytes(context);
     while (cancel_later(&host, context, plan_create_packed(mesh, q.shape.x0, NULL, &plan))) {
