@@ -2,7 +2,7 @@
 #pragma once
 
 #include "src/tool/common/recording.h"
-#include "src/tool/common/report_request.h"
+#include "src/tool/report/report_request.h"
 
 typedef struct plan_report {
     const report_request *request;

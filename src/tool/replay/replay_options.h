@@ -4,9 +4,9 @@
 #include "src/tool/answers/answer_options.h"
 #include "src/tool/common/frame_range.h"
 #include "src/tool/common/ignore_pairs.h"
-#include "src/tool/common/report_request.h"
 #include "src/tool/export/exports.h"
 #include "src/tool/jobs/list_options.h"
+#include "src/tool/report/report_request.h"
 
 typedef struct replay_options {
     recording_options source;

@@ -4,9 +4,9 @@
 #include "src/tool/answers/answers.h"
 #include "src/tool/common/length_unit.h"
 #include "src/tool/common/provenance.h"
-#include "src/tool/common/report_request.h"
 #include "src/tool/common/scenery.h"
 #include "src/tool/report/report.h"
+#include "src/tool/report/report_request.h"
 
 typedef struct replay_report {
     const report_request *request;

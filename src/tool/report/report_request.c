@@ -1,5 +1,5 @@
 /* The options of a command about the report that it writes. */
-#include "src/tool/common/report_request.h"
+#include "src/tool/report/report_request.h"
 
 #include "src/tool/common/output_path.h"
 
