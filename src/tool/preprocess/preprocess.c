@@ -10,6 +10,7 @@
 #include "src/tool/common/output_path.h"
 #include "src/tool/common/plan_colours.h"
 #include "src/tool/common/plan_source.h"
+#include "src/tool/common/recorded_stiffness.h"
 #include "src/tool/common/shared_options.h"
 #include "src/tool/common/terminal.h"
 #include "src/tool/preprocess/motion_frames.h"
