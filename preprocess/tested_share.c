@@ -3,9 +3,11 @@
 
 #include "preprocess/regions/region_motion.h"
 #include "preprocess/regions/sight.h"
+#include "preprocess/regions/soft_ways.h"
 #include "preprocess/regions/visibility.h"
 #include "src/mesh/surface.h"
 
+#include <math.h>
 #include <string.h>
 
 typedef struct share_work {
@@ -14,8 +16,9 @@ typedef struct share_work {
     bool *at_border;     /* of vertices */
     uint32_t *region_of; /* of vertices: one of those around */
     float *blindness;    /* of triangles, summed over the frames */
+    double *ways;        /* of triangles: the blindness for soft material on the way */
     double *signs; /* of regions: the sum of their orientations at rest, negative where they are inside out */
-    region_way *ways;    /* of regions */
+    region_way *moves;   /* of regions */
     double (*points)[3]; /* of regions, in a frame */
 } share_work;
 
@@ -24,8 +27,8 @@ static array_list list_arrays(share_work *w) {
     const size_t triangles = mesh->triangle_count, vertices = mesh->vertex_count,
                  regions = w->d->region_count;
     return (array_list){{ARRAY(w->at_border, vertices), ARRAY(w->region_of, vertices),
-                         ARRAY(w->blindness, triangles), ARRAY(w->signs, regions), ARRAY(w->ways, regions),
-                         ARRAY(w->points, regions)}};
+                         ARRAY(w->blindness, triangles), ARRAY(w->ways, triangles), ARRAY(w->signs, regions),
+                         ARRAY(w->moves, regions), ARRAY(w->points, regions)}};
 }
 
 static void mark_borders(share_work *w) {
@@ -74,7 +77,7 @@ static double sum_share(const share_work *w) {
         if (triangle_of_obstacle(mesh, t)) continue;
         bool border = false;
         for (int i = 0; i < 3; i++) border |= w->at_border[mesh->triangles[t][i]];
-        tested += border ? 1.0 : (double)w->blindness[t] / (1.0 + w->d->frames->count);
+        tested += border ? 1.0 : fmax((double)w->blindness[t] / (1.0 + w->d->frames->count), w->ways[t]);
         all += 1.0;
     }
     return all > 0.0 ? tested / all : 0.0;
@@ -94,10 +97,13 @@ cscd_status find_tested_share(const plan_draft *d, double *out) {
     find_signs(&w);
     add_frame(&w, d->positions, w.scene.points);
     for (uint32_t f = 0; f < d->frames->count && progress_go_on(&context->progress, 1.0); f++) {
-        region_points_move(&w.scene, d->frames->items[f], w.ways, w.points);
+        region_points_move(&w.scene, d->frames->items[f], w.moves, w.points);
         add_frame(&w, d->frames->items[f], (const double(*)[3])w.points);
     }
+    cscd_status status = context_progress_status(context);
+    if (status == CSCD_OK && d->options.stiffness != NULL)
+        status = soft_ways_find(&w.scene, d->options.stiffness, w.ways);
     *out = sum_share(&w);
     context_free_all(context, list_arrays(&w));
-    return context_progress_status(context);
+    return status;
 }

@@ -1,12 +1,11 @@
 /* Finds the shortest ways through soft material, by relaxation: the result does not depend on the order of the steps. */
 #include "preprocess/regions/soft_paths.h"
 
+#include "preprocess/regions/stiffness.h"
+
 #include <string.h>
 
 enum { NO_SEAT = UINT32_MAX };
-
-/* The blindness for what lies far beyond soft material. More makes more regions than pay. */
-static const double beyond_blindness = 0.3;
 
 static array_list list_arrays(soft_paths *p) {
     const size_t n = p->g->count;
@@ -14,13 +13,11 @@ static array_list list_arrays(soft_paths *p) {
                          ARRAY(p->seats, p->row_count), ARRAY(p->queue, n), ARRAY(p->waiting, n)}};
 }
 
-/* A step through material of a share s of the component's stiffness costs 1 / s - 1 times its length, in roots of the component's area. Two
- * tiles are like two springs, one behind the other. */
 static double find_step(const tile_graph *g, uint32_t a, uint32_t b) {
     const double *p = g->items[a].centroid, *q = g->items[b].centroid;
     const double d[3] = {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
-    const double distance = sqrt((d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) / g->area);
-    return (0.5 * (1.0 / g->stiffness[a] + 1.0 / g->stiffness[b]) - 1.0) * distance;
+    return soft_step(g->stiffness[a], g->stiffness[b],
+                     sqrt((d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) / g->area));
 }
 
 cscd_status soft_paths_create(const tile_graph *g, uint32_t row_count, soft_paths *out) {
@@ -64,7 +61,7 @@ void soft_paths_set(soft_paths *p, uint32_t row, uint32_t seat) {
     const tile_graph *g = p->g;
     double *ways = p->rows + (size_t)row * g->count;
     p->seats[row] = seat;
-    for (uint32_t t = 0; t < g->count; t++) ways[t] = beyond_blindness;
+    for (uint32_t t = 0; t < g->count; t++) ways[t] = BEYOND_BLINDNESS;
     ways[seat] = 0.0;
     p->queue[0] = seat;
     for (uint32_t first = 0, queued = 1; queued > 0; first = (first + 1) % g->count) {

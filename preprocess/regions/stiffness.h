@@ -11,3 +11,12 @@ cscd_status stiffness_shares(const cscd_mesh *mesh, const double *positions, con
 
 /* The mean of the shares beside an edge; exactly 1 where all of them are. */
 double stiffness_beside(const cscd_mesh *mesh, const double *shares, uint32_t edge);
+
+/* The blindness for what lies far beyond soft material. More makes more regions than pay. */
+#define BEYOND_BLINDNESS 0.3
+
+/* What a step through material of these shares adds to the blindness: of one share s, 1 / s - 1 times its length, in roots of the
+ * component's area. Two places are like two springs, one behind the other. */
+static inline double soft_step(double share_a, double share_b, double length) {
+    return (0.5 * (1.0 / share_a + 1.0 / share_b) - 1.0) * length;
+}

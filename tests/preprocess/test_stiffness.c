@@ -1,5 +1,6 @@
 /* Plans of bodies that are soft in places: borders run there, and what lies beyond has a point of its own. */
 #include "preprocess/regions/edge_weights.h"
+#include "preprocess/regions/soft_ways.h"
 #include "preprocess/regions/stiffness.h"
 #include "src/mesh/surface.h"
 #include "tests/support/preprocess/region_check.h"
@@ -214,12 +215,130 @@ static void shares_are_of_the_component(void **state) {
     free(shares);
 }
 
+/* ---- what method auto compares --------------------------------------------------------------------------- */
+
+static void find_centroid(const body *b, uint32_t t, double out[3]) {
+    for (uint32_t k = 0; k < 3; k++) {
+        out[k] = 0.0;
+        for (uint32_t i = 0; i < 3; i++)
+            out[k] += b->positions[(size_t)b->triangles[t * 3 + i] * 3 + k] / 3.0;
+    }
+}
+
+static double distance_between(const double a[3], const double b[3]) {
+    return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) +
+                (a[2] - b[2]) * (a[2] - b[2]));
+}
+
+/* Takes all steps again and again until none is shorter. */
+static void walk_slowly(const region_scene *s, const body *b, const double *shares, double *ways) {
+    double area = 0.0, centroids[2][3];
+    for (uint32_t t = 0; t < s->count; t++) area += surface_area(s->mesh, s->positions, t);
+    for (uint32_t t = 0; t < s->count; t++) ways[t] = 0.3;
+    for (uint32_t r = 0; r < s->region_count; r++) {
+        uint32_t seat = 0;
+        double nearest = INFINITY;
+        for (uint32_t t = 0; t < s->count; t++) {
+            find_centroid(b, t, centroids[0]);
+            const double distance = distance_between(centroids[0], s->points[r]);
+            if (s->of_triangle[t] != r || distance >= nearest) continue;
+            seat = t;
+            nearest = distance;
+        }
+        ways[seat] = 0.0;
+    }
+    for (bool shorter = true; shorter;) {
+        shorter = false;
+        for (uint32_t e = 0; e < s->mesh->edge_count; e++) {
+            const uint32_t *star = s->mesh->edge_stars + s->mesh->edge_star_offsets[e];
+            if (s->of_triangle[star[0]] != s->of_triangle[star[1]]) continue;
+            for (int i = 0; i < 2; i++) find_centroid(b, star[i], centroids[i]);
+            const double springs = 0.5 / shares[star[0]] + 0.5 / shares[star[1]],
+                         step = (springs - 1.0) * distance_between(centroids[0], centroids[1]) / sqrt(area);
+            for (int i = 0; i < 2; i++) {
+                if (ways[star[i]] + step >= ways[star[1 - i]] - 1e-12) continue;
+                ways[star[1 - i]] = ways[star[i]] + step;
+                shorter = true;
+            }
+        }
+    }
+}
+
+/* Two regions, the second with a soft place on the way from its point and a piece that no way leads to. */
+static void ways_are_the_shortest(void **state) {
+    (void)state;
+    static const double points[2][3] = {{0.1, 0.0, -0.6}, {0.0, 0.2, 1.2}};
+    body b = body_of(BODY_CAPSULE, 500);
+    cscd_mesh *mesh = body_mesh(&b, 1);
+    uint32_t *regions = body_allocate(b.triangle_count, sizeof *regions), beyond = 0, between = 0;
+    double *shares = body_allocate(b.triangle_count, sizeof *shares),
+           *ways = body_allocate(b.triangle_count, sizeof *ways),
+           *expected = body_allocate(b.triangle_count, sizeof *expected);
+    for (uint32_t t = 0; t < b.triangle_count; t++) {
+        double middle[3];
+        find_centroid(&b, t, middle);
+        regions[t] = middle[2] > 0.0 || middle[2] < -1.3;
+        shares[t] = middle[2] > 0.4 && middle[2] < 0.8 ? 0.25 + 0.5 * (t % 2) : 1.0;
+    }
+    const region_scene scene = {.mesh = mesh,
+                                .positions = b.positions,
+                                .count = b.triangle_count,
+                                .of_triangle = regions,
+                                .region_count = 2,
+                                .points = points};
+    assert_int_equal(soft_ways_find(&scene, shares, ways), CSCD_OK);
+    walk_slowly(&scene, &b, shares, expected);
+    for (uint32_t t = 0; t < b.triangle_count; t++) {
+        assert_true(fabs(ways[t] - expected[t]) < 1e-9);
+        beyond += ways[t] == 0.3;
+        between += ways[t] > 0.0 && ways[t] < 0.3;
+    }
+    print_message("  %u triangles lie beyond, and %u between\n", beyond, between);
+    assert_true(beyond > 10 && between > 10);
+    body_mesh_destroy(mesh);
+    body_free(&b);
+    free(regions);
+    free(shares);
+    free(ways);
+    free(expected);
+}
+
+static double compared_share(const cscd_plan *plan, cscd_method method) {
+    for (uint32_t i = 0; i < cscd_plan_compared_count(plan); i++)
+        if (cscd_plan_compared(plan, i).method == method) return cscd_plan_compared(plan, i).tested_share;
+    fail_msg("not compared");
+    return 0.0;
+}
+
+/* The capsule is seen whole from one point at rest, and a cut has borders to test: only what lies beyond the soft place pays for it. */
+static void auto_knows_what_is_soft(void **state) {
+    (void)state;
+    cscd_mesh *mesh = body_mesh(&capsule, 1);
+    cscd_plan_options options = cscd_plan_defaults();
+    cscd_plan *plans[2] = {NULL};
+    options.method = CSCD_METHOD_AUTO;
+    for (int i = 0; i < 2; i++) {
+        options.stiffness = i == 0 ? NULL : soft;
+        assert_int_equal(cscd_plan_create(mesh->context, mesh,
+                                          CSCD_DOUBLES(capsule.positions, capsule.vertex_count), &options,
+                                          &plans[i]),
+                         CSCD_OK);
+        assert_int_equal(cscd_plan_method(plans[i]), CSCD_METHOD_CHARGE);
+    }
+    assert_true(compared_share(plans[1], CSCD_METHOD_SINGLE) >
+                compared_share(plans[0], CSCD_METHOD_SINGLE) + 0.05);
+    assert_true(cscd_plan_region_count(plans[1]) >= 2);
+    for (int i = 0; i < 2; i++) cscd_plan_destroy(plans[i]);
+    body_mesh_destroy(mesh);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_soft_place_parts_a_body),         cmocka_unit_test(only_ratios_count),
         cmocka_unit_test(nothing_soft_changes_nothing),      cmocka_unit_test(threads_change_nothing),
         cmocka_unit_test(edges_weigh_less_where_it_is_soft), cmocka_unit_test(bad_values_are_refused),
-        cmocka_unit_test(shares_are_of_the_component),
+        cmocka_unit_test(shares_are_of_the_component),       cmocka_unit_test(ways_are_the_shortest),
+        cmocka_unit_test(auto_knows_what_is_soft),
     };
     return cmocka_run_group_tests_name("stiffness", tests, make_capsule, free_capsule);
 }
