@@ -3,6 +3,7 @@
 #include "tests/support/tool/contact_rows.h"
 #include "tests/support/tool/json_reader.h"
 #include "tests/support/tool/run_tool.h"
+#include "tests/support/tool/soft_bar.h"
 #include "tests/support/tool/tool_fixture.h"
 
 #include <stdio.h>
@@ -230,12 +231,42 @@ static void differing_numbers_are_told(void **state) {
     recorded_free(&dart);
 }
 
+/* ---- plans ------------------------------------------------------------------------------------------- */
+
+/* The bar is the last object, so that its triangles have other numbers in the mesh than in its model. */
+static void expect_regions(const char *bar_name, double soft, const char *expected) {
+    const temp_path bar = soft_bar_write(&folder, bar_name, soft, false), object = named_path_of("bar", &bar);
+    tool_run run = RUN_TOOL("replay", "--object", wall_object.text, "--object", dart_object.text,
+                            "--frames-of", dart_frames.text, "--object", object.text, "--no-check");
+    assert_int_equal(run.code, 0);
+    if (strstr(run.out, expected) == NULL) fail_msg("expected '%s' in: %s", expected, run.out);
+    tool_run_free(&run);
+}
+
+static void every_object_has_the_stiffness_of_its_model(void **state) {
+    (void)state;
+    expect_regions("even.ply", 3.0, "plan: charge, 3 regions, made in memory in ");
+    expect_regions("soft.ply", 0.25, "plan: charge, 4 regions, made in memory in ");
+    const temp_path bad = soft_bar_write_bad(&folder, "bad.ply", 90, -1.0),
+                    object = named_path_of("bar", &bad);
+    tool_run run = RUN_TOOL("replay", "--object", wall_object.text, "--object", dart_object.text,
+                            "--frames-of", dart_frames.text, "--object", object.text, "--method", "charge");
+    assert_int_equal(run.code, 1);
+    assert_non_null(strstr(run.error, "bad.ply: the stiffness of face 90 is -1, expected"));
+    tool_run_free(&run);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(objects_meet_as_in_one_mesh),        cmocka_unit_test(objects_without_frames_rest),
-        cmocka_unit_test(obstacles_do_not_meet_each_other),   cmocka_unit_test(tables_name_objects_in_quotes),
-        cmocka_unit_test(lists_of_pairs_name_objects),        cmocka_unit_test(unfit_objects_are_refused),
-        cmocka_unit_test(errors_in_frames_name_their_object), cmocka_unit_test(differing_numbers_are_told),
+        cmocka_unit_test(objects_meet_as_in_one_mesh),
+        cmocka_unit_test(objects_without_frames_rest),
+        cmocka_unit_test(obstacles_do_not_meet_each_other),
+        cmocka_unit_test(tables_name_objects_in_quotes),
+        cmocka_unit_test(lists_of_pairs_name_objects),
+        cmocka_unit_test(unfit_objects_are_refused),
+        cmocka_unit_test(errors_in_frames_name_their_object),
+        cmocka_unit_test(differing_numbers_are_told),
+        cmocka_unit_test(every_object_has_the_stiffness_of_its_model),
     };
     return cmocka_run_group_tests_name("tool_objects", tests, make_files, remove_files);
 }

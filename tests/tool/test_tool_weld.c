@@ -4,6 +4,7 @@
 #include "tests/support/tool/contact_rows.h"
 #include "tests/support/tool/json_reader.h"
 #include "tests/support/tool/run_tool.h"
+#include "tests/support/tool/soft_bar.h"
 #include "tests/support/tool/tool_fixture.h"
 
 #include <math.h>
@@ -368,6 +369,16 @@ static void ignores_what_meets_at_rest(void **state) {
     recorded_free(&flight);
 }
 
+static void faces_keep_their_stiffness(void **state) {
+    (void)state;
+    const temp_path bar = soft_bar_write(&folder, "bar.ply", 0.25, true);
+    tool_run run = RUN_TOOL("preprocess", bar.text, "--weld", "exact");
+    assert_int_equal(run.code, 0);
+    assert_non_null(strstr(run.out, ": 2 regions by method charge; "));
+    assert_non_null(strstr(run.out, "480 vertices, 956 triangles, 1 component\n"));
+    tool_run_free(&run);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(welding_finds_what_the_clean_export_has),
@@ -382,6 +393,7 @@ int main(void) {
         cmocka_unit_test(names_the_line_of_a_bad_list),
         cmocka_unit_test(a_list_means_the_triangles_of_the_file),
         cmocka_unit_test(ignores_what_meets_at_rest),
+        cmocka_unit_test(faces_keep_their_stiffness),
     };
     return cmocka_run_group_tests_name("tool_weld", tests, make_files, remove_files);
 }

@@ -24,22 +24,30 @@ static void print_components(const cscd_mesh *mesh, const cscd_plan *plan) {
 }
 
 static void print_regions(const cscd_plan *plan) {
-    uint32_t count = cscd_plan_region_count(plan);
-    double whole = total_area(plan), seen = 0.0;
-    printf("%u region%s by method %s\n", count, count == 1 ? "" : "s",
-           cscd_method_name(cscd_plan_method(plan)));
+    const uint32_t count = cscd_plan_region_count(plan);
+    const double whole = total_area(plan);
     printf("%6s %9s %9s %13s %16s   detector point\n", "region", "component", "triangles", "share of area",
            "its point sees");
-    for (uint32_t i = 0; i < count; i++) {
-        cscd_region r = cscd_plan_region(plan, i);
+    for (uint32_t i = 0; i < count && i < LINES_MAX; i++) {
+        const cscd_region r = cscd_plan_region(plan, i);
         const double *p = r.detector_point;
-        seen += r.visible_share * r.area;
-        if (i < LINES_MAX)
-            printf("%6u %9u %9u %11.1f %% %14.1f %%   (%.6g, %.6g, %.6g)\n", i, r.component, r.triangle_count,
-                   percent_of(r.area, whole), 100.0 * r.visible_share, p[0], p[1], p[2]);
+        printf("%6u %9u %9u %11.1f %% %14.1f %%   (%.6g, %.6g, %.6g)\n", i, r.component, r.triangle_count,
+               percent_of(r.area, whole), 100.0 * r.visible_share, p[0], p[1], p[2]);
     }
     if (count > LINES_MAX) printf("and %u more regions\n", count - LINES_MAX);
-    printf("seen in all: %.1f %% of the area\n", percent_of(seen, whole));
+}
+
+/* The answer: how many regions there are, and how much of the model is seen. */
+static void print_answer(const char *model_path, const cscd_plan *plan) {
+    const uint32_t count = cscd_plan_region_count(plan);
+    double seen = 0.0;
+    for (uint32_t i = 0; i < count; i++) {
+        const cscd_region r = cscd_plan_region(plan, i);
+        seen += r.visible_share * r.area;
+    }
+    printf("%s: %u region%s by method %s; %s %.1f %% of the area\n", model_path, count, count == 1 ? "" : "s",
+           cscd_method_name(cscd_plan_method(plan)), count == 1 ? "its point sees" : "their points see",
+           percent_of(seen, total_area(plan)));
 }
 
 /* What method auto has compared. */
@@ -62,7 +70,8 @@ static void print_compared(const cscd_plan *plan) {
 void plan_print(const char *model_path, const cscd_mesh *mesh, const cscd_plan *plan) {
     const cscd_preprocess_timings t = cscd_plan_timings(plan);
     const uint32_t components = cscd_mesh_component_count(mesh);
-    printf("%s: %u vertices, %u triangles, %u component%s\n", model_path, cscd_mesh_vertex_count(mesh),
+    print_answer(model_path, plan);
+    printf("%u vertices, %u triangles, %u component%s\n", cscd_mesh_vertex_count(mesh),
            cscd_mesh_triangle_count(mesh), components, components == 1 ? "" : "s");
     if (cscd_plan_method(plan) == CSCD_METHOD_CHARGE) print_components(mesh, plan);
     print_compared(plan);

@@ -134,10 +134,12 @@ static bool show_progress(void *user, const char *stage, double fraction) {
 }
 
 static bool print_and_save(const preprocess_options *o, const recording *r, const double *positions,
-                           const cscd_plan *plan, io_error *error) {
+                           const recorded_stiffness *stiffness, const cscd_plan *plan, io_error *error) {
     if (!save_plan(o, r, positions, plan, error)) return false;
     if (!o->quiet) {
         plan_print(o->source.model_path, r->mesh, plan);
+        if (stiffness->of_triangle != NULL)
+            printf("stiffness: %g to %g, from %s\n", stiffness->least, stiffness->greatest, stiffness->path);
         printf("written: %s\n", o->output_path);
     }
     return save_report(o, r, positions, plan, error);
@@ -155,7 +157,7 @@ static bool explain_failure(const preprocess_options *o, const recording *r, csc
 }
 
 static bool make_plan(const preprocess_options *o, recording *r, const double *positions,
-                      const motion_frames *motion, io_error *error) {
+                      const motion_frames *motion, const recorded_stiffness *stiffness, io_error *error) {
     cscd_plan *plan = NULL;
     cscd_plan_options options = o->plan;
     if (options.method == CSCD_METHOD_CHARGE && options.charge_solver == CSCD_CHARGE_DENSE)
@@ -163,11 +165,12 @@ static bool make_plan(const preprocess_options *o, recording *r, const double *p
     options.variant = o->published ? CSCD_PLAN_VARIANT_PUBLISHED : 0;
     options.frames = motion->items;
     options.frame_count = motion->count;
+    options.stiffness = stiffness->of_triangle;
     cscd_status status = cscd_plan_create(
         r->context, r->mesh, CSCD_DOUBLES(positions, cscd_mesh_vertex_count(r->mesh)), &options, &plan);
     terminal_progress_end(o->source.progress.user);
     if (status != CSCD_OK) return explain_failure(o, r, status, error);
-    const bool saved = print_and_save(o, r, positions, plan, error);
+    const bool saved = print_and_save(o, r, positions, stiffness, plan, error);
     cscd_plan_destroy(plan);
     return saved;
 }
@@ -182,17 +185,13 @@ static bool read_positions(const preprocess_options *o, recording *r, double *po
 }
 
 /* Makes the plan, with the stiffness of the model's file where its method knows of one. */
-static bool make_stiff_plan(preprocess_options *o, recording *r, const double *positions,
+static bool make_stiff_plan(const preprocess_options *o, recording *r, const double *positions,
                             const motion_frames *motion, io_error *error) {
     recorded_stiffness stiffness = {0};
     const bool counts =
         !o->published && o->plan.method != CSCD_METHOD_KMEANS && o->plan.method != CSCD_METHOD_SINGLE;
     if (counts && !recorded_stiffness_read(r, &stiffness, error)) return false;
-    if (stiffness.of_triangle != NULL && !o->quiet)
-        printf("stiffness: from %s, %g to %g\n", stiffness.path, stiffness.least, stiffness.greatest);
-    o->plan.stiffness = stiffness.of_triangle;
-    const bool made = make_plan(o, r, positions, motion, error);
-    o->plan.stiffness = NULL;
+    const bool made = make_plan(o, r, positions, motion, &stiffness, error);
     recorded_stiffness_free(&stiffness);
     return made;
 }
