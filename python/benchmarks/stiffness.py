@@ -89,7 +89,7 @@ def recordings(paths: List[str]) -> Iterator[Recording]:
 
 def measure(mesh: Any, plan: Any, frames: Any) -> Tuple[float, float]:
     """Over all intervals: the mean of the pairs that are tested, and the median of the milliseconds."""
-    detector = cscd.Detector(mesh, plan=plan, method="charge", start="vouched", threads=1)
+    detector = cscd.Detector(mesh, plan=plan, method=plan.method, start="vouched", threads=1)
     pairs, times = [], []
     for i in range(len(frames) - 1):
         detector.step(frames[i], frames[i + 1])
@@ -103,10 +103,13 @@ def main() -> None:
     for name, F, rest, frames, stiffness in recordings(sys.argv[1:]):
         mesh = cscd.Mesh(F)
         chosen = [frames[i] for i in np.linspace(0, len(frames) - 1, 8).astype(int)]
-        for kind, options in (("rest", {}), ("stiffness", {"stiffness": stiffness}), ("frames", {"frames": chosen})):
-            plan = cscd.Plan.charge(mesh, rest, threads=1, **options)
+        for kind, make, options in (("rest", cscd.Plan.charge, {}), ("stiffness", cscd.Plan.charge, {"stiffness": stiffness}),
+                                    ("auto with stiffness", cscd.Plan.auto, {"stiffness": stiffness}),
+                                    ("frames", cscd.Plan.charge, {"frames": chosen})):
+            plan = make(mesh, rest, threads=1, **options)
             pairs, milliseconds = measure(mesh, plan, frames)
-            print(f"{name} ({len(F):,}) {kind}: {plan.region_count} regions, {pairs:,.0f} pairs, {milliseconds:.3f} ms")
+            print(f"{name} ({len(F):,}) {kind}: {plan.method}, {plan.region_count} regions, {pairs:,.0f} pairs, "
+                  f"{milliseconds:.3f} ms")
 
 
 if __name__ == "__main__":

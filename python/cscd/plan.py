@@ -123,7 +123,7 @@ class Plan:
     def auto(cls, mesh: Mesh, V: Any, *, stiffness: Any = None, frames: Any = None, threads: int = 0,
              progress: Optional[Callable[[str, float], Any]] = None) -> Plan:
         """The plan by charge, by one region for each component or by k-means that leaves the least to test, as predicted at
-        rest and in the frames; ``compared`` lists them. The other parameters are those of ``charge``."""
+        rest and in the frames, beyond soft places, too; ``compared`` lists them. The other parameters are those of ``charge``."""
         kept, members = cls._motion(mesh, stiffness, frames)
         plan = cls._create(mesh, V, threads, progress, method=code_of("method", "auto"), **members)
         del kept
