@@ -318,8 +318,7 @@ demo: packages
 models: packages
 	@$(MAKE) --no-print-directory build/models/made
 
-build/models/made: $(BUILD)/models/record $(BUILD)/models/cloth $(BUILD)/models/ipc $(BUILD)/models/objects \
-                   $(BUILD)/models/shape
+build/models/made: $(addprefix $(BUILD)/models/,record cloth ipc objects shape mannequin folds capsule_bend)
 	@BUILD=$(BUILD) models/make.sh build/models
 	@touch $@
 

@@ -22,6 +22,13 @@ for name in pawn dumbbell figure hand octopus torus; do
         "$tool" render "$models/$name.obj" --up z --colour "$colour" --view 30,12 --size 640x480 -o "$images/$name-$colour.png"
     done
 done
+for motion in '' "$models/capsule-bend.pc2"; do
+    plan=$models/capsule-bend.${motion:+motion.}plan.ply
+    # shellcheck disable=SC2086
+    "$tool" preprocess "$models/capsule-bend.obj" $motion -o "$plan" --quiet
+    "$tool" render "$models/capsule-bend.obj" "$models/capsule-bend.pc2" --up y --frames 0:57:19 --columns 4 --colour region \
+        --plan "$plan" --view 0,10 --size 300x225 -o "$images/capsule-bend-${motion:+motion-}region.png"
+done
 for name in torus genus2 coil slab chain; do
     "$tool" render "$models/$name.obj" --up z --wire --view 30,30 --size 360x300 -o "$images/$name.png"
 done

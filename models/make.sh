@@ -13,3 +13,4 @@ done
 "$BUILD/models/objects" all "$folder"
 "$BUILD/models/mannequin" "$folder" cache skin
 "$BUILD/models/folds" "$folder"
+"$BUILD/models/capsule_bend" "$folder/capsule-bend.obj" "$folder/capsule-bend.pc2"
