@@ -155,9 +155,10 @@ void labelling_leave_out(tile_labelling *l, uint32_t region) {
 
 /* ---- expansion moves ------------------------------------------------------------------------------------- */
 
-/* Costs become integers: 2^40 is the component's area, so that no sum of them overflows. */
+/* Costs become integers: 2^40 is the component's area. What costs twice that, as borders of a body that is long beside the root of its
+ * area, is never worth it, so more counts as that, and no sum of them overflows. */
 static int64_t whole_cost(const tile_labelling *l, double cost) {
-    return (int64_t)(cost / l->g->area * 0x1p40);
+    return (int64_t)(fmin(cost / l->g->area, 2.0) * 0x1p40);
 }
 
 /* A tile that keeps its region pays its supply, and one that changes its drain: those that stay with the supplies change. */

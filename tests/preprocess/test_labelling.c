@@ -183,6 +183,29 @@ static void costs_never_rise(void **state) {
     }
 }
 
+/* Borders that cost many times what the body's area does, as those of a needle do, are not made. */
+static void no_price_is_too_high(void **state) {
+    (void)state;
+    static const double heights[] = {1e6, 1e10, 1e30, 1e300};
+    random_seed(4);
+    for (int i = 0; i < 4; i++) {
+        const labelling_prices prices = {0.01, heights[i]};
+        tiled_body *b = tiled_body_make(BODY_TORUS, 1000);
+        tile_labelling l;
+        assert_int_equal(labelling_create(&b->g, &prices, &l), CSCD_OK);
+        const sight_point point = random_point(b);
+        labelling_add(&l, &point, 0);
+        for (uint32_t t = 0; t < b->tile_count; t++) {
+            const uint32_t region = (uint32_t)random_integer(0, 1);
+            labelling_give(&l, &t, 1, region);
+        }
+        labelling_share_out(&l);
+        assert_int_equal(l.regions.count, 1); /* which has no border */
+        labelling_destroy(&l);
+        tiled_body_free(b);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(tiles_add_up),
@@ -190,6 +213,7 @@ int main(void) {
         cmocka_unit_test(borders_are_parts_of_the_cost),
         cmocka_unit_test(two_regions_cost_the_least),
         cmocka_unit_test(costs_never_rise),
+        cmocka_unit_test(no_price_is_too_high),
     };
     return cmocka_run_group_tests_name("labelling", tests, NULL, NULL);
 }
