@@ -63,9 +63,10 @@ static void the_processor_decides(void **state) {
 
 #if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 
-static tool_run preprocess_with_old_openblas(const char *solver) {
+static tool_run preprocess_with_old_openblas(const char *method, const char *solver) {
     setenv("LD_PRELOAD", library.text, 1);
-    tool_run run = RUN_TOOL("preprocess", model.text, "-o", plan.text, "--charge", solver);
+    tool_run run =
+        RUN_TOOL("preprocess", model.text, "-o", plan.text, "--method", method, "--charge", solver);
     unsetenv("LD_PRELOAD");
     return run;
 }
@@ -76,10 +77,8 @@ static bool has_avx2(void) {
 }
 
 /* Another process finds out; this one asks with better kernels from the first time on, so there is nothing to warn of. */
-static void it_chooses_kernels(void **state) {
-    (void)state;
-    if (!has_avx2()) skip();
-    tool_run run = preprocess_with_old_openblas("dense");
+static void expect_choice(const char *method) {
+    tool_run run = preprocess_with_old_openblas(method, "dense");
     assert_int_equal(run.code, 0);
     const char *last = run.error, *line = run.error;
     assert_ptr_equal(strstr(line, "asked with nothing, 1 threads\n"), line);
@@ -91,12 +90,19 @@ static void it_chooses_kernels(void **state) {
     tool_run_free(&run);
 }
 
+static void it_chooses_kernels(void **state) {
+    (void)state;
+    if (!has_avx2()) skip();
+    expect_choice("charge");
+    expect_choice("auto");
+}
+
 static void a_choice_of_the_user_stays(void **state) {
     (void)state;
     if (!has_avx2()) skip();
     setenv("OPENBLAS_CORETYPE", "Prescott", 1);
     setenv("OPENBLAS_NUM_THREADS", "2", 1);
-    tool_run run = preprocess_with_old_openblas("dense");
+    tool_run run = preprocess_with_old_openblas("charge", "dense");
     unsetenv("OPENBLAS_CORETYPE");
     unsetenv("OPENBLAS_NUM_THREADS");
     assert_int_equal(run.code, 0);
@@ -109,7 +115,7 @@ static void a_choice_of_the_user_stays(void **state) {
 /* Other ways to solve for the charge ask nobody, and warn of nothing. */
 static void others_need_none(void **state) {
     (void)state;
-    tool_run run = preprocess_with_old_openblas("tree");
+    tool_run run = preprocess_with_old_openblas("auto", "tree");
     assert_int_equal(run.code, 0);
     assert_string_equal(run.error, "");
     tool_run_free(&run);

@@ -160,8 +160,8 @@ static bool make_plan(const preprocess_options *o, recording *r, const double *p
                       const motion_frames *motion, const recorded_stiffness *stiffness, io_error *error) {
     cscd_plan *plan = NULL;
     cscd_plan_options options = o->plan;
-    if (options.method == CSCD_METHOD_CHARGE && options.charge_solver == CSCD_CHARGE_DENSE)
-        blas_kernels_prepare(!o->quiet);
+    const bool charges = options.method == CSCD_METHOD_CHARGE || options.method == CSCD_METHOD_AUTO;
+    if (charges && options.charge_solver == CSCD_CHARGE_DENSE) blas_kernels_prepare(!o->quiet);
     options.variant = o->published ? CSCD_PLAN_VARIANT_PUBLISHED : 0;
     options.frames = motion->items;
     options.frame_count = motion->count;
