@@ -168,6 +168,10 @@ static array_list list_vectors(gmres *g) {
     return list;
 }
 
+double gmres_bytes(uint32_t count) {
+    return (BASIS_MOST + 2) * sizeof(double) * (double)count; /* the basis, and what is preconditioned */
+}
+
 cscd_status gmres_solve(const linear_equations *equations, const double *right, double tolerance,
                         uint32_t iterations_most, double *solution, gmres_result *result) {
     cscd_context *context = equations->context;

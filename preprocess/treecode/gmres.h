@@ -17,6 +17,9 @@ typedef struct gmres_result {
     double residual; /* over that of 0, in the Euclidean norm */
 } gmres_result;
 
+/* The bytes that so many equations take besides what the caller holds. */
+double gmres_bytes(uint32_t count);
+
 /* Begins at 0, and ends when the residual is at most the tolerance, or after iterations_most: the result says which. The same
  * bits for any number of threads. */
 cscd_status gmres_solve(const linear_equations *equations, const double *right, double tolerance,

@@ -22,8 +22,8 @@ static array_list list_members(near_blocks *b) {
     return (array_list){{ARRAY(b->members, b->member_count), ARRAY(b->rows, b->row_count)}};
 }
 
-static const source_node *leaf_node(const near_blocks *b, uint32_t leaf) {
-    return &b->t->tree.nodes[b->t->tree.leaves[leaf]];
+static const source_node *leaf_node(const treecode *t, uint32_t leaf) {
+    return &t->tree.nodes[t->tree.leaves[leaf]];
 }
 
 static uint32_t own_count(const source_node *leaf) {
@@ -32,16 +32,30 @@ static uint32_t own_count(const source_node *leaf) {
 
 /* ---- members --------------------------------------------------------------------------------------------- */
 
+/* The leaf's own, and of those that are near some. */
+static size_t block_size(const treecode *t, uint32_t l) {
+    const size_t *near_begins = t->lists.near_begins + 2 * (size_t)l;
+    const size_t own = own_count(leaf_node(t, l)), around = near_begins[1] - near_begins[0] - own;
+    return own + (around < AROUND_MOST ? around : AROUND_MOST);
+}
+
+double near_blocks_bytes(const treecode *t) {
+    double bytes = (double)parallel_thread_count(t->context->threads) * sizeof(block_room);
+    for (uint32_t l = 0; l < t->tree.leaf_count; l++) {
+        const size_t of_member = sizeof(uint32_t) + sizeof(float) * own_count(leaf_node(t, l));
+        bytes += (double)(block_size(t, l) * of_member + 2 * sizeof(size_t));
+    }
+    return bytes;
+}
+
 static void begin_blocks(near_blocks *b) {
     size_t members = 0, rows = 0;
     for (uint32_t l = 0; l < b->t->tree.leaf_count; l++) {
-        const size_t *near_begins = b->t->lists.near_begins + 2 * (size_t)l;
-        const size_t own = own_count(leaf_node(b, l)), around = near_begins[1] - near_begins[0] - own;
-        const size_t block = own + (around < AROUND_MOST ? around : AROUND_MOST);
+        const size_t block = block_size(b->t, l);
         b->begins[l] = members;
         b->row_begins[l] = rows;
         members += block;
-        rows += block * own;
+        rows += block * own_count(leaf_node(b->t, l));
     }
     b->begins[b->t->tree.leaf_count] = b->member_count = members;
     b->row_begins[b->t->tree.leaf_count] = b->row_count = rows;
@@ -70,7 +84,7 @@ static bool is_nearer(neighbour a, neighbour b) {
 /* Lists the leaf's own sources, and of those that are near the nearest, in order. */
 static void list_block(near_blocks *b, uint32_t l) {
     const treecode *t = b->t;
-    const source_node *leaf = leaf_node(b, l);
+    const source_node *leaf = leaf_node(b->t, l);
     const size_t *near_begins = t->lists.near_begins + 2 * (size_t)l;
     uint32_t *members = b->members + b->begins[l];
     const uint32_t most = (uint32_t)(b->begins[l + 1] - b->begins[l]) - own_count(leaf);
@@ -152,7 +166,7 @@ static void take_alone(block_room *room, const near_blocks *b, const uint32_t *m
 }
 
 static void invert_block(near_blocks *b, uint32_t l, block_room *room) {
-    const uint32_t own = own_count(leaf_node(b, l)), count = (uint32_t)(b->begins[l + 1] - b->begins[l]);
+    const uint32_t own = own_count(leaf_node(b->t, l)), count = (uint32_t)(b->begins[l + 1] - b->begins[l]);
     const uint32_t *members = b->members + b->begins[l];
     float *rows = b->rows + b->row_begins[l];
     set_equations(b, members, count, own, room);
@@ -220,7 +234,7 @@ typedef struct block_product {
 static void apply_block(void *data, uint32_t l) {
     const block_product *p = data;
     const near_blocks *b = p->blocks;
-    const source_node *leaf = leaf_node(b, l);
+    const source_node *leaf = leaf_node(b->t, l);
     const uint32_t own = own_count(leaf);
     const float *rows = b->rows + b->row_begins[l];
     double sums[SOURCES_PER_LEAF] = {0.0};

@@ -13,6 +13,9 @@ typedef struct near_blocks {
     size_t member_count, row_count;
 } near_blocks;
 
+/* The bytes that the blocks of a treecode take while they are made. */
+double near_blocks_bytes(const treecode *t);
+
 /* The treecode is used as long as the blocks live. */
 cscd_status near_blocks_create(const treecode *t, near_blocks *out);
 void near_blocks_destroy(near_blocks *blocks);

@@ -79,16 +79,34 @@ static cscd_status find_charges(tree_equations *e, charge_system *system) {
     return status;
 }
 
+/* What has been laid out already counts as well. */
+static cscd_status check_limit(const tree_equations *e, const charge_system *system, size_t memory_limit) {
+    const double gibibyte = 0x1p30;
+    charge_system same;
+    const double held = (double)charge_system_lay_out(&same, system->count, NULL),
+                 sides = 2.0 * sizeof(double) * system->count; /* of the equations */
+    const double bytes =
+        held + sides + treecode_bytes(&e->t) + near_blocks_bytes(&e->t) + gmres_bytes(system->count);
+    if (bytes <= (double)memory_limit) return CSCD_OK;
+    return context_fail(
+        e->t.context, CSCD_OUT_OF_MEMORY,
+        "charge: a component of %u triangles takes %.4g GiB of memory, and %.4g GiB are available; "
+        "simplify the mesh or use a machine with more memory",
+        system->count, bytes / gibibyte, (double)memory_limit / gibibyte);
+}
+
 cscd_status tree_solve(cscd_context *context, charge_system *system, size_t memory_limit, double tolerance,
                        charge_timings *timings) {
     tree_equations e = {.tolerance = tolerance};
     double clock = timer_now_ms();
     if (system->count == 0) return CSCD_OK;
     progress_stage(&context->progress, "charge: tree", 0.0, 0.15);
-    cscd_status status = treecode_create(context, system, memory_limit, &e.t);
+    cscd_status status = treecode_create(context, system, &e.t);
     if (status != CSCD_OK) return status;
+    status = check_limit(&e, system, memory_limit);
+    if (status == CSCD_OK) status = treecode_fill(&e.t);
     progress_stage(&context->progress, "charge: blocks", 0.15, 0.4);
-    status = near_blocks_create(&e.t, &e.blocks);
+    if (status == CSCD_OK) status = near_blocks_create(&e.t, &e.blocks);
     timer_lap(&clock, &timings->assembly_ms);
     if (status == CSCD_OK) status = find_charges(&e, system);
     timer_lap(&clock, &timings->refine_ms);

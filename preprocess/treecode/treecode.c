@@ -57,43 +57,38 @@ static void find_exact(void *data, uint32_t l) {
 
 /* ---- setup ----------------------------------------------------------------------------------------------- */
 
-static cscd_status check_limit(const treecode *t, size_t memory_limit) {
-    const double gibibyte = 0x1p30;
-    const double bytes = (double)t->exact_count * sizeof *t->exact_potentials +
-                         (double)t->lists.near_count * sizeof *t->lists.near_sources +
-                         (double)t->lists.far_count * sizeof *t->lists.far_items +
-                         2.0 * HARMONIC_COUNT * sizeof(double) * t->tree.node_count;
-    if (bytes <= (double)memory_limit) return CSCD_OK;
-    return context_fail(
-        t->context, CSCD_OUT_OF_MEMORY,
-        "charge: a component of %u triangles takes %.4g GiB of memory, and %.4g GiB are available; "
-        "simplify the mesh or use a machine with more memory",
-        t->tree.count, bytes / gibibyte, (double)memory_limit / gibibyte);
-}
-
-static cscd_status prepare_treecode(treecode *t, const charge_system *system, size_t memory_limit) {
-    cscd_context *context = t->context;
-    cscd_status status = source_tree_create(context, system, &t->tree);
+static cscd_status list_sources(treecode *t, const charge_system *system) {
+    cscd_status status = source_tree_create(t->context, system, &t->tree);
     if (status == CSCD_OK) status = interactions_create(&t->tree, &t->lists);
     if (status != CSCD_OK) return status;
-    if (!context_reserve_all(context, list_expansions(t))) return context_out_of_memory(context);
+    if (!context_reserve_all(t->context, list_expansions(t))) return context_out_of_memory(t->context);
     begin_exact(t);
-    status = check_limit(t, memory_limit);
-    if (status != CSCD_OK) return status;
-    t->exact_potentials = context_reserve(context, t->exact_count, sizeof *t->exact_potentials);
-    if (t->exact_potentials == NULL) return context_out_of_memory(context);
-    parallel_run(context->threads, t->tree.leaf_count, find_exact, t);
-    return context_progress_status(context);
+    return CSCD_OK;
 }
 
-cscd_status treecode_create(cscd_context *context, const charge_system *system, size_t memory_limit,
-                            treecode *out) {
+cscd_status treecode_create(cscd_context *context, const charge_system *system, treecode *out) {
     *out = (treecode){.context = context, .kernels = KERNELS_OF(context, treecode_kernels)};
     out->tree.context = out->lists.context = context;
     expansion_tables_set(&out->tables);
-    const cscd_status status = prepare_treecode(out, system, memory_limit);
+    const cscd_status status = list_sources(out, system);
     if (status != CSCD_OK) treecode_destroy(out);
     return status;
+}
+
+double treecode_bytes(const treecode *t) {
+    const double of_leaf = sizeof *t->tree.leaves + sizeof *t->exact_begins + 2 * sizeof(size_t),
+                 of_node = sizeof *t->tree.nodes + sizeof(size_t) + 2 * HARMONIC_COUNT * sizeof(double);
+    return (double)t->exact_count * sizeof *t->exact_potentials +
+           (double)t->lists.near_count * sizeof *t->lists.near_sources +
+           (double)t->lists.far_count * sizeof *t->lists.far_items + of_node * t->tree.node_count +
+           of_leaf * t->tree.leaf_count + (double)t->tree.count * sizeof *t->tree.sources;
+}
+
+cscd_status treecode_fill(treecode *t) {
+    t->exact_potentials = context_reserve(t->context, t->exact_count, sizeof *t->exact_potentials);
+    if (t->exact_potentials == NULL) return context_out_of_memory(t->context);
+    parallel_run(t->context->threads, t->tree.leaf_count, find_exact, t);
+    return context_progress_status(t->context);
 }
 
 void treecode_destroy(treecode *t) {

@@ -18,11 +18,15 @@ typedef struct treecode {
     size_t exact_count;
 } treecode;
 
-/* The system is used as long as the treecode lives. OUT_OF_MEMORY, too, if it takes more bytes than the limit: that depends on
- * how large the triangles are beside their neighbours. */
-cscd_status treecode_create(cscd_context *context, const charge_system *system, size_t memory_limit,
-                            treecode *out);
+/* Makes the tree and its lists. The system is used as long as the treecode lives. */
+cscd_status treecode_create(cscd_context *context, const charge_system *system, treecode *out);
 void treecode_destroy(treecode *t);
+
+/* The bytes that it takes once it is filled: that depends on how large the triangles are beside their neighbours. */
+double treecode_bytes(const treecode *t);
+
+/* Finds the potentials of sources that are near, which is done once, before all evaluations. */
+cscd_status treecode_fill(treecode *t);
 
 /* Writes the potentials at the collocation points, in the order of the tree, as are the charges. The error of each is at most 1 % of
  * the potential that far charges would have if all were positive; 1e-5 of it is usual. The same bits for any number of threads and on

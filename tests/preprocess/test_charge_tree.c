@@ -231,9 +231,17 @@ static void sheets_near_each_other(void **state) {
 static void keeps_to_the_limit(void **state) {
     (void)state;
     conductor s = bent_body(3);
-    charge_rig r = charge_rig_create(&s, 2, NULL);
-    const size_t held = cscd_context_bytes(r.context);
-    const charge_options little = {CSCD_CHARGE_TREE, 100000};
+    counting_allocator counter = counting_allocator_start();
+    const cscd_allocator allocator = counting_allocator_interface(&counter);
+    charge_rig r = charge_rig_create(&s, 2, &allocator);
+    const size_t held = cscd_context_bytes(r.context), bytes = counter.bytes;
+    assert_int_equal(charge_solve(r.mesh, s.positions, &by_tree, r.density, r.capacitance, NULL), CSCD_OK);
+    const size_t taken = counter.peak - bytes;
+    const charge_options enough = {CSCD_CHARGE_TREE, taken + taken / 8};
+    assert_int_equal(charge_solve(r.mesh, s.positions, &enough, r.density, r.capacitance, NULL), CSCD_OK);
+    for (uint32_t t = 0; t < s.triangle_count; t++) r.density[t] = -1.0;
+    r.capacitance[0] = -1.0;
+    const charge_options little = {CSCD_CHARGE_TREE, taken - taken / 16};
     assert_int_equal(charge_solve(r.mesh, s.positions, &little, r.density, r.capacitance, NULL),
                      CSCD_OUT_OF_MEMORY);
     assert_non_null(strstr(cscd_context_detail(r.context), "a component of 1280 triangles takes"));

@@ -26,7 +26,8 @@ treecode_rig treecode_rig_create(const conductor *s, uint32_t thread_count, cscd
     charge_system_lay_out(&r.system, s->triangle_count, r.memory);
     assert_int_equal(charge_system_collect(&r.system, &surface, 0, list, s->triangle_count), CSCD_OK);
     free(list);
-    assert_int_equal(treecode_create(r.context, &r.system, SIZE_MAX, &r.t), CSCD_OK);
+    assert_int_equal(treecode_create(r.context, &r.system, &r.t), CSCD_OK);
+    assert_int_equal(treecode_fill(&r.t), CSCD_OK);
     return r;
 }
 
