@@ -52,13 +52,14 @@ typedef struct cscd_plan_options {
     /* CHARGE by default, or KMEANS, or SINGLE; or AUTO: the one of these that leaves the least to a step, as
      * cscd_plan_compared tells, and the plan is then of that method. */
     cscd_method method;
-    uint32_t k;            /* KMEANS: how many regions all components have together, 4 by default */
-    uint32_t seed;         /* KMEANS: of the random starts, 1 by default */
-    double threshold;      /* CHARGE: the share of the triangles, those of least density, along which
-                           * cuts run; in (0,1), 0.1 by default */
-    uint64_t variant;      /* 0 by default; cscd/research.h has others to compare with */
-    uint64_t memory_limit; /* CHARGE: bytes that the solution may take; 0, the default: what the system has */
-    cscd_charge_solver charge_solver; /* CHARGE: TREE by default */
+    uint32_t k;       /* KMEANS: how many regions all components have together, 4 by default */
+    uint32_t seed;    /* KMEANS, AUTO: of the random starts, 1 by default */
+    double threshold; /* CHARGE, AUTO: the share of the triangles, those of least density, along which
+                       * cuts run; in (0,1), 0.1 by default */
+    uint64_t variant; /* 0 by default; cscd/research.h has others to compare with */
+    /* CHARGE, AUTO: bytes that the solution may take; 0, the default: what the system has. */
+    uint64_t memory_limit;
+    cscd_charge_solver charge_solver; /* CHARGE, AUTO: TREE by default */
     uint32_t frame_count;             /* of frames; 0 by default */
     /* CHARGE, AUTO: positions of the mesh in a motion that the plan is made for, each as in cscd_plan_create: what the detector
      * points see in them counts as much as what they see at rest. Of more than 8 frames, 8 count, evenly spaced. NULL by default. */

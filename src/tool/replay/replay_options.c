@@ -67,8 +67,8 @@ static const option_row rows[] = {
     {"frames", "A:B", read_frames, offsetof(replay_options, frames),
      "only from frame A to frame B, both included (A: and :B are open ends)"},
     {"plan", "PLAN.ply", read_text, offsetof(replay_options, plan_path),
-     "the regions that cscd preprocess found (default: MODEL.plan.ply if it fits, else made on the way: by "
-     "charge where that takes a tenth of the intervals at most or the triangles are few, else single)"},
+     "the regions that cscd preprocess found (default: MODEL.plan.ply if it fits, else made on the way: as by preprocess "
+     "--method auto where that takes a tenth of the intervals at most or the triangles are few, else single)"},
     {"method", "charge|kmeans:K|single", read_method, 0,
      "leave out pairs by such a plan, that of --plan or made on the way (default: by any plan, where it pays)"},
     {"method", "none|brute", .help = "leave out none; test all pairs of features, slow"},
