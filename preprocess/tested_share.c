@@ -75,9 +75,9 @@ static double sum_share(const share_work *w) {
     double tested = 0.0, all = 0.0;
     for (uint32_t t = 0; t < mesh->triangle_count; t++) {
         if (triangle_of_obstacle(mesh, t)) continue;
-        bool border = false;
-        for (int i = 0; i < 3; i++) border |= w->at_border[mesh->triangles[t][i]];
-        tested += border ? 1.0 : fmax((double)w->blindness[t] / (1.0 + w->d->frames->count), w->ways[t]);
+        bool whole = !mesh->components[mesh->triangle_components[t]].closed_manifold;
+        for (int i = 0; i < 3; i++) whole |= w->at_border[mesh->triangles[t][i]];
+        tested += whole ? 1.0 : fmax((double)w->blindness[t] / (1.0 + w->d->frames->count), w->ways[t]);
         all += 1.0;
     }
     return all > 0.0 ? tested / all : 0.0;

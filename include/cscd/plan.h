@@ -199,8 +199,9 @@ typedef struct cscd_compared_plan {
     bool kept;             /* the plan is this one */
     uint8_t reserved[3];   /* 0 */
     /* Predicted, in [0,1]: the share of the triangles that a step has to look at with others of their component, because
-     * they lie at the border of their region or because its detector point does not see them well; the mean of the rest and
-     * all frames of the options. What lies beyond soft places counts as hardly seen. The plan has the least, but charge is kept where another has less by no more than 2 %. */
+     * they lie at the border of their region, because its detector point does not see them well, or because the component is
+     * not closed; the mean of the rest and all frames of the options. What lies beyond soft places counts as hardly seen. The plan has
+     * the least, but charge is kept where another has less by no more than 2 %. */
     double tested_share;
     const char *failure; /* why the charge could not be solved; NULL: it could. Lives as long as the plan */
 } cscd_compared_plan;
