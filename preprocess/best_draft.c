@@ -58,6 +58,7 @@ static cscd_status try_method(const plan_draft *given, plan_candidates *candidat
     plan_draft_free(&d);
     if (candidate.method != CSCD_METHOD_CHARGE || status == CSCD_CANCELLED) return status;
     snprintf(candidates->charge_failure, sizeof candidates->charge_failure, "%s", context->detail);
+    context->detail[0] = '\0'; /* the call goes on, and may succeed */
     candidates->items[candidates->count++] = candidate;
     return CSCD_OK;
 }

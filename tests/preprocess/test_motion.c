@@ -374,6 +374,7 @@ static void goes_on_without_charge(void **state) {
     assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
     options.method = CSCD_METHOD_AUTO;
     assert_int_equal(cscd_plan_create(context, mesh, CSCD_DOUBLES(corners, 6), &options, &plan), CSCD_OK);
+    assert_string_equal(cscd_context_detail(context), "");
     assert_int_equal(cscd_plan_compared(plan, 0).region_count, 0);
     assert_non_null(strstr(cscd_plan_compared(plan, 0).failure, "same centroid"));
     assert_int_equal(cscd_plan_method(plan), CSCD_METHOD_SINGLE);
