@@ -6,7 +6,8 @@ Usage: python3 benchmarks/auto_plans.py [--rounds N] CSCD MODEL.obj...
 Beside each model lies its recording, MODEL.pc2. Of each, `preprocess --method auto` makes a plan for the rest and one for the
 frames, and `replay` runs with them and with one region, by turns: once so that every interval is culled, and once so that each
 component is culled where that pays, with lists of pairs. The table has the mean milliseconds of an interval with one region,
-the least of all rounds, and how many times as fast the plans are.
+the least of all rounds, and how many times as fast the plans are. Its last column is the price of the plan for the rest: the time
+that it takes over that of an interval of the whole command, which reads the frames and checks them.
 """
 import argparse
 import json
@@ -15,6 +16,7 @@ import os
 import subprocess
 import sys
 import tempfile
+import time
 
 COLUMNS = ["rest", "motion", "rest, with lists", "motion, with lists"]
 
@@ -28,13 +30,14 @@ def run(*arguments):
 
 
 def make_plans(tool, model, frames, folder):
-    """Returns the method that auto has kept and the path of the plan, for one region, the rest and the motion."""
+    """Returns the method that auto has kept, the path of the plan, and its seconds: for one region, the rest and the motion."""
     plans = []
     for name, inputs, method in (("single", [model], "single"), ("rest", [model], "auto"), ("motion", [model, frames], "auto")):
         path = os.path.join(folder, name + ".plan.ply")
         printed = run(tool, "preprocess", *inputs, "--method", method, "-o", path)
         kept = [line.split()[0].split(":")[0] for line in printed.splitlines() if line.endswith("   kept")]
-        plans.append((kept[0] if kept else "single", path))
+        seconds = [float(line.split()[-1]) for line in printed.splitlines() if line.startswith("seconds: ")]
+        plans.append((kept[0] if kept else "single", path, seconds[0]))
     return plans
 
 
@@ -44,12 +47,22 @@ def measure(tool, model, frames, plans, rounds, folder):
     summary = os.path.join(folder, "summary.json")
     for _ in range(rounds):
         for i in range(2 * len(plans)):
-            method, plan = plans[i % len(plans)]
+            method, plan, _ = plans[i % len(plans)]
             forced = ["--method", method] if i < len(plans) else []
             run(tool, "replay", model, frames, "--plan", plan, *forced, "--no-check", "--threads", "1", "--json", summary)
             with open(summary, encoding="utf-8") as file:
                 least[i] = min(least[i], json.load(file)["summary"]["total_ms"]["mean"])
     return least
+
+
+def price(tool, model, frames, plan, folder):
+    """Returns in how many intervals of a replay the plan is made."""
+    summary = os.path.join(folder, "summary.json")
+    start = time.monotonic()
+    run(tool, "replay", model, frames, "--plan", plan[1], "--threads", "1", "--json", summary)
+    seconds = time.monotonic() - start
+    with open(summary, encoding="utf-8") as file:
+        return plan[2] / seconds * json.load(file)["summary"]["intervals"]
 
 
 def main():
@@ -59,8 +72,8 @@ def main():
     parser.add_argument("tool", metavar="CSCD")
     parser.add_argument("models", metavar="MODEL.obj", nargs="+")
     given = parser.parse_args()
-    print("| recording | kept: rest, motion | one region | " + " | ".join(COLUMNS) + " |")
-    print("| --- " * (3 + len(COLUMNS)) + "|")
+    print("| recording | kept: rest, motion | one region | " + " | ".join(COLUMNS) + " | price, intervals |")
+    print("| --- " * (4 + len(COLUMNS)) + "|")
     gains = []
     for model in given.models:
         frames = os.path.splitext(model)[0] + ".pc2"
@@ -68,11 +81,12 @@ def main():
             plans = make_plans(given.tool, model, frames, folder)
             single, rest, motion, single_lists, rest_lists, motion_lists = \
                 measure(given.tool, model, frames, plans, given.rounds, folder)
+            intervals = min(price(given.tool, model, frames, plans[1], folder) for _ in range(given.rounds))
         gains.append([single / rest, single / motion, single_lists / rest_lists, single_lists / motion_lists])
         print(f"| {os.path.splitext(os.path.basename(model))[0]} | {plans[1][0]}, {plans[2][0]} | {single:.3f} ms | "
-              + " | ".join(f"{gain:.2f}" for gain in gains[-1]) + " |", flush=True)
+              + " | ".join(f"{gain:.2f}" for gain in gains[-1]) + f" | {intervals:.0f} |", flush=True)
     means = [math.exp(sum(math.log(row[i]) for row in gains) / len(gains)) for i in range(len(COLUMNS))]
-    print("| geometric mean | | | " + " | ".join(f"{mean:.2f}" for mean in means) + " |")
+    print("| geometric mean | | | " + " | ".join(f"{mean:.2f}" for mean in means) + " | |")
 
 
 if __name__ == "__main__":
