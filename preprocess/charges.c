@@ -8,8 +8,9 @@
 
 #include <string.h>
 
-/* The charge's share of cscd_plan_create, by estimate; the regions take the rest. */
-static const double part_of_call = 0.95;
+/* The charge's share of cscd_plan_create, by estimate, for each solver; the regions take the rest. */
+static const double parts_of_call[] = {
+    [CSCD_CHARGE_TREE] = 0.5, [CSCD_CHARGE_DENSE] = 0.95, [CSCD_CHARGE_COARSE] = 0.4};
 
 typedef struct charge_work {
     const cscd_mesh *mesh;
@@ -46,16 +47,6 @@ static uint32_t largest_component(const cscd_mesh *mesh) {
         largest = count > largest ? count : largest;
     }
     return largest;
-}
-
-static void sort_by_component(charge_work *w) {
-    const cscd_mesh *mesh = w->mesh;
-    for (uint32_t t = 0; t < mesh->triangle_count; t++) w->offsets[mesh->triangle_components[t] + 1]++;
-    for (uint32_t c = 0; c < mesh->component_count; c++) w->offsets[c + 1] += w->offsets[c];
-    for (uint32_t t = 0; t < mesh->triangle_count; t++)
-        w->triangles[w->offsets[mesh->triangle_components[t]]++] = t;
-    for (uint32_t c = mesh->component_count; c > 0; c--) w->offsets[c] = w->offsets[c - 1];
-    w->offsets[0] = 0;
 }
 
 /* ---- the dense solution ---------------------------------------------------------------------------------- */
@@ -145,11 +136,12 @@ static cscd_status solve_components(charge_work *w) {
     const cscd_mesh *mesh = w->mesh;
     progress *told = &w->context->progress;
     cscd_status status = CSCD_OK;
+    const double part_of_call = parts_of_call[w->solver];
     double whole = 0.0, done = 0.0;
     for (uint32_t c = 0; c < mesh->component_count; c++) whole += work_of(w, charged_triangles(mesh, c));
     for (uint32_t c = 0; c < mesh->component_count && status == CSCD_OK; c++) {
         if (charged_triangles(mesh, c) == 0) continue;
-        double begin = part_of_call * done / whole;
+        const double begin = part_of_call * done / whole;
         done += work_of(w, charged_triangles(mesh, c));
         progress_part(told, begin, part_of_call * done / whole);
         status = solve_component(w, c);
@@ -166,7 +158,7 @@ static cscd_status solve_mesh(charge_work *w) {
     if (w->system_memory == NULL || !context_allocate_all(w->context, list_arrays(w)))
         return context_out_of_memory(w->context);
     charge_system_lay_out(&w->system, largest, w->system_memory);
-    sort_by_component(w);
+    mesh_list_by_component(w->mesh, w->triangles, w->offsets);
     return solve_components(w);
 }
 

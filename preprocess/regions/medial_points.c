@@ -1,21 +1,18 @@
 /* Shrinks balls that touch a body from inside until no tile lies in them. */
 #include "preprocess/regions/medial_points.h"
 
+#include "src/core/vec3.h"
+
 #include <math.h>
 
 enum { POINTS_MOST = 256 };
-
-static double square_distance(const double a[3], const double b[3]) {
-    const double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-    return d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-}
 
 /* The centroid that is nearest to the point, but for that of one tile. */
 static uint32_t nearest_tile(const tile_graph *g, const double point[3], uint32_t except) {
     uint32_t nearest = except;
     double least = INFINITY;
     for (uint32_t i = 0; i < g->count; i++) {
-        const double square = square_distance(g->items[i].centroid, point);
+        const double square = vec3_squared_distance(g->items[i].centroid, point);
         if (i == except || square >= least) continue;
         least = square;
         nearest = i;
@@ -34,7 +31,7 @@ static bool shrink_ball(const tile_graph *g, uint32_t seed, double out[3]) {
     for (int shrink = 0; shrink < SHRINKS_MOST; shrink++) {
         for (int k = 0; k < 3; k++) out[k] = p->centroid[k] - radius * p->normal[k] / length;
         const tile *q = &g->items[nearest_tile(g, out, seed)];
-        const double square = square_distance(p->centroid, q->centroid);
+        const double square = vec3_squared_distance(p->centroid, q->centroid);
         double depth = 0.0; /* of q under the plane of p */
         for (int k = 0; k < 3; k++) depth += (p->centroid[k] - q->centroid[k]) * p->normal[k] / length;
         if (!(depth > 0.0) || square >= 2.0 * radius * depth * (1.0 - 1e-3)) return true;
@@ -45,11 +42,11 @@ static bool shrink_ball(const tile_graph *g, uint32_t seed, double out[3]) {
 
 /* Lets the point move with the tiles that its ball nearly touches. */
 static void follow_tiles(const tile_graph *g, uint32_t seed, sight_point *point) {
-    const double reach = 1.5 * 1.5 * square_distance(g->items[seed].centroid, point->rest);
+    const double reach = 1.5 * 1.5 * vec3_squared_distance(g->items[seed].centroid, point->rest);
     double area = 0.0, ways[FRAMES_MOST][3] = {{0.0}};
     for (uint32_t i = 0; i < g->count && g->frame_count > 0; i++) {
         const tile *t = &g->items[i];
-        if (square_distance(t->centroid, point->rest) > reach) continue;
+        if (vec3_squared_distance(t->centroid, point->rest) > reach) continue;
         area += t->area;
         for (uint32_t f = 0; f < g->frame_count; f++)
             for (int k = 0; k < 3; k++)
@@ -61,14 +58,14 @@ static void follow_tiles(const tile_graph *g, uint32_t seed, sight_point *point)
 }
 
 static void find_points(const tile_graph *g, const double from[3], double *distances, medial_points *out) {
-    for (uint32_t i = 0; i < g->count; i++) distances[i] = square_distance(g->items[i].centroid, from);
+    for (uint32_t i = 0; i < g->count; i++) distances[i] = vec3_squared_distance(g->items[i].centroid, from);
     for (int round = 0; round < POINTS_MOST; round++) {
         uint32_t farthest = 0;
         for (uint32_t i = 1; i < g->count; i++)
             if (distances[i] > distances[farthest]) farthest = i;
         if (distances[farthest] == 0.0 || !progress_go_on(&g->context->progress, 0.0)) return;
         for (uint32_t i = 0; i < g->count; i++) {
-            const double square = square_distance(g->items[i].centroid, g->items[farthest].centroid);
+            const double square = vec3_squared_distance(g->items[i].centroid, g->items[farthest].centroid);
             distances[i] = round == 0 ? square : fmin(distances[i], square);
         }
         out->tiles[out->count] = farthest;

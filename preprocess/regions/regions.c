@@ -80,16 +80,6 @@ static cscd_status find_published(region_work *w, const region_options *o) {
     return select_cuts(mesh, &w->graph, w->positions, w->areas, &w->cuts, o->gain, o->part_share, w->regions);
 }
 
-/* Lists the triangles component by component; those of c are list[offsets[c] .. offsets[c + 1]). */
-static void sort_by_component(const region_work *w, uint32_t *offsets) {
-    const cscd_mesh *mesh = w->mesh;
-    for (uint32_t t = 0; t < mesh->triangle_count; t++) offsets[mesh->triangle_components[t] + 1]++;
-    for (uint32_t c = 0; c < mesh->component_count; c++) offsets[c + 1] += offsets[c];
-    for (uint32_t t = 0; t < mesh->triangle_count; t++) w->list[offsets[mesh->triangle_components[t]]++] = t;
-    for (uint32_t c = mesh->component_count; c > 0; c--) offsets[c] = offsets[c - 1];
-    offsets[0] = 0;
-}
-
 static cscd_status add_components(region_work *w, const region_options *o, const uint32_t *offsets,
                                   body_regions *found) {
     const cscd_mesh *mesh = w->mesh;
@@ -112,7 +102,7 @@ static cscd_status find_regions(region_work *w, const region_options *o, body_re
     cscd_context *context = w->mesh->context;
     uint32_t *offsets = context_allocate(context, (size_t)w->mesh->component_count + 1, sizeof *offsets);
     if (offsets == NULL) return context_out_of_memory(context);
-    sort_by_component(w, offsets);
+    mesh_list_by_component(w->mesh, w->list, offsets);
     const cscd_status status = add_components(w, o, offsets, found);
     context_free(context, offsets);
     return status;

@@ -1,15 +1,12 @@
 /* Finds the points that see the most of sets of tiles. */
 #include "preprocess/regions/sight.h"
 
+#include "src/core/vec3.h"
+
 #include <string.h>
 
 /* The cost of a point as far from the centroid as the tiles are in the mean, as a share of their area. */
 static const double drift_price = 0.1;
-
-static double square_distance(const double a[3], const double b[3]) {
-    const double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-    return d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-}
 
 double tiles_unseen(const tile_set *set, const sight_point *point) {
     double unseen = 0.0;
@@ -24,8 +21,8 @@ uint32_t tiles_nearest(const tile_set *set, const double point[3]) {
     uint32_t nearest = set->members[0];
     for (uint32_t i = 1; i < set->count; i++) {
         const uint32_t t = set->members[i];
-        if (square_distance(set->g->items[t].centroid, point) <
-            square_distance(set->g->items[nearest].centroid, point))
+        if (vec3_squared_distance(set->g->items[t].centroid, point) <
+            vec3_squared_distance(set->g->items[nearest].centroid, point))
             nearest = t;
     }
     return nearest;
@@ -65,7 +62,7 @@ static point_search begin_search(const tile_set *set) {
     for (uint32_t i = 0; i < set->count; i++) {
         const tile *t = &set->g->items[set->members[i]];
         area += t->area;
-        squares += t->area * square_distance(t->centroid, s.middle.rest);
+        squares += t->area * vec3_squared_distance(t->centroid, s.middle.rest);
     }
     s.size = area > 0.0 ? sqrt(squares / area) : 0.0;
     s.drift = squares > 0.0 ? drift_price * area * area / squares : 0.0;
@@ -83,7 +80,7 @@ static void place_point(const point_search *s, const double rest[3], sight_point
 }
 
 static double point_cost(const point_search *s, const sight_point *point) {
-    return tiles_unseen(s->set, point) + s->drift * square_distance(point->rest, s->middle.rest);
+    return tiles_unseen(s->set, point) + s->drift * vec3_squared_distance(point->rest, s->middle.rest);
 }
 
 /* Goes one step along an axis if that pays. */

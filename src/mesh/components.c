@@ -111,3 +111,11 @@ cscd_status mesh_build_components(cscd_mesh *mesh) {
     context_free(mesh->context, parents);
     return CSCD_OK;
 }
+
+void mesh_list_by_component(const cscd_mesh *mesh, uint32_t *list, uint32_t *offsets) {
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) offsets[mesh->triangle_components[t] + 1]++;
+    for (uint32_t c = 0; c < mesh->component_count; c++) offsets[c + 1] += offsets[c];
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) list[offsets[mesh->triangle_components[t]]++] = t;
+    for (uint32_t c = mesh->component_count; c > 0; c--) offsets[c] = offsets[c - 1];
+    offsets[0] = 0;
+}

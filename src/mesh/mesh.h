@@ -79,6 +79,9 @@ cscd_status mesh_build_topology(cscd_mesh *mesh);
 /* Builds triangle_components and components from the topology. */
 cscd_status mesh_build_components(cscd_mesh *mesh);
 
+/* Lists the triangles component by component: those of c are list[offsets[c] .. offsets[c + 1]). offsets: component_count + 1, all 0. */
+void mesh_list_by_component(const cscd_mesh *mesh, uint32_t *list, uint32_t *offsets);
+
 /* Descriptions of objects, and what has to be known of the mesh that they become a part of. */
 typedef struct described_objects {
     const cscd_object_desc *descs;
