@@ -106,8 +106,7 @@ static bool names_part(const ply_element *element, const ply_property *property)
 }
 
 static bool names_stiffness(const ply_element *element, const ply_property *property) {
-    return element->kind == PLY_FACE && !property->is_list && !ply_type_is_integer(property->type) &&
-           text_equals(property->name, "stiffness");
+    return element->kind == PLY_FACE && !property->is_list && text_equals(property->name, "stiffness");
 }
 
 static bool has_role(const ply_header *header, const ply_element *element, ply_role role) {

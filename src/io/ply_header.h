@@ -25,7 +25,7 @@ typedef enum ply_type {
 typedef enum ply_kind { PLY_OTHER, PLY_VERTEX, PLY_FACE } ply_kind;
 
 /* The role of a property in a mesh; X, Y, Z are 0, 1, 2. A face's integer part, or label, says which part it belongs to; of
- * several the first counts. Its stiffness is a float or double. */
+ * several the first counts. Its stiffness is a number of any type. */
 typedef enum ply_role { PLY_X, PLY_Y, PLY_Z, PLY_CORNERS, PLY_PART, PLY_STIFFNESS, PLY_IGNORED } ply_role;
 
 typedef struct ply_property {

@@ -116,9 +116,12 @@ bool weld_create(const double *positions, uint32_t vertex_count, const uint32_t 
     free(table.next);
     if (!allocated || w.triangle_count == 0) {
         weld_free(&w);
-        return allocated
-                   ? io_fail(error, "--weld %g collapses every triangle; use a smaller distance", epsilon)
-                   : io_fail(error, "out of memory while welding %u vertices", vertex_count);
+        if (!allocated) return io_fail(error, "out of memory while welding %u vertices", vertex_count);
+        if (epsilon > 0.0)
+            return io_fail(error, "--weld %g collapses every triangle; use a smaller distance", epsilon);
+        return io_fail(
+            error, "every triangle has corners in one place in the first frame, so --weld exact leaves none; "
+                   "give frames in which they lie apart, or leave --weld out");
     }
     *out = w;
     return true;

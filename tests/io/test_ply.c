@@ -208,7 +208,7 @@ static void check_stiffness(file_bytes file, const double *expected) {
 /* A face's stiffness goes to the triangles that it is cut into, and those that are left out take theirs with them. */
 static void reads_stiffness(void **state) {
     (void)state;
-    static const double expected[] = {0.5, 0.5, 2.0, -1.0};
+    static const double expected[] = {0.5, 0.5, 2.0, -1.0}, whole[] = {5.0, 5.0, 2.0, 1.0};
     check_stiffness(
         LABELLED("property double stiffness\n", "", "7 3 0 0 2\n.5 4 0 1 2 3\n2 3 0 1 2\n-1 3 0 2 3\n"),
         expected);
@@ -216,7 +216,7 @@ static void reads_stiffness(void **state) {
                              "3 0 0 2 7 1\n4 0 1 2 3 .5 1\n3 0 1 2 2 1\n3 0 2 3 -1 1\n"),
                     expected);
     check_stiffness(
-        LABELLED("property int stiffness\n", "", "7 3 0 0 2\n5 4 0 1 2 3\n2 3 0 1 2\n1 3 0 2 3\n"), NULL);
+        LABELLED("property int stiffness\n", "", "7 3 0 0 2\n5 4 0 1 2 3\n2 3 0 1 2\n1 3 0 2 3\n"), whole);
     check_stiffness(LABELLED("property list uchar float stiffness\n", "",
                              "0 3 0 0 2\n0 4 0 1 2 3\n0 3 0 1 2\n0 3 0 2 3\n"),
                     NULL);

@@ -138,10 +138,19 @@ static void refuses_unfit_options(void **state) {
     EXPECT_ERROR(2, TEXTS("--frames", "none are given"), "preprocess", model.text, "--frames", "0:3");
     EXPECT_ERROR(2, TEXTS("FRAMES count with"), "preprocess", model.text, cache.text, "--published");
     EXPECT_ERROR(2, TEXTS("FRAMES count with"), "preprocess", model.text, cache.text, "--method", "single");
+    EXPECT_ERROR(2, TEXTS("--threshold counts with --method charge or auto; leave it out"), "preprocess",
+                 model.text, "--method", "single", "--threshold", "0.2");
+    EXPECT_ERROR(2, TEXTS("--seed counts with --method kmeans:K or auto; leave it out"), "preprocess",
+                 model.text, "--seed", "2");
+    EXPECT_ERROR(2, TEXTS("--published counts with"), "preprocess", model.text, "--method", "kmeans:4",
+                 "--published");
     EXPECT_ERROR(1, TEXTS("frame 99"), "preprocess", model.text, cache.text, "--frames", "99");
     EXPECT_ERROR(2, TEXTS("ends in .ply"), "preprocess", model.text, "-o", "plan.obj");
     EXPECT_ERROR(1, TEXTS("cannot write", "no/such/"), "preprocess", model.text, "-o",
                  temp_file_path(&folder, "no/such/a.ply").text);
+    static const char point[] = "v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n";
+    const temp_path one = temp_file_write(&folder, "one.obj", point, strlen(point));
+    EXPECT_ERROR(1, TEXTS("--weld exact leaves none"), "preprocess", one.text, "--weld", "exact");
     assert_int_equal(access(plan.text, F_OK), -1);
 }
 
@@ -286,7 +295,7 @@ static void large_meshes_get_one_region_in_short_recordings(void **state) {
     recorded_free(&torus);
     unlink(temp_file_path(&folder, "large.plan.ply").text);
     EXPECT_OUTPUT(TEXTS("plan: single, 1 region, made in memory in ",
-                        "(a plan by charge takes as long as 200 intervals, and here are 1; cscd preprocess"),
+                        "(a plan by charge takes as long as 400 intervals, and here are 1; cscd preprocess"),
                   "replay", torus_model.text, torus_cache.text);
     EXPECT_OUTPUT(TEXTS("plan: charge, "), "replay", torus_model.text, torus_cache.text, "--method",
                   "charge");
@@ -309,10 +318,10 @@ static void long_recordings_get_a_plan_by_charge(void **state) {
     recorded torus = recorded_torus(60, 51);
     temp_path torus_model = recorded_write_mesh(&folder, "long.obj", &torus, 0);
     temp_path torus_cache = recorded_write_cycle(&folder, "long.pc2", &torus, 2);
-    append_frames(&torus_cache, torus.vertex_count, 2000);
-    EXPECT_OUTPUT(TEXTS("plan: single, ", "200 intervals, and here are 1999;"), "replay", torus_model.text,
+    append_frames(&torus_cache, torus.vertex_count, 4000);
+    EXPECT_OUTPUT(TEXTS("plan: single, ", "400 intervals, and here are 3999;"), "replay", torus_model.text,
                   torus_cache.text, "--frames", ":1");
-    append_frames(&torus_cache, torus.vertex_count, 2001);
+    append_frames(&torus_cache, torus.vertex_count, 4001);
     EXPECT_OUTPUT(TEXTS("plan: charge, "), "replay", torus_model.text, torus_cache.text, "--frames", ":1");
     recorded_free(&torus);
 }

@@ -4,9 +4,9 @@
 
 #include "src/tool/common/recording.h"
 
-/* A plan of method charge takes as long as some 200 intervals of the same triangles. It is made without being asked for where
+/* A plan of method auto takes as long as 200 to 500 intervals of a replay of the same triangles. It is made without being asked for where
  * that is a tenth of all intervals of the recording, and for few triangles, where it is a fraction of a second. */
-enum { PLAN_PRICE_INTERVALS = 200, PLAN_FEW_TRIANGLES = 6000 };
+enum { PLAN_PRICE_INTERVALS = 400, PLAN_FEW_TRIANGLES = 6000 };
 
 /* pawn.obj -> pawn.plan.ply, in the same folder; to be freed, NULL when out of memory. */
 char *plan_path_of_model(const char *model_path);

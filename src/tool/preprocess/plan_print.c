@@ -60,7 +60,7 @@ static void print_compared(const cscd_plan *plan) {
         char name[24];
         snprintf(name, sizeof name, c.k > 0 ? "%s:%u" : "%s", cscd_method_name(c.method), c.k);
         if (c.failure != NULL)
-            printf("%-10s %s\n", name, c.failure);
+            printf("%-10s %8s %30s\n    %s\n", name, "-", "-", c.failure);
         else
             printf("%-10s %8u %28.1f %%%s\n", name, c.region_count, 100.0 * c.tested_share,
                    c.kept ? "   kept" : "");

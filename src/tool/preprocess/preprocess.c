@@ -91,7 +91,7 @@ static const option_table table = {
     "Cuts the mesh MODEL (OBJ, PLY, OFF, STL, glTF, GIFTI), at rest as in the file, into regions, each with a point that sees "
     "most of it, and saves this plan as a PLY that any viewer shows. cscd replay uses it to leave out pairs "
     "of triangles that cannot touch; it needs the same --weld. Contacts are the same with any plan and with none.\n"
-    "Faces of a PLY may say how stiff they are, in a property stiffness (float or double): charge then cuts where the model is soft.\n"
+    "Faces of a PLY may say how stiff they are, in a property stiffness: charge then cuts where the model is soft.\n"
     "FRAMES: a motion that the plan is made for, of which eight frames, evenly spaced, count as the rest does: one .pc2 or .mdd "
     "point cache, one .glb or .gltf file, a pattern like f_%04d.obj, a folder, or a list of mesh files.",
     rows,
@@ -226,6 +226,24 @@ static int run_preprocess(preprocess_options *o) {
     return interrupted() ? interrupt_exit_code() : EXIT_BAD_INPUT;
 }
 
+/* Options that count with some methods only. */
+static int check_methods(const preprocess_options *o, const given_options *given) {
+    static const struct {
+        const char *name;
+        cscd_method method; /* beside AUTO */
+        const char *methods;
+    } bound[] = {{"seed", CSCD_METHOD_KMEANS, "kmeans:K"},
+                 {"threshold", CSCD_METHOD_CHARGE, "charge"},
+                 {"charge", CSCD_METHOD_CHARGE, "charge"},
+                 {"published", CSCD_METHOD_CHARGE, "charge"}};
+    for (size_t i = 0; i < sizeof bound / sizeof *bound; i++)
+        if (option_given(&table, given, bound[i].name) && o->plan.method != bound[i].method &&
+            o->plan.method != CSCD_METHOD_AUTO)
+            return fail_usage("preprocess", "--%s counts with --method %s or auto; leave it out",
+                              bound[i].name, bound[i].methods);
+    return EXIT_RAN;
+}
+
 /* Frames count for plans by charge alone, and those of the published rules do without. */
 static int check_frames(const preprocess_options *o, const given_options *given) {
     const bool counts =
@@ -271,7 +289,8 @@ int command_preprocess(int argument_count, char **arguments) {
     if (options.output_path == NULL)
         code = fail_input("out of memory");
     else
-        code = check_frames(&options, &given);
+        code = check_methods(&options, &given);
+    if (code == EXIT_RAN) code = check_frames(&options, &given);
     if (code == EXIT_RAN) code = check_output(&options, &given);
     if (code == EXIT_RAN) code = run_preprocess(&options);
     free(model_plan);
