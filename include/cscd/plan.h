@@ -195,7 +195,7 @@ static inline cscd_plan_info cscd_plan_describe(const cscd_plan *plan) {
 typedef struct cscd_compared_plan {
     cscd_method method; /* CHARGE, SINGLE or KMEANS */
     uint32_t k; /* KMEANS: that of the options, 4, 8 or 16 for each component, 1,024 in all at most; else 0 */
-    uint32_t region_count; /* 0: the charge could not be solved; see failure */
+    uint32_t region_count; /* 0: there is no plan by charge; see failure */
     bool kept;             /* the plan is this one */
     uint8_t reserved[3];   /* 0 */
     /* Predicted, in [0,1]: the share of the triangles that a step has to look at with others of their component, because
@@ -203,7 +203,8 @@ typedef struct cscd_compared_plan {
      * not closed; the mean of the rest and all frames of the options. What lies beyond soft places counts as hardly seen. The plan has
      * the least, but charge is kept where another has less by no more than 2 %. */
     double tested_share;
-    const char *failure; /* why the charge could not be solved; NULL: it could. Lives as long as the plan */
+    const char
+        *failure; /* why there is no plan by charge: a sentence; NULL: there is. Lives as long as the plan */
 } cscd_compared_plan;
 
 /* The plans that were compared, in the order in which they were tried; none where the method was not AUTO. */

@@ -32,7 +32,7 @@ class ComparedPlan(NamedTuple):
     """Predicted: the share of the triangles that a step has to look at with others of their component."""
     kept: bool
     failure: Optional[str]
-    """Why the charge could not be solved; None: it could."""
+    """Why there is no plan by charge; None: there is."""
 
 
 def _compared(row: Any) -> ComparedPlan:
