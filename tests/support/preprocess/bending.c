@@ -1,0 +1,102 @@
+/* Bends bodies, and makes plans for that. */
+#include "tests/support/preprocess/bending.h"
+
+#include "tests/support/test.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int longest_axis(const body *b, double *low, double *length) {
+    int longest = 0;
+    *length = 0.0;
+    for (int k = 0; k < 3; k++) {
+        double least = INFINITY, most = -INFINITY;
+        for (uint32_t v = 0; v < b->vertex_count; v++) {
+            least = fmin(least, b->positions[(size_t)v * 3 + (size_t)k]);
+            most = fmax(most, b->positions[(size_t)v * 3 + (size_t)k]);
+        }
+        if (most - least <= *length) continue;
+        *length = most - least;
+        *low = least;
+        longest = k;
+    }
+    return longest;
+}
+
+/* Makes a body several times as long. */
+static void stretch_body(body *b, double times) {
+    double low = 0.0, length;
+    const int along = longest_axis(b, &low, &length);
+    for (uint32_t v = 0; v < b->vertex_count; v++) b->positions[(size_t)v * 3 + (size_t)along] *= times;
+}
+
+void bending_bend(const body *b, double angle, double *out) {
+    double low = 0.0, length;
+    const int along = longest_axis(b, &low, &length), side = (along + 1) % 3, other = (along + 2) % 3;
+    for (uint32_t v = 0; v < b->vertex_count; v++) {
+        const double *p = b->positions + (size_t)v * 3, at = (p[along] - low) / length - 0.5;
+        double *q = out + (size_t)v * 3;
+        memcpy(q, p, sizeof(double[3]));
+        if (angle == 0.0) continue;
+        const double radius = length / angle - p[side];
+        q[along] = radius * sin(angle * at);
+        q[side] = length / angle - radius * cos(angle * at);
+        q[other] = p[other];
+    }
+}
+
+bending bending_of(body_kind kind, uint32_t triangles, double angle, int threads) {
+    bending b = {.shape = body_of(kind, triangles)};
+    if (kind == BODY_CAPSULE) stretch_body(&b.shape, 3.0);
+    cscd_context_options options = cscd_context_defaults();
+    options.thread_count = (uint32_t)threads;
+    assert_int_equal(cscd_context_create(&options, &b.context), CSCD_OK);
+    const cscd_object_desc desc =
+        cscd_object_of_triangles(b.shape.vertex_count, b.shape.triangle_count, b.shape.triangles);
+    assert_int_equal(cscd_mesh_create(b.context, &desc, 1, &b.mesh), CSCD_OK);
+    for (int f = 0; f < BENDING_FRAMES; f++) {
+        b.frames[f] = body_allocate((size_t)b.shape.vertex_count * 3, sizeof(double));
+        bending_bend(&b.shape, angle * f / (BENDING_FRAMES - 1), b.frames[f]);
+    }
+    return b;
+}
+
+const cscd_view *const *bending_frames(bending *b) {
+    for (int f = 0; f < BENDING_FRAMES; f++) {
+        b->views[f] = cscd_view_doubles(b->frames[f], b->shape.vertex_count);
+        b->items[f] = &b->views[f];
+    }
+    return b->items;
+}
+
+void bending_free(bending *b) {
+    cscd_mesh_destroy(b->mesh);
+    cscd_context_destroy(b->context);
+    body_free(&b->shape);
+    for (int f = 0; f < BENDING_FRAMES; f++) free(b->frames[f]);
+}
+
+cscd_plan *bending_plan(const bending *b, cscd_method method, const cscd_view *const *frames,
+                        uint32_t count) {
+    cscd_plan_options options = cscd_plan_defaults();
+    cscd_plan *plan = NULL;
+    options.method = method;
+    options.frames = frames;
+    options.frame_count = count;
+    if (cscd_plan_create(b->context, b->mesh, CSCD_DOUBLES(b->shape.positions, b->shape.vertex_count),
+                         &options, &plan) != CSCD_OK)
+        fail_msg("%s", cscd_context_detail(b->context));
+    return plan;
+}
+
+void bending_expect_same(const cscd_plan *a, const cscd_plan *b, uint32_t triangles) {
+    assert_int_equal(cscd_plan_method(a), cscd_plan_method(b));
+    assert_int_equal(cscd_plan_region_count(a), cscd_plan_region_count(b));
+    for (uint32_t t = 0; t < triangles; t++)
+        assert_int_equal(cscd_plan_triangle_region(a, t), cscd_plan_triangle_region(b, t));
+    for (uint32_t r = 0; r < cscd_plan_region_count(a); r++) {
+        const cscd_region x = cscd_plan_region(a, r), y = cscd_plan_region(b, r);
+        assert_memory_equal(x.detector_point, y.detector_point, sizeof x.detector_point);
+    }
+}
