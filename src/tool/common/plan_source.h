@@ -4,7 +4,7 @@
 
 #include "src/tool/common/recording.h"
 
-/* A plan of method auto takes as long as 200 to 500 intervals of a replay of the same triangles. It is made without being asked for where
+/* A plan of method auto takes as long as 100 to 500 intervals of a replay of the same triangles. It is made without being asked for where
  * that is a tenth of all intervals of the recording, and for few triangles, where it is a fraction of a second. */
 enum { PLAN_PRICE_INTERVALS = 400, PLAN_FEW_TRIANGLES = 6000 };
 
