@@ -23,16 +23,14 @@ static double to_hand(const double p[3]) {
 }
 
 bool add_hand(body *b, uint32_t triangle_count) {
-    static const implicit shape = {to_hand, {-0.85, -0.35, -0.25}, {0.65, 0.35, 1.6}};
+    static const implicit shape = {to_hand, {-0.85, -0.35, -0.25}, {0.65, 0.35, 1.6}, true};
     return body_add_even_implicit(b, &shape, triangle_count);
 }
 
-/* Eight arms around the axis z, each of which curls up in the plane through it; the point is turned into that of one arm. */
-static double to_octopus(const double p[3]) {
+/* Returns about the distance to an octopus's arm, which curls up in the plane y = 0; the point lies at this angle from it. */
+static double to_arm(double radius, double angle, double z) {
     static const limb limbs[] = {
-        {{0.000, 0.0, 0.000}, {0.000, 0.0, 0.060}, 0.250, 0.240, 0.05},
-        {{0.000, 0.0, 0.420}, {0.000, 0.0, 0.620}, 0.230, 0.290, 0.20}, /* mantle */
-        {{0.220, 0.0, 0.000}, {0.513, 0.0, -.062}, 0.125, 0.115, 0.05}, /* arm, from its root */
+        {{0.220, 0.0, 0.000}, {0.513, 0.0, -.062}, 0.125, 0.115, 0.05}, /* from its root */
         {{0.513, 0.0, -.062}, {0.791, 0.0, -.101}, 0.115, 0.104, 0.02},
         {{0.791, 0.0, -.101}, {1.047, 0.0, -.056}, 0.104, 0.094, 0.02},
         {{1.047, 0.0, -.056}, {1.194, 0.0, 0.107}, 0.094, 0.084, 0.02},
@@ -41,13 +39,25 @@ static double to_octopus(const double p[3]) {
         {{1.035, 0.0, 0.327}, {0.947, 0.0, 0.253}, 0.063, 0.052, 0.02},
         {{0.947, 0.0, 0.253}, {0.967, 0.0, 0.155}, 0.052, 0.042, 0.02},
     };
-    const double between = 0.78539816339744831, angle = atan2(p[1], p[0]);
-    const double turned = angle - round(angle / between) * between, radius = hypot(p[0], p[1]);
     return limbs_distance(limbs, sizeof limbs / sizeof *limbs,
-                          (double[3]){radius * cos(turned), radius * sin(turned), p[2]});
+                          (double[3]){radius * cos(angle), radius * sin(angle), z});
+}
+
+/* Eight arms around the axis z. Between two of them the surface is round, as everywhere: an edge there would fold
+ * the triangles of a fine mesh. */
+static double to_octopus(const double p[3]) {
+    static const limb middle[] = {
+        {{0.000, 0.0, 0.000}, {0.000, 0.0, 0.060}, 0.250, 0.240, 0.05},
+        {{0.000, 0.0, 0.420}, {0.000, 0.0, 0.620}, 0.230, 0.290, 0.20}, /* mantle */
+    };
+    const double between = 0.78539816339744831, angle = atan2(p[1], p[0]), radius = hypot(p[0], p[1]);
+    const double nearest = fabs(angle - round(angle / between) * between);
+    const double arms =
+        round_union(to_arm(radius, nearest, p[2]), to_arm(radius, between - nearest, p[2]), 0.05);
+    return round_union(limbs_distance(middle, sizeof middle / sizeof *middle, p), arms, 0.05);
 }
 
 bool add_octopus(body *b, uint32_t triangle_count) {
-    static const implicit shape = {to_octopus, {-1.4, -1.4, -0.4}, {1.4, 1.4, 1.1}};
+    static const implicit shape = {to_octopus, {-1.4, -1.4, -0.4}, {1.4, 1.4, 1.1}, true};
     return body_add_even_implicit(b, &shape, triangle_count);
 }

@@ -28,7 +28,7 @@ static double to_figure(const double point[3]) {
 }
 
 bool add_figure(body *b, uint32_t triangle_count) {
-    static const implicit shape = {to_figure, {-1.0, -0.45, -0.2}, {1.0, 0.45, 2.1}};
+    static const implicit shape = {to_figure, {-1.0, -0.45, -0.2}, {1.0, 0.45, 2.1}, false};
     return body_add_even_implicit(b, &shape, triangle_count);
 }
 
@@ -41,7 +41,7 @@ static double to_genus2(const double p[3]) {
 }
 
 bool add_genus2(body *b, uint32_t triangle_count) {
-    static const implicit shape = {to_genus2, {-2.0, -1.15, -0.45}, {2.0, 1.15, 0.45}};
+    static const implicit shape = {to_genus2, {-2.0, -1.15, -0.45}, {2.0, 1.15, 0.45}, false};
     return body_add_even_implicit(b, &shape, triangle_count);
 }
 
@@ -53,6 +53,6 @@ static double to_ellipsoid(const double p[3]) {
 }
 
 bool add_ellipsoid(body *b, uint32_t triangle_count) {
-    static const implicit shape = {to_ellipsoid, {-1.8, -1.3, -1.0}, {1.8, 1.3, 1.0}};
+    static const implicit shape = {to_ellipsoid, {-1.8, -1.3, -1.0}, {1.8, 1.3, 1.0}, false};
     return body_add_even_implicit(b, &shape, triangle_count);
 }

@@ -16,6 +16,18 @@ static size_t grid_index(const grid *g, uint32_t x, uint32_t y, uint32_t z) {
     return ((size_t)z * g->size[1] + y) * g->size[0] + x;
 }
 
+/* Samples along x. Points that the zero set cannot come near get the value before them: of theirs the sign is used. */
+static void sample_row(const implicit *surface, grid *g, uint32_t y, uint32_t z) {
+    double p[3] = {0.0, g->low[1] + y * g->spacing, g->low[2] + z * g->spacing};
+    double *row = g->values + grid_index(g, 0, y, z);
+    for (uint32_t x = 0; x < g->size[0];) {
+        p[0] = g->low[0] + x * g->spacing;
+        double value = surface->distance(p), far = fabs(value) / (2.5 * g->spacing) - 2.0;
+        for (uint32_t end = x + 1 + (far > 0.0 ? (uint32_t)far : 0); x < end && x < g->size[0]; x++)
+            row[x] = value;
+    }
+}
+
 static grid sample_grid(const implicit *surface, double spacing) {
     const double *low = surface->low, *high = surface->high;
     grid g = {.spacing = spacing};
@@ -27,13 +39,8 @@ static grid sample_grid(const implicit *surface, double spacing) {
     g.values = body_allocate(count, sizeof *g.values);
     g.cells = body_allocate(count, sizeof *g.cells);
     memset(g.cells, 0xff, count * sizeof *g.cells);
-    for (uint32_t z = 0; z < g.size[2]; z++) {
-        for (uint32_t y = 0; y < g.size[1]; y++) {
-            for (uint32_t x = 0; x < g.size[0]; x++)
-                g.values[grid_index(&g, x, y, z)] = surface->distance(
-                    (double[3]){low[0] + x * spacing, low[1] + y * spacing, low[2] + z * spacing});
-        }
-    }
+    for (uint32_t z = 0; z < g.size[2]; z++)
+        for (uint32_t y = 0; y < g.size[1]; y++) sample_row(surface, &g, y, z);
     return g;
 }
 
@@ -44,20 +51,33 @@ static bool corner_is_inside(const grid *g, const uint32_t at[3], uint32_t step_
     return g->values[grid_index(g, p[0], p[1], p[2])] < 0.0;
 }
 
-/* Whether a face of a cell has its two inner corners on a diagonal: there the surface would touch itself. */
+/* Whether the inner corners of a cell, or the outer ones, fall apart into two groups: two corners on a diagonal of a
+ * face, or two opposite corners of the cell. One vertex would then join two sheets of the surface. */
+static bool joins_sheets(const grid *g, const uint32_t at[3]) {
+    for (uint32_t u = 0; u < 3; u++) {
+        uint32_t v = (u + 1) % 3;
+        bool here = corner_is_inside(g, at, 3, 3), across = corner_is_inside(g, at, u, v);
+        if (here == across && here != corner_is_inside(g, at, u, 3) && here != corner_is_inside(g, at, v, 3))
+            return true;
+    }
+    uint32_t inside = 0;
+    for (uint32_t i = 0; i < 8; i++) {
+        size_t corner = grid_index(g, at[0] + (i & 1), at[1] + (i >> 1 & 1), at[2] + (i >> 2));
+        inside |= (uint32_t)(g->values[corner] < 0.0) << i;
+    }
+    for (uint32_t i = 0; i < 4; i++) {
+        uint32_t opposite = 1u << i | 1u << (7 - i);
+        if (inside == opposite || inside == (0xff ^ opposite)) return true;
+    }
+    return false;
+}
+
 static bool is_ambiguous(const grid *g) {
     uint32_t at[3];
     for (at[2] = 0; at[2] + 1 < g->size[2]; at[2]++) {
         for (at[1] = 0; at[1] + 1 < g->size[1]; at[1]++) {
-            for (at[0] = 0; at[0] + 1 < g->size[0]; at[0]++) {
-                for (uint32_t u = 0; u < 3; u++) {
-                    uint32_t v = (u + 1) % 3;
-                    bool here = corner_is_inside(g, at, 3, 3), across = corner_is_inside(g, at, u, v);
-                    if (here == across && here != corner_is_inside(g, at, u, 3) &&
-                        here != corner_is_inside(g, at, v, 3))
-                        return true;
-                }
-            }
+            for (at[0] = 0; at[0] + 1 < g->size[0]; at[0]++)
+                if (joins_sheets(g, at)) return true;
         }
     }
     return false;
@@ -151,7 +171,7 @@ void implicit_project(const implicit *surface, double scale, double p[3]) {
     }
 }
 
-void body_add_implicit(body *b, const implicit *surface, double spacing) {
+double body_add_implicit(body *b, const implicit *surface, double spacing) {
     uint32_t at[3];
     grid g = sample_grid(surface, spacing);
     while (is_ambiguous(&g)) {
@@ -171,4 +191,5 @@ void body_add_implicit(body *b, const implicit *surface, double spacing) {
     free(valences);
     free(g.values);
     free(g.cells);
+    return spacing;
 }

@@ -57,7 +57,7 @@ static double to_w(const double p[3]) {
 
 static bool add_letter(body *b, double (*distance)(const double point[3]), double half_width,
                        uint32_t triangle_count) {
-    const implicit shape = {distance, {-half_width - 0.2, -0.45, -0.2}, {half_width + 0.2, 0.45, 2.2}};
+    const implicit shape = {distance, {-half_width - 0.2, -0.45, -0.2}, {half_width + 0.2, 0.45, 2.2}, false};
     return body_add_even_implicit(b, &shape, triangle_count);
 }
 

@@ -11,7 +11,8 @@ enum {
     FINAL_ROUNDS = 12,
     PASSES_MAX = 400,
     NETS_LEAST = 6000, /* fewer triangles may lose a limb */
-    NETS_MOST = 12000
+    NETS_MOST = 12000,
+    NARROW_NETS_MOST = 64000 /* where parts nearly touch */
 };
 
 typedef struct surface_edge {
@@ -218,10 +219,12 @@ bool body_add_even_implicit(body *b, const implicit *shape, uint32_t triangle_co
     body nets = {0};
     double spacing = 0.1;
     uint32_t wanted = triangle_count < NETS_LEAST ? NETS_LEAST : triangle_count;
-    while (wanted > NETS_MOST) wanted = (wanted + 3) / 4;
+    uint32_t most = shape->narrow ? NARROW_NETS_MOST : NETS_MOST;
+    while (wanted > most) wanted = (wanted + 3) / 4;
     for (int i = 0; i < 3; i++) {
         body_free(&nets);
-        body_add_implicit(&nets, shape, spacing);
+        double taken = body_add_implicit(&nets, shape, spacing);
+        if (taken < spacing && nets.triangle_count >= wanted) break; /* coarser nets have sheets that meet */
         spacing *= sqrt((double)nets.triangle_count / wanted);
     }
     bool good = body_remesh(&nets, shape, triangle_count);

@@ -136,7 +136,7 @@ static double to_ball(const double p[3]) {
     return hypot(hypot(p[0], p[1]), p[2]) - 1.0;
 }
 
-static const implicit ball = {to_ball, {-1.3, -1.3, -1.3}, {1.3, 1.3, 1.3}};
+static const implicit ball = {to_ball, {-1.3, -1.3, -1.3}, {1.3, 1.3, 1.3}, false};
 
 /* Remeshing goes up and down from any count, always on the surface; impossible counts are refused. */
 static void remeshing_reaches_counts(void **state) {

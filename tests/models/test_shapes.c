@@ -164,8 +164,8 @@ static void find_extent(const body *b, double low[3], double high[3]) {
     }
 }
 
-/* When the count grows to four and sixteen times as many, the volume converges to the intended one, and
- * the body stays in place. */
+/* When the count grows to four and sixteen times as many, the volume converges to the intended one, the body stays in
+ * place, and no triangle is thin. */
 static void refinement_keeps_the_shape(void **state) {
     (void)state;
     for (int i = 0; i < BODY_KIND_COUNT; i++) {
@@ -178,6 +178,7 @@ static void refinement_keeps_the_shape(void **state) {
             body b = body_of(kind, body_nearest_count(kind, first << (2 * level)));
             volumes[level] = body_volume(&b);
             find_extent(&b, low[level], high[level]);
+            assert_true(body_least_angle(&b) >= expected[i].least_angle);
             body_free(&b);
         }
         double first_step = fabs(volumes[1] - volumes[0]), second_step = fabs(volumes[2] - volumes[1]);
