@@ -11,7 +11,7 @@
 #include <string.h>
 
 #ifdef SLOW_MACHINE
-enum { SCENES_PER_FAMILY = 6, SCENES_OF_TWO = 60 };
+enum { SCENES_PER_FAMILY = 3, SCENES_OF_TWO = 30 };
 #else
 enum { SCENES_PER_FAMILY = 12, SCENES_OF_TWO = 60 };
 #endif
