@@ -27,7 +27,8 @@ bool add_hand(body *b, uint32_t triangle_count) {
     return body_add_even_implicit(b, &shape, triangle_count);
 }
 
-/* Returns about the distance to an octopus's arm, which curls up in the plane y = 0; the point lies at this angle from it. */
+/* Returns about the distance to an octopus's arm, which curls up in a plane through the axis z; `angle` is that between
+ * the point and this plane, and `radius` the distance to the axis. */
 static double to_arm(double radius, double angle, double z) {
     static const limb limbs[] = {
         {{0.220, 0.0, 0.000}, {0.513, 0.0, -.062}, 0.125, 0.115, 0.05}, /* from its root */

@@ -45,7 +45,7 @@ bool add_genus2(body *b, uint32_t triangle_count) {
     return body_add_even_implicit(b, &shape, triangle_count);
 }
 
-/* Returns a first approximation of the distance near the surface. */
+/* Returns a first approximation of the distance near the surface, and at most 1.5 / 0.7 times the distance elsewhere. */
 static double to_ellipsoid(const double p[3]) {
     double x = p[0] / 1.5, y = p[1], z = p[2] / 0.7, level = sqrt(x * x + y * y + z * z);
     double gradient = hypot(hypot(x / 1.5, y), z / 0.7);

@@ -16,15 +16,15 @@ static size_t grid_index(const grid *g, uint32_t x, uint32_t y, uint32_t z) {
     return ((size_t)z * g->size[1] + y) * g->size[0] + x;
 }
 
-/* Samples along x. Points that the zero set cannot come near get the value before them: of theirs the sign is used. */
+/* Samples along x. Points that the zero set cannot come near get the value before them: only their sign is used. */
 static void sample_row(const implicit *surface, grid *g, uint32_t y, uint32_t z) {
     double p[3] = {0.0, g->low[1] + y * g->spacing, g->low[2] + z * g->spacing};
     double *row = g->values + grid_index(g, 0, y, z);
     for (uint32_t x = 0; x < g->size[0];) {
         p[0] = g->low[0] + x * g->spacing;
-        double value = surface->distance(p), far = fabs(value) / (2.5 * g->spacing) - 2.0;
-        for (uint32_t end = x + 1 + (far > 0.0 ? (uint32_t)far : 0); x < end && x < g->size[0]; x++)
-            row[x] = value;
+        double value = surface->distance(p), far = fabs(value) / (IMPLICIT_STEEPEST * g->spacing) - 2.0;
+        uint32_t end = x + 1 + (uint32_t)fmin(fmax(far, 0.0), g->size[0]);
+        for (; x < end && x < g->size[0]; x++) row[x] = value;
     }
 }
 
@@ -52,7 +52,8 @@ static bool corner_is_inside(const grid *g, const uint32_t at[3], uint32_t step_
 }
 
 /* Whether the inner corners of a cell, or the outer ones, fall apart into two groups: two corners on a diagonal of a
- * face, or two opposite corners of the cell. One vertex would then join two sheets of the surface. */
+ * face, or two opposite corners of the cell. One vertex would then join two sheets of the surface. Three faces are
+ * looked at; the other three are faces of the next cells. */
 static bool joins_sheets(const grid *g, const uint32_t at[3]) {
     for (uint32_t u = 0; u < 3; u++) {
         uint32_t v = (u + 1) % 3;

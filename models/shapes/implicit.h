@@ -3,8 +3,11 @@
 
 #include "models/shapes/body.h"
 
-/* A smooth function that is negative inside and, near its zero set, about the distance; nowhere is it more than 2.5
- * times that. The zero set lies well within the box. */
+/* The magnitude of `distance` is nowhere more than this many times the distance to the zero set. */
+#define IMPLICIT_STEEPEST 2.5
+
+/* A continuous function that is negative inside and, near its zero set, about the distance. The zero set lies well
+ * within the box; where the function has a crease, as in the edges of letters, so has the surface. */
 typedef struct implicit {
     double (*distance)(const double point[3]);
     double low[3], high[3];

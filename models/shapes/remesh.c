@@ -224,8 +224,9 @@ bool body_add_even_implicit(body *b, const implicit *shape, uint32_t triangle_co
     for (int i = 0; i < 3; i++) {
         body_free(&nets);
         double taken = body_add_implicit(&nets, shape, spacing);
-        if (taken < spacing && nets.triangle_count >= wanted) break; /* coarser nets have sheets that meet */
-        spacing *= sqrt((double)nets.triangle_count / wanted);
+        /* The spacing asked for was refused, because sheets met, and this one is fine enough. */
+        if (taken < spacing && nets.triangle_count >= wanted) break;
+        spacing *= sqrt((double)nets.triangle_count / wanted); /* remeshing makes the count exact */
     }
     bool good = body_remesh(&nets, shape, triangle_count);
     if (good) body_append(b, &nets, (double[3]){0.0, 0.0, 0.0});
