@@ -737,11 +737,12 @@ $(BENCHMARKS) $(BUILD)/benchmarks/peers: $(BUILD)/benchmarks/%: $(OBJECTS)/bench
 
 # Tests use internals: they link the objects and libraries that they need and no others, because a test of the tool's
 # memory must be smaller than the tool. They are hundreds: the linker gold, where it is, takes half of the time.
-TEST_LINKER := $(if $(HOST),,$(if $(shell command -v ld.gold),-fuse-ld=gold))
+# LDFLAGS with another linker come after it, and win.
+TEST_LINKER := $(if $(HOST),,$(shell $(CC) -fuse-ld=gold -Wl,--version >/dev/null 2>&1 && echo -fuse-ld=gold))
 $(BUILD)/tests/%: $(OBJECTS)/tests/%.o $(BUILD)/tests/support.a $(BUILD)/inside.a
 	@mkdir -p $(@D)
 	$(say) '  LD $@'
-	$(Q)$(CC) $(LINK_ALL) $(TEST_LINKER) -Wl,--as-needed -o $@ $(filter %.o,$^) $(filter %.a,$^) $(TEST_LIBS)
+	$(Q)$(CC) $(TEST_LINKER) $(LINK_ALL) -Wl,--as-needed -o $@ $(filter %.o,$^) $(filter %.a,$^) $(TEST_LIBS)
 
 # Brute force for the tests of the Python package, which load it.
 PYTHON_ORACLE := $(BUILD)/tests/python/oracle.so
