@@ -92,7 +92,7 @@ static void makes_plans_for_a_motion(void **state) {
                         "kmeans:4          4 ", "%   kept\n"),
                   "preprocess", model.text, "--method", "auto");
     EXPECT_OUTPUT(TEXTS("charge            1 "), "preprocess", model.text, cache.text, "--frames", "0",
-                  "--method", "auto");
+                  "--method", "auto", "--seed", "2", "--threshold", "0.2", "--charge", "coarse");
     EXPECT_OUTPUT(TEXTS("charge            3 "), "preprocess", model.text, cache.text, "--method", "auto");
 }
 
@@ -140,6 +140,8 @@ static void refuses_unfit_options(void **state) {
     EXPECT_ERROR(2, TEXTS("FRAMES count with"), "preprocess", model.text, cache.text, "--method", "single");
     EXPECT_ERROR(2, TEXTS("--threshold counts with --method charge or auto; leave it out"), "preprocess",
                  model.text, "--method", "single", "--threshold", "0.2");
+    EXPECT_ERROR(2, TEXTS("--charge counts with --method charge or auto; leave it out"), "preprocess",
+                 model.text, "--method", "kmeans:4", "--charge", "coarse");
     EXPECT_ERROR(2, TEXTS("--seed counts with --method kmeans:K or auto; leave it out"), "preprocess",
                  model.text, "--seed", "2");
     EXPECT_ERROR(2, TEXTS("--published counts with"), "preprocess", model.text, "--method", "kmeans:4",
