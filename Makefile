@@ -756,6 +756,9 @@ $(PYTHON_ORACLE): $(OBJECTS)/tests/python/oracle.o $(BUILD)/tests/support.a $(BU
 TEST_LEVELS := $(foreach level,$(LEVELS),$(OBJECTS)/tests/core/simd_operations_simd.$(level).o)
 $(BUILD)/tests/core/test_simd: $(TEST_LEVELS)
 
+# Whether there are baselines is a word on the command line, which a compiler cache looks at; at __has_include it does not.
+$(OBJECTS)/tests/support/methods.o: CFLAGS_ALL += $(if $(HAS_BASELINES),-DWITH_BASELINES)
+
 # A reader that one command has for itself.
 $(BUILD)/tests/fuzz/fuzz_readers: $(OBJECTS)/src/tool/summary_file.o
 

@@ -17,14 +17,18 @@ table=runtime/detector/method_table.c
 rm -r runtime/baselines
 sed -i '/baselines: begin/,/baselines: end/d' "$table"
 
-# Optimised a little, without symbols and sanitizers: the quickest to build and to run together.
+# A compiler that remembers gives what make test has compiled. Others optimise a little, without symbols: the quickest to build and run.
+case ${CC:-} in
+*ccache*) flags='' ;;
+*) flags='-O1 -g0' ;;
+esac
 tests=''
 for name in bvh/test_bulk_motion core/test_progress culling/test_culling_traps \
     culling/test_region_points detector/test_detector detector/test_memory detector/test_oracle detector/test_threads \
     solver/test_line_search solver/test_max_step solver/test_proximity solver/test_solver_memory; do
     tests="$tests build/release/tests/$name"
 done
-make -s -j"$(nproc)" tool library $tests CFLAGS='-O1 -g0'
+make -s -j"$(nproc)" tool library $tests CFLAGS="$flags"
 # Recordings are compared by `make test`, and one comparison is with ICCD.
 unset CSCD_DATA
 BUILD=build/release tests/run.sh $tests

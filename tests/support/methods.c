@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-#if __has_include("runtime/baselines/published.h")
+#ifdef WITH_BASELINES
 static const bool has_baselines = true;
 #else
 static const bool has_baselines = false;
