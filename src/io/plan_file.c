@@ -234,13 +234,9 @@ static column column_of(const ply_element *element, const ply_property *property
     return (column)c;
 }
 
-static bool visit_property(void *user, const ply_property *property) {
-    plan_reader *p = user;
-    size_t row = (size_t)p->data.row;
-    if (property->role == PLY_CORNERS) return compare_corners(p, property);
-    if (property->role != PLY_IGNORED)
-        return read_finite(p, property, &p->positions[row * 3 + property->role]);
-    if (property->is_list) return ply_data_skip(&p->data, property);
+/* A column of the plan, or what somebody has added to it. */
+static bool read_column(plan_reader *p, const ply_property *property) {
+    const size_t row = (size_t)p->data.row;
     switch (column_of(p->data.element, property)) {
     case COLUMN_REGION:
         return read_region(p, property);
@@ -260,6 +256,24 @@ static bool visit_property(void *user, const ply_property *property) {
         break;
     }
     return ply_data_skip(&p->data, property);
+}
+
+/* Parts and stiffness are a mesh's: a plan has none. */
+static bool visit_property(void *user, const ply_property *property) {
+    plan_reader *p = user;
+    switch (property->role) {
+    case PLY_X:
+    case PLY_Y:
+    case PLY_Z:
+        return read_finite(p, property, &p->positions[(size_t)p->data.row * 3 + property->role]);
+    case PLY_CORNERS:
+        return compare_corners(p, property);
+    case PLY_PART:
+    case PLY_STIFFNESS:
+    case PLY_IGNORED:
+        break;
+    }
+    return property->is_list ? ply_data_skip(&p->data, property) : read_column(p, property);
 }
 
 static bool end_row(void *user) {

@@ -115,6 +115,45 @@ static void refuses_wrong_data(void **state) {
     check_replaced(zipped, "<Data>e", "<Data>f", ":10: ", "cannot be unzipped", "damaged");
 }
 
+/* Elements where the format has none, in the data of each encoding, of every name that is known and of none. */
+static void refuses_elements_out_of_place(void **state) {
+    (void)state;
+    static const char *const names[] = {"DataArray", "Data", "GIFTI", "MetaData", "b"};
+    static const char *const starts[] = {"<Data>0 0 0", "<Data>AAAA", "<Data>e"};
+    for (int i = 0; i < 15; i++) {
+        const gifti_style style = {.encoding = i / 5};
+        const char *name = names[i % 5];
+        char element[100], found[80];
+        snprintf(found, sizeof found, "an element '%s' inside Data", name);
+        snprintf(element, sizeof element, "<Data><%s/>0", name);
+        check_replaced(style, starts[i / 5], element, ":10: ", found, "numbers alone");
+        snprintf(element, sizeof element, "<Data>0\n<%s Intent='NIFTI_INTENT_TRIANGLE'>0</%s>0", name, name);
+        check_replaced(style, starts[i / 5], element, ":11: ", found, "numbers alone");
+    }
+    const gifti_style ascii = {0};
+    check_replaced(ascii, starts[0], "<DataArray/><Data>", ":10: ", "'DataArray' inside a DataArray",
+                   "its data");
+    check_replaced(ascii, starts[0], "<MetaData><DataArray/></MetaData><Data>",
+                   ":10: ", "an element 'DataArray' inside a DataArray", "its data");
+    check_replaced(ascii, starts[0], "<Data/><Data>", ":10: ", "a second element Data", "expected one");
+    check_replaced(ascii, starts[0], "<Data>0</Data><Data>", ":10: ", "a second element Data",
+                   "expected one");
+    check_replaced(ascii, "<Data>1 2", "<Data><DataArray/>1 2", ":6: ", "'DataArray' inside a DataArray", "");
+}
+
+/* Text that grows a hundredfold, from the file or from another one, whether it is used or not. */
+static void refuses_entities(void **state) {
+    (void)state;
+    const gifti_style ascii = {0};
+    check_replaced(ascii, ".dtd\">", ".dtd\" [<!ENTITY a '0 0 0 0 0 0 0 0'>\n<!ENTITY b '&a;&a;&a;&a;'>]>",
+                   ":2: ", "the entity 'a'", "without any");
+    check_replaced(ascii, ".dtd\">", ".dtd\" [\n<!ENTITY a SYSTEM 'file:///etc/passwd'>]>",
+                   ":3: ", "the entity 'a'", "without any");
+    check_replaced(ascii, ".dtd\">", ".dtd\" [\n<!ENTITY % a '0'>]>", ":3: ", "the entity 'a'",
+                   "without any");
+    check_replaced(ascii, "<Data>0 0 0", "<Data>&a;0 0 0", ":10: ", "the entity 'a'", "without any");
+}
+
 static void plays_files_as_frames(void **state) {
     (void)state;
     const temp_folder folder = temp_folder_make();
@@ -184,6 +223,8 @@ int main(void) {
         cmocka_unit_test(rounds_text_to_its_type),
         cmocka_unit_test(refuses_what_is_no_surface),
         cmocka_unit_test(refuses_wrong_data),
+        cmocka_unit_test(refuses_elements_out_of_place),
+        cmocka_unit_test(refuses_entities),
         cmocka_unit_test(plays_files_as_frames),
         cmocka_unit_test(survives_failed_allocations),
         cmocka_unit_test(survives_damage),

@@ -21,8 +21,10 @@ typedef struct gifti_parser {
     XML_Parser xml;
     gifti_array arrays[ARRAY_COUNT];
     bool found[ARRAY_COUNT];
-    gifti_array *current; /* the array whose element is open; NULL: none of those that are read */
-    bool in_data, is_gifti, failed;
+    bool in_array;         /* an element DataArray is open */
+    gifti_array *current;  /* the array whose element that is; NULL: none of those that are read */
+    gifti_array *receiver; /* the array whose element Data is open, which takes all text; NULL: none */
+    bool is_gifti, failed;
 } gifti_parser;
 
 /* Ends the parsing: what follows would be of no use. */
@@ -109,6 +111,7 @@ static bool read_attributes(gifti_parser *parser, const char **attributes, int k
 
 static void begin_array(gifti_parser *parser, const char **attributes) {
     const char *intent = find_attribute(attributes, "Intent");
+    parser->in_array = true;
     for (int kind = 0; kind < ARRAY_COUNT; kind++) {
         if (strcmp(intent, intents[kind]) != 0 || parser->found[kind]) continue;
         parser->found[kind] = true;
@@ -117,27 +120,46 @@ static void begin_array(gifti_parser *parser, const char **attributes) {
     }
 }
 
+static void begin_data(gifti_parser *parser) {
+    gifti_array *array = parser->current;
+    if (array->line != 0) {
+        file_reader_fail_here(reader_here(parser), "a second element Data in one DataArray, expected one");
+        stop_parsing(parser);
+        return;
+    }
+    array->line = XML_GetCurrentLineNumber(parser->xml);
+    parser->receiver = array;
+}
+
+/* The format has no arrays in arrays and nothing but text in Data; what is written so has no meaning that we could guess. */
 static void begin_element(void *user, const char *name, const char **attributes) {
     gifti_parser *parser = user;
+    const bool is_array = strcmp(name, "DataArray") == 0;
     if (parser->failed) return;
-    if (strcmp(name, "GIFTI") == 0) parser->is_gifti = true;
-    if (strcmp(name, "DataArray") == 0) begin_array(parser, attributes);
-    if (strcmp(name, "Data") == 0 && parser->current != NULL) {
-        parser->in_data = true;
-        parser->current->line = XML_GetCurrentLineNumber(parser->xml);
+    if (parser->receiver != NULL || (is_array && parser->in_array)) {
+        file_reader_fail_here(reader_here(parser), "an element '%.*s' inside %s, expected %s",
+                              TEXT_CUT(name, 40), parser->receiver != NULL ? "Data" : "a DataArray",
+                              parser->receiver != NULL ? "numbers alone" : "its data");
+        stop_parsing(parser);
+        return;
     }
+    if (strcmp(name, "GIFTI") == 0) parser->is_gifti = true;
+    if (is_array) begin_array(parser, attributes);
+    if (strcmp(name, "Data") == 0 && parser->current != NULL) begin_data(parser);
 }
 
 static void end_element(void *user, const char *name) {
     gifti_parser *parser = user;
-    if (strcmp(name, "Data") == 0) parser->in_data = false;
-    if (strcmp(name, "DataArray") == 0) parser->current = NULL;
+    if (strcmp(name, "Data") == 0) parser->receiver = NULL;
+    if (strcmp(name, "DataArray") != 0) return;
+    parser->in_array = false;
+    parser->current = NULL;
 }
 
 static void take_text(void *user, const char *text, int length) {
     gifti_parser *parser = user;
-    if (!parser->in_data || parser->failed) return;
-    growable *all = &parser->current->text;
+    if (parser->receiver == NULL || parser->failed) return;
+    growable *all = &parser->receiver->text;
     const size_t needed = all->count + (size_t)length;
     if (needed > all->capacity && !growable_reserve(all, needed > SIZE_MAX / 2 ? needed : 2 * needed)) {
         file_reader_fail_here(reader_here(parser), "out of memory for %zu characters", needed);
@@ -146,6 +168,28 @@ static void take_text(void *user, const char *text, int length) {
     }
     memcpy((char *)all->data + all->count, text, (size_t)length);
     all->count = needed;
+}
+
+/* A few hundred bytes of entities become gigabytes of text, and no program writes them into a surface. */
+static void refuse_entity(gifti_parser *parser, const char *name) {
+    if (parser->failed) return;
+    file_reader_fail_here(reader_here(parser), "has the entity '%.*s', expected a surface without any",
+                          TEXT_CUT(name, 40));
+    stop_parsing(parser);
+}
+
+static void declare_entity(void *user, const char *name, int is_parameter, const char *value,
+                           int value_length, const char *base, const char *system_id, const char *public_id,
+                           const char *notation) {
+    (void)is_parameter, (void)value, (void)value_length, (void)base;
+    (void)system_id, (void)public_id, (void)notation;
+    refuse_entity(user, name);
+}
+
+/* One that the file does not declare: the other file that its type names could, which is not read. */
+static void skip_entity(void *user, const char *name, int is_parameter) {
+    (void)is_parameter;
+    refuse_entity(user, name);
 }
 
 /* ---- the file ---------------------------------------------------------------------------------------- */
@@ -177,6 +221,8 @@ static bool parse_file(gifti_parser *parser) {
     XML_SetUserData(parser->xml, parser);
     XML_SetElementHandler(parser->xml, begin_element, end_element);
     XML_SetCharacterDataHandler(parser->xml, take_text);
+    XML_SetEntityDeclHandler(parser->xml, declare_entity);
+    XML_SetSkippedEntityHandler(parser->xml, skip_entity);
     const bool done = parse_bytes(parser);
     XML_ParserFree(parser->xml);
     if (!done) return false;
