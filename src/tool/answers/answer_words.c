@@ -96,7 +96,8 @@ static void say_recording(FILE *out, const answers *a) {
 static void say_frame(FILE *out, const answers *a) {
     const frame_answer *frame = answers_frames(a);
     if (!frame_answer_meets(frame)) {
-        fprintf(out, "Clean: no two triangles cross or touch.");
+        fprintf(out, frame->duplicates > 0 ? "no two others cross or touch."
+                                           : "Clean: no two triangles cross or touch.");
         return;
     }
     if (frame->crossing > 0) {
@@ -112,12 +113,16 @@ static void say_frame(FILE *out, const answers *a) {
     fprintf(out, ".");
 }
 
+/* First of all, since a mesh with a triangle too many is not clean, whatever else is found. In a single frame in which nothing
+ * is, the sentence goes on. */
 static void say_duplicates(FILE *out, const answers *a) {
+    const bool goes_on = answers_frame_count(a) == 1 && !frame_answer_meets(answers_frames(a));
+    const char *end = goes_on ? ";" : ".";
     size_t most = 0;
     for (size_t i = 0; i < answers_frame_count(a); i++)
         if (answers_frames(a)[i].duplicates > most) most = answers_frames(a)[i].duplicates;
-    if (most == 1) fprintf(out, " One triangle is there twice.");
-    if (most > 1) fprintf(out, " %zu pairs of triangles are the same triangle twice.", most);
+    if (most == 1) fprintf(out, "One triangle is there twice%s ", end);
+    if (most > 1) fprintf(out, "%zu pairs of triangles are the same triangle twice%s ", most, end);
 }
 
 static void say_measure(FILE *out, const cscd_event *event, const length_unit *unit) {
@@ -150,11 +155,11 @@ static void say_event(FILE *out, const answers *a, const cscd_event *event, cons
 
 void answers_print_sentence(FILE *out, const answers *a, const length_unit *unit) {
     const bool single = answers_frame_count(a) == 1;
+    say_duplicates(out, a);
     if (single)
         say_frame(out, a);
     else
         say_recording(out, a);
-    say_duplicates(out, a);
     if (a->event_count > 0) {
         const char *what = single ? "place" : "event";
         fprintf(out, " %zu %s%s, %s", a->event_count, what, a->event_count > 1 ? "s" : "",
@@ -229,12 +234,13 @@ static void print_frame(const answers *a, const frame_answer *frame, const lengt
 }
 
 static bool frame_clean(const frame_answer *frame) {
-    return frame->checked && !frame_answer_meets(frame);
+    return frame->checked && !frame_answer_meets(frame) && frame->duplicates == 0;
 }
 
 void answers_print_frames(const answers *a, const length_unit *unit) {
     const size_t checked = count_frames(a, frame_checked), clean = count_frames(a, frame_clean);
-    if (clean < checked)
+    const bool any_meets = count_frames(a, frame_answer_meets) > 0;
+    if (any_meets)
         printf("\n%8s  %9s  %9s  %10s  %9s  %10s  %s\n", "frame", "crossing", "touching", "share", "depth",
                "ms", "worst");
     double ms = 0.0;
@@ -243,7 +249,7 @@ void answers_print_frames(const answers *a, const length_unit *unit) {
         ms += frame->ms;
         if (frame_answer_meets(frame)) print_frame(a, frame, unit);
     }
-    if (clean < checked)
+    if (any_meets)
         printf("crossing, touching: pairs of triangles; share: of the triangles that cross another one\n");
     if (checked > 0)
         printf("%zu of %zu frames are clean; a frame took %.3f ms on average\n", clean, checked,
