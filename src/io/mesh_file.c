@@ -11,6 +11,7 @@
 #include "src/io/path_name.h"
 #include "src/io/ply.h"
 #include "src/io/stl.h"
+#include "src/io/text_encoding.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -18,11 +19,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-
-/* Some editors put a UTF-8 byte order mark in front of a text. */
-static void skip_byte_order_mark(file_reader *reader) {
-    if (reader->size >= 3 && memcmp(reader->bytes, "\xef\xbb\xbf", 3) == 0) reader->at = 3;
-}
 
 typedef struct format_reader {
     mesh_format format;
@@ -42,10 +38,15 @@ static const format_reader readers[] = {
 
 enum { READERS = sizeof readers / sizeof *readers };
 
-/* What is in the file decides; if that says nothing, its ending. NULL: neither does. */
-static const format_reader *choose_reader(file_reader *reader) {
+/* NULL: what is in the file does not say. */
+static const format_reader *recognise_reader(const file_reader *reader) {
     for (size_t i = 0; i < READERS; i++)
         if (readers[i].recognise != NULL && readers[i].recognise(reader)) return &readers[i];
+    return NULL;
+}
+
+/* NULL: the file's ending does not say either. */
+static const format_reader *reader_of_ending(const file_reader *reader) {
     for (size_t i = 0; i < READERS; i++)
         if (readers[i].ending != NULL && path_has_extension(reader->path, readers[i].ending))
             return &readers[i];
@@ -56,8 +57,11 @@ static bool read_any(file_reader *reader, mesh_file *out) {
     if (reader->size == 0)
         return file_reader_fail(reader,
                                 "the file is empty, expected an OBJ, PLY, OFF, STL, glTF or GIFTI mesh");
-    skip_byte_order_mark(reader);
-    const format_reader *chosen = choose_reader(reader);
+    reader->at = text_mark_size(reader->bytes, reader->size);
+    const format_reader *chosen = recognise_reader(reader);
+    if (chosen == NULL && text_is_utf16(reader->bytes, reader->size))
+        return file_reader_fail(reader, TEXT_UTF16_ADVICE);
+    if (chosen == NULL) chosen = reader_of_ending(reader);
     if (chosen != NULL) {
         const bool done = chosen->read(reader, out);
         if (done) out->format = chosen->format;

@@ -72,10 +72,9 @@ static bool is_no_name(text_token name) {
     return text_equals(name, "default") || text_equals(name, "off") || text_equals(name, "(null)");
 }
 
-/* Reads the name of an object or group, the first of several. */
+/* Reads the name of an object or group: all of the line, for names have blanks and # in them. */
 static void read_name(obj_parser *obj, text_token *name) {
-    *name = (text_token){"", 0};
-    text_next_token(obj->reader, name);
+    text_rest_of_line(obj->reader, name);
     if (is_no_name(*name)) name->length = 0;
     obj->renamed = true;
 }

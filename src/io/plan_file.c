@@ -3,6 +3,7 @@
 
 #include "src/io/ply.h"
 #include "src/io/ply_data.h"
+#include "src/io/text_encoding.h"
 
 #include <cscd/research.h>
 
@@ -329,6 +330,7 @@ bool plan_file_read(const char *path, const cscd_context *context, const cscd_me
     file_reader reader;
     if (!file_reader_open(&reader, path, error)) return false;
     plan_reader p = {.mesh = mesh, .differing = UINT32_MAX};
+    reader.at = text_mark_size(reader.bytes, reader.size);
     bool done = read_plan(&p, &reader, context, out);
     ply_data_close(&p.data);
     file_reader_close(&reader);
@@ -341,6 +343,7 @@ bool plan_file_is_plan(const char *path) {
     file_reader reader;
     if (!file_reader_open(&reader, path, NULL)) return false;
     bool found = false;
+    reader.at = text_mark_size(reader.bytes, reader.size);
     if (ply_recognise(&reader)) {
         ply_data data;
         bool opened = ply_data_open(&data, &reader);

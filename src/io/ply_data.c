@@ -28,9 +28,10 @@ static bool read_text_scalar(ply_data *data, const ply_property *property, ply_t
         *value = (double)integer;
         return true;
     }
-    return file_reader_fail_here(data->reader, "found '%s', expected %s for property '%s'",
-                                 text_show(token).text, ply_type_is_integer(type) ? "an integer" : "a number",
-                                 text_show(property->name).text);
+    const bool whole = ply_type_is_integer(type);
+    return file_reader_fail_here(data->reader, "found '%s', expected %s for property '%s'%s",
+                                 text_show(token).text, whole ? "an integer" : "a number",
+                                 text_show(property->name).text, whole ? "" : text_number_advice(token));
 }
 
 static uint64_t load_bits(const char *bytes, size_t size, bool big_endian) {

@@ -83,6 +83,15 @@ bool point_cache_recognise(const char *path) {
 
 /* ---- header ---------------------------------------------------------------------------------------- */
 
+/* Some programs write the numbers as their own machine has them. */
+static bool fail_byte_order(const point_cache *cache, const char *format, bool big_endian, io_error *error) {
+    return io_fail(
+        error,
+        "%s: its numbers are %s-endian, and those of %s are %s-endian; export it again, with another "
+        "program if this one always writes it so",
+        cache->path, big_endian ? "little" : "big", format, big_endian ? "big" : "little");
+}
+
 static bool check_counts(const point_cache *cache, int32_t points, int32_t frames, io_error *error) {
     if (points != (int64_t)cache->vertex_count)
         return io_fail(error,
@@ -127,6 +136,7 @@ static bool parse_pc2_header(point_cache *cache, const unsigned char *header, si
     const int32_t version = load_int32(header + 12, false);
     const int32_t points = load_int32(header + 16, false);
     const int32_t samples = load_int32(header + 28, false);
+    if (load_int32(header + 12, true) == 1) return fail_byte_order(cache, "a PC2 file", false, error);
     if (version != 1)
         return io_fail(error, "%s: PC2 version %" PRId32 " at byte 12, expected 1", cache->path, version);
     if (!check_counts(cache, points, samples, error)) return false;
@@ -143,6 +153,9 @@ static bool parse_mdd_header(point_cache *cache, const unsigned char *header, si
                        size, POINT_CACHE_MDD_HEADER_SIZE);
     const int32_t frames = load_int32(header, true);
     const int32_t points = load_int32(header + 4, true);
+    if (points != (int64_t)cache->vertex_count &&
+        load_int32(header + 4, false) == (int64_t)cache->vertex_count)
+        return fail_byte_order(cache, "an MDD file", true, error);
     if (!check_counts(cache, points, frames, error)) return false;
     cache->big_endian = true;
     cache->frame_count = (uint32_t)frames;

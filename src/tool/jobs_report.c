@@ -3,6 +3,7 @@
 
 #include "src/io/output_file.h"
 #include "src/io/path_name.h"
+#include "src/io/text_encoding.h"
 #include "src/tool/common/command.h"
 #include "src/tool/common/output_path.h"
 #include "src/tool/common/provenance.h"
@@ -31,7 +32,8 @@ static bool begins_with_result(const char *path) {
     const size_t size = text != NULL ? fread(text, 1, FIRST_LINE_MAX, file) : 0;
     const char *end = size > 0 ? memchr(text, '\n', size) : NULL;
     job_record record;
-    const bool is_result = end != NULL && job_record_read(text, (size_t)(end - text), &record);
+    const size_t mark = text_mark_size(text, size);
+    const bool is_result = end != NULL && job_record_read(text + mark, (size_t)(end - text) - mark, &record);
     free(text);
     if (file != NULL) fclose(file);
     return is_result;

@@ -2,6 +2,7 @@
 #include "src/tool/summary_file.h"
 
 #include "src/io/pipe_file.h"
+#include "src/io/text_encoding.h"
 #include "src/tool/common/stages.h"
 
 #include <errno.h>
@@ -291,9 +292,12 @@ static json_object *parse_text(const char *path, const char *text, size_t size, 
         return NULL;
     }
     json_tokener_set_flags(tokener, JSON_TOKENER_STRICT | JSON_TOKENER_VALIDATE_UTF8);
-    json_object *root = json_tokener_parse_ex(tokener, text, (int)size);
-    size_t end = json_tokener_get_parse_end(tokener);
-    if (root == NULL) {
+    const size_t mark = text_mark_size(text, size);
+    json_object *root = json_tokener_parse_ex(tokener, text + mark, (int)(size - mark));
+    size_t end = mark + json_tokener_get_parse_end(tokener);
+    if (root == NULL && text_is_utf16(text, size)) {
+        io_fail(error, "%s: " TEXT_UTF16_ADVICE, path);
+    } else if (root == NULL) {
         enum json_tokener_error reason = json_tokener_get_error(tokener);
         io_fail(error, "%s:%d: %s; %s", path, line_of(text, end < size ? end : size),
                 reason == json_tokener_continue ? "the file ends too early" : json_tokener_error_desc(reason),

@@ -112,9 +112,24 @@ static void refuses_wrong_magic_and_version(void **state) {
     frame_fixture_put_int(&bytes, 12, 2, false);
     cache_fails(false, &bytes, &error);
     frame_fixture_check_error(&error, "PC2 version 2 at byte 12, expected 1", NULL);
+}
+
+/* All of a header in the order of the other format. */
+static void tells_the_other_byte_order(void **state) {
+    (void)state;
+    io_error error;
+    frame_fixture_bytes bytes = cache_bytes(false);
     frame_fixture_put_int(&bytes, 12, 1, true);
+    frame_fixture_put_int(&bytes, 16, VERTICES, true);
     cache_fails(false, &bytes, &error);
-    frame_fixture_check_error(&error, "version 16777216", NULL);
+    frame_fixture_check_error(&error, "its numbers are big-endian, and those of a PC2 file are little-endian",
+                              NULL);
+    bytes = cache_bytes(true);
+    frame_fixture_put_int(&bytes, 0, FRAMES, false);
+    frame_fixture_put_int(&bytes, 4, VERTICES, false);
+    cache_fails(true, &bytes, &error);
+    frame_fixture_check_error(&error,
+                              "its numbers are little-endian, and those of an MDD file are big-endian", NULL);
 }
 
 static void refuses_wrong_counts(void **state) {
@@ -309,6 +324,7 @@ int main(void) {
         TEST(reads_in_any_order),
         TEST(refuses_a_frame_past_the_end),
         TEST(refuses_wrong_magic_and_version),
+        TEST(tells_the_other_byte_order),
         TEST(refuses_wrong_counts),
         TEST(refuses_counts_that_overflow),
         TEST(refuses_every_truncation),

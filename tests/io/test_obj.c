@@ -45,7 +45,7 @@ static void reads_layouts(void **state) {
     mesh_check_square(OBJ("# a square\r\n\r\nv 0 0 0\r\nv 1 0 0\r\nv 1 1 0\r\nv 0 1 0\r\nf 1 2 3 4\r\n"));
     mesh_check_square(OBJ("v 0 0 0\rv 1 0 0\rv 1 1 0\rv 0 1 0\rf 1 2 3 4"));
     mesh_check_square(OBJ("\xef\xbb\xbf" SQUARE "f 1 2 3 4"));
-    mesh_check_square(OBJ("\t v\t0  0 0 \n v 1 0 0# one\n v 1 1 0 # two\nv 0 1 0\nf 1 2 3 4 # five\n"));
+    mesh_check_square(OBJ("\t v\t0  0 0 \n v 1 0 0 # one\n v 1 1 0 # two\nv 0 1 0\nf 1 2 3 4 # five\n"));
     mesh_check_square(OBJ("v 0 0 \\\n0\nv \\\r\n1 0 0\nv 1 1 0\nv 0 1\\\n 0\nf 1 2 \\\n  3 \\\n4\n"));
     /* A comment that ends in a backslash does not go on; another record does. */
     mesh_check_square(
@@ -146,7 +146,7 @@ static void names_parts(void **state) {
     check_parts(SQUARE "g default\nf 1 2 3\ng off\nf 1 2 3\n", (const char *const[]){NULL}, NULL);
     check_parts(SQUARE "f 1 2 3\no Body\nf 1 2 3 4\no Hat\nf 1 2 3\no Body\nf 1 3 4\n",
                 (const char *const[]){"Body", "Hat", NULL}, (const uint32_t[]){none, 0, 0, 1, 0});
-    check_parts(SQUARE "g Arm.L deform\nf 1 2 3\ng\nf 1 2 3\n", (const char *const[]){"Arm.L", NULL},
+    check_parts(SQUARE "g Arm.L deform\nf 1 2 3\ng\nf 1 2 3\n", (const char *const[]){"Arm.L deform", NULL},
                 (const uint32_t[]){0, none});
     check_parts(SQUARE "o Body\ng Arm\nf 1 2 3\ng (null)\nf 1 2 3\no Hat\nf 1 2 3\n",
                 (const char *const[]){"Body/Arm", "Body", "Hat", NULL}, (const uint32_t[]){0, 1, 2});

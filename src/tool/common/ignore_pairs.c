@@ -4,6 +4,7 @@
 
 #include "src/io/growable.h"
 #include "src/io/pipe_file.h"
+#include "src/io/text_encoding.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -114,8 +115,15 @@ static bool read_list(ignore_pairs *pairs, const recording *r, const char *path,
     char *line = NULL;
     size_t size = 0;
     bool read = true;
-    for (int number = 1; read && getline(&line, &size, file) >= 0; number++)
-        read = read_line(pairs, r, line, path, number, error);
+    ssize_t length;
+    for (int number = 1; read && (length = getline(&line, &size, file)) >= 0; number++) {
+        if (number == 1 && text_is_utf16(line, (size_t)length)) {
+            read = io_fail(error, "%s: " TEXT_UTF16_ADVICE, path);
+            break;
+        }
+        const size_t mark = number == 1 ? text_mark_size(line, (size_t)length) : 0;
+        read = read_line(pairs, r, line + mark, path, number, error);
+    }
     if (read && ferror(file)) read = io_fail(error, "%s: cannot read: %s", path, strerror(errno));
     free(line);
     fclose(file);

@@ -4,6 +4,7 @@
 #include "src/io/growable.h"
 #include "src/io/mesh_parts.h"
 #include "src/io/pipe_file.h"
+#include "src/io/text_encoding.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -45,11 +46,11 @@ static bool split_fields(char *line, char *fields[2]) {
     return fields[0][0] != '\0' && fields[1][0] != '\0';
 }
 
-static bool read_kind(part_table *table, char *line, io_error *error) {
+static bool read_kind(part_table *table, char *line, size_t length, io_error *error) {
     static const char *const names[] = {"triangle", "face", "vertex"};
-    static const char mark[] = "\xef\xbb\xbf"; /* by which some programs begin text in UTF-8 */
     char *fields[2];
-    if (strncmp(line, mark, 3) == 0) line += 3;
+    if (text_is_utf16(line, length)) return io_fail(error, "%s: " TEXT_UTF16_ADVICE, table->path);
+    line += text_mark_size(line, length);
     if (split_fields(line, fields)) {
         for (int i = 0; i < 3; i++) {
             table->kind = (table_kind)i;
@@ -104,8 +105,9 @@ static bool read_row(part_table *table, char *line, io_error *error) {
 static bool read_rows(part_table *table, FILE *file, io_error *error) {
     char *line = NULL;
     size_t size = 0;
-    bool read = getline(&line, &size, file) >= 0 ? read_kind(table, line, error)
-                                                 : io_fail(error, "%s: the file is empty", table->path);
+    const ssize_t length = getline(&line, &size, file);
+    bool read = length >= 0 ? read_kind(table, line, (size_t)length, error)
+                            : io_fail(error, "%s: the file is empty", table->path);
     read = read && allocate_things(table, error);
     for (table->line = 2; read && getline(&line, &size, file) >= 0; table->line++)
         read = read_row(table, line, error);

@@ -3,6 +3,7 @@
 
 #include "src/io/file_reader.h"
 #include "src/io/growable.h"
+#include "src/io/text_encoding.h"
 #include "src/tool/common/provenance.h"
 
 #include <stdlib.h>
@@ -31,7 +32,7 @@ bool job_list_line(const job_list *list, uint32_t job, job_line *out, io_error *
 static bool split_lines(job_list *list, size_t size, io_error *error) {
     growable jobs = growable_of(sizeof(listed_job));
     size_t line = 1;
-    for (size_t begin = 0, end; begin < size; begin = end + 1, line++) {
+    for (size_t begin = text_mark_size(list->text, size), end; begin < size; begin = end + 1, line++) {
         const char *newline = memchr(list->text + begin, '\n', size - begin);
         end = newline != NULL ? (size_t)(newline - list->text) : size;
         if (line_is_blank(list->text + begin, end - begin)) continue;
@@ -69,7 +70,9 @@ bool job_list_read(const char *path, job_list *out, io_error *error) {
     list.text = reader.bytes;
     reader.bytes = NULL;
     list.hash = provenance_hash(PROVENANCE_HASH_START, list.text, reader.size);
-    const bool good = split_lines(&list, reader.size, error) && read_lines(&list, error);
+    const bool good =
+        (!text_is_utf16(list.text, reader.size) || file_reader_fail(&reader, TEXT_UTF16_ADVICE)) &&
+        split_lines(&list, reader.size, error) && read_lines(&list, error);
     file_reader_close(&reader);
     if (!good) job_list_free(&list);
     if (good) *out = list;

@@ -2,6 +2,7 @@
 #include "src/tool/jobs/job_merge.h"
 
 #include "src/io/file_reader.h"
+#include "src/io/text_encoding.h"
 #include "src/tool/common/terminal.h"
 
 #include <errno.h>
@@ -64,7 +65,7 @@ static bool read_file(job_merge *m, uint32_t file, io_error *error) {
     if (!file_reader_open(&reader, m->paths[file], error)) return false;
     bool good = true;
     size_t number = 1;
-    for (uint64_t at = 0; at < reader.size && good; number++) {
+    for (uint64_t at = text_mark_size(reader.bytes, reader.size); at < reader.size && good; number++) {
         merged_line line = {.offset = at, .file = file};
         good = read_line(m, &reader, &line, number, error);
         at += line.length;

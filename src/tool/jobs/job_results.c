@@ -2,6 +2,7 @@
 #include "src/tool/jobs/job_results.h"
 
 #include "src/io/file_reader.h"
+#include "src/io/text_encoding.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -61,7 +62,7 @@ static bool hold_torn_line(const job_results *r, const expected_results *expecte
 static bool hold_lines(job_results *r, const expected_results *expected, const file_reader *reader,
                        off_t *whole, io_error *error) {
     size_t number = 1;
-    for (size_t begin = 0; begin < reader->size; number++) {
+    for (size_t begin = text_mark_size(reader->bytes, reader->size); begin < reader->size; number++) {
         const char *line = reader->bytes + begin, *end = memchr(line, '\n', reader->size - begin);
         if (end == NULL) return hold_torn_line(r, expected, line, reader->size - begin, number, error);
         if (!hold_line(r, expected, line, (size_t)(end - line), number, error)) return false;
