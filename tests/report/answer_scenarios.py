@@ -16,7 +16,7 @@ def open_pawn(context, **arguments):
 
 
 def crossing_frames(made):
-    return [row["frame"] for row in made.summary()["frames"] if row["crossing"]]
+    return [row["frame"] for row in made.summary()["frames"] if row["crossing_pairs"] + row["touching_pairs"] > 0]
 
 
 def expect_event(page, report, number):
@@ -26,7 +26,7 @@ def expect_event(page, report, number):
 
 
 def answers_are_those_of_the_run(context):
-    """The frames in which something was found are those that the summary calls crossing, and each event lies in them."""
+    """The frames in which something was found are those of the summary with pairs, and each event lies in them."""
     for name in ("pawn-drop", "figure-balls"):
         made = context.material.replay(name)
         report = Report(made.page)

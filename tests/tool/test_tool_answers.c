@@ -68,7 +68,8 @@ static void the_answer_comes_first(void **state) {
                             "8.1 mm deep at frame 6.");
     tool_run_free(&run);
     run = RUN_TOOL("replay", model.text, cache.text, "--first-frame", "1001", "--frames", "1001:1003");
-    expect_first_line(&run, "No frame crosses or touches (3 checked).");
+    expect_first_line(&run, "No frame crosses or touches (3 checked). Only frames 1001 to 1003 of 1001 to "
+                            "1008 were looked at.");
     tool_run_free(&run);
     run = RUN_TOOL("replay", model.text, cache.text, "--frames", "4:6");
     assert_non_null(strstr(run.out, "All 3 frames cross. 1 event, "));

@@ -202,8 +202,8 @@ static void errors_in_frames_name_their_object(void **state) {
     recorded_write_mesh(&folder, "s_1001.obj", &dart, 1);
     temp_path pattern = temp_file_path(&folder, "s_%d.obj"), frames = named_path_of("dart", &pattern);
     (void)spoilt;
-    EXPECT_ERROR(1, TEXTS("frame 1002: dart: vertex 3 has x"), "check", wall_model.text, "--object",
-                 dart_object.text, "--frames-of", frames.text);
+    EXPECT_ERROR(1, TEXTS("frame 1002 could not be read: dart: vertex 3 has x"), "check", wall_model.text,
+                 "--object", dart_object.text, "--frames-of", frames.text);
     recorded_free(&both);
     recorded_free(&dart);
 }

@@ -66,7 +66,8 @@ void answers_write_json(const answers *a, const length_unit *unit, json *out) {
 
 void answers_write_frame(const answers *a, const frame_answer *frame, json *out) {
     const uint32_t triangles = cscd_mesh_triangle_count(a->recording->mesh);
-    json_boolean(out, "crossing", frame_answer_meets(frame));
+    json_boolean(out, "crossing", frame->crossing > 0);
+    json_boolean(out, "clean", frame_answer_clean(frame));
     json_integer(out, "crossing_pairs", frame->crossing);
     json_integer(out, "touching_pairs", frame->touching);
     json_integer(out, "duplicate_pairs", frame->duplicates);
@@ -133,10 +134,20 @@ static void write_case(const answers *a, const fail_rules *rules, const frame_an
     fputs("\"/>\n    </testcase>\n", file);
 }
 
+/* What was not looked at is an error, and a test case of its own. */
+static void write_unfinished(const char *reason, FILE *file) {
+    fputs(
+        "    <testcase classname=\"cscd\" name=\"all was looked at\" time=\"0\">\n      <error message=\"Not finished: ",
+        file);
+    text_write_xml(file, reason);
+    fputs("\"/>\n    </testcase>\n", file);
+}
+
 void answers_write_junit(const answers *a, const fail_rules *rules, const char *suite, FILE *file) {
     const frame_answer *frames = answers_frames(a);
+    const char *unfinished = answers_unfinished(a);
     char text[FAIL_TEXT_SIZE];
-    size_t tests = 0, failures = 0;
+    size_t tests = unfinished != NULL, failures = 0;
     double ms = 0.0;
     for (size_t i = 0; i < answers_frame_count(a); i++) {
         tests++;
@@ -145,8 +156,9 @@ void answers_write_junit(const answers *a, const fail_rules *rules, const char *
     }
     fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n  <testsuite name=\"", file);
     text_write_xml(file, suite);
-    fprintf(file, "\" tests=\"%zu\" failures=\"%zu\" errors=\"0\" time=\"%.6f\">\n", tests, failures,
-            ms * 1e-3);
+    fprintf(file, "\" tests=\"%zu\" failures=\"%zu\" errors=\"%d\" time=\"%.6f\">\n", tests, failures,
+            unfinished != NULL, ms * 1e-3);
     for (size_t i = 0; i < answers_frame_count(a); i++) write_case(a, rules, &frames[i], file);
+    if (unfinished != NULL) write_unfinished(unfinished, file);
     fputs("  </testsuite>\n</testsuites>\n", file);
 }

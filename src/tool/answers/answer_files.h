@@ -8,13 +8,14 @@
  * faces those of their model files. */
 void answers_write_json(const answers *a, const length_unit *unit, json *out);
 
-/* Writes the members of a frame that was checked: "crossing" (does any pair intersect or touch?), how many pairs of each
- * sort, how many triangles cross another one, their share, and the greatest depth. */
+/* Writes the members of a frame that was checked: "crossing" (do any triangles cross?), "clean" (was nothing found, not even what
+ * touches, is there twice or lies inside?), how many pairs of each sort, how many triangles cross another one, their share, and
+ * the greatest depth. */
 void answers_write_frame(const answers *a, const frame_answer *frame, json *out);
 
 /* Writes a row for each event, in the order of their first frames. */
 void answers_write_csv(const answers *a, FILE *file);
 
-/* Writes a test case for each frame. It fails by the rules; without rules it fails if the frame crosses. suite: what the
- * recording is called. */
+/* Writes a test case for each frame. It fails by the rules; without rules it fails if the frame crosses. Where not all was looked at
+ * (answers_unfinished), a last case is an error. suite: what the recording is called. */
 void answers_write_junit(const answers *a, const fail_rules *rules, const char *suite, FILE *file);

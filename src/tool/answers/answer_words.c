@@ -7,6 +7,11 @@ enum { SPANS_SAID = 6, EVENTS_SHOWN = 20, NAME_WIDTH_MAX = 60 };
 
 #define CROSSING cscd_intersection_set(CSCD_INTERSECTION_CROSSING)
 
+/* Is there one frame, and was no other one asked for? */
+static bool is_single(const answers *a) {
+    return answers_frame_count(a) == 1 && a->wanted <= 1;
+}
+
 typedef bool frame_test(const frame_answer *frame);
 
 static bool frame_checked(const frame_answer *frame) {
@@ -116,7 +121,7 @@ static void say_frame(FILE *out, const answers *a) {
 /* First of all, since a mesh with a triangle too many is not clean, whatever else is found. In a single frame in which nothing
  * is, the sentence goes on. */
 static void say_duplicates(FILE *out, const answers *a) {
-    const bool goes_on = answers_frame_count(a) == 1 && !frame_answer_meets(answers_frames(a));
+    const bool goes_on = is_single(a) && !frame_answer_meets(answers_frames(a));
     const char *end = goes_on ? ";" : ".";
     size_t most = 0;
     for (size_t i = 0; i < answers_frame_count(a); i++)
@@ -138,7 +143,7 @@ static void say_measure(FILE *out, const cscd_event *event, const length_unit *u
 
 /* "A x B, frames 21 to 29, 12.4 mm deep at frame 24". */
 static void say_event(FILE *out, const answers *a, const cscd_event *event, const length_unit *unit) {
-    const bool single = answers_frame_count(a) == 1;
+    const bool single = is_single(a);
     print_pair(out, a, event->a, event->b, 0);
     if (single) {
         say_measure(out, event, unit);
@@ -153,13 +158,40 @@ static void say_event(FILE *out, const answers *a, const cscd_event *event, cons
         fprintf(out, " at frame %d", answers_frame_number(a, event->worst_frame));
 }
 
+/* Was not all looked at? Then that is said first. True if there is nothing else to say. */
+static bool say_unfinished(FILE *out, const answers *a) {
+    const char *reason = answers_unfinished(a);
+    if (reason == NULL) return false;
+    const size_t checked = count_frames(a, frame_checked), wanted = a->wanted > 0 ? a->wanted : checked;
+    const size_t length = strlen(reason);
+    fprintf(out, "Not finished: %s%s %zu of %zu frame%s checked", reason,
+            length > 0 && reason[length - 1] == '.' ? "" : ".", checked, wanted, wanted == 1 ? "" : "s");
+    const bool found = count_frames(a, frame_answer_clean) < checked || a->event_count > 0;
+    fprintf(out, checked == 0 || found ? "." : ", clean so far.");
+    if (found) fputc(' ', out);
+    return !found;
+}
+
+/* Less than the recording has, because that was asked for. */
+static void say_range(FILE *out, const answers *a) {
+    const recording *r = a->recording;
+    const size_t count = answers_frame_count(a);
+    if (count == 0 || count >= r->frame_count || answers_unfinished(a) != NULL) return;
+    const frame_answer *first = &answers_frames(a)[0], *last = &answers_frames(a)[count - 1];
+    const uint32_t step = count > 1 ? (last->frame - first->frame) / (uint32_t)(count - 1) : 1;
+    fprintf(out, " Only frame%s %d", count > 1 ? "s" : "", answers_frame_number(a, first->frame));
+    if (count > 1) fprintf(out, " to %d", answers_frame_number(a, last->frame));
+    if (step > 1) fprintf(out, ", in steps of %u,", step);
+    fprintf(out, " of %d to %d %s looked at.", r->frame_numbers[0], r->frame_numbers[r->frame_count - 1],
+            count > 1 ? "were" : "was");
+}
+
 void answers_print_sentence(FILE *out, const answers *a, const length_unit *unit) {
-    const bool single = answers_frame_count(a) == 1;
-    say_duplicates(out, a);
-    if (single)
-        say_frame(out, a);
-    else
-        say_recording(out, a);
+    const bool single = is_single(a);
+    const bool said = say_unfinished(out, a);
+    if (!said) say_duplicates(out, a);
+    if (!said && single) say_frame(out, a);
+    if (!said && !single) say_recording(out, a);
     if (a->event_count > 0) {
         const char *what = single ? "place" : "event";
         fprintf(out, " %zu %s%s, %s", a->event_count, what, a->event_count > 1 ? "s" : "",
@@ -167,6 +199,7 @@ void answers_print_sentence(FILE *out, const answers *a, const length_unit *unit
         say_event(out, a, &a->events[a->worst_first[0]], unit);
         fputc('.', out);
     }
+    say_range(out, a);
     fputc('\n', out);
 }
 
@@ -188,7 +221,7 @@ static void print_event(const answers *a, const cscd_event *event, const length_
     char frames[32];
     print_pair(stdout, a, event->a, event->b, width);
     printf("  %-7s", event_word(event));
-    if (answers_frame_count(a) > 1) {
+    if (!is_single(a)) {
         if (event->last_frame > event->first_frame)
             snprintf(frames, sizeof frames, "%d to %d", answers_frame_number(a, event->first_frame),
                      answers_frame_number(a, event->last_frame));
@@ -216,7 +249,7 @@ void answers_print_events(const answers *a, const length_unit *unit) {
     if (shown == 0) return;
     const int width = widest_pair(a, shown);
     printf("\n%-*s  %-7s", width, "parts", "what");
-    if (answers_frame_count(a) > 1) printf("  %-14s  %6s", "frames", "worst");
+    if (!is_single(a)) printf("  %-14s  %6s", "frames", "worst");
     printf("  %9s  %9s  %7s  %8s\n", "depth", "length", "pairs", "contacts");
     for (size_t i = 0; i < shown; i++) print_event(a, &a->events[a->worst_first[i]], unit, width);
     if (shown < a->event_count)
@@ -233,23 +266,24 @@ static void print_frame(const answers *a, const frame_answer *frame, const lengt
     putchar('\n');
 }
 
-static bool frame_clean(const frame_answer *frame) {
-    return frame->checked && !frame_answer_meets(frame) && frame->duplicates == 0;
+/* Duplicates alone make no row. */
+static bool frame_has_row(const frame_answer *frame) {
+    return frame_answer_meets(frame) || frame->depth > 0.0;
 }
 
 void answers_print_frames(const answers *a, const length_unit *unit) {
-    const size_t checked = count_frames(a, frame_checked), clean = count_frames(a, frame_clean);
-    const bool any_meets = count_frames(a, frame_answer_meets) > 0;
-    if (any_meets)
+    const size_t checked = count_frames(a, frame_checked), clean = count_frames(a, frame_answer_clean);
+    const bool any_row = count_frames(a, frame_has_row) > 0;
+    if (any_row)
         printf("\n%8s  %9s  %9s  %10s  %9s  %10s  %s\n", "frame", "crossing", "touching", "share", "depth",
                "ms", "worst");
     double ms = 0.0;
     for (size_t i = 0; i < answers_frame_count(a); i++) {
         const frame_answer *frame = &answers_frames(a)[i];
         ms += frame->ms;
-        if (frame_answer_meets(frame)) print_frame(a, frame, unit);
+        if (frame_has_row(frame)) print_frame(a, frame, unit);
     }
-    if (any_meets)
+    if (any_row)
         printf("crossing, touching: pairs of triangles; share: of the triangles that cross another one\n");
     if (checked > 0)
         printf("%zu of %zu frames are clean; a frame took %.3f ms on average\n", clean, checked,

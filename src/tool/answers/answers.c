@@ -5,6 +5,8 @@
 #include "src/tool/answers/consequences.h"
 #include "src/tool/common/event_order.h"
 
+#include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -45,6 +47,22 @@ void answers_close(answers *a) {
     free(a->worst_first);
     free(a->seen);
     *a = (answers){0};
+}
+
+void answers_expect(answers *a, size_t frame_count) {
+    a->wanted = frame_count;
+}
+
+void answers_leave_unfinished(answers *a, const char *format, ...) {
+    if (a->unfinished.text[0] != '\0') return;
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(a->unfinished.text, sizeof a->unfinished.text, format, arguments);
+    va_end(arguments);
+}
+
+const char *answers_unfinished(const answers *a) {
+    return a->unfinished.text[0] != '\0' ? a->unfinished.text : NULL;
 }
 
 bool answers_prepare(const answers *a, cscd_detector *detector, io_error *error) {

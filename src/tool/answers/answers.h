@@ -31,12 +31,24 @@ typedef struct answers {
     cscd_event_tracker *tracker;
     uint32_t *seen;          /* per triangle: counted in the frame with this number in `frames`, from 1 */
     size_t waiting_contacts; /* of an interval whose end has not come yet */
+    size_t wanted;           /* so many frames are asked for; 0: nobody has said so */
+    io_error unfinished;     /* why not all was looked at that was asked for; "": all was */
 } answers;
 
 /* The ignored pairs, which have the parts, outlive the answers. Without depths there are neither curves nor depths. On false *out
  * holds nothing to close. */
 bool answers_open(recording *r, const ignore_pairs *ignored, bool depths, answers *out, io_error *error);
 void answers_close(answers *a); /* a zeroed struct is fine */
+
+/* Says how many frames are asked for: all of the recording, or those of a range. */
+void answers_expect(answers *a, size_t frame_count);
+
+/* Says that something was asked for and not looked at, and why: "frame 2 could not be read (...)". The first reason stays. From then
+ * on no output calls the recording clean, and the exit code is not 0. Before answers_finish, whether frames follow or not. */
+void answers_leave_unfinished(answers *a, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* Why not all was looked at that was asked for; NULL: all was. */
+const char *answers_unfinished(const answers *a);
 
 /* Makes the detector sum up by these parts. Once, before the first frame. */
 bool answers_prepare(const answers *a, cscd_detector *detector, io_error *error);
@@ -72,4 +84,9 @@ static inline int32_t answers_frame_number(const answers *a, uint64_t frame) {
 /* Does any pair of triangles in the frame intersect or touch, duplicates aside? */
 static inline bool frame_answer_meets(const frame_answer *frame) {
     return frame->crossing + frame->touching > 0;
+}
+
+/* Was the frame looked at, and nothing found in it: no pair of triangles, no triangle that is there twice, nothing inside of anything? */
+static inline bool frame_answer_clean(const frame_answer *frame) {
+    return frame->checked && !frame_answer_meets(frame) && frame->duplicates == 0 && !(frame->depth > 0.0);
 }

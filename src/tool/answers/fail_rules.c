@@ -56,7 +56,7 @@ bool fail_rules_meet(const fail_rules *rules, const answers *a, const frame_answ
     return true;
 }
 
-bool fail_rules_apply(const fail_rules *rules, const answers *a) {
+static bool any_frame_fails(const fail_rules *rules, const answers *a) {
     char text[FAIL_TEXT_SIZE], first[FAIL_TEXT_SIZE];
     size_t count = 0;
     const frame_answer *frames = answers_frames(a), *failed = NULL;
@@ -71,4 +71,10 @@ bool fail_rules_apply(const fail_rules *rules, const answers *a) {
         note("failed: %zu of %zu frames, the first is frame %d: %s", count, answers_frame_count(a),
              a->recording->frame_numbers[failed->frame], first);
     return true;
+}
+
+int fail_rules_exit_code(const fail_rules *rules, const answers *a) {
+    if (any_frame_fails(rules, a)) return EXIT_CONTACT;
+    const char *unfinished = answers_unfinished(a);
+    return unfinished != NULL ? fail_input("%s", unfinished) : EXIT_RAN;
 }

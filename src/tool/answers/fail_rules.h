@@ -39,5 +39,6 @@ enum { FAIL_TEXT_SIZE = 400 };
 bool fail_rules_meet(const fail_rules *rules, const answers *a, const frame_answer *frame,
                      char text[FAIL_TEXT_SIZE]);
 
-/* Does any frame fail? Says on stderr how many do and what the first does wrong. */
-bool fail_rules_apply(const fail_rules *rules, const answers *a);
+/* The exit code of a run that ended without an error: EXIT_CONTACT if any frame fails, and then it says on stderr how many do and what
+ * the first does wrong; else EXIT_BAD_INPUT if not all was looked at that was asked for. */
+int fail_rules_exit_code(const fail_rules *rules, const answers *a);

@@ -125,22 +125,22 @@ bool check_output_add(check_output *out, const answers *a, const cscd_intersecti
 
 /* ---- the end -------------------------------------------------------------------------------------------- */
 
-static void write_ending(json *out, const answers *a, const length_unit *unit, const char *stopped_by) {
+static void write_ending(json *out, const answers *a, const length_unit *unit) {
+    const char *unfinished = answers_unfinished(a);
     json_end_array(out);
     json_break_line(out);
     answers_write_json(a, unit, out);
     json_break_line(out);
-    json_boolean(out, "complete", stopped_by == NULL);
-    if (stopped_by != NULL) json_string(out, "stopped_by", stopped_by);
+    json_boolean(out, "complete", unfinished == NULL);
+    if (unfinished != NULL) json_string(out, "stopped_by", unfinished);
     json_end_object(out);
     fputc('\n', out->file);
 }
 
-bool check_output_close(check_output *out, const answers *a, const length_unit *unit, const char *stopped_by,
-                        io_error *error) {
+bool check_output_close(check_output *out, const answers *a, const length_unit *unit, io_error *error) {
     bool written = true;
     if (out->json_file.file != NULL) {
-        write_ending(&out->out, a, unit, stopped_by);
+        write_ending(&out->out, a, unit);
         written = output_file_close(&out->json_file, OUTPUT_WHOLE) || write_failed(out->json_path, error);
     }
     if (out->csv_file.file != NULL)

@@ -18,9 +18,8 @@ bool check_output_open(const char *json_path, const char *csv_path, check_output
 bool check_output_add(check_output *out, const answers *a, const cscd_intersection_pairs *found,
                       io_error *error);
 
-/* stopped_by: NULL if all frames are there. The answers are finished. */
-bool check_output_close(check_output *out, const answers *a, const length_unit *unit, const char *stopped_by,
-                        io_error *error);
+/* The answers are finished. */
+bool check_output_close(check_output *out, const answers *a, const length_unit *unit, io_error *error);
 
 /* Nothing was found: older files stay. */
 void check_output_abandon(check_output *out);

@@ -74,6 +74,7 @@ static bool prepare_check(check_run *c, io_error *error) {
 
 static bool check_frames(check_run *c, io_error *error) {
     uint32_t count = frame_choice_count(&c->frames);
+    answers_expect(&c->answers, count);
     for (uint32_t i = 0; i < count && !interrupted(); i++) {
         terminal_progress_update(&c->progress, i, count, "check");
         if (!check_frame(c, c->frames.first + i * c->frames.step, error)) return false;
@@ -82,7 +83,7 @@ static bool check_frames(check_run *c, io_error *error) {
 }
 
 static void print_answers(const check_run *c) {
-    if (c->options->quiet || frames_done(c) == 0) return;
+    if (c->options->quiet) return;
     answers_print_sentence(stdout, &c->answers, &c->unit);
     answers_print_events(&c->answers, &c->unit);
     if (c->options->answers.timings) answers_print_frames(&c->answers, &c->unit);
@@ -92,13 +93,14 @@ static void print_answers(const check_run *c) {
 static bool close_check(check_run *c, const char *stopped_by, io_error *error) {
     const check_options *o = c->options;
     const char *suite = recording_options_path(&o->source);
+    if (stopped_by != NULL) answers_leave_unfinished(&c->answers, "%s", stopped_by);
     bool finished = answers_finish(&c->answers, error);
     if (finished) print_answers(c);
     if (!o->quiet) {
         recording_warn(&c->recording);
         recording_note_animations(&c->recording);
     }
-    bool closed = check_output_close(&c->output, &c->answers, &c->unit, stopped_by, finished ? error : NULL);
+    bool closed = check_output_close(&c->output, &c->answers, &c->unit, finished ? error : NULL);
     bool written = answer_outputs_close(&c->files, finished ? &c->answers : NULL, &c->rules, suite,
                                         finished && closed ? error : NULL);
     bool exported = exports_close(&c->exports, finished && closed && written ? error : NULL);
@@ -135,7 +137,7 @@ static int end_check(check_run *c, bool ran, const io_error *error) {
         recording_answer_write(c->name, &c->answers, &c->unit, &c->rules, c->job);
         return EXIT_RAN;
     }
-    return fail_rules_apply(&c->rules, &c->answers) ? EXIT_CONTACT : EXIT_RAN;
+    return fail_rules_exit_code(&c->rules, &c->answers);
 }
 
 int check_run_on(const check_options *options, const char *name, job_output *job) {

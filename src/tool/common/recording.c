@@ -252,8 +252,10 @@ static bool read_once(recording *r, uint32_t frame, double *positions, io_error 
         const uint32_t own = object->frames != NULL ? frame : 0;
         if (recorded_object_read(object, own, positions + (size_t)object->first_vertex * 3, &reason))
             continue;
-        if (r->object_count == 1) return io_fail(error, "frame %d: %s", r->frame_numbers[frame], reason.text);
-        return io_fail(error, "frame %d: %s: %s", r->frame_numbers[frame], object->source.name, reason.text);
+        if (r->object_count == 1)
+            return io_fail(error, "frame %d could not be read: %s", r->frame_numbers[frame], reason.text);
+        return io_fail(error, "frame %d could not be read: %s: %s", r->frame_numbers[frame],
+                       object->source.name, reason.text);
     }
     return true;
 }

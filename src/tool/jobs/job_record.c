@@ -94,6 +94,7 @@ void job_sums_print(FILE *out, const job_sums *sums, const char *one, const char
     const uint32_t *of = sums->outcomes;
     uint32_t count = sums->missing;
     for (int i = 0; i < JOB_OUTCOMES; i++) count += of[i];
+    if (sums->missing > 0) fputs("Not finished: ", out);
     fprintf(out, "%u %s: %u clean", count, count == 1 ? one : several, of[JOB_CLEAN]);
     if (of[JOB_CROSSING] > 0) fprintf(out, ", %u with intersections", of[JOB_CROSSING]);
     if (of[JOB_TOUCHING] > 0) fprintf(out, ", %u only touching", of[JOB_TOUCHING]);

@@ -48,5 +48,5 @@ typedef struct job_sums {
 
 void job_sums_add(job_sums *sums, const job_record *record);
 
-/* "1000 meshes: 940 clean, 58 with intersections, 2 failed". one: what one job is. */
+/* "1000 meshes: 940 clean, 58 with intersections, 2 failed", behind "Not finished: " if some are missing. one: what one job is. */
 void job_sums_print(FILE *out, const job_sums *sums, const char *one, const char *several);

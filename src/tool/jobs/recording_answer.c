@@ -32,7 +32,9 @@ static frame_sums sum_frames(const answers *a) {
     return s;
 }
 
-static job_outcome find_outcome(const frame_sums *s) {
+/* Where not all was looked at, there is no answer that anybody may rely on. */
+static job_outcome find_outcome(const answers *a, const frame_sums *s) {
+    if (answers_unfinished(a) != NULL) return JOB_FAILED;
     if (s->crossing > 0) return JOB_CROSSING;
     if (s->touching + s->contacts > 0) return JOB_TOUCHING;
     return s->duplicates > 0 ? JOB_DUPLICATE : JOB_CLEAN;
@@ -95,11 +97,14 @@ void recording_answer_write(const char *name, const answers *a, const length_uni
         fclose(stream);
         if (sentence != NULL) sentence[strcspn(sentence, "\n")] = '\0';
     }
-    out->outcome = find_outcome(&sums);
+    out->outcome = find_outcome(a, &sums);
     out->found = rules_fail(rules, a);
     fprintf(out->text, "%s: %s", name, sentence != NULL ? sentence : "");
     json_string(out->members, "name", name);
-    json_null(out->members, "error");
+    if (out->outcome == JOB_FAILED)
+        json_string(out->members, "error", sentence != NULL ? sentence : answers_unfinished(a));
+    else
+        json_null(out->members, "error");
     json_string(out->members, "answer", sentence != NULL ? sentence : "");
     write_members(out->members, a, &sums);
     free(sentence);

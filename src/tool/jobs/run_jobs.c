@@ -210,6 +210,7 @@ static int end_run(job_run *run, bool ran, uint32_t done, const io_error *error)
     io_error close_error = {""};
     tell_waiting(run, true);
     const bool closed = close_outputs(run, &close_error);
+    if (interrupted()) run->sums.missing = run->count - done;
     if (!ran) return fail_jobs("%s", error->text);
     if (!run->request->quiet) {
         job_sums_print(stdout, &run->sums, run->work.kind->one, run->work.kind->several);

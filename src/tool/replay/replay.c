@@ -122,7 +122,8 @@ static bool take_frame(replay *r, uint32_t frame, frame_check *check, frame_stat
     const bool meets = found.count > found.duplicate;
     *state = meets ? FRAME_CROSSING : FRAME_EMBEDDED;
     r->totals.frames_checked++;
-    r->totals.frames_crossing += meets;
+    r->totals.frames_crossing += found.crossing > 0;
+    r->totals.frames_touching += meets && found.crossing == 0;
     warn_of_zero_area(r, frame, &found);
     replay_report_add_found(&r->report, frame, &found);
     return exports_add_frame(&r->exports, frame, r->source.x0, &found, error);
@@ -190,6 +191,7 @@ static bool run_interval(replay *r, uint32_t k, io_error *error) {
 static bool run_intervals(replay *r, io_error *error) {
     frame_check check;
     if (r->first == r->last) return true; /* a shard without intervals */
+    answers_expect(&r->answers, (size_t)(r->last - r->first) + 1);
     r->progress.may_stop = true;
     const bool begun = replay_source_begin(&r->source, r->first, &check, error);
     r->progress.may_stop = false;
@@ -214,7 +216,7 @@ static bool write_report(replay *r, const char *summary, io_error *error) {
     return written;
 }
 
-static bool close_summary(replay *r, const char *stopped_by, char **text, io_error *error) {
+static bool close_summary(replay *r, char **text, io_error *error) {
     const replay_options *o = r->options;
     summary_ending ending = {.totals = &r->totals,
                              .recording = &r->recording,
@@ -226,8 +228,7 @@ static bool close_summary(replay *r, const char *stopped_by, char **text, io_err
                              .min_separation = o->min_separation,
                              .reproducible = o->reproducible,
                              .argument_count = o->argument_count,
-                             .arguments = o->arguments,
-                             .stopped_by = stopped_by};
+                             .arguments = o->arguments};
     bool written = summary_close(r->summary, &ending, text, error);
     r->summary = NULL;
     return written;
@@ -239,9 +240,10 @@ static bool close_outputs(replay *r, const char *stopped_by, io_error *error) {
     bool written = contact_file_close(r->contacts, error);
     r->contacts = NULL;
     if (r->summary == NULL) return answer_outputs_close(&r->files, NULL, &r->rules, suite, NULL) && written;
+    if (stopped_by != NULL) answers_leave_unfinished(&r->answers, "%s", stopped_by);
     written = answers_finish(&r->answers, written ? error : NULL) && written;
     char *text = NULL;
-    written = close_summary(r, stopped_by, &text, written ? error : NULL) && written;
+    written = close_summary(r, &text, written ? error : NULL) && written;
     written =
         answer_outputs_close(&r->files, &r->answers, &r->rules, suite, written ? error : NULL) && written;
     written = exports_close(&r->exports, written ? error : NULL) && written;
@@ -297,7 +299,7 @@ int replay_run(const replay_options *options, shard_series *merged, const char *
     const char *stopped_by = ran ? (interrupted() ? "interrupted" : NULL) : error.text;
     bool closed = replay_shard_close(&r, &close_error);
     closed = close_outputs(&r, stopped_by, closed ? &close_error : NULL) && closed;
-    if (!options->quiet && r.totals.intervals > 0) replay_print_results(&r);
+    if (begun && !options->quiet && r.first < r.last) replay_print_results(&r);
     if (begun && r.first == r.last && !options->quiet)
         note("shard %u/%u has no intervals, since there are fewer chunks of %d than shards",
              options->list.shard.index, options->list.shard.count, CHUNK_INTERVALS);
@@ -311,8 +313,8 @@ int replay_run(const replay_options *options, shard_series *merged, const char *
     }
     if (code == EXIT_RAN && job != NULL)
         recording_answer_write(name, &r.answers, &r.unit, &r.rules, job);
-    else if (code == EXIT_RAN && fail_rules_apply(&r.rules, &r.answers))
-        code = EXIT_CONTACT;
+    else if (code == EXIT_RAN)
+        code = fail_rules_exit_code(&r.rules, &r.answers);
     end_replay(&r);
     return code;
 }

@@ -37,6 +37,7 @@ static void print_timings(const replay *r) {
 void replay_print_results(const replay *r) {
     const replay_totals *t = &r->totals;
     answers_print_sentence(stdout, &r->answers, &r->unit);
+    if (t->intervals == 0) return;
     answers_print_events(&r->answers, &r->unit);
     printf("%scontacts: %llu VF and %llu EE in %u of %u intervals", r->answers.event_count > 0 ? "\n" : "",
            (unsigned long long)t->counter_sum.vf, (unsigned long long)t->counter_sum.ee,

@@ -4,7 +4,7 @@
 #include "src/tool/replay/replay_run.h"
 
 /* Prints the answer, the events, the contacts, and what limits them; with --timings more. The replay has ended, be it earlier
- * than expected, and has an interval. */
+ * than expected; without an interval there is the answer alone. */
 void replay_print_results(const replay *r);
 
 /* Prints what a person should know beside the results: faults of the mesh, and pairs that are left out. */

@@ -165,8 +165,10 @@ static void write_frame(json *out, const answers *a, const frame_answer *frame) 
     json_signed(out, "frame", answers_frame_number(a, frame->frame));
     if (frame->checked)
         answers_write_frame(a, frame, out);
-    else
+    else {
         json_null(out, "crossing");
+        json_null(out, "clean");
+    }
     json_end_object(out);
 }
 
@@ -226,8 +228,9 @@ static void write_summary(summary_writer *w, const summary_ending *e) {
     json *out = &w->out;
     json_break_line(out);
     json_begin_object(out, "summary");
-    json_boolean(out, "complete", e->stopped_by == NULL);
-    if (e->stopped_by != NULL) json_string(out, "stopped_by", e->stopped_by);
+    const char *unfinished = answers_unfinished(e->answers);
+    json_boolean(out, "complete", unfinished == NULL);
+    if (unfinished != NULL) json_string(out, "stopped_by", unfinished);
     json_string(out, "method", cscd_method_name(e->plan->method));
     json_string(out, "mode", e->mode);
     json_string(out, "volume", cscd_volume_name(e->volume));
@@ -244,6 +247,7 @@ static void write_summary(summary_writer *w, const summary_ending *e) {
         json_integer(out, interval_state_name((interval_state)i), t->states[i]);
     json_integer(out, "frames_checked", t->frames_checked);
     json_integer(out, "frames_crossing", t->frames_crossing);
+    json_integer(out, "frames_touching", t->frames_touching);
     if (t->intervals_with_contact > 0)
         json_signed(out, "first_contact_frame", t->first_contact_frame);
     else

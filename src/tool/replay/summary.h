@@ -24,7 +24,6 @@ typedef struct summary_ending {
     int argument_count;
     char **arguments;
     double min_separation;
-    const char *stopped_by; /* why not every interval is there; NULL when all are */
 } summary_ending;
 
 /* Writes the frames, the events, the summary and the provenance, and closes. text NULL, or with keep_text: all that was

@@ -19,7 +19,7 @@ typedef struct interval_result {
 /* Sums over the intervals so far, and the largest value in an interval. */
 typedef struct replay_totals {
     uint32_t intervals, intervals_with_contact, states[INTERVAL_STATES];
-    uint32_t frames_checked, frames_crossing;
+    uint32_t frames_checked, frames_crossing, frames_touching; /* touching: and not crossing */
     int32_t first_contact_frame;
     uint32_t contradictions;     /* clean intervals that end in an intersection: contacts that were lost */
     uint32_t intervals_complete; /* every component's contacts are complete */

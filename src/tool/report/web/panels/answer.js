@@ -12,8 +12,20 @@ function isOrAre(numbers) {
   return numbers.length === 1 ? `Frame ${numbers[0]} has` : `Frames ${ranges(numbers, 4)} have`;
 }
 
-/** The answer in one or two sentences. */
-export function sentenceOf({ scene }) {
+/** Why not all was looked at that was asked for; '' if all was. */
+function unfinishedOf({ summaries }) {
+  const { complete, stopped_by: reason } = summaries[0]?.summary?.summary ?? { complete: true };
+  if (complete) return '';
+  return `Not finished: ${reason ?? 'no reason is given'}${/\.$/.test(reason ?? '') ? '' : '.'} `;
+}
+
+/** The answer in a few sentences, behind what was not looked at. */
+export function sentenceOf(report) {
+  const unfinished = unfinishedOf(report);
+  return `${unfinished}${findingsOf(report, unfinished !== '')}`;
+}
+
+function findingsOf({ scene }, unfinished) {
   const { answers } = scene;
   if (answers === null) return 'The frames were not checked, so this report does not say what intersects.';
   const { crossingFrames, touchingFrames, events } = answers;
@@ -21,7 +33,7 @@ export function sentenceOf({ scene }) {
   const parts = [];
   if (crossingFrames.length > 0) parts.push(`${isOrAre(crossingFrames)} intersections (${crossingFrames.length} of ${checked}).`);
   else if (touchingFrames.length > 0) parts.push(`Nothing crosses; ${isOrAre(touchingFrames).toLowerCase()} touching triangles (${checked}).`);
-  else parts.push(`Nothing intersects (${checked}).`);
+  else parts.push(`Nothing intersects${unfinished ? ' so far' : ''} (${checked}).`);
   const worst = events.reduce((most, event) => (most === null || worseThan(event, most) ? event : most), null);
   if (worst === null) return parts[0];
   parts.push(`${counted(answers.events_found, 'event')}, the worst: ${whoOf(worst)}, ${framesOf(worst)}${depthOf(worst)}.`);

@@ -1,0 +1,233 @@
+/* What was not looked at is said first, and nothing calls it clean: sentence, JSON, JUnit and exit code of check and replay. */
+#include "tests/support/test.h"
+#include "tests/support/tool/json_reader.h"
+#include "tests/support/tool/run_tool.h"
+#include "tests/support/tool/tool_fixture.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static temp_folder folder;
+static temp_path json, xml;
+
+static int make_folder(void **state) {
+    (void)state;
+    folder = temp_folder_make();
+    json = temp_file_path(&folder, "out.json");
+    xml = temp_file_path(&folder, "out.xml");
+    return 0;
+}
+
+static int remove_folder(void **state) {
+    (void)state;
+    temp_folder_remove(&folder);
+    return 0;
+}
+
+static void write_box(FILE *file, uint32_t first, double x, double y, double z) {
+    static const char quads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                     {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+    for (int i = 0; i < 8; i++) fprintf(file, "v %g %g %g\n", x + (i & 1), y + (i >> 1 & 1), z + (i >> 2));
+    for (int i = 0; i < 6; i++) {
+        fputc('f', file);
+        for (int k = 0; k < 4; k++) fprintf(file, " %u", first + (uint32_t)quads[i][k] + 1);
+        fputc('\n', file);
+    }
+}
+
+/* Two boxes of side 1, so far apart along x; spoilt: what is wrong with the file. */
+static temp_path write_boxes(const char *name, double gap, const char *spoilt) {
+    temp_path path = temp_file_path(&folder, name);
+    FILE *file = fopen(path.text, "w");
+    assert_non_null(file);
+    fputs("o A\n", file);
+    write_box(file, 0, 0.0, 0.0, 0.0);
+    fputs("o B\n", file);
+    write_box(file, 8, 1.0 + gap, 0.25, 0.25);
+    fputs(spoilt, file);
+    assert_int_equal(fclose(file), 0);
+    return path;
+}
+
+static void expect_in(const char *text, const char *part) {
+    if (strstr(text, part) == NULL) fail_msg("expected '%s' in: %s", part, text);
+}
+
+static void expect_start(const char *text, const char *part) {
+    if (strncmp(text, part, strlen(part)) != 0) fail_msg("expected '%s' first in: %s", part, text);
+}
+
+/* ---- a frame that cannot be read ------------------------------------------------------------------------- */
+
+typedef struct bad_frame {
+    const char *spoilt, *reason;
+} bad_frame;
+
+static const bad_frame bad_frames[] = {
+    {"v 5 5 5\n", "holds 17 vertices, the model has 16 vertices"},
+    {"f 1 2 3\n", "has other faces than"},
+    {"v nan 0 0\n", "nan"},
+    {"f 1 2 99\n", "99"},
+};
+
+static void expect_unfinished_json(const char *member, const char *reason, bool of_summary) {
+    json_node *root = json_node_read_file(json.text);
+    const json_node *place = of_summary ? json_node_member(root, member) : root;
+    assert_false(json_node_boolean(place, "complete"));
+    expect_in(json_node_string(place, "stopped_by"), reason);
+    json_node_free(root);
+}
+
+static void expect_unfinished_junit(size_t tests, size_t failures, const char *reason) {
+    char *text = read_whole_file(xml.text, NULL), counts[64];
+    snprintf(counts, sizeof counts, "tests=\"%zu\" failures=\"%zu\" errors=\"1\"", tests, failures);
+    expect_in(text, counts);
+    expect_in(text, "name=\"all was looked at\" time=\"0\">\n      <error message=\"Not finished: frame ");
+    expect_in(text, reason);
+    free(text);
+}
+
+/* bad: which of four frames, from 1 on, cannot be read; crossing: which one crosses, 0: none. */
+static void expect_unfinished(const char *command, const bad_frame *fault, uint32_t bad, uint32_t crossing) {
+    temp_path paths[4];
+    for (uint32_t i = 1; i <= 4; i++) {
+        char name[32];
+        snprintf(name, sizeof name, "f_%u.obj", i);
+        paths[i - 1] = write_boxes(name, i == crossing ? -0.5 : 1.0 + i, i == bad ? fault->spoilt : "");
+    }
+    temp_path model = write_boxes("model.obj", 1.0, "");
+    tool_run run = RUN_TOOL(command, model.text, paths[0].text, paths[1].text, paths[2].text, paths[3].text,
+                            "--json", json.text, "--junit", xml.text);
+    assert_int_equal(run.code, 1);
+    const bool crosses = crossing > 0 && crossing < bad;
+    char first[64], counted[64];
+    snprintf(first, sizeof first, "Not finished: frame %u could not be read: ", bad);
+    snprintf(counted, sizeof counted, ". %u of 4 frames checked%s", bad - 1,
+             bad == 1 || crosses ? "." : ", clean so far.\n");
+    expect_start(run.out, first);
+    char *end = strchr(run.out, '\n');
+    assert_non_null(end);
+    end[bad == 1 || crosses ? 0 : 1] = '\0';
+    expect_in(run.out, fault->reason);
+    expect_in(run.out, counted);
+    if (crosses) expect_in(run.out, ". Frame ");
+    assert_null(strstr(run.out, "Clean"));
+    expect_in(run.error, fault->reason);
+    expect_unfinished_json("summary", fault->reason, strcmp(command, "replay") == 0);
+    expect_unfinished_junit(bad, crosses, fault->reason);
+    tool_run_free(&run);
+}
+
+static void a_frame_that_cannot_be_read_comes_first(void **state) {
+    (void)state;
+    for (size_t i = 0; i < sizeof bad_frames / sizeof *bad_frames; i++) {
+        expect_unfinished("check", &bad_frames[i], 2 + i % 3, 0);
+        expect_unfinished("replay", &bad_frames[i], 2 + (i + 1) % 3, 0);
+    }
+    expect_unfinished("check", &bad_frames[0], 1, 0);
+    expect_unfinished("replay", &bad_frames[0], 1, 0);
+    expect_unfinished("check", &bad_frames[0], 4, 2);
+    expect_unfinished("replay", &bad_frames[0], 3, 1);
+    expect_unfinished("check", &bad_frames[0], 2, 3);
+}
+
+/* What the range leaves out may be as bad as it likes: the sentence says which frames it was. */
+static void a_range_is_complete_and_named(void **state) {
+    (void)state;
+    temp_path model = write_boxes("f_1.obj", 1.0, ""), second = write_boxes("f_2.obj", 1.5, ""),
+              third = write_boxes("f_3.obj", 2.0, ""), bad = write_boxes("f_4.obj", 2.0, "v 1 2 3\n");
+    static const struct {
+        const char *range, *sentence;
+    } cases[] = {
+        {"2:3", "No frame crosses or touches (2 checked). Only frames 2 to 3 of 1 to 4 were looked at.\n"},
+        {":2", "No frame crosses or touches (2 checked). Only frames 1 to 2 of 1 to 4 were looked at.\n"},
+        {"2", "Clean: no two triangles cross or touch. Only frame 2 of 1 to 4 was looked at.\n"},
+        {"1:3:2",
+         "No frame crosses or touches (2 checked). Only frames 1 to 3, in steps of 2, of 1 to 4 were looked at.\n"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        tool_run run = RUN_TOOL("check", model.text, second.text, third.text, bad.text, "--frames",
+                                cases[i].range, "--json", json.text);
+        assert_int_equal(run.code, 0);
+        assert_string_equal(run.out, cases[i].sentence);
+        json_node *root = json_node_read_file(json.text);
+        assert_true(json_node_boolean(root, "complete"));
+        json_node_free(root);
+        tool_run_free(&run);
+    }
+    tool_run run = RUN_TOOL("replay", model.text, second.text, third.text, bad.text, "--frames", "1:3");
+    assert_int_equal(run.code, 0);
+    expect_start(run.out,
+                 "No frame crosses or touches (3 checked). Only frames 1 to 3 of 1 to 4 were looked at.\n");
+    tool_run_free(&run);
+    run = RUN_TOOL("check", model.text, second.text, third.text, bad.text, "--frames", "3:4");
+    assert_int_equal(run.code, 1);
+    expect_start(run.out, "Not finished: frame 4 could not be read: ");
+    expect_in(run.out, " 1 of 2 frames checked, clean so far.\n");
+    tool_run_free(&run);
+}
+
+/* ---- what members of JSON mean --------------------------------------------------------------------------- */
+
+/* Boxes that cross, touch, are the same, lie in each other, or do nothing of all this. */
+static void crossing_means_crossing(void **state) {
+    (void)state;
+    static const struct {
+        const char *text;
+        bool crossing, clean;
+    } cases[] = {
+        {"v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\nv 1 1 -1\nv 2 1 1\nv 1 2 1\nf 4 5 6\n", true, false},
+        {"v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\nv 1 1 0\nv 2 1 1\nv 1 2 1\nf 4 5 6\n", false, false},
+        {"v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\nv 1 1 0.5\nv 2 1 1\nv 1 2 1\nf 4 5 6\n", false, true},
+        {"v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\nf 2 3 1\n", false, false},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        temp_path path = temp_file_path(&folder, "kind.obj");
+        FILE *file = fopen(path.text, "w");
+        assert_non_null(file);
+        fputs(cases[i].text, file);
+        assert_int_equal(fclose(file), 0);
+        EXPECT_TOOL(0, "check", path.text, "--json", json.text);
+        json_node *root = json_node_read_file(json.text);
+        const json_node *frame = json_node_item(json_node_member(root, "frames"), 0);
+        assert_int_equal(json_node_boolean(frame, "crossing"), cases[i].crossing);
+        assert_int_equal(json_node_boolean(frame, "clean"), cases[i].clean);
+        json_node_free(root);
+        EXPECT_TOOL(0, "replay", path.text, path.text, path.text, "--json", json.text);
+        root = json_node_read_file(json.text);
+        const json_node *summary = json_node_member(root, "summary");
+        assert_int_equal(json_node_number(summary, "frames_crossing"), cases[i].crossing ? 2 : 0);
+        assert_int_equal(json_node_number(summary, "frames_touching"), i == 1 ? 2 : 0);
+        json_node_free(root);
+    }
+}
+
+static void what_lies_inside_is_not_clean(void **state) {
+    (void)state;
+    temp_path path = temp_file_path(&folder, "inside.obj");
+    FILE *file = fopen(path.text, "w");
+    assert_non_null(file);
+    write_box(file, 0, 0.0, 0.0, 0.0);
+    for (int i = 0; i < 8; i++)
+        fprintf(file, "v %g %g %g\n", 0.25 + 0.5 * (i & 1), 0.25 + 0.5 * (i >> 1 & 1), 0.25 + 0.5 * (i >> 2));
+    fputs("f 9 11 12 10\nf 13 14 16 15\nf 9 10 14 13\nf 11 15 16 12\nf 9 13 15 11\nf 10 12 16 14\n", file);
+    assert_int_equal(fclose(file), 0);
+    EXPECT_TOOL(0, "check", path.text, "--json", json.text);
+    json_node *root = json_node_read_file(json.text);
+    const json_node *frame = json_node_item(json_node_member(root, "frames"), 0);
+    assert_false(json_node_boolean(frame, "crossing"));
+    assert_false(json_node_boolean(frame, "clean"));
+    assert_true(json_node_number(frame, "depth") == 0.25);
+    json_node_free(root);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_frame_that_cannot_be_read_comes_first),
+        cmocka_unit_test(a_range_is_complete_and_named),
+        cmocka_unit_test(crossing_means_crossing),
+        cmocka_unit_test(what_lies_inside_is_not_clean),
+    };
+    return cmocka_run_group_tests_name("unfinished", tests, make_folder, remove_folder);
+}
