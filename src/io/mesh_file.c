@@ -95,6 +95,7 @@ void mesh_file_free(mesh_file *mesh) {
     free(mesh->triangles);
     free(mesh->polygons);
     free(mesh->stiffness);
+    free(mesh->unread);
     mesh_parts_free(&mesh->parts);
     *mesh = (mesh_file){0};
 }

@@ -229,6 +229,10 @@ static void write_facts(json *out, const recording *r, const mesh_facts *facts) 
     json_integer(out, "pairs", facts->pairs);
     json_break_line(out);
     write_repairs(out, &file->repairs);
+    if (file->unread != NULL)
+        json_string(out, "unread", file->unread);
+    else
+        json_null(out, "unread");
     json_break_line(out);
     write_parts(out, &file->parts, facts);
     json_break_line(out);

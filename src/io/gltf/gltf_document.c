@@ -1,7 +1,8 @@
-/* The container of a glTF file: the chunks of a .glb file, its version, and the extensions that it requires. */
+/* The container of a glTF file: the chunks of a .glb file, and its version. */
 #include "src/io/gltf/gltf_document.h"
 
 #include "src/io/gltf.h"
+#include "src/io/gltf/gltf_extensions.h"
 #include "src/io/growable.h"
 #include "src/io/path_name.h"
 #include "src/io/text_escape.h"
@@ -91,7 +92,7 @@ static bool read_json(file_reader *reader, gltf_document *document) {
     return document->root.value != NULL;
 }
 
-/* ---- version and extensions -------------------------------------------------------------------------- */
+/* ---- version ----------------------------------------------------------------------------------------- */
 
 static bool check_version(const gltf_element *root) {
     gltf_element asset;
@@ -107,36 +108,12 @@ static bool check_version(const gltf_element *root) {
     return true;
 }
 
-/* These say how a surface looks, and leave it where it is; quantized positions are read as any others. */
-static bool is_harmless(const char *extension) {
-    static const char *const prefixes[] = {"KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_",
-                                           "EXT_lights_",    "KHR_xmp",      "MSFT_texture_"};
-    if (strcmp(extension, "KHR_mesh_quantization") == 0) return true;
-    for (size_t i = 0; i < sizeof prefixes / sizeof *prefixes; i++)
-        if (strncmp(extension, prefixes[i], strlen(prefixes[i])) == 0) return true;
-    return false;
-}
-
-static bool check_extensions(const gltf_element *root) {
-    size_t count;
-    if (!gltf_array_length(root, "extensionsRequired", &count)) return false;
-    for (size_t i = 0; i < count; i++) {
-        const char *name = gltf_string_at(root, "extensionsRequired", i);
-        if (name == NULL) return gltf_fail(root, "extensionsRequired[%zu] is no string", i);
-        if (is_harmless(name)) continue;
-        const bool compressed = strstr(name, "draco") != NULL || strstr(name, "meshopt") != NULL;
-        return gltf_fail(root, "requires the extension %.*s, which is not read%s", TEXT_CUT(name, 80),
-                         compressed ? "; export it without compression" : "");
-    }
-    return true;
-}
-
 /* ---- the interface ----------------------------------------------------------------------------------- */
 
 bool gltf_document_open(file_reader *reader, gltf_document *out) {
     gltf_document document = {.reader = reader};
     bool opened = read_json(reader, &document) && check_version(&document.root) &&
-                  check_extensions(&document.root) &&
+                  gltf_extensions_check(&document.root) &&
                   gltf_array_length(&document.root, "buffers", &document.buffer_count);
     if (opened) {
         document.buffers = gltf_allocate(reader, document.buffer_count, sizeof *document.buffers);

@@ -199,6 +199,14 @@ bool gltf_numbers(const gltf_element *element, const char *key, size_t count, do
 
 /* ---- the rest --------------------------------------------------------------------------------------- */
 
+void gltf_visit_members(const gltf_element *element, void (*visit)(const char *name, void *user),
+                        void *user) {
+    json_object_object_foreach(element->value, name, value) {
+        (void)value;
+        visit(name, user);
+    }
+}
+
 static const char *string_of(gltf_value *value) {
     return json_object_get_type(value) == json_type_string ? json_object_get_string(value) : NULL;
 }

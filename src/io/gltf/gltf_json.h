@@ -57,6 +57,8 @@ bool gltf_numbers(const gltf_element *element, const char *key, size_t count, do
 
 /* Whether there is such a member, of whatever type. */
 bool gltf_has(const gltf_element *element, const char *key);
+/* Visits the names of all members, in the file's order. */
+void gltf_visit_members(const gltf_element *element, void (*visit)(const char *name, void *user), void *user);
 /* NULL when there is none, or it is no string; alive as long as the root. */
 const char *gltf_string(const gltf_element *element, const char *key);
 const char *gltf_string_at(const gltf_element *element, const char *key, size_t at);

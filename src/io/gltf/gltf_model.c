@@ -1,5 +1,6 @@
 /* The mesh of a glTF file in its rest state. */
 #include "src/io/gltf.h"
+#include "src/io/gltf/gltf_extensions.h"
 #include "src/io/gltf/gltf_parts.h"
 #include "src/io/gltf/gltf_pose.h"
 #include "src/io/growable.h"
@@ -25,8 +26,8 @@ static void write_triangles(const gltf_scene *scene, const gltf_pose *pose, mesh
     for (uint32_t i = 0; i < scene->instance_count; i++) {
         const gltf_instance *instance = &scene->instances[i];
         const gltf_mesh *mesh = &scene->meshes[instance->mesh];
-        const bool mirrored =
-            instance->skin == GLTF_NONE && gltf_transform_mirrors(&pose->world[instance->node]);
+        const gltf_transform place = gltf_pose_place(pose, instance);
+        const bool mirrored = instance->skin == GLTF_NONE && gltf_transform_mirrors(&place);
         const uint32_t(*triangles)[3] = mesh->triangles.data;
         for (size_t t = 0; t < mesh->triangles.count; t++, corner += 3) {
             corner[0] = instance->first_vertex + triangles[t][0];
@@ -60,7 +61,8 @@ bool gltf_read(file_reader *reader, mesh_file *out) {
     mesh_file mesh = {0};
     if (!gltf_scene_open(reader, &scene)) return false;
     const bool done = gltf_pose_open(&scene, &pose) && allocate_mesh(&scene, &mesh) &&
-                      gltf_pose_write(&pose, mesh.positions) && gltf_parts_of(&scene, &mesh.parts);
+                      gltf_pose_write(&pose, mesh.positions) && gltf_parts_of(&scene, &mesh.parts) &&
+                      gltf_extensions_note(&scene, &mesh.unread);
     if (done) {
         write_triangles(&scene, &pose, &mesh);
         write_polygons(&scene, &mesh);

@@ -93,6 +93,11 @@ void gltf_pose_update(gltf_pose *pose) {
     }
 }
 
+gltf_transform gltf_pose_place(const gltf_pose *pose, const gltf_instance *instance) {
+    const gltf_transform *node = &pose->world[instance->node];
+    return instance->placed ? gltf_transform_multiply(node, &instance->place) : *node;
+}
+
 /* ---- vertices ---------------------------------------------------------------------------------------- */
 
 /* The positions of the file, and what the targets add to them. */
@@ -146,7 +151,7 @@ static bool check_finite(const gltf_pose *pose, const gltf_instance *instance, c
 
 static bool write_instance(gltf_pose *pose, const gltf_instance *instance, double *positions) {
     const gltf_mesh *mesh = &pose->scene->meshes[instance->mesh];
-    const gltf_transform *node = &pose->world[instance->node];
+    const gltf_transform world = gltf_pose_place(pose, instance), *node = &world;
     if (instance->skin != GLTF_NONE) update_joints(pose, &pose->scene->skins[instance->skin]);
     for (uint32_t k = 0; k < mesh->vertices_count; k++) {
         const gltf_vertices *vertices = &mesh->vertices[k];

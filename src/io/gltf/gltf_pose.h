@@ -19,5 +19,7 @@ void gltf_pose_close(gltf_pose *pose);
 
 /* The transforms of all nodes follow their placements. */
 void gltf_pose_update(gltf_pose *pose);
+/* Where an instance that no joints move is, after an update. */
+gltf_transform gltf_pose_place(const gltf_pose *pose, const gltf_instance *instance);
 /* Writes the scene's vertices after an update; false, with the node, when one of them is not finite. */
 bool gltf_pose_write(gltf_pose *pose, double *positions);

@@ -1,6 +1,9 @@
 /* What the default scene of a glTF file shows: its nodes with meshes, one behind the other. */
 #include "src/io/gltf/gltf_scene.h"
 
+#include "src/io/gltf/gltf_instancing.h"
+#include "src/io/growable.h"
+
 #include <inttypes.h>
 #include <stdlib.h>
 
@@ -27,9 +30,8 @@ static bool check_joints(gltf_scene *scene, const gltf_instance *instance) {
     return true;
 }
 
-static bool add_instance(gltf_scene *scene, uint32_t node) {
-    const gltf_node *shown = &scene->nodes.nodes[node];
-    gltf_instance instance = {node, shown->mesh, shown->skin, scene->vertex_count};
+static bool add_instance(gltf_scene *scene, gltf_instance instance, growable *instances) {
+    instance.first_vertex = scene->vertex_count;
     if (!use_mesh(scene, instance.mesh)) return false;
     if (instance.skin != GLTF_NONE && (!use_skin(scene, instance.skin) || !check_joints(scene, &instance)))
         return false;
@@ -41,19 +43,46 @@ static bool add_instance(gltf_scene *scene, uint32_t node) {
     scene->vertex_count += mesh->vertex_count;
     scene->face_count += mesh->face_count;
     scene->triangle_count += (uint32_t)mesh->triangles.count;
-    scene->instances[scene->instance_count++] = instance;
+    gltf_instance *added = growable_push(instances);
+    if (added == NULL)
+        return file_reader_fail(scene->document.reader, "out of memory after %zu meshes", instances->count);
+    *added = instance;
+    return true;
+}
+
+/* Once, or as often as its instancing says. */
+static bool add_node(gltf_scene *scene, uint32_t node, growable *instances) {
+    const gltf_node *shown = &scene->nodes.nodes[node];
+    gltf_instance instance = {.node = node, .mesh = shown->mesh, .skin = shown->skin};
+    gltf_instancing copies;
+    if (!gltf_instancing_open(&scene->document, node, &copies)) return false;
+    if (copies.count == 0) return add_instance(scene, instance, instances);
+    instance.placed = true;
+    for (uint32_t copy = 0; copy < copies.count; copy++) {
+        instance.place = gltf_instancing_place(&copies, copy);
+        if (!add_instance(scene, instance, instances)) return false;
+        /* Without vertices nothing would end this but the count, of which many nodes may have the same. */
+        if (scene->meshes[instance.mesh].vertex_count == 0) break;
+    }
+    return true;
+}
+
+static bool add_nodes(gltf_scene *scene, growable *instances) {
+    for (uint32_t i = 0; i < scene->nodes.count; i++) {
+        const uint32_t node = scene->nodes.order[i];
+        if (scene->nodes.nodes[node].shown && scene->nodes.nodes[node].mesh != GLTF_NONE &&
+            !add_node(scene, node, instances))
+            return false;
+    }
     return true;
 }
 
 static bool collect_instances(gltf_scene *scene) {
-    scene->instances = gltf_allocate(scene->document.reader, scene->nodes.count, sizeof *scene->instances);
-    if (scene->instances == NULL) return false;
-    for (uint32_t i = 0; i < scene->nodes.count; i++) {
-        const uint32_t node = scene->nodes.order[i];
-        if (scene->nodes.nodes[node].shown && scene->nodes.nodes[node].mesh != GLTF_NONE &&
-            !add_instance(scene, node))
-            return false;
-    }
+    growable instances = growable_of(sizeof(gltf_instance));
+    const bool added = add_nodes(scene, &instances);
+    scene->instance_count = (uint32_t)instances.count; /* of a vertex each at least */
+    scene->instances = growable_take(&instances);
+    if (!added) return false;
     if (scene->triangle_count > 0) return true;
     return file_reader_fail(scene->document.reader,
                             "no triangles found in the %" PRIu32 " nodes with meshes of the default scene",

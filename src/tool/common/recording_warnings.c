@@ -121,6 +121,7 @@ static void warn_object(const recording *r, recorded_object *object) {
                *colon = r->object_count > 1 ? ": " : "";
     if (object->frames != NULL && animation_note(object->frames) != NULL)
         note("%s%s%s", name, colon, animation_note(object->frames));
+    if (object->file.unread != NULL) warn("%s%s%s", name, colon, object->file.unread);
     const char *format = recorded_object_split_format(object);
     if (object->welded && format != NULL && object->weld.vertex_count < object->file.vertex_count)
         warn("%s%sthe %u vertices of the %s file are joined to %u; --weld none keeps them apart", name, colon,

@@ -13,6 +13,7 @@ static double now_ms(void) {
 
 void mesh_answer_free(mesh_answer *answer) {
     free(answer->error);
+    free(answer->unread);
     *answer = (mesh_answer){0};
 }
 
@@ -89,11 +90,17 @@ bool mesh_job_run(const mesh_job *job, cscd_context *context, mesh_answer *out) 
         answer.triangle_count = cscd_mesh_triangle_count(r.mesh);
         answer.vertex_count = cscd_mesh_vertex_count(r.mesh);
         answer.repairs = r.objects[0].file.repairs;
+        answer.unread = r.objects[0].file.unread;
+        r.objects[0].file.unread = NULL;
         answer.checked = check_mesh(job, &r, &answer, &cancelled, &error);
         answer.check_ms = now_ms() - start - answer.read_ms;
         recording_close(&r);
     }
-    if (cancelled) return false;
-    *out = answer.checked ? answer : (mesh_answer){.error = strdup(error.text)};
-    return true;
+    if (answer.checked) {
+        *out = answer;
+        return true;
+    }
+    mesh_answer_free(&answer);
+    if (!cancelled) *out = (mesh_answer){.error = strdup(error.text)};
+    return !cancelled;
 }

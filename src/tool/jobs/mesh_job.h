@@ -19,6 +19,7 @@ typedef struct mesh_answer {
     double crossing_share;   /* and that share of all */
     uint32_t zero_area_triangles;
     mesh_repairs repairs;
+    char *unread; /* as in mesh_file */
     double read_ms, check_ms;
 } mesh_answer;
 

@@ -43,6 +43,7 @@ static void print_answer(FILE *out, const char *path, const mesh_answer *a) {
     print_share(out, a->crossing_share);
     print_repair(out, a->repairs.dropped, "left out for having fewer than three different corners");
     print_repair(out, a->repairs.fanned, "filled by fans, as they cross themselves");
+    if (a->unread != NULL) fprintf(out, "; %s", a->unread);
 }
 
 /* ---- members ------------------------------------------------------------------------------------------- */
