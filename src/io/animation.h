@@ -15,7 +15,7 @@ typedef struct animation animation;
 
 typedef struct animation_options {
     const char
-        *model_path; /* joins the mesh files that are listed if its name belongs to their series; NULL: no */
+        *model_path; /* joins the mesh files that are listed unless they are a series without it; NULL: no */
     uint32_t
         model_face_count; /* of mesh files: as many faces as the model are the model's; 0: any faces will do */
     uint64_t model_faces_hash;  /* of mesh_file */

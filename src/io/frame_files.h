@@ -17,7 +17,8 @@ bool frame_files_open_folder(const char *folder, bool allow_gaps, uint32_t verte
                              io_error *error);
 
 /* Takes the paths, percent signs included, in the order of their numbers if they are a series, else in the order given;
- * each must be a file that exists. model_path, unless NULL, joins a series that it belongs to and is not in yet. */
+ * each must be a file that exists. model_path, unless NULL, joins a series that it belongs to and is not in yet, and names that are no
+ * series: it is then the first of them. */
 bool frame_files_open_list(const char *const *paths, size_t path_count, const char *model_path,
                            bool allow_gaps, uint32_t vertex_count, frame_files **out, io_error *error);
 

@@ -45,7 +45,7 @@ static void pattern_takes_the_numbers_in_order(void **state) {
     write_frame("f_10.obj", 10);
     write_frame("f_8.obj", 8);
     write_frame("f_008.obj", 90);
-    write_frame("f_-1.obj", 91);
+    write_frame("f_x-1.obj", 91);
     write_frame("f_99999999999.obj", 92);
     write_frame("g_12.obj", 93);
     write_frame("f_12.ply", 94);

@@ -4,6 +4,7 @@
 
 #include <stdint.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { VERTICES = 4, LISTED_MAX = 8 };
 
@@ -135,7 +136,149 @@ static void folders_and_patterns_have_gaps_and_numbers_too(void **state) {
     }
 }
 
+/* ---- negative numbers -------------------------------------------------------------------------------- */
+
+/* A sign stands behind a dot, an underscore or another '-'; elsewhere a '-' only separates. */
+static void signs_count(void **state) {
+    (void)state;
+    static const struct {
+        listed_files files;
+        int32_t numbers[4];
+    } cases[] = {
+        {{{"f.-0002.obj", "f.-0001.obj", "f.0000.obj", "f.0001.obj"}, {1, 2, 3, 4}}, {-2, -1, 0, 1}},
+        {{{"g_-2.ply", "g_-1.ply", "g_0.ply", "g_1.ply"}, {1, 2, 3, 4}}, {-2, -1, 0, 1}},
+        {{{"walk--020.obj", "walk--010.obj", "walk-000.obj", "walk-010.obj"}, {1, 2, 3, 4}},
+         {-20, -10, 0, 10}},
+        {{{"-4.obj", "-3.obj", "-2.obj", "-1.obj"}, {1, 2, 3, 4}}, {-4, -3, -2, -1}},
+        {{{"run-1.obj", "run-2.obj", "run-3.obj", "run-4.obj"}, {1, 2, 3, 4}}, {1, 2, 3, 4}},
+        {{{"2024-06-1.obj", "2024-06-2.obj", "2024-06-3.obj", "2024-06-4.obj"}, {1, 2, 3, 4}}, {1, 2, 3, 4}},
+    };
+    static const uint32_t in_order[] = {1, 2, 3, 4};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        listed_files turned = {{NULL}, {0}};
+        for (int k = 0; k < 4; k++) {
+            turned.names[k] = cases[i].files.names[(k + 2) % 4];
+            turned.frames[k] = cases[i].files.frames[(k + 2) % 4];
+        }
+        for (int model = -1; model < 4; model++) {
+            io_error error;
+            animation *opened = open_listed(&turned, model, false, &error);
+            check_opened(opened, in_order, cases[i].numbers, 4);
+            animation_close(opened);
+        }
+    }
+}
+
+static void folders_and_patterns_have_negative_numbers(void **state) {
+    (void)state;
+    static const char *const names[][4] = {{"f.-0002.obj", "f.-0001.obj", "f.0000.obj", "f.0001.obj"},
+                                           {"f.-002.obj", "f.-001.obj", "f.0000.obj", "f.0001.obj"}};
+    static const uint32_t in_order[] = {1, 2, 3, 4};
+    for (size_t i = 0; i < 2; i++) {
+        temp_path paths[4];
+        for (uint32_t k = 0; k < 4; k++) paths[k] = write_frame(names[i][k], k + 1);
+        const temp_path pattern = temp_file_path(&frame_fixture_folder, "f.%04d.obj");
+        const char *const sources[] = {pattern.text, frame_fixture_folder.path};
+        for (size_t k = 0; k < 2; k++) {
+            animation *opened = frame_fixture_open(sources[k], VERTICES);
+            check_opened(opened, in_order, (const int32_t[]){-2, -1, 0, 1}, 4);
+            animation_close(opened);
+        }
+        for (uint32_t k = 0; k < 4; k++) assert_int_equal(unlink(paths[k].text), 0);
+    }
+    /* A pattern knows where its number is, whatever stands before the sign. */
+    write_frame("h-10.obj", 1);
+    write_frame("h-5.obj", 2);
+    write_frame("h0.obj", 3);
+    const temp_path pattern = temp_file_path(&frame_fixture_folder, "h%d.obj");
+    animation *opened = frame_fixture_open(pattern.text, VERTICES);
+    check_opened(opened, in_order, (const int32_t[]){-10, -5, 0}, 3);
+    animation_close(opened);
+}
+
+static void missing_negative_numbers_are_named(void **state) {
+    (void)state;
+    io_error error;
+    const listed_files files = {{"f.-0003.obj", "f.-0001.obj", "f.0000.obj"}, {0}};
+    assert_null(open_listed(&files, -1, false, &error));
+    frame_fixture_check_error(&error, "f.-0002.obj: missing", NULL);
+    const temp_path wide = temp_file_path(&frame_fixture_folder, "f.%04d.obj");
+    frame_fixture_open_fails(wide.text, VERTICES, &error);
+    frame_fixture_check_error(&error, "f.-0002.obj: missing", NULL);
+    write_frame("p-03.obj", 1);
+    write_frame("p-01.obj", 1);
+    write_frame("p000.obj", 1);
+    const temp_path pattern = temp_file_path(&frame_fixture_folder, "p%03d.obj");
+    frame_fixture_open_fails(pattern.text, VERTICES, &error);
+    frame_fixture_check_error(&error, "p-02.obj: missing", NULL);
+    write_frame("p-001.obj", 1);
+    write_frame("p-02.obj", 1);
+    frame_fixture_open_fails(pattern.text, VERTICES, &error);
+    frame_fixture_check_error(&error, "both p-001.obj and p-01.obj are frame -1", NULL);
+}
+
+/* ---- subframes --------------------------------------------------------------------------------------- */
+
+static void subframes_are_taken_by_their_times(void **state) {
+    (void)state;
+    static const listed_files cases[] = {
+        {{"f.0001.00.obj", "f.0001.50.obj", "f.0002.00.obj", "f.0002.50.obj"}, {1, 2, 3, 4}},
+        {{"g_8.250.obj", "g_8.500.obj", "g_9.000.obj", "g_10.000.obj"}, {1, 2, 3, 4}},
+        {{"h.-0001.5.obj", "h.-0001.0.obj", "h.-0000.5.obj", "h.0000.0.obj"}, {1, 2, 3, 4}},
+    };
+    static const uint32_t in_order[] = {1, 2, 3, 4};
+    static const int32_t numbers[] = {0, 1, 2, 3};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        listed_files turned = {{NULL}, {0}};
+        for (int k = 0; k < 4; k++) {
+            turned.names[k] = cases[i].names[(3 * k + 1) % 4];
+            turned.frames[k] = cases[i].frames[(3 * k + 1) % 4];
+        }
+        for (int model = -1; model < 4; model++) {
+            io_error error;
+            animation *opened = open_listed(&turned, model, true, &error);
+            check_opened(opened, in_order, numbers, 4);
+            assert_non_null(strstr(animation_note(opened), "these have fractions"));
+            animation_close(opened);
+        }
+    }
+}
+
+static void folders_have_subframes_and_gaps(void **state) {
+    (void)state;
+    write_frame("f.0001.00.obj", 1);
+    write_frame("f.0001.50.obj", 2);
+    const temp_path third = write_frame("f.0002.00.obj", 3);
+    write_frame("f.0002.50.obj", 4);
+    animation *opened = frame_fixture_open(frame_fixture_folder.path, VERTICES);
+    check_opened(opened, (const uint32_t[]){1, 2, 3, 4}, (const int32_t[]){0, 1, 2, 3}, 4);
+    assert_non_null(animation_note(opened));
+    animation_close(opened);
+    assert_int_equal(unlink(third.text), 0);
+    io_error error;
+    frame_fixture_open_fails(frame_fixture_folder.path, VERTICES, &error);
+    frame_fixture_check_error(&error, "f.0001.50.obj: is not followed by the next frame but by f.0002.50.obj",
+                              "--allow-gaps", NULL);
+}
+
 /* ---- the model --------------------------------------------------------------------------------------- */
+
+/* Words are no series: what is named first is looked at first. */
+static void a_model_among_words_is_the_first_frame(void **state) {
+    (void)state;
+    static const listed_files cases[] = {
+        {{"crouch.obj", "run.obj", "stand.obj", "walk.obj"}, {1, 2, 3, 4}},
+        {{"s2_f1.obj", "s1_f2.obj", "s1_f1.obj", "x.obj"}, {1, 2, 3, 4}},
+        {{"a.obj", "b.obj"}, {1, 2}},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        io_error error;
+        animation *opened = open_listed(&cases[i], 0, false, &error);
+        check_opened(opened, (const uint32_t[]){1, 2, 3, 4}, (const int32_t[]){0, 1, 2, 3}, i == 2 ? 2 : 4);
+        assert_non_null(strstr(animation_note(opened), "in the order given, the model first"));
+        animation_close(opened);
+    }
+}
 
 static void a_model_of_the_series_is_a_frame(void **state) {
     (void)state;
@@ -207,6 +350,12 @@ int main(void) {
         TEST(missing_members_are_named),
         TEST(a_missing_member_in_steps_says_the_step),
         TEST(folders_and_patterns_have_gaps_and_numbers_too),
+        TEST(signs_count),
+        TEST(folders_and_patterns_have_negative_numbers),
+        TEST(missing_negative_numbers_are_named),
+        TEST(subframes_are_taken_by_their_times),
+        TEST(folders_have_subframes_and_gaps),
+        TEST(a_model_among_words_is_the_first_frame),
         TEST(a_model_of_the_series_is_a_frame),
         TEST(a_model_that_is_listed_too_is_a_frame_once),
         TEST(other_models_are_no_frames),

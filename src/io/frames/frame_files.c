@@ -94,10 +94,12 @@ bool frame_files_open_folder(const char *folder, bool allow_gaps, uint32_t verte
         frame_files_close(files);
         return io_fail(error, "%s: out of memory", folder);
     }
-    if (!frame_folder_find(folder, files->folder, allow_gaps, &files->list, error)) {
+    bool fractions;
+    if (!frame_folder_find(folder, files->folder, allow_gaps, &files->list, &fractions, error)) {
         frame_files_close(files);
         return false;
     }
+    if (fractions) files->note = FRAME_FRACTIONS_NOTE;
     return finish_files(files, folder, out, error);
 }
 
@@ -143,20 +145,48 @@ static bool copy_sorted(const frame_names *list, const char *name, frame_names *
     return copied;
 }
 
+/* What names that are listed may be. */
+typedef enum list_kind { LIST_OF_NAMES, LIST_IS_SERIES, LIST_HAS_FRACTIONS } list_kind;
+
 /* If the list, with the model unless that is NULL, is a series, it becomes the list in its order, and *number the one
- * that counts the frames. */
-static bool take_series(frame_files *files, const char *model_path, bool *is_series, size_t *number,
+ * that counts the frames; the same of subframes. */
+static bool take_series(frame_files *files, const char *model_path, list_kind *kind, size_t *number,
                         io_error *error) {
     frame_names unused = frame_names_none();
-    const bool copied = copy_sorted(&files->list, model_path, &unused);
-    *is_series = copied && frame_series_find(&unused, number);
-    if (*is_series) {
-        const frame_names series = unused;
+    bool fractions = false;
+    bool good = copy_sorted(&files->list, model_path, &unused);
+    const bool series = good && frame_series_find(&unused, number);
+    good = good && (series || frame_series_take_fractions(&unused, &fractions));
+    *kind = series ? LIST_IS_SERIES : fractions ? LIST_HAS_FRACTIONS : LIST_OF_NAMES;
+    if (*kind != LIST_OF_NAMES) {
+        const frame_names taken = unused;
         unused = files->list;
-        files->list = series;
+        files->list = taken;
     }
     frame_names_free(&unused);
-    return copied || io_fail(error, "%s: out of memory", frame_names_at(&files->list, 0));
+    return good || io_fail(error, "%s: out of memory", frame_names_at(&files->list, 0));
+}
+
+/* Names that are no series make one story with the model, which is told first: it is looked at as they are. */
+static bool put_model_first(frame_names *list, const char *model_path, io_error *error) {
+    frame_names all = frame_names_none();
+    bool good = frame_names_add(&all, model_path);
+    for (size_t i = 0; i < frame_names_count(list) && good; i++)
+        good = frame_names_add(&all, frame_names_at(list, i));
+    frame_names unused = good ? *list : all;
+    if (good) *list = all;
+    frame_names_free(&unused);
+    return good || io_fail(error, "%s: out of memory", model_path);
+}
+
+static const char *note_on_order(list_kind kind, bool sorted, bool model_joined) {
+    if (kind == LIST_HAS_FRACTIONS) return FRAME_FRACTIONS_NOTE;
+    if (kind == LIST_IS_SERIES) return sorted ? NULL : "the frames are taken in the order of their numbers";
+    return model_joined
+               ? "the frames are taken in the order given, the model first, because their names differ in "
+                 "more than one number"
+               : "the frames are taken in the order given, because their names differ in more than one "
+                 "number";
 }
 
 /* Finds the order of the frames, and their numbers. */
@@ -165,16 +195,16 @@ static bool order_list(frame_files *files, const char *model_path, bool allow_ga
     const bool joins =
         model_path != NULL && path_mesh_ending(model_path) > 0 && !lists_path(list, model_path);
     const bool sorted = frame_names_are_sorted(list);
-    bool is_series = false;
+    list_kind kind = LIST_OF_NAMES;
     size_t number = SIZE_MAX;
-    if (joins && !take_series(files, model_path, &is_series, &number, error)) return false;
-    if (!is_series && !take_series(files, NULL, &is_series, &number, error)) return false;
-    if (!is_series && frame_names_count(list) > 1) {
-        files->note =
-            "the frames are taken in the order given, because their names differ in more than one number";
-        return true;
-    }
-    if (is_series && !sorted) files->note = "the frames are taken in the order of their numbers";
+    if (joins && !take_series(files, model_path, &kind, &number, error)) return false;
+    if (kind == LIST_OF_NAMES && !take_series(files, NULL, &kind, &number, error)) return false;
+    const bool first = kind == LIST_OF_NAMES && joins;
+    if (first && !put_model_first(list, model_path, error)) return false;
+    if (kind == LIST_HAS_FRACTIONS || frame_names_count(list) > 1)
+        files->note = note_on_order(kind, sorted, first);
+    if (kind == LIST_HAS_FRACTIONS) return frame_series_end_fractions("", list, allow_gaps, error);
+    if (kind == LIST_OF_NAMES && frame_names_count(list) > 1) return true;
     return frame_series_read("", list, number, &list->numbers, error) &&
            (allow_gaps || frame_series_is_complete("", list, number, error));
 }

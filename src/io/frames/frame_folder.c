@@ -42,13 +42,18 @@ static bool check_series(const char *folder, const frame_names *list, size_t *nu
 }
 
 bool frame_folder_find(const char *folder, const char *prefix, bool allow_gaps, frame_names *list,
-                       io_error *error) {
+                       bool *fractions, io_error *error) {
+    *fractions = false;
     if (!frame_names_read_folder(list, folder, keep_mesh, NULL, error)) return false;
     if (frame_names_count(list) == 0)
         return io_fail(error, "%s: no frames in this folder, expected " PATH_MESH_ENDINGS " files", folder);
     frame_names_sort(list);
     size_t number = SIZE_MAX;
-    if (!check_extensions(folder, list, error) || !check_series(folder, list, &number, error)) return false;
+    if (!check_extensions(folder, list, error)) return false;
+    if (!frame_series_find(list, &number) && !frame_series_take_fractions(list, fractions))
+        return io_fail(error, "%s: out of memory", folder);
+    if (*fractions) return frame_series_end_fractions(prefix, list, allow_gaps, error);
+    if (!check_series(folder, list, &number, error)) return false;
     return frame_series_read(prefix, list, number, &list->numbers, error) &&
            (allow_gaps || frame_series_is_complete(prefix, list, number, error));
 }

@@ -8,7 +8,7 @@
 
 /* Appends the mesh files of folder to the empty list, in natural order. Hidden files, folders
  * and all other files are ignored. The names must have one extension and differ in the value of one number
- * only, so that their order is beyond doubt. Unless allow_gaps, none of a regular step may be missing. prefix: the folder
+ * only, so that their order is beyond doubt, or be subframes (frame_series.h), of which *fractions tells. Unless allow_gaps, none of a regular step may be missing. prefix: the folder
  * with its '/', for messages. On false the list may have grown. */
 bool frame_folder_find(const char *folder, const char *prefix, bool allow_gaps, frame_names *list,
-                       io_error *error);
+                       bool *fractions, io_error *error);

@@ -77,21 +77,44 @@ bool frame_names_read_folder(frame_names *list, const char *folder,
     return true;
 }
 
-/* Moves *text past its run of digits; returns where the run's value begins, past leading zeros. */
-static const char *take_number(const char **text) {
-    while (**text == '0') (*text)++;
-    const char *start = *text;
-    while (path_is_digit(**text)) (*text)++;
-    return start;
+bool frame_names_number_begins(const char *name, const char *at) {
+    if (path_is_digit(*at)) return true;
+    return *at == '-' && path_is_digit(at[1]) &&
+           (at == name || strchr("._-", at[-1]) != NULL || path_is_separator(at[-1]));
 }
 
-static int compare_naturally(const char *a, const char *b) {
+/* A number without its leading zeros. */
+typedef struct name_number {
+    const char *digits;
+    size_t length; /* 0: it is 0 */
+    bool negative;
+} name_number;
+
+/* Moves *text past its number. */
+static name_number take_number(const char **text) {
+    name_number number = {.negative = **text == '-'};
+    *text += number.negative;
+    while (**text == '0') (*text)++;
+    number.digits = *text;
+    while (path_is_digit(**text)) (*text)++;
+    number.length = (size_t)(*text - number.digits);
+    number.negative = number.negative && number.length > 0;
+    return number;
+}
+
+static int compare_numbers(const name_number *a, const name_number *b) {
+    if (a->negative != b->negative) return a->negative ? -1 : 1;
+    int order =
+        a->length != b->length ? (a->length < b->length ? -1 : 1) : memcmp(a->digits, b->digits, a->length);
+    return a->negative ? -order : order;
+}
+
+static int compare_naturally(const char *first, const char *second) {
+    const char *a = first, *b = second;
     while (*a != '\0' && *b != '\0') {
-        if (path_is_digit(*a) && path_is_digit(*b)) {
-            const char *a_start = take_number(&a), *b_start = take_number(&b);
-            const size_t a_length = (size_t)(a - a_start), b_length = (size_t)(b - b_start);
-            if (a_length != b_length) return a_length < b_length ? -1 : 1;
-            const int order = memcmp(a_start, b_start, a_length);
+        if (frame_names_number_begins(first, a) && frame_names_number_begins(second, b)) {
+            const name_number a_number = take_number(&a), b_number = take_number(&b);
+            const int order = compare_numbers(&a_number, &b_number);
             if (order != 0) return order;
         } else if (*a != *b) {
             return (unsigned char)*a < (unsigned char)*b ? -1 : 1;
@@ -117,5 +140,31 @@ bool frame_names_are_sorted(const frame_names *list) {
     char *const *names = list->names.data;
     for (size_t i = 1; i < list->names.count; i++)
         if (compare_names(names + i - 1, names + i) > 0) return false;
+    return true;
+}
+
+typedef struct numbered_name {
+    int32_t number;
+    char *name;
+} numbered_name;
+
+static int compare_numbered(const void *left, const void *right) {
+    const numbered_name *a = left, *b = right;
+    return a->number != b->number ? (a->number < b->number ? -1 : 1) : strcmp(a->name, b->name);
+}
+
+bool frame_names_sort_by_number(frame_names *list) {
+    const size_t count = list->names.count;
+    char **names = list->names.data;
+    int32_t *numbers = list->numbers.data;
+    numbered_name *both = io_realloc(NULL, (count + 1) * sizeof *both);
+    if (both == NULL) return false;
+    for (size_t i = 0; i < count; i++) both[i] = (numbered_name){numbers[i], names[i]};
+    if (count > 1) qsort(both, count, sizeof *both, compare_numbered);
+    for (size_t i = 0; i < count; i++) {
+        names[i] = both[i].name;
+        numbers[i] = both[i].number;
+    }
+    free(both);
     return true;
 }

@@ -29,7 +29,14 @@ bool frame_names_read_folder(frame_names *list, const char *folder,
                              bool (*keep)(const char *name, const void *context), const void *context,
                              io_error *error);
 
-/* Natural order: runs of digits compare as numbers of any length, so f2 comes before f10. Numbers must not be there
- * yet. */
+/* Does a number of the name begin here: a digit, or a sign before one? A '-' is a sign behind a dot, an underscore, another '-' or the
+ * folder, as in f.-0001.obj; in walk-0001.obj and 2024-06-01.obj it only separates. */
+bool frame_names_number_begins(const char *name, const char *at);
+
+/* Natural order: numbers compare by their values, of any length, so f.-1 comes before f.2, and that before f.10. Numbers must not be
+ * there yet. */
 void frame_names_sort(frame_names *list);
 bool frame_names_are_sorted(const frame_names *list);
+
+/* Sorts by the numbers, which are there for every name. False when out of memory. */
+bool frame_names_sort_by_number(frame_names *list);

@@ -66,44 +66,53 @@ static bool parse_pattern(frame_pattern *pattern, const char *source, io_error *
     return true;
 }
 
-/* Whether printf would make name from the pattern with some *number. */
-static bool matches_name(const frame_pattern *pattern, const char *name, uint32_t *number) {
+/* Whether the name is that of some *number by the pattern. printf counts the sign of a negative one among its digits; others write as
+ * many digits as of any number. */
+static bool matches_name(const frame_pattern *pattern, const char *name, int32_t *number) {
     const char *prefix = pattern->text + pattern->name_start, *suffix = pattern->text + pattern->number_start;
     const size_t length = strlen(name), suffix_length = strlen(suffix);
     const size_t prefix_length = pattern->number_start - pattern->name_start;
     if (length < prefix_length + pattern->width + suffix_length ||
         strncmp(name, prefix, prefix_length) != 0 || strcmp(name + length - suffix_length, suffix) != 0)
         return false;
-    const char *digits = name + prefix_length;
-    const size_t digit_count = length - prefix_length - suffix_length;
-    if (digit_count > pattern->width && digits[0] == '0') return false;
-    uint64_t value = 0;
+    const bool negative = name[prefix_length] == '-';
+    const char *digits = name + prefix_length + negative;
+    const size_t digit_count = length - prefix_length - suffix_length - negative;
+    if (digit_count == 0 || (digit_count > pattern->width && digits[0] == '0')) return false;
+    int64_t value = 0;
     for (size_t i = 0; i < digit_count; i++) {
         if (!path_is_digit(digits[i])) return false;
-        value = value * 10 + (uint64_t)(digits[i] - '0');
+        value = value * 10 + (digits[i] - '0');
         if (value > INT32_MAX) return false;
     }
-    *number = (uint32_t)value;
+    *number = (int32_t)(negative ? -value : value);
     return true;
 }
 
 static bool keep_match(const char *name, const void *context) {
-    uint32_t number;
+    int32_t number;
     return matches_name(context, name, &number);
 }
 
 static bool read_numbers(const frame_pattern *pattern, frame_names *list) {
     for (size_t i = 0; i < frame_names_count(list); i++) {
         int32_t *number = growable_push(&list->numbers);
-        uint32_t value = 0;
         if (number == NULL) return false;
-        matches_name(pattern, frame_names_at(list, i), &value);
-        *number = (int32_t)value;
+        matches_name(pattern, frame_names_at(list, i), number);
     }
+    return frame_names_sort_by_number(list);
+}
+
+/* -0001 and -001 are both what %04d may have been. */
+static bool check_twins(const frame_names *list, const char *source, io_error *error) {
+    const int32_t *numbers = list->numbers.data;
+    for (size_t i = 1; i < list->numbers.count; i++)
+        if (numbers[i] == numbers[i - 1])
+            return io_fail(error, "%s: both %s and %s are frame %" PRId32, source,
+                           frame_names_at(list, i - 1), frame_names_at(list, i), numbers[i]);
     return true;
 }
 
-/* The names ascend by number, because the same text surrounds the number in all of them. */
 static bool check_gaps(const frame_pattern *pattern, const char *folder, const frame_names *list,
                        io_error *error) {
     frame_gap gap;
@@ -111,6 +120,7 @@ static bool check_gaps(const frame_pattern *pattern, const char *folder, const f
     const char *name = frame_names_at(list, gap.before), *suffix = pattern->text + pattern->number_start;
     number_place place = {.start = pattern->number_start - pattern->name_start, .width = (int)pattern->width};
     place.length = strlen(name) - place.start - strlen(suffix);
+    if (gap.missing < 0 && place.length == pattern->width) place.width--; /* the sign is one of them */
     return frame_series_fail(folder, list, &gap, place, error);
 }
 
@@ -126,9 +136,9 @@ static bool find_files(frame_pattern *pattern, const char *source, bool allow_ga
     if (complete && frame_names_count(list) == 0)
         complete = io_fail(error, "%s: no such file, and no file matches it as a pattern", source);
     if (complete) {
-        frame_names_sort(list);
         complete = read_numbers(pattern, list) || io_fail(error, "%s: out of memory", source);
-        complete = complete && (allow_gaps || check_gaps(pattern, found, list, error));
+        complete = complete && check_twins(list, source, error) &&
+                   (allow_gaps || check_gaps(pattern, found, list, error));
     }
     if (complete)
         *folder = found;

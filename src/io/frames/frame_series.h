@@ -1,4 +1,5 @@
-/* Series: file names that differ in the value of one number only, which says when the frames come. */
+/* Series: file names that differ in the value of one number only, which says when the frames come; or in that of a number and of the
+ * fraction behind it, as f.0001.50.obj. */
 #pragma once
 
 #include "src/io/frames/frame_names.h"
@@ -15,7 +16,7 @@ typedef struct name_difference {
     size_t last_number; /* how many numbers precede the last one that differs */
 } name_difference;
 
-name_difference frame_series_compare(const char *a, const char *b);
+name_difference frame_series_compare(const char *first, const char *second);
 
 /* True if at least two names are listed, each differs from the first in one number only, always the same one, and no
  * two are equal; *number then says which one, counted from 0. The list must be in natural order. */
@@ -46,6 +47,17 @@ typedef struct number_place {
  * behind which it is missing. */
 bool frame_series_fail(const char *folder, const frame_names *list, const frame_gap *gap, number_place place,
                        io_error *error);
+
+/* Whether the names are subframes: they differ in a whole number and in the fraction behind it, a dot between, with as many digits in
+ * all. Then they are sorted by their times, and their numbers are times in units of the last digit. False when out of memory. */
+bool frame_series_take_fractions(frame_names *list, bool *found);
+
+/* What is said of subframes, which no whole number names. */
+#define FRAME_FRACTIONS_NOTE                                                                                 \
+    "the frames are taken in the order of their numbers, and called 0, 1, 2, ... since these have fractions"
+
+/* Fails for the first gap in subframes; after that they have no numbers any more. */
+bool frame_series_end_fractions(const char *folder, frame_names *list, bool allow_gaps, io_error *error);
 
 /* Fails for the first gap, if there is one, in a series whose names count by this number. */
 bool frame_series_is_complete(const char *folder, const frame_names *list, size_t number, io_error *error);
