@@ -42,7 +42,8 @@ typedef struct mesh_file {
     mesh_parts parts;
     uint64_t faces_hash; /* of the faces as the file has them: their corners, face by face */
     mesh_repairs repairs;
-    char *unread; /* a sentence about what may change the mesh and is not read; NULL: nothing */
+    uint32_t animation_count; /* that the file holds beside the mesh, whose positions are those at rest */
+    char *unread;             /* a sentence about what may change the mesh and is not read; NULL: nothing */
 } mesh_file;
 
 /* Adds a face to the hash of those before it (64-bit FNV-1a). Files whose faces have the same hash have the same faces. */

@@ -5,6 +5,7 @@
 #include "tests/support/tool/contact_rows.h"
 #include "tests/support/tool/run_tool.h"
 
+#include <stdio.h>
 #include <string.h>
 
 static temp_folder folder;
@@ -64,14 +65,56 @@ static void a_file_is_model_and_frames(void **state) {
     EXPECT_TOOL(0, "replay", model.text, "--quiet", "--fps", "5", "--animation", "slow", "--contacts",
                 out.text);
     check_first(4, 1.0);
-    tool_run run = RUN_TOOL("check", model.text, "--fail-on-contact");
+}
+
+/* check looks at the animation that a file holds, as replay does, and says so if not at all of it. */
+static void check_plays_the_animation(void **state) {
+    (void)state;
+    tool_run given = RUN_TOOL("check", model.text, model.text, "--fail-on", "crossing"),
+             own = RUN_TOOL("check", model.text, "--fail-on", "crossing");
+    assert_int_equal(own.code, 3);
+    assert_string_equal(own.out, given.out);
+    assert_string_equal(own.error, given.error);
+    assert_non_null(strstr(own.out, "Frames 13 to 23 cross (11 of 25), frames 12, 24 touch (2 of 25). "));
+    assert_non_null(strstr(own.out, "Only one of the 2 animations of scene was played.\n"));
+    tool_run_free(&given);
+    tool_run_free(&own);
+    tool_run rest = RUN_TOOL("check", model.text, "--rest", "--fail-on", "crossing");
+    assert_int_equal(rest.code, 0);
+    assert_string_equal(rest.out,
+                        "Clean: no two triangles cross or touch. Only the rest pose of scene was looked "
+                        "at; its file holds animations.\n");
+    tool_run_free(&rest);
+    EXPECT_ERROR(2, TEXTS("no FRAMES given"), "replay", model.text, "--rest");
+}
+
+/* So do the files of objects, which have as many frames, or are refused. */
+static void animations_of_objects_are_played(void **state) {
+    (void)state;
+    char named[600];
+    snprintf(named, sizeof named, "scene=%s", model.text);
+    EXPECT_TOOL(3, "check", "--object", named, "--fail-on", "crossing", "--quiet");
+    EXPECT_TOOL(3, "replay", "--object", named, "--fail-on", "crossing", "--quiet");
+    EXPECT_TOOL(0, "check", "--object", named, "--fail-on", "crossing", "--quiet", "--rest");
+    static const char far[] = "v 50 0 0\nv 51 0 0\nv 50 1 0\nf 1 2 3\n";
+    temp_path beside = temp_file_write(&folder, "beside.obj", far, sizeof far - 1),
+              second = temp_file_write(&folder, "beside_2.obj", far, sizeof far - 1);
+    EXPECT_TOOL(3, "check", beside.text, "--object", named, "--fail-on", "crossing", "--quiet");
+    EXPECT_ERROR(1, TEXTS("beside has 2 frames", "scene has 25", "--rest leaves files at rest"), "check",
+                 beside.text, beside.text, second.text, "--object", named);
+    tool_run run = RUN_TOOL("check", beside.text, beside.text, second.text, "--object", named, "--rest");
     assert_int_equal(run.code, 0);
-    assert_non_null(strstr(run.error, "holds an animation, and only its rest pose is looked at"));
+    assert_non_null(
+        strstr(run.out, " Only the rest pose of scene was looked at; its file holds animations.\n"));
     tool_run_free(&run);
-    run = RUN_TOOL("check", model.text, model.text);
-    assert_null(strstr(run.error, "rest pose"));
-    tool_run_free(&run);
-    EXPECT_TOOL(3, "check", model.text, model.text, "--quiet", "--fail-on-contact");
+}
+
+static void render_draws_the_animation(void **state) {
+    (void)state;
+    temp_path picture = temp_file_path(&folder, "frame.png");
+    EXPECT_TOOL(0, "render", model.text, "--frame", "24", "--size", "64x48", "-o", picture.text);
+    EXPECT_TOOL(0, "render", model.text, "--frames", "0:24:8", "--size", "32x24", "-o", picture.text);
+    EXPECT_ERROR(1, TEXTS("--frame 24"), "render", model.text, "--frame", "24", "--rest", "-o", picture.text);
 }
 
 static void unknown_animations_are_refused(void **state) {
@@ -83,7 +126,8 @@ static void unknown_animations_are_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_file_is_model_and_frames),
+        cmocka_unit_test(a_file_is_model_and_frames),       cmocka_unit_test(check_plays_the_animation),
+        cmocka_unit_test(animations_of_objects_are_played), cmocka_unit_test(render_draws_the_animation),
         cmocka_unit_test(unknown_animations_are_refused),
     };
     return cmocka_run_group_tests_name("tool_gltf", tests, write_model, remove_model);

@@ -60,12 +60,15 @@ bool gltf_read(file_reader *reader, mesh_file *out) {
     gltf_pose pose = {0};
     mesh_file mesh = {0};
     if (!gltf_scene_open(reader, &scene)) return false;
-    const bool done = gltf_pose_open(&scene, &pose) && allocate_mesh(&scene, &mesh) &&
+    size_t animations = 0;
+    const bool done = gltf_array_length(&scene.document.root, "animations", &animations) &&
+                      gltf_pose_open(&scene, &pose) && allocate_mesh(&scene, &mesh) &&
                       gltf_pose_write(&pose, mesh.positions) && gltf_parts_of(&scene, &mesh.parts) &&
                       gltf_extensions_note(&scene, &mesh.unread);
     if (done) {
         write_triangles(&scene, &pose, &mesh);
         write_polygons(&scene, &mesh);
+        mesh.animation_count = animations < UINT32_MAX ? (uint32_t)animations : UINT32_MAX;
         *out = mesh;
     } else {
         mesh_file_free(&mesh);

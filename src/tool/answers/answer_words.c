@@ -186,6 +186,20 @@ static void say_range(FILE *out, const answers *a) {
             count > 1 ? "were" : "was");
 }
 
+/* What files hold beside it. */
+static void say_animations(FILE *out, const answers *a) {
+    const recording *r = a->recording;
+    for (uint32_t i = 0; i < r->object_count; i++) {
+        const recorded_object *object = &r->objects[i];
+        const uint32_t count = object->file.animation_count;
+        if (recording_object_rests(object))
+            fprintf(out, " Only the rest pose of %s was looked at; its file holds %s.", object->source.name,
+                    count > 1 ? "animations" : "an animation");
+        else if (count > 1 && strcmp(object->source.frame_paths[0], object->source.model_path) == 0)
+            fprintf(out, " Only one of the %u animations of %s was played.", count, object->source.name);
+    }
+}
+
 void answers_print_sentence(FILE *out, const answers *a, const length_unit *unit) {
     const bool single = is_single(a);
     const bool said = say_unfinished(out, a);
@@ -200,6 +214,7 @@ void answers_print_sentence(FILE *out, const answers *a, const length_unit *unit
         fputc('.', out);
     }
     say_range(out, a);
+    say_animations(out, a);
     fputc('\n', out);
 }
 

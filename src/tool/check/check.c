@@ -46,7 +46,7 @@ static const option_table table = {
     "MODEL [FRAMES...] [options]\n       cscd check --each MODEL... [options]\n       cscd check --list JOBS.jsonl [options]",
     "Finds where triangles cross or touch at each frame, and says which parts do, from when to when, and how deep. "
     "Features that share a vertex do not count. Exact: the answer is that of the given coordinates, without "
-    "rounding. FRAMES as for replay; without them MODEL itself is checked.",
+    "rounding. FRAMES as for replay; without them the animation that MODEL holds, or MODEL itself is checked.",
     rows,
     sizeof rows / sizeof *rows,
     .shared = {{&object_rows, offsetof(check_options, source)},

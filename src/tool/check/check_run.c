@@ -96,10 +96,7 @@ static bool close_check(check_run *c, const char *stopped_by, io_error *error) {
     if (stopped_by != NULL) answers_leave_unfinished(&c->answers, "%s", stopped_by);
     bool finished = answers_finish(&c->answers, error);
     if (finished) print_answers(c);
-    if (!o->quiet) {
-        recording_warn(&c->recording);
-        recording_note_animations(&c->recording);
-    }
+    if (!o->quiet) recording_warn(&c->recording);
     bool closed = check_output_close(&c->output, &c->answers, &c->unit, finished ? error : NULL);
     bool written = answer_outputs_close(&c->files, finished ? &c->answers : NULL, &c->rules, suite,
                                         finished && closed ? error : NULL);
@@ -145,6 +142,7 @@ int check_run_on(const check_options *options, const char *name, job_output *job
     io_error error = {""};
     int code;
     recording_options source = options->source;
+    source.plays_models = true;
     source.progress = (cscd_progress){terminal_progress_within, &c.progress};
     if (!recording_open(&source, &c.recording, &error)) return fail_input("%s", error.text);
     interrupt_catch();

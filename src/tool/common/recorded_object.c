@@ -7,8 +7,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool open_frames(const recorded_source *source, const animation_options *frames, recorded_object *o,
-                        io_error *error) {
+/* A file that holds a model and its animation is played, unless it has frames. */
+static bool open_frames(const animation_options *frames, recorded_object *o, io_error *error) {
+    recorded_source *source = &o->source;
+    if (source->frame_path_count == 0 && source->itself != NULL && o->file.animation_count > 0) {
+        source->frame_paths = source->itself;
+        source->frame_path_count = 1;
+    }
     o->file_positions = malloc((size_t)o->file.vertex_count * 3 * sizeof *o->file_positions);
     if (o->file_positions == NULL) return io_fail(error, "%s: out of memory", source->model_path);
     animation_options options = *frames;
@@ -72,7 +77,7 @@ uint64_t recorded_object_hash_model(const recorded_object *o) {
 bool recorded_object_open(const recorded_source *source, weld_choice welding, const animation_options *frames,
                           recorded_object *out, io_error *error) {
     recorded_object o = {.source = *source, .frames_hash = PROVENANCE_HASH_START};
-    if (!mesh_file_read(source->model_path, &o.file, error) || !open_frames(source, frames, &o, error) ||
+    if (!mesh_file_read(source->model_path, &o.file, error) || !open_frames(frames, &o, error) ||
         !weld_first_frame(welding, &o, error)) {
         recorded_object_close(&o);
         return false;

@@ -11,6 +11,9 @@ typedef struct recorded_source {
     const char *model_path;
     const char *const *frame_paths; /* none: the object rests */
     size_t frame_path_count;
+    const char *const *
+        itself; /* the model's path again: where the file holds an animation, that is played if there are no other
+                                * frames; NULL: it is not */
     bool
         obstacle; /* its own triangles are not looked at with each other, nor with those of other obstacles */
 } recorded_source;

@@ -73,21 +73,29 @@ static bool open_objects(const recording_options *options, recording *r, io_erro
     if (options->model_path != NULL) r->model_name = name_of_model(options->model_path);
     if (r->objects == NULL || (options->model_path != NULL && r->model_name == NULL))
         return io_fail(error, "out of memory");
+    const bool plays = options->plays_models && !options->rest;
     recorded_source model = {.name = r->model_name,
                              .model_path = options->model_path,
                              .frame_paths = options->frame_paths,
-                             .frame_path_count = options->frame_path_count};
+                             .frame_path_count = options->frame_path_count,
+                             .itself = plays ? &options->model_path : NULL};
     if (options->model_path != NULL && !open_object(options, model, r, error)) return false;
     for (uint32_t i = 0; i < options->objects.count; i++) {
         const named_path *named = &options->objects.items[i];
-        recorded_source source = {
-            .name = named->name, .model_path = named->path, .obstacle = named->obstacle};
+        recorded_source source = {.name = named->name,
+                                  .model_path = named->path,
+                                  .obstacle = named->obstacle,
+                                  .itself = plays ? &named->path : NULL};
         if (!open_object(options, source, r, error)) return false;
     }
     return check_named(options, r, error);
 }
 
 /* ---- frames ------------------------------------------------------------------------------------------ */
+
+static bool plays_itself(const recorded_object *object) {
+    return object->source.itself != NULL && object->source.frame_paths == object->source.itself;
+}
 
 /* All objects with frames must have as many; the first of them says what they are called. */
 static bool count_frames(recording *r, const recorded_object **first, io_error *error) {
@@ -98,9 +106,12 @@ static bool count_frames(recording *r, const recorded_object **first, io_error *
         if (*first == NULL) *first = object;
         uint32_t own = recorded_object_frame_count(object), others = recorded_object_frame_count(*first);
         if (own != others)
-            return io_fail(error, "%s has %u frames (%s), and %s has %u (%s): expected as many",
+            return io_fail(error, "%s has %u frames (%s), and %s has %u (%s): expected as many%s",
                            (*first)->source.name, others, (*first)->source.frame_paths[0],
-                           object->source.name, own, object->source.frame_paths[0]);
+                           object->source.name, own, object->source.frame_paths[0],
+                           plays_itself(*first) || plays_itself(object)
+                               ? "; --rest leaves files at rest that no FRAMES are given for"
+                               : "");
     }
     r->frame_count = *first != NULL ? recorded_object_frame_count(*first) : 1;
     return true;
@@ -296,6 +307,10 @@ double recording_fps(const recording *r) {
             return ANIMATION_FPS;
     }
     return 0.0;
+}
+
+bool recording_object_rests(const recorded_object *object) {
+    return object->frames == NULL && object->file.animation_count > 0;
 }
 
 bool recording_moves(const recording *r) {

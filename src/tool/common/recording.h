@@ -34,6 +34,8 @@ typedef struct recording_options {
     named_paths objects, frames_of; /* further objects; frames of these or of the model */
     animation_options frames;       /* how frames are read; the model's path is filled in for each object */
     frame_number first_frame;       /* what the first frame is called; not given: what its file says */
+    bool plays_models; /* models that hold an animation are played, unless they have other frames */
+    bool rest;         /* but these are not */
     weld_choice weld;
     double wait_seconds;   /* for files that cannot be read yet; 0: none */
     uint32_t thread_count; /* 0: one per processor, for small meshes one */
@@ -107,8 +109,8 @@ uint32_t recording_file_face(const recording *r, uint32_t triangle);
 /* The number of the edge between two vertices of the mesh, which must have it. */
 uint32_t recording_find_edge(const cscd_mesh *mesh, uint32_t a, uint32_t b);
 
-/* Says on stderr which glTF files hold an animation that is not looked at. */
-void recording_note_animations(const recording *r);
+/* Does the model of an object hold an animation that is not played, although it has no other frames? */
+bool recording_object_rests(const recorded_object *object);
 
 /* Warns on stderr about triangles that welding has dropped, and about open, non-manifold and
  * inconsistently oriented components. */

@@ -151,24 +151,6 @@ static void warn_numbers(const recording *r) {
     }
 }
 
-/* A glTF file that is a model alone may hold frames as well. */
-static void note_unused_animation(const recorded_object *object) {
-    animation *frames = NULL;
-    const char *path = object->source.model_path;
-    if (object->frames != NULL || object->file.format != MESH_FORMAT_GLTF ||
-        !animation_open(&path, 1, object->file.vertex_count, NULL, &frames, NULL))
-        return;
-    animation_close(frames);
-    note(
-        "%s holds an animation, and only its rest pose is looked at; to look at its frames, give the file as FRAMES as "
-        "well",
-        path);
-}
-
-void recording_note_animations(const recording *r) {
-    for (uint32_t i = 0; i < r->object_count; i++) note_unused_animation(&r->objects[i]);
-}
-
 void recording_warn(recording *r) {
     for (uint32_t i = 0; i < r->object_count; i++) warn_object(r, &r->objects[i]);
     warn_numbers(r);

@@ -11,7 +11,10 @@ static const option_row of_objects[] = {
     {"obstacle", "NAME=MODEL", read_obstacle, offsetof(recording_options, objects),
      "the same, of something that is not looked at with itself and with other obstacles: ground, walls"},
     {"frames-of", "NAME=FRAMES", read_named_path, offsetof(recording_options, frames_of),
-     "how that object moves: a point cache, a pattern or a folder, of as many frames; without it, it rests"},
+     "how that object moves: a point cache, a pattern or a folder, of as many frames; without it, it rests, or moves as its "
+     "own file says"},
+    {"rest", NULL, read_flag, offsetof(recording_options, rest),
+     "of files that hold an animation (glTF), look at the rest pose alone, unless they are given as FRAMES"},
 };
 
 static const option_row of_frames[] = {

@@ -89,6 +89,7 @@ int command_render(int argument_count, char **arguments) {
     io_error error = {""};
     int code;
     if (!render_options_parse(argument_count, arguments, &options, &code)) return code;
+    options.source.plays_models = true;
     if (!recording_open(&options.source, &r, &error)) return fail_input("%s", error.text);
     bool drawn = draw_picture(&options, &r, &error);
     recording_close(&r);

@@ -36,7 +36,7 @@ static const option_row rows[] = {
          "the contacts of the interval from frame K to K + 1 on the surface at its start: the triangles that "
          "contain a feature in contact, and a dot at each contact"},
     {"colour", "charge", .help = "charge density by rank, dark the least"},
-    {"colour", "region", .help = "the regions of the plan; without FRAMES a dot at each detector point"},
+    {"colour", "region", .help = "the regions of the plan; of a mesh at rest a dot at each detector point"},
     {"plan", "PLAN.ply", read_text, offsetof(render_options, plan_path),
      "which plan (default as for replay: MODEL.plan.ply, or made on the way)"},
     {"size", "WxH", read_picture_size, offsetof(render_options, picture),
@@ -54,7 +54,7 @@ static const option_table table = {
     "render",
     "MODEL [FRAMES...] -o OUT.png [options]",
     "Draws a frame, or several side by side, with perspective and light. FRAMES as for replay; without them "
-    "the model itself.",
+    "the animation that MODEL holds, or MODEL itself.",
     rows,
     sizeof rows / sizeof *rows,
     .shared = {{&object_rows, offsetof(render_options, source)},

@@ -97,6 +97,7 @@ static bool open_outputs(replay *r, io_error *error) {
 /* Opens everything that can fail before the work begins. */
 static bool begin_replay(replay *r, io_error *error) {
     r->inputs = r->options->source;
+    r->inputs.plays_models = true;
     r->inputs.progress = (cscd_progress){terminal_progress_within, &r->progress};
     return recording_open(&r->inputs, &r->recording, error) && choose_frames(r, error) &&
            ignore_pairs_prepare(&r->options->ignored, &r->recording, &r->ignored, error) &&

@@ -153,10 +153,19 @@ static int check_outputs(const replay_options *o, const char *const *inputs, siz
     return EXIT_RAN;
 }
 
+/* Without FRAMES the files of objects may hold an animation. */
+static bool objects_may_move(const replay_options *o) {
+    const named_paths *objects = &o->source.objects;
+    bool may = false;
+    for (uint32_t i = 0; i < objects->count; i++) may |= gltf_recognise_path(objects->items[i].path);
+    return may && !o->source.rest;
+}
+
 /* Options that contradict each other or ask for what replay does not do. */
 static int check_options(const replay_options *o, size_t input_count) {
     if (input_count < 1 && o->source.objects.count == 0) return fail_usage("replay", "no MODEL given");
-    if (input_count < 2 && o->source.frames_of.count == 0) return fail_usage("replay", "no FRAMES given");
+    if (input_count < 2 && o->source.frames_of.count == 0 && !objects_may_move(o))
+        return fail_usage("replay", "no FRAMES given");
     if (o->contacts_path != NULL && !contact_file_names_format(o->contacts_path))
         return fail_usage("replay", "--contacts '%s': expected a name that ends in .csv or .jsonl, or -",
                           o->contacts_path);
@@ -222,7 +231,7 @@ bool replay_options_read(int argument_count, char **arguments, replay_options *o
 int replay_options_finish(replay_options *o, given_options *given) {
     /* A glTF file holds the model and its frames. */
     static const char *both[2]; /* as long as the options, of which there is one at a time */
-    if (given->input_count == 1 && gltf_recognise_path(given->inputs[0])) {
+    if (given->input_count == 1 && !o->source.rest && gltf_recognise_path(given->inputs[0])) {
         both[0] = both[1] = given->inputs[0];
         given->inputs = both;
         given->input_count = 2;

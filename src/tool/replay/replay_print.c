@@ -50,7 +50,6 @@ void replay_print_results(const replay *r) {
 
 void replay_print_remarks(replay *r) {
     recording_warn(&r->recording);
-    recording_note_animations(&r->recording);
     if (r->options->ignored.rest != REST_KEPT)
         printf("%zu triangle pairs that intersect or touch in frame %d are left out%s\n",
                r->ignored.rest_pairs, r->recording.frame_numbers[0],
