@@ -767,7 +767,7 @@ $(BUILD)/tests/core/test_exceptions: $(OBJECTS)/tests/core/throwing_host.o
 $(BUILD)/tests/core/test_exceptions $(CPP_TESTS): TEST_LIBS += -lstdc++
 
 # Elementary tests go through the same batches in tests and benchmarks, and densities are compared alike.
-$(BUILD)/tests/support.a: $(call objects,$(SUPPORT_SOURCES) benchmarks/lib/pair_batches.c benchmarks/lib/density_ranks.c)
+$(BUILD)/tests/support.a: $(call objects,$(SUPPORT_SOURCES) benchmarks/lib/pair_batches.c benchmarks/lib/density_ranks.c models/shapes/extreme_shapes.c)
 	@mkdir -p $(@D)
 	@rm -f $@
 	$(Q)$(TOOLS)ar rcs $@ $^

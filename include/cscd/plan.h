@@ -36,8 +36,9 @@ typedef struct cscd_plan cscd_plan;
 /* How the equations for the charge of a component are solved. The regions that follow differ by few triangles. Later
  * versions may add values. */
 typedef enum cscd_charge_solver {
-    CSCD_CHARGE_TREE, /* iterations of a treecode: memory, about 2 kB a triangle, and time grow about as the number of
-                         * triangles; densities are off by some 1e-4 of their mean (root of the mean square), single ones
+    CSCD_CHARGE_TREE, /* iterations of a treecode: memory, about 2 kB a triangle, or up to 8 kB where all are long
+                         * and thin, as in fans, and time grow about as the number of triangles; densities are off by some 1e-4 of
+                         * their mean (root of the mean square), single ones
                          * by some 1e-3. The same bits on every processor */
     CSCD_CHARGE_DENSE, /* a dense matrix, by LAPACK: 4 bytes for each pair of triangles of the largest component, and
                          * time with the cube of their number; densities exact. To compare with */

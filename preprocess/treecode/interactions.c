@@ -20,12 +20,14 @@ typedef struct interaction_search {
 
 static array_list list_begins(interactions *lists) {
     return (array_list){{ARRAY(lists->far_begins, lists->node_count + 1),
-                         ARRAY(lists->near_begins, 2 * lists->leaf_count + 1)}};
+                         ARRAY(lists->near_begins, 2 * lists->leaf_count + 1),
+                         ARRAY(lists->long_begins, lists->node_count + 1)}};
 }
 
 static array_list list_items(interactions *lists) {
-    return (array_list){
-        {ARRAY(lists->far_items, lists->far_count), ARRAY(lists->near_sources, lists->near_count)}};
+    return (array_list){{ARRAY(lists->far_items, lists->far_count),
+                         ARRAY(lists->near_sources, lists->near_count),
+                         ARRAY(lists->long_sources, lists->long_count)}};
 }
 
 /* ---- pairs of nodes -------------------------------------------------------------------------------------- */
@@ -65,15 +67,33 @@ static void add_near(const interaction_search *s, const source_node *target, con
     }
 }
 
+static void add_long(const interaction_search *s, uint32_t target, uint32_t source) {
+    size_t *place = &s->lists->long_begins[target];
+    if (s->listing) s->lists->long_sources[*place] = source;
+    ++*place;
+}
+
+/* Of long triangles only the centroids are apart. Closer ones would have no low rank, and farther ones hardly a lower one. */
+static bool centroids_apart(const source_node *a, const source_node *b, double distance) {
+    return distance > 1.5 * (a->target_radius + b->target_radius);
+}
+
+static bool opens_target(const source_node *a, const source_node *b) {
+    const double of_sources = node_is_long(b) ? b->target_radius : b->source_radius;
+    return node_is_leaf(b) || (!node_is_leaf(a) && a->target_radius > of_sources);
+}
+
 static void search_pair(const interaction_search *s, uint32_t target, uint32_t source) {
     const source_node *a = &s->tree->nodes[target], *b = &s->tree->nodes[source];
     const double distance = distance_of(a->center, b->center), radii = a->target_radius + b->source_radius;
     const uint32_t order = radii < distance ? order_for(radii / distance) : EXPANSION_ORDER + 1;
     if (order <= EXPANSION_ORDER) {
         add_far(s, target, source, order);
+    } else if (node_is_long(b) && centroids_apart(a, b, distance)) {
+        add_long(s, target, source);
     } else if (node_is_leaf(a) && node_is_leaf(b)) {
         add_near(s, a, b);
-    } else if (node_is_leaf(b) || (!node_is_leaf(a) && a->target_radius > b->source_radius)) {
+    } else if (opens_target(a, b)) {
         for (int i = 0; i < 2; i++) search_pair(s, a->children[i], source);
     } else {
         for (int i = 0; i < 2; i++) search_pair(s, target, b->children[i]);
@@ -128,6 +148,7 @@ static cscd_status list_interactions(const source_tree *tree, interactions *list
     if (status != CSCD_OK) return status;
     lists->far_count = begin_lists(lists->far_begins, lists->node_count);
     lists->near_count = begin_lists(lists->near_begins, 2 * lists->leaf_count);
+    lists->long_count = begin_lists(lists->long_begins, lists->node_count);
     if (!context_reserve_all(context, list_items(lists))) return context_out_of_memory(context);
     search.listing = true;
     parallel_run(context->threads, tree->task_count, search_subtree, &search);
@@ -135,6 +156,7 @@ static cscd_status list_interactions(const source_tree *tree, interactions *list
     if (status != CSCD_OK) return status;
     end_lists(lists->far_begins, lists->node_count);
     end_lists(lists->near_begins, 2 * lists->leaf_count);
+    end_lists(lists->long_begins, lists->node_count);
     parallel_run(context->threads, TREE_TASKS_MOST, sort_far_items, lists);
     return context_progress_status(context);
 }

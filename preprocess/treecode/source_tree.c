@@ -129,7 +129,7 @@ static void set_source(const tree_build *build, uint32_t place) {
 
 /* The smallest balls about the center that hold all centroids, and all triangles. */
 static void set_radii(const source_tree *tree, source_node *node) {
-    double targets = 0.0, sources = 0.0;
+    double targets = 0.0, sources = 0.0, lengths = 0.0;
     for (uint32_t i = node->begin; i < node->end; i++) {
         const tree_source *source = &tree->sources[i];
         double square = 0.0;
@@ -138,9 +138,11 @@ static void set_radii(const source_tree *tree, source_node *node) {
         const double distance = sqrt(square);
         targets = fmax(targets, distance);
         sources = fmax(sources, distance + source->radius);
+        lengths += source->radius;
     }
     node->target_radius = targets;
     node->source_radius = sources;
+    node->mean_radius = lengths / (node->end - node->begin);
 }
 
 uint32_t subtree_end(const source_tree *tree, uint32_t node) {

@@ -11,6 +11,7 @@ typedef struct source_node {
     double center[3];
     double target_radius; /* of a ball around the centroids */
     double source_radius; /* and of one around the triangles */
+    double mean_radius;   /* of the triangles themselves, in the mean */
     uint32_t begin, end;
     uint32_t children[2]; /* both 0 in a leaf */
     uint32_t leaf;        /* the number of a leaf, or of the first one below */
@@ -46,6 +47,12 @@ void source_tree_destroy(source_tree *tree);
 
 static inline bool node_is_leaf(const source_node *node) {
     return node->children[0] == 0;
+}
+
+/* Are its triangles longer than they are far from each other, as in a fan or a comb? Then no part of it that is near the tree's leaves
+ * is far from anything around. */
+static inline bool node_is_long(const source_node *node) {
+    return node->mean_radius > 2.0 * node->target_radius;
 }
 
 static inline const potential_source *triangle_of(const source_tree *tree, uint32_t source) {

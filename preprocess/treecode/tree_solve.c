@@ -105,6 +105,8 @@ cscd_status tree_solve(cscd_context *context, charge_system *system, size_t memo
     if (status != CSCD_OK) return status;
     status = check_limit(&e, system, memory_limit);
     if (status == CSCD_OK) status = treecode_fill(&e.t);
+    if (status == CSCD_OK)
+        status = check_limit(&e, system, memory_limit); /* the ranks of blocks are known now */
     progress_stage(&context->progress, "charge: blocks", 0.15, 0.4);
     if (status == CSCD_OK) status = near_blocks_create(&e.t, &e.blocks);
     timer_lap(&clock, &timings->assembly_ms);

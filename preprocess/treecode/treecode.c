@@ -77,21 +77,27 @@ cscd_status treecode_create(cscd_context *context, const charge_system *system, 
 
 double treecode_bytes(const treecode *t) {
     const double of_leaf = sizeof *t->tree.leaves + sizeof *t->exact_begins + 2 * sizeof(size_t),
-                 of_node = sizeof *t->tree.nodes + sizeof(size_t) + 2 * HARMONIC_COUNT * sizeof(double);
+                 of_node = sizeof *t->tree.nodes + 2 * sizeof(size_t) + 2 * HARMONIC_COUNT * sizeof(double);
     return (double)t->exact_count * sizeof *t->exact_potentials +
            (double)t->lists.near_count * sizeof *t->lists.near_sources +
-           (double)t->lists.far_count * sizeof *t->lists.far_items + of_node * t->tree.node_count +
-           of_leaf * t->tree.leaf_count + (double)t->tree.count * sizeof *t->tree.sources;
+           (double)t->lists.far_count * sizeof *t->lists.far_items +
+           (double)t->lists.long_count * sizeof *t->lists.long_sources +
+           (t->ranks.tree != NULL ? rank_blocks_bytes(&t->ranks)
+                                  : rank_blocks_expected_bytes(&t->tree, &t->lists)) +
+           of_node * t->tree.node_count + of_leaf * t->tree.leaf_count +
+           (double)t->tree.count * sizeof *t->tree.sources;
 }
 
 cscd_status treecode_fill(treecode *t) {
     t->exact_potentials = context_reserve(t->context, t->exact_count, sizeof *t->exact_potentials);
     if (t->exact_potentials == NULL) return context_out_of_memory(t->context);
     parallel_run(t->context->threads, t->tree.leaf_count, find_exact, t);
-    return context_progress_status(t->context);
+    const cscd_status status = context_progress_status(t->context);
+    return status == CSCD_OK ? rank_blocks_create(&t->tree, &t->lists, &t->ranks) : status;
 }
 
 void treecode_destroy(treecode *t) {
+    rank_blocks_destroy(&t->ranks);
     source_tree_destroy(&t->tree);
     interactions_destroy(&t->lists);
     context_free_all(t->context, list_expansions(t));
@@ -202,6 +208,7 @@ static void evaluate_below(void *data, uint32_t task) {
     memset(expansion_of(e->t->coefficients, root), 0, HARMONIC_COUNT * sizeof(double));
     for (uint32_t n = root; n < end && progress_go_on(&e->t->context->progress, 0.0); n++)
         evaluate_node(e, n);
+    rank_blocks_add(&e->t->ranks, task, e->charges, e->potentials);
 }
 
 cscd_status treecode_evaluate(treecode *t, const double *charges, double *potentials) {

@@ -2,13 +2,14 @@
  * sources and targets (Greengard, Rokhlin 1987). */
 #pragma once
 
-#include "preprocess/treecode/interactions.h"
+#include "preprocess/treecode/rank_blocks.h"
 #include "preprocess/treecode/treecode_kernels.h"
 
 typedef struct treecode {
     cscd_context *context;
     source_tree tree;
     interactions lists;
+    rank_blocks ranks; /* made by treecode_fill */
     expansion_tables tables;
     const treecode_kernels *kernels;
     double *moments, *coefficients; /* of all nodes, HARMONIC_COUNT each */

@@ -113,6 +113,12 @@ conductor conductor_tetrahedron(void) {
     return copy_of(4, corners, 4, triangles);
 }
 
+conductor conductor_extreme(extreme_kind kind, uint32_t triangle_count) {
+    const extreme_shape shape = extreme_shape_make(kind, triangle_count);
+    free(shape.x1);
+    return (conductor){shape.vertex_count, shape.triangle_count, shape.x0, shape.triangles};
+}
+
 void conductor_transform(conductor *s, const double scale[3], const double offset[3]) {
     for (uint32_t i = 0; i < s->vertex_count * 3; i++)
         s->positions[i] = scale[i % 3] * s->positions[i] + offset[i % 3];

@@ -1,6 +1,8 @@
 /* Closed surfaces whose capacitance is known, at any refinement. */
 #pragma once
 
+#include "models/shapes/extreme_shapes.h"
+
 #include <stdint.h>
 
 /* The caller releases it by conductor_free. */
@@ -19,6 +21,9 @@ conductor conductor_cube(int level);
 
 /* Makes a tetrahedron of four triangles. */
 conductor conductor_tetrahedron(void);
+
+/* Makes a shape of about so many long triangles, at rest. */
+conductor conductor_extreme(extreme_kind kind, uint32_t triangle_count);
 
 /* Turns every position p into scale * p + offset, coordinate by coordinate. */
 void conductor_transform(conductor *s, const double scale[3], const double offset[3]);
