@@ -6,8 +6,8 @@
 #include <math.h>
 #include <string.h>
 
-/* A vector of the box may be off by this much: floats by 2^-24, unit vectors by a few times 2^-53. */
-static const double direction_slack = 0x1p-22;
+/* A unit vector may be off by this much: by a few times 2^-53, and a normal by 2^20 times as much. */
+static const double direction_slack = 0x1p-48, normal_slack = 0x1p-28;
 
 /* Directions that differ by more than an angle with this cosine say nothing of what lies between them. */
 static const double least_cosine = 0.5;
@@ -28,25 +28,33 @@ static bool leaf_shares(const bvh *f, const bvh_leaf *leaf, uint32_t vertex) {
     return true;
 }
 
-static uint32_t hub_of_leaf(const bvh *f, uint32_t index) {
+/* The first one in the first triangle; of two the lesser, so that all pages of a book name them alike. */
+static void name_hubs(const bvh *f, uint32_t index, hub_volume *out) {
     const bvh_leaf *leaf = &f->leaves[index];
     const uint32_t *corners = f->mesh->triangles[leaf->triangles[0]];
     for (int i = 0; i < 3; i++) {
-        if (vertex_is_hub(f->mesh, corners[i]) && leaf_shares(f, leaf, corners[i])) return corners[i];
+        if (!vertex_is_hub(f->mesh, corners[i]) || !leaf_shares(f, leaf, corners[i])) continue;
+        if (out->hub == NO_HUB) {
+            out->hub = corners[i];
+        } else {
+            out->other = out->hub < corners[i] ? corners[i] : out->hub;
+            out->hub = out->hub < corners[i] ? out->hub : corners[i];
+            return;
+        }
     }
-    return NO_HUB;
 }
 
 static uint32_t lane_count(const bvh_level *level, uint32_t block) {
     return (uint32_t)__builtin_popcount(level->flags[block].used);
 }
 
-static uint32_t hub_of_block(const bvh_level *level, uint32_t block) {
+static void name_hubs_of_block(const bvh_level *level, uint32_t block, hub_volume *out) {
     const hub_volume *children = level->child_hubs + (size_t)block * LANES;
     for (uint32_t i = 1; i < lane_count(level, block); i++) {
-        if (children[i].hub != children[0].hub) return NO_HUB;
+        if (children[i].hub != children[0].hub || children[i].other != children[0].other) return;
     }
-    return children[0].hub;
+    out->hub = children[0].hub;
+    out->other = children[0].other;
 }
 
 bool bvh_allocate_hubs(bvh *f) {
@@ -100,6 +108,42 @@ static bool look_at_triangle(const bvh *f, uint32_t triangle, uint32_t hub, cons
     return true;
 }
 
+static void add_product(const double a[3], const double b[3], double sum[3]) {
+    double product[3];
+    vec3_cross(a, b, product);
+    for (int k = 0; k < 3; k++) sum[k] += product[k];
+}
+
+/* The normal of a page is a product of two vectors that move linearly, so it is a sum, with weights of 0 or more, of three: those at
+ * the ends, and one that is mixed of both ends. A sum that is not small beside its terms has a direction. */
+static bool look_at_page(const bvh *f, uint32_t triangle, const hub_volume *v, const double *const ends[2],
+                         corner_view *view) {
+    double edges[2][3], sides[2][3];
+    uint32_t corner = UINT32_MAX;
+    for (int i = 0; i < 3; i++) {
+        const uint32_t next = f->mesh->triangles[triangle][i];
+        if (next != v->hub && next != v->other) corner = next;
+    }
+    for (int e = 0; e < 2; e++) {
+        vec3_subtract(ends[e] + (size_t)v->other * 3, ends[e] + (size_t)v->hub * 3, edges[e]);
+        vec3_subtract(ends[e] + (size_t)corner * 3, ends[e] + (size_t)v->hub * 3, sides[e]);
+    }
+    *view = (corner_view){.nearest = 0.0, .count = f->still ? 1 : 3};
+    for (int i = 0; i < view->count; i++) {
+        const int from = i / 2, to = (i + 1) / 2; /* 0 0, 0 1, 1 1 */
+        double normal[3] = {0.0, 0.0, 0.0}, size = surface_norm(edges[from]) * surface_norm(sides[to]);
+        add_product(edges[from], sides[to], normal);
+        if (from != to) {
+            size += surface_norm(edges[to]) * surface_norm(sides[from]);
+            add_product(edges[to], sides[from], normal);
+        }
+        const double length = surface_norm(normal);
+        if (!(length > 0x1p-20 * size) || !(length > 0x1p-900) || !isfinite(length)) return false;
+        for (int k = 0; k < 3; k++) view->towards[i][k] = normal[k] / length;
+    }
+    return true;
+}
+
 static double cosine_between(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
@@ -116,18 +160,18 @@ static void add_view(const corner_view *view, hub_volume *out) {
         out->hub = NO_HUB;
         return;
     }
-    const double around = 1.0 - sqrt(least) + direction_slack;
+    const double around = 1.0 - sqrt(least) + (out->other == NO_HUB ? direction_slack : normal_slack);
     out->reach = fminf(out->reach, float_below(view->nearest * sqrt(least) * (1.0 - direction_slack)));
     for (int k = 0; k < 3; k++) {
         for (int i = 0; i < view->count; i++) {
-            out->low[k] = fminf(out->low[k], (float)(view->towards[i][k] - around));
-            out->high[k] = fmaxf(out->high[k], (float)(view->towards[i][k] + around));
+            out->low[k] = fmin(out->low[k], view->towards[i][k] - around);
+            out->high[k] = fmax(out->high[k], view->towards[i][k] + around);
         }
     }
 }
 
-static hub_volume nothing_seen(uint32_t hub) {
-    hub_volume v = {.hub = hub, .reach = INFINITY};
+static hub_volume nothing_seen(void) {
+    hub_volume v = {.hub = NO_HUB, .other = NO_HUB, .reach = INFINITY};
     for (int k = 0; k < 3; k++) {
         v.low[k] = INFINITY;
         v.high[k] = -INFINITY;
@@ -153,13 +197,15 @@ static void add_sides(const bvh *f, uint32_t triangle, const double *const ends[
 /* One wide triangle leaves nothing known of its leaf. */
 static void view_leaf(const bvh *f, uint32_t index, const double *const ends[2], hub_volume *out) {
     const bvh_leaf *leaf = &f->leaves[index];
-    *out = nothing_seen(hub_of_leaf(f, index));
+    *out = nothing_seen();
+    name_hubs(f, index, out);
     if (out->hub == NO_HUB) return;
     for (int e = 0; e < 2; e++) memcpy(out->place[e], ends[e] + (size_t)out->hub * 3, sizeof out->place[e]);
     for (int lane = 0; lane < LANES && leaf->triangles[lane] != UINT32_MAX && out->hub != NO_HUB; lane++) {
         corner_view view;
         add_sides(f, leaf->triangles[lane], ends, out);
-        if (look_at_triangle(f, leaf->triangles[lane], out->hub, ends, &view))
+        if (out->other == NO_HUB ? look_at_triangle(f, leaf->triangles[lane], out->hub, ends, &view)
+                                 : look_at_page(f, leaf->triangles[lane], out, ends, &view))
             add_view(&view, out);
         else
             out->hub = NO_HUB;
@@ -170,8 +216,8 @@ static void join_child(const hub_volume *child, hub_volume *out) {
     out->reach = fminf(out->reach, child->reach);
     memcpy(out->place, child->place, sizeof out->place);
     for (int k = 0; k < 3; k++) {
-        out->low[k] = fminf(out->low[k], child->low[k]);
-        out->high[k] = fmaxf(out->high[k], child->high[k]);
+        out->low[k] = fmin(out->low[k], child->low[k]);
+        out->high[k] = fmax(out->high[k], child->high[k]);
         for (int e = 0; e < 2; e++) {
             out->sides[e][0][k] = fmin(out->sides[e][0][k], child->sides[e][0][k]);
             out->sides[e][1][k] = fmax(out->sides[e][1][k], child->sides[e][1][k]);
@@ -180,7 +226,8 @@ static void join_child(const hub_volume *child, hub_volume *out) {
 }
 
 static void join_children(const bvh_level *level, uint32_t block, hub_volume *out) {
-    *out = nothing_seen(hub_of_block(level, block));
+    *out = nothing_seen();
+    name_hubs_of_block(level, block, out);
     for (uint32_t i = 0; i < lane_count(level, block) && out->hub != NO_HUB; i++)
         join_child(&level->child_hubs[(size_t)block * LANES + i], out);
 }
@@ -194,10 +241,11 @@ static void join_children(const bvh_level *level, uint32_t block, hub_volume *ou
 static bool directions_apart(const hub_volume *a, const hub_volume *b, double distance) {
     double chord = 0.0; /* squared */
     for (int k = 0; k < 3; k++) {
-        const double gap = (double)fmaxf(a->low[k] - b->high[k], b->low[k] - a->high[k]);
+        const double gap = fmax(a->low[k] - b->high[k], b->low[k] - a->high[k]);
         if (gap > 0.0) chord += gap * gap;
     }
     if (distance == 0.0) return chord > 0.0;
+    if (a->other != NO_HUB) return false; /* corners of pages may be near their edge */
     return 0.7 * sqrt(fmin(chord, 2.0)) * (double)fminf(a->reach, b->reach) > distance;
 }
 
@@ -253,7 +301,8 @@ static bool plane_between(const hub_volume *a, const hub_volume *b, double dista
 
 bool hub_volumes_apart(const hub_volume *a, const hub_volume *b, double distance) {
     if (a->hub == NO_HUB || b->hub == NO_HUB) return false;
-    return a->hub == b->hub ? directions_apart(a, b, distance) : plane_between(a, b, distance);
+    if (a->hub != b->hub) return plane_between(a, b, distance);
+    return a->other == b->other && directions_apart(a, b, distance);
 }
 
 /* ---- all of it ------------------------------------------------------------------------------------------- */

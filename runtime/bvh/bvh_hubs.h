@@ -1,5 +1,6 @@
 /* Vertices that very many triangles share. The volumes of these triangles all overlap there, so what tells them apart is in
- * which directions they lie as seen from the vertex. */
+ * which directions they lie as seen from the vertex; or, where they share two such vertices, as the pages of a book, as seen from the
+ * edge between these. */
 #pragma once
 
 #include "runtime/bvh/bvh.h"
@@ -8,8 +9,11 @@ enum { NO_HUB = UINT32_MAX };
 
 /* Where the triangles below a child lie, as seen from a vertex that all of them share. */
 typedef struct hub_volume {
-    uint32_t hub;          /* the vertex; NO_HUB: they share none, or nothing is known of their directions */
-    float low[3], high[3]; /* a box around all unit vectors towards them during the interval */
+    uint32_t hub;   /* the vertex; NO_HUB: they share none, or nothing is known of their directions */
+    uint32_t other; /* NO_HUB, or another one, of a greater number */
+    double low[3],
+        high[3]; /* a box around all unit vectors towards them during the interval; with two hubs around their unit
+                             * normals, the vectors from hub to other and from hub to the third corner being a right-handed pair */
     float reach;           /* the sides opposite the hub come no nearer to it; not scaled, as what follows */
     double place[2][3];    /* of the hub, at both ends */
     double sides[2][2][3]; /* at both ends, the least and the greatest coordinates of the sides opposite it */
