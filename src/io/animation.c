@@ -207,6 +207,10 @@ void animation_close(animation *opened) {
     free(opened);
 }
 
+bool animation_is_one_file(const animation *opened) {
+    return opened->reader->expect == NULL;
+}
+
 uint32_t animation_frame_count(const animation *opened) {
     return opened->reader->frame_count(opened->source);
 }

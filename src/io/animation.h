@@ -31,6 +31,9 @@ bool animation_open(const char *const *paths, size_t path_count, uint32_t vertex
                     const animation_options *options, animation **out, io_error *error);
 void animation_close(animation *animation);
 
+/* Are all frames in one file, which may be read again and in any order? */
+bool animation_is_one_file(const animation *animation);
+
 uint32_t animation_frame_count(const animation *animation);
 
 /* What the artist calls a frame: its file's number, or that of its sample by the start and rate of a PC2 header, or

@@ -69,7 +69,8 @@ static uint32_t find_group(const cell_table *table, const double *positions, uin
 
 /* Only the first vertex of each group enters the table: every member is then within epsilon of it, and no
  * chain of near neighbours welds what lies far apart. */
-static void group_vertices(const cell_table *table, const double *positions, weld *w) {
+static void fill_groups(const cell_table *table, const double *positions, weld *w) {
+    w->vertex_count = 0;
     for (uint32_t v = 0; v < w->file_vertex_count; v++) {
         uint32_t group = find_group(table, positions, v, w);
         if (group == UINT32_MAX) {
@@ -83,7 +84,60 @@ static void group_vertices(const cell_table *table, const double *positions, wel
     }
 }
 
-static void weld_triangles(const uint32_t *triangles, uint32_t triangle_count, weld *w) {
+/* Groups the vertices that lie on each other, of each label by itself. */
+static bool group_vertices(const double *positions, const uint32_t *labels, weld *w) {
+    cell_table table = {.mask = 1, .parts = labels};
+    while (table.mask < w->file_vertex_count && table.mask < UINT32_MAX / 2) table.mask = table.mask * 2 + 1;
+    table.first = calloc((size_t)table.mask + 1, sizeof *table.first);
+    table.next = calloc(w->file_vertex_count, sizeof *table.next);
+    const bool allocated = table.first != NULL && table.next != NULL;
+    if (allocated) fill_groups(&table, positions, w);
+    free(table.first);
+    free(table.next);
+    return allocated;
+}
+
+static bool fail_memory(const weld *w, io_error *error) {
+    return io_fail(error, "out of memory while welding %u vertices", w->file_vertex_count);
+}
+
+bool weld_begin(const double *positions, uint32_t vertex_count, const uint32_t *parts, double epsilon,
+                weld *out, io_error *error) {
+    weld w = {.epsilon = epsilon, .file_vertex_count = vertex_count};
+    w.vertex_of_file_vertex = calloc(vertex_count, sizeof *w.vertex_of_file_vertex);
+    w.file_vertex = calloc(vertex_count, sizeof *w.file_vertex);
+    if (w.vertex_of_file_vertex == NULL || w.file_vertex == NULL || !group_vertices(positions, parts, &w)) {
+        weld_free(&w);
+        return fail_memory(&w, error);
+    }
+    *out = w;
+    return true;
+}
+
+/* The first vertex, in file order, that lies farther than epsilon from the one that stands for it, or UINT32_MAX. */
+static uint32_t find_parted(const weld *w, const double *positions) {
+    for (uint32_t v = 0; v < w->file_vertex_count; v++) {
+        const uint32_t first = w->file_vertex[w->vertex_of_file_vertex[v]];
+        if (first == v) continue;
+        const double *a = positions + (size_t)v * 3, *b = positions + (size_t)first * 3;
+        if (memcmp(a, b, 3 * sizeof *a) != 0 && distance_between(a, b) > w->epsilon) return v;
+    }
+    return UINT32_MAX;
+}
+
+bool weld_part(weld *w, const double *positions, uint32_t *parted, io_error *error) {
+    *parted = find_parted(w, positions);
+    if (*parted == UINT32_MAX) return true;
+    const size_t size = (size_t)w->file_vertex_count * sizeof(uint32_t);
+    uint32_t *labels = malloc(size);
+    if (labels == NULL) return fail_memory(w, error);
+    memcpy(labels, w->vertex_of_file_vertex, size);
+    const bool grouped = group_vertices(positions, labels, w);
+    free(labels);
+    return grouped || fail_memory(w, error);
+}
+
+static void map_triangles(const uint32_t *triangles, uint32_t triangle_count, weld *w) {
     for (uint32_t t = 0; t < triangle_count; t++) {
         uint32_t *v = w->triangles + (size_t)w->triangle_count * 3;
         for (int i = 0; i < 3; i++) v[i] = w->vertex_of_file_vertex[triangles[(size_t)t * 3 + (size_t)i]];
@@ -95,36 +149,17 @@ static void weld_triangles(const uint32_t *triangles, uint32_t triangle_count, w
     }
 }
 
-bool weld_create(const double *positions, uint32_t vertex_count, const uint32_t *triangles,
-                 uint32_t triangle_count, const uint32_t *parts, double epsilon, weld *out, io_error *error) {
-    weld w = {.epsilon = epsilon, .file_vertex_count = vertex_count};
-    cell_table table = {.mask = 1, .parts = parts};
-    while (table.mask < vertex_count && table.mask < UINT32_MAX / 2) table.mask = table.mask * 2 + 1;
-    table.first = calloc((size_t)table.mask + 1, sizeof *table.first);
-    table.next = calloc(vertex_count, sizeof *table.next);
-    w.vertex_of_file_vertex = calloc(vertex_count, sizeof *w.vertex_of_file_vertex);
-    w.file_vertex = calloc(vertex_count, sizeof *w.file_vertex);
-    w.triangles = calloc((size_t)triangle_count * 3, sizeof *w.triangles);
-    w.file_triangle = calloc(triangle_count, sizeof *w.file_triangle);
-    bool allocated = table.first != NULL && table.next != NULL && w.vertex_of_file_vertex != NULL &&
-                     w.file_vertex != NULL && w.triangles != NULL && w.file_triangle != NULL;
-    if (allocated) {
-        group_vertices(&table, positions, &w);
-        weld_triangles(triangles, triangle_count, &w);
-    }
-    free(table.first);
-    free(table.next);
-    if (!allocated || w.triangle_count == 0) {
-        weld_free(&w);
-        if (!allocated) return io_fail(error, "out of memory while welding %u vertices", vertex_count);
-        if (epsilon > 0.0)
-            return io_fail(error, "--weld %g collapses every triangle; use a smaller distance", epsilon);
-        return io_fail(
-            error, "every triangle has corners in one place in the first frame, so --weld exact leaves none; "
-                   "give frames in which they lie apart, or leave --weld out");
-    }
-    *out = w;
-    return true;
+bool weld_finish(weld *w, const uint32_t *triangles, uint32_t triangle_count, io_error *error) {
+    w->triangles = calloc((size_t)triangle_count * 3, sizeof *w->triangles);
+    w->file_triangle = calloc(triangle_count, sizeof *w->file_triangle);
+    if (w->triangles == NULL || w->file_triangle == NULL) return fail_memory(w, error);
+    map_triangles(triangles, triangle_count, w);
+    if (w->triangle_count > 0) return true;
+    if (w->epsilon > 0.0)
+        return io_fail(error, "--weld %g collapses every triangle; use a smaller distance", w->epsilon);
+    return io_fail(
+        error, "every triangle has corners in one place, so --weld exact leaves none; give frames in which "
+               "they lie apart, or give --weld none");
 }
 
 void weld_free(weld *w) {

@@ -18,10 +18,17 @@ typedef struct weld {
 } weld;
 
 /* Each vertex joins the first one, in file order, that stands for itself and lies within epsilon. Welded
- * vertices are numbered in the order of their first file vertex. parts: vertex_count labels, and a vertex joins those of its own part alone; NULL:
- * there are none. On false *out is untouched. */
-bool weld_create(const double *positions, uint32_t vertex_count, const uint32_t *triangles,
-                 uint32_t triangle_count, const uint32_t *parts, double epsilon, weld *out, io_error *error);
+ * vertices are numbered in the order of their first file vertex. parts: vertex_count labels, and a vertex joins those of its own
+ * part alone; NULL: there are none. There are no triangles before weld_finish. On false *out is untouched. */
+bool weld_begin(const double *positions, uint32_t vertex_count, const uint32_t *parts, double epsilon,
+                weld *out, io_error *error);
+
+/* Takes apart what lies apart in these positions, too: of vertices that were joined only those within epsilon of each other stay
+ * so. *parted becomes the first that lay apart, UINT32_MAX if none did. */
+bool weld_part(weld *w, const double *positions, uint32_t *parted, io_error *error);
+
+/* Maps the triangles. False if none is left, too. After any false the caller frees the weld. */
+bool weld_finish(weld *w, const uint32_t *triangles, uint32_t triangle_count, io_error *error);
 void weld_free(weld *w);
 
 /* Welded positions are those of the first file vertex. False, with the vertices and their distance, when two

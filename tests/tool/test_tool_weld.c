@@ -247,22 +247,6 @@ static void welds_within_a_distance(void **state) {
     recorded_free(&loose);
 }
 
-static void vertices_that_part_are_an_error(void **state) {
-    (void)state;
-    recorded parting = recorded_cube(true);
-    parting.frames[(2 * 28 + 5) * 3 + 1] += 0.25;
-    temp_path cache = recorded_write_cache(&folder, "parting.pc2", &parting);
-    temp_path summary = temp_file_path(&folder, "out.json");
-    EXPECT_ERROR(1, TEXTS("frame 2", "0.25", "welded"), "replay", split_model.text, cache.text, "--weld",
-                 "exact", "--json", summary.text);
-    json_node *root = json_node_read_file(summary.text);
-    assert_int_equal(json_node_member(root, "intervals")->count, 1);
-    assert_non_null(strstr(json_node_string(json_node_member(root, "summary"), "stopped_by"), "frame 2"));
-    json_node_free(root);
-    EXPECT_TOOL(0, "replay", split_model.text, cache.text, "--weld", "0.5");
-    recorded_free(&parting);
-}
-
 /* A sliver is inserted between the triangles of the file, so that later ones get other numbers. */
 static void collapsed_triangles_are_dropped_and_counted(void **state) {
     (void)state;
@@ -386,7 +370,6 @@ int main(void) {
         cmocka_unit_test(welding_closes_the_mesh),
         cmocka_unit_test(suggests_welding_where_it_would_close_the_first_frame),
         cmocka_unit_test(welds_within_a_distance),
-        cmocka_unit_test(vertices_that_part_are_an_error),
         cmocka_unit_test(collapsed_triangles_are_dropped_and_counted),
         cmocka_unit_test(ignores_the_pairs_of_a_list),
         cmocka_unit_test(names_the_line_of_a_bad_list),

@@ -48,17 +48,61 @@ static bool label_vertices(const mesh_file *file, uint32_t **out, io_error *erro
     return true;
 }
 
-static bool weld_first_frame(weld_choice welding, recorded_object *o, io_error *error) {
+/* Takes apart, of what lies together in the first frame, what comes apart in any other. A frame that cannot be read is passed over:
+ * that is said when its turn comes. */
+static bool part_in_frames(recorded_object *o, weld *w, weld_parting *parting, bool *changed,
+                           io_error *error) {
+    const uint32_t count = recorded_object_frame_count(o);
+    *changed = false;
+    for (uint32_t frame = 0; frame < count; frame++) {
+        uint32_t parted;
+        if (!read_file_positions(o, frame, NULL)) continue;
+        if (!weld_part(w, o->file_positions, &parted, error)) return false;
+        if (parted == UINT32_MAX) continue;
+        *changed = true;
+        if (parting->vertex == UINT32_MAX) *parting = (weld_parting){.vertex = parted, .frame = frame};
+    }
+    return true;
+}
+
+/* Frames in files of their own may come late, or be pipes, so they are read once, and in their turn. */
+static bool weld_in_all_frames(recorded_object *o, weld *w, weld_parting *parting, io_error *error) {
+    const uint32_t joined = w->vertex_count;
+    bool changed = joined < w->file_vertex_count && o->frames != NULL && animation_is_one_file(o->frames);
+    /* Where distances are allowed, another vertex may stand for those that are left, which must lie near it in every frame. */
+    while (changed) {
+        if (!part_in_frames(o, w, parting, &changed, error)) return false;
+        if (w->epsilon == 0.0) break;
+    }
+    parting->count = w->vertex_count - joined;
+    return true;
+}
+
+bool recorded_object_weld(recorded_object *o, const uint32_t *parts, double epsilon, weld *out,
+                          weld_parting *parting, io_error *error) {
+    weld w;
+    *parting = (weld_parting){.vertex = UINT32_MAX};
+    if (!read_file_positions(o, 0, error) ||
+        !weld_begin(o->file_positions, o->file.vertex_count, parts, epsilon, &w, error))
+        return false;
+    if (!weld_in_all_frames(o, &w, parting, error) ||
+        !weld_finish(&w, o->file.triangles, o->file.triangle_count, error)) {
+        weld_free(&w);
+        return false;
+    }
+    *out = w;
+    return true;
+}
+
+static bool weld_as_chosen(weld_choice welding, recorded_object *o, io_error *error) {
     o->vertex_count = o->file.vertex_count;
     o->triangle_count = o->file.triangle_count;
     const bool by_format = welding.rule == WELD_BY_FORMAT && recorded_object_split_format(o) != NULL;
     if (welding.rule != WELD_WITHIN && !by_format) return true;
-    if (!read_file_positions(o, 0, error)) return false;
     uint32_t *parts = NULL;
     if (by_format && o->file.format == MESH_FORMAT_GLTF && !label_vertices(&o->file, &parts, error))
         return false;
-    o->welded = weld_create(o->file_positions, o->file.vertex_count, o->file.triangles,
-                            o->file.triangle_count, parts, welding.epsilon, &o->weld, error);
+    o->welded = recorded_object_weld(o, parts, welding.epsilon, &o->weld, &o->parting, error);
     free(parts);
     if (!o->welded) return false;
     o->vertex_count = o->weld.vertex_count;
@@ -78,7 +122,7 @@ bool recorded_object_open(const recorded_source *source, weld_choice welding, co
                           recorded_object *out, io_error *error) {
     recorded_object o = {.source = *source, .frames_hash = PROVENANCE_HASH_START};
     if (!mesh_file_read(source->model_path, &o.file, error) || !open_frames(frames, &o, error) ||
-        !weld_first_frame(welding, &o, error)) {
+        !weld_as_chosen(welding, &o, error)) {
         recorded_object_close(&o);
         return false;
     }

@@ -25,8 +25,15 @@ typedef struct weld_choice {
         WELD_NOTHING,
         WELD_WITHIN
     } rule;
-    double epsilon; /* WITHIN: how far they lie apart at most in the first frame; 0: not at all */
+    double epsilon; /* WITHIN: how far they lie apart at most; 0: not at all */
 } weld_choice;
+
+/* Vertices that lie together in the first frame and come apart in another one, so that they are not joined. */
+typedef struct weld_parting {
+    uint32_t count; /* so many more vertices are left than if the first frame decided; 0: none comes apart */
+    uint32_t vertex,
+        frame; /* the first of them that was found, by its number in the file, and the frame by its index */
+} weld_parting;
 
 typedef struct recorded_object {
     recorded_source source;
@@ -34,6 +41,7 @@ typedef struct recorded_object {
     animation *frames; /* NULL: it rests */
     bool welded;
     weld weld;
+    weld_parting parting;                  /* when welded */
     double *file_positions;                /* of the frame read last */
     uint32_t vertex_count, triangle_count; /* welded, as in the mesh */
     uint32_t first_vertex, first_triangle; /* in the mesh of the recording */
@@ -48,6 +56,11 @@ const char *recorded_object_split_format(const recorded_object *object);
 bool recorded_object_open(const recorded_source *source, weld_choice welding, const animation_options *frames,
                           recorded_object *out, io_error *error);
 void recorded_object_close(recorded_object *object);
+
+/* Joins what lies within epsilon in all frames, or, where each frame has a file of its own, in the first one. parts: as for
+ * weld_begin. On false *out is untouched. */
+bool recorded_object_weld(recorded_object *object, const uint32_t *parts, double epsilon, weld *out,
+                          weld_parting *parting, io_error *error);
 
 /* 1 for an object that rests. */
 uint32_t recorded_object_frame_count(const recorded_object *object);

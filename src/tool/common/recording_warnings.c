@@ -1,9 +1,11 @@
 /* Warnings about a mesh, which a person should know before trusting its results. */
+#include "src/io/near_seams.h"
 #include "src/io/path_name.h"
 #include "src/tool/common/command.h"
 #include "src/tool/common/recording.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 
 enum { COMPONENTS_NAMED = 3 };
 
@@ -75,18 +77,15 @@ static bool object_is_open(const recording *r, const recorded_object *object) {
     return false;
 }
 
-/* Would welding the vertices that are equal in the first frame leave no open edge? */
+/* Would welding the vertices that are equal in all frames leave no open edge? */
 static bool welding_closes(const recording *r, recorded_object *object) {
     weld welded;
-    io_error error;
-    const double *positions = object->file.positions;
-    if (object->frames != NULL) {
-        if (!animation_read(object->frames, 0, object->file_positions, &error)) return false;
-        positions = object->file_positions;
-    }
-    if (!weld_create(positions, object->file.vertex_count, object->file.triangles,
-                     object->file.triangle_count, NULL, 0.0, &welded, NULL))
+    weld_parting parting;
+    if (!recorded_object_weld(object, NULL, 0.0, &welded, &parting, NULL)) return false;
+    if (welded.vertex_count == welded.file_vertex_count) {
+        weld_free(&welded);
         return false;
+    }
     cscd_mesh *mesh = NULL;
     cscd_object_desc desc =
         cscd_object_of_triangles(welded.vertex_count, welded.triangle_count, welded.triangles);
@@ -126,6 +125,12 @@ static void warn_object(const recording *r, recorded_object *object) {
     if (object->welded && format != NULL && object->weld.vertex_count < object->file.vertex_count)
         warn("%s%sthe %u vertices of the %s file are joined to %u; --weld none keeps them apart", name, colon,
              object->file.vertex_count, format, object->weld.vertex_count);
+    if (object->welded && object->parting.count > 0)
+        note(
+            "%s%s%u vertices that lie on others in the first frame come apart later, and are not joined (the first is vertex %u, in "
+            "frame %d)",
+            name, colon, object->parting.count, object->parting.vertex,
+            r->frame_numbers[object->parting.frame]);
     warn_repairs(name, colon, &object->file.repairs);
     if (object->welded && object->weld.collapsed_triangles > 0)
         warn("%s%swelding collapsed %u triangle%s, left out from here on", name, colon,
@@ -151,9 +156,46 @@ static void warn_numbers(const recording *r) {
     }
 }
 
+/* In the first frame. What lies on others there alone must not be joined, and what welding has joined is. */
+static bool find_near_seams(const recording *r, uint32_t index, near_seams *out) {
+    recorded_object *object = &r->objects[index];
+    if (object->welded && object->parting.count > 0) return false;
+    double *positions = malloc((size_t)object->vertex_count * 3 * sizeof *positions);
+    near_seams near;
+    const bool found = positions != NULL && recorded_object_read(object, 0, positions, NULL) &&
+                       near_seams_find(r->mesh, index, positions, &near) &&
+                       !(object->welded && near.gap > 0.0 && near.distance <= object->weld.epsilon);
+    free(positions);
+    if (found) *out = near;
+    return found;
+}
+
+/* Vertices that lie on each other, or all but, and are not joined. */
+static void warn_seams(const recording *r, uint32_t index) {
+    recorded_object *object = &r->objects[index];
+    const char *name = r->object_count > 1 ? object->source.name : "",
+               *colon = r->object_count > 1 ? ": " : "";
+    near_seams near;
+    if (!object_is_open(r, object)) return;
+    if (!object->welded && welding_closes(r, object)) {
+        warn("%s%svertices are split along seams; --weld exact would close %s", name, colon,
+             r->object_count > 1 ? "it" : "the mesh");
+    } else if (find_near_seams(r, index, &near)) {
+        char distance[48] = "", option[24] = "exact";
+        if (near.gap > 0.0) {
+            snprintf(distance, sizeof distance, " but for %.2g", near.gap);
+            snprintf(option, sizeof option, "%.2g", near.distance);
+        }
+        warn("%s%s%u of %u open edges lie on others%s%s; --weld %s joins them", name, colon,
+             near.joined_edges, near.open_edges, object->frames != NULL ? " in the first frame" : "",
+             distance, option);
+    }
+}
+
 void recording_warn(recording *r) {
     for (uint32_t i = 0; i < r->object_count; i++) warn_object(r, &r->objects[i]);
     warn_numbers(r);
+    for (uint32_t i = 0; i < r->object_count; i++) warn_seams(r, i);
     note_open_surfaces(r);
     uint32_t defective = 0;
     for (uint32_t i = 0; i < cscd_mesh_component_count(r->mesh); i++) {
@@ -162,12 +204,4 @@ void recording_warn(recording *r) {
             warn_component(r, i, &component);
     }
     if (defective > COMPONENTS_NAMED) warn("%u more components are like that", defective - COMPONENTS_NAMED);
-    for (uint32_t i = 0; i < r->object_count; i++) {
-        recorded_object *object = &r->objects[i];
-        if (object->welded || !object_is_open(r, object) || !welding_closes(r, object)) continue;
-        if (r->object_count == 1)
-            warn("vertices are split along seams; --weld exact would close the mesh");
-        else
-            warn("%s: vertices are split along seams; --weld exact would close it", object->source.name);
-    }
 }

@@ -29,8 +29,8 @@ static const option_row of_frames[] = {
     {"wait-for-files", "S", read_seconds, offsetof(recording_options, wait_seconds),
      "try again for up to S seconds where a file cannot be read, as a network file system shows it late (default: not at all)"},
     {"weld", "exact|none|EPS", read_weld, offsetof(recording_options, weld),
-     "join vertices that coincide, or lie within EPS, in the first frame (default: exact for STL and glTF, else "
-     "none)"},
+     "join vertices that coincide, or lie within EPS, in all frames; of a file for each frame, in the first (default: exact for STL "
+     "and glTF, else none)"},
     {"threads", "N", read_threads, offsetof(recording_options, thread_count),
      "default 0: one per processor, and one for a mesh of less than 1,000 triangles; the results are the same"},
 };
