@@ -108,18 +108,17 @@ static size_t shorten_face(uint32_t *corners, size_t count) {
 
 bool mesh_builder_end_face(mesh_builder *builder) {
     const size_t start = corner_start(builder), count = builder->corners.count - start;
-    size_t left = shorten_face((uint32_t *)builder->corners.data + start, count);
+    uint32_t *corners = count > 0 ? (uint32_t *)builder->corners.data + start : NULL;
+    const size_t shortened = shorten_face(corners, count), left = shortened < 3 ? 0 : shortened;
     mesh_repairs *repairs = &builder->repairs;
     const uint32_t face = (uint32_t)builder->faces.count - 1;
-    if (left < 3) {
+    if (left == 0) {
         note_repair(face, &repairs->dropped, &repairs->first_dropped);
-        left = 0;
     } else if (left < count) {
         note_repair(face, &repairs->shortened, &repairs->first_shortened);
     }
     builder->corners.count = start + left;
-    builder->faces_hash =
-        mesh_file_hash(builder->faces_hash, (uint32_t *)builder->corners.data + start, left);
+    builder->faces_hash = mesh_file_hash(builder->faces_hash, corners, left);
     ((built_face *)builder->faces.data)[builder->faces.count - 1].corner_end = builder->corners.count;
     if (left > 0) builder->triangle_count += left - 2;
     return builder->triangle_count <= MESH_COUNT_LIMIT ||

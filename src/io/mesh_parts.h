@@ -11,6 +11,10 @@ typedef struct mesh_parts {
     uint32_t count;        /* 0: the file names none, and there are no labels */
     char **names;          /* count of them, each another one */
     uint32_t *of_triangle; /* per triangle: which part, or NO_MESH_PART */
+
+    /* A hash table of the names, for mesh_parts_find: parts + 1, 0 for a free place. */
+    uint32_t *places;
+    size_t place_count; /* a power of 2, more than twice the parts; 0: there is no table yet */
 } mesh_parts;
 
 /* Frees names and labels; a zeroed struct is fine. */

@@ -1,6 +1,7 @@
 /* Reads back what `cscd replay --json` wrote. */
 #include "src/tool/summary_file.h"
 
+#include "src/io/json_room.h"
 #include "src/io/pipe_file.h"
 #include "src/io/text_encoding.h"
 #include "src/tool/common/stages.h"
@@ -286,6 +287,10 @@ static int line_of(const char *text, size_t place) {
 /* NULL with the reason. */
 static json_object *parse_text(const char *path, const char *text, size_t size, io_error *error) {
     static const char expected[] = "expected what cscd replay --json wrote, to its end";
+    if (!json_has_room(text, size)) {
+        io_fail(error, "%s: more objects than one in ten bytes; %s", path, expected);
+        return NULL;
+    }
     struct json_tokener *tokener = size <= INT_MAX ? json_tokener_new() : NULL;
     if (tokener == NULL) {
         io_fail(error, "%s: %s", path, size <= INT_MAX ? "out of memory" : "more than 2 GB");

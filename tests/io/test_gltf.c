@@ -264,6 +264,12 @@ static void shows_the_default_scene(void **state) {
 #define TWO_NODES "\"nodes\":[{\"mesh\":0},{\"mesh\":0,\"translation\":[0,0,5]}]," ONE_TRIANGLE
     check_nodes("\"scene\":1,\"scenes\":[{\"nodes\":[0]},{\"nodes\":[1]}]," TWO_NODES, 1, behind, once);
     check_nodes("\"scenes\":[{\"nodes\":[1,1]},{\"nodes\":[0]}]," TWO_NODES, 1, behind, once);
+    /* A child that the scene names before its parent, which has another one. */
+    static const uint32_t twice[] = {0, 1, 2, 3, 4, 5};
+    static const double both[] = {0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 5, 1, 0, 5, 0, 2, 5};
+    check_nodes("\"scenes\":[{\"nodes\":[1,0,2]}],\"nodes\":[{\"children\":[1,2]},{\"mesh\":0},{\"mesh\":0,"
+                "\"translation\":[0,0,5]}]," ONE_TRIANGLE,
+                2, both, twice);
 }
 
 /* ---- targets and skins ------------------------------------------------------------------------------- */

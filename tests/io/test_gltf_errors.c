@@ -163,6 +163,23 @@ static void refuses_accessors_out_of_bounds(void **state) {
     check_accessor("{\"bufferView\":0,\"componentType\":5126,\"count\":4}", VIEW, "type is missing", "VEC3");
 }
 
+/* Elements without data are zeros: of vertices, of sparse ones, and of indices. */
+static void refuses_more_zeros_than_bytes(void **state) {
+    (void)state;
+    check_accessor("{\"componentType\":5126,\"type\":\"VEC3\",\"count\":2147483647}", VIEW,
+                   "accessor 0: has 2147483647 elements without a bufferView", "the bytes of the file");
+    check_accessor("{\"componentType\":5126,\"type\":\"VEC3\",\"count\":2147483646,\"sparse\":{\"count\":1,"
+                   "\"indices\":{\"bufferView\":0,\"componentType\":5125},\"values\":{\"bufferView\":0}}}",
+                   VIEW, "accessor 0: has 2147483646 elements without a bufferView", "the bytes of the file");
+    gltf_fixture fixture = {0};
+    gltf_fixture_array(&fixture, 5126, "VEC3", 12, positions);
+    gltf_fixture_accessor(&fixture, "{\"componentType\":5125,\"type\":\"SCALAR\",\"count\":2100000000}");
+    mesh_check_error(
+        gltf_fixture_glb(&fixture, "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{"
+                                   "\"POSITION\":0},\"indices\":1}]}]"),
+        ": ", "accessor 1: has 2100000000 elements without a bufferView", "the bytes of the file");
+}
+
 static void refuses_sparse_indices_that_do_not_rise(void **state) {
     (void)state;
     static const double cases[][2] = {{2, 2}, {2, 1}, {0, 4}};
@@ -210,6 +227,16 @@ static void refuses_wrong_containers(void **state) {
     mesh_check_error(FILE_OF("mesh.gltf", "[1]"), ": ", "no object", "");
 }
 
+/* Each object would take a thousand bytes of memory. */
+static void refuses_nothing_but_objects(void **state) {
+    (void)state;
+    char text[8000] = "{\"asset\":{\"version\":\"2.0\"},\"nodes\":[{}";
+    for (int i = 0; i < 2000; i++) strcat(text, ",{}");
+    strcat(text, "]}");
+    mesh_check_error((file_bytes){"mesh.gltf", text, strlen(text)}, ": ",
+                     "more objects than one in ten bytes", "a glTF file");
+}
+
 static void refuses_other_versions_and_extensions(void **state) {
     (void)state;
 #define ASSET(version) FILE_OF("mesh.gltf", "{\"asset\":{" version "}}")
@@ -243,8 +270,10 @@ int main(void) {
         cmocka_unit_test(refuses_wrong_meshes),
         cmocka_unit_test(refuses_wrong_numbers),
         cmocka_unit_test(refuses_accessors_out_of_bounds),
+        cmocka_unit_test(refuses_more_zeros_than_bytes),
         cmocka_unit_test(refuses_sparse_indices_that_do_not_rise),
         cmocka_unit_test(refuses_wrong_containers),
+        cmocka_unit_test(refuses_nothing_but_objects),
         cmocka_unit_test(refuses_other_versions_and_extensions),
         cmocka_unit_test(survives_damage),
     };

@@ -2,6 +2,7 @@
 #include "tests/support/io/mesh_check.h"
 #include "tests/support/test.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -139,6 +140,28 @@ static void check_parts(const char *text, const char *const *names, const uint32
     mesh_check_parts((file_bytes){"mesh.obj", text, strlen(text)}, names, labels);
 }
 
+/* Each of many names is one part, wherever it comes again. */
+static void finds_many_names_again(void **state) {
+    (void)state;
+    enum { NAMES = 3000 };
+    char *text = malloc(60 * NAMES), number[16];
+    mesh_file mesh = {0};
+    io_error error = {""};
+    size_t end = (size_t)sprintf(text, SQUARE);
+    for (int i = 0; i < 2 * NAMES; i++)
+        end += (size_t)sprintf(text + end, "o n%d\nf 1 2 3\n", i < NAMES ? i : 2 * NAMES - 1 - i);
+    if (!mesh_check_read((file_bytes){"mesh.obj", text, end}, &mesh, &error)) fail_msg("%s", error.text);
+    assert_int_equal(mesh.parts.count, NAMES);
+    for (uint32_t i = 0; i < NAMES; i++) {
+        snprintf(number, sizeof number, "n%u", i);
+        assert_string_equal(mesh.parts.names[i], number);
+        assert_int_equal(mesh.parts.of_triangle[i], i);
+        assert_int_equal(mesh.parts.of_triangle[2 * NAMES - 1 - i], i);
+    }
+    mesh_file_free(&mesh);
+    free(text);
+}
+
 static void names_parts(void **state) {
     (void)state;
     const uint32_t none = NO_MESH_PART;
@@ -202,6 +225,7 @@ int main(void) {
         cmocka_unit_test(refuses_bad_faces),
         cmocka_unit_test(repairs_faces),
         cmocka_unit_test(names_parts),
+        cmocka_unit_test(finds_many_names_again),
         cmocka_unit_test(refuses_indices_out_of_range),
         cmocka_unit_test(refuses_incomplete_meshes),
         cmocka_unit_test(shows_long_tokens_cut),

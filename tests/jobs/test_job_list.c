@@ -73,13 +73,16 @@ static void a_model_is_enough(void **state) {
 }
 
 static void wrong_lines_say_what_is_wrong(void **state) {
-    static const struct {
+    static char many_objects[8000];
+    for (int k = 0; k < 2000; k++) strcat(many_objects, k == 0 ? "[{}" : ",{}");
+    const struct {
         const char *text, *error;
     } wrong[] = {
         {"{\"model\": \"a.obj\"", "the line ends too early"},
         {"{\"model\": \"a.obj\",}", "no valid JSON at character 19"},
         {"{\"model\": \"a.obj\"} x", "no valid JSON at character 20"},
         {"[\"a.obj\"]", "a job must be an object"},
+        {many_objects, "more objects than one in ten bytes"},
         {"7", "a job must be an object"},
         {"null", "a job must be an object"},
         {"{\"modle\": \"a.obj\"}", "'modle' is no member of a job"},

@@ -171,6 +171,18 @@ static bool check_type(const gltf_element *element, const gltf_element *user, co
                      TEXT_CUT(type != NULL ? type : "missing", 20), expected, key, user->name);
 }
 
+/* Elements without a buffer view are zeros, which take no room in the file: a few bytes could claim billions of them. */
+static bool check_zeros(const gltf_document *document, const gltf_element *element,
+                        const gltf_accessor *accessor) {
+    uint64_t size = document->reader->size;
+    for (size_t i = 0; i < document->buffer_count; i++) size += document->buffers[i].size;
+    if (accessor->data != NULL || accessor->count <= size) return true;
+    return gltf_fail(element,
+                     "has %" PRIu32 " elements without a bufferView, expected at most %" PRIu64
+                     ", the bytes of the file",
+                     accessor->count, size);
+}
+
 bool gltf_accessor_open(gltf_document *document, const gltf_element *user, const char *key,
                         uint32_t components, gltf_accessor *out, bool *given) {
     uint32_t index = GLTF_NONE;
@@ -193,7 +205,8 @@ bool gltf_accessor_open(gltf_document *document, const gltf_element *user, const
     if (gltf_has(&element, "bufferView") &&
         !locate_elements(document, &element, count, size, &accessor.data, &accessor.stride))
         return false;
-    if (!read_sparse(document, &element, &accessor)) return false;
+    if (!read_sparse(document, &element, &accessor) || !check_zeros(document, &element, &accessor))
+        return false;
     *out = accessor;
     return true;
 }

@@ -1,6 +1,7 @@
 /* The JSON of a glTF file: members are asked for by name and type, and errors say which object has the fault. */
 #include "src/io/gltf/gltf_json.h"
 
+#include "src/io/json_room.h"
 #include "src/io/text_escape.h"
 
 #include <inttypes.h>
@@ -29,6 +30,11 @@ static bool fail_parse(file_reader *reader, size_t offset, size_t place, enum js
 gltf_value *gltf_json_parse(file_reader *reader, size_t offset, size_t size) {
     if (size > INT_MAX) {
         file_reader_fail(reader, "the JSON has %zu bytes, expected %d at most", size, INT_MAX);
+        return NULL;
+    }
+    if (!json_has_room(reader->bytes + offset, size)) {
+        file_reader_fail(reader,
+                         "the JSON has more objects than one in ten bytes, expected that of a glTF file");
         return NULL;
     }
     json_tokener *parser = json_tokener_new_ex(DEPTH_MAX);

@@ -59,11 +59,16 @@ static bool read_nodes(gltf_document *document, size_t mesh_count, size_t skin_c
     return true;
 }
 
-/* The node behind this one in the order of its tree, in which parents come first; GLTF_NONE behind the last one. */
-static uint32_t next_node(const gltf_nodes *nodes, uint32_t root, uint32_t index) {
-    if (nodes->nodes[index].first_child != GLTF_NONE) return nodes->nodes[index].first_child;
+/* The node behind this one and all that is below it, in the order of its tree; GLTF_NONE behind the last one. */
+static uint32_t node_behind(const gltf_nodes *nodes, uint32_t root, uint32_t index) {
     while (index != root && nodes->nodes[index].next_sibling == GLTF_NONE) index = nodes->nodes[index].parent;
     return index == root ? GLTF_NONE : nodes->nodes[index].next_sibling;
+}
+
+/* The next node in that order, in which parents come before their children. */
+static uint32_t next_node(const gltf_nodes *nodes, uint32_t root, uint32_t index) {
+    const uint32_t child = nodes->nodes[index].first_child;
+    return child != GLTF_NONE ? child : node_behind(nodes, root, index);
 }
 
 /* Walks up from a node that no root leads to: after as many steps as there are nodes it is on the circle. */
@@ -89,8 +94,13 @@ static bool order_nodes(gltf_document *document, gltf_nodes *nodes) {
     return ordered == nodes->count || fail_circle(document, nodes);
 }
 
+/* What is below a node that is shown is shown already, and is not walked through again: a scene may name every node of a chain. */
 static void show_tree(gltf_nodes *nodes, uint32_t root) {
-    for (uint32_t i = root; i != GLTF_NONE; i = next_node(nodes, root, i)) nodes->nodes[i].shown = true;
+    for (uint32_t i = root; i != GLTF_NONE;) {
+        const bool before = nodes->nodes[i].shown;
+        nodes->nodes[i].shown = true;
+        i = before ? node_behind(nodes, root, i) : next_node(nodes, root, i);
+    }
 }
 
 /* The scene that the file names, else its first; a file without scenes shows all nodes. */

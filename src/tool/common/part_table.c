@@ -140,7 +140,8 @@ static bool label_triangles(part_table *table, part_names *out, io_error *error)
     }
     out->count = table->names.count;
     out->names = table->names.names;
-    table->names = (mesh_parts){0};
+    table->names.count = 0; /* they are the caller's now */
+    table->names.names = NULL;
     return true;
 }
 

@@ -2,6 +2,7 @@
 #include "src/tool/jobs/job_line.h"
 
 #include "src/io/growable.h"
+#include "src/io/json_room.h"
 
 #include <json-c/json.h>
 #include <limits.h>
@@ -145,6 +146,10 @@ static bool read_members(line_reader *r, job_line *out) {
 /* ---- lines ----------------------------------------------------------------------------------------------- */
 
 static json_object *parse_line(const char *text, size_t length, io_error *error) {
+    if (!json_has_room(text, length)) {
+        io_fail(error, "more objects than one in ten bytes, expected a job");
+        return NULL;
+    }
     json_tokener *parser = length < INT_MAX ? json_tokener_new_ex(DEPTH_MAX) : NULL;
     if (parser == NULL) {
         io_fail(error, "out of memory");

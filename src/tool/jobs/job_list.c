@@ -10,7 +10,9 @@
 #include <string.h>
 
 static bool line_is_blank(const char *text, size_t length) {
-    return strspn(text, " \t\r\n") >= length;
+    size_t i = 0;
+    while (i < length && strchr(" \t\r", text[i]) != NULL) i++;
+    return i == length;
 }
 
 bool job_list_fail(const job_list *list, uint32_t job, const char *reason, io_error *error) {

@@ -11,14 +11,33 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 
+/* ---- lines --------------------------------------------------------------------------------------------------------- */
+
+/* NULL: there is none. */
+static const merged_line *line_of(const job_merge *m, uint32_t job) {
+    const merged_line *page = m->pages[job / MERGE_PAGE];
+    return page != NULL && page[job % MERGE_PAGE].length > 0 ? &page[job % MERGE_PAGE] : NULL;
+}
+
+/* Where the line of a job goes, zeroed at first; NULL: memory is short. */
+static merged_line *place_of(job_merge *m, uint32_t job) {
+    merged_line **page = &m->pages[job / MERGE_PAGE];
+    if (*page == NULL) *page = calloc(MERGE_PAGE, sizeof **page);
+    return *page != NULL ? &(*page)[job % MERGE_PAGE] : NULL;
+}
+
+static uint32_t page_count(const job_merge *m) {
+    return m->jobs / MERGE_PAGE + 1;
+}
+
 /* ---- one file ------------------------------------------------------------------------------------------------------ */
 
 static bool begin_merge(job_merge *m, const job_record *first, uint32_t file, io_error *error) {
     m->first = file;
     m->list = first->list;
     m->jobs = first->jobs;
-    m->lines = calloc(m->jobs, sizeof *m->lines);
-    return m->lines != NULL || io_fail(error, "out of memory for %u jobs", m->jobs);
+    m->pages = calloc(page_count(m), sizeof *m->pages);
+    return m->pages != NULL || io_fail(error, "out of memory for %u jobs", m->jobs);
 }
 
 /* A job that failed may have been run again, by the same shard. */
@@ -29,12 +48,13 @@ static bool replaces_failure(const merged_line *before, uint32_t file) {
 static bool place_line(job_merge *m, const merged_line *line, size_t number, io_error *error) {
     const job_record *record = &line->record;
     const char *path = m->paths[line->file];
-    if (m->lines == NULL && !begin_merge(m, record, line->file, error)) return false;
+    if (m->pages == NULL && !begin_merge(m, record, line->file, error)) return false;
     if (record->list != m->list || record->jobs != m->jobs)
         return io_fail(error,
                        "%s:%zu: these are results of another list or of other options than those of %s", path,
                        number, m->paths[m->first]);
-    merged_line *place = &m->lines[record->job];
+    merged_line *place = place_of(m, record->job);
+    if (place == NULL) return io_fail(error, "out of memory for %u jobs", m->jobs);
     if (place->length > 0 && place->file != line->file && strcmp(m->paths[place->file], path) == 0)
         return io_fail(error, "%s is named twice", path);
     if (place->length > 0 && !replaces_failure(place, line->file))
@@ -84,8 +104,8 @@ static void name_missing(job_merge *m) {
     size_t used = 0, size = sizeof m->missing;
     for (uint32_t i = 0, end; i < m->jobs; i = end) {
         end = i + 1;
-        if (m->lines[i].length > 0) continue;
-        while (end < m->jobs && m->lines[end].length == 0) end++;
+        if (line_of(m, i) != NULL) continue;
+        while (end < m->jobs && line_of(m, end) == NULL) end++;
         m->sums.missing += end - i;
         if (++ranges > RANGES_NAMED) continue;
         used += (size_t)snprintf(text + used, size - used, "%s%u", ranges > 1 ? ", " : "", i + 1);
@@ -95,7 +115,7 @@ static void name_missing(job_merge *m) {
 }
 
 static bool prove_whole(job_merge *m, io_error *error) {
-    if (m->lines == NULL) return io_fail(error, "%s: there are no results", m->paths[0]);
+    if (m->pages == NULL) return io_fail(error, "%s: there are no results", m->paths[0]);
     name_missing(m);
     return m->sums.missing == 0 || m->rule == MERGE_WHAT_IS_THERE ||
            io_fail(
@@ -111,7 +131,7 @@ bool job_merge_read(const char *const *paths, size_t count, job_merge_rule rule,
     for (uint32_t i = 0; i < count && good; i++) good = read_file(&m, i, error);
     good = good && prove_whole(&m, error);
     for (uint32_t i = 0; i < m.jobs && good; i++)
-        if (m.lines[i].length > 0) job_sums_add(&m.sums, &m.lines[i].record);
+        if (line_of(&m, i) != NULL) job_sums_add(&m.sums, &line_of(&m, i)->record);
     if (!good) job_merge_free(&m);
     if (good) *out = m;
     return good;
@@ -183,11 +203,12 @@ bool job_merge_visit(const job_merge *m, job_line_taker *take, void *user, io_er
     allow_files(m->path_count);
     line_copier c = {.files = calloc(m->path_count, sizeof *c.files), .file_count = m->path_count};
     bool good = c.files != NULL || io_fail(error, "out of memory");
-    for (uint32_t i = 0; i < m->jobs && good && !interrupted(); i++)
-        good = m->lines[i].length == 0
-                   ? take_missing(m, i, take, user, error)
-                   : read_again(m, &c, &m->lines[i], error) &&
-                         take(user, c.text, m->lines[i].length - 1, &m->lines[i].record, error);
+    for (uint32_t i = 0; i < m->jobs && good && !interrupted(); i++) {
+        const merged_line *line = line_of(m, i);
+        good = line == NULL ? take_missing(m, i, take, user, error)
+                            : read_again(m, &c, line, error) &&
+                                  take(user, c.text, line->length - 1, &line->record, error);
+    }
     if (c.files != NULL) close_files(&c);
     free(c.files);
     free(c.text);
@@ -195,6 +216,7 @@ bool job_merge_visit(const job_merge *m, job_line_taker *take, void *user, io_er
 }
 
 void job_merge_free(job_merge *m) {
-    free(m->lines);
+    for (uint32_t i = 0; m->pages != NULL && i < page_count(m); i++) free(m->pages[i]);
+    free(m->pages);
     *m = (job_merge){.paths = NULL};
 }

@@ -16,13 +16,14 @@ typedef enum job_merge_rule {
     MERGE_WHAT_IS_THERE /* jobs may be missing, and a last line torn: its shard may be running */
 } job_merge_rule;
 
-enum { MERGE_NAMED_SIZE = 256 };
+/* A line is some hundred bytes long: so the memory goes with the lines that are there, and not with the jobs that they speak of. */
+enum { MERGE_NAMED_SIZE = 256, MERGE_PAGE = 64 };
 
 typedef struct job_merge {
     const char *const *paths;
     size_t path_count;
     job_merge_rule rule;
-    merged_line *lines;   /* of each job */
+    merged_line **pages;  /* the lines, MERGE_PAGE jobs each; NULL: there is none of these */
     uint32_t jobs, first; /* first: the file that the first line was in */
     uint64_t list;
     job_sums sums;

@@ -1,6 +1,8 @@
 /* What every line of results begins with, and the sums of many lines. */
 #include "src/tool/jobs/job_record.h"
 
+#include "src/io/json_room.h"
+
 #include <inttypes.h>
 #include <json-c/json.h>
 #include <limits.h>
@@ -71,7 +73,7 @@ static bool read_members(json_object *root, job_record *out) {
 }
 
 bool job_record_read(const char *text, size_t length, job_record *out) {
-    json_tokener *parser = length < INT_MAX ? json_tokener_new() : NULL;
+    json_tokener *parser = length < INT_MAX && json_has_room(text, length) ? json_tokener_new() : NULL;
     if (parser == NULL) return false;
     json_object *root = json_tokener_parse_ex(parser, text, (int)length);
     const bool whole = root != NULL && json_tokener_get_parse_end(parser) == length;
