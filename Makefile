@@ -1,6 +1,6 @@
 # cscd: `make demo` and `make test` do all their own set-up; `make help` lists the rest.
 #
-#   CONFIG=release|debug|sanitize|tsan|scalar   CC=gcc|clang   GSL=0   CHARGE=0   EXPAT=0   DYNAMIC=1   WERROR=1   HOST=...   `make -j` as usual
+#   CONFIG=release|debug|sanitize|fuzz|tsan|scalar   CC=gcc|clang   GSL=0   CHARGE=0   EXPAT=0   DYNAMIC=1   WERROR=1   HOST=...   `make -j` as usual
 # GSL=0 builds without GSL (GPL-3): with our own guesses of cubic roots, and the same results, bit for bit.
 # CHARGE=0 leaves out the dense solver of plans by charge, and with it LAPACKE and OpenBLAS; plans by charge are made all the same.
 # EXPAT=0 builds a tool that does not read GIFTI surfaces, as on a machine where pkg-config finds no expat; the library never needs it.
@@ -45,10 +45,12 @@ OPTIMISE_debug    := -O0 -g3
 # Sanitizers name lines; without the names of variables, programs are half as large.
 OPTIMISE_sanitize := -O1 -g1 -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=all
 OPTIMISE_tsan     := -O1 -g1 -fno-omit-frame-pointer -fsanitize=thread
+# Fuzzing that follows the paths of the code, by clang alone: see fuzz-readers.
+OPTIMISE_fuzz     := -O1 -g1 -fno-omit-frame-pointer -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all
 # The scalar twin: vector units must compute the same, bit for bit.
 OPTIMISE_scalar   := -O2 -g -DCSCD_SCALAR -fno-tree-vectorize
 ifeq ($(OPTIMISE_$(CONFIG)),)
-$(error CONFIG=$(CONFIG) is unknown: use release, debug, sanitize, tsan or scalar)
+$(error CONFIG=$(CONFIG) is unknown: use release, debug, sanitize, fuzz, tsan or scalar)
 endif
 
 # The headers refuse these, too (src/core/floating.h), but clang does not tell them of each.
@@ -216,7 +218,7 @@ COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 # What installs packages; a build that leaves expat out on purpose does not ask for it.
 PACKAGES = GSL=$(GSL) CHARGE=$(CHARGE) EXPAT=$(if $(WITHOUT_EXPAT),0,1) .ci/packages
 
-.PHONY: all python python-package wheel wheels test-wheels sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-charge bench-peers bench-instructions referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender blender-extension test-vtk windows windows-libraries windows-zip test-windows test-windows-run test-bridges test-farm test-mutants test-aarch64 test-s390x wasm test-wasm test-riscv64 deb test-deb test-builds cscd-mpi python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces test-fuzz test-faults FORCE
+.PHONY: all python python-package wheel wheels test-wheels sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-charge bench-peers bench-instructions referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender blender-extension test-vtk windows windows-libraries windows-zip test-windows test-windows-run test-bridges test-farm test-mutants test-aarch64 test-s390x wasm test-wasm test-riscv64 deb test-deb test-builds cscd-mpi python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces fuzz-readers test-fuzz test-faults FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -501,6 +503,15 @@ test-fuzz: packages
 	@$(MAKE) --no-print-directory CONFIG=sanitize $(FUZZERS)
 	@MAKERS=$(BUILD) BUILD=$(BUILD_ROOT)/sanitize tests/fuzz/run.sh $(SECONDS) $(SEED)
 
+# Files of every format, or of FORMATS="gltf ply", that libFuzzer makes by the paths that they take through our code, SECONDS for each;
+# KEEP=1 keeps those that reach new code in tests/fuzz/corpus. It takes clang, and what comes with it on Debian as libclang-rt-*-dev.
+FORMATS ?=
+KEEP    ?= 0
+fuzz-readers:
+	@.ci/packages fuzzing
+	@$(MAKE) --no-print-directory CONFIG=fuzz CC='$(patsubst %gcc,%clang,$(CC))' $(BUILD_ROOT)/fuzz/tests/fuzz/coverage_target
+	@KEEP=$(KEEP) tests/fuzz/coverage.sh $(SECONDS) $(BUILD_ROOT)/fuzz/tests/fuzz/coverage_target $(BUILD_ROOT)/fuzz/found $(FORMATS)
+
 # Every command when memory or the disk runs out at each place, and when inputs end at each byte. SHARE=N: at every N-th place, from one
 # that SEED chooses, a hexadecimal number.
 SHARE ?= 1
@@ -637,7 +648,9 @@ help:
 	@echo 'make referee   pairs of triangles beside those of CGAL, tetgen and MeshLab (installs these; REFEREE=--quick)'
 	@echo 'make fuzz-elementary   elementary tests against exact answers, [SECONDS=60] [QUERIES=0] [SEED=1] [KIND=both]'
 	@echo 'make fuzz-surfaces   curves, patches and winding numbers against exact answers, [SCENES=1000000] [SEED=1]'
-	@echo 'make test-fuzz   damaged files of every format, and the two above, [SECONDS=60] for each kind, [SEED=1]'
+	@echo 'make fuzz-readers   files of every format by coverage-guided fuzzing, [SECONDS=60] for each, [FORMATS="gltf ply"] (installs clang);'
+	@echo '               KEEP=1 keeps those that reach new code in tests/fuzz/corpus'
+	@echo 'make test-fuzz   the kept files, damaged files of every format, and the two above, [SECONDS=60] for each kind, [SEED=1]'
 	@echo 'make test-faults   every command when memory, disk or an input ends early, [SHARE=1] of the places, from [SEED=1] on'
 	@echo 'make template  bundle the page of the reports, after changes in src/tool/report/web (needs node and npm)'
 	@echo 'make lint      format, file sizes, rooms, names, exported symbols'
@@ -759,8 +772,12 @@ $(BUILD)/tests/core/test_simd: $(TEST_LEVELS)
 # Whether there are baselines is a word on the command line, which a compiler cache looks at; at __has_include it does not.
 $(OBJECTS)/tests/support/methods.o: CFLAGS_ALL += $(if $(HAS_BASELINES),-DWITH_BASELINES)
 
-# A reader that one command has for itself.
-$(BUILD)/tests/fuzz/fuzz_readers: $(OBJECTS)/src/tool/summary_file.o
+# Readers that one command has for itself, and what damaged files and those of libFuzzer go through.
+READING_OBJECTS := $(call objects,$(addprefix tests/fuzz/,readings.c reading_memory.c tracker_reading.c) src/tool/summary_file.c)
+$(BUILD)/tests/fuzz/fuzz_readers $(BUILD)/tests/fuzz/coverage_target: $(READING_OBJECTS)
+# gold warns of hundreds of the sanitizer's own symbols.
+$(BUILD)/tests/fuzz/coverage_target: TEST_LINKER :=
+$(BUILD)/tests/fuzz/coverage_target: LINK_ALL += -fsanitize=fuzzer
 
 # A host in C++, which throws; and tests in C++.
 $(BUILD)/tests/core/test_exceptions: $(OBJECTS)/tests/core/throwing_host.o

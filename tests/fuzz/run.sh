@@ -1,6 +1,6 @@
 #!/bin/sh
-# Damages files of every format at random, and compares random scenes with exact answers: run.sh SECONDS SEED, a hexadecimal number, so
-# that a commit's hash will do. BUILD has the fuzzers, built with sanitizers; MAKERS the tool and models that make the files. Each kind
+# Reads the files that fuzzing has kept, and large ones, damages files of every format at random, and compares random scenes with exact
+# answers: run.sh SECONDS SEED, a hexadecimal number, so that a commit's hash will do. BUILD has the fuzzers, built with sanitizers; MAKERS the tool and models that make the files. Each kind
 # takes SECONDS. What fails is repeated by the same seed. Its last line is `N passed, M failed`.
 set -u
 cd "$(dirname "$0")/../.." || exit 1
@@ -26,6 +26,9 @@ try() {
 }
 
 readers=$BUILD/tests/fuzz/fuzz_readers
+try 'kept files' "$readers" --replay tests/fuzz/corpus/*
+tests/fuzz/large.py "$corpus/large" || exit 1
+try 'large files' "$readers" --replay "$corpus"/large/*
 try 'mesh files' "$readers" "$seconds" "$seed" "$corpus"/*.obj "$corpus"/*.off "$corpus"/*.stl "$corpus"/big.ply "$corpus"/little.ply \
     "$corpus"/text.ply
 try 'GIFTI' "$readers" "$seconds" "$seed" "$corpus"/*.gii
