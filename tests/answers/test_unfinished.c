@@ -26,12 +26,12 @@ static int remove_folder(void **state) {
 }
 
 static void write_box(FILE *file, uint32_t first, double x, double y, double z) {
-    static const char quads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
-                                     {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+    static const uint8_t quads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                        {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
     for (int i = 0; i < 8; i++) fprintf(file, "v %g %g %g\n", x + (i & 1), y + (i >> 1 & 1), z + (i >> 2));
     for (int i = 0; i < 6; i++) {
         fputc('f', file);
-        for (int k = 0; k < 4; k++) fprintf(file, " %u", first + (uint32_t)quads[i][k] + 1);
+        for (int k = 0; k < 4; k++) fprintf(file, " %u", first + quads[i][k] + 1);
         fputc('\n', file);
     }
 }
@@ -122,8 +122,8 @@ static void expect_unfinished(const char *command, const bad_frame *fault, uint3
 static void a_frame_that_cannot_be_read_comes_first(void **state) {
     (void)state;
     for (size_t i = 0; i < sizeof bad_frames / sizeof *bad_frames; i++) {
-        expect_unfinished("check", &bad_frames[i], 2 + i % 3, 0);
-        expect_unfinished("replay", &bad_frames[i], 2 + (i + 1) % 3, 0);
+        expect_unfinished("check", &bad_frames[i], (uint32_t)(2 + i % 3), 0);
+        expect_unfinished("replay", &bad_frames[i], (uint32_t)(2 + (i + 1) % 3), 0);
     }
     expect_unfinished("check", &bad_frames[0], 1, 0);
     expect_unfinished("replay", &bad_frames[0], 1, 0);
