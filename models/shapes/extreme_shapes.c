@@ -187,15 +187,16 @@ static void (*const makers[EXTREME_KINDS])(extreme_shape *, uint32_t) = {
     make_fan,  make_cylinder, make_bipyramid, make_comb,   make_needles,
     make_book, make_slivers,  make_spire,     make_sheets, make_pile};
 
-/* Most bend a little, as a whole; sheets and pages stay in their order. */
+/* Most bend a little, as a whole; sheets stay in their order, and slivers move by a part of what lies between them. */
 static void move_shape(extreme_shape *s, extreme_kind kind) {
     const bool flat = kind == EXTREME_SHEETS || kind == EXTREME_PILE;
+    const double way = kind == EXTREME_SLIVERS ? 0.1 / s->triangle_count : 1e-3;
     for (uint32_t v = 0; v < s->vertex_count; v++) {
         const double *p = s->x0 + 3 * (size_t)v;
         double *q = s->x1 + 3 * (size_t)v;
-        q[0] = p[0] + 1e-3 * p[1];
-        q[1] = p[1] - 1e-3 * p[0];
-        q[2] = p[2] + (flat ? 1e-3 : 1e-3 * sin(p[0] + 2.0 * p[1]));
+        q[0] = p[0] + way * p[1];
+        q[1] = p[1] - way * p[0];
+        q[2] = p[2] + (flat ? way : way * sin(p[0] + 2.0 * p[1]));
     }
 }
 

@@ -57,6 +57,9 @@ typedef struct bvh_level {
     /* Per child of a block, how its triangles lie around a vertex of very many triangles; NULL: there is no such vertex. */
     struct hub_volume *child_hubs;
 
+    /* Per child of a block, how its slivers lie; NULL: the mesh does not consist of slivers or large triangles. */
+    struct sliver_volume *child_slivers;
+
     /* The children of each block without any active triangle, which are not compared with each other; NULL: all
      * triangles are active. */
     uint8_t *inactive_lanes;
@@ -109,7 +112,7 @@ typedef struct bvh {
     double scale;
     bool still;             /* the last refit was to a moment: both ends of everything are the same */
     bool keeps_hub_pairs;   /* the traversal leaves out no pair because of a vertex of very many triangles */
-    double hub_distance;    /* for which child_hubs tell triangles apart */
+    double hub_distance;    /* for which child_hubs and child_slivers tell triangles apart */
     bool trees_mix_objects; /* some tree holds several objects */
     uint32_t *slots;        /* per triangle, where it is: 8 * leaf + lane */
 } bvh;

@@ -2,6 +2,7 @@
 #include "runtime/bvh/bvh.h"
 #include "runtime/bvh/bvh_hubs.h"
 #include "runtime/bvh/bvh_order.h"
+#include "runtime/bvh/bvh_slivers.h"
 
 #include <assert.h>
 #include <math.h>
@@ -253,8 +254,8 @@ cscd_status bvh_build(const cscd_mesh *mesh, bvh_regions regions, const double *
                             b.region_offsets[region + 1], &mesh->context->progress);
         }
         if (made) cut_chunks(&f);
-        made =
-            made && bvh_build_levels(&f, b.region_offsets) && bvh_mark_objects(&f) && bvh_allocate_hubs(&f);
+        made = made && bvh_build_levels(&f, b.region_offsets) && bvh_mark_objects(&f) &&
+               bvh_allocate_hubs(&f) && bvh_allocate_slivers(&f, positions);
     }
     free_builder(&b);
     if (!made) {
@@ -307,6 +308,7 @@ static void drop_levels(bvh *f) {
     cscd_context *context = f->mesh->context;
     bvh_free_objects(f);
     bvh_free_hubs(f);
+    bvh_free_slivers(f);
     bvh_free_levels(f);
     context_free(context, f->block_trees);
     f->block_trees = NULL;
@@ -346,7 +348,7 @@ cscd_status bvh_finish(bvh *f, bvh_regions regions, const object_set *sets, cons
     if (made) {
         cut_chunks(f);
         made = bvh_build_levels(f, b.region_offsets) && bvh_mark_objects(f) && bvh_allocate_hubs(f) &&
-               bvh_set_objects(f, sets) && bvh_set_active(f, active);
+               bvh_allocate_slivers(f, positions) && bvh_set_objects(f, sets) && bvh_set_active(f, active);
         if (!made) drop_levels(f);
     }
     free_builder(&b);
@@ -364,6 +366,7 @@ void bvh_free(bvh *f) {
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(context, blocks[i]);
     bvh_free_objects(f);
     bvh_free_hubs(f);
+    bvh_free_slivers(f);
     bvh_free_levels(f);
     *f = (bvh){0};
 }

@@ -331,10 +331,9 @@ static void view_some_blocks(void *data, uint32_t index) {
     }
 }
 
-void bvh_refit_hubs(bvh *f, const double *x0, const double *x1, double distance) {
+void bvh_refit_hubs(bvh *f, const double *x0, const double *x1) {
     hub_work work = {f, {x0, x1}, 0};
     if (f->levels[0].child_hubs == NULL) return;
-    f->hub_distance = distance;
     for (; work.level < f->level_count; work.level++)
         parallel_run(f->mesh->context->threads,
                      (f->levels[work.level].block_count + BLOCKS_PER_TASK - 1) / BLOCKS_PER_TASK,

@@ -29,6 +29,5 @@ bool bvh_allocate_hubs(bvh *f);
 /* Frees them, as a step of bvh_free. */
 void bvh_free_hubs(bvh *f);
 
-/* Finds the volumes for the interval from x0 to x1, as a step of bvh_refit. distance: features that are so far apart are
- * still to be found. */
-void bvh_refit_hubs(bvh *f, const double *x0, const double *x1, double distance);
+/* Finds the volumes for the interval from x0 to x1, as a step of bvh_refit. */
+void bvh_refit_hubs(bvh *f, const double *x0, const double *x1);

@@ -1,6 +1,7 @@
 /* Trees that move over to another mesh: what is kept is renumbered and copied, what is missing gets a place. */
 #include "runtime/bvh/bvh_move.h"
 #include "runtime/bvh/bvh_hubs.h"
+#include "runtime/bvh/bvh_slivers.h"
 
 #include <string.h>
 
@@ -209,11 +210,11 @@ static array_list bvh_arrays(bvh *f) {
 
 static array_list level_arrays(bvh_level *level, int axis_count) {
     size_t blocks = level->block_count;
-    return (array_list){{ARRAY(level->first_children, blocks),
-                         ARRAY(level->bounds, blocks * (size_t)axis_count * 2 * LANES),
-                         ARRAY(level->flags, blocks), ARRAY(level->self_pairs, blocks),
-                         ARRAY(level->obstacle_lanes, blocks), ARRAY(level->child_sets, blocks * LANES),
-                         ARRAY(level->inactive_lanes, blocks), ARRAY(level->child_hubs, blocks * LANES)}};
+    return (array_list){
+        {ARRAY(level->first_children, blocks), ARRAY(level->bounds, blocks * (size_t)axis_count * 2 * LANES),
+         ARRAY(level->flags, blocks), ARRAY(level->self_pairs, blocks), ARRAY(level->obstacle_lanes, blocks),
+         ARRAY(level->child_sets, blocks * LANES), ARRAY(level->inactive_lanes, blocks),
+         ARRAY(level->child_hubs, blocks * LANES), ARRAY(level->child_slivers, blocks * LANES)}};
 }
 
 /* A level that is not whole belongs to the other BVH. */

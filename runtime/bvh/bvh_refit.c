@@ -1,6 +1,7 @@
 /* Refits the BVH to an interval: frames, records, bounds, flags. */
 #include "runtime/bvh/bvh.h"
 #include "runtime/bvh/bvh_hubs.h"
+#include "runtime/bvh/bvh_slivers.h"
 #include "src/core/floating.h"
 
 #include <assert.h>
@@ -223,7 +224,9 @@ void bvh_refit(bvh *f, const double *x0, const double *x1, volume_growth growth)
         clear_flags(f->levels[now.level].flags, f->levels[now.level].block_count);
     }
     clear_flags(f->leaf_flags, f->leaf_count);
-    bvh_refit_hubs(f, x0, x1, greatest_distance(f, &growth));
+    f->hub_distance = greatest_distance(f, &growth);
+    bvh_refit_hubs(f, x0, x1);
+    bvh_refit_slivers(f, x0, x1);
     bvh_show_all(f);
     /* A distance that floats cannot hold leaves the bounds of empty lanes without a value, so bounds are checked
      * only where no distance widens them. */

@@ -14,6 +14,7 @@
 #include "runtime/bvh/bvh_kernels_simd.h"
 
 #include "runtime/bvh/bvh_hubs.h"
+#include "runtime/bvh/bvh_slivers.h"
 #include "runtime/bvh/leaf_volumes.h"
 
 /* The place of tree b relative to tree a: per axis at both ends of the interval, off by at most slack, and between
@@ -282,6 +283,17 @@ static __attribute__((noinline)) uint32_t lanes_apart_at_hub(const bvh *f, const
     return apart;
 }
 
+/* The same of sliver volumes. */
+static __attribute__((noinline)) uint32_t lanes_apart_as_slivers(const bvh *f, const sliver_volume *a,
+                                                                 const sliver_volume *b, uint32_t lanes) {
+    uint32_t apart = 0;
+    for (uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
+        int lane = __builtin_ctz(rest);
+        apart |= (uint32_t)sliver_volumes_apart(a, &b[lane], f->hub_distance) << lane;
+    }
+    return apart;
+}
+
 /* ---- blocks -------------------------------------------------------------------------------------------- */
 
 /* Compares child i of block a with children of block b. */
@@ -336,6 +348,7 @@ static inline void visit_blocks(const traversal *t, traversal_lane *lane, block_
     const float *bounds_a = level->bounds + at.a * stride, *bounds_b = level->bounds + at.b * stride;
     const object_set *sets = level->child_sets;
     const hub_volume *hubs = level->child_hubs;
+    const sliver_volume *slivers = level->child_slivers;
     bool obstacles = level->obstacle_lanes != NULL && sets == NULL;
     uint32_t obstacles_a = obstacles ? level->obstacle_lanes[at.a] : 0;
     uint32_t inactive_a = t->skips_inactive ? level->inactive_lanes[at.a] : 0;
@@ -362,6 +375,9 @@ static inline void visit_blocks(const traversal *t, traversal_lane *lane, block_
         if (hubs != NULL && lanes != 0)
             lanes &= ~lanes_apart_at_hub(f, &hubs[(size_t)at.a * LANES + (size_t)i],
                                          hubs + (size_t)at.b * LANES, lanes);
+        if (slivers != NULL && lanes != 0)
+            lanes &= ~lanes_apart_as_slivers(f, &slivers[(size_t)at.a * LANES + (size_t)i],
+                                             slivers + (size_t)at.b * LANES, lanes);
         if (c.itself) {
             bool own = (c.self_pairs >> (9 * i) & 1) != 0 && ((c.a.plus | c.a.minus) >> i & 1) == 0;
             if (t->pass != TRAVERSAL_KEPT) own = (c.a.newly_kept >> i & 1) != 0;
