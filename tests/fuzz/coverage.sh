@@ -23,11 +23,16 @@ for format; do
     # shellcheck disable=SC2086
     "$target" $options -dict="tests/fuzz/words/$format" -artifact_prefix="$found/$format/" -max_total_time="$seconds" \
         "$found/$format" "$kept/$format" || failed="$failed $format"
-    if [ "${KEEP:-0}" = 1 ]; then
-        smaller=$(mktemp -d) || exit 1
-        # shellcheck disable=SC2086
-        "$target" $options -merge=1 "$smaller" "$kept/$format" "$found/$format" && rm -rf "${kept:?}/$format" && mv "$smaller" "$kept/$format"
-        chmod 755 "$kept/$format"
+    [ "${KEEP:-0}" = 1 ] || continue
+    # Of the files that are kept already and the small ones that were found, those that together reach the same code.
+    candidates=$(mktemp -d) smaller=$(mktemp -d) || exit 1
+    find "$found/$format" "$kept/$format" -type f -size -700c ! -name '*-*' -exec cp {} "$candidates" ';'
+    cp "$kept/$format"/* "$candidates"
+    # shellcheck disable=SC2086
+    if "$target" $options -set_cover_merge=1 -use_counters=0 "$smaller" "$candidates"; then
+        rm -f "$kept/$format"/*
+        for file in "$smaller"/*; do cp "$file" "$kept/$format/$(sha1sum <"$file" | cut -c 1-12)"; done
     fi
+    rm -rf "$candidates" "$smaller"
 done
 [ -z "$failed" ] || { echo "files that fail:$failed; they are in $found" >&2; exit 1; }
