@@ -19,7 +19,7 @@ from ._arrays import as_positions, number_of
 from ._host import Keeper
 from ._library import address_of, copy_list, library
 from .errors import Error
-from .mesh import Mesh, Surface
+from .mesh import Mesh, Scene, Surface
 from .questions import mesh_of
 
 __all__ = ["FrameSequence", "Recording", "read", "write_report"]
@@ -30,17 +30,29 @@ PathLike = Union[str, "os.PathLike[str]"]
 _NO_PART = 2**32 - 1
 
 
+class _Choices(ctypes.Structure):
+    """What the library is told about the files; texts are None where nothing is said."""
+
+    _fields_ = [("model_path", ctypes.c_char_p), ("frame_paths", ctypes.POINTER(ctypes.c_char_p)),
+                ("frame_path_count", ctypes.c_size_t), ("weld", ctypes.c_char_p), ("animation", ctypes.c_char_p),
+                ("parts_path", ctypes.c_char_p), ("fps", ctypes.c_double), ("names", ctypes.POINTER(ctypes.c_char_p)),
+                ("paths", ctypes.POINTER(ctypes.c_char_p)), ("frames", ctypes.POINTER(ctypes.c_char_p)),
+                ("obstacles", ctypes.POINTER(ctypes.c_ubyte)), ("object_count", ctypes.c_size_t),
+                ("rest", ctypes.c_ubyte), ("allow_gaps", ctypes.c_ubyte)]
+
+
+def _texts(items: Sequence[Optional[bytes]]) -> Any:
+    return (ctypes.c_char_p * len(items))(*items)
+
+
 class _OpenRecording:
     """Open files, which are closed with this object."""
 
-    def __init__(self, path: PathLike, frames: Sequence[bytes], fps: float) -> None:
+    def __init__(self, path: PathLike, choices: _Choices) -> None:
         os.stat(path)  # a missing file is Python's own error
         self._keeper, error = Keeper(None, library.cscdpy_recording_close), ctypes.create_string_buffer(1024)
-        paths = (ctypes.c_char_p * len(frames))(*frames)
-        model = ctypes.c_char_p(os.fsencode(path))
-        self._kept = (model, paths)  # the library does not copy them
-        if not library.cscdpy_recording_open(model, paths, len(frames), fps, self._keeper.place,
-                                             ctypes.addressof(error)):
+        self._kept = choices  # the library does not copy its texts
+        if not library.cscdpy_recording_open(ctypes.addressof(choices), self._keeper.place, ctypes.addressof(error)):
             raise ValueError(error.value.decode(errors="replace"))
         self.pointer = self._keeper.pointer
         self.lock = threading.Lock()
@@ -81,7 +93,9 @@ class Recording:
     Attributes
     ----------
     mesh : Mesh
-        Its faces are those of the file.
+        Its faces are those of the file; a ``Scene`` where there are several objects.
+    object_names : list of str
+        What the objects are called: the first one as its file.
     vertices : (n, 3) float64
         The first frame.
     frames : sequence of (n, 3) float64
@@ -108,10 +122,10 @@ class Recording:
         numbers = np.empty(library.cscdpy_recording_frame_count(pointer), np.int32)
         faces, parts = np.empty(triangle_count, np.uint32), np.empty(triangle_count, np.uint32)
         file_vertices = np.empty(vertex_count, np.uint32)
-        face_count = library.cscdpy_recording_copy(pointer, address_of(numbers), address_of(faces), address_of(parts),
-                                                   address_of(file_vertices))
+        library.cscdpy_recording_copy(pointer, address_of(numbers), address_of(faces), address_of(parts),
+                                      address_of(file_vertices))
         self.file_vertices: Array = file_vertices.astype(np.int64)
-        self.mesh = Mesh.of_surface(Surface(triangles.reshape(-1, 3), faces, face_count, vertex_count))
+        self._take_objects(pointer, triangles.reshape(-1, 3), faces)
         self.frames = FrameSequence(opened, range(len(numbers)), vertex_count)
         self.frame_numbers: List[int] = numbers.tolist()
         self.fps = float(library.cscdpy_recording_fps(pointer))
@@ -119,6 +133,26 @@ class Recording:
                                       for i in range(library.cscdpy_recording_part_count(pointer))]
         self.part_labels: Array = np.where(parts == _NO_PART, -1, parts.astype(np.int64))
         self._first: Optional[Array] = None
+
+    def _take_objects(self, pointer: int, triangles: Array, faces: Array) -> None:
+        """Makes the mesh, object by object."""
+        self.object_names: List[str] = []
+        meshes: List[Mesh] = []
+        obstacles: List[int] = []
+        first_vertex = first_triangle = 0
+        for i in range(library.cscdpy_recording_object_count(pointer)):
+            counts = np.empty(4, np.uint32)
+            name = library.cscdpy_recording_object(pointer, i, address_of(counts))
+            vertex_count, triangle_count, face_count, obstacle = counts.tolist()
+            end = first_triangle + triangle_count
+            own = np.ascontiguousarray(triangles[first_triangle:end] - np.uint32(first_vertex))
+            surface = Surface(own, faces[first_triangle:end].copy(), face_count, vertex_count)
+            meshes.append(Mesh.of_surface(surface))
+            self.object_names.append(name.decode(errors="replace"))
+            if obstacle:
+                obstacles.append(i)
+            first_vertex, first_triangle = first_vertex + vertex_count, end
+        self.mesh: Mesh = meshes[0] if len(meshes) == 1 and not obstacles else Scene(meshes, obstacles)
 
     @property
     def vertices(self) -> Array:
@@ -130,8 +164,35 @@ class Recording:
         return f"Recording({self.mesh!r}, {len(self.frames)} frames)"
 
 
-def read(path: PathLike, frames: Union[None, PathLike, Sequence[PathLike]] = None, *, fps: float = 0.0) -> Recording:
-    """Reads a mesh, and what it does.
+def _weld_text(weld: Union[None, str, float]) -> Optional[bytes]:
+    if weld is None:
+        return None
+    return weld.encode() if isinstance(weld, str) else f"{number_of('weld', weld):.17g}".encode()
+
+
+def _tell_objects(choices: _Choices, objects: Any, obstacles: Sequence[str]) -> None:
+    """Further objects: a path, or a path and frames, by name."""
+    given = {} if objects is None else dict(objects)
+    unknown = [name for name in obstacles if name not in given]
+    if unknown:
+        raise ValueError(f"obstacles: {unknown[0]!r} is no object; expected names of objects")
+    pairs = [(item, None) if isinstance(item, (str, os.PathLike)) else tuple(item) for item in given.values()]
+    if any(len(pair) != 2 for pair in pairs):
+        raise ValueError("objects: expected a path, or a path and frames, for each name")
+    for path, _ in pairs:
+        os.stat(path)
+    choices.names = _texts([name.encode() for name in given])
+    choices.paths = _texts([os.fsencode(path) for path, _ in pairs])
+    choices.frames = _texts([None if frames is None else os.fsencode(frames) for _, frames in pairs])
+    choices.obstacles = (ctypes.c_ubyte * len(given))(*[name in obstacles for name in given])
+    choices.object_count = len(given)
+
+
+def read(path: PathLike, frames: Union[None, PathLike, Sequence[PathLike]] = None, *, fps: float = 0.0,
+         weld: Union[None, str, float] = None, animation: Optional[str] = None, rest: bool = False,
+         objects: Any = None, obstacles: Sequence[str] = (), parts: Optional[PathLike] = None,
+         allow_gaps: bool = False) -> Recording:
+    """Reads a mesh, and what it does, with the options of the tool.
 
     Parameters
     ----------
@@ -142,6 +203,22 @@ def read(path: PathLike, frames: Union[None, PathLike, Sequence[PathLike]] = Non
         default what a glTF file animates, else the mesh is the only frame.
     fps : float
         Frames a second, of a glTF file; 0: 24.
+    weld : str or float, optional
+        Which vertices are joined: "exact" those in one place in all frames, a distance those within it, "none" none. By
+        default those of STL files and, within a part, of glTF files.
+    animation : str, optional
+        Which animation of a glTF file; by default the first.
+    rest : bool
+        A glTF file stays at rest.
+    objects : mapping, optional
+        Further objects by name: a path, or a path and its frames (a point cache, a pattern, a folder or a glTF file). All
+        that move have as many frames.
+    obstacles : sequence of str
+        Which of these objects are obstacles: nothing is looked for within one of them, nor between two.
+    parts : path, optional
+        A table with the part of each triangle, face or vertex, as ``--parts`` has it.
+    allow_gaps : bool
+        Of numbered files, some may be missing.
 
     Raises
     ------
@@ -154,13 +231,12 @@ def read(path: PathLike, frames: Union[None, PathLike, Sequence[PathLike]] = Non
         listed = [os.fsencode(frames)]
     else:
         listed = [os.fsencode(item) for item in frames]
-    fps = number_of("fps", fps)
-    if not listed and os.fsencode(path).lower().endswith((b".glb", b".gltf")):
-        try:
-            return Recording(_OpenRecording(path, [os.fsencode(path)], fps))
-        except ValueError:  # it animates nothing, or cannot be read, which is said below
-            pass
-    return Recording(_OpenRecording(path, listed, fps))
+    choices = _Choices(model_path=os.fsencode(path), frame_paths=_texts(listed), frame_path_count=len(listed),
+                       weld=_weld_text(weld), animation=None if animation is None else animation.encode(),
+                       parts_path=None if parts is None else os.fsencode(parts), fps=number_of("fps", fps),
+                       rest=bool(rest), allow_gaps=bool(allow_gaps))
+    _tell_objects(choices, objects, list(obstacles))
+    return Recording(_OpenRecording(path, choices))
 
 
 # ---- the page ------------------------------------------------------------------------------------------------

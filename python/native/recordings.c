@@ -3,6 +3,7 @@
 #include "python/native/interpreter.h"
 
 #include "src/io/plan_file.h"
+#include "src/tool/common/option_values.h"
 #include "src/tool/common/part_names.h"
 #include "src/tool/common/plan_colours.h"
 #include "src/tool/tool.h"
@@ -13,25 +14,79 @@
 #include <string.h>
 
 typedef struct read_recording {
+    recording_options options; /* of which the recording has texts */
     recording recording;
     part_names parts;
 } read_recording;
 
-/* model_path: a mesh file. frame_paths: what the tool takes for FRAMES; none: the model, or what a glTF file animates. fps: of
- * a glTF file, 0: 24. Files are read without Python's lock. */
-PYTHON_API bool cscdpy_recording_open(const char *model_path, const char *const *frame_paths,
-                                      size_t frame_path_count, double fps, read_recording **out,
-                                      io_error *error) {
-    recording_options options = {.model_path = model_path,
-                                 .frame_paths = frame_paths,
-                                 .frame_path_count = frame_path_count,
-                                 .frames = {.fps = fps},
-                                 .thread_count = 1};
+/* What the tool's options say, as Python gives it. Texts are NULL where nothing is said. */
+typedef struct read_choices {
+    const char *model_path;
+    const char *const
+        *frame_paths; /* what the tool takes for FRAMES; none: the model, or what a glTF file animates */
+    size_t frame_path_count;
+    const char *weld;       /* exact, none or a distance */
+    const char *animation;  /* of a glTF file */
+    const char *parts_path; /* a table of parts */
+    double fps;             /* of a glTF file, 0: 24 */
+    const char *const *names,
+        *const *paths, *const *frames; /* object_count: further objects; frames are NULL of those that rest */
+    const unsigned char *obstacles;    /* object_count */
+    size_t object_count;
+    unsigned char rest, allow_gaps;
+} read_choices;
+
+static bool take_name(named_paths *list, const char *name, const char *path, bool obstacle, io_error *error) {
+    named_path *named = &list->items[list->count];
+    if (list->count == RECORDING_OBJECTS_MAX)
+        return io_fail(error, "objects: expected %d at most", RECORDING_OBJECTS_MAX);
+    if (name[0] == '\0' || strlen(name) >= sizeof named->name || strpbrk(name, ":,=") != NULL)
+        return io_fail(error,
+                       "objects: a name has 1 to %zu bytes, and no ':', ',' and '=' among them; got '%.80s'",
+                       sizeof named->name - 1, name);
+    *named = (named_path){.path = path, .obstacle = obstacle};
+    memcpy(named->name, name, strlen(name));
+    list->count++;
+    return true;
+}
+
+static bool take_choices(const read_choices *choices, recording_options *out, io_error *error) {
+    *out = (recording_options){.model_path = choices->model_path,
+                               .frame_paths = choices->frame_paths,
+                               .frame_path_count = choices->frame_path_count,
+                               .plays_models = true,
+                               .rest = choices->rest != 0,
+                               .frames = {.fps = choices->fps,
+                                          .animation_name = choices->animation,
+                                          .allow_gaps = choices->allow_gaps != 0},
+                               .thread_count = 1};
+    if (choices->weld != NULL && !read_weld(choices->weld, &out->weld))
+        return io_fail(error, "weld: expected 'exact', 'none' or a distance above 0, got '%.40s'",
+                       choices->weld);
+    for (size_t i = 0; i < choices->object_count; i++) {
+        if (!take_name(&out->objects, choices->names[i], choices->paths[i], choices->obstacles[i] != 0,
+                       error) ||
+            (choices->frames[i] != NULL &&
+             !take_name(&out->frames_of, choices->names[i], choices->frames[i], false, error)))
+            return false;
+    }
+    return true;
+}
+
+/* The choices, which are used as long as the recording is open, are the caller's. Files are read without Python's lock. */
+PYTHON_API bool cscdpy_recording_open(const read_choices *choices, read_recording **out, io_error *error) {
     read_recording *r = calloc(1, sizeof *r);
+    recording_options *options = r != NULL ? &r->options : NULL;
     if (r == NULL) return io_fail(error, "out of memory");
+    if (!take_choices(choices, options, error)) {
+        free(r);
+        return false;
+    }
     void *thread = python.save_thread();
-    bool opened = recording_open(&options, &r->recording, error);
-    if (opened && !part_names_find(&r->recording, NULL, &r->parts, error)) {
+    bool opened = recording_open(options, &r->recording, error);
+    if (opened &&
+        !(choices->parts_path != NULL ? part_names_read(&r->recording, choices->parts_path, &r->parts, error)
+                                      : part_names_find(&r->recording, NULL, &r->parts, error))) {
         recording_close(&r->recording);
         opened = false;
     }
@@ -63,9 +118,9 @@ PYTHON_API double cscdpy_recording_fps(const read_recording *r) {
 }
 
 /* Per frame: what the artist calls it. Per triangle: the face of the file that it is cut from, and its part. Per vertex: its
- * number in the file. Returns how many faces the file has. */
-PYTHON_API uint32_t cscdpy_recording_copy(const read_recording *r, int32_t *frame_numbers, uint32_t *faces,
-                                          uint32_t *parts, uint32_t *file_vertices) {
+ * number in the file; of several objects each counts by itself. */
+PYTHON_API void cscdpy_recording_copy(const read_recording *r, int32_t *frame_numbers, uint32_t *faces,
+                                      uint32_t *parts, uint32_t *file_vertices) {
     const cscd_mesh *mesh = r->recording.mesh;
     const uint32_t triangle_count = cscd_mesh_triangle_count(mesh);
     memcpy(frame_numbers, r->recording.frame_numbers, r->recording.frame_count * sizeof *frame_numbers);
@@ -75,7 +130,20 @@ PYTHON_API uint32_t cscdpy_recording_copy(const read_recording *r, int32_t *fram
     }
     for (uint32_t v = 0; v < cscd_mesh_vertex_count(mesh); v++)
         file_vertices[v] = recording_file_vertex(&r->recording, v);
-    return r->recording.objects[0].file.polygon_count;
+}
+
+PYTHON_API uint32_t cscdpy_recording_object_count(const read_recording *r) {
+    return r->recording.object_count;
+}
+
+/* Of an object: its vertices, its triangles, the faces of its file, and whether it is an obstacle. */
+PYTHON_API const char *cscdpy_recording_object(const read_recording *r, uint32_t object, uint32_t counts[4]) {
+    const recorded_object *o = &r->recording.objects[object];
+    counts[0] = o->vertex_count;
+    counts[1] = o->triangle_count;
+    counts[2] = o->file.polygon_count;
+    counts[3] = o->source.obstacle;
+    return o->source.name;
 }
 
 PYTHON_API uint32_t cscdpy_recording_part_count(const read_recording *r) {
