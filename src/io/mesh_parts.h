@@ -21,5 +21,5 @@ typedef struct mesh_parts {
 void mesh_parts_free(mesh_parts *parts);
 
 /* The part of that name, which is added if there is none yet; the first length characters of name count. NO_MESH_PART when
- * out of memory. */
+ * out of memory. The list was empty at first, and all of its names came by this function. */
 uint32_t mesh_parts_find(mesh_parts *parts, const char *name, size_t length);
