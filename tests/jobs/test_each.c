@@ -1,6 +1,6 @@
 /* `check --each`: many different meshes, a line for each, in their order, whatever happens to one of them. */
 #include "cscd/cscd.h"
-#include "src/tool/jobs/mesh_job.h"
+#include "src/io/mesh_file.h"
 #include "tests/support/test.h"
 #include "tests/support/tool/json_reader.h"
 #include "tests/support/tool/run_tool.h"
@@ -159,7 +159,7 @@ static void lines_say_it_for_people(void **state) {
     char expected[4096];
     tool_run run = RUN_TOOL("check", "--each", meshes[LARGE + 4].text, meshes[LARGE].text, touching.text,
                             meshes[MESHES - 4].text, meshes[MESHES - 3].text, meshes[MESHES - 2].text,
-                            meshes[MESHES - 1].text);
+                            meshes[MESHES - 1].text, "--no-depths");
     snprintf(expected, sizeof expected,
              "%s: 3 pairs of triangles cross; 50 %% of the faces\n"
              "%s: clean\n"
@@ -290,7 +290,7 @@ static void options_of_one_recording_are_refused(void **state) {
     (void)state;
     static const char *const options[][2] = {
         {"--frames", "0:1"},    {"--object", "a=b.obj"}, {"--ignore", "x"},      {"--parts", "x.csv"},
-        {"--allow-gaps", NULL}, {"--fps", "25"},         {"--ignore-rest", NULL}};
+        {"--allow-gaps", NULL}, {"--csv", "x.csv"},      {"--ignore-rest", NULL}};
     for (size_t i = 0; i < sizeof options / sizeof *options; i++)
         EXPECT_ERROR(2, TEXTS("--each", options[i][0]), "check", "--each", clean.text, options[i][0],
                      options[i][1]);
@@ -353,35 +353,6 @@ static void an_interrupt_keeps_what_is_done(void **state) {
     tool_run_free(&run);
 }
 
-static bool give_up(void *user, const char *stage, double fraction) {
-    (void)stage, (void)fraction;
-    ++*(uint32_t *)user;
-    return false;
-}
-
-/* Thousands of triangles through one place take long enough to be asked whether they should go on. */
-static void a_cancelled_search_has_no_answer(void **state) {
-    (void)state;
-    enum { FAN = 700 };
-    temp_path path = temp_file_path(&folder, "fan.obj");
-    FILE *file = fopen(path.text, "w");
-    for (int i = 0; i < FAN; i++)
-        fprintf(file, "v %d 1 1\nv %d -9 1\nv 0.5 %d -9\nf -3 -2 -1\n", i - FAN / 2, FAN / 2 - i, i);
-    fclose(file);
-    uint32_t asked = 0;
-    const ignore_options nothing = {.path = NULL};
-    const mesh_job job = {.path = path.text, .ignored = &nothing};
-    cscd_context *context;
-    cscd_context_options options = cscd_context_defaults();
-    options.progress = (cscd_progress){give_up, &asked};
-    assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
-    mesh_answer answer = {.triangle_count = 7};
-    assert_false(mesh_job_run(&job, context, &answer));
-    assert_int_equal(asked, 1);
-    assert_int_equal(answer.triangle_count, 7);
-    cscd_context_destroy(context);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_mesh_has_its_answer),
@@ -394,7 +365,6 @@ int main(void) {
         cmocka_unit_test(options_of_one_recording_are_refused),
         cmocka_unit_test(a_dash_is_the_standard_output),
         cmocka_unit_test(an_interrupt_keeps_what_is_done),
-        cmocka_unit_test(a_cancelled_search_has_no_answer),
     };
     return cmocka_run_group_tests(tests, make_files, remove_files);
 }

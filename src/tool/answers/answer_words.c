@@ -102,6 +102,7 @@ static void say_frame(FILE *out, const answers *a) {
     const frame_answer *frame = answers_frames(a);
     if (!frame_answer_meets(frame)) {
         fprintf(out, frame->duplicates > 0 ? "no two others cross or touch."
+                     : frame->depth > 0.0  ? "No two triangles cross or touch, but something lies inside."
                                            : "Clean: no two triangles cross or touch.");
         return;
     }
@@ -158,6 +159,10 @@ static void say_event(FILE *out, const answers *a, const cscd_event *event, cons
         fprintf(out, " at frame %d", answers_frame_number(a, event->worst_frame));
 }
 
+void answers_print_worst(FILE *out, const answers *a, const length_unit *unit) {
+    say_event(out, a, &a->events[a->worst_first[0]], unit);
+}
+
 /* Was not all looked at? Then that is said first. True if there is nothing else to say. */
 static bool say_unfinished(FILE *out, const answers *a) {
     const char *reason = answers_unfinished(a);
@@ -210,7 +215,7 @@ void answers_print_sentence(FILE *out, const answers *a, const length_unit *unit
         const char *what = single ? "place" : "event";
         fprintf(out, " %zu %s%s, %s", a->event_count, what, a->event_count > 1 ? "s" : "",
                 a->event_count > 1 ? "worst: " : "");
-        say_event(out, a, &a->events[a->worst_first[0]], unit);
+        answers_print_worst(out, a, unit);
         fputc('.', out);
     }
     say_range(out, a);

@@ -15,6 +15,9 @@
  * answers_finish. */
 void answers_print_sentence(FILE *out, const answers *a, const length_unit *unit);
 
+/* Prints the worst event as the sentence has it, "A x B, 12.4 mm deep"; there is one. */
+void answers_print_worst(FILE *out, const answers *a, const length_unit *unit);
+
 /* Prints on the standard output a row for each event, as many as a screen holds; nothing where there is none. */
 void answers_print_events(const answers *a, const length_unit *unit);
 

@@ -124,10 +124,12 @@ static int run_list(const check_options *options, const given_options *given) {
 }
 
 static int refuse_beside_each(const check_options *o, const given_options *given) {
-    static const char *const own[] = {"each",        "json",        "weld",    "ignore-parts",
-                                      "only",        "threads",     "fail-on", "fail-on-contact",
-                                      "quiet",       "shard",       "results", "resume",
-                                      "job-timeout", "reproducible"};
+    static const char *const own[] = {"each",        "json",      "weld",    "ignore-parts",
+                                      "only",        "threads",   "fail-on", "fail-on-contact",
+                                      "fail-depth",  "max-faces", "unit",    "no-depths",
+                                      "fps",         "animation", "rest",    "quiet",
+                                      "shard",       "results",   "resume",  "job-timeout",
+                                      "reproducible"};
     io_error error;
     const char *foreign = option_given_beside(&table, given, own, sizeof own / sizeof *own);
     if (foreign != NULL)
@@ -149,11 +151,9 @@ static int refuse_beside_each(const check_options *o, const given_options *given
 }
 
 static int run_each(const check_options *o, const given_options *given) {
-    const fail_kind kind = o->answers.fail.kind;
-    const mesh_kind_options meshes = {.weld = o->source.weld,
-                                      .ignored = o->ignored,
-                                      .fail_on_crossing = kind == FAIL_ON_CROSSING,
-                                      .fail_on_touching = kind == FAIL_ON_TOUCHING,
+    const mesh_kind_options meshes = {.source = &o->source,
+                                      .ignored = &o->ignored,
+                                      .answers = &o->answers,
                                       .reproducible = o->reproducible};
     const job_kind jobs = mesh_kind_of(&meshes);
     job_list list;

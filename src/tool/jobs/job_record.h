@@ -7,13 +7,14 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* What a job came to: the worst that was found. As in `check`, what lies in one plane or is folded touches, and duplicates do
- * neither. */
+/* What a job came to: the worst that was found, in the order crossing, inside, touching, duplicate. As in `check`, what lies in one
+ * plane or is folded touches, and duplicates do neither. */
 typedef enum job_outcome {
     JOB_CLEAN,
     JOB_CROSSING,
     JOB_TOUCHING, /* triangles touch, or come into contact between two frames */
     JOB_DUPLICATE,
+    JOB_INSIDE, /* something lies inside of something, and nothing crosses */
     JOB_FAILED, /* there is no answer, but a reason why not */
     JOB_OUTCOMES
 } job_outcome;

@@ -1,6 +1,10 @@
 /* Reads a mesh and finds which of its triangles intersect. */
 #include "src/tool/jobs/mesh_job.h"
 
+#include "src/tool/answers/answer_words.h"
+#include "src/tool/common/terminal.h"
+#include "src/tool/jobs/recording_answer.h"
+
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -13,63 +17,100 @@ static double now_ms(void) {
 
 void mesh_answer_free(mesh_answer *answer) {
     free(answer->error);
+    free(answer->sentence);
+    free(answer->worst);
     free(answer->unread);
     *answer = (mesh_answer){0};
 }
 
-/* How many triangles are in a pair that crosses. */
-static bool count_crossing_faces(const cscd_intersection_pairs *found, mesh_answer *out, io_error *error) {
-    if (found->crossing == 0) return true;
-    unsigned char *crosses = calloc(out->triangle_count, 1);
-    if (crosses == NULL) return io_fail(error, "out of memory for %u triangles", out->triangle_count);
-    for (size_t i = 0; i < found->count; i++)
-        if (found->items[i].kind == CSCD_INTERSECTION_CROSSING)
-            crosses[found->items[i].a] = crosses[found->items[i].b] = 1;
-    for (uint32_t t = 0; t < out->triangle_count; t++) out->crossing_faces += crosses[t];
-    out->crossing_share = (double)out->crossing_faces / out->triangle_count;
-    free(crosses);
+/* A mesh while it is checked. */
+typedef struct mesh_check {
+    const mesh_job *job;
+    recording *recording;
+    ignore_pairs ignored;
+    answers answers;
+    cscd_detector *detector;
+    double *positions;
+    mesh_answer *out;
+} mesh_check;
+
+static bool prepare_check(mesh_check *c, io_error *error) {
+    recording *r = c->recording;
+    cscd_detector_options options = cscd_detector_defaults();
+    c->positions = malloc((size_t)c->out->vertex_count * 3 * sizeof *c->positions);
+    if (c->positions == NULL) return io_fail(error, "out of memory for %u vertices", c->out->vertex_count);
+    if (!ignore_pairs_prepare(c->job->ignored, r, &c->ignored, error)) return false;
+    ignore_pairs_choose(&c->ignored, &options);
+    if (cscd_detector_create(r->context, r->mesh, NULL, &options, &c->detector) != CSCD_OK)
+        return io_fail(error, "%s", cscd_context_detail(r->context));
+    if (!answers_open(r, &c->ignored, !c->job->answers->no_depths, &c->answers, error)) return false;
+    answers_expect(&c->answers, r->frame_count);
+    return answers_prepare(&c->answers, c->detector, error);
+}
+
+static bool check_frame(mesh_check *c, uint32_t frame, io_error *error) {
+    cscd_intersection_pairs found;
+    mesh_answer *out = c->out;
+    if (!recording_read(c->recording, frame, c->positions, error) ||
+        !answers_find(&c->answers, c->detector, c->positions, &found, error))
+        return false;
+    out->crossing += found.crossing;
+    out->coplanar += found.coplanar;
+    out->folded += found.folded;
+    out->duplicate += found.duplicate;
+    out->touching += found.touching;
+    if (found.zero_area_triangles > out->zero_area_triangles)
+        out->zero_area_triangles = found.zero_area_triangles;
+    if (!answers_add_found(&c->answers, frame, &found, cscd_detector_timings(c->detector).check_ms, error))
+        return false;
+    const frame_answer *answer = &answers_frames(&c->answers)[frame];
+    if (answer->crossing_faces > out->crossing_faces) out->crossing_faces = answer->crossing_faces;
+    if (answer->depth > out->depth) out->depth = answer->depth;
     return true;
 }
 
-/* What was asked ends with a status; CANCELLED is no fault of the mesh. */
-static bool call_succeeded(cscd_status status, const recording *r, bool *cancelled, io_error *error) {
-    *cancelled = status == CSCD_CANCELLED;
-    return status == CSCD_OK || io_fail(error, "%s", cscd_context_detail(r->context));
+typedef void text_printer(FILE *out, const answers *a, const length_unit *unit);
+
+static bool print_text(text_printer *print, const answers *a, const length_unit *unit, char **out) {
+    size_t size = 0;
+    FILE *stream = open_memstream(out, &size);
+    if (stream == NULL) return false;
+    print(stream, a, unit);
+    if (fclose(stream) != 0 || *out == NULL) return false;
+    (*out)[strcspn(*out, "\n")] = '\0';
+    return true;
 }
 
-static bool find_pairs(recording *r, cscd_detector *detector, const double *positions, mesh_answer *out,
-                       bool *cancelled, io_error *error) {
-    cscd_intersection_pairs found;
-    const cscd_view *view = CSCD_DOUBLES(positions, out->vertex_count);
-    if (!call_succeeded(cscd_detector_find_intersections(detector, view, NULL, &found), r, cancelled, error))
+/* What all frames come to. */
+static bool conclude(mesh_check *c, io_error *error) {
+    mesh_answer *out = c->out;
+    const answers *a = &c->answers;
+    const length_unit unit = answer_options_unit(c->job->answers, c->recording);
+    fail_rules rules;
+    if (!answers_finish(&c->answers, error) ||
+        !fail_rules_create(&c->job->answers->fail, &unit, &rules, error))
         return false;
-    out->crossing = found.crossing;
-    out->coplanar = found.coplanar;
-    out->folded = found.folded;
-    out->duplicate = found.duplicate;
-    out->touching = found.touching;
-    out->zero_area_triangles = found.zero_area_triangles;
-    return count_crossing_faces(&found, out, error);
+    const char *unfinished = answers_unfinished(a);
+    if (unfinished != NULL) return io_fail(error, "%s", unfinished);
+    out->frame_count = c->recording->frame_count;
+    out->crossing_share = out->triangle_count > 0 ? (double)out->crossing_faces / out->triangle_count : 0.0;
+    out->outcome = recording_answer_outcome(a);
+    out->found = recording_answer_found(a, &rules);
+    const bool deep = out->depth > 0.0 && a->event_count > 0;
+    return (print_text(answers_print_sentence, a, &unit, &out->sentence) &&
+            (!deep || print_text(answers_print_worst, a, &unit, &out->worst))) ||
+           io_fail(error, "out of memory");
 }
 
-static bool check_mesh(const mesh_job *job, recording *r, mesh_answer *out, bool *cancelled,
-                       io_error *error) {
-    ignore_pairs ignored = {.mesh = NULL};
-    cscd_detector *detector = NULL;
-    cscd_detector_options options = cscd_detector_defaults();
-    double *positions = malloc((size_t)out->vertex_count * 3 * sizeof *positions);
-    bool good = positions != NULL || io_fail(error, "out of memory for %u vertices", out->vertex_count);
-    good = good && recorded_object_read(&r->objects[0], 0, positions, error);
-    if (ignore_options_any(job->ignored)) {
-        good = good && ignore_pairs_prepare(job->ignored, r, &ignored, error);
-        if (good) ignore_pairs_choose(&ignored, &options);
-    }
-    good = good && call_succeeded(cscd_detector_create(r->context, r->mesh, NULL, &options, &detector), r,
-                                  cancelled, error);
-    good = good && find_pairs(r, detector, positions, out, cancelled, error);
-    cscd_detector_destroy(detector);
-    ignore_pairs_free(&ignored);
-    free(positions);
+static bool check_mesh(const mesh_job *job, recording *r, mesh_answer *out, io_error *error) {
+    mesh_check c = {.job = job, .recording = r, .out = out};
+    bool good = prepare_check(&c, error);
+    for (uint32_t frame = 0; frame < r->frame_count && good; frame++) good = check_frame(&c, frame, error);
+    good = good && conclude(&c, error);
+    answers_close(&c.answers);
+    cscd_detector_destroy(c.detector);
+    ignore_pairs_free(&c.ignored);
+    free(c.positions);
     return good;
 }
 
@@ -78,11 +119,13 @@ const char *mesh_answer_reason(const mesh_answer *answer) {
 }
 
 bool mesh_job_run(const mesh_job *job, cscd_context *context, mesh_answer *out) {
-    const recording_options source = {.model_path = job->path, .weld = job->weld, .context = context};
+    recording_options source = *job->source;
+    source.model_path = job->path;
+    source.context = context;
+    source.plays_models = true;
     mesh_answer answer = {.checked = false};
     io_error error = {""};
     recording r;
-    bool cancelled = false;
     const double start = now_ms();
     const bool opened = recording_open(&source, &r, &error);
     answer.read_ms = now_ms() - start;
@@ -92,7 +135,7 @@ bool mesh_job_run(const mesh_job *job, cscd_context *context, mesh_answer *out) 
         answer.repairs = r.objects[0].file.repairs;
         answer.unread = r.objects[0].file.unread;
         r.objects[0].file.unread = NULL;
-        answer.checked = check_mesh(job, &r, &answer, &cancelled, &error);
+        answer.checked = check_mesh(job, &r, &answer, &error);
         answer.check_ms = now_ms() - start - answer.read_ms;
         recording_close(&r);
     }
@@ -101,6 +144,7 @@ bool mesh_job_run(const mesh_job *job, cscd_context *context, mesh_answer *out) 
         return true;
     }
     mesh_answer_free(&answer);
+    const bool cancelled = interrupted();
     if (!cancelled) *out = (mesh_answer){.error = strdup(error.text)};
     return !cancelled;
 }

@@ -34,13 +34,18 @@ static void print_repair(FILE *out, uint32_t count, const char *what) {
 static void print_answer(FILE *out, const char *path, const mesh_answer *a) {
     bool first = true;
     fprintf(out, "%s:", path);
+    if (a->frame_count > 1) { /* pairs of all frames together would say nothing to people */
+        fprintf(out, " %s", a->sentence);
+        return;
+    }
     print_kind(out, a->crossing, "crosses", "cross", &first);
     print_kind(out, a->coplanar, "lies in one plane", "lie in one plane", &first);
     print_kind(out, a->folded, "is folded", "are folded", &first);
     print_kind(out, a->duplicate, "is a duplicate", "are duplicates", &first);
     print_kind(out, a->touching, "touches", "touch", &first);
-    if (first) fputs(" clean", out);
+    if (first) fputs(a->outcome == JOB_CLEAN ? " clean" : " no two triangles meet", out);
     print_share(out, a->crossing_share);
+    if (a->worst != NULL) fprintf(out, "; %s", a->worst);
     print_repair(out, a->repairs.dropped, "left out for having fewer than three different corners");
     print_repair(out, a->repairs.fanned, "filled by fans, as they cross themselves");
     if (a->unread != NULL) fprintf(out, "; %s", a->unread);
@@ -79,6 +84,8 @@ static void write_members(json *line, const char *path, const char *reason, cons
     write_count(line, a, "touching", a->touching);
     write_count(line, a, "crossing_faces", a->crossing_faces);
     write_double(line, a, "crossing_share", a->crossing_share);
+    write_double(line, a, "depth", a->depth);
+    write_count(line, a, "frames", a->frame_count);
     write_count(line, a, "zero_area_triangles", a->zero_area_triangles);
     write_count(line, a, "shortened_faces", a->repairs.shortened);
     write_count(line, a, "dropped_faces", a->repairs.dropped);
@@ -90,24 +97,17 @@ static void write_members(json *line, const char *path, const char *reason, cons
 
 /* ---- jobs ---------------------------------------------------------------------------------------------- */
 
-static job_outcome find_outcome(const mesh_answer *a) {
-    if (a->crossing > 0) return JOB_CROSSING;
-    if (a->coplanar + a->folded + a->touching > 0) return JOB_TOUCHING;
-    return a->duplicate > 0 ? JOB_DUPLICATE : JOB_CLEAN;
-}
-
 static bool run_mesh(const void *user, const job_line *line, cscd_context *context, job_output *out,
                      io_error *error) {
     const mesh_kind_options *o = user;
-    const mesh_job job = {.path = line->inputs[0], .weld = o->weld, .ignored = &o->ignored};
+    const mesh_job job = {
+        .path = line->inputs[0], .source = o->source, .ignored = o->ignored, .answers = o->answers};
     mesh_answer answer;
     out->given_up = !mesh_job_run(&job, context, &answer);
     if (out->given_up) return false;
     if (answer.checked) {
-        const job_outcome outcome = find_outcome(&answer);
-        out->outcome = outcome;
-        out->found = (outcome == JOB_CROSSING && (o->fail_on_crossing || o->fail_on_touching)) ||
-                     (outcome == JOB_TOUCHING && o->fail_on_touching);
+        out->outcome = answer.outcome;
+        out->found = answer.found;
         print_answer(out->text, job.path, &answer);
         write_members(out->members, job.path, NULL, &answer, o->reproducible);
     } else

@@ -33,15 +33,16 @@ static frame_sums sum_frames(const answers *a) {
 }
 
 /* Where not all was looked at, there is no answer that anybody may rely on. */
-static job_outcome find_outcome(const answers *a, const frame_sums *s) {
+job_outcome recording_answer_outcome(const answers *a) {
+    const frame_sums s = sum_frames(a);
     if (answers_unfinished(a) != NULL) return JOB_FAILED;
-    if (s->crossing > 0) return JOB_CROSSING;
-    if (s->touching + s->contacts > 0) return JOB_TOUCHING;
-    return s->duplicates > 0 ? JOB_DUPLICATE : JOB_CLEAN;
+    if (s.crossing > 0) return JOB_CROSSING;
+    if (s.depth > 0.0) return JOB_INSIDE;
+    if (s.touching + s.contacts > 0) return JOB_TOUCHING;
+    return s.duplicates > 0 ? JOB_DUPLICATE : JOB_CLEAN;
 }
 
-/* Does any frame fail by the rules? */
-static bool rules_fail(const fail_rules *rules, const answers *a) {
+bool recording_answer_found(const answers *a, const fail_rules *rules) {
     char text[FAIL_TEXT_SIZE];
     for (size_t i = 0; i < answers_frame_count(a); i++)
         if (fail_rules_meet(rules, a, &answers_frames(a)[i], text)) return true;
@@ -97,8 +98,8 @@ void recording_answer_write(const char *name, const answers *a, const length_uni
         fclose(stream);
         if (sentence != NULL) sentence[strcspn(sentence, "\n")] = '\0';
     }
-    out->outcome = find_outcome(a, &sums);
-    out->found = rules_fail(rules, a);
+    out->outcome = recording_answer_outcome(a);
+    out->found = recording_answer_found(a, rules);
     fprintf(out->text, "%s: %s", name, sentence != NULL ? sentence : "");
     json_string(out->members, "name", name);
     if (out->outcome == JOB_FAILED)

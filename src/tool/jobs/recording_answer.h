@@ -4,6 +4,10 @@
 #include "src/tool/answers/fail_rules.h"
 #include "src/tool/jobs/job_work.h"
 
+/* What finished answers come to, and whether any frame fails by the rules. */
+job_outcome recording_answer_outcome(const answers *a);
+bool recording_answer_found(const answers *a, const fail_rules *rules);
+
 /* The answers are finished. */
 void recording_answer_write(const char *name, const answers *a, const length_unit *unit,
                             const fail_rules *rules, job_output *out);

@@ -4,7 +4,7 @@ import { counted, integer } from '../page/format.js';
 import { ROWS_MAX } from './table.js';
 import { OUTCOME_NAME } from './words.js';
 
-const ORDER = ['failed', 'found', 'crossing', 'touching', 'duplicate', 'missing', 'clean'];
+const ORDER = ['failed', 'found', 'crossing', 'inside', 'touching', 'duplicate', 'missing', 'clean'];
 
 const nameOf = (kind) => (kind === 'found' ? 'fail by the rules' : OUTCOME_NAME[kind]);
 

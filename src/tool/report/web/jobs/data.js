@@ -5,7 +5,7 @@ import { BlockError, readArray, readDocument } from '../data/decode.js';
 const NUMBERS = ['crossing_frames', 'frames', 'events', 'depth', 'pairs', 'seconds'];
 
 /** What a reader should look at first; jobs that fail by the rules of their run come right behind those that failed. */
-const WORST_FIRST = ['failed', 'found', 'crossing', 'touching', 'duplicate', 'missing', 'clean'];
+const WORST_FIRST = ['failed', 'found', 'crossing', 'inside', 'touching', 'duplicate', 'missing', 'clean'];
 
 /** Texts end with a 0 each. */
 function textsOf(bytes, count, name) {
