@@ -29,12 +29,12 @@ static int remove_folder(void **state) {
 }
 
 /* A box from low, with sides of this length, in all coordinates scaled. */
-typedef struct box {
+typedef struct placed_box {
     double low[3], side;
-} box;
+} placed_box;
 
 typedef struct body_case {
-    box boxes[BODIES_MAX]; /* side 0: no more */
+    placed_box boxes[BODIES_MAX]; /* side 0: no more */
     const char *result;
     double depth; /* by hand */
 } body_case;
@@ -47,7 +47,7 @@ static const body_case cases[] = {
     {{{{0, 0, 0}, 1}, {{0.75, 0.25, 0.25}, 0.5}}, "crossing", 0.25},
 };
 
-static void write_box(FILE *file, const box *b, int axis, double scale) {
+static void write_box(FILE *file, const placed_box *b, int axis, double scale) {
     static const char quads[6][4] = {{1, 3, 4, 2}, {5, 6, 8, 7}, {1, 2, 6, 5},
                                      {3, 7, 8, 4}, {1, 5, 7, 3}, {2, 4, 8, 6}};
     for (int i = 0; i < 8; i++) {

@@ -82,7 +82,7 @@ static bool print_text(text_printer *print, const answers *a, const length_unit 
 }
 
 /* What all frames come to. */
-static bool conclude(mesh_check *c, io_error *error) {
+static bool conclude_check(mesh_check *c, io_error *error) {
     mesh_answer *out = c->out;
     const answers *a = &c->answers;
     const length_unit unit = answer_options_unit(c->job->answers, c->recording);
@@ -106,7 +106,7 @@ static bool check_mesh(const mesh_job *job, recording *r, mesh_answer *out, io_e
     mesh_check c = {.job = job, .recording = r, .out = out};
     bool good = prepare_check(&c, error);
     for (uint32_t frame = 0; frame < r->frame_count && good; frame++) good = check_frame(&c, frame, error);
-    good = good && conclude(&c, error);
+    good = good && conclude_check(&c, error);
     answers_close(&c.answers);
     cscd_detector_destroy(c.detector);
     ignore_pairs_free(&c.ignored);
