@@ -187,10 +187,10 @@ static void (*const makers[EXTREME_KINDS])(extreme_shape *, uint32_t) = {
     make_fan,  make_cylinder, make_bipyramid, make_comb,   make_needles,
     make_book, make_slivers,  make_spire,     make_sheets, make_pile};
 
-/* Most bend a little, as a whole; sheets stay in their order, and slivers move by a part of what lies between them. */
+/* They bend, as a whole, by a part of what lies between neighbours; sheets stay in their order. */
 static void move_shape(extreme_shape *s, extreme_kind kind) {
     const bool flat = kind == EXTREME_SHEETS || kind == EXTREME_PILE;
-    const double way = kind == EXTREME_SLIVERS ? 0.1 / s->triangle_count : 1e-3;
+    const double way = flat ? 1e-3 : 0.1 / s->triangle_count;
     for (uint32_t v = 0; v < s->vertex_count; v++) {
         const double *p = s->x0 + 3 * (size_t)v;
         double *q = s->x1 + 3 * (size_t)v;
