@@ -57,6 +57,15 @@ typedef enum cscd_intersection_answer {
     CSCD_ANSWER_MAX_ENUM = 0x7fffffff
 } cscd_intersection_answer;
 
+/* Which side of a closed component is its outside: what is inside out is found at each moment, and taken as turned around, by
+ * the rule that cscd/patches.h gives. It matters for patches, overlaps and depths. Later versions may add values. */
+typedef enum cscd_orientation {
+    CSCD_ORIENTATION_BY_OBJECT, /* components that lie in others of their object are shells of these */
+    CSCD_ORIENTATION_BY_PART, /* so are those of one part (cscd_detector_set_parts); other parts are bodies of their own */
+    CSCD_ORIENTATION_AS_GIVEN, /* nothing is turned around: what is inside out contains nothing */
+    CSCD_ORIENTATION_MAX_ENUM = 0x7fffffff
+} cscd_orientation;
+
 /* Options of cscd_detector_find_intersections; start from cscd_intersection_defaults. */
 typedef struct cscd_intersection_options {
     uint32_t struct_size;            /* set by cscd_intersection_defaults */
@@ -86,7 +95,8 @@ typedef struct cscd_intersection_options {
         depth_bounds; /* how deep whole triangles may be: cscd/depths.h. Needs depths, which are then given, too */
     bool
         cut_offs; /* what curves cut off of open surfaces: cscd/cut_offs.h. Needs patches, which are then given, too */
-    uint8_t reserved[1];
+    uint8_t reserved[5];
+    cscd_orientation orientation; /* BY_OBJECT by default */
 } cscd_intersection_options;
 
 /* The default options. */

@@ -11,8 +11,9 @@ extern "C" {
 
 /* How often an object winds around a patch: the sum over its closed components, exact, and under the same infinitely small
  * motion as the curves. A point outside has number 0, one within the object 1, one within two of its bodies, or of two of
- * their limbs, 2; in a cavity, whose shell has its normals inwards, it is 0 again. Below 0, something is inside out. It
- * never grows. */
+ * their limbs, 2; in a cavity, whose shell has its normals inwards, it is 0 again. Components that are turned inside out count
+ * as turned around (cscd_patches.turned). Below 0, a component passes through itself with its inside out, or orientations
+ * are taken as given. It never grows. */
 typedef struct cscd_winding {
     uint32_t object;
     int32_t number; /* not 0 */
@@ -20,7 +21,7 @@ typedef struct cscd_winding {
 
 /* A part of a component's surface that is connected over edges which no curve cuts. It is on one side of every surface. It
  * is buried in another object whose number is 1 or more. Its own object has the number that holds just outside of the patch,
- * on the side of the normals: from 1 on the patch is buried in its own object, and below 0 it is inverted, as of a body or a
+ * on the side of the normals, or on the other one if its component is taken as turned around: from 1 on the patch is buried in its own object, and below 0 it is inverted, as of a body or a
  * limb that is inside out. Open components have no inside, and do not count in the numbers of their object. Where a pair
  * of triangles is left out although a curve runs through both, no patch ends there, and its numbers are those at its
  * example. It never grows. */
@@ -36,7 +37,16 @@ typedef struct cscd_patch {
     uint32_t reserved; /* 0 */
 } cscd_patch;
 
-/* Patches in the order of their first triangles. The lists belong to the detector and live until its next call. */
+/* Patches in the order of their first triangles.
+ *
+ * Which components are inside out is found at each moment, and exactly (docs/theory/orientation.md). A closed component is
+ * inverted if the volume that it encloses is negative; where it passes through itself, each place counts as often as its
+ * surface winds around it. One that lies in no other closed component of its object is turned around if it is inverted. One
+ * that lies in others, and does not cross them, is turned around if the outermost of these is: so a cavity stays a cavity, and
+ * a second body a second body, also in an object that is inverted as a whole. With CSCD_ORIENTATION_BY_PART that holds for a
+ * component whose first triangle is of a part that the outer one has, too. A component without volume is as given.
+ *
+ * The lists belong to the detector and live until its next call. */
 typedef struct cscd_patches {
     const cscd_patch *items;
     size_t count;
@@ -49,6 +59,9 @@ typedef struct cscd_patches {
     const uint32_t
         *corner_patches; /* per corner of each triangle, triangle by triangle: the patch on the side of the
                                        * edge that begins at the corner */
+    const bool *
+        turned; /* per component: it is inside out, and taken as turned around; NULL: none is, or AS_GIVEN was
+                         * asked for */
 } cscd_patches;
 
 /* What two objects bury of each other, or one of itself. An object contains a point where its number is 1 or more. A

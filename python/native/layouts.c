@@ -135,7 +135,8 @@ FIELDS(intersection_options, FIELD(cscd_intersection_options, struct_size),
        FIELD(cscd_intersection_options, kinds), FIELD(cscd_intersection_options, curves),
        FIELD(cscd_intersection_options, patches), FIELD(cscd_intersection_options, overlaps),
        FIELD(cscd_intersection_options, depths), FIELD(cscd_intersection_options, parts),
-       FIELD(cscd_intersection_options, depth_bounds), FIELD(cscd_intersection_options, cut_offs))
+       FIELD(cscd_intersection_options, depth_bounds), FIELD(cscd_intersection_options, cut_offs),
+       FIELD(cscd_intersection_options, orientation))
 FIELDS(intersection_pair, FIELD(cscd_intersection_pair, a), FIELD(cscd_intersection_pair, b),
        FIELD(cscd_intersection_pair, kind), FIELD(cscd_intersection_pair, shared),
        FIELD(cscd_intersection_pair, components), FIELD(cscd_intersection_pair, objects))
@@ -165,7 +166,8 @@ FIELDS(patch, FIELD(cscd_patch, component), FIELD(cscd_patch, object), FIELD(csc
 FIELDS(winding, FIELD(cscd_winding, object), FIELD(cscd_winding, number))
 FIELDS(patches, FIELD(cscd_patches, items), FIELD(cscd_patches, count), FIELD(cscd_patches, windings),
        FIELD(cscd_patches, winding_count), FIELD(cscd_patches, vertex_patches),
-       FIELD(cscd_patches, triangle_patches), FIELD(cscd_patches, corner_patches))
+       FIELD(cscd_patches, triangle_patches), FIELD(cscd_patches, corner_patches),
+       FIELD(cscd_patches, turned))
 FIELDS(overlap, FIELD(cscd_overlap, a), FIELD(cscd_overlap, b), FIELD(cscd_overlap, area_a),
        FIELD(cscd_overlap, area_b), FIELD(cscd_overlap, volume))
 FIELDS(overlaps, FIELD(cscd_overlaps, items), FIELD(cscd_overlaps, count))

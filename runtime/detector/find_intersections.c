@@ -40,6 +40,8 @@ static cscd_status take_options(cscd_context *context, const cscd_intersection_o
         return context_fail(context, CSCD_INVALID_ARGUMENT,
                             "kinds is %#llx, which has no kind: join sets of cscd_intersection_set",
                             (unsigned long long)out->kinds);
+    if ((unsigned)out->orientation > CSCD_ORIENTATION_AS_GIVEN)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "unknown orientation %d", (int)out->orientation);
     bool all =
         out->answer == CSCD_ANSWER_LIST && (out->kinds & ALL_KINDS) == ALL_KINDS && out->stop_after == 0;
     if (surface_answers_wanted(out) && !all)

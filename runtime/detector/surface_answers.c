@@ -15,6 +15,7 @@ void surface_answers_free(cscd_context *context, surface_answers *a) {
     overlap_finder_free(&a->overlap_finder);
     cut_off_finder_free(&a->cut_off_finder);
     patch_finder_free(&a->patch_finder);
+    orientation_finder_free(&a->orientations);
     placed_names_free(&a->names);
     left_out_pairs_free(&a->left_out);
     curve_joiner_free(&a->joiner);
@@ -39,8 +40,9 @@ static surface_answers *make_answers(cscd_detector *d) {
         (overlap_finder){.context = context, .cuts = {.context = context}, .gaps = {.context = context}};
     a->depth_bounder.context = context;
     a->depth_finder.context = a->depth_finder.outer.context = a->depth_finder.outer.cuts.context = context;
-    if (patch_finder_create(d->mesh, d->space.traversal.lane_count, &a->patch_finder) != CSCD_OK) {
-        context_free(context, a);
+    if (!orientation_finder_create(d->mesh, &a->orientations) ||
+        patch_finder_create(d->mesh, d->space.traversal.lane_count, &a->patch_finder) != CSCD_OK) {
+        surface_answers_free(context, a);
         return NULL;
     }
     d->answers = a;
@@ -55,10 +57,15 @@ left_out_pairs *surface_answers_begin(cscd_detector *d) {
     return &a->left_out;
 }
 
-static cscd_status find_patches(cscd_detector *d, const named_surface *surface) {
+static cscd_status find_patches(cscd_detector *d, named_surface *surface, cscd_orientation orientation) {
     surface_answers *a = d->answers;
     a->patch_finder.objects = d->pair_rules.sets;
     progress_stage(&d->context->progress, "patches", 0.8, 0.9);
+    const part_labels *parts = orientation == CSCD_ORIENTATION_BY_PART ? &d->parts : NULL;
+    if (orientation != CSCD_ORIENTATION_AS_GIVEN &&
+        !orientation_finder_run(&a->orientations, surface, &d->space.bvh, parts, a->joiner.found,
+                                a->joiner.piece_count))
+        return CSCD_OUT_OF_MEMORY;
     return patch_finder_run(&a->patch_finder, surface, &d->space.bvh, a->joiner.found, a->joiner.piece_count,
                             &a->patches);
 }
@@ -77,7 +84,7 @@ cscd_status surface_answers_find(cscd_detector *d, const double *positions,
                                  const cscd_intersection_options *options, cscd_intersection_pairs *found) {
     surface_answers *a = d->answers;
     if (a->left_out.out_of_memory) return CSCD_OUT_OF_MEMORY;
-    named_surface surface = {d->mesh, positions, NULL};
+    named_surface surface = {.mesh = d->mesh, .positions = positions};
     if (!placed_names_find(&a->names, d->mesh, positions, d->exclusions.names, &surface.names))
         return CSCD_OUT_OF_MEMORY;
     const surface_cuts cuts = {&surface, &a->joiner, &a->patch_finder};
@@ -87,7 +94,7 @@ cscd_status surface_answers_find(cscd_detector *d, const double *positions,
     found->curves = &a->curves;
     bool depths = options->depths || options->depth_bounds;
     if (!options->patches && !options->overlaps && !options->cut_offs && !depths) return CSCD_OK;
-    status = find_patches(d, &surface);
+    status = find_patches(d, &surface, options->orientation);
     if (status != CSCD_OK) return status;
     found->patches = &a->patches;
     if (options->overlaps) {

@@ -4,6 +4,7 @@
 #include "runtime/detector/detector.h"
 #include "runtime/intersections/cut_offs.h"
 #include "runtime/intersections/depth_bounds.h"
+#include "runtime/intersections/orientations.h"
 #include "runtime/intersections/overlaps.h"
 #include "runtime/intersections/placed_names.h"
 
@@ -14,6 +15,7 @@ typedef struct surface_answers {
     left_out_pairs left_out;
     placed_names names;
     curve_joiner joiner;
+    orientation_finder orientations;
     patch_finder patch_finder;
     overlap_finder overlap_finder;
     cut_off_finder cut_off_finder;

@@ -182,7 +182,7 @@ cscd_status change_finder_run(change_finder *f, const cscd_mesh *mesh, const dou
                               cscd_curve_changes *out) {
     change_work work = {.finder = f, .contacts = contacts, .contact_count = contact_count};
     for (int i = 0; i < 2; i++) {
-        work.ends[i] = (named_surface){mesh, ends[i], NULL};
+        work.ends[i] = (named_surface){.mesh = mesh, .positions = ends[i]};
         f->names[i].context = f->context;
         if (!placed_names_find(&f->names[i], mesh, ends[i], names, &work.ends[i].names))
             return CSCD_OUT_OF_MEMORY;

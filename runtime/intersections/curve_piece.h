@@ -4,13 +4,21 @@
 #include "src/mesh/mesh.h"
 #include "src/mesh/symbolic.h"
 
-/* Where the surface is at one moment, and which vertices count as one. */
+/* Where the surface is at one moment, which vertices count as one, and which components are taken as turned around. */
 typedef struct named_surface {
     const cscd_mesh *mesh;
     const double *positions; /* packed */
     const uint32_t
         *names; /* per vertex: the smallest one that it is one with, at the same place; NULL: itself */
+    const bool *
+        turned; /* per component: its normals are inwards, so that the side they point away from is outside; NULL:
+                         * of none */
 } named_surface;
+
+/* 1 where the normal of a triangle points outwards, -1 where its component is turned around. */
+static inline int surface_sense(const named_surface *s, uint32_t triangle) {
+    return s->turned != NULL && s->turned[s->mesh->triangle_components[triangle]] ? -1 : 1;
+}
 
 static inline uint32_t surface_name(const named_surface *s, uint32_t vertex) {
     return s->names != NULL ? s->names[vertex] : vertex;
@@ -28,9 +36,9 @@ typedef struct surface_event {
     uint32_t edge, triangle;
 } surface_event;
 
-/* It leads from ends[0] to ends[1], in the direction of the normal of a times (cross product) the normal of b: the
- * inside of b is to the left of it on a, seen from outside, and the inside of a to the right of it on b. At most one end is
- * at a vertex, which then is that of a. */
+/* It leads from ends[0] to ends[1], in the direction of the normal of a times (cross product) the normal of b: unless
+ * components are turned around, the inside of b is to the left of it on a, seen from outside, and the inside of a to the
+ * right of it on b. At most one end is at a vertex, which then is that of a. */
 typedef struct curve_piece {
     uint32_t a, b;
     surface_event ends[2];

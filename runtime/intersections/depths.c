@@ -128,12 +128,12 @@ static bool ask_of_edges(const depth_work *work) {
 
 /* ---- answers ------------------------------------------------------------------------------------------- */
 
-/* The normal at the nearest point, for a point that is on the surface. */
+/* The outward normal at the nearest point, for a point that is on the surface. */
 static void find_normal(const depth_work *work, uint32_t triangle, double out[3]) {
     const named_surface *s = work->found->surface;
     surface_normal(s->mesh, s->positions, triangle, out);
-    double norm = surface_norm(out);
-    for (int k = 0; k < 3; k++) out[k] = norm > 0.0 ? out[k] / norm : 0.0;
+    double norm = surface_norm(out) * surface_sense(s, triangle);
+    for (int k = 0; k < 3; k++) out[k] = norm != 0.0 ? out[k] / norm : 0.0;
 }
 
 static void set_answer(const depth_work *work, const outer_point *nearest, cscd_depth *out) {

@@ -123,8 +123,9 @@ static void add_whole_triangles(overlap_work *work) {
         if (!triangle_bounds(work, t)) continue;
         vec3_subtract(surface_corner(work->mesh, work->found->surface->positions, t, 0),
                       place_of_patch(work, patch), from);
-        for (int k = 0; k < 3; k++) sums[patch].normal[k] += 0.5 * normal[k];
-        sums[patch].flux += 0.5 * vec3_dot(from, normal);
+        double half = 0.5 * surface_sense(work->found->surface, t);
+        for (int k = 0; k < 3; k++) sums[patch].normal[k] += half * normal[k];
+        sums[patch].flux += half * vec3_dot(from, normal);
     }
 }
 
@@ -243,7 +244,8 @@ static double flux_from(const overlap_work *work, const overlap_share *share, co
         return share->bounding * (sum->flux + vec3_dot(from, sum->normal));
     }
     surface_normal(work->mesh, work->found->surface->positions, share->triangle, normal);
-    return share->bounding * (vec3_dot(from, normal) / surface_norm(normal));
+    double distance = vec3_dot(from, normal) / surface_norm(normal);
+    return share->bounding * distance * surface_sense(work->found->surface, share->triangle);
 }
 
 /* Volumes are measured from a point of the overlap itself, since digits are lost with the distance: where a curve cuts a

@@ -318,7 +318,7 @@ cscd_status patch_finder_run(patch_finder *p, const named_surface *s, const bvh 
     parallel_run(p->mesh->context->threads, p->lane_count, number_patches, &work);
     if (progress_cancelled(&p->mesh->context->progress)) return CSCD_CANCELLED;
     if (!join_numbers(p)) return CSCD_OUT_OF_MEMORY;
-    *out = (cscd_patches){p->patches,        p->patch_count,      p->windings,      p->winding_count,
-                          p->vertex_patches, p->triangle_patches, p->corner_patches};
+    *out = (cscd_patches){p->patches,        p->patch_count,      p->windings,       p->winding_count,
+                          p->vertex_patches, p->triangle_patches, p->corner_patches, s->turned};
     return context_progress_status(p->mesh->context);
 }

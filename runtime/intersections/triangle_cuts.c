@@ -84,8 +84,9 @@ void loaded_cut_point(const loaded_cut *cut, const double x[3], double out[2]) {
 }
 
 /* Adds an end of a piece that is on the triangle's own border. An edge of a that passes towards the side of b's normal, and
- * so out of b, begins the piece, one that passes into b ends it; for edges of b it is the other way round. */
-static void add_border(cut_load *load, size_t number, bool is_b, int end, uint32_t slot) {
+ * so out of b, begins the piece, one that passes into b ends it; for edges of b, and where the other component is turned
+ * around, it is the other way round. So the number changes at the end of a piece as across it. */
+static void add_border(cut_load *load, size_t number, int end, const cut_line *line) {
     const cscd_mesh *mesh = load->found->surface->mesh;
     const curve_joiner *j = load->found->curves;
     uint32_t triangle = load->out->triangle;
@@ -95,7 +96,7 @@ static void add_border(cut_load *load, size_t number, bool is_b, int end, uint32
         double s = j->points[j->end_points[2 * number + (size_t)end]].s;
         bool along = mesh->edges[edge][0] == mesh->triangles[triangle][i];
         load->out->cut.borders[load->out->cut.border_count++] =
-            (cut_border){i, along ? s : 1.0 - s, slot, (end == 1) != is_b ? 1 : -1};
+            (cut_border){i, along ? s : 1.0 - s, line->slot, end == 1 ? line->rise : -line->rise};
     }
 }
 
@@ -109,8 +110,8 @@ void loaded_cut_sort_borders(loaded_cut *cut, cut_border *spare) {
     sort_items(cut->cut.borders, spare, cut->cut.border_count, sizeof *spare, compare_borders);
 }
 
-/* Seen from outside, the inside of b is to the left of a piece on a, and the inside of a to the right of it on b. Open
- * components have no inside. */
+/* Seen from the side of the normal, the inside of b is to the left of a piece on a, and the inside of a to the right of it on
+ * b, unless the other component is turned around. Open components have no inside. */
 static void add_piece(cut_load *load, const curve_key *key) {
     const cscd_mesh *mesh = load->found->surface->mesh;
     const curve_joiner *j = load->found->curves;
@@ -120,13 +121,13 @@ static void add_piece(cut_load *load, const curve_key *key) {
     uint32_t other = is_b ? j->found[number].a : j->found[number].b;
     if (!mesh->components[mesh->triangle_components[other]].closed_manifold) return;
     cut_line line = {.slot = slot_of(load, object_of(mesh, other)),
-                     .rise = is_b ? -1 : 1,
+                     .rise = (is_b ? -1 : 1) * surface_sense(load->found->surface, other),
                      .number = (uint32_t)cut->line_count};
     loaded_cut_point(load->out, j->points[j->end_points[2 * number]].x, line.from);
     loaded_cut_point(load->out, j->points[j->end_points[2 * number + 1]].x, line.to);
     load->cuts->line_pieces[cut->line_count] = (uint32_t)number;
     cut->lines[cut->line_count++] = line;
-    for (int end = 0; end < 2; end++) add_border(load, number, is_b, end, line.slot);
+    for (int end = 0; end < 2; end++) add_border(load, number, end, &line);
 }
 
 static const cscd_patch *patch_at(const cut_load *load, uint32_t corner) {

@@ -10,8 +10,10 @@ enum { RAY_AXIS = 2 };
 typedef struct ray_work {
     const named_surface *surface;
     winding_tally *tally;
+    bool by_component;
     symbolic_point origin, first, second;
-    uint32_t next_name; /* of the corner after the origin in the triangle that the point belongs to */
+    uint32_t
+        next_name; /* of the corner after the origin in the triangle that the point belongs to, seen from outside */
 } ray_work;
 
 void winding_tally_clear(winding_tally *tally) {
@@ -64,7 +66,7 @@ static int pass_of_stranger(const ray_work *work, const symbolic_point p[3]) {
 }
 
 /* On which side of a triangle (origin, b, c) is the point? If the triangle has all three vertices of the one that the point
- * belongs to, it is off that one's plane, to the side of its normal. */
+ * belongs to, it is off that one's plane, to its outer side. */
 static int side_of_neighbour(const ray_work *work, symbolic_point b, symbolic_point c) {
     const symbolic_point *towards[2] = {&work->first, &work->second};
     for (int i = 0; i < 2; i++) {
@@ -87,7 +89,8 @@ static int pass_of_neighbour(const ray_work *work, symbolic_point b, symbolic_po
 static void pass_triangle(void *data, uint32_t triangle) {
     const ray_work *work = data;
     const cscd_mesh *mesh = work->surface->mesh;
-    if (!mesh->components[mesh->triangle_components[triangle]].closed_manifold) return;
+    uint32_t component = mesh->triangle_components[triangle];
+    if (!mesh->components[component].closed_manifold) return;
     symbolic_point p[3];
     load_points(work->surface, triangle, p);
     if (have_one_name(p)) return;
@@ -97,17 +100,34 @@ static void pass_triangle(void *data, uint32_t triangle) {
         number = pass_of_stranger(work, p);
     else
         number = pass_of_neighbour(work, p[(corner + 1) % 3], p[(corner + 2) % 3]);
-    if (number != 0)
-        add_number(work->tally, cscd_mesh_vertex_object(mesh, mesh->triangles[triangle][0]), number);
+    if (number == 0) return;
+    uint32_t of =
+        work->by_component ? component : cscd_mesh_vertex_object(mesh, mesh->triangles[triangle][0]);
+    add_number(work->tally, of, number * surface_sense(work->surface, triangle));
 }
 
-void winding_find(const named_surface *s, const bvh *f, corner_side at, winding_tally *tally) {
+static void cast_ray(const named_surface *s, const bvh *f, corner_side at, bool by_component,
+                     winding_tally *tally) {
     symbolic_point p[3];
     load_points(s, at.triangle, p);
     if (have_one_name(p)) return;
     symbolic_point next = p[(at.corner + 1) % 3], before = p[(at.corner + 2) % 3];
-    ray_work work = {s, tally, p[at.corner], at.next ? next : before, at.next ? before : next, next.name};
+    ray_work work = {.surface = s,
+                     .tally = tally,
+                     .by_component = by_component,
+                     .origin = p[at.corner],
+                     .first = at.next ? next : before,
+                     .second = at.next ? before : next,
+                     .next_name = surface_sense(s, at.triangle) > 0 ? next.name : before.name};
     const double *x = work.origin.x;
     query_box ray = {{x[0], x[1], x[2]}, {x[0], x[1], (double)INFINITY}};
     bvh_visit_box(f, &ray, true, pass_triangle, &work);
+}
+
+void winding_find(const named_surface *s, const bvh *f, corner_side at, winding_tally *tally) {
+    cast_ray(s, f, at, false, tally);
+}
+
+void winding_find_by_component(const named_surface *s, const bvh *f, corner_side at, winding_tally *tally) {
+    cast_ray(s, f, at, true, tally);
 }

@@ -106,6 +106,10 @@ static void a_body_that_is_inside_out(void **state) {
     body_rig_end_body(&rig);
     add_cube(0.5, 0.5, 0.5, 1);
     body_rig_find_all(&rig);
+    expect_overlap(0, 0, 0.0, 0.0, 0.0);
+    expect_overlap(0, 1, 0.0, 6.0, 1.0);
+    rig.orientation = CSCD_ORIENTATION_AS_GIVEN;
+    body_rig_find(&rig);
     expect_overlap(0, 0, 0.0, 24.0, 0.0);
     expect_overlap(0, 1, 0.0, 0.0, 0.0);
     body_rig_free(&rig);

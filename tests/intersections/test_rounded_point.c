@@ -39,7 +39,7 @@ static int tear_down(void **state) {
 }
 
 static bool compare_point(const point_rig *r) {
-    const named_surface s = {r->mesh, r->x[0], NULL};
+    const named_surface s = {.mesh = r->mesh, .positions = r->x[0]};
     const uint32_t edge = r->mesh->triangle_edges[0][0];
     const double *points[5] = {r->x[r->mesh->edges[edge][0]], r->x[r->mesh->edges[edge][1]], r->x[2], r->x[3],
                                r->x[4]};
@@ -63,7 +63,7 @@ static void draw_points(point_rig *r, random_stream *random, double offset, doub
 /* Makes events of points that agree in so many leading bits, of so many bits in all; scaled by a power of two. */
 static int compare_points(point_rig *r, uint64_t seed, double offset, double grid, double scale) {
     const surface_event event = {r->mesh->triangle_edges[0][0], 1};
-    const named_surface s = {r->mesh, r->x[0], NULL};
+    const named_surface s = {.mesh = r->mesh, .positions = r->x[0]};
     random_stream random = stream_start(seed);
     int found = 0;
     for (int i = 0; i < POINTS; i++) {
@@ -99,7 +99,7 @@ static void points_near_the_middle_are_left(void **state) {
     memcpy(r->x, x, sizeof x);
     assert_false(compare_point(r));
     event_point at;
-    const named_surface s = {r->mesh, r->x[0], NULL};
+    const named_surface s = {.mesh = r->mesh, .positions = r->x[0]};
     event_point_find(&s, (surface_event){r->mesh->triangle_edges[0][0], 1}, &at);
     assert_true(at.x[0] == 1.0 + 0x1p-52);
 }

@@ -10,6 +10,7 @@ void body_rig_begin(body_rig *r) {
     scene_clear(&r->all);
     r->counter = NULL;
     r->body_count = 0;
+    r->orientation = CSCD_ORIENTATION_BY_OBJECT;
 }
 
 void body_rig_end_body(body_rig *r) {
@@ -74,6 +75,19 @@ void body_rig_add_sheet(body_rig *r, const double corner[3], const double along[
     }
 }
 
+void body_rig_turn(body_rig *r, uint32_t first, uint32_t count) {
+    for (uint32_t t = first; t < first + count; t++) {
+        uint32_t *v = r->all.triangles + (size_t)t * 3, middle = v[1];
+        v[1] = v[2];
+        v[2] = middle;
+    }
+    for (uint32_t i = 0; i < r->body_count; i++) {
+        body_part *body = &r->bodies[i];
+        for (uint32_t t = 0; t < body->triangle_count * 3; t++)
+            body->triangles[t] = r->all.triangles[body->first_triangle * 3 + t] - body->first_vertex;
+    }
+}
+
 void body_rig_create(body_rig *r, const cscd_detector_options *options, uint32_t thread_count) {
     cscd_object_desc descs[BODIES_MAX];
     cscd_context_options of_context = cscd_context_defaults();
@@ -90,6 +104,7 @@ void body_rig_create(body_rig *r, const cscd_detector_options *options, uint32_t
 cscd_status body_rig_try(body_rig *r) {
     cscd_intersection_options options = cscd_intersection_defaults();
     options.overlaps = options.depths = options.depth_bounds = true;
+    options.orientation = r->orientation;
     return cscd_detector_find_intersections(r->detector, CSCD_DOUBLES(r->all.x0, r->all.vertex_count),
                                             &options, &r->found);
 }

@@ -17,6 +17,7 @@ typedef struct body_rig {
     scene all;
     body_part bodies[BODIES_MAX];
     uint32_t body_count;
+    cscd_orientation orientation;
     counting_allocator *counter; /* of the context; NULL: the system's allocator */
     cscd_context *context;
     cscd_mesh *mesh;
@@ -40,6 +41,9 @@ void body_rig_add_sheet(body_rig *r, const double corner[3], const double along[
 
 /* A long body that bends into a ring and swallows its tail; without a change before, it lies about the origin. */
 void body_rig_add_snake(body_rig *r);
+
+/* Exchanges two corners of these triangles of the scene, and so of the bodies that have them. */
+void body_rig_turn(body_rig *r, uint32_t first, uint32_t count);
 
 /* Creates the detector, with options or the default ones, in a context of so many threads. */
 void body_rig_create(body_rig *r, const cscd_detector_options *options, uint32_t thread_count);

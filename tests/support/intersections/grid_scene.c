@@ -125,7 +125,8 @@ void grid_scene_make(grid_family family, uint64_t seed, grid_scene *out) {
     if (family == GRID_SEWN) sew_sheets(out);
     assert_int_equal(cscd_context_create(NULL, &out->context), CSCD_OK);
     assert_int_equal(cscd_mesh_create(out->context, descs, out->object_count, &out->mesh), CSCD_OK);
-    out->surface = (named_surface){out->mesh, out->positions, family == GRID_SEWN ? out->names : NULL};
+    out->surface = (named_surface){
+        .mesh = out->mesh, .positions = out->positions, .names = family == GRID_SEWN ? out->names : NULL};
 }
 
 void grid_scene_free(grid_scene *s) {

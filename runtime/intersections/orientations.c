@@ -1,0 +1,219 @@
+/* Which closed components are inside out at one moment: docs/theory/orientation.md. The signs of volumes tell it, but for
+ * objects that have both signs. Of these, rays find which components lie in which. */
+#include "runtime/intersections/orientations.h"
+
+#include "src/core/context.h"
+#include "src/core/sort.h"
+
+#include <string.h>
+
+/* ---- memory -------------------------------------------------------------------------------------------- */
+
+static array_list list_arrays(orientation_finder *o) {
+    size_t components = o->mesh->component_count;
+    winding_tally *t = &o->tally;
+    return (array_list){{ARRAY(o->volumes, components), ARRAY(o->signs, components),
+                         ARRAY(o->turned, components), ARRAY(o->objects, components),
+                         ARRAY(o->samples, components), ARRAY(t->numbers, components),
+                         ARRAY(t->is_touched, components), ARRAY(t->touched, components),
+                         ARRAY(o->orientations, o->mesh->object_count)}};
+}
+
+static array_list list_by_component(orientation_finder *o) {
+    return (array_list){{ARRAY(o->triangles, o->mesh->triangle_count),
+                         ARRAY(o->offsets, (size_t)o->mesh->component_count + 1)}};
+}
+
+static array_list list_of_keys(component_keys *k, size_t count) {
+    return (array_list){{ARRAY(k->items, count), ARRAY(k->spare, count)}};
+}
+
+bool orientation_finder_create(const cscd_mesh *mesh, orientation_finder *out) {
+    orientation_finder o = {.mesh = mesh};
+    if (!context_allocate_all(mesh->context, list_arrays(&o))) return false;
+    for (uint32_t t = 0; t < mesh->triangle_count; t++)
+        o.objects[mesh->triangle_components[t]] = cscd_mesh_vertex_object(mesh, mesh->triangles[t][0]);
+    *out = o;
+    return true;
+}
+
+void orientation_finder_free(orientation_finder *o) {
+    if (o->mesh == NULL) return;
+    cscd_context *context = o->mesh->context;
+    context_free_all(context, list_arrays(o));
+    context_free_all(context, list_by_component(o));
+    context_free_all(context, list_of_keys(&o->crossings, 0));
+    context_free_all(context, list_of_keys(&o->parts, 0));
+    *o = (orientation_finder){.mesh = NULL};
+}
+
+/* ---- signs --------------------------------------------------------------------------------------------- */
+
+/* What an object's components are. */
+enum { OUTWARD = 1, INWARD = 2, MIXED = OUTWARD | INWARD };
+
+typedef struct orientation_work {
+    orientation_finder *finder;
+    const named_surface *surface;
+    const bvh *bvh;
+    const uint32_t *labels; /* of triangles; NULL: objects alone count */
+} orientation_work;
+
+static bool sort_triangles(orientation_finder *o) {
+    if (o->triangles != NULL) return true;
+    if (!context_allocate_all(o->mesh->context, list_by_component(o))) return false;
+    mesh_list_by_component(o->mesh, o->triangles, o->offsets);
+    return true;
+}
+
+static bool find_signs(const orientation_work *w) {
+    orientation_finder *o = w->finder;
+    const cscd_mesh *mesh = o->mesh;
+    volume_estimates_find(mesh, w->surface->positions, o->volumes);
+    memset(o->orientations, 0, mesh->object_count * sizeof *o->orientations);
+    for (uint32_t c = 0; c < mesh->component_count; c++) {
+        const volume_estimate *e = &o->volumes[c];
+        o->signs[c] = e->volume < 0.0 ? -1 : 1;
+        if (!mesh->components[c].closed_manifold) {
+            o->signs[c] = 0;
+        } else if (!volume_estimate_decides(e)) {
+            if (!sort_triangles(o)) return false;
+            o->signs[c] = (int8_t)volume_sign_exact(mesh, w->surface->positions, o->triangles + o->offsets[c],
+                                                    o->offsets[c + 1] - o->offsets[c]);
+        }
+        o->turned[c] = o->signs[c] < 0;
+        if (o->signs[c] != 0) o->orientations[o->objects[c]] |= o->signs[c] < 0 ? INWARD : OUTWARD;
+    }
+    return true;
+}
+
+static bool any_object_is(const orientation_finder *o, int orientation) {
+    for (uint32_t i = 0; i < o->mesh->object_count; i++) {
+        if ((o->orientations[i] & orientation) == orientation) return true;
+    }
+    return false;
+}
+
+static bool is_of_mixed(const orientation_finder *o, uint32_t component) {
+    return o->signs[component] != 0 && o->orientations[o->objects[component]] == MIXED;
+}
+
+/* ---- keys ---------------------------------------------------------------------------------------------- */
+
+static uint64_t key_of(uint32_t component, uint32_t other) {
+    return (uint64_t)component << 32 | other;
+}
+
+static bool reserve_keys(const orientation_finder *o, component_keys *k, size_t count) {
+    k->count = 0;
+    return context_renew_all(o->mesh->context, list_of_keys(k, room_with_spare(count)), &k->capacity, count);
+}
+
+static void add_key(component_keys *k, uint64_t key) {
+    if (k->count == 0 || k->items[k->count - 1] != key) k->items[k->count++] = key;
+}
+
+static void sort_keys(component_keys *k) {
+    size_t count = k->count;
+    sort_by_number(k->items, k->spare, count, sizeof *k->items);
+    k->count = 0;
+    for (size_t i = 0; i < count; i++) add_key(k, k->items[i]);
+}
+
+static bool has_key(const component_keys *k, uint64_t key) {
+    size_t low = 0, high = k->count;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (k->items[middle] < key)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < k->count && k->items[low] == key;
+}
+
+static bool list_crossings(orientation_finder *o, const curve_piece *pieces, size_t piece_count) {
+    if (!reserve_keys(o, &o->crossings, 2 * piece_count)) return false;
+    for (size_t i = 0; i < piece_count; i++) {
+        uint32_t a = o->mesh->triangle_components[pieces[i].a], b = o->mesh->triangle_components[pieces[i].b];
+        if (a == b || o->objects[a] != o->objects[b] || !is_of_mixed(o, a)) continue;
+        o->crossings.items[o->crossings.count++] = key_of(a, b);
+        o->crossings.items[o->crossings.count++] = key_of(b, a);
+    }
+    sort_keys(&o->crossings);
+    return true;
+}
+
+static bool list_parts(const orientation_work *w) {
+    orientation_finder *o = w->finder;
+    if (w->labels == NULL) return true;
+    if (!reserve_keys(o, &o->parts, o->mesh->triangle_count)) return false;
+    for (uint32_t t = 0; t < o->mesh->triangle_count; t++) {
+        uint32_t component = o->mesh->triangle_components[t];
+        if (is_of_mixed(o, component)) add_key(&o->parts, key_of(component, w->labels[t]));
+    }
+    sort_keys(&o->parts);
+    return true;
+}
+
+/* ---- nesting ------------------------------------------------------------------------------------------- */
+
+static void find_samples(const orientation_work *w) {
+    orientation_finder *o = w->finder;
+    memset(o->samples, 0xff, o->mesh->component_count * sizeof *o->samples);
+    for (uint32_t t = 0; t < o->mesh->triangle_count; t++) {
+        uint32_t *sample = &o->samples[o->mesh->triangle_components[t]];
+        if (*sample == UINT32_MAX && !winding_is_collapsed(w->surface, t)) *sample = t;
+    }
+}
+
+/* May a component be a shell within another one, if it lies there? What has a part of its own is a body of its own. */
+static bool may_hold(const orientation_work *w, uint32_t outer, uint32_t inner) {
+    const orientation_finder *o = w->finder;
+    if (outer == inner || o->objects[outer] != o->objects[inner] || o->signs[outer] == 0) return false;
+    if (has_key(&o->crossings, key_of(outer, inner))) return false;
+    return w->labels == NULL || has_key(&o->parts, key_of(outer, w->labels[o->samples[inner]]));
+}
+
+static bool is_larger(const orientation_finder *o, uint32_t a, uint32_t b) {
+    double of_a = fabs(o->volumes[a].volume), of_b = fabs(o->volumes[b].volume);
+    return of_a != of_b ? of_a > of_b : a < b;
+}
+
+/* The outermost one of the components in which one lies, or itself. Those that contain it lie in each other, so the largest is
+ * the outermost. */
+static uint32_t find_outermost(const orientation_work *w, uint32_t component) {
+    winding_tally *tally = &w->finder->tally;
+    uint32_t outermost = component;
+    winding_tally_clear(tally);
+    winding_find_by_component(w->surface, w->bvh, (corner_side){w->finder->samples[component], 0, true},
+                              tally);
+    for (uint32_t i = 0; i < tally->count; i++) {
+        uint32_t outer = tally->touched[i];
+        if (tally->numbers[outer] == 0 || !may_hold(w, outer, component)) continue;
+        if (outermost == component || is_larger(w->finder, outer, outermost)) outermost = outer;
+    }
+    return outermost;
+}
+
+/* Shells keep the orientation that they have relative to the outermost one. */
+static void turn_with_outermost(const orientation_work *w) {
+    orientation_finder *o = w->finder;
+    find_samples(w);
+    for (uint32_t c = 0; c < o->mesh->component_count; c++) {
+        if (is_of_mixed(o, c) && o->samples[c] != UINT32_MAX)
+            o->turned[c] = o->signs[find_outermost(w, c)] < 0;
+    }
+}
+
+bool orientation_finder_run(orientation_finder *o, named_surface *s, const bvh *f, const part_labels *parts,
+                            const curve_piece *pieces, size_t piece_count) {
+    const orientation_work work = {o, s, f, parts != NULL ? parts->triangles : NULL};
+    if (!find_signs(&work)) return false;
+    if (any_object_is(o, MIXED)) {
+        if (!list_crossings(o, pieces, piece_count) || !list_parts(&work)) return false;
+        turn_with_outermost(&work);
+    }
+    if (any_object_is(o, INWARD)) s->turned = o->turned;
+    return true;
+}
