@@ -5,7 +5,7 @@
 #include "src/tool/common/option_table.h"
 #include "src/tool/common/option_values.h"
 #include "src/tool/common/output_path.h"
-#include "src/tool/common/recording.h"
+#include "src/tool/common/part_names.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -27,7 +27,7 @@ static const option_table table = {
     "info",
     "MODEL [--weld exact|none|EPS] [--json OUT.json]",
     "Prints counts, bounds, the parts that the file names, and of each component whether it is closed (open edges, "
-    "non-manifold places) and its genus.",
+    "non-manifold places), its genus, and whether it is inside out.",
     rows,
     sizeof rows / sizeof *rows,
     .examples = {{"info body.obj", "Is this mesh closed, how many components has it, and how large is it?"},
@@ -43,6 +43,7 @@ typedef struct mesh_facts {
     double low[3], high[3];   /* of the file */
     uint32_t zero_area_triangles;
     size_t pairs;             /* of triangles that intersect or touch */
+    bool *turned;             /* of each component: it is inside out */
     uint32_t *part_triangles; /* of each part that the file names: so many of its triangles */
     uint32_t rest_triangles;  /* in none of them */
 } mesh_facts;
@@ -70,26 +71,44 @@ static bool count_parts(const mesh_file *file, mesh_facts *facts, io_error *erro
     return true;
 }
 
-static bool find_pairs(recording *r, mesh_facts *facts, io_error *error) {
+/* Which components are inside out is found as check does, by the parts that the file names. */
+static bool ask_detector(recording *r, const part_names *parts, const double *positions, mesh_facts *facts,
+                         io_error *error) {
+    const uint32_t components = cscd_mesh_component_count(r->mesh);
     cscd_detector *detector = NULL;
-    cscd_intersections found;
-    double *positions = malloc((size_t)cscd_mesh_vertex_count(r->mesh) * 3 * sizeof *positions);
-    bool checked = positions != NULL || io_fail(error, "out of memory");
-    checked = checked && recording_read(r, 0, positions, error);
-    if (checked && (cscd_detector_create(r->context, r->mesh, NULL, NULL, &detector) != CSCD_OK ||
-                    cscd_detector_check(detector, CSCD_DOUBLES(positions, cscd_mesh_vertex_count(r->mesh)),
-                                        &found) != CSCD_OK))
-        checked = io_fail(error, "%s", cscd_context_detail(r->context));
-    if (checked) {
+    cscd_intersection_options options = cscd_intersection_defaults();
+    cscd_intersection_pairs found;
+    options.patches = true;
+    if (parts->named) options.orientation = CSCD_ORIENTATION_BY_PART;
+    const bool asked =
+        cscd_detector_create(r->context, r->mesh, NULL, NULL, &detector) == CSCD_OK &&
+        cscd_detector_set_parts(detector, parts->labels, parts->count) == CSCD_OK &&
+        cscd_detector_find_intersections(detector, CSCD_DOUBLES(positions, cscd_mesh_vertex_count(r->mesh)),
+                                         &options, &found) == CSCD_OK;
+    if (asked) {
         facts->zero_area_triangles = found.zero_area_triangles;
-        facts->pairs = found.count;
+        facts->pairs = found.count - found.duplicate;
+        for (uint32_t i = 0; found.patches->turned != NULL && i < components; i++)
+            facts->turned[i] = found.patches->turned[i];
     }
     cscd_detector_destroy(detector);
+    return asked || io_fail(error, "%s", cscd_context_detail(r->context));
+}
+
+static bool find_pairs(recording *r, mesh_facts *facts, io_error *error) {
+    part_names parts;
+    if (!part_names_find(r, NULL, &parts, error)) return false;
+    double *positions = malloc((size_t)cscd_mesh_vertex_count(r->mesh) * 3 * sizeof *positions);
+    facts->turned = calloc((size_t)cscd_mesh_component_count(r->mesh) + 1, sizeof *facts->turned);
+    bool checked = (positions != NULL && facts->turned != NULL) || io_fail(error, "out of memory");
+    checked =
+        checked && recording_read(r, 0, positions, error) && ask_detector(r, &parts, positions, facts, error);
     free(positions);
+    part_names_free(&parts);
     return checked;
 }
 
-/* facts: to be freed by its part_triangles in any case. */
+/* facts: to be freed by its part_triangles and its turned in any case. */
 static bool find_facts(recording *r, mesh_facts *facts, io_error *error) {
     uint32_t surface_vertices = 0;
     for (uint32_t i = 0; i < cscd_mesh_component_count(r->mesh); i++)
@@ -105,12 +124,12 @@ static long long genus_of(const cscd_component *c) {
 
 /* ---- for people -------------------------------------------------------------------------------------- */
 
-static void print_component(const cscd_mesh *mesh, uint32_t index) {
+static void print_component(const cscd_mesh *mesh, uint32_t index, bool turned) {
     cscd_component c = cscd_mesh_component(mesh, index);
     printf("  %-4u %u vertices, %u edges, %u triangles, Euler characteristic %lld, ", index, c.vertex_count,
            c.edge_count, c.triangle_count, (long long)c.euler_characteristic);
     if (c.closed_manifold) {
-        printf("closed, genus %lld\n", genus_of(&c));
+        printf("closed, genus %lld%s\n", genus_of(&c), turned ? ", inside out" : "");
         return;
     }
     printf("not a closed surface: %u open edges, %u non-manifold edges, %u non-manifold vertices, "
@@ -144,7 +163,8 @@ static void print_facts(const recording *r, const mesh_facts *facts) {
            facts->high[0], facts->high[1], facts->high[2]);
     print_parts(&r->objects[0].file, facts);
     printf("components  %u\n", components);
-    for (uint32_t i = 0; i < components && i < COMPONENTS_LISTED; i++) print_component(r->mesh, i);
+    for (uint32_t i = 0; i < components && i < COMPONENTS_LISTED; i++)
+        print_component(r->mesh, i, facts->turned[i]);
     if (components > COMPONENTS_LISTED) printf("  and %u more\n", components - COMPONENTS_LISTED);
     printf("zero area   %u triangles\npairs       %zu of triangles intersect or touch (see cscd check)\n",
            facts->zero_area_triangles, facts->pairs);
@@ -158,7 +178,7 @@ static void write_point(json *out, const char *key, const double x[3]) {
     json_end_array(out);
 }
 
-static void write_components(json *out, const cscd_mesh *mesh) {
+static void write_components(json *out, const cscd_mesh *mesh, const mesh_facts *facts) {
     json_begin_array(out, "components");
     for (uint32_t i = 0; i < cscd_mesh_component_count(mesh); i++) {
         const cscd_component c = cscd_mesh_component(mesh, i);
@@ -173,6 +193,7 @@ static void write_components(json *out, const cscd_mesh *mesh) {
             json_signed(out, "genus", genus_of(&c));
         else
             json_null(out, "genus");
+        json_boolean(out, "inside_out", facts->turned[i]);
         json_integer(out, "open_edges", c.open_edges);
         json_integer(out, "non_manifold_edges", c.non_manifold_edges);
         json_integer(out, "non_manifold_vertices", c.non_manifold_vertices);
@@ -236,7 +257,7 @@ static void write_facts(json *out, const recording *r, const mesh_facts *facts) 
     json_break_line(out);
     write_parts(out, &file->parts, facts);
     json_break_line(out);
-    write_components(out, r->mesh);
+    write_components(out, r->mesh, facts);
     json_end_object(out);
     fputc('\n', out->file);
 }
@@ -272,6 +293,7 @@ int command_info(int argument_count, char **arguments) {
     if (!recording_open(&options.source, &r, &error)) return fail_input("%s", error.text);
     bool said = find_facts(&r, &facts, &error) && say_facts(&options, &r, &facts, &error);
     free(facts.part_triangles);
+    free(facts.turned);
     recording_close(&r);
     return said ? EXIT_RAN : fail_input("%s", error.text);
 }

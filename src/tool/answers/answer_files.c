@@ -62,6 +62,8 @@ void answers_write_json(const answers *a, const length_unit *unit, json *out) {
     json_begin_array(out, "events");
     for (size_t i = 0; i < a->event_count; i++) write_event(a, &a->events[i], out);
     json_end_array(out);
+    json_break_line(out);
+    turned_parts_write(&a->turned, out);
 }
 
 void answers_write_frame(const answers *a, const frame_answer *frame, json *out) {

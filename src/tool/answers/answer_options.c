@@ -20,6 +20,13 @@ static bool read_max_faces(const char *text, void *place) {
     return parse_unsigned(text, &options->most_faces);
 }
 
+static bool read_orientation(const char *text, void *place) {
+    int choice;
+    if (!parse_choice(text, (const char *const[]){"found", "as-given"}, 2, &choice)) return false;
+    *(bool *)place = choice == 1;
+    return true;
+}
+
 static const option_row rows[] = {
     {"events", "OUT.csv", read_text, offsetof(answer_options, events_path),
      "write the events as a table: which parts, since when, how deep, where; - is the standard output"},
@@ -33,6 +40,8 @@ static const option_row rows[] = {
      "what one unit of the files is (default: metres of glTF files, else unknown)"},
     {"no-depths", NULL, read_flag, offsetof(answer_options, no_depths),
      "faster: find pairs and events, and not how deep they are"},
+    {"orientation", "found|as-given", read_orientation, offsetof(answer_options, as_given),
+     "found, the default: closed surfaces that are inside out are taken as turned around; as-given: they contain nothing"},
     {"timings", NULL, read_flag, offsetof(answer_options, timings),
      "print more: how long it took, and a row for each frame that is not clean"},
 };

@@ -10,6 +10,7 @@ typedef struct answer_options {
     fail_options fail;
     const char *events_path, *junit_path; /* NULL: not given */
     bool no_depths;                       /* pairs only */
+    bool as_given;                        /* what is inside out is not turned around */
     bool timings;                         /* print what a developer wants to know as well */
 } answer_options;
 

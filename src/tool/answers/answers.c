@@ -27,10 +27,14 @@ bool answers_open(recording *r, const ignore_pairs *ignored, bool depths, answer
     answers a = {.recording = r,
                  .parts = &ignored->parts,
                  .depths = depths,
+                 .orientation = ignored->parts.named ? CSCD_ORIENTATION_BY_PART : CSCD_ORIENTATION_BY_OBJECT,
                  .shown = shown_depths_of(ignored),
                  .frames = growable_of(sizeof(frame_answer))};
     a.seen = io_zeroed(((size_t)cscd_mesh_triangle_count(r->mesh) + 1) * sizeof *a.seen);
-    if (a.seen == NULL) return io_fail(error, "out of memory");
+    if (a.seen == NULL || !turned_parts_open(r, a.parts, &a.turned)) {
+        answers_close(&a);
+        return io_fail(error, "out of memory");
+    }
     if (!create_tracker(&a, error)) {
         answers_close(&a);
         return false;
@@ -43,6 +47,7 @@ void answers_close(answers *a) {
     cscd_event_tracker_destroy(a->tracker);
     growable_free(&a->frames);
     shown_depths_free(&a->shown);
+    turned_parts_close(&a->turned);
     free(a->events);
     free(a->worst_first);
     free(a->seen);
@@ -143,6 +148,7 @@ bool answers_find(const answers *a, cscd_detector *detector, const double *posit
     cscd_intersection_options options = cscd_intersection_defaults();
     options.parts = true;
     options.curves = options.patches = options.depths = a->depths;
+    options.orientation = a->orientation;
     const cscd_view *view = CSCD_DOUBLES(positions, cscd_mesh_vertex_count(a->recording->mesh));
     return cscd_detector_find_intersections(detector, view, &options, found) == CSCD_OK ||
            api_failed(a, error);
@@ -161,6 +167,10 @@ bool answers_add_found(answers *a, uint32_t frame, cscd_intersection_pairs *foun
     count_faces(a, found, added);
     find_worst(&a->shown, found, added);
     return cscd_event_tracker_add_frame(a->tracker, frame, found) == CSCD_OK || api_failed(a, error);
+}
+
+void answers_add_turned(answers *a, uint32_t frame, const bool *turned) {
+    turned_parts_add(&a->turned, frame, turned);
 }
 
 bool answers_skip_frame(answers *a, uint32_t frame, io_error *error) {

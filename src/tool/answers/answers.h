@@ -4,6 +4,7 @@
 
 #include "src/io/growable.h"
 #include "src/tool/answers/shown_depths.h"
+#include "src/tool/answers/turned_parts.h"
 
 /* What was found in a frame. */
 typedef struct frame_answer {
@@ -22,8 +23,10 @@ typedef struct frame_answer {
 typedef struct answers {
     recording *recording;
     const part_names *parts;
-    bool depths;        /* curves and depths are looked for */
+    bool depths; /* curves and depths are looked for */
+    cscd_orientation orientation;
     shown_depths shown; /* of the frame found last */
+    turned_parts turned;
     growable frames;    /* frame_answer, in their order */
     cscd_event *events; /* when finished: by their first frames; frames are indices */
     size_t event_count;
@@ -64,6 +67,9 @@ bool answers_find(const answers *a, cscd_detector *detector, const double *posit
  * from then on, until the next call: what is not looked at with each other is left out. */
 bool answers_add_found(answers *a, uint32_t frame, cscd_intersection_pairs *found, double ms,
                        io_error *error);
+
+/* Adds what of a frame that was added is inside out, as cscd_patches says; NULL: nothing is, or nobody looked. */
+void answers_add_turned(answers *a, uint32_t frame, const bool *turned);
 
 /* Adds a frame in which nothing is looked for. */
 bool answers_skip_frame(answers *a, uint32_t frame, io_error *error);

@@ -42,8 +42,16 @@ static bool check_frame(check_run *c, uint32_t frame, io_error *error) {
     if (!looked ||
         !answers_add_found(&c->answers, frame, &found, cscd_detector_timings(c->detector).check_ms, &reason))
         return io_fail(error, "frame %d: %s", c->recording.frame_numbers[frame], reason.text);
+    answers_add_turned(&c->answers, frame, found.patches != NULL ? found.patches->turned : NULL);
     return check_output_add(&c->output, &c->answers, &found, error) &&
            exports_add_frame(&c->exports, frame, c->positions, &found, error);
+}
+
+static bool open_answers(check_run *c, io_error *error) {
+    const answer_options *o = &c->options->answers;
+    if (!answers_open(&c->recording, &c->ignored, !o->no_depths, &c->answers, error)) return false;
+    if (o->as_given) c->answers.orientation = CSCD_ORIENTATION_AS_GIVEN;
+    return true;
 }
 
 static bool create_detector(check_run *c, io_error *error) {
@@ -53,8 +61,7 @@ static bool create_detector(check_run *c, io_error *error) {
         CSCD_OK)
         return io_fail(error, "%s", cscd_context_detail(c->recording.context));
     c->positions = malloc((size_t)cscd_mesh_vertex_count(c->recording.mesh) * 3 * sizeof *c->positions);
-    return (c->positions != NULL || io_fail(error, "out of memory")) &&
-           answers_open(&c->recording, &c->ignored, !c->options->answers.no_depths, &c->answers, error) &&
+    return (c->positions != NULL || io_fail(error, "out of memory")) && open_answers(c, error) &&
            answers_prepare(&c->answers, c->detector, error);
 }
 
@@ -96,7 +103,10 @@ static bool close_check(check_run *c, const char *stopped_by, io_error *error) {
     if (stopped_by != NULL) answers_leave_unfinished(&c->answers, "%s", stopped_by);
     bool finished = answers_finish(&c->answers, error);
     if (finished) print_answers(c);
-    if (!o->quiet) recording_warn(&c->recording);
+    if (!o->quiet) {
+        recording_warn(&c->recording);
+        turned_parts_tell(&c->answers.turned);
+    }
     bool closed = check_output_close(&c->output, &c->answers, &c->unit, finished ? error : NULL);
     bool written = answer_outputs_close(&c->files, finished ? &c->answers : NULL, &c->rules, suite,
                                         finished && closed ? error : NULL);

@@ -94,6 +94,7 @@ static bool find_parts(const recording *r, const cscd_plan *plan, part_names *pa
     for (uint32_t i = 0; i < r->object_count; i++) named |= r->objects[i].file.parts.count > 0;
     for (uint32_t i = 0; i < r->object_count && named; i++)
         if (!add_object(r, i, parts, error)) return false;
+    parts->named = named;
     if (named) return true;
     const uint32_t components = cscd_mesh_component_count(r->mesh);
     if (components == 1 && plan != NULL && cscd_plan_region_count(plan) > 1)

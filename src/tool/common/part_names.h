@@ -9,6 +9,7 @@ typedef struct part_names {
     uint32_t count;
     char **names;     /* count of them */
     uint32_t *labels; /* per triangle of the mesh: a part, or NO_PART */
+    bool named;       /* by files or a table; else they are components or regions, or the recording itself */
 } part_names;
 
 /* Names parts by what the recording says, the first of these that says anything: the objects and parts that its files name

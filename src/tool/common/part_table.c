@@ -147,7 +147,7 @@ static bool label_triangles(part_table *table, part_names *out, io_error *error)
 
 bool part_names_read(const recording *r, const char *path, part_names *out, io_error *error) {
     part_table table = {.recording = r, .path = path};
-    part_names parts = {0};
+    part_names parts = {.named = true};
     FILE *file = pipe_file_read(path);
     if (file == NULL) return io_fail(error, "%s: cannot open: %s", path, strerror(errno));
     const bool read = read_rows(&table, file, error) && label_triangles(&table, &parts, error);

@@ -19,5 +19,6 @@ typedef struct frame_check {
     bool checked; /* else nothing was looked for, and found and ms are 0 */
     cscd_intersection_pairs found;
     double ms;
+    const bool *turned;     /* per component, as in cscd_patches; NULL: nothing is */
     const uint64_t *hashes; /* of the positions, per object (recording_hash_frame) */
 } frame_check;

@@ -41,8 +41,11 @@ static bool prepare_plan(replay *r, io_error *error) {
 static bool prepare_answers(replay *r, io_error *error) {
     const answer_options *o = &r->options->answers;
     r->unit = answer_options_unit(o, &r->recording);
-    return fail_rules_create(&o->fail, &r->unit, &r->rules, error) &&
-           answers_open(&r->recording, &r->ignored, !o->no_depths, &r->answers, error);
+    if (!fail_rules_create(&o->fail, &r->unit, &r->rules, error) ||
+        !answers_open(&r->recording, &r->ignored, !o->no_depths, &r->answers, error))
+        return false;
+    if (o->as_given) r->answers.orientation = CSCD_ORIENTATION_AS_GIVEN;
+    return true;
 }
 
 static bool prepare_source(replay *r, io_error *error) {
@@ -120,6 +123,7 @@ static bool take_frame(replay *r, uint32_t frame, frame_check *check, frame_stat
     cscd_intersection_pairs found = check->found;
     if (!answers_add_found(&r->answers, frame, &found, check->ms, &reason))
         return io_fail(error, "frame %d: %s", r->recording.frame_numbers[frame], reason.text);
+    answers_add_turned(&r->answers, frame, check->turned);
     const bool meets = found.count > found.duplicate;
     *state = meets ? FRAME_CROSSING : FRAME_EMBEDDED;
     r->totals.frames_checked++;

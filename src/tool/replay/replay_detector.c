@@ -76,5 +76,6 @@ bool replay_detector_check(replay_detector *d, uint32_t frame, const double *pos
     if (!answers_find(d->answers, d->detector, positions, &out->found, &reason))
         return io_fail(error, "frame %d: %s", d->recording->frame_numbers[frame], reason.text);
     out->ms = cscd_detector_timings(d->detector).check_ms;
+    if (out->found.patches != NULL) out->turned = out->found.patches->turned;
     return true;
 }

@@ -50,6 +50,7 @@ void replay_print_results(const replay *r) {
 
 void replay_print_remarks(replay *r) {
     recording_warn(&r->recording);
+    turned_parts_tell(&r->answers.turned);
     if (r->options->ignored.rest != REST_KEPT)
         printf("%zu triangle pairs that intersect or touch in frame %d are left out%s\n",
                r->ignored.rest_pairs, r->recording.frame_numbers[0],

@@ -41,7 +41,8 @@ static bool read_frame(replay_source *s, uint32_t frame, double **positions, io_
 
 static bool add_record(replay_source *s, shard_record kind, const frame_check *check, io_error *error) {
     if (s->results == NULL) return true;
-    step_bytes_add_frame(&s->bytes, check, s->recording->object_count);
+    step_bytes_add_frame(&s->bytes, check, s->recording->object_count,
+                         cscd_mesh_component_count(s->recording->mesh));
     return shard_file_add(s->results, kind, &s->bytes, error);
 }
 

@@ -18,7 +18,8 @@ static bool next_record(shard_series *s, shard_record kind, packed_reader *bytes
 }
 
 static bool take_frame(shard_series *s, packed_reader *bytes, frame_check *out, io_error *error) {
-    return step_bytes_take_frame(bytes, &s->place, out, s->reader.identity.object_count) ||
+    const shard_identity *of = &s->reader.identity;
+    return step_bytes_take_frame(bytes, &s->place, out, of->object_count, of->component_count) ||
            file_is_torn(s, error);
 }
 

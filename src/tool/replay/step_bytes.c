@@ -20,6 +20,7 @@ uint64_t step_bytes_layout(void) {
                             sizeof(cscd_patch_depth),
                             sizeof(cscd_part_pairs),
                             sizeof(cscd_part_pair),
+                            sizeof(bool),
                             sizeof(void *)};
     const uint64_t hash = provenance_hash(PROVENANCE_HASH_START, &order, sizeof order);
     return provenance_hash(hash, sizes, sizeof sizes);
@@ -102,12 +103,14 @@ static void take_parts(packed_reader *in, cscd_part_pairs *p) {
 }
 
 /* Which lists a frame has. */
-enum { HAS_CHECK = 1, HAS_CURVES = 2, HAS_DEPTHS = 4, HAS_PARTS = 8 };
+enum { HAS_CHECK = 1, HAS_CURVES = 2, HAS_DEPTHS = 4, HAS_PARTS = 8, HAS_TURNED = 16 };
 
-void step_bytes_add_frame(packed_bytes *out, const frame_check *check, uint32_t object_count) {
+void step_bytes_add_frame(packed_bytes *out, const frame_check *check, uint32_t object_count,
+                          uint32_t component_count) {
     const cscd_intersection_pairs *f = &check->found;
     const uint64_t has = (check->checked ? HAS_CHECK : 0) | (f->curves != NULL ? HAS_CURVES : 0) |
-                         (f->depths != NULL ? HAS_DEPTHS : 0) | (f->parts != NULL ? HAS_PARTS : 0);
+                         (f->depths != NULL ? HAS_DEPTHS : 0) | (f->parts != NULL ? HAS_PARTS : 0) |
+                         (check->turned != NULL ? HAS_TURNED : 0);
     packed_bytes_add(out, &has, sizeof has);
     packed_bytes_add_array(out, check->hashes, object_count, sizeof *check->hashes);
     if (!check->checked) return;
@@ -117,6 +120,8 @@ void step_bytes_add_frame(packed_bytes *out, const frame_check *check, uint32_t 
     if (f->curves != NULL) add_curves(out, f->curves);
     if (f->depths != NULL) add_depths(out, f->depths);
     if (f->parts != NULL) add_parts(out, f->parts);
+    if (check->turned != NULL)
+        packed_bytes_add_array(out, check->turned, component_count, sizeof *check->turned);
 }
 
 static void take_found(packed_reader *in, uint64_t has, step_place *place, cscd_intersection_pairs *f) {
@@ -133,9 +138,10 @@ static void take_found(packed_reader *in, uint64_t has, step_place *place, cscd_
     if (has & HAS_PARTS) take_parts(in, &place->parts);
 }
 
-bool step_bytes_take_frame(packed_reader *in, step_place *place, frame_check *out, uint32_t object_count) {
+bool step_bytes_take_frame(packed_reader *in, step_place *place, frame_check *out, uint32_t object_count,
+                           uint32_t component_count) {
     uint64_t has = 0;
-    size_t objects;
+    size_t objects, components = component_count;
     *out = (frame_check){.checked = false};
     packed_reader_copy(in, &has, sizeof has);
     out->hashes = packed_reader_take_array(in, &objects, sizeof *out->hashes);
@@ -143,6 +149,7 @@ bool step_bytes_take_frame(packed_reader *in, step_place *place, frame_check *ou
     if (out->checked) {
         packed_reader_copy(in, &out->ms, sizeof out->ms);
         take_found(in, has, place, &out->found);
+        if (has & HAS_TURNED) out->turned = packed_reader_take_array(in, &components, sizeof *out->turned);
     }
-    return !in->torn && objects == object_count;
+    return !in->torn && objects == object_count && components == component_count;
 }
