@@ -190,6 +190,7 @@ static bool choose_columns(const source_tree *tree, rank_room *room) {
 /* ---- lists ----------------------------------------------------------------------------------------------- */
 
 typedef struct rank_search {
+    const source_tree *tree;
     rank_blocks *blocks;
     const interactions *lists;
     bool failed[TREE_TASKS_MOST]; /* no memory */
@@ -270,7 +271,7 @@ static bool find_block(const source_tree *tree, rank_list *list, uint32_t target
 
 static void find_blocks(void *data, uint32_t task) {
     rank_search *search = data;
-    const source_tree *tree = search->blocks->tree;
+    const source_tree *tree = search->tree;
     const interactions *lists = search->lists;
     const uint32_t root = tree->task_nodes[task], end = subtree_end(tree, root);
     for (uint32_t n = root; n < end; n++) {
@@ -307,8 +308,8 @@ double rank_blocks_bytes(const rank_blocks *blocks) {
 
 cscd_status rank_blocks_create(const source_tree *tree, const interactions *lists, rank_blocks *out) {
     memset(out, 0, sizeof *out);
-    out->tree = tree;
-    rank_search search = {out, lists, {false}};
+    out->context = tree->context;
+    rank_search search = {tree, out, lists, {false}};
     bool failed = false;
     parallel_run(tree->context->threads, tree->task_count, find_blocks, &search);
     for (uint32_t i = 0; i < tree->task_count; i++) failed |= search.failed[i];
@@ -317,11 +318,11 @@ cscd_status rank_blocks_create(const source_tree *tree, const interactions *list
 }
 
 void rank_blocks_destroy(rank_blocks *blocks) {
-    for (uint32_t i = 0; blocks->tree != NULL && i < TREE_TASKS_MOST; i++) {
-        context_free(blocks->tree->context, blocks->lists[i].blocks);
-        context_free(blocks->tree->context, blocks->lists[i].numbers);
+    for (uint32_t i = 0; blocks->context != NULL && i < TREE_TASKS_MOST; i++) {
+        context_free(blocks->context, blocks->lists[i].blocks);
+        context_free(blocks->context, blocks->lists[i].numbers);
     }
-    blocks->tree = NULL;
+    blocks->context = NULL;
 }
 
 /* ---- application ----------------------------------------------------------------------------------------- */
@@ -340,11 +341,12 @@ static void add_column(const float *column, double charge, uint32_t count, doubl
     for (uint32_t i = 0; i < count; i++) potentials[i] += charge * column[i];
 }
 
-void rank_blocks_add(const rank_blocks *blocks, uint32_t task, const double *charges, double *potentials) {
+void rank_blocks_add(const source_tree *tree, const rank_blocks *blocks, uint32_t task, const double *charges,
+                     double *potentials) {
     const rank_list *list = &blocks->lists[task];
     for (size_t i = 0; i < list->block_count; i++) {
         const rank_block *block = &list->blocks[i];
-        const source_node *a = &blocks->tree->nodes[block->target], *b = &blocks->tree->nodes[block->source];
+        const source_node *a = &tree->nodes[block->target], *b = &tree->nodes[block->source];
         const uint32_t rows = count_of(a), columns = count_of(b),
                        kept = block->rank > 0 ? block->rank : columns;
         const float *column = list->numbers + block->begin, *weights = column + (size_t)kept * rows;

@@ -21,7 +21,7 @@ typedef struct rank_list {
 } rank_list;
 
 typedef struct rank_blocks {
-    const source_tree *tree; /* NULL: there is nothing to be freed */
+    cscd_context *context; /* NULL: there is nothing to be freed */
     rank_list lists[TREE_TASKS_MOST];
 } rank_blocks;
 
@@ -36,4 +36,5 @@ cscd_status rank_blocks_create(const source_tree *tree, const interactions *list
 void rank_blocks_destroy(rank_blocks *blocks);
 
 /* Adds the potentials of a task's blocks; both in the tree's order. The same bits on every processor. */
-void rank_blocks_add(const rank_blocks *blocks, uint32_t task, const double *charges, double *potentials);
+void rank_blocks_add(const source_tree *tree, const rank_blocks *blocks, uint32_t task, const double *charges,
+                     double *potentials);

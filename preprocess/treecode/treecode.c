@@ -82,8 +82,8 @@ double treecode_bytes(const treecode *t) {
            (double)t->lists.near_count * sizeof *t->lists.near_sources +
            (double)t->lists.far_count * sizeof *t->lists.far_items +
            (double)t->lists.long_count * sizeof *t->lists.long_sources +
-           (t->ranks.tree != NULL ? rank_blocks_bytes(&t->ranks)
-                                  : rank_blocks_expected_bytes(&t->tree, &t->lists)) +
+           (t->ranks.context != NULL ? rank_blocks_bytes(&t->ranks)
+                                     : rank_blocks_expected_bytes(&t->tree, &t->lists)) +
            of_node * t->tree.node_count + of_leaf * t->tree.leaf_count +
            (double)t->tree.count * sizeof *t->tree.sources;
 }
@@ -208,7 +208,7 @@ static void evaluate_below(void *data, uint32_t task) {
     memset(expansion_of(e->t->coefficients, root), 0, HARMONIC_COUNT * sizeof(double));
     for (uint32_t n = root; n < end && progress_go_on(&e->t->context->progress, 0.0); n++)
         evaluate_node(e, n);
-    rank_blocks_add(&e->t->ranks, task, e->charges, e->potentials);
+    rank_blocks_add(&e->t->tree, &e->t->ranks, task, e->charges, e->potentials);
 }
 
 cscd_status treecode_evaluate(treecode *t, const double *charges, double *potentials) {

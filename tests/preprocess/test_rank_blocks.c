@@ -10,8 +10,10 @@
 
 #if defined(SLOW_MACHINE)
 enum { SMALL = 400 };
+static const double growth_most = 2.3; /* of so few triangles hardly any are apart */
 #else
 enum { SMALL = 1000 };
+static const double growth_most = 1.5;
 #endif
 
 static const extreme_kind kinds[] = {EXTREME_FAN,     EXTREME_CYLINDER, EXTREME_BIPYRAMID, EXTREME_COMB,
@@ -144,7 +146,7 @@ static void memory_grows_with_the_triangles(void **state) {
         const double few = bytes_of(kinds[k], 2 * SMALL), many = bytes_of(kinds[k], 8 * SMALL);
         print_message("%s: %.0f and %.0f bytes a triangle\n", extreme_kind_name(kinds[k]), few / (2 * SMALL),
                       many / (8 * SMALL));
-        assert_true(many < 4.0 * 1.5 * few); /* 13 to 15 times as much without blocks */
+        assert_true(many < 4.0 * growth_most * few); /* 13 to 15 times as much without blocks */
     }
 }
 
