@@ -1,5 +1,5 @@
-/* What answers about intersections cost beside the plain check: kinds, curves, patches, overlaps, depths, bounds of depths,
- * what is cut off, changes of curves, events. */
+/* What answers about intersections cost beside the plain check: kinds, curves, patches, overlaps, depths, what is
+ * cut off, changes of curves, events. */
 #include "benchmarks/lib/crossing_scenes.h"
 #include "benchmarks/lib/deforming_body.h"
 #include "benchmarks/lib/options.h"
@@ -20,7 +20,7 @@ static const char help[] =
     "cloth. Milliseconds of processor time of all threads, in which a crowded machine shows less; each the least of\n"
     "some rounds, in which all take turns; trees and buffers are there. x: of all, beside the check. grown: how\n"
     "often these rounds have allocated.\n"
-    "The second table: with depths and bounds of depths; with patches and what is cut off; a frame of a\n"
+    "The second table: with patches and what is cut off; a frame of a\n"
     "cscd_event_tracker that is given all answers; and of an interval in which cloth goes to its other frame and\n"
     "bodies swell by a thousandth of their size, cscd_detector_step, and cscd_detector_curve_changes for its contacts.\n"
     "--intervals: the rounds (default 7, with --quick 3). --sizes, --body and --shuffled mean nothing here.\n"
@@ -34,14 +34,13 @@ typedef enum question {
     ASK_OVERLAPS,
     ASK_DEPTHS,
     ASK_ALL,
-    ASK_BOUNDS,
     ASK_CUT_OFFS,
     QUESTION_COUNT,
     FIRST_TABLE_COUNT = ASK_ALL + 1
 } question;
 
-static const char *const question_names[QUESTION_COUNT] = {"check",  "kinds", "curves", "patches", "overlaps",
-                                                           "depths", "all",   "bounds", "cut_offs"};
+static const char *const question_names[QUESTION_COUNT] = {"check",    "kinds",  "curves", "patches",
+                                                           "overlaps", "depths", "all",    "cut_offs"};
 
 typedef struct moment {
     const char *name;
@@ -95,8 +94,7 @@ static cscd_status ask_question(cscd_detector *d, const moment *m, question q, d
     options.curves = q >= ASK_CURVES;
     options.patches = q >= ASK_PATCHES;
     options.overlaps = q == ASK_OVERLAPS || q == ASK_ALL;
-    options.depths = q == ASK_DEPTHS || q == ASK_ALL || q == ASK_BOUNDS;
-    options.depth_bounds = q == ASK_BOUNDS;
+    options.depths = q == ASK_DEPTHS || q == ASK_ALL;
     options.cut_offs = q == ASK_CUT_OFFS;
     double since = processor_ms();
     cscd_intersections pairs;
@@ -189,14 +187,14 @@ static void print_row(const moment *m, const answer_times *t) {
 }
 
 static void print_later_rows(const row_list *rows) {
-    printf("\n  %-13s %8s %8s %8s %8s %8s %8s %8s %8s %8s\n", "scene", "triangles", "check", "bounds",
-           "cut_offs", "tracker", "contacts", "changes", "step", "changes");
+    printf("\n  %-13s %8s %8s %8s %8s %8s %8s %8s %8s\n", "scene", "triangles", "check", "cut_offs",
+           "tracker", "contacts", "changes", "step", "changes");
     for (size_t i = 0; i < rows->count; i++) {
         const later_row *row = &rows->items[i];
         const answer_times *t = &row->times;
-        printf("  %-13s %8u %8.2f %8.2f %8.2f %8.2f %8zu %8zu %8.2f %8.2f\n", row->name, row->triangle_count,
-               t->ms[ASK_CHECK], t->ms[ASK_BOUNDS], t->ms[ASK_CUT_OFFS], t->tracker_ms, t->contacts,
-               t->changes, t->step_ms, t->changes_ms);
+        printf("  %-13s %8u %8.2f %8.2f %8.2f %8zu %8zu %8.2f %8.2f\n", row->name, row->triangle_count,
+               t->ms[ASK_CHECK], t->ms[ASK_CUT_OFFS], t->tracker_ms, t->contacts, t->changes, t->step_ms,
+               t->changes_ms);
     }
 }
 

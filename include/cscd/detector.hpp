@@ -149,6 +149,12 @@ class detector : public detail::owner<cscd_detector, cscd_detector_destroy> {
     void forget_rest() {
         call([&] { return cscd_detector_set_rest(get(), nullptr); });
     }
+    /* The body of each triangle; there are so many as the greatest says, and one more for each object without triangles. */
+    std::vector<std::uint32_t> body_labels() const {
+        std::vector<std::uint32_t> labels(mesh().triangle_count());
+        cscd_detector_body_labels(get(), labels.data());
+        return labels;
+    }
     /* A label for each triangle; without an argument, the objects are the parts. */
     void set_parts(span<const std::uint32_t> labels, std::uint32_t part_count) {
         std::uint32_t count = mesh().triangle_count();

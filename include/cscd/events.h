@@ -90,6 +90,10 @@ static inline cscd_status cscd_event_tracker_add_frame(cscd_event_tracker *track
 
 /* ---- what comes out ------------------------------------------------------------------------------------- */
 
+/* Beside the kinds of its pairs, an event is of this kind where its parts are two copies of one solid (cscd_part_pair): found was
+ * given with sums by the tracker's parts. */
+#define CSCD_EVENT_SAME_SOLID ((uint64_t)1 << 63)
+
 /* An event. What it has in one frame may be in several places; those that are joined within the frame are a *group*. The
  * worst group has the greatest depth; of several the greatest length, then the most pairs, then the most contacts, then
  * the first frame. It never grows. */
@@ -98,7 +102,7 @@ typedef struct cscd_event {
     uint64_t first_frame; /* the number of the first frame that has something of it, */
     uint64_t last_frame;  /* of the last one, */
     uint64_t worst_frame; /* and of the one that has its worst group */
-    uint64_t kinds;       /* of all its pairs: a set of cscd_intersection_kind */
+    uint64_t kinds;       /* of all its pairs: a set of cscd_intersection_kind, and CSCD_EVENT_SAME_SOLID */
     uint64_t pairs;       /* so many, all frames together */
     uint64_t depths;      /* the same of points with a depth */
     uint64_t contacts;    /* and of contacts */

@@ -92,11 +92,14 @@ typedef struct cscd_intersection_options {
 
     /* false by default, too. */
     bool
-        depth_bounds; /* how deep whole triangles may be: cscd/depths.h. Needs depths, which are then given, too */
-    bool
         cut_offs; /* what curves cut off of open surfaces: cscd/cut_offs.h. Needs patches, which are then given, too */
-    uint8_t reserved[5];
+    bool part_bodies; /* parts that are closed by themselves are bodies: cscd/patches.h */
+    uint8_t reserved[4];
     cscd_orientation orientation; /* BY_OBJECT by default */
+
+    /* For a gate: the deepest points of faces are looked for until each of their depths is above this, or its bound is not.
+     * 0 or more; INFINITY by default: 1 % is enough. */
+    double depth_limit;
 } cscd_intersection_options;
 
 /* The default options. */

@@ -76,10 +76,6 @@ inline span<const cscd_depth> depths(const cscd_intersection_pairs &found) noexc
     if (found.depths == nullptr) return {};
     return {found.depths->items, found.depths->count};
 }
-inline span<const cscd_triangle_depth> depth_bounds(const cscd_intersection_pairs &found) noexcept {
-    if (found.depths == nullptr) return {};
-    return {found.depths->triangles, found.depths->triangle_count};
-}
 inline span<const cscd_cut_off> cut_offs(const cscd_intersection_pairs &found) noexcept {
     if (found.cut_offs == nullptr) return {};
     return {found.cut_offs->items, found.cut_offs->count};

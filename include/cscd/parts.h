@@ -11,7 +11,9 @@ extern "C" {
 
 /* Says which part each triangle is in, by one label for each, from the next call on. A label is below part_count, which is 1
  * or more, or UINT32_MAX: that triangle is in no part. NULL and 0: the objects are the parts, as at first. Parts do not
- * change what is found, only how it is summed up. INVALID_ARGUMENT: the sentence names the triangle whose label is too
+ * change which pairs and curves are found, only how they are summed up. With the option part_bodies they also say what the bodies
+ * are (cscd/patches.h), in which patches, overlaps and depths are measured: a ball in a slab, each a part, is then as deep in
+ * one object as in two. INVALID_ARGUMENT: the sentence names the triangle whose label is too
  * large.
  *
  * A vertex or an edge is in the part of the first of its triangles, so that each contact counts once. Without a triangle
@@ -30,6 +32,10 @@ CSCD_API cscd_status cscd_detector_set_parts(cscd_detector *detector, const uint
  */
 CSCD_API uint32_t cscd_mesh_component_labels(const cscd_mesh *mesh, uint32_t *labels);
 CSCD_API uint32_t cscd_plan_region_labels(const cscd_plan *plan, uint32_t *labels);
+
+/* Writes for each triangle its body with the option part_bodies (cscd/patches.h), and returns how many bodies there are. Those of an
+ * object follow each other, in the order of the objects; an object without triangles has one. labels may be NULL. */
+CSCD_API uint32_t cscd_detector_body_labels(const cscd_detector *detector, uint32_t *labels);
 
 /* ---- intersections ------------------------------------------------------------------------------------- */
 
@@ -50,10 +56,17 @@ typedef struct cscd_part_pair {
     double length;
 
     /* The deepest of the points of one part whose nearest points are on the other one, and the first of several: its place
-     * in the list of depths, and its depth; SIZE_MAX and 0: there is none. Since the nearest triangle says which part it is,
-     * the two parts need not intersect. */
+     * in the list of depths, and its depth; SIZE_MAX and 0: there is none. No point of the parts is deeper than the bound.
+     * Between limbs of one body the nearest triangle says which part it is; so the two need not intersect, and depth and
+     * bound are those of the points in the list. */
     size_t deepest;
-    double depth;
+    double depth, bound;
+
+    /* Known only with depths: the two are copies of one solid, whose surfaces lie on each other, so that nothing of one is
+     * within the other and the depth is 0, and yet they contain the same. Where depth is above 0 or this is true, the interiors
+     * of the two meet, whether or not two triangles cross. */
+    bool same_solid;
+    uint8_t reserved[7];
 } cscd_part_pair;
 
 /* All pairs of parts that have at least one pair of triangles, piece of a curve or depth, sorted by (a, b). Pairs, lengths

@@ -9,32 +9,36 @@
 extern "C" {
 #endif
 
-/* How often an object winds around a patch: the sum over its closed components, exact, and under the same infinitely small
- * motion as the curves. A point outside has number 0, one within the object 1, one within two of its bodies, or of two of
- * their limbs, 2; in a cavity, whose shell has its normals inwards, it is 0 again. Components that are turned inside out count
- * as turned around (cscd_patches.turned). Below 0, a component passes through itself with its inside out, or orientations
- * are taken as given. It never grows. */
+/* A *body* is what winding numbers count as one. The objects are the bodies; with the option part_bodies, and labels of parts
+ * (cscd/parts.h), an object may have several: two components are in one body if a part has triangles of both, or if other
+ * components join them so. A slab and a ball in one file, each with a part of its own, are two bodies; the limbs of one
+ * skin are parts of one. A cavity belongs to the part around it; else it is a body of its own, and no cavity.
+ *
+ * How often a body winds around a patch: the sum over its closed components, exact, and under the same infinitely small
+ * motion as the curves. A point outside has number 0, one within the body 1, one within two of its components, or two of
+ * its limbs, 2; in a cavity, whose shell has its normals inwards, it is 0 again. Components
+ * that are turned inside out count as turned around (cscd_patches.turned). Below 0, a component passes through itself with its
+ * inside out, or orientations are taken as given. It never grows. */
 typedef struct cscd_winding {
-    uint32_t object;
+    uint32_t body;
     int32_t number; /* not 0 */
 } cscd_winding;
 
 /* A part of a component's surface that is connected over edges which no curve cuts. It is on one side of every surface. It
- * is buried in another object whose number is 1 or more. Its own object has the number that holds just outside of the patch,
- * on the side of the normals, or on the other one if its component is taken as turned around: from 1 on the patch is buried in its own object, and below 0 it is inverted, as of a body or a
- * limb that is inside out. Open components have no inside, and do not count in the numbers of their object. Where a pair
+ * is buried in another body whose number is 1 or more. Its own body has the number that holds just outside of the patch,
+ * on the side of the normals, or on the other one if its component is taken as turned around: from 1 on the patch is buried in its own body, and below 0 it is inverted, as of a body or a
+ * limb that is inside out. Open components have no inside, and do not count in the numbers of their body. Where a pair
  * of triangles is left out although a curve runs through both, no patch ends there, and its numbers are those at its
  * example. It never grows. */
 typedef struct cscd_patch {
-    uint32_t component, object;
+    uint32_t component, object, body;
     uint32_t triangle, corner; /* an example: it has this corner of this triangle */
     uint32_t vertex_count,
         triangle_count; /* those that are wholly in it: of triangles those that no curve cuts */
     uint32_t first_winding,
-        winding_count; /* in the list of all numbers, ascending by object; all others are 0. Objects that
+        winding_count; /* in the list of all numbers, ascending by body; all others are 0. Those of objects that
                                             * the patch's object is not looked at with are left out */
-    int32_t own;       /* the number of its own object, which is in the list too if it is not 0 */
-    uint32_t reserved; /* 0 */
+    int32_t own;       /* the number of its own body, which is in the list too if it is not 0 */
 } cscd_patch;
 
 /* Patches in the order of their first triangles.
@@ -64,17 +68,17 @@ typedef struct cscd_patches {
                          * asked for */
 } cscd_patches;
 
-/* What two objects bury of each other, or one of itself. An object contains a point where its number is 1 or more. A
+/* What two bodies bury of each other, or one of itself. A body contains a point where its number is 1 or more. A
  * triangle that curves cut counts with its parts, so areas and volumes are those of the overlap, up to rounding. They are
  * those of the limit of the infinitely small motion, so where surfaces lie on each other either of two areas may be
  * counted. It never grows. */
 typedef struct cscd_overlap {
-    uint32_t a, b; /* objects; a <= b */
+    uint32_t a, b; /* bodies; a <= b */
     double area_a; /* of the surface of a that b contains; with a = b, that a itself contains */
     double area_b; /* the reverse; with a = b, of a's surface that is inverted */
 
-    /* Of what both contain; with a = b, of what a contains twice or more. Only closed components count, and what an object
-     * contains twice counts once. If the object is not looked at with itself (rules, obstacles), nobody knows where
+    /* Of what both contain; with a = b, of what a contains twice or more. Only closed components count, and what a body
+     * contains twice counts once. If its object is not looked at with itself (rules, obstacles), nobody knows where
      * that is, and it counts twice, as its number says. NaN: a curve between closed components is left out, wholly or in
      * part, because its pairs of triangles are (ignored, ignore, waiting, seams whose vertices are apart). Triangles
      * that are not active (cscd_detector_set_active) are not looked at with each other: where they cross, the volume
@@ -82,7 +86,7 @@ typedef struct cscd_overlap {
     double volume;
 } cscd_overlap;
 
-/* The overlaps that are not 0, or whose volume is not known, sorted by (a, b). n objects, each in the next, have n (n - 1) / 2
+/* The overlaps that are not 0, or whose volume is not known, sorted by (a, b). n bodies, each in the next, have n (n - 1) / 2
  * of them, and as many windings. The list belongs to the detector and lives until its next call. */
 typedef struct cscd_overlaps {
     const cscd_overlap *items;

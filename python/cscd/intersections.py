@@ -53,7 +53,10 @@ class Curve(NamedTuple):
 
 class PartPairs(np.recarray):  # type: ignore[type-arg]
     """Intersections summed up by pair of parts: a, b, crossing, coplanar, folded, duplicate, touching, faces (2),
-    shares (2), curves, touching_curves, length, depth."""
+    shares (2), curves, touching_curves, length, depth, bound, same_solid.
+
+    A part that is closed by itself is a body of its own here: depths are measured to its own surface, and may be other than
+    those of ``Intersections``."""
 
 
 class Intersections:
@@ -141,8 +144,8 @@ class Intersections:
 
     @property
     def depths(self) -> Array:
-        """All depths, by the members of ``cscd_depth`` (include/cscd/depths.h): of vertices, whose ``edge`` is -1, then of
-        edges, whose ``vertex`` is -1."""
+        """All depths, by the members of ``cscd_depth`` (include/cscd/depths.h): of vertices, then of edges, whose ``vertex``
+        is -1, then the deepest points of faces, whose ``edge`` is -1, too."""
         return self._found().depths
 
     @property
@@ -256,6 +259,7 @@ def intersection_options(kinds: int, stop_after: int, any_alone: bool, depths: b
     options["kinds"] = kinds
     options["stop_after"] = stop_after
     options["curves"] = options["patches"] = options["depths"] = depths
+    options["part_bodies"] = True
     options["parts"] = parts
     return options
 

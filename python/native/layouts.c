@@ -135,8 +135,8 @@ FIELDS(intersection_options, FIELD(cscd_intersection_options, struct_size),
        FIELD(cscd_intersection_options, kinds), FIELD(cscd_intersection_options, curves),
        FIELD(cscd_intersection_options, patches), FIELD(cscd_intersection_options, overlaps),
        FIELD(cscd_intersection_options, depths), FIELD(cscd_intersection_options, parts),
-       FIELD(cscd_intersection_options, depth_bounds), FIELD(cscd_intersection_options, cut_offs),
-       FIELD(cscd_intersection_options, orientation))
+       FIELD(cscd_intersection_options, cut_offs), FIELD(cscd_intersection_options, part_bodies),
+       FIELD(cscd_intersection_options, orientation), FIELD(cscd_intersection_options, depth_limit))
 FIELDS(intersection_pair, FIELD(cscd_intersection_pair, a), FIELD(cscd_intersection_pair, b),
        FIELD(cscd_intersection_pair, kind), FIELD(cscd_intersection_pair, shared),
        FIELD(cscd_intersection_pair, components), FIELD(cscd_intersection_pair, objects))
@@ -160,10 +160,11 @@ FIELDS(curve_piece, FIELD(cscd_curve_piece, a), FIELD(cscd_curve_piece, b))
 FIELDS(curves, FIELD(cscd_curves, items), FIELD(cscd_curves, count), FIELD(cscd_curves, points),
        FIELD(cscd_curves, point_count), FIELD(cscd_curves, pieces), FIELD(cscd_curves, piece_count),
        FIELD(cscd_curves, pair_curves), FIELD(cscd_curves, pair_count))
-FIELDS(patch, FIELD(cscd_patch, component), FIELD(cscd_patch, object), FIELD(cscd_patch, triangle),
-       FIELD(cscd_patch, corner), FIELD(cscd_patch, vertex_count), FIELD(cscd_patch, triangle_count),
-       FIELD(cscd_patch, first_winding), FIELD(cscd_patch, winding_count), FIELD(cscd_patch, own))
-FIELDS(winding, FIELD(cscd_winding, object), FIELD(cscd_winding, number))
+FIELDS(patch, FIELD(cscd_patch, component), FIELD(cscd_patch, object), FIELD(cscd_patch, body),
+       FIELD(cscd_patch, triangle), FIELD(cscd_patch, corner), FIELD(cscd_patch, vertex_count),
+       FIELD(cscd_patch, triangle_count), FIELD(cscd_patch, first_winding), FIELD(cscd_patch, winding_count),
+       FIELD(cscd_patch, own))
+FIELDS(winding, FIELD(cscd_winding, body), FIELD(cscd_winding, number))
 FIELDS(patches, FIELD(cscd_patches, items), FIELD(cscd_patches, count), FIELD(cscd_patches, windings),
        FIELD(cscd_patches, winding_count), FIELD(cscd_patches, vertex_patches),
        FIELD(cscd_patches, triangle_patches), FIELD(cscd_patches, corner_patches),
@@ -171,16 +172,13 @@ FIELDS(patches, FIELD(cscd_patches, items), FIELD(cscd_patches, count), FIELD(cs
 FIELDS(overlap, FIELD(cscd_overlap, a), FIELD(cscd_overlap, b), FIELD(cscd_overlap, area_a),
        FIELD(cscd_overlap, area_b), FIELD(cscd_overlap, volume))
 FIELDS(overlaps, FIELD(cscd_overlaps, items), FIELD(cscd_overlaps, count))
-FIELDS(depth, FIELD(cscd_depth, vertex), FIELD(cscd_depth, edge), FIELD(cscd_depth, patch),
-       FIELD(cscd_depth, object), FIELD(cscd_depth, triangle), FIELD(cscd_depth, s), FIELD(cscd_depth, depth),
-       FIELD(cscd_depth, x), FIELD(cscd_depth, direction))
-FIELDS(patch_depth, FIELD(cscd_patch_depth, patch), FIELD(cscd_patch_depth, object),
+FIELDS(depth, FIELD(cscd_depth, vertex), FIELD(cscd_depth, edge), FIELD(cscd_depth, face),
+       FIELD(cscd_depth, patch), FIELD(cscd_depth, body), FIELD(cscd_depth, triangle), FIELD(cscd_depth, s),
+       FIELD(cscd_depth, depth), FIELD(cscd_depth, bound), FIELD(cscd_depth, x), FIELD(cscd_depth, direction))
+FIELDS(patch_depth, FIELD(cscd_patch_depth, patch), FIELD(cscd_patch_depth, body),
        FIELD(cscd_patch_depth, deepest))
-FIELDS(triangle_depth, FIELD(cscd_triangle_depth, triangle), FIELD(cscd_triangle_depth, object),
-       FIELD(cscd_triangle_depth, bound))
 FIELDS(depths, FIELD(cscd_depths, items), FIELD(cscd_depths, count), FIELD(cscd_depths, vertex_count),
-       FIELD(cscd_depths, patches), FIELD(cscd_depths, patch_count), FIELD(cscd_depths, triangles),
-       FIELD(cscd_depths, triangle_count))
+       FIELD(cscd_depths, edge_count), FIELD(cscd_depths, patches), FIELD(cscd_depths, patch_count))
 FIELDS(cut_off, FIELD(cscd_cut_off, curve), FIELD(cscd_cut_off, trace), FIELD(cscd_cut_off, component),
        FIELD(cscd_cut_off, object), FIELD(cscd_cut_off, area), FIELD(cscd_cut_off, rest),
        FIELD(cscd_cut_off, first_patch), FIELD(cscd_cut_off, patch_count))
@@ -190,7 +188,8 @@ FIELDS(part_pair, FIELD(cscd_part_pair, a), FIELD(cscd_part_pair, b), FIELD(cscd
        FIELD(cscd_part_pair, coplanar), FIELD(cscd_part_pair, folded), FIELD(cscd_part_pair, duplicate),
        FIELD(cscd_part_pair, touching), FIELD(cscd_part_pair, faces), FIELD(cscd_part_pair, shares),
        FIELD(cscd_part_pair, curves), FIELD(cscd_part_pair, touching_curves), FIELD(cscd_part_pair, length),
-       FIELD(cscd_part_pair, deepest), FIELD(cscd_part_pair, depth))
+       FIELD(cscd_part_pair, deepest), FIELD(cscd_part_pair, depth), FIELD(cscd_part_pair, bound),
+       FIELD(cscd_part_pair, same_solid))
 FIELDS(part_pairs, FIELD(cscd_part_pairs, items), FIELD(cscd_part_pairs, count),
        FIELD(cscd_part_pairs, faces), FIELD(cscd_part_pairs, share))
 FIELDS(contact_part_pair, FIELD(cscd_contact_part_pair, a), FIELD(cscd_contact_part_pair, b),
@@ -267,7 +266,6 @@ static const struct_layout layouts[] = {LAYOUT(view),
                                         LAYOUT(overlaps),
                                         LAYOUT(depth),
                                         LAYOUT(patch_depth),
-                                        LAYOUT(triangle_depth),
                                         LAYOUT(depths),
                                         LAYOUT(cut_off),
                                         LAYOUT(cut_offs),

@@ -62,9 +62,10 @@ def test_contacts_are_signed_and_have_their_weights() -> None:
 def test_what_there_is_not_is_minus_one() -> None:
     V, F = crossing_cubes()
     depths = cscd.self_intersections(V, F).depths
-    of_vertices, of_edges = depths[depths["edge"] == -1], depths[depths["vertex"] == -1]
-    assert len(of_edges) and len(of_vertices) + len(of_edges) == len(depths)
-    assert (of_edges["edge"] >= 0).all() and (of_edges["patch"] == -1).all()
+    of_vertices, of_edges = depths[depths["vertex"] != -1], depths[depths["edge"] != -1]
+    of_faces = depths[(depths["vertex"] == -1) & (depths["edge"] == -1)]
+    assert len(of_edges) and len(of_faces) and len(of_vertices) + len(of_edges) + len(of_faces) == len(depths)
+    assert (of_edges["vertex"] == -1).all() and (of_edges["patch"] == -1).all() and (depths["face"] >= 0).all()
     component = cscd.Mesh(F, positions=V).component(0)
     assert component["first_open_edge"] == -1 and component["vertex_count"] == 8
 

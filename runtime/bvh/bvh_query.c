@@ -63,11 +63,15 @@ typedef struct query_place {
 /* Each block takes one place and leaves eight, and there are no more levels than this. */
 enum { QUERY_STACK = BVH_LEVEL_MAX * LANES };
 
-/* A tree is that of one component, unless a baseline has joined components to fewer trees. */
+/* A tree is that of one component, unless a baseline has joined components to fewer trees: UINT32_MAX. */
+static uint32_t component_of_tree(const bvh *f, const bvh_tree *tree) {
+    if (f->tree_count < f->mesh->component_count) return UINT32_MAX;
+    return f->mesh->triangle_components[f->leaves[tree->first_leaf].triangles[0]];
+}
+
 static bool tree_is_open(const bvh *f, const bvh_tree *tree) {
-    const cscd_mesh *mesh = f->mesh;
-    uint32_t component = mesh->triangle_components[f->leaves[tree->first_leaf].triangles[0]];
-    return f->tree_count >= mesh->component_count && !mesh->components[component].closed_manifold;
+    uint32_t component = component_of_tree(f, tree);
+    return component != UINT32_MAX && !f->mesh->components[component].closed_manifold;
 }
 
 void bvh_visit_box(const bvh *f, const query_box *box, bool closed_only,
@@ -137,11 +141,13 @@ static int push_children(const bvh *f, const near_place *at, const framed_query 
     return count;
 }
 
-static bool tree_has_object(const bvh_tree *tree, uint32_t object) {
-    return tree->object == object || tree->object == OBJECT_SEVERAL;
+static bool tree_is_asked_for(const bvh *f, const bvh_tree *tree, const near_quest *quest) {
+    if (tree->object != quest->object && tree->object != OBJECT_SEVERAL) return false;
+    uint32_t component = quest->numbers != NULL ? component_of_tree(f, tree) : UINT32_MAX;
+    return component == UINT32_MAX || quest->numbers[component] == quest->number;
 }
 
-void bvh_visit_near(const bvh *f, uint32_t object, const double point[3], double *squared,
+void bvh_visit_near(const bvh *f, const near_quest *quest, const double point[3], double *squared,
                     void (*visit)(void *data, uint32_t triangle), void *data) {
     if (f->tree_count == 0) return;
     const query_box box = {{point[0], point[1], point[2]}, {point[0], point[1], point[2]}};
@@ -153,7 +159,7 @@ void bvh_visit_near(const bvh *f, uint32_t object, const double point[3], double
         near_place at = stack[--count];
         if (at.squared > *squared) continue;
         if (at.level == f->tree_level - 1) {
-            if (!tree_has_object(&f->trees[at.block], object)) continue;
+            if (!tree_is_asked_for(f, &f->trees[at.block], quest)) continue;
             q = frame_box(f, &f->trees[at.block], &box);
         }
         if (at.level >= 0) {

@@ -14,8 +14,14 @@ typedef struct query_box {
 void bvh_visit_box(const bvh *f, const query_box *box, bool closed_only,
                    void (*visit)(void *data, uint32_t triangle), void *data);
 
-/* Calls visit for each triangle of an object, and perhaps for some of other objects, whose bounding volume may be as near to
+/* The triangles that are asked for: those of an object, in components with this number. */
+typedef struct near_quest {
+    uint32_t object, number;
+    const uint32_t *numbers; /* per component; NULL: all components */
+} near_quest;
+
+/* Calls visit for each triangle that is asked for, and perhaps for some others, whose bounding volume may be as near to
  * the point as the root of *squared, nearer blocks first; visit may lower *squared, which is a squared distance times
  * the square of the trees' scale, so that it neither overflows nor vanishes. INFINITY: any distance. */
-void bvh_visit_near(const bvh *f, uint32_t object, const double point[3], double *squared,
+void bvh_visit_near(const bvh *f, const near_quest *quest, const double point[3], double *squared,
                     void (*visit)(void *data, uint32_t triangle), void *data);

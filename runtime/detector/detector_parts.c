@@ -20,6 +20,13 @@ cscd_status cscd_detector_set_parts(cscd_detector *detector, const uint32_t *lab
     return context_leave(&entry, set_parts(detector, labels, part_count));
 }
 
+uint32_t cscd_detector_body_labels(const cscd_detector *detector, uint32_t *labels) {
+    const surface_bodies *bodies = &detector->parts.bodies;
+    for (uint32_t t = 0; labels != NULL && t < detector->mesh->triangle_count; t++)
+        labels[t] = body_of_triangle(bodies, detector->mesh, t);
+    return body_count(bodies, detector->mesh);
+}
+
 /* ---- contacts -------------------------------------------------------------------------------------------- */
 
 /* A pair of parts, and the place of a contact of the two. */

@@ -20,8 +20,10 @@ const char *cscd_intersection_kind_name(cscd_intersection_kind kind) {
     return (unsigned)kind < KIND_COUNT ? names[kind] : "unknown";
 }
 
-static const cscd_intersection_options default_options = {
-    .struct_size = sizeof default_options, .answer = CSCD_ANSWER_LIST, .kinds = UINT64_MAX};
+static const cscd_intersection_options default_options = {.struct_size = sizeof default_options,
+                                                          .answer = CSCD_ANSWER_LIST,
+                                                          .kinds = UINT64_MAX,
+                                                          .depth_limit = (double)INFINITY};
 
 void cscd_intersection_defaults_sized(cscd_intersection_options *out, size_t size) {
     struct_give_options(out, size, &default_options, sizeof default_options);
@@ -42,6 +44,9 @@ static cscd_status take_options(cscd_context *context, const cscd_intersection_o
                             (unsigned long long)out->kinds);
     if ((unsigned)out->orientation > CSCD_ORIENTATION_AS_GIVEN)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "unknown orientation %d", (int)out->orientation);
+    if (!(out->depth_limit >= 0.0))
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "depth_limit is %g; it is 0 or more",
+                            out->depth_limit);
     bool all =
         out->answer == CSCD_ANSWER_LIST && (out->kinds & ALL_KINDS) == ALL_KINDS && out->stop_after == 0;
     if (surface_answers_wanted(out) && !all)
@@ -242,7 +247,8 @@ typedef struct kind_question {
 } kind_question;
 
 static cscd_status sum_up_parts(cscd_detector *d, cscd_intersection_pairs *found) {
-    cscd_status status = part_sums_run(&d->part_sums, d->mesh, &d->parts, found, &d->part_pairs);
+    const same_solids *same = found->depths != NULL ? &d->answers->same_solids : NULL;
+    cscd_status status = part_sums_run(&d->part_sums, d->mesh, &d->parts, found, same, &d->part_pairs);
     if (status == CSCD_OK) found->parts = &d->part_pairs;
     return status;
 }

@@ -10,7 +10,7 @@ const char *cscd_curve_end_name(cscd_curve_end end) {
 
 void surface_answers_free(cscd_context *context, surface_answers *a) {
     if (a == NULL) return;
-    depth_bounder_free(&a->depth_bounder);
+    same_solids_free(&a->same_solids);
     depth_finder_free(&a->depth_finder);
     overlap_finder_free(&a->overlap_finder);
     cut_off_finder_free(&a->cut_off_finder);
@@ -23,8 +23,7 @@ void surface_answers_free(cscd_context *context, surface_answers *a) {
 }
 
 bool surface_answers_wanted(const cscd_intersection_options *options) {
-    return options->curves || options->patches || options->overlaps || options->depths ||
-           options->depth_bounds || options->cut_offs;
+    return options->curves || options->patches || options->overlaps || options->depths || options->cut_offs;
 }
 
 /* Returns the detector's answers, made if need be; NULL: no memory. */
@@ -38,8 +37,9 @@ static surface_answers *make_answers(cscd_detector *d) {
         (cut_off_finder){.context = context, .links = {.context = context}, .sides = {.context = context}};
     a->overlap_finder =
         (overlap_finder){.context = context, .cuts = {.context = context}, .gaps = {.context = context}};
-    a->depth_bounder.context = context;
-    a->depth_finder.context = a->depth_finder.outer.context = a->depth_finder.outer.cuts.context = context;
+    a->same_solids.context = context;
+    a->depth_finder.context = a->depth_finder.outer.context = a->depth_finder.outer.cuts.context =
+        a->depth_finder.deepest.context = context;
     if (!orientation_finder_create(d->mesh, &a->orientations) ||
         patch_finder_create(d->mesh, d->space.traversal.lane_count, &a->patch_finder) != CSCD_OK) {
         surface_answers_free(context, a);
@@ -70,21 +70,30 @@ static cscd_status find_patches(cscd_detector *d, named_surface *surface, cscd_o
                             &a->patches);
 }
 
-static cscd_status find_depths(cscd_detector *d, const surface_cuts *cuts, bool bounds,
+static cscd_status find_depths(cscd_detector *d, const surface_cuts *cuts, double limit,
                                const cscd_intersection_pairs *found) {
     surface_answers *a = d->answers;
     progress_stage(&d->context->progress, "depths", 0.9, 1.0);
-    cscd_status status = depth_finder_run(&a->depth_finder, cuts, &d->space.bvh, &a->depths);
-    if (status == CSCD_OK && bounds) status = depth_bounder_run(&a->depth_bounder, cuts, &a->depths);
-    if (status == CSCD_OK) touching_curves_mark(&a->joiner, d->mesh, found->items, &a->patches, &a->depths);
+    const depth_request request = {&d->space.bvh, &d->parts, found->items, found->count, limit};
+    cscd_status status = depth_finder_run(&a->depth_finder, cuts, &request, &a->depths);
+    if (status == CSCD_OK)
+        touching_curves_mark(&a->joiner, cuts->surface, found->items, &a->patches, &a->depths);
     return status;
+}
+
+/* The overlaps that are given out, if any are, must be found after these. */
+static cscd_status find_same_solids(surface_answers *a, const surface_cuts *cuts,
+                                    const cscd_intersection_pairs *found) {
+    return same_solids_find(&a->same_solids, cuts, found->items, found->count, &a->depths, &a->overlap_finder,
+                            &a->left_out);
 }
 
 cscd_status surface_answers_find(cscd_detector *d, const double *positions,
                                  const cscd_intersection_options *options, cscd_intersection_pairs *found) {
     surface_answers *a = d->answers;
     if (a->left_out.out_of_memory) return CSCD_OUT_OF_MEMORY;
-    named_surface surface = {.mesh = d->mesh, .positions = positions};
+    named_surface surface = {
+        .mesh = d->mesh, .positions = positions, .bodies = options->part_bodies ? &d->parts.bodies : NULL};
     if (!placed_names_find(&a->names, d->mesh, positions, d->exclusions.names, &surface.names))
         return CSCD_OUT_OF_MEMORY;
     const surface_cuts cuts = {&surface, &a->joiner, &a->patch_finder};
@@ -92,25 +101,26 @@ cscd_status surface_answers_find(cscd_detector *d, const double *positions,
     cscd_status status = curve_joiner_run(&a->joiner, &surface, found->items, found->count, &a->curves);
     if (status != CSCD_OK) return status;
     found->curves = &a->curves;
-    bool depths = options->depths || options->depth_bounds;
-    if (!options->patches && !options->overlaps && !options->cut_offs && !depths) return CSCD_OK;
+    if (!options->patches && !options->overlaps && !options->cut_offs && !options->depths) return CSCD_OK;
     status = find_patches(d, &surface, options->orientation);
     if (status != CSCD_OK) return status;
     found->patches = &a->patches;
-    if (options->overlaps) {
-        status = overlap_finder_run(&a->overlap_finder, &cuts, &a->left_out, &a->overlaps);
-        if (status != CSCD_OK) return status;
-        found->overlaps = &a->overlaps;
-    }
     if (options->cut_offs) {
         status = cut_off_finder_run(&a->cut_off_finder, &cuts, &a->cut_offs);
         if (status != CSCD_OK) return status;
         found->cut_offs = &a->cut_offs;
     }
-    if (depths) {
-        status = find_depths(d, &cuts, options->depth_bounds, found);
+    if (options->depths) {
+        status = find_depths(d, &cuts, options->depth_limit, found);
         if (status != CSCD_OK) return status;
         found->depths = &a->depths;
+        status = find_same_solids(a, &cuts, found);
+        if (status != CSCD_OK) return status;
+    }
+    if (options->overlaps) {
+        status = overlap_finder_run(&a->overlap_finder, &cuts, &a->left_out, &a->overlaps);
+        if (status != CSCD_OK) return status;
+        found->overlaps = &a->overlaps;
     }
     return CSCD_OK;
 }

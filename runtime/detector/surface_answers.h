@@ -1,12 +1,13 @@
 /* What is asked about intersecting surfaces beside their pairs of triangles: curves, patches, overlaps, depths. */
 #pragma once
 
+#include "runtime/depths/depths.h"
 #include "runtime/detector/detector.h"
 #include "runtime/intersections/cut_offs.h"
-#include "runtime/intersections/depth_bounds.h"
 #include "runtime/intersections/orientations.h"
 #include "runtime/intersections/overlaps.h"
 #include "runtime/intersections/placed_names.h"
+#include "runtime/intersections/same_solids.h"
 
 #include <cscd/intersections.h>
 
@@ -20,7 +21,7 @@ typedef struct surface_answers {
     overlap_finder overlap_finder;
     cut_off_finder cut_off_finder;
     depth_finder depth_finder;
-    depth_bounder depth_bounder;
+    same_solids same_solids;
     cscd_curves curves;
     cscd_patches patches;
     cscd_overlaps overlaps;

@@ -148,15 +148,15 @@ static void add_depths(frame_grouping *w) {
     const cscd_depths *depths = w->input->found->depths;
     for (size_t i = 0; depths != NULL && i < depths->count; i++) {
         const cscd_depth *depth = &depths->items[i];
-        bool of_vertex = depth->vertex != UINT32_MAX;
-        uint32_t part = of_vertex ? part_of_vertex(w->labels, w->mesh, depth->vertex)
-                                  : part_of_edge(w->labels, w->mesh, depth->edge);
+        uint32_t part = part_of_triangle(w->labels, w->mesh, depth->face);
         uint32_t burier = part_of_triangle(w->labels, w->mesh, depth->triangle);
         uint32_t thing = begin_thing(w, key_of_parts(part, burier));
-        if (of_vertex)
+        if (depth->vertex != UINT32_MAX)
             stamp_vertex(w, depth->vertex, thing);
-        else
+        else if (depth->edge != UINT32_MAX)
             stamp_edge(w, depth->edge, thing);
+        else
+            stamp_triangle(w, depth->face, thing);
     }
 }
 
@@ -292,6 +292,17 @@ static void sum_contacts(frame_groups *g, const frame_input *input, const group_
     }
 }
 
+/* What is known of a pair of parts goes to all its groups. */
+static void mark_same_solids(frame_groups *g, const cscd_part_pairs *parts) {
+    for (size_t i = 0; parts != NULL && i < parts->count; i++) {
+        if (!parts->items[i].same_solid) continue;
+        const uint64_t key = key_of_parts(parts->items[i].a, parts->items[i].b);
+        for (size_t k = 0; k < g->group_count; k++)
+            if (g->groups[k].parts == key && g->groups[k].pairs > 0)
+                g->groups[k].kinds |= CSCD_EVENT_SAME_SOLID;
+    }
+}
+
 static size_t piece_count_of(const cscd_curves *curves) {
     size_t count = 0;
     for (size_t c = 0; curves != NULL && c < curves->count; c++) count += curves->items[c].piece_count;
@@ -304,6 +315,7 @@ static void sum_things(const frame_grouping *w) {
     const group_thing *things = g->things;
     if (found != NULL) {
         sum_pairs(g, found, things);
+        mark_same_solids(g, found->parts);
         things += found->count;
         sum_pieces(g, found->curves, things);
         things += piece_count_of(found->curves);

@@ -55,10 +55,10 @@ static cscd_status check_curves(const cscd_mesh *mesh, const cscd_curves *curves
 }
 
 static bool depth_fits(const cscd_mesh *mesh, const cscd_depth *depth) {
-    bool of_vertex = depth->vertex < mesh->vertex_count;
-    bool of_edge = depth->vertex == UINT32_MAX && depth->edge < mesh->edge_count;
-    return (of_vertex || of_edge) && depth->triangle < mesh->triangle_count && depth->depth >= 0.0 &&
-           isfinite(depth->depth);
+    bool has_vertex = depth->vertex < mesh->vertex_count || depth->vertex == UINT32_MAX;
+    bool has_edge = depth->edge < mesh->edge_count || depth->edge == UINT32_MAX;
+    return has_vertex && has_edge && depth->face < mesh->triangle_count &&
+           depth->triangle < mesh->triangle_count && depth->depth >= 0.0 && isfinite(depth->depth);
 }
 
 static cscd_status check_depths(const cscd_mesh *mesh, const cscd_depths *depths) {

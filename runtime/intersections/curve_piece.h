@@ -1,7 +1,7 @@
 /* The piece of an intersection curve that lies in two triangles, under a symbolic perturbation of the vertices. */
 #pragma once
 
-#include "src/mesh/mesh.h"
+#include "src/mesh/bodies.h"
 #include "src/mesh/symbolic.h"
 
 /* Where the surface is at one moment, which vertices count as one, and which components are taken as turned around. */
@@ -13,11 +13,16 @@ typedef struct named_surface {
     const bool *
         turned; /* per component: its normals are inwards, so that the side they point away from is outside; NULL:
                          * of none */
+    const surface_bodies *bodies; /* NULL: the objects are the bodies */
 } named_surface;
 
 /* 1 where the normal of a triangle points outwards, -1 where its component is turned around. */
 static inline int surface_sense(const named_surface *s, uint32_t triangle) {
     return s->turned != NULL && s->turned[s->mesh->triangle_components[triangle]] ? -1 : 1;
+}
+
+static inline uint32_t surface_body(const named_surface *s, uint32_t triangle) {
+    return body_of_triangle(s->bodies, s->mesh, triangle);
 }
 
 static inline uint32_t surface_name(const named_surface *s, uint32_t vertex) {

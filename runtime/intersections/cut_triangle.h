@@ -1,14 +1,14 @@
-/* The parts of a triangle that curves cut, with how often objects wind around them. */
+/* The parts of a triangle that curves cut, with how often bodies wind around them. */
 #pragma once
 
 #include "src/core/context.h"
 
-/* A straight cut, or piece of a curve, in the plane of the triangle. Objects are numbered by slots. */
+/* A straight cut, or piece of a curve, in the plane of the triangle. Bodies are numbered by slots. */
 typedef struct cut_line {
     double from[2], to[2];
     uint32_t slot;
     uint32_t number;  /* the caller's, who finds the line by it when lines have been sorted */
-    int rise;         /* the object's number to the left of the line less that to the right */
+    int rise;         /* the body's number to the left of the line less that to the right */
     double low, high; /* set by cut_triangle_measure: the lesser and the greater of from[0] and to[0] */
 } cut_line;
 
@@ -17,7 +17,7 @@ typedef struct cut_border {
     uint32_t edge; /* 0 to 2; edge i leads from corner i to the next one */
     double s;      /* how far along */
     uint32_t slot;
-    int jump; /* what the object's number increases by, going along the edge */
+    int jump; /* what the body's number increases by, going along the edge */
 } cut_border;
 
 /* A part of the triangle on which all numbers are the same, between two lines along y: at x[i] it reaches from low[i] to
@@ -33,7 +33,7 @@ static inline double cut_part_area(const cut_part *p) {
     return 0.5 * (p->x[1] - p->x[0]) * ((p->high[0] - p->low[0]) + (p->high[1] - p->low[1]));
 }
 
-/* Corners turn counter-clockwise. Slot 0 is the triangle's own object, whose number holds on the side of the normal. */
+/* Corners turn counter-clockwise. Slot 0 is the triangle's own body, whose number holds on the side of the normal. */
 typedef struct cut_triangle {
     double corners[3][2];
     cut_line *lines;

@@ -25,7 +25,7 @@ void left_out_pairs_add(left_out_pairs *p, uint32_t a, uint32_t b) {
 }
 
 static array_list list_of_gaps(overlap_gaps *g, size_t count) {
-    return (array_list){{ARRAY(g->objects, count), ARRAY(g->spare, count)}};
+    return (array_list){{ARRAY(g->bodies, count), ARRAY(g->spare, count)}};
 }
 
 void overlap_gaps_free(overlap_gaps *g) {
@@ -45,21 +45,26 @@ static bool is_closed(const cscd_mesh *mesh, uint32_t triangle) {
 static void add_left_out(overlap_gaps *g, const named_surface *s, const left_out_pairs *left_out) {
     const cscd_mesh *mesh = s->mesh;
     for (size_t i = 0; i < left_out->count; i++) {
-        uint32_t a = (uint32_t)(left_out->pairs[i] >> 32), b = (uint32_t)left_out->pairs[i], objects[2];
+        uint32_t a = (uint32_t)(left_out->pairs[i] >> 32), b = (uint32_t)left_out->pairs[i];
         curve_piece piece;
         if (!is_closed(mesh, a) || !is_closed(mesh, b) || !curve_piece_of_pair(s, a, b, &piece)) continue;
-        mesh_objects_of_pair(mesh, CSCD_CONTACT_TT, a, b, objects);
-        g->objects[g->count++] = key_of(objects[0], objects[1]);
+        g->bodies[g->count++] = key_of(surface_body(s, a), surface_body(s, b));
     }
 }
 
-static void add_open_curves(overlap_gaps *g, const cscd_mesh *mesh, const curve_joiner *j) {
+static uint32_t body_of_component(const named_surface *s, const cscd_curve *c, int k) {
+    return s->bodies != NULL && s->bodies->components != NULL ? s->bodies->components[c->components[k]]
+                                                              : c->objects[k];
+}
+
+static void add_open_curves(overlap_gaps *g, const named_surface *s, const curve_joiner *j) {
+    const cscd_mesh *mesh = s->mesh;
     for (size_t i = 0; i < j->curve_count; i++) {
         const cscd_curve *c = &j->curves[i];
         if (c->start != CSCD_CURVE_END_LEFT_OUT && c->end != CSCD_CURVE_END_LEFT_OUT) continue;
         if (mesh->components[c->components[0]].closed_manifold &&
             mesh->components[c->components[1]].closed_manifold)
-            g->objects[g->count++] = key_of(c->objects[0], c->objects[1]);
+            g->bodies[g->count++] = key_of(body_of_component(s, c, 0), body_of_component(s, c, 1));
     }
 }
 
@@ -69,8 +74,8 @@ bool overlap_gaps_find(overlap_gaps *g, const surface_cuts *found, const left_ou
         return false;
     g->count = 0;
     add_left_out(g, found->surface, left_out);
-    add_open_curves(g, found->surface->mesh, found->curves);
-    sort_by_number(g->objects, g->spare, g->count, sizeof *g->objects);
+    add_open_curves(g, found->surface, found->curves);
+    sort_by_number(g->bodies, g->spare, g->count, sizeof *g->bodies);
     return true;
 }
 
@@ -78,12 +83,12 @@ static bool have_key(const overlap_gaps *g, uint64_t key) {
     size_t low = 0, high = g->count;
     while (low < high) {
         size_t middle = low + (high - low) / 2;
-        if (g->objects[middle] < key)
+        if (g->bodies[middle] < key)
             low = middle + 1;
         else
             high = middle;
     }
-    return low < g->count && g->objects[low] == key;
+    return low < g->count && g->bodies[low] == key;
 }
 
 bool overlap_gaps_have(const overlap_gaps *g, uint32_t a, uint32_t b) {

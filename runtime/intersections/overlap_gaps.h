@@ -17,14 +17,14 @@ void left_out_pairs_add(left_out_pairs *p, uint32_t a, uint32_t b);
 /* The memory of all calls; begins with nothing but the context set. */
 typedef struct overlap_gaps {
     cscd_context *context;
-    uint64_t *objects, *spare; /* pairs, the smaller one in the upper half, ascending */
+    uint64_t *bodies, *spare; /* pairs, the smaller one in the upper half, ascending */
     size_t count, capacity;
 } overlap_gaps;
 
 void overlap_gaps_free(overlap_gaps *g);
 
-/* Finds the pairs of objects of which a piece of a curve between closed components is left out. False: no memory. */
+/* Finds the pairs of bodies of which a piece of a curve between closed components is left out. False: no memory. */
 bool overlap_gaps_find(overlap_gaps *g, const surface_cuts *found, const left_out_pairs *left_out);
 
-/* Is a curve left out of the two objects a <= b, or of one of them with itself? */
+/* Is a curve left out of the two bodies a <= b, or of one of them with itself? */
 bool overlap_gaps_have(const overlap_gaps *g, uint32_t a, uint32_t b);

@@ -1,4 +1,4 @@
-/* The areas and volumes that objects bury of each other, by the patches and by the triangles that curves cut:
+/* The areas and volumes that bodies bury of each other, by the patches and by the triangles that curves cut:
  * docs/theory/curves.md, lemma 7. */
 #include "runtime/intersections/overlaps.h"
 
@@ -74,27 +74,27 @@ typedef struct share_place {
     const double *at;
 } share_place;
 
-/* An area of the surface of `object` that `in` contains, and what of it bounds what both contain. */
-static void add_buried(overlap_work *work, uint32_t object, uint32_t in, double area, double bounding,
+/* An area of the surface of `body` that `in` contains, and what of it bounds what both contain. */
+static void add_buried(overlap_work *work, uint32_t body, uint32_t in, double area, double bounding,
                        share_place place) {
-    bool first = object < in;
-    uint64_t key = first ? (uint64_t)object << 32 | in : (uint64_t)in << 32 | object;
+    bool first = body < in;
+    uint64_t key = first ? (uint64_t)body << 32 | in : (uint64_t)in << 32 | body;
     if (area == 0.0 && bounding == 0.0) return;
     add_share(work, (overlap_share){key, first ? area : 0.0, first ? 0.0 : area, bounding, place.at,
                                     place.triangle, place.patch});
 }
 
-static void add_own(overlap_work *work, uint32_t object, double area, double inverted, double bounding,
+static void add_own(overlap_work *work, uint32_t body, double area, double inverted, double bounding,
                     share_place place) {
     if (area == 0.0 && inverted == 0.0) return;
-    add_share(work, (overlap_share){(uint64_t)object << 32 | object, area, inverted, bounding, place.at,
+    add_share(work, (overlap_share){(uint64_t)body << 32 | body, area, inverted, bounding, place.at,
                                     place.triangle, place.patch});
 }
 
-/* How often an object contains what it has the number of. What is looked at with itself contains all just once. Of another
- * object no one knows where it buries itself, so its numbers count as they are. */
-static double times_within(const overlap_work *work, uint32_t object, int32_t number) {
-    if (!patch_objects_look(work->found->patches, object, object)) return number;
+/* How often a body contains what it has the number of. What is looked at with itself contains all just once. Of another
+ * body no one knows where it buries itself, so its numbers count as they are. */
+static double times_within(const overlap_work *work, uint32_t body, int32_t number) {
+    if (!patch_bodies_look(work->found->patches, body, body)) return number;
     return number >= 1 ? 1.0 : 0.0;
 }
 
@@ -135,12 +135,12 @@ static void add_patch(overlap_work *work, uint32_t index) {
     share_place place = {patch->triangle, index, place_of_patch(work, index)};
     for (uint32_t i = 0; i < patch->winding_count; i++) {
         cscd_winding w = work->found->patches->windings[patch->first_winding + i];
-        if (w.object == patch->object)
-            add_own(work, patch->object, w.number >= 1 ? area : 0.0, w.number < 0 ? area : 0.0,
+        if (w.body == patch->body)
+            add_own(work, patch->body, w.number >= 1 ? area : 0.0, w.number < 0 ? area : 0.0,
                     w.number == 1 ? 1.0 : 0.0, place);
         else
-            add_buried(work, patch->object, w.object, w.number >= 1 ? area : 0.0,
-                       patch->own == 0 ? times_within(work, w.object, w.number) : 0.0, place);
+            add_buried(work, patch->body, w.body, w.number >= 1 ? area : 0.0,
+                       patch->own == 0 ? times_within(work, w.body, w.number) : 0.0, place);
     }
 }
 
@@ -152,10 +152,10 @@ static void add_slots(overlap_work *work, const loaded_cut *cut) {
         cut_share share = work->finder->slot_shares[slot];
         share_place place = {cut->triangle, UINT32_MAX, share.at};
         if (slot == 0)
-            add_own(work, cut->slot_objects[0], cut->stretch * share.buried, cut->stretch * share.inverted,
+            add_own(work, cut->slot_bodies[0], cut->stretch * share.buried, cut->stretch * share.inverted,
                     bounds * share.bounding, place);
         else
-            add_buried(work, cut->slot_objects[0], cut->slot_objects[slot], cut->stretch * share.buried,
+            add_buried(work, cut->slot_bodies[0], cut->slot_bodies[slot], cut->stretch * share.buried,
                        bounds * share.bounding, place);
     }
 }
@@ -179,11 +179,11 @@ static void add_part(void *data, const cut_part *part) {
         if (slot == 0)
             share->bounding += number == 1 ? area : 0.0;
         else if (part->numbers[0] == 0)
-            share->bounding += area * times_within(m->work, m->cut->slot_objects[slot], number);
+            share->bounding += area * times_within(m->work, m->cut->slot_bodies[slot], number);
     }
 }
 
-/* A share is near a line of its slot. If it has none, the object contains all of the triangle, or nothing. */
+/* A share is near a line of its slot. If it has none, the body contains all of the triangle, or nothing. */
 static void place_shares(const overlap_work *work, const loaded_cut *cut, cut_share *shares) {
     const curve_joiner *j = work->found->curves;
     memset(shares, 0, cut->cut.slot_count * sizeof *shares);
@@ -222,8 +222,8 @@ static void add_gaps(overlap_work *work) {
     const overlap_gaps *g = &work->finder->gaps;
     const double *at = work->found->surface->positions;
     for (size_t i = 0; i < g->count; i++) {
-        if (i == 0 || g->objects[i] != g->objects[i - 1])
-            add_share(work, (overlap_share){g->objects[i], 0.0, 0.0, 0.0, at, 0, UINT32_MAX});
+        if (i == 0 || g->bodies[i] != g->bodies[i - 1])
+            add_share(work, (overlap_share){g->bodies[i], 0.0, 0.0, 0.0, at, 0, UINT32_MAX});
     }
 }
 

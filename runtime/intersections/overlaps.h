@@ -1,9 +1,9 @@
-/* The areas and volumes that objects bury of each other, by the patches and by the triangles that curves cut. */
+/* The areas and volumes that bodies bury of each other, by the patches and by the triangles that curves cut. */
 #pragma once
 
 #include "runtime/intersections/overlap_gaps.h"
 
-/* A share of the overlap of two objects; key: a in the upper half, b in the lower one. */
+/* A share of the overlap of two bodies; key: a in the upper half, b in the lower one. */
 typedef struct overlap_share {
     uint64_t key;
     double area_a, area_b;
@@ -19,11 +19,11 @@ typedef struct patch_sum {
     double flux;      /* three times the volume that is behind them as seen from the patch's example */
 } patch_sum;
 
-/* What is measured of one object in a triangle. */
+/* What is measured of one body in a triangle. */
 typedef struct cut_share {
     double buried;    /* its number is 1 or more */
     double inverted;  /* its number is below 0 */
-    double bounding;  /* that of the triangle's own object is 0, times how often this one contains it */
+    double bounding;  /* that of the triangle's own body is 0, times how often this one contains it */
     const double *at; /* a point of the triangle, near what is buried */
 } cut_share;
 

@@ -14,6 +14,7 @@ typedef struct summing {
     const cscd_mesh *mesh;
     const part_labels *labels;
     const cscd_intersection_pairs *found;
+    const same_solids *same;
     key_range pairs, pieces, depths;
 } summing;
 
@@ -71,8 +72,7 @@ static void list_depths(summing *w) {
     const cscd_depths *depths = w->found->depths;
     for (size_t i = 0; depths != NULL && i < depths->count; i++) {
         const cscd_depth *depth = &depths->items[i];
-        uint32_t part = depth->vertex != UINT32_MAX ? part_of_vertex(w->labels, w->mesh, depth->vertex)
-                                                    : part_of_edge(w->labels, w->mesh, depth->edge);
+        uint32_t part = part_of_triangle(w->labels, w->mesh, depth->face);
         uint32_t burier = part_of_triangle(w->labels, w->mesh, depth->triangle);
         *w->depths.end++ = (part_key){key_of_parts(part, burier), i};
     }
@@ -144,6 +144,9 @@ static void sum_pairs(const summing *w, key_range keys, cscd_part_pair *out) {
     for (const part_key *k = keys.next; k < keys.end; k++) {
         const cscd_intersection_pair *pair = &pairs[k->item];
         count_kind(pair, out);
+        if (pair->kind == CSCD_INTERSECTION_COPLANAR && w->same != NULL && w->same->count > 0)
+            out->same_solid |= same_solids_have(w->same, body_of_triangle(w->same->bodies, w->mesh, pair->a),
+                                                body_of_triangle(w->same->bodies, w->mesh, pair->b));
         count_face(w, pair->a, out);
         count_face(w, pair->b, out);
     }
@@ -173,7 +176,8 @@ static void sum_pieces(const summing *w, key_range keys, cscd_part_pair *out) {
 static void find_deepest(const summing *w, key_range keys, cscd_part_pair *out) {
     out->deepest = SIZE_MAX;
     for (const part_key *k = keys.next; k < keys.end; k++) {
-        double depth = w->found->depths->items[k->item].depth;
+        const double depth = w->found->depths->items[k->item].depth;
+        out->bound = fmax(out->bound, w->found->depths->items[k->item].bound);
         if (out->deepest != SIZE_MAX && depth <= out->depth) continue;
         out->deepest = (size_t)k->item;
         out->depth = depth;
@@ -219,8 +223,9 @@ static size_t count_faces(const summing *w) {
 }
 
 cscd_status part_sums_run(part_summer *s, const cscd_mesh *mesh, const part_labels *labels,
-                          const cscd_intersection_pairs *found, cscd_part_pairs *out) {
-    summing w = {.sums = s, .mesh = mesh, .labels = labels, .found = found};
+                          const cscd_intersection_pairs *found, const same_solids *same,
+                          cscd_part_pairs *out) {
+    summing w = {.sums = s, .mesh = mesh, .labels = labels, .found = found, .same = same};
     cscd_status status = list_keys(&w);
     if (status != CSCD_OK) return status;
     size_t count = 0;

@@ -1,6 +1,7 @@
 /* What intersections, curves and depths say of each pair of parts. */
 #pragma once
 
+#include "runtime/intersections/same_solids.h"
 #include "src/mesh/part_labels.h"
 
 #include <cscd/intersections.h>
@@ -22,6 +23,7 @@ typedef struct part_summer {
 
 void part_sums_free(cscd_context *context, part_summer *s);
 
-/* Sums up what was found. *out lives until the next call. OUT_OF_MEMORY has no sentence. */
+/* Sums up what was found. same: the copies among the bodies; NULL: nobody has asked. *out lives until the next call. OUT_OF_MEMORY has no sentence. */
 cscd_status part_sums_run(part_summer *s, const cscd_mesh *mesh, const part_labels *labels,
-                          const cscd_intersection_pairs *found, cscd_part_pairs *out);
+                          const cscd_intersection_pairs *found, const same_solids *same,
+                          cscd_part_pairs *out);

@@ -1,4 +1,4 @@
-/* The patches into which intersection curves cut a surface, and how often objects wind around them. */
+/* The patches into which intersection curves cut a surface, and how often bodies wind around them. */
 #include "runtime/intersections/patches.h"
 
 #include "src/core/context.h"
@@ -26,17 +26,35 @@ static array_list list_arrays(patch_finder *p) {
                          ARRAY(p->corner_patches, 3 * triangles), ARRAY(p->lanes, p->lane_count)}};
 }
 
-static array_list list_lane(winding_lane *lane, size_t objects) {
+static array_list list_lane(winding_lane *lane, size_t bodies) {
     winding_tally *t = &lane->tally;
-    return (array_list){{ARRAY(t->numbers, objects), ARRAY(t->is_touched, objects),
-                         ARRAY(t->touched, objects), ARRAY(lane->spare, objects)}};
+    return (array_list){{ARRAY(t->numbers, bodies), ARRAY(t->is_touched, bodies), ARRAY(t->touched, bodies),
+                         ARRAY(lane->spare, bodies)}};
+}
+
+static void free_tallies(patch_finder *p) {
+    for (uint32_t i = 0; i < p->lane_count; i++)
+        context_free_all(p->mesh->context, list_lane(&p->lanes[i], 0));
+    p->tally_capacity = 0;
+}
+
+/* Tallies begin with zeros, and end so. */
+static bool reserve_tallies(patch_finder *p, uint32_t bodies) {
+    if (bodies <= p->tally_capacity) return true;
+    free_tallies(p);
+    for (uint32_t i = 0; i < p->lane_count; i++) {
+        if (context_allocate_all(p->mesh->context, list_lane(&p->lanes[i], bodies))) continue;
+        free_tallies(p);
+        return false;
+    }
+    p->tally_capacity = bodies;
+    return true;
 }
 
 cscd_status patch_finder_create(const cscd_mesh *mesh, uint32_t lane_count, patch_finder *out) {
     patch_finder p = {.mesh = mesh, .lane_count = lane_count};
     if (!context_allocate_all(mesh->context, list_arrays(&p))) return CSCD_OUT_OF_MEMORY;
-    for (uint32_t i = 0; i < lane_count; i++) {
-        if (context_allocate_all(mesh->context, list_lane(&p.lanes[i], mesh->object_count))) continue;
+    if (!reserve_tallies(&p, mesh->object_count)) {
         patch_finder_free(&p);
         return CSCD_OUT_OF_MEMORY;
     }
@@ -47,10 +65,8 @@ cscd_status patch_finder_create(const cscd_mesh *mesh, uint32_t lane_count, patc
 void patch_finder_free(patch_finder *p) {
     if (p->mesh == NULL) return;
     cscd_context *context = p->mesh->context;
-    for (uint32_t i = 0; i < p->lane_count; i++) {
-        context_free_all(context, list_lane(&p->lanes[i], 0));
-        context_free(context, p->lanes[i].items);
-    }
+    free_tallies(p);
+    for (uint32_t i = 0; i < p->lane_count; i++) context_free(context, p->lanes[i].items);
     context_free_all(context, list_arrays(p));
     context_free(context, p->patches);
     context_free(context, p->windings);
@@ -173,6 +189,7 @@ static bool add_patch(patch_finder *p, uint32_t triangle, uint32_t corner, uint3
     p->patches[p->patch_count++] =
         (cscd_patch){.component = mesh->triangle_components[triangle],
                      .object = cscd_mesh_vertex_object(mesh, mesh->triangles[triangle][0]),
+                     .body = body_of_triangle(p->bodies, mesh, triangle),
                      .triangle = triangle,
                      .corner = corner};
     return true;
@@ -229,7 +246,8 @@ static bool name_patches(const patch_work *work) {
 /* ---- numbers ------------------------------------------------------------------------------------------- */
 
 /* Without rules, obstacles are not looked at with each other, nor with themselves. */
-bool patch_objects_look(const patch_finder *p, uint32_t a, uint32_t b) {
+bool patch_bodies_look(const patch_finder *p, uint32_t body_a, uint32_t body_b) {
+    uint32_t a = object_of_body(p->bodies, body_a), b = object_of_body(p->bodies, body_b);
     if (p->objects != NULL) return object_sets_may_meet(&p->objects[a], &p->objects[b]);
     return !(p->mesh->objects[a].obstacle && p->mesh->objects[b].obstacle);
 }
@@ -261,8 +279,8 @@ static bool number_patch(const patch_work *work, winding_lane *lane, cscd_patch 
     patch->first_winding = (uint32_t)lane->count;
     for (uint32_t i = 0; i < tally->count; i++) {
         cscd_winding number = {tally->touched[i], tally->numbers[tally->touched[i]]};
-        if (number.number == 0 || !patch_objects_look(p, patch->object, number.object)) continue;
-        if (number.object == patch->object) patch->own = number.number;
+        if (number.number == 0 || !patch_bodies_look(p, patch->body, number.body)) continue;
+        if (number.body == patch->body) patch->own = number.number;
         if (!keep_number(p, lane, number)) return false;
         patch->winding_count++;
     }
@@ -312,6 +330,8 @@ static bool join_numbers(patch_finder *p) {
 cscd_status patch_finder_run(patch_finder *p, const named_surface *s, const bvh *f, const curve_piece *pieces,
                              size_t piece_count, cscd_patches *out) {
     patch_work work = {p, s, f};
+    p->bodies = s->bodies;
+    if (!reserve_tallies(p, body_count(s->bodies, s->mesh))) return CSCD_OUT_OF_MEMORY;
     mark_pieces(&work, pieces, piece_count);
     connect_nodes(p);
     if (!name_patches(&work)) return CSCD_OUT_OF_MEMORY;

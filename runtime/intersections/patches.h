@@ -1,4 +1,4 @@
-/* The patches into which intersection curves cut a surface, and how often objects wind around them. */
+/* The patches into which intersection curves cut a surface, and how often bodies wind around them. */
 #pragma once
 
 #include "runtime/bvh/object_set.h"
@@ -19,7 +19,8 @@ typedef struct winding_lane {
  * edges, whose numbers come behind those of the vertices. A vertex at which curves end is none; its edges' ends are. */
 typedef struct patch_finder {
     const cscd_mesh *mesh;
-    const object_set *objects; /* one for each object, or NULL: there are no rules */
+    const object_set *objects;    /* one for each object, or NULL: there are no rules */
+    const surface_bodies *bodies; /* of the surface found last */
     uint32_t lane_count;
 
     bool *cut_edges;      /* per edge: a curve cuts it */
@@ -37,6 +38,7 @@ typedef struct patch_finder {
     cscd_winding *windings;
     size_t winding_count, winding_capacity;
     winding_lane *lanes;
+    uint32_t tally_capacity; /* of each lane: bodies */
 } patch_finder;
 
 /* On failure, which is OUT_OF_MEMORY without a sentence, *out holds nothing. */
@@ -50,5 +52,5 @@ cscd_status patch_finder_run(patch_finder *p, const named_surface *s, const bvh 
 /* The node that an edge has at its vertex: the same number for what no curve parts. */
 uint32_t patch_node(const patch_finder *p, uint32_t edge, uint32_t vertex);
 
-/* Are two objects, or an object and itself, looked at with each other? */
-bool patch_objects_look(const patch_finder *p, uint32_t a, uint32_t b);
+/* Are two bodies, or a body and itself, looked at with each other? Their objects say. */
+bool patch_bodies_look(const patch_finder *p, uint32_t a, uint32_t b);

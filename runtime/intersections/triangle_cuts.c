@@ -14,7 +14,7 @@ static array_list list_of_keys(triangle_cuts *c, size_t count) {
 
 static array_list list_of_cuts(triangle_cuts *c, size_t count) {
     return (array_list){{ARRAY(c->lines, count), ARRAY(c->borders, count), ARRAY(c->spare_borders, count),
-                         ARRAY(c->corner_numbers, 3 * count), ARRAY(c->slot_objects, count),
+                         ARRAY(c->corner_numbers, 3 * count), ARRAY(c->slot_bodies, count),
                          ARRAY(c->line_pieces, count)}};
 }
 
@@ -65,22 +65,43 @@ typedef struct cut_load {
     loaded_cut *out;
 } cut_load;
 
-/* The slot of an object, which gets one if it has none. They are few. */
-static uint32_t slot_of(cut_load *load, uint32_t object) {
+/* The slot of a body, which gets one if it has none. They are few. */
+static uint32_t slot_of(cut_load *load, uint32_t body) {
     cut_triangle *cut = &load->out->cut;
-    uint32_t *objects = load->cuts->slot_objects, slot = 0;
-    while (slot < cut->slot_count && objects[slot] != object) slot++;
-    if (slot == cut->slot_count) objects[cut->slot_count++] = object;
+    uint32_t *bodies = load->cuts->slot_bodies, slot = 0;
+    while (slot < cut->slot_count && bodies[slot] != body) slot++;
+    if (slot == cut->slot_count) bodies[cut->slot_count++] = body;
     return slot;
-}
-
-static uint32_t object_of(const cscd_mesh *mesh, uint32_t triangle) {
-    return cscd_mesh_vertex_object(mesh, mesh->triangles[triangle][0]);
 }
 
 void loaded_cut_point(const loaded_cut *cut, const double x[3], double out[2]) {
     out[0] = x[cut->x];
     out[1] = cut->turn * x[cut->y];
+}
+
+cut_lift cut_lift_of(const named_surface *s, const loaded_cut *cut) {
+    cut_lift lift = {.cut = cut};
+    surface_normal(s->mesh, s->positions, cut->triangle, lift.normal);
+    memcpy(lift.corner, surface_corner(s->mesh, s->positions, cut->triangle, 0), sizeof lift.corner);
+    return lift;
+}
+
+static void lift_point(const cut_lift *lift, double x, double y, double out[3]) {
+    int of_x = lift->cut->x, of_y = lift->cut->y, rest = 3 - of_x - of_y;
+    const double *n = lift->normal, *p = lift->corner;
+    out[of_x] = x;
+    out[of_y] = lift->cut->turn * y;
+    out[rest] = p[rest] - (n[of_x] * (x - p[of_x]) + n[of_y] * (out[of_y] - p[of_y])) / n[rest];
+}
+
+void cut_lift_part(const cut_lift *lift, const cut_part *part, double a[3][3], double b[3][3]) {
+    double(*const halves[2])[3] = {a, b};
+    for (int i = 0; i < 2; i++) {
+        lift_point(lift, part->x[0], part->low[0], halves[i][0]);
+        lift_point(lift, part->x[1], part->high[1], halves[i][1]);
+    }
+    lift_point(lift, part->x[1], part->low[1], a[2]);
+    lift_point(lift, part->x[0], part->high[0], b[2]);
 }
 
 /* Adds an end of a piece that is on the triangle's own border. An edge of a that passes towards the side of b's normal, and
@@ -120,7 +141,7 @@ static void add_piece(cut_load *load, const curve_key *key) {
     bool is_b = key->end % 2 == 1;
     uint32_t other = is_b ? j->found[number].a : j->found[number].b;
     if (!mesh->components[mesh->triangle_components[other]].closed_manifold) return;
-    cut_line line = {.slot = slot_of(load, object_of(mesh, other)),
+    cut_line line = {.slot = slot_of(load, surface_body(load->found->surface, other)),
                      .rise = (is_b ? -1 : 1) * surface_sense(load->found->surface, other),
                      .number = (uint32_t)cut->line_count};
     loaded_cut_point(load->out, j->points[j->end_points[2 * number]].x, line.from);
@@ -135,21 +156,21 @@ static const cscd_patch *patch_at(const cut_load *load, uint32_t corner) {
     return &p->patches[p->corner_patches[(size_t)load->out->triangle * 3 + corner]];
 }
 
-/* All objects that wind around a corner get slots first, then each corner its numbers. */
+/* All bodies that wind around a corner get slots first, then each corner its numbers. */
 static void number_corners(cut_load *load) {
     const cscd_winding *windings = load->found->patches->windings;
     cut_triangle *cut = &load->out->cut;
     for (uint32_t i = 0; i < 3; i++) {
         const cscd_patch *patch = patch_at(load, i);
         for (uint32_t k = 0; k < patch->winding_count; k++)
-            slot_of(load, windings[patch->first_winding + k].object);
+            slot_of(load, windings[patch->first_winding + k].body);
     }
     memset(cut->corner_numbers, 0, 3 * (size_t)cut->slot_count * sizeof *cut->corner_numbers);
     for (uint32_t i = 0; i < 3; i++) {
         const cscd_patch *patch = patch_at(load, i);
         for (uint32_t k = 0; k < patch->winding_count; k++) {
             cscd_winding w = windings[patch->first_winding + k];
-            cut->corner_numbers[(size_t)i * cut->slot_count + slot_of(load, w.object)] = w.number;
+            cut->corner_numbers[(size_t)i * cut->slot_count + slot_of(load, w.body)] = w.number;
         }
     }
 }
@@ -213,10 +234,10 @@ bool triangle_cuts_load(triangle_cuts *c, const surface_cuts *found, size_t firs
     out->cut.lines = c->lines;
     out->cut.borders = c->borders;
     out->cut.corner_numbers = c->corner_numbers;
-    out->slot_objects = c->slot_objects;
+    out->slot_bodies = c->slot_bodies;
     out->line_pieces = c->line_pieces;
     choose_projection(&load, normal, first, end);
-    slot_of(&load, object_of(mesh, out->triangle));
+    slot_of(&load, surface_body(found->surface, out->triangle));
     for (size_t i = first; i < end; i++) add_piece(&load, &c->keys[i]);
     loaded_cut_sort_borders(out, c->spare_borders);
     number_corners(&load);

@@ -19,8 +19,8 @@ typedef struct loaded_cut {
     double turn;    /* 1 or -1: y counts with this sign, so that the triangle turns counter-clockwise */
     double stretch; /* an area over that of its projection */
     cut_triangle cut;
-    const uint32_t *slot_objects; /* slot 0 is the triangle's own */
-    const uint32_t *line_pieces;  /* per line, by its number: the piece found */
+    const uint32_t *slot_bodies; /* slot 0 is the triangle's own */
+    const uint32_t *line_pieces; /* per line, by its number: the piece found */
 } loaded_cut;
 
 /* The memory of all calls, and the pieces sorted by their triangles. */
@@ -31,7 +31,7 @@ typedef struct triangle_cuts {
     cut_line *lines;
     cut_border *borders, *spare_borders; /* spare ones are for whoever loads */
     int32_t *corner_numbers;
-    uint32_t *slot_objects, *line_pieces;
+    uint32_t *slot_bodies, *line_pieces;
     size_t cut_capacity; /* of these six; of corner_numbers three times as much */
     cut_memory memory;
 } triangle_cuts;
@@ -49,6 +49,17 @@ void loaded_cut_project(const named_surface *s, const double normal[3], bool exc
 
 /* A point in that projection. */
 void loaded_cut_point(const loaded_cut *cut, const double x[3], double out[2]);
+
+/* From that projection back to the plane of the triangle, which has an area. */
+typedef struct cut_lift {
+    const loaded_cut *cut;
+    double normal[3], corner[3];
+} cut_lift;
+
+cut_lift cut_lift_of(const named_surface *s, const loaded_cut *cut);
+
+/* The two triangles of a part. */
+void cut_lift_part(const cut_lift *lift, const cut_part *part, double a[3][3], double b[3][3]);
 
 /* Sorts the borders as cut_triangle.h asks; spare has room for as many. */
 void loaded_cut_sort_borders(loaded_cut *cut, cut_border *spare);

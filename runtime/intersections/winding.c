@@ -1,4 +1,4 @@
-/* How often the surfaces of objects wind around a point of the mesh: the triangles that a ray along z passes through,
+/* How often the surfaces of bodies wind around a point of the mesh: the triangles that a ray along z passes through,
  * counted with signs. docs/theory/curves.md, lemma 5. */
 #include "runtime/intersections/winding.h"
 
@@ -24,12 +24,12 @@ void winding_tally_clear(winding_tally *tally) {
     tally->count = 0;
 }
 
-static void add_number(winding_tally *tally, uint32_t object, int number) {
-    if (!tally->is_touched[object]) {
-        tally->is_touched[object] = true;
-        tally->touched[tally->count++] = object;
+static void add_number(winding_tally *tally, uint32_t body, int number) {
+    if (!tally->is_touched[body]) {
+        tally->is_touched[body] = true;
+        tally->touched[tally->count++] = body;
     }
-    tally->numbers[object] += number;
+    tally->numbers[body] += number;
 }
 
 static bool have_one_name(const symbolic_point p[3]) {
@@ -101,8 +101,7 @@ static void pass_triangle(void *data, uint32_t triangle) {
     else
         number = pass_of_neighbour(work, p[(corner + 1) % 3], p[(corner + 2) % 3]);
     if (number == 0) return;
-    uint32_t of =
-        work->by_component ? component : cscd_mesh_vertex_object(mesh, mesh->triangles[triangle][0]);
+    uint32_t of = work->by_component ? component : surface_body(work->surface, triangle);
     add_number(work->tally, of, number * surface_sense(work->surface, triangle));
 }
 

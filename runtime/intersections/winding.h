@@ -1,4 +1,4 @@
-/* How often the surfaces of objects wind around a point of the mesh, under the same symbolic perturbation as the
+/* How often the surfaces of bodies wind around a point of the mesh, under the same symbolic perturbation as the
  * intersection curves. */
 #pragma once
 
@@ -13,11 +13,11 @@ typedef struct corner_side {
     bool next;      /* the edge leads to the next corner, else to the one before */
 } corner_side;
 
-/* Numbers of objects, or of components. Those that are not 0 belong to touched objects, each of them listed once. */
+/* Numbers of bodies, or of components. Those that are not 0 belong to touched bodies, each of them listed once. */
 typedef struct winding_tally {
-    int32_t *numbers;  /* per object */
+    int32_t *numbers;  /* per body */
     bool *is_touched;  /* the same */
-    uint32_t *touched; /* room for all objects */
+    uint32_t *touched; /* room for all bodies */
     uint32_t count;
 } winding_tally;
 
@@ -26,9 +26,9 @@ void winding_tally_clear(winding_tally *tally);
 /* Has the triangle two corners of one name? Then nothing is to its sides. */
 bool winding_is_collapsed(const named_surface *s, uint32_t triangle);
 
-/* Adds the winding numbers of all objects at the point, none at a collapsed triangle: of an object the sum over its closed manifold components. An
- * object winds once around what its surfaces, with normals outwards, enclose. Those of components that are turned around count
- * as turned. The bounds of the trees are those of the surface's positions. Theory: docs/theory/curves.md, lemma 5. */
+/* Adds the winding numbers of all bodies at the point, none at a collapsed triangle: of a body the sum over its closed manifold
+ * components. A body winds once around what its surfaces, with normals outwards, enclose. Those of components that are turned
+ * around count as turned. The bounds of the trees are those of the surface's positions. Theory: docs/theory/curves.md, lemma 5. */
 void winding_find(const named_surface *s, const bvh *f, corner_side at, winding_tally *tally);
 
 /* The same of each component, in a tally that has room for all components. */

@@ -31,6 +31,14 @@ static void count_sizes(const cscd_mesh *mesh, part_labels *p) {
     for (uint32_t t = 0; t < mesh->triangle_count; t++) ++*size_of(p, p->triangles[t]);
 }
 
+/* Finds what follows from the labels. False: no memory, and nothing is left. */
+static bool finish_labels(const cscd_mesh *mesh, part_labels *p) {
+    count_sizes(mesh, p);
+    if (bodies_find(mesh, p->triangles, p->part_count, &p->bodies)) return true;
+    part_labels_free(mesh->context, p);
+    return false;
+}
+
 cscd_status part_labels_check(const cscd_mesh *mesh, const uint32_t *labels, uint32_t part_count,
                               const char *name) {
     if ((labels == NULL) != (part_count == 0))
@@ -54,7 +62,7 @@ cscd_status part_labels_set(const cscd_mesh *mesh, const uint32_t *labels, uint3
         fresh.part_count = part_count;
         if (!context_reserve_all(mesh->context, list_arrays(mesh, &fresh))) return CSCD_OUT_OF_MEMORY;
         memcpy(fresh.triangles, labels, mesh->triangle_count * sizeof *labels);
-        count_sizes(mesh, &fresh);
+        if (!finish_labels(mesh, &fresh)) return CSCD_OUT_OF_MEMORY;
     }
     part_labels_free(mesh->context, p);
     *p = fresh;
@@ -63,7 +71,11 @@ cscd_status part_labels_set(const cscd_mesh *mesh, const uint32_t *labels, uint3
 
 cscd_status part_labels_copy(const part_labels *p, const cscd_mesh *mesh, part_labels *out) {
     part_labels copy = *p;
-    if (!context_copy_all(mesh->context, list_arrays(mesh, &copy))) return CSCD_OUT_OF_MEMORY;
+    if (!bodies_copy(&p->bodies, mesh, &copy.bodies)) return CSCD_OUT_OF_MEMORY;
+    if (!context_copy_all(mesh->context, list_arrays(mesh, &copy))) {
+        bodies_free(mesh->context, &copy.bodies);
+        return CSCD_OUT_OF_MEMORY;
+    }
     *out = copy;
     return CSCD_OK;
 }
@@ -78,7 +90,7 @@ cscd_status part_labels_move(const part_labels *p, const cscd_mesh *mesh, const 
             uint32_t origin = change->triangles.to_old[t];
             moved.triangles[t] = origin != UINT32_MAX ? p->triangles[origin] : UINT32_MAX;
         }
-        count_sizes(mesh, &moved);
+        if (!finish_labels(mesh, &moved)) return CSCD_OUT_OF_MEMORY;
     }
     *out = moved;
     return CSCD_OK;
@@ -87,6 +99,7 @@ cscd_status part_labels_move(const part_labels *p, const cscd_mesh *mesh, const 
 void part_labels_free(cscd_context *context, part_labels *p) {
     context_free(context, p->triangles);
     context_free(context, p->sizes);
+    bodies_free(context, &p->bodies);
     *p = (part_labels){.triangles = NULL};
 }
 

@@ -1,6 +1,7 @@
 /* Which part of a scene each triangle is in: objects, or what the caller says. */
 #pragma once
 
+#include "src/mesh/bodies.h"
 #include "src/mesh/mesh_change.h"
 
 #include <cscd/parts.h>
@@ -9,6 +10,7 @@ typedef struct part_labels {
     uint32_t *triangles; /* a label each; NULL: the objects are the parts */
     uint32_t *sizes;     /* per part: so many triangles; behind them, of no part */
     uint32_t part_count;
+    surface_bodies bodies; /* of these parts */
 } part_labels;
 
 /* INVALID_ARGUMENT: the sentence begins with `name`, or names the first triangle whose label is too large. */

@@ -41,7 +41,7 @@ void kinds(void **) {
     }
     const std::size_t all = t.ours.find_intersections(lower).size();
     options = cscd_intersection_defaults();
-    options.overlaps = options.depth_bounds = true;
+    options.overlaps = options.depths = true;
     const cscd::intersection_pairs answered = t.ours.find_intersections(lower, options);
     std::size_t pieces = 0, numbers = 0;
     for (const cscd_curve &curve : cscd::curves(answered)) {
@@ -53,7 +53,6 @@ void kinds(void **) {
     assert_int_equal(numbers, answered.patches->winding_count);
     assert_int_equal(cscd::overlaps(answered).size(), answered.overlaps->count);
     assert_int_equal(cscd::depths(answered).size(), answered.depths->count);
-    assert_int_equal(cscd::depth_bounds(answered).size(), answered.depths->triangle_count);
     options = cscd_intersection_defaults();
     options.answer = CSCD_ANSWER_COUNT;
     const cscd::intersection_pairs counted = t.ours.find_intersections(lower, options);
@@ -82,6 +81,9 @@ void parts(void **) {
         assert_int_equal(
             cscd_detector_set_parts(t.c, which == 0 ? nullptr : labels.data(), which == 0 ? 0 : count),
             CSCD_OK);
+        std::vector<std::uint32_t> bodies(t.mesh.triangle_count());
+        assert_int_equal(cscd_detector_body_labels(t.c, bodies.data()), cscd_mesh_object_count(t.mesh.get()));
+        assert_true(t.ours.body_labels() == bodies);
         cscd_contacts touching;
         cscd_contact_part_pairs sums;
         assert_int_equal(cscd_detector_step(t.c, &t.v0, &t.v1, &touching), CSCD_OK);

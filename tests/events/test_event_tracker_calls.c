@@ -87,9 +87,11 @@ static void frames_of_another_mesh(void **state) {
     depth.vertex = 0;
     depth.depth = NAN;
     expect_refused_frame(&r, &with_depth, "depth 0");
-    depth.depth = 0.0;
-    depth.triangle = 1000;
-    expect_refused_frame(&r, &with_depth, "depth 0");
+    const cscd_depth wrong[] = {{.triangle = 1000}, {.edge = 1000}, {.face = 1000}};
+    for (size_t i = 0; i < 3; i++) {
+        depth = wrong[i];
+        expect_refused_frame(&r, &with_depth, "depth 0");
+    }
     recorded_frames_free(&r);
 }
 

@@ -150,7 +150,7 @@ static cscd_detector *new_detector(bool leaves_out) {
 
 static void find_everything(cscd_detector *d, const double *x, cscd_intersection_pairs *out) {
     cscd_intersection_options options = cscd_intersection_defaults();
-    options.overlaps = options.depths = options.depth_bounds = options.cut_offs = options.parts = true;
+    options.overlaps = options.depths = options.cut_offs = options.parts = true;
     assert_int_equal(find_intersections_packed(d, x, &options, out), CSCD_OK);
 }
 

@@ -108,7 +108,7 @@ static void as_given_it_encloses_nothing(void **state) {
     body_rig_find(&rig);
     assert_null(rig.found.patches->turned);
     for (size_t i = 0; i < rig.found.depths->count; i++)
-        assert_int_equal(rig.found.depths->items[i].object, 0); /* the one that is not */
+        assert_int_equal(rig.found.depths->items[i].body, 0); /* the one that is not */
     rig.orientation = (cscd_orientation)3;
     assert_int_equal(body_rig_try(&rig), CSCD_INVALID_ARGUMENT);
     assert_string_equal(cscd_context_detail(rig.context), "unknown orientation 3");
@@ -135,7 +135,7 @@ static void directions_are_outwards(void **state) {
         assert_true(rig.found.depths->count > 0);
         for (size_t i = 0; i < rig.found.depths->count; i++) {
             const cscd_depth *d = &rig.found.depths->items[i];
-            assert_true(d->depth == 0.0 && d->direction[2] == (d->object == 0 ? 1.0 : -1.0));
+            assert_true(d->depth == 0.0 && d->direction[2] == (d->body == 0 ? 1.0 : -1.0));
         }
         body_rig_free(&rig);
     }
@@ -171,7 +171,7 @@ static int number_in_the_middle(uint32_t shells) {
     assert_int_equal(patch->object, 1);
     for (uint32_t i = 0; i < patch->winding_count; i++) {
         cscd_winding w = rig.found.patches->windings[patch->first_winding + i];
-        if (w.object == 0) return w.number;
+        if (w.body == 0) return w.number;
     }
     return 0;
 }

@@ -164,7 +164,8 @@ static void a_swallowed_body_is_listed(void **state) {
     labelling_of_objects(&labels, &rig);
     assert_int_equal(rig.found.count, 0);
     assert_int_equal(labelling_compare(&labels, &rig), 1);
-    assert_true(rig.found.parts->items[0].depth == 1.5 || rig.found.parts->items[0].depth == 1.0);
+    const cscd_part_pair *pair = &rig.found.parts->items[0]; /* deepest on an edge, at (2, 2, 2) */
+    assert_true(pair->depth <= 2.0 && pair->bound >= 2.0 && pair->bound <= 1.01 * pair->depth);
     body_rig_free(&rig);
 }
 

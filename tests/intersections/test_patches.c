@@ -41,7 +41,7 @@ static void free_patches(patched_scene *p) {
 static int number_of(const cscd_patches *patches, uint32_t patch, uint32_t object) {
     const cscd_patch *of = &patches->items[patch];
     for (uint32_t i = 0; i < of->winding_count; i++) {
-        if (patches->windings[of->first_winding + i].object == object)
+        if (patches->windings[of->first_winding + i].body == object)
             return patches->windings[of->first_winding + i].number;
     }
     return 0;

@@ -62,13 +62,13 @@ static bool names_object(uint32_t object) {
         if (f->curves->items[i].objects[0] == object || f->curves->items[i].objects[1] == object) return true;
     }
     for (size_t i = 0; i < f->patches->winding_count; i++) {
-        if (f->patches->windings[i].object == object) return true;
+        if (f->patches->windings[i].body == object) return true;
     }
     for (size_t i = 0; i < f->overlaps->count; i++) {
         if (f->overlaps->items[i].a == object || f->overlaps->items[i].b == object) return true;
     }
     for (size_t i = 0; i < f->depths->count; i++) {
-        if (f->depths->items[i].object == object) return true;
+        if (f->depths->items[i].body == object) return true;
     }
     return false;
 }
@@ -119,14 +119,13 @@ static void the_list_of_all_pairs_is_needed(void **state) {
     (void)state;
     add_scene(&rig);
     body_rig_create(&rig, NULL, 1);
-    for (int i = 0; i < 5; i++) {
+    for (int i = 0; i < 4; i++) {
         cscd_intersection_options options = cscd_intersection_defaults();
         cscd_intersection_pairs found;
         *(i == 0   ? &options.curves
           : i == 1 ? &options.patches
           : i == 2 ? &options.overlaps
-          : i == 3 ? &options.depths
-                   : &options.depth_bounds) = true;
+                   : &options.depths) = true;
         if (i % 2 == 0) options.answer = i == 0 ? CSCD_ANSWER_COUNT : CSCD_ANSWER_ANY;
         if (i == 1) options.kinds = cscd_intersection_set(CSCD_INTERSECTION_CROSSING);
         if (i == 3) options.stop_after = 5;
@@ -142,12 +141,11 @@ static void only_what_is_asked_for(void **state) {
     (void)state;
     add_scene(&rig);
     body_rig_create(&rig, NULL, 1);
-    for (int i = 0; i < 5; i++) {
+    for (int i = 0; i < 4; i++) {
         cscd_intersection_options options = cscd_intersection_defaults();
         options.curves = i == 1;
         options.patches = i == 2;
         options.depths = i == 3;
-        options.depth_bounds = i == 4;
         assert_int_equal(cscd_detector_find_intersections(rig.detector,
                                                           CSCD_DOUBLES(rig.all.x0, rig.all.vertex_count),
                                                           &options, &rig.found),
@@ -156,7 +154,6 @@ static void only_what_is_asked_for(void **state) {
         assert_int_equal(rig.found.patches != NULL, i >= 2);
         assert_int_equal(rig.found.depths != NULL, i >= 3);
         assert_true(rig.found.overlaps == NULL);
-        if (i >= 3) assert_true((rig.found.depths->triangles != NULL) == (i == 4));
     }
     body_rig_free(&rig);
 }
@@ -268,7 +265,7 @@ static void a_seam_within_a_triangle(void **state) {
     const cscd_patch *box = &rig.found.patches->items[0];
     assert_true(box->triangle > 0 && box->winding_count == 1);
     assert_int_equal(rig.found.patches->windings[box->first_winding].number, 1);
-    assert_int_equal(rig.found.depths->count, 8);
+    assert_int_equal(rig.found.depths->vertex_count, 8);
     for (uint32_t v = 1; v < 8; v++) {
         seams[v - 1][0] = 0;
         seams[v - 1][1] = v;

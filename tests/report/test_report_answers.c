@@ -48,7 +48,7 @@ static page answered_page(const report_rig *rig) {
     const cscd_intersection_pair pairs[] = {{.a = 0, .b = 5, .kind = CSCD_INTERSECTION_TOUCHING},
                                             {.a = 0, .b = 6, .kind = CSCD_INTERSECTION_CROSSING}};
     const cscd_curve curve = {.point_count = POINTS, .piece_count = POINTS, .closed = true};
-    const cscd_depth depths[] = {{.vertex = 3, .depth = 0.5}, {.vertex = 3, .object = 1, .depth = 0.75}};
+    const cscd_depth depths[] = {{.vertex = 3, .depth = 0.5}, {.vertex = 3, .body = 1, .depth = 0.75}};
     cscd_curves curves = {.items = &curve, .count = 1, .points = points, .point_count = POINTS};
     cscd_depths all_depths = {.items = depths, .count = 2, .vertex_count = 2};
     cscd_intersection_pairs found = {.items = pairs, .count = 2, .curves = &curves, .depths = &all_depths};

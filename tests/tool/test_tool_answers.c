@@ -55,17 +55,17 @@ static void expect_first_line(const tool_run *run, const char *line) {
 static void the_answer_comes_first(void **state) {
     (void)state;
     const char *found = "Frames 4 to 7 cross (4 of 8). 1 event, <Wall>&\"Co\" x Dart, frames 4 to 7, "
-                        "0.81 deep at frame 6.";
+                        "0.834 deep at frame 6.";
     tool_run run = RUN_TOOL("replay", model.text, cache.text);
     expect_first_line(&run, found);
     tool_run_free(&run);
     run = RUN_TOOL("check", model.text, cache.text);
     expect_first_line(&run, found);
-    assert_non_null(strstr(run.out, "\n<Wall>&\"Co\" x Dart  cross    4 to 7               6       0.81  "));
+    assert_non_null(strstr(run.out, "\n<Wall>&\"Co\" x Dart  cross    4 to 7               6      0.834  "));
     tool_run_free(&run);
     run = RUN_TOOL("replay", model.text, cache.text, "--unit", "cm");
     expect_first_line(&run, "Frames 4 to 7 cross (4 of 8). 1 event, <Wall>&\"Co\" x Dart, frames 4 to 7, "
-                            "8.1 mm deep at frame 6.");
+                            "8.34 mm deep at frame 6.");
     tool_run_free(&run);
     run = RUN_TOOL("replay", model.text, cache.text, "--first-frame", "1001", "--frames", "1001:1003");
     expect_first_line(&run, "No frame crosses or touches (3 checked). Only frames 1001 to 1003 of 1001 to "
@@ -111,13 +111,14 @@ static cscd_event expected_event(bool depths) {
     const cscd_object_desc object = cscd_object_of_triangles(8, 8, flight.triangles);
     assert_int_equal(cscd_mesh_create(context, &object, 1, &mesh), CSCD_OK);
     assert_int_equal(cscd_detector_create(context, mesh, NULL, NULL, &detector), CSCD_OK);
+    assert_int_equal(cscd_detector_set_parts(detector, labels, 2), CSCD_OK);
     cscd_event_options options = cscd_event_defaults();
     options.part_count = 2;
     options.labels = labels;
     assert_int_equal(cscd_event_tracker_create(context, mesh, &options, &tracker), CSCD_OK);
     for (uint32_t frame = 0; frame < FRAMES; frame++) {
         cscd_intersection_options asked = cscd_intersection_defaults();
-        asked.curves = asked.patches = asked.depths = depths;
+        asked.curves = asked.patches = asked.depths = asked.part_bodies = depths;
         cscd_intersection_pairs found;
         const cscd_view *view = CSCD_DOUBLES(recorded_position(&flight, frame, 0), 8);
         assert_int_equal(cscd_detector_find_intersections(detector, view, &asked, &found), CSCD_OK);
@@ -218,12 +219,12 @@ static void what_follows_is_left_out(void **state) {
     cscd_event events[] = {
         {.a = 1, .b = 2, .first_frame = 4, .last_frame = 5, .pairs = 1},
         {.a = 1, .b = 2, .first_frame = 1, .last_frame = 9, .pairs = 3},
-        {.a = 1, .b = 1, .first_frame = 9, .last_frame = 12, .depths = 1},  /* follows */
-        {.a = 2, .b = 2, .first_frame = 0, .last_frame = 1, .depths = 2},   /* follows */
-        {.a = 2, .b = 2, .first_frame = 10, .last_frame = 11, .depths = 3}, /* at another time */
-        {.a = 3, .b = 3, .first_frame = 4, .last_frame = 5, .depths = 4},   /* of another part */
-        {.a = 1, .b = 1, .first_frame = 4, .last_frame = 5, .contacts = 1}, /* with a contact */
-        {.a = 0, .b = 1, .first_frame = 4, .last_frame = 5, .depths = 5},   /* of two parts */
+        {.a = 1, .b = 1, .first_frame = 9, .last_frame = 12, .depth = 0.1},  /* follows */
+        {.a = 2, .b = 2, .first_frame = 0, .last_frame = 1, .depth = 0.2},   /* follows */
+        {.a = 2, .b = 2, .first_frame = 10, .last_frame = 11, .depth = 0.3}, /* at another time */
+        {.a = 3, .b = 3, .first_frame = 4, .last_frame = 5, .depth = 0.4},   /* of another part */
+        {.a = 1, .b = 1, .first_frame = 4, .last_frame = 5, .contacts = 1},  /* with a contact */
+        {.a = 0, .b = 1, .first_frame = 4, .last_frame = 5, .depth = 0.5},   /* of two parts */
     };
     const size_t expected[] = {0, 1, 4, 5, 6, 7};
     cscd_event all[8];
@@ -269,8 +270,8 @@ static void rules_fail_the_run(void **state) {
         {0, "check", "--fail-on", "crossing", ":3"},    {3, "check", "--fail-on", "crossing", ":4"},
         {3, "check", "--fail-on", "touching", ":4"},    {0, "replay", "--fail-on", "contact", ":3"},
         {3, "replay", "--fail-on", "contact", ":4"},    {3, "replay", "--fail-on", "crossing", ":4"},
-        {0, "check", "--fail-depth", "0.82", NULL},     {3, "check", "--fail-depth", "0.8", NULL},
-        {0, "replay", "--fail-depth", "0.82", NULL},    {3, "replay", "--fail-depth", "0.8", NULL},
+        {0, "check", "--fail-depth", "0.85", NULL},     {3, "check", "--fail-depth", "0.8", NULL},
+        {0, "replay", "--fail-depth", "0.85", NULL},    {3, "replay", "--fail-depth", "0.8", NULL},
         {0, "check", "--max-faces", "8", NULL},         {3, "check", "--max-faces", "1", NULL},
         {2, "check", "--fail-on", "contact", NULL},     {2, "check", "--fail-depth", "-1", NULL},
         {2, "check", "--fail-depth", "1 parsec", NULL}, {2, "check", "--unit", "yard", NULL},
@@ -280,7 +281,7 @@ static void rules_fail_the_run(void **state) {
         EXPECT_TOOL(cases[i].code, cases[i].command, model.text, cache.text, cases[i].option, cases[i].value,
                     cases[i].frames != NULL ? "--frames" : NULL, cases[i].frames);
     EXPECT_TOOL(3, "check", model.text, cache.text, "--fail-depth", "8mm", "--unit", "cm");
-    EXPECT_TOOL(0, "check", model.text, cache.text, "--fail-depth", "8.2mm", "--unit", "cm");
+    EXPECT_TOOL(0, "check", model.text, cache.text, "--fail-depth", "8.5mm", "--unit", "cm");
     EXPECT_TOOL(3, "replay", model.text, cache.text, "--fail-depth", "2ft", "--unit", "m");
     EXPECT_TOOL(0, "replay", model.text, cache.text, "--fail-depth", "3ft", "--unit", "m");
 }
@@ -332,11 +333,11 @@ static void junit_has_a_case_for_each_frame(void **state) {
                      count_of(text, "<failure message=\"3 pairs"));
     assert_int_equal(count_of(text, "<failure "), 4);
     free(text);
-    EXPECT_TOOL(3, "replay", model.text, cache.text, "--junit", xml.text, "--fail-depth", "0.8", "--quiet");
+    EXPECT_TOOL(3, "replay", model.text, cache.text, "--junit", xml.text, "--fail-depth", "0.83", "--quiet");
     text = read_whole_file(xml.text, NULL);
     assert_non_null(strstr(text, "failures=\"1\""));
     assert_non_null(strstr(text, "name=\"frame 6\""));
-    assert_non_null(strstr(text, "<failure message=\"0.81 deep, worst: "));
+    assert_non_null(strstr(text, "<failure message=\"0.834 deep, worst: "));
     free(text);
 }
 

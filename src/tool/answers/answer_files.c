@@ -14,6 +14,7 @@ static void write_kinds(const cscd_event *event, json *out) {
     for (int kind = CSCD_INTERSECTION_CROSSING; kind <= CSCD_INTERSECTION_TOUCHING; kind++)
         if (event->kinds & cscd_intersection_set((cscd_intersection_kind)kind))
             json_string(out, NULL, cscd_intersection_kind_name((cscd_intersection_kind)kind));
+    if (event->kinds & CSCD_EVENT_SAME_SOLID) json_string(out, NULL, "same_solid");
     json_end_array(out);
 }
 
@@ -70,6 +71,9 @@ void answers_write_frame(const answers *a, const frame_answer *frame, json *out)
     const uint32_t triangles = cscd_mesh_triangle_count(a->recording->mesh);
     json_boolean(out, "crossing", frame->crossing > 0);
     json_boolean(out, "clean", frame_answer_clean(frame));
+    json_integer(out, "overlapping_parts", frame->overlapping);
+    json_integer(out, "inside_parts", frame->inside);
+    json_integer(out, "same_solids", frame->same);
     json_integer(out, "crossing_pairs", frame->crossing);
     json_integer(out, "touching_pairs", frame->touching);
     json_integer(out, "duplicate_pairs", frame->duplicates);
@@ -93,6 +97,7 @@ static void write_row(const answers *a, const cscd_event *event, FILE *file) {
         fprintf(file, "%s%s", before, cscd_intersection_kind_name((cscd_intersection_kind)kind));
         before = " ";
     }
+    if (event->kinds & CSCD_EVENT_SAME_SOLID) fprintf(file, "%ssame_solid", before);
     fprintf(file, ",%" PRIu64 ",%" PRIu64 ",%.17g,%.17g,", event->pairs, event->contacts, event->depth,
             event->length);
     if (isnan(event->x[0]))

@@ -18,12 +18,12 @@ static bool frame_checked(const frame_answer *frame) {
     return frame->checked;
 }
 
-static bool frame_crosses(const frame_answer *frame) {
-    return frame->crossing > 0;
+static bool frame_overlaps(const frame_answer *frame) {
+    return frame->crossing == 0 && frame_answer_crosses(frame);
 }
 
 static bool frame_touches(const frame_answer *frame) {
-    return frame->crossing == 0 && frame->touching > 0;
+    return !frame_answer_crosses(frame) && frame->touching > 0;
 }
 
 static size_t count_frames(const answers *a, frame_test *test) {
@@ -78,15 +78,17 @@ static void print_pair(FILE *out, const answers *a, uint32_t first, uint32_t sec
 
 static void say_recording(FILE *out, const answers *a) {
     const size_t checked = count_frames(a, frame_checked);
-    const size_t crossing = count_frames(a, frame_crosses), touching = count_frames(a, frame_touches);
+    const size_t crossing = count_frames(a, frame_answer_crosses), touching = count_frames(a, frame_touches);
+    const char *more = count_frames(a, frame_overlaps) > 0 ? " or overlap" : "";
     if (checked == 0)
         fprintf(out, "No frame was checked.");
     else if (crossing == checked)
-        fprintf(out, "All %zu frames cross.", checked);
+        fprintf(out, "All %zu frames cross%s.", checked, more);
     else if (crossing > 0) {
         fprintf(out, "Frame%s", crossing > 1 ? "s" : "");
-        say_frames(out, a, frame_crosses);
-        fprintf(out, " cross%s (%zu of %zu)", crossing > 1 ? "" : "es", crossing, checked);
+        say_frames(out, a, frame_answer_crosses);
+        fprintf(out, " cross%s%s%s (%zu of %zu)", crossing > 1 ? "" : "es", more,
+                crossing > 1 || *more == '\0' ? "" : "s", crossing, checked);
         if (touching == 0) fprintf(out, ".");
     } else
         fprintf(out, touching > 0 ? "No frame crosses" : "No frame crosses or touches (%zu checked).",
@@ -98,31 +100,66 @@ static void say_recording(FILE *out, const answers *a) {
     }
 }
 
+/* "3 pairs of triangles cross", as a part of a sentence. */
+static void say_pairs(FILE *out, const char *before, size_t count, const char *what, const char *verb) {
+    fprintf(out, "%s%zu pair%s of %s %s%s", before, count, count > 1 ? "s" : "", what, verb,
+            count > 1                      ? ""
+            : strcmp(verb, "overlap") == 0 ? "s"
+                                           : "es");
+}
+
+static const char *say_crossing(FILE *out, const answers *a, const frame_answer *frame) {
+    const uint32_t triangles = cscd_mesh_triangle_count(a->recording->mesh);
+    if (frame->crossing == 0) return "";
+    say_pairs(out, "", frame->crossing, "triangles", "cross");
+    fprintf(out, ", with %u of %u triangles (%.3g %%)", frame->crossing_faces, triangles,
+            100.0 * frame->crossing_faces / triangles);
+    return "; ";
+}
+
+/* Whose interiors meet, although no triangles cross. */
+static const char *say_overlaps(FILE *out, const frame_answer *frame, const char *before) {
+    if (frame->overlapping > 0) {
+        say_pairs(out, before, frame->overlapping, "parts", "overlap");
+        before = "; ";
+    }
+    if (frame->inside > 0) {
+        fprintf(out, "%s%zu part%s inside another", before, frame->inside,
+                frame->inside > 1 ? "s lie" : " lies");
+        before = "; ";
+    }
+    if (frame->same > 0) {
+        fprintf(out, "%s%zu pair%s of parts %s two copies of one solid", before, frame->same,
+                frame->same > 1 ? "s" : "", frame->same > 1 ? "are" : "is");
+        before = "; ";
+    }
+    return before;
+}
+
 static void say_frame(FILE *out, const answers *a) {
     const frame_answer *frame = answers_frames(a);
-    if (!frame_answer_meets(frame)) {
+    if (!frame_answer_meets(frame) && !frame_answer_crosses(frame)) {
         fprintf(out, frame->duplicates > 0 ? "no two others cross or touch."
                      : frame->depth > 0.0  ? "No two triangles cross or touch, but something lies inside."
                                            : "Clean: no two triangles cross or touch.");
         return;
     }
-    if (frame->crossing > 0) {
-        const uint32_t triangles = cscd_mesh_triangle_count(a->recording->mesh);
-        fprintf(out, "%zu pair%s of triangles cross%s, with %u of %u triangles (%.3g %%)", frame->crossing,
-                frame->crossing > 1 ? "s" : "", frame->crossing > 1 ? "" : "es", frame->crossing_faces,
-                triangles, 100.0 * frame->crossing_faces / triangles);
-        if (frame->touching > 0)
-            fprintf(out, "; %zu touch%s", frame->touching, frame->touching > 1 ? "" : "es");
-    } else
-        fprintf(out, "%zu pair%s of triangles touch%s, none cross", frame->touching,
-                frame->touching > 1 ? "s" : "", frame->touching > 1 ? "" : "es");
+    const char *before = say_overlaps(out, frame, say_crossing(out, a, frame));
+    if (frame->touching > 0 && frame->crossing > 0)
+        fprintf(out, "%s%zu touch%s", before, frame->touching, frame->touching > 1 ? "" : "es");
+    else if (frame->touching > 0) {
+        say_pairs(out, before, frame->touching, "triangles", "touch");
+        fprintf(out, ", none cross");
+    } else if (frame->crossing == 0)
+        fprintf(out, "%sno two triangles cross or touch", before);
     fprintf(out, ".");
 }
 
 /* First of all, since a mesh with a triangle too many is not clean, whatever else is found. In a single frame in which nothing
  * is, the sentence goes on. */
 static void say_duplicates(FILE *out, const answers *a) {
-    const bool goes_on = is_single(a) && !frame_answer_meets(answers_frames(a));
+    const frame_answer *first = answers_frames(a);
+    const bool goes_on = is_single(a) && !frame_answer_meets(first) && !frame_answer_crosses(first);
     const char *end = goes_on ? ";" : ".";
     size_t most = 0;
     for (size_t i = 0; i < answers_frame_count(a); i++)
@@ -135,10 +172,12 @@ static void say_measure(FILE *out, const cscd_event *event, const length_unit *u
     char text[LENGTH_TEXT_SIZE];
     if (event->depth > 0.0)
         fprintf(out, ", %s deep", length_text(event->depth, unit, text));
+    else if (event->kinds & CSCD_EVENT_SAME_SOLID)
+        fprintf(out, ", one solid twice");
     else if (event->length > 0.0)
         fprintf(out, ", %s along %s", event->kinds & CROSSING ? "crossing" : "touching",
                 length_text(event->length, unit, text));
-    else if (event->pairs == 0 && event->depths == 0)
+    else if (event->pairs == 0)
         fprintf(out, ", contacts only");
 }
 
@@ -228,7 +267,8 @@ void answers_print_sentence(FILE *out, const answers *a, const length_unit *unit
 /* What an event is, in a word: that which weighs most. */
 static const char *event_word(const cscd_event *event) {
     if (event->kinds & CROSSING) return "cross";
-    if (event->depths > 0) return "inside";
+    if (event->depth > 0.0) return event->pairs > 0 ? "overlap" : "inside";
+    if (event->kinds & CSCD_EVENT_SAME_SOLID) return "copies";
     return event->pairs > 0 ? "touch" : "contact";
 }
 
@@ -288,7 +328,7 @@ static void print_frame(const answers *a, const frame_answer *frame, const lengt
 
 /* Duplicates alone make no row. */
 static bool frame_has_row(const frame_answer *frame) {
-    return frame_answer_meets(frame) || frame->depth > 0.0;
+    return frame_answer_meets(frame) || frame_answer_crosses(frame);
 }
 
 void answers_print_frames(const answers *a, const length_unit *unit) {

@@ -5,6 +5,7 @@
 #include "src/tool/answers/consequences.h"
 #include "src/tool/common/event_order.h"
 
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -28,6 +29,7 @@ bool answers_open(recording *r, const ignore_pairs *ignored, bool depths, answer
                  .parts = &ignored->parts,
                  .depths = depths,
                  .orientation = ignored->parts.named ? CSCD_ORIENTATION_BY_PART : CSCD_ORIENTATION_BY_OBJECT,
+                 .depth_limit = (double)INFINITY,
                  .shown = shown_depths_of(ignored),
                  .frames = growable_of(sizeof(frame_answer))};
     a.seen = io_zeroed(((size_t)cscd_mesh_triangle_count(r->mesh) + 1) * sizeof *a.seen);
@@ -68,6 +70,10 @@ void answers_leave_unfinished(answers *a, const char *format, ...) {
 
 const char *answers_unfinished(const answers *a) {
     return a->unfinished.text[0] != '\0' ? a->unfinished.text : NULL;
+}
+
+void answers_decide_depth(answers *a, double limit) {
+    a->depth_limit = limit;
 }
 
 bool answers_prepare(const answers *a, cscd_detector *detector, io_error *error) {
@@ -118,27 +124,52 @@ static size_t count_pairs(const cscd_part_pair *pair) {
     return pair->crossing + pair->coplanar + pair->folded + pair->touching;
 }
 
+static bool lies_in_itself(const cscd_part_pair *pair) {
+    return pair->a == pair->b && count_pairs(pair) == 0;
+}
+
+static bool is_within(const cscd_part_pair *pair) {
+    return pair->crossing > 0 || pair->depth > 0.0 || pair->same_solid;
+}
+
 /* In the order of events (event_order.h). */
 static bool is_worse(const cscd_part_pair *a, const cscd_part_pair *b) {
-    const bool a_in_itself = a->a == a->b && count_pairs(a) == 0;
-    const bool b_in_itself = b->a == b->b && count_pairs(b) == 0;
-    if (a_in_itself != b_in_itself) return b_in_itself;
+    if (lies_in_itself(a) != lies_in_itself(b)) return lies_in_itself(b);
+    if (is_within(a) != is_within(b)) return is_within(a);
     if (a->depth != b->depth) return a->depth > b->depth;
     if (a->length != b->length) return a->length > b->length;
     return count_pairs(a) > count_pairs(b);
 }
 
+static void count_within(const cscd_part_pair *pair, frame_answer *frame) {
+    if (pair->crossing > 0 || !is_within(pair)) return;
+    if (pair->same_solid)
+        frame->same++;
+    else if (count_pairs(pair) > 0)
+        frame->overlapping++;
+    else
+        frame->inside++;
+}
+
+/* What lies in itself alone follows from something else in the frame, if there is anything else. */
 static void find_worst(const shown_depths *shown, const cscd_intersection_pairs *found, frame_answer *frame) {
     cscd_part_pair worst = {.a = NO_PART, .b = NO_PART};
     bool worst_of_none = true;
+    size_t in_itself = 0;
     for (size_t i = 0; i < found->parts->count; i++) {
         cscd_part_pair pair = found->parts->items[i];
-        pair.depth = pair.depth > 0.0 ? shown_depths_of_parts(shown, found, &pair) : 0.0;
+        shown_depths_of_parts(shown, found, &pair);
         if (count_pairs(&pair) == 0 && pair.depth == 0.0) continue;
         if (worst_of_none || is_worse(&pair, &worst)) worst = pair;
         worst_of_none = false;
+        if (lies_in_itself(&pair))
+            in_itself++;
+        else
+            count_within(&pair, frame);
         if (pair.depth > frame->depth) frame->depth = pair.depth;
+        if (pair.bound > frame->bound) frame->bound = pair.bound;
     }
+    if (!frame_answer_crosses(frame)) frame->inside = in_itself;
     frame->worst_parts[0] = worst.a;
     frame->worst_parts[1] = worst.b;
 }
@@ -149,6 +180,8 @@ bool answers_find(const answers *a, cscd_detector *detector, const double *posit
     options.parts = true;
     options.curves = options.patches = options.depths = a->depths;
     options.orientation = a->orientation;
+    options.depth_limit = a->depth_limit;
+    options.part_bodies = a->parts->named;
     const cscd_view *view = CSCD_DOUBLES(positions, cscd_mesh_vertex_count(a->recording->mesh));
     return cscd_detector_find_intersections(detector, view, &options, found) == CSCD_OK ||
            api_failed(a, error);

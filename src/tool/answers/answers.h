@@ -15,7 +15,11 @@ typedef struct frame_answer {
     size_t duplicates;       /* and that are one and the same */
     size_t contacts;         /* of the interval that ends here */
     uint32_t crossing_faces; /* so many triangles cross another one */
-    double depth;            /* the greatest; 0: none is known */
+    size_t
+        overlapping; /* pairs of parts without such pairs whose interiors meet: they share space and touch, */
+    size_t inside;   /* or one is inside the other, */
+    size_t same;     /* or both are copies of one solid */
+    double depth, bound;     /* the greatest depth, 0: none is known; and no point is deeper than the bound */
     uint32_t worst_parts[2]; /* of the worst, in the order of events (event_order.h) */
     double ms;               /* how long it took */
 } frame_answer;
@@ -23,7 +27,8 @@ typedef struct frame_answer {
 typedef struct answers {
     recording *recording;
     const part_names *parts;
-    bool depths; /* curves and depths are looked for */
+    bool depths;        /* curves and depths are looked for */
+    double depth_limit; /* until each is known to be above this or not; INFINITY: nobody asks */
     cscd_orientation orientation;
     shown_depths shown; /* of the frame found last */
     turned_parts turned;
@@ -52,6 +57,9 @@ void answers_leave_unfinished(answers *a, const char *format, ...) __attribute__
 
 /* Why not all was looked at that was asked for; NULL: all was. */
 const char *answers_unfinished(const answers *a);
+
+/* Depths are to be known well enough to say whether they are above this. */
+void answers_decide_depth(answers *a, double limit);
 
 /* Makes the detector sum up by these parts. Once, before the first frame. */
 bool answers_prepare(const answers *a, cscd_detector *detector, io_error *error);
@@ -92,7 +100,13 @@ static inline bool frame_answer_meets(const frame_answer *frame) {
     return frame->crossing + frame->touching > 0;
 }
 
+/* Do triangles cross, or do the interiors of two parts meet although none do? */
+static inline bool frame_answer_crosses(const frame_answer *frame) {
+    return frame->crossing + frame->overlapping + frame->inside + frame->same > 0;
+}
+
 /* Was the frame looked at, and nothing found in it: no pair of triangles, no triangle that is there twice, nothing inside of anything? */
 static inline bool frame_answer_clean(const frame_answer *frame) {
-    return frame->checked && !frame_answer_meets(frame) && frame->duplicates == 0 && !(frame->depth > 0.0);
+    return frame->checked && !frame_answer_meets(frame) && !frame_answer_crosses(frame) &&
+           frame->duplicates == 0;
 }

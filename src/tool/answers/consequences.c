@@ -5,10 +5,11 @@
 
 #include <stdlib.h>
 
-/* Triangles that are one and the same are no event: they never come apart. */
+/* Triangles that are one and the same are no event: they never come apart. Nor are points of depth 0 alone. */
 static bool is_event(const cscd_event *event) {
-    return event->kinds != cscd_intersection_set(CSCD_INTERSECTION_DUPLICATE) || event->contacts > 0 ||
-           event->depths > 0;
+    const bool has_pairs =
+        event->pairs > 0 && event->kinds != cscd_intersection_set(CSCD_INTERSECTION_DUPLICATE);
+    return has_pairs || event->contacts > 0 || event->depth > 0.0;
 }
 
 /* The frames in which a part has an event with pairs. */

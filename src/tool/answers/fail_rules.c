@@ -26,11 +26,19 @@ enum { NAME_BYTES_MAX = 100 };
 /* "A x B", of the worst that the frame has; "" if it has nothing. */
 static void name_worst(const answers *a, const frame_answer *frame, char *text, size_t size) {
     text[0] = '\0';
-    if (!frame_answer_meets(frame) && frame->depth == 0.0) return;
+    if (!frame_answer_meets(frame) && !frame_answer_crosses(frame)) return;
     const char *first = part_names_at(a->parts, frame->worst_parts[0]);
     const char *second = part_names_at(a->parts, frame->worst_parts[1]);
     snprintf(text, size, ", worst: %.*s x %.*s", TEXT_CUT(first, NAME_BYTES_MAX),
              TEXT_CUT(second, NAME_BYTES_MAX));
+}
+
+/* Interiors that meet count as crossing, whether or not triangles do. */
+static void describe_overlap(const frame_answer *frame, const char *worst, char text[FAIL_TEXT_SIZE]) {
+    const char *what = frame->same > 0          ? "are copies of one solid"
+                       : frame->overlapping > 0 ? "overlap"
+                                                : "lie inside each other";
+    snprintf(text, FAIL_TEXT_SIZE, "parts %s, though no triangles cross%s", what, worst);
 }
 
 bool fail_rules_meet(const fail_rules *rules, const answers *a, const frame_answer *frame,
@@ -40,11 +48,18 @@ bool fail_rules_meet(const fail_rules *rules, const answers *a, const frame_answ
     name_worst(a, frame, worst, sizeof worst);
     if (o->depth.given && frame->depth > rules->depth)
         snprintf(text, FAIL_TEXT_SIZE, "%s deep%s", length_text(frame->depth, &rules->unit, length), worst);
+    else if (o->depth.given && frame->bound > rules->depth)
+        snprintf(text, FAIL_TEXT_SIZE, "up to %s deep%s", length_text(frame->bound, &rules->unit, length),
+                 worst);
+    else if (o->depth.given && frame->same > 0)
+        snprintf(text, FAIL_TEXT_SIZE, "parts are copies of one solid, and how deep is not known%s", worst);
     else if (o->faces_limited && frame->crossing_faces > o->most_faces)
         snprintf(text, FAIL_TEXT_SIZE, "%u triangles cross others%s", frame->crossing_faces, worst);
     else if (o->kind >= FAIL_ON_CROSSING && frame->crossing > 0)
         snprintf(text, FAIL_TEXT_SIZE, "%zu pair%s of triangles cross%s%s", frame->crossing,
                  frame->crossing > 1 ? "s" : "", frame->crossing > 1 ? "" : "es", worst);
+    else if (o->kind >= FAIL_ON_CROSSING && frame_answer_crosses(frame))
+        describe_overlap(frame, worst, text);
     else if (o->kind >= FAIL_ON_TOUCHING && frame->touching > 0)
         snprintf(text, FAIL_TEXT_SIZE, "%zu pair%s of triangles touch%s%s", frame->touching,
                  frame->touching > 1 ? "s" : "", frame->touching > 1 ? "" : "es", worst);

@@ -13,30 +13,26 @@ void shown_depths_free(shown_depths *s) {
 }
 
 static bool is_shown(const shown_depths *s, const cscd_depth *depth) {
-    return depth->vertex != UINT32_MAX
-               ? !ignore_pairs_separate_vertex(s->ignored, depth->vertex, depth->triangle)
-               : !ignore_pairs_separate_edge(s->ignored, depth->edge, depth->triangle);
+    if (depth->vertex != UINT32_MAX)
+        return !ignore_pairs_separate_vertex(s->ignored, depth->vertex, depth->triangle);
+    if (depth->edge != UINT32_MAX)
+        return !ignore_pairs_separate_edge(s->ignored, depth->edge, depth->triangle);
+    return !ignore_pairs_separate_triangles(s->ignored, depth->face, depth->triangle);
 }
 
-/* Patches come with their deepest vertices, which may have new places. */
-static bool keep_patch(shown_depths *s, const cscd_depths *all, const cscd_patch_depth *patch) {
-    const cscd_depth *deepest = &all->items[patch->deepest], *items = s->items.data;
-    if (!is_shown(s, deepest)) return true;
-    cscd_patch_depth *kept = growable_push(&s->patches);
-    if (kept == NULL) return false;
-    *kept = *patch;
-    size_t low = 0, high = s->list.vertex_count; /* sorted by (vertex, object) */
-    while (low + 1 < high) {
-        const size_t middle = low + (high - low) / 2;
-        const bool behind = items[middle].vertex != deepest->vertex ? items[middle].vertex > deepest->vertex
-                                                                    : items[middle].object > deepest->object;
-        if (behind)
-            high = middle;
-        else
-            low = middle;
+/* The faces of a patch in one body follow each other. */
+static bool keep_patch(shown_depths *s, const cscd_depth *face, size_t place) {
+    cscd_patch_depth *last =
+        s->patches.count > 0 ? (cscd_patch_depth *)s->patches.data + s->patches.count - 1 : NULL;
+    if (face->patch == UINT32_MAX) return true;
+    if (last != NULL && last->patch == face->patch && last->body == face->body) {
+        const cscd_depth *items = s->items.data;
+        if (face->depth > items[last->deepest].depth) last->deepest = place;
+        return true;
     }
-    kept->deepest = low;
-    return true;
+    cscd_patch_depth *kept = growable_push(&s->patches);
+    if (kept != NULL) *kept = (cscd_patch_depth){face->patch, face->body, place};
+    return kept != NULL;
 }
 
 bool shown_depths_choose(shown_depths *s, cscd_intersection_pairs *found) {
@@ -45,15 +41,16 @@ bool shown_depths_choose(shown_depths *s, cscd_intersection_pairs *found) {
     s->items.count = s->patches.count = 0;
     s->list = (cscd_depths){0};
     s->all = all;
+    const size_t points = all->vertex_count + all->edge_count;
     for (size_t i = 0; i < all->count; i++) {
         if (!is_shown(s, &all->items[i])) continue;
         cscd_depth *kept = growable_push(&s->items);
         if (kept == NULL) return false;
         *kept = all->items[i];
+        if (i >= points && !keep_patch(s, &all->items[i], s->items.count - 1)) return false;
         s->list.vertex_count += i < all->vertex_count;
+        s->list.edge_count += i >= all->vertex_count && i < points;
     }
-    for (size_t i = 0; i < all->patch_count; i++)
-        if (!keep_patch(s, all, &all->patches[i])) return false;
     s->list.items = s->items.data;
     s->list.count = s->items.count;
     s->list.patches = s->patches.data;
@@ -62,27 +59,18 @@ bool shown_depths_choose(shown_depths *s, cscd_intersection_pairs *found) {
     return true;
 }
 
-static uint32_t part_of(const shown_depths *s, const cscd_depth *depth) {
-    const cscd_mesh *mesh = s->ignored->mesh;
-    uint32_t count;
-    const uint32_t *triangles = depth->vertex != UINT32_MAX
-                                    ? cscd_mesh_vertex_triangles(mesh, depth->vertex, &count)
-                                    : cscd_mesh_edge_triangles(mesh, depth->edge, &count);
-    return s->ignored->parts.labels[triangles[0]]; /* as the library counts: that of the first triangle */
-}
-
-/* A pair of parts comes with the deepest of all its depths. If that one is left out, another one may still be there: of a vertex
- * between two parts, only one of which is left out. */
-double shown_depths_of_parts(const shown_depths *s, const cscd_intersection_pairs *found,
-                             const cscd_part_pair *pair) {
-    if (found->depths != &s->list || pair->deepest == SIZE_MAX) return pair->depth;
-    if (is_shown(s, &s->all->items[pair->deepest])) return pair->depth;
-    double greatest = 0.0;
+/* A pair of parts comes with the deepest of all its depths. If some are left out, others may still be there: of a vertex between
+ * two parts, only one of which is left out. */
+void shown_depths_of_parts(const shown_depths *s, const cscd_intersection_pairs *found,
+                           cscd_part_pair *pair) {
+    if (found->depths != &s->list || pair->deepest == SIZE_MAX) return;
+    pair->depth = pair->bound = 0.0;
     for (size_t i = 0; i < s->list.count; i++) {
         const cscd_depth *depth = &s->list.items[i];
-        const uint32_t part = part_of(s, depth), burier = s->ignored->parts.labels[depth->triangle];
+        const uint32_t part = s->ignored->parts.labels[depth->face];
+        const uint32_t burier = s->ignored->parts.labels[depth->triangle];
         const bool of_pair = (part == pair->a && burier == pair->b) || (part == pair->b && burier == pair->a);
-        if (of_pair && depth->depth > greatest) greatest = depth->depth;
+        if (of_pair && depth->depth > pair->depth) pair->depth = depth->depth;
+        if (of_pair && depth->bound > pair->bound) pair->bound = depth->bound;
     }
-    return greatest;
 }

@@ -19,6 +19,5 @@ void shown_depths_free(shown_depths *s);
  * memory. */
 bool shown_depths_choose(shown_depths *s, cscd_intersection_pairs *found);
 
-/* The greatest depth of a pair of parts that is shown, in the frame chosen last; 0: none. */
-double shown_depths_of_parts(const shown_depths *s, const cscd_intersection_pairs *found,
-                             const cscd_part_pair *pair);
+/* Gives a pair of parts the greatest depth and bound that are shown, in the frame chosen last; 0: none. */
+void shown_depths_of_parts(const shown_depths *s, const cscd_intersection_pairs *found, cscd_part_pair *pair);

@@ -32,7 +32,7 @@ static const option_row rows[] = {
     {"frames", "A:B[:STEP]", read_frames, offsetof(check_options, frames),
      "only the frames A to B, both included, or every STEP-th of them"},
     {"fail-on", "crossing|touching", read_fail_kind, offsetof(check_options, answers.fail.kind),
-     "exit with 3 when triangles cross in any frame; touching: or touch"},
+     "exit with 3 when triangles cross or parts overlap in any frame; touching: or touch"},
     {"fail-on-contact", NULL, fail_on_touching, offsetof(check_options, answers.fail.kind),
      "another name of --fail-on touching"},
     {"reproducible", NULL, read_flag, offsetof(check_options, reproducible),

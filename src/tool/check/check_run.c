@@ -61,8 +61,10 @@ static bool create_detector(check_run *c, io_error *error) {
         CSCD_OK)
         return io_fail(error, "%s", cscd_context_detail(c->recording.context));
     c->positions = malloc((size_t)cscd_mesh_vertex_count(c->recording.mesh) * 3 * sizeof *c->positions);
-    return (c->positions != NULL || io_fail(error, "out of memory")) && open_answers(c, error) &&
-           answers_prepare(&c->answers, c->detector, error);
+    if (c->positions == NULL) return io_fail(error, "out of memory");
+    if (!open_answers(c, error)) return false;
+    if (c->rules.options.depth.given) answers_decide_depth(&c->answers, c->rules.depth);
+    return answers_prepare(&c->answers, c->detector, error);
 }
 
 /* Everything that can fail before the work begins. */

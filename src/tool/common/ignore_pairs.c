@@ -268,6 +268,10 @@ bool ignore_pairs_separate_edge(const ignore_pairs *pairs, uint32_t edge, uint32
     return sets_apart(pairs, of_edge, count, triangle);
 }
 
+bool ignore_pairs_separate_triangles(const ignore_pairs *pairs, uint32_t a, uint32_t b) {
+    return sets_apart(pairs, &a, 1, b);
+}
+
 bool ignore_pairs_any(const ignore_pairs *pairs) {
     return pairs->triangle_count > 0 || pairs->component_count > 0 || part_rules_any(&pairs->rules);
 }

@@ -54,9 +54,10 @@ void ignore_pairs_choose(ignore_pairs *pairs, cscd_detector_options *options);
 /* Is anything left out? */
 bool ignore_pairs_any(const ignore_pairs *pairs);
 
-/* Is it left out that a vertex or an edge is inside of what has the triangle? As contacts of the two are; and of different
+/* Is it left out that a vertex, an edge or a triangle is inside of what has the other triangle? As contacts of the two are; and of different
  * components, if any pair of their triangles is left out. */
 bool ignore_pairs_separate_vertex(const ignore_pairs *pairs, uint32_t vertex, uint32_t triangle);
 bool ignore_pairs_separate_edge(const ignore_pairs *pairs, uint32_t edge, uint32_t triangle);
+bool ignore_pairs_separate_triangles(const ignore_pairs *pairs, uint32_t a, uint32_t b);
 
 void ignore_pairs_free(ignore_pairs *pairs);

@@ -8,7 +8,7 @@
 
 /* Sums over the frames, and the most in one of them. */
 typedef struct frame_sums {
-    size_t checked, crossing_frames, touching_frames;
+    size_t checked, crossing_frames, touching_frames, same;
     size_t crossing, touching, duplicates, contacts;
     uint32_t most_faces;
     double depth;
@@ -22,6 +22,7 @@ static frame_sums sum_frames(const answers *a) {
         s.checked += f->checked;
         s.crossing_frames += f->crossing > 0;
         s.touching_frames += f->crossing == 0 && f->touching > 0;
+        s.same += f->same;
         s.crossing += f->crossing;
         s.touching += f->touching;
         s.duplicates += f->duplicates;
@@ -37,7 +38,7 @@ job_outcome recording_answer_outcome(const answers *a) {
     const frame_sums s = sum_frames(a);
     if (answers_unfinished(a) != NULL) return JOB_FAILED;
     if (s.crossing > 0) return JOB_CROSSING;
-    if (s.depth > 0.0) return JOB_INSIDE;
+    if (s.depth > 0.0 || s.same > 0) return JOB_INSIDE;
     if (s.touching + s.contacts > 0) return JOB_TOUCHING;
     return s.duplicates > 0 ? JOB_DUPLICATE : JOB_CLEAN;
 }

@@ -45,6 +45,7 @@ static bool prepare_answers(replay *r, io_error *error) {
         !answers_open(&r->recording, &r->ignored, !o->no_depths, &r->answers, error))
         return false;
     if (o->as_given) r->answers.orientation = CSCD_ORIENTATION_AS_GIVEN;
+    if (o->fail.depth.given) answers_decide_depth(&r->answers, r->rules.depth);
     return true;
 }
 

@@ -92,7 +92,7 @@ static const option_row rows[] = {
     {"simd", "auto|scalar|avx2|avx512|neon", read_simd, offsetof(replay_options, source.simd),
      "vector instructions (default: the best here); the contacts are the same"},
     {"fail-on", "crossing|touching|contact", read_fail_kind, offsetof(replay_options, answers.fail.kind),
-     "exit with 3 when triangles cross in any frame; touching: or touch; contact: or come into contact between "
+     "exit with 3 when triangles cross or parts overlap in any frame; touching: or touch; contact: or come into contact between "
      "two frames"},
     {"fail-on-contact", NULL, fail_on_contact, offsetof(replay_options, answers.fail.kind),
      "another name of --fail-on contact"},

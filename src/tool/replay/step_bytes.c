@@ -77,18 +77,19 @@ static void take_curves(packed_reader *in, cscd_curves *c) {
 }
 
 static void add_depths(packed_bytes *out, const cscd_depths *d) {
-    const uint64_t vertices = d->vertex_count;
+    const uint64_t counts[2] = {d->vertex_count, d->edge_count};
     packed_bytes_add_array(out, d->items, d->count, sizeof *d->items);
-    packed_bytes_add(out, &vertices, sizeof vertices);
+    packed_bytes_add(out, counts, sizeof counts);
     packed_bytes_add_array(out, d->patches, d->patch_count, sizeof *d->patches);
 }
 
 static void take_depths(packed_reader *in, cscd_depths *d) {
-    uint64_t vertices = 0;
+    uint64_t counts[2] = {0, 0};
     *d = (cscd_depths){0};
     d->items = packed_reader_take_array(in, &d->count, sizeof *d->items);
-    packed_reader_copy(in, &vertices, sizeof vertices);
-    d->vertex_count = (size_t)vertices;
+    packed_reader_copy(in, counts, sizeof counts);
+    d->vertex_count = (size_t)counts[0];
+    d->edge_count = (size_t)counts[1];
     d->patches = packed_reader_take_array(in, &d->patch_count, sizeof *d->patches);
 }
 

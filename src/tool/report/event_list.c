@@ -43,6 +43,7 @@ static void write_kinds(json *out, uint64_t kinds) {
     for (int kind = CSCD_INTERSECTION_CROSSING; kind <= CSCD_INTERSECTION_TOUCHING; kind++)
         if (kinds & cscd_intersection_set((cscd_intersection_kind)kind))
             json_string(out, NULL, cscd_intersection_kind_name((cscd_intersection_kind)kind));
+    if (kinds & CSCD_EVENT_SAME_SOLID) json_string(out, NULL, "same_solid");
     json_end_array(out);
 }
 

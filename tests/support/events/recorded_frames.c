@@ -98,9 +98,14 @@ static void make_depths(const recorded_frames *r, recorded_frame *f, int most) {
     f->depths.count = (size_t)random_integer(0, most);
     cscd_depth *items = new_items(f->depths.count, sizeof *items);
     for (size_t i = 0; i < f->depths.count; i++) {
-        bool of_vertex = random_integer(0, 2) > 0;
-        items[i].vertex = of_vertex ? random_below(SHEET * SHEET + 2 * STRIP) : UINT32_MAX;
-        items[i].edge = of_vertex ? UINT32_MAX : random_below(cscd_mesh_object(r->mesh, 0).edge_count);
+        const int kind = random_integer(0, 3); /* an edge, a face, or most often a vertex */
+        uint32_t count = 0;
+        const uint32_t *star = NULL;
+        items[i].vertex = kind > 1 ? random_below(SHEET * SHEET + 2 * STRIP) : UINT32_MAX;
+        items[i].edge = kind == 0 ? random_below(cscd_mesh_object(r->mesh, 0).edge_count) : UINT32_MAX;
+        if (kind > 1) star = cscd_mesh_vertex_triangles(r->mesh, items[i].vertex, &count);
+        if (kind == 0) star = cscd_mesh_edge_triangles(r->mesh, items[i].edge, &count);
+        items[i].face = count > 0 ? star[0] : random_below(cscd_mesh_triangle_count(r->mesh));
         items[i].triangle = random_below(cscd_mesh_triangle_count(r->mesh));
         items[i].depth = random_amount();
         for (int c = 0; c < 3; c++) items[i].x[c] = random_unit();

@@ -174,9 +174,13 @@ static void list_depths(oracle *o, uint32_t frame, const cscd_depths *depths) {
     for (size_t i = 0; i < depths->count; i++) {
         const cscd_depth *depth = &depths->items[i];
         thing *t = add_thing(o, DEPTH, frame);
-        uint32_t part =
-            depth->vertex != UINT32_MAX ? add_vertex(o, t, depth->vertex) : add_edge(o, t, depth->edge);
-        set_parts(t, part, triangle_part(o, depth->triangle));
+        if (depth->vertex != UINT32_MAX)
+            add_vertex(o, t, depth->vertex);
+        else if (depth->edge != UINT32_MAX)
+            add_edge(o, t, depth->edge);
+        else
+            add_element(o, t, depth->face);
+        set_parts(t, triangle_part(o, depth->face), triangle_part(o, depth->triangle));
         t->amount = depth->depth;
         memcpy(t->x, depth->x, sizeof t->x);
     }

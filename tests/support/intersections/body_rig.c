@@ -103,7 +103,7 @@ void body_rig_create(body_rig *r, const cscd_detector_options *options, uint32_t
 
 cscd_status body_rig_try(body_rig *r) {
     cscd_intersection_options options = cscd_intersection_defaults();
-    options.overlaps = options.depths = options.depth_bounds = true;
+    options.overlaps = options.depths = true;
     options.orientation = r->orientation;
     return cscd_detector_find_intersections(r->detector, CSCD_DOUBLES(r->all.x0, r->all.vertex_count),
                                             &options, &r->found);

@@ -73,6 +73,7 @@ static uint32_t label_at(const labelling *l, const body_rig *r, uint32_t v, uint
 
 static uint32_t label_of_point(const labelling *l, const body_rig *r, const cscd_depth *depth) {
     uint32_t ends[2] = {depth->vertex, depth->vertex};
+    if (depth->vertex == UINT32_MAX && depth->edge == UINT32_MAX) return l->items[depth->face];
     if (depth->vertex == UINT32_MAX) cscd_mesh_edge(r->mesh, depth->edge, ends);
     return label_at(l, r, ends[0], ends[1]);
 }
@@ -153,6 +154,7 @@ static size_t expect_depths(const labelling *l, const body_rig *r, uint32_t a, u
     for (size_t i = 0; depths != NULL && i < depths->count; i++) {
         const cscd_depth *depth = &depths->items[i];
         if (!are_the_two(point_labels[i], l->items[depth->triangle], a, b)) continue;
+        if (depth->bound > out->bound) out->bound = depth->bound;
         if (count++ > 0 && depth->depth <= out->depth) continue;
         out->deepest = i;
         out->depth = depth->depth;

@@ -193,7 +193,7 @@ static const char *compare_events(surface_trial *t) {
 static int number_in(const cscd_patches *patches, uint32_t patch, uint32_t object) {
     const cscd_patch *of = &patches->items[patch];
     for (uint32_t i = 0; i < of->winding_count; i++) {
-        if (patches->windings[of->first_winding + i].object == object)
+        if (patches->windings[of->first_winding + i].body == object)
             return patches->windings[of->first_winding + i].number;
     }
     return 0;

@@ -1,6 +1,7 @@
-/* How deep what is buried lies below the outer surfaces of objects. */
-#include "runtime/intersections/depths.h"
+/* How deep what is buried lies below the outer surfaces of bodies. */
+#include "runtime/depths/depths.h"
 
+#include "runtime/depths/body_point.h"
 #include "src/core/sort.h"
 #include "src/mesh/surface.h"
 
@@ -11,17 +12,18 @@ _Static_assert(sizeof(depth_question) <= sizeof(cscd_depth), "questions are sort
 /* ---- memory -------------------------------------------------------------------------------------------- */
 
 static array_list list_of_depths(depth_finder *d, size_t count) {
-    return (array_list){{ARRAY(d->depths, count), ARRAY(d->keys, count), ARRAY(d->spare_keys, count),
-                         ARRAY(d->patches, count)}};
+    return (array_list){{ARRAY(d->depths, count)}};
 }
 
 void depth_finder_free(depth_finder *d) {
     if (d->context == NULL) return;
     cscd_context *context = d->context;
     outer_surface_free(&d->outer);
+    deepest_finder_free(&d->deepest);
     context_free_all(context, list_of_depths(d, 0));
     context_free(context, d->questions);
-    *d = (depth_finder){.context = context, .outer = d->outer};
+    context_free(context, d->patches);
+    *d = (depth_finder){.context = context, .outer = d->outer, .deepest = d->deepest};
 }
 
 /* ---- questions ----------------------------------------------------------------------------------------- */
@@ -30,6 +32,7 @@ typedef struct depth_work {
     depth_finder *finder;
     const surface_cuts *found;
     const bvh *bvh;
+    double rounding; /* what computed depths may be off by */
 } depth_work;
 
 static bool add_question(depth_finder *d, depth_question question) {
@@ -52,8 +55,8 @@ static uint32_t patch_in_star(const depth_work *work, uint32_t vertex, uint32_t 
     return work->found->patches->corner_patches[(size_t)triangle * 3 + corner];
 }
 
-/* At a vertex at which curves end, the own object's number is the least around it, since it differs from triangle to
- * triangle; those of other objects do not. */
+/* At a vertex at which curves end, the own body's number is the least around it, since it differs from triangle to
+ * triangle; those of other bodies do not. */
 static bool own_contains(const depth_work *work, uint32_t vertex) {
     const cscd_mesh *mesh = work->found->surface->mesh;
     for (uint32_t i = mesh->vertex_star_offsets[vertex]; i < mesh->vertex_star_offsets[vertex + 1]; i++) {
@@ -61,6 +64,18 @@ static bool own_contains(const depth_work *work, uint32_t vertex) {
         if (work->found->patches->patches[patch].own < 1) return false;
     }
     return true;
+}
+
+/* A vertex none of whose triangles has an area is a vertex of no surface. */
+static bool has_surface(const depth_work *work, uint32_t vertex) {
+    const named_surface *s = work->found->surface;
+    for (uint32_t i = s->mesh->vertex_star_offsets[vertex]; i < s->mesh->vertex_star_offsets[vertex + 1];
+         i++) {
+        double normal[3];
+        surface_normal(s->mesh, s->positions, s->mesh->vertex_stars[i], normal);
+        if (surface_norm(normal) > 0.0) return true;
+    }
+    return false;
 }
 
 static bool ask_of_vertex(const depth_work *work, uint32_t vertex) {
@@ -74,15 +89,16 @@ static bool ask_of_vertex(const depth_work *work, uint32_t vertex) {
                         : patch_in_star(work, vertex, mesh->vertex_stars[mesh->vertex_star_offsets[vertex]])];
     for (uint32_t i = 0; i < of->winding_count; i++) {
         cscd_winding w = p->windings[of->first_winding + i];
-        if (w.number < 1) continue;
-        if (patch == UINT32_MAX && w.object == of->object && !own_contains(work, vertex)) continue;
-        depth_question question = {vertex, UINT32_MAX, patch, w.object, {0.0, 0.0}};
+        if (w.number < 1 || !has_surface(work, vertex)) continue;
+        if (patch == UINT32_MAX && w.body == of->body && !own_contains(work, vertex)) continue;
+        uint32_t face = mesh->vertex_stars[mesh->vertex_star_offsets[vertex]];
+        depth_question question = {vertex, UINT32_MAX, face, patch, w.body, {0.0, 0.0}};
         if (!add_question(work->finder, question)) return false;
     }
     return true;
 }
 
-/* Asks of the parts of an edge that an object contains between two of its passages. Of each object the last passage is
+/* Asks of the parts of an edge that a body contains between two of its passages. Of each body the last passage is
  * kept in `last`, and its number in the corner's numbers. */
 static bool ask_of_edge(const depth_work *work, const loaded_cut *cut, uint32_t i, cut_border *last) {
     const cscd_mesh *mesh = work->found->surface->mesh;
@@ -97,8 +113,9 @@ static bool ask_of_edge(const depth_work *work, const loaded_cut *cut, uint32_t 
         if (numbers[b->slot] >= 1 && s < b->s) {
             depth_question question = {UINT32_MAX,
                                        edge,
+                                       mesh->edge_stars[mesh->edge_star_offsets[edge]],
                                        UINT32_MAX,
-                                       cut->slot_objects[b->slot],
+                                       cut->slot_bodies[b->slot],
                                        {along ? s : 1.0 - b->s, along ? b->s : 1.0 - s}};
             if (!add_question(work->finder, question)) return false;
         }
@@ -108,7 +125,19 @@ static bool ask_of_edge(const depth_work *work, const loaded_cut *cut, uint32_t 
     return true;
 }
 
-/* An edge is asked of in the first of its triangles. */
+/* An edge is asked of in the first of its triangles that has an area; without an area there is no projection, nor does the
+ * triangle say anything of the edge that the others do not. */
+static bool asks_of_edge(const depth_work *work, uint32_t triangle, uint32_t edge) {
+    const named_surface *s = work->found->surface;
+    for (uint32_t i = s->mesh->edge_star_offsets[edge]; i < s->mesh->edge_star_offsets[edge + 1]; i++) {
+        double normal[3];
+        if (s->mesh->edge_stars[i] == triangle) return true;
+        surface_normal(s->mesh, s->positions, s->mesh->edge_stars[i], normal);
+        if (surface_norm(normal) > 0.0) return false;
+    }
+    return false;
+}
+
 static bool ask_of_edges(const depth_work *work) {
     triangle_cuts *c = &work->finder->outer.cuts;
     const cscd_mesh *mesh = work->found->surface->mesh;
@@ -119,7 +148,7 @@ static bool ask_of_edges(const depth_work *work) {
         if (cut.stretch == 0.0) continue;
         for (uint32_t i = 0; i < 3; i++) {
             uint32_t edge = mesh->triangle_edges[cut.triangle][i];
-            if (mesh->edge_stars[mesh->edge_star_offsets[edge]] != cut.triangle) continue;
+            if (!asks_of_edge(work, cut.triangle, edge)) continue;
             if (!ask_of_edge(work, &cut, i, c->spare_borders)) return false;
         }
     }
@@ -138,9 +167,13 @@ static void find_normal(const depth_work *work, uint32_t triangle, double out[3]
 
 static void set_answer(const depth_work *work, const outer_point *nearest, cscd_depth *out) {
     out->triangle = nearest->triangle;
-    if (nearest->triangle == UINT32_MAX) return; /* no outer surface: the object is all within itself */
+    if (nearest->triangle == UINT32_MAX) return; /* no outer surface: the body is all within itself */
     for (int k = 0; k < 3; k++) out->direction[k] = nearest->x[k] - out->x[k];
     out->depth = surface_norm(out->direction);
+    if (out->depth <= work->rounding &&
+        (out->vertex == UINT32_MAX || body_has_point(work->found->surface, work->bvh, out->body, out->x)))
+        out->depth = 0.0;
+    out->bound = out->depth;
     if (out->depth > 0.0)
         for (int k = 0; k < 3; k++) out->direction[k] /= out->depth;
     else
@@ -165,7 +198,7 @@ static edge_place place_at(const edge_search *e, double s, const outer_point *ne
     edge_place at = {.s = s};
     for (int k = 0; k < 3; k++) at.x[k] = e->ends[0][k] + s * (e->ends[1][k] - e->ends[0][k]);
     at.nearest = outer_surface_nearest(&e->work->finder->outer, e->work->found, e->work->bvh,
-                                       e->question->object, at.x, near);
+                                       e->question->body, at.x, near);
     at.distance = sqrt(at.nearest.squared);
     return at;
 }
@@ -203,7 +236,7 @@ static edge_place find_deepest(const edge_search *e) {
     return deepest;
 }
 
-/* near: an answer for the same object, or NULL. Returns the answer, and so below. */
+/* near: an answer for the same body, or NULL. Returns the answer, and so below. */
 static outer_point answer_edge(const depth_work *work, const depth_question *q, const outer_point *near,
                                cscd_depth *out) {
     const named_surface *s = work->found->surface;
@@ -221,7 +254,7 @@ static outer_point answer_vertex(const depth_work *work, const depth_question *q
                                  cscd_depth *out) {
     memcpy(out->x, work->found->surface->positions + (size_t)q->vertex * 3, sizeof out->x);
     outer_point nearest =
-        outer_surface_nearest(&work->finder->outer, work->found, work->bvh, q->object, out->x, near);
+        outer_surface_nearest(&work->finder->outer, work->found, work->bvh, q->body, out->x, near);
     set_answer(work, &nearest, out);
     return nearest;
 }
@@ -237,29 +270,27 @@ static void answer_some(void *data, uint32_t task) {
     if (!progress_go_on(&d->context->progress, (double)first / (double)d->question_count)) return;
     for (size_t i = first; i < end && i < d->question_count; i++) {
         const depth_question *q = &d->questions[i];
-        const outer_point *near = i > first && q[-1].object == q->object ? &last : NULL;
+        const outer_point *near = i > first && q[-1].body == q->body ? &last : NULL;
         cscd_depth *out = &d->depths[i];
-        *out = (cscd_depth){.vertex = q->vertex, .edge = q->edge, .patch = q->patch, .object = q->object};
+        *out = (cscd_depth){
+            .vertex = q->vertex, .edge = q->edge, .face = q->face, .patch = q->patch, .body = q->body};
         last = q->edge == UINT32_MAX ? answer_vertex(work, q, near, out) : answer_edge(work, q, near, out);
     }
 }
 
 /* ---- patches ------------------------------------------------------------------------------------------- */
 
-/* Sorts the vertices with a patch by (patch, object), and keeps the deepest of each. */
-static size_t list_patches(depth_finder *d, size_t vertex_count) {
-    size_t keys = 0, count = 0;
-    for (size_t i = 0; i < vertex_count; i++) {
+/* The faces of a patch in one body follow each other. */
+static size_t list_patches(depth_finder *d, size_t first, size_t end) {
+    size_t count = 0;
+    for (size_t i = first; i < end; i++) {
         const cscd_depth *at = &d->depths[i];
-        if (at->patch != UINT32_MAX) d->keys[keys++] = (depth_key){(uint64_t)at->patch << 32 | at->object, i};
-    }
-    sort_by_number(d->keys, d->spare_keys, keys, sizeof *d->keys);
-    for (size_t i = 0; i < keys; i++) {
-        const cscd_depth *at = &d->depths[d->keys[i].item];
-        if (i == 0 || d->keys[i].number != d->keys[i - 1].number)
-            d->patches[count++] = (cscd_patch_depth){at->patch, at->object, (size_t)d->keys[i].item};
-        else if (at->depth > d->depths[d->patches[count - 1].deepest].depth)
-            d->patches[count - 1].deepest = (size_t)d->keys[i].item;
+        cscd_patch_depth *last = count > 0 ? &d->patches[count - 1] : NULL;
+        if (at->patch == UINT32_MAX) break;
+        if (last == NULL || last->patch != at->patch || last->body != at->body)
+            d->patches[count++] = (cscd_patch_depth){at->patch, at->body, i};
+        else if (at->depth > d->depths[last->deepest].depth)
+            last->deepest = i;
     }
     return count;
 }
@@ -268,29 +299,85 @@ static size_t list_patches(depth_finder *d, size_t vertex_count) {
 static int compare_questions(const void *a, const void *b) {
     const depth_question *p = a, *q = b;
     if (p->edge != q->edge) return p->edge < q->edge ? -1 : 1;
-    if (p->object != q->object) return p->object < q->object ? -1 : 1;
+    if (p->body != q->body) return p->body < q->body ? -1 : 1;
     return (p->s[0] > q->s[0]) - (p->s[0] < q->s[0]);
 }
 
-cscd_status depth_finder_run(depth_finder *d, const surface_cuts *found, const bvh *f, cscd_depths *out) {
-    depth_work work = {d, found, f};
+/* Computed distances are off by a few units in the last place of the largest coordinate. */
+static double rounding_of(const named_surface *s) {
+    double largest = 0.0;
+    for (size_t i = 0; i < (size_t)s->mesh->vertex_count * 3; i++)
+        largest = fmax(largest, fabs(s->positions[i]));
+    return largest * 0x1p-46;
+}
+
+/* Writes the answers of vertices and edges. */
+static cscd_status find_points(depth_work *work, size_t *vertices) {
+    depth_finder *d = work->finder;
     d->question_count = 0;
-    if (!outer_surface_find(&d->outer, found, f)) return CSCD_OUT_OF_MEMORY;
-    for (uint32_t v = 0; v < found->surface->mesh->vertex_count; v++) {
-        if (!ask_of_vertex(&work, v)) return CSCD_OUT_OF_MEMORY;
+    for (uint32_t v = 0; v < work->found->surface->mesh->vertex_count; v++) {
+        if (!ask_of_vertex(work, v)) return CSCD_OUT_OF_MEMORY;
     }
-    size_t vertices = d->question_count;
-    if (!ask_of_edges(&work)) return CSCD_OUT_OF_MEMORY;
+    *vertices = d->question_count;
+    if (!ask_of_edges(work)) return CSCD_OUT_OF_MEMORY;
     size_t count = d->question_count;
     if (!context_renew_all(d->context, list_of_depths(d, room_with_spare(count)), &d->depth_capacity, count))
         return CSCD_OUT_OF_MEMORY;
-    if (count > vertices) /* depths are not there yet, so theirs is the room for sorting */
-        sort_items(d->questions + vertices, d->depths, count - vertices, sizeof *d->questions,
+    if (count > *vertices) /* depths are not there yet, so theirs is the room for sorting */
+        sort_items(d->questions + *vertices, d->depths, count - *vertices, sizeof *d->questions,
                    compare_questions);
     parallel_run(d->context->threads, (uint32_t)((count + QUESTIONS_A_TASK - 1) / QUESTIONS_A_TASK),
-                 answer_some, &work);
+                 answer_some, work);
+    return progress_cancelled(&d->context->progress) ? CSCD_CANCELLED : CSCD_OK;
+}
+
+/* Room for as many more depths, behind those of points. */
+static bool reserve_faces(depth_finder *d, size_t points, size_t faces) {
+    const size_t count = points + faces;
+    if (faces > d->patch_capacity || d->patches == NULL) {
+        context_free(d->context, d->patches);
+        d->patches = context_reserve(d->context, room_with_spare(faces), sizeof *d->patches);
+        d->patch_capacity = d->patches != NULL ? room_with_spare(faces) : 0;
+        if (d->patches == NULL) return false;
+    }
+    if (count <= d->depth_capacity) return true;
+    cscd_depth *grown = context_grow(d->context, d->depths, points, room_with_spare(count), sizeof *grown);
+    if (grown == NULL) return false;
+    d->depths = grown;
+    d->depth_capacity = room_with_spare(count);
+    return true;
+}
+
+cscd_status depth_finder_run(depth_finder *d, const surface_cuts *found, const depth_request *request,
+                             cscd_depths *out) {
+    depth_work work = {d, found, request->bvh, rounding_of(found->surface)};
+    size_t vertices, points;
+    if (!outer_surface_find(&d->outer, found, request->bvh)) return CSCD_OUT_OF_MEMORY;
+    cscd_status status = find_points(&work, &vertices);
+    if (status != CSCD_OK) return status;
+    points = d->question_count;
+    const depth_facts facts = {.found = found,
+                               .bvh = request->bvh,
+                               .outer = &d->outer,
+                               .cuts = &d->outer.cuts,
+                               .labels = request->labels,
+                               .pairs = request->pairs,
+                               .pair_count = request->pair_count,
+                               .vertices = d->depths,
+                               .vertex_count = vertices,
+                               .limit = request->limit,
+                               .rounding = work.rounding};
+    if (!deepest_finder_begin(&d->deepest, &facts)) return CSCD_OUT_OF_MEMORY;
+    if (!reserve_faces(d, points, d->deepest.group_count)) return CSCD_OUT_OF_MEMORY;
+    depth_facts moved = facts;
+    moved.vertices = d->depths;
+    size_t count = points + deepest_finder_run(&d->deepest, &moved, d->depths + points);
     if (progress_cancelled(&d->context->progress)) return CSCD_CANCELLED;
-    size_t patches = list_patches(d, vertices);
-    *out = (cscd_depths){d->depths, count, vertices, d->patches, patches, NULL, 0};
+    *out = (cscd_depths){.items = d->depths,
+                         .count = count,
+                         .vertex_count = vertices,
+                         .edge_count = points - vertices,
+                         .patches = d->patches,
+                         .patch_count = list_patches(d, points, count)};
     return context_progress_status(d->context);
 }

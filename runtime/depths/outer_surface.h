@@ -1,4 +1,4 @@
-/* The outer surfaces of objects: what they do not bury in themselves; and the nearest point of one. */
+/* The outer surfaces of bodies: what they do not bury in themselves; and the nearest point of one. */
 #pragma once
 
 #include "runtime/bvh/bvh_query.h"
@@ -17,7 +17,7 @@ typedef struct outer_box {
 #define OUTER_AS_A_WHOLE UINT32_MAX
 #define OUTER_NOWHERE    (UINT32_MAX - 1)
 
-/* The memory of all calls; begins with the context, also of cuts, and nothing else set. The triangles that their own object
+/* The memory of all calls; begins with the context, also of cuts, and nothing else set. The triangles that their own body
  * cuts have parts; all others are outer as a whole, or not at all. */
 typedef struct outer_surface {
     cscd_context *context;
@@ -38,9 +38,9 @@ void outer_surface_free(outer_surface *o);
 /* Finds the parts. False: no memory. */
 bool outer_surface_find(outer_surface *o, const surface_cuts *found, const bvh *f);
 
-/* The nearest point of an object's outer surface. */
+/* The nearest point of a body's outer surface. */
 typedef struct outer_point {
-    double squared;    /* the squared distance, scaled; INFINITY: the object has no outer surface */
+    double squared;    /* the squared distance, scaled; INFINITY: the body has no outer surface */
     uint32_t triangle; /* which has the point */
     outer_part part;   /* the same, or the part of it */
     double x[3];
@@ -49,7 +49,15 @@ typedef struct outer_point {
 /* The scaled distance of a point from a part. */
 double outer_part_distance(const outer_surface *o, const double x[3], const outer_part *part);
 
-/* near: the answer for another point and the same object, or NULL. The nearer the points, the shorter the search; the
+/* A triangle that is outer as a whole. */
+void outer_surface_whole(const outer_surface *o, const surface_cuts *found, uint32_t triangle,
+                         outer_part *out);
+
+/* The nearest point of one triangle, some of which is outer. */
+outer_point outer_surface_nearest_on(const outer_surface *o, const surface_cuts *found, uint32_t triangle,
+                                     const double x[3]);
+
+/* near: the answer for another point and the same body, or NULL. The nearer the points, the shorter the search; the
  * answer does not depend on it. */
 outer_point outer_surface_nearest(const outer_surface *o, const surface_cuts *found, const bvh *f,
-                                  uint32_t object, const double x[3], const outer_point *near);
+                                  uint32_t body, const double x[3], const outer_point *near);

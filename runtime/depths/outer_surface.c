@@ -1,5 +1,5 @@
-/* The outer surfaces of objects: what they do not bury in themselves; and the nearest point of one. */
-#include "runtime/intersections/outer_surface.h"
+/* The outer surfaces of bodies: what they do not bury in themselves; and the nearest point of one. */
+#include "runtime/depths/outer_surface.h"
 
 #include "runtime/ccd/closest.h"
 #include "src/core/vec3.h"
@@ -34,7 +34,7 @@ void outer_surface_free(outer_surface *o) {
 typedef struct part_taker {
     outer_surface *outer;
     const loaded_cut *cut;
-    double normal[3], corner[3];
+    cut_lift lift;
     cut_part waiting; /* a part that may go on upwards */
     bool waits, out_of_memory;
 } part_taker;
@@ -82,30 +82,15 @@ static void scale_point(const outer_surface *o, const double x[3], double out[3]
     for (int k = 0; k < 3; k++) out[k] = x[k] * o->scale;
 }
 
-/* The point of the triangle's plane with this projection, scaled. */
-static void lift_point(const part_taker *taker, double x, double y, double out[3]) {
-    int of_x = taker->cut->x, of_y = taker->cut->y, rest = 3 - of_x - of_y;
-    const double *n = taker->normal, *p = taker->corner;
-    out[of_x] = x;
-    out[of_y] = taker->cut->turn * y;
-    out[rest] = p[rest] - (n[of_x] * (x - p[of_x]) + n[of_y] * (out[of_y] - p[of_y])) / n[rest];
-    scale_point(taker->outer, out, out);
-}
-
 /* Adds the two triangles of the trapezoid that waits. */
 static void add_waiting(part_taker *taker) {
-    const cut_part *part = &taker->waiting;
-    outer_part half;
+    outer_part halves[2];
     if (!taker->waits) return;
     taker->waits = false;
+    cut_lift_part(&taker->lift, &taker->waiting, halves[0].corners, halves[1].corners);
     for (int i = 0; i < 2; i++) {
-        lift_point(taker, part->x[0], part->low[0], half.corners[0]);
-        lift_point(taker, part->x[1], part->high[1], half.corners[1]);
-        if (i == 0)
-            lift_point(taker, part->x[1], part->low[1], half.corners[2]);
-        else
-            lift_point(taker, part->x[0], part->high[0], half.corners[2]);
-        taker->out_of_memory |= !add_part(taker->outer, &half);
+        for (int k = 0; k < 3; k++) scale_point(taker->outer, halves[i].corners[k], halves[i].corners[k]);
+        taker->out_of_memory |= !add_part(taker->outer, &halves[i]);
     }
 }
 
@@ -142,11 +127,8 @@ static bool keep_own_cuts(cut_triangle *cut) {
 }
 
 static bool divide_triangle(outer_surface *o, const surface_cuts *found, loaded_cut *cut) {
-    part_taker taker = {.outer = o, .cut = cut};
-    const named_surface *s = found->surface;
+    part_taker taker = {.outer = o, .cut = cut, .lift = cut_lift_of(found->surface, cut)};
     if (!keep_own_cuts(&cut->cut)) return true;
-    surface_normal(s->mesh, s->positions, cut->triangle, taker.normal);
-    memcpy(taker.corner, surface_corner(s->mesh, s->positions, cut->triangle, 0), sizeof taker.corner);
     o->cut_triangles[o->cut_count] = cut->triangle;
     o->part_begins[o->cut_count++] = o->part_count;
     if (!cut_triangle_divide(o->context, &cut->cut, &o->cuts.memory, take_part, &taker)) return false;
@@ -201,9 +183,8 @@ bool outer_surface_find(outer_surface *o, const surface_cuts *found, const bvh *
 typedef struct nearest_search {
     const outer_surface *outer;
     const surface_cuts *found;
-    uint32_t object;
-    bool objects_mix; /* trees hold several */
-    double x[3];      /* scaled, as all that is found */
+    uint32_t body;
+    double x[3]; /* scaled, as all that is found */
     outer_point best;
 } nearest_search;
 
@@ -261,20 +242,25 @@ static void try_parts(nearest_search *s, uint32_t triangle, size_t cut) {
         try_part(s, triangle, &o->parts[i]);
 }
 
+void outer_surface_whole(const outer_surface *o, const surface_cuts *found, uint32_t triangle,
+                         outer_part *out) {
+    const named_surface *s = found->surface;
+    for (uint32_t i = 0; i < 3; i++)
+        scale_point(o, surface_corner(s->mesh, s->positions, triangle, i), out->corners[i]);
+}
+
 static void try_triangle(void *data, uint32_t triangle) {
     nearest_search *s = data;
     const named_surface *surface = s->found->surface;
-    const cscd_mesh *mesh = surface->mesh;
     uint32_t place = s->outer->places[triangle];
     if (place == OUTER_NOWHERE) return;
-    if (s->objects_mix && cscd_mesh_vertex_object(mesh, mesh->triangles[triangle][0]) != s->object) return;
+    if (surface_body(surface, triangle) != s->body) return;
     if (place != OUTER_AS_A_WHOLE) {
         try_parts(s, triangle, place);
         return;
     }
     outer_part whole;
-    for (uint32_t i = 0; i < 3; i++)
-        scale_point(s->outer, surface_corner(mesh, surface->positions, triangle, i), whole.corners[i]);
+    outer_surface_whole(s->outer, s->found, triangle, &whole);
     try_part(s, triangle, &whole);
 }
 
@@ -287,16 +273,27 @@ static double squared_beyond(const double x[3], const outer_part *part) {
     return squared * (1.0 + 0x1p-20) + 0x1p-70 * size + DBL_MIN;
 }
 
-outer_point outer_surface_nearest(const outer_surface *o, const surface_cuts *found, const bvh *f,
-                                  uint32_t object, const double x[3], const outer_point *near) {
+outer_point outer_surface_nearest_on(const outer_surface *o, const surface_cuts *found, uint32_t triangle,
+                                     const double x[3]) {
     nearest_search s = {.outer = o,
                         .found = found,
-                        .object = object,
-                        .objects_mix = f->trees_mix_objects,
+                        .body = surface_body(found->surface, triangle),
                         .best = {.squared = (double)INFINITY, UINT32_MAX}};
     scale_point(o, x, s.x);
+    try_triangle(&s, triangle);
+    for (int k = 0; k < 3; k++) s.best.x[k] /= o->scale;
+    return s.best;
+}
+
+outer_point outer_surface_nearest(const outer_surface *o, const surface_cuts *found, const bvh *f,
+                                  uint32_t body, const double x[3], const outer_point *near) {
+    nearest_search s = {
+        .outer = o, .found = found, .body = body, .best = {.squared = (double)INFINITY, UINT32_MAX}};
+    const surface_bodies *bodies = found->surface->bodies;
+    const near_quest quest = {object_of_body(bodies, body), body, bodies != NULL ? bodies->components : NULL};
+    scale_point(o, x, s.x);
     if (near != NULL && near->triangle != UINT32_MAX) s.best.squared = squared_beyond(s.x, &near->part);
-    bvh_visit_near(f, object, x, &s.best.squared, try_triangle, &s);
+    bvh_visit_near(f, &quest, x, &s.best.squared, try_triangle, &s);
     for (int k = 0; k < 3; k++) s.best.x[k] /= o->scale;
     return s.best;
 }

@@ -1,0 +1,270 @@
+/* The deepest point of a triangle, or of what is buried of it: docs/theory/curves.md, Lemma 9. */
+#include "runtime/depths/deepest_cell.h"
+
+#include "src/core/vec3.h"
+
+#include <string.h>
+
+/* 64 halvings of the longest side leave a cell 2^32 times smaller. Each leaves two or three parts in place of one. */
+enum { LEVELS_MAX = 64 };
+
+typedef struct cell_part {
+    deep_point corners[3];
+    double above; /* no point of the cell is deeper */
+    int level;
+} cell_part;
+
+bool depth_search_wants(const depth_search *s, double bound) {
+    const double best = s->best.depth > 0.0 ? s->best.depth : 0.0;
+    if (bound <= best + s->rounding) return false;
+    if (best <= s->limit && bound > s->limit) return true;
+    return bound > 1.01 * best && bound > best + DEPTH_RESOLUTION * s->rounding;
+}
+
+/* known: a triangle that has the nearest point, or UINT32_MAX. near: see outer_surface_nearest. */
+static void measure_point(depth_search *s, uint32_t number, uint32_t known, const outer_point *near,
+                          deep_point *p) {
+    p->nearest = known != UINT32_MAX ? outer_surface_nearest_on(s->outer, s->found, known, p->x)
+                                     : outer_surface_nearest(s->outer, s->found, s->bvh, s->body, p->x, near);
+    p->depth = p->nearest.triangle != UINT32_MAX ? sqrt(p->nearest.squared) / s->outer->scale : 0.0;
+    if (!(p->depth > s->best.depth)) return;
+    s->best = *p;
+    s->best_cell = number;
+}
+
+/* ---- bounds ---------------------------------------------------------------------------------------------- */
+
+/* The parts of the surface that are nearest to the corners of a cell. */
+typedef const outer_part *cell_parts[3];
+
+/* No point is deeper than its distance from the part of the surface that is nearest to some corner. That is a convex
+ * function, and so is the mean of two or three, so in a cell they are greatest at a corner. A mean changes little where one
+ * distance grows as another falls. */
+static double bound_by_parts(const depth_search *s, const depth_cell *cell, const cell_parts parts) {
+    double reach[3][3], least = (double)INFINITY; /* from a corner to a part */
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++)
+            reach[i][j] = outer_part_distance(s->outer, cell->corners[i], parts[j]) / s->outer->scale;
+    }
+    for (int set = 1; set < 8; set++) {
+        const int count = (set & 1) + (set >> 1 & 1) + (set >> 2 & 1);
+        double greatest = 0.0;
+        for (int i = 0; i < 3; i++) {
+            double sum = 0.0;
+            for (int j = 0; j < 3; j++) sum += (set >> j & 1) != 0 ? reach[i][j] : 0.0;
+            greatest = fmax(greatest, sum / count);
+        }
+        least = fmin(least, greatest);
+    }
+    return least;
+}
+
+/* The side from this corner to the next is the longest. */
+static int longest_side(const depth_cell *cell) {
+    double squared[3];
+    for (int i = 0; i < 3; i++)
+        squared[i] = vec3_squared_distance(cell->corners[i], cell->corners[(i + 1) % 3]);
+    if (squared[0] >= squared[1] && squared[0] >= squared[2]) return 0;
+    return squared[1] >= squared[2] ? 1 : 2;
+}
+
+static double length_of_side(const depth_cell *cell, int i) {
+    return sqrt(vec3_squared_distance(cell->corners[i], cell->corners[(i + 1) % 3]));
+}
+
+enum { LOCAL_LEVELS = 2 };
+
+/* The same bound for smaller and smaller cells, with the parts of the large one: no search is needed. Ends where one of them is
+ * wanted all the same. */
+static double bound_locally(const depth_search *s, const depth_cell *cell, const cell_parts parts,
+                            int levels) {
+    const double bound = bound_by_parts(s, cell, parts);
+    if (levels == 0 || !depth_search_wants(s, bound)) return bound;
+    const int i = longest_side(cell), j = (i + 1) % 3;
+    double greatest = 0.0;
+    for (int h = 0; h < 2; h++) {
+        depth_cell half = *cell;
+        for (int k = 0; k < 3; k++)
+            half.corners[h == 0 ? j : i][k] = 0.5 * (cell->corners[i][k] + cell->corners[j][k]);
+        greatest = fmax(greatest, bound_locally(s, &half, parts, levels - 1));
+        if (depth_search_wants(s, greatest)) return bound;
+    }
+    return greatest;
+}
+
+/* The depth changes by no more than the way, and some corner is no farther from a point than the longest side over the square
+ * root of 3. */
+static double bound_by_way(const cell_part *c, const depth_cell *cell) {
+    const double deepest = fmax(c->corners[0].depth, fmax(c->corners[1].depth, c->corners[2].depth));
+    return deepest + length_of_side(cell, longest_side(cell)) * 0.57735026918962584;
+}
+
+static depth_cell cell_of(const cell_part *c) {
+    depth_cell cell;
+    for (int i = 0; i < 3; i++) memcpy(cell.corners[i], c->corners[i].x, sizeof cell.corners[i]);
+    return cell;
+}
+
+static void bound_part(const depth_search *s, cell_part *c) {
+    const depth_cell cell = cell_of(c);
+    const cell_parts parts = {&c->corners[0].nearest.part, &c->corners[1].nearest.part,
+                              &c->corners[2].nearest.part};
+    for (int i = 0; i < 3; i++)
+        if (c->corners[i].nearest.triangle == UINT32_MAX) c->above = 0.0; /* the body has no outer surface */
+    c->above = fmin(c->above, bound_by_way(c, &cell));
+    if (depth_search_wants(s, c->above))
+        c->above = fmin(c->above, bound_locally(s, &cell, parts, LOCAL_LEVELS));
+}
+
+/* ---- dividing -------------------------------------------------------------------------------------------- */
+
+/* Halves the longest side. */
+static int halve_part(depth_search *s, uint32_t number, const cell_part *c, cell_part out[3]) {
+    const depth_cell cell = cell_of(c);
+    const int i = longest_side(&cell), j = (i + 1) % 3;
+    deep_point middle;
+    for (int k = 0; k < 3; k++) middle.x[k] = 0.5 * (c->corners[i].x[k] + c->corners[j].x[k]);
+    measure_point(s, number, UINT32_MAX, &c->corners[i].nearest, &middle);
+    out[0] = out[1] = *c;
+    out[0].corners[j] = out[1].corners[i] = middle;
+    return 2;
+}
+
+/* Upright on a part of the surface, along one of its sides: how far each corner of a cell is outside of it. */
+typedef struct side_plane {
+    double outside[3];
+    double span; /* 0: it does not divide the cell, or hardly */
+} side_plane;
+
+static side_plane plane_along(const depth_search *s, const cell_part *c, const outer_part *part, int side) {
+    const double(*p)[3] = part->corners;
+    const double *a = p[side], *b = p[(side + 1) % 3];
+    double ab[3], ac[3], normal[3], outwards[3], most = 0.0, least = 0.0;
+    side_plane plane = {.span = 0.0};
+    vec3_subtract(b, a, ab);
+    vec3_subtract(p[(side + 2) % 3], a, ac);
+    vec3_cross(ab, ac, normal);
+    vec3_cross(ab, normal, outwards);
+    const double norm = sqrt(vec3_dot(outwards, outwards));
+    if (!(norm > 0.0)) return plane;
+    for (int i = 0; i < 3; i++) {
+        double from[3];
+        for (int k = 0; k < 3; k++) from[k] = c->corners[i].x[k] * s->outer->scale - a[k];
+        plane.outside[i] = vec3_dot(from, outwards) / norm;
+        most = fmax(most, plane.outside[i]);
+        least = fmin(least, plane.outside[i]);
+    }
+    const depth_cell cell = cell_of(c);
+    const double size = length_of_side(&cell, longest_side(&cell)) * s->outer->scale;
+    const double least_piece = 0x1p-40 * size + s->rounding * s->outer->scale;
+    plane.span = fmin(most, -least) > least_piece ? most : 0.0;
+    return plane;
+}
+
+/* The side of a part that the cell reaches farthest beyond. */
+static side_plane choose_plane(const depth_search *s, const cell_part *c, const outer_part *part) {
+    side_plane chosen = {.span = 0.0};
+    for (int side = 0; side < 3; side++) {
+        const side_plane plane = plane_along(s, c, part, side);
+        if (plane.span > chosen.span) chosen = plane;
+    }
+    return chosen;
+}
+
+static deep_point point_in_plane(depth_search *s, uint32_t number, const cell_part *c,
+                                 const side_plane *plane, int i, int j) {
+    const double share = plane->outside[i] / (plane->outside[i] - plane->outside[j]);
+    deep_point p;
+    for (int k = 0; k < 3; k++)
+        p.x[k] = c->corners[i].x[k] + share * (c->corners[j].x[k] - c->corners[i].x[k]);
+    measure_point(s, number, UINT32_MAX, &c->corners[i].nearest, &p);
+    return p;
+}
+
+/* One corner is alone on its side of the plane, or the two others are in the plane or on the other side. */
+static int split_part(depth_search *s, uint32_t number, const cell_part *c, const side_plane *plane,
+                      cell_part out[3]) {
+    int inside = 0, alone = 0;
+    for (int i = 0; i < 3; i++) inside += plane->outside[i] <= 0.0;
+    for (int i = 0; i < 3; i++)
+        if ((plane->outside[i] <= 0.0) == (inside == 1)) alone = i;
+    const int j = (alone + 1) % 3, k = (alone + 2) % 3;
+    const deep_point p = point_in_plane(s, number, c, plane, alone, j);
+    const deep_point q = point_in_plane(s, number, c, plane, alone, k);
+    out[0] = out[1] = out[2] = *c;
+    out[0].corners[j] = p;
+    out[0].corners[k] = q;
+    out[1].corners[alone] = p;
+    out[2].corners[alone] = q;
+    out[2].corners[j] = p;
+    return 3;
+}
+
+/* A cell that is wide beside its depth reaches over several triangles of the surface, none of which bounds it as a whole: it is
+ * split where the one below its middle ends. Returns how many parts that makes; -1: it is not to be split. */
+static int split_wide(depth_search *s, uint32_t number, const cell_part *c, cell_part out[3]) {
+    deep_point middle;
+    for (int k = 0; k < 3; k++)
+        middle.x[k] = (c->corners[0].x[k] + c->corners[1].x[k] + c->corners[2].x[k]) / 3.0;
+    measure_point(s, number, UINT32_MAX, &c->corners[0].nearest, &middle);
+    if (middle.nearest.triangle == UINT32_MAX) return -1;
+    double bound = 0.0;
+    for (int i = 0; i < 3; i++)
+        bound = fmax(bound, outer_part_distance(s->outer, c->corners[i].x, &middle.nearest.part));
+    bound /= s->outer->scale;
+    if (!depth_search_wants(s, bound)) {
+        s->bound = fmax(s->bound, bound);
+        return 0;
+    }
+    const side_plane plane = choose_plane(s, c, &middle.nearest.part);
+    return plane.span > 0.0 ? split_part(s, number, c, &plane, out) : -1;
+}
+
+static int divide_part(depth_search *s, uint32_t number, const cell_part *c, cell_part out[3]) {
+    const double deepest = fmax(c->corners[0].depth, fmax(c->corners[1].depth, c->corners[2].depth));
+    const depth_cell cell = cell_of(c);
+    const bool wide = length_of_side(&cell, longest_side(&cell)) > 2.0 * deepest;
+    int count = wide ? split_wide(s, number, c, out) : -1;
+    if (count < 0) count = halve_part(s, number, c, out);
+    for (int i = 0; i < count; i++) {
+        out[i].level++;
+        bound_part(s, &out[i]);
+    }
+    return count;
+}
+
+/* The one that promises most comes last, so that it is looked at first. */
+static void sort_parts(cell_part *parts, int count) {
+    for (int i = 1; i < count; i++) {
+        for (int k = i; k > 0 && parts[k].above < parts[k - 1].above; k--) {
+            const cell_part part = parts[k];
+            parts[k] = parts[k - 1];
+            parts[k - 1] = part;
+        }
+    }
+}
+
+void depth_search_cell(depth_search *s, const depth_cell *cell, uint32_t number, double above,
+                       const uint32_t known[3]) {
+    cell_part waiting[2 * LEVELS_MAX + 3];
+    int count = 1;
+    waiting[0] = (cell_part){.above = above, .level = 0};
+    for (int i = 0; i < 3; i++) {
+        deep_point *p = &waiting[0].corners[i];
+        const outer_point *near = i > 0 ? &waiting[0].corners[i - 1].nearest : NULL;
+        memcpy(p->x, cell->corners[i], sizeof p->x);
+        measure_point(s, number, known != NULL ? known[i] : UINT32_MAX, near, p);
+    }
+    bound_part(s, &waiting[0]);
+    while (count > 0) {
+        const cell_part part = waiting[--count];
+        if (part.level == LEVELS_MAX || s->cells_left == 0 || !depth_search_wants(s, part.above)) {
+            s->bound = fmax(s->bound, part.above);
+            continue;
+        }
+        s->cells_left--;
+        const int made = divide_part(s, number, &part, &waiting[count]);
+        sort_parts(&waiting[count], made);
+        count += made;
+    }
+}

@@ -1,0 +1,40 @@
+/* The deepest point of a triangle, or of what is buried of it: docs/theory/curves.md, Lemma 9. */
+#pragma once
+
+#include "runtime/depths/outer_surface.h"
+
+#define DEPTH_RESOLUTION 0x1p16
+
+/* A triangle in space, all of which counts. */
+typedef struct depth_cell {
+    double corners[3][3];
+} depth_cell;
+
+/* A point, and the nearest one of the outer surface. */
+typedef struct deep_point {
+    double x[3], depth;
+    outer_point nearest;
+} deep_point;
+
+/* What the deepest points of several cells are looked for with. */
+typedef struct depth_search {
+    const outer_surface *outer;
+    const surface_cuts *found;
+    const bvh *bvh;
+    uint32_t body;
+    double limit; /* until it is known whether the depth is above this; INFINITY: 1 % is enough */
+    double
+        rounding; /* what computed depths may be off by; without a limit, DEPTH_RESOLUTION as much is enough, too */
+    deep_point best; /* begins with depth -1 */
+    uint32_t best_cell;
+    double bound;      /* no point of the cells so far is deeper; begins with 0 */
+    size_t cells_left; /* so many more may be divided */
+} depth_search;
+
+/* May a point that is no deeper than the bound matter, or is the best one good enough? */
+bool depth_search_wants(const depth_search *s, double bound);
+
+/* Looks for deeper points in a cell. number: what best_cell becomes if there is one. above: no point of it is deeper. known: per
+ * corner a triangle that has its nearest point; NULL, or UINT32_MAX: nobody knows. */
+void depth_search_cell(depth_search *s, const depth_cell *cell, uint32_t number, double above,
+                       const uint32_t known[3]);

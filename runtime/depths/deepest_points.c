@@ -1,0 +1,319 @@
+/* The deepest points of buried surfaces, wherever on them they are: one for each patch, body and part. */
+#include "runtime/depths/deepest_points.h"
+
+#include "src/core/sort.h"
+#include "src/mesh/surface.h"
+
+#include <string.h>
+
+/* ---- memory -------------------------------------------------------------------------------------------- */
+
+void deepest_finder_free(deepest_finder *d) {
+    if (d->context == NULL) return;
+    cscd_context *context = d->context;
+    void *const blocks[] = {d->triangles, d->spare_triangles, d->cells,        d->groups,
+                            d->flush,     d->spare_flush,     d->vertex_depths};
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(context, blocks[i]);
+    *d = (deepest_finder){.context = context};
+}
+
+bool deepest_finder_grow(deepest_finder *d, void **items, size_t *capacity, size_t count, size_t size) {
+    if (count < *capacity) return true;
+    size_t larger = *capacity == 0 ? 64 : 2 * *capacity;
+    void *grown = context_grow(d->context, *items, count, larger, size);
+    if (grown == NULL) return false;
+    *items = grown;
+    *capacity = larger;
+    return true;
+}
+
+typedef struct deepest_work {
+    deepest_finder *finder;
+    const depth_facts *facts;
+    const cscd_mesh *mesh;
+    cscd_depth *out;
+    bool out_of_memory;
+} deepest_work;
+
+/* ---- what is contained of cut triangles ------------------------------------------------------------------ */
+
+static depth_search begin_search(const deepest_work *w, uint32_t body) {
+    return (depth_search){.outer = w->facts->outer,
+                          .found = w->facts->found,
+                          .bvh = w->facts->bvh,
+                          .body = body,
+                          .limit = w->facts->limit,
+                          .rounding = w->facts->rounding,
+                          .best = {.depth = -1.0, .nearest = {.triangle = UINT32_MAX}},
+                          .best_cell = UINT32_MAX,
+                          .bound = 0.0,
+                          .cells_left = 200000};
+}
+
+/* The deepest corner of a group's triangles. */
+static void begin_with_corners(const deepest_work *w, const buried_group *group, depth_search *s) {
+    const cscd_depth *vertices = w->facts->vertices;
+    for (size_t i = group->first; i < group->end; i++) {
+        const buried_triangle *t = &w->finder->triangles[i];
+        for (int k = 0; k < 3; k++) {
+            if (t->corners[k] == UINT32_MAX) continue;
+            const cscd_depth *at = &vertices[t->corners[k]];
+            if (!(at->depth > s->best.depth)) continue;
+            s->best.depth = at->depth;
+            s->best.nearest.triangle = at->triangle;
+            s->best_cell = t->triangle;
+            memcpy(s->best.x, at->x, sizeof s->best.x);
+            for (int j = 0; j < 3; j++) s->best.nearest.x[j] = at->x[j] + at->depth * at->direction[j];
+        }
+    }
+}
+
+enum { BANKS_MAX = 16 };
+
+/* A triangle whose parts are taken. */
+typedef struct cell_taker {
+    deepest_work *work;
+    const cut_lift *lift;
+    const depth_search *search; /* begun with the corners of the group */
+    uint32_t slot, bank_count;
+    outer_part banks[BANKS_MAX]; /* triangles of the body that cut this one */
+    double area, left;
+} cell_taker;
+
+static void list_banks(cell_taker *taker, const loaded_cut *cut) {
+    const deepest_work *w = taker->work;
+    const curve_joiner *j = w->facts->found->curves;
+    for (size_t i = 0; i < cut->cut.line_count && taker->bank_count < BANKS_MAX; i++) {
+        const cut_line *line = &cut->cut.lines[i];
+        const size_t piece = cut->line_pieces[line->number];
+        const uint32_t other = j->found[piece].a == cut->triangle ? j->found[piece].b : j->found[piece].a;
+        if (line->slot != taker->slot || w->facts->outer->places[other] != OUTER_AS_A_WHOLE) continue;
+        outer_surface_whole(w->facts->outer, w->facts->found, other, &taker->banks[taker->bank_count++]);
+    }
+}
+
+/* No point of a cell is deeper than its corners are far from one of these. */
+static double distance_of_banks(const cell_taker *taker, const depth_cell *cell) {
+    double least = (double)INFINITY;
+    for (uint32_t i = 0; i < taker->bank_count; i++) {
+        double greatest = 0.0;
+        for (int k = 0; k < 3; k++) {
+            greatest = fmax(
+                greatest, outer_part_distance(taker->work->facts->outer, cell->corners[k], &taker->banks[i]));
+        }
+        least = fmin(least, greatest);
+    }
+    return least / taker->work->facts->outer->scale + taker->work->facts->rounding;
+}
+
+static void add_cell(deepest_work *w, const depth_cell *cell) {
+    deepest_finder *d = w->finder;
+    void *items = d->cells;
+    if (!deepest_finder_grow(d, &items, &d->cell_capacity, d->cell_count, sizeof *d->cells)) {
+        w->out_of_memory = true;
+        return;
+    }
+    d->cells = items;
+    d->cells[d->cell_count++] = *cell;
+}
+
+static void take_part(void *data, const cut_part *part) {
+    cell_taker *taker = data;
+    if (part->numbers[taker->slot] < 1) return;
+    taker->area += cut_part_area(part);
+    depth_cell halves[2];
+    cut_lift_part(taker->lift, part, halves[0].corners, halves[1].corners);
+    for (int i = 0; i < 2; i++) {
+        const double bound = distance_of_banks(taker, &halves[i]);
+        if (depth_search_wants(taker->search, bound))
+            add_cell(taker->work, &halves[i]);
+        else
+            taker->left = fmax(taker->left, bound);
+    }
+}
+
+static bool cut_open(deepest_work *w, const depth_search *s, buried_triangle *t) {
+    size_t first, end = triangle_cuts_of(w->facts->cuts, t->triangle, &first);
+    loaded_cut cut;
+    t->first_cell = w->finder->cell_count;
+    t->cell_count = 0;
+    t->area = 0.0;
+    if (!triangle_cuts_load(w->facts->cuts, w->facts->found, first, end, &cut)) return false;
+    if (cut.stretch == 0.0) return true;
+    cut_lift lift = cut_lift_of(w->facts->found->surface, &cut);
+    cell_taker taker = {.work = w, .lift = &lift, .search = s};
+    while (taker.slot < cut.cut.slot_count && cut.slot_bodies[taker.slot] != t->body) taker.slot++;
+    if (taker.slot == cut.cut.slot_count) return true;
+    list_banks(&taker, &cut);
+    if (!cut_triangle_divide(w->finder->context, &cut.cut, &w->facts->cuts->memory, take_part, &taker))
+        return false;
+    t->area = taker.area * cut.stretch;
+    t->left = taker.left;
+    t->cell_count = (uint32_t)(w->finder->cell_count - t->first_cell);
+    return !w->out_of_memory;
+}
+
+/* Those that may have something deeper than the corners. */
+static bool cut_triangles_open(deepest_work *w) {
+    deepest_finder *d = w->finder;
+    d->cell_count = 0;
+    for (size_t g = 0; g < d->group_count; g++) {
+        const buried_group *group = &d->groups[g];
+        depth_search s = begin_search(w, d->triangles[group->first].body);
+        begin_with_corners(w, group, &s);
+        for (size_t i = group->first; i < group->end && depth_search_wants(&s, d->triangles[i].bound); i++) {
+            if (d->triangles[i].cut && !cut_open(w, &s, &d->triangles[i])) return false;
+        }
+    }
+    return true;
+}
+
+/* ---- where surfaces lie on each other -------------------------------------------------------------------- */
+
+static bool shares_area(const cscd_intersection_pair *pair) {
+    return pair->kind == CSCD_INTERSECTION_COPLANAR || pair->kind == CSCD_INTERSECTION_FOLDED ||
+           pair->kind == CSCD_INTERSECTION_DUPLICATE;
+}
+
+static bool list_flush(deepest_work *w) {
+    deepest_finder *d = w->finder;
+    const depth_facts *f = w->facts;
+    size_t count = 0;
+    for (size_t i = 0; i < f->pair_count; i++) count += shares_area(&f->pairs[i]) ? 2 : 0;
+    const size_t room = room_with_spare(count);
+    const array_list list = {{ARRAY(d->flush, room), ARRAY(d->spare_flush, room)}};
+    if (!context_renew_all(d->context, list, &d->flush_capacity, count)) return false;
+    d->flush_count = 0;
+    for (size_t i = 0; i < f->pair_count; i++) {
+        if (!shares_area(&f->pairs[i])) continue;
+        const uint32_t a = f->pairs[i].a, b = f->pairs[i].b;
+        d->flush[d->flush_count++] = (uint64_t)a << 32 | surface_body(f->found->surface, b);
+        d->flush[d->flush_count++] = (uint64_t)b << 32 | surface_body(f->found->surface, a);
+    }
+    sort_by_number(d->flush, d->spare_flush, d->flush_count, sizeof *d->flush);
+    return true;
+}
+
+static bool is_flush(const deepest_finder *d, uint32_t triangle, uint32_t body) {
+    const uint64_t key = (uint64_t)triangle << 32 | body;
+    size_t low = 0, high = d->flush_count;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (d->flush[middle] < key)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < d->flush_count && d->flush[low] == key;
+}
+
+/* Is a corner within the body? Or does the body contain an area of the triangle, as large as rounding cannot feign? If the
+ * triangle shares none with the body's surface, then nearly all points of that area are within the body. */
+static bool lies_within(const deepest_work *w, const buried_triangle *t) {
+    if (t->low > 0.0) return true;
+    const double *positions = w->facts->found->surface->positions;
+    const double whole = surface_area(w->mesh, positions, t->triangle);
+    return !is_flush(w->finder, t->triangle, t->body) && (t->cut ? t->area : whole) > 0x1p-30 * whole;
+}
+
+static bool group_lies_within(const deepest_work *w, const buried_group *group) {
+    for (size_t i = group->first; i < group->end; i++) {
+        if (lies_within(w, &w->finder->triangles[i])) return true;
+    }
+    return false;
+}
+
+/* ---- the deepest points ---------------------------------------------------------------------------------- */
+
+static void search_whole(const deepest_work *w, const buried_triangle *t, depth_search *s) {
+    uint32_t known[3];
+    depth_cell cell;
+    for (uint32_t i = 0; i < 3; i++) {
+        memcpy(cell.corners[i], surface_corner(w->mesh, w->facts->found->surface->positions, t->triangle, i),
+               sizeof cell.corners[i]);
+        known[i] = t->corners[i] != UINT32_MAX ? w->facts->vertices[t->corners[i]].triangle : UINT32_MAX;
+    }
+    depth_search_cell(s, &cell, t->triangle, t->bound, known);
+}
+
+static void search_triangle(const deepest_work *w, const buried_triangle *t, depth_search *s) {
+    if (!t->cut) search_whole(w, t, s);
+    s->bound = fmax(s->bound, t->left);
+    for (uint32_t k = 0; k < t->cell_count; k++)
+        depth_search_cell(s, &w->finder->cells[t->first_cell + k], t->triangle, t->bound, NULL);
+}
+
+/* The triangles at the deepest corner come first, since most often one of them has the deepest point, and the deeper the point
+ * that is known, the fewer others are wanted. */
+static void search_group(const deepest_work *w, const buried_group *group, depth_search *s) {
+    const buried_triangle *triangles = w->finder->triangles;
+    begin_with_corners(w, group, s);
+    const double deepest = s->best.depth;
+    for (size_t i = group->first; i < group->end && depth_search_wants(s, triangles[i].bound); i++)
+        if (triangles[i].low == deepest) search_triangle(w, &triangles[i], s);
+    for (size_t i = group->first; i < group->end; i++) {
+        if (!depth_search_wants(s, triangles[i].bound)) {
+            s->bound = fmax(s->bound, triangles[i].bound);
+            return; /* nor is any after it wanted */
+        }
+        if (triangles[i].low != deepest) search_triangle(w, &triangles[i], s);
+    }
+}
+
+static void set_direction(const deepest_work *w, const depth_search *s, cscd_depth *out) {
+    for (int k = 0; k < 3; k++) out->direction[k] = s->best.nearest.x[k] - s->best.x[k];
+    if (out->depth == 0.0 && out->triangle != UINT32_MAX)
+        surface_normal(w->mesh, w->facts->found->surface->positions, out->triangle, out->direction);
+    const double norm = surface_norm(out->direction);
+    const int sense = out->depth == 0.0 ? surface_sense(w->facts->found->surface, out->triangle) : 1;
+    for (int k = 0; k < 3; k++) out->direction[k] = norm > 0.0 ? sense * out->direction[k] / norm : 0.0;
+}
+
+/* face: UINT32_MAX if the group has no point. */
+static void find_deepest(const deepest_work *w, const buried_group *group, cscd_depth *out) {
+    const buried_triangle *first = &w->finder->triangles[group->first];
+    const double rounding = w->facts->rounding;
+    depth_search s = begin_search(w, first->body);
+    search_group(w, group, &s);
+    *out = (cscd_depth){.vertex = UINT32_MAX,
+                        .edge = UINT32_MAX,
+                        .face = s.best_cell,
+                        .patch = first->patch,
+                        .body = first->body,
+                        .triangle = s.best.nearest.triangle};
+    if (s.best.nearest.triangle == UINT32_MAX) out->face = UINT32_MAX; /* no outer surface: see set_answer */
+    if (out->face == UINT32_MAX) return;
+    out->depth = s.best.depth;
+    out->bound = s.bound > s.best.depth + rounding ? s.bound : s.best.depth;
+    memcpy(out->x, s.best.x, sizeof out->x);
+    if (out->depth <= rounding && !group_lies_within(w, group)) out->depth = 0.0;
+    if (out->depth <= rounding && out->bound <= 2.0 * rounding) out->bound = out->depth;
+    set_direction(w, &s, out);
+}
+
+enum { GROUPS_A_TASK = 4 };
+
+static void find_some(void *data, uint32_t task) {
+    const deepest_work *w = data;
+    const deepest_finder *d = w->finder;
+    size_t first = (size_t)task * GROUPS_A_TASK, end = first + GROUPS_A_TASK;
+    if (!progress_go_on(&d->context->progress, (double)first / (double)d->group_count)) return;
+    for (size_t i = first; i < end && i < d->group_count; i++) find_deepest(w, &d->groups[i], &w->out[i]);
+}
+
+bool deepest_finder_begin(deepest_finder *d, const depth_facts *facts) {
+    deepest_work w = {.finder = d, .facts = facts, .mesh = facts->found->surface->mesh};
+    if (!deepest_finder_list(d, facts)) return false;
+    return cut_triangles_open(&w) && list_flush(&w);
+}
+
+size_t deepest_finder_run(deepest_finder *d, const depth_facts *facts, cscd_depth *out) {
+    deepest_work w = {.finder = d, .facts = facts, .mesh = facts->found->surface->mesh, .out = out};
+    size_t count = 0;
+    parallel_run(d->context->threads, (uint32_t)((d->group_count + GROUPS_A_TASK - 1) / GROUPS_A_TASK),
+                 find_some, &w);
+    if (progress_cancelled(&d->context->progress)) return 0;
+    for (size_t i = 0; i < d->group_count; i++)
+        if (out[i].face != UINT32_MAX) out[count++] = out[i];
+    return count;
+}
