@@ -294,9 +294,9 @@ static void compare_peaks(const char *model, const char *short_cache, const char
     long at_30 = peak_of_replays(model, short_cache, 3), at_300 = peak_of_replays(model, long_cache, 3);
     print_message("peak memory: %ld KiB for 30 frames, %ld KiB for 300\n", at_30, at_300);
     assert_true(at_30 > own.ru_maxrss); /* otherwise the measurement would show the test itself */
-    /* The 270 further frames hold about 9,000 KiB. The system itself counts up to 600 KiB more or less of the shared
-     * libraries from run to run. */
-    assert_true(at_300 <= at_30 + at_30 / 50 + 1024);
+    /* The 270 further frames hold about 9,000 KiB, and the answers about them, which are kept, about 900. The system itself
+     * counts up to 600 KiB more or less of the shared libraries from run to run. */
+    assert_true(at_300 <= at_30 + at_30 / 50 + 1536);
 }
 #endif
 

@@ -172,7 +172,7 @@ recorded recorded_torus(uint32_t rings, uint32_t segments) {
     add_grid(&r, segments, rings, true);
     for (uint32_t v = 0; v < r.vertex_count; v++) {
         double u = 2.0 * pi * (v % segments) / segments, w = 2.0 * pi * (v / segments) / rings;
-        put_position(&r, 0, v, (3.0 + cos(u)) * cos(w), (3.0 + cos(u)) * sin(w), sin(u));
+        put_position(&r, 0, v, (3.0 + cos(u)) * cos(w), (3.0 + cos(u)) * sin(w), -sin(u));
     }
     return r;
 }
