@@ -55,7 +55,7 @@ click 1120 222
 wait_for '"running": false, "events": 5, "frame": 1,' 240
 sleep 3        # until the list is drawn
 click 1070 406 # the second event,
-wait_for '"frame": 8' 20
+wait_for '"frame": 16' 20
 click 1070 385 # and the first
 wait_for '"frame": 12, "view": "PERSP", "selected": \["Body"\]' 20
 click 1113 593 # Colours
