@@ -258,7 +258,7 @@ static tool_run interrupt_preprocess(const char *model) {
 /* A signal during seconds of work stops it at once, and there is no plan, neither partial nor whole. */
 static void an_interrupted_preprocess_writes_nothing(void **state) {
     (void)state;
-    recorded scene = recorded_fold(70, 70, 1);
+    recorded scene = recorded_fold(200, 200, 1);
     temp_path model = recorded_write_mesh(&folder, "wide.obj", &scene, 0);
     temp_path plan = temp_file_path(&folder, "wide.plan.ply");
     recorded_free(&scene);
