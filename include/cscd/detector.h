@@ -236,6 +236,7 @@ typedef struct cscd_contacts {
     const cscd_contact *items;
     size_t count;
     size_t waiting; /* so many pairs of features wait, and are left out: see cscd_detector_set_seams */
+    uint32_t collapsed, reserved; /* so many components are, at an end: see cscd_detector_collapsed */
 } cscd_contacts;
 
 /* Finds the contacts from positions x0 to positions x1, as the mode promises. The first call
@@ -260,17 +261,16 @@ typedef struct cscd_intersection {
  * until its next call. */
 typedef struct cscd_intersections {
     const cscd_intersection *items;
-    size_t count;                 /* 0: the mesh neither intersects nor touches itself, pairs to leave out
-                                   * aside */
+    size_t count; /* 0: the mesh neither intersects nor touches itself, pairs to leave out aside */
     uint32_t zero_area_triangles; /* how many triangles have all corners on one line */
     uint32_t first_zero_area;     /* the first of them; UINT32_MAX if there is none */
     size_t waiting; /* so many pairs of triangles wait, and are left out: see cscd_detector_set_seams */
+    uint32_t collapsed, reserved; /* so many components are: see cscd_detector_collapsed */
 } cscd_intersections;
 
 /* The static check: lists exactly the triangle pairs that intersect or touch at the given positions
- * (docs/theory/static-check.md); of wires, points and half-spaces it says nothing. A step that starts at positions
- * that were checked need not check them again. CANCELLED: see cscd_progress. Of the timings only check_ms changes; the counters stay those of
- * the last step. */
+ * (docs/theory/static-check.md); of wires, points and half-spaces it says nothing. A step that starts there need not check
+ * them again. CANCELLED: see cscd_progress. Of the timings only check_ms changes; counters stay those of the last step. */
 CSCD_API cscd_status cscd_detector_check_sized(cscd_detector *detector, const cscd_view *positions,
                                                cscd_intersections *out, size_t size);
 static inline cscd_status cscd_detector_check(cscd_detector *detector, const cscd_view *positions,
@@ -295,6 +295,7 @@ typedef enum cscd_reason {
     CSCD_REASON_EARLIEST,  /* later contacts are left out, because the mode is EARLIEST */
     CSCD_REASON_OBSTACLE,  /* an obstacle: its contacts with itself are not looked for */
     CSCD_REASON_MASK,      /* its object's rule has self = false: contacts with itself are not looked for */
+    CSCD_REASON_COLLAPSED, /* it is collapsed at an end: contacts with itself are not looked for */
     CSCD_REASON_MAX_ENUM = 0x7fffffff
 } cscd_reason;
 

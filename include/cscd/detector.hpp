@@ -238,6 +238,9 @@ class detector : public detail::owner<cscd_detector, cscd_detector_destroy> {
     cscd_guarantee guarantee(std::uint32_t component) const noexcept {
         return cscd_detector_guarantee(get(), component);
     }
+    bool collapsed(std::uint32_t component) const noexcept {
+        return cscd_detector_collapsed(get(), component);
+    }
     int orientation(std::uint32_t triangle) const noexcept {
         return cscd_detector_orientation(get(), triangle);
     }

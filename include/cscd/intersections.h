@@ -6,7 +6,8 @@
  *   cross           if the open triangles meet, and not in one plane: then they have a segment in common;
  *   share area      if the open triangles meet in one plane;
  *   touch           if they meet otherwise.
- * A triangle without area, whose corners lie on one line or at one place, can only touch. Edges and vertices that both
+ * A triangle without area, whose corners lie on one line or at one place, can only touch. Where all triangles of a component
+ * have no area, it is collapsed and intersects nothing (cscd_detector_collapsed). Edges and vertices that both
  * triangles have do not count as meeting: neighbours are a pair only if they meet elsewhere, too. *Shared vertices* are
  * those that both have by index, or as vertices that seams unite, wherever these are; 0 to 3. Vertices that are
  * merely at one place are not shared. What that means for neighbours:
@@ -127,8 +128,9 @@ typedef struct cscd_intersection_pairs {
     size_t waiting; /* so many pairs of triangles wait, and are left out: see cscd_detector_set_seams */
     uint32_t zero_area_triangles; /* how many triangles have all corners on one line */
     uint32_t first_zero_area;     /* the first of them; UINT32_MAX if there is none */
-    bool stopped;                 /* the search has ended early, so there may be more pairs */
-    uint8_t reserved[7];
+    uint32_t collapsed; /* so many components are, and intersect nothing: see cscd_detector_collapsed */
+    bool stopped;       /* the search has ended early, so there may be more pairs */
+    uint8_t reserved[3];
 
     /* What was asked for, else NULL. They belong to the detector and live as long as the list. */
     const cscd_curves *curves;
@@ -137,6 +139,8 @@ typedef struct cscd_intersection_pairs {
     const cscd_depths *depths;
     const cscd_cut_offs *cut_offs;
     const cscd_part_pairs *parts;
+
+    const uint32_t *collapsed_components; /* `collapsed` of them, ascending; NULL: there are none */
 } cscd_intersection_pairs;
 
 /* Lists the triangle pairs that intersect or touch at the given positions, and how. options may be NULL. The pairs are
@@ -166,6 +170,18 @@ static inline cscd_status cscd_detector_find_intersections(cscd_detector *detect
                                                            cscd_intersection_pairs *out) {
     return cscd_detector_find_intersections_sized(detector, positions, options, out, sizeof *out);
 }
+
+/* Was the component collapsed in the last check, or at an end of the last step? A component is *collapsed* at positions
+ * at which every triangle of it has all corners on one line, exactly: an object that is hidden by a scale of 0, or one
+ * whose vertices are all 0. It has no surface there, and its features coincide by thousands, which says nothing.
+ *   - At one moment (cscd_detector_check, cscd_detector_find_intersections) it intersects nothing.
+ *   - In a step, pairs of features that both belong to components collapsed at x0 or at x1 are not looked at: neither
+ *     those within one such component, nor those between two. All others are, as ever. Its guarantee has
+ *     CSCD_REASON_COLLAPSED, and what is known of its triangles ends with the step.
+ *   - cscd_detector_max_step and line searches look at all pairs, so that they certify nothing that they have not seen.
+ * A component all of whose triangles are wires, (a, b, b') with a seam between b and b', is never collapsed, nor is one in
+ * which a single triangle has an area. False before the first call, and for a component that is not the mesh's. */
+CSCD_API bool cscd_detector_collapsed(const cscd_detector *detector, uint32_t component);
 
 #ifdef __cplusplus
 }

@@ -125,6 +125,7 @@ _PUBLIC: Dict[str, Tuple[Any, List[Any]]] = {
     "cscd_detector_defaults_sized": (None, [_p, _size]),
     "cscd_detector_destroy": (None, [_p]),
     "cscd_detector_guarantee_sized": (None, [_p, _u32, _p, _size]),
+    "cscd_detector_collapsed": (c_bool, [_p, _u32]),
     "cscd_detector_timings_sized": (None, [_p, _p, _size]),
     "cscd_detector_counters_sized": (None, [_p, _p, _size]),
     "cscd_detector_orientation": (c_int, [_p, _u32]),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import copy
-from typing import Any, Callable, Dict, Optional, Tuple
+from typing import Any, Callable, Dict, List, Optional, Tuple
 
 import numpy as np
 
@@ -280,6 +280,12 @@ class Detector(LiveSettings):
         found = self._read("guarantee", library.cscd_detector_guarantee_sized, component)
         found["reason"] = library.cscd_reason_text(found["reason"]).decode()
         return found
+
+    def collapsed(self) -> List[int]:
+        """The components that were collapsed in the last check, or at an end of the last step: hidden by a scale of 0, say,
+        so that all their triangles had no area. There they intersect nothing, and are not looked at with each other."""
+        with self._host.lock:
+            return [c for c in range(self.mesh.component_count) if library.cscd_detector_collapsed(self._detector, c)]
 
     @property
     def timings(self) -> Dict[str, float]:

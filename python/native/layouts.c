@@ -110,11 +110,12 @@ FIELDS(contact, FIELD(cscd_contact, kind), FIELD(cscd_contact, a), FIELD(cscd_co
        FIELD(cscd_contact, bounded), FIELD(cscd_contact, vertices), FIELD(cscd_contact, toi),
        FIELD(cscd_contact, u), FIELD(cscd_contact, v), FIELD(cscd_contact, point),
        FIELD(cscd_contact, normal))
-FIELDS(contacts, FIELD(cscd_contacts, items), FIELD(cscd_contacts, count), FIELD(cscd_contacts, waiting))
+FIELDS(contacts, FIELD(cscd_contacts, items), FIELD(cscd_contacts, count), FIELD(cscd_contacts, waiting),
+       FIELD(cscd_contacts, collapsed))
 FIELDS(intersection, FIELD(cscd_intersection, a), FIELD(cscd_intersection, b))
 FIELDS(intersections, FIELD(cscd_intersections, items), FIELD(cscd_intersections, count),
        FIELD(cscd_intersections, zero_area_triangles), FIELD(cscd_intersections, first_zero_area),
-       FIELD(cscd_intersections, waiting))
+       FIELD(cscd_intersections, waiting), FIELD(cscd_intersections, collapsed))
 FIELDS(guarantee, FIELD(cscd_guarantee, complete), FIELD(cscd_guarantee, start_embedded),
        FIELD(cscd_guarantee, reason))
 FIELDS(timings, FIELD(cscd_timings, update_ms), FIELD(cscd_timings, orientation_ms),
@@ -145,10 +146,11 @@ FIELDS(intersection_pairs, FIELD(cscd_intersection_pairs, items), FIELD(cscd_int
        FIELD(cscd_intersection_pairs, folded), FIELD(cscd_intersection_pairs, duplicate),
        FIELD(cscd_intersection_pairs, touching), FIELD(cscd_intersection_pairs, waiting),
        FIELD(cscd_intersection_pairs, zero_area_triangles), FIELD(cscd_intersection_pairs, first_zero_area),
-       FIELD(cscd_intersection_pairs, stopped), FIELD(cscd_intersection_pairs, curves),
-       FIELD(cscd_intersection_pairs, patches), FIELD(cscd_intersection_pairs, overlaps),
-       FIELD(cscd_intersection_pairs, depths), FIELD(cscd_intersection_pairs, cut_offs),
-       FIELD(cscd_intersection_pairs, parts))
+       FIELD(cscd_intersection_pairs, collapsed), FIELD(cscd_intersection_pairs, stopped),
+       FIELD(cscd_intersection_pairs, curves), FIELD(cscd_intersection_pairs, patches),
+       FIELD(cscd_intersection_pairs, overlaps), FIELD(cscd_intersection_pairs, depths),
+       FIELD(cscd_intersection_pairs, cut_offs), FIELD(cscd_intersection_pairs, parts),
+       FIELD(cscd_intersection_pairs, collapsed_components))
 FIELDS(curve, FIELD(cscd_curve, first_point), FIELD(cscd_curve, point_count), FIELD(cscd_curve, first_piece),
        FIELD(cscd_curve, piece_count), FIELD(cscd_curve, start), FIELD(cscd_curve, end),
        FIELD(cscd_curve, components), FIELD(cscd_curve, objects), FIELD(cscd_curve, closed),

@@ -63,6 +63,10 @@ typedef struct bvh_level {
     /* The children of each block without any active triangle, which are not compared with each other; NULL: all
      * triangles are active. */
     uint8_t *inactive_lanes;
+
+    /* From the tree level on: the children of each block that hold nothing but collapsed components, as
+     * bvh_mark_collapsed was told last. NULL: it was never called. */
+    uint8_t *collapsed_lanes;
 } bvh_level;
 
 /* The tree of one region. Its frame subtracts origin[0] from positions at the start, origin[1] from those at the end,
@@ -161,6 +165,13 @@ bool bvh_set_active(bvh *f, const bool *active);
 
 /* Returns the first disagreement with what bvh_set_active would do as a sentence, or NULL. */
 const char *bvh_check_active(const bvh *f, const bool *active);
+
+/* Notes which trees and blocks hold nothing but triangles of these components, for traversals that skip such pairs.
+ * collapsed: per component. False: no memory. */
+bool bvh_mark_collapsed(bvh *f, const bool *collapsed);
+
+/* Frees collapsed_lanes, as a step of bvh_free. */
+void bvh_free_collapsed(bvh *f);
 
 static inline uint32_t bvh_triangle(const bvh *f, uint32_t slot) {
     return f->leaves[slot / LANES].triangles[slot % LANES];

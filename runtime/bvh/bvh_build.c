@@ -307,6 +307,7 @@ static void fill_missing(builder *b, bvh *f, uint32_t index) {
 static void drop_levels(bvh *f) {
     cscd_context *context = f->mesh->context;
     bvh_free_objects(f);
+    bvh_free_collapsed(f);
     bvh_free_hubs(f);
     bvh_free_slivers(f);
     bvh_free_levels(f);
@@ -365,6 +366,7 @@ void bvh_free(bvh *f) {
                       f->leaf_inactive};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(context, blocks[i]);
     bvh_free_objects(f);
+    bvh_free_collapsed(f);
     bvh_free_hubs(f);
     bvh_free_slivers(f);
     bvh_free_levels(f);

@@ -214,7 +214,8 @@ static array_list level_arrays(bvh_level *level, int axis_count) {
         {ARRAY(level->first_children, blocks), ARRAY(level->bounds, blocks * (size_t)axis_count * 2 * LANES),
          ARRAY(level->flags, blocks), ARRAY(level->self_pairs, blocks), ARRAY(level->obstacle_lanes, blocks),
          ARRAY(level->child_sets, blocks * LANES), ARRAY(level->inactive_lanes, blocks),
-         ARRAY(level->child_hubs, blocks * LANES), ARRAY(level->child_slivers, blocks * LANES)}};
+         ARRAY(level->collapsed_lanes, blocks), ARRAY(level->child_hubs, blocks * LANES),
+         ARRAY(level->child_slivers, blocks * LANES)}};
 }
 
 /* A level that is not whole belongs to the other BVH. */

@@ -24,6 +24,13 @@ typedef enum traversal_pass {
     TRAVERSAL_UNPROVEN    /* those of two unproven triangles, active or not */
 } traversal_pass;
 
+/* What a pass does with trees that hold nothing but collapsed components. */
+typedef enum collapsed_trees {
+    COLLAPSED_FOUND,      /* it knows of none */
+    COLLAPSED_PAIRS_LEFT, /* pairs of two such trees, or of one with itself, are not found */
+    COLLAPSED_LEFT        /* no pair of such a tree is found */
+} collapsed_trees;
+
 /* Keeps the volumes of the triangles of leaves that were visited lately. A leaf that has been replaced by another
  * one is computed again at its next visit. The volumes are the kernels' leaf_volumes; only their size is known here. */
 enum { LEAF_CACHE_SIZE = 128, LEAF_VOLUME_FLOATS = (4 * KDOP_AXES + 2 * BOX_AXES) * LANES };
@@ -54,8 +61,10 @@ typedef struct traversal {
     cscd_context *context;
     const bvh *bvh;
     traversal_pass pass;
-    bool whole;            /* set by the caller: pairs of inactive triangles are found as well */
-    bool skips_inactive;   /* pairs of inactive triangles are not found by this pass */
+    bool whole;          /* set by the caller: pairs of inactive triangles are found as well */
+    bool skips_inactive; /* pairs of inactive triangles are not found by this pass */
+    collapsed_trees
+        collapsed; /* set by the caller, who has marked them (bvh_mark_collapsed), if they are not found */
     traversal_lane *lanes; /* one per thread of the context */
     uint32_t lane_count;
     uint32_t

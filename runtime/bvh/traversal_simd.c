@@ -15,6 +15,7 @@
 
 #include "runtime/bvh/bvh_hubs.h"
 #include "runtime/bvh/bvh_slivers.h"
+#include "runtime/bvh/lane_comparison.h"
 #include "runtime/bvh/leaf_volumes.h"
 
 /* The place of tree b relative to tree a: per axis at both ends of the interval, off by at most slack, and between
@@ -81,54 +82,6 @@ static inline uint32_t apart_at_ends(const leaf_volumes *a, const leaf_volumes *
             behind &= f32x8_below(b->high[e][k], f32x8_all(low));
         }
         lanes |= before | behind;
-    }
-    return lanes;
-}
-
-/* A pair of blocks or of leaves whose lanes are compared. */
-typedef struct lane_comparison {
-    lane_flags a, b;
-    lane_flags before_a, before_b; /* flags of leaves before, in the pass NEWLY_KEPT */
-    uint64_t self_pairs;
-    /* Of blocks: lanes that hold obstacles only, lanes without active triangles, if the pass skips their pairs, and both. */
-    uint32_t obstacles_a, obstacles_b, inactive_a, inactive_b, resting_a;
-    bool itself, one_tree, leaves;
-    traversal_pass pass;
-} lane_comparison;
-
-static inline uint32_t one_sign(uint32_t plus_a, uint32_t minus_a, uint32_t plus_b, uint32_t minus_b, int i) {
-    return (plus_a >> i & 1) != 0 ? plus_b : (minus_a >> i & 1) != 0 ? minus_b : 0;
-}
-
-/* Returns those of the lanes of b whose objects are looked at with some of a's. */
-static inline uint32_t lanes_looked_at(const object_set *a, const object_set *b, uint32_t lanes) {
-    uint32_t kept = 0;
-    for (; lanes != 0; lanes &= lanes - 1) {
-        int lane = __builtin_ctz(lanes);
-        kept |= (uint32_t)object_sets_may_meet(a, &b[lane]) << lane;
-    }
-    return kept;
-}
-
-/* Returns the lanes of b that hold obstacles, or nothing active, as lane i of a. */
-static inline uint32_t lanes_at_rest(const lane_comparison *c, int i) {
-    uint32_t obstacles = (c->obstacles_a >> i & 1) != 0 ? c->obstacles_b : 0;
-    return (c->inactive_a >> i & 1) != 0 ? obstacles | c->inactive_b : obstacles;
-}
-
-/* Returns the lanes of b that are to be compared with lane i of a. */
-static inline uint32_t lanes_to_compare(const lane_comparison *c, int i) {
-    uint32_t lanes = c->b.used;
-    if ((c->resting_a >> i & 1) != 0) lanes &= ~lanes_at_rest(c, i);
-    if (c->itself) lanes &= (uint32_t)(c->self_pairs >> (8 * i)) & ((uint32_t)ALL_LANES << (i + 1));
-    if (c->pass == TRAVERSAL_UNPROVEN) return (c->a.newly_kept >> i & 1) != 0 ? lanes & c->b.newly_kept : 0;
-    if (c->pass == TRAVERSAL_NEWLY_KEPT) {
-        if (!c->one_tree) return 0;
-        if ((c->a.newly_kept >> i & 1) == 0) lanes &= c->b.newly_kept;
-        if (c->leaves)
-            lanes &= one_sign(c->before_a.plus, c->before_a.minus, c->before_b.plus, c->before_b.minus, i);
-    } else if (c->one_tree) {
-        lanes &= ~one_sign(c->a.plus, c->a.minus, c->b.plus, c->b.minus, i);
     }
     return lanes;
 }
@@ -352,17 +305,26 @@ static inline void visit_blocks(const traversal *t, traversal_lane *lane, block_
     bool obstacles = level->obstacle_lanes != NULL && sets == NULL;
     uint32_t obstacles_a = obstacles ? level->obstacle_lanes[at.a] : 0;
     uint32_t inactive_a = t->skips_inactive ? level->inactive_lanes[at.a] : 0;
-    const lane_comparison c = {.a = level->flags[at.a],
-                               .b = level->flags[at.b],
-                               .self_pairs = level->self_pairs != NULL ? level->self_pairs[at.a] : UINT64_MAX,
-                               .obstacles_a = obstacles_a,
-                               .obstacles_b = obstacles ? level->obstacle_lanes[at.b] : 0,
-                               .inactive_a = inactive_a,
-                               .inactive_b = t->skips_inactive ? level->inactive_lanes[at.b] : 0,
-                               .resting_a = obstacles_a | inactive_a,
-                               .itself = at.a == at.b,
-                               .one_tree = below && !crosses,
-                               .pass = t->pass};
+    bool collapsed = t->collapsed != COLLAPSED_FOUND && !below;
+    uint32_t collapsed_a = collapsed ? level->collapsed_lanes[at.a] : 0;
+    uint32_t collapsed_b = collapsed ? level->collapsed_lanes[at.b] : 0;
+    lane_comparison c = {.a = level->flags[at.a],
+                         .b = level->flags[at.b],
+                         .self_pairs = level->self_pairs != NULL ? level->self_pairs[at.a] : UINT64_MAX,
+                         .obstacles_a = obstacles_a,
+                         .obstacles_b = obstacles ? level->obstacle_lanes[at.b] : 0,
+                         .inactive_a = inactive_a,
+                         .inactive_b = t->skips_inactive ? level->inactive_lanes[at.b] : 0,
+                         .collapsed_a = collapsed_a,
+                         .collapsed_b = collapsed_b,
+                         .resting_a = obstacles_a | inactive_a | collapsed_a,
+                         .itself = at.a == at.b,
+                         .one_tree = below && !crosses,
+                         .pass = t->pass};
+    if (t->collapsed == COLLAPSED_LEFT) {
+        c.a.used &= (uint8_t)~collapsed_a;
+        c.b.used &= (uint8_t)~collapsed_b;
+    }
     for (uint32_t rows = c.a.used; rows != 0; rows &= rows - 1) {
         int i = __builtin_ctz(rows);
         uint32_t lanes = lanes_to_compare(&c, i);

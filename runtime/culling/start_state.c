@@ -267,7 +267,7 @@ static void find_clean_patches(start_states *s) {
 
 /* ---- static checks ------------------------------------------------------------------------------------- */
 
-uint32_t start_states_mark_unproven(start_states *s, bool *unproven) {
+uint32_t start_states_mark_unproven(start_states *s, const bool *collapsed, bool *unproven) {
     const cscd_mesh *mesh = s->mesh;
     bool *wanted = s->component_scratch, any = false;
     uint32_t count = 0;
@@ -277,6 +277,7 @@ uint32_t start_states_mark_unproven(start_states *s, bool *unproven) {
         bool may_be_culled = mesh->components[c].closed_manifold && !component_is_obstacle(mesh, c) &&
                              !(s->never_culled != NULL && s->never_culled[c]);
         if (s->adapts) may_be_culled &= start->chosen;
+        if (collapsed != NULL) may_be_culled &= !collapsed[c];
         wanted[c] = may_be_culled && start->unknown > 0 && start->waiting == 0;
         if (start->unknown > 0 && start->waiting > 0) start->waiting--;
         any |= wanted[c];

@@ -90,7 +90,7 @@ void start_states_begin(start_states *s, const double *x);
  * Components that wait do so for one interval less from now on. After a check that leaves too little of a component
  * clean (start_states_pay), its next check waits for 1 interval, then for 2, 4, 8 and from then on always 16. If the
  * number is 0, unproven is not written. */
-uint32_t start_states_mark_unproven(start_states *s, bool *unproven);
+uint32_t start_states_mark_unproven(start_states *s, const bool *collapsed, bool *unproven);
 
 /* Takes over the outcome of a static check of the unproven triangles; crossing marks those that intersect another
  * one of them or have no area. */

@@ -35,6 +35,7 @@ static cscd_status collect_intersections(cscd_detector *d, const double *positio
         if (lane->first_zero_area < result.first_zero_area) result.first_zero_area = lane->first_zero_area;
     }
     result.waiting = d->waiting.pairs.triangle_pairs;
+    result.collapsed = d->collapsed.count;
     result.count = d->cap.counted + kept;
     if (d->options.longest_list > 0 && result.count > d->options.longest_list) {
         result.items = NULL;
@@ -61,7 +62,12 @@ static cscd_status answer_question(cscd_detector *d, const double *positions,
                                    const moment_question *question) {
     cscd_status status =
         bvh_rebuild_move_to(&d->rebuild, &d->space.bvh, positions, uniform_growth(0.0), detector_growth(d));
+    detector_find_collapsed(d, positions, positions);
+    if (status == CSCD_OK) status = detector_leave_collapsed(d, COLLAPSED_LEFT);
+    d->check.collapsed = collapsed_marks(&d->collapsed);
     if (status == CSCD_OK) status = question->answer(d, positions, question->data);
+    d->check.collapsed = NULL;
+    detector_leave_collapsed(d, COLLAPSED_FOUND);
     return status == CSCD_OK ? context_progress_status(d->context) : status;
 }
 

@@ -111,6 +111,7 @@ static cscd_status create_parts(cscd_detector *d, const cscd_plan *plan) {
     if (status == CSCD_OK) status = static_check_create(d->mesh, d->space.traversal.lane_count, &d->check);
     if (status == CSCD_OK) status = detector_create_hider(d);
     if (status == CSCD_OK) status = rollback_create(d->mesh, &d->before);
+    if (status == CSCD_OK) status = collapsed_create(d->mesh, &d->collapsed);
     if (status == CSCD_OK && !context_allocate_all(d->context, detector_arrays(d)))
         status = CSCD_OUT_OF_MEMORY;
     return status;
@@ -123,6 +124,7 @@ void detector_free(cscd_detector *d) {
     if (d->starts.mesh != NULL) start_states_destroy(&d->starts);
     static_check_destroy(&d->check);
     verlet_list_free(context, &d->verlet);
+    collapsed_free(&d->collapsed);
     search_space_destroy(&d->space);
     bvh_free(&d->rebuild.kept);
     exclusions_free(context, &d->exclusions);
@@ -307,6 +309,25 @@ interval_search detector_search_floors(cscd_detector *d, const double *x0, const
     search.interval.beyond = detector_floors_beyond(d, d->limit.distance, x0, x1);
     search.interval.floor_ratio = search.interval.beyond > 0.0 ? d->options.floor_ratio : 0.0;
     return search;
+}
+
+void detector_find_collapsed(cscd_detector *d, const double *x0, const double *x1) {
+    collapsed_begin(&d->collapsed);
+    collapsed_add(&d->collapsed, x0, d->exclusions.names);
+    if (x1 != x0) collapsed_add(&d->collapsed, x1, d->exclusions.names);
+}
+
+cscd_status detector_leave_collapsed(cscd_detector *d, collapsed_trees which) {
+    const bool *collapsed = which != COLLAPSED_FOUND ? collapsed_marks(&d->collapsed) : NULL;
+    d->space.traversal.collapsed = COLLAPSED_FOUND;
+    if (collapsed == NULL) return CSCD_OK;
+    if (!bvh_mark_collapsed(&d->space.bvh, collapsed)) return CSCD_OUT_OF_MEMORY;
+    d->space.traversal.collapsed = which;
+    return CSCD_OK;
+}
+
+bool cscd_detector_collapsed(const cscd_detector *detector, uint32_t component) {
+    return component < detector->mesh->component_count && detector->collapsed.marks[component];
 }
 
 void detector_begin_call(cscd_detector *d) {

@@ -18,6 +18,7 @@
 #include "runtime/narrow_phase/narrow_phase.h"
 #include "runtime/narrow_phase/waiting_pairs.h"
 #include "src/core/methods.h"
+#include "src/mesh/collapsed.h"
 
 struct cscd_detector {
     reference_count references; /* the caller, and lines */
@@ -45,8 +46,11 @@ struct cscd_detector {
     start_states starts;
     static_check check;
     verlet_list verlet;
-    void *hider_state; /* of stages->hider */
-    rollback before;   /* the current call */
+    collapsed_components collapsed; /* at the moment of the last check, or at an end of the last interval */
+    bool
+        leaves_collapsed; /* the current interval does not look at pairs of two components that are collapsed */
+    void *hider_state;    /* of stages->hider */
+    rollback before;      /* the current call */
 
     struct {           /* of lists, where the options have one */
         bool *tainted; /* per triangle: by contacts that have left the lanes; NULL: there never was a cap */
@@ -163,6 +167,13 @@ static inline volume_growth detector_growth(const cscd_detector *d) {
 
 /* INVALID_ARGUMENT, if both min_separation and the rules say distances. */
 cscd_status detector_check_distances(cscd_detector *d, double min_separation, double greatest_of_rules);
+
+/* Finds the components that are collapsed at x0 or at x1, which may be the same. */
+void detector_find_collapsed(cscd_detector *d, const double *x0, const double *x1);
+
+/* Lets traversals of the trees, which have been refitted, leave out pairs of collapsed components, if there are any, until
+ * it is told COLLAPSED_FOUND. OUT_OF_MEMORY: they find all pairs. */
+cscd_status detector_leave_collapsed(cscd_detector *d, collapsed_trees which);
 
 /* Sets the marks of components whose triangles are not looked at with each other to false. */
 void detector_unmark_masked(const cscd_detector *d, bool *triangles);

@@ -133,6 +133,7 @@ static cscd_status move_parts(const detector_move *m) {
     if (status == CSCD_OK) status = static_check_create(d->mesh, d->space.traversal.lane_count, &d->check);
     if (status == CSCD_OK) status = detector_create_hider(d);
     if (status == CSCD_OK) status = rollback_create(d->mesh, &d->before);
+    if (status == CSCD_OK) status = collapsed_create(d->mesh, &d->collapsed);
     if (status == CSCD_OK) status = edge_rest_move(d->context, &from->rest, m->change, &d->rest);
     if (status == CSCD_OK) status = part_labels_move(&from->parts, d->mesh, m->change, &d->parts);
     if (status == CSCD_OK && !context_allocate_all(d->context, detector_arrays(d)))
@@ -174,6 +175,7 @@ static void exchange_parts(cscd_detector *a, cscd_detector *b) {
     EXCHANGE(culling);
     EXCHANGE(starts);
     EXCHANGE(check);
+    EXCHANGE(collapsed);
     EXCHANGE(hider_state);
     EXCHANGE(before);
     EXCHANGE(cap);

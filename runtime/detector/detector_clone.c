@@ -72,6 +72,16 @@ static void join_rules(cscd_detector *d) {
     d->starts.never_culled = d->never_culled;
 }
 
+/* What was said of the last moment is said of it again. */
+static cscd_status clone_collapsed(const collapsed_components *from, const cscd_mesh *mesh,
+                                   collapsed_components *to) {
+    cscd_status status = collapsed_create(mesh, to);
+    if (status != CSCD_OK) return status;
+    memcpy(to->marks, from->marks, mesh->component_count * sizeof *to->marks);
+    to->count = from->count;
+    return CSCD_OK;
+}
+
 static cscd_status clone_parts(const cscd_detector *from, cscd_detector *d) {
     const cscd_mesh *mesh = d->mesh;
     cscd_status status = exclusions_copy(&from->exclusions, mesh, &d->exclusions);
@@ -84,6 +94,7 @@ static cscd_status clone_parts(const cscd_detector *from, cscd_detector *d) {
     if (status == CSCD_OK) status = static_check_create(mesh, d->space.traversal.lane_count, &d->check);
     if (status == CSCD_OK) status = detector_create_hider(d);
     if (status == CSCD_OK) status = rollback_create(mesh, &d->before);
+    if (status == CSCD_OK) status = clone_collapsed(&from->collapsed, mesh, &d->collapsed);
     if (status == CSCD_OK) status = pair_rules_copy(&from->pair_rules, mesh, &d->pair_rules);
     if (status == CSCD_OK) status = edge_rest_copy(&from->rest, mesh, &d->rest);
     if (status == CSCD_OK) status = part_labels_copy(&from->parts, mesh, &d->parts);

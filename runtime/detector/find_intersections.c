@@ -220,7 +220,10 @@ static void count_zero_area(const static_check *check, cscd_intersection_pairs *
 static cscd_status give_result(const kind_search *s, cscd_intersection_pairs *out) {
     cscd_detector *d = s->detector;
     const size_t *of_kind = s->of_kind;
-    cscd_intersection_pairs result = {.count = count_found(s), .waiting = d->waiting.pairs.triangle_pairs};
+    cscd_intersection_pairs result = {.count = count_found(s),
+                                      .waiting = d->waiting.pairs.triangle_pairs,
+                                      .collapsed = d->collapsed.count,
+                                      .collapsed_components = collapsed_list(&d->collapsed)};
     count_zero_area(&d->check, &result);
     if (s->options.answer == CSCD_ANSWER_ANY) {
         result.stopped = result.count > 0;

@@ -16,6 +16,8 @@ cscd_guarantee guarantee_of(const cscd_detector *d, uint32_t component) {
     if (component_is_obstacle(d->mesh, component))
         return (cscd_guarantee){false, false, CSCD_REASON_OBSTACLE};
     if (detector_masks(d, component)) return (cscd_guarantee){false, false, CSCD_REASON_MASK};
+    if (d->leaves_collapsed && d->collapsed.marks[component])
+        return (cscd_guarantee){false, embedded, CSCD_REASON_COLLAPSED};
     bool hides = detector_hides_pairs(d), by_method = detector_culls(d) || hides;
     if (by_method && d->traits->loses_contacts)
         return (cscd_guarantee){false, embedded, CSCD_REASON_PUBLISHED};

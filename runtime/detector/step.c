@@ -79,7 +79,8 @@ static cscd_status prove_starts(step_work *work) {
     if (!detector_culls(d) || d->rules.assumes_clean || d->options.start != CSCD_START_PROVE) return CSCD_OK;
     double since = timer_now_ms();
     cscd_status status = CSCD_OK;
-    work->unproven = start_states_mark_unproven(&d->starts, d->check.unproven);
+    work->unproven =
+        start_states_mark_unproven(&d->starts, collapsed_marks(&d->collapsed), d->check.unproven);
     work->search.counters.static_checks = work->unproven > 0;
     if (work->unproven > d->mesh->triangle_count / UNPROVEN_SHARE) {
         status = bvh_rebuild_move_to(&d->rebuild, &d->space.bvh, work->search.interval.x0,
@@ -139,6 +140,10 @@ static cscd_status choose_culled(step_work *work) {
     for (uint32_t c = 0; c < d->mesh->component_count; c++) {
         const cscd_component *component = &d->mesh->components[c];
         if (component_is_obstacle(d->mesh, c) || detector_masks(d, c)) continue;
+        if (d->leaves_collapsed && d->collapsed.marks[c]) {
+            work->any_not_culled = true;
+            continue;
+        }
         uint32_t clean = component->closed_manifold ? d->starts.of[c].clean : 0;
         bool embedded = clean == component->triangle_count;
         d->culled[c] = is_culled(d, c, clean, component->triangle_count);
@@ -179,7 +184,10 @@ static cscd_status orient_triangles(step_work *work) {
 /* ---- traversal, closing pass ----------------------------------------------------------------------- */
 
 static cscd_status traverse_pairs(step_work *work) {
-    const cscd_detector *d = work->detector;
+    cscd_detector *d = work->detector;
+    cscd_status status =
+        detector_leave_collapsed(d, d->leaves_collapsed ? COLLAPSED_PAIRS_LEFT : COLLAPSED_FOUND);
+    if (status != CSCD_OK) return status;
     bool all_culled = work->any_culled && !work->any_not_culled;
     bool loses_contacts = d->traits->loses_contacts && (work->any_culled || detector_hides_pairs(d));
     if (!all_culled && !loses_contacts) return interval_search_everything(&work->search);
@@ -279,6 +287,8 @@ cscd_status step_find(cscd_detector *d, const double *x0, const double *x1, cscd
                       step_outcome *out) {
     bool answered;
     if (rehearsal) start_states_save(&d->starts);
+    detector_find_collapsed(d, x0, x1);
+    d->leaves_collapsed = !rehearsal && d->collapsed.count > 0;
     cscd_status status = verlet_list_answer(d, x0, x1, out, &answered);
     if (status != CSCD_OK || answered) return status;
     step_work work = {.detector = d,
@@ -287,15 +297,18 @@ cscd_status step_find(cscd_detector *d, const double *x0, const double *x1, cscd
                       .mode = mode,
                       .rehearsal = rehearsal,
                       .all_clean = true};
+    if (d->leaves_collapsed) work.search.interval.collapsed = d->collapsed.marks;
     work.search.timings.update_ms = d->verlet.spent_ms;
     begin_interval(&work);
     if (!rehearsal) list_cap_begin(d, &work.search, d->lists_earliest ? CAP_KEEPS_EARLIEST : CAP_TAINTS_ALL);
     status = run_stages(d->stages->brute_force ? stages_by_brute_force : stages_by_trees, &work);
+    d->space.traversal.collapsed = COLLAPSED_FOUND;
     if (status == CSCD_LIST_TOO_LONG) out->contacts = work.contacts;
     if (status != CSCD_OK) return status;
     for (uint32_t c = 0; c < d->mesh->component_count; c++) d->guarantees[c] = guarantee_of(d, c);
     d->verlet.now.was_quiet = work.contacts.count == 0;
     out->contacts = work.contacts;
+    out->contacts.collapsed = d->leaves_collapsed ? d->collapsed.count : 0;
     out->timings = work.search.timings;
     out->counters = work.search.counters;
     return CSCD_OK;

@@ -92,8 +92,10 @@ cscd_status surface_answers_find(cscd_detector *d, const double *positions,
                                  const cscd_intersection_options *options, cscd_intersection_pairs *found) {
     surface_answers *a = d->answers;
     if (a->left_out.out_of_memory) return CSCD_OUT_OF_MEMORY;
-    named_surface surface = {
-        .mesh = d->mesh, .positions = positions, .bodies = options->part_bodies ? &d->parts.bodies : NULL};
+    named_surface surface = {.mesh = d->mesh,
+                             .positions = positions,
+                             .bodies = options->part_bodies ? &d->parts.bodies : NULL,
+                             .collapsed = d->check.collapsed};
     if (!placed_names_find(&a->names, d->mesh, positions, d->exclusions.names, &surface.names))
         return CSCD_OUT_OF_MEMORY;
     const surface_cuts cuts = {&surface, &a->joiner, &a->patch_finder};

@@ -36,6 +36,7 @@ static bool is_usable(cscd_detector *d) {
     if (d->options.coherence == CSCD_COHERENCE_OFF || !detector_culls(d) || d->traits->loses_contacts)
         return false;
     if (detector_thick(d) || d->pair_rules.sets != NULL || d->space.active.vertices != NULL) return false;
+    if (d->leaves_collapsed) return false;
     if (mesh_has_loose_objects(d->mesh) || d->waiting.pairs.count > 0 || d->space.bvh.mesh == NULL)
         return false;
     start_states_count(&d->starts);

@@ -14,6 +14,8 @@ typedef struct named_surface {
         turned; /* per component: its normals are inwards, so that the side they point away from is outside; NULL:
                          * of none */
     const surface_bodies *bodies; /* NULL: the objects are the bodies */
+    const bool *
+        collapsed; /* per component: it has no surface, so it contains nothing and is in nothing; NULL: none is */
 } named_surface;
 
 /* 1 where the normal of a triangle points outwards, -1 where its component is turned around. */

@@ -57,6 +57,7 @@ static void test_kind(const check_work *work, intersection_lane *lane, triangle_
 static bool pair_counts(const check_work *work, uint32_t a, uint32_t b) {
     const static_check *c = work->check;
     if (work->own_component_only && a != b) return false;
+    if (c->collapsed != NULL && (c->collapsed[a] || c->collapsed[b])) return false;
     if (c->objects == NULL || !work->bvh->trees_mix_objects) return true;
     return object_sets_may_meet(&c->objects[c->component_objects[a]], &c->objects[c->component_objects[b]]);
 }
@@ -130,6 +131,7 @@ static void test_batch(void *data, uint32_t index) {
 /* Is a component looked at with itself? The traversal asks the same of trees. */
 static bool component_counts(const check_work *work, uint32_t component) {
     const static_check *c = work->check;
+    if (c->collapsed != NULL && c->collapsed[component]) return false;
     if (c->objects == NULL) return !component_is_obstacle(c->mesh, component);
     const object_set *own = &c->objects[c->component_objects[component]];
     return object_sets_may_meet(own, own);

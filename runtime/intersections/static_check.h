@@ -26,6 +26,10 @@ typedef struct static_check {
      * traversal has left out what they say. NULL: there are none. */
     const object_set *objects;
     const uint32_t *component_objects;
+
+    /* The components without a surface at the moment, whose triangles intersect nothing, set by the caller together with
+     * those of the traversal. NULL: all are compared. */
+    const bool *collapsed;
 } static_check;
 
 /* On failure *out holds nothing. */

@@ -86,11 +86,15 @@ static int pass_of_neighbour(const ray_work *work, symbolic_point b, symbolic_po
     return pass_number(facing, side_of_neighbour(work, b, c));
 }
 
+static bool is_collapsed(const named_surface *s, uint32_t component) {
+    return s->collapsed != NULL && s->collapsed[component];
+}
+
 static void pass_triangle(void *data, uint32_t triangle) {
     const ray_work *work = data;
     const cscd_mesh *mesh = work->surface->mesh;
     uint32_t component = mesh->triangle_components[triangle];
-    if (!mesh->components[component].closed_manifold) return;
+    if (!mesh->components[component].closed_manifold || is_collapsed(work->surface, component)) return;
     symbolic_point p[3];
     load_points(work->surface, triangle, p);
     if (have_one_name(p)) return;
@@ -109,7 +113,7 @@ static void cast_ray(const named_surface *s, const bvh *f, corner_side at, bool 
                      winding_tally *tally) {
     symbolic_point p[3];
     load_points(s, at.triangle, p);
-    if (have_one_name(p)) return;
+    if (have_one_name(p) || is_collapsed(s, s->mesh->triangle_components[at.triangle])) return;
     symbolic_point next = p[(at.corner + 1) % 3], before = p[(at.corner + 2) % 3];
     ray_work work = {.surface = s,
                      .tally = tally,

@@ -5,11 +5,13 @@
 
 /* Is a component looked at with all others, and with itself? */
 static bool meets_all(const swept_interval *interval, uint32_t component) {
-    return interval->rules == NULL && !component_is_obstacle(interval->mesh, component);
+    return interval->rules == NULL && !component_is_obstacle(interval->mesh, component) &&
+           !components_collapsed(interval, component, component);
 }
 
 /* Rules know obstacles, too. */
 static bool may_meet(const swept_interval *interval, uint32_t a, uint32_t b) {
+    if (components_collapsed(interval, a, b)) return false;
     if (interval->rules != NULL) return components_look(interval, a, b);
     return !component_is_obstacle(interval->mesh, a) || !component_is_obstacle(interval->mesh, b);
 }

@@ -69,10 +69,11 @@ static uint32_t active_features(const swept_interval *interval, triangle_pair pa
     return (b != 0 ? 7u : a) | (a != 0 ? 7u : b) << FEATURE_VERTEX_B | edges << FEATURE_EDGES;
 }
 
-/* Does the traversal leave this to us, because a tree holds several objects? */
+/* Asks what the traversal leaves to us where a tree holds several components or objects. */
 static bool triangles_look(const swept_interval *interval, triangle_pair pair) {
     const uint32_t *components = interval->mesh->triangle_components;
-    return components_look(interval, components[pair.a], components[pair.b]);
+    uint32_t a = components[pair.a], b = components[pair.b];
+    return components_look(interval, a, b) && !components_collapsed(interval, a, b);
 }
 
 /* Pairs of triangles, by slots and by numbers, and the pairs of their features that they may have to test. */
@@ -86,7 +87,7 @@ typedef struct chosen_pairs {
 static void choose_pairs(const swept_interval *interval, const triangle_pair *slots, uint32_t count,
                          chosen_pairs *settled, chosen_pairs *open) {
     const bvh *f = interval->bvh;
-    bool trees_mix = interval->rules != NULL && f->trees_mix_objects;
+    bool trees_mix = (interval->rules != NULL && f->trees_mix_objects) || interval->collapsed != NULL;
     settled->count = open->count = 0;
     for (uint32_t i = 0; i < count; i++) {
         triangle_pair pair = {bvh_triangle(f, slots[i].a), bvh_triangle(f, slots[i].b)};
@@ -159,10 +160,12 @@ static bool parted_by_directions(const swept_interval *interval, cscd_contact_ki
     return directions_part(&query, kind, pair_reach(interval, kind, a, b));
 }
 
-/* Adjacent triangles of components that are culled are pairs like others. */
+/* Adjacent triangles of components that are culled are pairs like others, and some components are not looked at with
+ * themselves. */
 static bool left_to_others(const swept_interval *interval, uint32_t component) {
     return (interval->culling != NULL && interval->culled[component]) ||
-           !components_look(interval, component, component);
+           !components_look(interval, component, component) ||
+           components_collapsed(interval, component, component);
 }
 
 static void test_orphan_vf(const swept_interval *interval, const uint32_t pair[2], contact_lane *lane) {

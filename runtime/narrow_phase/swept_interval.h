@@ -26,12 +26,14 @@ typedef struct swept_interval {
     bool closing_pass;       /* with culling: the pairs that are reached are those that were culled before */
     const pair_rules *rules; /* NULL: all objects are looked at */
     const active_set *active; /* NULL: all vertices are */
-    separation limit;         /* of every pair; distance 0: a contact is touching */
-    bool thick;               /* a pair's distance is that of the rules, where this is the greater one */
-    double tolerance;         /* of these distances, as a share of them; 0: the default */
-    double beyond;            /* volumes are compared within so much more than the pairs' distances */
-    double floor_ratio;       /* above 0: pairs that start nearer than they should have a floor instead */
-    bool collecting;          /* pairs of features become the lanes' candidates instead of being tested */
+    const bool
+        *collapsed;   /* per component: pairs of two features of such components do not count; NULL: all do */
+    separation limit; /* of every pair; distance 0: a contact is touching */
+    bool thick;       /* a pair's distance is that of the rules, where this is the greater one */
+    double tolerance; /* of these distances, as a share of them; 0: the default */
+    double beyond;    /* volumes are compared within so much more than the pairs' distances */
+    double floor_ratio; /* above 0: pairs that start nearer than they should have a floor instead */
+    bool collecting;    /* pairs of features become the lanes' candidates instead of being tested */
 } swept_interval;
 
 /* What the kernels read of an interval. */
@@ -53,6 +55,11 @@ static inline bool components_look(const swept_interval *interval, uint32_t a, u
     if (interval->rules == NULL) return true;
     const uint32_t *objects = interval->rules->component_objects;
     return pair_rules_look_at(interval->rules, objects[a], objects[b]);
+}
+
+/* Are two components, or one and itself, left out because they are collapsed at an end? */
+static inline bool components_collapsed(const swept_interval *interval, uint32_t a, uint32_t b) {
+    return interval->collapsed != NULL && interval->collapsed[a] && interval->collapsed[b];
 }
 
 /* The same for two objects that need not be of triangles. */

@@ -71,7 +71,8 @@ static const char *const reasons[] = {
     [CSCD_REASON_CONTOUR] = "pairs in patches that cannot touch themselves are left out; all contacts found",
     [CSCD_REASON_EARLIEST] = "only the earliest are listed; later contacts may be missing",
     [CSCD_REASON_OBSTACLE] = "an obstacle; contacts with itself are not looked for",
-    [CSCD_REASON_MASK] = "masked by its rule; contacts with itself are not looked for"};
+    [CSCD_REASON_MASK] = "masked by its rule; contacts with itself are not looked for",
+    [CSCD_REASON_COLLAPSED] = "collapsed at an end; contacts with itself are not looked for"};
 
 static const char *name_at(const char *const *names, size_t count, size_t i) {
     return i < count ? names[i] : "unknown";

@@ -8,6 +8,7 @@ void steps(void **) {
     assert_true(t.compare_steps() > 50);
     assert_ptr_equal(t.ours.mesh().get(), t.mesh.get());
     assert_int_equal(t.ours.guarantee(1).reason, cscd_detector_guarantee(t.c, 1).reason);
+    assert_false(t.ours.collapsed(1));
     assert_int_equal(t.ours.counters().tests, cscd_detector_counters(t.c).tests);
     assert_true(t.ours.timings().total_ms > 0.0);
     cscd_intersections crossing;

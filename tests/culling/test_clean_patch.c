@@ -129,7 +129,7 @@ static void states_follow_positions(void **state) {
     start_states_count(&c.starts);
     assert_int_equal(c.starts.of[0].clean, half);
     assert_int_equal(c.starts.of[1].unknown, half);
-    assert_int_equal(start_states_mark_unproven(&c.starts, unproven), half);
+    assert_int_equal(start_states_mark_unproven(&c.starts, NULL, unproven), half);
     start_states_end(&c.starts, s.x0, (bool[2]){true, false});
     start_states_count(&c.starts);
     assert_int_equal(c.starts.of[0].unknown, half);
@@ -156,7 +156,7 @@ static void checks_in_vain_wait(void **state) {
     states c = states_of_sphere(1);
     uint32_t checks = 0;
     for (int i = 0; i < 40; i++) {
-        if (start_states_mark_unproven(&c.starts, unproven) > 0) {
+        if (start_states_mark_unproven(&c.starts, NULL, unproven) > 0) {
             check_with_belt(&c, -0.9, 2);
             checks++;
         }

@@ -101,7 +101,7 @@ static void record_flight(recorded_frames *r, const flight *f) {
         assert_int_equal(
             cscd_detector_find_intersections(detector, CSCD_DOUBLES(x1, COORDINATES / 3), &options, &found),
             CSCD_OK);
-        cscd_contacts kept = {frame->contacts, frame->contact_count, 0};
+        cscd_contacts kept = {.items = frame->contacts, .count = frame->contact_count};
         cscd_contact *copied = frame->contacts;
         recorded_frames_copy(frame, &found, &kept);
         free(copied);

@@ -5,6 +5,7 @@
 #include "runtime/narrow_phase/still_pair.h"
 #include "tests/support/ccd/elementary_generator.h"
 #include "tests/support/ccd/queue_test.h"
+#include "tests/support/collapsed_oracle.h"
 #include "tests/support/packed.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"
@@ -89,6 +90,7 @@ static void leaves_what_moves(void **state) {
 /* ---- steps ------------------------------------------------------------------------------------------------ */
 
 static scene at_rest; /* large; one test at a time */
+static bool collapsed[SCENE_VERTICES_MAX];
 
 static bool touch_by_integers(cscd_contact_kind kind, const uint32_t v[4]) {
     elementary_query query;
@@ -107,6 +109,7 @@ static void expect_next(const cscd_contacts *found, size_t *next, cscd_contact_k
         for (int j = kind == CSCD_CONTACT_VF ? 1 : 2; j < 4 && i < (kind == CSCD_CONTACT_VF ? 1 : 2); j++)
             if (v[i] == v[j]) return;
     }
+    if (collapsed[v[0]] && collapsed[v[3]]) return;
     if (!touch_by_integers(kind, v)) return;
     assert_true(*next < found->count);
     const cscd_contact *c = &found->items[(*next)++];
@@ -115,6 +118,7 @@ static void expect_next(const cscd_contacts *found, size_t *next, cscd_contact_k
 
 static void expect_all(const cscd_mesh *mesh, const cscd_contacts *found) {
     size_t next = 0;
+    collapsed_oracle(&at_rest, at_rest.x0, NULL, collapsed);
     for (uint32_t a = 0; a < at_rest.vertex_count; a++) {
         uint32_t star;
         cscd_mesh_vertex_triangles(mesh, a, &star);

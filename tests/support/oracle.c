@@ -2,6 +2,7 @@
 #include "tests/support/oracle.h"
 
 #include "tests/support/ccd/queue_test.h"
+#include "tests/support/collapsed_oracle.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -53,6 +54,7 @@ typedef struct queued_pairs {
     const scene *scene;
     const separation *limit;   /* NULL for contacts */
     const oracle_rules *rules; /* NULL: the limit is that of all pairs */
+    const bool *collapsed;     /* per vertex, at an end */
     bool apart;                /* with rules: pairs with a distance; else those that must not touch */
     cscd_contact_kind kind;
     edge *edges;
@@ -68,7 +70,15 @@ static double pair_distance(const queued_pairs *w, uint32_t a, uint32_t b) {
     return w->rules->distances[(size_t)first * w->rules->object_count + second];
 }
 
+/* Are both features of components that are collapsed at an end? */
+static bool is_collapsed(const queued_pairs *w, uint32_t a, uint32_t b) {
+    bool vf = w->kind == CSCD_CONTACT_VF;
+    return w->collapsed[vf ? a : w->edges[a].ends[0]] &&
+           w->collapsed[vf ? w->scene->triangles[(size_t)b * 3] : w->edges[b].ends[0]];
+}
+
 static void add_pair(queued_pairs *w, uint32_t a, uint32_t b) {
+    if (is_collapsed(w, a, b)) return;
     if (w->rules != NULL) {
         double distance = pair_distance(w, a, b);
         if (distance < 0.0 || w->apart != (distance > 0.0)) return;
@@ -172,6 +182,9 @@ static int compare_contacts(const void *left, const void *right) {
 }
 
 static void find_both(queued_pairs pairs, oracle_list *out) {
+    static bool collapsed[SCENE_VERTICES_MAX];
+    collapsed_oracle_at_ends(pairs.scene, NULL, collapsed);
+    pairs.collapsed = collapsed;
     find_vf(pairs, out);
     find_ee(pairs, out);
     if (out->count > 0) qsort(out->items, out->count, sizeof *out->items, compare_contacts);

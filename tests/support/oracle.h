@@ -17,7 +17,7 @@ typedef struct oracle_list {
     size_t count, capacity;
 } oracle_list;
 
-/* Gives all VF and EE pairs without a common vertex to the feature queue, in random order and on every
+/* Gives all VF and EE pairs without a common vertex, but those of two components that are collapsed at an end, to the feature queue, in random order and on every
  * instruction set, without volumes or stars. The list is sorted by (toi, kind, a, b). Edges are numbered as the
  * public API says, but by separate code. */
 void oracle_find(const scene *s, oracle_list *out);
