@@ -152,7 +152,7 @@ static void hidden_things_keep_their_vertices(void **state) {
                              : RUN_TOOL("check", path.text, path.text, "--fps", "8");
         assert_int_equal(run.code, 0);
         expect_text(run.out, "Frames 1 to 2 cross (2 of 4)", true);
-        expect_text(run.out, "worst: Prop x Appears, ", true);
+        expect_text(run.out, "1 event, Prop x Appears, ", true);
         expect_text(run.error, "7 vertices that lie on others in the first frame come apart later", i != 1);
         tool_run_free(&run);
     }

@@ -55,6 +55,33 @@ static void write_event(const answers *a, const cscd_event *event, json *out) {
     json_end_object(out);
 }
 
+static void write_spans(const answers *a, const char *name, const frame_list *list, json *out) {
+    const frame_answer *frames = answers_frames(a);
+    json_begin_array(out, name);
+    for (uint32_t i = 0; i < list->count; i++) {
+        json_begin_array(out, NULL);
+        json_signed(out, NULL, answers_frame_number(a, frames[list->spans[i].first].frame));
+        json_signed(out, NULL, answers_frame_number(a, frames[list->spans[i].last].frame));
+        json_end_array(out);
+    }
+    json_end_array(out);
+}
+
+/* What has no surface, and when. */
+static void write_collapsed(const answers *a, json *out) {
+    json_begin_array(out, "collapsed");
+    for (uint32_t i = 0; i < a->parts->count; i++) {
+        const collapsed_part *frames = collapsed_parts_at(&a->collapsed, i);
+        if (frames == NULL) continue;
+        json_begin_object(out, NULL);
+        json_string(out, "part", part_names_at(a->parts, i));
+        write_spans(a, "whole", &frames->whole, out);
+        write_spans(a, "partly", &frames->partly, out);
+        json_end_object(out);
+    }
+    json_end_array(out);
+}
+
 void answers_write_json(const answers *a, const length_unit *unit, json *out) {
     if (unit->name != NULL)
         json_string(out, "unit", unit->name);
@@ -65,6 +92,7 @@ void answers_write_json(const answers *a, const length_unit *unit, json *out) {
     json_end_array(out);
     json_break_line(out);
     turned_parts_write(&a->turned, out);
+    write_collapsed(a, out);
 }
 
 void answers_write_frame(const answers *a, const frame_answer *frame, json *out) {

@@ -1,22 +1,9 @@
-/* The answers for people: a sentence first, then the events, the worst first. */
+/* The answers for people: the sentence. */
 #include "src/tool/answers/answer_words.h"
 
 #include <string.h>
 
-enum { SPANS_SAID = 6, EVENTS_SHOWN = 20, NAME_WIDTH_MAX = 60 };
-
-#define CROSSING cscd_intersection_set(CSCD_INTERSECTION_CROSSING)
-
-/* Is there one frame, and was no other one asked for? */
-static bool is_single(const answers *a) {
-    return answers_frame_count(a) == 1 && a->wanted <= 1;
-}
-
-typedef bool frame_test(const frame_answer *frame);
-
-static bool frame_checked(const frame_answer *frame) {
-    return frame->checked;
-}
+enum { SPANS_SAID = 6 };
 
 static bool frame_overlaps(const frame_answer *frame) {
     return frame->crossing == 0 && frame_answer_crosses(frame);
@@ -26,14 +13,6 @@ static bool frame_touches(const frame_answer *frame) {
     return !frame_answer_crosses(frame) && frame->touching > 0;
 }
 
-static size_t count_frames(const answers *a, frame_test *test) {
-    size_t count = 0;
-    for (size_t i = 0; i < answers_frame_count(a); i++) count += test(&answers_frames(a)[i]);
-    return count;
-}
-
-/* Prints "17 to 43, 45, 47 to 48": the frames that pass, in their order. Frames that follow each other in what was looked
- * at make a range. */
 static void say_frames(FILE *out, const answers *a, frame_test *test) {
     const frame_answer *frames = answers_frames(a);
     size_t spans = 0;
@@ -50,36 +29,13 @@ static void say_frames(FILE *out, const answers *a, frame_test *test) {
     }
 }
 
-/* ---- names ------------------------------------------------------------------------------------------- */
-
-/* Columns that a text takes in a terminal, but for wide characters: characters, not bytes. */
-static int text_width(const char *text) {
-    int width = 0;
-    for (; *text != '\0'; text++) width += ((unsigned char)*text & 0xc0) != 0x80;
-    return width;
-}
-
-/* "A x B", or "A x itself". */
-static const char *second_name(const answers *a, uint32_t first, uint32_t second) {
-    return first == second ? "itself" : part_names_at(a->parts, second);
-}
-
-static int pair_width(const answers *a, uint32_t first, uint32_t second) {
-    return text_width(part_names_at(a->parts, first)) + 3 + text_width(second_name(a, first, second));
-}
-
-/* Filled with blanks. */
-static void print_pair(FILE *out, const answers *a, uint32_t first, uint32_t second, int width) {
-    fprintf(out, "%s x %s", part_names_at(a->parts, first), second_name(a, first, second));
-    fprintf(out, "%*s", width > pair_width(a, first, second) ? width - pair_width(a, first, second) : 0, "");
-}
-
 /* ---- the sentence --------------------------------------------------------------------------------------- */
 
 static void say_recording(FILE *out, const answers *a) {
-    const size_t checked = count_frames(a, frame_checked);
-    const size_t crossing = count_frames(a, frame_answer_crosses), touching = count_frames(a, frame_touches);
-    const char *more = count_frames(a, frame_overlaps) > 0 ? " or overlap" : "";
+    const size_t checked = answers_count(a, frame_answer_checked);
+    const size_t crossing = answers_count(a, frame_answer_crosses),
+                 touching = answers_count(a, frame_touches);
+    const char *more = answers_count(a, frame_overlaps) > 0 ? " or overlap" : "";
     if (checked == 0)
         fprintf(out, "No frame was checked.");
     else if (crossing == checked)
@@ -138,6 +94,10 @@ static const char *say_overlaps(FILE *out, const frame_answer *frame, const char
 
 static void say_frame(FILE *out, const answers *a) {
     const frame_answer *frame = answers_frames(a);
+    if (frame->without_area) {
+        fprintf(out, "No triangle has an area.");
+        return;
+    }
     if (!frame_answer_meets(frame) && !frame_answer_crosses(frame)) {
         fprintf(out, frame->duplicates > 0 ? "no two others cross or touch."
                      : frame->depth > 0.0  ? "No two triangles cross or touch, but something lies inside."
@@ -159,7 +119,7 @@ static void say_frame(FILE *out, const answers *a) {
  * is, the sentence goes on. */
 static void say_duplicates(FILE *out, const answers *a) {
     const frame_answer *first = answers_frames(a);
-    const bool goes_on = is_single(a) && !frame_answer_meets(first) && !frame_answer_crosses(first);
+    const bool goes_on = answers_single(a) && !frame_answer_meets(first) && !frame_answer_crosses(first);
     const char *end = goes_on ? ";" : ".";
     size_t most = 0;
     for (size_t i = 0; i < answers_frame_count(a); i++)
@@ -175,7 +135,8 @@ static void say_measure(FILE *out, const cscd_event *event, const length_unit *u
     else if (event->kinds & CSCD_EVENT_SAME_SOLID)
         fprintf(out, ", one solid twice");
     else if (event->length > 0.0)
-        fprintf(out, ", %s along %s", event->kinds & CROSSING ? "crossing" : "touching",
+        fprintf(out, ", %s along %s",
+                event->kinds & cscd_intersection_set(CSCD_INTERSECTION_CROSSING) ? "crossing" : "touching",
                 length_text(event->length, unit, text));
     else if (event->pairs == 0)
         fprintf(out, ", contacts only");
@@ -183,8 +144,8 @@ static void say_measure(FILE *out, const cscd_event *event, const length_unit *u
 
 /* "A x B, frames 21 to 29, 12.4 mm deep at frame 24". */
 static void say_event(FILE *out, const answers *a, const cscd_event *event, const length_unit *unit) {
-    const bool single = is_single(a);
-    print_pair(out, a, event->a, event->b, 0);
+    const bool single = answers_single(a);
+    fprintf(out, "%s x %s", part_names_at(a->parts, event->a), answers_second_name(a, event->a, event->b));
     if (single) {
         say_measure(out, event, unit);
         return;
@@ -206,11 +167,12 @@ void answers_print_worst(FILE *out, const answers *a, const length_unit *unit) {
 static bool say_unfinished(FILE *out, const answers *a) {
     const char *reason = answers_unfinished(a);
     if (reason == NULL) return false;
-    const size_t checked = count_frames(a, frame_checked), wanted = a->wanted > 0 ? a->wanted : checked;
+    const size_t checked = answers_count(a, frame_answer_checked),
+                 wanted = a->wanted > 0 ? a->wanted : checked;
     const size_t length = strlen(reason);
     fprintf(out, "Not finished: %s%s %zu of %zu frame%s checked", reason,
             length > 0 && reason[length - 1] == '.' ? "" : ".", checked, wanted, wanted == 1 ? "" : "s");
-    const bool found = count_frames(a, frame_answer_clean) < checked || a->event_count > 0;
+    const bool found = answers_count(a, frame_answer_clean) < checked || a->event_count > 0;
     fprintf(out, checked == 0 || found ? "." : ", clean so far.");
     if (found) fputc(' ', out);
     return !found;
@@ -244,8 +206,53 @@ static void say_animations(FILE *out, const answers *a) {
     }
 }
 
+/* ---- what has no surface ---------------------------------------------------------------------------------- */
+
+enum { COLLAPSED_SAID = 5 };
+
+/* " in frames 2 to 3, 5"; nothing for a single mesh. */
+static void say_places(FILE *out, const answers *a, const frame_list *list) {
+    const frame_answer *frames = answers_frames(a);
+    if (answers_single(a)) return;
+    fprintf(out, " in frame%s", frame_list_frames(list) > 1 ? "s" : "");
+    for (uint32_t i = 0; i < list->count && i < SPANS_SAID; i++) {
+        const frame_span *span = &list->spans[i];
+        fprintf(out, "%s%d", i > 0 ? ", " : " ", answers_frame_number(a, frames[span->first].frame));
+        if (span->last > span->first)
+            fprintf(out, " to %d", answers_frame_number(a, frames[span->last].frame));
+    }
+    if (list->count > SPANS_SAID) fprintf(out, " and others");
+}
+
+/* "Smoke has no surface in frames 2 to 3 (all its triangles have no area), and was not looked at there." */
+static void say_collapsed(FILE *out, const answers *a, uint32_t part, const collapsed_part *frames) {
+    const char *there = answers_single(a) ? "" : " there";
+    if (frames->whole.count > 0) {
+        fprintf(out, " %s has no surface", part_names_at(a->parts, part));
+        say_places(out, a, &frames->whole);
+        fprintf(out, " (all its triangles have no area), and was not looked at%s.", there);
+    }
+    if (frames->partly.count > 0) {
+        fprintf(out, " Some pieces of %s have no surface", part_names_at(a->parts, part));
+        say_places(out, a, &frames->partly);
+        fprintf(out, " (all their triangles have no area), and were not looked at%s.", there);
+    }
+}
+
+static void say_what_has_collapsed(FILE *out, const answers *a) {
+    uint32_t said = 0;
+    for (uint32_t i = 0; i < a->parts->count; i++) {
+        const collapsed_part *frames = collapsed_parts_at(&a->collapsed, i);
+        if (frames == NULL) continue;
+        if (++said <= COLLAPSED_SAID) say_collapsed(out, a, i, frames);
+    }
+    if (said > COLLAPSED_SAID)
+        fprintf(out, " So it is with %u other part%s.", said - COLLAPSED_SAID,
+                said > COLLAPSED_SAID + 1 ? "s" : "");
+}
+
 void answers_print_sentence(FILE *out, const answers *a, const length_unit *unit) {
-    const bool single = is_single(a);
+    const bool single = answers_single(a);
     const bool said = say_unfinished(out, a);
     if (!said) say_duplicates(out, a);
     if (!said && single) say_frame(out, a);
@@ -259,93 +266,6 @@ void answers_print_sentence(FILE *out, const answers *a, const length_unit *unit
     }
     say_range(out, a);
     say_animations(out, a);
+    say_what_has_collapsed(out, a);
     fputc('\n', out);
-}
-
-/* ---- tables --------------------------------------------------------------------------------------------- */
-
-/* What an event is, in a word: that which weighs most. */
-static const char *event_word(const cscd_event *event) {
-    if (event->kinds & CROSSING) return "cross";
-    if (event->depth > 0.0) return event->pairs > 0 ? "overlap" : "inside";
-    if (event->kinds & CSCD_EVENT_SAME_SOLID) return "copies";
-    return event->pairs > 0 ? "touch" : "contact";
-}
-
-static void print_length(double length, const length_unit *unit) {
-    char text[LENGTH_TEXT_SIZE];
-    printf("  %9s", length > 0.0 ? length_text(length, unit, text) : "-");
-}
-
-static void print_event(const answers *a, const cscd_event *event, const length_unit *unit, int width) {
-    char frames[32];
-    print_pair(stdout, a, event->a, event->b, width);
-    printf("  %-7s", event_word(event));
-    if (!is_single(a)) {
-        if (event->last_frame > event->first_frame)
-            snprintf(frames, sizeof frames, "%d to %d", answers_frame_number(a, event->first_frame),
-                     answers_frame_number(a, event->last_frame));
-        else
-            snprintf(frames, sizeof frames, "%d", answers_frame_number(a, event->first_frame));
-        printf("  %-14s  %6d", frames, answers_frame_number(a, event->worst_frame));
-    }
-    print_length(event->depth, unit);
-    print_length(event->length, unit);
-    printf("  %7llu  %8llu\n", (unsigned long long)event->pairs, (unsigned long long)event->contacts);
-}
-
-static int widest_pair(const answers *a, size_t shown) {
-    int width = text_width("parts");
-    for (size_t i = 0; i < shown; i++) {
-        const cscd_event *event = &a->events[a->worst_first[i]];
-        const int own = pair_width(a, event->a, event->b);
-        if (own > width) width = own;
-    }
-    return width < NAME_WIDTH_MAX ? width : NAME_WIDTH_MAX;
-}
-
-void answers_print_events(const answers *a, const length_unit *unit) {
-    const size_t shown = a->event_count < EVENTS_SHOWN ? a->event_count : EVENTS_SHOWN;
-    if (shown == 0) return;
-    const int width = widest_pair(a, shown);
-    printf("\n%-*s  %-7s", width, "parts", "what");
-    if (!is_single(a)) printf("  %-14s  %6s", "frames", "worst");
-    printf("  %9s  %9s  %7s  %8s\n", "depth", "length", "pairs", "contacts");
-    for (size_t i = 0; i < shown; i++) print_event(a, &a->events[a->worst_first[i]], unit, width);
-    if (shown < a->event_count)
-        printf("and %zu more; --events OUT.csv writes all of them\n", a->event_count - shown);
-}
-
-static void print_frame(const answers *a, const frame_answer *frame, const length_unit *unit) {
-    const double triangles = cscd_mesh_triangle_count(a->recording->mesh);
-    printf("%8d  %9zu  %9zu  %8.3f %%", answers_frame_number(a, frame->frame), frame->crossing,
-           frame->touching, triangles > 0.0 ? 100.0 * frame->crossing_faces / triangles : 0.0);
-    print_length(frame->depth, unit);
-    printf("  %10.3f  ", frame->ms);
-    print_pair(stdout, a, frame->worst_parts[0], frame->worst_parts[1], 0);
-    putchar('\n');
-}
-
-/* Duplicates alone make no row. */
-static bool frame_has_row(const frame_answer *frame) {
-    return frame_answer_meets(frame) || frame_answer_crosses(frame);
-}
-
-void answers_print_frames(const answers *a, const length_unit *unit) {
-    const size_t checked = count_frames(a, frame_checked), clean = count_frames(a, frame_answer_clean);
-    const bool any_row = count_frames(a, frame_has_row) > 0;
-    if (any_row)
-        printf("\n%8s  %9s  %9s  %10s  %9s  %10s  %s\n", "frame", "crossing", "touching", "share", "depth",
-               "ms", "worst");
-    double ms = 0.0;
-    for (size_t i = 0; i < answers_frame_count(a); i++) {
-        const frame_answer *frame = &answers_frames(a)[i];
-        ms += frame->ms;
-        if (frame_has_row(frame)) print_frame(a, frame, unit);
-    }
-    if (any_row)
-        printf("crossing, touching: pairs of triangles; share: of the triangles that cross another one\n");
-    if (checked > 0)
-        printf("%zu of %zu frames are clean; a frame took %.3f ms on average\n", clean, checked,
-               ms / (double)checked);
 }

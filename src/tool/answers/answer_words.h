@@ -1,4 +1,4 @@
-/* The answers for people: a sentence first, then the events, the worst first. */
+/* The answers for people: a sentence, which comes first. */
 #pragma once
 
 #include "src/tool/answers/answers.h"
@@ -17,10 +17,3 @@ void answers_print_sentence(FILE *out, const answers *a, const length_unit *unit
 
 /* Prints the worst event as the sentence has it, "A x B, 12.4 mm deep"; there is one. */
 void answers_print_worst(FILE *out, const answers *a, const length_unit *unit);
-
-/* Prints on the standard output a row for each event, as many as a screen holds; nothing where there is none. */
-void answers_print_events(const answers *a, const length_unit *unit);
-
-/* The same for each frame that crosses or touches (pairs, share of the triangles that cross another one, depth,
- * milliseconds), and how many are clean. */
-void answers_print_frames(const answers *a, const length_unit *unit);

@@ -31,6 +31,7 @@ bool answers_open(recording *r, const ignore_pairs *ignored, bool depths, answer
                  .orientation = ignored->parts.named ? CSCD_ORIENTATION_BY_PART : CSCD_ORIENTATION_BY_OBJECT,
                  .depth_limit = (double)INFINITY,
                  .shown = shown_depths_of(ignored),
+                 .collapsed = collapsed_parts_of(r, &ignored->parts),
                  .frames = growable_of(sizeof(frame_answer))};
     a.seen = io_zeroed(((size_t)cscd_mesh_triangle_count(r->mesh) + 1) * sizeof *a.seen);
     if (a.seen == NULL || !turned_parts_open(r, a.parts, &a.turned)) {
@@ -50,6 +51,7 @@ void answers_close(answers *a) {
     growable_free(&a->frames);
     shown_depths_free(&a->shown);
     turned_parts_close(&a->turned);
+    if (a->parts != NULL) collapsed_parts_free(&a->collapsed);
     free(a->events);
     free(a->worst_first);
     free(a->seen);
@@ -87,6 +89,12 @@ const frame_answer *answers_frames(const answers *a) {
 
 size_t answers_frame_count(const answers *a) {
     return a->frames.count;
+}
+
+size_t answers_count(const answers *a, frame_test *test) {
+    size_t count = 0;
+    for (size_t i = 0; i < answers_frame_count(a); i++) count += test(&answers_frames(a)[i]);
+    return count;
 }
 
 bool answers_add_contacts(answers *a, const cscd_contacts *contacts, io_error *error) {
@@ -197,7 +205,11 @@ bool answers_add_found(answers *a, uint32_t frame, cscd_intersection_pairs *foun
     added->touching = found->coplanar + found->folded + found->touching;
     added->duplicates = found->duplicate;
     added->ms = ms;
+    added->without_area =
+        found->collapsed > 0 && found->collapsed == cscd_mesh_component_count(a->recording->mesh);
     count_faces(a, found, added);
+    if (!collapsed_parts_add(&a->collapsed, (uint32_t)a->frames.count - 1, found))
+        return io_fail(error, "out of memory");
     find_worst(&a->shown, found, added);
     return cscd_event_tracker_add_frame(a->tracker, frame, found) == CSCD_OK || api_failed(a, error);
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "src/io/growable.h"
+#include "src/tool/answers/collapsed_parts.h"
 #include "src/tool/answers/shown_depths.h"
 #include "src/tool/answers/turned_parts.h"
 
@@ -20,6 +21,7 @@ typedef struct frame_answer {
     size_t inside;   /* or one is inside the other, */
     size_t same;     /* or both are copies of one solid */
     double depth, bound;     /* the greatest depth, 0: none is known; and no point is deeper than the bound */
+    bool without_area;       /* no triangle has an area, so that nothing could be looked at */
     uint32_t worst_parts[2]; /* of the worst, in the order of events (event_order.h) */
     double ms;               /* how long it took */
 } frame_answer;
@@ -32,8 +34,9 @@ typedef struct answers {
     cscd_orientation orientation;
     shown_depths shown; /* of the frame found last */
     turned_parts turned;
-    growable frames;    /* frame_answer, in their order */
-    cscd_event *events; /* when finished: by their first frames; frames are indices */
+    collapsed_parts collapsed; /* parts without a surface; their frames are places in `frames` */
+    growable frames;           /* frame_answer, in their order */
+    cscd_event *events;        /* when finished: by their first frames; frames are indices */
     size_t event_count;
     size_t *worst_first; /* places of events */
     cscd_event_tracker *tracker;
@@ -90,9 +93,27 @@ bool answers_finish(answers *a, io_error *error);
 const frame_answer *answers_frames(const answers *a);
 size_t answers_frame_count(const answers *a);
 
+/* How many of them pass. */
+typedef bool frame_test(const frame_answer *frame);
+size_t answers_count(const answers *a, frame_test *test);
+
+/* Is there one frame, and was no other one asked for? */
+static inline bool answers_single(const answers *a) {
+    return answers_frame_count(a) == 1 && a->wanted <= 1;
+}
+
+/* What stands behind the x of "A x B", or of "A x itself". */
+static inline const char *answers_second_name(const answers *a, uint32_t first, uint32_t second) {
+    return first == second ? "itself" : part_names_at(a->parts, second);
+}
+
 /* What the artist calls a frame, given by its index. */
 static inline int32_t answers_frame_number(const answers *a, uint64_t frame) {
     return a->recording->frame_numbers[frame];
+}
+
+static inline bool frame_answer_checked(const frame_answer *frame) {
+    return frame->checked;
 }
 
 /* Does any pair of triangles in the frame intersect or touch, duplicates aside? */
@@ -107,6 +128,6 @@ static inline bool frame_answer_crosses(const frame_answer *frame) {
 
 /* Was the frame looked at, and nothing found in it: no pair of triangles, no triangle that is there twice, nothing inside of anything? */
 static inline bool frame_answer_clean(const frame_answer *frame) {
-    return frame->checked && !frame_answer_meets(frame) && !frame_answer_crosses(frame) &&
-           frame->duplicates == 0;
+    return frame->checked && !frame->without_area && !frame_answer_meets(frame) &&
+           !frame_answer_crosses(frame) && frame->duplicates == 0;
 }

@@ -1,6 +1,7 @@
 /* A run of `cscd check`: frame by frame, what intersects. */
 #include "src/tool/check/check_run.h"
 
+#include "src/tool/answers/answer_tables.h"
 #include "src/tool/answers/answer_words.h"
 #include "src/tool/check/check_output.h"
 #include "src/tool/common/command.h"

@@ -1,6 +1,7 @@
 /* What a replay says to people. */
 #include "src/tool/replay/replay_print.h"
 
+#include "src/tool/answers/answer_tables.h"
 #include "src/tool/answers/answer_words.h"
 #include "src/tool/common/methods.h"
 

@@ -118,6 +118,7 @@ void step_bytes_add_frame(packed_bytes *out, const frame_check *check, uint32_t 
     packed_bytes_add(out, &check->ms, sizeof check->ms);
     packed_bytes_add(out, f, sizeof *f);
     packed_bytes_add_array(out, f->items, f->count, sizeof *f->items);
+    packed_bytes_add_array(out, f->collapsed_components, f->collapsed, sizeof *f->collapsed_components);
     if (f->curves != NULL) add_curves(out, f->curves);
     if (f->depths != NULL) add_depths(out, f->depths);
     if (f->parts != NULL) add_parts(out, f->parts);
@@ -126,6 +127,7 @@ void step_bytes_add_frame(packed_bytes *out, const frame_check *check, uint32_t 
 }
 
 static void take_found(packed_reader *in, uint64_t has, step_place *place, cscd_intersection_pairs *f) {
+    size_t collapsed;
     packed_reader_copy(in, f, sizeof *f);
     f->patches = NULL;
     f->overlaps = NULL;
@@ -134,6 +136,8 @@ static void take_found(packed_reader *in, uint64_t has, step_place *place, cscd_
     f->depths = has & HAS_DEPTHS ? &place->depths : NULL;
     f->parts = has & HAS_PARTS ? &place->parts : NULL;
     f->items = packed_reader_take_array(in, &f->count, sizeof *f->items);
+    f->collapsed_components = packed_reader_take_array(in, &collapsed, sizeof *f->collapsed_components);
+    f->collapsed = (uint32_t)collapsed;
     if (has & HAS_CURVES) take_curves(in, &place->curves);
     if (has & HAS_DEPTHS) take_depths(in, &place->depths);
     if (has & HAS_PARTS) take_parts(in, &place->parts);

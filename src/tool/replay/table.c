@@ -3,9 +3,10 @@
 
 #include <stdio.h>
 
+/* A component without a surface is told of by itself. */
 static bool all_complete(const cscd_guarantee *guarantees, const cscd_mesh *mesh) {
     for (uint32_t i = 0; i < cscd_mesh_component_count(mesh); i++) {
-        if (!guarantees[i].complete) return false;
+        if (!guarantees[i].complete && guarantees[i].reason != CSCD_REASON_COLLAPSED) return false;
     }
     return true;
 }

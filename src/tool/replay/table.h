@@ -22,7 +22,7 @@ typedef struct replay_totals {
     uint32_t frames_checked, frames_crossing, frames_touching; /* touching: and not crossing */
     int32_t first_contact_frame;
     uint32_t contradictions;     /* clean intervals that end in an intersection: contacts that were lost */
-    uint32_t intervals_complete; /* every component's contacts are complete */
+    uint32_t intervals_complete; /* every component's contacts are complete, or it is collapsed */
     cscd_timings time_sum, time_max;
     cscd_counters counter_sum, counter_max; /* of the counters that have a row in stages.h */
 } replay_totals;
