@@ -24,12 +24,33 @@ static bool are_neighbours(const cscd_mesh *mesh, cscd_contact_kind kind, uint32
     return a == b && (kind == CSCD_CONTACT_VV || kind == CSCD_CONTACT_TT);
 }
 
-/* Adds a pair, unless it is a vertex in common, which is never looked at. */
+static uint32_t star_size(const cscd_mesh *mesh, uint32_t vertex) {
+    return mesh->vertex_star_offsets[vertex + 1] - mesh->vertex_star_offsets[vertex];
+}
+
+/* Edges at a vertex have the numbers 0 to this one; some are listed twice. */
+static uint32_t sides_at(const cscd_mesh *mesh, uint32_t vertex) {
+    return 3 * star_size(mesh, vertex) + wires_at_vertex(mesh, vertex);
+}
+
+/* No triangle has the vertex, no wire, and it is no point: it may have lost its last triangle by the change. */
+static bool is_of_nothing(const cscd_mesh *mesh, uint32_t vertex) {
+    return sides_at(mesh, vertex) == 0 &&
+           mesh->objects[cscd_mesh_vertex_object(mesh, vertex)].kind != CSCD_OBJECT_POINTS;
+}
+
+/* A vertex in common, and a vertex of nothing. */
+static bool is_never_looked_at(const cscd_mesh *mesh, cscd_contact_kind kind, uint32_t a, uint32_t b) {
+    if ((kind == CSCD_CONTACT_VF || kind == CSCD_CONTACT_VH) && is_of_nothing(mesh, a)) return true;
+    return are_neighbours(mesh, kind, a, b);
+}
+
+/* Adds a pair, unless it is one that is never looked at. */
 static bool add_pair(const cscd_mesh *mesh, named_pair_set *set, cscd_contact_kind kind, uint32_t a,
                      uint32_t b) {
     bool alike = kind == CSCD_CONTACT_EE || kind == CSCD_CONTACT_VV || kind == CSCD_CONTACT_TT;
     bool ordered = !alike || a < b;
-    return are_neighbours(mesh, kind, a, b) ||
+    return is_never_looked_at(mesh, kind, a, b) ||
            named_pair_set_add(mesh->context, set, kind, ordered ? a : b, ordered ? b : a);
 }
 
@@ -129,15 +150,6 @@ static bool list_seams(const cscd_mesh_change *change, const uint32_t *names, cs
     return made;
 }
 
-static uint32_t star_size(const cscd_mesh *mesh, uint32_t vertex) {
-    return mesh->vertex_star_offsets[vertex + 1] - mesh->vertex_star_offsets[vertex];
-}
-
-/* Edges at a vertex have the numbers 0 to this one; some are listed twice. */
-static uint32_t sides_at(const cscd_mesh *mesh, uint32_t vertex) {
-    return 3 * star_size(mesh, vertex) + wires_at_vertex(mesh, vertex);
-}
-
 /* Sides of its triangles, and wires; UINT32_MAX: a side that the vertex is not on. */
 static uint32_t side_at(const cscd_mesh *mesh, uint32_t vertex, uint32_t i) {
     uint32_t sides = 3 * star_size(mesh, vertex);
@@ -168,11 +180,10 @@ static bool part_triangles(const cscd_mesh *mesh, uint32_t v, uint32_t w, named_
     return true;
 }
 
-/* The vertex itself, from the features at another one. A vertex of nothing takes no part. */
+/* The vertex itself, from the features at another one. */
 static bool part_vertex(const cscd_mesh *mesh, uint32_t v, uint32_t w, named_pair_set *out) {
     uint32_t of_w = cscd_mesh_vertex_object(mesh, w);
     bool is_point = mesh->objects[cscd_mesh_vertex_object(mesh, v)].kind == CSCD_OBJECT_POINTS;
-    if (!is_point && sides_at(mesh, v) == 0) return true;
     for (uint32_t i = mesh->vertex_star_offsets[w]; i < mesh->vertex_star_offsets[w + 1]; i++) {
         if (!add_pair(mesh, out, CSCD_CONTACT_VF, v, mesh->vertex_stars[i])) return false;
     }

@@ -102,7 +102,7 @@ static void settle_model(cscd_detector *expected) {
 static void equals_a_new_detector(void **state) {
     (void)state;
     size_t contacts = 0, culled = 0, waited = 0;
-    for (uint64_t seed = 0; seed < 150; seed++) {
+    for (uint64_t seed = 0; seed < 170; seed++) {
         counting_allocator counter = counting_allocator_start();
         cscd_context *context = counted_context(&counter);
         bool plain = seed % 3 == 0;

@@ -4,6 +4,7 @@
 #include "tests/support/packed.h"
 #include "tests/support/test.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -220,9 +221,57 @@ static void tear_where_all_is_sewn(void **state) {
     cscd_context_destroy(scene.context);
 }
 
+/* A cloth loses the triangle, and a rope the wire, at a vertex that was sewn to a triangle and to the ground: what is left of
+ * nothing waits no more, whether positions were seen between the two changes or not. */
+static void vertices_of_nothing_wait_no_more(void **state) {
+    static const uint32_t cloth[6] = {0, 1, 2, 1, 3, 2}, rope[4] = {0, 1, 1, 2}, other[3] = {0, 1, 2};
+    static const uint32_t seams[10] = {3, 7, 3, 10, 6, 10, 2, 10, 5, 10};
+    static const double up[3] = {0, 0, 1};
+    const double x[] = {0, 0, 1, 1, 0, 1, 0, 1, 0, 1, 1, 0, 3, 0, 1, 3, 1,
+                        0, 3, 2, 0, 1, 1, 0, 2, 1, 1, 1, 2, 1, 0, 0, 0};
+    (void)state;
+    const cscd_object_desc descs[4] = {cscd_object_of_triangles(4, 2, cloth),
+                                       cscd_object_of_wires(3, 2, rope),
+                                       cscd_object_of_triangles(3, 1, other), cscd_object_half_space(up)};
+    const cscd_object_desc less[2] = {cscd_object_of_triangles(4, 1, cloth),
+                                      cscd_object_of_wires(3, 1, rope)};
+    const cscd_object_change losses[2] = {{.object = 0, .desc = &less[0]}, {.object = 1, .desc = &less[1]}};
+    for (int seen = 0; seen < 2; seen++) {
+        cscd_mesh *mesh = NULL;
+        cscd_mesh_change *change = NULL;
+        cscd_detector *detector = NULL, *fresh = NULL;
+        cscd_contacts found, expected;
+        assert_int_equal(cscd_context_create(NULL, &scene.context), CSCD_OK);
+        expect_ok(cscd_mesh_create(scene.context, descs, 4, &mesh));
+        cscd_detector_options options = cscd_detector_defaults();
+        options.seams = seams;
+        options.seam_count = 5;
+        options.seam_reach = (double)INFINITY;
+        expect_ok(detector_create_here(mesh, NULL, &options, &detector));
+        expect_ok(step_packed(detector, x, x, &found));
+        assert_int_equal(found.count, 0);
+        expect_ok(cscd_detector_set_seams(detector, NULL, 0));
+        if (seen) expect_ok(step_packed(detector, x, x, &found));
+        const size_t before = found.waiting;
+        expect_ok(cscd_mesh_change_create(scene.context, mesh, losses, 2, &change));
+        expect_ok(cscd_detector_change_mesh(detector, change));
+        expect_ok(detector_create_here(cscd_mesh_change_mesh(change), NULL, NULL, &fresh));
+        expect_ok(step_packed(fresh, x, x, &expected));
+        expect_ok(step_packed(detector, x, x, &found));
+        assert_true(found.count == 0 && expected.count > 0);
+        assert_int_equal(found.waiting, expected.count);
+        if (seen) assert_true(before > found.waiting + 2);
+        cscd_detector_destroy(fresh);
+        cscd_detector_destroy(detector);
+        cscd_mesh_change_destroy(change);
+        cscd_mesh_destroy(mesh);
+        cscd_context_destroy(scene.context);
+    }
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(clones_find_the_same),
-                                       cmocka_unit_test(changed_meshes), cmocka_unit_test(cut_rope),
-                                       cmocka_unit_test(tear_where_all_is_sewn)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(clones_find_the_same), cmocka_unit_test(changed_meshes), cmocka_unit_test(cut_rope),
+        cmocka_unit_test(tear_where_all_is_sewn), cmocka_unit_test(vertices_of_nothing_wait_no_more)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
