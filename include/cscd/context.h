@@ -33,7 +33,8 @@ typedef enum cscd_status {
     CSCD_BROKEN,        /* a callback has left a call with this context by an exception or longjmp */
     CSCD_NULL_OBJECT,   /* an object that the call needs is NULL. There may be no context then that could
                             * hold a sentence, so cscd_context_detail is what it was before */
-    CSCD_LIST_TOO_LONG, /* there is more to list than longest_list allows: cscd_detector_options */
+    CSCD_LIST_TOO_LONG, /* there is more to list than longest_list allows (cscd_detector_options), or max_memory
+                         * (cscd_intersection_options) */
     CSCD_STATUS_MAX_ENUM = 0x7fffffff
 } cscd_status;
 

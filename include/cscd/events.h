@@ -52,6 +52,10 @@ typedef struct cscd_event_options {
      * What may go on from there is given out only then, or by cscd_event_tracker_finish. false by default. */
     bool later_chunk;
     uint8_t reserved[7];
+
+    /* The most bytes that one frame may take, 0, the default: a quarter of the memory that is free when the tracker is made. See
+     * cscd_event_tracker_add_frame. */
+    size_t max_memory;
 } cscd_event_options;
 
 /* The default options. */
@@ -80,7 +84,9 @@ CSCD_API cscd_status cscd_event_tracker_add_contacts(cscd_event_tracker *tracker
 
 /* Adds a frame, whose number is larger than that of the frame before, and what was found in it; NULL: nothing was looked
  * for. Which events there are follows from pairs, depths and contacts; without curves or depths lengths or depths
- * are 0. INVALID_ARGUMENT: the number is not larger, *found has no list, or it is not of this mesh. */
+ * are 0. INVALID_ARGUMENT: the number is not larger, *found has no list, or it is not of this mesh. LIST_TOO_LONG:
+ * what was found would take more than max_memory; the frame is added as one in which nothing was looked for, without
+ * the contacts that waited for it. */
 CSCD_API cscd_status cscd_event_tracker_add_frame_sized(cscd_event_tracker *tracker, uint64_t frame,
                                                         const cscd_intersection_pairs *found, size_t size);
 static inline cscd_status cscd_event_tracker_add_frame(cscd_event_tracker *tracker, uint64_t frame,

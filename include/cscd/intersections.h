@@ -101,7 +101,30 @@ typedef struct cscd_intersection_options {
     /* For a gate: the deepest points of faces are looked for until each of their depths is above this, or its bound is not.
      * 0 or more; INFINITY by default: 1 % is enough. */
     double depth_limit;
+    /* The most bytes that the call may take for what it finds, beside the pairs; 0, the default: a quarter of the memory that was
+     * free at the first call of this detector. What does not fit is left out, see cscd_left_out. That is decided by how
+     * long lists are, so for one number it is the same for any number of threads, and what is given is what would be given
+     * without any limit. The pairs themselves take up to 64 bytes each beside it; if they alone are more than that, the call
+     * fails with LIST_TOO_LONG. Vertices in the wrong order, as those of a file that was not exported from the same mesh, make
+     * millions of pairs of a few thousand triangles, and what belongs to them would fill any machine. */
+    size_t max_memory;
 } cscd_intersection_options;
+
+/* What a call may leave out because it does not fit max_memory. Later versions may add values. */
+typedef enum cscd_left_out {
+    CSCD_LEFT_OUT_PAIRS, /* not in a list, but counted */
+    CSCD_LEFT_OUT_CURVES,
+    CSCD_LEFT_OUT_PATCHES,
+    CSCD_LEFT_OUT_OVERLAPS,
+    CSCD_LEFT_OUT_CUT_OFFS,
+    CSCD_LEFT_OUT_DEPTHS, /* then curves do not know whether surfaces only touch along them */
+    CSCD_LEFT_OUT_PARTS,
+    CSCD_LEFT_OUT_MAX_ENUM = 0x7fffffff
+} cscd_left_out;
+
+/* The names are "pairs", "curves", "patches", "overlaps", "cut-offs", "depths" and "parts"; static storage,
+ * never NULL. */
+CSCD_API const char *cscd_left_out_name(cscd_left_out answer);
 
 /* The default options. */
 CSCD_API void cscd_intersection_defaults_sized(cscd_intersection_options *out, size_t size);
@@ -141,6 +164,11 @@ typedef struct cscd_intersection_pairs {
     const cscd_part_pairs *parts;
 
     const uint32_t *collapsed_components; /* `collapsed` of them, ascending; NULL: there are none */
+    /* What was asked for and is NULL all the same, because it does not fit max_memory: (uint64_t)1 << CSCD_LEFT_OUT_CURVES,
+     * and so on, joined by |. 0: nothing. */
+    uint64_t left_out;
+    size_t
+        wanted_memory; /* the max_memory with which the first of these would have gone on; more may be needed then */
 } cscd_intersection_pairs;
 
 /* Lists the triangle pairs that intersect or touch at the given positions, and how. options may be NULL. The pairs are
@@ -149,7 +177,8 @@ typedef struct cscd_intersection_pairs {
  * so a duplicate whose triangles have the same three indices does not wait when a change uncovers it. If the search was
  * not to stop early, the call does everything else that cscd_detector_check does: a step that starts here need not check
  * the positions again. Of the timings only check_ms changes; the counters stay those of the last step. INVALID_ARGUMENT:
- * no kind counts, or the answer is unknown. LIST_TOO_LONG: *out then counts all pairs, whatever stop_after is.
+ * no kind counts, or the answer is unknown. LIST_TOO_LONG: the list would be longer than longest_list, or than fits
+ * max_memory; *out then counts all pairs, whatever stop_after is, and what was asked for beside them is left out.
  * CANCELLED: see cscd_progress. An example, the upper sheet laid into the plane of the lower one, which prints "0
  * crossing, 67 coplanar":
  *

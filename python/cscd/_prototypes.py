@@ -120,6 +120,7 @@ _PUBLIC: Dict[str, Tuple[Any, List[Any]]] = {
     "cscd_simd_from_name": (c_bool, [c_char_p, POINTER(c_uint32)]),
     "cscd_contact_kind_name": (c_char_p, [_u32]),
     "cscd_intersection_kind_name": (c_char_p, [_u32]),
+    "cscd_left_out_name": (c_char_p, [_u32]),
     "cscd_curve_end_name": (c_char_p, [_u32]),
     "cscd_detector_body_labels": (_u32, [_p, _p]),
     "cscd_detector_defaults_sized": (None, [_p, _size]),

@@ -59,6 +59,9 @@ class Detector(LiveSettings):
     seam_reach : float, optional
     longest_list : int
         Lists that would be longer raise ``ListTooLong``; 0: any length.
+    max_memory : int
+        The bytes that what is found at one moment may take beside the pairs: curves, depths, sums by parts. What does not
+        fit is left out, and raises ``MemoryError`` where it is asked for. 0: a quarter of the memory that is free.
     coherence : str
         "auto": steps in which little moves test a list of pairs; "off": each looks at the whole mesh.
     threads : int
@@ -84,7 +87,7 @@ class Detector(LiveSettings):
                  step_factor: float = 0.8, floor_ratio: float = 0.9, seams: Any = None, ignored: Any = None,
                  ignore: Optional[Callable[[str, int, int], bool]] = None, rules: Any = None,
                  thickness_matrix: Any = None, seam_reach: float = 0.0, longest_list: int = 0,
-                 coherence: str = "auto", threads: int = 1, simd: str = "auto",
+                 max_memory: int = 0, coherence: str = "auto", threads: int = 1, simd: str = "auto",
                  progress: Optional[Callable[[str, float], Any]] = None, _left_out: Optional[Handle] = None) -> None:
         self._left_out = _left_out  # of a replay; it outlives the detector
         self.mesh: Mesh = mesh if isinstance(mesh, Mesh) else Mesh(as_faces("mesh", mesh))
@@ -92,7 +95,8 @@ class Detector(LiveSettings):
                             min_separation=min_separation, tolerance=tolerance, step_factor=step_factor,
                             floor_ratio=floor_ratio, seams=seams, ignored=ignored, rules=rules,
                             thickness_matrix=thickness_matrix, seam_reach=seam_reach, longest_list=longest_list,
-                            coherence=coherence, threads=threads, simd=simd)
+                            max_memory=count_of("max_memory", max_memory), coherence=coherence, threads=threads,
+                            simd=simd)
         if plan is not None and not isinstance(plan, Plan):
             raise ValueError(f"plan: expected a Plan, got {type(plan).__name__}")
         pointer = self.mesh.pointer
@@ -182,7 +186,7 @@ class Detector(LiveSettings):
             Ends the search at so many pairs; 0: never.
         """
         kind_bits = kind_set(kinds)
-        options = intersection_options(kind_bits, count_of("stop_after", stop_after), False, False, False)
+        options = self._find_options(kind_bits, count_of("stop_after", stop_after), False, False, False)
         views, kept = self._views("x", x)
         host = self._host
         with host.lock:
@@ -194,7 +198,7 @@ class Detector(LiveSettings):
 
     def is_intersecting(self, x: Any, kinds: Any = None) -> bool:
         """Whether there is any pair of these kinds at positions ``x``; the search ends at the first one."""
-        options = intersection_options(kind_set(kinds), 0, True, False, False)
+        options = self._find_options(kind_set(kinds), 0, True, False, False)
         views, kept = self._views("x", x)
         host = self._host
         with host.lock:
@@ -203,7 +207,7 @@ class Detector(LiveSettings):
 
     def _surface_answers(self, positions: Any, parts: bool = False) -> _Surface:
         """Curves and depths, or sums by parts, of which they are a part, of positions that were looked at before."""
-        options = intersection_options(2**64 - 1, 0, False, True, parts)
+        options = self._find_options(2**64 - 1, 0, False, True, parts)
         views, kept = self._views("x", positions if len(positions) > 1 else positions[0])
         host = self._host
         with host.lock:
@@ -325,6 +329,9 @@ class Detector(LiveSettings):
     def _find(self, host: Host, views: Array, options: Array) -> None:
         self._call(host, "intersection_pairs", library.cscdpy_detector_find_intersections, self._detector,
                    address_of(views), address_of(options), self._at["intersection_pairs"])
+
+    def _find_options(self, kinds: int, stop_after: int, any_alone: bool, depths: bool, parts: bool) -> Array:
+        return intersection_options(kinds, stop_after, any_alone, depths, parts, self._inputs["max_memory"])
 
     def _positions_for(self, name: str, out: Optional[Array], kept: Any) -> Array:
         """Where positions are written."""

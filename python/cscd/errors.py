@@ -23,7 +23,7 @@ class Cancelled(Error):
 
 
 class ListTooLong(Error):
-    """A list would have more items than ``longest_list`` allows.
+    """A list would have more items than ``longest_list`` allows, or more pairs of triangles than fit ``max_memory``.
 
     Attributes
     ----------

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Iterable, List, NamedTuple, Optional, Tuple, Union
+from typing import TYPE_CHECKING, Any, Iterable, List, NamedTuple, NoReturn, Optional, Tuple, Union
 
 import numpy as np
 
 from ._arrays import count_of
 from ._library import address_of, copy_items, copy_list, library, new_struct, records, structs
-from .results import INTERSECTION_KINDS
+from .results import INTERSECTION_KINDS, names_of
 
 if TYPE_CHECKING:
     from .detector import Detector
@@ -20,6 +20,9 @@ Array = Any
 
 _NONE = 2**32 - 1
 _LIST, _ANY = 0, 2
+
+#: What a search may leave out: see ``Intersections.left_out``.
+LEFT_OUT = names_of(library.cscd_left_out_name)
 
 
 def kind_set(kinds: Union[None, str, Iterable[str]]) -> int:
@@ -86,6 +89,9 @@ class Intersections:
         self._surface: Optional[_Surface] = None
         #: Of a frame of ``replay``: what was found, summed up by pair of parts.
         self.part_pairs: Optional[PartPairs] = None
+        #: Of a frame of ``replay``: what does not fit ``max_memory``, as ("depths",), and raises ``MemoryError`` where it
+        #: is asked for; ``part_pairs`` is None then. () elsewhere.
+        self.left_out: Tuple[str, ...] = ()
         #: The face that counts as row 0 of each column of ``pairs``.
         self.first_faces: Array = np.zeros(2, np.int64)
         self.triangles: Array = np.stack([pairs["a"], pairs["b"]], axis=1)
@@ -199,19 +205,33 @@ class _Surface:
 
     def __init__(self, found: Array, vertex_count: int, depths: bool, parts: bool) -> None:
         self._lists: Tuple[Array, Array, Array] = (np.empty(0), np.empty(0), np.empty(0))
-        if depths:
+        self._found_depths: Optional[Tuple[Array, Array, Array]] = None
+        self._found_parts: Optional[PartPairs] = None
+        #: What did not fit max_memory, and how many bytes of it would have been enough to go on.
+        self.left_out: Tuple[str, ...] = ()
+        if len(found) == 0:
+            return
+        bits, self._pair_count, self._wanted = (int(found[name][0]) for name in ("left_out", "count", "wanted_memory"))
+        self.left_out = tuple(name for i, name in enumerate(LEFT_OUT) if bits >> i & 1)
+        if depths and "curves" not in self.left_out:
             self._copy_curves(int(found["curves"][0]))
+        if depths and "depths" not in self.left_out:
             self._copy_depths(int(found["depths"][0]), vertex_count)
-        if parts:
+        if parts and "parts" not in self.left_out:
             sums = copy_struct("part_pairs", int(found["parts"][0]))
-            self.parts = copy_items(int(sums["items"]), int(sums["count"]), "part_pair").view(PartPairs)
+            self._found_parts = copy_items(int(sums["items"]), int(sums["count"]), "part_pair").view(PartPairs)
+
+    def _refuse(self, name: str) -> NoReturn:
+        raise MemoryError(f"the {name} of {self._pair_count} pairs of triangles do not fit max_memory, of which "
+                          f"{self._wanted} bytes would be the least to try; are the vertices in another order than those "
+                          "of the faces?")
 
     @classmethod
     def none(cls, vertex_count: int) -> _Surface:
         """Nothing is buried, and there are no curves."""
         found = cls(np.empty(0), vertex_count, False, False)
-        found.depths = np.empty(0, records["depth"]).view(np.recarray)
-        found.buried, found.depth = np.zeros(vertex_count, bool), np.zeros(vertex_count)
+        depths = np.empty(0, records["depth"]).view(np.recarray)
+        found._found_depths = depths, np.zeros(vertex_count, bool), np.zeros(vertex_count)
         return found
 
     def _copy_curves(self, address: int) -> None:
@@ -222,14 +242,39 @@ class _Surface:
 
     def _copy_depths(self, address: int, vertex_count: int) -> None:
         depths = copy_struct("depths", address)
-        self.depths = copy_items(int(depths["items"]), int(depths["count"]), "depth").view(np.recarray)
-        of_vertices = self.depths[: int(depths["vertex_count"])]
-        self.buried = np.zeros(vertex_count, bool)
-        self.buried[of_vertices["vertex"]] = True
-        self.depth = np.zeros(vertex_count)
-        np.maximum.at(self.depth, of_vertices["vertex"], of_vertices["depth"])
+        items = copy_items(int(depths["items"]), int(depths["count"]), "depth").view(np.recarray)
+        of_vertices = items[: int(depths["vertex_count"])]
+        buried, depth = np.zeros(vertex_count, bool), np.zeros(vertex_count)
+        buried[of_vertices["vertex"]] = True
+        np.maximum.at(depth, of_vertices["vertex"], of_vertices["depth"])
+        self._found_depths = items, buried, depth
+
+    def _depths(self) -> Tuple[Array, Array, Array]:
+        if self._found_depths is None:
+            self._refuse("depths")
+        return self._found_depths
+
+    @property
+    def depths(self) -> Array:
+        return self._depths()[0]
+
+    @property
+    def buried(self) -> Array:
+        return self._depths()[1]
+
+    @property
+    def depth(self) -> Array:
+        return self._depths()[2]
+
+    @property
+    def parts(self) -> PartPairs:
+        if self._found_parts is None:
+            self._refuse("sums by parts")
+        return self._found_parts
 
     def curves(self) -> List[Curve]:
+        if "curves" in self.left_out:
+            self._refuse("curves")
         items, points, pieces = self._lists
         return [self._curve(item, points, pieces) for item in items]
 
@@ -251,7 +296,8 @@ def copy_struct(name: str, address: int) -> Any:
     return copy_list(address, 1, structs[name])[0]
 
 
-def intersection_options(kinds: int, stop_after: int, any_alone: bool, depths: bool, parts: bool) -> Array:
+def intersection_options(kinds: int, stop_after: int, any_alone: bool, depths: bool, parts: bool,
+                         max_memory: int) -> Array:
     """Options of the library for one search."""
     options = new_struct("intersection_options")
     library.cscd_intersection_defaults_sized(address_of(options), options.nbytes)
@@ -261,6 +307,7 @@ def intersection_options(kinds: int, stop_after: int, any_alone: bool, depths: b
     options["curves"] = options["patches"] = options["depths"] = depths
     options["part_bodies"] = True
     options["parts"] = parts
+    options["max_memory"] = max_memory
     return options
 
 

@@ -13,7 +13,7 @@ from ._host import Handle, new_handle
 from ._library import address_of, copy_list, items_of, library, new_struct, structs
 from .detector import Detector
 from .errors import Error
-from .intersections import Intersections, _Surface, intersection_options, labels_of
+from .intersections import Intersections, _Surface, labels_of
 from .mesh import Mesh
 from .questions import mesh_of
 from .results import Contacts, Events, copy_records
@@ -185,12 +185,13 @@ class Replay:
         for name, value in self._tracking.items():
             tracking[name] = value
         tracking["part_count"], tracking["labels"] = part_count, address_of(labels)
+        tracking["max_memory"] = self._detector._inputs["max_memory"]
         self._follow_seams(tracking)
         host = self._detector._host
         with host.lock:
             self._tracker = new_handle(host, library.cscd_event_tracker_destroy, library.cscdpy_tracker_create,
                                        self.mesh.pointer, address_of(tracking))
-        self._found_options = intersection_options(2**64 - 1, 0, False, self._depths, True)
+        self._found_options = self._detector._find_options(2**64 - 1, 0, False, self._depths, True)
 
     @staticmethod
     def _is_single(positions: Any) -> bool:
@@ -298,7 +299,8 @@ class Replay:
         answer = Intersections(self.mesh, detector, kept, pairs, False, True)
         if self._depths:
             answer._surface = surface
-        answer.part_pairs = surface.parts
+        answer.part_pairs = surface._found_parts
+        answer.left_out = surface.left_out
         return answer
 
     # ---- events -------------------------------------------------------------------------------------------

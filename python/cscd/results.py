@@ -11,7 +11,7 @@ from ._library import address_of, copy_items, library, records, structs
 __all__ = ["CONTACT_KINDS", "Contacts", "Events", "INTERSECTION_KINDS", "PairContacts", "PairDistances", "Proximities"]
 
 
-def _names(function: Any) -> Tuple[str, ...]:
+def names_of(function: Any) -> Tuple[str, ...]:
     """The names of all kinds, in the order of their codes."""
     names: List[str] = []
     while function(len(names)) != b"unknown":
@@ -20,10 +20,10 @@ def _names(function: Any) -> Tuple[str, ...]:
 
 
 #: The kinds of contacts by their codes: "vf", "ee", ...
-CONTACT_KINDS = _names(library.cscd_contact_kind_name)
+CONTACT_KINDS = names_of(library.cscd_contact_kind_name)
 
 #: The kinds of intersections by their codes: "crossing", "coplanar", "folded", "duplicate", "touching".
-INTERSECTION_KINDS = _names(library.cscd_intersection_kind_name)
+INTERSECTION_KINDS = names_of(library.cscd_intersection_kind_name)
 
 
 class Records(np.recarray):  # type: ignore[type-arg]

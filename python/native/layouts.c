@@ -137,7 +137,8 @@ FIELDS(intersection_options, FIELD(cscd_intersection_options, struct_size),
        FIELD(cscd_intersection_options, patches), FIELD(cscd_intersection_options, overlaps),
        FIELD(cscd_intersection_options, depths), FIELD(cscd_intersection_options, parts),
        FIELD(cscd_intersection_options, cut_offs), FIELD(cscd_intersection_options, part_bodies),
-       FIELD(cscd_intersection_options, orientation), FIELD(cscd_intersection_options, depth_limit))
+       FIELD(cscd_intersection_options, orientation), FIELD(cscd_intersection_options, depth_limit),
+       FIELD(cscd_intersection_options, max_memory))
 FIELDS(intersection_pair, FIELD(cscd_intersection_pair, a), FIELD(cscd_intersection_pair, b),
        FIELD(cscd_intersection_pair, kind), FIELD(cscd_intersection_pair, shared),
        FIELD(cscd_intersection_pair, components), FIELD(cscd_intersection_pair, objects))
@@ -150,7 +151,8 @@ FIELDS(intersection_pairs, FIELD(cscd_intersection_pairs, items), FIELD(cscd_int
        FIELD(cscd_intersection_pairs, curves), FIELD(cscd_intersection_pairs, patches),
        FIELD(cscd_intersection_pairs, overlaps), FIELD(cscd_intersection_pairs, depths),
        FIELD(cscd_intersection_pairs, cut_offs), FIELD(cscd_intersection_pairs, parts),
-       FIELD(cscd_intersection_pairs, collapsed_components))
+       FIELD(cscd_intersection_pairs, collapsed_components), FIELD(cscd_intersection_pairs, left_out),
+       FIELD(cscd_intersection_pairs, wanted_memory))
 FIELDS(curve, FIELD(cscd_curve, first_point), FIELD(cscd_curve, point_count), FIELD(cscd_curve, first_piece),
        FIELD(cscd_curve, piece_count), FIELD(cscd_curve, start), FIELD(cscd_curve, end),
        FIELD(cscd_curve, components), FIELD(cscd_curve, objects), FIELD(cscd_curve, closed),
@@ -225,7 +227,8 @@ FIELDS(pair_distance, FIELD(cscd_pair_distance, distance), FIELD(cscd_pair_dista
 FIELDS(event_options, FIELD(cscd_event_options, struct_size), FIELD(cscd_event_options, rings),
        FIELD(cscd_event_options, gap), FIELD(cscd_event_options, part_count),
        FIELD(cscd_event_options, labels), FIELD(cscd_event_options, seams),
-       FIELD(cscd_event_options, seam_count), FIELD(cscd_event_options, later_chunk))
+       FIELD(cscd_event_options, seam_count), FIELD(cscd_event_options, later_chunk),
+       FIELD(cscd_event_options, max_memory))
 FIELDS(event, FIELD(cscd_event, a), FIELD(cscd_event, b), FIELD(cscd_event, first_frame),
        FIELD(cscd_event, last_frame), FIELD(cscd_event, worst_frame), FIELD(cscd_event, kinds),
        FIELD(cscd_event, pairs), FIELD(cscd_event, depths), FIELD(cscd_event, contacts),

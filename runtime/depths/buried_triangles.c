@@ -17,6 +17,7 @@ static bool index_vertices(listing_work *w) {
     deepest_finder *d = w->finder;
     const size_t count = (size_t)w->mesh->vertex_count + 1;
     const array_list list = {{ARRAY(d->vertex_depths, room_with_spare(count))}};
+    if (!memory_budget_take_all(d->budget, list)) return false;
     if (!context_renew_all(d->context, list, &d->vertex_capacity, count)) return false;
     size_t at = 0;
     for (uint32_t v = 0; v < w->mesh->vertex_count; v++) {
@@ -169,6 +170,7 @@ static int compare_triangles(const void *a, const void *b) {
 
 static bool sort_triangles(deepest_finder *d) {
     const array_list list = {{ARRAY(d->spare_triangles, room_with_spare(d->triangle_count))}};
+    if (!memory_budget_take_all(d->budget, list)) return false;
     if (!context_renew_all(d->context, list, &d->spare_capacity, d->triangle_count)) return false;
     sort_items(d->triangles, d->spare_triangles, d->triangle_count, sizeof *d->triangles, compare_triangles);
     return true;

@@ -18,6 +18,7 @@ void deepest_finder_free(deepest_finder *d) {
 }
 
 bool deepest_finder_grow(deepest_finder *d, void **items, size_t *capacity, size_t count, size_t size) {
+    if (!memory_budget_take(d->budget, 1, MEMORY_WHILE_DOUBLING * size)) return false;
     if (count < *capacity) return true;
     size_t larger = *capacity == 0 ? 64 : 2 * *capacity;
     void *grown = context_grow(d->context, *items, count, larger, size);
@@ -182,6 +183,7 @@ static bool list_flush(deepest_work *w) {
     for (size_t i = 0; i < f->pair_count; i++) count += shares_area(&f->pairs[i]) ? 2 : 0;
     const size_t room = room_with_spare(count);
     const array_list list = {{ARRAY(d->flush, room), ARRAY(d->spare_flush, room)}};
+    if (!memory_budget_take_all(d->budget, list)) return false;
     if (!context_renew_all(d->context, list, &d->flush_capacity, count)) return false;
     d->flush_count = 0;
     for (size_t i = 0; i < f->pair_count; i++) {
@@ -303,6 +305,7 @@ static void find_some(void *data, uint32_t task) {
 
 bool deepest_finder_begin(deepest_finder *d, const depth_facts *facts) {
     deepest_work w = {.finder = d, .facts = facts, .mesh = facts->found->surface->mesh};
+    d->budget = facts->found->budget;
     if (!deepest_finder_list(d, facts)) return false;
     return cut_triangles_open(&w) && list_flush(&w);
 }

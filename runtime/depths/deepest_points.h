@@ -37,6 +37,7 @@ typedef struct deepest_finder {
     size_t flush_count, flush_capacity;
     size_t *vertex_depths; /* per vertex and one more: where its depths begin */
     size_t vertex_capacity;
+    memory_budget *budget; /* of the call; NULL: there is no limit */
 } deepest_finder;
 
 void deepest_finder_free(deepest_finder *d);
@@ -56,7 +57,7 @@ typedef struct depth_facts {
     double rounding; /* what computed depths may be off by */
 } depth_facts;
 
-/* Makes room for one more item of a list. False: no memory. */
+/* Makes room for one more item of a list. False: no memory, or no room in the budget. */
 bool deepest_finder_grow(deepest_finder *d, void **items, size_t *capacity, size_t count, size_t size);
 
 /* Lists the triangles that bodies may contain something of, by groups. False: no memory. */

@@ -35,7 +35,14 @@ typedef struct depth_work {
     double rounding; /* what computed depths may be off by */
 } depth_work;
 
+/* With its answer, and what sorting takes. */
+static bool take_question(const depth_finder *d) {
+    return memory_budget_take(d->outer.budget, 1,
+                              MEMORY_WHILE_DOUBLING * sizeof *d->questions + 2 * sizeof *d->depths);
+}
+
 static bool add_question(depth_finder *d, depth_question question) {
+    if (!take_question(d)) return false;
     if (d->question_count == d->question_capacity) {
         size_t larger = d->question_capacity == 0 ? 64 : 2 * d->question_capacity;
         depth_question *grown =
@@ -334,6 +341,7 @@ static cscd_status find_points(depth_work *work, size_t *vertices) {
 /* Room for as many more depths, behind those of points. */
 static bool reserve_faces(depth_finder *d, size_t points, size_t faces) {
     const size_t count = points + faces;
+    if (!memory_budget_take(d->outer.budget, faces, 2 * sizeof *d->depths + sizeof *d->patches)) return false;
     if (faces > d->patch_capacity || d->patches == NULL) {
         context_free(d->context, d->patches);
         d->patches = context_reserve(d->context, room_with_spare(faces), sizeof *d->patches);

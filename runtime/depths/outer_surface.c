@@ -67,6 +67,7 @@ static void box_parts(outer_box *box, const outer_part *parts, size_t count) {
 }
 
 static bool add_part(outer_surface *o, const outer_part *part) {
+    if (!memory_budget_take(o->budget, 1, MEMORY_WHILE_DOUBLING * sizeof *part)) return false;
     if (o->part_count == o->part_capacity) {
         size_t larger = o->part_capacity == 0 ? 64 : 2 * o->part_capacity;
         outer_part *grown = context_grow(o->context, o->parts, o->part_count, larger, sizeof *grown);
@@ -164,9 +165,12 @@ static bool find_places(outer_surface *o, const surface_cuts *found) {
 bool outer_surface_find(outer_surface *o, const surface_cuts *found, const bvh *f) {
     triangle_cuts *c = &o->cuts;
     o->scale = f->scale;
-    if (!triangle_cuts_sort(c, found->curves)) return false;
-    size_t room = room_with_spare(c->key_count);
-    if (!context_renew_all(o->context, list_of_cuts(o, room), &o->cut_capacity, c->key_count)) return false;
+    o->budget = found->budget;
+    if (!triangle_cuts_sort(c, found)) return false;
+    size_t triangles = found->surface->mesh->triangle_count;
+    size_t most = c->key_count < triangles ? c->key_count : triangles, room = room_with_spare(most);
+    if (!memory_budget_take_all(found->budget, list_of_cuts(o, room))) return false;
+    if (!context_renew_all(o->context, list_of_cuts(o, room), &o->cut_capacity, most)) return false;
     o->part_count = o->cut_count = 0;
     for (size_t begin = 0, end = 0; begin < c->key_count; begin = end) {
         loaded_cut cut;

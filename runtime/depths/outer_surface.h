@@ -31,6 +31,7 @@ typedef struct outer_surface {
     size_t cut_count, cut_capacity;
     uint32_t *places; /* per triangle: its place among those with parts, OUTER_AS_A_WHOLE or OUTER_NOWHERE */
     size_t place_capacity;
+    memory_budget *budget; /* of the call, for parts; NULL: there is no limit */
 } outer_surface;
 
 void outer_surface_free(outer_surface *o);

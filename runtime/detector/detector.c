@@ -195,6 +195,7 @@ cscd_detector *detector_begin(cscd_context *context, const cscd_mesh *mesh) {
 
 void detector_take_options(cscd_detector *d, const cscd_detector *from) {
     d->options = from->options;
+    d->memory_most = from->memory_most;
     d->limit = from->limit;
     d->traits = from->traits;
     d->stages = from->stages;

@@ -81,6 +81,7 @@ struct cscd_detector {
     result_buffer contacts, proximities, intersections;
     result_buffer pairs;             /* intersections by kind */
     result_buffer names;             /* of proximities, while repetitions are found */
+    size_t memory_most;              /* what answers may take, where the caller does not say */
     struct surface_answers *answers; /* NULL before the first call that asks for curves, patches and so on */
     part_labels parts;               /* see cscd_detector_set_parts */
     part_summer part_sums;

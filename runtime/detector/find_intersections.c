@@ -7,13 +7,22 @@
 #include "runtime/intersections/first_pairs.h"
 #include "src/core/sort.h"
 #include "src/core/struct_size.h"
+#include "src/core/system.h"
 #include "src/mesh/views.h"
+
+#include <string.h>
 
 /* ---- the API's names and defaults ---------------------------------------------------------------------- */
 
 enum { KIND_COUNT = CSCD_INTERSECTION_TOUCHING + 1 };
 
 static const uint64_t ALL_KINDS = (UINT64_C(1) << KIND_COUNT) - 1;
+
+const char *cscd_left_out_name(cscd_left_out answer) {
+    static const char *const names[] = {"pairs",    "curves", "patches", "overlaps",
+                                        "cut-offs", "depths", "parts"};
+    return (unsigned)answer < sizeof names / sizeof *names ? names[answer] : "unknown";
+}
 
 const char *cscd_intersection_kind_name(cscd_intersection_kind kind) {
     static const char *const names[KIND_COUNT] = {"crossing", "coplanar", "folded", "duplicate", "touching"};
@@ -59,12 +68,47 @@ static cscd_status take_options(cscd_context *context, const cscd_intersection_o
     return CSCD_OK;
 }
 
+/* ---- memory -------------------------------------------------------------------------------------------- */
+
+/* What a pair takes at most, all together: in the lane that finds it, and in the list, where it is sorted. */
+enum { PAIR_SIZE = 64 };
+
+/* Much else may be on the machine, other detectors too. */
+enum { SHARE_OF_MEMORY_LEFT = 4 };
+
+static size_t most_memory(const cscd_detector *d, const cscd_intersection_options *options) {
+    return options->max_memory > 0 ? options->max_memory : d->memory_most;
+}
+
+/* Before the first call that asks. */
+static void look_at_memory(cscd_detector *d) {
+    size_t share = system_memory_left() / SHARE_OF_MEMORY_LEFT;
+    d->memory_most = share > 0 ? share : 1;
+}
+
+static size_t longest_list(const cscd_detector *d, const cscd_intersection_options *options) {
+    size_t fit = most_memory(d, options) / PAIR_SIZE, longest = d->options.longest_list;
+    return longest > 0 && longest < fit ? longest : fit;
+}
+
+static cscd_status fail_too_long(const cscd_detector *d, const cscd_intersection_options *options,
+                                 size_t count) {
+    size_t longest = d->options.longest_list, most = most_memory(d, options);
+    if (longest > 0 && count > longest) return list_cap_fail(d, count);
+    return context_fail(
+        d->context, CSCD_LIST_TOO_LONG,
+        "the list would have %zu pairs of triangles, of %d bytes each, more than max_memory, which is "
+        "%zu bytes; are the vertices in another order than those of the triangles?",
+        count, PAIR_SIZE, most);
+}
+
 /* ---- which pairs count --------------------------------------------------------------------------------- */
 
 typedef struct kind_search {
     cscd_detector *detector;
     const double *positions;
     cscd_intersection_options options;
+    size_t longest;             /* the list may have so many pairs */
     exclusions without_host;    /* what is left out but by the caller's function, for any thread */
     size_t of_kind[KIND_COUNT]; /* pairs that count */
     bool keeps;                 /* these pairs stay in the lanes */
@@ -107,8 +151,7 @@ static void settle_lane(kind_search *s, intersection_lane *lane) {
 }
 
 static bool list_too_long(const kind_search *s) {
-    size_t longest = s->detector->options.longest_list;
-    return s->options.answer == CSCD_ANSWER_LIST && longest > 0 && count_found(s) > longest;
+    return s->options.answer == CSCD_ANSWER_LIST && count_found(s) > s->longest;
 }
 
 /* Called between two rounds, on the calling thread. Once the list is too long, no pair is kept. */
@@ -122,7 +165,7 @@ static void settle_lanes(void *data) {
 
 static cscd_status find_all(kind_search *s) {
     cscd_detector *d = s->detector;
-    list_cap_begin_pairs(d, !s->keeps, settle_lanes, s);
+    list_cap_begin_pairs(d, s->keeps ? s->longest : 0, settle_lanes, s);
     cscd_status status =
         static_check_kinds(&d->check, &d->space.traversal, &d->space.bvh, s->positions, d->exclusions.names);
     list_cap_end_check(d);
@@ -145,7 +188,9 @@ static bool host_keeps(void *data, found_pair pair) {
 static cscd_status find_first(kind_search *s) {
     cscd_detector *d = s->detector;
     bool any = s->options.answer == CSCD_ANSWER_ANY;
-    const pair_quest quest = {.enough = any ? 1 : s->options.stop_after,
+    const size_t most =
+        s->keeps && s->longest < s->options.stop_after ? s->longest + 1 : s->options.stop_after;
+    const pair_quest quest = {.enough = any ? 1 : most,
                               .any = any,
                               .data = s,
                               .counts = pair_counts,
@@ -187,12 +232,25 @@ static cscd_intersection_pair describe_pair(const cscd_mesh *mesh, const pair_ke
     return pair;
 }
 
-/* Joins the lists of all lanes, and sorts them. */
+_Static_assert(2 * sizeof(pair_key) <= sizeof(cscd_intersection_pair), "pairs are sorted in their own room");
+
+/* Room for the list, with little to spare, since lists are long where memory matters. */
+static cscd_status reserve_pairs(cscd_detector *d, size_t count) {
+    if (count <= d->pairs.capacity && d->pairs.items != NULL) return CSCD_OK;
+    const size_t room = count + count / 8 + 16;
+    result_buffer_free(d->context, &d->pairs);
+    d->pairs.items = context_reserve(d->context, room, sizeof(cscd_intersection_pair));
+    if (d->pairs.items == NULL) return CSCD_OUT_OF_MEMORY;
+    d->pairs.capacity = room;
+    return CSCD_OK;
+}
+
+/* Joins the lists of all lanes, and sorts them. The keys and those to spare lie where the list will be, each half as long as
+ * an item; the last items are described first, so that no key is written over before its turn. */
 static cscd_status list_pairs(cscd_detector *d, size_t count, cscd_intersection_pairs *out) {
-    cscd_status status =
-        result_buffer_reserve(d->context, &d->pairs, count, sizeof(cscd_intersection_pair), sizeof(pair_key));
+    cscd_status status = reserve_pairs(d, count);
     if (status != CSCD_OK) return status;
-    pair_key *keys = d->pairs.keys;
+    pair_key *keys = d->pairs.items;
     size_t next = 0;
     for (uint32_t i = 0; i < d->check.lane_count; i++) {
         const intersection_lane *lane = &d->check.lanes[i];
@@ -201,9 +259,12 @@ static cscd_status list_pairs(cscd_detector *d, size_t count, cscd_intersection_
             keys[next++] = (pair_key){(uint64_t)p.a << 32 | p.b, lane->notes[j].kind, lane->notes[j].shared};
         }
     }
-    sort_by_number(keys, d->pairs.spare_keys, count, sizeof *keys);
+    sort_by_number(keys, keys + count, count, sizeof *keys);
     cscd_intersection_pair *items = d->pairs.items;
-    for (size_t i = 0; i < count; i++) items[i] = describe_pair(d->mesh, &keys[i]);
+    for (size_t i = count; i-- > 0;) {
+        const pair_key key = keys[i];
+        items[i] = describe_pair(d->mesh, &key);
+    }
     out->items = items;
     return CSCD_OK;
 }
@@ -215,6 +276,15 @@ static void count_zero_area(const static_check *check, cscd_intersection_pairs *
         out->zero_area_triangles += lane->zero_area_triangles;
         if (lane->first_zero_area < out->first_zero_area) out->first_zero_area = lane->first_zero_area;
     }
+}
+
+/* Nothing is found beside pairs that are not listed. */
+static void leave_out_list(const kind_search *s, cscd_intersection_pairs *out) {
+    const size_t longest = s->detector->options.longest_list;
+    const bool by_memory = longest == 0 || out->count <= longest;
+    if (!by_memory) return;
+    surface_answers_leave_out_list(&s->options, out);
+    out->wanted_memory = out->count < SIZE_MAX / PAIR_SIZE ? out->count * PAIR_SIZE : SIZE_MAX;
 }
 
 static cscd_status give_result(const kind_search *s, cscd_intersection_pairs *out) {
@@ -236,10 +306,11 @@ static cscd_status give_result(const kind_search *s, cscd_intersection_pairs *ou
         result.stopped = s->options.stop_after > 0 && result.count == s->options.stop_after;
     }
     bool too_long = list_too_long(s);
+    if (too_long) leave_out_list(s, &result);
     cscd_status status = CSCD_OK;
     if (s->options.answer == CSCD_ANSWER_LIST && !too_long) status = list_pairs(d, result.count, &result);
     if (status == CSCD_OK) *out = result;
-    return too_long ? list_cap_fail(d, result.count) : status;
+    return too_long ? fail_too_long(d, &s->options, result.count) : status;
 }
 
 /* ---- the call ------------------------------------------------------------------------------------------ */
@@ -249,27 +320,47 @@ typedef struct kind_question {
     cscd_intersection_pairs *out;
 } kind_question;
 
-static cscd_status sum_up_parts(cscd_detector *d, cscd_intersection_pairs *found) {
+static cscd_status sum_up_parts(cscd_detector *d, memory_budget *budget, cscd_intersection_pairs *found) {
     const same_solids *same = found->depths != NULL ? &d->answers->same_solids : NULL;
-    cscd_status status = part_sums_run(&d->part_sums, d->mesh, &d->parts, found, same, &d->part_pairs);
+    cscd_status status =
+        part_sums_run(&d->part_sums, d->mesh, &d->parts, found, same, budget, &d->part_pairs);
     if (status == CSCD_OK) found->parts = &d->part_pairs;
-    return status;
+    if (status != CSCD_OUT_OF_MEMORY || !budget->exceeded) return status;
+    part_sums_free(d->context, &d->part_sums);
+    surface_answers_leave_out(budget, CSCD_LEFT_OUT_PARTS, found);
+    return CSCD_OK;
+}
+
+/* What calls keep for the next ones does not count, so a quarter is left for it. If they keep more than that, it is given
+ * back first. */
+static memory_budget begin_memory(cscd_detector *d, const cscd_intersection_options *options) {
+    size_t most = most_memory(d, options), kept = most / 8;
+    if (d->part_sums.key_capacity > kept / sizeof(part_key)) part_sums_free(d->context, &d->part_sums);
+    surface_answers_shrink(d, kept);
+    return (memory_budget){.most = most - most / 4};
 }
 
 static cscd_status find_kinds(cscd_detector *d, const double *positions, void *data) {
     const kind_question *q = data;
+    memory_budget budget = begin_memory(d, &q->options);
     kind_search s = {.detector = d,
                      .positions = positions,
                      .options = q->options,
+                     .longest = longest_list(d, &q->options),
                      .keeps = q->options.answer == CSCD_ANSWER_LIST};
     bool more = surface_answers_wanted(&q->options);
     left_out_pairs *left_out = more ? surface_answers_begin(d) : NULL;
     if (more && left_out == NULL) return CSCD_OUT_OF_MEMORY;
     if (q->options.overlaps) s.left_out = left_out;
-    cscd_status status = stops_early(d, &q->options) ? find_first(&s) : find_all(&s);
+    bool early = stops_early(d, &q->options);
+    cscd_status status = early ? find_first(&s) : find_all(&s);
+    if (status == CSCD_OK && early && list_too_long(&s)) { /* than fits the memory: all are counted */
+        memset(s.of_kind, 0, sizeof s.of_kind);
+        status = find_all(&s);
+    }
     if (status == CSCD_OK) status = give_result(&s, q->out);
-    if (status == CSCD_OK && more) status = surface_answers_find(d, positions, &q->options, q->out);
-    if (status == CSCD_OK && q->options.parts) status = sum_up_parts(d, q->out);
+    if (status == CSCD_OK && more) status = surface_answers_find(d, positions, &q->options, &budget, q->out);
+    if (status == CSCD_OK && q->options.parts) status = sum_up_parts(d, &budget, q->out);
     return status;
 }
 
@@ -284,6 +375,7 @@ static cscd_status find_in_views(cscd_detector *d, const cscd_view *positions,
     kind_question question = {.out = &found};
     cscd_status status = take_options(context, options, &question.options);
     if (status == CSCD_OK) status = views_read(context, d->mesh, positions, "positions", &d->unpacked[0], &x);
+    if (d->memory_most == 0) look_at_memory(d);
     const moment_question asked = {find_kinds, &question, !stops_early(d, &question.options)};
     if (status == CSCD_OK) status = detector_ask_moment(d, x, &asked);
     if (status == CSCD_OK || status == CSCD_LIST_TOO_LONG) struct_give(out, size, &found, sizeof found);

@@ -129,9 +129,8 @@ void list_cap_begin_check(cscd_detector *d, const double *positions) {
     d->check.spill_data = d;
 }
 
-void list_cap_begin_pairs(cscd_detector *d, bool counted_only, void (*spill)(void *data), void *data) {
-    if (d->options.longest_list == 0 && !counted_only) return;
-    d->check.limit = counted_only ? d->cap.beside : list_cap_lane(d);
+void list_cap_begin_pairs(cscd_detector *d, size_t longest, void (*spill)(void *data), void *data) {
+    d->check.limit = longest / d->space.traversal.lane_count + d->cap.beside;
     d->check.spill = spill;
     d->check.spill_data = data;
 }

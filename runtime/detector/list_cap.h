@@ -28,7 +28,7 @@ cscd_status list_cap_fail(const cscd_detector *d, size_t count);
  * positions; a proof of the start, NULL, drops pairs once their triangles are marked. */
 void list_cap_begin_check(cscd_detector *d, const double *positions);
 
-/* The same for a check whose pairs the caller takes from the lanes as they fill; counted_only: no list is made of them, so
- * lanes need room for few. */
-void list_cap_begin_pairs(cscd_detector *d, bool counted_only, void (*spill)(void *data), void *data);
+/* The same for a check whose pairs the caller takes from the lanes as they fill, to keep no more than the longest of them;
+ * 0: no list is made of them, so lanes need room for few. */
+void list_cap_begin_pairs(cscd_detector *d, size_t longest, void (*spill)(void *data), void *data);
 void list_cap_end_check(cscd_detector *d);

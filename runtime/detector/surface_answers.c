@@ -26,6 +26,10 @@ bool surface_answers_wanted(const cscd_intersection_options *options) {
     return options->curves || options->patches || options->overlaps || options->depths || options->cut_offs;
 }
 
+static bool patches_wanted(const cscd_intersection_options *options) {
+    return options->patches || options->overlaps || options->cut_offs || options->depths;
+}
+
 /* Returns the detector's answers, made if need be; NULL: no memory. */
 static surface_answers *make_answers(cscd_detector *d) {
     if (d->answers != NULL) return d->answers;
@@ -40,8 +44,7 @@ static surface_answers *make_answers(cscd_detector *d) {
     a->same_solids.context = context;
     a->depth_finder.context = a->depth_finder.outer.context = a->depth_finder.outer.cuts.context =
         a->depth_finder.deepest.context = context;
-    if (!orientation_finder_create(d->mesh, &a->orientations) ||
-        patch_finder_create(d->mesh, d->space.traversal.lane_count, &a->patch_finder) != CSCD_OK) {
+    if (!orientation_finder_create(d->mesh, &a->orientations)) {
         surface_answers_free(context, a);
         return NULL;
     }
@@ -49,48 +52,192 @@ static surface_answers *make_answers(cscd_detector *d) {
     return a;
 }
 
+/* It is not there in the first call, nor after one in which patches did not fit. */
+static bool make_patch_finder(const cscd_detector *d, surface_answers *a) {
+    return a->patch_finder.mesh != NULL ||
+           patch_finder_create(d->mesh, d->space.traversal.lane_count, &a->patch_finder) == CSCD_OK;
+}
+
 left_out_pairs *surface_answers_begin(cscd_detector *d) {
+    const size_t before = cscd_context_bytes(d->context);
     surface_answers *a = make_answers(d);
-    if (a == NULL) return NULL;
+    if (a == NULL || !make_patch_finder(d, a)) return NULL;
+    a->kept += cscd_context_bytes(d->context) - before;
     a->left_out.count = 0;
     a->left_out.out_of_memory = false;
     return &a->left_out;
 }
 
-static cscd_status find_patches(cscd_detector *d, named_surface *surface, cscd_orientation orientation) {
-    surface_answers *a = d->answers;
-    a->patch_finder.objects = d->pair_rules.sets;
-    progress_stage(&d->context->progress, "patches", 0.8, 0.9);
-    const part_labels *parts = orientation == CSCD_ORIENTATION_BY_PART ? &d->parts : NULL;
-    if (orientation != CSCD_ORIENTATION_AS_GIVEN &&
-        !orientation_finder_run(&a->orientations, surface, &d->space.bvh, parts, a->joiner.found,
-                                a->joiner.piece_count))
-        return CSCD_OUT_OF_MEMORY;
-    return patch_finder_run(&a->patch_finder, surface, &d->space.bvh, a->joiner.found, a->joiner.piece_count,
-                            &a->patches);
+/* ---- what does not fit --------------------------------------------------------------------------------- */
+
+void surface_answers_leave_out(memory_budget *budget, cscd_left_out what, cscd_intersection_pairs *found) {
+    size_t wanted = budget->wanted < SIZE_MAX / 2 ? budget->wanted + budget->wanted / 3 + 1 : SIZE_MAX;
+    if (found->left_out == 0) found->wanted_memory = wanted; /* with the quarter that is for what is kept */
+    found->left_out |= (uint64_t)1 << what;
+    budget->exceeded = false;
 }
 
-static cscd_status find_depths(cscd_detector *d, const surface_cuts *cuts, double limit,
-                               const cscd_intersection_pairs *found) {
-    surface_answers *a = d->answers;
-    progress_stage(&d->context->progress, "depths", 0.9, 1.0);
-    const depth_request request = {&d->space.bvh, &d->parts, found->items, found->count, limit};
-    cscd_status status = depth_finder_run(&a->depth_finder, cuts, &request, &a->depths);
-    if (status == CSCD_OK)
-        touching_curves_mark(&a->joiner, cuts->surface, found->items, &a->patches, &a->depths);
+void surface_answers_shrink(cscd_detector *d, size_t most) {
+    if (d->answers == NULL || d->answers->kept <= most) return;
+    surface_answers_free(d->context, d->answers);
+    d->answers = NULL;
+}
+
+/* Of what a call asks for; what needs something that is left out is left out with it. */
+static void leave_out_all(const cscd_intersection_options *o, memory_budget *budget,
+                          cscd_intersection_pairs *found) {
+    const bool asked[] = {[CSCD_LEFT_OUT_CURVES] = surface_answers_wanted(o) && found->curves == NULL,
+                          [CSCD_LEFT_OUT_PATCHES] = patches_wanted(o),
+                          [CSCD_LEFT_OUT_OVERLAPS] = o->overlaps,
+                          [CSCD_LEFT_OUT_CUT_OFFS] = o->cut_offs,
+                          [CSCD_LEFT_OUT_DEPTHS] = o->depths};
+    for (int what = CSCD_LEFT_OUT_CURVES; what <= CSCD_LEFT_OUT_DEPTHS; what++) {
+        if (asked[what]) surface_answers_leave_out(budget, (cscd_left_out)what, found);
+    }
+}
+
+void surface_answers_leave_out_list(const cscd_intersection_options *options,
+                                    cscd_intersection_pairs *found) {
+    memory_budget none = {.most = 0};
+    surface_answers_leave_out(&none, CSCD_LEFT_OUT_PAIRS, found);
+    leave_out_all(options, &none, found);
+    if (options->parts) surface_answers_leave_out(&none, CSCD_LEFT_OUT_PARTS, found);
+}
+
+/* ---- one after the other ------------------------------------------------------------------------------- */
+
+typedef struct answer_search {
+    cscd_detector *detector;
+    const cscd_intersection_options *options;
+    memory_budget *budget;
+    named_surface *surface; /* that of the cuts; orientations are found for patches */
+    const surface_cuts *cuts;
+    cscd_intersection_pairs *found;
+} answer_search;
+
+/* What did not fit takes nothing of the budget, nor of memory. */
+static bool did_not_fit(const answer_search *s, cscd_status status, size_t taken_before) {
+    if (status != CSCD_OUT_OF_MEMORY || !s->budget->exceeded) return false;
+    s->budget->taken = taken_before;
+    return true;
+}
+
+static cscd_status find_curves(const answer_search *s) {
+    surface_answers *a = s->detector->answers;
+    progress_stage(&s->detector->context->progress, "curves", 0.7, 0.8);
+    if (!memory_budget_take(s->budget, 1, curve_joiner_size(s->found->count))) return CSCD_OUT_OF_MEMORY;
+    cscd_status status =
+        curve_joiner_run(&a->joiner, s->cuts->surface, s->found->items, s->found->count, &a->curves);
+    if (status == CSCD_OK) s->found->curves = &a->curves;
     return status;
 }
 
-/* The overlaps that are given out, if any are, must be found after these. */
-static cscd_status find_same_solids(surface_answers *a, const surface_cuts *cuts,
-                                    const cscd_intersection_pairs *found) {
-    return same_solids_find(&a->same_solids, cuts, found->items, found->count, &a->depths, &a->overlap_finder,
-                            &a->left_out);
+static cscd_status find_patches(const answer_search *s) {
+    cscd_detector *d = s->detector;
+    surface_answers *a = d->answers;
+    a->patch_finder.objects = d->pair_rules.sets;
+    a->patch_finder.budget = s->budget;
+    progress_stage(&d->context->progress, "patches", 0.8, 0.9);
+    const cscd_orientation orientation = s->options->orientation;
+    const part_labels *parts = orientation == CSCD_ORIENTATION_BY_PART ? &d->parts : NULL;
+    if (orientation != CSCD_ORIENTATION_AS_GIVEN &&
+        !orientation_finder_run(&a->orientations, s->surface, &d->space.bvh, parts, a->joiner.found,
+                                a->joiner.piece_count))
+        return CSCD_OUT_OF_MEMORY;
+    cscd_status status = patch_finder_run(&a->patch_finder, s->cuts->surface, &d->space.bvh, a->joiner.found,
+                                          a->joiner.piece_count, &a->patches);
+    if (status == CSCD_OK) s->found->patches = &a->patches;
+    return status;
+}
+
+static cscd_status find_overlaps(const answer_search *s) {
+    surface_answers *a = s->detector->answers;
+    const size_t before = s->budget->taken;
+    cscd_status status = overlap_finder_run(&a->overlap_finder, s->cuts, &a->left_out, &a->overlaps);
+    if (status == CSCD_OK) s->found->overlaps = &a->overlaps;
+    if (!did_not_fit(s, status, before)) return status;
+    overlap_finder_free(&a->overlap_finder);
+    surface_answers_leave_out(s->budget, CSCD_LEFT_OUT_OVERLAPS, s->found);
+    return CSCD_OK;
+}
+
+static cscd_status find_cut_offs(const answer_search *s) {
+    surface_answers *a = s->detector->answers;
+    const size_t before = s->budget->taken;
+    cscd_status status = cut_off_finder_run(&a->cut_off_finder, s->cuts, &a->cut_offs);
+    if (status == CSCD_OK) s->found->cut_offs = &a->cut_offs;
+    if (!did_not_fit(s, status, before)) return status;
+    cut_off_finder_free(&a->cut_off_finder);
+    surface_answers_leave_out(s->budget, CSCD_LEFT_OUT_CUT_OFFS, s->found);
+    return CSCD_OK;
+}
+
+/* Which bodies are copies; uses the finder of overlaps. */
+static cscd_status find_same_solids(const answer_search *s) {
+    surface_answers *a = s->detector->answers;
+    return same_solids_find(&a->same_solids, s->cuts, s->found->items, s->found->count, &a->depths,
+                            &a->overlap_finder, &a->left_out);
+}
+
+static cscd_status find_depths(const answer_search *s) {
+    cscd_detector *d = s->detector;
+    surface_answers *a = d->answers;
+    const size_t before = s->budget->taken;
+    progress_stage(&d->context->progress, "depths", 0.9, 1.0);
+    const depth_request request = {&d->space.bvh, &d->parts, s->found->items, s->found->count,
+                                   s->options->depth_limit};
+    cscd_status status = depth_finder_run(&a->depth_finder, s->cuts, &request, &a->depths);
+    if (status == CSCD_OK) status = find_same_solids(s);
+    if (did_not_fit(s, status, before)) {
+        depth_finder_free(&a->depth_finder);
+        same_solids_free(&a->same_solids);
+        overlap_finder_free(&a->overlap_finder);
+        surface_answers_leave_out(s->budget, CSCD_LEFT_OUT_DEPTHS, s->found);
+        return CSCD_OK;
+    }
+    if (status != CSCD_OK) return status;
+    touching_curves_mark(&a->joiner, s->cuts->surface, s->found->items, &a->patches, &a->depths);
+    s->found->depths = &a->depths;
+    return CSCD_OK;
+}
+
+/* Curves and patches, which all others need. */
+static cscd_status find_base(const answer_search *s) {
+    surface_answers *a = s->detector->answers;
+    const size_t before = s->budget->taken;
+    const bool patches = patches_wanted(s->options);
+    cscd_status status = find_curves(s);
+    if (did_not_fit(s, status, before)) {
+        curve_joiner_free(&a->joiner);
+        leave_out_all(s->options, s->budget, s->found);
+        return CSCD_OK;
+    }
+    const size_t with_curves = s->budget->taken;
+    if (status == CSCD_OK && patches) status = find_patches(s);
+    if (did_not_fit(s, status, with_curves)) {
+        patch_finder_free(&a->patch_finder);
+        leave_out_all(s->options, s->budget, s->found);
+        return CSCD_OK;
+    }
+    return status;
+}
+
+static cscd_status find_answers(const answer_search *s) {
+    const cscd_intersection_options *o = s->options;
+    cscd_status status = find_base(s);
+    if (s->found->patches == NULL) return status;
+    if (status == CSCD_OK && o->cut_offs) status = find_cut_offs(s);
+    if (status == CSCD_OK && o->depths) status = find_depths(s);
+    if (status == CSCD_OK && o->overlaps)
+        status = find_overlaps(s); /* after the depths, which use its finder */
+    return status;
 }
 
 cscd_status surface_answers_find(cscd_detector *d, const double *positions,
-                                 const cscd_intersection_options *options, cscd_intersection_pairs *found) {
+                                 const cscd_intersection_options *options, memory_budget *budget,
+                                 cscd_intersection_pairs *found) {
     surface_answers *a = d->answers;
+    const size_t before = cscd_context_bytes(d->context);
     if (a->left_out.out_of_memory) return CSCD_OUT_OF_MEMORY;
     named_surface surface = {.mesh = d->mesh,
                              .positions = positions,
@@ -98,31 +245,9 @@ cscd_status surface_answers_find(cscd_detector *d, const double *positions,
                              .collapsed = d->check.collapsed};
     if (!placed_names_find(&a->names, d->mesh, positions, d->exclusions.names, &surface.names))
         return CSCD_OUT_OF_MEMORY;
-    const surface_cuts cuts = {&surface, &a->joiner, &a->patch_finder};
-    progress_stage(&d->context->progress, "curves", 0.7, 0.8);
-    cscd_status status = curve_joiner_run(&a->joiner, &surface, found->items, found->count, &a->curves);
-    if (status != CSCD_OK) return status;
-    found->curves = &a->curves;
-    if (!options->patches && !options->overlaps && !options->cut_offs && !options->depths) return CSCD_OK;
-    status = find_patches(d, &surface, options->orientation);
-    if (status != CSCD_OK) return status;
-    found->patches = &a->patches;
-    if (options->cut_offs) {
-        status = cut_off_finder_run(&a->cut_off_finder, &cuts, &a->cut_offs);
-        if (status != CSCD_OK) return status;
-        found->cut_offs = &a->cut_offs;
-    }
-    if (options->depths) {
-        status = find_depths(d, &cuts, options->depth_limit, found);
-        if (status != CSCD_OK) return status;
-        found->depths = &a->depths;
-        status = find_same_solids(a, &cuts, found);
-        if (status != CSCD_OK) return status;
-    }
-    if (options->overlaps) {
-        status = overlap_finder_run(&a->overlap_finder, &cuts, &a->left_out, &a->overlaps);
-        if (status != CSCD_OK) return status;
-        found->overlaps = &a->overlaps;
-    }
-    return CSCD_OK;
+    const surface_cuts cuts = {&surface, &a->joiner, &a->patch_finder, budget};
+    const answer_search search = {d, options, budget, &surface, &cuts, found};
+    cscd_status status = find_answers(&search);
+    a->kept += cscd_context_bytes(d->context) - before; /* may be fewer than before */
+    return status;
 }

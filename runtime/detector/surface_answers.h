@@ -13,6 +13,7 @@
 
 /* The memory of a detector for these answers, and those of its last call. Made at the first call that asks. */
 typedef struct surface_answers {
+    size_t kept; /* so many bytes from one call to the next */
     left_out_pairs left_out;
     placed_names names;
     curve_joiner joiner;
@@ -38,7 +39,17 @@ bool surface_answers_wanted(const cscd_intersection_options *options);
  * before the other function. NULL: no memory. */
 left_out_pairs *surface_answers_begin(cscd_detector *d);
 
-/* Adds to *found, which has all pairs, what the options ask for. The trees are at the positions. OUT_OF_MEMORY and
- * CANCELLED have no sentence. */
+/* Adds to *found, which has all pairs, what the options ask for and the budget has room for. The trees are at the positions.
+ * OUT_OF_MEMORY and CANCELLED have no sentence. */
 cscd_status surface_answers_find(cscd_detector *d, const double *positions,
-                                 const cscd_intersection_options *options, cscd_intersection_pairs *found);
+                                 const cscd_intersection_options *options, memory_budget *budget,
+                                 cscd_intersection_pairs *found);
+
+/* Something did not fit the budget: says so in *found, and goes on. */
+void surface_answers_leave_out(memory_budget *budget, cscd_left_out what, cscd_intersection_pairs *found);
+
+/* The pairs do not fit, and so is all left out that was asked for. */
+void surface_answers_leave_out_list(const cscd_intersection_options *options, cscd_intersection_pairs *found);
+
+/* Gives back what is kept from one call to the next, if that is more than so many bytes. */
+void surface_answers_shrink(cscd_detector *d, size_t most);

@@ -3,6 +3,7 @@
 
 #include "src/core/sort.h"
 #include "src/core/struct_size.h"
+#include "src/core/system.h"
 
 #include <string.h>
 
@@ -54,6 +55,9 @@ static uint64_t hash_options(const cscd_event_tracker *t, uint64_t mesh_hash) {
     for (uint32_t i = 0; i < mesh->triangle_count; i++) hash = hash_number(hash, t->parts.triangles[i]);
     return hash;
 }
+
+/* Much else may be on the machine. */
+enum { SHARE_OF_MEMORY_LEFT = 4 };
 
 /* ---- creation ------------------------------------------------------------------------------------------- */
 
@@ -120,6 +124,7 @@ static cscd_status create_tracker(cscd_context *context, const cscd_mesh *mesh,
     if (t == NULL) return context_out_of_memory(context);
     t->context = context;
     t->mesh = seen;
+    t->max_memory = chosen.max_memory > 0 ? chosen.max_memory : system_memory_left() / SHARE_OF_MEMORY_LEFT;
     mesh_hold(mesh);
     context_add_object(context, &t->references, free_tracker);
     if (create_parts(t, &chosen) != CSCD_OK) {
@@ -192,17 +197,45 @@ static cscd_status take_found(cscd_event_tracker *t, uint64_t frame, const cscd_
     return status == CSCD_OK ? frame_input_check(&t->mesh, out) : status;
 }
 
+static cscd_status append_frame(cscd_event_tracker *t, const frame_input *input) {
+    event_history row;
+    cscd_status status = frame_groups_find(&t->groups, &t->mesh, &t->parts, &t->rings, input, &row);
+    if (status == CSCD_OK) status = event_history_append(t->context, &t->history, &t->rings, &row);
+    if (status == CSCD_OK) t->contact_count = 0;
+    return status;
+}
+
+static void drop_contacts(cscd_event_tracker *t) {
+    context_free(t->context, t->contacts);
+    t->contacts = NULL;
+    t->contact_count = t->contact_capacity = 0;
+}
+
+/* What the frame has does not fit: it counts as one in which nothing was looked for. */
+static cscd_status append_nothing(cscd_event_tracker *t, const frame_input *input, size_t wanted) {
+    const size_t contacts = input->contact_count, pairs = input->found != NULL ? input->found->count : 0;
+    const frame_input nothing = {.frame = input->frame};
+    frame_groups_free(t->context, &t->groups);
+    const cscd_status status = append_frame(t, &nothing);
+    if (status != CSCD_OK) return context_explain(t->context, status);
+    drop_contacts(t);
+    return context_fail(
+        t->context, CSCD_LIST_TOO_LONG,
+        "events of %zu pairs and %zu contacts would take more than max_memory, which is %zu bytes (%zu "
+        "or more), so none has anything of this frame",
+        pairs, contacts, t->max_memory, wanted);
+}
+
 static cscd_status add_frame(cscd_event_tracker *t, uint64_t frame, const cscd_intersection_pairs *found,
                              size_t size) {
     cscd_intersection_pairs taken = {.items = NULL};
     cscd_status status = take_found(t, frame, found, size, &taken);
     if (status != CSCD_OK) return status;
-    const frame_input input = {found != NULL ? &taken : NULL, t->contacts, t->contact_count, frame};
-    event_history row;
-    status = frame_groups_find(&t->groups, &t->mesh, &t->parts, &t->rings, &input, &row);
-    if (status == CSCD_OK) status = event_history_append(t->context, &t->history, &t->rings, &row);
-    if (status == CSCD_OK) t->contact_count = 0;
-    return context_explain(t->context, status);
+    memory_budget budget = {.most = t->max_memory};
+    const frame_input input = {found != NULL ? &taken : NULL, t->contacts, t->contact_count, frame, &budget};
+    status = append_frame(t, &input);
+    if (status != CSCD_OUT_OF_MEMORY || !budget.exceeded) return context_explain(t->context, status);
+    return append_nothing(t, &input, budget.wanted);
 }
 
 cscd_status cscd_event_tracker_add_frame_sized(cscd_event_tracker *tracker, uint64_t frame,

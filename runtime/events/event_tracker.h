@@ -14,6 +14,7 @@ struct cscd_event_tracker {
 
     event_history history;
     frame_groups groups;
+    size_t max_memory; /* of a frame */
 
     /* Of the interval that ends in the next frame. */
     tracked_contact *contacts;

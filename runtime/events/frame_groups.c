@@ -46,12 +46,15 @@ static void join_things(frame_grouping *w, uint32_t x, uint32_t y) {
     things[a < b ? b : a].parent = a < b ? a : b;
 }
 
+/* A stamp is in a table that grows to twice its length, has two places to four in it by its hash, and goes on in the history. */
+enum { STAMP_SIZE = 4 * (MEMORY_WHILE_DOUBLING * sizeof(stamp) + 8 * sizeof(uint32_t)) };
+
 static void stamp_element(frame_grouping *w, uint64_t parts, uint32_t element, uint32_t thing) {
     stamp_table *table = &w->groups->stamps;
     const stamp *known = stamp_table_find(table, parts, element);
     if (known != NULL)
         join_things(w, known->owner, thing);
-    else if (stamp_table_reserve(w->context, table, 1))
+    else if (memory_budget_take(w->input->budget, 1, STAMP_SIZE) && stamp_table_reserve(w->context, table, 1))
         stamp_table_add(table, (stamp){parts, 0, element, thing});
     else
         w->no_memory = true;
@@ -130,7 +133,8 @@ static void add_two_triangles(frame_grouping *w, uint32_t a, uint32_t b) {
 
 static void add_pairs(frame_grouping *w) {
     const cscd_intersection_pairs *found = w->input->found;
-    for (size_t i = 0; i < found->count; i++) add_two_triangles(w, found->items[i].a, found->items[i].b);
+    for (size_t i = 0; i < found->count && !w->no_memory; i++)
+        add_two_triangles(w, found->items[i].a, found->items[i].b);
 }
 
 static void add_pieces(frame_grouping *w) {
@@ -220,7 +224,8 @@ static cscd_status number_groups(frame_grouping *w) {
     frame_groups *g = w->groups;
     g->group_count = 0;
     for (uint32_t t = 0; t < g->thing_count; t++) g->group_count += g->things[t].parent == t;
-    if (!context_renew_all(w->context, list_group_arrays(g), &g->group_capacity, g->group_count))
+    if (!memory_budget_take_all(w->input->budget, list_group_arrays(g)) ||
+        !context_renew_all(w->context, list_group_arrays(g), &g->group_capacity, g->group_count))
         return CSCD_OUT_OF_MEMORY;
     uint32_t count = 0;
     for (uint32_t t = 0; t < g->thing_count; t++) {
@@ -341,7 +346,9 @@ static cscd_status begin_frame(frame_grouping *w) {
     size_t things = count_things(w->input), triangles = w->mesh->triangle_count;
     if (things >= UINT32_MAX) return CSCD_OUT_OF_MEMORY;
     const array_list list = {{ARRAY(g->things, room_with_spare(things))}};
-    if (!context_renew_all(w->context, list, &g->thing_capacity, things)) return CSCD_OUT_OF_MEMORY;
+    if (!memory_budget_take_all(w->input->budget, list) ||
+        !context_renew_all(w->context, list, &g->thing_capacity, things))
+        return CSCD_OUT_OF_MEMORY;
     if (g->stamped_places == NULL) {
         const array_list marks = {{ARRAY(g->stamped_places, triangles), ARRAY(g->stamped, triangles)}};
         if (!context_allocate_all(w->context, marks)) return CSCD_OUT_OF_MEMORY;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/events/event_history.h"
+#include "src/core/memory_budget.h"
 #include "src/mesh/given_contacts.h"
 
 /* What counts of a contact for events. */
@@ -16,7 +17,8 @@ typedef struct frame_input {
     const cscd_intersection_pairs *found; /* NULL: nothing */
     const tracked_contact *contacts;
     size_t contact_count;
-    uint64_t frame; /* its number */
+    uint64_t frame;        /* its number */
+    memory_budget *budget; /* of the frame */
 } frame_input;
 
 /* A triangle that was stamped, and the thing and the parts for which it was. */
@@ -51,7 +53,7 @@ typedef struct frame_groups {
 } frame_groups;
 
 /* Joins all that a frame has; *out is a row of one frame in the memory of g. Without memory, OUT_OF_MEMORY has no
- * sentence. */
+ * sentence; so ends what does not fit the budget, too. */
 cscd_status frame_groups_find(frame_groups *g, const cscd_mesh *mesh, const part_labels *parts,
                               const mesh_rings *rings, const frame_input *input, event_history *out);
 void frame_groups_free(cscd_context *context, frame_groups *g);

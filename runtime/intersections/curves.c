@@ -27,6 +27,14 @@ void curve_joiner_free(curve_joiner *j) {
     *j = (curve_joiner){.context = j->context};
 }
 
+size_t curve_joiner_size(size_t pair_count) {
+    curve_joiner none = {.context = NULL};
+    size_t room = room_with_spare(pair_count);
+    size_t pairs = memory_size_of_all(list_of_pairs(&none, room));
+    size_t pieces = memory_size_of_all(list_of_pieces(&none, room)); /* each pair may have one */
+    return pieces < SIZE_MAX - pairs ? pairs + pieces : SIZE_MAX;
+}
+
 static bool reserve_pairs(curve_joiner *j, size_t count) {
     return context_renew_all(j->context, list_of_pairs(j, room_with_spare(count)), &j->pair_capacity, count);
 }

@@ -29,6 +29,9 @@ typedef struct curve_joiner {
 
 void curve_joiner_free(curve_joiner *j);
 
+/* The bytes that a call takes at most, for so many pairs. */
+size_t curve_joiner_size(size_t pair_count);
+
 /* Finds the curves of a list of pairs a < b, sorted by (a, b): all pairs of triangles that intersect or touch, but those that
  * are left out. *out lives until the next call. OUT_OF_MEMORY has no sentence, nor CANCELLED. */
 cscd_status curve_joiner_run(curve_joiner *j, const named_surface *s, const cscd_intersection_pair *pairs,

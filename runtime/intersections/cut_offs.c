@@ -40,18 +40,29 @@ void cut_off_finder_free(cut_off_finder *f) {
         .context = f->context, .links = {.context = f->context}, .sides = {.context = f->context}};
 }
 
-static bool reserve_list(cut_off_finder *f, array_list (*list)(cut_off_finder *, size_t), size_t *capacity,
-                         size_t count) {
-    return context_renew_all(f->context, list(f, room_with_spare(count)), capacity, count);
+static bool reserve_list(cut_off_finder *f, memory_budget *budget,
+                         array_list (*list)(cut_off_finder *, size_t), size_t *capacity, size_t count) {
+    return memory_budget_take_all(budget, list(f, room_with_spare(count))) &&
+           context_renew_all(f->context, list(f, room_with_spare(count)), capacity, count);
+}
+
+/* A trace may have both sides of a curve in one triangle. */
+static size_t most_lines(const curve_joiner *j) {
+    size_t most = 0;
+    for (size_t i = 0; i < j->curve_count; i++) {
+        if (2 * j->curves[i].piece_count > most) most = 2 * j->curves[i].piece_count;
+    }
+    return most;
 }
 
 static bool reserve_all(cut_off_finder *f, const surface_cuts *found) {
     const curve_joiner *j = found->curves;
-    return reserve_list(f, list_of_patches, &f->patch_capacity, found->patches->patch_count) &&
-           reserve_list(f, list_of_components, &f->component_capacity,
+    return cut_memory_begin(&f->memory, found->budget, most_lines(j), 1) &&
+           reserve_list(f, found->budget, list_of_patches, &f->patch_capacity, found->patches->patch_count) &&
+           reserve_list(f, found->budget, list_of_components, &f->component_capacity,
                         found->surface->mesh->component_count) &&
-           reserve_list(f, list_of_curves, &f->curve_capacity, j->curve_count) &&
-           reserve_list(f, list_of_pieces, &f->piece_capacity, 2 * j->piece_count);
+           reserve_list(f, found->budget, list_of_curves, &f->curve_capacity, j->curve_count) &&
+           reserve_list(f, found->budget, list_of_pieces, &f->piece_capacity, 2 * j->piece_count);
 }
 
 /* ---- areas --------------------------------------------------------------------------------------------- */
@@ -184,6 +195,7 @@ static bool measure_sides(const cut_off_work *work, double areas[2]) {
 /* ---- all traces ---------------------------------------------------------------------------------------- */
 
 static bool reserve_listed(cut_off_finder *f, size_t more) {
+    if (!memory_budget_take(f->memory.budget, more, MEMORY_WHILE_DOUBLING * sizeof *f->listed)) return false;
     if (more <= f->listed_capacity - f->listed_count) return true;
     size_t larger = room_with_spare(f->listed_count + more);
     uint32_t *grown = context_grow(f->context, f->listed, f->listed_count, larger, sizeof *grown);

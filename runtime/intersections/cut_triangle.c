@@ -22,6 +22,13 @@ static array_list list_of_slots(cut_memory *m, size_t slots) {
                          ARRAY(m->here.listed, slots), ARRAY(m->here.places, slots)}};
 }
 
+bool cut_memory_begin(cut_memory *m, memory_budget *budget, size_t lines, size_t slots) {
+    m->budget = budget;
+    m->crossings_taken = 0;
+    return memory_budget_take_all(budget, list_of_lines(m, room_with_spare(lines))) &&
+           memory_budget_take_all(budget, list_of_slots(m, room_with_spare(slots)));
+}
+
 bool cut_memory_reserve(cscd_context *context, cut_memory *m, size_t lines, size_t slots) {
     return context_renew_all(context, list_of_lines(m, room_with_spare(lines)), &m->line_capacity, lines) &&
            context_renew_all(context, list_of_slots(m, room_with_spare(slots)), &m->slot_capacity, slots);
@@ -100,6 +107,10 @@ static void update_active(slab_sweep *s, double begin) {
 
 static bool add_crossing(slab_sweep *s, double x) {
     cut_memory *m = s->memory;
+    if (s->crossing_count >= m->crossings_taken) {
+        if (!memory_budget_take(m->budget, 1, MEMORY_WHILE_DOUBLING * sizeof *m->crossings)) return false;
+        m->crossings_taken++;
+    }
     if (s->crossing_count == m->crossing_capacity) {
         size_t capacity = m->crossing_capacity == 0 ? 16 : 2 * m->crossing_capacity;
         double *grown = context_grow(s->context, m->crossings, s->crossing_count, capacity, sizeof *grown);

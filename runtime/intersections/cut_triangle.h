@@ -2,6 +2,7 @@
 #pragma once
 
 #include "src/core/context.h"
+#include "src/core/memory_budget.h"
 
 /* A straight cut, or piece of a curve, in the plane of the triangle. Bodies are numbered by slots. */
 typedef struct cut_line {
@@ -60,9 +61,14 @@ typedef struct cut_memory {
     double *breaks, *spare_breaks; /* where lines begin and end */
     double *crossings;             /* of two lines */
     size_t crossing_capacity;
-    slot_numbers below; /* at the border below a slab */
-    slot_numbers here;  /* in a part */
+    size_t crossings_taken; /* of the budget, */
+    memory_budget *budget;  /* which is the call's; NULL: there is no limit */
+    slot_numbers below;     /* at the border below a slab */
+    slot_numbers here;      /* in a part */
 } cut_memory;
+
+/* A call begins, with room for so many lines and slots in each of its triangles. False: that does not fit the budget. */
+bool cut_memory_begin(cut_memory *m, memory_budget *budget, size_t lines, size_t slots);
 
 /* Makes room; false: no memory. */
 bool cut_memory_reserve(cscd_context *context, cut_memory *m, size_t lines, size_t slots);

@@ -34,8 +34,7 @@ void intersection_lane_add_noted(cscd_context *context, intersection_lane *lane,
                                  pair_note note);
 
 /* Which lane finds what depends on when threads come for work, so that a lane might need more room in any call. Once a call
- * has found its pairs, each lane has room for all of them or, if they are very many, for as many as any lane. False: no
- * memory. */
+ * has found its pairs, each lane has room for all of them, unless they are very many. False: no memory. */
 bool intersection_lanes_even_out(cscd_context *context, intersection_lane *lanes, uint32_t count, bool notes);
 
 /* Frees what the lane holds. */

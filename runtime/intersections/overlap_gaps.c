@@ -70,6 +70,10 @@ static void add_open_curves(overlap_gaps *g, const named_surface *s, const curve
 
 bool overlap_gaps_find(overlap_gaps *g, const surface_cuts *found, const left_out_pairs *left_out) {
     size_t most = left_out->count + found->curves->curve_count;
+    if (!memory_budget_take(found->budget, left_out->count,
+                            MEMORY_WHILE_DOUBLING * sizeof *left_out->pairs) ||
+        !memory_budget_take_all(found->budget, list_of_gaps(g, room_with_spare(most))))
+        return false;
     if (!context_renew_all(g->context, list_of_gaps(g, room_with_spare(most)), &g->capacity, most))
         return false;
     g->count = 0;

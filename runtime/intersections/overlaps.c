@@ -54,6 +54,12 @@ typedef struct overlap_work {
 
 static void add_share(overlap_work *work, overlap_share share) {
     overlap_finder *o = work->finder;
+    const size_t sums =
+        2 * (sizeof *o->spare_shares + sizeof *o->overlaps); /* for sorting, and what comes of it */
+    if (!memory_budget_take(work->found->budget, 1, MEMORY_WHILE_DOUBLING * sizeof share + sums)) {
+        work->out_of_memory = true;
+        return;
+    }
     if (o->share_count == o->share_capacity) {
         size_t capacity = o->share_capacity == 0 ? 64 : 2 * o->share_capacity;
         overlap_share *grown =
@@ -207,12 +213,13 @@ static bool measure_cut(overlap_work *work, loaded_cut *cut) {
 
 static bool add_cut_triangles(overlap_work *work) {
     triangle_cuts *c = &work->finder->cuts;
-    if (!triangle_cuts_sort(c, work->found->curves)) return false;
+    if (!triangle_cuts_sort(c, work->found)) return false;
     for (size_t begin = 0, end = 0; begin < c->key_count; begin = end) {
         loaded_cut cut;
         while (end < c->key_count && c->keys[end].number == c->keys[begin].number) end++;
         if (!triangle_cuts_load(c, work->found, begin, end, &cut)) return false;
         if (cut.stretch > 0.0 && !measure_cut(work, &cut)) return false;
+        if (work->out_of_memory) return false;
     }
     return true;
 }
@@ -289,10 +296,12 @@ cscd_status overlap_finder_run(overlap_finder *o, const surface_cuts *found, con
     *out = (cscd_overlaps){NULL, 0};
     if (mesh->triangle_count == 0) return CSCD_OK;
     o->share_count = 0;
+    if (!memory_budget_take_all(found->budget, list_of_patches(o, room_with_spare(p->patch_count))))
+        return CSCD_OUT_OF_MEMORY;
     if (!reserve_list(o, list_of_patches, &o->patch_capacity, p->patch_count)) return CSCD_OUT_OF_MEMORY;
     if (!overlap_gaps_find(&o->gaps, found, left_out)) return CSCD_OUT_OF_MEMORY;
     add_whole_triangles(&work);
-    for (size_t i = 0; i < p->patch_count; i++) add_patch(&work, (uint32_t)i);
+    for (size_t i = 0; i < p->patch_count && !work.out_of_memory; i++) add_patch(&work, (uint32_t)i);
     add_gaps(&work);
     if (!add_cut_triangles(&work) || work.out_of_memory) return CSCD_OUT_OF_MEMORY;
     if (!reserve_list(o, list_of_overlaps, &o->overlap_capacity, o->share_count)) return CSCD_OUT_OF_MEMORY;

@@ -15,6 +15,7 @@ typedef struct summing {
     const part_labels *labels;
     const cscd_intersection_pairs *found;
     const same_solids *same;
+    memory_budget *budget;
     key_range pairs, pieces, depths;
 } summing;
 
@@ -33,6 +34,7 @@ static cscd_status reserve_keys(summing *w, size_t count) {
     cscd_context *context = w->mesh->context;
     const size_t larger = room_with_spare(count);
     const array_list list = {{ARRAY(s->keys, larger), ARRAY(s->spare_keys, larger)}};
+    if (!memory_budget_take_all(w->budget, list)) return CSCD_OUT_OF_MEMORY;
     if (!context_renew_all(context, list, &s->key_capacity, count)) return CSCD_OUT_OF_MEMORY;
     if (s->marks == NULL) s->marks = context_allocate(context, w->mesh->triangle_count, sizeof *s->marks);
     return s->marks != NULL ? CSCD_OK : CSCD_OUT_OF_MEMORY;
@@ -42,6 +44,7 @@ static cscd_status reserve_items(summing *w, size_t count) {
     part_summer *s = w->sums;
     const size_t larger = room_with_spare(count);
     const array_list list = {{ARRAY(s->items, larger)}};
+    if (!memory_budget_take_all(w->budget, list)) return CSCD_OUT_OF_MEMORY;
     return context_renew_all(w->mesh->context, list, &s->item_capacity, count) ? CSCD_OK : CSCD_OUT_OF_MEMORY;
 }
 
@@ -224,8 +227,8 @@ static size_t count_faces(const summing *w) {
 
 cscd_status part_sums_run(part_summer *s, const cscd_mesh *mesh, const part_labels *labels,
                           const cscd_intersection_pairs *found, const same_solids *same,
-                          cscd_part_pairs *out) {
-    summing w = {.sums = s, .mesh = mesh, .labels = labels, .found = found, .same = same};
+                          memory_budget *budget, cscd_part_pairs *out) {
+    summing w = {.sums = s, .mesh = mesh, .labels = labels, .found = found, .same = same, .budget = budget};
     cscd_status status = list_keys(&w);
     if (status != CSCD_OK) return status;
     size_t count = 0;

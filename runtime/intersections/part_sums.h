@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/intersections/same_solids.h"
+#include "src/core/memory_budget.h"
 #include "src/mesh/part_labels.h"
 
 #include <cscd/intersections.h>
@@ -23,7 +24,8 @@ typedef struct part_summer {
 
 void part_sums_free(cscd_context *context, part_summer *s);
 
-/* Sums up what was found. same: the copies among the bodies; NULL: nobody has asked. *out lives until the next call. OUT_OF_MEMORY has no sentence. */
+/* Sums up what was found. same: the copies among the bodies; NULL: nobody has asked. *out lives until the next call.
+ * OUT_OF_MEMORY has no sentence, and may mean that the sums do not fit the budget. */
 cscd_status part_sums_run(part_summer *s, const cscd_mesh *mesh, const part_labels *labels,
                           const cscd_intersection_pairs *found, const same_solids *same,
-                          cscd_part_pairs *out);
+                          memory_budget *budget, cscd_part_pairs *out);

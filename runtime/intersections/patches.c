@@ -87,6 +87,8 @@ typedef struct patch_work {
     patch_finder *finder;
     const named_surface *surface;
     const bvh *bvh;
+    size_t most_windings;    /* so many fit the budget; all lanes together have */
+    atomic_size_t *windings; /* so many by now */
 } patch_work;
 
 static void mark_crossed(patch_finder *p, uint32_t triangle) {
@@ -179,6 +181,7 @@ static void connect_nodes(patch_finder *p) {
 
 static bool add_patch(patch_finder *p, uint32_t triangle, uint32_t corner, uint32_t *place) {
     const cscd_mesh *mesh = p->mesh;
+    if (!memory_budget_take(p->budget, 1, MEMORY_WHILE_DOUBLING * sizeof *p->patches)) return false;
     if (p->patch_count == p->patch_capacity) {
         void *grown =
             grow_twice(mesh->context, p->patches, &p->patch_capacity, p->patch_count, sizeof *p->patches);
@@ -257,7 +260,14 @@ static int compare_numbers(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-static bool keep_number(const patch_finder *p, winding_lane *lane, cscd_winding number) {
+/* A number is in the list of a lane, and then in that of all. */
+enum { WINDING_SIZE = (MEMORY_WHILE_DOUBLING + 2) * sizeof(cscd_winding) };
+
+/* Lanes stop when all of them together have too many, which is so whenever the number of all is too large. */
+static bool keep_number(const patch_work *work, winding_lane *lane, cscd_winding number) {
+    const patch_finder *p = work->finder;
+    if (atomic_fetch_add_explicit(work->windings, 1, memory_order_relaxed) >= work->most_windings)
+        return false;
     if (lane->count == lane->capacity) {
         void *grown =
             grow_twice(p->mesh->context, lane->items, &lane->capacity, lane->count, sizeof *lane->items);
@@ -281,7 +291,7 @@ static bool number_patch(const patch_work *work, winding_lane *lane, cscd_patch 
         cscd_winding number = {tally->touched[i], tally->numbers[tally->touched[i]]};
         if (number.number == 0 || !patch_bodies_look(p, patch->body, number.body)) continue;
         if (number.body == patch->body) patch->own = number.number;
-        if (!keep_number(p, lane, number)) return false;
+        if (!keep_number(work, lane, number)) return false;
         patch->winding_count++;
     }
     return true;
@@ -329,14 +339,17 @@ static bool join_numbers(patch_finder *p) {
 
 cscd_status patch_finder_run(patch_finder *p, const named_surface *s, const bvh *f, const curve_piece *pieces,
                              size_t piece_count, cscd_patches *out) {
-    patch_work work = {p, s, f};
+    atomic_size_t windings = 0;
+    patch_work work = {.finder = p, .surface = s, .bvh = f, .windings = &windings};
     p->bodies = s->bodies;
     if (!reserve_tallies(p, body_count(s->bodies, s->mesh))) return CSCD_OUT_OF_MEMORY;
     mark_pieces(&work, pieces, piece_count);
     connect_nodes(p);
     if (!name_patches(&work)) return CSCD_OUT_OF_MEMORY;
+    work.most_windings = memory_budget_room(p->budget, WINDING_SIZE);
     parallel_run(p->mesh->context->threads, p->lane_count, number_patches, &work);
     if (progress_cancelled(&p->mesh->context->progress)) return CSCD_CANCELLED;
+    if (!memory_budget_take(p->budget, windings, WINDING_SIZE)) return CSCD_OUT_OF_MEMORY;
     if (!join_numbers(p)) return CSCD_OUT_OF_MEMORY;
     *out = (cscd_patches){p->patches,        p->patch_count,      p->windings,       p->winding_count,
                           p->vertex_patches, p->triangle_patches, p->corner_patches, s->turned};

@@ -3,6 +3,7 @@
 
 #include "runtime/bvh/object_set.h"
 #include "runtime/intersections/winding.h"
+#include "src/core/memory_budget.h"
 
 #include <cscd/patches.h>
 
@@ -39,6 +40,7 @@ typedef struct patch_finder {
     size_t winding_count, winding_capacity;
     winding_lane *lanes;
     uint32_t tally_capacity; /* of each lane: bodies */
+    memory_budget *budget;   /* of the call; NULL: there is no limit */
 } patch_finder;
 
 /* On failure, which is OUT_OF_MEMORY without a sentence, *out holds nothing. */

@@ -34,14 +34,15 @@ bool same_solids_have(const same_solids *s, uint32_t a, uint32_t b) {
 }
 
 /* Bodies that share area. */
-static bool list_candidates(same_solids *s, const named_surface *surface, const cscd_intersection_pair *pairs,
-                            size_t count) {
+static bool list_candidates(same_solids *s, const named_surface *surface, memory_budget *budget,
+                            const cscd_intersection_pair *pairs, size_t count) {
     size_t coplanar = 0, kept = 0;
     s->count = 0;
     for (size_t i = 0; i < count; i++) coplanar += pairs[i].kind == CSCD_INTERSECTION_COPLANAR;
     if (coplanar == 0) return true;
     const size_t room = room_with_spare(coplanar);
     const array_list list = {{ARRAY(s->pairs, room), ARRAY(s->spare, room)}};
+    if (!memory_budget_take_all(budget, list)) return false;
     if (!context_renew_all(s->context, list, &s->capacity, coplanar)) return false;
     for (size_t i = 0; i < count; i++) {
         if (pairs[i].kind != CSCD_INTERSECTION_COPLANAR) continue;
@@ -81,7 +82,7 @@ cscd_status same_solids_find(same_solids *s, const surface_cuts *found, const cs
     cscd_overlaps shared;
     size_t kept = 0;
     s->bodies = found->surface->bodies;
-    if (!list_candidates(s, found->surface, pairs, pair_count)) return CSCD_OUT_OF_MEMORY;
+    if (!list_candidates(s, found->surface, found->budget, pairs, pair_count)) return CSCD_OUT_OF_MEMORY;
     leave_out_deep(s, found->surface, depths);
     if (s->count == 0) return CSCD_OK;
     cscd_status status = overlap_finder_run(overlaps, found, left_out, &shared);

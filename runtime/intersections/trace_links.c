@@ -198,6 +198,7 @@ bool trace_links_find(trace_links *t, const surface_cuts *found) {
     const curve_joiner *j = found->curves;
     pass_work work = {t, found, found->surface->mesh};
     size_t most = 6 * j->point_count; /* a point at a vertex is at corners of two triangles */
+    if (!memory_budget_take_all(found->budget, list_of_passes(t, room_with_spare(most)))) return false;
     if (!context_renew_all(t->context, list_of_passes(t, room_with_spare(most)), &t->pass_capacity, most))
         return false;
     t->pass_count = 0;

@@ -46,13 +46,6 @@ void trace_sides_free(trace_sides *s) {
     *s = (trace_sides){.context = s->context};
 }
 
-static bool renew_list(trace_sides *s, array_list (*list)(trace_sides *, size_t), size_t *capacity,
-                       size_t count) {
-    return context_renew_all(s->context, list(s, room_with_spare(count)), capacity, count);
-}
-
-/* ---- elements ------------------------------------------------------------------------------------------ */
-
 typedef struct side_work {
     trace_sides *sides;
     const surface_cuts *found;
@@ -60,15 +53,24 @@ typedef struct side_work {
     const trace_links *links;
 } side_work;
 
+static bool renew_list(const side_work *w, array_list (*list)(trace_sides *, size_t), size_t *capacity,
+                       size_t count) {
+    trace_sides *s = w->sides;
+    return memory_budget_take_all(w->found->budget, list(s, room_with_spare(count))) &&
+           context_renew_all(s->context, list(s, room_with_spare(count)), capacity, count);
+}
+
+/* ---- elements ------------------------------------------------------------------------------------------ */
+
 static bool reserve_sides(const side_work *w) {
     trace_sides *s = w->sides;
     size_t patches = w->found->patches->patch_count;
-    return renew_list(s, list_of_elements, &s->element_capacity, w->links->node_count + patches) &&
-           renew_list(s, list_of_patches, &s->patch_capacity, patches) &&
-           renew_list(s, list_of_links, &s->link_capacity, w->links->link_count) &&
-           renew_list(s, list_of_components, &s->component_capacity, w->mesh->component_count) &&
-           renew_list(s, list_of_traces, &s->trace_capacity, 2 * w->found->curves->curve_count) &&
-           renew_list(s, list_of_passes, &s->pass_capacity, w->links->pass_count);
+    return renew_list(w, list_of_elements, &s->element_capacity, w->links->node_count + patches) &&
+           renew_list(w, list_of_patches, &s->patch_capacity, patches) &&
+           renew_list(w, list_of_links, &s->link_capacity, w->links->link_count) &&
+           renew_list(w, list_of_components, &s->component_capacity, w->mesh->component_count) &&
+           renew_list(w, list_of_traces, &s->trace_capacity, 2 * w->found->curves->curve_count) &&
+           renew_list(w, list_of_passes, &s->pass_capacity, w->links->pass_count);
 }
 
 static uint32_t node_of_patch(const side_work *w, const cscd_patch *patch) {

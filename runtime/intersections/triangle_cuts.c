@@ -28,15 +28,34 @@ void triangle_cuts_free(triangle_cuts *c) {
 
 /* ---- triangles ----------------------------------------------------------------------------------------- */
 
-bool triangle_cuts_sort(triangle_cuts *c, const curve_joiner *curves) {
+static size_t most_pieces(const triangle_cuts *c) {
+    size_t most = 0;
+    for (size_t begin = 0, end = 0; begin < c->key_count; begin = end) {
+        while (end < c->key_count && c->keys[end].number == c->keys[begin].number) end++;
+        if (end - begin > most) most = end - begin;
+    }
+    return most;
+}
+
+/* As reserve_cut, for any triangle. */
+static bool take_budget(triangle_cuts *c, const surface_cuts *found, size_t pieces) {
+    size_t slots = 1 + pieces + 3 * (size_t)found->surface->mesh->object_count;
+    size_t most = 2 * pieces > slots ? 2 * pieces : slots;
+    return memory_budget_take_all(found->budget, list_of_cuts(c, room_with_spare(most))) &&
+           cut_memory_begin(&c->memory, found->budget, pieces, slots);
+}
+
+bool triangle_cuts_sort(triangle_cuts *c, const surface_cuts *found) {
+    const curve_joiner *curves = found->curves;
     size_t count = 2 * curves->piece_count;
+    if (!memory_budget_take_all(found->budget, list_of_keys(c, room_with_spare(count)))) return false;
     if (!context_renew_all(c->context, list_of_keys(c, room_with_spare(count)), &c->key_capacity, count))
         return false;
     for (size_t i = 0; i < count; i++)
         c->keys[i] = (curve_key){i % 2 == 0 ? curves->found[i / 2].a : curves->found[i / 2].b, i};
     sort_by_number(c->keys, c->spare_keys, count, sizeof *c->keys);
     c->key_count = count;
-    return true;
+    return take_budget(c, found, most_pieces(c));
 }
 
 /* The first key that is not below a number. */

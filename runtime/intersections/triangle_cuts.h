@@ -4,12 +4,14 @@
 #include "runtime/intersections/curves.h"
 #include "runtime/intersections/cut_triangle.h"
 #include "runtime/intersections/patches.h"
+#include "src/core/memory_budget.h"
 
 /* What has been found at one moment. */
 typedef struct surface_cuts {
     const named_surface *surface;
     const curve_joiner *curves;
     const patch_finder *patches;
+    memory_budget *budget; /* of whatever is found further; NULL: there is no limit */
 } surface_cuts;
 
 /* A triangle that curves cut, in the projection along an axis. */
@@ -38,8 +40,9 @@ typedef struct triangle_cuts {
 
 void triangle_cuts_free(triangle_cuts *c);
 
-/* Sorts the pieces that were found. False: no memory, here and below. */
-bool triangle_cuts_sort(triangle_cuts *c, const curve_joiner *curves);
+/* Sorts the pieces that were found. False: no memory, here and below, or what is needed for the triangles does not fit the
+ * budget. */
+bool triangle_cuts_sort(triangle_cuts *c, const surface_cuts *found);
 
 /* The keys of a triangle: from *first to before the returned one. */
 size_t triangle_cuts_of(const triangle_cuts *c, uint32_t triangle, size_t *first);

@@ -9,9 +9,9 @@
 
 #define LEAST_cscd_context_options      STRUCT_THROUGH(cscd_context_options, reason_size)
 #define LEAST_cscd_detector_options     STRUCT_THROUGH(cscd_detector_options, reserved)
-#define LEAST_cscd_event_options        STRUCT_THROUGH(cscd_event_options, reserved)
-#define LEAST_cscd_intersection_options STRUCT_THROUGH(cscd_intersection_options, depth_limit)
-#define LEAST_cscd_intersection_pairs   STRUCT_THROUGH(cscd_intersection_pairs, collapsed_components)
+#define LEAST_cscd_event_options        STRUCT_THROUGH(cscd_event_options, max_memory)
+#define LEAST_cscd_intersection_options STRUCT_THROUGH(cscd_intersection_options, max_memory)
+#define LEAST_cscd_intersection_pairs   STRUCT_THROUGH(cscd_intersection_pairs, wanted_memory)
 #define LEAST_cscd_object_desc          STRUCT_THROUGH(cscd_object_desc, normal)
 #define LEAST_cscd_object_change        STRUCT_THROUGH(cscd_object_change, triangle_origins)
 #define LEAST_cscd_plan_options         STRUCT_THROUGH(cscd_plan_options, stiffness)

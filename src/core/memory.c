@@ -192,6 +192,15 @@ static void *get_pointer(const void *pointer) {
     return value;
 }
 
+size_t memory_size_of_all(array_list list) {
+    size_t sum = 0;
+    for (const array_block *block = list.blocks; block->pointer != NULL; block++) {
+        if (block->size > 0 && block->count > (SIZE_MAX - sum) / block->size) return SIZE_MAX;
+        sum += block->count * block->size;
+    }
+    return sum;
+}
+
 bool memory_copy_all(host_memory *m, array_list list) {
     bool copied = true;
     for (const array_block *block = list.blocks; block->pointer != NULL; block++) {

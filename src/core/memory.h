@@ -80,5 +80,8 @@ bool memory_reserve_all(host_memory *m, array_list list);
  * all are NULL. */
 bool memory_copy_all(host_memory *m, array_list list);
 
+/* The bytes of all arrays of a list; SIZE_MAX if they are more than that. */
+size_t memory_size_of_all(array_list list);
+
 /* Frees all arrays of a list, whatever their counts say, and sets their pointers to NULL. */
 void memory_free_all(host_memory *m, array_list list);
