@@ -105,8 +105,13 @@ void answers_write_frame(const answers *a, const frame_answer *frame, json *out)
     json_integer(out, "crossing_pairs", frame->crossing);
     json_integer(out, "touching_pairs", frame->touching);
     json_integer(out, "duplicate_pairs", frame->duplicates);
-    json_integer(out, "crossing_faces", frame->crossing_faces);
-    json_number(out, "crossing_share", triangles > 0 ? (double)frame->crossing_faces / triangles : 0.0);
+    if (frame->unlisted) {
+        json_null(out, "crossing_faces");
+        json_null(out, "crossing_share");
+    } else {
+        json_integer(out, "crossing_faces", frame->crossing_faces);
+        json_number(out, "crossing_share", triangles > 0 ? (double)frame->crossing_faces / triangles : 0.0);
+    }
     json_number(out, "depth", frame->depth);
 }
 

@@ -80,11 +80,17 @@ void answers_print_events(const answers *a, const length_unit *unit) {
 
 static void print_frame(const answers *a, const frame_answer *frame, const length_unit *unit) {
     const double triangles = cscd_mesh_triangle_count(a->recording->mesh);
-    printf("%8d  %9zu  %9zu  %8.3f %%", answers_frame_number(a, frame->frame), frame->crossing,
-           frame->touching, triangles > 0.0 ? 100.0 * frame->crossing_faces / triangles : 0.0);
+    printf("%8d  %9zu  %9zu", answers_frame_number(a, frame->frame), frame->crossing, frame->touching);
+    if (frame->unlisted)
+        printf("  %10s", "-");
+    else
+        printf("  %8.3f %%", triangles > 0.0 ? 100.0 * frame->crossing_faces / triangles : 0.0);
     print_length(frame->depth, unit);
     printf("  %10.3f  ", frame->ms);
-    print_pair(a, frame->worst_parts[0], frame->worst_parts[1], 0);
+    if (frame->worst_parts[0] == NO_PART)
+        putchar('-');
+    else
+        print_pair(a, frame->worst_parts[0], frame->worst_parts[1], 0);
     putchar('\n');
 }
 

@@ -68,8 +68,9 @@ static const char *say_crossing(FILE *out, const answers *a, const frame_answer 
     const uint32_t triangles = cscd_mesh_triangle_count(a->recording->mesh);
     if (frame->crossing == 0) return "";
     say_pairs(out, "", frame->crossing, "triangles", "cross");
-    fprintf(out, ", with %u of %u triangles (%.3g %%)", frame->crossing_faces, triangles,
-            100.0 * frame->crossing_faces / triangles);
+    if (!frame->unlisted)
+        fprintf(out, ", with %u of %u triangles (%.3g %%)", frame->crossing_faces, triangles,
+                100.0 * frame->crossing_faces / triangles);
     return "; ";
 }
 
@@ -171,7 +172,8 @@ static bool say_unfinished(FILE *out, const answers *a) {
                  wanted = a->wanted > 0 ? a->wanted : checked;
     const size_t length = strlen(reason);
     fprintf(out, "Not finished: %s%s %zu of %zu frame%s checked", reason,
-            length > 0 && reason[length - 1] == '.' ? "" : ".", checked, wanted, wanted == 1 ? "" : "s");
+            length > 0 && strchr(".?", reason[length - 1]) != NULL ? "" : ".", checked, wanted,
+            wanted == 1 ? "" : "s");
     const bool found = answers_count(a, frame_answer_clean) < checked || a->event_count > 0;
     fprintf(out, checked == 0 || found ? "." : ", clean so far.");
     if (found) fputc(' ', out);

@@ -17,6 +17,7 @@ static bool api_failed(const answers *a, io_error *error) {
 
 static bool create_tracker(answers *a, io_error *error) {
     cscd_event_options options = cscd_event_defaults();
+    options.max_memory = a->max_memory;
     options.part_count = a->parts->count;
     options.labels = a->parts->labels;
     return cscd_event_tracker_create(a->recording->context, a->recording->mesh, &options, &a->tracker) ==
@@ -24,12 +25,14 @@ static bool create_tracker(answers *a, io_error *error) {
            api_failed(a, error);
 }
 
-bool answers_open(recording *r, const ignore_pairs *ignored, bool depths, answers *out, io_error *error) {
+bool answers_open(recording *r, const ignore_pairs *ignored, bool depths, size_t max_memory, answers *out,
+                  io_error *error) {
     answers a = {.recording = r,
                  .parts = &ignored->parts,
                  .depths = depths,
                  .orientation = ignored->parts.named ? CSCD_ORIENTATION_BY_PART : CSCD_ORIENTATION_BY_OBJECT,
                  .depth_limit = (double)INFINITY,
+                 .max_memory = max_memory,
                  .shown = shown_depths_of(ignored),
                  .collapsed = collapsed_parts_of(r, &ignored->parts),
                  .frames = growable_of(sizeof(frame_answer))};
@@ -164,7 +167,7 @@ static void find_worst(const shown_depths *shown, const cscd_intersection_pairs 
     cscd_part_pair worst = {.a = NO_PART, .b = NO_PART};
     bool worst_of_none = true;
     size_t in_itself = 0;
-    for (size_t i = 0; i < found->parts->count; i++) {
+    for (size_t i = 0; found->parts != NULL && i < found->parts->count; i++) {
         cscd_part_pair pair = found->parts->items[i];
         shown_depths_of_parts(shown, found, &pair);
         if (count_pairs(&pair) == 0 && pair.depth == 0.0) continue;
@@ -190,10 +193,68 @@ bool answers_find(const answers *a, cscd_detector *detector, const double *posit
     options.orientation = a->orientation;
     options.depth_limit = a->depth_limit;
     options.part_bodies = a->parts->named;
+    options.max_memory = a->max_memory;
     const cscd_view *view = CSCD_DOUBLES(positions, cscd_mesh_vertex_count(a->recording->mesh));
-    return cscd_detector_find_intersections(detector, view, &options, found) == CSCD_OK ||
-           api_failed(a, error);
+    const cscd_status status = cscd_detector_find_intersections(detector, view, &options, found);
+    if (status != CSCD_OK && status != CSCD_LIST_TOO_LONG) return api_failed(a, error);
+    if (status == CSCD_LIST_TOO_LONG) found->count = 0;
+    return true;
 }
+
+/* ---- what does not fit the memory ------------------------------------------------------------------------ */
+
+enum { NAMES_SIZE = 200, SIZE_TEXT_SIZE = 32 };
+
+/* "curves, patches and depths"; without pairs nothing else is named. Parts are ours, and not asked for by anybody. */
+static void name_left_out(uint64_t left_out, char text[NAMES_SIZE]) {
+    const char *names[8];
+    size_t count = 0, length = 0;
+    for (int what = CSCD_LEFT_OUT_PAIRS; what < CSCD_LEFT_OUT_PARTS; what++) {
+        if ((left_out >> what & 1) == 0 || what == CSCD_LEFT_OUT_PATCHES) continue;
+        names[count++] =
+            what == CSCD_LEFT_OUT_PAIRS ? "a list of them" : cscd_left_out_name((cscd_left_out)what);
+        if (what == CSCD_LEFT_OUT_PAIRS) break;
+    }
+    if (count == 0) names[count++] = "sums by parts";
+    for (size_t i = 0; i < count && length < NAMES_SIZE; i++)
+        length += (size_t)snprintf(text + length, NAMES_SIZE - length, "%s%s",
+                                   i == 0          ? ""
+                                   : i + 1 < count ? ", "
+                                                   : " and ",
+                                   names[i]);
+}
+
+/* What to try, in megabytes, upwards, as --max-memory takes it. */
+static const char *size_text(size_t bytes, char text[SIZE_TEXT_SIZE]) {
+    snprintf(text, SIZE_TEXT_SIZE, " (%zuM or more)", (bytes >> 20) + 1);
+    return text;
+}
+
+static void leave_out(answers *a, uint32_t frame, const cscd_intersection_pairs *found, const char *names,
+                      const char *size) {
+    const size_t pairs =
+        found->crossing + found->coplanar + found->folded + found->touching + found->duplicate;
+    answers_leave_unfinished(
+        a,
+        "frame %d has %zu pairs of triangles that cross or touch, and %s would take more than --max-memory allows%s; does "
+        "the file list its vertices in another order than the model?",
+        answers_frame_number(a, frame), pairs, names, size);
+}
+
+static void tell_left_out(answers *a, uint32_t frame, const cscd_intersection_pairs *found) {
+    char names[NAMES_SIZE], size[SIZE_TEXT_SIZE];
+    if (found->left_out == 0) return;
+    name_left_out(found->left_out, names);
+    leave_out(a, frame, found, names, size_text(found->wanted_memory, size));
+}
+
+static bool track_frame(answers *a, uint32_t frame, const cscd_intersection_pairs *found, io_error *error) {
+    const cscd_status status = cscd_event_tracker_add_frame(a->tracker, frame, found);
+    if (status == CSCD_LIST_TOO_LONG) leave_out(a, frame, found, "events", "");
+    return status == CSCD_OK || status == CSCD_LIST_TOO_LONG || api_failed(a, error);
+}
+
+/* ---- frames ---------------------------------------------------------------------------------------------- */
 
 bool answers_add_found(answers *a, uint32_t frame, cscd_intersection_pairs *found, double ms,
                        io_error *error) {
@@ -204,6 +265,7 @@ bool answers_add_found(answers *a, uint32_t frame, cscd_intersection_pairs *foun
     added->crossing = found->crossing;
     added->touching = found->coplanar + found->folded + found->touching;
     added->duplicates = found->duplicate;
+    added->unlisted = (found->left_out >> CSCD_LEFT_OUT_PAIRS & 1) != 0;
     added->ms = ms;
     added->without_area =
         found->collapsed > 0 && found->collapsed == cscd_mesh_component_count(a->recording->mesh);
@@ -211,7 +273,8 @@ bool answers_add_found(answers *a, uint32_t frame, cscd_intersection_pairs *foun
     if (!collapsed_parts_add(&a->collapsed, (uint32_t)a->frames.count - 1, found))
         return io_fail(error, "out of memory");
     find_worst(&a->shown, found, added);
-    return cscd_event_tracker_add_frame(a->tracker, frame, found) == CSCD_OK || api_failed(a, error);
+    tell_left_out(a, frame, found);
+    return track_frame(a, frame, found, error);
 }
 
 void answers_add_turned(answers *a, uint32_t frame, const bool *turned) {
@@ -219,8 +282,7 @@ void answers_add_turned(answers *a, uint32_t frame, const bool *turned) {
 }
 
 bool answers_skip_frame(answers *a, uint32_t frame, io_error *error) {
-    return push_frame(a, frame, error) != NULL &&
-           (cscd_event_tracker_add_frame(a->tracker, frame, NULL) == CSCD_OK || api_failed(a, error));
+    return push_frame(a, frame, error) != NULL && track_frame(a, frame, NULL, error);
 }
 
 /* ---- events -------------------------------------------------------------------------------------------- */

@@ -11,6 +11,7 @@
 typedef struct frame_answer {
     uint32_t frame;          /* its index in the recording */
     bool checked;            /* else nothing was looked for, and only contacts are known */
+    bool unlisted;           /* pairs are counted only, so nothing is known of faces, parts and depths */
     size_t crossing;         /* pairs of triangles that cross, */
     size_t touching;         /* that meet otherwise, duplicates aside, */
     size_t duplicates;       /* and that are one and the same */
@@ -20,10 +21,11 @@ typedef struct frame_answer {
         overlapping; /* pairs of parts without such pairs whose interiors meet: they share space and touch, */
     size_t inside;   /* or one is inside the other, */
     size_t same;     /* or both are copies of one solid */
-    double depth, bound;     /* the greatest depth, 0: none is known; and no point is deeper than the bound */
-    bool without_area;       /* no triangle has an area, so that nothing could be looked at */
-    uint32_t worst_parts[2]; /* of the worst, in the order of events (event_order.h) */
-    double ms;               /* how long it took */
+    double depth, bound; /* the greatest depth, 0: none is known; and no point is deeper than the bound */
+    bool without_area;   /* no triangle has an area, so that nothing could be looked at */
+    uint32_t worst_parts
+        [2]; /* of the worst, in the order of events (event_order.h); NO_PART: nobody knows, or there is none */
+    double ms; /* how long it took */
 } frame_answer;
 
 typedef struct answers {
@@ -32,6 +34,7 @@ typedef struct answers {
     bool depths;        /* curves and depths are looked for */
     double depth_limit; /* until each is known to be above this or not; INFINITY: nobody asks */
     cscd_orientation orientation;
+    size_t max_memory;  /* as answer_options has it */
     shown_depths shown; /* of the frame found last */
     turned_parts turned;
     collapsed_parts collapsed; /* parts without a surface; their frames are places in `frames` */
@@ -46,9 +49,11 @@ typedef struct answers {
     io_error unfinished;     /* why not all was looked at that was asked for; "": all was */
 } answers;
 
-/* The ignored pairs, which have the parts, outlive the answers. Without depths there are neither curves nor depths. On false *out
- * holds nothing to close. */
-bool answers_open(recording *r, const ignore_pairs *ignored, bool depths, answers *out, io_error *error);
+/* The ignored pairs, which have the parts, outlive the answers. Without depths there are neither curves nor depths. What does not
+ * fit max_memory, 0: the library's default, is left out, and the answers are unfinished. On false *out holds nothing to
+ * close. */
+bool answers_open(recording *r, const ignore_pairs *ignored, bool depths, size_t max_memory, answers *out,
+                  io_error *error);
 void answers_close(answers *a); /* a zeroed struct is fine */
 
 /* Says how many frames are asked for: all of the recording, or those of a range. */
@@ -70,7 +75,8 @@ bool answers_prepare(const answers *a, cscd_detector *detector, io_error *error)
 /* The contacts of an interval, before the frame at its end. */
 bool answers_add_contacts(answers *a, const cscd_contacts *contacts, io_error *error);
 
-/* Finds what intersects in a frame, for answers_add_found. *found is the detector's. The error does not name the frame. */
+/* Finds what intersects in a frame, for answers_add_found. *found is the detector's. If there are more pairs than fit the memory,
+ * it counts those of each kind, and has no list: count is 0. The error does not name the frame. */
 bool answers_find(const answers *a, cscd_detector *detector, const double *positions,
                   cscd_intersection_pairs *found, io_error *error);
 

@@ -26,7 +26,7 @@ enum { NAME_BYTES_MAX = 100 };
 /* "A x B", of the worst that the frame has; "" if it has nothing. */
 static void name_worst(const answers *a, const frame_answer *frame, char *text, size_t size) {
     text[0] = '\0';
-    if (!frame_answer_meets(frame) && !frame_answer_crosses(frame)) return;
+    if (frame->worst_parts[0] == NO_PART) return;
     const char *first = part_names_at(a->parts, frame->worst_parts[0]);
     const char *second = part_names_at(a->parts, frame->worst_parts[1]);
     snprintf(text, size, ", worst: %.*s x %.*s", TEXT_CUT(first, NAME_BYTES_MAX),

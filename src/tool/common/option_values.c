@@ -7,7 +7,9 @@
 #include "src/tool/common/recording.h"
 #include "src/tool/picture/scene.h"
 
+#include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 bool read_flag(const char *text, void *place) {
@@ -70,6 +72,19 @@ bool read_part_pairs(const char *text, void *place) {
     part_pairs_list *list = place;
     if (text[0] == '\0' || text[0] == ',' || list->count == PART_RULES_MAX) return false;
     list->items[list->count++] = text;
+    return true;
+}
+
+bool read_size(const char *text, void *place) {
+    static const char units[] = "KMGT";
+    char *end;
+    if (text[0] < '0' || text[0] > '9') return false;
+    const double number = strtod(text, &end);
+    const char *unit = *end != '\0' ? strchr(units, *end) : NULL;
+    if (*end != '\0' && (unit == NULL || end[1] != '\0')) return false;
+    const double bytes = unit != NULL ? ldexp(number, 10 * (int)(unit - units + 1)) : number;
+    if (!(bytes >= 1.0 && bytes < ldexp(1.0, 8 * sizeof(size_t) - 1))) return false;
+    *(size_t *)place = (size_t)bytes;
     return true;
 }
 

@@ -17,8 +17,9 @@ bool read_frames(const char *text, void *place);       /* frame_range: A:B[:STEP
 bool read_weld(const char *text, void *place);         /* weld_choice: exact|none|EPS */
 bool read_rest(const char *text, void *place);         /* ignore_options.rest: nothing, or parts */
 bool read_part_pairs(const char *text, void *place);   /* part_pairs_list: A or A,B */
-bool read_seconds(const char *text, void *place);      /* double above 0 */
-bool read_fps(const char *text, void *place);          /* double above 0 */
+bool read_size(const char *text, void *place); /* size_t: bytes above 0, or with K, M, G or T behind them */
+bool read_seconds(const char *text, void *place); /* double above 0 */
+bool read_fps(const char *text, void *place);     /* double above 0 */
 bool read_named_path(const char *text,
                      void *place);                 /* named_paths: NAME=PATH; a name has no ':' and no ',' */
 bool read_obstacle(const char *text, void *place); /* the same, of an obstacle */

@@ -111,7 +111,10 @@ static bool patch_is_buried(const cscd_patches *patches, uint32_t index) {
     return false;
 }
 
+/* Without patches, which did not fit the memory, as the run says, every triangle may be cut. */
 static void find_buried(export_values *v, const cscd_patches *patches) {
+    if (patches == NULL) memset(v->buried, EXPORT_CUT, v->triangles.count);
+    if (patches == NULL) return;
     for (uint32_t t = 0; t < v->triangles.count; t++) {
         const uint32_t patch = patches->triangle_patches[t];
         v->buried[t] = (uint8_t)(patch == UINT32_MAX               ? EXPORT_CUT
@@ -123,7 +126,7 @@ static void find_buried(export_values *v, const cscd_patches *patches) {
 /* Of several objects that contain a vertex the one in which it is deepest counts. */
 static void find_depths(export_values *v, const cscd_depths *depths) {
     memset(v->depth, 0, v->vertices.count * sizeof *v->depth);
-    for (size_t i = 0; i < depths->vertex_count; i++) {
+    for (size_t i = 0; depths != NULL && i < depths->vertex_count; i++) {
         const cscd_depth *deep = &depths->items[i];
         if (deep->depth > v->depth[deep->vertex]) v->depth[deep->vertex] = deep->depth;
     }

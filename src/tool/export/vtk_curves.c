@@ -31,6 +31,8 @@ static bool allocate_lines(vtk_curves *l) {
 }
 
 bool vtk_curves_collect(const cscd_curves *curves, vtk_curves *out) {
+    static const cscd_curves none = {.count = 0};
+    if (curves == NULL) curves = &none; /* they did not fit the memory, which the run says */
     vtk_curves l = {
         .count = curves->count, .point_count = curves->point_count, .corner_count = curves->point_count};
     for (size_t i = 0; i < curves->count; i++) l.corner_count += curves->items[i].closed;

@@ -43,7 +43,9 @@ static bool prepare_check(mesh_check *c, io_error *error) {
     ignore_pairs_choose(&c->ignored, &options);
     if (cscd_detector_create(r->context, r->mesh, NULL, &options, &c->detector) != CSCD_OK)
         return io_fail(error, "%s", cscd_context_detail(r->context));
-    if (!answers_open(r, &c->ignored, !c->job->answers->no_depths, &c->answers, error)) return false;
+    if (!answers_open(r, &c->ignored, !c->job->answers->no_depths, c->job->answers->max_memory, &c->answers,
+                      error))
+        return false;
     answers_expect(&c->answers, r->frame_count);
     return answers_prepare(&c->answers, c->detector, error);
 }

@@ -42,7 +42,7 @@ static bool prepare_answers(replay *r, io_error *error) {
     const answer_options *o = &r->options->answers;
     r->unit = answer_options_unit(o, &r->recording);
     if (!fail_rules_create(&o->fail, &r->unit, &r->rules, error) ||
-        !answers_open(&r->recording, &r->ignored, !o->no_depths, &r->answers, error))
+        !answers_open(&r->recording, &r->ignored, !o->no_depths, o->max_memory, &r->answers, error))
         return false;
     if (o->as_given) r->answers.orientation = CSCD_ORIENTATION_AS_GIVEN;
     if (o->fail.depth.given) answers_decide_depth(&r->answers, r->rules.depth);
@@ -125,7 +125,7 @@ static bool take_frame(replay *r, uint32_t frame, frame_check *check, frame_stat
     if (!answers_add_found(&r->answers, frame, &found, check->ms, &reason))
         return io_fail(error, "frame %d: %s", r->recording.frame_numbers[frame], reason.text);
     answers_add_turned(&r->answers, frame, check->turned);
-    const bool meets = found.count > found.duplicate;
+    const bool meets = found.crossing + found.coplanar + found.folded + found.touching > 0;
     *state = meets ? FRAME_CROSSING : FRAME_EMBEDDED;
     r->totals.frames_checked++;
     r->totals.frames_crossing += found.crossing > 0;
