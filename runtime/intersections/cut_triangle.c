@@ -30,6 +30,8 @@ bool cut_memory_begin(cut_memory *m, memory_budget *budget, size_t lines, size_t
 }
 
 bool cut_memory_reserve(cscd_context *context, cut_memory *m, size_t lines, size_t slots) {
+    if (lines <= m->line_capacity && slots <= m->slot_capacity)
+        return true; /* lists cost more than most triangles */
     return context_renew_all(context, list_of_lines(m, room_with_spare(lines)), &m->line_capacity, lines) &&
            context_renew_all(context, list_of_slots(m, room_with_spare(slots)), &m->slot_capacity, slots);
 }

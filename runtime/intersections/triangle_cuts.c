@@ -72,8 +72,9 @@ static size_t find_key(const triangle_cuts *c, uint64_t number) {
 }
 
 size_t triangle_cuts_of(const triangle_cuts *c, uint32_t triangle, size_t *first) {
-    *first = find_key(c, triangle);
-    return find_key(c, (uint64_t)triangle + 1);
+    size_t end = *first = find_key(c, triangle);
+    while (end < c->key_count && c->keys[end].number == triangle) end++;
+    return end;
 }
 
 /* ---- loading ------------------------------------------------------------------------------------------- */
@@ -200,7 +201,8 @@ static bool reserve_cut(cut_load *load, size_t pieces) {
     size_t slots = 1 + pieces;
     for (uint32_t i = 0; i < 3; i++) slots += patch_at(load, i)->winding_count;
     size_t most = 2 * pieces > slots ? 2 * pieces : slots;
-    if (!context_renew_all(c->context, list_of_cuts(c, room_with_spare(most)), &c->cut_capacity, most))
+    if (most > c->cut_capacity &&
+        !context_renew_all(c->context, list_of_cuts(c, room_with_spare(most)), &c->cut_capacity, most))
         return false;
     return cut_memory_reserve(c->context, &c->memory, pieces, slots);
 }
