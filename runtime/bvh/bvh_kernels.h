@@ -5,8 +5,10 @@
 #include "src/core/kernels.h"
 
 struct bvh;
+struct bvh_leaf;
 struct bvh_skin;
 struct bvh_tree;
+struct framed_query;
 struct orientation_lasting;
 struct traversal;
 struct traversal_lane;
@@ -51,6 +53,14 @@ typedef struct bvh_kernels {
     /* Do the signs of leaves begin to end - 1 last throughout an interval, after skin_move to its end? */
     bool (*skin_signs)(const struct bvh_skin *s, uint32_t begin, uint32_t end, const double *x0,
                        const double *x1);
+
+    /* Writes the squared distances of a point, which is framed with its rounding as a box, from the boxes of eight children,
+     * whose bounds these are; also of lanes that are not used. They are off by less than 2^-20 of themselves. */
+    void (*near_children)(const float *bounds, const struct framed_query *q, float *out);
+
+    /* Which of a leaf's eight triangles may be as near to such a point at the start as the root of squared? */
+    uint32_t (*near_triangles)(const struct bvh *f, const struct bvh_tree *tree, const struct bvh_leaf *leaf,
+                               const struct framed_query *q, double squared);
 
     /* Visits block pairs of the lane's stack, at most visits_max, until it is empty or there is no room for
      * what another visit may add. */

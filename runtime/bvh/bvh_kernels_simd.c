@@ -9,5 +9,7 @@ const bvh_kernels SIMD_NAME(bvh_kernels) = {
     .orient_lasting = SIMD_NAME(orient_lasting),
     .skin_move = SIMD_NAME(skin_move),
     .skin_signs = SIMD_NAME(skin_signs),
+    .near_children = SIMD_NAME(near_children),
+    .near_triangles = SIMD_NAME(near_triangles),
     .search = SIMD_NAME(search),
 };

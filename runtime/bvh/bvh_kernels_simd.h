@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/bvh/bvh_kernels.h"
+#include "runtime/bvh/bvh_query.h"
 #include "runtime/bvh/bvh_skin.h"
 #include "runtime/bvh/traversal.h"
 #include "src/core/simd.h"
@@ -21,4 +22,7 @@ bool SIMD_NAME(skin_signs)(const bvh_skin *s, uint32_t begin, uint32_t end, cons
 
 /* Writes which triangles are PLUS and MINUS, seen from the tree's detector point, of corners[i][end][axis] in its frame. */
 void SIMD_NAME(orient_corners)(const bvh_tree *tree, f32x8 (*corners)[2][3], uint32_t *plus, uint32_t *minus);
+void SIMD_NAME(near_children)(const float *bounds, const framed_query *q, float *out);
+uint32_t SIMD_NAME(near_triangles)(const bvh *f, const bvh_tree *tree, const bvh_leaf *leaf,
+                                   const framed_query *q, double squared);
 void SIMD_NAME(search)(const traversal *t, traversal_lane *lane, size_t visits_max);

@@ -3,11 +3,6 @@
 
 #include <math.h>
 
-/* A box in the frame of a tree, rounded outward. */
-typedef struct framed_query {
-    float low[3], high[3];
-} framed_query;
-
 /* In doubles a coordinate in a frame is off by 2^-51 of the larger of its two terms; bounds have a slack for that, and the
  * float's 2^-23 covers the rest. */
 static framed_query frame_box(const bvh *f, const bvh_tree *tree, const query_box *box) {
@@ -109,34 +104,25 @@ typedef struct near_place {
     uint32_t block;
 } near_place;
 
-/* Squared distances of a point, framed with rounding as a box, from the children of a block, scaled and rounded down. */
-static void measure_children(const bvh *f, const near_place *at, const framed_query *q, double out[LANES]) {
-    const float *bounds = f->levels[at->level].bounds + (size_t)at->block * (size_t)f->axis_count * 2 * LANES;
-    float sums[LANES] = {0.0f};
-    for (int k = 0; k < BOX_AXES; k++) {
-        const float *lows = bounds + 2 * k * LANES, *highs = lows + LANES;
-        for (uint32_t lane = 0; lane < LANES; lane++) {
-            float below = lows[lane] - q->high[k], above = q->low[k] - highs[lane];
-            float gap = below > above ? below : above;
-            sums[lane] += gap > 0.0f ? gap * gap : 0.0f;
-        }
-    }
-    for (uint32_t lane = 0; lane < LANES; lane++) out[lane] = (double)sums[lane] * (1.0 - 0x1p-20);
+static double round_down(float squared) {
+    return (double)squared * (1.0 - 0x1p-20);
 }
 
 /* Puts the children that may be near on the stack, the nearest one last. */
 static int push_children(const bvh *f, const near_place *at, const framed_query *q, double squared,
                          near_place *stack, int count) {
-    double distances[LANES];
+    float distances[LANES];
     uint32_t first = f->levels[at->level].first_children[at->block];
     uint32_t used = f->levels[at->level].flags[at->block].used;
     int begin = count;
-    measure_children(f, at, q, distances);
+    f->kernels->near_children(
+        f->levels[at->level].bounds + (size_t)at->block * (size_t)f->axis_count * 2 * LANES, q, distances);
     for (uint32_t lane = 0; (used >> lane & 1) != 0; lane++) {
-        if (distances[lane] > squared) continue;
+        const double distance = round_down(distances[lane]);
+        if (distance > squared) continue;
         int i = count++;
-        for (; i > begin && stack[i - 1].squared < distances[lane]; i--) stack[i] = stack[i - 1];
-        stack[i] = (near_place){distances[lane], at->level - 1, first + lane};
+        for (; i > begin && stack[i - 1].squared < distance; i--) stack[i] = stack[i - 1];
+        stack[i] = (near_place){distance, at->level - 1, first + lane};
     }
     return count;
 }
@@ -147,6 +133,13 @@ static bool tree_is_asked_for(const bvh *f, const bvh_tree *tree, const near_que
     return component == UINT32_MAX || quest->numbers[component] == quest->number;
 }
 
+static void visit_near_leaf(const bvh *f, const bvh_tree *tree, uint32_t index, const framed_query *q,
+                            const double *squared, void (*visit)(void *data, uint32_t triangle), void *data) {
+    const bvh_leaf *leaf = &f->leaves[index];
+    uint32_t near = f->kernels->near_triangles(f, tree, leaf, q, *squared) & f->leaf_flags[index].used;
+    for (; near != 0; near &= near - 1) visit(data, leaf->triangles[__builtin_ctz(near)]);
+}
+
 void bvh_visit_near(const bvh *f, const near_quest *quest, const double point[3], double *squared,
                     void (*visit)(void *data, uint32_t triangle), void *data) {
     if (f->tree_count == 0) return;
@@ -154,20 +147,20 @@ void bvh_visit_near(const bvh *f, const near_quest *quest, const double point[3]
     near_place stack[QUERY_STACK];
     int count = 0;
     framed_query above = frame_box(f, &f->trees[0], &box), q = above;
+    const bvh_tree *tree = &f->trees[0];
     stack[count++] = (near_place){0.0, f->tree_count == 1 ? f->tree_level - 1 : f->level_count - 1, 0};
     while (count > 0) {
         near_place at = stack[--count];
         if (at.squared > *squared) continue;
         if (at.level == f->tree_level - 1) {
-            if (!tree_is_asked_for(f, &f->trees[at.block], quest)) continue;
-            q = frame_box(f, &f->trees[at.block], &box);
+            tree = &f->trees[at.block];
+            if (!tree_is_asked_for(f, tree, quest)) continue;
+            q = frame_box(f, tree, &box);
         }
         if (at.level >= 0) {
             count = push_children(f, &at, at.level >= f->tree_level ? &above : &q, *squared, stack, count);
             continue;
         }
-        const bvh_leaf *leaf = &f->leaves[at.block];
-        for (uint32_t used = f->leaf_flags[at.block].used, lane = 0; (used >> lane & 1) != 0; lane++)
-            visit(data, leaf->triangles[lane]);
+        visit_near_leaf(f, tree, at.block, &q, squared, visit, data);
     }
 }

@@ -9,6 +9,11 @@ typedef struct query_box {
     double low[3], high[3];
 } query_box;
 
+/* A box in the frame of a tree, rounded outward. */
+typedef struct framed_query {
+    float low[3], high[3];
+} framed_query;
+
 /* Calls visit for each triangle whose bounding volume overlaps the box, and perhaps for some more. closed_only:
  * those of components that are no closed manifolds may be left out. */
 void bvh_visit_box(const bvh *f, const query_box *box, bool closed_only,
