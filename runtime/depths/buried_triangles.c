@@ -40,22 +40,29 @@ static const double *corner_at(const listing_work *w, uint32_t triangle, uint32_
     return surface_corner(w->mesh, w->facts->found->surface->positions, triangle, i);
 }
 
-/* No point is deeper than a corner and the way to it. Where a body contains the point and not the corner, its outer
- * surface lies on that way. */
+/* The greatest distance of the corners from a point. */
+static double corners_reach(const double *const corners[3], const double x[3]) {
+    double squared = 0.0;
+    for (int i = 0; i < 3; i++) squared = max_of(squared, vec3_squared_distance(corners[i], x));
+    return sqrt(squared);
+}
+
+/* No point is deeper than the farthest corner is from a point of the outer surface: the one that is nearest to some corner. Nor
+ * is it deeper than the way to a corner that the body does not contain, since the outer surface lies on that way. */
 static void bound_triangle(const listing_work *w, buried_triangle *t) {
-    double sides[3];
-    for (uint32_t i = 0; i < 3; i++) {
-        double way[3];
-        vec3_subtract(corner_at(w, t->triangle, i), corner_at(w, t->triangle, (i + 1) % 3), way);
-        sides[i] = surface_norm(way);
-    }
+    const double *corners[3];
+    for (uint32_t i = 0; i < 3; i++) corners[i] = corner_at(w, t->triangle, i);
     t->low = 0.0;
     t->bound = (double)INFINITY;
     for (uint32_t i = 0; i < 3; i++) {
+        double nearest[3] = {corners[i][0], corners[i][1], corners[i][2]};
         t->corners[i] = depth_of_corner(w, w->mesh->triangles[t->triangle][i], t->body);
-        double depth = t->corners[i] != UINT32_MAX ? w->facts->vertices[t->corners[i]].depth : 0.0;
-        t->low = fmax(t->low, depth);
-        t->bound = fmin(t->bound, depth + fmax(sides[i], sides[(i + 2) % 3]));
+        if (t->corners[i] != UINT32_MAX) {
+            const cscd_depth *at = &w->facts->vertices[t->corners[i]];
+            t->low = max_of(t->low, at->depth);
+            if (at->depth > 0.0) vec3_add_scaled(at->x, at->depth, at->direction, nearest);
+        }
+        t->bound = min_of(t->bound, corners_reach(corners, nearest));
     }
     t->bound += w->facts->rounding;
 }

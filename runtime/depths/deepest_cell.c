@@ -21,11 +21,17 @@ bool depth_search_wants(const depth_search *s, double bound) {
     return bound > 1.01 * best && bound > best + DEPTH_RESOLUTION * s->rounding;
 }
 
-/* known: a triangle that has the nearest point, or UINT32_MAX. near: see outer_surface_nearest. */
-static void measure_point(depth_search *s, uint32_t number, uint32_t known, const outer_point *near,
-                          deep_point *p) {
-    p->nearest = known != UINT32_MAX ? outer_surface_nearest_on(s->outer, s->found, known, p->x)
-                                     : outer_surface_nearest(s->outer, s->found, s->bvh, s->body, p->x, near);
+/* near: a triangle that may be near; UINT32_MAX: nobody knows. A point that is near enough to the surface to be no deeper than
+ * the best one is not searched for: then its depth is not known, but no more than what is set. */
+static void measure_point(depth_search *s, uint32_t number, uint32_t near, deep_point *p) {
+    const outer_point *begin = NULL;
+    if (near != UINT32_MAX) {
+        p->nearest = outer_surface_near(s->outer, s->found, near, p->x);
+        p->depth = sqrt(p->nearest.squared) / s->outer->scale;
+        if (p->depth <= s->best.depth) return;
+        begin = &p->nearest;
+    }
+    p->nearest = outer_surface_nearest(s->outer, s->found, s->bvh, s->body, p->x, begin);
     p->depth = p->nearest.triangle != UINT32_MAX ? sqrt(p->nearest.squared) / s->outer->scale : 0.0;
     if (!(p->depth > s->best.depth)) return;
     s->best = *p;
@@ -34,29 +40,42 @@ static void measure_point(depth_search *s, uint32_t number, uint32_t known, cons
 
 /* ---- bounds ---------------------------------------------------------------------------------------------- */
 
-/* The parts of the surface that are nearest to the corners of a cell. */
-typedef const outer_part *cell_parts[3];
+/* How far the corners of a cell are from the parts of the surface that were found near some three points: [corner][part]. */
+typedef struct reach_table {
+    double from[3][3];
+} reach_table;
 
-/* No point is deeper than its distance from the part of the surface that is nearest to some corner. That is a convex
- * function, and so is the mean of two or three, so in a cell they are greatest at a corner. A mean changes little where one
- * distance grows as another falls. */
-static double bound_by_parts(const depth_search *s, const depth_cell *cell, const cell_parts parts) {
-    double reach[3][3], least = (double)INFINITY; /* from a corner to a part */
+/* The greatest sum of shares of two columns. */
+static double greatest_mean(const reach_table *reach, int j, int k, double share) {
+    double greatest = 0.0;
     for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++)
-            reach[i][j] = outer_part_distance(s->outer, cell->corners[i], parts[j]) / s->outer->scale;
+        const double mean = (1.0 - share) * reach->from[i][j] + share * reach->from[i][k];
+        greatest = mean > greatest ? mean : greatest;
     }
-    for (int set = 1; set < 8; set++) {
-        const int count = (set & 1) + (set >> 1 & 1) + (set >> 2 & 1);
-        double greatest = 0.0;
-        for (int i = 0; i < 3; i++) {
-            double sum = 0.0;
-            for (int j = 0; j < 3; j++) sum += (set >> j & 1) != 0 ? reach[i][j] : 0.0;
-            greatest = fmax(greatest, sum / count);
-        }
-        least = fmin(least, greatest);
+    return greatest;
+}
+
+static int greatest_of(const reach_table *reach, int j) {
+    const double a = reach->from[0][j], b = reach->from[1][j], c = reach->from[2][j];
+    return c > a && c > b ? 2 : b > a ? 1 : 0;
+}
+
+/* No point is deeper than its distance from a part of the surface. That is a convex function, and so is each mean of several, so
+ * in a cell they are greatest at a corner. A mean changes little where one distance grows as another falls. */
+static double bound_by_parts(const reach_table *reach) {
+    double least = (double)INFINITY;
+    for (int j = 0; j < 3; j++) {
+        const int k = (j + 1) % 3, a = greatest_of(reach, j), b = greatest_of(reach, k);
+        least = min_of(least, reach->from[a][j]);
+        /* with these shares, the corners a and b are equally far */
+        const double rise = reach->from[a][j] - reach->from[b][j],
+                     fall = reach->from[b][k] - reach->from[a][k];
+        if (rise > 0.0 && fall > 0.0) least = min_of(least, greatest_mean(reach, j, k, rise / (rise + fall)));
     }
-    return least;
+    double greatest = 0.0;
+    for (int i = 0; i < 3; i++)
+        greatest = max_of(greatest, reach->from[i][0] + reach->from[i][1] + reach->from[i][2]);
+    return min_of(least, greatest / 3.0);
 }
 
 /* The side from this corner to the next is the longest. */
@@ -74,19 +93,25 @@ static double length_of_side(const depth_cell *cell, int i) {
 
 enum { LOCAL_LEVELS = 2 };
 
+/* The parts of the surface that are near the corners of a cell. */
+typedef const outer_part *cell_parts[3];
+
 /* The same bound for smaller and smaller cells, with the parts of the large one: no search is needed. Ends where one of them is
  * wanted all the same. */
-static double bound_locally(const depth_search *s, const depth_cell *cell, const cell_parts parts,
-                            int levels) {
-    const double bound = bound_by_parts(s, cell, parts);
+static double bound_locally(const depth_search *s, const depth_cell *cell, const reach_table *reach,
+                            const cell_parts parts, int levels) {
+    const double bound = bound_by_parts(reach);
     if (levels == 0 || !depth_search_wants(s, bound)) return bound;
     const int i = longest_side(cell), j = (i + 1) % 3;
-    double greatest = 0.0;
+    double middle[3], from[3], greatest = 0.0;
+    for (int k = 0; k < 3; k++) middle[k] = 0.5 * (cell->corners[i][k] + cell->corners[j][k]);
+    for (int k = 0; k < 3; k++) from[k] = outer_part_reach(s->outer, middle, parts[k]) / s->outer->scale;
     for (int h = 0; h < 2; h++) {
         depth_cell half = *cell;
-        for (int k = 0; k < 3; k++)
-            half.corners[h == 0 ? j : i][k] = 0.5 * (cell->corners[i][k] + cell->corners[j][k]);
-        greatest = fmax(greatest, bound_locally(s, &half, parts, levels - 1));
+        reach_table near = *reach;
+        memcpy(half.corners[h == 0 ? j : i], middle, sizeof middle);
+        memcpy(near.from[h == 0 ? j : i], from, sizeof from);
+        greatest = max_of(greatest, bound_locally(s, &half, &near, parts, levels - 1));
         if (depth_search_wants(s, greatest)) return bound;
     }
     return greatest;
@@ -95,7 +120,7 @@ static double bound_locally(const depth_search *s, const depth_cell *cell, const
 /* The depth changes by no more than the way, and some corner is no farther from a point than the longest side over the square
  * root of 3. */
 static double bound_by_way(const cell_part *c, const depth_cell *cell) {
-    const double deepest = fmax(c->corners[0].depth, fmax(c->corners[1].depth, c->corners[2].depth));
+    const double deepest = max_of(c->corners[0].depth, max_of(c->corners[1].depth, c->corners[2].depth));
     return deepest + length_of_side(cell, longest_side(cell)) * 0.57735026918962584;
 }
 
@@ -105,15 +130,39 @@ static depth_cell cell_of(const cell_part *c) {
     return cell;
 }
 
+static double reach_of(const depth_search *s, const cell_part *c, int corner, int part) {
+    if (corner == part) return c->corners[corner].depth;
+    return outer_part_reach(s->outer, c->corners[corner].x, &c->corners[part].nearest.part) / s->outer->scale;
+}
+
+static int deepest_corner(const cell_part *c) {
+    const double a = c->corners[0].depth, b = c->corners[1].depth;
+    if (c->corners[2].depth > a && c->corners[2].depth > b) return 2;
+    return b > a ? 1 : 0;
+}
+
+/* Most often the part below the deepest corner is enough. */
 static void bound_part(const depth_search *s, cell_part *c) {
     const depth_cell cell = cell_of(c);
     const cell_parts parts = {&c->corners[0].nearest.part, &c->corners[1].nearest.part,
                               &c->corners[2].nearest.part};
+    const int deepest = deepest_corner(c);
+    reach_table reach;
+    double greatest = 0.0;
     for (int i = 0; i < 3; i++)
         if (c->corners[i].nearest.triangle == UINT32_MAX) c->above = 0.0; /* the body has no outer surface */
-    c->above = fmin(c->above, bound_by_way(c, &cell));
-    if (depth_search_wants(s, c->above))
-        c->above = fmin(c->above, bound_locally(s, &cell, parts, LOCAL_LEVELS));
+    c->above = min_of(c->above, bound_by_way(c, &cell));
+    if (!depth_search_wants(s, c->above)) return;
+    for (int i = 0; i < 3; i++) {
+        reach.from[i][deepest] = reach_of(s, c, i, deepest);
+        greatest = max_of(greatest, reach.from[i][deepest]);
+    }
+    c->above = min_of(c->above, greatest);
+    if (!depth_search_wants(s, c->above)) return;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            if (j != deepest) reach.from[i][j] = reach_of(s, c, i, j);
+    c->above = min_of(c->above, bound_locally(s, &cell, &reach, parts, LOCAL_LEVELS));
 }
 
 /* ---- dividing -------------------------------------------------------------------------------------------- */
@@ -124,7 +173,7 @@ static int halve_part(depth_search *s, uint32_t number, const cell_part *c, cell
     const int i = longest_side(&cell), j = (i + 1) % 3;
     deep_point middle;
     for (int k = 0; k < 3; k++) middle.x[k] = 0.5 * (c->corners[i].x[k] + c->corners[j].x[k]);
-    measure_point(s, number, UINT32_MAX, &c->corners[i].nearest, &middle);
+    measure_point(s, number, c->corners[i].nearest.triangle, &middle);
     out[0] = out[1] = *c;
     out[0].corners[j] = out[1].corners[i] = middle;
     return 2;
@@ -151,13 +200,13 @@ static side_plane plane_along(const depth_search *s, const cell_part *c, const o
         double from[3];
         for (int k = 0; k < 3; k++) from[k] = c->corners[i].x[k] * s->outer->scale - a[k];
         plane.outside[i] = vec3_dot(from, outwards) / norm;
-        most = fmax(most, plane.outside[i]);
-        least = fmin(least, plane.outside[i]);
+        most = max_of(most, plane.outside[i]);
+        least = min_of(least, plane.outside[i]);
     }
     const depth_cell cell = cell_of(c);
     const double size = length_of_side(&cell, longest_side(&cell)) * s->outer->scale;
     const double least_piece = 0x1p-40 * size + s->rounding * s->outer->scale;
-    plane.span = fmin(most, -least) > least_piece ? most : 0.0;
+    plane.span = min_of(most, -least) > least_piece ? most : 0.0;
     return plane;
 }
 
@@ -177,7 +226,7 @@ static deep_point point_in_plane(depth_search *s, uint32_t number, const cell_pa
     deep_point p;
     for (int k = 0; k < 3; k++)
         p.x[k] = c->corners[i].x[k] + share * (c->corners[j].x[k] - c->corners[i].x[k]);
-    measure_point(s, number, UINT32_MAX, &c->corners[i].nearest, &p);
+    measure_point(s, number, c->corners[i].nearest.triangle, &p);
     return p;
 }
 
@@ -206,14 +255,14 @@ static int split_wide(depth_search *s, uint32_t number, const cell_part *c, cell
     deep_point middle;
     for (int k = 0; k < 3; k++)
         middle.x[k] = (c->corners[0].x[k] + c->corners[1].x[k] + c->corners[2].x[k]) / 3.0;
-    measure_point(s, number, UINT32_MAX, &c->corners[0].nearest, &middle);
+    measure_point(s, number, c->corners[0].nearest.triangle, &middle);
     if (middle.nearest.triangle == UINT32_MAX) return -1;
     double bound = 0.0;
     for (int i = 0; i < 3; i++)
-        bound = fmax(bound, outer_part_distance(s->outer, c->corners[i].x, &middle.nearest.part));
+        bound = max_of(bound, outer_part_reach(s->outer, c->corners[i].x, &middle.nearest.part));
     bound /= s->outer->scale;
     if (!depth_search_wants(s, bound)) {
-        s->bound = fmax(s->bound, bound);
+        s->bound = max_of(s->bound, bound);
         return 0;
     }
     const side_plane plane = choose_plane(s, c, &middle.nearest.part);
@@ -221,7 +270,7 @@ static int split_wide(depth_search *s, uint32_t number, const cell_part *c, cell
 }
 
 static int divide_part(depth_search *s, uint32_t number, const cell_part *c, cell_part out[3]) {
-    const double deepest = fmax(c->corners[0].depth, fmax(c->corners[1].depth, c->corners[2].depth));
+    const double deepest = max_of(c->corners[0].depth, max_of(c->corners[1].depth, c->corners[2].depth));
     const depth_cell cell = cell_of(c);
     const bool wide = length_of_side(&cell, longest_side(&cell)) > 2.0 * deepest;
     int count = wide ? split_wide(s, number, c, out) : -1;
@@ -244,22 +293,34 @@ static void sort_parts(cell_part *parts, int count) {
     }
 }
 
+static void measure_corners(depth_search *s, const depth_cell *cell, uint32_t number,
+                            const cscd_depth *const known[3], cell_part *out) {
+    uint32_t near = cell->near;
+    for (int i = 0; i < 3; i++) {
+        deep_point *p = &out->corners[i];
+        memcpy(p->x, cell->corners[i], sizeof p->x);
+        if (known != NULL && known[i] != NULL && known[i]->triangle != UINT32_MAX) {
+            p->nearest = outer_surface_near_on(s->outer, s->found, known[i]->triangle, p->x);
+            p->depth = known[i]->depth;
+        } else {
+            measure_point(s, number, near, p);
+        }
+        near = p->nearest.triangle;
+    }
+}
+
 void depth_search_cell(depth_search *s, const depth_cell *cell, uint32_t number, double above,
-                       const uint32_t known[3]) {
+                       const cscd_depth *const known[3]) {
     cell_part waiting[2 * LEVELS_MAX + 3];
     int count = 1;
-    waiting[0] = (cell_part){.above = above, .level = 0};
-    for (int i = 0; i < 3; i++) {
-        deep_point *p = &waiting[0].corners[i];
-        const outer_point *near = i > 0 ? &waiting[0].corners[i - 1].nearest : NULL;
-        memcpy(p->x, cell->corners[i], sizeof p->x);
-        measure_point(s, number, known != NULL ? known[i] : UINT32_MAX, near, p);
-    }
+    waiting[0].above = above;
+    waiting[0].level = 0;
+    measure_corners(s, cell, number, known, &waiting[0]);
     bound_part(s, &waiting[0]);
     while (count > 0) {
         const cell_part part = waiting[--count];
         if (part.level == LEVELS_MAX || s->cells_left == 0 || !depth_search_wants(s, part.above)) {
-            s->bound = fmax(s->bound, part.above);
+            s->bound = max_of(s->bound, part.above);
             continue;
         }
         s->cells_left--;

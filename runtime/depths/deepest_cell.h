@@ -1,16 +1,19 @@
 /* The deepest point of a triangle, or of what is buried of it: docs/theory/curves.md, Lemma 9. */
 #pragma once
 
-#include "runtime/depths/outer_surface.h"
+#include "runtime/depths/near_surface.h"
+
+#include <cscd/intersections.h>
 
 #define DEPTH_RESOLUTION 0x1p16
 
 /* A triangle in space, all of which counts. */
 typedef struct depth_cell {
     double corners[3][3];
+    uint32_t near; /* a triangle of the surface that may be near; UINT32_MAX: nobody knows */
 } depth_cell;
 
-/* A point, and the nearest one of the outer surface. */
+/* A point, and the nearest one of the outer surface; or a near one, and then the depth is no more than this. */
 typedef struct deep_point {
     double x[3], depth;
     outer_point nearest;
@@ -34,7 +37,7 @@ typedef struct depth_search {
 /* May a point that is no deeper than the bound matter, or is the best one good enough? */
 bool depth_search_wants(const depth_search *s, double bound);
 
-/* Looks for deeper points in a cell. number: what best_cell becomes if there is one. above: no point of it is deeper. known: per
- * corner a triangle that has its nearest point; NULL, or UINT32_MAX: nobody knows. */
+/* Looks for deeper points in a cell. number: what best_cell becomes if there is one. above: no point of it is deeper. known: the
+ * depths of its corners, none of which is deeper than the best; NULL: nobody knows any, or not this one. */
 void depth_search_cell(depth_search *s, const depth_cell *cell, uint32_t number, double above,
-                       const uint32_t known[3]);
+                       const cscd_depth *const known[3]);

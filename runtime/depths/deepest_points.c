@@ -71,41 +71,65 @@ static void begin_with_corners(const deepest_work *w, const buried_group *group,
 
 enum { BANKS_MAX = 16 };
 
+/* What bounds the depth of a triangle that a body cuts: the parts of the body's outer surface that cut it. */
+typedef struct cell_banks {
+    outer_part parts[BANKS_MAX];
+    uint32_t triangles[BANKS_MAX], count;
+} cell_banks;
+
+static void add_bank(cell_banks *banks, uint32_t triangle, const outer_part *part) {
+    if (banks->count == BANKS_MAX) return;
+    banks->triangles[banks->count] = triangle;
+    banks->parts[banks->count++] = *part;
+}
+
+static void list_banks(const deepest_work *w, const buried_triangle *t, size_t first, size_t end,
+                       cell_banks *out) {
+    const outer_surface *o = w->facts->outer;
+    out->count = 0;
+    for (; first < end; first++) {
+        const uint64_t code = w->facts->cuts->keys[first].end;
+        const curve_piece *piece = &w->facts->found->curves->found[code / 2];
+        const uint32_t other = code % 2 == 1 ? piece->a : piece->b, place = o->places[other];
+        if (place == OUTER_NOWHERE || surface_body(w->facts->found->surface, other) != t->body) continue;
+        if (place != OUTER_AS_A_WHOLE) {
+            for (size_t i = o->part_begins[place]; i < o->part_begins[place + 1]; i++)
+                add_bank(out, other, &o->parts[i]);
+            continue;
+        }
+        outer_part whole;
+        outer_surface_whole(o, w->facts->found, other, &whole);
+        add_bank(out, other, &whole);
+    }
+}
+
+/* No point of a cell is deeper than its corners are far from one of these; *near: of which. */
+static double bound_by_banks(const deepest_work *w, const cell_banks *banks, const depth_search *s,
+                             depth_cell *cell) {
+    const outer_surface *o = w->facts->outer;
+    double least = (double)INFINITY;
+    cell->near = UINT32_MAX;
+    for (uint32_t i = 0; i < banks->count && depth_search_wants(s, least); i++) {
+        double greatest = 0.0;
+        for (int k = 0; k < 3; k++)
+            greatest = max_of(greatest, outer_part_reach(o, cell->corners[k], &banks->parts[i]));
+        greatest = greatest / o->scale + w->facts->rounding;
+        if (!(greatest < least)) continue;
+        least = greatest;
+        cell->near = banks->triangles[i];
+    }
+    return least;
+}
+
 /* A triangle whose parts are taken. */
 typedef struct cell_taker {
     deepest_work *work;
     const cut_lift *lift;
     const depth_search *search; /* begun with the corners of the group */
-    uint32_t slot, bank_count;
-    outer_part banks[BANKS_MAX]; /* triangles of the body that cut this one */
+    const cell_banks *banks;
+    uint32_t slot;
     double area, left;
 } cell_taker;
-
-static void list_banks(cell_taker *taker, const loaded_cut *cut) {
-    const deepest_work *w = taker->work;
-    const curve_joiner *j = w->facts->found->curves;
-    for (size_t i = 0; i < cut->cut.line_count && taker->bank_count < BANKS_MAX; i++) {
-        const cut_line *line = &cut->cut.lines[i];
-        const size_t piece = cut->line_pieces[line->number];
-        const uint32_t other = j->found[piece].a == cut->triangle ? j->found[piece].b : j->found[piece].a;
-        if (line->slot != taker->slot || w->facts->outer->places[other] != OUTER_AS_A_WHOLE) continue;
-        outer_surface_whole(w->facts->outer, w->facts->found, other, &taker->banks[taker->bank_count++]);
-    }
-}
-
-/* No point of a cell is deeper than its corners are far from one of these. */
-static double distance_of_banks(const cell_taker *taker, const depth_cell *cell) {
-    double least = (double)INFINITY;
-    for (uint32_t i = 0; i < taker->bank_count; i++) {
-        double greatest = 0.0;
-        for (int k = 0; k < 3; k++) {
-            greatest = fmax(
-                greatest, outer_part_distance(taker->work->facts->outer, cell->corners[k], &taker->banks[i]));
-        }
-        least = fmin(least, greatest);
-    }
-    return least / taker->work->facts->outer->scale + taker->work->facts->rounding;
-}
 
 static void add_cell(deepest_work *w, const depth_cell *cell) {
     deepest_finder *d = w->finder;
@@ -125,27 +149,42 @@ static void take_part(void *data, const cut_part *part) {
     depth_cell halves[2];
     cut_lift_part(taker->lift, part, halves[0].corners, halves[1].corners);
     for (int i = 0; i < 2; i++) {
-        const double bound = distance_of_banks(taker, &halves[i]);
+        const double bound = bound_by_banks(taker->work, taker->banks, taker->search, &halves[i]);
         if (depth_search_wants(taker->search, bound))
             add_cell(taker->work, &halves[i]);
         else
-            taker->left = fmax(taker->left, bound);
+            taker->left = max_of(taker->left, bound);
     }
+}
+
+/* Where rounding could feign the best depth, the area decides whether there is any, and must be known. */
+static bool banks_rule_out(const deepest_work *w, const cell_banks *banks, const depth_search *s,
+                           buried_triangle *t) {
+    depth_cell whole;
+    if (s->best.depth <= w->facts->rounding) return false;
+    for (uint32_t i = 0; i < 3; i++)
+        memcpy(whole.corners[i], surface_corner(w->mesh, w->facts->found->surface->positions, t->triangle, i),
+               sizeof whole.corners[i]);
+    t->left = bound_by_banks(w, banks, s, &whole);
+    return !depth_search_wants(s, t->left);
 }
 
 static bool cut_open(deepest_work *w, const depth_search *s, buried_triangle *t) {
     size_t first, end = triangle_cuts_of(w->facts->cuts, t->triangle, &first);
+    cell_banks banks;
     loaded_cut cut;
     t->first_cell = w->finder->cell_count;
     t->cell_count = 0;
+    list_banks(w, t, first, end, &banks);
+    if (banks_rule_out(w, &banks, s, t)) return true;
+    t->left = 0.0;
     t->area = 0.0;
     if (!triangle_cuts_load(w->facts->cuts, w->facts->found, first, end, &cut)) return false;
     if (cut.stretch == 0.0) return true;
     cut_lift lift = cut_lift_of(w->facts->found->surface, &cut);
-    cell_taker taker = {.work = w, .lift = &lift, .search = s};
+    cell_taker taker = {.work = w, .lift = &lift, .search = s, .banks = &banks};
     while (taker.slot < cut.cut.slot_count && cut.slot_bodies[taker.slot] != t->body) taker.slot++;
     if (taker.slot == cut.cut.slot_count) return true;
-    list_banks(&taker, &cut);
     if (!cut_triangle_divide(w->finder->context, &cut.cut, &w->facts->cuts->memory, take_part, &taker))
         return false;
     t->area = taker.area * cut.stretch;
@@ -228,19 +267,20 @@ static bool group_lies_within(const deepest_work *w, const buried_group *group) 
 /* ---- the deepest points ---------------------------------------------------------------------------------- */
 
 static void search_whole(const deepest_work *w, const buried_triangle *t, depth_search *s) {
-    uint32_t known[3];
-    depth_cell cell;
+    const cscd_depth *known[3];
+    depth_cell cell = {.near = UINT32_MAX};
     for (uint32_t i = 0; i < 3; i++) {
         memcpy(cell.corners[i], surface_corner(w->mesh, w->facts->found->surface->positions, t->triangle, i),
                sizeof cell.corners[i]);
-        known[i] = t->corners[i] != UINT32_MAX ? w->facts->vertices[t->corners[i]].triangle : UINT32_MAX;
+        known[i] = t->corners[i] != UINT32_MAX ? &w->facts->vertices[t->corners[i]] : NULL;
+        if (known[i] != NULL) cell.near = known[i]->triangle;
     }
     depth_search_cell(s, &cell, t->triangle, t->bound, known);
 }
 
 static void search_triangle(const deepest_work *w, const buried_triangle *t, depth_search *s) {
     if (!t->cut) search_whole(w, t, s);
-    s->bound = fmax(s->bound, t->left);
+    s->bound = max_of(s->bound, t->left);
     for (uint32_t k = 0; k < t->cell_count; k++)
         depth_search_cell(s, &w->finder->cells[t->first_cell + k], t->triangle, t->bound, NULL);
 }
@@ -255,7 +295,7 @@ static void search_group(const deepest_work *w, const buried_group *group, depth
         if (triangles[i].low == deepest) search_triangle(w, &triangles[i], s);
     for (size_t i = group->first; i < group->end; i++) {
         if (!depth_search_wants(s, triangles[i].bound)) {
-            s->bound = fmax(s->bound, triangles[i].bound);
+            s->bound = max_of(s->bound, triangles[i].bound);
             return; /* nor is any after it wanted */
         }
         if (triangles[i].low != deepest) search_triangle(w, &triangles[i], s);

@@ -187,6 +187,16 @@ static void set_answer(const depth_work *work, const outer_point *nearest, cscd_
         find_normal(work, nearest->triangle, out->direction);
 }
 
+/* near: the answer for another point and the same body, or NULL. */
+static outer_point search_nearest(const depth_work *work, uint32_t body, const double x[3],
+                                  const outer_point *near) {
+    const outer_surface *outer = &work->finder->outer;
+    outer_point begin = {.triangle = UINT32_MAX};
+    if (near != NULL && near->triangle != UINT32_MAX)
+        begin = outer_surface_near(outer, work->found, near->triangle, x);
+    return outer_surface_nearest(outer, work->found, work->bvh, body, x, &begin);
+}
+
 /* A place on an edge; distance: scaled. */
 typedef struct edge_place {
     double s, x[3], distance;
@@ -204,8 +214,7 @@ typedef struct edge_search {
 static edge_place place_at(const edge_search *e, double s, const outer_point *near) {
     edge_place at = {.s = s};
     for (int k = 0; k < 3; k++) at.x[k] = e->ends[0][k] + s * (e->ends[1][k] - e->ends[0][k]);
-    at.nearest = outer_surface_nearest(&e->work->finder->outer, e->work->found, e->work->bvh,
-                                       e->question->body, at.x, near);
+    at.nearest = search_nearest(e->work, e->question->body, at.x, near);
     at.distance = sqrt(at.nearest.squared);
     return at;
 }
@@ -215,9 +224,9 @@ static edge_place place_at(const edge_search *e, double s, const outer_point *ne
 static double bound_between(const edge_search *e, const edge_place *a, const edge_place *b) {
     double by_way = 0.5 * (a->distance + b->distance + (b->s - a->s) * e->length);
     const outer_surface *outer = &e->work->finder->outer;
-    double by_first = fmax(a->distance, outer_part_distance(outer, b->x, &a->nearest.part));
-    double by_last = fmax(b->distance, outer_part_distance(outer, a->x, &b->nearest.part));
-    return fmin(by_way, fmin(by_first, by_last));
+    double by_first = max_of(a->distance, outer_part_reach(outer, b->x, &a->nearest.part));
+    double by_last = max_of(b->distance, outer_part_reach(outer, a->x, &b->nearest.part));
+    return min_of(by_way, min_of(by_first, by_last));
 }
 
 enum { HALVINGS_MAX = 64 };
@@ -260,8 +269,7 @@ static outer_point answer_edge(const depth_work *work, const depth_question *q, 
 static outer_point answer_vertex(const depth_work *work, const depth_question *q, const outer_point *near,
                                  cscd_depth *out) {
     memcpy(out->x, work->found->surface->positions + (size_t)q->vertex * 3, sizeof out->x);
-    outer_point nearest =
-        outer_surface_nearest(&work->finder->outer, work->found, work->bvh, q->body, out->x, near);
+    outer_point nearest = search_nearest(work, q->body, out->x, near);
     set_answer(work, &nearest, out);
     return nearest;
 }
@@ -314,7 +322,7 @@ static int compare_questions(const void *a, const void *b) {
 static double rounding_of(const named_surface *s) {
     double largest = 0.0;
     for (size_t i = 0; i < (size_t)s->mesh->vertex_count * 3; i++)
-        largest = fmax(largest, fabs(s->positions[i]));
+        largest = max_of(largest, fabs(s->positions[i]));
     return largest * 0x1p-46;
 }
 

@@ -1,11 +1,9 @@
-/* The outer surfaces of bodies: what they do not bury in themselves; and the nearest point of one. */
+/* The outer surfaces of bodies: what they do not bury in themselves. */
 #include "runtime/depths/outer_surface.h"
 
-#include "runtime/ccd/closest.h"
 #include "src/core/vec3.h"
 #include "src/mesh/surface.h"
 
-#include <float.h>
 #include <string.h>
 
 /* ---- memory -------------------------------------------------------------------------------------------- */
@@ -25,6 +23,7 @@ void outer_surface_free(outer_surface *o) {
     context_free_all(o->context, list_of_cuts(o, 0));
     context_free_all(o->context, list_of_places(o, 0));
     context_free(o->context, o->parts);
+    context_free(o->context, o->part_boxes);
     *o = (outer_surface){.context = o->context, .cuts = {.context = o->context}};
 }
 
@@ -55,13 +54,12 @@ static outer_box empty_box(void) {
     return (outer_box){{most, most, most}, {-most, -most, -most}};
 }
 
-static void box_parts(outer_box *box, const outer_part *parts, size_t count) {
+static void box_parts(outer_box *box, const outer_box *parts, size_t count) {
     *box = empty_box();
     for (size_t i = 0; i < count; i++) {
-        outer_box part = box_of_part(&parts[i]);
         for (int k = 0; k < 3; k++) {
-            box->low[k] = part.low[k] < box->low[k] ? part.low[k] : box->low[k];
-            box->high[k] = part.high[k] > box->high[k] ? part.high[k] : box->high[k];
+            box->low[k] = min_of(box->low[k], parts[i].low[k]);
+            box->high[k] = max_of(box->high[k], parts[i].high[k]);
         }
     }
 }
@@ -70,11 +68,14 @@ static bool add_part(outer_surface *o, const outer_part *part) {
     if (!memory_budget_take(o->budget, 1, MEMORY_WHILE_DOUBLING * sizeof *part)) return false;
     if (o->part_count == o->part_capacity) {
         size_t larger = o->part_capacity == 0 ? 64 : 2 * o->part_capacity;
-        outer_part *grown = context_grow(o->context, o->parts, o->part_count, larger, sizeof *grown);
-        if (grown == NULL) return false;
-        o->parts = grown;
+        outer_part *parts = context_grow(o->context, o->parts, o->part_count, larger, sizeof *parts);
+        if (parts != NULL) o->parts = parts;
+        outer_box *boxes = context_grow(o->context, o->part_boxes, o->part_count, larger, sizeof *boxes);
+        if (boxes != NULL) o->part_boxes = boxes;
+        if (parts == NULL || boxes == NULL) return false;
         o->part_capacity = larger;
     }
+    o->part_boxes[o->part_count] = box_of_part(part);
     o->parts[o->part_count++] = *part;
     return true;
 }
@@ -135,7 +136,7 @@ static bool divide_triangle(outer_surface *o, const surface_cuts *found, loaded_
     if (!cut_triangle_divide(o->context, &cut->cut, &o->cuts.memory, take_part, &taker)) return false;
     add_waiting(&taker);
     size_t first = o->part_begins[o->cut_count - 1];
-    box_parts(&o->boxes[o->cut_count - 1], o->parts + first, o->part_count - first);
+    box_parts(&o->boxes[o->cut_count - 1], o->part_boxes + first, o->part_count - first);
     return !taker.out_of_memory;
 }
 
@@ -182,128 +183,9 @@ bool outer_surface_find(outer_surface *o, const surface_cuts *found, const bvh *
     return find_places(o, found);
 }
 
-/* ---- the nearest point --------------------------------------------------------------------------------- */
-
-typedef struct nearest_search {
-    const outer_surface *outer;
-    const surface_cuts *found;
-    uint32_t body;
-    double x[3]; /* scaled, as all that is found */
-    outer_point best;
-} nearest_search;
-
-/* Is the box further away than what was found? Computed distances from points of a triangle are off by less than 2^-47 of
- * the sum of the distance and the triangle's size, which the margins cover, so that nothing is left out that would be
- * nearer as computed. If a box is far, so is each that lies in it. */
-static bool box_is_far(const nearest_search *s, const outer_box *box) {
-    double squared = 0.0, size = 0.0;
-    for (int k = 0; k < 3; k++) {
-        double low = box->low[k], high = box->high[k];
-        double gap = low > s->x[k] ? low - s->x[k] : s->x[k] > high ? s->x[k] - high : 0.0;
-        squared += gap * gap;
-        size += (high - low) * (high - low);
-    }
-    return squared * (1.0 - 0x1p-20) > s->best.squared + 0x1p-70 * size;
-}
-
-/* Is the plane of a triangle further away than what was found? The least distance of the point w from the plane, seen from a
- * corner, is |h| / |n|, with n the product of two sides of squared lengths a and b, and h = n w. Computed, n is off by less
- * than 8 * 2^-53 * sqrt(ab), since each of its coordinates is by 5 * 2^-53 of the sum of its two products, and h by less than
- * 13 * 2^-53 * sqrt(ab) |w|. As (x - e)^2 > x^2 (1 - t) - e^2 / t, and the same with +, for t = 2^-22, what remains of these is
- * 2^-76 ab in n n, and 2^-75 ab w w in h h; the rest of 2^-18 is for what box_is_far says of computed distances, with
- * 2 (a + b) as the square of the size. What underflow loses is below 2^-900. */
-static bool plane_is_far(const nearest_search *s, const double corners[3][3]) {
-    double ab[3], ac[3], w[3], n[3];
-    vec3_subtract(corners[1], corners[0], ab);
-    vec3_subtract(corners[2], corners[0], ac);
-    vec3_subtract(s->x, corners[0], w);
-    vec3_cross(ab, ac, n);
-    double a = vec3_dot(ab, ab), b = vec3_dot(ac, ac), h = vec3_dot(n, w),
-           most = s->best.squared + 0x1p-69 * (a + b);
-    double rounding = 0x1p-75 * a * b;
-    return h * h * (1.0 - 0x1p-18) >
-           most * (vec3_dot(n, n) + rounding) + rounding * vec3_dot(w, w) + 0x1p-900;
-}
-
-/* Of several parts at the same distance, that of the first triangle is the answer, whatever the trees' order is. */
-static void try_part(nearest_search *s, uint32_t triangle, const outer_part *part) {
-    double u, v;
-    const double(*p)[3] = part->corners;
-    const outer_box box = box_of_part(part);
-    if (box_is_far(s, &box) || plane_is_far(s, p)) return;
-    double squared = closest_point_triangle(s->x, p[0], p[1], p[2], &u, &v);
-    if (!(squared < s->best.squared || (squared == s->best.squared && triangle < s->best.triangle))) return;
-    s->best.squared = squared;
-    s->best.triangle = triangle;
-    s->best.part = *part;
-    for (int k = 0; k < 3; k++) s->best.x[k] = p[0][k] + u * (p[1][k] - p[0][k]) + v * (p[2][k] - p[0][k]);
-}
-
-static void try_parts(nearest_search *s, uint32_t triangle, size_t cut) {
-    const outer_surface *o = s->outer;
-    if (o->part_begins[cut] == o->part_begins[cut + 1] || box_is_far(s, &o->boxes[cut])) return;
-    for (size_t i = o->part_begins[cut]; i < o->part_begins[cut + 1]; i++)
-        try_part(s, triangle, &o->parts[i]);
-}
-
 void outer_surface_whole(const outer_surface *o, const surface_cuts *found, uint32_t triangle,
                          outer_part *out) {
     const named_surface *s = found->surface;
     for (uint32_t i = 0; i < 3; i++)
         scale_point(o, surface_corner(s->mesh, s->positions, triangle, i), out->corners[i]);
-}
-
-static void try_triangle(void *data, uint32_t triangle) {
-    nearest_search *s = data;
-    const named_surface *surface = s->found->surface;
-    uint32_t place = s->outer->places[triangle];
-    if (place == OUTER_NOWHERE) return;
-    if (surface_body(surface, triangle) != s->body) return;
-    if (place != OUTER_AS_A_WHOLE) {
-        try_parts(s, triangle, place);
-        return;
-    }
-    outer_part whole;
-    outer_surface_whole(s->outer, s->found, triangle, &whole);
-    try_part(s, triangle, &whole);
-}
-
-/* A squared distance that is a little more than that of a part, so that the part itself is found, and all others at the same
- * distance. */
-static double squared_beyond(const double x[3], const outer_part *part) {
-    const double(*p)[3] = part->corners;
-    double u, v, size = vec3_squared_distance(p[0], p[1]) + vec3_squared_distance(p[0], p[2]);
-    double squared = closest_point_triangle(x, p[0], p[1], p[2], &u, &v);
-    return squared * (1.0 + 0x1p-20) + 0x1p-70 * size + DBL_MIN;
-}
-
-outer_point outer_surface_nearest_on(const outer_surface *o, const surface_cuts *found, uint32_t triangle,
-                                     const double x[3]) {
-    nearest_search s = {.outer = o,
-                        .found = found,
-                        .body = surface_body(found->surface, triangle),
-                        .best = {.squared = (double)INFINITY, UINT32_MAX}};
-    scale_point(o, x, s.x);
-    try_triangle(&s, triangle);
-    for (int k = 0; k < 3; k++) s.best.x[k] /= o->scale;
-    return s.best;
-}
-
-outer_point outer_surface_nearest(const outer_surface *o, const surface_cuts *found, const bvh *f,
-                                  uint32_t body, const double x[3], const outer_point *near) {
-    nearest_search s = {
-        .outer = o, .found = found, .body = body, .best = {.squared = (double)INFINITY, UINT32_MAX}};
-    const surface_bodies *bodies = found->surface->bodies;
-    const near_quest quest = {object_of_body(bodies, body), body, bodies != NULL ? bodies->components : NULL};
-    scale_point(o, x, s.x);
-    if (near != NULL && near->triangle != UINT32_MAX) s.best.squared = squared_beyond(s.x, &near->part);
-    bvh_visit_near(f, &quest, x, &s.best.squared, try_triangle, &s);
-    for (int k = 0; k < 3; k++) s.best.x[k] /= o->scale;
-    return s.best;
-}
-
-double outer_part_distance(const outer_surface *o, const double x[3], const outer_part *part) {
-    double scaled[3], u, v;
-    scale_point(o, x, scaled);
-    return sqrt(closest_point_triangle(scaled, part->corners[0], part->corners[1], part->corners[2], &u, &v));
 }

@@ -1,4 +1,4 @@
-/* The outer surfaces of bodies: what they do not bury in themselves; and the nearest point of one. */
+/* The outer surfaces of bodies: what they do not bury in themselves. */
 #pragma once
 
 #include "runtime/bvh/bvh_query.h"
@@ -24,6 +24,7 @@ typedef struct outer_surface {
     double scale; /* that of the trees: parts and distances are so many times as large */
     triangle_cuts cuts;
     outer_part *parts;
+    outer_box *part_boxes;
     size_t part_count, part_capacity;
     uint32_t *cut_triangles; /* ascending: those with parts, or none of them outer */
     size_t *part_begins;     /* per cut triangle and one more: where its parts begin */
@@ -39,26 +40,6 @@ void outer_surface_free(outer_surface *o);
 /* Finds the parts. False: no memory. */
 bool outer_surface_find(outer_surface *o, const surface_cuts *found, const bvh *f);
 
-/* The nearest point of a body's outer surface. */
-typedef struct outer_point {
-    double squared;    /* the squared distance, scaled; INFINITY: the body has no outer surface */
-    uint32_t triangle; /* which has the point */
-    outer_part part;   /* the same, or the part of it */
-    double x[3];
-} outer_point;
-
-/* The scaled distance of a point from a part. */
-double outer_part_distance(const outer_surface *o, const double x[3], const outer_part *part);
-
 /* A triangle that is outer as a whole. */
 void outer_surface_whole(const outer_surface *o, const surface_cuts *found, uint32_t triangle,
                          outer_part *out);
-
-/* The nearest point of one triangle, some of which is outer. */
-outer_point outer_surface_nearest_on(const outer_surface *o, const surface_cuts *found, uint32_t triangle,
-                                     const double x[3]);
-
-/* near: the answer for another point and the same body, or NULL. The nearer the points, the shorter the search; the
- * answer does not depend on it. */
-outer_point outer_surface_nearest(const outer_surface *o, const surface_cuts *found, const bvh *f,
-                                  uint32_t body, const double x[3], const outer_point *near);
