@@ -56,6 +56,21 @@ def the_sentence_says_what_intersects(context):
         expect(words in text, f"no {words!r} in {text!r}")
 
 
+def what_has_no_surface_is_named(context):
+    """A frame in which no triangle has an area does not count as checked."""
+    sizes = [(1, 1), (0, 1), (0, 1), (1, 1), (0, 0), (1, 1)]
+    for name, shown, checked in (("hidden", sizes, "Nothing intersects (5 frames checked)."),
+                                 ("nothing", [(1, 1), (0, 0), (0, 0)], "Nothing intersects (1 frame checked).")):
+        made, page = context.material.hidden(name, shown), context.page
+        page.open(made.page)
+        text = page.script("return document.getElementById('answer-line').textContent;")
+        expect(text.startswith(checked), text)
+        for part, places in (("Puff", {"hidden": "frames 1 to 2, 4", "nothing": "frames 1 to 2"}),
+                             ("Rock", {"hidden": "frame 4", "nothing": "frames 1 to 2"})):
+            said = f"{part} has no surface in {places[name]} (all its triangles have no area), and was not looked at there."
+            expect(said in text, f"no {said!r} in {text!r}")
+
+
 def clicks_and_keys_walk_the_events(context):
     _, page, report = open_pawn(context)
     count = len(report.scene["answers"]["events"])
@@ -220,7 +235,8 @@ def what_is_told_of_a_triangle_fits(context):
         expect(max(over) <= 0, f"{width} pixels: the readout overflows by {over}")
 
 
-SCENARIOS = (answers_are_those_of_the_run, the_sentence_says_what_intersects, clicks_and_keys_walk_the_events,
+SCENARIOS = (answers_are_those_of_the_run, the_sentence_says_what_intersects, what_has_no_surface_is_named,
+             clicks_and_keys_walk_the_events,
              an_event_is_seen, parts_stand_against_parts, curves_lie_on_the_bodies,
              the_camera_stays_above_the_ground, the_method_is_folded, colours_of_the_method_are_folded,
              parts_are_told_by_name, the_picture_is_saved, what_is_told_of_a_triangle_fits)

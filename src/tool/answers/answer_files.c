@@ -161,10 +161,20 @@ static bool frame_fails(const answers *a, const fail_rules *rules, const frame_a
     return fail_rules_meet(&own, a, frame, text);
 }
 
+/* Where nothing could be looked at there is neither a pass nor a failure. */
+static bool frame_is_undecided(const answers *a, const fail_rules *rules, const frame_answer *frame) {
+    char text[FAIL_TEXT_SIZE];
+    return frame->without_area && !frame_fails(a, rules, frame, text);
+}
+
 static void write_case(const answers *a, const fail_rules *rules, const frame_answer *frame, FILE *file) {
     char text[FAIL_TEXT_SIZE];
     fprintf(file, "    <testcase classname=\"cscd\" name=\"frame %" PRId32 "\" time=\"%.6f\"",
             answers_frame_number(a, frame->frame), frame->ms * 1e-3);
+    if (frame_is_undecided(a, rules, frame)) {
+        fputs(">\n      <error message=\"" FAIL_WITHOUT_AREA "\"/>\n    </testcase>\n", file);
+        return;
+    }
     if (!frame_fails(a, rules, frame, text)) {
         fputs("/>\n", file);
         return;
@@ -187,17 +197,18 @@ void answers_write_junit(const answers *a, const fail_rules *rules, const char *
     const frame_answer *frames = answers_frames(a);
     const char *unfinished = answers_unfinished(a);
     char text[FAIL_TEXT_SIZE];
-    size_t tests = unfinished != NULL, failures = 0;
+    size_t tests = unfinished != NULL, failures = 0, errors = tests;
     double ms = 0.0;
     for (size_t i = 0; i < answers_frame_count(a); i++) {
         tests++;
         failures += frame_fails(a, rules, &frames[i], text);
+        errors += frame_is_undecided(a, rules, &frames[i]);
         ms += frames[i].ms;
     }
     fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n  <testsuite name=\"", file);
     text_write_xml(file, suite);
-    fprintf(file, "\" tests=\"%zu\" failures=\"%zu\" errors=\"%d\" time=\"%.6f\">\n", tests, failures,
-            unfinished != NULL, ms * 1e-3);
+    fprintf(file, "\" tests=\"%zu\" failures=\"%zu\" errors=\"%zu\" time=\"%.6f\">\n", tests, failures,
+            errors, ms * 1e-3);
     for (size_t i = 0; i < answers_frame_count(a); i++) write_case(a, rules, &frames[i], file);
     if (unfinished != NULL) write_unfinished(unfinished, file);
     fputs("  </testsuite>\n</testsuites>\n", file);

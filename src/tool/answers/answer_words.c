@@ -37,7 +37,8 @@ static void say_recording(FILE *out, const answers *a) {
                  touching = answers_count(a, frame_touches);
     const char *more = answers_count(a, frame_overlaps) > 0 ? " or overlap" : "";
     if (checked == 0)
-        fprintf(out, "No frame was checked.");
+        fprintf(out, answers_count(a, frame_answer_without_area) > 0 ? "No triangle has an area in any frame."
+                                                                     : "No frame was checked.");
     else if (crossing == checked)
         fprintf(out, "All %zu frames cross%s.", checked, more);
     else if (crossing > 0) {
@@ -54,6 +55,11 @@ static void say_recording(FILE *out, const answers *a) {
         say_frames(out, a, frame_touches);
         fprintf(out, " touch%s (%zu of %zu).", touching > 1 ? "" : "es", touching, checked);
     }
+    const size_t without = answers_count(a, frame_answer_without_area);
+    if (without == 0 || checked == 0) return;
+    fprintf(out, " No triangle has an area in frame%s", without > 1 ? "s" : "");
+    say_frames(out, a, frame_answer_without_area);
+    fprintf(out, ", which %s not looked at.", without > 1 ? "were" : "was");
 }
 
 /* "3 pairs of triangles cross", as a part of a sentence. */
@@ -226,10 +232,15 @@ static void say_places(FILE *out, const answers *a, const frame_list *list) {
     if (list->count > SPANS_SAID) fprintf(out, " and others");
 }
 
+/* Has the part no surface in frames in which others have one? Of the rest it is said that no triangle has an area. */
+static bool is_missing(const answers *a, const collapsed_part *frames) {
+    return frame_list_frames(&frames->whole) > answers_count(a, frame_answer_without_area);
+}
+
 /* "Smoke has no surface in frames 2 to 3 (all its triangles have no area), and was not looked at there." */
 static void say_collapsed(FILE *out, const answers *a, uint32_t part, const collapsed_part *frames) {
     const char *there = answers_single(a) ? "" : " there";
-    if (frames->whole.count > 0) {
+    if (is_missing(a, frames)) {
         fprintf(out, " %s has no surface", part_names_at(a->parts, part));
         say_places(out, a, &frames->whole);
         fprintf(out, " (all its triangles have no area), and was not looked at%s.", there);
@@ -245,7 +256,7 @@ static void say_what_has_collapsed(FILE *out, const answers *a) {
     uint32_t said = 0;
     for (uint32_t i = 0; i < a->parts->count; i++) {
         const collapsed_part *frames = collapsed_parts_at(&a->collapsed, i);
-        if (frames == NULL) continue;
+        if (frames == NULL || (!is_missing(a, frames) && frames->partly.count == 0)) continue;
         if (++said <= COLLAPSED_SAID) say_collapsed(out, a, i, frames);
     }
     if (said > COLLAPSED_SAID)

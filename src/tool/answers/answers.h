@@ -99,7 +99,7 @@ bool answers_finish(answers *a, io_error *error);
 const frame_answer *answers_frames(const answers *a);
 size_t answers_frame_count(const answers *a);
 
-/* How many of them pass. */
+/* How many of the frames pass. */
 typedef bool frame_test(const frame_answer *frame);
 size_t answers_count(const answers *a, frame_test *test);
 
@@ -118,8 +118,13 @@ static inline int32_t answers_frame_number(const answers *a, uint64_t frame) {
     return a->recording->frame_numbers[frame];
 }
 
+/* Was there anything to look at, and was it looked at? */
 static inline bool frame_answer_checked(const frame_answer *frame) {
-    return frame->checked;
+    return frame->checked && !frame->without_area;
+}
+
+static inline bool frame_answer_without_area(const frame_answer *frame) {
+    return frame->without_area;
 }
 
 /* Does any pair of triangles in the frame intersect or touch, duplicates aside? */
@@ -134,6 +139,6 @@ static inline bool frame_answer_crosses(const frame_answer *frame) {
 
 /* Was the frame looked at, and nothing found in it: no pair of triangles, no triangle that is there twice, nothing inside of anything? */
 static inline bool frame_answer_clean(const frame_answer *frame) {
-    return frame->checked && !frame->without_area && !frame_answer_meets(frame) &&
-           !frame_answer_crosses(frame) && frame->duplicates == 0;
+    return frame_answer_checked(frame) && !frame_answer_meets(frame) && !frame_answer_crosses(frame) &&
+           frame->duplicates == 0;
 }

@@ -71,6 +71,25 @@ bool fail_rules_meet(const fail_rules *rules, const answers *a, const frame_answ
     return true;
 }
 
+bool fail_rules_undecided(const fail_rules *rules, const answers *a) {
+    char text[FAIL_TEXT_SIZE];
+    if (!fail_rules_any(rules) || answers_count(a, frame_answer_without_area) == 0) return false;
+    for (size_t i = 0; i < answers_frame_count(a); i++)
+        if (fail_rules_meet(rules, a, &answers_frames(a)[i], text)) return false;
+    return true;
+}
+
+/* A gate passes nothing that nobody could look at. */
+static int refuse_without_area(const answers *a) {
+    const frame_answer *first = answers_frames(a);
+    if (answers_single(a)) return fail_input("not decided: %s", FAIL_WITHOUT_AREA);
+    while (!frame_answer_without_area(first)) first++;
+    return fail_input(
+        "not decided: in %zu of %zu frames, the first is frame %d, %s; --frames leaves frames out",
+        answers_count(a, frame_answer_without_area), answers_frame_count(a),
+        answers_frame_number(a, first->frame), FAIL_WITHOUT_AREA);
+}
+
 static bool any_frame_fails(const fail_rules *rules, const answers *a) {
     char text[FAIL_TEXT_SIZE], first[FAIL_TEXT_SIZE];
     size_t count = 0;
@@ -91,5 +110,6 @@ static bool any_frame_fails(const fail_rules *rules, const answers *a) {
 int fail_rules_exit_code(const fail_rules *rules, const answers *a) {
     if (any_frame_fails(rules, a)) return EXIT_CONTACT;
     const char *unfinished = answers_unfinished(a);
-    return unfinished != NULL ? fail_input("%s", unfinished) : EXIT_RAN;
+    if (unfinished != NULL) return fail_input("%s", unfinished);
+    return fail_rules_undecided(rules, a) ? refuse_without_area(a) : EXIT_RAN;
 }

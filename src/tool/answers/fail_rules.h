@@ -39,6 +39,12 @@ enum { FAIL_TEXT_SIZE = 400 };
 bool fail_rules_meet(const fail_rules *rules, const answers *a, const frame_answer *frame,
                      char text[FAIL_TEXT_SIZE]);
 
+/* Why a frame can neither pass nor fail: nothing was looked at, because no triangle in it has an area. */
+#define FAIL_WITHOUT_AREA "no triangle has an area, so there was nothing to look at"
+
+/* Is there a rule that no frame meets, although something may hide in frames in which no triangle has an area? */
+bool fail_rules_undecided(const fail_rules *rules, const answers *a);
+
 /* The exit code of a run that ended without an error: EXIT_CONTACT if any frame fails, and then it says on stderr how many do and what
- * the first does wrong; else EXIT_BAD_INPUT if not all was looked at that was asked for. */
+ * the first does wrong; else EXIT_BAD_INPUT if not all was looked at that was asked for, which is said, too. */
 int fail_rules_exit_code(const fail_rules *rules, const answers *a);

@@ -96,12 +96,13 @@ static bool conclude_check(mesh_check *c, io_error *error) {
     if (unfinished != NULL) return io_fail(error, "%s", unfinished);
     out->frame_count = c->recording->frame_count;
     out->crossing_share = out->triangle_count > 0 ? (double)out->crossing_faces / out->triangle_count : 0.0;
-    out->outcome = recording_answer_outcome(a);
+    out->outcome = recording_answer_outcome(a, &rules);
     out->found = recording_answer_found(a, &rules);
     const bool deep = out->depth > 0.0 && a->event_count > 0;
-    return (print_text(answers_print_sentence, a, &unit, &out->sentence) &&
-            (!deep || print_text(answers_print_worst, a, &unit, &out->worst))) ||
-           io_fail(error, "out of memory");
+    if (!print_text(answers_print_sentence, a, &unit, &out->sentence) ||
+        (deep && !print_text(answers_print_worst, a, &unit, &out->worst)))
+        return io_fail(error, "out of memory");
+    return out->outcome != JOB_FAILED || io_fail(error, "%s", out->sentence);
 }
 
 static bool check_mesh(const mesh_job *job, recording *r, mesh_answer *out, io_error *error) {

@@ -19,7 +19,7 @@ static frame_sums sum_frames(const answers *a) {
     const frame_answer *frames = answers_frames(a);
     for (size_t i = 0; i < answers_frame_count(a); i++) {
         const frame_answer *f = &frames[i];
-        s.checked += f->checked;
+        s.checked += frame_answer_checked(f);
         s.crossing_frames += f->crossing > 0;
         s.touching_frames += f->crossing == 0 && f->touching > 0;
         s.same += f->same;
@@ -34,13 +34,14 @@ static frame_sums sum_frames(const answers *a) {
 }
 
 /* Where not all was looked at, there is no answer that anybody may rely on. */
-job_outcome recording_answer_outcome(const answers *a) {
+job_outcome recording_answer_outcome(const answers *a, const fail_rules *rules) {
     const frame_sums s = sum_frames(a);
-    if (answers_unfinished(a) != NULL) return JOB_FAILED;
+    if (answers_unfinished(a) != NULL || fail_rules_undecided(rules, a)) return JOB_FAILED;
     if (s.crossing > 0) return JOB_CROSSING;
     if (s.depth > 0.0 || s.same > 0) return JOB_INSIDE;
     if (s.touching + s.contacts > 0) return JOB_TOUCHING;
-    return s.duplicates > 0 ? JOB_DUPLICATE : JOB_CLEAN;
+    if (s.duplicates > 0) return JOB_DUPLICATE;
+    return answers_count(a, frame_answer_without_area) > 0 ? JOB_FAILED : JOB_CLEAN;
 }
 
 bool recording_answer_found(const answers *a, const fail_rules *rules) {
@@ -99,7 +100,7 @@ void recording_answer_write(const char *name, const answers *a, const length_uni
         fclose(stream);
         if (sentence != NULL) sentence[strcspn(sentence, "\n")] = '\0';
     }
-    out->outcome = recording_answer_outcome(a);
+    out->outcome = recording_answer_outcome(a, rules);
     out->found = recording_answer_found(a, rules);
     fprintf(out->text, "%s: %s", name, sentence != NULL ? sentence : "");
     json_string(out->members, "name", name);

@@ -4,8 +4,9 @@
 #include "src/tool/answers/fail_rules.h"
 #include "src/tool/jobs/job_work.h"
 
-/* What finished answers come to, and whether any frame fails by the rules. */
-job_outcome recording_answer_outcome(const answers *a);
+/* What finished answers come to, and whether any frame fails by the rules. JOB_FAILED where nobody can rely on them: not all was
+ * looked at, or in some frame no triangle has an area and nothing else was found. */
+job_outcome recording_answer_outcome(const answers *a, const fail_rules *rules);
 bool recording_answer_found(const answers *a, const fail_rules *rules);
 
 /* The answers are finished. */

@@ -125,13 +125,16 @@ static bool take_frame(replay *r, uint32_t frame, frame_check *check, frame_stat
     if (!answers_add_found(&r->answers, frame, &found, check->ms, &reason))
         return io_fail(error, "frame %d: %s", r->recording.frame_numbers[frame], reason.text);
     answers_add_turned(&r->answers, frame, check->turned);
-    const bool meets = found.crossing + found.coplanar + found.folded + found.touching > 0;
-    *state = meets ? FRAME_CROSSING : FRAME_EMBEDDED;
-    r->totals.frames_checked++;
-    r->totals.frames_crossing += found.crossing > 0;
-    r->totals.frames_touching += meets && found.crossing == 0;
     warn_of_zero_area(r, frame, &found);
-    replay_report_add_found(&r->report, frame, &found);
+    const frame_answer *answer = answers_frames(&r->answers) + answers_frame_count(&r->answers) - 1;
+    if (frame_answer_checked(answer)) {
+        const bool meets = found.crossing + found.coplanar + found.folded + found.touching > 0;
+        *state = meets ? FRAME_CROSSING : FRAME_EMBEDDED;
+        r->totals.frames_checked++;
+        r->totals.frames_crossing += found.crossing > 0;
+        r->totals.frames_touching += meets && found.crossing == 0;
+        replay_report_add_found(&r->report, frame, &found);
+    }
     return exports_add_frame(&r->exports, frame, r->source.x0, &found, error);
 }
 
@@ -141,11 +144,17 @@ static interval_state state_of(const replay *r, size_t contact_count) {
     return r->start_state == FRAME_EMBEDDED ? INTERVAL_CLEAN : INTERVAL_UNKNOWN;
 }
 
+static bool any_collapsed(const replay *r, const cscd_guarantee *guarantees) {
+    for (uint32_t i = 0; i < cscd_mesh_component_count(r->recording.mesh); i++)
+        if (guarantees[i].reason == CSCD_REASON_COLLAPSED) return true;
+    return false;
+}
+
 /* A mesh that is embedded at the start and intersects itself at the end had a contact in between. Pairs that are
- * left out may hide it. */
+ * left out may hide it, and those of what appears out of a point. */
 static void alarm_contradiction(replay *r, const interval_result *result) {
     if (ignore_options_any(&r->options->ignored) || result->state != INTERVAL_CLEAN ||
-        r->end_state != FRAME_CROSSING)
+        r->end_state != FRAME_CROSSING || any_collapsed(r, result->guarantees))
         return;
     r->totals.contradictions++;
     if (method_facts_of(r->plan.method).loses_contacts) return; /* which such a method may have */

@@ -19,15 +19,39 @@ function unfinishedOf({ summaries }) {
   return `Not finished: ${reason ?? 'no reason is given'}${/\.$/.test(reason ?? '') ? '' : '.'} `;
 }
 
-/** The answer in a few sentences, behind what was not looked at. */
+const PARTS_SAID = 5;
+
+/** "in frames 2 to 3, 5". */
+function placesOf(spans) {
+  const shown = spans.slice(0, 6).map(([first, last]) => (first === last ? `${first}` : `${first} to ${last}`));
+  const several = spans.length > 1 || spans[0][0] < spans[0][1];
+  return `in frame${several ? 's' : ''} ${shown.join(', ')}${spans.length > 6 ? ' and others' : ''}`;
+}
+
+/** Which parts have no surface, and when, as the tool says it. */
+function collapsedOf({ summaries }) {
+  const parts = summaries[0]?.summary?.collapsed ?? [];
+  const said = parts.slice(0, PARTS_SAID).flatMap(({ part, whole, partly }) => [
+    ...(whole.length > 0
+      ? [` ${part} has no surface ${placesOf(whole)} (all its triangles have no area), and was not looked at there.`] : []),
+    ...(partly.length > 0
+      ? [` Some pieces of ${part} have no surface ${placesOf(partly)} (all their triangles have no area), and were not looked at there.`]
+      : []),
+  ]);
+  const rest = parts.length - PARTS_SAID;
+  if (rest > 0) said.push(` So it is with ${counted(rest, 'other part')}.`);
+  return said.join('');
+}
+
+/** The answer in a few sentences, behind what was not looked at, and before what had no surface. */
 export function sentenceOf(report) {
   const unfinished = unfinishedOf(report);
-  return `${unfinished}${findingsOf(report, unfinished !== '')}`;
+  return `${unfinished}${findingsOf(report, unfinished !== '')}${collapsedOf(report)}`;
 }
 
 function findingsOf({ scene }, unfinished) {
   const { answers } = scene;
-  if (answers === null) return 'The frames were not checked, so this report does not say what intersects.';
+  if (answers === null) return 'No frame was checked, so this report does not say what intersects.';
   const { crossingFrames, touchingFrames, events } = answers;
   const checked = `${integer(answers.frames_checked)} ${answers.frames_checked === 1 ? 'frame' : 'frames'} checked`;
   const parts = [];
