@@ -157,15 +157,19 @@ class detector : public detail::owner<cscd_detector, cscd_detector_destroy> {
     }
     /* A label for each triangle; without an argument, the objects are the parts. */
     void set_parts(span<const std::uint32_t> labels, std::uint32_t part_count) {
-        std::uint32_t count = mesh().triangle_count();
-        if (labels.size() != count)
-            throw error(CSCD_INVALID_ARGUMENT, "labels has " + std::to_string(labels.size()) +
-                                                   " items, expected " + std::to_string(count));
-        const std::uint32_t none = 0, *first = labels.empty() ? &none : labels.data();
+        const std::uint32_t *first = first_label(labels);
         call([&] { return cscd_detector_set_parts(get(), first, part_count); });
     }
     void set_parts() {
         call([&] { return cscd_detector_set_parts(get(), nullptr, 0); });
+    }
+    /* The same of what belongs together; without an argument, the parts say so. */
+    void set_bodies(span<const std::uint32_t> labels, std::uint32_t label_count) {
+        const std::uint32_t *first = first_label(labels);
+        call([&] { return cscd_detector_set_bodies(get(), first, label_count); });
+    }
+    void set_bodies() {
+        call([&] { return cscd_detector_set_bodies(get(), nullptr, 0); });
     }
 
     /* ---- contacts, intersections, proximity */
@@ -293,6 +297,14 @@ class detector : public detail::owner<cscd_detector, cscd_detector_destroy> {
     }
     const cscd_view *covering(const positions &x) const {
         return x.covering(object_count());
+    }
+    const std::uint32_t *first_label(span<const std::uint32_t> labels) const {
+        static const std::uint32_t none = 0;
+        std::uint32_t count = mesh().triangle_count();
+        if (labels.size() != count)
+            throw error(CSCD_INVALID_ARGUMENT, "labels has " + std::to_string(labels.size()) +
+                                                   " items, expected " + std::to_string(count));
+        return labels.empty() ? &none : labels.data();
     }
     template <class Call> void call(Call &&of_c) {
         detail::make_call(state_, of_c);

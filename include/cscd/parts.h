@@ -25,6 +25,12 @@ extern "C" {
 CSCD_API cscd_status cscd_detector_set_parts(cscd_detector *detector, const uint32_t *labels,
                                              uint32_t part_count);
 
+/* Says what belongs together, where that is not the parts: labels as for cscd_detector_set_parts, which the bodies of part_bodies and
+ * CSCD_ORIENTATION_BY_PART go by then. So the materials of one skin can be the parts, and a ball in a slab of the same material is a body
+ * of its own. NULL and 0: the parts say so, as at first. */
+CSCD_API cscd_status cscd_detector_set_bodies(cscd_detector *detector, const uint32_t *labels,
+                                              uint32_t label_count);
+
 /* These write one label for each triangle: its component, or its region of the plan. They return how many parts that makes.
  * So the regions of a plan become the parts of a detector by
  *

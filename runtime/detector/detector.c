@@ -138,6 +138,7 @@ void detector_free(cscd_detector *d) {
     result_buffer_free(context, &d->names);
     surface_answers_free(context, d->answers);
     part_labels_free(context, &d->parts);
+    part_labels_free(context, &d->grouping);
     part_sums_free(context, &d->part_sums);
     result_buffer_free(context, &d->contact_parts);
     change_finder_free(&d->changes);

@@ -84,6 +84,7 @@ struct cscd_detector {
     size_t memory_most;              /* what answers may take, where the caller does not say */
     struct surface_answers *answers; /* NULL before the first call that asks for curves, patches and so on */
     part_labels parts;               /* see cscd_detector_set_parts */
+    part_labels grouping;            /* see cscd_detector_set_bodies */
     part_summer part_sums;
     cscd_part_pairs part_pairs; /* what these have found last */
     result_buffer contact_parts;
@@ -100,6 +101,9 @@ struct cscd_detector {
     cscd_timings timings;
     cscd_counters counters;
 };
+
+/* The labels of what belongs together: cscd_detector_set_bodies, or else the parts. */
+const part_labels *detector_grouping(const cscd_detector *d);
 
 /* Lines hold their detector. */
 void detector_hold(cscd_detector *d);

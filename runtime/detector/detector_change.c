@@ -136,6 +136,7 @@ static cscd_status move_parts(const detector_move *m) {
     if (status == CSCD_OK) status = collapsed_create(d->mesh, &d->collapsed);
     if (status == CSCD_OK) status = edge_rest_move(d->context, &from->rest, m->change, &d->rest);
     if (status == CSCD_OK) status = part_labels_move(&from->parts, d->mesh, m->change, &d->parts);
+    if (status == CSCD_OK) status = part_labels_move(&from->grouping, d->mesh, m->change, &d->grouping);
     if (status == CSCD_OK && !context_allocate_all(d->context, detector_arrays(d)))
         status = CSCD_OUT_OF_MEMORY;
     if (status == CSCD_OK) status = list_cap_set(d, from->options.longest_list);
@@ -190,6 +191,7 @@ static void exchange_parts(cscd_detector *a, cscd_detector *b) {
     EXCHANGE(guarantees);
     EXCHANGE(answers);
     EXCHANGE(parts);
+    EXCHANGE(grouping);
     EXCHANGE(part_sums);
     EXCHANGE(changes);
     EXCHANGE(rest);

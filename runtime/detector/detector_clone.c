@@ -98,6 +98,7 @@ static cscd_status clone_parts(const cscd_detector *from, cscd_detector *d) {
     if (status == CSCD_OK) status = pair_rules_copy(&from->pair_rules, mesh, &d->pair_rules);
     if (status == CSCD_OK) status = edge_rest_copy(&from->rest, mesh, &d->rest);
     if (status == CSCD_OK) status = part_labels_copy(&from->parts, mesh, &d->parts);
+    if (status == CSCD_OK) status = part_labels_copy(&from->grouping, mesh, &d->grouping);
     if (status == CSCD_OK) status = clone_lists(from, d);
     if (status == CSCD_OK) join_rules(d);
     if (status == CSCD_OK) status = list_cap_set(d, from->options.longest_list);

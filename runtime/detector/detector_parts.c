@@ -6,10 +6,11 @@
 
 /* ---- labels ---------------------------------------------------------------------------------------------- */
 
-static cscd_status set_parts(cscd_detector *d, const uint32_t *labels, uint32_t part_count) {
-    cscd_status status = part_labels_check(d->mesh, labels, part_count, "cscd_detector_set_parts");
+static cscd_status set_labels(cscd_detector *d, const uint32_t *labels, uint32_t count, part_labels *out,
+                              const char *name) {
+    cscd_status status = part_labels_check(d->mesh, labels, count, name);
     if (status != CSCD_OK) return status;
-    status = part_labels_set(d->mesh, labels, part_count, &d->parts);
+    status = part_labels_set(d->mesh, labels, count, out);
     return context_explain(d->context, status);
 }
 
@@ -17,11 +18,24 @@ cscd_status cscd_detector_set_parts(cscd_detector *detector, const uint32_t *lab
     if (detector == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!object_enter(detector, &entry)) return entry.status;
-    return context_leave(&entry, set_parts(detector, labels, part_count));
+    return context_leave(
+        &entry, set_labels(detector, labels, part_count, &detector->parts, "cscd_detector_set_parts"));
+}
+
+cscd_status cscd_detector_set_bodies(cscd_detector *detector, const uint32_t *labels, uint32_t label_count) {
+    if (detector == NULL) return CSCD_NULL_OBJECT;
+    context_entry entry;
+    if (!object_enter(detector, &entry)) return entry.status;
+    return context_leave(
+        &entry, set_labels(detector, labels, label_count, &detector->grouping, "cscd_detector_set_bodies"));
+}
+
+const part_labels *detector_grouping(const cscd_detector *d) {
+    return d->grouping.triangles != NULL ? &d->grouping : &d->parts;
 }
 
 uint32_t cscd_detector_body_labels(const cscd_detector *detector, uint32_t *labels) {
-    const surface_bodies *bodies = &detector->parts.bodies;
+    const surface_bodies *bodies = &detector_grouping(detector)->bodies;
     for (uint32_t t = 0; labels != NULL && t < detector->mesh->triangle_count; t++)
         labels[t] = body_of_triangle(bodies, detector->mesh, t);
     return body_count(bodies, detector->mesh);

@@ -110,5 +110,6 @@ const char *detector_validate(const cscd_detector *d) {
     if (fault == NULL && d->space.bvh.mesh != NULL) fault = bvh_validate(&d->space.bvh, false);
     if (fault == NULL) fault = check_active(d);
     if (fault == NULL) fault = part_labels_validate(&d->parts, d->mesh);
+    if (fault == NULL) fault = part_labels_validate(&d->grouping, d->mesh);
     return fault;
 }

@@ -139,7 +139,7 @@ static cscd_status find_patches(const answer_search *s) {
     a->patch_finder.budget = s->budget;
     progress_stage(&d->context->progress, "patches", 0.8, 0.9);
     const cscd_orientation orientation = s->options->orientation;
-    const part_labels *parts = orientation == CSCD_ORIENTATION_BY_PART ? &d->parts : NULL;
+    const part_labels *parts = orientation == CSCD_ORIENTATION_BY_PART ? detector_grouping(d) : NULL;
     if (orientation != CSCD_ORIENTATION_AS_GIVEN &&
         !orientation_finder_run(&a->orientations, s->surface, &d->space.bvh, parts, a->joiner.found,
                                 a->joiner.piece_count))
@@ -241,7 +241,7 @@ cscd_status surface_answers_find(cscd_detector *d, const double *positions,
     if (a->left_out.out_of_memory) return CSCD_OUT_OF_MEMORY;
     named_surface surface = {.mesh = d->mesh,
                              .positions = positions,
-                             .bodies = options->part_bodies ? &d->parts.bodies : NULL,
+                             .bodies = options->part_bodies ? &detector_grouping(d)->bodies : NULL,
                              .collapsed = d->check.collapsed};
     if (!placed_names_find(&a->names, d->mesh, positions, d->exclusions.names, &surface.names))
         return CSCD_OUT_OF_MEMORY;

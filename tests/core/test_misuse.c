@@ -212,6 +212,7 @@ static void objects_that_are_null(void **state) {
     expect_null_object(cscd_detector_set_separation(NULL, 1.0, 0.0));
     expect_null_object(cscd_detector_set_rest(NULL, AT_START));
     expect_null_object(cscd_detector_set_parts(NULL, NULL, 0));
+    expect_null_object(cscd_detector_set_bodies(NULL, NULL, 0));
     expect_null_object(cscd_event_tracker_create(context, NULL, NULL, NULL));
     expect_null_object(cscd_event_tracker_add_contacts(NULL, NULL, 0));
     expect_null_object(cscd_event_tracker_add_frame(NULL, 0, NULL));

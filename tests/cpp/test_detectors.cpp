@@ -85,6 +85,12 @@ void parts(void **) {
         std::vector<std::uint32_t> bodies(t.mesh.triangle_count());
         assert_int_equal(cscd_detector_body_labels(t.c, bodies.data()), cscd_mesh_object_count(t.mesh.get()));
         assert_true(t.ours.body_labels() == bodies);
+        which == 0 ? t.ours.set_bodies() : t.ours.set_bodies(labels, count);
+        assert_int_equal(
+            cscd_detector_set_bodies(t.c, which == 0 ? nullptr : labels.data(), which == 0 ? 0 : count),
+            CSCD_OK);
+        cscd_detector_body_labels(t.c, bodies.data());
+        assert_true(t.ours.body_labels() == bodies);
         cscd_contacts touching;
         cscd_contact_part_pairs sums;
         assert_int_equal(cscd_detector_step(t.c, &t.v0, &t.v1, &touching), CSCD_OK);
@@ -103,6 +109,10 @@ void parts(void **) {
     assert_true(cscd::parts(t.ours.find_intersections(t.x1)).empty());
     assert_int_equal(error_of([&] {
                          t.ours.set_parts({components.data(), 1}, 1);
+                     }).status(),
+                     CSCD_INVALID_ARGUMENT);
+    assert_int_equal(error_of([&] {
+                         t.ours.set_bodies({components.data(), 1}, 1);
                      }).status(),
                      CSCD_INVALID_ARGUMENT);
 }

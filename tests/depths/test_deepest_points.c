@@ -263,72 +263,7 @@ static void a_limit_is_decided(void **state) {
     body_rig_free(&rig);
 }
 
-/* ---- bodies of one object ----------------------------------------------------------------------------------- */
-
-static cscd_depths find_as(uint32_t object_count, const uint32_t *labels, uint32_t part_count,
-                           cscd_context *context, cscd_mesh **mesh, cscd_detector **detector) {
-    cscd_object_desc descs[2];
-    for (uint32_t i = 0; i < 2; i++)
-        descs[i] = cscd_object_of_triangles(rig.bodies[i].vertex_count, rig.bodies[i].triangle_count,
-                                            rig.bodies[i].triangles);
-    if (object_count == 1)
-        descs[0] = cscd_object_of_triangles(rig.all.vertex_count, rig.all.triangle_count, rig.all.triangles);
-    cscd_intersection_options options = cscd_intersection_defaults();
-    cscd_intersection_pairs found;
-    options.depths = options.parts = options.part_bodies = true;
-    assert_int_equal(cscd_mesh_create(context, descs, object_count, mesh), CSCD_OK);
-    assert_int_equal(cscd_detector_create(context, *mesh, NULL, NULL, detector), CSCD_OK);
-    assert_int_equal(cscd_detector_set_parts(*detector, labels, part_count), CSCD_OK);
-    assert_int_equal(cscd_detector_find_intersections(
-                         *detector, CSCD_DOUBLES(rig.all.x0, rig.all.vertex_count), &options, &found),
-                     CSCD_OK);
-    return *found.depths;
-}
-
-/* A ball that is sunk 0.1 into a slab, as two objects, as two parts of one, and as one part: then the surface under the ball
- * is within the body, and the way out is longer. */
-static void a_part_is_a_body_if_it_is_closed(void **state) {
-    (void)state;
-    static uint32_t labels[SCENE_TRIANGLES_MAX];
-    const double low[3] = {-2, -2, -1}, size[3] = {4, 4, 1}, centre[3] = {0.1, 0.2, 0.4};
-    cscd_context *context;
-    cscd_mesh *meshes[4];
-    cscd_detector *detectors[4];
-    body_rig_begin(&rig);
-    body_rig_add_box(&rig, low, size);
-    body_rig_end_body(&rig);
-    scene_add_sphere(&rig.all, centre, 0.5, 16, 24);
-    body_rig_end_body(&rig);
-    assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
-    for (uint32_t t = 0; t < rig.all.triangle_count; t++) labels[t] = t < 12 ? 0 : UINT32_MAX;
-    const cscd_depths objects = find_as(2, NULL, 0, context, &meshes[0], &detectors[0]);
-    const cscd_depths parts = find_as(1, labels, 1, context, &meshes[1], &detectors[1]);
-    assert_int_equal(cscd_detector_body_labels(detectors[0], NULL), 2);
-    assert_int_equal(cscd_detector_body_labels(detectors[1], labels), 2);
-    assert_int_equal(objects.count, parts.count);
-    assert_true(objects.count > 10);
-    double most = 0.0;
-    for (size_t i = 0; i < objects.count; i++) {
-        assert_memory_equal(&objects.items[i], &parts.items[i], sizeof objects.items[i]);
-        most = fmax(most, objects.items[i].depth);
-    }
-    assert_true(fabs(most - 0.1) < 1e-12);
-    for (uint32_t t = 0; t < rig.all.triangle_count; t++) {
-        assert_int_equal(labels[t], t < 12 ? 0 : 1);
-        labels[t] = t % 2; /* both parts have triangles of both components */
-    }
-    const cscd_depths one = find_as(1, labels, 2, context, &meshes[2], &detectors[2]);
-    const cscd_depths whole = find_as(1, NULL, 0, context, &meshes[3], &detectors[3]);
-    assert_int_equal(cscd_detector_body_labels(detectors[2], labels), 1);
-    double least = 0.0;
-    for (size_t i = 0; i < whole.count; i++) least = fmax(least, whole.items[i].depth);
-    assert_true(least > 0.2 && one.vertex_count == whole.vertex_count);
-    for (int i = 0; i < 4; i++) {
-        cscd_detector_destroy(detectors[i]);
-        cscd_mesh_destroy(meshes[i]);
-    }
-    cscd_context_destroy(context);
-}
+/* ---- edges ------------------------------------------------------------------------------------------------- */
 
 /* An edge of a box lies between two of its curves in another body, and its first triangle has no area. */
 static void an_edge_whose_first_triangle_has_no_area(void **state) {
@@ -379,7 +314,6 @@ int main(void) {
         cmocka_unit_test(boxes_by_hand),
         cmocka_unit_test(random_bodies),
         cmocka_unit_test(a_limit_is_decided),
-        cmocka_unit_test(a_part_is_a_body_if_it_is_closed),
         cmocka_unit_test(an_edge_whose_first_triangle_has_no_area),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

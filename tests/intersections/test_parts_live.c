@@ -164,6 +164,7 @@ static void every_allocation_may_fail(void **state) {
         find_intersections_packed(rig.detector, rig.all.x0, &options, &rig.found);
         counter.fail_at = counter.calls + n;
         cscd_status status = cscd_detector_set_parts(rig.detector, labels.items, labels.count);
+        if (status == CSCD_OK) status = cscd_detector_set_bodies(rig.detector, labels.items, labels.count);
         if (status == CSCD_OK) status = labelled_scene_try(&rig, options);
         if (status == CSCD_OK) status = cscd_detector_clone(rig.context, rig.detector, &clone);
         done = status == CSCD_OK;
