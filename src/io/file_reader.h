@@ -2,6 +2,7 @@
 #pragma once
 
 #include "src/io/io_error.h"
+#include "src/io/mesh_parts.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -11,12 +12,13 @@ typedef struct file_reader {
     io_error *error;
     char *bytes; /* `size` bytes, and a 0 behind the last */
     size_t size;
-    size_t at;          /* the next byte to read */
-    size_t line;        /* the line of `at`, from 1 */
-    bool binary;        /* places are byte offsets, not lines */
-    size_t mark;        /* in binary files: the first byte of the value last read */
-    bool comments;      /* text: # starts a comment */
-    bool continuations; /* text: a backslash before a line's end is a blank */
+    size_t at;              /* the next byte to read */
+    size_t line;            /* the line of `at`, from 1 */
+    bool binary;            /* places are byte offsets, not lines */
+    size_t mark;            /* in binary files: the first byte of the value last read */
+    bool comments;          /* text: # starts a comment */
+    bool continuations;     /* text: a backslash before a line's end is a blank */
+    mesh_parts_by parts_by; /* of meshes: what their parts are */
 } file_reader;
 
 /* On false *reader owns nothing. */

@@ -17,6 +17,7 @@ mesh_builder mesh_builder_of(file_reader *reader, uint32_t index_base) {
         .faces = growable_of(sizeof(built_face)),
         .stiffness = growable_of(sizeof(double)),
         .part = NO_MESH_PART,
+        .own_part = NO_MESH_PART,
         .faces_hash = MESH_HASH_START,
     };
 }
@@ -27,6 +28,7 @@ void mesh_builder_free(mesh_builder *builder) {
     growable_free(&builder->faces);
     growable_free(&builder->stiffness);
     mesh_parts_free(&builder->parts);
+    mesh_parts_free(&builder->own_parts);
 }
 
 /* A new element of an array, or NULL and an error. */
@@ -57,11 +59,19 @@ bool mesh_builder_add_vertex(mesh_builder *builder, const double position[3]) {
     return true;
 }
 
+static bool find_part(mesh_builder *builder, mesh_parts *parts, const char *name, size_t length,
+                      uint32_t *part) {
+    *part = length > 0 ? mesh_parts_find(parts, name, length) : NO_MESH_PART;
+    return length == 0 || *part != NO_MESH_PART ||
+           file_reader_fail_here(builder->reader, "out of memory after %" PRIu32 " parts", parts->count);
+}
+
 bool mesh_builder_set_part(mesh_builder *builder, const char *name, size_t length) {
-    builder->part = length > 0 ? mesh_parts_find(&builder->parts, name, length) : NO_MESH_PART;
-    return length == 0 || builder->part != NO_MESH_PART ||
-           file_reader_fail_here(builder->reader, "out of memory after %" PRIu32 " parts",
-                                 builder->parts.count);
+    return find_part(builder, &builder->parts, name, length, &builder->part);
+}
+
+bool mesh_builder_set_own_part(mesh_builder *builder, const char *name, size_t length) {
+    return find_part(builder, &builder->own_parts, name, length, &builder->own_part);
 }
 
 bool mesh_builder_set_face_part(mesh_builder *builder, const char *name, size_t length) {
@@ -79,7 +89,7 @@ static size_t corner_start(const mesh_builder *builder) {
 bool mesh_builder_begin_face(mesh_builder *builder) {
     built_face *face = push_item(builder, &builder->faces, "faces");
     if (face == NULL) return false;
-    *face = (built_face){builder->corners.count, builder->part};
+    *face = (built_face){builder->corners.count, builder->part, builder->own_part};
     return true;
 }
 
@@ -162,6 +172,7 @@ static bool cut_face(mesh_builder *builder, uint32_t face, mesh_file *out) {
         memmove(out->triangles + (size_t)out->triangle_count * 3, triangles[i], sizeof triangles[i]);
         out->polygons[out->triangle_count] = face;
         if (out->parts.count > 0) out->parts.of_triangle[out->triangle_count] = faces[face].part;
+        if (out->own_parts.count > 0) out->own_parts.of_triangle[out->triangle_count] = faces[face].own_part;
         if (out->stiffness != NULL)
             out->stiffness[out->triangle_count] = ((const double *)builder->stiffness.data)[face];
         out->triangle_count++;
@@ -171,16 +182,20 @@ static bool cut_face(mesh_builder *builder, uint32_t face, mesh_file *out) {
     return true;
 }
 
+/* Where there are parts, each triangle has one. */
+static bool reserve_labels(mesh_parts *parts, size_t count) {
+    if (parts->count == 0) return true;
+    parts->of_triangle = io_realloc(NULL, count * sizeof *parts->of_triangle);
+    return parts->of_triangle != NULL;
+}
+
 static bool cut_faces(mesh_builder *builder, mesh_file *out) {
     const size_t count = (size_t)builder->triangle_count + 1;
     out->triangles = io_realloc(NULL, count * 3 * sizeof *out->triangles);
     out->polygons = io_realloc(NULL, count * sizeof *out->polygons);
-    if (out->parts.count > 0)
-        out->parts.of_triangle = io_realloc(NULL, count * sizeof *out->parts.of_triangle);
     if (builder->stiffness.count > 0) out->stiffness = io_realloc(NULL, count * sizeof *out->stiffness);
-    if (out->triangles == NULL || out->polygons == NULL ||
-        (out->parts.count > 0 && out->parts.of_triangle == NULL) ||
-        (builder->stiffness.count > 0 && out->stiffness == NULL))
+    if (out->triangles == NULL || out->polygons == NULL || !reserve_labels(&out->parts, count) ||
+        !reserve_labels(&out->own_parts, count) || (builder->stiffness.count > 0 && out->stiffness == NULL))
         return file_reader_fail(builder->reader, "out of memory for %" PRIu64 " triangles",
                                 builder->triangle_count);
     for (uint32_t face = 0; face < builder->faces.count; face++)
@@ -204,9 +219,10 @@ bool mesh_builder_finish(mesh_builder *builder, mesh_file *out) {
                       .polygon_count = (uint32_t)builder->faces.count,
                       .positions = growable_take(&builder->positions),
                       .parts = builder->parts,
+                      .own_parts = builder->own_parts,
                       .faces_hash = builder->faces_hash,
                       .repairs = builder->repairs};
-    builder->parts = (mesh_parts){0};
+    builder->parts = builder->own_parts = (mesh_parts){0};
     bool done = cut_faces(builder, &mesh);
     if (done && mesh.triangle_count == 0)
         done = file_reader_fail(builder->reader,

@@ -15,7 +15,7 @@
 /* A face, and where its corners end. */
 typedef struct built_face {
     size_t corner_end;
-    uint32_t part;
+    uint32_t part, own_part;
 } built_face;
 
 typedef struct mesh_builder {
@@ -27,6 +27,8 @@ typedef struct mesh_builder {
     growable stiffness;  /* of double: of all faces, or empty */
     uint32_t part;       /* of the faces to come; NO_MESH_PART: none */
     mesh_parts parts;
+    uint32_t own_part; /* the same by MESH_PARTS_BY_FILE, where the reader is asked for other parts */
+    mesh_parts own_parts;
     mesh_repairs repairs;
     uint64_t triangle_count; /* of all faces together */
     uint64_t faces_hash;
@@ -40,6 +42,9 @@ bool mesh_builder_add_vertex(mesh_builder *builder, const double position[3]);
 
 /* The faces to come belong to the part of that name; length 0: to none. */
 bool mesh_builder_set_part(mesh_builder *builder, const char *name, size_t length);
+
+/* The same of the parts by MESH_PARTS_BY_FILE, where the reader is asked for others. */
+bool mesh_builder_set_own_part(mesh_builder *builder, const char *name, size_t length);
 
 /* The face that was begun last belongs to the part of that name, and so do those to come. */
 bool mesh_builder_set_face_part(mesh_builder *builder, const char *name, size_t length);

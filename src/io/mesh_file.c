@@ -53,6 +53,21 @@ static const format_reader *reader_of_ending(const file_reader *reader) {
     return NULL;
 }
 
+/* Formats without groups and materials have no parts of that kind; but for OBJ, parts by object are the file's. */
+static bool read_format(file_reader *reader, const format_reader *chosen, mesh_file *out) {
+    const bool chooses = chosen->format == MESH_FORMAT_OBJ || chosen->format == MESH_FORMAT_GLTF;
+    const bool by_object = reader->parts_by == MESH_PARTS_BY_OBJECT;
+    if (by_object && chosen->format != MESH_FORMAT_OBJ) reader->parts_by = MESH_PARTS_BY_FILE;
+    if (!chosen->read(reader, out)) return false;
+    out->format = chosen->format;
+    out->parts_by = reader->parts_by;
+    if (!chooses && out->parts_by != MESH_PARTS_BY_FILE) {
+        out->own_parts = out->parts;
+        out->parts = (mesh_parts){0};
+    }
+    return true;
+}
+
 static bool read_any(file_reader *reader, mesh_file *out) {
     if (reader->size == 0)
         return file_reader_fail(reader,
@@ -62,11 +77,7 @@ static bool read_any(file_reader *reader, mesh_file *out) {
     if (chosen == NULL && text_is_utf16(reader->bytes, reader->size))
         return file_reader_fail(reader, TEXT_UTF16_ADVICE);
     if (chosen == NULL) chosen = reader_of_ending(reader);
-    if (chosen != NULL) {
-        const bool done = chosen->read(reader, out);
-        if (done) out->format = chosen->format;
-        return done;
-    }
+    if (chosen != NULL) return read_format(reader, chosen, out);
     const char *advice = foreign_format_advice(reader->path, reader->bytes, reader->size);
     if (advice != NULL) return file_reader_fail(reader, "this is %s", advice);
     return file_reader_fail(reader, "unknown format, expected a mesh: " PATH_MESH_ENDINGS);
@@ -82,8 +93,13 @@ static void count_triangles_as_faces(mesh_file *mesh) {
 }
 
 bool mesh_file_read(const char *path, mesh_file *out, io_error *error) {
+    return mesh_file_read_parts(path, MESH_PARTS_BY_FILE, out, error);
+}
+
+bool mesh_file_read_parts(const char *path, mesh_parts_by parts_by, mesh_file *out, io_error *error) {
     file_reader reader;
     if (!file_reader_open(&reader, path, error)) return false;
+    reader.parts_by = parts_by;
     bool done = read_any(&reader, out);
     if (done) count_triangles_as_faces(out);
     file_reader_close(&reader);
@@ -97,6 +113,7 @@ void mesh_file_free(mesh_file *mesh) {
     free(mesh->stiffness);
     free(mesh->unread);
     mesh_parts_free(&mesh->parts);
+    mesh_parts_free(&mesh->own_parts);
     *mesh = (mesh_file){0};
 }
 

@@ -40,6 +40,9 @@ typedef struct mesh_file {
     uint32_t *polygons;  /* triangle_count: the face that each is cut from; NULL: triangle i is face i */
     double *stiffness;   /* triangle_count: as the file has it, unchecked; NULL: it has none */
     mesh_parts parts;
+    mesh_parts_by parts_by;
+    mesh_parts
+        own_parts; /* those by MESH_PARTS_BY_FILE, which say what belongs together; none if parts are they */
     uint64_t faces_hash; /* of the faces as the file has them: their corners, face by face */
     mesh_repairs repairs;
     uint32_t animation_count; /* that the file holds beside the mesh, whose positions are those at rest */
@@ -72,6 +75,14 @@ static inline uint32_t mesh_file_polygon(const mesh_file *mesh, uint32_t triangl
 /* The format follows from the content where it says so ("ply", "OFF", "glTF"), else from the extension.
  * On false *out is untouched and *error says file, line or byte offset, what was found and expected. */
 bool mesh_file_read(const char *path, mesh_file *out, io_error *error);
+
+/* The same with other parts. There are none where the file names nothing of that kind. */
+bool mesh_file_read_parts(const char *path, mesh_parts_by parts_by, mesh_file *out, io_error *error);
+
+/* The parts by MESH_PARTS_BY_FILE, whatever the mesh was read by. */
+static inline const mesh_parts *mesh_file_own_parts(const mesh_file *mesh) {
+    return mesh->parts_by == MESH_PARTS_BY_FILE ? &mesh->parts : &mesh->own_parts;
+}
 
 /* Frees what read allocated and zeroes the struct; a zeroed struct is fine. */
 void mesh_file_free(mesh_file *mesh);

@@ -1,4 +1,4 @@
-/* The named parts of a mesh file: objects and groups of an OBJ, nodes of a glTF, labels of a PLY. */
+/* The named parts of a mesh file: objects, groups or materials of an OBJ, nodes or materials of a glTF, labels of a PLY. */
 #pragma once
 
 #include <stdbool.h>
@@ -6,6 +6,14 @@
 #include <stdint.h>
 
 #define NO_MESH_PART UINT32_MAX
+
+/* What makes the parts of a mesh file. */
+typedef enum mesh_parts_by {
+    MESH_PARTS_BY_FILE, /* what the file has: of an OBJ objects with their groups, of a glTF nodes, STL solids, PLY labels */
+    MESH_PARTS_BY_OBJECT,  /* of an OBJ objects alone; else as above */
+    MESH_PARTS_BY_GROUP,   /* groups of an OBJ; no other format has any */
+    MESH_PARTS_BY_MATERIAL /* materials of an OBJ or glTF; no other format has any */
+} mesh_parts_by;
 
 typedef struct mesh_parts {
     uint32_t count;        /* 0: the file names none, and there are no labels */

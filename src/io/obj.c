@@ -1,4 +1,4 @@
-/* Wavefront OBJ: vertices, polygons, and the names of objects and groups; all other records are skipped. */
+/* Wavefront OBJ: vertices, polygons, and the names of objects, groups and materials; all other records are skipped. */
 #include "src/io/obj.h"
 
 #include "src/io/mesh_builder.h"
@@ -15,8 +15,8 @@ typedef struct obj_parser {
      * end. */
     int64_t largest_index;
     size_t largest_line;
-    text_token object, group; /* those of the faces to come; of length 0: none */
-    bool renamed;             /* since the last face: a name without faces is no part */
+    text_token object, group, material; /* those of the faces to come; of length 0: none */
+    bool renamed;                       /* since the last face: a name without faces is no part */
 } obj_parser;
 
 static bool read_vertex(obj_parser *obj) {
@@ -67,7 +67,7 @@ static bool resolve_index(obj_parser *obj, int64_t index, uint32_t *vertex) {
     return true;
 }
 
-/* What exporters write where there is no name. */
+/* What exporters write where an object or a group has no name. */
 static bool is_no_name(text_token name) {
     return text_equals(name, "default") || text_equals(name, "off") || text_equals(name, "(null)");
 }
@@ -79,19 +79,39 @@ static void read_name(obj_parser *obj, text_token *name) {
     obj->renamed = true;
 }
 
+/* A material is called as its file calls it, be it default; programs write (null) where there is none. */
+static void read_material(obj_parser *obj) {
+    text_rest_of_line(obj->reader, &obj->material);
+    if (text_equals(obj->material, "(null)")) obj->material.length = 0;
+    obj->renamed = true;
+}
+
+typedef bool part_setter(mesh_builder *, const char *name, size_t length);
+
 /* The faces to come are in the part OBJECT/GROUP, or in one of them alone. */
-static bool name_part(obj_parser *obj) {
+static bool name_joined(obj_parser *obj, part_setter *set_part) {
     char joined[512];
-    obj->renamed = false;
     const text_token object = obj->object, group = obj->group;
     if (object.length == 0 || group.length == 0) {
         const text_token only = object.length > 0 ? object : group;
-        return mesh_builder_set_part(&obj->builder, only.text, only.length);
+        return set_part(&obj->builder, only.text, only.length);
     }
     int length = snprintf(joined, sizeof joined, "%.*s/%.*s", (int)object.length, object.text,
                           (int)group.length, group.text);
     if ((size_t)length >= sizeof joined) length = sizeof joined - 1;
-    return mesh_builder_set_part(&obj->builder, joined, (size_t)length);
+    return set_part(&obj->builder, joined, (size_t)length);
+}
+
+/* By objects, groups or materials alone the faces to come are in a part of that name, and besides in one of their own. */
+static bool name_part(obj_parser *obj) {
+    const mesh_parts_by by = obj->reader->parts_by;
+    obj->renamed = false;
+    if (by == MESH_PARTS_BY_FILE) return name_joined(obj, mesh_builder_set_part);
+    const text_token name = by == MESH_PARTS_BY_OBJECT  ? obj->object
+                            : by == MESH_PARTS_BY_GROUP ? obj->group
+                                                        : obj->material;
+    return mesh_builder_set_part(&obj->builder, name.text, name.length) &&
+           name_joined(obj, mesh_builder_set_own_part);
 }
 
 static bool read_face(obj_parser *obj) {
@@ -113,6 +133,7 @@ static bool read_face(obj_parser *obj) {
 }
 
 static bool read_records(obj_parser *obj) {
+    const bool by_material = obj->reader->parts_by == MESH_PARTS_BY_MATERIAL;
     for (; text_seek_token(obj->reader); text_skip_line(obj->reader)) {
         text_token keyword;
         text_next_token(obj->reader, &keyword);
@@ -125,6 +146,8 @@ static bool read_records(obj_parser *obj) {
             read_name(obj, &obj->object);
         } else if (text_equals(keyword, "g")) {
             read_name(obj, &obj->group);
+        } else if (by_material && text_equals(keyword, "usemtl")) {
+            read_material(obj);
         }
     }
     return true;

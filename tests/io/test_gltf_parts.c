@@ -86,16 +86,75 @@ static void numbers_the_faces_of_the_file(void **state) {
     mesh_file_free(&mesh);
 }
 
-static void survives_failed_allocations(void **state) {
+/* ---- materials ----------------------------------------------------------------------------------------- */
+
+/* Mesh 0 has primitives of material 2, of none, of points of material 4, and of material 0; mesh 1 of material 2, of a triangle that
+ * names a vertex twice of material 4, and of material `last`. */
+static file_bytes materials_file(gltf_fixture *fixture, const char *materials, int last) {
+    static const double positions[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1},
+                        indices[] = {0, 1, 2, 1, 2, 3, 3, 3, 1};
+    char rest[2400];
+    *fixture = (gltf_fixture){0};
+    gltf_fixture_array(fixture, 5126, "VEC3", 12, positions);
+    gltf_fixture_array(fixture, 5121, "SCALAR", 9, indices);
+    gltf_fixture_accessor(fixture,
+                          "{\"bufferView\":1,\"componentType\":5121,\"count\":3,\"type\":\"SCALAR\"}");
+    gltf_fixture_accessor(
+        fixture,
+        "{\"bufferView\":1,\"byteOffset\":6,\"componentType\":5121,\"count\":3,\"type\":\"SCALAR\"}");
+#define PRIMITIVE(more) "{\"attributes\":{\"POSITION\":0}," more "}"
+    snprintf(
+        rest, sizeof rest,
+        "\"nodes\":[{\"name\":\"A\",\"mesh\":0},{\"name\":\"B\",\"mesh\":1}],%s\"meshes\":[{\"primitives\":[" PRIMITIVE("\"indices\":2,\"material\":2") "," PRIMITIVE("\"indices\":2") "," PRIMITIVE("\"mode\":0,\"material\":4") "," PRIMITIVE(
+            "\"indices\":1,\"material\":0") "]},{\"primitives\":[" PRIMITIVE("\"indices\":2,\"material\":2") "," PRIMITIVE("\"indices\":3,\"material\":4") "," PRIMITIVE("\"indices\":2,\"material\":%d") "]}]",
+        materials, last);
+#undef PRIMITIVE
+    return gltf_fixture_glb(fixture, rest);
+}
+
+#define MATERIALS                                                                                               \
+    "\"materials\":[{\"name\":\"Steel\"},{\"name\":\"Unused\"},{\"name\":\"Red Skin #1\"},{},{\"name\":\"Seen " \
+    "nowhere\"},{\"name\":\"Steel\"}],"
+
+static void calls_parts_by_their_materials(void **state) {
+    (void)state;
+    enum { N = NO_MESH_PART };
+    gltf_fixture fixture;
+    /* Mesh 0: one triangle each, but two of material 0, whose third names a vertex twice; then two of mesh 1. */
+    const uint32_t own[] = {0, 0, 0, 0, 1, 1}, labels[] = {0, N, 1, 1, 0, 2};
+    mesh_check_parts_by(materials_file(&fixture, MATERIALS, 3), MESH_PARTS_BY_MATERIAL,
+                        (const char *const[]){"Red Skin #1", "Steel", "material 3", NULL}, labels, own);
+    mesh_check_parts_by(materials_file(&fixture, MATERIALS, 5), MESH_PARTS_BY_MATERIAL,
+                        (const char *const[]){"Red Skin #1", "Steel", "Steel.001", NULL}, labels, own);
+    mesh_check_parts_by(materials_file(&fixture, MATERIALS, 3), MESH_PARTS_BY_OBJECT,
+                        (const char *const[]){"A", "B", NULL}, own, own);
+    mesh_check_parts_by(materials_file(&fixture, MATERIALS, 3), MESH_PARTS_BY_GROUP,
+                        (const char *const[]){NULL}, NULL, own);
+    const file_bytes plain = parts_file(&fixture, "{\"mesh\":0},{\"mesh\":1}");
+    mesh_check_parts_by(plain, MESH_PARTS_BY_MATERIAL, (const char *const[]){NULL}, NULL,
+                        (const uint32_t[]){0, 0, 1});
+}
+
+/* Where nobody asks for materials, nobody misses one. */
+static void refuses_materials_that_are_not_there(void **state) {
     (void)state;
     gltf_fixture fixture;
-    const file_bytes file = parts_file(&fixture, "{\"mesh\":0},{\"mesh\":1},{\"mesh\":1}");
+    mesh_file mesh;
+    io_error error = {""};
+    const file_bytes file = materials_file(&fixture, MATERIALS, 6);
+    assert_true(mesh_check_read(file, &mesh, &error));
+    mesh_file_free(&mesh);
+    assert_false(mesh_check_read_parts(file, MESH_PARTS_BY_MATERIAL, &mesh, &error));
+    if (strstr(error.text, "mesh 1, primitive 2: material is 6") == NULL) fail_msg("%s", error.text);
+}
+
+static void survives_failed_allocations_by(mesh_parts_by by, file_bytes file) {
     long successes = 0;
     for (bool done = false; !done; successes++) {
         mesh_file mesh = {0};
         io_error error = {""};
         allocations_left = successes;
-        done = mesh_check_read(file, &mesh, &error);
+        done = mesh_check_read_parts(file, by, &mesh, &error);
         allocations_left = -1;
         if (!done && strstr(error.text, "out of memory") == NULL) fail_msg("%s", error.text);
         mesh_file_free(&mesh);
@@ -103,11 +162,21 @@ static void survives_failed_allocations(void **state) {
     assert_true(successes > 25);
 }
 
+static void survives_failed_allocations(void **state) {
+    (void)state;
+    gltf_fixture fixture;
+    survives_failed_allocations_by(MESH_PARTS_BY_FILE,
+                                   parts_file(&fixture, "{\"mesh\":0},{\"mesh\":1},{\"mesh\":1}"));
+    survives_failed_allocations_by(MESH_PARTS_BY_MATERIAL, materials_file(&fixture, MATERIALS, 3));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(calls_parts_by_their_nodes),
         cmocka_unit_test(tells_equal_names_apart),
         cmocka_unit_test(numbers_the_faces_of_the_file),
+        cmocka_unit_test(calls_parts_by_their_materials),
+        cmocka_unit_test(refuses_materials_that_are_not_there),
         cmocka_unit_test(survives_failed_allocations),
     };
     return cmocka_run_group_tests_name("gltf_parts", tests, NULL, NULL);

@@ -177,6 +177,42 @@ static void names_parts(void **state) {
                 (const uint32_t[]){0});
 }
 
+static void check_parts_by(const char *text, mesh_parts_by parts_by, const char *const *names,
+                           const uint32_t *labels, const uint32_t *own) {
+    mesh_check_parts_by((file_bytes){"mesh.obj", text, strlen(text)}, parts_by, names, labels, own);
+}
+
+/* Objects, groups and materials that begin and end at different faces. */
+static void names_parts_by_what_is_asked_for(void **state) {
+    (void)state;
+    enum { N = NO_MESH_PART };
+    static const char text[] =
+        SQUARE "f 1 2 3\nusemtl  Brushed Steel #2 \nf 1 2 3\no Body\nf 1 2 3\ng Arm L\nf 1 2 3\nusemtl "
+               "default\nf 1 2 3 4\no Hat\nusemtl Unused\nusemtl Brushed Steel #2\nf 1 2 3\nusemtl (null)\ng "
+               "Arm L\nf 1 2 3\n";
+    const uint32_t own[] = {N, N, 0, 1, 1, 1, 2, 3};
+    check_parts_by(text, MESH_PARTS_BY_OBJECT, (const char *const[]){"Body", "Hat", NULL},
+                   (const uint32_t[]){N, N, 0, 0, 0, 0, 1, 1}, own);
+    check_parts_by(text, MESH_PARTS_BY_GROUP, (const char *const[]){"Arm L", NULL},
+                   (const uint32_t[]){N, N, N, 0, 0, 0, N, 0}, own);
+    check_parts_by(text, MESH_PARTS_BY_MATERIAL, (const char *const[]){"Brushed Steel #2", "default", NULL},
+                   (const uint32_t[]){N, 0, 0, 0, 1, 1, 0, N}, own);
+    check_parts_by(text, MESH_PARTS_BY_FILE,
+                   (const char *const[]){"Body", "Body/Arm L", "Hat", "Hat/Arm L", NULL}, own, own);
+}
+
+/* What the file does not have is no part, and what it has besides is still known. */
+static void has_no_parts_of_another_kind(void **state) {
+    (void)state;
+    const char *const none[] = {NULL}, *const stone[] = {"Stone", NULL};
+    const uint32_t zero[] = {0};
+    check_parts_by(SQUARE "g A\nf 1 2 3\n", MESH_PARTS_BY_OBJECT, none, NULL, zero);
+    check_parts_by(SQUARE "o A\nf 1 2 3\n", MESH_PARTS_BY_GROUP, none, NULL, zero);
+    check_parts_by(SQUARE "o A\nf 1 2 3\nusemtl Late\n", MESH_PARTS_BY_MATERIAL, none, NULL, zero);
+    check_parts_by(SQUARE "usemtl Stone\nf 1 2 3\n", MESH_PARTS_BY_MATERIAL, stone, zero, NULL);
+    check_parts_by(SQUARE "usemtl (null)\nf 1 2 3\n", MESH_PARTS_BY_MATERIAL, none, NULL, NULL);
+}
+
 static void refuses_indices_out_of_range(void **state) {
     (void)state;
     mesh_check_error(OBJ(SQUARE "f 1 2 0\n"), ":5: ", "face index 0 is out of range",
@@ -225,6 +261,8 @@ int main(void) {
         cmocka_unit_test(refuses_bad_faces),
         cmocka_unit_test(repairs_faces),
         cmocka_unit_test(names_parts),
+        cmocka_unit_test(names_parts_by_what_is_asked_for),
+        cmocka_unit_test(has_no_parts_of_another_kind),
         cmocka_unit_test(finds_many_names_again),
         cmocka_unit_test(refuses_indices_out_of_range),
         cmocka_unit_test(refuses_incomplete_meshes),

@@ -197,6 +197,22 @@ static bool read_triangles(const gltf_primitive *primitive, const gltf_vertices 
 
 /* ---- the mesh ---------------------------------------------------------------------------------------- */
 
+/* Where nobody asks for materials, one that is not there is no error. */
+static bool read_material(const gltf_primitive *primitive) {
+    gltf_document *document = primitive->document;
+    gltf_mesh *mesh = primitive->mesh;
+    size_t count;
+    uint32_t material = GLTF_NONE;
+    if (document->reader->parts_by != MESH_PARTS_BY_MATERIAL) return true;
+    if (!gltf_array_length(&document->root, "materials", &count) ||
+        !gltf_index(&primitive->element, "material", "materials", count, &material))
+        return false;
+    gltf_material_run *run = growable_push(&mesh->materials);
+    if (run == NULL) return gltf_fail(&primitive->element, "out of memory");
+    *run = (gltf_material_run){mesh->triangles.count, material};
+    return true;
+}
+
 static bool read_primitive(gltf_primitive *primitive) {
     int64_t mode = MODE_TRIANGLES;
     gltf_vertices *vertices = NULL;
@@ -205,7 +221,8 @@ static bool read_primitive(gltf_primitive *primitive) {
         primitive->mesh->skipped_primitives++;
         return true;
     }
-    return read_vertices(primitive, &vertices) && read_triangles(primitive, vertices, (primitive_mode)mode);
+    return read_vertices(primitive, &vertices) && read_triangles(primitive, vertices, (primitive_mode)mode) &&
+           read_material(primitive);
 }
 
 /* All primitives of a mesh have the same targets. */
@@ -237,7 +254,9 @@ static bool read_primitives(gltf_document *document, const gltf_element *element
 bool gltf_mesh_open(gltf_document *document, uint32_t index, gltf_mesh *out) {
     gltf_element element;
     size_t count;
-    gltf_mesh mesh = {.triangles = growable_of(3 * sizeof(uint32_t)), .faces = growable_of(sizeof(uint32_t))};
+    gltf_mesh mesh = {.triangles = growable_of(3 * sizeof(uint32_t)),
+                      .materials = growable_of(sizeof(gltf_material_run)),
+                      .faces = growable_of(sizeof(uint32_t))};
     if (!gltf_element_at(&document->root, "meshes", "mesh", index, &element) ||
         !gltf_array_length(&element, "primitives", &count))
         return false;
@@ -268,6 +287,7 @@ void gltf_mesh_close(gltf_mesh *mesh) {
     free(mesh->vertices);
     free(mesh->default_weights);
     growable_free(&mesh->triangles);
+    growable_free(&mesh->materials);
     growable_free(&mesh->faces);
     *mesh = (gltf_mesh){0};
 }

@@ -17,15 +17,22 @@ typedef struct gltf_vertices {
         accessors; /* of uint32_t: the indices of all accessors, which tell whether two primitives share */
 } gltf_vertices;
 
+/* The triangles of a primitive, behind those of the one before. */
+typedef struct gltf_material_run {
+    size_t triangle_end;
+    uint32_t material; /* GLTF_NONE: none */
+} gltf_material_run;
+
 typedef struct gltf_mesh {
     gltf_vertices *vertices;
     uint32_t vertices_count; /* of the array above */
     uint32_t vertex_count;   /* of all */
     uint32_t target_count;
-    double *default_weights;               /* target_count */
-    growable triangles;                    /* of uint32_t[3] */
-    growable faces;                        /* of uint32_t: which face of the mesh a triangle is */
-    uint32_t face_count;                   /* with those that were dropped */
+    double *default_weights; /* target_count */
+    growable triangles;      /* of uint32_t[3] */
+    growable materials;      /* of gltf_material_run, where parts are asked for by material; else empty */
+    growable faces;          /* of uint32_t: which face of the mesh a triangle is */
+    uint32_t face_count;     /* with those that were dropped */
     uint32_t dropped_count, first_dropped; /* triangles that name a vertex twice */
     uint32_t skipped_primitives;           /* of points or lines */
     const char *name;                      /* NULL: none; the document's */

@@ -55,6 +55,14 @@ static void write_polygons(const gltf_scene *scene, mesh_file *out) {
         out->faces_hash = mesh_file_hash(out->faces_hash, out->triangles + 3 * t, 3);
 }
 
+/* A glTF has no groups. */
+static bool find_parts(const gltf_scene *scene, mesh_file *mesh) {
+    const mesh_parts_by by = scene->document.reader->parts_by;
+    if (by == MESH_PARTS_BY_FILE) return gltf_parts_of(scene, &mesh->parts);
+    return gltf_parts_of(scene, &mesh->own_parts) &&
+           (by != MESH_PARTS_BY_MATERIAL || gltf_parts_of_materials(scene, &mesh->parts));
+}
+
 bool gltf_read(file_reader *reader, mesh_file *out) {
     gltf_scene scene;
     gltf_pose pose = {0};
@@ -63,7 +71,7 @@ bool gltf_read(file_reader *reader, mesh_file *out) {
     size_t animations = 0;
     const bool done = gltf_array_length(&scene.document.root, "animations", &animations) &&
                       gltf_pose_open(&scene, &pose) && allocate_mesh(&scene, &mesh) &&
-                      gltf_pose_write(&pose, mesh.positions) && gltf_parts_of(&scene, &mesh.parts) &&
+                      gltf_pose_write(&pose, mesh.positions) && find_parts(&scene, &mesh) &&
                       gltf_extensions_note(&scene, &mesh.unread);
     if (done) {
         write_triangles(&scene, &pose, &mesh);

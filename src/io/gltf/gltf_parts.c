@@ -1,4 +1,4 @@
-/* The parts of a glTF scene: a name for each node with triangles, no two of them equal. */
+/* The parts of a glTF scene: a name for each node with triangles, or for each material of triangles, no two of them equal. */
 #include "src/io/gltf/gltf_parts.h"
 
 #include "src/io/growable.h"
@@ -71,9 +71,9 @@ static bool add_name(name_table *table, file_reader *reader, const char *base) {
     return true;
 }
 
-static bool name_instances(const gltf_scene *scene, name_table *table) {
+static bool name_instances(const gltf_scene *scene, uint32_t count, name_table *table) {
     uint32_t *of_triangle = table->parts->of_triangle;
-    for (uint32_t i = 0; i < scene->instance_count; i++) {
+    for (uint32_t i = 0; i < count; i++) {
         const gltf_instance *instance = &scene->instances[i];
         const size_t triangle_count = scene->meshes[instance->mesh].triangles.count;
         char number[32];
@@ -84,19 +84,80 @@ static bool name_instances(const gltf_scene *scene, name_table *table) {
     return true;
 }
 
-bool gltf_parts_of(const gltf_scene *scene, mesh_parts *out) {
+/* ---- materials ----------------------------------------------------------------------------------------- */
+
+static bool add_material(name_table *table, const gltf_scene *scene, uint32_t material) {
+    char number[32];
+    gltf_element element;
+    if (!gltf_element_at(&scene->document.root, "materials", "material", material, &element)) return false;
+    const char *own = gltf_string(&element, "name");
+    snprintf(number, sizeof number, "material %" PRIu32, material);
+    return add_name(table, scene->document.reader, own != NULL && own[0] != '\0' ? own : number);
+}
+
+/* parts_of: of each material of the file, NO_MESH_PART where it is none yet. */
+static bool label_mesh(const gltf_scene *scene, const gltf_mesh *mesh, name_table *table, uint32_t *parts_of,
+                       uint32_t *of_triangle) {
+    const gltf_material_run *runs = mesh->materials.data;
+    size_t t = 0;
+    for (size_t i = 0; i < mesh->materials.count; i++) {
+        uint32_t part = NO_MESH_PART;
+        if (runs[i].material != GLTF_NONE && t < runs[i].triangle_end) {
+            uint32_t *known = &parts_of[runs[i].material];
+            if (*known == NO_MESH_PART) {
+                *known = table->parts->count;
+                if (!add_material(table, scene, runs[i].material)) return false;
+            }
+            part = *known;
+        }
+        while (t < runs[i].triangle_end) of_triangle[t++] = part;
+    }
+    return true;
+}
+
+static bool name_materials(const gltf_scene *scene, uint32_t count, name_table *table) {
+    uint32_t *of_triangle = table->parts->of_triangle;
+    uint32_t *parts_of = gltf_allocate(scene->document.reader, count, sizeof *parts_of);
+    bool done = parts_of != NULL;
+    for (uint32_t i = 0; done && i < count; i++) parts_of[i] = NO_MESH_PART;
+    for (uint32_t i = 0; done && i < scene->instance_count; i++) {
+        const gltf_mesh *mesh = &scene->meshes[scene->instances[i].mesh];
+        done = label_mesh(scene, mesh, table, parts_of, of_triangle);
+        of_triangle += mesh->triangles.count;
+    }
+    free(parts_of);
+    return done;
+}
+
+/* ---- the interface ------------------------------------------------------------------------------------- */
+
+typedef bool part_namer(const gltf_scene *scene, uint32_t most, name_table *table);
+
+/* most: of parts. */
+static bool make_parts(const gltf_scene *scene, uint32_t most, part_namer *name, mesh_parts *out) {
     file_reader *reader = scene->document.reader;
     mesh_parts parts = {0};
     name_table table = {0};
-    parts.names = gltf_allocate(reader, scene->instance_count, sizeof *parts.names);
+    parts.names = gltf_allocate(reader, most, sizeof *parts.names);
     parts.of_triangle = gltf_allocate(reader, scene->triangle_count, sizeof *parts.of_triangle);
     const bool done = parts.names != NULL && parts.of_triangle != NULL &&
-                      open_table(reader, scene->instance_count, &parts, &table) &&
-                      name_instances(scene, &table);
+                      open_table(reader, most, &parts, &table) && name(scene, most, &table);
     close_table(&table);
-    if (done)
+    if (done && parts.count > 0)
         *out = parts;
     else
         mesh_parts_free(&parts);
     return done;
+}
+
+bool gltf_parts_of(const gltf_scene *scene, mesh_parts *out) {
+    return make_parts(scene, scene->instance_count, name_instances, out);
+}
+
+bool gltf_parts_of_materials(const gltf_scene *scene, mesh_parts *out) {
+    size_t count;
+    if (!gltf_array_length(&scene->document.root, "materials", &count)) return false;
+    if (count > INT32_MAX)
+        return file_reader_fail(scene->document.reader, "more than %d materials", INT32_MAX);
+    return make_parts(scene, (uint32_t)count, name_materials, out);
 }

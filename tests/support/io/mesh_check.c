@@ -18,13 +18,16 @@ static void remove_folder(void) {
 }
 
 bool mesh_check_read(file_bytes file, mesh_file *mesh, io_error *error) {
+    return mesh_check_read_parts(file, MESH_PARTS_BY_FILE, mesh, error);
+}
+
+bool mesh_check_read_parts(file_bytes file, mesh_parts_by parts_by, mesh_file *mesh, io_error *error) {
     if (folder.path[0] == '\0') {
         folder = temp_folder_make();
         atexit(remove_folder);
     }
     temp_path path = temp_file_write(&folder, file.name, file.bytes, file.size);
-    bool done = mesh_file_read(path.text, mesh, error);
-    return done;
+    return mesh_file_read_parts(path.text, parts_by, mesh, error);
 }
 
 void mesh_check_equal(file_bytes file, uint32_t vertex_count, const double *positions,
@@ -47,20 +50,44 @@ void mesh_check_square(file_bytes file) {
     mesh_check_equal(file, 4, positions, 2, triangles);
 }
 
+static void check_names(const mesh_file *mesh, const char *const *names, const uint32_t *labels) {
+    uint32_t count = 0;
+    for (; names[count] != NULL; count++) {
+        assert_true(count < mesh->parts.count);
+        assert_string_equal(mesh->parts.names[count], names[count]);
+    }
+    assert_int_equal(mesh->parts.count, count);
+    for (uint32_t t = 0; t < mesh->triangle_count && count > 0; t++)
+        assert_int_equal(mesh->parts.of_triangle[t], labels[t]);
+    if (count == 0) assert_null(mesh->parts.of_triangle);
+}
+
 void mesh_check_parts(file_bytes file, const char *const *names, const uint32_t *labels) {
     mesh_file mesh = {0};
     io_error error = {""};
     if (!mesh_check_read(file, &mesh, &error)) fail_msg("refused: %s", error.text);
-    uint32_t count = 0;
-    for (; names[count] != NULL; count++) {
-        assert_true(count < mesh.parts.count);
-        assert_string_equal(mesh.parts.names[count], names[count]);
-    }
-    assert_int_equal(mesh.parts.count, count);
-    for (uint32_t t = 0; t < mesh.triangle_count && count > 0; t++)
-        assert_int_equal(mesh.parts.of_triangle[t], labels[t]);
-    if (count == 0) assert_null(mesh.parts.of_triangle);
+    check_names(&mesh, names, labels);
+    assert_int_equal(mesh.own_parts.count, 0);
     mesh_file_free(&mesh);
+}
+
+void mesh_check_parts_by(file_bytes file, mesh_parts_by parts_by, const char *const *names,
+                         const uint32_t *labels, const uint32_t *own) {
+    mesh_file mesh = {0}, plain = {0};
+    io_error error = {""};
+    if (!mesh_check_read_parts(file, parts_by, &mesh, &error)) fail_msg("refused: %s", error.text);
+    if (!mesh_check_read(file, &plain, &error)) fail_msg("refused: %s", error.text);
+    check_names(&mesh, names, labels);
+    const mesh_parts *parts = mesh_file_own_parts(&mesh);
+    assert_int_equal(parts->count, plain.parts.count);
+    assert_true((parts->of_triangle != NULL) == (own != NULL));
+    for (uint32_t i = 0; i < parts->count; i++) assert_string_equal(parts->names[i], plain.parts.names[i]);
+    for (uint32_t t = 0; t < mesh.triangle_count && own != NULL; t++)
+        assert_true(parts->of_triangle[t] == own[t] && plain.parts.of_triangle[t] == own[t]);
+    assert_int_equal(mesh.triangle_count, plain.triangle_count);
+    assert_memory_equal(mesh.triangles, plain.triangles, 3 * plain.triangle_count * sizeof *plain.triangles);
+    mesh_file_free(&mesh);
+    mesh_file_free(&plain);
 }
 
 void mesh_check_error(file_bytes file, const char *place, const char *found, const char *expected) {

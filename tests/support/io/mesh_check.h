@@ -21,6 +21,7 @@ typedef struct file_bytes {
 
 /* Writes the file to a temporary folder, reads it and removes both. */
 bool mesh_check_read(file_bytes file, mesh_file *mesh, io_error *error);
+bool mesh_check_read_parts(file_bytes file, mesh_parts_by parts_by, mesh_file *mesh, io_error *error);
 
 /* Checks that the file is read, and has exactly these arrays, bit for bit. */
 void mesh_check_equal(file_bytes file, uint32_t vertex_count, const double *positions,
@@ -30,6 +31,10 @@ void mesh_check_square(file_bytes file);
 
 /* Checks that the file is read and has these parts, a list up to NULL; labels: per triangle, or NULL without parts. */
 void mesh_check_parts(file_bytes file, const char *const *names, const uint32_t *labels);
+
+/* The same by parts that are asked for; own: per triangle, the part that it has otherwise, or NULL without such parts. */
+void mesh_check_parts_by(file_bytes file, mesh_parts_by parts_by, const char *const *names,
+                         const uint32_t *labels, const uint32_t *own);
 
 /* Checks that the file is refused in one line that contains the file's name followed by `place` (":3: ", ": byte 7: "
  * or ": ") and the two texts, and that the mesh is unchanged. */
