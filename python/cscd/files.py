@@ -35,10 +35,10 @@ class _Choices(ctypes.Structure):
 
     _fields_ = [("model_path", ctypes.c_char_p), ("frame_paths", ctypes.POINTER(ctypes.c_char_p)),
                 ("frame_path_count", ctypes.c_size_t), ("weld", ctypes.c_char_p), ("animation", ctypes.c_char_p),
-                ("parts_path", ctypes.c_char_p), ("fps", ctypes.c_double), ("names", ctypes.POINTER(ctypes.c_char_p)),
-                ("paths", ctypes.POINTER(ctypes.c_char_p)), ("frames", ctypes.POINTER(ctypes.c_char_p)),
-                ("obstacles", ctypes.POINTER(ctypes.c_ubyte)), ("object_count", ctypes.c_size_t),
-                ("rest", ctypes.c_ubyte), ("allow_gaps", ctypes.c_ubyte)]
+                ("parts_path", ctypes.c_char_p), ("parts_by", ctypes.c_char_p), ("fps", ctypes.c_double),
+                ("names", ctypes.POINTER(ctypes.c_char_p)), ("paths", ctypes.POINTER(ctypes.c_char_p)),
+                ("frames", ctypes.POINTER(ctypes.c_char_p)), ("obstacles", ctypes.POINTER(ctypes.c_ubyte)),
+                ("object_count", ctypes.c_size_t), ("rest", ctypes.c_ubyte), ("allow_gaps", ctypes.c_ubyte)]
 
 
 def _texts(items: Sequence[Optional[bytes]]) -> Any:
@@ -108,6 +108,9 @@ class Recording:
         Objects and groups of the file, or its components.
     part_labels : (t,) int64
         The part of each triangle of the mesh, -1 for none.
+    body_labels : (t,) int64, optional
+        What belongs together where ``parts_by`` makes the parts: those that the triangles have without it. ``by_parts`` and
+        ``replay`` take it as ``bodies``, so that depths stay what they are. None: the parts say so.
     file_vertices : (n,) int64
         The number that each vertex has in the file. Formats that store vertices several times, as STL and glTF, have
         several for one; this is the first.
@@ -132,6 +135,10 @@ class Recording:
         self.part_names: List[str] = [library.cscdpy_recording_part_name(pointer, i).decode(errors="replace")
                                       for i in range(library.cscdpy_recording_part_count(pointer))]
         self.part_labels: Array = np.where(parts == _NO_PART, -1, parts.astype(np.int64))
+        bodies = np.empty(triangle_count, np.uint32)
+        self.body_labels: Optional[Array] = None
+        if library.cscdpy_recording_copy_bodies(pointer, address_of(bodies)):
+            self.body_labels = np.where(bodies == _NO_PART, -1, bodies.astype(np.int64))
         self._first: Optional[Array] = None
 
     def _take_objects(self, pointer: int, triangles: Array, faces: Array) -> None:
@@ -191,7 +198,7 @@ def _tell_objects(choices: _Choices, objects: Any, obstacles: Sequence[str]) -> 
 def read(path: PathLike, frames: Union[None, PathLike, Sequence[PathLike]] = None, *, fps: float = 0.0,
          weld: Union[None, str, float] = None, animation: Optional[str] = None, rest: bool = False,
          objects: Any = None, obstacles: Sequence[str] = (), parts: Optional[PathLike] = None,
-         allow_gaps: bool = False) -> Recording:
+         parts_by: Optional[str] = None, allow_gaps: bool = False) -> Recording:
     """Reads a mesh, and what it does, with the options of the tool.
 
     Parameters
@@ -217,6 +224,8 @@ def read(path: PathLike, frames: Union[None, PathLike, Sequence[PathLike]] = Non
         Which of these objects are obstacles: nothing is looked for within one of them, nor between two.
     parts : path, optional
         A table with the part of each triangle, face or vertex, as ``--parts`` has it.
+    parts_by : "object", "group" or "material", optional
+        What makes the parts, of OBJ and glTF files, as ``--parts-by`` has it; by default objects with their groups, or nodes.
     allow_gaps : bool
         Of numbered files, some may be missing.
 
@@ -233,7 +242,8 @@ def read(path: PathLike, frames: Union[None, PathLike, Sequence[PathLike]] = Non
         listed = [os.fsencode(item) for item in frames]
     choices = _Choices(model_path=os.fsencode(path), frame_paths=_texts(listed), frame_path_count=len(listed),
                        weld=_weld_text(weld), animation=None if animation is None else animation.encode(),
-                       parts_path=None if parts is None else os.fsencode(parts), fps=number_of("fps", fps),
+                       parts_path=None if parts is None else os.fsencode(parts),
+                       parts_by=None if parts_by is None else parts_by.encode(), fps=number_of("fps", fps),
                        rest=bool(rest), allow_gaps=bool(allow_gaps))
     _tell_objects(choices, objects, list(obstacles))
     return Recording(_OpenRecording(path, choices))

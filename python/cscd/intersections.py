@@ -160,22 +160,26 @@ class Intersections:
         depths = self.depths
         return float(depths["depth"].max()) if len(depths) else 0.0
 
-    def by_parts(self, labels: Any, part_count: Optional[int] = None) -> PartPairs:
+    def by_parts(self, labels: Any, part_count: Optional[int] = None, bodies: Any = None) -> PartPairs:
         """Sums up by pair of parts.
 
         Parameters
         ----------
         labels : (t,) integers
             The part of each triangle of ``mesh``; -1: it is in none.
+        bodies : (t,) integers, optional
+            What belongs together, in which depths are measured, as ``Recording.body_labels``; by default the parts.
         """
         detector, positions = self._again()
         with detector._host.lock:  # labels that other threads, or the caller of the detector, have chosen stay
-            before = detector._labels
-            detector.set_parts(labels, part_count)
+            before = detector._labels, detector._bodies
             try:
+                detector.set_parts(labels, part_count)
+                detector.set_bodies(bodies)
                 return detector._surface_answers(positions, parts=True).parts
             finally:
-                detector._set_labels(before)
+                detector._set_labels(before[0])
+                detector._set_bodies(before[1])
 
     def _again(self) -> Tuple[Detector, Any]:
         if not self._allowed:

@@ -25,6 +25,7 @@ class LiveSettings:
     _detector: int
     _inputs: Dict[str, Any]
     _labels: Optional[Tuple[Array, int]] = None  # of set_parts
+    _bodies: Optional[Tuple[Array, int]] = None  # of set_bodies
 
     def set_separation(self, min_separation: float, tolerance: float = 0.0) -> None:
         """Changes ``min_separation`` and ``tolerance`` from the next call on."""
@@ -48,6 +49,16 @@ class LiveSettings:
         with self._host.lock:
             self._set(library.cscd_detector_set_parts, None if array is None else address_of(array), count)
             self._labels = labels
+
+    def set_bodies(self, labels: Any, label_count: Optional[int] = None) -> None:
+        """Says what belongs together, for depths, by such numbers; None: the parts say so (include/cscd/parts.h)."""
+        self._set_bodies(None if labels is None else labels_of(labels, self.mesh.triangle_count, label_count))
+
+    def _set_bodies(self, labels: Optional[Tuple[Array, int]]) -> None:
+        array, count = (None, 0) if labels is None else labels
+        with self._host.lock:
+            self._set(library.cscd_detector_set_bodies, None if array is None else address_of(array), count)
+            self._bodies = labels
 
     def set_active(self, vertices: Any) -> None:
         """Only these vertices move, all others rest (include/cscd/live.h); None: all may move."""

@@ -79,7 +79,7 @@ class LeftOut(Handle):
         raise MemoryError(f"{option}: out of memory")
 
 
-def replay(frames: Iterable[Any], F: Any, *, parts: Any = None, ignore_parts: Any = (),
+def replay(frames: Iterable[Any], F: Any, *, parts: Any = None, bodies: Any = None, ignore_parts: Any = (),
            ignore_rest: Optional[str] = None, contacts: bool = True, depths: bool = True,
            frame_numbers: Optional[Sequence[int]] = None, rings: int = 2, gap: int = 0, threads: int = 1,
            progress: Optional[Callable[[str, float], Any]] = None, **options: Any) -> Replay:
@@ -92,6 +92,8 @@ def replay(frames: Iterable[Any], F: Any, *, parts: Any = None, ignore_parts: An
     F : (m, 3) or (m, 4) integers, or Mesh
     parts : (t,) integers, optional
         The part of each triangle of the mesh, -1 for none; events are between parts. By default objects are the parts.
+    bodies : (t,) integers, optional
+        What belongs together, in which depths are measured, as ``Recording.body_labels``; by default the parts.
     ignore_parts : (k, 2) integers
         Pairs of parts that are not looked at with each other; a part with itself as well.
     ignore_rest : "pairs" or "parts", optional
@@ -121,7 +123,7 @@ def replay(frames: Iterable[Any], F: Any, *, parts: Any = None, ignore_parts: An
     >>> run.events.first_frame.tolist(), run.events.last_frame.tolist(), run.events.kind_names()
     ([1], [2], (('crossing',),))
     """
-    return Replay(frames, F, parts=parts, ignore_parts=ignore_parts, ignore_rest=ignore_rest, contacts=contacts,
+    return Replay(frames, F, parts=parts, bodies=bodies, ignore_parts=ignore_parts, ignore_rest=ignore_rest, contacts=contacts,
                   depths=depths, frame_numbers=frame_numbers, rings=rings, gap=gap, threads=threads,
                   progress=progress, **options)
 
@@ -137,9 +139,9 @@ class Replay:
         Those that have ended so far; after the last frame all of them, by their first frames.
     """
 
-    def __init__(self, frames: Iterable[Any], F: Any, *, parts: Any, ignore_parts: Any, ignore_rest: Optional[str],
-                 contacts: bool, depths: bool, frame_numbers: Optional[Sequence[int]], rings: int, gap: int,
-                 **options: Any) -> None:
+    def __init__(self, frames: Iterable[Any], F: Any, *, parts: Any, bodies: Any, ignore_parts: Any,
+                 ignore_rest: Optional[str], contacts: bool, depths: bool,
+                 frame_numbers: Optional[Sequence[int]], rings: int, gap: int, **options: Any) -> None:
         if isinstance(frames, np.ndarray) and frames.ndim != 3:
             raise ValueError(f"frames: expected an array (B, n, 3), got shape {frames.shape}; one frame is "
                              "frames[None]")
@@ -151,6 +153,7 @@ class Replay:
         self._frames = iter(frames)
         self._numbers = _numbers_of(frame_numbers)
         self._faces = F
+        self._bodies = bodies
         self._parts, self._ignore_parts, self._ignore_rest = parts, _part_pairs_of(ignore_parts), ignore_rest
         self._contacts, self._depths = contacts, depths
         self._tracking = {name: count_of(name, value, int(np.iinfo(structs["event_options"][name]).max))
@@ -180,6 +183,8 @@ class Replay:
         self._detector = Detector(self.mesh, _left_out=self._left_out, **self._options)
         if self._parts is not None:
             self._detector.set_parts(self._parts, part_count)
+        if self._bodies is not None:
+            self._detector.set_bodies(self._bodies)
         tracking = new_struct("event_options")
         library.cscd_event_defaults_sized(address_of(tracking), tracking.nbytes)
         for name, value in self._tracking.items():

@@ -28,6 +28,7 @@ typedef struct read_choices {
     const char *weld;       /* exact, none or a distance */
     const char *animation;  /* of a glTF file */
     const char *parts_path; /* a table of parts */
+    const char *parts_by;   /* object, group or material */
     double fps;             /* of a glTF file, 0: 24 */
     const char *const *names,
         *const *paths, *const *frames; /* object_count: further objects; frames are NULL of those that rest */
@@ -63,6 +64,11 @@ static bool take_choices(const read_choices *choices, recording_options *out, io
     if (choices->weld != NULL && !read_weld(choices->weld, &out->weld))
         return io_fail(error, "weld: expected 'exact', 'none' or a distance above 0, got '%.40s'",
                        choices->weld);
+    if (choices->parts_by != NULL && !read_parts_by(choices->parts_by, &out->parts_by))
+        return io_fail(error, "parts_by: expected 'object', 'group' or 'material', got '%.40s'",
+                       choices->parts_by);
+    if (choices->parts_by != NULL && choices->parts_path != NULL)
+        return io_fail(error, "parts and parts_by both say what the parts are; give one of them");
     for (size_t i = 0; i < choices->object_count; i++) {
         if (!take_name(&out->objects, choices->names[i], choices->paths[i], choices->obstacles[i] != 0,
                        error) ||
@@ -130,6 +136,13 @@ PYTHON_API void cscdpy_recording_copy(const read_recording *r, int32_t *frame_nu
     }
     for (uint32_t v = 0; v < cscd_mesh_vertex_count(mesh); v++)
         file_vertices[v] = recording_file_vertex(&r->recording, v);
+}
+
+/* Per triangle: what it belongs to where that is not its part. False: it is. */
+PYTHON_API bool cscdpy_recording_copy_bodies(const read_recording *r, uint32_t *bodies) {
+    const uint32_t count = cscd_mesh_triangle_count(r->recording.mesh);
+    if (r->parts.bodies != NULL) memcpy(bodies, r->parts.bodies, count * sizeof *bodies);
+    return r->parts.bodies != NULL;
 }
 
 PYTHON_API uint32_t cscdpy_recording_object_count(const read_recording *r) {

@@ -83,7 +83,7 @@ def test_numbers() -> None:
               lambda: detector.set_separation(np.nan), lambda: detector.set_parts([0]), lambda: detector.set_parts([0, -2]),
               lambda: detector.set_parts([0, 3], 2), lambda: detector.set_parts([0, 1], 2.5),  # type: ignore[arg-type]
               lambda: detector.set_parts([0, 1], 2**40), lambda: detector.set_parts([0, 1], -5),
-              lambda: detector.set_parts([0.0, 1.0]),
+              lambda: detector.set_parts([0.0, 1.0]), lambda: detector.set_bodies([0]), lambda: detector.set_bodies([0, 3], 2),
               lambda: detector.set_active([6]), lambda: detector.set_active([-1]), lambda: detector.set_active([0.5]),
               lambda: detector.set_seams([[0, 9]]), lambda: detector.set_ignored([[0, 9]])]
     for out in (V[:, :2].copy(), V[:-1].copy(), V.astype(int), np.asfortranarray(V.copy()), V.tolist(), "out",

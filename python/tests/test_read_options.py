@@ -52,6 +52,41 @@ def test_parts(tmp_path: Path) -> None:
     assert read.part_names == ["Left Arm", "Right#2"] and read.part_labels.tolist() == [0, 1]
 
 
+def write_boxes(folder: Path) -> Path:
+    """A crate that has sunk 0.25 into a slab. Both are of steel, but for the side above of the crate."""
+    quads = ((1, 3, 4, 2), (1, 2, 6, 5), (3, 7, 8, 4), (1, 5, 7, 3), (2, 4, 8, 6), (5, 6, 8, 7))
+    text = ""
+    for name, first, low, high, above in (("slab", 0, (0, 0, 0), (2, 2, 1), "Brushed Steel"),
+                                          ("crate", 8, (0.5, 0.5, 0.75), (1.5, 1.5, 2), "Glass")):
+        corners = [[(low, high)[i >> k & 1][k] for k in range(3)] for i in range(8)]
+        text += f"o {name}\n" + "".join(f"v {x} {y} {z}\n" for x, y, z in corners) + "usemtl Brushed Steel\n"
+        for quad in quads:
+            text += f"usemtl {above}\n" if quad[0] == 5 else ""
+            text += "f " + " ".join(str(first + corner) for corner in quad) + "\n"
+    return write(folder, "boxes.obj", text)
+
+
+def test_parts_by(tmp_path: Path) -> None:
+    path = write_boxes(tmp_path)
+    plain, material = cscd.read(path), cscd.read(path, parts_by="material")
+    assert plain.part_names == cscd.read(path, parts_by="object").part_names == ["slab", "crate"]
+    assert material.part_names == ["Brushed Steel", "Glass"]
+    assert material.part_labels.tolist() == [0] * 22 + [1] * 2
+    assert plain.body_labels is None and material.body_labels is not None
+    assert material.body_labels.tolist() == plain.part_labels.tolist()
+    found = cscd.self_intersections(material.vertices, material.mesh)
+    by_object = found.by_parts(plain.part_labels)
+    by_material = found.by_parts(material.part_labels, bodies=material.body_labels)
+    assert by_object.depth.max() == pytest.approx(0.25) and by_material.depth.max() == by_object.depth.max()
+    assert (by_material.a.tolist(), by_material.b.tolist()) == ([0], [0])
+    assert found.by_parts(material.part_labels).depth.max() > 0.3  # one body: the slab's side above is within it
+    assert found.by_parts(plain.part_labels).depth.tolist() == by_object.depth.tolist()
+    run = cscd.replay([material.vertices], material.mesh, parts=material.part_labels, bodies=material.body_labels)
+    assert [frame.intersections.part_pairs.depth.max() for frame in run] == [by_object.depth.max()]
+    with pytest.raises(ValueError, match="no line 'g' names a group of its faces"):
+        cscd.read(path, parts_by="group")
+
+
 def test_gaps(tmp_path: Path) -> None:
     model = write_triangle(tmp_path, "f_1.obj", 0)
     for number in (2, 4):
@@ -66,6 +101,9 @@ def test_gaps(tmp_path: Path) -> None:
     ({"weld": "x"}, "weld: expected 'exact', 'none' or a distance above 0, got 'x'"),
     ({"weld": -1.0}, "weld: "),
     ({"weld": np.nan}, "weld: "),
+    ({"parts_by": "node"}, "parts_by: expected 'object', 'group' or 'material', got 'node'"),
+    ({"parts_by": "material"}, "no line 'usemtl' names a material of its faces"),
+    ({"parts_by": "object", "parts": "split.obj"}, "parts and parts_by both say what the parts are"),
     ({"obstacles": ["floor"]}, "obstacles: 'floor' is no object"),
     ({"objects": {"a:b": "split.obj"}}, "objects: a name has"),
     ({"objects": {"": "split.obj"}}, "objects: a name has"),

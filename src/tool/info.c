@@ -21,11 +21,14 @@ static const option_row rows[] = {
      "goes to the standard error"},
     {"weld", "exact|none|EPS", read_weld, offsetof(info_options, source.weld),
      "join vertices that coincide, or lie within EPS"},
+    {"parts-by", "object|group|material", read_parts_by, offsetof(info_options, source.parts_by),
+     "which parts are listed: objects (lines o of an OBJ, nodes of a glTF), groups (lines g of an OBJ), or materials (of an OBJ and "
+     "a glTF; default: what the file names: objects with their groups, or nodes)"},
 };
 
 static const option_table table = {
     "info",
-    "MODEL [--weld exact|none|EPS] [--json OUT.json]",
+    "MODEL [--weld exact|none|EPS] [--parts-by object|group|material] [--json OUT.json]",
     "Prints counts, bounds, the parts that the file names, and of each component whether it is closed (open edges, "
     "non-manifold places), its genus, and whether it is inside out.",
     rows,
@@ -82,7 +85,7 @@ static bool ask_detector(recording *r, const part_names *parts, const double *po
     if (parts->named) options.orientation = CSCD_ORIENTATION_BY_PART;
     const bool asked =
         cscd_detector_create(r->context, r->mesh, NULL, NULL, &detector) == CSCD_OK &&
-        cscd_detector_set_parts(detector, parts->labels, parts->count) == CSCD_OK &&
+        part_names_tell(parts, detector) == CSCD_OK &&
         cscd_detector_find_intersections(detector, CSCD_DOUBLES(positions, cscd_mesh_vertex_count(r->mesh)),
                                          &options, &found) == CSCD_OK;
     if (asked) {

@@ -82,8 +82,7 @@ void answers_decide_depth(answers *a, double limit) {
 }
 
 bool answers_prepare(const answers *a, cscd_detector *detector, io_error *error) {
-    return cscd_detector_set_parts(detector, a->parts->labels, a->parts->count) == CSCD_OK ||
-           api_failed(a, error);
+    return part_names_tell(a->parts, detector) == CSCD_OK || api_failed(a, error);
 }
 
 const frame_answer *answers_frames(const answers *a) {

@@ -197,6 +197,8 @@ bool ignore_options_any(const ignore_options *options) {
 
 bool ignore_pairs_prepare(const ignore_options *options, recording *r, ignore_pairs *out, io_error *error) {
     *out = (ignore_pairs){.mesh = r->mesh};
+    if (options->parts_path != NULL && r->parts_by != MESH_PARTS_BY_FILE)
+        return io_fail(error, "--parts and --parts-by both say what the parts are; give one of them");
     const bool named = options->parts_path != NULL
                            ? part_names_read(r, options->parts_path, &out->parts, error)
                            : part_names_find(r, NULL, &out->parts, error);

@@ -62,6 +62,13 @@ bool read_weld(const char *text, void *place) {
            (parse_double(text, &choice->epsilon) && choice->epsilon > 0.0);
 }
 
+bool read_parts_by(const char *text, void *place) {
+    int kind;
+    if (!parse_choice(text, (const char *const[]){"object", "group", "material"}, 3, &kind)) return false;
+    *(mesh_parts_by *)place = (mesh_parts_by)(MESH_PARTS_BY_OBJECT + kind);
+    return true;
+}
+
 bool read_rest(const char *text, void *place) {
     ignore_options *options = place;
     options->rest = text == NULL ? REST_PAIRS : REST_PARTS;

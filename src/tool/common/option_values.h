@@ -15,6 +15,7 @@ bool read_threads(const char *text, void *place);      /* uint32_t, 256 at most 
 bool read_frame_number(const char *text, void *place); /* frame_number */
 bool read_frames(const char *text, void *place);       /* frame_range: A:B[:STEP] */
 bool read_weld(const char *text, void *place);         /* weld_choice: exact|none|EPS */
+bool read_parts_by(const char *text, void *place);     /* mesh_parts_by: object|group|material */
 bool read_rest(const char *text, void *place);         /* ignore_options.rest: nothing, or parts */
 bool read_part_pairs(const char *text, void *place);   /* part_pairs_list: A or A,B */
 bool read_size(const char *text, void *place); /* size_t: bytes above 0, or with K, M, G or T behind them */

@@ -12,7 +12,13 @@ void part_names_free(part_names *parts) {
     for (uint32_t i = 0; i < parts->count; i++) free(parts->names[i]);
     free(parts->names);
     free(parts->labels);
+    free(parts->bodies);
     *parts = (part_names){0};
+}
+
+cscd_status part_names_tell(const part_names *parts, cscd_detector *detector) {
+    const cscd_status status = cscd_detector_set_parts(detector, parts->labels, parts->count);
+    return status == CSCD_OK ? cscd_detector_set_bodies(detector, parts->bodies, parts->body_count) : status;
 }
 
 const char *part_names_at(const part_names *parts, uint32_t part) {
@@ -60,22 +66,41 @@ static uint32_t count_parts(const mesh_parts *own, const char *object) {
     return again ? 0 : own->count;
 }
 
+/* The parts of an object: those of its file, from `first` on, and what is left. */
+typedef struct object_parts {
+    const mesh_parts *named;
+    const char *name; /* NULL: it is the only object */
+    uint32_t first, count, end;
+    uint32_t rest; /* the part of what its file names in none */
+} object_parts;
+
 /* The parts that an object's file names; of a file that names none, the object itself. What the file leaves without a name
  * is in no part, unless the object has a name of its own. */
-static bool add_object(const recording *r, uint32_t index, part_names *parts, io_error *error) {
-    const recorded_object *object = &r->objects[index];
-    const mesh_parts *own = &object->file.parts;
-    const char *name = r->object_count > 1 ? object->source.name : NULL;
-    const uint32_t first = parts->count, count = count_parts(own, name);
-    const uint32_t rest = name != NULL ? first + count : NO_PART;
-    for (uint32_t i = 0; i < count; i++)
-        if (!add_part(parts, name, own->names[i], error)) return false;
-    if (name != NULL && !add_part(parts, name, NULL, error)) return false;
+static object_parts parts_of_object(const recording *r, uint32_t index, const mesh_parts *named,
+                                    uint32_t first) {
+    object_parts own = {.named = named, .first = first, .rest = NO_PART};
+    if (r->object_count > 1) own.name = r->objects[index].source.name;
+    own.count = count_parts(named, own.name);
+    own.end = first + own.count;
+    if (own.name != NULL) own.rest = own.end++;
+    return own;
+}
+
+static void label_object(const recorded_object *object, const object_parts *own, uint32_t *labels) {
     for (uint32_t t = 0; t < object->triangle_count; t++) {
         const uint32_t part =
-            count > 0 ? own->of_triangle[recorded_object_file_triangle(object, t)] : NO_MESH_PART;
-        parts->labels[object->first_triangle + t] = part != NO_MESH_PART ? first + part : rest;
+            own->count > 0 ? own->named->of_triangle[recorded_object_file_triangle(object, t)] : NO_MESH_PART;
+        labels[object->first_triangle + t] = part != NO_MESH_PART ? own->first + part : own->rest;
     }
+}
+
+static bool add_object(const recording *r, uint32_t index, part_names *parts, io_error *error) {
+    const recorded_object *object = &r->objects[index];
+    const object_parts own = parts_of_object(r, index, &object->file.parts, parts->count);
+    for (uint32_t i = 0; i < own.count; i++)
+        if (!add_part(parts, own.name, own.named->names[i], error)) return false;
+    if (own.name != NULL && !add_part(parts, own.name, NULL, error)) return false;
+    label_object(object, &own, parts->labels);
     return true;
 }
 
@@ -88,13 +113,47 @@ static bool number_parts(part_names *parts, const char *what, uint32_t count, io
     return true;
 }
 
+/* By --parts-by, what the file's own parts would be. */
+static bool label_bodies(const recording *r, part_names *parts, io_error *error) {
+    const uint32_t count = cscd_mesh_triangle_count(r->mesh);
+    parts->bodies = io_realloc(NULL, ((size_t)count + 1) * sizeof *parts->bodies);
+    if (parts->bodies == NULL) return io_fail(error, "out of memory for the parts of %u triangles", count);
+    parts->body_count = 0;
+    for (uint32_t i = 0; i < r->object_count; i++) {
+        const recorded_object *object = &r->objects[i];
+        const object_parts own = parts_of_object(r, i, mesh_file_own_parts(&object->file), parts->body_count);
+        label_object(object, &own, parts->bodies);
+        parts->body_count = own.end;
+    }
+    if (parts->body_count == 0) parts->body_count = 1; /* which no triangle is in */
+    return true;
+}
+
+/* Who asks for parts of a kind must get some: else all of a file would silently be one part, or its components parts. */
+static bool fail_without_parts(const recording *r, io_error *error) {
+    char reason[120];
+    recorded_object_explain_parts(&r->objects[0], reason, sizeof reason);
+    return io_fail(error,
+                   "%s: --parts-by %s finds no parts: %s; leave it out, or export the model as %s with them",
+                   r->objects[0].source.model_path, recorded_object_parts_word(r->parts_by), reason,
+                   r->parts_by == MESH_PARTS_BY_GROUP ? "OBJ" : "OBJ or glTF");
+}
+
+static bool files_name_parts(const recording *r) {
+    for (uint32_t i = 0; i < r->object_count; i++)
+        if (r->objects[i].file.parts.count > 0) return true;
+    return false;
+}
+
 static bool find_parts(const recording *r, const cscd_plan *plan, part_names *parts, io_error *error) {
     if (!allocate_labels(r, parts, error)) return false;
-    bool named = r->object_count > 1;
-    for (uint32_t i = 0; i < r->object_count; i++) named |= r->objects[i].file.parts.count > 0;
+    const bool named = r->object_count > 1 || files_name_parts(r),
+               by_choice = r->parts_by != MESH_PARTS_BY_FILE;
+    if (by_choice && !files_name_parts(r)) return fail_without_parts(r, error);
     for (uint32_t i = 0; i < r->object_count && named; i++)
         if (!add_object(r, i, parts, error)) return false;
     parts->named = named;
+    if (by_choice) return label_bodies(r, parts, error);
     if (named) return true;
     const uint32_t components = cscd_mesh_component_count(r->mesh);
     if (components == 1 && plan != NULL && cscd_plan_region_count(plan) > 1)

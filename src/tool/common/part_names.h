@@ -9,7 +9,11 @@ typedef struct part_names {
     uint32_t count;
     char **names;     /* count of them */
     uint32_t *labels; /* per triangle of the mesh: a part, or NO_PART */
-    bool named;       /* by files or a table; else they are components or regions, or the recording itself */
+    uint32_t *
+        bodies; /* per triangle, below body_count, or NO_PART: the part that it has without --parts-by, which says what belongs
+                       * together, so that depths stay what they are; NULL: parts say so */
+    uint32_t body_count;
+    bool named; /* by files or a table; else they are components or regions, or the recording itself */
 } part_names;
 
 /* Names parts by what the recording says, the first of these that says anything: the objects and parts that its files name
@@ -23,6 +27,9 @@ bool part_names_find(const recording *r, const cscd_plan *plan, part_names *out,
  * The error names the file and the line. */
 bool part_names_read(const recording *r, const char *path, part_names *out, io_error *error);
 void part_names_free(part_names *parts);
+
+/* Tells a detector what the parts are, and what belongs together. */
+cscd_status part_names_tell(const part_names *parts, cscd_detector *detector);
 
 /* What a sentence calls a part; NO_PART is "(no part)". */
 const char *part_names_at(const part_names *parts, uint32_t part);

@@ -4,6 +4,7 @@
 #include "src/tool/common/provenance.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -36,14 +37,36 @@ const char *recorded_object_split_format(const recorded_object *o) {
     return o->file.format == MESH_FORMAT_STL ? "STL" : o->file.format == MESH_FORMAT_GLTF ? "glTF" : NULL;
 }
 
-/* The part of each vertex: objects of a scene may stand on each other, and stay apart. */
+const char *recorded_object_parts_word(mesh_parts_by parts_by) {
+    static const char *const words[] = {"part", "object", "group", "material"};
+    return words[parts_by];
+}
+
+void recorded_object_explain_parts(const recorded_object *o, char *text, size_t size) {
+    static const char *const formats[] = {"", "OBJ", "PLY", "OFF", "STL", "glTF", "GIFTI"};
+    static const char *const keywords[] = {"", "o", "g", "usemtl"};
+    const mesh_parts_by by = o->source.parts_by;
+    const char *word = recorded_object_parts_word(by);
+    if (o->file.format == MESH_FORMAT_OBJ)
+        snprintf(text, size, "no line '%s' names %s %s of its faces", keywords[by],
+                 by == MESH_PARTS_BY_OBJECT ? "an" : "a", word);
+    else if (by == MESH_PARTS_BY_OBJECT)
+        snprintf(text, size, "the file names no objects");
+    else if (o->file.format == MESH_FORMAT_GLTF && by == MESH_PARTS_BY_MATERIAL)
+        snprintf(text, size, "none of its triangles has a material");
+    else
+        snprintf(text, size, "%s files have no %ss", formats[o->file.format], word);
+}
+
+/* The part of each vertex: objects of a scene may stand on each other, and stay apart; the materials of one skin are joined. */
 static bool label_vertices(const mesh_file *file, uint32_t **out, io_error *error) {
+    const mesh_parts *own = mesh_file_own_parts(file);
     uint32_t *parts = malloc((size_t)file->vertex_count * sizeof *parts);
     if (parts == NULL)
         return io_fail(error, "out of memory for the parts of %u vertices", file->vertex_count);
     for (uint32_t v = 0; v < file->vertex_count; v++) parts[v] = NO_MESH_PART;
-    for (size_t i = 0; file->parts.of_triangle != NULL && i < 3 * (size_t)file->triangle_count; i++)
-        parts[file->triangles[i]] = file->parts.of_triangle[i / 3];
+    for (size_t i = 0; own->of_triangle != NULL && i < 3 * (size_t)file->triangle_count; i++)
+        parts[file->triangles[i]] = own->of_triangle[i / 3];
     *out = parts;
     return true;
 }
@@ -121,8 +144,8 @@ uint64_t recorded_object_hash_model(const recorded_object *o) {
 bool recorded_object_open(const recorded_source *source, weld_choice welding, const animation_options *frames,
                           recorded_object *out, io_error *error) {
     recorded_object o = {.source = *source, .frames_hash = PROVENANCE_HASH_START};
-    if (!mesh_file_read(source->model_path, &o.file, error) || !open_frames(frames, &o, error) ||
-        !weld_as_chosen(welding, &o, error)) {
+    if (!mesh_file_read_parts(source->model_path, source->parts_by, &o.file, error) ||
+        !open_frames(frames, &o, error) || !weld_as_chosen(welding, &o, error)) {
         recorded_object_close(&o);
         return false;
     }

@@ -14,6 +14,7 @@ typedef struct recorded_source {
     const char *const *
         itself; /* the model's path again: where the file holds an animation, that is played if there are no other
                                 * frames; NULL: it is not */
+    mesh_parts_by parts_by; /* what its parts are */
     bool
         obstacle; /* its own triangles are not looked at with each other, nor with those of other obstacles */
 } recorded_source;
@@ -21,7 +22,7 @@ typedef struct recorded_source {
 /* Which vertices of a model are joined. */
 typedef struct weld_choice {
     enum {
-        WELD_BY_FORMAT, /* equal ones, of glTF within a part, where the format stores vertices several times; else none */
+        WELD_BY_FORMAT, /* equal ones, of glTF within a node, where the format stores vertices several times; else none */
         WELD_NOTHING,
         WELD_WITHIN
     } rule;
@@ -51,6 +52,12 @@ typedef struct recorded_object {
 /* What the model's format is called if it stores a vertex once for each face (STL), or for each of its normals (glTF); else
  * NULL. */
 const char *recorded_object_split_format(const recorded_object *object);
+
+/* Why the file has no parts of the kind that was asked for: a sentence without a full stop, such as "STL files have no materials". */
+void recorded_object_explain_parts(const recorded_object *object, char *text, size_t size);
+
+/* What parts by a kind are called: "material". */
+const char *recorded_object_parts_word(mesh_parts_by parts_by);
 
 /* On false *out holds nothing to close. */
 bool recorded_object_open(const recorded_source *source, weld_choice welding, const animation_options *frames,

@@ -78,6 +78,7 @@ static bool open_objects(const recording_options *options, recording *r, io_erro
                              .model_path = options->model_path,
                              .frame_paths = options->frame_paths,
                              .frame_path_count = options->frame_path_count,
+                             .parts_by = options->parts_by,
                              .itself = plays ? &options->model_path : NULL};
     if (options->model_path != NULL && !open_object(options, model, r, error)) return false;
     for (uint32_t i = 0; i < options->objects.count; i++) {
@@ -85,6 +86,7 @@ static bool open_objects(const recording_options *options, recording *r, io_erro
         recorded_source source = {.name = named->name,
                                   .model_path = named->path,
                                   .obstacle = named->obstacle,
+                                  .parts_by = options->parts_by,
                                   .itself = plays ? &named->path : NULL};
         if (!open_object(options, source, r, error)) return false;
     }
@@ -227,7 +229,8 @@ static bool map_edges(recording *r, io_error *error) {
 /* ---- the interface ----------------------------------------------------------------------------------- */
 
 static bool open_once(const recording_options *options, recording *out, io_error *error) {
-    recording r = {.fps = options->frames.fps, .wait_seconds = options->wait_seconds};
+    recording r = {
+        .parts_by = options->parts_by, .fps = options->frames.fps, .wait_seconds = options->wait_seconds};
     if (!open_objects(options, &r, error) || !number_frames(options, &r, error) ||
         !create_context(options, &r, error) || !create_mesh(&r, error) || !map_edges(&r, error)) {
         recording_close(&r);

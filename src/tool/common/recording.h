@@ -37,8 +37,9 @@ typedef struct recording_options {
     bool plays_models; /* models that hold an animation are played, unless they have other frames */
     bool rest;         /* but these are not */
     weld_choice weld;
-    double wait_seconds;   /* for files that cannot be read yet; 0: none */
-    uint32_t thread_count; /* 0: one per processor, for small meshes one */
+    mesh_parts_by parts_by; /* what the parts of all models are */
+    double wait_seconds;    /* for files that cannot be read yet; 0: none */
+    uint32_t thread_count;  /* 0: one per processor, for small meshes one */
     cscd_simd simd;
     cscd_progress progress; /* of the context; NULL: none */
     cscd_context
@@ -59,7 +60,8 @@ typedef struct recording {
     char *model_name; /* of the object without a name of its own: its file's, without folder and ending */
     uint32_t object_count;
     uint32_t frame_count;
-    double fps; /* that of the options; 0: not given */
+    mesh_parts_by parts_by; /* that of the options */
+    double fps;             /* that of the options; 0: not given */
     double wait_seconds;
     int32_t *frame_numbers;            /* frame_count, ascending: what the artist calls each frame */
     uint32_t (*edge_file_vertices)[2]; /* per edge of mesh; NULL when nothing is welded */

@@ -131,6 +131,11 @@ static void warn_object(const recording *r, recorded_object *object) {
             "frame %d)",
             name, colon, object->parting.count, object->parting.vertex,
             r->frame_numbers[object->parting.frame]);
+    if (object->source.parts_by != MESH_PARTS_BY_FILE && object->file.parts.count == 0) {
+        char reason[120];
+        recorded_object_explain_parts(object, reason, sizeof reason);
+        note("%s%s%s, so that it is one part", name, colon, reason);
+    }
     warn_repairs(name, colon, &object->file.repairs);
     if (object->welded && object->weld.collapsed_triangles > 0)
         warn("%s%swelding collapsed %u triangle%s, left out from here on", name, colon,

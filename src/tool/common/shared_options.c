@@ -15,6 +15,9 @@ static const option_row of_objects[] = {
      "own file says"},
     {"rest", NULL, read_flag, offsetof(recording_options, rest),
      "of files that hold an animation (glTF), look at the rest pose alone, unless they are given as FRAMES"},
+    {"parts-by", "object|group|material", read_parts_by, offsetof(recording_options, parts_by),
+     "what the parts are: objects (lines o of an OBJ, nodes of a glTF), groups (lines g of an OBJ), or materials (of an OBJ and a glTF); "
+     "what is found stays the same, and how deep (default: what the file names: objects with their groups, or nodes)"},
 };
 
 static const option_row of_frames[] = {
@@ -50,7 +53,8 @@ static const option_row of_pairs[] = {
      "leave out the pairs of a file: lines 'A B' (triangles) or 'components A B'"},
 };
 
-const option_list object_rows = {"Several objects:", of_objects, sizeof of_objects / sizeof *of_objects};
+const option_list object_rows = {"Several objects, and parts of each:", of_objects,
+                                 sizeof of_objects / sizeof *of_objects};
 const option_list frame_rows = {"Frames, welding, threads:", of_frames, sizeof of_frames / sizeof *of_frames};
 const option_list pair_rows = {"Parts, and which pairs are looked at:", of_pairs,
                                sizeof of_pairs / sizeof *of_pairs};
