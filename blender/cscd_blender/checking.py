@@ -50,6 +50,10 @@ class FoundFrame(NamedTuple):
     depth: Optional[Array]
     #: Points of each curve, closed ones ending where they begin.
     curves: List[Array]
+    #: Names of parts all of whose faces have no area, as those that are hidden by a scale of 0: they were not looked at.
+    hidden: Tuple[str, ...]
+    #: No face of the frame has an area, so that nothing was looked at.
+    is_empty: bool
 
 
 class FoundEvent(NamedTuple):
@@ -161,9 +165,19 @@ class Run:
             self.findings.frames[number] = FoundFrame(
                 number, answer.pairs, self.findings.parts.labels[answer.triangles], answer.kind,
                 len(found.contacts), answer.depth if depths else None,
-                [curve.points for curve in answer.curves if not curve.touching] if depths else [])
+                [curve.points for curve in answer.curves if not curve.touching] if depths else [],
+                self._hidden(answer), len(answer.collapsed) == answer.mesh.component_count > 0)
         except BaseException as problem:
             self._failure = problem
+
+    def _hidden(self, answer: Any) -> Tuple[str, ...]:
+        """The names of the parts that have no surface in a frame."""
+        if len(answer.collapsed) == 0:
+            return ()
+        labels = self.findings.parts.labels
+        seen = set(labels[~np.isin(answer.mesh.triangle_components, answer.collapsed)].tolist())
+        return tuple(name for part, name in enumerate(self.findings.parts.names)
+                     if part not in seen and (labels == part).any())
 
     def step(self, patience: float = 0.05) -> bool:
         """Goes on for about ``patience`` seconds; returns whether there is more to do."""

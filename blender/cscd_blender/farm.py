@@ -65,7 +65,7 @@ def request_of(options: argparse.Namespace) -> Request:
 def _frame_object(found: FoundFrame) -> Dict[str, Any]:
     counts = np.bincount(found.kinds, minlength=len(KINDS)).tolist()
     return {"frame": found.frame, **{name: counts[i] for i, name in enumerate(KINDS)}, "contacts": found.contact_count,
-            "depth": None if found.depth is None else float(found.depth.max(initial=0.0))}
+            "depth": None if found.depth is None else float(found.depth.max(initial=0.0)), "collapsed": list(found.hidden)}
 
 
 def _event_object(event: FoundEvent) -> Dict[str, Any]:
@@ -91,13 +91,42 @@ def describe(findings: Findings) -> Dict[str, Any]:
             "events": [_event_object(event) for event in findings.events]}
 
 
+def _ranges(frames: Sequence[int]) -> str:
+    """As in "frame 3", or "frames 1, 3 to 5"."""
+    spans: List[List[int]] = []
+    for frame in frames:
+        if spans and frame == spans[-1][1] + 1:
+            spans[-1][1] = frame
+        else:
+            spans.append([frame, frame])
+    said = [f"{first} to {last}" if last > first else f"{first}" for first, last in spans[:6]]
+    return f"frame{'s' if len(frames) > 1 else ''} {', '.join(said)}{' and others' if len(spans) > 6 else ''}"
+
+
+def _without_surface(findings: Findings) -> str:
+    """What had no surface, and when, behind a blank; "" if everything had one."""
+    frames = list(findings.frames.values())
+    empty = [found.frame for found in frames if found.is_empty]
+    said = [f" No face has an area in {_ranges(empty)}, so nothing was looked at there."] if empty else []
+    hidden = {name: [found.frame for found in frames if name in found.hidden] for name in findings.parts.names}
+    more = [name for name, places in hidden.items() if len(places) > len(empty)]
+    said += [f" {name} has no surface in {_ranges(hidden[name])}, and was not looked at there." for name in more[:5]]
+    if len(more) > 5:
+        said.append(f" So it is with {len(more) - 5} other part{'s' if len(more) > 6 else ''}.")
+    return "".join(said)
+
+
 def summarise(findings: Findings) -> str:
-    """What was found, as a sentence."""
-    total = len(findings.frames)
+    """What was found, as a sentence, and what had no surface."""
+    return f"{_summarise_events(findings)}{_without_surface(findings)}"
+
+
+def _summarise_events(findings: Findings) -> str:
+    total = sum(not found.is_empty for found in findings.frames.values())
     crossing = [found.frame for found in findings.frames.values() if (found.kinds == 0).any()]
     left = " Instances are not checked: make them real (Object > Apply > Make Instances Real)." if findings.left_instances else ""
     if not findings.events:
-        return f"Nothing crosses or touches in {total} frame{'s' if total > 1 else ''}.{left}"
+        return f"Nothing crosses or touches in {total} frame{'' if total == 1 else 's'}.{left}"
     worst = findings.events[0]
     deep = f", {worst.depth:.3g} deep at frame {worst.worst}" if worst.depth > 0.0 else ""
     when = f"frames {worst.first} to {worst.last}" if worst.last > worst.first else f"frame {worst.first}"
@@ -132,7 +161,9 @@ def check_file(arguments: Sequence[str]) -> int:
         print(f"cscd: {bpy.data.filepath or 'the scene'}: {problem}", file=sys.stderr)
         return FAILED
     print(summarise(findings))
-    return FOUND if findings.events else CLEAN
+    if findings.events:
+        return FOUND
+    return FAILED if any(found.is_empty for found in findings.frames.values()) else CLEAN
 
 
 def main(arguments: Optional[List[str]] = None) -> None:

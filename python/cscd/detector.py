@@ -12,7 +12,7 @@ from ._host import IN_CONTACT, Handle, Host, new_handle, raise_status
 from ._library import address_of, items_of, library, new_struct, structs
 from ._options import DetectorOptions, in_python
 from .errors import InContact, ListTooLong
-from .intersections import Intersections, _Surface, intersection_options, kind_set
+from .intersections import Intersections, _Surface, collapsed_of, intersection_options, kind_set
 from .line_search import LineSearch
 from .live import LiveSettings
 from .mesh import Mesh
@@ -193,8 +193,11 @@ class Detector(LiveSettings):
             self._find(host, views, options)
             pairs = copy_records(self._lists["intersection_pairs"], "intersection_pair")
             stopped = bool(self._lists["intersection_pairs"]["stopped"][0])
-        return Intersections(self.mesh, self, [array.copy() for array in kept], pairs, stopped,
-                             kinds is None and stop_after == 0)
+            collapsed = collapsed_of(self._lists["intersection_pairs"])
+        found = Intersections(self.mesh, self, [array.copy() for array in kept], pairs, stopped,
+                              kinds is None and stop_after == 0)
+        found.collapsed = collapsed
+        return found
 
     def is_intersecting(self, x: Any, kinds: Any = None) -> bool:
         """Whether there is any pair of these kinds at positions ``x``; the search ends at the first one."""

@@ -77,12 +77,16 @@ class Intersections:
     components, objects : (k, 2) int64
     stopped : bool
         The search ended at ``stop_after`` pairs, so there may be more.
+    collapsed : (c,) int64
+        The components that have no surface here, because all their triangles have no area, as of an object that is hidden
+        by a scale of 0. They were not looked at: a mesh all of whose components are among them has no pairs.
     """
 
     def __init__(self, mesh: Mesh, detector: Optional[Detector], positions: Any, pairs: Array, stopped: bool,
                  allowed: bool) -> None:
         self.mesh = mesh
         self.stopped = stopped
+        self.collapsed: Array = np.empty(0, np.int64)
         self._detector = detector
         self._positions = positions
         self._allowed = allowed
@@ -198,10 +202,20 @@ class Intersections:
 
     def __repr__(self) -> str:
         counts = [f"{self.count(name)} {name}" for name in INTERSECTION_KINDS if self.count(name)]
-        return f"Intersections({', '.join(counts) or 'none'})"
+        missing = len(self.collapsed)
+        without = f"; {missing} component{'s' if missing > 1 else ''} without a surface" if missing else ""
+        return f"Intersections({', '.join(counts) or 'none'}{without})"
 
     def __getstate__(self) -> Any:
         return {**self.__dict__, "_detector": None, "_positions": None}
+
+
+def collapsed_of(found: Array) -> Array:
+    """A copy of the components that a list of pairs says have no surface."""
+    count = int(found["collapsed"][0])
+    if count == 0:
+        return np.empty(0, np.int64)
+    return copy_list(int(found["collapsed_components"][0]), count, np.uint32).astype(np.int64)
 
 
 class _Surface:

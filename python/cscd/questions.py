@@ -86,7 +86,8 @@ def is_self_intersecting(V: Any, F: Any, kinds: Any = None, *, threads: int = 1,
                          **options: Any) -> bool:
     """Whether any two triangles of a mesh intersect or touch; the search stops at the first pair.
 
-    Parameters are those of ``self_intersections``.
+    Parameters are those of ``self_intersections``. Components all of whose triangles have no area are not looked at:
+    ``self_intersections(...).collapsed`` names them.
 
     >>> is_self_intersecting([[0, 0, 0], [4, 0, 0], [0, 4, 0], [1, 1, 1]], [[0, 1, 2], [2, 1, 3]])
     False

@@ -13,7 +13,7 @@ from ._host import Handle, new_handle
 from ._library import address_of, copy_list, items_of, library, new_struct, structs
 from .detector import Detector
 from .errors import Error
-from .intersections import Intersections, _Surface, labels_of
+from .intersections import Intersections, _Surface, collapsed_of, labels_of
 from .mesh import Mesh
 from .questions import mesh_of
 from .results import Contacts, Events, copy_records
@@ -296,12 +296,14 @@ class Replay:
         with host.lock:
             detector._find(host, views, self._found_options)
             pairs = copy_records(found, "intersection_pair")
+            collapsed = collapsed_of(found)
             if self._left_out is not None and not library.cscdpy_left_out_show(self._left_out.pointer,
                                                                                address_of(found)):
                 raise MemoryError("out of memory for the depths of a frame")
             surface = _Surface(found, self.mesh.vertex_count, self._depths, True)
             host.call(library.cscdpy_tracker_add_frame, self._tracker.pointer, self._index, address_of(found))
         answer = Intersections(self.mesh, detector, kept, pairs, False, True)
+        answer.collapsed = collapsed
         if self._depths:
             answer._surface = surface
         answer.part_pairs = surface._found_parts

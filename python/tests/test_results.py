@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from pathlib import Path
 from typing import Any, List, Tuple
 
@@ -47,6 +48,37 @@ def test_whole_numbers_are_signed() -> None:
     plan = cscd.Plan.kmeans(mesh, V, 2)
     check_signed(plan.triangle_regions, plan.regions)
     assert len(near) and (-near["count"] < 0).all() and (near["a"] - near["b"]).min() < 0
+
+
+def test_what_has_no_surface_is_named() -> None:
+    """Two cubes that cross, of which the one, the other, both or none is hidden: by a scale of 0, or squashed to a line."""
+    V, F = crossing_cubes()
+    mesh = cscd.Mesh(F, positions=V)
+    detector = cscd.Detector(mesh)
+    frames, hidden = [], [[], [0], [1], [0, 1], [1], []]
+    for number, gone in enumerate(hidden):
+        frame = V.copy()
+        for cube in gone:
+            frame[8 * cube:8 * cube + 8] *= [0, 0, number % 2]
+        frames.append(frame)
+    for frame, gone in zip(frames, hidden):
+        for found in (cscd.self_intersections(frame, F), detector.find_intersections(frame)):
+            assert found.collapsed.tolist() == gone and found.collapsed.dtype == np.int64
+            assert len(found) == 0 if gone else len(found) > 0
+            assert ("without a surface" in repr(found)) == bool(gone), repr(found)
+            assert detector.is_intersecting(frame) == (not gone)
+        assert pickle.loads(pickle.dumps(found)).collapsed.tolist() == gone
+        assert (found.max_depth > 0.0) == (not gone)
+    for answer, gone in zip(cscd.replay(frames, mesh), hidden):
+        assert answer.intersections.collapsed.tolist() == gone
+    both = cscd.intersections(frames[1][:8], F[:6], V[8:], F[:6])
+    assert len(both) == 0 and both.collapsed.tolist() == [0]
+    detector.check(frames[2])
+    assert detector.collapsed() == [1]
+    detector.step(frames[1], frames[2])
+    assert detector.collapsed() == [0, 1]
+    assert [detector.guarantee(i)["reason"] for i in (0, 1)] == [detector.guarantee(0)["reason"]] * 2
+    assert not detector.guarantee(0)["complete"]
 
 
 def test_contacts_are_signed_and_have_their_weights() -> None:

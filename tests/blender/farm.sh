@@ -42,6 +42,8 @@ blender --background --factory-startup --python-exit-code 1 --python odd.py -- "
 run_farm 1 'there is nothing to check' "$folder/empty.blend"
 run_farm 1 'Grid has other faces than in the first frame' "$folder/changing.blend"
 run_farm 1 'Grid: vertex 3 is at (nan, ' "$folder/nan.blend"
+run_farm 0 'touches in 5 frames. Grid has no surface in frames 2 to 3, and was not looked at there.$' "$folder/hidden.blend"
+run_farm 1 'touches in 3 frames. No face has an area in frames 2 to 3, so nothing was looked at there.$' "$folder/alone.blend" --json "$folder/alone.json"
 
 /usr/bin/python3 - "$folder" <<'END'
 import json, os, sys
@@ -51,6 +53,9 @@ with open(os.path.join(folder, 'found.json')) as file:
 assert [frame['frame'] for frame in found['frames']] == list(range(1, 25))
 assert len(found['events']) == 5 and {'a', 'b', 'first', 'last', 'worst', 'kinds', 'pairs', 'depth', 'point'} <= set(found['events'][0])
 assert all(sum(map(len, frame['faces'].values())) > 0 for frame in found['frames'] if frame['crossing'])
-assert sorted(os.listdir(folder)) == ['changing.blend', 'empty.blend', 'found.json', 'log', 'nan.blend'], os.listdir(folder)
+with open(os.path.join(folder, 'alone.json')) as file:
+    assert [frame['collapsed'] for frame in json.load(file)['frames']] == [[], ['Grid'], ['Grid'], [], []]
+assert sorted(os.listdir(folder)) == ['alone.blend', 'alone.json', 'changing.blend', 'empty.blend', 'found.json', 'hidden.blend', 'log',
+                                      'nan.blend'], os.listdir(folder)
 END
-echo 'farm: 16 runs end as they should, with JSON and without'
+echo 'farm: 18 runs end as they should, with JSON and without'

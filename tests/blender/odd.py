@@ -29,6 +29,17 @@ for frame, levels in ((1, 0), (3, 1)):
     modifier.keyframe_insert('levels', frame=frame)
 save('changing.blend')
 
+# A grid that is hidden by a scale of 0 in frames 2 and 3, beside another one, and alone.
+grid = add_grid()
+grid.location.x = 5.0
+for frame, size in ((1, 1), (2, 0), (3, 0), (4, 1)):
+    grid.scale = size, size, size
+    grid.keyframe_insert('scale', frame=frame)
+save('alone.blend')
+bpy.ops.mesh.primitive_grid_add(x_subdivisions=4, y_subdivisions=4)
+bpy.context.object.name = 'Other'
+save('hidden.blend')
+
 # A shape key that is not a number.
 grid = add_grid()
 grid.shape_key_add(name='Basis')
