@@ -41,6 +41,9 @@ typedef enum cscd_status {
 /* A short English phrase for a status, "unknown status" for any other value; static storage, never NULL. */
 CSCD_API const char *cscd_status_string(cscd_status status);
 
+/* The bytes that max_memory stands for where options have 0: a quarter of the memory that is free now, at least 1. */
+CSCD_API size_t cscd_max_memory_default(void);
+
 /* ---- context: allocator, threads, progress ---------------------------------------------------------- */
 
 /* Allocator, threads, instruction set and the last failure's sentence. */

@@ -7,7 +7,6 @@
 #include "runtime/intersections/first_pairs.h"
 #include "src/core/sort.h"
 #include "src/core/struct_size.h"
-#include "src/core/system.h"
 #include "src/mesh/views.h"
 
 #include <string.h>
@@ -73,17 +72,13 @@ static cscd_status take_options(cscd_context *context, const cscd_intersection_o
 /* What a pair takes at most, all together: in the lane that finds it, and in the list, where it is sorted. */
 enum { PAIR_SIZE = 64 };
 
-/* Much else may be on the machine, other detectors too. */
-enum { SHARE_OF_MEMORY_LEFT = 4 };
-
 static size_t most_memory(const cscd_detector *d, const cscd_intersection_options *options) {
     return options->max_memory > 0 ? options->max_memory : d->memory_most;
 }
 
 /* Before the first call that asks. */
 static void look_at_memory(cscd_detector *d) {
-    size_t share = system_memory_left() / SHARE_OF_MEMORY_LEFT;
-    d->memory_most = share > 0 ? share : 1;
+    d->memory_most = cscd_max_memory_default();
 }
 
 static size_t longest_list(const cscd_detector *d, const cscd_intersection_options *options) {

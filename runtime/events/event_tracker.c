@@ -3,7 +3,6 @@
 
 #include "src/core/sort.h"
 #include "src/core/struct_size.h"
-#include "src/core/system.h"
 
 #include <string.h>
 
@@ -55,9 +54,6 @@ static uint64_t hash_options(const cscd_event_tracker *t, uint64_t mesh_hash) {
     for (uint32_t i = 0; i < mesh->triangle_count; i++) hash = hash_number(hash, t->parts.triangles[i]);
     return hash;
 }
-
-/* Much else may be on the machine. */
-enum { SHARE_OF_MEMORY_LEFT = 4 };
 
 /* ---- creation ------------------------------------------------------------------------------------------- */
 
@@ -124,7 +120,7 @@ static cscd_status create_tracker(cscd_context *context, const cscd_mesh *mesh,
     if (t == NULL) return context_out_of_memory(context);
     t->context = context;
     t->mesh = seen;
-    t->max_memory = chosen.max_memory > 0 ? chosen.max_memory : system_memory_left() / SHARE_OF_MEMORY_LEFT;
+    t->max_memory = chosen.max_memory > 0 ? chosen.max_memory : cscd_max_memory_default();
     mesh_hold(mesh);
     context_add_object(context, &t->references, free_tracker);
     if (create_parts(t, &chosen) != CSCD_OK) {

@@ -25,6 +25,14 @@ static void system_release(void *user, void *block, size_t size) {
     system_memory_free(block);
 }
 
+/* Much else may be on the machine, other objects too. */
+enum { SHARE_OF_MEMORY_LEFT = 4 };
+
+size_t cscd_max_memory_default(void) {
+    const size_t share = system_memory_left() / SHARE_OF_MEMORY_LEFT;
+    return share > 0 ? share : 1;
+}
+
 cscd_allocator memory_system_allocator(void) {
     return (cscd_allocator){system_allocate, system_release, NULL};
 }

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { RINGS = 12, SEGMENTS = 16, VERTICES = RINGS * SEGMENTS };
+enum { RINGS = 12, SEGMENTS = 16, VERTICES = RINGS * SEGMENTS, CONTACTS = 19852 };
 
 static temp_folder folder;
 static temp_path good, shuffled, json, xml;
@@ -80,7 +80,8 @@ static void expect_files(bool of_summary) {
     json_node_free(root);
     char *text = read_whole_file(xml.text, NULL);
     expect_in(text, "tests=\"4\" failures=\"1\" errors=\"1\"");
-    expect_in(text, "<error message=\"Not finished: frame 1 has ");
+    expect_in(text, of_summary ? "<error message=\"Not finished: the interval from frame 0 has "
+                               : "<error message=\"Not finished: frame 1 has ");
     free(text);
 }
 
@@ -102,22 +103,75 @@ static void one_frame_of_three(void **state) {
                                            "and depths would"};
     const size_t pairs = count_pairs();
     for (int i = 0; i < 6; i++) {
-        const char *command = i % 2 == 0 ? "check" : "replay", *threads = i < 3 ? "1" : "3";
+        const bool replays = i % 2 == 1;
+        const char *command = replays ? "replay" : "check", *threads = i < 3 ? "1" : "3";
         tool_run run =
             RUN_TOOL(command, good.text, good.text, shuffled.text, good.text, "--max-memory", memory[i / 2],
                      "--threads", threads, "--json", json.text, "--junit", xml.text);
         if (run.code != 1) fail_msg("%s %s: %d\n%s%s", command, memory[i / 2], run.code, run.out, run.error);
-        assert_int_equal(number_in(run.out, "Not finished: frame 1 has "), pairs);
-        expect_in(run.out, left_out[i / 2]);
+        if (replays) { /* the interval to the frame comes before it */
+            assert_int_equal(number_in(run.out, "Not finished: the interval from frame 0 has "), CONTACTS);
+            expect_in(run.out, "contacts: 0 VF and 0 EE that are listed, and ");
+        } else {
+            assert_int_equal(number_in(run.out, "Not finished: frame 1 has "), pairs);
+            expect_in(run.out, left_out[i / 2]);
+        }
         expect_in(run.out,
                   "in another order than the model? 3 of 3 frames checked. Frame 1 crosses (1 of 3).");
-        expect_files(i % 2 == 1);
+        expect_files(replays);
         tool_run_free(&run);
     }
     tool_run run = RUN_TOOL("check", good.text, good.text, shuffled.text, good.text, "--max-memory", "100K",
                             "--fail-on", "crossing");
     assert_int_equal(run.code, 3);
     tool_run_free(&run);
+}
+
+/* Of the first interval. */
+static void expect_nothing_of_contacts(void) {
+    json_node *root = json_node_read_file(json.text);
+    const json_node *interval = json_node_item(json_node_member(root, "intervals"), 0);
+    assert_int_equal(json_node_member(interval, "vf")->kind, JSON_NULL);
+    assert_int_equal(json_node_member(interval, "earliest_toi")->kind, JSON_NULL);
+    assert_int_equal(json_node_member(interval, "guarantee")->count, 0);
+    assert_string_equal(json_node_string(interval, "state"), "contact");
+    json_node_free(root);
+}
+
+/* Contacts alone do not fit, be it in one run or in shards that are merged: there are none in the file, nor numbers in the summary. */
+static void contacts_that_do_not_fit(void **state) {
+    (void)state;
+    const temp_path csv = temp_file_path(&folder, "contacts.csv"),
+                    shards[2] = {temp_file_path(&folder, "1.shard"), temp_file_path(&folder, "2.shard")};
+    tool_run run = RUN_TOOL("replay", good.text, good.text, shuffled.text, good.text, "--max-memory", "2M",
+                            "--no-check", "--contacts", csv.text, "--json", json.text);
+    assert_int_equal(run.code, 1);
+    assert_int_equal(number_in(run.out, "Not finished: the interval from frame 0 has "), CONTACTS);
+    tool_run_free(&run);
+    char *text = read_whole_file(csv.text, NULL);
+    assert_ptr_equal(strchr(text, '\n') + 1, text + strlen(text)); /* the names of the columns alone */
+    free(text);
+    expect_nothing_of_contacts();
+    size_t unfinished = 0; /* one of the two has no interval */
+    for (int i = 0; i < 2; i++) {
+        run = RUN_TOOL("replay", good.text, good.text, shuffled.text, good.text, "--max-memory", "2M",
+                       "--no-check", "--shard", i == 0 ? "1/2" : "2/2", "--results", shards[i].text);
+        unfinished += run.code == 1;
+        tool_run_free(&run);
+    }
+    assert_int_equal(unfinished, 1);
+    EXPECT_TOOL(1, "merge", shards[0].text, shards[1].text, "--json", json.text);
+    expect_nothing_of_contacts();
+    /* With room for them they are all there. */
+    run = RUN_TOOL("replay", good.text, good.text, shuffled.text, good.text, "--max-memory", "200M",
+                   "--no-check", "--contacts", csv.text);
+    assert_int_equal(run.code, 0);
+    tool_run_free(&run);
+    size_t lines = 0;
+    text = read_whole_file(csv.text, NULL);
+    for (const char *at = text; *at != '\0'; at++) lines += *at == '\n';
+    free(text);
+    assert_true(lines > 2 * CONTACTS - 100);
 }
 
 static void exports_of_what_is_left_out(void **state) {
@@ -141,8 +195,8 @@ static void sizes_of_memory(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(one_frame_of_three),
-                                       cmocka_unit_test(exports_of_what_is_left_out),
-                                       cmocka_unit_test(sizes_of_memory)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(one_frame_of_three), cmocka_unit_test(contacts_that_do_not_fit),
+        cmocka_unit_test(exports_of_what_is_left_out), cmocka_unit_test(sizes_of_memory)};
     return cmocka_run_group_tests_name("left_out", tests, make_files, remove_files);
 }

@@ -9,7 +9,7 @@
 
 /* Functions that programs in C++ use as they are. */
 static const char plain[] =
-    "cscd_contact_kind_name\ncscd_curve_end_name\ncscd_intersection_kind_name\ncscd_left_out_name\ncscd_mesh_context\ncscd_method_from_name\ncscd_method_name\ncscd_mode_from_name\n"
+    "cscd_contact_kind_name\ncscd_curve_end_name\ncscd_intersection_kind_name\ncscd_left_out_name\ncscd_max_memory_default\ncscd_mesh_context\ncscd_method_from_name\ncscd_method_name\ncscd_mode_from_name\n"
     "cscd_mode_name\ncscd_reason_text\ncscd_simd_from_name\ncscd_simd_name\n"
     "cscd_version_string\ncscd_volume_from_name\ncscd_volume_name\n";
 

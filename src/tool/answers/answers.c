@@ -100,7 +100,7 @@ size_t answers_count(const answers *a, frame_test *test) {
 }
 
 bool answers_add_contacts(answers *a, const cscd_contacts *contacts, io_error *error) {
-    a->waiting_contacts = contacts->count;
+    a->waiting_contacts += contacts->count;
     return cscd_event_tracker_add_contacts(a->tracker, contacts->items, contacts->count) == CSCD_OK ||
            api_failed(a, error);
 }
@@ -245,6 +245,15 @@ static void tell_left_out(answers *a, uint32_t frame, const cscd_intersection_pa
     if (found->left_out == 0) return;
     name_left_out(found->left_out, names);
     leave_out(a, frame, found, names, size_text(found->wanted_memory, size));
+}
+
+void answers_leave_out_contacts(answers *a, uint32_t frame, size_t count) {
+    a->waiting_contacts += count;
+    answers_leave_unfinished(
+        a,
+        "the interval from frame %d has %zu contacts, and a list of them would take more than --max-memory allows; does "
+        "the file list its vertices in another order than the model?",
+        answers_frame_number(a, frame), count);
 }
 
 static bool track_frame(answers *a, uint32_t frame, const cscd_intersection_pairs *found, io_error *error) {

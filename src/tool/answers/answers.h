@@ -75,6 +75,9 @@ bool answers_prepare(const answers *a, cscd_detector *detector, io_error *error)
 /* The contacts of an interval, before the frame at its end. */
 bool answers_add_contacts(answers *a, const cscd_contacts *contacts, io_error *error);
 
+/* There are more contacts in the interval from a frame on than fit the memory; for answers_add_contacts there are none. */
+void answers_leave_out_contacts(answers *a, uint32_t frame, size_t count);
+
 /* Finds what intersects in a frame, for answers_add_found. *found is the detector's. If there are more pairs than fit the memory,
  * it counts those of each kind, and has no list: count is 0. The error does not name the frame. */
 bool answers_find(const answers *a, cscd_detector *detector, const double *positions,

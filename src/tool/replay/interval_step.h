@@ -8,9 +8,11 @@
 /* An interval. */
 typedef struct interval_step {
     cscd_contacts contacts;
+    size_t
+        unlisted; /* so many contacts, where a list of them does not fit the memory: then nothing else is known */
     cscd_counters counters;
     cscd_timings timings;             /* of the step; check_ms is that of an earlier frame */
-    const cscd_guarantee *guarantees; /* per component */
+    const cscd_guarantee *guarantees; /* per component; NULL: contacts are unlisted */
     const orientation_row *orientations;
 } interval_step;
 

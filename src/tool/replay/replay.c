@@ -8,6 +8,7 @@
 #include "src/tool/replay/replay_print.h"
 #include "src/tool/replay/replay_shard.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -182,14 +183,15 @@ static bool run_interval(replay *r, uint32_t k, io_error *error) {
     if (!found) return false;
     const cscd_contacts *contacts = &step.contacts;
     interval_result result = {.frame = r->recording.frame_numbers[k],
-                              .contact_count = contacts->count,
-                              .earliest_toi = contacts->count > 0 ? contacts->items[0].toi : 0.0,
+                              .contact_count = contacts->count + step.unlisted,
+                              .earliest_toi = contacts->count > 0 ? contacts->items[0].toi : NAN,
                               .guarantees = step.guarantees,
                               .timings = step.timings,
                               .counters = step.counters};
     replay_report_add(&r->report, step.orientations, contacts, r->source.x1);
     exports_add_contacts(&r->exports, contacts);
     frame_check check;
+    if (step.unlisted > 0) answers_leave_out_contacts(&r->answers, k, step.unlisted);
     if (!write_contacts(r, k, contacts, error) || !answers_add_contacts(&r->answers, contacts, error) ||
         !replay_source_check(&r->source, k, &check, error) ||
         !take_frame(r, k + 1, &check, &r->end_state, error))

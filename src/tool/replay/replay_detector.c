@@ -49,12 +49,31 @@ bool replay_detector_is_oriented(const replay_detector *d) {
     return d->orientations.region_count > 0;
 }
 
+/* What a contact takes in the library's lists, while they grow and are sorted, and in those of events. */
+enum { CONTACT_SIZE = 512 };
+
+/* The cap is for contacts alone: pairs of triangles have their own. */
+static cscd_status step_within_memory(const replay_detector *d, const double *x0, const double *x1,
+                                      cscd_contacts *out) {
+    const uint32_t vertices = cscd_mesh_vertex_count(d->recording->mesh);
+    const size_t given = d->options->answers.max_memory, most = given > 0 ? given : cscd_max_memory_default();
+    cscd_status status = cscd_detector_set_longest_list(d->detector, most / CONTACT_SIZE + 1);
+    if (status != CSCD_OK) return status;
+    status = cscd_detector_step(d->detector, CSCD_DOUBLES(x0, vertices), CSCD_DOUBLES(x1, vertices), out);
+    cscd_detector_set_longest_list(d->detector, 0);
+    return status;
+}
+
 bool replay_detector_step(replay_detector *d, uint32_t k, const double *x0, const double *x1,
                           interval_step *out, io_error *error) {
-    const uint32_t vertices = cscd_mesh_vertex_count(d->recording->mesh);
     cscd_contacts contacts;
-    if (cscd_detector_step(d->detector, CSCD_DOUBLES(x0, vertices), CSCD_DOUBLES(x1, vertices), &contacts) !=
-        CSCD_OK)
+    const cscd_status status = step_within_memory(d, x0, x1, &contacts);
+    if (status == CSCD_LIST_TOO_LONG) {
+        orientation_row_forget(&d->orientations);
+        *out = (interval_step){.unlisted = contacts.count, .orientations = &d->orientations};
+        return true;
+    }
+    if (status != CSCD_OK)
         return io_fail(error, "frame %d: %s", d->recording->frame_numbers[k],
                        cscd_context_detail(d->recording->context));
     for (uint32_t i = 0; i < cscd_mesh_component_count(d->recording->mesh); i++)

@@ -14,10 +14,11 @@ static void print_limits(const replay *r) {
         printf("minimum separation: %g; contacts whose time is a bound only: %llu\n",
                r->options->min_separation, (unsigned long long)t->counter_sum.bounded);
     bool by_method = method_facts_of(r->plan.method).loses_contacts;
-    if (t->intervals_complete < t->intervals)
+    const uint32_t known = t->intervals - t->intervals_unlisted;
+    if (t->intervals_complete < known)
         printf("%s %s: in %u of %u intervals %scontacts of a component with itself may be missing\n",
                by_method ? "method" : "mode", by_method ? cscd_method_name(r->plan.method) : "earliest",
-               t->intervals - t->intervals_complete, t->intervals, by_method ? "" : "later ");
+               known - t->intervals_complete, t->intervals, by_method ? "" : "later ");
     if (t->contradictions > 0) printf("intervals that lost all their contacts: %u\n", t->contradictions);
 }
 
@@ -40,9 +41,11 @@ void replay_print_results(const replay *r) {
     answers_print_sentence(stdout, &r->answers, &r->unit);
     if (t->intervals == 0) return;
     answers_print_events(&r->answers, &r->unit);
-    printf("%scontacts: %llu VF and %llu EE in %u of %u intervals", r->answers.event_count > 0 ? "\n" : "",
-           (unsigned long long)t->counter_sum.vf, (unsigned long long)t->counter_sum.ee,
-           t->intervals_with_contact, t->intervals);
+    printf("%scontacts: %llu VF and %llu EE", r->answers.event_count > 0 ? "\n" : "",
+           (unsigned long long)t->counter_sum.vf, (unsigned long long)t->counter_sum.ee);
+    if (t->intervals_unlisted > 0)
+        printf(" that are listed, and %llu that are not,", (unsigned long long)t->contacts_unlisted);
+    printf(" in %u of %u intervals", t->intervals_with_contact, t->intervals);
     frame_list_print(&r->contact_frames, r->recording.frame_numbers, "; from frame ");
     print_limits(r);
     plan_choice_print(&r->plan);

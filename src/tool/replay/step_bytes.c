@@ -30,12 +30,13 @@ uint64_t step_bytes_layout(void) {
 
 void step_bytes_add_interval(packed_bytes *out, const interval_step *step, uint32_t component_count) {
     const orientation_row *row = step->orientations;
-    const uint64_t waiting = step->contacts.waiting;
-    packed_bytes_add(out, &waiting, sizeof waiting);
+    const uint64_t counts[2] = {step->contacts.waiting, step->unlisted};
+    packed_bytes_add(out, counts, sizeof counts);
     packed_bytes_add_array(out, step->contacts.items, step->contacts.count, sizeof *step->contacts.items);
     packed_bytes_add(out, &step->counters, sizeof step->counters);
     packed_bytes_add(out, &step->timings, sizeof step->timings);
-    packed_bytes_add_array(out, step->guarantees, component_count, sizeof *step->guarantees);
+    packed_bytes_add_array(out, step->guarantees, step->guarantees != NULL ? component_count : 0,
+                           sizeof *step->guarantees);
     packed_bytes_add_array(out, row->points, row->region_count, sizeof *row->points);
     packed_bytes_add_array(out, row->facing,
                            row->region_count > 0 ? orientation_row_size(row->triangle_count) : 0, 1);
@@ -43,11 +44,12 @@ void step_bytes_add_interval(packed_bytes *out, const interval_step *step, uint3
 
 bool step_bytes_take_interval(packed_reader *in, step_place *place, interval_step *out,
                               uint32_t component_count) {
-    uint64_t waiting = 0;
+    uint64_t counts[2] = {0, 0};
     size_t guarantees, regions, facing;
     *out = (interval_step){.orientations = &place->orientations};
-    packed_reader_copy(in, &waiting, sizeof waiting);
-    out->contacts.waiting = (size_t)waiting;
+    packed_reader_copy(in, counts, sizeof counts);
+    out->contacts.waiting = (size_t)counts[0];
+    out->unlisted = (size_t)counts[1];
     out->contacts.items = packed_reader_take_array(in, &out->contacts.count, sizeof *out->contacts.items);
     packed_reader_copy(in, &out->counters, sizeof out->counters);
     packed_reader_copy(in, &out->timings, sizeof out->timings);
@@ -56,7 +58,8 @@ bool step_bytes_take_interval(packed_reader *in, step_place *place, interval_ste
     row->points = (double(*)[6])packed_reader_take_array(in, &regions, sizeof *row->points);
     row->facing = (uint8_t *)packed_reader_take_array(in, &facing, 1);
     row->region_count = (uint32_t)regions;
-    return !in->torn && guarantees == component_count &&
+    if (out->unlisted > 0) out->guarantees = NULL;
+    return !in->torn && guarantees == (out->unlisted > 0 ? 0 : component_count) &&
            facing == (regions > 0 ? orientation_row_size(row->triangle_count) : 0);
 }
 

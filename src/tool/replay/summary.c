@@ -108,7 +108,7 @@ static void write_members(json *out, const cscd_guarantee *guarantees, uint32_t 
 /* By exception, because a mesh may have very many components: the largest group comes first and names none. */
 static void write_guarantees(summary_writer *w, const cscd_guarantee *guarantees) {
     guarantee_group groups[GROUPS_MAX];
-    const uint32_t count = cscd_mesh_component_count(w->mesh);
+    const uint32_t count = guarantees != NULL ? cscd_mesh_component_count(w->mesh) : 0;
     const int group_count = group_guarantees(guarantees, count, groups);
     int largest = 0;
     for (int g = 1; g < group_count; g++)
@@ -134,10 +134,13 @@ static void write_times(json *out, const cscd_timings *t) {
     json_end_object(out);
 }
 
-static void write_counters(json *out, const cscd_counters *counters, bool of_contacts) {
+static void write_counters(json *out, const cscd_counters *counters, bool of_contacts, bool known) {
     for (int i = 0; i < COUNTER_COUNT; i++) {
         const counter_row *row = &counter_rows[i];
-        if ((row->kind == COUNTER_OF_CONTACTS) == of_contacts)
+        if ((row->kind == COUNTER_OF_CONTACTS) != of_contacts) continue;
+        if (!known)
+            json_null(out, row->name);
+        else
             json_integer(out, row->name, counter_value(counters, row));
     }
 }
@@ -147,12 +150,13 @@ bool summary_add_interval(summary_writer *w, const interval_result *result, io_e
     json_break_line(out);
     json_begin_object(out, NULL);
     json_signed(out, "frame", result->frame);
-    write_counters(out, &result->counters, true);
-    if (result->contact_count > 0)
+    const bool listed = result->guarantees != NULL;
+    write_counters(out, &result->counters, true, listed);
+    if (result->contact_count > 0 && listed)
         json_number(out, "earliest_toi", result->earliest_toi);
     else
         json_null(out, "earliest_toi");
-    write_counters(out, &result->counters, false);
+    write_counters(out, &result->counters, false, listed);
     json_string(out, "state", interval_state_name(result->state));
     write_guarantees(w, result->guarantees);
     if (w->times) write_times(out, &result->timings);

@@ -15,7 +15,12 @@ void totals_add(replay_totals *t, const interval_result *r, const cscd_mesh *mes
     if (r->contact_count > 0 && t->intervals_with_contact++ == 0) t->first_contact_frame = r->frame;
     t->intervals++;
     t->states[r->state]++;
-    t->intervals_complete += all_complete(r->guarantees, mesh);
+    if (r->guarantees != NULL)
+        t->intervals_complete += all_complete(r->guarantees, mesh);
+    else {
+        t->intervals_unlisted++;
+        t->contacts_unlisted += r->contact_count;
+    }
     timings_add(&t->time_sum, &t->time_max, &r->timings);
     counters_add(&t->counter_sum, &t->counter_max, &r->counters);
 }

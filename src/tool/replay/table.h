@@ -10,9 +10,10 @@ typedef struct interval_result {
     int32_t frame; /* its number */
     interval_state state;
     size_t contact_count;
-    double earliest_toi;              /* of the contacts, where there are any */
-    const cscd_guarantee *guarantees; /* per component */
-    cscd_timings timings;             /* check_ms: of the frame at the interval's end */
+    double earliest_toi; /* of the contacts, where there are any; NAN: they are not listed */
+    const cscd_guarantee
+        *guarantees;      /* per component; NULL: contacts are not listed, and counters are unknown */
+    cscd_timings timings; /* check_ms: of the frame at the interval's end */
     cscd_counters counters;
 } interval_result;
 
@@ -23,6 +24,8 @@ typedef struct replay_totals {
     int32_t first_contact_frame;
     uint32_t contradictions;     /* clean intervals that end in an intersection: contacts that were lost */
     uint32_t intervals_complete; /* every component's contacts are complete, or it is collapsed */
+    uint32_t intervals_unlisted; /* contacts are counted only, */
+    uint64_t contacts_unlisted;  /* so many */
     cscd_timings time_sum, time_max;
     cscd_counters counter_sum, counter_max; /* of the counters that have a row in stages.h */
 } replay_totals;

@@ -38,3 +38,9 @@ void orientation_row_take(orientation_row *row, const cscd_detector *detector) {
         row->facing[t / 4] |= (uint8_t)(bits << t % 4 * 2);
     }
 }
+
+void orientation_row_forget(orientation_row *row) {
+    if (row->region_count == 0) return;
+    memset(row->points, 0, row->region_count * sizeof *row->points);
+    memset(row->facing, 0, orientation_row_size(row->triangle_count));
+}

@@ -23,3 +23,6 @@ void orientation_row_free(orientation_row *row); /* a zeroed struct is fine */
 
 /* Those of the detector's last step. */
 void orientation_row_take(orientation_row *row, const cscd_detector *detector);
+
+/* Those of a step that has none: no triangle faces any point. */
+void orientation_row_forget(orientation_row *row);
