@@ -13,7 +13,7 @@
 #include <string.h>
 
 #ifdef SLOW_MACHINE
-enum { SEQUENCES = 2 };
+enum { SEQUENCES = 3 };
 #else
 enum { SEQUENCES = 10 };
 #endif
