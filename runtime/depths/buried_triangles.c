@@ -8,6 +8,7 @@ typedef struct listing_work {
     deepest_finder *finder;
     const depth_facts *facts;
     const cscd_mesh *mesh;
+    size_t key; /* of the cuts: all before it are of triangles that have been listed */
     bool out_of_memory;
 } listing_work;
 
@@ -130,9 +131,10 @@ static void add_bodies(listing_work *w, uint32_t triangle) {
             if (at->number >= 1) add_cut(w, triangle, at->body, first_of_triangle);
         }
     }
-    size_t key, end = triangle_cuts_of(w->facts->cuts, triangle, &key);
-    for (; key < end; key++) {
-        const uint64_t code = w->facts->cuts->keys[key].end;
+    const triangle_cuts *cuts = w->facts->cuts;
+    while (w->key < cuts->key_count && cuts->keys[w->key].number < triangle) w->key++;
+    for (size_t i = w->key; i < cuts->key_count && cuts->keys[i].number == triangle; i++) {
+        const uint64_t code = cuts->keys[i].end;
         const curve_piece *piece = &found->curves->found[code / 2];
         uint32_t other = code % 2 == 1 ? piece->a : piece->b;
         if (w->mesh->components[w->mesh->triangle_components[other]].closed_manifold)

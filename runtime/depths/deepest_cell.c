@@ -21,21 +21,29 @@ bool depth_search_wants(const depth_search *s, double bound) {
     return bound > 1.01 * best && bound > best + DEPTH_RESOLUTION * s->rounding;
 }
 
-/* near: a triangle that may be near; UINT32_MAX: nobody knows. A point that is near enough to the surface to be no deeper than
- * the best one is not searched for: then its depth is not known, but no more than what is set. */
-static void measure_point(depth_search *s, uint32_t number, uint32_t near, deep_point *p) {
-    const outer_point *begin = NULL;
-    if (near != UINT32_MAX) {
-        p->nearest = outer_surface_near(s->outer, s->found, near, p->x);
-        p->depth = sqrt(p->nearest.squared) / s->outer->scale;
+/* near: triangles that may be near, or UINT32_MAX. A point that is near enough to the surface to be no deeper than the best one
+ * is not searched for: then its depth is not known, but no more than what is set. */
+static void measure_point(depth_search *s, uint32_t number, const uint32_t near[2], deep_point *p) {
+    const double scale = s->outer->scale;
+    p->nearest.squared = (double)INFINITY;
+    p->nearest.triangle = UINT32_MAX;
+    for (int i = 0; i < 2; i++) {
+        if (near[i] == UINT32_MAX || (i > 0 && near[i] == near[0])) continue;
+        const outer_point at = outer_surface_near(s->outer, s->found, near[i], p->x);
+        if (at.squared < p->nearest.squared) p->nearest = at;
+        p->depth = sqrt(p->nearest.squared) / scale;
         if (p->depth <= s->best.depth) return;
-        begin = &p->nearest;
     }
-    p->nearest = outer_surface_nearest(s->outer, s->found, s->bvh, s->body, p->x, begin);
-    p->depth = p->nearest.triangle != UINT32_MAX ? sqrt(p->nearest.squared) / s->outer->scale : 0.0;
+    p->nearest = outer_surface_nearest(s->outer, s->found, s->bvh, s->body, p->x, &p->nearest);
+    p->depth = p->nearest.triangle != UINT32_MAX ? sqrt(p->nearest.squared) / scale : 0.0;
     if (!(p->depth > s->best.depth)) return;
     s->best = *p;
     s->best_cell = number;
+}
+
+static void measure_between(depth_search *s, uint32_t number, const deep_point *a, const deep_point *b,
+                            deep_point *p) {
+    measure_point(s, number, (const uint32_t[2]){a->nearest.triangle, b->nearest.triangle}, p);
 }
 
 /* ---- bounds ---------------------------------------------------------------------------------------------- */
@@ -167,15 +175,15 @@ static void bound_part(const depth_search *s, cell_part *c) {
 
 /* ---- dividing -------------------------------------------------------------------------------------------- */
 
-/* Halves the longest side. */
-static int halve_part(depth_search *s, uint32_t number, const cell_part *c, cell_part out[3]) {
+/* Parts take the place of the cell, and that of up to two behind it. Halves the longest side. */
+static int halve_part(depth_search *s, uint32_t number, cell_part *c) {
     const depth_cell cell = cell_of(c);
     const int i = longest_side(&cell), j = (i + 1) % 3;
     deep_point middle;
     for (int k = 0; k < 3; k++) middle.x[k] = 0.5 * (c->corners[i].x[k] + c->corners[j].x[k]);
-    measure_point(s, number, c->corners[i].nearest.triangle, &middle);
-    out[0] = out[1] = *c;
-    out[0].corners[j] = out[1].corners[i] = middle;
+    measure_between(s, number, &c->corners[i], &c->corners[j], &middle);
+    c[1] = c[0];
+    c[0].corners[j] = c[1].corners[i] = middle;
     return 2;
 }
 
@@ -226,13 +234,12 @@ static deep_point point_in_plane(depth_search *s, uint32_t number, const cell_pa
     deep_point p;
     for (int k = 0; k < 3; k++)
         p.x[k] = c->corners[i].x[k] + share * (c->corners[j].x[k] - c->corners[i].x[k]);
-    measure_point(s, number, c->corners[i].nearest.triangle, &p);
+    measure_between(s, number, &c->corners[i], &c->corners[j], &p);
     return p;
 }
 
 /* One corner is alone on its side of the plane, or the two others are in the plane or on the other side. */
-static int split_part(depth_search *s, uint32_t number, const cell_part *c, const side_plane *plane,
-                      cell_part out[3]) {
+static int split_part(depth_search *s, uint32_t number, cell_part *c, const side_plane *plane) {
     int inside = 0, alone = 0;
     for (int i = 0; i < 3; i++) inside += plane->outside[i] <= 0.0;
     for (int i = 0; i < 3; i++)
@@ -240,22 +247,23 @@ static int split_part(depth_search *s, uint32_t number, const cell_part *c, cons
     const int j = (alone + 1) % 3, k = (alone + 2) % 3;
     const deep_point p = point_in_plane(s, number, c, plane, alone, j);
     const deep_point q = point_in_plane(s, number, c, plane, alone, k);
-    out[0] = out[1] = out[2] = *c;
-    out[0].corners[j] = p;
-    out[0].corners[k] = q;
-    out[1].corners[alone] = p;
-    out[2].corners[alone] = q;
-    out[2].corners[j] = p;
+    c[2] = c[1] = c[0];
+    c[0].corners[j] = p;
+    c[0].corners[k] = q;
+    c[1].corners[alone] = p;
+    c[2].corners[alone] = q;
+    c[2].corners[j] = p;
     return 3;
 }
 
 /* A cell that is wide beside its depth reaches over several triangles of the surface, none of which bounds it as a whole: it is
  * split where the one below its middle ends. Returns how many parts that makes; -1: it is not to be split. */
-static int split_wide(depth_search *s, uint32_t number, const cell_part *c, cell_part out[3]) {
+static int split_wide(depth_search *s, uint32_t number, cell_part *c) {
     deep_point middle;
+    const int deepest = deepest_corner(c);
     for (int k = 0; k < 3; k++)
         middle.x[k] = (c->corners[0].x[k] + c->corners[1].x[k] + c->corners[2].x[k]) / 3.0;
-    measure_point(s, number, c->corners[0].nearest.triangle, &middle);
+    measure_between(s, number, &c->corners[deepest], &c->corners[(deepest + 1) % 3], &middle);
     if (middle.nearest.triangle == UINT32_MAX) return -1;
     double bound = 0.0;
     for (int i = 0; i < 3; i++)
@@ -266,36 +274,37 @@ static int split_wide(depth_search *s, uint32_t number, const cell_part *c, cell
         return 0;
     }
     const side_plane plane = choose_plane(s, c, &middle.nearest.part);
-    return plane.span > 0.0 ? split_part(s, number, c, &plane, out) : -1;
+    return plane.span > 0.0 ? split_part(s, number, c, &plane) : -1;
 }
 
-static int divide_part(depth_search *s, uint32_t number, const cell_part *c, cell_part out[3]) {
+/* Puts a part that is wanted among some others, so that the one that promises most comes last and is looked at first. */
+static void sort_part(cell_part *parts, int count, const cell_part *part) {
+    for (; count > 0 && part->above < parts[count - 1].above; count--) parts[count] = parts[count - 1];
+    parts[count] = *part;
+}
+
+/* Returns how many parts are still wanted. */
+static int divide_part(depth_search *s, uint32_t number, cell_part *c) {
     const double deepest = max_of(c->corners[0].depth, max_of(c->corners[1].depth, c->corners[2].depth));
     const depth_cell cell = cell_of(c);
     const bool wide = length_of_side(&cell, longest_side(&cell)) > 2.0 * deepest;
-    int count = wide ? split_wide(s, number, c, out) : -1;
-    if (count < 0) count = halve_part(s, number, c, out);
+    int count = wide ? split_wide(s, number, c) : -1, wanted = 0;
+    if (count < 0) count = halve_part(s, number, c);
     for (int i = 0; i < count; i++) {
-        out[i].level++;
-        bound_part(s, &out[i]);
+        c[i].level++;
+        bound_part(s, &c[i]);
+        const cell_part part = c[i];
+        if (depth_search_wants(s, part.above))
+            sort_part(c, wanted++, &part);
+        else
+            s->bound = max_of(s->bound, part.above);
     }
-    return count;
-}
-
-/* The one that promises most comes last, so that it is looked at first. */
-static void sort_parts(cell_part *parts, int count) {
-    for (int i = 1; i < count; i++) {
-        for (int k = i; k > 0 && parts[k].above < parts[k - 1].above; k--) {
-            const cell_part part = parts[k];
-            parts[k] = parts[k - 1];
-            parts[k - 1] = part;
-        }
-    }
+    return wanted;
 }
 
 static void measure_corners(depth_search *s, const depth_cell *cell, uint32_t number,
                             const cscd_depth *const known[3], cell_part *out) {
-    uint32_t near = cell->near;
+    uint32_t near[2] = {cell->near, UINT32_MAX};
     for (int i = 0; i < 3; i++) {
         deep_point *p = &out->corners[i];
         memcpy(p->x, cell->corners[i], sizeof p->x);
@@ -305,7 +314,8 @@ static void measure_corners(depth_search *s, const depth_cell *cell, uint32_t nu
         } else {
             measure_point(s, number, near, p);
         }
-        near = p->nearest.triangle;
+        near[0] = p->nearest.triangle;
+        near[1] = cell->near;
     }
 }
 
@@ -318,14 +328,12 @@ void depth_search_cell(depth_search *s, const depth_cell *cell, uint32_t number,
     measure_corners(s, cell, number, known, &waiting[0]);
     bound_part(s, &waiting[0]);
     while (count > 0) {
-        const cell_part part = waiting[--count];
-        if (part.level == LEVELS_MAX || s->cells_left == 0 || !depth_search_wants(s, part.above)) {
-            s->bound = max_of(s->bound, part.above);
+        cell_part *part = &waiting[--count];
+        if (part->level == LEVELS_MAX || s->cells_left == 0 || !depth_search_wants(s, part->above)) {
+            s->bound = max_of(s->bound, part->above);
             continue;
         }
         s->cells_left--;
-        const int made = divide_part(s, number, &part, &waiting[count]);
-        sort_parts(&waiting[count], made);
-        count += made;
+        count += divide_part(s, number, part);
     }
 }

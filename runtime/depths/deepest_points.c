@@ -71,7 +71,8 @@ static void begin_with_corners(const deepest_work *w, const buried_group *group,
 
 enum { BANKS_MAX = 16 };
 
-/* What bounds the depth of a triangle that a body cuts: the parts of the body's outer surface that cut it. */
+/* What bounds the depth of a triangle that a body cuts: the parts of the body's outer surface that cut it, and those that are
+ * nearest to its corners. */
 typedef struct cell_banks {
     outer_part parts[BANKS_MAX];
     uint32_t triangles[BANKS_MAX], count;
@@ -83,23 +84,32 @@ static void add_bank(cell_banks *banks, uint32_t triangle, const outer_part *par
     banks->parts[banks->count++] = *part;
 }
 
+static void add_banks_of(const deepest_work *w, uint32_t triangle, cell_banks *out) {
+    const outer_surface *o = w->facts->outer;
+    const uint32_t place = o->places[triangle];
+    if (place == OUTER_AS_A_WHOLE) {
+        outer_part whole;
+        outer_surface_whole(o, w->facts->found, triangle, &whole);
+        add_bank(out, triangle, &whole);
+    } else if (place != OUTER_NOWHERE) {
+        for (size_t i = o->part_begins[place]; i < o->part_begins[place + 1]; i++)
+            add_bank(out, triangle, &o->parts[i]);
+    }
+}
+
 static void list_banks(const deepest_work *w, const buried_triangle *t, size_t first, size_t end,
                        cell_banks *out) {
-    const outer_surface *o = w->facts->outer;
     out->count = 0;
+    for (int i = 0; i < 3; i++) {
+        const uint32_t near =
+            t->corners[i] != UINT32_MAX ? w->facts->vertices[t->corners[i]].triangle : UINT32_MAX;
+        if (near != UINT32_MAX) add_banks_of(w, near, out);
+    }
     for (; first < end; first++) {
         const uint64_t code = w->facts->cuts->keys[first].end;
         const curve_piece *piece = &w->facts->found->curves->found[code / 2];
-        const uint32_t other = code % 2 == 1 ? piece->a : piece->b, place = o->places[other];
-        if (place == OUTER_NOWHERE || surface_body(w->facts->found->surface, other) != t->body) continue;
-        if (place != OUTER_AS_A_WHOLE) {
-            for (size_t i = o->part_begins[place]; i < o->part_begins[place + 1]; i++)
-                add_bank(out, other, &o->parts[i]);
-            continue;
-        }
-        outer_part whole;
-        outer_surface_whole(o, w->facts->found, other, &whole);
-        add_bank(out, other, &whole);
+        const uint32_t other = code % 2 == 1 ? piece->a : piece->b;
+        if (surface_body(w->facts->found->surface, other) == t->body) add_banks_of(w, other, out);
     }
 }
 
@@ -107,18 +117,17 @@ static void list_banks(const deepest_work *w, const buried_triangle *t, size_t f
 static double bound_by_banks(const deepest_work *w, const cell_banks *banks, const depth_search *s,
                              depth_cell *cell) {
     const outer_surface *o = w->facts->outer;
+    const double *const corners[3] = {cell->corners[0], cell->corners[1], cell->corners[2]};
     double least = (double)INFINITY;
     cell->near = UINT32_MAX;
-    for (uint32_t i = 0; i < banks->count && depth_search_wants(s, least); i++) {
-        double greatest = 0.0;
-        for (int k = 0; k < 3; k++)
-            greatest = max_of(greatest, outer_part_reach(o, cell->corners[k], &banks->parts[i]));
-        greatest = greatest / o->scale + w->facts->rounding;
+    for (uint32_t i = 0; i < banks->count && depth_search_wants(s, least / o->scale + w->facts->rounding);
+         i++) {
+        const double greatest = outer_part_reach_of_all(o, corners, &banks->parts[i], least);
         if (!(greatest < least)) continue;
         least = greatest;
         cell->near = banks->triangles[i];
     }
-    return least;
+    return least / o->scale + w->facts->rounding;
 }
 
 /* A triangle whose parts are taken. */

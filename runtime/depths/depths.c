@@ -2,6 +2,7 @@
 #include "runtime/depths/depths.h"
 
 #include "runtime/depths/body_point.h"
+#include "runtime/depths/deepest_on_edge.h"
 #include "src/core/sort.h"
 #include "src/mesh/surface.h"
 
@@ -145,12 +146,30 @@ static bool asks_of_edge(const depth_work *work, uint32_t triangle, uint32_t edg
     return false;
 }
 
+/* Do curves pass through one of the triangle's edges more than once? */
+static bool passes_an_edge_twice(const depth_work *work, const triangle_cuts *c, size_t begin, size_t end) {
+    const uint32_t *edges = work->found->surface->mesh->triangle_edges[c->keys[begin].number];
+    bool passed[3] = {false, false, false};
+    for (size_t k = begin; k < end; k++) {
+        const curve_piece *piece = &work->found->curves->found[c->keys[k].end / 2];
+        for (int e = 0; e < 2; e++) {
+            for (int i = 0; i < 3; i++) {
+                if (piece->ends[e].edge != edges[i]) continue;
+                if (passed[i]) return true;
+                passed[i] = true;
+            }
+        }
+    }
+    return false;
+}
+
 static bool ask_of_edges(const depth_work *work) {
     triangle_cuts *c = &work->finder->outer.cuts;
     const cscd_mesh *mesh = work->found->surface->mesh;
     for (size_t begin = 0, end = 0; begin < c->key_count; begin = end) {
         loaded_cut cut;
         while (end < c->key_count && c->keys[end].number == c->keys[begin].number) end++;
+        if (!passes_an_edge_twice(work, c, begin, end)) continue;
         if (!triangle_cuts_load(c, work->found, begin, end, &cut)) return false;
         if (cut.stretch == 0.0) continue;
         for (uint32_t i = 0; i < 3; i++) {
@@ -187,79 +206,21 @@ static void set_answer(const depth_work *work, const outer_point *nearest, cscd_
         find_normal(work, nearest->triangle, out->direction);
 }
 
-/* near: the answer for another point and the same body, or NULL. */
-static outer_point search_nearest(const depth_work *work, uint32_t body, const double x[3],
-                                  const outer_point *near) {
-    const outer_surface *outer = &work->finder->outer;
-    outer_point begin = {.triangle = UINT32_MAX};
-    if (near != NULL && near->triangle != UINT32_MAX)
-        begin = outer_surface_near(outer, work->found, near->triangle, x);
-    return outer_surface_nearest(outer, work->found, work->bvh, body, x, &begin);
-}
-
-/* A place on an edge; distance: scaled. */
-typedef struct edge_place {
-    double s, x[3], distance;
-    outer_point nearest;
-} edge_place;
-
-typedef struct edge_search {
-    const depth_work *work;
-    const depth_question *question;
-    const double *ends[2];
-    double length;           /* scaled */
-    const outer_point *near; /* the last answer, or NULL */
-} edge_search;
-
-static edge_place place_at(const edge_search *e, double s, const outer_point *near) {
-    edge_place at = {.s = s};
-    for (int k = 0; k < 3; k++) at.x[k] = e->ends[0][k] + s * (e->ends[1][k] - e->ends[0][k]);
-    at.nearest = search_nearest(e->work, e->question->body, at.x, near);
-    at.distance = sqrt(at.nearest.squared);
-    return at;
-}
-
-/* No point in between is deeper. The depth changes by no more than the way; and it is no more than the distance from one
- * convex part, which is largest at an end. */
-static double bound_between(const edge_search *e, const edge_place *a, const edge_place *b) {
-    double by_way = 0.5 * (a->distance + b->distance + (b->s - a->s) * e->length);
-    const outer_surface *outer = &e->work->finder->outer;
-    double by_first = max_of(a->distance, outer_part_reach(outer, b->x, &a->nearest.part));
-    double by_last = max_of(b->distance, outer_part_reach(outer, a->x, &b->nearest.part));
-    return min_of(by_way, min_of(by_first, by_last));
-}
-
-enum { HALVINGS_MAX = 64 };
-
-/* Halves what may be deeper by more than a millionth of the edge. */
-static edge_place find_deepest(const edge_search *e) {
-    edge_place ends[HALVINGS_MAX + 1], at = place_at(e, e->question->s[0], e->near), deepest = at;
-    int count = 0;
-    ends[count++] = place_at(e, e->question->s[1], &at.nearest);
-    if (ends[0].distance > deepest.distance) deepest = ends[0];
-    while (count > 0) { /* from at to the last one of ends */
-        edge_place *end = &ends[count - 1];
-        bool halve = count < HALVINGS_MAX && bound_between(e, &at, end) > deepest.distance + 1e-6 * e->length;
-        if (!halve) {
-            at = *end;
-            count--;
-            continue;
-        }
-        ends[count] = place_at(e, at.s + 0.5 * (end->s - at.s), &at.nearest);
-        if (ends[count].distance > deepest.distance) deepest = ends[count];
-        count++;
-    }
-    return deepest;
-}
-
 /* near: an answer for the same body, or NULL. Returns the answer, and so below. */
 static outer_point answer_edge(const depth_work *work, const depth_question *q, const outer_point *near,
                                cscd_depth *out) {
     const named_surface *s = work->found->surface;
+    const outer_surface *outer = &work->finder->outer;
     const uint32_t *v = s->mesh->edges[q->edge];
-    edge_search e = {work, q, {s->positions + (size_t)v[0] * 3, s->positions + (size_t)v[1] * 3}, 0.0, near};
-    e.length = surface_edge_length(s->mesh, s->positions, q->edge) * work->finder->outer.scale;
-    edge_place deepest = find_deepest(&e);
+    const edge_search e = {outer,
+                           work->found,
+                           work->bvh,
+                           q->body,
+                           {s->positions + (size_t)v[0] * 3, s->positions + (size_t)v[1] * 3},
+                           {q->s[0], q->s[1]},
+                           surface_edge_length(s->mesh, s->positions, q->edge) * outer->scale,
+                           near};
+    const edge_place deepest = edge_search_run(&e);
     out->s = deepest.s;
     memcpy(out->x, deepest.x, sizeof out->x);
     set_answer(work, &deepest.nearest, out);
@@ -269,7 +230,8 @@ static outer_point answer_edge(const depth_work *work, const depth_question *q, 
 static outer_point answer_vertex(const depth_work *work, const depth_question *q, const outer_point *near,
                                  cscd_depth *out) {
     memcpy(out->x, work->found->surface->positions + (size_t)q->vertex * 3, sizeof out->x);
-    outer_point nearest = search_nearest(work, q->body, out->x, near);
+    const outer_point nearest =
+        outer_surface_search(&work->finder->outer, work->found, work->bvh, q->body, out->x, near, -1.0);
     set_answer(work, &nearest, out);
     return nearest;
 }

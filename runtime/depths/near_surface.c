@@ -189,6 +189,14 @@ double outer_part_reach(const outer_surface *o, const double x[3], const outer_p
     return sqrt(squared_reach(scaled, part->corners, &at));
 }
 
+double outer_part_reach_of_all(const outer_surface *o, const double *const x[3], const outer_part *part,
+                               double enough) {
+    double greatest = 0.0;
+    for (int i = 0; i < 3 && greatest < enough; i++)
+        greatest = max_of(greatest, outer_part_reach(o, x[i], part));
+    return greatest;
+}
+
 static double squared_gap(const double x[3], const outer_box *box) {
     double squared = 0.0;
     for (int k = 0; k < 3; k++) {
@@ -276,4 +284,12 @@ outer_point outer_surface_near(const outer_surface *o, const surface_cuts *found
         at = s.best.triangle;
     }
     return s.best;
+}
+
+outer_point outer_surface_search(const outer_surface *o, const surface_cuts *found, const bvh *f,
+                                 uint32_t body, const double x[3], const outer_point *near, double enough) {
+    outer_point begin = {.squared = (double)INFINITY, .triangle = UINT32_MAX};
+    if (near != NULL && near->triangle != UINT32_MAX) begin = outer_surface_near(o, found, near->triangle, x);
+    if (sqrt(begin.squared) <= enough) return begin;
+    return outer_surface_nearest(o, found, f, body, x, &begin);
 }

@@ -65,7 +65,8 @@ static void box_parts(outer_box *box, const outer_box *parts, size_t count) {
 }
 
 static bool add_part(outer_surface *o, const outer_part *part) {
-    if (!memory_budget_take(o->budget, 1, MEMORY_WHILE_DOUBLING * sizeof *part)) return false;
+    if (!memory_budget_take(o->budget, 1, MEMORY_WHILE_DOUBLING * (sizeof *part + sizeof *o->part_boxes)))
+        return false;
     if (o->part_count == o->part_capacity) {
         size_t larger = o->part_capacity == 0 ? 64 : 2 * o->part_capacity;
         outer_part *parts = context_grow(o->context, o->parts, o->part_count, larger, sizeof *parts);
@@ -163,6 +164,15 @@ static bool find_places(outer_surface *o, const surface_cuts *found) {
     return true;
 }
 
+/* Does the triangle's own body cut it? */
+static bool cuts_itself(const triangle_cuts *c, const surface_cuts *found, size_t begin, size_t end) {
+    for (size_t i = begin; i < end; i++) {
+        const curve_piece *piece = &found->curves->found[c->keys[i].end / 2];
+        if (surface_body(found->surface, piece->a) == surface_body(found->surface, piece->b)) return true;
+    }
+    return false;
+}
+
 bool outer_surface_find(outer_surface *o, const surface_cuts *found, const bvh *f) {
     triangle_cuts *c = &o->cuts;
     o->scale = f->scale;
@@ -176,6 +186,7 @@ bool outer_surface_find(outer_surface *o, const surface_cuts *found, const bvh *
     for (size_t begin = 0, end = 0; begin < c->key_count; begin = end) {
         loaded_cut cut;
         while (end < c->key_count && c->keys[end].number == c->keys[begin].number) end++;
+        if (!cuts_itself(c, found, begin, end)) continue;
         if (!triangle_cuts_load(c, found, begin, end, &cut)) return false;
         if (cut.stretch > 0.0 && !divide_triangle(o, found, &cut)) return false;
     }
