@@ -139,12 +139,12 @@ static void check_moment(const rig *r, const double *x, collapse_tally *sum) {
     sum->pairs += next;
 }
 
-enum { PLAYER_COUNT = 4 };
+enum { PLAYER_COUNT = 5 };
 
-/* A detector for each method, which plays the whole sequence. */
+/* A detector for each method, which plays the whole sequence. In the trees of ICCD components are mixed. */
 static void make_players(uint64_t seed, rig players[PLAYER_COUNT]) {
-    static const cscd_method methods[PLAYER_COUNT] = {CSCD_METHOD_AUTO, CSCD_METHOD_SINGLE, CSCD_METHOD_NONE,
-                                                      CSCD_METHOD_BRUTE};
+    const cscd_method methods[PLAYER_COUNT] = {CSCD_METHOD_AUTO, CSCD_METHOD_SINGLE, CSCD_METHOD_NONE,
+                                               CSCD_METHOD_BRUTE, method_or_none(CSCD_METHOD_ICCD)};
     for (uint32_t i = 0; i < PLAYER_COUNT; i++) {
         cscd_detector_options options = cscd_detector_defaults();
         options.method = methods[i];
