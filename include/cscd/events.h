@@ -100,6 +100,9 @@ static inline cscd_status cscd_event_tracker_add_frame(cscd_event_tracker *track
  * given with sums by the tracker's parts. */
 #define CSCD_EVENT_SAME_SOLID ((uint64_t)1 << 63)
 
+/* The same of a part with itself where something of it lies within another body than its own (cscd_part_pair). */
+#define CSCD_EVENT_IN_OTHER_BODY ((uint64_t)1 << 62)
+
 /* An event. What it has in one frame may be in several places; those that are joined within the frame are a *group*. The
  * worst group has the greatest depth; of several the greatest length, then the most pairs, then the most contacts, then
  * the first frame. It never grows. */
@@ -108,7 +111,7 @@ typedef struct cscd_event {
     uint64_t first_frame; /* the number of the first frame that has something of it, */
     uint64_t last_frame;  /* of the last one, */
     uint64_t worst_frame; /* and of the one that has its worst group */
-    uint64_t kinds;       /* of all its pairs: a set of cscd_intersection_kind, and CSCD_EVENT_SAME_SOLID */
+    uint64_t kinds;       /* of all its pairs: a set of cscd_intersection_kind, and the two above */
     uint64_t pairs;       /* so many, all frames together */
     uint64_t depths;      /* the same of points with a depth */
     uint64_t contacts;    /* and of contacts */

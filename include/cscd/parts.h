@@ -72,7 +72,11 @@ typedef struct cscd_part_pair {
      * within the other and the depth is 0, and yet they contain the same. Where depth is above 0 or this is true, the interiors
      * of the two meet, whether or not two triangles cross. */
     bool same_solid;
-    uint8_t reserved[7];
+
+    /* Known only with depths, and of a part with itself: something of it lies within another body than its own, as one thing of
+     * a material in another one. False: what it buries of itself, or has nearest, is of one body. */
+    bool in_other_body;
+    uint8_t reserved[6];
 } cscd_part_pair;
 
 /* All pairs of parts that have at least one pair of triangles, piece of a curve or depth, sorted by (a, b). Pairs, lengths

@@ -56,7 +56,7 @@ class Curve(NamedTuple):
 
 class PartPairs(np.recarray):  # type: ignore[type-arg]
     """Intersections summed up by pair of parts: a, b, crossing, coplanar, folded, duplicate, touching, faces (2),
-    shares (2), curves, touching_curves, length, depth, bound, same_solid.
+    shares (2), curves, touching_curves, length, depth, bound, same_solid, in_other_body.
 
     A part that is closed by itself is a body of its own here: depths are measured to its own surface, and may be other than
     those of ``Intersections``."""

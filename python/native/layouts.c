@@ -193,7 +193,7 @@ FIELDS(part_pair, FIELD(cscd_part_pair, a), FIELD(cscd_part_pair, b), FIELD(cscd
        FIELD(cscd_part_pair, touching), FIELD(cscd_part_pair, faces), FIELD(cscd_part_pair, shares),
        FIELD(cscd_part_pair, curves), FIELD(cscd_part_pair, touching_curves), FIELD(cscd_part_pair, length),
        FIELD(cscd_part_pair, deepest), FIELD(cscd_part_pair, depth), FIELD(cscd_part_pair, bound),
-       FIELD(cscd_part_pair, same_solid))
+       FIELD(cscd_part_pair, same_solid), FIELD(cscd_part_pair, in_other_body))
 FIELDS(part_pairs, FIELD(cscd_part_pairs, items), FIELD(cscd_part_pairs, count),
        FIELD(cscd_part_pairs, faces), FIELD(cscd_part_pairs, share))
 FIELDS(contact_part_pair, FIELD(cscd_contact_part_pair, a), FIELD(cscd_contact_part_pair, b),

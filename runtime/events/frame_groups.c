@@ -274,11 +274,14 @@ static void sum_pieces(frame_groups *g, const cscd_curves *curves, const group_t
     }
 }
 
-static void sum_depths(frame_groups *g, const cscd_depths *depths, const group_thing *things) {
+static void sum_depths(frame_groups *g, const cscd_intersection_pairs *found, const group_thing *things) {
+    const cscd_depths *depths = found->depths;
     for (size_t i = 0; depths != NULL && i < depths->count; i++) {
         uint32_t group = things[i].parent;
         tracked_event *event = &g->groups[group];
         event->depths++;
+        if (event->parts >> 32 == (uint32_t)event->parts && depth_is_in_other_body(found, &depths->items[i]))
+            event->kinds |= CSCD_EVENT_IN_OTHER_BODY;
         if (g->ranks[group] == PLACE_OF_DEPTH && depths->items[i].depth <= event->worst.depth) continue;
         event->worst.depth = depths->items[i].depth;
         place_group(g, group, PLACE_OF_DEPTH, things[i].origin, depths->items[i].x);
@@ -324,7 +327,7 @@ static void sum_things(const frame_grouping *w) {
         things += found->count;
         sum_pieces(g, found->curves, things);
         things += piece_count_of(found->curves);
-        sum_depths(g, found->depths, things);
+        sum_depths(g, found, things);
         things += found->depths != NULL ? found->depths->count : 0;
     }
     sum_contacts(g, w->input, things);

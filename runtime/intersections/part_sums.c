@@ -179,8 +179,10 @@ static void sum_pieces(const summing *w, key_range keys, cscd_part_pair *out) {
 static void find_deepest(const summing *w, key_range keys, cscd_part_pair *out) {
     out->deepest = SIZE_MAX;
     for (const part_key *k = keys.next; k < keys.end; k++) {
-        const double depth = w->found->depths->items[k->item].depth;
-        out->bound = fmax(out->bound, w->found->depths->items[k->item].bound);
+        const cscd_depth *point = &w->found->depths->items[k->item];
+        const double depth = point->depth;
+        out->bound = fmax(out->bound, point->bound);
+        out->in_other_body |= out->a == out->b && depth_is_in_other_body(w->found, point);
         if (out->deepest != SIZE_MAX && depth <= out->depth) continue;
         out->deepest = (size_t)k->item;
         out->depth = depth;

@@ -4,6 +4,7 @@
 #include "src/mesh/bodies.h"
 #include "src/mesh/mesh_change.h"
 
+#include <cscd/intersections.h>
 #include <cscd/parts.h>
 
 typedef struct part_labels {
@@ -38,6 +39,12 @@ uint32_t part_size(const part_labels *p, const cscd_mesh *mesh, uint32_t part);
 uint32_t part_of_triangle(const part_labels *p, const cscd_mesh *mesh, uint32_t triangle);
 uint32_t part_of_vertex(const part_labels *p, const cscd_mesh *mesh, uint32_t vertex);
 uint32_t part_of_edge(const part_labels *p, const cscd_mesh *mesh, uint32_t edge);
+
+/* Does the point of a depth lie within another body than its own? Where its patch is not known, others of that patch say so. */
+static inline bool depth_is_in_other_body(const cscd_intersection_pairs *found, const cscd_depth *depth) {
+    return found->patches != NULL && depth->patch != UINT32_MAX &&
+           found->patches->items[depth->patch].body != depth->body;
+}
 
 /* The key of two parts: the smaller one in the upper half. */
 static inline uint64_t key_of_parts(uint32_t p, uint32_t q) {

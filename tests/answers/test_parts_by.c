@@ -50,11 +50,11 @@ static void print_material(FILE *file, int material) {
 }
 
 /* Each box shares its vertices between its sides. Only changes of material are written, also across objects. */
-static temp_path write_obj(const char *name, const side_box *boxes) {
+static temp_path write_obj(const char *name, const side_box *boxes, int count) {
     const temp_path path = temp_file_path(&folder, name);
     FILE *file = fopen(path.text, "w");
     int now = -1;
-    for (int b = 0; b < BOXES; b++) {
+    for (int b = 0; b < count; b++) {
         if (boxes[b].name != NULL) fprintf(file, "o %s\n", boxes[b].name);
         for (int v = 0; v < 8; v++)
             fprintf(file, "v %g %g %g\n", corner_coordinate(&boxes[b], v, 0),
@@ -209,7 +209,7 @@ static void expect_scene(const part_scene *scene, const char *model) {
 static void parts_change_names_alone(void **state) {
     (void)state;
     for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
-        expect_scene(&scenes[i], write_obj("scene.obj", scenes[i].boxes).text);
+        expect_scene(&scenes[i], write_obj("scene.obj", scenes[i].boxes, BOXES).text);
         const temp_path gltf = write_gltf("scene.glb", scenes[i].boxes);
         expect_scene(&scenes[i], gltf.text);
         /* Without welding the sides are apart, and nothing has an inside. */
@@ -235,6 +235,30 @@ static void materials_are_welded_by_node(void **state) {
     }
 }
 
+/* A crate lies in a slab of the same material, which a post of another one crosses at another place. */
+static void what_lies_in_its_own_material_is_told(void **state) {
+    (void)state;
+    const side_box boxes[] = {{"slab", {0, 8, 0, 4, 0, 4}, false, 0, 0},
+                              {"crate", {1, 2, 1, 2, 1, 2}, false, 0, 0},
+                              {"post", {5.25, 6, 1.25, 2, 3.75, 9}, false, 2, 2}};
+    const temp_path model = write_obj("post.obj", boxes, 3);
+    static const char *const kinds[][2] = {{NULL, NULL}, {"--parts-by", "material"}};
+    static const char *const worst[] = {"2 places, worst: slab x crate, 2 deep.",
+                                        "2 places, worst: Brushed Steel #2 x itself, 2 deep."};
+    for (int i = 0; i < 2; i++) {
+        tool_run run = RUN_TOOL("check", model.text, "--json", json.text, kinds[i][0], kinds[i][1]);
+        if (strstr(run.out, "; 1 part lies inside another. ") == NULL || strstr(run.out, worst[i]) == NULL)
+            fail_msg("no '%s' in: %s", worst[i], run.out);
+        tool_run_free(&run);
+        json_node *root = json_node_read_file(json.text);
+        assert_int_equal(json_node_member(root, "events")->count, 2);
+        json_node_free(root);
+        EXPECT_TOOL(3, "check", model.text, "--quiet", "--fail-depth", "1", kinds[i][0], kinds[i][1]);
+    }
+    expect_event(model.text, "--parts-by", "material", "Brushed Steel #2 x itself  inside");
+    expect_event(model.text, "--parts-by", "material", "Brushed Steel #2 x Glass   cross");
+}
+
 static void expect_parts(const char *model, const char *by, const char *line) {
     tool_run run = RUN_TOOL("info", model, "--parts-by", by);
     char whole[200];
@@ -255,7 +279,7 @@ static void info_lists_them(void **state) {
     const side_box boxes[] = {{"a", {0, 1, 0, 1, 0, 1}, false, 0, 1},
                               {"b", {5, 6, 0, 1, 0, 1}, false, -1, 0}};
     const char *list = "2: Brushed Steel #2 (12 triangles), Rubber (2 triangles); 10 in none";
-    const temp_path obj = write_obj("two.obj", boxes), gltf = write_gltf("two.glb", boxes);
+    const temp_path obj = write_obj("two.obj", boxes, BOXES), gltf = write_gltf("two.glb", boxes);
     expect_parts(obj.text, "material", list);
     expect_parts(gltf.text, "material", list);
     expect_parts(obj.text, "object", "2: a (12 triangles), b (12 triangles)");
@@ -276,7 +300,8 @@ static void info_lists_them(void **state) {
 static void rules_take_materials(void **state) {
     (void)state;
     const part_scene *scene = &scenes[1];
-    const temp_path obj = write_obj("rules.obj", scene->boxes), gltf = write_gltf("rules.glb", scene->boxes);
+    const temp_path obj = write_obj("rules.obj", scene->boxes, BOXES),
+                    gltf = write_gltf("rules.glb", scene->boxes);
     const char *models[] = {obj.text, gltf.text};
     for (int i = 0; i < 2; i++) {
         EXPECT_TOOL(3, "check", models[i], "--quiet", "--parts-by", "material", "--fail-on", "crossing",
@@ -295,7 +320,8 @@ static void rules_take_materials(void **state) {
 
 static void every_command_takes_it(void **state) {
     (void)state;
-    const temp_path obj = write_obj("all.obj", scenes[1].boxes), picture = temp_file_path(&folder, "all.png");
+    const temp_path obj = write_obj("all.obj", scenes[1].boxes, BOXES),
+                    picture = temp_file_path(&folder, "all.png");
     const char *steel = "Brushed Steel #2 x Glass";
     char list[1200];
     tool_run run = RUN_TOOL("check", "--each", obj.text, "--parts-by", "material");
@@ -321,7 +347,7 @@ static void every_command_takes_it(void **state) {
 /* A file that has none is a part as a whole beside one that has some. */
 static void objects_without_materials_are_whole(void **state) {
     (void)state;
-    const temp_path obj = write_obj("body.obj", scenes[0].boxes);
+    const temp_path obj = write_obj("body.obj", scenes[0].boxes, BOXES);
     const temp_path floor = write_text("floor.off", "OFF\n3 1 0\n-9 -9 0.5\n9 -9 0.5\n0 9 0.5\n3 0 1 2\n");
     char object[600];
     snprintf(object, sizeof object, "floor=%s", floor.text);
@@ -332,57 +358,15 @@ static void objects_without_materials_are_whole(void **state) {
     tool_run_free(&run);
 }
 
-/* ---- what cannot be --------------------------------------------------------------------------------------- */
-
-static void who_gets_no_parts_is_told(void **state) {
-    (void)state;
-    const side_box boxes[] = {{"a", {0, 1, 0, 1, 0, 1}, false, -1, -1},
-                              {"b", {5, 6, 0, 1, 0, 1}, false, -1, -1}};
-    const temp_path gltf = write_gltf("plain.glb", boxes), obj = write_text("plain.obj", SQUARE "f 1 2 3\n");
-    const temp_path off = write_text("plain.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
-    const temp_path stl =
-        write_text("plain.stl", "solid A\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
-                                "vertex 0 1 0\nendloop\nendfacet\nendsolid A\n");
-    const temp_path ply = write_text(
-        "plain.ply",
-        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
-        "element face 1\nproperty list uchar int vertex_indices\nproperty int part\nend_header\n"
-        "0 0 0\n1 0 0\n0 1 0\n3 0 1 2 7\n");
-    const struct {
-        const char *path, *by, *reason;
-    } cases[] = {
-        {gltf.text, "group", "glTF files have no groups; leave it out, or export the model as OBJ with them"},
-        {gltf.text, "material", "none of its triangles has a material"},
-        {obj.text, "object", "no line 'o' names an object of its faces"},
-        {obj.text, "group", "no line 'g' names a group of its faces"},
-        {obj.text, "material", "no line 'usemtl' names a material of its faces"},
-        {off.text, "object", "the file names no objects"},
-        {off.text, "group", "OFF files have no groups"},
-        {stl.text, "material",
-         "STL files have no materials; leave it out, or export the model as OBJ or glTF with them"},
-        {ply.text, "group", "PLY files have no groups"},
-        {ply.text, "material", "PLY files have no materials"},
-    };
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        char which[60];
-        snprintf(which, sizeof which, "--parts-by %s finds no parts: ", cases[i].by);
-        EXPECT_ERROR(1, TEXTS(cases[i].path, which, cases[i].reason), "info", cases[i].path, "--parts-by",
-                     cases[i].by);
-        EXPECT_ERROR(1, TEXTS(which, cases[i].reason), "check", cases[i].path, "--parts-by", cases[i].by);
-    }
-    expect_parts(ply.text, "object", "1: 7 (1 triangle)"); /* what it names anyway */
-    const temp_path table = write_text("parts.csv", "face,name\n0,A\n");
-    const temp_path named = write_text("named.obj", SQUARE "usemtl A\nf 1 2 3\n");
-    EXPECT_ERROR(1, TEXTS("--parts and --parts-by both say what the parts are; give one of them"), "check",
-                 named.text, "--parts-by", "material", "--parts", table.text);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(parts_change_names_alone),  cmocka_unit_test(materials_are_welded_by_node),
-        cmocka_unit_test(info_lists_them),           cmocka_unit_test(rules_take_materials),
-        cmocka_unit_test(every_command_takes_it),    cmocka_unit_test(objects_without_materials_are_whole),
-        cmocka_unit_test(who_gets_no_parts_is_told),
+        cmocka_unit_test(parts_change_names_alone),
+        cmocka_unit_test(materials_are_welded_by_node),
+        cmocka_unit_test(what_lies_in_its_own_material_is_told),
+        cmocka_unit_test(info_lists_them),
+        cmocka_unit_test(rules_take_materials),
+        cmocka_unit_test(every_command_takes_it),
+        cmocka_unit_test(objects_without_materials_are_whole),
     };
     return cmocka_run_group_tests_name("parts_by", tests, make_folder, remove_folder);
 }

@@ -225,13 +225,14 @@ static void what_follows_is_left_out(void **state) {
         {.a = 3, .b = 3, .first_frame = 4, .last_frame = 5, .depth = 0.4},   /* of another part */
         {.a = 1, .b = 1, .first_frame = 4, .last_frame = 5, .contacts = 1},  /* with a contact */
         {.a = 0, .b = 1, .first_frame = 4, .last_frame = 5, .depth = 0.5},   /* of two parts */
+        {.a = 1, .b = 1, .first_frame = 4, .last_frame = 5, .depth = 0.6, .kinds = CSCD_EVENT_IN_OTHER_BODY},
     };
-    const size_t expected[] = {0, 1, 4, 5, 6, 7};
-    cscd_event all[8];
+    const size_t expected[] = {0, 1, 4, 5, 6, 7, 8};
+    cscd_event all[9];
     memcpy(all, events, sizeof all);
-    size_t count = 8;
+    size_t count = 9;
     assert_true(consequences_leave_out(events, &count));
-    assert_int_equal(count, 6);
+    assert_int_equal(count, 7);
     for (size_t i = 0; i < count; i++) assert_memory_equal(&events[i], &all[expected[i]], sizeof *events);
 }
 

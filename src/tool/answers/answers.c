@@ -135,7 +135,7 @@ static size_t count_pairs(const cscd_part_pair *pair) {
 }
 
 static bool lies_in_itself(const cscd_part_pair *pair) {
-    return pair->a == pair->b && count_pairs(pair) == 0;
+    return pair->a == pair->b && count_pairs(pair) == 0 && !pair->in_other_body;
 }
 
 static bool is_within(const cscd_part_pair *pair) {

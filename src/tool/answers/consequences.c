@@ -2,6 +2,7 @@
 #include "src/tool/answers/consequences.h"
 
 #include "src/io/growable.h"
+#include "src/tool/common/event_order.h"
 
 #include <stdlib.h>
 
@@ -60,8 +61,8 @@ bool consequences_leave_out(cscd_event *events, size_t *count) {
     size_t kept = 0;
     for (size_t i = 0; i < *count; i++) {
         const cscd_event *e = &events[i];
-        const bool in_itself = e->a == e->b && e->pairs == 0 && e->contacts == 0;
-        if (is_event(e) && (!in_itself || !happens_during(spans, span_count, e))) events[kept++] = *e;
+        if (is_event(e) && (!event_is_in_itself(e) || !happens_during(spans, span_count, e)))
+            events[kept++] = *e;
     }
     *count = kept;
     free(spans);

@@ -1,17 +1,17 @@
 /* The order of events, the worst first. */
 #include "src/tool/common/event_order.h"
 
-#include <stdbool.h>
 #include <stdlib.h>
 
-static bool only_in_itself(const cscd_event *event) {
-    return event->a == event->b && event->pairs == 0 && event->contacts == 0;
+bool event_is_in_itself(const cscd_event *event) {
+    return event->a == event->b && event->pairs == 0 && event->contacts == 0 &&
+           (event->kinds & CSCD_EVENT_IN_OTHER_BODY) == 0;
 }
 
 /* What is within another part comes before what only touches it, and that before contacts alone. */
 static int rank_of(const cscd_event *event) {
     const uint64_t within = cscd_intersection_set(CSCD_INTERSECTION_CROSSING) | CSCD_EVENT_SAME_SOLID;
-    if (only_in_itself(event)) return 3;
+    if (event_is_in_itself(event)) return 3;
     if ((event->kinds & within) != 0 || event->depth > 0.0) return 0;
     return event->pairs > 0 ? 1 : 2;
 }

@@ -146,6 +146,13 @@ static size_t expect_curves(const labelling *l, const body_rig *r, uint32_t a, u
     return count;
 }
 
+/* Objects are the bodies. */
+static uint32_t object_of_triangle(const body_rig *r, uint32_t triangle) {
+    uint32_t corners[3];
+    cscd_mesh_triangle(r->mesh, triangle, corners);
+    return cscd_mesh_vertex_object(r->mesh, corners[0]);
+}
+
 static size_t expect_depths(const labelling *l, const body_rig *r, uint32_t a, uint32_t b,
                             cscd_part_pair *out) {
     const cscd_depths *depths = r->found.depths;
@@ -155,6 +162,8 @@ static size_t expect_depths(const labelling *l, const body_rig *r, uint32_t a, u
         const cscd_depth *depth = &depths->items[i];
         if (!are_the_two(point_labels[i], l->items[depth->triangle], a, b)) continue;
         if (depth->bound > out->bound) out->bound = depth->bound;
+        if (a == b && depth->patch != UINT32_MAX && depth->body != object_of_triangle(r, depth->face))
+            out->in_other_body = true;
         if (count++ > 0 && depth->depth <= out->depth) continue;
         out->deepest = i;
         out->depth = depth->depth;
