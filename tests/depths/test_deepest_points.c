@@ -5,6 +5,7 @@
 #include "tests/support/test.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #ifdef SLOW_MACHINE
@@ -196,8 +197,10 @@ static void turn_body(random_stream *random, uint32_t first) {
 static void random_bodies(void **state) {
     (void)state;
     random_stream random = stream_start(19);
+    const char *asked = getenv("SCENES"); /* so many instead, such as 20000 */
+    const size_t scenes = asked != NULL ? strtoul(asked, NULL, 10) : SCENES;
     size_t buried = 0, faces = 0;
-    for (int scene_number = 0; scene_number < SCENES; scene_number++) {
+    for (size_t scene_number = 0; scene_number < scenes; scene_number++) {
         body_rig_begin(&rig);
         for (int i = 0; i < 2; i++) {
             const uint32_t first = rig.all.vertex_count;
@@ -221,7 +224,7 @@ static void random_bodies(void **state) {
         body_rig_free(&rig);
     }
     print_message("  %zu samples, %zu deepest points\n", buried, faces);
-    assert_true(buried > 5 * SCENES && faces > SCENES);
+    assert_true(buried > 5 * scenes && faces > scenes);
 }
 
 /* ---- a limit ------------------------------------------------------------------------------------------------ */
