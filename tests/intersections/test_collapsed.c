@@ -4,6 +4,7 @@
 #include "cscd/research.h"
 #include "src/mesh/triangle_intersection.h"
 #include "tests/support/collapsed_oracle.h"
+#include "tests/support/methods.h"
 #include "tests/support/oracle.h"
 #include "tests/support/packed.h"
 #include "tests/support/random_stream.h"
