@@ -214,8 +214,8 @@ class Run:
         self._kept.restore()
         next(self._replay, None)  # there is no frame left: the last events end
         events = self._replay.events
-        self.findings.events = sorted((self._event(event, kinds) for event, kinds in zip(events, events.kind_names())),
-                                      key=lambda event: (-event.depth, -event.pairs, event.first))
+        kinds = events.kind_names()
+        self.findings.events = [self._event(events[i], kinds[i]) for i in events.worst_first()]
 
     def _event(self, event: Any, kinds: Tuple[str, ...]) -> FoundEvent:
         names = self.findings.parts.names

@@ -117,8 +117,9 @@ def _without_surface(findings: Findings) -> str:
 
 
 def summarise(findings: Findings) -> str:
-    """What was found, as a sentence, and what had no surface."""
-    return f"{_summarise_events(findings)}{_without_surface(findings)}"
+    """What was found, as a sentence, and what was not looked at."""
+    inside = "" if findings.request.depths else " What lies inside was not looked at."
+    return f"{_summarise_events(findings)}{inside}{_without_surface(findings)}"
 
 
 def _summarise_events(findings: Findings) -> str:
@@ -128,7 +129,8 @@ def _summarise_events(findings: Findings) -> str:
     if not findings.events:
         return f"Nothing crosses or touches in {total} frame{'' if total == 1 else 's'}.{left}"
     worst = findings.events[0]
-    deep = f", {worst.depth:.3g} deep at frame {worst.worst}" if worst.depth > 0.0 else ""
+    deep = (f", {worst.depth:.3g} deep at frame {worst.worst}" if worst.depth > 0.0
+            else ", one solid twice" if "same_solid" in worst.kinds else "")
     when = f"frames {worst.first} to {worst.last}" if worst.last > worst.first else f"frame {worst.first}"
     events = f"{len(findings.events)} event{'s' if len(findings.events) > 1 else ''}"
     return f"{len(crossing)} of {total} frames cross. {events}, worst: {worst.a} x {worst.b}, {when}{deep}.{left}"

@@ -18,7 +18,8 @@ class CSCD_UL_events(bpy.types.UIList):
         row.label(text=f"{_short(item.a)} x {_short(item.b)}")
         numbers = row.split(factor=0.45)
         numbers.label(text=f"{item.first}-{item.last}" if item.last > item.first else f"{item.first}")
-        numbers.label(text=_length(context, item.depth) if item.depth > 0.0 else "")
+        word = "copies" if "same_solid" in item.kinds else ""
+        numbers.label(text=_length(context, item.depth) if item.depth > 0.0 else word)
 
 
 class CSCD_UL_ignored(bpy.types.UIList):

@@ -117,7 +117,8 @@ class Events(Records):
         Parts, a <= b.
     first_frame, last_frame, worst_frame : (k,) int64
     kinds : (k,) int64
-        A set of intersection kinds: bit i stands for ``INTERSECTION_KINDS[i]``.
+        A set of intersection kinds: bit i stands for ``INTERSECTION_KINDS[i]``, and bit 63 says that the parts are two
+        copies of one solid in some frame.
     pairs, depths, contacts : (k,) int64
         So many of each, all frames together.
     depth, length : (k,) float64
@@ -133,9 +134,24 @@ class Events(Records):
         return records["event"]
 
     def kind_names(self) -> Tuple[Tuple[str, ...], ...]:
-        """The names of the kinds of each event."""
-        return tuple(tuple(name for i, name in enumerate(INTERSECTION_KINDS) if int(kinds) >> i & 1)
+        """The names of the kinds of each event; the last is "same_solid" where the parts are two copies of one solid."""
+        bits = (*enumerate(INTERSECTION_KINDS), (63, "same_solid"))
+        return tuple(tuple(name for i, name in bits if int(kinds) >> i & 1)
                      for kinds in np.atleast_1d(np.asarray(self["kinds"])))
+
+    def worst_first(self) -> Any:
+        """Their indices (k,), the worst first, as the tool has them.
+
+        What is within another part (crossing, deep or a copy) comes before what touches, that before contacts alone, and
+        what a part has with itself without a pair comes last; then by depth, length, pairs and contacts.
+        """
+        events = {name: np.atleast_1d(np.asarray(self[name]))
+                  for name in ("a", "b", "kinds", "pairs", "contacts", "depth", "length")}
+        crosses = events["kinds"] & 1 << INTERSECTION_KINDS.index("crossing") != 0
+        within = crosses | (events["kinds"] < 0) | (events["depth"] > 0.0)
+        rank = np.where(within, 0, np.where(events["pairs"] > 0, 1, 2))
+        rank[(events["a"] == events["b"]) & (events["pairs"] == 0) & (events["contacts"] == 0)] = 3
+        return np.lexsort([-events[name] for name in ("contacts", "pairs", "length", "depth")] + [rank])
 
 
 def _weights(found: Records, function: Any) -> Any:
