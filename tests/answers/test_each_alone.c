@@ -138,16 +138,18 @@ static void people_read_how_deep_it_is(void **state) {
     tool_run run = RUN_TOOL("check", "--each", path.text);
     snprintf(
         expected, sizeof expected,
-        "%s: no two triangles meet; body 0 x body 1, 0.25 deep\n1 mesh: 0 clean, 1 with something inside\n",
+        "%s: 1 part lies inside another; no two triangles cross or touch. 1 place, body 0 x body 1, 0.25 deep.\n"
+        "1 mesh: 0 clean, 1 with parts that share space\n",
         path.text);
     assert_string_equal(run.out, expected);
     tool_run_free(&run);
     run = RUN_TOOL("check", "--each", path.text, "--unit", "m", "--fail-depth", "200mm");
     assert_int_equal(run.code, 3);
-    assert_non_null(strstr(run.out, "250 mm deep\n"));
+    assert_non_null(strstr(run.out, "250 mm deep.\n"));
     tool_run_free(&run);
     run = RUN_TOOL("check", "--each", path.text, "--no-depths");
-    assert_non_null(strstr(run.out, ": clean\n"));
+    assert_non_null(
+        strstr(run.out, ": Clean: no two triangles cross or touch. What lies inside was not looked at.\n"));
     tool_run_free(&run);
     EXPECT_TOOL(1, "check", "--each", path.text, "--fail-depth", "200mm"); /* of what unit, nobody knows */
 }

@@ -209,7 +209,7 @@ static void meshes_without_a_surface_fail(void **state) {
     tool_run run = RUN_TOOL("check", "--each", nothing.text, hidden.text, crossing.text);
     assert_int_equal(run.code, 1);
     expect_in(run.out, "nothing.obj: No triangle has an area.\n");
-    expect_in(run.out, "hidden.obj: clean");
+    expect_in(run.out, "hidden.obj: Clean: no two triangles cross or touch.");
     expect_in(run.out, "3 meshes: 1 clean, 1 with intersections, 1 failed\n");
     tool_run_free(&run);
 }

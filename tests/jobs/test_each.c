@@ -156,21 +156,25 @@ static void every_mesh_has_its_answer(void **state) {
 
 static void lines_say_it_for_people(void **state) {
     (void)state;
-    char expected[4096];
+    char expected[8192];
     tool_run run = RUN_TOOL("check", "--each", meshes[LARGE + 4].text, meshes[LARGE].text, touching.text,
                             meshes[MESHES - 4].text, meshes[MESHES - 3].text, meshes[MESHES - 2].text,
                             meshes[MESHES - 1].text, "--no-depths");
-    snprintf(expected, sizeof expected,
-             "%s: 3 pairs of triangles cross; 50 %% of the faces\n"
-             "%s: clean\n"
-             "%s: 1 pair of triangles touches\n"
-             "%s: 1 pair of triangles lies in one plane\n"
-             "%s: 1 pair of triangles is a duplicate\n"
-             "%s: 1 pair of triangles is folded\n"
-             "%s: 1 pair of triangles crosses, 1 touches; 67 %% of the faces\n"
-             "7 meshes: 1 clean, 2 with intersections, 3 only touching, 1 only with duplicates\n",
-             meshes[LARGE + 4].text, meshes[LARGE].text, touching.text, meshes[MESHES - 4].text,
-             meshes[MESHES - 3].text, meshes[MESHES - 2].text, meshes[MESHES - 1].text);
+    snprintf(
+        expected, sizeof expected,
+        "%s: 3 pairs of triangles cross, with 4 of 8 triangles (50 %%). 1 place, component 0 x component 1.\n"
+        "%s: Clean: no two triangles cross or touch. What lies inside was not looked at.\n"
+        "%s: 1 pair of triangles touches, none cross. 1 place, component 0 x component 1. What lies inside was not "
+        "looked at.\n"
+        "%s: 1 pair of triangles touches, none cross. 1 place, component 0 x component 1. What lies inside was not "
+        "looked at.\n"
+        "%s: One triangle is there twice; no two others cross or touch. What lies inside was not looked at.\n"
+        "%s: 1 pair of triangles touches, none cross. 1 place, folded x itself. What lies inside was not looked at.\n"
+        "%s: 1 pair of triangles crosses, with 2 of 3 triangles (66.7 %%); 1 touches. 2 places, worst: component 0 x "
+        "component 1.\n"
+        "7 meshes: 1 clean, 2 with intersections, 3 only touching, 1 only with duplicates\n",
+        meshes[LARGE + 4].text, meshes[LARGE].text, touching.text, meshes[MESHES - 4].text,
+        meshes[MESHES - 3].text, meshes[MESHES - 2].text, meshes[MESHES - 1].text);
     assert_string_equal(run.out, expected);
     tool_run_free(&run);
 }
@@ -240,15 +244,17 @@ static void vertices_are_welded_and_parts_left_out(void **state) {
 static void a_file_that_fails_is_a_line(void **state) {
     (void)state;
     json_node *nodes[4];
-    char expected[4096];
+    char expected[8192];
     tool_run run = RUN_TOOL("check", "--each", clean.text, damaged.text, "/nowhere/at_all.obj", touching.text,
                             "--json", lines.text, "--fail-on-contact");
     assert_int_equal(run.code, 1);
-    snprintf(expected, sizeof expected,
-             "%s: clean\n%s:4: face index 9 is out of range, the file has 3 vertices\n"
-             "/nowhere/at_all.obj: cannot open: No such file or directory\n%s: 1 pair of triangles touches\n"
-             "4 meshes: 1 clean, 1 only touching, 2 failed\n",
-             clean.text, damaged.text, touching.text);
+    snprintf(
+        expected, sizeof expected,
+        "%s: Clean: no two triangles cross or touch.\n%s:4: face index 9 is out of range, the file has 3 vertices\n"
+        "/nowhere/at_all.obj: cannot open: No such file or directory\n%s: 1 pair of triangles touches, none cross. 1 "
+        "place, component 0 x component 1.\n"
+        "4 meshes: 1 clean, 1 only touching, 2 failed\n",
+        clean.text, damaged.text, touching.text);
     assert_string_equal(run.out, expected);
     assert_string_equal(run.error, "cscd: 2 of 4 meshes could not be checked\n");
     assert_int_equal(read_line_file(nodes, 4), 4);
@@ -311,7 +317,7 @@ static void a_dash_is_the_standard_output(void **state) {
     assert_int_equal(run.code, 0);
     assert_int_equal(read_lines(run.out, nodes, MESHES), MESHES);
     for (int i = 0; i < MESHES; i++) json_node_free(nodes[i]);
-    assert_non_null(strstr(run.error, ": clean\n"));
+    assert_non_null(strstr(run.error, ": Clean: no two triangles cross or touch.\n"));
     tool_run_free(&run);
 }
 

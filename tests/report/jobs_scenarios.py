@@ -12,7 +12,7 @@ from page import expect, expect_equal
 JOBS, MOST_BYTES, MOST_ROWS = 100_000, 20e6, 100
 FEW = 300
 GRAVE = ("failed", "found", "crossing", "inside", "touching", "duplicate", "missing", "clean")
-WORDS = {"failed": "failed", "crossing": "intersections", "inside": "something inside", "touching": "only touching", "duplicate": "only duplicates",
+WORDS = {"failed": "failed", "crossing": "intersections", "inside": "shared space", "touching": "only touching", "duplicate": "only duplicates",
          "missing": "not done", "clean": "clean"}
 ODD = "<script>document.title = 'owned'</script><img src=x onerror=\"document.title='owned'\">&amp;'\n\u202e"
 ROWS = """

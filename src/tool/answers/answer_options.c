@@ -39,7 +39,7 @@ static const option_row rows[] = {
     {"unit", "mm|cm|m|in|ft", read_unit, offsetof(answer_options, unit),
      "what one unit of the files is (default: metres of glTF files, else unknown)"},
     {"no-depths", NULL, read_flag, offsetof(answer_options, no_depths),
-     "faster: find pairs and events, and not how deep they are"},
+     "faster: find pairs and events, and neither how deep they are nor what lies inside"},
     {"orientation", "found|as-given", read_orientation, offsetof(answer_options, as_given),
      "found, the default: closed surfaces that are inside out are taken as turned around; as-given: they contain nothing"},
     {"max-memory", "SIZE", read_size, offsetof(answer_options, max_memory),

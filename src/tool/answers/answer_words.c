@@ -166,10 +166,6 @@ static void say_event(FILE *out, const answers *a, const cscd_event *event, cons
         fprintf(out, " at frame %d", answers_frame_number(a, event->worst_frame));
 }
 
-void answers_print_worst(FILE *out, const answers *a, const length_unit *unit) {
-    say_event(out, a, &a->events[a->worst_first[0]], unit);
-}
-
 /* Was not all looked at? Then that is said first. True if there is nothing else to say. */
 static bool say_unfinished(FILE *out, const answers *a) {
     const char *reason = answers_unfinished(a);
@@ -264,6 +260,12 @@ static void say_what_has_collapsed(FILE *out, const answers *a) {
                 said > COLLAPSED_SAID + 1 ? "s" : "");
 }
 
+/* Without depths nobody knows whether parts share space whose triangles do not cross. */
+static void say_what_is_not_known(FILE *out, const answers *a) {
+    if (a->depths || answers_count(a, frame_answer_checked) == 0) return;
+    if (answers_count(a, frame_answer_crosses) == 0) fputs(" What lies inside was not looked at.", out);
+}
+
 void answers_print_sentence(FILE *out, const answers *a, const length_unit *unit) {
     const bool single = answers_single(a);
     const bool said = say_unfinished(out, a);
@@ -274,9 +276,10 @@ void answers_print_sentence(FILE *out, const answers *a, const length_unit *unit
         const char *what = single ? "place" : "event";
         fprintf(out, " %zu %s%s, %s", a->event_count, what, a->event_count > 1 ? "s" : "",
                 a->event_count > 1 ? "worst: " : "");
-        answers_print_worst(out, a, unit);
+        say_event(out, a, &a->events[a->worst_first[0]], unit);
         fputc('.', out);
     }
+    say_what_is_not_known(out, a);
     say_range(out, a);
     say_animations(out, a);
     say_what_has_collapsed(out, a);

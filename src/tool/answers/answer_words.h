@@ -14,6 +14,3 @@
  * first, and nothing is called clean; where less was asked for than the recording has, the frames are named. After
  * answers_finish. */
 void answers_print_sentence(FILE *out, const answers *a, const length_unit *unit);
-
-/* Prints the worst event as the sentence has it, "A x B, 12.4 mm deep"; there is one. */
-void answers_print_worst(FILE *out, const answers *a, const length_unit *unit);

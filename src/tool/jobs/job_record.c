@@ -99,7 +99,7 @@ void job_sums_print(FILE *out, const job_sums *sums, const char *one, const char
     if (sums->missing > 0) fputs("Not finished: ", out);
     fprintf(out, "%u %s: %u clean", count, count == 1 ? one : several, of[JOB_CLEAN]);
     if (of[JOB_CROSSING] > 0) fprintf(out, ", %u with intersections", of[JOB_CROSSING]);
-    if (of[JOB_INSIDE] > 0) fprintf(out, ", %u with something inside", of[JOB_INSIDE]);
+    if (of[JOB_INSIDE] > 0) fprintf(out, ", %u with parts that share space", of[JOB_INSIDE]);
     if (of[JOB_TOUCHING] > 0) fprintf(out, ", %u only touching", of[JOB_TOUCHING]);
     if (of[JOB_DUPLICATE] > 0) fprintf(out, ", %u only with duplicates", of[JOB_DUPLICATE]);
     if (of[JOB_FAILED] > 0) fprintf(out, ", %u failed", of[JOB_FAILED]);

@@ -14,7 +14,7 @@ typedef enum job_outcome {
     JOB_CROSSING,
     JOB_TOUCHING, /* triangles touch, or come into contact between two frames */
     JOB_DUPLICATE,
-    JOB_INSIDE, /* something lies inside of something, and nothing crosses */
+    JOB_INSIDE, /* nothing crosses, but parts share space: they overlap, one is inside the other, or they are copies */
     JOB_FAILED, /* there is no answer, but a reason why not */
     JOB_OUTCOMES
 } job_outcome;

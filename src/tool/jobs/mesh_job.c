@@ -18,7 +18,6 @@ static double now_ms(void) {
 void mesh_answer_free(mesh_answer *answer) {
     free(answer->error);
     free(answer->sentence);
-    free(answer->worst);
     free(answer->unread);
     *answer = (mesh_answer){0};
 }
@@ -71,13 +70,11 @@ static bool check_frame(mesh_check *c, uint32_t frame, io_error *error) {
     return true;
 }
 
-typedef void text_printer(FILE *out, const answers *a, const length_unit *unit);
-
-static bool print_text(text_printer *print, const answers *a, const length_unit *unit, char **out) {
+static bool print_sentence(const answers *a, const length_unit *unit, char **out) {
     size_t size = 0;
     FILE *stream = open_memstream(out, &size);
     if (stream == NULL) return false;
-    print(stream, a, unit);
+    answers_print_sentence(stream, a, unit);
     if (fclose(stream) != 0 || *out == NULL) return false;
     (*out)[strcspn(*out, "\n")] = '\0';
     return true;
@@ -98,10 +95,7 @@ static bool conclude_check(mesh_check *c, io_error *error) {
     out->crossing_share = out->triangle_count > 0 ? (double)out->crossing_faces / out->triangle_count : 0.0;
     out->outcome = recording_answer_outcome(a, &rules);
     out->found = recording_answer_found(a, &rules);
-    const bool deep = out->depth > 0.0 && a->event_count > 0;
-    if (!print_text(answers_print_sentence, a, &unit, &out->sentence) ||
-        (deep && !print_text(answers_print_worst, a, &unit, &out->worst)))
-        return io_fail(error, "out of memory");
+    if (!print_sentence(a, &unit, &out->sentence)) return io_fail(error, "out of memory");
     return out->outcome != JOB_FAILED || io_fail(error, "%s", out->sentence);
 }
 

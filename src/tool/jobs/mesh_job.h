@@ -24,8 +24,7 @@ typedef struct mesh_answer {
     double depth;          /* the greatest; 0: none is known */
     job_outcome outcome;
     bool found;     /* what the rules ask for */
-    char *sentence; /* as `check` begins; */
-    char *worst;    /* of it the worst event, NULL: nothing is deep */
+    char *sentence; /* as `check` begins */
     uint32_t zero_area_triangles;
     mesh_repairs repairs;
     char *unread; /* as in mesh_file */

@@ -8,47 +8,17 @@
 
 /* ---- for people -------------------------------------------------------------------------------------- */
 
-/* "34 pairs of triangles cross" when it comes first, and then ", 2 touch". */
-static void print_kind(FILE *out, size_t count, const char *one, const char *several, bool *first) {
-    if (count == 0) return;
-    if (*first)
-        fprintf(out, " %zu pair%s of triangles %s", count, count == 1 ? "" : "s", count == 1 ? one : several);
-    else
-        fprintf(out, ", %zu %s", count, count == 1 ? one : several);
-    *first = false;
-}
-
-static void print_share(FILE *out, double share) {
-    const double percent = 100.0 * share;
-    if (percent == 0.0) return;
-    if (percent < 0.001)
-        fprintf(out, "; less than 0.001 %% of the faces");
-    else
-        fprintf(out, percent < 10.0 ? "; %.2g %% of the faces" : "; %.0f %% of the faces", percent);
-}
-
 static void print_repair(FILE *out, uint32_t count, const char *what) {
-    if (count > 0) fprintf(out, "; %u face%s %s", count, count == 1 ? "" : "s", what);
+    if (count > 0)
+        fprintf(out, " %u face%s %s %s.", count, count == 1 ? "" : "s", count == 1 ? "is" : "are", what);
 }
 
+/* The sentence is that of the mesh alone. */
 static void print_answer(FILE *out, const char *path, const mesh_answer *a) {
-    bool first = true;
-    fprintf(out, "%s:", path);
-    if (a->frame_count > 1) { /* pairs of all frames together would say nothing to people */
-        fprintf(out, " %s", a->sentence);
-        return;
-    }
-    print_kind(out, a->crossing, "crosses", "cross", &first);
-    print_kind(out, a->coplanar, "lies in one plane", "lie in one plane", &first);
-    print_kind(out, a->folded, "is folded", "are folded", &first);
-    print_kind(out, a->duplicate, "is a duplicate", "are duplicates", &first);
-    print_kind(out, a->touching, "touches", "touch", &first);
-    if (first) fputs(a->outcome == JOB_CLEAN ? " clean" : " no two triangles meet", out);
-    print_share(out, a->crossing_share);
-    if (a->worst != NULL) fprintf(out, "; %s", a->worst);
+    fprintf(out, "%s: %s", path, a->sentence);
     print_repair(out, a->repairs.dropped, "left out for having fewer than three different corners");
     print_repair(out, a->repairs.fanned, "filled by fans, as they cross themselves");
-    if (a->unread != NULL) fprintf(out, "; %s", a->unread);
+    if (a->unread != NULL) fprintf(out, " %s", a->unread);
 }
 
 /* ---- members ------------------------------------------------------------------------------------------- */

@@ -6,7 +6,7 @@ export const OUTCOME_NAME = {
   failed: 'failed',
   crossing: 'intersections',
   touching: 'only touching',
-  inside: 'something inside',
+  inside: 'shared space',
   duplicate: 'only duplicates',
   missing: 'not done',
   clean: 'clean',
@@ -18,7 +18,7 @@ export function answerOf(count, counts) {
   for (const [outcome, words] of [
     ['crossing', 'with intersections'],
     ['touching', 'only touching'],
-    ['inside', 'with something inside'],
+    ['inside', 'with parts that share space'],
     ['duplicate', 'only with duplicates'],
     ['failed', 'failed'],
     ['missing', 'not done'],
