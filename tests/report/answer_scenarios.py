@@ -61,7 +61,7 @@ def what_has_no_surface_is_named(context):
     sizes = [(1, 1), (0, 1), (0, 1), (1, 1), (0, 0), (1, 1)]
     for name, shown, checked in (("hidden", sizes, "Nothing intersects (5 frames checked)."),
                                  ("nothing", [(1, 1), (0, 0), (0, 0)], "Nothing intersects (1 frame checked).")):
-        made, page = context.material.hidden(name, shown), context.page
+        made, page = context.material.sized(name, shown), context.page
         page.open(made.page)
         text = page.script("return document.getElementById('answer-line').textContent;")
         expect(text.startswith(checked), text)
@@ -69,6 +69,17 @@ def what_has_no_surface_is_named(context):
                              ("Rock", {"hidden": "frame 4", "nothing": "frames 1 to 2"})):
             said = f"{part} has no surface in {places[name]} (all its triangles have no area), and was not looked at there."
             expect(said in text, f"no {said!r} in {text!r}")
+
+
+def what_shares_space_has_words(context):
+    """Parts that lie in each other although no triangles cross: flush on two sides, and two copies of one solid."""
+    for name, size, apart, word in (("flush", 0.5, -0.25, "overlapping"), ("copies", 1, 0.0, "copies of one solid")):
+        made, page = context.material.sized(name, [(1, size)] * 2, apart), context.page
+        page.open(made.page)
+        text = page.script("return document.getElementById('answer-line').textContent;")
+        expect(text.startswith("No triangles cross, but parts share space (2 frames checked). 1 event, the worst: "), text)
+        shown = page.script("return [...document.querySelectorAll('.events tbody tr .who')].map((one) => one.title);")
+        expect_equal(shown, [f"Puff × Rock: {word}"], "the event")
 
 
 def clicks_and_keys_walk_the_events(context):
@@ -198,7 +209,7 @@ def parts_are_told_by_name(context):
     page.click("button", "Body × Leg: 1 event, at most 2 mm deep")
     expect_equal(page.state("speed"), 12, "the speed, where the frames have a rate")
     shown = page.script("return [...document.querySelectorAll('.events tbody tr:not([hidden]) .who')].map((one) => one.title);")
-    expect_equal(shown, ["Body × Leg: intersecting"], "events after a click in the matrix")
+    expect_equal(shown, ["Body × Leg: crossing"], "events after a click in the matrix")
     page.click("button", "Event 2")
     page.rest()
     event = expect_event(page, Report(made.page), 1)
@@ -236,6 +247,7 @@ def what_is_told_of_a_triangle_fits(context):
 
 
 SCENARIOS = (answers_are_those_of_the_run, the_sentence_says_what_intersects, what_has_no_surface_is_named,
+             what_shares_space_has_words,
              clicks_and_keys_walk_the_events,
              an_event_is_seen, parts_stand_against_parts, curves_lie_on_the_bodies,
              the_camera_stays_above_the_ground, the_method_is_folded, colours_of_the_method_are_folded,

@@ -48,10 +48,10 @@ static void mark_kinds(answer_arrays *a, const cscd_intersection_pairs *found, a
         const cscd_intersection_pair *pair = &found->items[i];
         a->kinds[pair->a] |= (uint8_t)cscd_intersection_set(pair->kind);
         a->kinds[pair->b] |= (uint8_t)cscd_intersection_set(pair->kind);
-        if (pair->kind == CSCD_INTERSECTION_TOUCHING)
-            counts->touching++;
-        else
+        if (pair->kind == CSCD_INTERSECTION_CROSSING)
             counts->crossing++;
+        else
+            counts->touching++;
     }
 }
 

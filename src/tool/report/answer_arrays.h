@@ -6,8 +6,8 @@
 
 /* The numbers of one frame, in the order of the array "answer_counts". */
 typedef struct answer_counts {
-    uint32_t crossing;                  /* pairs that cross or share area */
-    uint32_t touching;                  /* pairs that only touch */
+    uint32_t crossing;                  /* pairs that cross */
+    uint32_t touching;                  /* pairs that meet otherwise */
     uint32_t triangles, points, depths; /* so many of each are kept */
 } answer_counts;
 

@@ -60,8 +60,8 @@ export function answersOf(array, scene) {
   return {
     ...scene.answers,
     events: (scene.answers.events ?? []).map((event) => ({ ...event, deep: lengthText(event.depth, scene.length_unit ?? null) })),
-    /** The numbers of the frames in which surfaces cross or something is buried. */
-    crossingFrames: places.filter((_, i) => counts[COUNTS * i] + counts[COUNTS * i + 4] > 0).map((p) => scene.numbers[p]),
+    /** The numbers of the frames in which triangles cross. */
+    crossingFrames: places.filter((_, i) => counts[COUNTS * i] > 0).map((p) => scene.numbers[p]),
     touchingFrames: places.filter((_, i) => counts[COUNTS * i + 1] > 0).map((p) => scene.numbers[p]),
     deepest: arrays.depth.reduce((most, depth) => Math.max(most, depth), 0),
     /** What was found in the frame that is nearest to a time, as `place` says; null: nothing. */

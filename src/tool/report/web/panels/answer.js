@@ -1,7 +1,7 @@
 /** The answer first: a sentence, parts against parts as a matrix, and the events; a click goes to an event's worst frame. */
 import { button, element, heading, scrollable, setText } from '../page/dom.js';
 import { counted, integer, ranges } from '../page/format.js';
-import { kindOf, whoOf, worseThan } from '../page/events.js';
+import { isWithin, kindOf, whoOf, worseThan } from '../page/events.js';
 import { createRows } from './rows.js';
 
 const PARTS_MOST = 14; // rows of the matrix
@@ -56,6 +56,7 @@ function findingsOf({ scene }, unfinished) {
   const checked = `${integer(answers.frames_checked)} ${answers.frames_checked === 1 ? 'frame' : 'frames'} checked`;
   const parts = [];
   if (crossingFrames.length > 0) parts.push(`${isOrAre(crossingFrames)} intersections (${crossingFrames.length} of ${checked}).`);
+  else if (events.some(isWithin)) parts.push(`No triangles cross, but parts share space (${checked}).`);
   else if (touchingFrames.length > 0) parts.push(`Nothing crosses; ${isOrAre(touchingFrames).toLowerCase()} touching triangles (${checked}).`);
   else parts.push(`Nothing intersects${unfinished ? ' so far' : ''} (${checked}).`);
   const worst = events.reduce((most, event) => (most === null || worseThan(event, most) ? event : most), null);
