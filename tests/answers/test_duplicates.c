@@ -1,4 +1,5 @@
 /* A triangle that is there twice is said first, and nothing with one is called clean. */
+#include "tests/support/own_folder.h"
 #include "tests/support/test.h"
 #include "tests/support/tool/run_tool.h"
 #include "tests/support/tool/tool_fixture.h"
@@ -6,20 +7,6 @@
 #include <string.h>
 
 #define TWICE "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 2 3 1\n"
-
-static temp_folder folder;
-
-static int make_folder(void **state) {
-    (void)state;
-    folder = temp_folder_make();
-    return 0;
-}
-
-static int remove_folder(void **state) {
-    (void)state;
-    temp_folder_remove(&folder);
-    return 0;
-}
 
 static temp_path write_text(const char *name, const char *text) {
     return temp_file_write(&folder, name, text, strlen(text));
@@ -80,5 +67,5 @@ int main(void) {
         cmocka_unit_test(frames_with_them_are_not_clean),
         cmocka_unit_test(among_many_they_are_an_outcome),
     };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, own_folder_make, own_folder_remove);
 }

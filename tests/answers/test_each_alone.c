@@ -2,7 +2,7 @@
 #include "src/tool/common/terminal.h"
 #include "src/tool/jobs/mesh_job.h"
 #include "tests/support/io/gltf_fixture.h"
-#include "tests/support/temp_file.h"
+#include "tests/support/own_folder.h"
 #include "tests/support/test.h"
 #include "tests/support/tool/json_reader.h"
 #include "tests/support/tool/run_tool.h"
@@ -13,20 +13,6 @@
 #include <string.h>
 
 enum { BODIES_MAX = 3 };
-
-static temp_folder folder;
-
-static int make_folder(void **state) {
-    (void)state;
-    folder = temp_folder_make();
-    return 0;
-}
-
-static int remove_folder(void **state) {
-    (void)state;
-    temp_folder_remove(&folder);
-    return 0;
-}
 
 /* A box from low, with sides of this length, in all coordinates scaled. */
 typedef struct placed_box {
@@ -228,5 +214,5 @@ int main(void) {
         cmocka_unit_test(animations_are_played),
         cmocka_unit_test(a_cancelled_search_has_no_answer),
     };
-    return cmocka_run_group_tests_name("each_alone", tests, make_folder, remove_folder);
+    return cmocka_run_group_tests_name("each_alone", tests, own_folder_make, own_folder_remove);
 }

@@ -1,4 +1,5 @@
 /* Parts that are hidden by a scale of 0 are named once, with their frames: sentence and JSON of check and replay. */
+#include "tests/support/own_folder.h"
 #include "tests/support/test.h"
 #include "tests/support/tool/json_reader.h"
 #include "tests/support/tool/run_tool.h"
@@ -8,19 +9,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-static temp_folder folder;
 static temp_path json;
 
 static int make_folder(void **state) {
-    (void)state;
-    folder = temp_folder_make();
+    own_folder_make(state);
     json = temp_file_path(&folder, "out.json");
-    return 0;
-}
-
-static int remove_folder(void **state) {
-    (void)state;
-    temp_folder_remove(&folder);
     return 0;
 }
 
@@ -282,5 +275,5 @@ int main(void) {
                                        cmocka_unit_test(meshes_without_a_surface_fail),
                                        cmocka_unit_test(recordings_with_an_empty_frame),
                                        cmocka_unit_test(what_appears_has_lost_no_contact)};
-    return cmocka_run_group_tests_name("hidden", tests, make_folder, remove_folder);
+    return cmocka_run_group_tests_name("hidden", tests, make_folder, own_folder_remove);
 }

@@ -1,5 +1,5 @@
 /* Parts that are inside out: their depths are those of the parts turned around, and what was turned is named. */
-#include "tests/support/temp_file.h"
+#include "tests/support/own_folder.h"
 #include "tests/support/test.h"
 #include "tests/support/tool/json_reader.h"
 #include "tests/support/tool/run_tool.h"
@@ -8,19 +8,11 @@
 #include <stdio.h>
 #include <string.h>
 
-static temp_folder folder;
 static temp_path json;
 
 static int make_folder(void **state) {
-    (void)state;
-    folder = temp_folder_make();
+    own_folder_make(state);
     json = temp_file_path(&folder, "out.json");
-    return 0;
-}
-
-static int remove_folder(void **state) {
-    (void)state;
-    temp_folder_remove(&folder);
     return 0;
 }
 
@@ -212,5 +204,5 @@ int main(void) {
         cmocka_unit_test(shards_tell_it_too),
         cmocka_unit_test(info_says_it_of_each_component),
     };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, make_folder, own_folder_remove);
 }

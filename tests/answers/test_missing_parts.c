@@ -1,25 +1,11 @@
 /* Parts that are asked for by --parts-by and that a file does not have: said, with what to do. */
 #include "tests/support/io/gltf_fixture.h"
-#include "tests/support/temp_file.h"
+#include "tests/support/own_folder.h"
 #include "tests/support/test.h"
 #include "tests/support/tool/run_tool.h"
 
 #include <stdio.h>
 #include <string.h>
-
-static temp_folder folder;
-
-static int make_folder(void **state) {
-    (void)state;
-    folder = temp_folder_make();
-    return 0;
-}
-
-static int remove_folder(void **state) {
-    (void)state;
-    temp_folder_remove(&folder);
-    return 0;
-}
 
 static temp_path write_text(const char *name, const char *text) {
     return temp_file_write(&folder, name, text, strlen(text));
@@ -84,5 +70,5 @@ static void who_gets_no_parts_is_told(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(who_gets_no_parts_is_told)};
-    return cmocka_run_group_tests_name("missing_parts", tests, make_folder, remove_folder);
+    return cmocka_run_group_tests_name("missing_parts", tests, own_folder_make, own_folder_remove);
 }

@@ -1,25 +1,11 @@
 /* What check says of parts that share space, or only meet, and what a gate makes of it. */
-#include "tests/support/temp_file.h"
+#include "tests/support/own_folder.h"
 #include "tests/support/test.h"
 #include "tests/support/tool/run_tool.h"
 
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
-
-static temp_folder folder;
-
-static int make_folder(void **state) {
-    (void)state;
-    folder = temp_folder_make();
-    return 0;
-}
-
-static int remove_folder(void **state) {
-    (void)state;
-    temp_folder_remove(&folder);
-    return 0;
-}
 
 /* A box, its bounds along x, y and z; other: its quads are cut along their other diagonals. */
 static void write_box(FILE *file, const char *name, const double x[6], bool other, int before) {
@@ -114,5 +100,5 @@ static void words_say_who_shares_space(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(words_say_who_shares_space)};
-    return cmocka_run_group_tests_name("overlap_words", tests, make_folder, remove_folder);
+    return cmocka_run_group_tests_name("overlap_words", tests, own_folder_make, own_folder_remove);
 }

@@ -1,6 +1,6 @@
 /* The tool's parts by object, group and material: names change with them, and what is found does not. */
 #include "tests/support/io/gltf_fixture.h"
-#include "tests/support/temp_file.h"
+#include "tests/support/own_folder.h"
 #include "tests/support/test.h"
 #include "tests/support/tool/json_reader.h"
 #include "tests/support/tool/run_tool.h"
@@ -10,19 +10,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-static temp_folder folder;
 static temp_path json;
 
 static int make_folder(void **state) {
-    (void)state;
-    folder = temp_folder_make();
+    own_folder_make(state);
     json = temp_file_path(&folder, "out.json");
-    return 0;
-}
-
-static int remove_folder(void **state) {
-    (void)state;
-    temp_folder_remove(&folder);
     return 0;
 }
 
@@ -368,5 +360,5 @@ int main(void) {
         cmocka_unit_test(every_command_takes_it),
         cmocka_unit_test(objects_without_materials_are_whole),
     };
-    return cmocka_run_group_tests_name("parts_by", tests, make_folder, remove_folder);
+    return cmocka_run_group_tests_name("parts_by", tests, make_folder, own_folder_remove);
 }

@@ -1,4 +1,5 @@
 /* What was not looked at is said first, and nothing calls it clean: sentence, JSON, JUnit and exit code of check and replay. */
+#include "tests/support/own_folder.h"
 #include "tests/support/test.h"
 #include "tests/support/tool/json_reader.h"
 #include "tests/support/tool/run_tool.h"
@@ -8,20 +9,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-static temp_folder folder;
 static temp_path json, xml;
 
 static int make_folder(void **state) {
-    (void)state;
-    folder = temp_folder_make();
+    own_folder_make(state);
     json = temp_file_path(&folder, "out.json");
     xml = temp_file_path(&folder, "out.xml");
-    return 0;
-}
-
-static int remove_folder(void **state) {
-    (void)state;
-    temp_folder_remove(&folder);
     return 0;
 }
 
@@ -229,5 +222,5 @@ int main(void) {
         cmocka_unit_test(crossing_means_crossing),
         cmocka_unit_test(what_lies_inside_is_not_clean),
     };
-    return cmocka_run_group_tests_name("unfinished", tests, make_folder, remove_folder);
+    return cmocka_run_group_tests_name("unfinished", tests, make_folder, own_folder_remove);
 }

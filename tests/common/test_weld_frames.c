@@ -1,5 +1,6 @@
 /* Welding joins what lies together in all frames, and the tool says where open edges all but lie on each other. */
 #include "tests/support/io/gltf_fixture.h"
+#include "tests/support/own_folder.h"
 #include "tests/support/test.h"
 #include "tests/support/tool/json_reader.h"
 #include "tests/support/tool/run_tool.h"
@@ -9,20 +10,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static temp_folder folder;
-
-static int make_folder(void **state) {
-    (void)state;
-    folder = temp_folder_make();
-    return 0;
-}
-
-static int remove_folder(void **state) {
-    (void)state;
-    temp_folder_remove(&folder);
-    return 0;
-}
 
 static void expect_text(const char *text, const char *part, bool there) {
     if ((strstr(text, part) != NULL) != there)
@@ -287,5 +274,5 @@ int main(void) {
         cmocka_unit_test(the_hint_joins_rounded_corners),
         cmocka_unit_test(other_open_edges_have_no_hint),
     };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, own_folder_make, own_folder_remove);
 }

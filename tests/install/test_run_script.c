@@ -1,26 +1,12 @@
 /* Tests tests/run.sh itself: what it counts as passed and as failed, and how it treats recordings to
  * compare with. */
+#include "tests/support/own_folder.h"
 #include "tests/support/shell.h"
-#include "tests/support/temp_file.h"
 #include "tests/support/test.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static temp_folder folder;
-
-static int make_folder(void **state) {
-    (void)state;
-    folder = temp_folder_make();
-    return 0;
-}
-
-static int remove_folder(void **state) {
-    (void)state;
-    temp_folder_remove(&folder);
-    return 0;
-}
 
 /* Writes a program that prints a text and ends with a status. */
 static temp_path write_program(const char *name, const char *text, int status) {
@@ -92,11 +78,11 @@ static void slowest_programs_are_listed(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(totals_are_added_up, make_folder, remove_folder),
-        cmocka_unit_test_setup_teardown(silence_is_a_failure, make_folder, remove_folder),
-        cmocka_unit_test_setup_teardown(no_program_is_a_failure, make_folder, remove_folder),
-        cmocka_unit_test_setup_teardown(named_recordings_must_be_there, make_folder, remove_folder),
-        cmocka_unit_test_setup_teardown(slowest_programs_are_listed, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(totals_are_added_up, own_folder_make, own_folder_remove),
+        cmocka_unit_test_setup_teardown(silence_is_a_failure, own_folder_make, own_folder_remove),
+        cmocka_unit_test_setup_teardown(no_program_is_a_failure, own_folder_make, own_folder_remove),
+        cmocka_unit_test_setup_teardown(named_recordings_must_be_there, own_folder_make, own_folder_remove),
+        cmocka_unit_test_setup_teardown(slowest_programs_are_listed, own_folder_make, own_folder_remove),
     };
     return cmocka_run_group_tests_name("run script", tests, NULL, NULL);
 }

@@ -2,6 +2,7 @@
 #include "src/io/growable.h"
 #include "src/io/mesh_file.h"
 #include "src/io/plan_file.h"
+#include "tests/support/own_folder.h"
 #include "tests/support/packed.h"
 #include "tests/support/test.h"
 #include "tests/support/tool/run_tool.h"
@@ -29,20 +30,6 @@ typedef struct saved {
     cscd_plan *plan;
     temp_path path;
 } saved;
-
-static temp_folder folder;
-
-static int make_folder(void **state) {
-    (void)state;
-    folder = temp_folder_make();
-    return 0;
-}
-
-static int remove_folder(void **state) {
-    (void)state;
-    temp_folder_remove(&folder);
-    return 0;
-}
 
 static cscd_mesh *mesh_of(cscd_context *context, const recorded *shape) {
     cscd_mesh *mesh = NULL;
@@ -394,5 +381,5 @@ int main(void) {
         cmocka_unit_test(memory_that_runs_out_is_an_error),
         cmocka_unit_test(what_cannot_be_written_is_not_left),
     };
-    return cmocka_run_group_tests_name("plan_file", tests, make_folder, remove_folder);
+    return cmocka_run_group_tests_name("plan_file", tests, own_folder_make, own_folder_remove);
 }

@@ -1,6 +1,7 @@
 /* The point cache writer: the exact bytes, and no file left behind by a failure. */
 #include "src/io/point_cache_write.h"
 #include "tests/support/io/frame_fixture.h"
+#include "tests/support/own_folder.h"
 #include "tests/support/test.h"
 
 #include <float.h>
@@ -15,19 +16,11 @@
 
 enum { VERTICES = 5, FRAMES = 4 };
 
-static temp_folder folder;
 static double positions[VERTICES * 3];
 
 static int make_folder(void **state) {
-    (void)state;
-    folder = temp_folder_make();
+    own_folder_make(state);
     memset(positions, 0, sizeof positions);
-    return 0;
-}
-
-static int remove_folder(void **state) {
-    (void)state;
-    temp_folder_remove(&folder);
     return 0;
 }
 
@@ -227,7 +220,7 @@ static void leaves_devices_alone(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-#define TEST(name) cmocka_unit_test_setup_teardown(name, make_folder, remove_folder)
+#define TEST(name) cmocka_unit_test_setup_teardown(name, make_folder, own_folder_remove)
         TEST(writes_what_the_format_says),
         TEST(replaces_an_existing_file),
         TEST(rounds_to_float),

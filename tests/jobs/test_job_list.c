@@ -1,26 +1,12 @@
 /* Lists of jobs: what their lines may say, and which shard has which job. */
 #include "src/tool/jobs/job_shards.h"
+#include "tests/support/own_folder.h"
 #include "tests/support/random_stream.h"
-#include "tests/support/temp_file.h"
 #include "tests/support/test.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static temp_folder folder;
-
-static int make_folder(void **state) {
-    (void)state;
-    folder = temp_folder_make();
-    return 0;
-}
-
-static int remove_folder(void **state) {
-    (void)state;
-    temp_folder_remove(&folder);
-    return 0;
-}
 
 /* ---- lines ----------------------------------------------------------------------------------------------- */
 
@@ -292,5 +278,5 @@ int main(void) {
         cmocka_unit_test(random_lists_are_balanced),
         cmocka_unit_test(shards_are_read),
     };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, own_folder_make, own_folder_remove);
 }

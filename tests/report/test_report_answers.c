@@ -1,4 +1,5 @@
 /* What a report keeps of what intersects: triangles, curves, depths and events, all of them bounded. */
+#include "tests/support/own_folder.h"
 #include "tests/support/packed.h"
 #include "tests/support/report/page_reader.h"
 #include "tests/support/report/report_rig.h"
@@ -10,20 +11,6 @@
 #include <string.h>
 
 enum { FRAMES = 7 };
-
-static temp_folder folder;
-
-static int make_folder(void **state) {
-    (void)state;
-    folder = temp_folder_make();
-    return 0;
-}
-
-static int remove_folder(void **state) {
-    (void)state;
-    temp_folder_remove(&folder);
-    return 0;
-}
 
 static page write_page(report *r) {
     io_error error = {""};
@@ -132,5 +119,5 @@ int main(void) {
         cmocka_unit_test(answers_are_bounded_and_each_frame_keeps_its_share),
         cmocka_unit_test(of_many_events_the_worst_are_kept),
     };
-    return cmocka_run_group_tests_name("report_answers", tests, make_folder, remove_folder);
+    return cmocka_run_group_tests_name("report_answers", tests, own_folder_make, own_folder_remove);
 }

@@ -1,5 +1,6 @@
 /* The content of reports is read back: scene, plan and frames of every kind, and names that are markup. */
 #include "src/tool/report/template.h"
+#include "tests/support/own_folder.h"
 #include "tests/support/report/page_reader.h"
 #include "tests/support/report/report_rig.h"
 #include "tests/support/test.h"
@@ -11,20 +12,6 @@
 #include <string.h>
 
 enum { FRAMES = 7, TRIANGLES_MAX = 1000 };
-
-static temp_folder folder;
-
-static int make_folder(void **state) {
-    (void)state;
-    folder = temp_folder_make();
-    return 0;
-}
-
-static int remove_folder(void **state) {
-    (void)state;
-    temp_folder_remove(&folder);
-    return 0;
-}
 
 static temp_path page_path(void) {
     return temp_file_path(&folder, "report.html");
@@ -281,5 +268,5 @@ int main(void) {
         cmocka_unit_test(names_are_never_markup),     cmocka_unit_test(a_comparison_has_no_scene),
         cmocka_unit_test(a_preprocess_has_one_frame), cmocka_unit_test(pages_load_send_and_move_nothing),
     };
-    return cmocka_run_group_tests_name("report_page", tests, make_folder, remove_folder);
+    return cmocka_run_group_tests_name("report_page", tests, own_folder_make, own_folder_remove);
 }

@@ -1,5 +1,6 @@
 /* The parts of a replay that a report keeps: contacts, orientations, detector points, and every n-th frame
  * of long recordings. */
+#include "tests/support/own_folder.h"
 #include "tests/support/packed.h"
 #include "tests/support/report/page_reader.h"
 #include "tests/support/report/report_rig.h"
@@ -10,20 +11,6 @@
 #include <string.h>
 
 enum { FRAMES = 7, FOLD_FRAMES = 13, CONTACTS_MAX = 20000 };
-
-static temp_folder folder;
-
-static int make_folder(void **state) {
-    (void)state;
-    folder = temp_folder_make();
-    return 0;
-}
-
-static int remove_folder(void **state) {
-    (void)state;
-    temp_folder_remove(&folder);
-    return 0;
-}
 
 static page write_page(report *r) {
     io_error error = {""};
@@ -338,5 +325,5 @@ int main(void) {
         cmocka_unit_test(scenery_comes_back),
         cmocka_unit_test(of_many_contacts_each_interval_keeps_its_share),
     };
-    return cmocka_run_group_tests_name("report_replay", tests, make_folder, remove_folder);
+    return cmocka_run_group_tests_name("report_replay", tests, own_folder_make, own_folder_remove);
 }

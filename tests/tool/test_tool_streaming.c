@@ -1,4 +1,5 @@
 /* What a replay reads, and when: of a large recording its own frames only, and files that come late. */
+#include "tests/support/own_folder.h"
 #include "tests/support/page_cache.h"
 #include "tests/support/shell.h"
 #include "tests/support/test.h"
@@ -12,20 +13,6 @@
 #include <sys/stat.h>
 #include <sys/types.h>
 #include <unistd.h>
-
-static temp_folder folder;
-
-static int make_folder(void **state) {
-    (void)state;
-    folder = temp_folder_make();
-    return 0;
-}
-
-static int remove_folder(void **state) {
-    (void)state;
-    temp_folder_remove(&folder);
-    return 0;
-}
 
 /* ---- a large recording ----------------------------------------------------------------------------------- */
 
@@ -288,5 +275,5 @@ int main(void) {
         cmocka_unit_test(a_model_that_comes_late_is_waited_for),
         cmocka_unit_test(an_interrupt_ends_the_wait),
     };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, own_folder_make, own_folder_remove);
 }
