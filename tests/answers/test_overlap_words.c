@@ -98,7 +98,46 @@ static void words_say_who_shares_space(void **state) {
     }
 }
 
+/* ---- rounding ---------------------------------------------------------------------------------------------- */
+
+/* A triangle of x and y, from one z to another. */
+static void write_prism(FILE *file, const char *name, const double xy[3][2], const double z[2], int before) {
+    fprintf(file, "o %s\n", name);
+    for (int v = 0; v < 6; v++) fprintf(file, "v %.17g %.17g %.17g\n", xy[v % 3][0], xy[v % 3][1], z[v / 3]);
+    fprintf(file, "f %d %d %d\nf %d %d %d\n", before + 3, before + 2, before + 1, before + 4, before + 5,
+            before + 6);
+    for (int i = 0; i < 3; i++) {
+        const int a = before + i + 1, b = before + (i + 1) % 3 + 1;
+        fprintf(file, "f %d %d %d %d\n", a, b, b + 3, a + 3);
+    }
+}
+
+/* The second stands on the slanted side of the first, 3x + 4y = 12, exactly, but distances from that plane are rounded: they
+ * are some 1e-16, and no depth. */
+static void rounded_distances_are_no_depth(void **state) {
+    (void)state;
+    static const double ends[4][2] = {{0.5, 2}, {1, 3}, {0.5, 3.5}, {3.25, 3.5}}; /* along x */
+    for (size_t i = 0; i < 4; i++)
+        for (double scale = 0.125; scale <= 1024.0; scale *= 8192.0) {
+            const temp_path path = temp_file_path(&folder, "prisms.obj");
+            const double from = scale * ends[i][0], to = scale * ends[i][1];
+            const double first[3][2] = {{0, 0}, {4 * scale, 0}, {0, 3 * scale}},
+                         second[3][2] = {{to, 3 * scale - 0.75 * to},
+                                         {4 * scale, 5 * scale},
+                                         {from, 3 * scale - 0.75 * from}};
+            FILE *file = fopen(path.text, "w");
+            write_prism(file, "a", first, (double[2]){0, 7 * scale}, 0);
+            write_prism(file, "b", second, (double[2]){scale, 5.375 * scale}, 6);
+            fclose(file);
+            tool_run run = RUN_TOOL("check", path.text, "--fail-on", "crossing");
+            if (run.code != 0 || strstr(run.out, "a x b  touch ") == NULL)
+                fail_msg("%d: %s", run.code, run.out);
+            tool_run_free(&run);
+        }
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(words_say_who_shares_space)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(words_say_who_shares_space),
+                                       cmocka_unit_test(rounded_distances_are_no_depth)};
     return cmocka_run_group_tests_name("overlap_words", tests, own_folder_make, own_folder_remove);
 }
