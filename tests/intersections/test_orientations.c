@@ -1,5 +1,6 @@
 /* Components that are inside out, alone, beside and in each other: which are taken as turned around, by hand. */
 #include "tests/support/intersections/body_rig.h"
+#include "tests/support/random_stream.h"
 #include "tests/support/test.h"
 
 #include <math.h>
@@ -304,13 +305,57 @@ static void each_allocation_may_fail(void **state) {
     assert_int_equal(counter.live, 0);
 }
 
+/* ---- rounding -------------------------------------------------------------------------------------------- */
+
+/* Three rows whose determinant is 1, of large integers, by adding rows to each other. */
+static void make_rows(random_stream *random, double rows[3][3]) {
+    for (int i = 0; i < 9; i++) rows[i / 3][i % 3] = i % 4 == 0;
+    for (double most = 0.0; most < 0x1p24;) {
+        const uint32_t i = stream_below(random, 3), j = (i + 1 + stream_below(random, 2)) % 3;
+        const double times = (double)stream_below(random, 7) - 3.0;
+        for (int k = 0; k < 3; k++) {
+            rows[i][k] += times * rows[j][k];
+            most = fmax(most, fabs(rows[i][k]));
+        }
+    }
+}
+
+/* Tetrahedra of a volume of 1/6 with edges of millions: rounded, the volume is anything, and only the exact sign tells which of
+ * them are inside out. */
+static void the_sign_is_exact(void **state) {
+    (void)state;
+    static const uint32_t triangles[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+    random_stream random = stream_start(51);
+    for (int round = 0; round < 100; round++) {
+        double rows[3][3];
+        make_rows(&random, rows);
+        body_rig_begin(&rig);
+        memset(rig.all.x0, 0, 3 * sizeof *rig.all.x0);
+        memcpy(rig.all.x0 + 3, rows, sizeof rows);
+        memcpy(rig.all.triangles, triangles, sizeof triangles);
+        rig.all.vertex_count = rig.all.triangle_count = 4;
+        body_rig_end_body(&rig);
+        if (round % 2 == 1) turn_body(&rig, 0);
+        body_rig_create(&rig, NULL, 1);
+        body_rig_find(&rig);
+        assert_int_equal(is_turned(&rig, 0), round % 2);
+        body_rig_free(&rig);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(crossing_cubes_have_one_depth), cmocka_unit_test(a_cube_within_another),
-        cmocka_unit_test(as_given_it_encloses_nothing),  cmocka_unit_test(directions_are_outwards),
-        cmocka_unit_test(shells_keep_their_sense),       cmocka_unit_test(parts_are_bodies_of_their_own),
-        cmocka_unit_test(a_shell_of_a_skin_with_limbs),  cmocka_unit_test(what_is_not_within_stands_alone),
-        cmocka_unit_test(what_is_collapsed_is_as_given), cmocka_unit_test(a_scale_that_goes_negative),
+        cmocka_unit_test(the_sign_is_exact),
+        cmocka_unit_test(crossing_cubes_have_one_depth),
+        cmocka_unit_test(a_cube_within_another),
+        cmocka_unit_test(as_given_it_encloses_nothing),
+        cmocka_unit_test(directions_are_outwards),
+        cmocka_unit_test(shells_keep_their_sense),
+        cmocka_unit_test(parts_are_bodies_of_their_own),
+        cmocka_unit_test(a_shell_of_a_skin_with_limbs),
+        cmocka_unit_test(what_is_not_within_stands_alone),
+        cmocka_unit_test(what_is_collapsed_is_as_given),
+        cmocka_unit_test(a_scale_that_goes_negative),
         cmocka_unit_test(each_allocation_may_fail),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
