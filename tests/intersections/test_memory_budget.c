@@ -207,7 +207,8 @@ static void pairs_take_64_bytes_each(void **state) {
         print_message("  %zu pairs, %.1f bytes each\n", rig.found.count,
                       (double)taken / (double)rig.found.count);
         assert_true(rig.found.count > 20 * rig.all.triangle_count);
-        assert_true(taken <= PAIR_SIZE * rig.found.count + (size_t)A_THREAD * threads);
+        /* The lists of each thread grow by their own steps: some 400 KiB each, whatever they hold in the end. */
+        assert_true(taken <= PAIR_SIZE * rig.found.count + ((size_t)1 << 19) * threads);
         body_rig_free(&rig);
     }
 }
