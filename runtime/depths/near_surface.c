@@ -134,10 +134,18 @@ static void try_part(nearest_search *s, uint32_t triangle, const outer_part *par
     for (int k = 0; k < 3; k++) s->best.x[k] = p[0][k] + u * (p[1][k] - p[0][k]) + v * (p[2][k] - p[0][k]);
 }
 
+/* The first part from i on that is in a run which is not far, or has begun before i; end: none. */
+static size_t skip_far_runs(const nearest_search *s, size_t i, size_t end) {
+    while (i < end && i % OUTER_RUN == 0 && box_is_far(s, &s->outer->run_boxes[i / OUTER_RUN]))
+        i += OUTER_RUN;
+    return i < end ? i : end;
+}
+
 static void try_parts(nearest_search *s, uint32_t triangle, size_t cut) {
     const outer_surface *o = s->outer;
-    if (o->part_begins[cut] == o->part_begins[cut + 1] || box_is_far(s, &o->boxes[cut])) return;
-    for (size_t i = o->part_begins[cut]; i < o->part_begins[cut + 1]; i++) {
+    const size_t end = o->part_begins[cut + 1];
+    if (o->part_begins[cut] == end || box_is_far(s, &o->boxes[cut])) return;
+    for (size_t i = o->part_begins[cut]; (i = skip_far_runs(s, i, end)) < end; i++) {
         if (!box_is_far(s, &o->part_boxes[i]) && !part_is_far(s, o->parts[i].corners))
             try_part(s, triangle, &o->parts[i]);
     }
@@ -211,7 +219,8 @@ static double squared_gap(const double x[3], const outer_box *box) {
 static bool reach_parts(nearest_search *s, uint32_t triangle, double squared, size_t cut) {
     const outer_surface *o = s->outer;
     reach_point at;
-    for (size_t i = o->part_begins[cut]; i < o->part_begins[cut + 1]; i++) {
+    const size_t end = o->part_begins[cut + 1];
+    for (size_t i = o->part_begins[cut]; (i = skip_far_runs(s, i, end)) < end; i++) {
         if (squared_gap(s->x, &o->part_boxes[i]) >= s->best.squared) continue;
         const double here = squared_reach(s->x, o->parts[i].corners, &at);
         if (!(here < s->best.squared)) continue;

@@ -24,6 +24,7 @@ void outer_surface_free(outer_surface *o) {
     context_free_all(o->context, list_of_places(o, 0));
     context_free(o->context, o->parts);
     context_free(o->context, o->part_boxes);
+    context_free(o->context, o->run_boxes);
     *o = (outer_surface){.context = o->context, .cuts = {.context = o->context}};
 }
 
@@ -173,6 +174,18 @@ static bool cuts_itself(const triangle_cuts *c, const surface_cuts *found, size_
     return false;
 }
 
+static bool box_runs(outer_surface *o) {
+    const size_t count = (o->part_count + OUTER_RUN - 1) / OUTER_RUN;
+    const array_list list = {{ARRAY(o->run_boxes, room_with_spare(count))}};
+    if (!memory_budget_take_all(o->budget, list)) return false;
+    if (!context_renew_all(o->context, list, &o->run_capacity, count)) return false;
+    for (size_t i = 0; i < count; i++) {
+        const size_t first = i * OUTER_RUN, left = o->part_count - first;
+        box_parts(&o->run_boxes[i], o->part_boxes + first, left < OUTER_RUN ? left : OUTER_RUN);
+    }
+    return true;
+}
+
 bool outer_surface_find(outer_surface *o, const surface_cuts *found, const bvh *f) {
     triangle_cuts *c = &o->cuts;
     o->scale = f->scale;
@@ -191,7 +204,7 @@ bool outer_surface_find(outer_surface *o, const surface_cuts *found, const bvh *
         if (cut.stretch > 0.0 && !divide_triangle(o, found, &cut)) return false;
     }
     o->part_begins[o->cut_count] = o->part_count;
-    return find_places(o, found);
+    return box_runs(o) && find_places(o, found);
 }
 
 void outer_surface_whole(const outer_surface *o, const surface_cuts *found, uint32_t triangle,

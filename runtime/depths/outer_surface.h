@@ -14,6 +14,9 @@ typedef struct outer_box {
     double low[3], high[3];
 } outer_box;
 
+/* So many parts that follow each other have a box together: a triangle that is cut by hundreds has thousands of parts. */
+enum { OUTER_RUN = 16 };
+
 #define OUTER_AS_A_WHOLE UINT32_MAX
 #define OUTER_NOWHERE    (UINT32_MAX - 1)
 
@@ -26,6 +29,8 @@ typedef struct outer_surface {
     outer_part *parts;
     outer_box *part_boxes;
     size_t part_count, part_capacity;
+    outer_box *run_boxes; /* run k has the parts from OUTER_RUN * k on, of whatever triangle */
+    size_t run_capacity;
     uint32_t *cut_triangles; /* ascending: those with parts, or none of them outer */
     size_t *part_begins;     /* per cut triangle and one more: where its parts begin */
     outer_box *boxes;        /* per cut triangle: of its parts; without parts low is above high */
