@@ -59,6 +59,12 @@ static void among_many_they_are_an_outcome(void **state) {
     assert_non_null(strstr(run.out, "one.obj: One triangle is there twice; no two others cross or touch."));
     assert_non_null(strstr(run.out, "1 mesh: 0 clean, 1 only with duplicates"));
     tool_run_free(&run);
+    EXPECT_TOOL(0, "check", path.text, "--fail-on", "crossing");
+    run = RUN_TOOL("check", path.text, "--fail-on", "touching");
+    assert_int_equal(run.code, 3);
+    assert_non_null(strstr(run.error, "failed: 1 triangle is there twice"));
+    tool_run_free(&run);
+    EXPECT_TOOL(3, "check", "--each", path.text, "--fail-on", "touching");
 }
 
 int main(void) {

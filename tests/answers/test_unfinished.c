@@ -110,6 +110,12 @@ static void expect_unfinished(const char *command, const bad_frame *fault, uint3
     expect_unfinished_json("summary", fault->reason, strcmp(command, "replay") == 0);
     expect_unfinished_junit(bad, crosses, fault->reason);
     tool_run_free(&run);
+    run = RUN_TOOL(command, model.text, paths[0].text, paths[1].text, paths[2].text, paths[3].text,
+                   "--fail-on", "crossing"); /* what fails, fails, whatever could not be read */
+    assert_int_equal(run.code, crosses ? 3 : 1);
+    expect_in(run.error, fault->reason);
+    if (crosses) expect_in(run.error, "failed: ");
+    tool_run_free(&run);
 }
 
 static void a_frame_that_cannot_be_read_comes_first(void **state) {
@@ -213,6 +219,29 @@ static void what_lies_inside_is_not_clean(void **state) {
     assert_false(json_node_boolean(frame, "clean"));
     assert_true(json_node_number(frame, "depth") == 0.25);
     json_node_free(root);
+    /* Who does not look says so, and no rule passes it. */
+    static const char *const unknown[] = {"clean", "depth", "overlapping_parts", "inside_parts",
+                                          "same_solids"};
+    tool_run run = RUN_TOOL("check", path.text, "--no-depths", "--json", json.text);
+    assert_int_equal(run.code, 0);
+    expect_start(run.out, "Clean: no two triangles cross or touch. What lies inside was not looked at.\n");
+    tool_run_free(&run);
+    root = json_node_read_file(json.text);
+    frame = json_node_item(json_node_member(root, "frames"), 0);
+    for (size_t i = 0; i < sizeof unknown / sizeof *unknown; i++)
+        assert_int_equal(json_node_member(frame, unknown[i])->kind, JSON_NULL);
+    json_node_free(root);
+    for (int replays = 0; replays < 2; replays++) {
+        const char *command = replays ? "replay" : "check",
+                   *left_out = replays ? "--no-check" : "--no-depths";
+        EXPECT_ERROR(2, TEXTS("--fail-on", "--no-depths"), command, path.text, path.text, "--no-depths",
+                     "--fail-on", "crossing");
+        EXPECT_ERROR(2, TEXTS("--fail-depth", "--no-depths"), command, path.text, path.text, "--no-depths",
+                     "--fail-depth", "0.1");
+        EXPECT_ERROR(2, TEXTS(left_out), command, path.text, path.text, left_out, "--fail-on", "touching");
+    }
+    EXPECT_ERROR(2, TEXTS("--no-depths"), "check", "--each", path.text, "--no-depths", "--fail-on",
+                 "crossing");
 }
 
 int main(void) {

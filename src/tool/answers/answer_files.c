@@ -95,13 +95,24 @@ void answers_write_json(const answers *a, const length_unit *unit, json *out) {
     write_collapsed(a, out);
 }
 
+/* What nobody has looked at is null. */
+static void write_known(json *out, const frame_answer *frame, const char *name, double number) {
+    if (frame->spaces_known)
+        json_number(out, name, number);
+    else
+        json_null(out, name);
+}
+
 void answers_write_frame(const answers *a, const frame_answer *frame, json *out) {
     const uint32_t triangles = cscd_mesh_triangle_count(a->recording->mesh);
     json_boolean(out, "crossing", frame->crossing > 0);
-    json_boolean(out, "clean", frame_answer_clean(frame));
-    json_integer(out, "overlapping_parts", frame->overlapping);
-    json_integer(out, "inside_parts", frame->inside);
-    json_integer(out, "same_solids", frame->same);
+    if (frame_answer_clean(frame) && !frame->spaces_known)
+        json_null(out, "clean");
+    else
+        json_boolean(out, "clean", frame_answer_clean(frame));
+    write_known(out, frame, "overlapping_parts", (double)frame->overlapping);
+    write_known(out, frame, "inside_parts", (double)frame->inside);
+    write_known(out, frame, "same_solids", (double)frame->same);
     json_integer(out, "crossing_pairs", frame->crossing);
     json_integer(out, "touching_pairs", frame->touching);
     json_integer(out, "duplicate_pairs", frame->duplicates);
@@ -112,7 +123,7 @@ void answers_write_frame(const answers *a, const frame_answer *frame, json *out)
         json_integer(out, "crossing_faces", frame->crossing_faces);
         json_number(out, "crossing_share", triangles > 0 ? (double)frame->crossing_faces / triangles : 0.0);
     }
-    json_number(out, "depth", frame->depth);
+    write_known(out, frame, "depth", frame->depth);
 }
 
 /* ---- CSV ------------------------------------------------------------------------------------------------ */

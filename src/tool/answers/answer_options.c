@@ -68,6 +68,13 @@ bool answer_options_are_safe(const answer_options *o, const char *const *inputs,
            is_safe("--junit", o->junit_path, ".xml", inputs, input_count, outputs, output_count, error);
 }
 
+bool answer_options_agree(const answer_options *o, io_error *error) {
+    if (!o->no_depths) return true;
+    if (o->fail.depth.given) return io_fail(error, "--fail-depth needs depths, which --no-depths leaves out");
+    return o->fail.kind == FAIL_ON_NOTHING ||
+           io_fail(error, "--fail-on counts what lies inside, too, which --no-depths does not look at");
+}
+
 length_unit answer_options_unit(const answer_options *o, const recording *r) {
     length_unit unit = o->unit;
     for (uint32_t i = 0; i < r->object_count; i++)

@@ -23,6 +23,9 @@ extern const option_list answer_rows;
 bool answer_options_are_safe(const answer_options *o, const char *const *inputs, size_t input_count,
                              const char *const *outputs, size_t output_count, io_error *error);
 
+/* A rule passes nothing that the run does not look at: false if one would, and the error says which. */
+bool answer_options_agree(const answer_options *o, io_error *error);
+
 /* The unit that the options give; else the metre where all files are glTF, else none that anybody knows. */
 length_unit answer_options_unit(const answer_options *o, const recording *r);
 

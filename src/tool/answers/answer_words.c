@@ -39,7 +39,7 @@ static void say_recording(FILE *out, const answers *a) {
     if (checked == 0)
         fprintf(out, answers_count(a, frame_answer_without_area) > 0 ? "No triangle has an area in any frame."
                                                                      : "No frame was checked.");
-    else if (crossing == checked)
+    else if (crossing == checked && checked > 1)
         fprintf(out, "All %zu frames cross%s.", checked, more);
     else if (crossing > 0) {
         fprintf(out, "Frame%s", crossing > 1 ? "s" : "");

@@ -273,6 +273,7 @@ bool answers_add_found(answers *a, uint32_t frame, cscd_intersection_pairs *foun
     added->crossing = found->crossing;
     added->touching = found->coplanar + found->folded + found->touching;
     added->duplicates = found->duplicate;
+    added->spaces_known = found->depths != NULL && found->parts != NULL;
     added->unlisted = (found->left_out >> CSCD_LEFT_OUT_PAIRS & 1) != 0;
     added->ms = ms;
     added->without_area =

@@ -11,6 +11,7 @@
 typedef struct frame_answer {
     uint32_t frame;          /* its index in the recording */
     bool checked;            /* else nothing was looked for, and only contacts are known */
+    bool spaces_known;       /* it was looked at whether parts share space, and how deep */
     bool unlisted;           /* pairs are counted only, so nothing is known of faces, parts and depths */
     size_t crossing;         /* pairs of triangles that cross, */
     size_t touching;         /* that meet otherwise, duplicates aside, */

@@ -63,6 +63,9 @@ bool fail_rules_meet(const fail_rules *rules, const answers *a, const frame_answ
     else if (o->kind >= FAIL_ON_TOUCHING && frame->touching > 0)
         snprintf(text, FAIL_TEXT_SIZE, "%zu pair%s of triangles touch%s%s", frame->touching,
                  frame->touching > 1 ? "s" : "", frame->touching > 1 ? "" : "es", worst);
+    else if (o->kind >= FAIL_ON_TOUCHING && frame->duplicates > 0)
+        snprintf(text, FAIL_TEXT_SIZE, "%zu triangle%s there twice", frame->duplicates,
+                 frame->duplicates > 1 ? "s are" : " is");
     else if (o->kind >= FAIL_ON_CONTACT && frame->contacts > 0)
         snprintf(text, FAIL_TEXT_SIZE, "%zu contact%s on the way to it", frame->contacts,
                  frame->contacts > 1 ? "s" : "");
@@ -90,7 +93,7 @@ static int refuse_without_area(const answers *a) {
         answers_frame_number(a, first->frame), FAIL_WITHOUT_AREA);
 }
 
-static bool any_frame_fails(const fail_rules *rules, const answers *a) {
+bool fail_rules_failed(const fail_rules *rules, const answers *a) {
     char text[FAIL_TEXT_SIZE], first[FAIL_TEXT_SIZE];
     size_t count = 0;
     const frame_answer *frames = answers_frames(a), *failed = NULL;
@@ -108,7 +111,7 @@ static bool any_frame_fails(const fail_rules *rules, const answers *a) {
 }
 
 int fail_rules_exit_code(const fail_rules *rules, const answers *a) {
-    if (any_frame_fails(rules, a)) return EXIT_CONTACT;
+    if (fail_rules_failed(rules, a)) return EXIT_CONTACT;
     const char *unfinished = answers_unfinished(a);
     if (unfinished != NULL) return fail_input("%s", unfinished);
     return fail_rules_undecided(rules, a) ? refuse_without_area(a) : EXIT_RAN;

@@ -8,7 +8,7 @@
 typedef enum fail_kind {
     FAIL_ON_NOTHING,
     FAIL_ON_CROSSING, /* triangles that cross */
-    FAIL_ON_TOUCHING, /* or meet otherwise */
+    FAIL_ON_TOUCHING, /* or meet otherwise, or are there twice */
     FAIL_ON_CONTACT   /* or come into contact between two frames */
 } fail_kind;
 
@@ -44,6 +44,9 @@ bool fail_rules_meet(const fail_rules *rules, const answers *a, const frame_answ
 
 /* Is there a rule that no frame meets, although something may hide in frames in which no triangle has an area? */
 bool fail_rules_undecided(const fail_rules *rules, const answers *a);
+
+/* Does a frame fail that was looked at? Says so on standard error. */
+bool fail_rules_failed(const fail_rules *rules, const answers *a);
 
 /* The exit code of a run that ended without an error: EXIT_CONTACT if any frame fails, and then it says on stderr how many do and what
  * the first does wrong; else EXIT_BAD_INPUT if not all was looked at that was asked for, which is said, too. */

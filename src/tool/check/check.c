@@ -32,7 +32,7 @@ static const option_row rows[] = {
     {"frames", "A:B[:STEP]", read_frames, offsetof(check_options, frames),
      "only the frames A to B, both included, or every STEP-th of them"},
     {"fail-on", "crossing|touching", read_fail_kind, offsetof(check_options, answers.fail.kind),
-     "exit with 3 when triangles cross or parts overlap in any frame; touching: or touch"},
+     "exit with 3 when triangles cross or parts share space in any frame; touching: or touch, or are there twice"},
     {"fail-on-contact", NULL, fail_on_touching, offsetof(check_options, answers.fail.kind),
      "another name of --fail-on touching"},
     {"reproducible", NULL, read_flag, offsetof(check_options, reproducible),
@@ -176,6 +176,8 @@ int command_check(int argument_count, char **arguments) {
     given_options given;
     int code;
     if (!option_table_read(&table, argument_count, arguments, &options, &given, &code)) return code;
+    io_error error;
+    if (!answer_options_agree(&options.answers, &error)) return fail_usage("check", "%s", error.text);
     if (options.list.path != NULL) return run_list(&options, &given);
     if (options.each) return run_each(&options, &given);
     const char *lone = list_option_without_list(&table, &given);

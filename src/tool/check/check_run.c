@@ -139,7 +139,10 @@ static int end_check(check_run *c, bool ran, const io_error *error) {
     io_error close_error = {""};
     if (!close_check(c, ran ? (interrupted() ? "interrupted" : NULL) : error->text, &close_error) && ran)
         return fail_input("%s", close_error.text);
-    if (!ran) return fail_input("%s", error->text);
+    if (!ran) {
+        const int code = fail_input("%s", error->text);
+        return c->job == NULL && fail_rules_failed(&c->rules, &c->answers) ? EXIT_CONTACT : code;
+    }
     if (interrupted()) {
         if (c->job == NULL) tell_interrupt(c);
         return interrupt_exit_code();

@@ -322,6 +322,7 @@ int replay_run(const replay_options *options, shard_series *merged, const char *
              options->list.shard.index, options->list.shard.count, CHUNK_INTERVALS);
     if (begun && !options->quiet) replay_print_remarks(&r);
     if (!ran) code = fail_replay(&r, begun, error.text);
+    if (!ran && begun && job == NULL && fail_rules_failed(&r.rules, &r.answers)) code = EXIT_CONTACT;
     if (!closed && (ran || strcmp(close_error.text, error.text) != 0)) /* what ended the run was said above */
         code = fail_input("%s", close_error.text);
     if (code == EXIT_RAN && interrupted()) {

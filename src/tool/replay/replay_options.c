@@ -92,7 +92,7 @@ static const option_row rows[] = {
     {"simd", "auto|scalar|avx2|avx512|neon", read_simd, offsetof(replay_options, source.simd),
      "vector instructions (default: the best here); the contacts are the same"},
     {"fail-on", "crossing|touching|contact", read_fail_kind, offsetof(replay_options, answers.fail.kind),
-     "exit with 3 when triangles cross or parts overlap in any frame; touching: or touch; contact: or come into contact between "
+     "exit with 3 when triangles cross or parts share space in any frame; touching: or touch, or are there twice; contact: or come into contact between "
      "two frames"},
     {"fail-on-contact", NULL, fail_on_contact, offsetof(replay_options, answers.fail.kind),
      "another name of --fail-on contact"},
@@ -174,6 +174,14 @@ static int check_options(const replay_options *o, size_t input_count) {
     if (o->no_check && export_request_any(&o->exports))
         return fail_usage("replay",
                           "--vtk, --ply and --select tell what intersects, which --no-check leaves out");
+    const fail_options *fail = &o->answers.fail;
+    if (o->no_check && (fail->depth.given || fail->faces_limited || fail->kind == FAIL_ON_CROSSING ||
+                        fail->kind == FAIL_ON_TOUCHING))
+        return fail_usage("replay",
+                          "the rules that fail a run ask what intersects, which --no-check leaves out");
+    io_error error;
+    if (!o->no_check && !answer_options_agree(&o->answers, &error))
+        return fail_usage("replay", "%s", error.text);
     if (o->frames.step != 1)
         return fail_usage("replay",
                           "--frames with a step of %u: a contact lies between one frame and the next, so "
