@@ -349,7 +349,9 @@ cscd_status patch_finder_run(patch_finder *p, const named_surface *s, const bvh 
     work.most_windings = memory_budget_room(p->budget, WINDING_SIZE);
     parallel_run(p->mesh->context->threads, p->lane_count, number_patches, &work);
     if (progress_cancelled(&p->mesh->context->progress)) return CSCD_CANCELLED;
-    if (!memory_budget_take(p->budget, windings, WINDING_SIZE)) return CSCD_OUT_OF_MEMORY;
+    /* how many more lanes have counted before they stopped depends on their number */
+    size_t counted = windings > work.most_windings ? work.most_windings + 1 : windings;
+    if (!memory_budget_take(p->budget, counted, WINDING_SIZE)) return CSCD_OUT_OF_MEMORY;
     if (!join_numbers(p)) return CSCD_OUT_OF_MEMORY;
     *out = (cscd_patches){p->patches,        p->patch_count,      p->windings,       p->winding_count,
                           p->vertex_patches, p->triangle_patches, p->corner_patches, s->turned};

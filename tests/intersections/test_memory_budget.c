@@ -179,6 +179,22 @@ static void a_shuffled_frame_stays_on_its_budget(void **state) {
     try_budgets(add_small_shuffled, 0x7f);
 }
 
+static void what_is_wanted_is_the_same_for_any_threads(void **state) {
+    (void)state;
+    body_rig *const rigs[2] = {&rig, &full};
+    cscd_intersection_options options = cscd_intersection_defaults();
+    options.patches = true;
+    for (int i = 0; i < 2; i++) {
+        add_small_shuffled(rigs[i]);
+        body_rig_create(rigs[i], NULL, i == 0 ? 1 : 4);
+    }
+    for (options.max_memory = 1 << 14; options.max_memory < 1 << 20; options.max_memory += 1 << 10) {
+        for (int i = 0; i < 2; i++) find_with(rigs[i], &options);
+        assert_int_equal(rig.found.wanted_memory, full.found.wanted_memory);
+    }
+    for (int i = 0; i < 2; i++) body_rig_free(rigs[i]);
+}
+
 static void a_soup_stays_on_its_budget(void **state) {
     (void)state;
     try_budgets(add_small_soup, 0x7f);
@@ -373,6 +389,7 @@ static void names_are_those_of_the_header(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(a_shuffled_frame_stays_on_its_budget),
                                        cmocka_unit_test(a_soup_stays_on_its_budget),
+                                       cmocka_unit_test(what_is_wanted_is_the_same_for_any_threads),
                                        cmocka_unit_test(pairs_take_64_bytes_each),
                                        cmocka_unit_test(pairs_that_do_not_fit_are_counted),
                                        cmocka_unit_test(earlier_frames_change_nothing),
