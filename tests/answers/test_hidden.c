@@ -44,10 +44,6 @@ static temp_path write_scene(const char *name, double size, double rock) {
     return path;
 }
 
-static void expect_in(const char *text, const char *part) {
-    if (strstr(text, part) == NULL) fail_msg("expected '%s' in: %s", part, text);
-}
-
 static void expect_spans(const json_node *item, const char *name, const int *numbers, uint32_t count) {
     const json_node *spans = json_node_member(item, name);
     assert_int_equal(spans->count, count);

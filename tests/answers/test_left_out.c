@@ -61,10 +61,6 @@ static int remove_files(void **state) {
     return 0;
 }
 
-static void expect_in(const char *text, const char *part) {
-    if (strstr(text, part) == NULL) fail_msg("expected '%s' in: %s", part, text);
-}
-
 /* Between the two words of the first line. */
 static size_t number_in(const char *text, const char *before) {
     const char *at = strstr(text, before);

@@ -43,14 +43,6 @@ static temp_path write_boxes(const char *name, double gap, const char *spoilt) {
     return path;
 }
 
-static void expect_in(const char *text, const char *part) {
-    if (strstr(text, part) == NULL) fail_msg("expected '%s' in: %s", part, text);
-}
-
-static void expect_start(const char *text, const char *part) {
-    if (strncmp(text, part, strlen(part)) != 0) fail_msg("expected '%s' first in: %s", part, text);
-}
-
 /* ---- a frame that cannot be read ------------------------------------------------------------------------- */
 
 typedef struct bad_frame {

@@ -45,10 +45,6 @@ static int remove_plans(void **state) {
     return 0;
 }
 
-static void expect_in(const char *text, const char *part) {
-    if (strstr(text, part) == NULL) fail_msg("expected '%s' in: %s", part, text);
-}
-
 /* Runs the tool, and expects the texts on the standard output. */
 static void expect_output(const char *const *texts, const char *const *arguments) {
     tool_run run = run_tool(arguments);

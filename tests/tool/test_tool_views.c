@@ -31,14 +31,6 @@ static int remove_files(void **state) {
     return 0;
 }
 
-static void expect_in(const char *text, const char *part) {
-    if (strstr(text, part) == NULL) fail_msg("expected '%s' in: %s", part, text);
-}
-
-static void expect_start(const char *text, const char *part) {
-    if (strncmp(text, part, strlen(part)) != 0) fail_msg("expected '%s' first in: %s", part, text);
-}
-
 static void check_lists_crossing_frames(void **state) {
     (void)state;
     tool_run run = RUN_TOOL("check", model.text, cache.text);

@@ -89,3 +89,11 @@ char *read_whole_file(const char *path, size_t *size) {
     fclose(file);
     return read_capture(descriptor, size);
 }
+
+void expect_in(const char *text, const char *part) {
+    if (strstr(text, part) == NULL) fail_msg("expected '%s' in: %s", part, text);
+}
+
+void expect_start(const char *text, const char *part) {
+    if (strncmp(text, part, strlen(part)) != 0) fail_msg("expected '%s' first in: %s", part, text);
+}

@@ -31,6 +31,10 @@ void run_tool_expect_error(int code, const char *const *texts, const char *const
 #define EXPECT_ERROR(code, texts, ...)                                                                       \
     run_tool_expect_error((code), (texts), (const char *const[]){__VA_ARGS__, NULL})
 
+/* Fails the test unless the text has this part, or begins with it. */
+void expect_in(const char *text, const char *part);
+void expect_start(const char *text, const char *part);
+
 /* These functions run the tool in two steps, so that a test can act while it runs. */
 typedef struct tool_process {
     pid_t pid;      /* on Windows the handle of the process, which fits */
