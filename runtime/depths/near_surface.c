@@ -49,9 +49,11 @@ static double squared_thin(const double ax[3], const double ab[3], const double 
     return min_of(inside, sides);
 }
 
-/* Points that are nearer than this share of a triangle's size lie on it but for rounding, which moves u and v by more than
- * such a distance: it is computed with care, or no cell of a thin body would ever be bounded. */
+/* Shares of a triangle's squared size. Rounding moves u and v by more than what points within thin bodies are deep: squared
+ * distances below the first are computed with care, or no cell of such a body would ever be bounded. Those below the second are
+ * of points on the triangle, as most corners of cells are, and good enough. */
 #define REACH_NEAR 0x1p-40
+#define REACH_ON   0x1p-90
 
 /* The squared distance from a point of the triangle: the nearest one, but for rounding. (Ericson, Real-Time Collision
  * Detection, 5.1.5.) Whatever rounding makes of u and v, they lie in the triangle, so the nearest point is no farther; how much
@@ -91,7 +93,7 @@ static double squared_reach(const double x[3], const double p[3][3], reach_point
     }
     double squared = squared_from(ax, ab, ac, u, v);
     if (!at->well_shaped) squared = squared_thin(ax, ab, ac, squared);
-    if (squared >= REACH_NEAR * at->size) return squared;
+    if (squared >= REACH_NEAR * at->size || squared <= REACH_ON * at->size) return squared;
     return min_of(squared, closest_point_triangle(x, p[0], p[1], p[2], &u, &v));
 }
 
