@@ -6,7 +6,8 @@ checkout is never changed. A mutant that no longer applies, one that does not co
 failed. Tests may hang on a mutant: that counts as caught, like a wrong result.
 
 SAMPLE=HASH (as hexadecimal digits, such as a commit's) takes a few of them, the same for the same hash; ONLY="word word"
-those with one of the words in their names. The last line is `N passed, M failed`.
+those with one of the words in their names. The last line is `N passed, M failed`. With the argument --applies nothing is
+built: it prints the mutants of the whole list that do not apply, for the lint.
 """
 import os
 import subprocess
@@ -123,9 +124,9 @@ def run_test(test, limit=None):
     return how, time.monotonic() - since
 
 
-def plant(mutant):
-    """Puts the fault into the copy; returns the text that was there. A sentence, when it does not apply."""
-    path = TREE / mutant.file
+def text_below(folder, mutant):
+    """The text that the fault goes into, as it is now. A sentence, when it does not apply."""
+    path = folder / mutant.file
     if not path.is_file():
         return None, f"does not apply: {mutant.file} is gone; plant the fault where its code is now"
     text = path.read_text(encoding="utf-8")
@@ -133,8 +134,15 @@ def plant(mutant):
     if found != 1:
         return None, f"does not apply: its lines stand {found} times in {mutant.file}, not once; " \
                      "write the lines of today into tests/mutants/mutants.txt"
-    path.write_text(text.replace(mutant.old, mutant.new), encoding="utf-8")
     return text, None
+
+
+def plant(mutant):
+    """Puts the fault into the copy; returns the text that was there. A sentence, when it does not apply."""
+    text, problem = text_below(TREE, mutant)
+    if not problem:
+        (TREE / mutant.file).write_text(text.replace(mutant.old, mutant.new), encoding="utf-8")
+    return text, problem
 
 
 def try_mutant(mutant, seconds):
@@ -155,8 +163,20 @@ def try_mutant(mutant, seconds):
         (TREE / mutant.file).write_text(text, encoding="utf-8")
 
 
+def print_stale(mutants):
+    """The mutants that do not apply to the checkout; returns how many."""
+    stale = [(mutant, text_below(ROOT, mutant)[1]) for mutant in mutants]
+    stale = [(mutant, problem) for mutant, problem in stale if problem]
+    for mutant, problem in stale:
+        print(f"mutant {mutant.name} {problem}")
+    return len(stale)
+
+
 def main():
-    mutants = chosen_of(read_list(Path(__file__).with_name("mutants.txt")))
+    mutants = read_list(Path(__file__).with_name("mutants.txt"))
+    if sys.argv[1:] == ["--applies"]:
+        sys.exit(print_stale(mutants) > 0)
+    mutants = chosen_of(mutants)
     if not mutants:
         sys.exit("mutants: none is chosen")
     tests = sorted({test for mutant in mutants for test in mutant.tests})

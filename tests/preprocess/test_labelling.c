@@ -183,6 +183,42 @@ static void costs_never_rise(void **state) {
     }
 }
 
+/* A region that has not changed itself takes tiles of one beside it, whose point has come to see nothing. */
+static void neighbours_take_what_is_not_seen(void **state) {
+    (void)state;
+    random_seed(5);
+    for (int round = 0; round < 20; round++) {
+        const labelling_prices prices = {0.01, random_between(0.0, 0.05)};
+        tiled_body *b = tiled_body_make(round % 2 ? BODY_FIGURE : BODY_TORUS, 1000);
+        tile_labelling l;
+        assert_int_equal(labelling_create(&b->g, &prices, &l), CSCD_OK);
+        l.regions.points[0] = random_point(b);
+        for (int i = 0; i < 3; i++) {
+            const sight_point point = random_point(b);
+            labelling_add(&l, &point, 0);
+        }
+        for (uint32_t t = 0; t < b->tile_count; t++) {
+            const uint32_t region = (uint32_t)random_integer(0, 3);
+            labelling_give(&l, &t, 1, region);
+        }
+        double before, after = INFINITY;
+        do {
+            before = after;
+            labelling_share_out(&l);
+            after = labelling_cost(&l);
+        } while (after < before);
+        const uint32_t region = l.of_tile[0], tile = 0;
+        const uint32_t count = l.regions.count;
+        for (int k = 0; k < 3; k++) l.regions.points[region].rest[k] = 1e3; /* far outside */
+        labelling_give(&l, &tile, 1, region);                               /* says that it has changed */
+        before = labelling_cost(&l);
+        labelling_share_out(&l);
+        assert_true(count == 1 || labelling_cost(&l) < before - 1e-3 * b->g.area);
+        labelling_destroy(&l);
+        tiled_body_free(b);
+    }
+}
+
 /* Borders that cost many times what the body's area does, as those of a needle do, are not made. */
 static void no_price_is_too_high(void **state) {
     (void)state;
@@ -213,6 +249,7 @@ int main(void) {
         cmocka_unit_test(borders_are_parts_of_the_cost),
         cmocka_unit_test(two_regions_cost_the_least),
         cmocka_unit_test(costs_never_rise),
+        cmocka_unit_test(neighbours_take_what_is_not_seen),
         cmocka_unit_test(no_price_is_too_high),
     };
     return cmocka_run_group_tests_name("labelling", tests, NULL, NULL);
