@@ -94,7 +94,7 @@ typedef struct cscd_intersection_options {
     /* false by default, too. */
     bool
         cut_offs; /* what curves cut off of open surfaces: cscd/cut_offs.h. Needs patches, which are then given, too */
-    bool part_bodies; /* parts that are closed by themselves are bodies: cscd/patches.h */
+    bool part_bodies; /* parts, and components of no part, are bodies: cscd/patches.h */
     uint8_t reserved[4];
     cscd_orientation orientation; /* BY_OBJECT by default */
 

@@ -12,8 +12,8 @@ extern "C" {
 /* Says which part each triangle is in, by one label for each, from the next call on. A label is below part_count, which is 1
  * or more, or UINT32_MAX: that triangle is in no part. NULL and 0: the objects are the parts, as at first. Parts do not
  * change which pairs and curves are found, only how they are summed up. With the option part_bodies they also say what the bodies
- * are (cscd/patches.h), in which patches, overlaps and depths are measured: a ball in a slab, each a part, is then as deep in
- * one object as in two. INVALID_ARGUMENT: the sentence names the triangle whose label is too
+ * are (cscd/patches.h), in which patches, overlaps and depths are measured: a ball in a slab, each a part or both of none, is then
+ * as deep in one object as in two. INVALID_ARGUMENT: the sentence names the triangle whose label is too
  * large.
  *
  * A vertex or an edge is in the part of the first of its triangles, so that each contact counts once. Without a triangle
@@ -40,7 +40,8 @@ CSCD_API uint32_t cscd_mesh_component_labels(const cscd_mesh *mesh, uint32_t *la
 CSCD_API uint32_t cscd_plan_region_labels(const cscd_plan *plan, uint32_t *labels);
 
 /* Writes for each triangle its body with the option part_bodies (cscd/patches.h), and returns how many bodies there are. Those of an
- * object follow each other, in the order of the objects; an object without triangles has one. labels may be NULL. */
+ * object follow each other, in the order of the objects; an object without triangles has one. A component that may be a cavity
+ * has a body here, which it leaves at each moment at which it is one. labels may be NULL. */
 CSCD_API uint32_t cscd_detector_body_labels(const cscd_detector *detector, uint32_t *labels);
 
 /* ---- intersections ------------------------------------------------------------------------------------- */

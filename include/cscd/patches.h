@@ -9,10 +9,11 @@
 extern "C" {
 #endif
 
-/* A *body* is what winding numbers count as one. The objects are the bodies; with the option part_bodies, and labels of parts
- * (cscd/parts.h), an object may have several: two components are in one body if a part has triangles of both, or if other
- * components join them so. A slab and a ball in one file, each with a part of its own, are two bodies; the limbs of one
- * skin are parts of one. A cavity belongs to the part around it; else it is a body of its own, and no cavity.
+/* A *body* is what winding numbers count as one. The objects are the bodies; with the option part_bodies an object may have
+ * several. By labels of parts (cscd/parts.h) two components are in one body if a part has triangles of both, or if other
+ * components join them so: a slab and a ball in one file, each with a part of its own, are two bodies; the limbs of one
+ * skin are parts of one. A component of no part is a body of its own, and so is each component of a mesh that has one object
+ * and no labels. A cavity (below) has the body of the shell around it.
  *
  * How often a body winds around a patch: the sum over its closed components, exact, and under the same infinitely small
  * motion as the curves. A point outside has number 0, one within the body 1, one within two of its components, or two of
@@ -45,10 +46,11 @@ typedef struct cscd_patch {
  *
  * Which components are inside out is found at each moment, and exactly (docs/theory/orientation.md). A closed component is
  * inverted if the volume that it encloses is negative; where it passes through itself, each place counts as often as its
- * surface winds around it. One that lies in no other closed component of its object is turned around if it is inverted. One
- * that lies in others, and does not cross them, is turned around if the outermost of these is: so a cavity stays a cavity, and
- * a second body a second body, also in an object that is inverted as a whole. With CSCD_ORIENTATION_BY_PART that holds for a
- * component whose first triangle is of a part that the outer one has, too. A component without volume is as given.
+ * surface winds around it. A *cavity* is a component that lies in another one of its object without crossing it, is turned the other
+ * way round than the innermost such one, and that one is no cavity. A cavity is turned around if the shell around it is; each
+ * other component if it is inverted. So a cavity stays a cavity, and a second body a second body, also in an object that is inverted as
+ * a whole. With CSCD_ORIENTATION_BY_PART, and with part_bodies, a component can only be a cavity of one that has the part of its first
+ * triangle (or, of none, triangles of none), too. A component without volume is as given.
  *
  * The lists belong to the detector and live until its next call. */
 typedef struct cscd_patches {

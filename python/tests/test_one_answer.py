@@ -75,11 +75,11 @@ def faces(inverted: bool) -> List[Tuple[int, ...]]:
     return [quad[::-1] if inverted else quad for quad in quads]
 
 
-def write(path: Path, boxes: List[Tuple[str, Box, bool]]) -> str:
-    """An OBJ with an object for each box."""
+def write(path: Path, boxes: List[Tuple[str, Box, bool]], named: bool = True) -> str:
+    """An OBJ with an object for each box, or with all boxes in one."""
     lines = []
     for number, (name, box, inverted) in enumerate(boxes):
-        lines.append(f"o {name}")
+        lines += [f"o {name}"] * named
         lines += ["v %.17g %.17g %.17g" % corner for corner in corners(box)]
         lines += ["f " + " ".join(str(8 * number + corner + 1) for corner in face) for face in faces(inverted)]
     path.write_text("\n".join(lines) + "\n")
@@ -127,16 +127,16 @@ def expect_printed(text: str, scene: Scene) -> None:
     assert abs(float(text.replace("-", "0")) - scene.depth) <= 0.015 * scene.depth, (text, scene)
 
 
-def expect_text(text: str, scene: Scene) -> None:
+def expect_text(text: str, scene: Scene, pair: str = "A x B") -> None:
     """The first line, and the row of the table."""
     first = text.splitlines()[0]
     assert re.search(SAID[scene.word], first), first
     deep = re.search(r"([\d.]+) deep", first)
     expect_printed(deep.group(1) if deep else "-", scene)
-    rows = [line for line in text.splitlines() if line.startswith("A x B ")]
+    rows = [line for line in text.splitlines() if line.startswith(pair + " ")]
     assert len(rows) == (scene.word != ""), text
     for row in rows:
-        word, depth = row[len("A x B "):].split()[:2]
+        word, depth = row[len(pair) + 1:].split()[:2]
         assert word == scene.word, row
         expect_printed(depth, scene)
 
@@ -150,11 +150,11 @@ def expect_frame(frame: Dict[str, Any], scene: Scene) -> None:
     expect_depth(frame["depth"], scene)
 
 
-def expect_events(events: List[Dict[str, Any]], scene: Scene) -> None:
+def expect_events(events: List[Dict[str, Any]], scene: Scene, pair: str = "A x B") -> None:
     """Events of JSON or of the page: one, if any."""
     assert len(events) == (scene.word != "")
     for event in events:
-        assert [event["a"], event["b"]] == ["A", "B"]
+        assert f"{event['a']} x {event['b']}" == pair
         assert ("crossing" in event["kinds"]) == (scene.word == "cross")
         assert ("same_solid" in event["kinds"]) == (scene.word == "copies")
         expect_depth(event["depth"] or 0.0, scene)
@@ -165,6 +165,7 @@ def scene(request: Any, tmp_path: Path) -> Tuple[Scene, Tool]:
     """A scene, in one file and in two."""
     made = SCENES[request.param]
     write(tmp_path / "scene.obj", [("A", made.a, False), ("B", made.b, made.inverted)])
+    write(tmp_path / "unnamed.obj", [("A", made.a, False), ("B", made.b, made.inverted)], named=False)
     write(tmp_path / "A.obj", [("A", made.a, False)])
     write(tmp_path / "B.obj", [("B", made.b, made.inverted)])
     return made, Tool(tmp_path)
@@ -191,6 +192,28 @@ def test_check(scene: Tuple[Scene, Tool]) -> None:
         suite = ElementTree.parse(tool.folder / "found.xml").getroot().find("testsuite")
         assert suite is not None
         assert (suite.attrib["failures"], suite.attrib["errors"]) == (str(int(meets)), "0")
+
+
+def test_without_names(scene: Tuple[Scene, Tool]) -> None:
+    """Both boxes in one file that names none of them, or both alike: its components are bodies, in Python without labels, too."""
+    made, tool = scene
+    if made.inverted and made.word == "inside":  # a cavity, which only names tell from a body
+        made = made._replace(word="", depth=0.0)
+    pair, meets = "component 0 x component 1", made.word not in ("", "touch")
+    text = tool("check", "unnamed.obj", "--json", "found.json", "--fail-on", "crossing", code=3 if meets else 0)
+    expect_text(text, made, pair)
+    found = tool.json("found.json")
+    expect_frame(found["frames"][0], made)
+    expect_events(found["events"], made, pair)
+    (tool.folder / "one.obj").write_text("o All\n" + (tool.folder / "unnamed.obj").read_text())
+    tool("check", "one.obj", "--json", "one.json", "--fail-on", "crossing", code=3 if meets else 0)
+    expect_frame(tool.json("one.json")["frames"][0], made)
+    expect_events(tool.json("one.json")["events"], made, "All x All")
+    recording = cscd.read(tool.folder / "unnamed.obj")
+    plain = cscd.self_intersections(recording.vertices, recording.mesh.triangles)
+    expect_depth(plain.max_depth, made)
+    parts = plain.by_parts(recording.part_labels, bodies=recording.body_labels)
+    assert [bool(part.same_solid) for part in parts] == [made.word == "copies"] * (made.word != "")
 
 
 def test_gates(scene: Tuple[Scene, Tool]) -> None:

@@ -105,6 +105,9 @@ struct cscd_detector {
 /* The labels of what belongs together: cscd_detector_set_bodies, or else the parts. */
 const part_labels *detector_grouping(const cscd_detector *d);
 
+/* Does nothing say what belongs together in the only object? */
+bool detector_bodies_are_components(const cscd_detector *d);
+
 /* Lines hold their detector. */
 void detector_hold(cscd_detector *d);
 void detector_release(cscd_detector *d);

@@ -34,7 +34,14 @@ const part_labels *detector_grouping(const cscd_detector *d) {
     return d->grouping.triangles != NULL ? &d->grouping : &d->parts;
 }
 
+bool detector_bodies_are_components(const cscd_detector *d) {
+    return detector_grouping(d)->triangles == NULL && d->mesh->object_count == 1;
+}
+
 uint32_t cscd_detector_body_labels(const cscd_detector *detector, uint32_t *labels) {
+    if (detector_bodies_are_components(detector))
+        return labels != NULL ? cscd_mesh_component_labels(detector->mesh, labels)
+                              : detector->mesh->component_count;
     const surface_bodies *bodies = &detector_grouping(detector)->bodies;
     for (uint32_t t = 0; labels != NULL && t < detector->mesh->triangle_count; t++)
         labels[t] = body_of_triangle(bodies, detector->mesh, t);

@@ -132,17 +132,25 @@ static cscd_status find_curves(const answer_search *s) {
     return status;
 }
 
+/* Bodies go by parts, and so do their shells. */
+static bool shells_have_labels(const cscd_intersection_options *o) {
+    return o->part_bodies || o->orientation == CSCD_ORIENTATION_BY_PART;
+}
+
 static cscd_status find_patches(const answer_search *s) {
     cscd_detector *d = s->detector;
     surface_answers *a = d->answers;
     a->patch_finder.objects = d->pair_rules.sets;
     a->patch_finder.budget = s->budget;
     progress_stage(&d->context->progress, "patches", 0.8, 0.9);
-    const cscd_orientation orientation = s->options->orientation;
-    const part_labels *parts = orientation == CSCD_ORIENTATION_BY_PART ? detector_grouping(d) : NULL;
-    if (orientation != CSCD_ORIENTATION_AS_GIVEN &&
-        !orientation_finder_run(&a->orientations, s->surface, &d->space.bvh, parts, a->joiner.found,
-                                a->joiner.piece_count))
+    const orientation_request shells = {
+        .labels = shells_have_labels(s->options) ? detector_grouping(d)->triangles : NULL,
+        .by_component = s->options->part_bodies && detector_bodies_are_components(d),
+        .as_given = s->options->orientation == CSCD_ORIENTATION_AS_GIVEN,
+        .pieces = a->joiner.found,
+        .piece_count = a->joiner.piece_count};
+    if ((s->options->part_bodies || !shells.as_given) &&
+        !orientation_finder_run(&a->orientations, s->surface, &d->space.bvh, &shells))
         return CSCD_OUT_OF_MEMORY;
     cscd_status status = patch_finder_run(&a->patch_finder, s->cuts->surface, &d->space.bvh, a->joiner.found,
                                           a->joiner.piece_count, &a->patches);

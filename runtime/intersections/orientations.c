@@ -14,9 +14,10 @@ static array_list list_arrays(orientation_finder *o) {
     winding_tally *t = &o->tally;
     return (array_list){{ARRAY(o->volumes, components), ARRAY(o->signs, components),
                          ARRAY(o->turned, components), ARRAY(o->objects, components),
-                         ARRAY(o->samples, components), ARRAY(t->numbers, components),
-                         ARRAY(t->is_touched, components), ARRAY(t->touched, components),
-                         ARRAY(o->orientations, o->mesh->object_count)}};
+                         ARRAY(o->samples, components), ARRAY(o->around, components),
+                         ARRAY(o->roles, components), ARRAY(o->bodies.components, components),
+                         ARRAY(t->numbers, components), ARRAY(t->is_touched, components),
+                         ARRAY(t->touched, components), ARRAY(o->orientations, o->mesh->object_count)}};
 }
 
 static array_list list_by_component(orientation_finder *o) {
@@ -180,40 +181,87 @@ static bool is_larger(const orientation_finder *o, uint32_t a, uint32_t b) {
     return of_a != of_b ? of_a > of_b : a < b;
 }
 
-/* The outermost one of the components in which one lies, or itself. Those that contain it lie in each other, so the largest is
- * the outermost. */
-static uint32_t find_outermost(const orientation_work *w, uint32_t component) {
+/* The one right around a component, among those that it lies in, or itself. They lie in each other, so the smallest is the innermost. */
+static uint32_t find_innermost(const orientation_work *w, uint32_t component) {
     winding_tally *tally = &w->finder->tally;
-    uint32_t outermost = component;
+    uint32_t innermost = component;
     winding_tally_clear(tally);
     winding_find_by_component(w->surface, w->bvh, (corner_side){w->finder->samples[component], 0, true},
                               tally);
     for (uint32_t i = 0; i < tally->count; i++) {
         uint32_t outer = tally->touched[i];
         if (tally->numbers[outer] == 0 || !may_hold(w, outer, component)) continue;
-        if (outermost == component || is_larger(w->finder, outer, outermost)) outermost = outer;
+        if (innermost == component || is_larger(w->finder, innermost, outer)) innermost = outer;
     }
-    return outermost;
+    return innermost;
 }
 
-/* Shells keep the orientation that they have relative to the outermost one. */
-static void turn_with_outermost(const orientation_work *w) {
+static bool is_sampled(const orientation_finder *o, uint32_t component) {
+    return is_of_mixed(o, component) && o->samples[component] != UINT32_MAX;
+}
+
+/* What a component is: its own body, a cavity of the one right around it, or not known yet. */
+enum { SHELL_UNKNOWN, SHELL_OF_BODY, SHELL_OF_CAVITY };
+
+/* Writes what is right around each component; without anything it is a body. */
+static void find_around(const orientation_work *w) {
     orientation_finder *o = w->finder;
     find_samples(w);
     for (uint32_t c = 0; c < o->mesh->component_count; c++) {
-        if (is_of_mixed(o, c) && o->samples[c] != UINT32_MAX)
-            o->turned[c] = o->signs[find_outermost(w, c)] < 0;
+        o->around[c] = is_sampled(o, c) ? find_innermost(w, c) : c;
+        o->roles[c] = o->around[c] == c ? SHELL_OF_BODY : SHELL_UNKNOWN;
+    }
+    winding_tally_clear(&o->tally);
+}
+
+/* From the outermost shell that is not known yet down to the component: a shell is a cavity if it is turned the other way round than
+ * the one around it, and that one is none. */
+static void find_role(orientation_finder *o, uint32_t component) {
+    uint32_t depth = 0, *path = o->tally.touched; /* of the tally, which is clear */
+    for (uint32_t c = component; o->roles[c] == SHELL_UNKNOWN; c = o->around[c]) path[depth++] = c;
+    while (depth > 0) {
+        const uint32_t c = path[--depth], outer = o->around[c];
+        const bool cavity = o->signs[c] != o->signs[outer] && o->roles[outer] == SHELL_OF_BODY;
+        o->roles[c] = cavity ? SHELL_OF_CAVITY : SHELL_OF_BODY;
     }
 }
 
-bool orientation_finder_run(orientation_finder *o, named_surface *s, const bvh *f, const part_labels *parts,
-                            const curve_piece *pieces, size_t piece_count) {
-    const orientation_work work = {o, s, f, parts != NULL ? parts->triangles : NULL};
+/* A cavity is turned with the shell around it, whose body it belongs to. */
+static void turn_cavities(const orientation_work *w) {
+    orientation_finder *o = w->finder;
+    find_around(w);
+    for (uint32_t c = 0; c < o->mesh->component_count; c++) find_role(o, c);
+    for (uint32_t c = 0; c < o->mesh->component_count; c++) {
+        if (o->roles[c] != SHELL_OF_CAVITY) continue;
+        o->turned[c] = o->signs[o->around[c]] < 0;
+        o->bodies.components[c] = o->bodies.components[o->around[c]];
+    }
+}
+
+/* Gives the surface bodies that cavities may be joined with; where objects are the bodies, there are none. */
+static void own_bodies(orientation_finder *o, named_surface *s, bool by_component) {
+    uint32_t *components = o->bodies.components;
+    if (by_component) {
+        for (uint32_t c = 0; c < o->mesh->component_count; c++) components[c] = c;
+        o->bodies = (surface_bodies){components, o->objects, o->mesh->component_count};
+    } else if (s->bodies != NULL && s->bodies->components != NULL) {
+        memcpy(components, s->bodies->components, o->mesh->component_count * sizeof *components);
+        o->bodies = (surface_bodies){components, s->bodies->objects, s->bodies->count};
+    } else {
+        return;
+    }
+    s->bodies = &o->bodies;
+}
+
+bool orientation_finder_run(orientation_finder *o, named_surface *s, const bvh *f,
+                            const orientation_request *request) {
+    const orientation_work work = {o, s, f, request->labels};
+    own_bodies(o, s, request->by_component);
     if (!find_signs(&work)) return false;
     if (any_object_is(o, MIXED)) {
-        if (!list_crossings(o, pieces, piece_count) || !list_parts(&work)) return false;
-        turn_with_outermost(&work);
+        if (!list_crossings(o, request->pieces, request->piece_count) || !list_parts(&work)) return false;
+        turn_cavities(&work);
     }
-    if (any_object_is(o, INWARD)) s->turned = o->turned;
+    if (!request->as_given && any_object_is(o, INWARD)) s->turned = o->turned;
     return true;
 }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "runtime/intersections/winding.h"
-#include "src/mesh/part_labels.h"
+#include "src/mesh/bodies.h"
 #include "src/mesh/volume_sign.h"
 
 /* Two components, or a component and a part, as a number: the first is in the upper half. */
@@ -19,6 +19,9 @@ typedef struct orientation_finder {
     bool *turned;          /* the component is taken as turned around */
     uint32_t *objects;     /* of the component */
     uint32_t *samples;     /* the first triangle whose corners have different names; UINT32_MAX: none */
+    uint32_t *around;      /* the component that it lies in, the innermost one; itself: in none */
+    uint8_t *roles;        /* body or cavity */
+    surface_bodies bodies; /* of the surface, with cavities joined with what is around them */
     winding_tally tally;   /* of components */
     uint8_t *orientations; /* per object: which signs its components have */
     uint32_t *triangles, *offsets; /* those of each component, made when first needed */
@@ -31,8 +34,16 @@ typedef struct orientation_finder {
 bool orientation_finder_create(const cscd_mesh *mesh, orientation_finder *out);
 void orientation_finder_free(orientation_finder *o);
 
-/* Finds what is turned around, and gives it to the surface, of which nothing was turned before. The pieces are those of its
- * curves, and the bounds of the trees those of its positions. parts: as cscd_patches says; NULL: objects alone count. False: no
- * memory. */
-bool orientation_finder_run(orientation_finder *o, named_surface *s, const bvh *f, const part_labels *parts,
-                            const curve_piece *pieces, size_t piece_count);
+typedef struct orientation_request {
+    const uint32_t
+        *labels;       /* of triangles: shells of one label belong together; NULL: those of an object do */
+    bool by_component; /* each component is a body, or a cavity of one, whatever the surface says */
+    bool as_given;     /* nothing is turned around; cavities belong to what is around them all the same */
+    const curve_piece *pieces; /* of the surface's curves */
+    size_t piece_count;
+} orientation_request;
+
+/* Finds what is turned around, of which nothing was before, and which bodies there are, and gives both to the surface. The bounds of
+ * the trees are those of its positions. False: no memory. */
+bool orientation_finder_run(orientation_finder *o, named_surface *s, const bvh *f,
+                            const orientation_request *request);

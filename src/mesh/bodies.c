@@ -28,13 +28,14 @@ typedef struct part_owner {
     uint32_t object, component;
 } part_owner;
 
-/* Unites the components that parts join; the last owner is that of what is in no part. */
+/* Unites the components that parts join. */
 static void join_components(const cscd_mesh *mesh, const uint32_t *labels, uint32_t part_count,
                             part_owner *owners, uint32_t *parents) {
     sets_begin(parents, mesh->component_count);
-    for (uint32_t p = 0; p <= part_count; p++) owners[p] = (part_owner){UINT32_MAX, 0};
+    for (uint32_t p = 0; p < part_count; p++) owners[p] = (part_owner){UINT32_MAX, 0};
     for (uint32_t t = 0; t < mesh->triangle_count; t++) {
-        part_owner *owner = &owners[labels[t] < part_count ? labels[t] : part_count];
+        if (labels[t] >= part_count) continue; /* in no part */
+        part_owner *owner = &owners[labels[t]];
         uint32_t object = cscd_mesh_vertex_object(mesh, mesh->triangles[t][0]);
         uint32_t component = mesh->triangle_components[t];
         if (owner->object == object)
@@ -71,7 +72,7 @@ static void number_bodies(const cscd_mesh *mesh, surface_bodies *b) {
 bool bodies_find(const cscd_mesh *mesh, const uint32_t *labels, uint32_t part_count, surface_bodies *out) {
     surface_bodies b = {.components = NULL};
     if (!context_reserve_all(mesh->context, list_arrays(mesh, &b))) return false;
-    part_owner *owners = context_allocate(mesh->context, (size_t)part_count + 1, sizeof *owners);
+    part_owner *owners = context_allocate(mesh->context, part_count, sizeof *owners);
     if (owners == NULL) {
         bodies_free(mesh->context, &b);
         return false;

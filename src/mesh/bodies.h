@@ -12,7 +12,7 @@ typedef struct surface_bodies {
 } surface_bodies;
 
 /* Two components of an object are one body if a part has triangles of both, or if other components of the object join them
- * so. What is in no part counts as one more part. False: no memory, and *out is untouched. */
+ * so. A component of no part is a body of its own. False: no memory, and *out is untouched. */
 bool bodies_find(const cscd_mesh *mesh, const uint32_t *labels, uint32_t part_count, surface_bodies *out);
 bool bodies_copy(const surface_bodies *from, const cscd_mesh *mesh, surface_bodies *out);
 void bodies_free(cscd_context *context, surface_bodies *b);

@@ -82,7 +82,7 @@ static bool ask_detector(recording *r, const part_names *parts, const double *po
     cscd_intersection_options options = cscd_intersection_defaults();
     cscd_intersection_pairs found;
     options.patches = true;
-    if (parts->named) options.orientation = CSCD_ORIENTATION_BY_PART;
+    options.orientation = CSCD_ORIENTATION_BY_PART;
     const bool asked =
         cscd_detector_create(r->context, r->mesh, NULL, NULL, &detector) == CSCD_OK &&
         part_names_tell(parts, detector) == CSCD_OK &&

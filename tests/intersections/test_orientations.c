@@ -20,25 +20,10 @@ static void add_cube(double x, double y, double z, double size) {
 
 enum { CUBE = 12 }; /* triangles */
 
-/* Coordinate k becomes coordinate k + axis, mirrored at will, so many times as large; triangles stay outwards. */
-static void place_scene(body_rig *r, int axis, bool mirrored, double scale) {
-    for (uint32_t v = 0; v < r->all.vertex_count; v++) {
-        double *x = r->all.x0 + (size_t)v * 3, given[3];
-        memcpy(given, x, sizeof given);
-        for (int k = 0; k < 3; k++) x[(k + axis) % 3] = scale * (k == 1 && mirrored ? -given[k] : given[k]);
-    }
-    if (mirrored) body_rig_turn(r, 0, r->all.triangle_count);
-}
-
 static double greatest_depth(const body_rig *r) {
     double most = -1.0;
     for (size_t i = 0; i < r->found.depths->count; i++) most = fmax(most, r->found.depths->items[i].depth);
     return most;
-}
-
-static bool is_turned(const body_rig *r, uint32_t component) {
-    const bool *turned = r->found.patches->turned;
-    return turned != NULL && turned[component];
 }
 
 /* ---- two objects --------------------------------------------------------------------------------------- */
@@ -61,7 +46,7 @@ static void make_two(double offset, double size, int inverted, placing at) {
     body_rig_end_body(&rig);
     add_cube(offset, offset, offset, size);
     body_rig_end_body(&rig);
-    place_scene(&rig, at.axis, at.mirrored, at.scale);
+    body_rig_place(&rig, at.axis, at.mirrored, at.scale);
     for (uint32_t i = 0; i < 2; i++) {
         if ((inverted >> i & 1) != 0) turn_body(&rig, i);
     }
@@ -80,7 +65,8 @@ static void crossing_cubes_have_one_depth(void **state) {
             assert_true(fabs(both.volume / (at.scale * at.scale * at.scale) - 0.125) < 1e-12);
             assert_true(fabs(both.area_a / (at.scale * at.scale) - 0.75) < 1e-12);
             assert_true(fabs(both.area_b / (at.scale * at.scale) - 0.75) < 1e-12);
-            for (uint32_t i = 0; i < 2; i++) assert_int_equal(is_turned(&rig, i), (inverted >> i & 1) != 0);
+            for (uint32_t i = 0; i < 2; i++)
+                assert_int_equal(body_rig_is_turned(&rig, i), (inverted >> i & 1) != 0);
             assert_int_equal(rig.found.patches->turned != NULL, inverted != 0);
             body_rig_free(&rig);
         }
@@ -115,7 +101,7 @@ static void as_given_it_encloses_nothing(void **state) {
     assert_string_equal(cscd_context_detail(rig.context), "unknown orientation 3");
     rig.orientation = CSCD_ORIENTATION_BY_OBJECT;
     body_rig_find(&rig);
-    assert_true(is_turned(&rig, 1));
+    assert_true(body_rig_is_turned(&rig, 1));
     body_rig_free(&rig);
 }
 
@@ -142,84 +128,7 @@ static void directions_are_outwards(void **state) {
     }
 }
 
-/* ---- shells of one object ------------------------------------------------------------------------------ */
-
-/* Cubes of sizes 4, 2 and 1, each in the one before, in one object or as parts of their own; and a small cube in the middle, an
- * object of its own. */
-static void make_nested(uint32_t shells, int inverted, bool parts, int axis) {
-    body_rig_begin(&rig);
-    const double size[3] = {4, 2, 1};
-    for (uint32_t i = 0; i < shells; i++) add_cube(-0.5 * size[i], -0.5 * size[i], -0.5 * size[i], size[i]);
-    body_rig_end_body(&rig);
-    add_cube(-0.125, -0.125, -0.125, 0.25);
-    body_rig_end_body(&rig);
-    place_scene(&rig, axis, false, 1.0);
-    for (uint32_t i = 0; i < shells; i++) {
-        if ((inverted >> i & 1) != 0) body_rig_turn(&rig, i * CUBE, CUBE);
-    }
-    body_rig_create(&rig, NULL, 2);
-    uint32_t labels[4 * CUBE];
-    for (uint32_t t = 0; t < 4 * CUBE; t++) labels[t] = t / CUBE;
-    if (parts || inverted % 2 == 1) /* by object, parts do not matter */
-        assert_int_equal(cscd_detector_set_parts(rig.detector, labels, 4), CSCD_OK);
-    if (parts) rig.orientation = CSCD_ORIENTATION_BY_PART;
-    body_rig_find(&rig);
-}
-
-/* The number of the object of the shells around the small cube. */
-static int number_in_the_middle(uint32_t shells) {
-    const cscd_patch *patch = &rig.found.patches->items[shells];
-    assert_int_equal(patch->object, 1);
-    for (uint32_t i = 0; i < patch->winding_count; i++) {
-        cscd_winding w = rig.found.patches->windings[patch->first_winding + i];
-        if (w.body == 0) return w.number;
-    }
-    return 0;
-}
-
-/* Shells are turned with the outermost one, and so keep what they are relative to it. */
-static void shells_keep_their_sense(void **state) {
-    (void)state;
-    for (uint32_t shells = 1; shells <= 3; shells++) {
-        for (int inverted = 0; inverted < 1 << shells; inverted++) {
-            int number = 0;
-            bool turn = (inverted & 1) != 0;
-            make_nested(shells, inverted, false, inverted % 3);
-            for (uint32_t i = 0; i < shells; i++) {
-                assert_int_equal(is_turned(&rig, i), turn);
-                number += ((inverted >> i & 1) != 0) != turn ? -1 : 1;
-            }
-            assert_int_equal(number_in_the_middle(shells), number);
-            body_rig_free(&rig);
-        }
-    }
-}
-
-static void parts_are_bodies_of_their_own(void **state) {
-    (void)state;
-    for (uint32_t shells = 1; shells <= 3; shells++) {
-        for (int inverted = 0; inverted < 1 << shells; inverted++) {
-            make_nested(shells, inverted, true, inverted % 3);
-            for (uint32_t i = 0; i < shells; i++)
-                assert_int_equal(is_turned(&rig, i), (inverted >> i & 1) != 0);
-            assert_int_equal(number_in_the_middle(shells), (int)shells);
-            body_rig_free(&rig);
-        }
-    }
-}
-
-/* One component of a part each, but the outer one has both parts: the inner one is a shell of it. */
-static void a_shell_of_a_skin_with_limbs(void **state) {
-    (void)state;
-    make_nested(2, 2, true, 0);
-    uint32_t labels[3 * CUBE];
-    for (uint32_t t = 0; t < 3 * CUBE; t++) labels[t] = t < 5 ? 0 : t < 2 * CUBE ? 1 : 2;
-    assert_int_equal(cscd_detector_set_parts(rig.detector, labels, 3), CSCD_OK);
-    body_rig_find(&rig);
-    assert_true(!is_turned(&rig, 0) && !is_turned(&rig, 1));
-    assert_int_equal(number_in_the_middle(2), 0);
-    body_rig_free(&rig);
-}
+/* ---- components of one object --------------------------------------------------------------------------- */
 
 /* What crosses another component, or lies beside it, is a body of its own. Some corners of the second cube lie in the first
  * one, all of the third lies in its box, and the fourth is beside them. */
@@ -237,7 +146,8 @@ static void what_is_not_within_stands_alone(void **state) {
             if ((inverted >> i & 1) != 0) body_rig_turn(&rig, i * CUBE, CUBE);
         }
         body_rig_find_all(&rig);
-        for (uint32_t i = 0; i < 4; i++) assert_int_equal(is_turned(&rig, i), (inverted >> i & 1) != 0);
+        for (uint32_t i = 0; i < 4; i++)
+            assert_int_equal(body_rig_is_turned(&rig, i), (inverted >> i & 1) != 0);
         cscd_overlap own = body_rig_overlap(&rig, 0, 0);
         assert_true(fabs(own.volume - (1.0 + 0.25 * 0.25 * 2.0)) < 1e-12 && own.area_b == 0.0);
         body_rig_free(&rig);
@@ -258,7 +168,7 @@ static void what_is_collapsed_is_as_given(void **state) {
             }
         }
         body_rig_find(&rig);
-        assert_true(is_turned(&rig, 0) && !is_turned(&rig, 1));
+        assert_true(body_rig_is_turned(&rig, 0) && !body_rig_is_turned(&rig, 1));
         body_rig_free(&rig);
     }
 }
@@ -272,37 +182,12 @@ static void a_scale_that_goes_negative(void **state) {
     for (int step = 8; step >= -8; step--) {
         for (uint32_t v = 0; v < 8; v++) rig.all.x0[v * 3] = 0.5 + step / 8.0 * given[v];
         body_rig_find(&rig);
-        assert_int_equal(is_turned(&rig, 0), step < 0);
+        assert_int_equal(body_rig_is_turned(&rig, 0), step < 0);
         double half = 0.5 * fabs(step / 8.0);
         if (step != 0) assert_true(fabs(body_rig_overlap(&rig, 0, 1).volume - 0.25 * half) < 1e-12);
         if (step != 0) assert_true(fabs(greatest_depth(&rig) - fmin(half, 0.5)) < 1e-12);
     }
     body_rig_free(&rig);
-}
-
-/* ---- memory -------------------------------------------------------------------------------------------- */
-
-static void each_allocation_may_fail(void **state) {
-    (void)state;
-    counting_allocator counter = counting_allocator_start();
-    make_nested(3, 2, false, 0);
-    body_rig_free(&rig);
-    rig.counter = &counter;
-    body_rig_create(&rig, NULL, 1);
-    uint32_t labels[4 * CUBE] = {0};
-    assert_int_equal(cscd_detector_set_parts(rig.detector, labels, 1), CSCD_OK);
-    rig.orientation = CSCD_ORIENTATION_BY_PART;
-    cscd_status status = CSCD_OUT_OF_MEMORY;
-    int failures = 0;
-    for (; status == CSCD_OUT_OF_MEMORY; failures++) {
-        counter.fail_at = counter.calls + (size_t)failures + 1;
-        status = body_rig_try(&rig);
-    }
-    assert_int_equal(status, CSCD_OK);
-    assert_true(failures > 10 && !is_turned(&rig, 1));
-    counter.fail_at = SIZE_MAX;
-    body_rig_free(&rig);
-    assert_int_equal(counter.live, 0);
 }
 
 /* ---- rounding -------------------------------------------------------------------------------------------- */
@@ -338,7 +223,7 @@ static void the_sign_is_exact(void **state) {
         if (round % 2 == 1) turn_body(&rig, 0);
         body_rig_create(&rig, NULL, 1);
         body_rig_find(&rig);
-        assert_int_equal(is_turned(&rig, 0), round % 2);
+        assert_int_equal(body_rig_is_turned(&rig, 0), round % 2);
         body_rig_free(&rig);
     }
 }
@@ -350,13 +235,9 @@ int main(void) {
         cmocka_unit_test(a_cube_within_another),
         cmocka_unit_test(as_given_it_encloses_nothing),
         cmocka_unit_test(directions_are_outwards),
-        cmocka_unit_test(shells_keep_their_sense),
-        cmocka_unit_test(parts_are_bodies_of_their_own),
-        cmocka_unit_test(a_shell_of_a_skin_with_limbs),
         cmocka_unit_test(what_is_not_within_stands_alone),
         cmocka_unit_test(what_is_collapsed_is_as_given),
         cmocka_unit_test(a_scale_that_goes_negative),
-        cmocka_unit_test(each_allocation_may_fail),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

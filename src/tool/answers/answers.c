@@ -30,7 +30,7 @@ bool answers_open(recording *r, const ignore_pairs *ignored, bool depths, size_t
     answers a = {.recording = r,
                  .parts = &ignored->parts,
                  .depths = depths,
-                 .orientation = ignored->parts.named ? CSCD_ORIENTATION_BY_PART : CSCD_ORIENTATION_BY_OBJECT,
+                 .orientation = CSCD_ORIENTATION_BY_PART,
                  .depth_limit = (double)INFINITY,
                  .max_memory = max_memory,
                  .shown = shown_depths_of(ignored),
@@ -191,7 +191,7 @@ bool answers_find(const answers *a, cscd_detector *detector, const double *posit
     options.curves = options.patches = options.depths = a->depths;
     options.orientation = a->orientation;
     options.depth_limit = a->depth_limit;
-    options.part_bodies = a->parts->named;
+    options.part_bodies = true;
     options.max_memory = a->max_memory;
     const cscd_view *view = CSCD_DOUBLES(positions, cscd_mesh_vertex_count(a->recording->mesh));
     const cscd_status status = cscd_detector_find_intersections(detector, view, &options, found);

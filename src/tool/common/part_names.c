@@ -113,19 +113,37 @@ static bool number_parts(part_names *parts, const char *what, uint32_t count, io
     return true;
 }
 
-/* By --parts-by, what the file's own parts would be. */
-static bool label_bodies(const recording *r, part_names *parts, io_error *error) {
-    const uint32_t count = cscd_mesh_triangle_count(r->mesh);
-    parts->bodies = io_realloc(NULL, ((size_t)count + 1) * sizeof *parts->bodies);
-    if (parts->bodies == NULL) return io_fail(error, "out of memory for the parts of %u triangles", count);
-    parts->body_count = 0;
+/* By --parts-by, the parts that the file has by itself. Returns how many there are. */
+static uint32_t label_own_parts(const recording *r, uint32_t *labels) {
+    uint32_t count = 0;
     for (uint32_t i = 0; i < r->object_count; i++) {
         const recorded_object *object = &r->objects[i];
-        const object_parts own = parts_of_object(r, i, mesh_file_own_parts(&object->file), parts->body_count);
-        label_object(object, &own, parts->bodies);
-        parts->body_count = own.end;
+        const object_parts own = parts_of_object(r, i, mesh_file_own_parts(&object->file), count);
+        label_object(object, &own, labels);
+        count = own.end;
     }
-    if (parts->body_count == 0) parts->body_count = 1; /* which no triangle is in */
+    return count;
+}
+
+/* Names say what belongs together if there are several; one name for all says as little as none. */
+static bool tell_apart(const uint32_t *labels, uint32_t triangle_count, uint32_t part_count) {
+    if (part_count > 1) return true;
+    for (uint32_t t = 0; t < triangle_count; t++)
+        if (labels[t] != labels[0]) return true;
+    return false;
+}
+
+/* Says what the bodies are, where that is not the parts. */
+static bool label_bodies(const recording *r, part_names *parts, io_error *error) {
+    const uint32_t count = cscd_mesh_triangle_count(r->mesh);
+    const bool by_choice = r->parts_by != MESH_PARTS_BY_FILE;
+    if (parts->named && !by_choice && tell_apart(parts->labels, count, parts->count)) return true;
+    parts->bodies = io_realloc(NULL, ((size_t)count + 1) * sizeof *parts->bodies);
+    if (parts->bodies == NULL) return io_fail(error, "out of memory for the parts of %u triangles", count);
+    parts->body_count = by_choice ? label_own_parts(r, parts->bodies) : 0;
+    if (parts->body_count > 0 && tell_apart(parts->bodies, count, parts->body_count)) return true;
+    for (uint32_t t = 0; t < count; t++) parts->bodies[t] = NO_PART;
+    parts->body_count = 1; /* which no triangle is in */
     return true;
 }
 
@@ -145,16 +163,12 @@ static bool files_name_parts(const recording *r) {
     return false;
 }
 
-static bool find_parts(const recording *r, const cscd_plan *plan, part_names *parts, io_error *error) {
-    if (!allocate_labels(r, parts, error)) return false;
-    const bool named = r->object_count > 1 || files_name_parts(r),
-               by_choice = r->parts_by != MESH_PARTS_BY_FILE;
-    if (by_choice && !files_name_parts(r)) return fail_without_parts(r, error);
-    for (uint32_t i = 0; i < r->object_count && named; i++)
+static bool label_parts(const recording *r, const cscd_plan *plan, part_names *parts, io_error *error) {
+    parts->named = r->object_count > 1 || files_name_parts(r);
+    if (r->parts_by != MESH_PARTS_BY_FILE && !files_name_parts(r)) return fail_without_parts(r, error);
+    for (uint32_t i = 0; i < r->object_count && parts->named; i++)
         if (!add_object(r, i, parts, error)) return false;
-    parts->named = named;
-    if (by_choice) return label_bodies(r, parts, error);
-    if (named) return true;
+    if (parts->named) return true;
     const uint32_t components = cscd_mesh_component_count(r->mesh);
     if (components == 1 && plan != NULL && cscd_plan_region_count(plan) > 1)
         return number_parts(parts, "region", cscd_plan_region_labels(plan, parts->labels), error);
@@ -165,7 +179,8 @@ static bool find_parts(const recording *r, const cscd_plan *plan, part_names *pa
 
 bool part_names_find(const recording *r, const cscd_plan *plan, part_names *out, io_error *error) {
     part_names parts = {0};
-    if (!find_parts(r, plan, &parts, error)) {
+    if (!allocate_labels(r, &parts, error) || !label_parts(r, plan, &parts, error) ||
+        !label_bodies(r, &parts, error)) {
         part_names_free(&parts);
         return false;
     }

@@ -10,8 +10,8 @@ typedef struct part_names {
     char **names;     /* count of them */
     uint32_t *labels; /* per triangle of the mesh: a part, or NO_PART */
     uint32_t *
-        bodies; /* per triangle, below body_count, or NO_PART: the part that it has without --parts-by, which says what belongs
-                       * together, so that depths stay what they are; NULL: parts say so */
+        bodies; /* per triangle, below body_count, or NO_PART: what belongs together, where that is not the parts; NULL: they say
+                       * so. Parts of --parts-by do not, so that depths stay what they are. In no part, each component is by itself. */
     uint32_t body_count;
     bool named; /* by files or a table; else they are components or regions, or the recording itself */
 } part_names;

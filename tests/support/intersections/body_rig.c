@@ -11,6 +11,7 @@ void body_rig_begin(body_rig *r) {
     r->counter = NULL;
     r->body_count = 0;
     r->orientation = CSCD_ORIENTATION_BY_OBJECT;
+    r->part_bodies = false;
 }
 
 void body_rig_end_body(body_rig *r) {
@@ -105,6 +106,7 @@ cscd_status body_rig_try(body_rig *r) {
     cscd_intersection_options options = cscd_intersection_defaults();
     options.overlaps = options.depths = true;
     options.orientation = r->orientation;
+    options.part_bodies = r->part_bodies;
     return cscd_detector_find_intersections(r->detector, CSCD_DOUBLES(r->all.x0, r->all.vertex_count),
                                             &options, &r->found);
 }
@@ -130,4 +132,18 @@ cscd_overlap body_rig_overlap(const body_rig *r, uint32_t a, uint32_t b) {
             return r->found.overlaps->items[i];
     }
     return (cscd_overlap){a, b, 0.0, 0.0, 0.0};
+}
+
+void body_rig_place(body_rig *r, int axis, bool mirrored, double scale) {
+    for (uint32_t v = 0; v < r->all.vertex_count; v++) {
+        double *x = r->all.x0 + (size_t)v * 3, given[3];
+        memcpy(given, x, sizeof given);
+        for (int k = 0; k < 3; k++) x[(k + axis) % 3] = scale * (k == 1 && mirrored ? -given[k] : given[k]);
+    }
+    if (mirrored) body_rig_turn(r, 0, r->all.triangle_count);
+}
+
+bool body_rig_is_turned(const body_rig *r, uint32_t component) {
+    const bool *turned = r->found.patches->turned;
+    return turned != NULL && turned[component];
 }

@@ -18,6 +18,7 @@ typedef struct body_rig {
     body_part bodies[BODIES_MAX];
     uint32_t body_count;
     cscd_orientation orientation;
+    bool part_bodies;
     counting_allocator *counter; /* of the context; NULL: the system's allocator */
     cscd_context *context;
     cscd_mesh *mesh;
@@ -58,3 +59,9 @@ void body_rig_find_all(body_rig *r);
 
 /* The overlap of two objects, 0 if they have none. */
 cscd_overlap body_rig_overlap(const body_rig *r, uint32_t a, uint32_t b);
+
+/* Coordinate k becomes coordinate k + axis, mirrored at will, so many times as large; triangles stay outwards. */
+void body_rig_place(body_rig *r, int axis, bool mirrored, double scale);
+
+/* Was the component found inside out? */
+bool body_rig_is_turned(const body_rig *r, uint32_t component);

@@ -1,0 +1,197 @@
+/* Closed components of one object that lie in each other: which are bodies, which are cavities of what is around them, and what is taken as
+ * turned around, by hand. */
+#include "tests/support/intersections/body_rig.h"
+#include "tests/support/test.h"
+
+#include <string.h>
+
+static body_rig rig; /* large; one test at a time */
+
+enum { CUBE = 12 }; /* triangles */
+
+static void add_cube(double x, double size) {
+    const double low[3] = {x, x, x}, sizes[3] = {size, size, size};
+    body_rig_add_box(&rig, low, sizes);
+}
+
+/* Cubes of sizes 4, 2 and 1, each in the one before, in one object or as parts of their own; and a small cube in the middle, an
+ * object of its own. */
+static void make_nested(uint32_t shells, int inverted, bool parts, int axis) {
+    body_rig_begin(&rig);
+    const double size[3] = {4, 2, 1};
+    for (uint32_t i = 0; i < shells; i++) add_cube(-0.5 * size[i], size[i]);
+    body_rig_end_body(&rig);
+    add_cube(-0.125, 0.25);
+    body_rig_end_body(&rig);
+    body_rig_place(&rig, axis, false, 1.0);
+    for (uint32_t i = 0; i < shells; i++) {
+        if ((inverted >> i & 1) != 0) body_rig_turn(&rig, i * CUBE, CUBE);
+    }
+    body_rig_create(&rig, NULL, 2);
+    uint32_t labels[4 * CUBE];
+    for (uint32_t t = 0; t < 4 * CUBE; t++) labels[t] = t / CUBE;
+    if (parts || inverted % 2 == 1) /* by object, parts do not matter */
+        assert_int_equal(cscd_detector_set_parts(rig.detector, labels, 4), CSCD_OK);
+    if (parts) rig.orientation = CSCD_ORIENTATION_BY_PART;
+    body_rig_find(&rig);
+}
+
+/* The number of the object of the shells around the small cube. */
+static int number_in_the_middle(uint32_t shells) {
+    const cscd_patch *patch = &rig.found.patches->items[shells];
+    assert_int_equal(patch->object, 1);
+    for (uint32_t i = 0; i < patch->winding_count; i++) {
+        cscd_winding w = rig.found.patches->windings[patch->first_winding + i];
+        if (w.body == 0) return w.number;
+    }
+    return 0;
+}
+
+/* By hand: what each of up to three shells is, from the outermost one, where + is outwards. A B is a body, which is turned around if it
+ * is a -; a c is a cavity of the B before it, and turned with it. */
+static const struct {
+    const char *senses, *roles;
+} nestings[] = {
+    {"+", "B"},     {"-", "B"},     {"++", "BB"},   {"+-", "Bc"},   {"-+", "Bc"},
+    {"--", "BB"},   {"+++", "BBB"}, {"++-", "BBc"}, {"+-+", "BcB"}, {"+--", "BcB"},
+    {"-++", "BcB"}, {"-+-", "BcB"}, {"--+", "BBc"}, {"---", "BBB"},
+};
+
+static int read_inverted(const char *senses) {
+    int inverted = 0;
+    for (int i = 0; senses[i] != '\0'; i++) inverted |= (senses[i] == '-') << i;
+    return inverted;
+}
+
+static void shells_keep_their_sense(void **state) {
+    (void)state;
+    for (size_t n = 0; n < sizeof nestings / sizeof *nestings; n++) {
+        const char *senses = nestings[n].senses, *roles = nestings[n].roles;
+        const uint32_t shells = (uint32_t)strlen(senses);
+        int number = 0;
+        make_nested(shells, read_inverted(senses), false, (int)n % 3);
+        for (uint32_t i = 0; i < shells; i++) {
+            assert_int_equal(body_rig_is_turned(&rig, i), senses[roles[i] == 'c' ? i - 1 : i] == '-');
+            number += roles[i] == 'c' ? -1 : 1;
+        }
+        assert_int_equal(number_in_the_middle(shells), number);
+        body_rig_free(&rig);
+    }
+}
+
+/* The same shells in an object of their own, each of no part, from the outermost one or from the innermost one: a cavity has the body of
+ * what it is a cavity of. */
+static void cavities_belong_to_what_is_around_them(void **state) {
+    (void)state;
+    for (size_t n = 0; n < 4 * sizeof nestings / sizeof *nestings; n++) {
+        const char *senses = nestings[n / 4].senses, *roles = nestings[n / 4].roles;
+        const uint32_t shells = (uint32_t)strlen(senses);
+        const bool inner_first = n % 4 >= 2;
+        body_rig_begin(&rig);
+        for (uint32_t i = 0; i < shells; i++) {
+            const double size = 1 << (inner_first ? i : shells - 1 - i);
+            add_cube(-0.5 * size, size);
+        }
+        body_rig_end_body(&rig);
+        for (uint32_t i = 0; i < shells; i++)
+            if (senses[inner_first ? shells - 1 - i : i] == '-') body_rig_turn(&rig, i * CUBE, CUBE);
+        body_rig_create(&rig, NULL, 2);
+        rig.part_bodies = true;
+        rig.orientation = n % 2 == 0 ? CSCD_ORIENTATION_BY_OBJECT : CSCD_ORIENTATION_AS_GIVEN;
+        assert_int_equal(cscd_detector_body_labels(rig.detector, NULL), shells);
+        for (int call = 0; call < 2; call++) { /* which keep nothing of each other */
+            body_rig_find(&rig);
+            for (uint32_t i = 0; i < shells; i++) {
+                const uint32_t depth = inner_first ? shells - 1 - i : i, outer = inner_first ? i + 1 : i - 1;
+                assert_int_equal(rig.found.patches->items[i].body, roles[depth] == 'c' ? outer : i);
+            }
+        }
+        body_rig_free(&rig);
+    }
+}
+
+/* What is of another part is no cavity, whatever is asked about orientation; and parts join what comes after a component of none. */
+static void bodies_go_by_parts(void **state) {
+    (void)state;
+    static const uint32_t parts[][3] = {{0, 1, 2}, {UINT32_MAX, 0, 0}, {0, UINT32_MAX, 0}, {1, 1, 1}},
+                          bodies[][3] = {{0, 1, 2}, {0, 1, 1}, {0, 1, 0}, {0, 0, 0}};
+    static const char *const turned[] = {".t.", ".tt", ".t.", "..."};
+    for (size_t n = 0; n < sizeof parts / sizeof *parts; n++) {
+        make_nested(3, 2, false,
+                    (int)n %
+                        3); /* outwards, inwards, outwards: of one part, the last is a cavity of the second */
+        rig.part_bodies = true;
+        uint32_t labels[4 * CUBE], told[4 * CUBE];
+        for (uint32_t t = 0; t < 4 * CUBE; t++) labels[t] = t < 3 * CUBE ? parts[n][t / CUBE] : UINT32_MAX;
+        assert_int_equal(cscd_detector_set_parts(rig.detector, labels, 3), CSCD_OK);
+        cscd_detector_body_labels(rig.detector, told);
+        body_rig_find(&rig);
+        for (uint32_t i = 0; i < 3; i++) {
+            assert_int_equal(told[i * CUBE], bodies[n][i]);
+            assert_int_equal(rig.found.patches->items[i].body, bodies[n][i]);
+            assert_int_equal(body_rig_is_turned(&rig, i), turned[n][i] == 't');
+        }
+        body_rig_free(&rig);
+    }
+}
+
+static void parts_are_bodies_of_their_own(void **state) {
+    (void)state;
+    for (uint32_t shells = 1; shells <= 3; shells++) {
+        for (int inverted = 0; inverted < 1 << shells; inverted++) {
+            make_nested(shells, inverted, true, inverted % 3);
+            for (uint32_t i = 0; i < shells; i++)
+                assert_int_equal(body_rig_is_turned(&rig, i), (inverted >> i & 1) != 0);
+            assert_int_equal(number_in_the_middle(shells), (int)shells);
+            body_rig_free(&rig);
+        }
+    }
+}
+
+/* One component of a part each, but the outer one has both parts: the inner one is a shell of it. */
+static void a_shell_of_a_skin_with_limbs(void **state) {
+    (void)state;
+    make_nested(2, 2, true, 0);
+    uint32_t labels[3 * CUBE];
+    for (uint32_t t = 0; t < 3 * CUBE; t++) labels[t] = t < 5 ? 0 : t < 2 * CUBE ? 1 : 2;
+    assert_int_equal(cscd_detector_set_parts(rig.detector, labels, 3), CSCD_OK);
+    body_rig_find(&rig);
+    assert_true(!body_rig_is_turned(&rig, 0) && !body_rig_is_turned(&rig, 1));
+    assert_int_equal(number_in_the_middle(2), 0);
+    body_rig_free(&rig);
+}
+
+static void each_allocation_may_fail(void **state) {
+    (void)state;
+    counting_allocator counter = counting_allocator_start();
+    make_nested(3, 2, false, 0);
+    body_rig_free(&rig);
+    rig.counter = &counter;
+    body_rig_create(&rig, NULL, 1);
+    uint32_t labels[4 * CUBE] = {0};
+    assert_int_equal(cscd_detector_set_parts(rig.detector, labels, 1), CSCD_OK);
+    rig.orientation = CSCD_ORIENTATION_BY_PART;
+    cscd_status status = CSCD_OUT_OF_MEMORY;
+    int failures = 0;
+    for (; status == CSCD_OUT_OF_MEMORY; failures++) {
+        counter.fail_at = counter.calls + (size_t)failures + 1;
+        status = body_rig_try(&rig);
+    }
+    assert_int_equal(status, CSCD_OK);
+    assert_true(failures > 10 && !body_rig_is_turned(&rig, 1));
+    counter.fail_at = SIZE_MAX;
+    body_rig_free(&rig);
+    assert_int_equal(counter.live, 0);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(shells_keep_their_sense),
+        cmocka_unit_test(cavities_belong_to_what_is_around_them),
+        cmocka_unit_test(bodies_go_by_parts),
+        cmocka_unit_test(parts_are_bodies_of_their_own),
+        cmocka_unit_test(a_shell_of_a_skin_with_limbs),
+        cmocka_unit_test(each_allocation_may_fail),
+    };
+    return cmocka_run_group_tests_name("shells", tests, NULL, NULL);
+}
