@@ -207,10 +207,10 @@ static void neighbours_take_what_is_not_seen(void **state) {
             labelling_share_out(&l);
             after = labelling_cost(&l);
         } while (after < before);
-        const uint32_t region = l.of_tile[0], tile = 0;
+        const uint32_t region = l.of_tile[0], first = 0;
         const uint32_t count = l.regions.count;
         for (int k = 0; k < 3; k++) l.regions.points[region].rest[k] = 1e3; /* far outside */
-        labelling_give(&l, &tile, 1, region);                               /* says that it has changed */
+        labelling_give(&l, &first, 1, region);                              /* says that it has changed */
         before = labelling_cost(&l);
         labelling_share_out(&l);
         assert_true(count == 1 || labelling_cost(&l) < before - 1e-3 * b->g.area);
