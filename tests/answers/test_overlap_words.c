@@ -1,6 +1,7 @@
 /* What check says of parts that share space, or only meet, and what a gate makes of it. */
 #include "tests/support/own_folder.h"
 #include "tests/support/test.h"
+#include "tests/support/tool/json_reader.h"
 #include "tests/support/tool/run_tool.h"
 
 #include <stdbool.h>
@@ -98,6 +99,131 @@ static void words_say_who_shares_space(void **state) {
     }
 }
 
+/* ---- how many lie inside ---------------------------------------------------------------------------------- */
+
+/* Of boxes named a, b, c, d in the order of the file, so many lie inside others, in so many pairs. */
+typedef struct nest_case {
+    double halves[4]; /* of cubes; 0: there are no more */
+    double shifts[4]; /* along an axis */
+    int inside, pairs;
+} nest_case;
+
+static const nest_case nests[] = {
+    {{4, 3, 2}, {0, 0, 0}, 2, 3},            /* dolls, */
+    {{2, 4, 3}, {0, 0, 0}, 2, 3},            /* in another order, */
+    {{1, 2, 3, 4}, {0.5, 0, 0.25, 0}, 3, 6}, /* and four of them */
+    {{8, 1, 1}, {0, -3, 3}, 2, 2},           /* two in one that are apart, */
+    {{1, 8, 1, 1}, {-3, 0, 0, 3}, 3, 3},     /* and three */
+    {{2, 1, 2, 1}, {-3, -3, 3, 3}, 2, 2},    /* one in each of two */
+    {{2, 1, 2}, {-3, -3, 3}, 1, 1},          /* in one of two */
+};
+
+static temp_path write_nest(const nest_case *c, int axis, double scale) {
+    const temp_path path = temp_file_path(&folder, "nest.obj");
+    FILE *file = fopen(path.text, "w");
+    for (int i = 0; i < 4 && c->halves[i] > 0.0; i++) {
+        double bounds[6];
+        for (int k = 0; k < 3; k++) {
+            const double middle = k == axis ? c->shifts[i] : 0.0;
+            bounds[2 * k] = scale * (middle - c->halves[i]);
+            bounds[2 * k + 1] = scale * (middle + c->halves[i]);
+        }
+        write_box(file, (const char[]){(char)('a' + i), '\0'}, bounds, false, 8 * i);
+    }
+    fclose(file);
+    return path;
+}
+
+static void expect_nest(const nest_case *c, const char *path) {
+    char line[100];
+    const temp_path json = temp_file_path(&folder, "nest.json");
+    snprintf(line, sizeof line, "%d part%s; no two triangles cross or touch. %d place", c->inside,
+             c->inside > 1 ? "s lie inside others" : " lies inside another", c->pairs);
+    tool_run run = RUN_TOOL("check", path, "--json", json.text);
+    expect_start(run.out, line);
+    tool_run_free(&run);
+    json_node *root = json_node_read_file(json.text);
+    const json_node *frame = json_node_item(json_node_member(root, "frames"), 0);
+    assert_int_equal(json_node_number(frame, "inside_parts"), c->inside);
+    json_node_free(root);
+    run = RUN_TOOL("check", "--each", path);
+    expect_in(run.out, line);
+    tool_run_free(&run);
+}
+
+/* A doll in two others is one part, though it makes two events. */
+static void parts_inside_count_once(void **state) {
+    (void)state;
+    for (size_t i = 0; i < sizeof nests / sizeof *nests; i++) {
+        const temp_path path = write_nest(&nests[i], (int)(i % 3), i % 2 == 0 ? 1.0 : 0.001);
+        expect_nest(&nests[i], path.text);
+    }
+    const temp_path dolls = write_nest(&nests[0], 1, 1.0);
+    tool_run run = RUN_TOOL("check", dolls.text, "--ignore-parts", "a,b", "--ignore-parts", "a,c");
+    expect_start(run.out, "1 part lies inside another; ");
+    tool_run_free(&run);
+}
+
+/* ---- recordings -------------------------------------------------------------------------------------------- */
+
+typedef struct frames_case {
+    const char *frames; /* c crosses, o overlaps, i inside, s the same solid twice, t touches, n nothing */
+    const char *line;
+} frames_case;
+
+static const frames_case recordings[] = {
+    {"cc", "All 2 frames cross. "},
+    {"iii", "All 3 frames have one part inside another. "},
+    {"nin", "Frame 1 has one part inside another (1 of 3). "},
+    {"oo", "All 2 frames overlap. "},
+    {"ont", "Frame 0 overlaps (1 of 3), frame 2 touches (1 of 3). "},
+    {"snn", "Frame 0 has two copies of one solid (1 of 3). "},
+    {"cin", "Frames 0 to 1 cross or have one part inside another (2 of 3). "},
+    {"ons", "Frames 0, 2 overlap or have two copies of one solid (2 of 3). "},
+    {"coist",
+     "Frames 0 to 3 cross, overlap, have one part inside another or have two copies of one solid (4 of 5), "
+     "frame 4 touches (1 of 5). "},
+    {"tnt", "No frame crosses; frames 0, 2 touch (2 of 3). "},
+};
+
+static void write_frame(const char *path, char kind) {
+    static const struct {
+        char kind;
+        double low[3], high[3];
+    } boxes[] = {{'c', {0.5, 0.5, 0.5}, {1.5, 1.5, 1.5}},
+                 {'o', {0, 0, 0.75}, {1, 1, 1}},
+                 {'i', {0.25, 0.25, 0.25}, {0.75, 0.75, 0.75}},
+                 {'s', {0, 0, 0}, {1, 1, 1}},
+                 {'t', {1, 0, 0}, {2, 1, 1}},
+                 {'n', {3, 0, 0}, {4, 1, 1}}};
+    FILE *file = fopen(path, "w");
+    write_box(file, "a", (const double[]){0, 1, 0, 1, 0, 1}, false, 0);
+    for (size_t i = 0; i < sizeof boxes / sizeof *boxes; i++) {
+        const double *l = boxes[i].low, *h = boxes[i].high;
+        if (boxes[i].kind == kind)
+            write_box(file, "b", (const double[]){l[0], h[0], l[1], h[1], l[2], h[2]}, false, 8);
+    }
+    fclose(file);
+}
+
+/* No frame is said to cross in which nothing does. */
+static void recordings_say_what_there_is(void **state) {
+    (void)state;
+    for (size_t i = 0; i < sizeof recordings / sizeof *recordings; i++) {
+        temp_path paths[5];
+        const char *arguments[8] = {"check"};
+        const size_t count = strlen(recordings[i].frames);
+        for (size_t k = 0; k < count; k++) {
+            paths[k] = temp_file_path(&folder, (const char[]){(char)('0' + k), '.', 'o', 'b', 'j', '\0'});
+            write_frame(paths[k].text, recordings[i].frames[k]);
+            arguments[k + 1] = paths[k].text;
+        }
+        tool_run run = run_tool(arguments);
+        expect_start(run.out, recordings[i].line);
+        tool_run_free(&run);
+    }
+}
+
 /* ---- rounding ---------------------------------------------------------------------------------------------- */
 
 /* A triangle of x and y, from one z to another. */
@@ -137,7 +263,8 @@ static void rounded_distances_are_no_depth(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(words_say_who_shares_space),
-                                       cmocka_unit_test(rounded_distances_are_no_depth)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(words_say_who_shares_space), cmocka_unit_test(parts_inside_count_once),
+        cmocka_unit_test(recordings_say_what_there_is), cmocka_unit_test(rounded_distances_are_no_depth)};
     return cmocka_run_group_tests_name("overlap_words", tests, own_folder_make, own_folder_remove);
 }

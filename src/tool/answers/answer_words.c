@@ -5,10 +5,6 @@
 
 enum { SPANS_SAID = 6 };
 
-static bool frame_overlaps(const frame_answer *frame) {
-    return frame->crossing == 0 && frame_answer_crosses(frame);
-}
-
 static bool frame_touches(const frame_answer *frame) {
     return !frame_answer_crosses(frame) && frame->touching > 0;
 }
@@ -31,21 +27,61 @@ static void say_frames(FILE *out, const answers *a, frame_test *test) {
 
 /* ---- the sentence --------------------------------------------------------------------------------------- */
 
+/* What frames have, the weightiest first: each counts for one of these. */
+static bool triangles_cross(const frame_answer *frame) {
+    return frame->crossing > 0;
+}
+
+static bool parts_overlap(const frame_answer *frame) {
+    return frame->crossing == 0 && frame->overlapping > 0;
+}
+
+static bool parts_lie_inside(const frame_answer *frame) {
+    return frame->crossing + frame->overlapping == 0 && frame->inside > 0;
+}
+
+static bool parts_are_copies(const frame_answer *frame) {
+    return frame->crossing + frame->overlapping + frame->inside == 0 && frame->same > 0;
+}
+
+/* " cross, overlap or have one part inside another": what there is in frames that count as crossing. */
+static void say_what_frames_do(FILE *out, const answers *a, bool one) {
+    static const struct {
+        frame_test *test;
+        const char *of_several, *of_one;
+    } verbs[] = {{triangles_cross, "cross", "crosses"},
+                 {parts_overlap, "overlap", "overlaps"},
+                 {parts_lie_inside, "have one part inside another", "has one part inside another"},
+                 {parts_are_copies, "have two copies of one solid", "has two copies of one solid"}};
+    size_t left = 0, said = 0;
+    for (size_t i = 0; i < sizeof verbs / sizeof *verbs; i++) left += answers_count(a, verbs[i].test) > 0;
+    for (size_t i = 0; i < sizeof verbs / sizeof *verbs; i++) {
+        if (answers_count(a, verbs[i].test) == 0) continue;
+        left--;
+        fprintf(out, "%s%s",
+                said++ == 0 ? " "
+                : left > 0  ? ", "
+                            : " or ",
+                one ? verbs[i].of_one : verbs[i].of_several);
+    }
+}
+
 static void say_recording(FILE *out, const answers *a) {
     const size_t checked = answers_count(a, frame_answer_checked);
     const size_t crossing = answers_count(a, frame_answer_crosses),
                  touching = answers_count(a, frame_touches);
-    const char *more = answers_count(a, frame_overlaps) > 0 ? " or overlap" : "";
     if (checked == 0)
         fprintf(out, answers_count(a, frame_answer_without_area) > 0 ? "No triangle has an area in any frame."
                                                                      : "No frame was checked.");
-    else if (crossing == checked && checked > 1)
-        fprintf(out, "All %zu frames cross%s.", checked, more);
-    else if (crossing > 0) {
+    else if (crossing == checked && checked > 1) {
+        fprintf(out, "All %zu frames", checked);
+        say_what_frames_do(out, a, false);
+        fprintf(out, ".");
+    } else if (crossing > 0) {
         fprintf(out, "Frame%s", crossing > 1 ? "s" : "");
         say_frames(out, a, frame_answer_crosses);
-        fprintf(out, " cross%s%s%s (%zu of %zu)", crossing > 1 ? "" : "es", more,
-                crossing > 1 || *more == '\0' ? "" : "s", crossing, checked);
+        say_what_frames_do(out, a, crossing == 1);
+        fprintf(out, " (%zu of %zu)", crossing, checked);
         if (touching == 0) fprintf(out, ".");
     } else
         fprintf(out, touching > 0 ? "No frame crosses" : "No frame crosses or touches (%zu checked).",
@@ -87,8 +123,8 @@ static const char *say_overlaps(FILE *out, const frame_answer *frame, const char
         before = "; ";
     }
     if (frame->inside > 0) {
-        fprintf(out, "%s%zu part%s inside another", before, frame->inside,
-                frame->inside > 1 ? "s lie" : " lies");
+        fprintf(out, "%s%zu part%s", before, frame->inside,
+                frame->inside > 1 ? "s lie inside others" : " lies inside another");
         before = "; ";
     }
     if (frame->same > 0) {

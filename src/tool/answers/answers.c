@@ -37,7 +37,8 @@ bool answers_open(recording *r, const ignore_pairs *ignored, bool depths, size_t
                  .collapsed = collapsed_parts_of(r, &ignored->parts),
                  .frames = growable_of(sizeof(frame_answer))};
     a.seen = io_zeroed(((size_t)cscd_mesh_triangle_count(r->mesh) + 1) * sizeof *a.seen);
-    if (a.seen == NULL || !turned_parts_open(r, a.parts, &a.turned)) {
+    a.seen_parts = io_zeroed(((size_t)a.parts->count + 1) * sizeof *a.seen_parts);
+    if (a.seen == NULL || a.seen_parts == NULL || !turned_parts_open(r, a.parts, &a.turned)) {
         answers_close(&a);
         return io_fail(error, "out of memory");
     }
@@ -58,6 +59,7 @@ void answers_close(answers *a) {
     free(a->events);
     free(a->worst_first);
     free(a->seen);
+    free(a->seen_parts);
     *a = (answers){0};
 }
 
@@ -151,34 +153,62 @@ static bool is_worse(const cscd_part_pair *a, const cscd_part_pair *b) {
     return count_pairs(a) > count_pairs(b);
 }
 
+static bool is_inside(const cscd_part_pair *pair) {
+    return count_pairs(pair) == 0 && pair->depth > 0.0 && !pair->same_solid && !lies_in_itself(pair);
+}
+
 static void count_within(const cscd_part_pair *pair, frame_answer *frame) {
-    if (pair->crossing > 0 || !is_within(pair)) return;
+    if (pair->crossing > 0 || !is_within(pair) || lies_in_itself(pair)) return;
     if (pair->same_solid)
         frame->same++;
     else if (count_pairs(pair) > 0)
         frame->overlapping++;
-    else
-        frame->inside++;
+}
+
+static void count_part(answers *a, uint32_t part, frame_answer *frame) {
+    uint32_t *seen = &a->seen_parts[part == NO_PART ? a->parts->count : part];
+    frame->inside += *seen != (uint32_t)a->frames.count;
+    *seen = (uint32_t)a->frames.count;
+}
+
+static int compare_part_pairs(const void *left, const void *right) {
+    const cscd_part_pair *l = left, *r = right;
+    if (l->a != r->a) return l->a < r->a ? -1 : 1;
+    return l->b < r->b ? -1 : l->b > r->b;
+}
+
+/* Which of two parts is the one inside is that which has the buried points. A part inside of several counts once. */
+static void count_inside(answers *a, const cscd_intersection_pairs *found, frame_answer *frame) {
+    const uint32_t *labels = a->parts->labels;
+    for (size_t i = 0; i < found->depths->count; i++) {
+        const cscd_depth *depth = &found->depths->items[i];
+        const uint32_t part = labels[depth->face], burier = labels[depth->triangle];
+        if (!(depth->depth > 0.0)) continue;
+        const cscd_part_pair key = {.a = part < burier ? part : burier, .b = part < burier ? burier : part};
+        cscd_part_pair *pair =
+            bsearch(&key, found->parts->items, found->parts->count, sizeof key, compare_part_pairs);
+        if (pair != NULL && is_inside(pair)) count_part(a, part, frame);
+    }
 }
 
 /* What lies in itself alone follows from something else in the frame, if there is anything else. */
-static void find_worst(const shown_depths *shown, const cscd_intersection_pairs *found, frame_answer *frame) {
+static void find_worst(answers *a, const cscd_intersection_pairs *found, frame_answer *frame) {
     cscd_part_pair worst = {.a = NO_PART, .b = NO_PART};
-    bool worst_of_none = true;
+    bool worst_of_none = true, any_inside = false;
     size_t in_itself = 0;
     for (size_t i = 0; found->parts != NULL && i < found->parts->count; i++) {
         cscd_part_pair pair = found->parts->items[i];
-        shown_depths_of_parts(shown, found, &pair);
+        shown_depths_of_parts(&a->shown, found, &pair);
         if (count_pairs(&pair) == 0 && pair.depth == 0.0) continue;
         if (worst_of_none || is_worse(&pair, &worst)) worst = pair;
         worst_of_none = false;
-        if (lies_in_itself(&pair))
-            in_itself++;
-        else
-            count_within(&pair, frame);
+        in_itself += lies_in_itself(&pair);
+        any_inside = any_inside || is_inside(&pair);
+        count_within(&pair, frame);
         if (pair.depth > frame->depth) frame->depth = pair.depth;
         if (pair.bound > frame->bound) frame->bound = pair.bound;
     }
+    if (any_inside) count_inside(a, found, frame);
     if (!frame_answer_crosses(frame)) frame->inside = in_itself;
     frame->worst_parts[0] = worst.a;
     frame->worst_parts[1] = worst.b;
@@ -281,7 +311,7 @@ bool answers_add_found(answers *a, uint32_t frame, cscd_intersection_pairs *foun
     count_faces(a, found, added);
     if (!collapsed_parts_add(&a->collapsed, (uint32_t)a->frames.count - 1, found))
         return io_fail(error, "out of memory");
-    find_worst(&a->shown, found, added);
+    find_worst(a, found, added);
     tell_left_out(a, frame, found);
     return track_frame(a, frame, found, error);
 }

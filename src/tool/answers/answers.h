@@ -20,8 +20,8 @@ typedef struct frame_answer {
     uint32_t crossing_faces; /* so many triangles cross another one */
     size_t
         overlapping; /* pairs of parts without such pairs whose interiors meet: they share space and touch, */
-    size_t inside;   /* or one is inside the other, */
-    size_t same;     /* or both are copies of one solid */
+    size_t same;     /* or both are copies of one solid; */
+    size_t inside;   /* and parts of which something lies inside another one that they do not even touch */
     double depth, bound; /* the greatest depth, 0: none is known; and no point is deeper than the bound */
     bool without_area;   /* no triangle has an area, so that nothing could be looked at */
     uint32_t worst_parts
@@ -44,7 +44,8 @@ typedef struct answers {
     size_t event_count;
     size_t *worst_first; /* places of events */
     cscd_event_tracker *tracker;
-    uint32_t *seen;          /* per triangle: counted in the frame with this number in `frames`, from 1 */
+    uint32_t *seen;          /* per triangle: counted in the frame with this number in `frames`, from 1, */
+    uint32_t *seen_parts;    /* and per part; the last is for what is in no part */
     size_t waiting_contacts; /* of an interval whose end has not come yet */
     size_t wanted;           /* so many frames are asked for; 0: nobody has said so */
     io_error unfinished;     /* why not all was looked at that was asked for; "": all was */
