@@ -123,6 +123,31 @@ static void one_frame_of_three(void **state) {
     tool_run_free(&run);
 }
 
+/* A frame whose depth is not known passes no rule that asks for it: it is an error of its own, beside that of the run. */
+static void a_case_that_is_not_known(void **state) {
+    (void)state;
+    static const struct {
+        const char *memory, *option, *value, *counts, *message;
+    } cases[] = {
+        {"8M", "--fail-depth", "100", "failures=\"0\" errors=\"2\"", "<error message=\"how deep it is, "},
+        {"100K", "--fail-depth", "100", "failures=\"0\" errors=\"2\"", "<error message=\"how deep it is, "},
+        {"100K", "--max-faces", "9", "failures=\"0\" errors=\"2\"",
+         "<error message=\"how many triangles cross "},
+        {"8M", "--max-faces", "9", "failures=\"1\" errors=\"1\"", "triangles cross others"},
+        {"8M", "--fail-on", "crossing", "failures=\"1\" errors=\"1\"", " pairs of triangles cross"},
+        {"8M", "--max-faces", "384", "failures=\"0\" errors=\"1\"", "name=\"frame 1\""},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        tool_run run = RUN_TOOL("check", good.text, good.text, shuffled.text, good.text, "--max-memory",
+                                cases[i].memory, cases[i].option, cases[i].value, "--junit", xml.text);
+        tool_run_free(&run);
+        char *text = read_whole_file(xml.text, NULL);
+        expect_in(text, cases[i].counts);
+        expect_in(text, cases[i].message);
+        free(text);
+    }
+}
+
 /* Of the first interval. */
 static void expect_nothing_of_contacts(void) {
     json_node *root = json_node_read_file(json.text);
@@ -185,14 +210,19 @@ static void sizes_of_memory(void **state) {
     (void)state;
     EXPECT_TOOL(0, "check", good.text, "--max-memory", "1.5G");
     EXPECT_TOOL(0, "check", good.text, "--max-memory", "200000000");
-    static const char *const wrong[] = {"0", "-1", "much", "5X", "5GB", "", "1e40", "nan", "0.5"};
+    static const char *const wrong[] = {"0",   "-1",  "much", "5X",    "5GB", "",   "1e40",
+                                        "nan", "0.5", "0x10", "0x10G", "1e",  " 1G"};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
         EXPECT_ERROR(2, TEXTS("--max-memory"), "check", good.text, "--max-memory", wrong[i]);
+    EXPECT_ERROR(2, TEXTS("--fail-depth cannot be '0x1p-3mm'"), "check", good.text, "--fail-depth",
+                 "0x1p-3mm");
+    EXPECT_ERROR(2, TEXTS("--fps cannot be '0x10'"), "check", good.text, "--fps", "0x10");
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_frame_of_three), cmocka_unit_test(contacts_that_do_not_fit),
-        cmocka_unit_test(exports_of_what_is_left_out), cmocka_unit_test(sizes_of_memory)};
+        cmocka_unit_test(one_frame_of_three), cmocka_unit_test(a_case_that_is_not_known),
+        cmocka_unit_test(contacts_that_do_not_fit), cmocka_unit_test(exports_of_what_is_left_out),
+        cmocka_unit_test(sizes_of_memory)};
     return cmocka_run_group_tests_name("left_out", tests, make_files, remove_files);
 }

@@ -165,33 +165,31 @@ void answers_write_csv(const answers *a, FILE *file) {
 
 /* ---- JUnit ---------------------------------------------------------------------------------------------- */
 
-static bool frame_fails(const answers *a, const fail_rules *rules, const frame_answer *frame,
-                        char text[FAIL_TEXT_SIZE]) {
+/* Without rules a frame fails that crosses. */
+static fail_rules rules_of_cases(const fail_rules *rules) {
     fail_rules own = *rules;
     if (!fail_rules_any(rules)) own.options.kind = FAIL_ON_CROSSING;
-    return fail_rules_meet(&own, a, frame, text);
+    return own;
 }
 
-/* Where nothing could be looked at there is neither a pass nor a failure. */
-static bool frame_is_undecided(const answers *a, const fail_rules *rules, const frame_answer *frame) {
+/* Why a frame neither fails nor passes; NULL: it does. */
+static const char *why_undecided(const answers *a, const fail_rules *rules, const frame_answer *frame) {
     char text[FAIL_TEXT_SIZE];
-    return frame->without_area && !frame_fails(a, rules, frame, text);
+    return fail_rules_meet(rules, a, frame, text) ? NULL : fail_rules_unknown(rules, a, frame);
 }
 
 static void write_case(const answers *a, const fail_rules *rules, const frame_answer *frame, FILE *file) {
     char text[FAIL_TEXT_SIZE];
+    const bool fails = fail_rules_meet(rules, a, frame, text);
+    const char *unknown = fails ? NULL : fail_rules_unknown(rules, a, frame);
     fprintf(file, "    <testcase classname=\"cscd\" name=\"frame %" PRId32 "\" time=\"%.6f\"",
             answers_frame_number(a, frame->frame), frame->ms * 1e-3);
-    if (frame_is_undecided(a, rules, frame)) {
-        fputs(">\n      <error message=\"" FAIL_WITHOUT_AREA "\"/>\n    </testcase>\n", file);
-        return;
-    }
-    if (!frame_fails(a, rules, frame, text)) {
+    if (!fails && unknown == NULL) {
         fputs("/>\n", file);
         return;
     }
-    fputs(">\n      <failure message=\"", file);
-    text_write_xml(file, text);
+    fprintf(file, ">\n      <%s message=\"", fails ? "failure" : "error");
+    text_write_xml(file, fails ? text : unknown);
     fputs("\"/>\n    </testcase>\n", file);
 }
 
@@ -204,7 +202,8 @@ static void write_unfinished(const char *reason, FILE *file) {
     fputs("\"/>\n    </testcase>\n", file);
 }
 
-void answers_write_junit(const answers *a, const fail_rules *rules, const char *suite, FILE *file) {
+void answers_write_junit(const answers *a, const fail_rules *given, const char *suite, FILE *file) {
+    const fail_rules own = rules_of_cases(given), *rules = &own;
     const frame_answer *frames = answers_frames(a);
     const char *unfinished = answers_unfinished(a);
     char text[FAIL_TEXT_SIZE];
@@ -212,8 +211,8 @@ void answers_write_junit(const answers *a, const fail_rules *rules, const char *
     double ms = 0.0;
     for (size_t i = 0; i < answers_frame_count(a); i++) {
         tests++;
-        failures += frame_fails(a, rules, &frames[i], text);
-        errors += frame_is_undecided(a, rules, &frames[i]);
+        failures += fail_rules_meet(rules, a, &frames[i], text);
+        errors += why_undecided(a, rules, &frames[i]) != NULL;
         ms += frames[i].ms;
     }
     fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n  <testsuite name=\"", file);

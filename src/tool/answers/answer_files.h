@@ -17,5 +17,5 @@ void answers_write_frame(const answers *a, const frame_answer *frame, json *out)
 void answers_write_csv(const answers *a, FILE *file);
 
 /* Writes a test case for each frame. It fails by the rules; without rules it fails if the frame crosses. A frame in which no
- * triangle has an area is an error, and where not all was looked at (answers_unfinished), a last case is one. suite: what the recording is called. */
+ * triangle has an area is an error, or of which it is not known whether it fails because that did not fit the memory, and where not all was looked at (answers_unfinished), a last case is one. suite: what the recording is called. */
 void answers_write_junit(const answers *a, const fail_rules *rules, const char *suite, FILE *file);

@@ -74,6 +74,17 @@ bool fail_rules_meet(const fail_rules *rules, const answers *a, const frame_answ
     return true;
 }
 
+const char *fail_rules_unknown(const fail_rules *rules, const answers *a, const frame_answer *frame) {
+    const fail_options *o = &rules->options;
+    if (frame->without_area) return FAIL_WITHOUT_AREA;
+    if (!frame->checked) return NULL;
+    if (o->faces_limited && frame->unlisted)
+        return "how many triangles cross others is not known, as a list of the pairs did not fit --max-memory";
+    if (a->depths && !frame->spaces_known && (o->depth.given || o->kind >= FAIL_ON_CROSSING))
+        return "how deep it is, and what lies inside, is not known, as that did not fit --max-memory";
+    return NULL;
+}
+
 bool fail_rules_undecided(const fail_rules *rules, const answers *a) {
     char text[FAIL_TEXT_SIZE];
     if (!fail_rules_any(rules) || answers_count(a, frame_answer_without_area) == 0) return false;

@@ -42,6 +42,10 @@ bool fail_rules_meet(const fail_rules *rules, const answers *a, const frame_answ
 /* Why a frame can neither pass nor fail: nothing was looked at, because no triangle in it has an area. */
 #define FAIL_WITHOUT_AREA "no triangle has an area, so there was nothing to look at"
 
+/* Why a frame that does not fail does not pass, either: nothing was looked at, or what a rule asks for did not fit the memory. NULL: it
+ * passes. */
+const char *fail_rules_unknown(const fail_rules *rules, const answers *a, const frame_answer *frame);
+
 /* Is there a rule that no frame meets, although something may hide in frames in which no triangle has an area? */
 bool fail_rules_undecided(const fail_rules *rules, const answers *a);
 

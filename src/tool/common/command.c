@@ -104,10 +104,20 @@ bool parse_integer(const char *text, int32_t *out) {
     return true;
 }
 
+bool parse_decimal(const char *text, double *out, const char **end) {
+    const size_t length = strspn(text, "0123456789.eE+-");
+    char *stop = NULL;
+    double value = strtod(text, &stop);
+    if (stop == text || (size_t)(stop - text) > length || !isfinite(value)) return false;
+    *out = value;
+    *end = stop;
+    return true;
+}
+
 bool parse_double(const char *text, double *out) {
-    char *end = NULL;
-    double value = strtod(text, &end);
-    if (end == text || *end != '\0' || !isfinite(value)) return false;
+    const char *end;
+    double value;
+    if (!parse_decimal(text, &value, &end) || *end != '\0') return false;
     *out = value;
     return true;
 }

@@ -49,3 +49,6 @@ void note(const char *format, ...) __attribute__((format(printf, 1, 2)));
 bool parse_unsigned(const char *text, uint32_t *out);
 bool parse_integer(const char *text, int32_t *out);
 bool parse_double(const char *text, double *out);
+
+/* A number at the beginning, and where it ends. As all numbers of the command line it is decimal and finite: 0x10 is none, nor 0x1p3. */
+bool parse_decimal(const char *text, double *out, const char **end);

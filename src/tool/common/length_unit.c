@@ -1,9 +1,10 @@
 /* Units of length: what one unit of a recording's coordinates is, and lengths as people write and read them. */
 #include "src/tool/common/length_unit.h"
 
+#include "src/tool/common/command.h"
+
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const length_unit units[] = {{"um", 1e-6}, {"mm", 1e-3}, {"cm", 1e-2},   {"dm", 0.1},
@@ -19,9 +20,9 @@ bool length_unit_from_name(const char *text, length_unit *out) {
 }
 
 bool length_given_parse(const char *text, length_given *out) {
-    char *end = NULL;
-    length_given length = {.given = true, .value = strtod(text, &end)};
-    if (end == text || !isfinite(length.value) || length.value < 0.0) return false;
+    const char *end;
+    length_given length = {.given = true};
+    if (!parse_decimal(text, &length.value, &end) || length.value < 0.0) return false;
     end += strspn(end, " ");
     if (*end != '\0' && !length_unit_from_name(end, &length.unit)) return false;
     *out = length;

@@ -9,7 +9,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 bool read_flag(const char *text, void *place) {
@@ -84,9 +83,9 @@ bool read_part_pairs(const char *text, void *place) {
 
 bool read_size(const char *text, void *place) {
     static const char units[] = "KMGT";
-    char *end;
-    if (text[0] < '0' || text[0] > '9') return false;
-    const double number = strtod(text, &end);
+    const char *end;
+    double number;
+    if (text[0] < '0' || text[0] > '9' || !parse_decimal(text, &number, &end)) return false;
     const char *unit = *end != '\0' ? strchr(units, *end) : NULL;
     if (*end != '\0' && (unit == NULL || end[1] != '\0')) return false;
     const double bytes = unit != NULL ? ldexp(number, 10 * (int)(unit - units + 1)) : number;
