@@ -104,8 +104,8 @@ static inline cscd_status cscd_event_tracker_add_frame(cscd_event_tracker *track
 #define CSCD_EVENT_IN_OTHER_BODY ((uint64_t)1 << 62)
 
 /* An event. What it has in one frame may be in several places; those that are joined within the frame are a *group*. The
- * worst group has the greatest depth; of several the greatest length, then the most pairs, then the most contacts, then
- * the first frame. It never grows. */
+ * worst group has the greatest depth; of several the greatest length, then the most pairs, where there are
+ * neither depths nor pairs the most contacts, then the first frame. It never grows. */
 typedef struct cscd_event {
     uint32_t a, b;        /* parts; a <= b */
     uint64_t first_frame; /* the number of the first frame that has something of it, */

@@ -7,11 +7,13 @@ static int compare_numbers(uint64_t a, uint64_t b) {
     return a < b ? -1 : a > b;
 }
 
+/* Contacts count where there is nothing else, so that a moment is as bad whether or not the way to it was looked at. */
 static bool is_worse(const event_group *a, const event_group *b) {
+    const bool contacts_alone = a->depth == 0.0 && a->pairs == 0;
     if (a->depth != b->depth) return a->depth > b->depth;
     if (a->length != b->length) return a->length > b->length;
     if (a->pairs != b->pairs) return a->pairs > b->pairs;
-    if (a->contacts != b->contacts) return a->contacts > b->contacts;
+    if (contacts_alone && a->contacts != b->contacts) return a->contacts > b->contacts;
     if (a->index != b->index) return a->index < b->index;
     return a->origin < b->origin;
 }

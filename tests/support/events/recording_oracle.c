@@ -292,7 +292,7 @@ static bool group_is_worse(const group_sum *g, const group_sum *h) {
     if (g->depth != h->depth) return g->depth > h->depth;
     if (g->length != h->length) return g->length > h->length;
     if (g->pairs != h->pairs) return g->pairs > h->pairs;
-    if (g->contacts != h->contacts) return g->contacts > h->contacts;
+    if (g->depth == 0.0 && g->pairs == 0 && g->contacts != h->contacts) return g->contacts > h->contacts;
     return g->frame != h->frame ? g->frame < h->frame : g->least < h->least;
 }
 
