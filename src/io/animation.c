@@ -4,6 +4,7 @@
 #include "src/io/frame_files.h"
 #include "src/io/gltf.h"
 #include "src/io/growable.h"
+#include "src/io/path_name.h"
 #include "src/io/point_cache.h"
 
 #include <errno.h>
@@ -171,7 +172,8 @@ static const animation_reader *choose_reader(const animation_source *from, io_er
     struct stat status;
     if (stat(path, &status) != 0) {
         if (strchr(path, '%') != NULL) return &readers[FILE_PATTERN];
-        io_fail(error, "%s: cannot open: %s", path, strerror(errno));
+        const char *advice = errno == ENOENT ? path_missing_advice(path) : "";
+        io_fail(error, "%s: cannot open: %s%s", path, strerror(errno), advice);
         return NULL;
     }
     if (S_ISDIR(status.st_mode)) return &readers[FILE_FOLDER];

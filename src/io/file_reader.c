@@ -2,6 +2,7 @@
 #include "src/io/file_reader.h"
 
 #include "src/io/growable.h"
+#include "src/io/path_name.h"
 #include "src/io/pipe_file.h"
 
 #include <errno.h>
@@ -104,7 +105,9 @@ static bool read_file(file_reader *reader, FILE *file) {
 bool file_reader_open(file_reader *reader, const char *path, io_error *error) {
     *reader = (file_reader){.path = path, .error = error, .line = 1};
     FILE *file = pipe_file_read(path);
-    if (file == NULL) return file_reader_fail(reader, "cannot open: %s", strerror(errno));
+    if (file == NULL)
+        return file_reader_fail(reader, "cannot open: %s%s", strerror(errno),
+                                errno == ENOENT ? path_missing_advice(path) : "");
     bool done = read_file(reader, file);
     fclose(file);
     return done;

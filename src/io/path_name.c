@@ -41,3 +41,13 @@ size_t path_mesh_ending(const char *path) {
     }
     return 0;
 }
+
+/* Of frames, which may be many, as `frame-*.obj` names them, and of anything else. */
+const char *path_missing_advice(const char *path) {
+    const char *name = path_file_name(path);
+    if (strpbrk(name, "*?[") != NULL)
+        return "; no file matches it as a pattern, either; frames can also be given as their folder, or as frame_%04d.obj";
+    if (strchr(name, '#') != NULL || strstr(name, "$F") != NULL || strchr(name, '<') != NULL)
+        return "; the number of a frame is written %04d, as in frame_%04d.obj";
+    return "";
+}

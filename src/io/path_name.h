@@ -14,6 +14,10 @@ bool path_has_extension(const char *path, const char *extension);
 /* The length of the ending if it is that of a mesh file, else 0. */
 size_t path_mesh_ending(const char *path);
 
+/* What to do about a path that is not there, as the end of a sentence: patterns that no shell has filled in, and ways in which other
+ * programs write the number of a frame. "": nothing is to be seen in it. */
+const char *path_missing_advice(const char *path);
+
 /* What separates the names of a path: on Windows either slash does, and drives have letters. */
 #ifdef _WIN32
 #define PATH_SEPARATORS "/\\"

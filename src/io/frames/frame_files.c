@@ -105,7 +105,9 @@ bool frame_files_open_folder(const char *folder, bool allow_gaps, uint32_t verte
 
 static bool check_listed(const char *path, io_error *error) {
     struct stat status;
-    if (stat(path, &status) != 0) return io_fail(error, "%s: cannot open: %s", path, strerror(errno));
+    if (stat(path, &status) != 0)
+        return io_fail(error, "%s: cannot open: %s%s", path, strerror(errno),
+                       errno == ENOENT ? path_missing_advice(path) : "");
     if (!S_ISREG(status.st_mode))
         return io_fail(error, "%s: %s, expected a mesh file: a folder must be the only path given", path,
                        S_ISDIR(status.st_mode) ? "a folder" : "not a regular file");

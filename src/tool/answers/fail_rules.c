@@ -3,8 +3,10 @@
 
 #include "src/io/text_escape.h"
 #include "src/tool/common/command.h"
+#include "src/tool/common/terminal.h"
 
 #include <stdio.h>
+#include <string.h>
 
 bool fail_rules_create(const fail_options *options, const length_unit *unit, fail_rules *out,
                        io_error *error) {
@@ -121,9 +123,15 @@ bool fail_rules_failed(const fail_rules *rules, const answers *a) {
     return true;
 }
 
-int fail_rules_exit_code(const fail_rules *rules, const answers *a) {
+int fail_unfinished(const answers *a, bool printed, const char *reason) {
+    const char *first = answers_unfinished(a);
+    const bool said = printed && first != NULL && strcmp(first, reason) == 0;
+    return said && terminal_outputs_are_one() ? EXIT_BAD_INPUT : fail_input("%s", reason);
+}
+
+int fail_rules_exit_code(const fail_rules *rules, const answers *a, bool printed) {
     if (fail_rules_failed(rules, a)) return EXIT_CONTACT;
     const char *unfinished = answers_unfinished(a);
-    if (unfinished != NULL) return fail_input("%s", unfinished);
+    if (unfinished != NULL) return fail_unfinished(a, printed, unfinished);
     return fail_rules_undecided(rules, a) ? refuse_without_area(a) : EXIT_RAN;
 }

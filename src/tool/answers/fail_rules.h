@@ -52,6 +52,10 @@ bool fail_rules_undecided(const fail_rules *rules, const answers *a);
 /* Does a frame fail that was looked at? Says so on standard error. */
 bool fail_rules_failed(const fail_rules *rules, const answers *a);
 
+/* Says on standard error why a run came to no end, and returns EXIT_BAD_INPUT. Where the first line has been printed and gives this
+ * reason, and standard output goes to the same terminal or file, it is not said again. */
+int fail_unfinished(const answers *a, bool printed, const char *reason);
+
 /* The exit code of a run that ended without an error: EXIT_CONTACT if any frame fails, and then it says on stderr how many do and what
- * the first does wrong; else EXIT_BAD_INPUT if not all was looked at that was asked for, which is said, too. */
-int fail_rules_exit_code(const fail_rules *rules, const answers *a);
+ * the first does wrong; else EXIT_BAD_INPUT if not all was looked at that was asked for, which is said by fail_unfinished. */
+int fail_rules_exit_code(const fail_rules *rules, const answers *a, bool printed);

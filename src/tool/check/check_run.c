@@ -27,6 +27,7 @@ typedef struct check_run {
     exports exports;
     terminal_progress progress;
     frame_choice frames;
+    bool printed; /* the sentence has been printed */
 } check_run;
 
 static size_t frames_done(const check_run *c) {
@@ -93,8 +94,9 @@ static bool check_frames(check_run *c, io_error *error) {
     return true;
 }
 
-static void print_answers(const check_run *c) {
+static void print_answers(check_run *c) {
     if (c->options->quiet) return;
+    c->printed = true;
     answers_print_sentence(stdout, &c->answers, &c->unit);
     answers_print_events(&c->answers, &c->unit);
     if (c->options->answers.timings) answers_print_frames(&c->answers, &c->unit);
@@ -140,7 +142,7 @@ static int end_check(check_run *c, bool ran, const io_error *error) {
     if (!close_check(c, ran ? (interrupted() ? "interrupted" : NULL) : error->text, &close_error) && ran)
         return fail_input("%s", close_error.text);
     if (!ran) {
-        const int code = fail_input("%s", error->text);
+        const int code = fail_unfinished(&c->answers, c->printed, error->text);
         return c->job == NULL && fail_rules_failed(&c->rules, &c->answers) ? EXIT_CONTACT : code;
     }
     if (interrupted()) {
@@ -151,7 +153,7 @@ static int end_check(check_run *c, bool ran, const io_error *error) {
         recording_answer_write(c->name, &c->answers, &c->unit, &c->rules, c->job);
         return EXIT_RAN;
     }
-    return fail_rules_exit_code(&c->rules, &c->answers);
+    return fail_rules_exit_code(&c->rules, &c->answers, c->printed);
 }
 
 int check_run_on(const check_options *options, const char *name, job_output *job) {

@@ -127,9 +127,10 @@ static void warn_object(const recording *r, recorded_object *object) {
              object->file.vertex_count, format, object->weld.vertex_count);
     if (object->welded && object->parting.count > 0)
         note(
-            "%s%s%u vertices that lie on others in the first frame come apart later, and are not joined (the first is vertex %u, in "
-            "frame %d)",
-            name, colon, object->parting.count, object->parting.vertex,
+            "%s%s%u %s on others in the first frame alone, as where something is hidden by a scale of 0, and stay%s apart in "
+            "all, as they should (the first is vertex %u, which has left in frame %d)",
+            name, colon, object->parting.count, object->parting.count > 1 ? "vertices lie" : "vertex lies",
+            object->parting.count > 1 ? "" : "s", object->parting.vertex,
             r->frame_numbers[object->parting.frame]);
     if (object->source.parts_by != MESH_PARTS_BY_FILE && object->file.parts.count == 0) {
         char reason[120];

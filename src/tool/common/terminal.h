@@ -13,6 +13,9 @@ typedef struct terminal_progress {
     const char *what;
 } terminal_progress;
 
+/* Do standard output and standard error go to one terminal, file or pipe? */
+bool terminal_outputs_are_one(void);
+
 /* The line is shown only if stderr is a terminal and quiet is false. */
 void terminal_progress_begin(terminal_progress *p, bool quiet);
 void terminal_progress_update(terminal_progress *p, uint32_t done, uint32_t total, const char *what);

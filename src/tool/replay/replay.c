@@ -298,9 +298,10 @@ static void end_replay(replay *r) {
 }
 
 /* Says so when no report was written: an older page may lie at its path. */
-static int fail_replay(const replay *r, bool begun, const char *reason) {
+static int fail_replay(const replay *r, bool begun, bool printed, const char *reason) {
     bool unreported = begun && r->options->report.path != NULL && r->totals.intervals == 0;
-    return fail_input("%s%s", reason, unreported ? "; no report was written" : "");
+    if (!unreported) return fail_unfinished(&r->answers, printed, reason);
+    return fail_input("%s; no report was written", reason);
 }
 
 int replay_run(const replay_options *options, shard_series *merged, const char *name, job_output *job) {
@@ -316,12 +317,13 @@ int replay_run(const replay_options *options, shard_series *merged, const char *
     const char *stopped_by = ran ? (interrupted() ? "interrupted" : NULL) : error.text;
     bool closed = replay_shard_close(&r, &close_error);
     closed = close_outputs(&r, stopped_by, closed ? &close_error : NULL) && closed;
-    if (begun && !options->quiet && r.first < r.last) replay_print_results(&r);
+    const bool printed = begun && !options->quiet && r.first < r.last;
+    if (printed) replay_print_results(&r);
     if (begun && r.first == r.last && !options->quiet)
         note("shard %u/%u has no intervals, since there are fewer chunks of %d than shards",
              options->list.shard.index, options->list.shard.count, CHUNK_INTERVALS);
     if (begun && !options->quiet) replay_print_remarks(&r);
-    if (!ran) code = fail_replay(&r, begun, error.text);
+    if (!ran) code = fail_replay(&r, begun, printed, error.text);
     if (!ran && begun && job == NULL && fail_rules_failed(&r.rules, &r.answers)) code = EXIT_CONTACT;
     if (!closed && (ran || strcmp(close_error.text, error.text) != 0)) /* what ended the run was said above */
         code = fail_input("%s", close_error.text);
@@ -332,7 +334,7 @@ int replay_run(const replay_options *options, shard_series *merged, const char *
     if (code == EXIT_RAN && job != NULL)
         recording_answer_write(name, &r.answers, &r.unit, &r.rules, job);
     else if (code == EXIT_RAN)
-        code = fail_rules_exit_code(&r.rules, &r.answers);
+        code = fail_rules_exit_code(&r.rules, &r.answers, printed);
     end_replay(&r);
     return code;
 }
