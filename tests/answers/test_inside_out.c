@@ -90,6 +90,9 @@ static void the_orientation_may_be_kept(void **state) {
     temp_path model = write_cubes("kept.obj", both, 2, 1.0);
     expect_depth(model.text, "--orientation", "as-given", 0.0, 0);
     expect_depth(model.text, "--orientation", "found", 0.5, 3);
+    EXPECT_TOOL(3, "check", "--each", model.text, "--quiet", "--fail-depth", "0.4");
+    EXPECT_TOOL(0, "check", "--each", model.text, "--quiet", "--fail-depth", "0.4", "--orientation",
+                "as-given");
     EXPECT_ERROR(2, TEXTS("--orientation cannot be 'outwards'"), "check", model.text, "--orientation",
                  "outwards");
 }

@@ -164,6 +164,78 @@ static void parts_inside_count_once(void **state) {
     tool_run_free(&run);
 }
 
+/* ---- what is left out --------------------------------------------------------------------------------------- */
+
+/* All of a x b, a x c, b x c and the three with themselves. */
+typedef struct left_out_case {
+    const char *options[5];
+    const char *said; /* at the end of the first line */
+    int parts, components, triangles;
+} left_out_case;
+
+static const char *const clean_but = "Clean: no two triangles cross or touch. As asked, ";
+
+static void expect_left_out(const char *model, const char *list, const left_out_case *c) {
+    const temp_path json = temp_file_path(&folder, "left.json");
+    const char *arguments[10] = {"check", model, "--json", json.text};
+    for (int i = 0; i < 5 && c->options[i] != NULL; i++)
+        arguments[4 + i] = strcmp(c->options[i], "LIST") == 0 ? list : c->options[i];
+    tool_run run = run_tool(arguments);
+    expect_in(run.out, c->said);
+    if (strstr(run.out, "As asked") == NULL) fail_msg("nothing is said: %s", run.out);
+    tool_run_free(&run);
+    json_node *root = json_node_read_file(json.text);
+    const json_node *left_out = json_node_member(root, "left_out");
+    assert_int_equal(json_node_number(left_out, "part_pairs"), c->parts);
+    assert_int_equal(json_node_number(left_out, "of_part_pairs"), 6);
+    assert_int_equal(json_node_number(left_out, "component_pairs"), c->components);
+    assert_int_equal(json_node_number(left_out, "triangle_pairs"), c->triangles);
+    json_node_free(root);
+}
+
+static void what_is_left_out_is_said(void **state) {
+    (void)state;
+    static const left_out_case left_outs[] = {
+        {{"--ignore-parts", "b"}, " As asked, 3 of 6 pairs of parts were not looked at.\n", 3, 0, 0},
+        {{"--ignore-parts", "a,b"}, " As asked, 1 of 6 pairs of parts was not looked at.\n", 1, 0, 0},
+        {{"--ignore-parts", "a,b", "--ignore-parts", "b,a"}, " 1 of 6 pairs of parts was not ", 1, 0, 0},
+        {{"--only", "a,c"}, " As asked, 5 of 6 pairs of parts were not looked at.\n", 5, 0, 0},
+        {{"--only", "a", "--ignore-parts", "a,b"}, " 4 of 6 pairs of parts were not looked at.\n", 4, 0, 0},
+        {{"--ignore", "LIST"},
+         " As asked, 1 pair of components and 2 pairs of triangles were not looked at.\n",
+         0,
+         1,
+         2},
+        {{"--ignore", "LIST", "--only", "a"},
+         " As asked, 3 of 6 pairs of parts, 1 pair of components and 2 pairs of ",
+         3,
+         1,
+         2},
+        {{"--ignore-rest=parts"}, " As asked, 1 of 6 pairs of parts was not looked at.\n", 1, 0, 0},
+    };
+    const temp_path model = temp_file_path(&folder, "left.obj"), list = temp_file_path(&folder, "left.txt");
+    FILE *file = fopen(model.text, "w");
+    write_box(file, "a", (const double[]){0, 1, 0, 1, 0, 1}, false, 0);
+    write_box(file, "b", (const double[]){0.5, 1.5, 0.5, 1.5, 0.5, 1.5}, false, 8);
+    write_box(file, "c", (const double[]){5, 6, 0, 1, 0, 1}, false, 16);
+    fclose(file);
+    file = fopen(list.text, "w");
+    fputs("components 1 0\ncomponents 0 1\n0 13\n3 30\n13 0\n", file);
+    fclose(file);
+    for (size_t i = 0; i < sizeof left_outs / sizeof *left_outs; i++)
+        expect_left_out(model.text, list.text, &left_outs[i]);
+    /* Clean but for what is left out, and nothing of that where nothing is. */
+    tool_run run = RUN_TOOL("check", "--each", model.text, "--ignore-parts", "a,b");
+    expect_in(run.out, clean_but);
+    tool_run_free(&run);
+    run = RUN_TOOL("replay", model.text, model.text, model.text, "--ignore-rest");
+    expect_start(run.out, "No frame crosses or touches (2 checked). As asked, ");
+    tool_run_free(&run);
+    run = RUN_TOOL("check", model.text);
+    assert_null(strstr(run.out, "As asked"));
+    tool_run_free(&run);
+}
+
 /* ---- recordings -------------------------------------------------------------------------------------------- */
 
 typedef struct frames_case {
@@ -224,6 +296,32 @@ static void recordings_say_what_there_is(void **state) {
     }
 }
 
+static void expect_worst(const char *command, const temp_path frames[3], int worst) {
+    const temp_path json = temp_file_path(&folder, "worst.json");
+    EXPECT_TOOL(0, command, frames[0].text, frames[0].text, frames[1].text, frames[2].text, "--json",
+                json.text);
+    json_node *root = json_node_read_file(json.text);
+    const json_node *event = json_node_item(json_node_member(root, "events"), 0);
+    assert_int_equal(json_node_number(event, "worst"), worst);
+    json_node_free(root);
+}
+
+/* The way to a frame is no part of it: of two that are equally deep the first is the worst, with contacts or without. */
+static void check_and_replay_name_the_same_frame(void **state) {
+    (void)state;
+    static const char *const frames[] = {"cnc", "ini", "oco", "tnt", "ntc"};
+    static const int worst[] = {0, 0, 1, 0, 2};
+    for (size_t i = 0; i < sizeof frames / sizeof *frames; i++) {
+        temp_path paths[3];
+        for (int k = 0; k < 3; k++) {
+            paths[k] = temp_file_path(&folder, (const char[]){(char)('0' + k), '.', 'o', 'b', 'j', '\0'});
+            write_frame(paths[k].text, frames[i][k]);
+        }
+        expect_worst("check", paths, worst[i]);
+        expect_worst("replay", paths, worst[i]);
+    }
+}
+
 /* ---- rounding ---------------------------------------------------------------------------------------------- */
 
 /* A triangle of x and y, from one z to another. */
@@ -263,8 +361,11 @@ static void rounded_distances_are_no_depth(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(words_say_who_shares_space), cmocka_unit_test(parts_inside_count_once),
-        cmocka_unit_test(recordings_say_what_there_is), cmocka_unit_test(rounded_distances_are_no_depth)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(words_say_who_shares_space),
+                                       cmocka_unit_test(parts_inside_count_once),
+                                       cmocka_unit_test(recordings_say_what_there_is),
+                                       cmocka_unit_test(what_is_left_out_is_said),
+                                       cmocka_unit_test(check_and_replay_name_the_same_frame),
+                                       cmocka_unit_test(rounded_distances_are_no_depth)};
     return cmocka_run_group_tests_name("overlap_words", tests, own_folder_make, own_folder_remove);
 }

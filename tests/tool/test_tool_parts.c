@@ -169,7 +169,7 @@ static temp_path write_eye(bool tip_only) {
 /* Where the curve between two objects is left out, the library may find all of one inside of the other. */
 static void nothing_is_inside_of_what_is_left_out(void **state) {
     (void)state;
-    const char *list = "components 0 1\n", *clean = "Clean: no two triangles cross or touch.\n";
+    const char *list = "components 0 1\n", *clean = "Clean: no two triangles cross or touch. As asked, ";
     const temp_path ignored = temp_file_write(&folder, "list.txt", list, strlen(list));
     const char *options[][2] = {{"--ignore-rest=parts", NULL}, {"--ignore-rest", NULL},
                                 {"--ignore-parts", "Eye"},     {"--ignore-parts", "Head,Eye"},
@@ -181,7 +181,7 @@ static void nothing_is_inside_of_what_is_left_out(void **state) {
         tool_run_free(&run);
         for (size_t i = 0; i < sizeof options / sizeof *options; i++) {
             run = RUN_TOOL("check", eye.text, "--fail-depth", "0.01", options[i][0], options[i][1]);
-            if (run.code != 0 || strcmp(run.out, clean) != 0)
+            if (run.code != 0 || strncmp(run.out, clean, strlen(clean)) != 0)
                 fail_msg("%s: ended with %d and %s", options[i][0], run.code, run.out);
             tool_run_free(&run);
         }

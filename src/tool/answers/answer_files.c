@@ -82,6 +82,17 @@ static void write_collapsed(const answers *a, json *out) {
     json_end_array(out);
 }
 
+/* What was not looked at because somebody asked for that: all else is true but for these pairs. */
+static void write_left_out(const answers *a, json *out) {
+    const ignore_counts counts = ignore_pairs_count(a->shown.ignored);
+    json_begin_object(out, "left_out");
+    json_integer(out, "part_pairs", counts.parts);
+    json_integer(out, "of_part_pairs", counts.all_parts);
+    json_integer(out, "component_pairs", counts.components);
+    json_integer(out, "triangle_pairs", counts.triangles);
+    json_end_object(out);
+}
+
 void answers_write_json(const answers *a, const length_unit *unit, json *out) {
     if (unit->name != NULL)
         json_string(out, "unit", unit->name);
@@ -93,6 +104,7 @@ void answers_write_json(const answers *a, const length_unit *unit, json *out) {
     json_break_line(out);
     turned_parts_write(&a->turned, out);
     write_collapsed(a, out);
+    write_left_out(a, out);
 }
 
 /* What nobody has looked at is null. */

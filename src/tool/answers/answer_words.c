@@ -232,6 +232,27 @@ static void say_range(FILE *out, const answers *a) {
             count > 1 ? "were" : "was");
 }
 
+static void say_left_out_pairs(FILE *out, size_t count, size_t all, const char *of, size_t *said, bool last) {
+    if (count == 0) return;
+    fputs(*said == 0 ? " As asked, " : last ? " and " : ", ", out);
+    fprintf(out, "%zu", count);
+    if (all > 0) fprintf(out, " of %zu", all);
+    fprintf(out, " pair%s of %s", (all > 0 ? all : count) > 1 ? "s" : "", of);
+    *said += count;
+}
+
+/* A run that passes because pairs are left out says so. */
+static void say_what_was_left_out(FILE *out, const answers *a) {
+    if (!ignore_pairs_any(a->shown.ignored)) return;
+    const ignore_counts counts = ignore_pairs_count(a->shown.ignored);
+    size_t said = 0;
+    say_left_out_pairs(out, counts.parts, counts.all_parts, "parts", &said,
+                       counts.components + counts.triangles == 0);
+    say_left_out_pairs(out, counts.components, 0, "components", &said, counts.triangles == 0);
+    say_left_out_pairs(out, counts.triangles, 0, "triangles", &said, true);
+    if (said > 0) fprintf(out, " %s not looked at.", said > 1 ? "were" : "was");
+}
+
 /* What files hold beside it. */
 static void say_animations(FILE *out, const answers *a) {
     const recording *r = a->recording;
@@ -316,6 +337,7 @@ void answers_print_sentence(FILE *out, const answers *a, const length_unit *unit
         fputc('.', out);
     }
     say_what_is_not_known(out, a);
+    say_what_was_left_out(out, a);
     say_range(out, a);
     say_animations(out, a);
     say_what_has_collapsed(out, a);

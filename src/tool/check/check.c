@@ -129,7 +129,7 @@ static int refuse_beside_each(const check_options *o, const given_options *given
                                       "fail-depth",  "max-faces",    "unit",      "no-depths",
                                       "max-memory",  "fps",          "animation", "rest",
                                       "quiet",       "shard",        "results",   "resume",
-                                      "job-timeout", "reproducible", "parts-by"};
+                                      "job-timeout", "reproducible", "parts-by",  "orientation"};
     io_error error;
     const char *foreign = option_given_beside(&table, given, own, sizeof own / sizeof *own);
     if (foreign != NULL)

@@ -29,9 +29,11 @@ static int compare_pairs(const void *left, const void *right) {
     return l->b < r->b ? -1 : l->b > r->b;
 }
 
-static void sort_triangles(ignore_pairs *pairs) {
+static void sort_pairs(ignore_pairs *pairs) {
     if (pairs->triangle_count > 0)
         qsort(pairs->triangles, pairs->triangle_count, sizeof *pairs->triangles, compare_pairs);
+    if (pairs->component_count > 0)
+        qsort(pairs->components, pairs->component_count, sizeof *pairs->components, compare_pairs);
 }
 
 /* What a line speaks of. */
@@ -127,7 +129,7 @@ static bool read_list(ignore_pairs *pairs, const recording *r, const char *path,
     if (read && ferror(file)) read = io_fail(error, "%s: cannot read: %s", path, strerror(errno));
     free(line);
     fclose(file);
-    sort_triangles(pairs);
+    sort_pairs(pairs);
     return read;
 }
 
@@ -161,7 +163,7 @@ static bool separate_components(ignore_pairs *pairs) {
 bool ignore_pairs_add_rest(ignore_pairs *pairs, const cscd_intersection *found, size_t count, bool by_parts) {
     for (size_t i = 0; i < count; i++)
         if (!add_rest_pair(pairs, by_parts, found[i])) return false;
-    sort_triangles(pairs);
+    sort_pairs(pairs);
     return separate_components(pairs);
 }
 
@@ -276,6 +278,19 @@ bool ignore_pairs_separate_triangles(const ignore_pairs *pairs, uint32_t a, uint
 
 bool ignore_pairs_any(const ignore_pairs *pairs) {
     return pairs->triangle_count > 0 || pairs->component_count > 0 || part_rules_any(&pairs->rules);
+}
+
+static size_t count_different(const cscd_intersection *sorted, size_t count) {
+    size_t different = 0;
+    for (size_t i = 0; i < count; i++) different += i == 0 || compare_pairs(&sorted[i - 1], &sorted[i]) != 0;
+    return different;
+}
+
+ignore_counts ignore_pairs_count(const ignore_pairs *pairs) {
+    ignore_counts counts = {.components = count_different(pairs->components, pairs->component_count),
+                            .triangles = count_different(pairs->triangles, pairs->triangle_count)};
+    part_rules_count(&pairs->rules, cscd_mesh_triangle_count(pairs->mesh), &counts.parts, &counts.all_parts);
+    return counts;
 }
 
 void ignore_pairs_choose(ignore_pairs *pairs, cscd_detector_options *options) {

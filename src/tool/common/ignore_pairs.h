@@ -26,7 +26,7 @@ typedef struct ignore_pairs {
         rest_pairs; /* so many pairs of triangles intersect or touch in the first frame, if that was asked */
     cscd_intersection *triangles; /* sorted by (a, b) */
     size_t triangle_count, triangle_capacity;
-    cscd_intersection *components; /* a <= b; few */
+    cscd_intersection *components; /* a <= b; few; sorted */
     size_t component_count, component_capacity;
     cscd_intersection *separated; /* a < b: different components of which pairs of triangles are left out */
     size_t separated_count, separated_capacity;
@@ -53,6 +53,14 @@ void ignore_pairs_choose(ignore_pairs *pairs, cscd_detector_options *options);
 
 /* Is anything left out? */
 bool ignore_pairs_any(const ignore_pairs *pairs);
+
+/* How much is left out: different pairs of parts, of components, and of triangles. A part with itself is a pair, too. */
+typedef struct ignore_counts {
+    size_t parts, all_parts; /* so many of all there are */
+    size_t components, triangles;
+} ignore_counts;
+
+ignore_counts ignore_pairs_count(const ignore_pairs *pairs);
 
 /* Is it left out that a vertex, an edge or a triangle is inside of what has the other triangle? As contacts of the two are; and of different
  * components, if any pair of their triangles is left out. */

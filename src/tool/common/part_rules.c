@@ -102,6 +102,25 @@ bool part_rules_any(const part_rules *rules) {
     return rules->ignored != NULL || rules->only != NULL;
 }
 
+static bool any_in_no_part(const part_names *parts, uint32_t triangle_count) {
+    for (uint32_t t = 0; t < triangle_count; t++)
+        if (parts->labels[t] == NO_PART) return true;
+    return false;
+}
+
+void part_rules_count(const part_rules *rules, uint32_t triangle_count, size_t *left_out, size_t *all) {
+    const uint32_t count = rules->parts->count + any_in_no_part(rules->parts, triangle_count);
+    *left_out = 0;
+    *all = (size_t)count * (count + 1) / 2;
+    if (!part_rules_any(rules)) return;
+    for (uint32_t a = 0; a < count; a++)
+        for (uint32_t b = a; b < count; b++) {
+            const size_t pair = (size_t)a * rules->size + b;
+            *left_out += (rules->ignored != NULL && rules->ignored[pair]) ||
+                         (rules->only != NULL && !rules->only[pair]);
+        }
+}
+
 bool part_rules_leave_out(const part_rules *rules, const uint32_t *a, uint32_t a_count, const uint32_t *b,
                           uint32_t b_count) {
     bool wanted = rules->only == NULL;

@@ -35,5 +35,9 @@ bool part_rules_ignore(part_rules *rules, uint32_t a, uint32_t b);
 bool part_rules_leave_out(const part_rules *rules, const uint32_t *a, uint32_t a_count, const uint32_t *b,
                           uint32_t b_count);
 
+/* How many pairs of parts are left out of how many, each with itself among them. What is in no part of a mesh of so many triangles
+ * counts as one. */
+void part_rules_count(const part_rules *rules, uint32_t triangle_count, size_t *left_out, size_t *all);
+
 /* Is any pair left out? */
 bool part_rules_any(const part_rules *rules);

@@ -45,6 +45,7 @@ static bool prepare_check(mesh_check *c, io_error *error) {
     if (!answers_open(r, &c->ignored, !c->job->answers->no_depths, c->job->answers->max_memory, &c->answers,
                       error))
         return false;
+    if (c->job->answers->as_given) c->answers.orientation = CSCD_ORIENTATION_AS_GIVEN;
     answers_expect(&c->answers, r->frame_count);
     return answers_prepare(&c->answers, c->detector, error);
 }
