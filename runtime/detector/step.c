@@ -303,12 +303,12 @@ cscd_status step_find(cscd_detector *d, const double *x0, const double *x1, cscd
     if (!rehearsal) list_cap_begin(d, &work.search, d->lists_earliest ? CAP_KEEPS_EARLIEST : CAP_TAINTS_ALL);
     status = run_stages(d->stages->brute_force ? stages_by_brute_force : stages_by_trees, &work);
     d->space.traversal.collapsed = COLLAPSED_FOUND;
+    work.contacts.collapsed = d->leaves_collapsed ? d->collapsed.count : 0;
     if (status == CSCD_LIST_TOO_LONG) out->contacts = work.contacts;
     if (status != CSCD_OK) return status;
     for (uint32_t c = 0; c < d->mesh->component_count; c++) d->guarantees[c] = guarantee_of(d, c);
     d->verlet.now.was_quiet = work.contacts.count == 0;
     out->contacts = work.contacts;
-    out->contacts.collapsed = d->leaves_collapsed ? d->collapsed.count : 0;
     out->timings = work.search.timings;
     out->counters = work.search.counters;
     return CSCD_OK;

@@ -182,6 +182,32 @@ static void methods_equal_brute_force(void **state) {
     assert_true(sum.contacts > 1000 && sum.pairs > 100);
 }
 
+/* A step whose list is too long says how many are collapsed, as one does that lists all. */
+static void too_long_lists_say_it_too(void **state) {
+    (void)state;
+    size_t checked = 0;
+    for (uint64_t seed = 0; seed < SEQUENCES; seed++) {
+        make_frames(seed);
+        for (int f = 0; f + 1 < FRAME_COUNT; f++) {
+            take_interval(f);
+            rig r = rig_create(&play, 1 + f % 2, NULL);
+            const cscd_contacts found = rig_step(&r, &play);
+            const size_t count = found.count;
+            const uint32_t hidden = found.collapsed;
+            cscd_contacts capped;
+            if (count > 1 && hidden > 0) {
+                assert_int_equal(cscd_detector_set_longest_list(r.detector, count - 1), CSCD_OK);
+                assert_int_equal(step_packed(r.detector, play.x0, play.x1, &capped), CSCD_LIST_TOO_LONG);
+                assert_true(capped.count == count && capped.items == NULL);
+                assert_int_equal(capped.collapsed, hidden);
+                checked++;
+            }
+            rig_destroy(&r);
+        }
+    }
+    assert_true(checked >= SEQUENCES);
+}
+
 /* ---- what is certified --------------------------------------------------------------------------------- */
 
 /* A ball that shrinks to a point, or to a line, does not get there, and the way that is certified has no contact of any
@@ -313,9 +339,12 @@ static void costs_no_pairs(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(methods_equal_brute_force), cmocka_unit_test(certified_steps_see_all),
-        cmocka_unit_test(wires_do_not_collapse),     cmocka_unit_test(what_is_hidden_is_in_nothing),
-        cmocka_unit_test(clones_say_the_same),       cmocka_unit_test(costs_no_pairs)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(methods_equal_brute_force),
+                                       cmocka_unit_test(too_long_lists_say_it_too),
+                                       cmocka_unit_test(certified_steps_see_all),
+                                       cmocka_unit_test(wires_do_not_collapse),
+                                       cmocka_unit_test(what_is_hidden_is_in_nothing),
+                                       cmocka_unit_test(clones_say_the_same),
+                                       cmocka_unit_test(costs_no_pairs)};
     return cmocka_run_group_tests_name("collapsed", tests, NULL, NULL);
 }
