@@ -149,6 +149,11 @@ static void expect_nest(const nest_case *c, const char *path) {
     run = RUN_TOOL("check", "--each", path);
     expect_in(run.out, line);
     tool_run_free(&run);
+    EXPECT_ERROR(3,
+                 TEXTS(c->inside > 1
+                           ? "failed: parts lie inside others, though no triangles cross, worst: "
+                           : "failed: a part lies inside another, though no triangles cross, worst: "),
+                 "check", path, "--quiet", "--fail-on", "crossing");
 }
 
 /* A doll in two others is one part, though it makes two events. */

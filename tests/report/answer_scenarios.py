@@ -82,6 +82,21 @@ def what_shares_space_has_words(context):
         expect_equal(shown, [f"Puff × Rock: {word}"], "the event")
 
 
+def what_was_left_out_is_said(context):
+    """As the tool says it: the two overlap, and nobody was to look at them."""
+    for name, options, said in (
+            ("ignored", ["--ignore-parts", "Puff,Rock"], "As asked, 1 of 3 pairs of parts was not looked at."),
+            ("only", ["--only", "Puff,Puff"], "As asked, 2 of 3 pairs of parts were not looked at."),
+            ("all", [], "")):
+        made, page = context.material.sized(f"left-{name}", [(1, 0.5)] * 2, -0.25, options), context.page
+        page.open(made.page)
+        text = page.script("return document.getElementById('answer-line').textContent;")
+        if said:
+            expect_equal(text, f"Nothing intersects (2 frames checked). {said}", name)
+        else:
+            expect("As asked" not in text, text)
+
+
 def clicks_and_keys_walk_the_events(context):
     _, page, report = open_pawn(context)
     count = len(report.scene["answers"]["events"])
@@ -248,6 +263,7 @@ def what_is_told_of_a_triangle_fits(context):
 
 SCENARIOS = (answers_are_those_of_the_run, the_sentence_says_what_intersects, what_has_no_surface_is_named,
              what_shares_space_has_words,
+             what_was_left_out_is_said,
              clicks_and_keys_walk_the_events,
              an_event_is_seen, parts_stand_against_parts, curves_lie_on_the_bodies,
              the_camera_stays_above_the_ground, the_method_is_folded, colours_of_the_method_are_folded,

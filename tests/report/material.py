@@ -137,11 +137,11 @@ class Material:
         self.replay_files(made, *options)
         return made
 
-    def sized(self, name, sizes, apart=9.0):
+    def sized(self, name, sizes, apart=9.0, options=()):
         """Makes a frame for each pair of sizes, of two tetrahedra that are so far apart along x, "Puff" and "Rock"."""
-        return self.once(name, lambda _: self._sized(name, sizes, apart))
+        return self.once(name, lambda _: self._sized(name, sizes, apart, options))
 
-    def _sized(self, name, sizes, apart):
+    def _sized(self, name, sizes, apart, options):
         made = Made(self.folder, name)
         corners = [(0.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (-1.0, 0.0, 0.0)]
         triangles = [tuple(corner + first for corner in triangle) for first in (0, 4) for triangle in TETRAHEDRON]
@@ -149,7 +149,7 @@ class Material:
                   [(rock * (x + apart), rock * y, rock * z) for x, y, z in corners] for puff, rock in sizes]
         recording_file.write_obj(made.model, frames[0], triangles, {0: "Puff", 4: "Rock"})
         recording_file.write_pc2(made.frames, [recording_file.flat(frame) for frame in frames])
-        self.replay_files(made)
+        self.replay_files(made, *options)
         return made
 
     def stepped(self):

@@ -37,10 +37,11 @@ static void name_worst(const answers *a, const frame_answer *frame, char *text, 
 
 /* Interiors that meet count as crossing, whether or not triangles do. */
 static void describe_overlap(const frame_answer *frame, const char *worst, char text[FAIL_TEXT_SIZE]) {
-    const char *what = frame->same > 0          ? "are copies of one solid"
-                       : frame->overlapping > 0 ? "overlap"
-                                                : "lie inside each other";
-    snprintf(text, FAIL_TEXT_SIZE, "parts %s, though no triangles cross%s", what, worst);
+    const char *what = frame->same > 0          ? "parts are copies of one solid"
+                       : frame->overlapping > 0 ? "parts overlap"
+                       : frame->inside == 1     ? "a part lies inside another"
+                                                : "parts lie inside others";
+    snprintf(text, FAIL_TEXT_SIZE, "%s, though no triangles cross%s", what, worst);
 }
 
 bool fail_rules_meet(const fail_rules *rules, const answers *a, const frame_answer *frame,

@@ -43,10 +43,25 @@ function collapsedOf({ summaries }) {
   return said.join('');
 }
 
-/** The answer in a few sentences, behind what was not looked at, and before what had no surface. */
+/** How many pairs were left out because somebody asked for that, as the tool says it. */
+function leftOutOf({ summaries }) {
+  const left = summaries[0]?.summary?.left_out ?? {};
+  const counts = [
+    [left.part_pairs, `of ${left.of_part_pairs} ${left.of_part_pairs === 1 ? 'pair' : 'pairs'} of parts`],
+    [left.component_pairs, `${left.component_pairs === 1 ? 'pair' : 'pairs'} of components`],
+    [left.triangle_pairs, `${left.triangle_pairs === 1 ? 'pair' : 'pairs'} of triangles`],
+  ].filter(([count]) => count > 0);
+  if (counts.length === 0) return '';
+  const said = counts.map(([count, what]) => `${integer(count)} ${what}`);
+  const list = said.length === 1 ? said[0] : `${said.slice(0, -1).join(', ')} and ${said[said.length - 1]}`;
+  const one = counts.reduce((sum, [count]) => sum + count, 0) === 1;
+  return ` As asked, ${list} ${one ? 'was' : 'were'} not looked at.`;
+}
+
+/** The answer in a few sentences, behind what was not looked at, and before what was left out and what had no surface. */
 export function sentenceOf(report) {
   const unfinished = unfinishedOf(report);
-  return `${unfinished}${findingsOf(report, unfinished !== '')}${collapsedOf(report)}`;
+  return `${unfinished}${findingsOf(report, unfinished !== '')}${leftOutOf(report)}${collapsedOf(report)}`;
 }
 
 function findingsOf({ scene }, unfinished) {
