@@ -6,13 +6,7 @@
 #include <string.h>
 
 /* 64 halvings of the longest side leave a cell 2^32 times smaller. Each leaves two or three parts in place of one. */
-enum { LEVELS_MAX = 64 };
-
-typedef struct cell_part {
-    deep_point corners[3];
-    double above; /* no point of the cell is deeper */
-    int level;
-} cell_part;
+enum { LEVELS_MAX = 64, PARTS_OF_ONE = 3 };
 
 bool depth_search_wants(const depth_search *s, double bound) {
     const double best = s->best.depth > 0.0 ? s->best.depth : 0.0;
@@ -29,7 +23,7 @@ static void measure_point(depth_search *s, uint32_t number, const uint32_t near[
     p->nearest.triangle = UINT32_MAX;
     for (int i = 0; i < 2; i++) {
         if (near[i] == UINT32_MAX || (i > 0 && near[i] == near[0])) continue;
-        const outer_point at = outer_surface_near(s->outer, s->found, near[i], p->x);
+        const outer_point at = outer_surface_near(s->outer, s->found, near[i], p->x, s->best.depth);
         if (at.squared < p->nearest.squared) p->nearest = at;
         p->depth = sqrt(p->nearest.squared) / scale;
         if (p->depth <= s->best.depth) return;
@@ -176,12 +170,12 @@ static void bound_part(const depth_search *s, cell_part *c) {
 /* ---- dividing -------------------------------------------------------------------------------------------- */
 
 /* Parts take the place of the cell, and that of up to two behind it. Halves the longest side. */
-static int halve_part(depth_search *s, uint32_t number, cell_part *c) {
+static int halve_part(depth_search *s, cell_part *c) {
     const depth_cell cell = cell_of(c);
     const int i = longest_side(&cell), j = (i + 1) % 3;
     deep_point middle;
     for (int k = 0; k < 3; k++) middle.x[k] = 0.5 * (c->corners[i].x[k] + c->corners[j].x[k]);
-    measure_between(s, number, &c->corners[i], &c->corners[j], &middle);
+    measure_between(s, c->number, &c->corners[i], &c->corners[j], &middle);
     c[1] = c[0];
     c[0].corners[j] = c[1].corners[i] = middle;
     return 2;
@@ -228,25 +222,24 @@ static side_plane choose_plane(const depth_search *s, const cell_part *c, const 
     return chosen;
 }
 
-static deep_point point_in_plane(depth_search *s, uint32_t number, const cell_part *c,
-                                 const side_plane *plane, int i, int j) {
+static deep_point point_in_plane(depth_search *s, const cell_part *c, const side_plane *plane, int i, int j) {
     const double share = plane->outside[i] / (plane->outside[i] - plane->outside[j]);
     deep_point p;
     for (int k = 0; k < 3; k++)
         p.x[k] = c->corners[i].x[k] + share * (c->corners[j].x[k] - c->corners[i].x[k]);
-    measure_between(s, number, &c->corners[i], &c->corners[j], &p);
+    measure_between(s, c->number, &c->corners[i], &c->corners[j], &p);
     return p;
 }
 
 /* One corner is alone on its side of the plane, or the two others are in the plane or on the other side. */
-static int split_part(depth_search *s, uint32_t number, cell_part *c, const side_plane *plane) {
+static int split_part(depth_search *s, cell_part *c, const side_plane *plane) {
     int inside = 0, alone = 0;
     for (int i = 0; i < 3; i++) inside += plane->outside[i] <= 0.0;
     for (int i = 0; i < 3; i++)
         if ((plane->outside[i] <= 0.0) == (inside == 1)) alone = i;
     const int j = (alone + 1) % 3, k = (alone + 2) % 3;
-    const deep_point p = point_in_plane(s, number, c, plane, alone, j);
-    const deep_point q = point_in_plane(s, number, c, plane, alone, k);
+    const deep_point p = point_in_plane(s, c, plane, alone, j);
+    const deep_point q = point_in_plane(s, c, plane, alone, k);
     c[2] = c[1] = c[0];
     c[0].corners[j] = p;
     c[0].corners[k] = q;
@@ -258,12 +251,12 @@ static int split_part(depth_search *s, uint32_t number, cell_part *c, const side
 
 /* A cell that is wide beside its depth reaches over several triangles of the surface, none of which bounds it as a whole: it is
  * split where the one below its middle ends. Returns how many parts that makes; -1: it is not to be split. */
-static int split_wide(depth_search *s, uint32_t number, cell_part *c) {
+static int split_wide(depth_search *s, cell_part *c) {
     deep_point middle;
     const int deepest = deepest_corner(c);
     for (int k = 0; k < 3; k++)
         middle.x[k] = (c->corners[0].x[k] + c->corners[1].x[k] + c->corners[2].x[k]) / 3.0;
-    measure_between(s, number, &c->corners[deepest], &c->corners[(deepest + 1) % 3], &middle);
+    measure_between(s, c->number, &c->corners[deepest], &c->corners[(deepest + 1) % 3], &middle);
     if (middle.nearest.triangle == UINT32_MAX) return -1;
     double bound = 0.0;
     for (int i = 0; i < 3; i++)
@@ -274,36 +267,82 @@ static int split_wide(depth_search *s, uint32_t number, cell_part *c) {
         return 0;
     }
     const side_plane plane = choose_plane(s, c, &middle.nearest.part);
-    return plane.span > 0.0 ? split_part(s, number, c, &plane) : -1;
+    return plane.span > 0.0 ? split_part(s, c, &plane) : -1;
 }
 
-/* Puts a part that is wanted among some others, so that the one that promises most comes last and is looked at first. */
+/* Writes up to PARTS_OF_ONE parts in place of one, and returns how many. */
+static int divide_part(depth_search *s, cell_part *c) {
+    const double deepest = max_of(c->corners[0].depth, max_of(c->corners[1].depth, c->corners[2].depth));
+    const depth_cell cell = cell_of(c);
+    const bool wide = length_of_side(&cell, longest_side(&cell)) > 2.0 * deepest;
+    int count = wide ? split_wide(s, c) : -1;
+    s->cells_left--;
+    if (count < 0) count = halve_part(s, c);
+    for (int i = 0; i < count; i++) {
+        c[i].level++;
+        bound_part(s, &c[i]);
+    }
+    return count;
+}
+
+/* Is the part looked at any further? If not, its bound counts. */
+static bool goes_on(depth_search *s, const cell_part *part) {
+    if (part->level < LEVELS_MAX && s->cells_left > 0 && depth_search_wants(s, part->above)) return true;
+    s->bound = max_of(s->bound, part->above);
+    return false;
+}
+
+/* Puts a part among some others, so that the one that promises most comes last and is looked at first. */
 static void sort_part(cell_part *parts, int count, const cell_part *part) {
     for (; count > 0 && part->above < parts[count - 1].above; count--) parts[count] = parts[count - 1];
     parts[count] = *part;
 }
 
-/* Returns how many parts are still wanted. */
-static int divide_part(depth_search *s, uint32_t number, cell_part *c) {
-    const double deepest = max_of(c->corners[0].depth, max_of(c->corners[1].depth, c->corners[2].depth));
-    const depth_cell cell = cell_of(c);
-    const bool wide = length_of_side(&cell, longest_side(&cell)) > 2.0 * deepest;
-    int count = wide ? split_wide(s, number, c) : -1, wanted = 0;
-    if (count < 0) count = halve_part(s, number, c);
-    for (int i = 0; i < count; i++) {
-        c[i].level++;
-        bound_part(s, &c[i]);
-        const cell_part part = c[i];
-        if (depth_search_wants(s, part.above))
-            sort_part(c, wanted++, &part);
-        else
-            s->bound = max_of(s->bound, part.above);
+/* Looks at a part to its end, at its own parts one after the other. */
+static void finish_part(depth_search *s, const cell_part *whole) {
+    cell_part waiting[(PARTS_OF_ONE - 1) * LEVELS_MAX + 1], parts[PARTS_OF_ONE];
+    int count = 1;
+    waiting[0] = *whole;
+    while (count > 0) {
+        parts[0] = waiting[--count];
+        if (!goes_on(s, &parts[0])) continue;
+        const int made = divide_part(s, parts), first = count;
+        for (int i = 0; i < made; i++)
+            if (goes_on(s, &parts[i])) sort_part(&waiting[first], count++ - first, &parts[i]);
     }
-    return wanted;
 }
 
-static void measure_corners(depth_search *s, const depth_cell *cell, uint32_t number,
-                            const cscd_depth *const known[3], cell_part *out) {
+/* ---- the queue ------------------------------------------------------------------------------------------- */
+
+static void add_part(depth_search *s, depth_queue *queue, const cell_part *part) {
+    if (!goes_on(s, part)) return;
+    if (queue->count == DEPTH_QUEUE_MAX)
+        finish_part(s, part);
+    else
+        queue->parts[queue->count++] = *part;
+}
+
+/* Takes out the part that promises most. */
+static void take_part(depth_queue *queue, cell_part *out) {
+    uint32_t most = 0;
+    for (uint32_t i = 1; i < queue->count; i++)
+        if (queue->parts[i].above > queue->parts[most].above) most = i;
+    *out = queue->parts[most];
+    queue->parts[most] = queue->parts[--queue->count];
+}
+
+void depth_search_finish(depth_search *s, depth_queue *queue) {
+    cell_part parts[PARTS_OF_ONE];
+    while (queue->count > 0) {
+        take_part(queue, &parts[0]);
+        if (!goes_on(s, &parts[0])) continue;
+        const int made = divide_part(s, parts);
+        for (int i = 0; i < made; i++) add_part(s, queue, &parts[i]);
+    }
+}
+
+static void measure_corners(depth_search *s, const depth_cell *cell, const cscd_depth *const known[3],
+                            cell_part *out) {
     uint32_t near[2] = {cell->near, UINT32_MAX};
     for (int i = 0; i < 3; i++) {
         deep_point *p = &out->corners[i];
@@ -312,28 +351,17 @@ static void measure_corners(depth_search *s, const depth_cell *cell, uint32_t nu
             p->nearest = outer_surface_near_on(s->outer, s->found, known[i]->triangle, p->x);
             p->depth = known[i]->depth;
         } else {
-            measure_point(s, number, near, p);
+            measure_point(s, out->number, near, p);
         }
         near[0] = p->nearest.triangle;
         near[1] = cell->near;
     }
 }
 
-void depth_search_cell(depth_search *s, const depth_cell *cell, uint32_t number, double above,
-                       const cscd_depth *const known[3]) {
-    cell_part waiting[2 * LEVELS_MAX + 3];
-    int count = 1;
-    waiting[0].above = above;
-    waiting[0].level = 0;
-    measure_corners(s, cell, number, known, &waiting[0]);
-    bound_part(s, &waiting[0]);
-    while (count > 0) {
-        cell_part *part = &waiting[--count];
-        if (part->level == LEVELS_MAX || s->cells_left == 0 || !depth_search_wants(s, part->above)) {
-            s->bound = max_of(s->bound, part->above);
-            continue;
-        }
-        s->cells_left--;
-        count += divide_part(s, number, part);
-    }
+void depth_search_cell(depth_search *s, depth_queue *queue, const depth_cell *cell, uint32_t number,
+                       double above, const cscd_depth *const known[3]) {
+    cell_part part = {.above = above, .number = number};
+    measure_corners(s, cell, known, &part);
+    bound_part(s, &part);
+    add_part(s, queue, &part);
 }

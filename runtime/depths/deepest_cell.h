@@ -34,10 +34,31 @@ typedef struct depth_search {
     size_t cells_left; /* so many more may be divided */
 } depth_search;
 
+/* A cell, or a part of one, that is looked at further. */
+typedef struct cell_part {
+    deep_point corners[3];
+    double above;    /* no point of it is deeper */
+    uint32_t number; /* of the cell */
+    int level;
+} cell_part;
+
+/* The parts of all cells that wait: the one that promises most is looked at first, since the deeper the best point is, the fewer
+ * others are wanted. Where it is full, a part is looked at to its end. Begins with no parts. */
+enum { DEPTH_QUEUE_MAX = 12 };
+
+typedef struct depth_queue {
+    cell_part parts[DEPTH_QUEUE_MAX];
+    uint32_t count;
+} depth_queue;
+
 /* May a point that is no deeper than the bound matter, or is the best one good enough? */
 bool depth_search_wants(const depth_search *s, double bound);
 
-/* Looks for deeper points in a cell. number: what best_cell becomes if there is one. above: no point of it is deeper. known: the
- * depths of its corners, none of which is deeper than the best; NULL: nobody knows any, or not this one. */
-void depth_search_cell(depth_search *s, const depth_cell *cell, uint32_t number, double above,
-                       const cscd_depth *const known[3]);
+/* Looks at the corners of a cell, and puts it into the queue if it may have deeper points. number: what best_cell becomes if there is one.
+ * above: no point of it is deeper. known: the depths of its corners, none of which is deeper than the best; NULL: nobody knows any,
+ * or not this one. */
+void depth_search_cell(depth_search *s, depth_queue *queue, const depth_cell *cell, uint32_t number,
+                       double above, const cscd_depth *const known[3]);
+
+/* Looks at all that waits. */
+void depth_search_finish(depth_search *s, depth_queue *queue);

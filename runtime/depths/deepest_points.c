@@ -275,7 +275,8 @@ static bool group_lies_within(const deepest_work *w, const buried_group *group) 
 
 /* ---- the deepest points ---------------------------------------------------------------------------------- */
 
-static void search_whole(const deepest_work *w, const buried_triangle *t, depth_search *s) {
+static void search_whole(const deepest_work *w, const buried_triangle *t, depth_search *s,
+                         depth_queue *queue) {
     const cscd_depth *known[3];
     depth_cell cell = {.near = UINT32_MAX};
     for (uint32_t i = 0; i < 3; i++) {
@@ -284,31 +285,36 @@ static void search_whole(const deepest_work *w, const buried_triangle *t, depth_
         known[i] = t->corners[i] != UINT32_MAX ? &w->facts->vertices[t->corners[i]] : NULL;
         if (known[i] != NULL) cell.near = known[i]->triangle;
     }
-    depth_search_cell(s, &cell, t->triangle, t->bound, known);
+    depth_search_cell(s, queue, &cell, t->triangle, t->bound, known);
 }
 
-static void search_triangle(const deepest_work *w, const buried_triangle *t, depth_search *s) {
-    if (!t->cut) search_whole(w, t, s);
+static void search_triangle(const deepest_work *w, const buried_triangle *t, depth_search *s,
+                            depth_queue *queue) {
+    if (!t->cut) search_whole(w, t, s, queue);
     s->bound = max_of(s->bound, t->left);
     for (uint32_t k = 0; k < t->cell_count; k++)
-        depth_search_cell(s, &w->finder->cells[t->first_cell + k], t->triangle, t->bound, NULL);
+        depth_search_cell(s, queue, &w->finder->cells[t->first_cell + k], t->triangle, t->bound, NULL);
 }
 
 /* The triangles at the deepest corner come first, since most often one of them has the deepest point, and the deeper the point
  * that is known, the fewer others are wanted. */
 static void search_group(const deepest_work *w, const buried_group *group, depth_search *s) {
     const buried_triangle *triangles = w->finder->triangles;
+    depth_queue queue;
+    queue.count = 0;
     begin_with_corners(w, group, s);
     const double deepest = s->best.depth;
     for (size_t i = group->first; i < group->end && depth_search_wants(s, triangles[i].bound); i++)
-        if (triangles[i].low == deepest) search_triangle(w, &triangles[i], s);
+        if (triangles[i].low == deepest) search_triangle(w, &triangles[i], s, &queue);
+    depth_search_finish(s, &queue);
     for (size_t i = group->first; i < group->end; i++) {
         if (!depth_search_wants(s, triangles[i].bound)) {
-            s->bound = max_of(s->bound, triangles[i].bound);
-            return; /* nor is any after it wanted */
+            s->bound = max_of(s->bound, triangles[i].bound); /* nor is any after it wanted */
+            break;
         }
-        if (triangles[i].low != deepest) search_triangle(w, &triangles[i], s);
+        if (triangles[i].low != deepest) search_triangle(w, &triangles[i], s, &queue);
     }
+    depth_search_finish(s, &queue);
 }
 
 static void set_direction(const deepest_work *w, const depth_search *s, cscd_depth *out) {

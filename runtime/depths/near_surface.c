@@ -289,12 +289,12 @@ outer_point outer_surface_near_on(const outer_surface *o, const surface_cuts *fo
 
 enum { STEPS_MAX = 16 };
 
-outer_point outer_surface_near(const outer_surface *o, const surface_cuts *found, uint32_t triangle,
-                               const double x[3]) {
+static outer_point walk_near(const outer_surface *o, const surface_cuts *found, uint32_t triangle,
+                             const double x[3], double enough) {
     nearest_search s = begin_near(o, found, x);
     int sides = reach_triangle(&s, triangle);
     uint32_t at = triangle, before = UINT32_MAX;
-    for (int step = 0; step < STEPS_MAX; step++) {
+    for (int step = 0; step < STEPS_MAX && s.best.squared > enough; step++) {
         sides = reach_neighbours(&s, at, sides, before);
         if (s.best.triangle == at || s.best.triangle == UINT32_MAX) break;
         before = at;
@@ -303,10 +303,16 @@ outer_point outer_surface_near(const outer_surface *o, const surface_cuts *found
     return s.best;
 }
 
+outer_point outer_surface_near(const outer_surface *o, const surface_cuts *found, uint32_t triangle,
+                               const double x[3], double enough) {
+    const double scaled = enough * o->scale;
+    return walk_near(o, found, triangle, x, enough >= 0.0 ? scaled * scaled : -1.0);
+}
+
 outer_point outer_surface_search(const outer_surface *o, const surface_cuts *found, const bvh *f,
                                  uint32_t body, const double x[3], const outer_point *near, double enough) {
     outer_point begin = {.squared = (double)INFINITY, .triangle = UINT32_MAX};
-    if (near != NULL && near->triangle != UINT32_MAX) begin = outer_surface_near(o, found, near->triangle, x);
+    if (near != NULL && near->triangle != UINT32_MAX) begin = walk_near(o, found, near->triangle, x, -1.0);
     if (sqrt(begin.squared) <= enough) return begin;
     return outer_surface_nearest(o, found, f, body, x, &begin);
 }

@@ -23,10 +23,10 @@ double outer_part_reach_of_all(const outer_surface *o, const double *const x[3],
 outer_point outer_surface_nearest(const outer_surface *o, const surface_cuts *found, const bvh *f,
                                   uint32_t body, const double x[3], const outer_point *near);
 
-/* Some point that is near to x, on a triangle or on those that one comes to from it over sides, going nearer: no search is
- * needed. Its distance is no less than that of the nearest one; its own x is not set. */
+/* Some point that is near to x, on a triangle or on those that one comes to from it over sides, going nearer until it is no farther
+ * than enough: no search is needed. Its distance is no less than that of the nearest one; its own x is not set. */
 outer_point outer_surface_near(const outer_surface *o, const surface_cuts *found, uint32_t triangle,
-                               const double x[3]);
+                               const double x[3], double enough);
 
 /* The same on one triangle. */
 outer_point outer_surface_near_on(const outer_surface *o, const surface_cuts *found, uint32_t triangle,

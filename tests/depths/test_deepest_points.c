@@ -9,9 +9,9 @@
 #include <string.h>
 
 #ifdef SLOW_MACHINE
-enum { SCENES = 30 };
+enum { SCENES = 30, PLATES = 2 };
 #else
-enum { SCENES = 400 };
+enum { SCENES = 400, PLATES = 10 };
 #endif
 enum { SAMPLES = 60 };
 
@@ -227,6 +227,37 @@ static void random_bodies(void **state) {
     assert_true(buried > 5 * scenes && faces > scenes);
 }
 
+/* Below the bumps of a disc: the plate is of few triangles, so much of it may have the deepest point, and not all of that fits in the
+ * queue at once. */
+static void a_plate_below_bumps(void **state) {
+    (void)state;
+    random_stream random = stream_start(23);
+    const double centre[3] = {0, 0, 0}, low[3] = {-0.6, -0.6, 0.9}, size[3] = {1.2, 1.2, 0.01};
+    enum { SIDE = 40 };
+    for (int plate = 0; plate < PLATES; plate++) {
+        body_rig_begin(&rig);
+        scene_add_sphere(&rig.all, centre, 1.0, 16, 27);
+        for (uint32_t v = 0; v < rig.all.vertex_count; v++) {
+            double *z = &rig.all.x0[(size_t)v * 3 + 2];
+            *z = fmax(-1.0, fmin(1.0, 4.0 * *z));
+            if (*z == 1.0) *z += v % 2 == 0 ? stream_between(&random, 0.0, 0.1) : 0.0;
+        }
+        body_rig_end_body(&rig);
+        body_rig_add_box(&rig, low, size);
+        body_rig_end_body(&rig);
+        body_rig_find_all(&rig);
+        const double bound = greatest_bound(0);
+        for (int i = 0; i <= SIDE; i++) {
+            for (int j = 0; j <= SIDE; j++) {
+                const double x[3] = {low[0] + size[0] * i / SIDE, low[1] + size[1] * j / SIDE, low[2]};
+                assert_true(body_distance(&rig, 0, x) <= bound + 1e-12);
+            }
+        }
+        compare_items();
+        body_rig_free(&rig);
+    }
+}
+
 /* ---- a limit ------------------------------------------------------------------------------------------------ */
 
 /* The depth of a tilted box in a box is 0.49 to the last digits of its bounds; a limit within them decides. */
@@ -316,6 +347,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(boxes_by_hand),
         cmocka_unit_test(random_bodies),
+        cmocka_unit_test(a_plate_below_bumps),
         cmocka_unit_test(a_limit_is_decided),
         cmocka_unit_test(an_edge_whose_first_triangle_has_no_area),
     };
