@@ -116,10 +116,25 @@ def _without_surface(findings: Findings) -> str:
     return "".join(said)
 
 
+def _left_out(findings: Findings) -> str:
+    """What was left out because somebody asked for that, as the tool says it."""
+    parts, request = findings.parts, findings.request
+    pairs = {(min(a, b), max(a, b)) for first, second in request.ignored for a in parts.find(first) for b in parts.find(second)}
+    total = len(parts.names) * (len(parts.names) + 1) // 2
+    said = []
+    if pairs:
+        said.append(f" As asked, {len(pairs)} of {total} pair{'s' if total > 1 else ''} of parts "
+                    f"{'was' if len(pairs) == 1 else 'were'} not looked at.")
+    if request.ignore_rest is not None:
+        what = "parts" if request.ignore_rest == "parts" else "triangles"
+        said.append(f" As asked, pairs of {what} that meet in the first frame were not looked at.")
+    return "".join(said)
+
+
 def summarise(findings: Findings) -> str:
     """What was found, as a sentence, and what was not looked at."""
     inside = "" if findings.request.depths else " What lies inside was not looked at."
-    return f"{_summarise_events(findings)}{inside}{_without_surface(findings)}"
+    return f"{_summarise_events(findings)}{inside}{_left_out(findings)}{_without_surface(findings)}"
 
 
 def _summarise_events(findings: Findings) -> str:
