@@ -113,6 +113,10 @@ SAID = {"": r"^Clean: no two triangles cross or touch\.$",
         "inside": r"^1 part lies inside another; no two triangles cross or touch\. ",
         "copies": r"^1 pair of parts is two copies of one solid; \d+ pairs of triangles touch, none cross\. ",
         "touch": r"^\d+ pairs? of triangles touch(es)?, none cross\. "}
+#: The same of two such frames.
+PLAYED = {"": "No frame crosses or touches (2 checked).", "cross": "All 2 frames cross. ", "overlap": "All 2 frames overlap. ",
+          "inside": "All 2 frames have one part inside another. ", "copies": "All 2 frames have two copies of one solid. ",
+          "touch": "No frame crosses; frames 0 to 1 touch (2 of 2). "}
 COUNTED = {"overlap": "overlapping_parts", "inside": "inside_parts", "copies": "same_solids"}
 OUTCOME = {"": "1 clean", "cross": "1 with intersections", "touch": "1 only touching"}
 
@@ -235,7 +239,8 @@ def test_gates(scene: Tuple[Scene, Tool]) -> None:
 def test_replay_and_page(scene: Tuple[Scene, Tool]) -> None:
     """Two frames that are the same: the summary, and the page that it writes."""
     made, tool = scene
-    tool("replay", "scene.obj", "scene.obj", "scene.obj", "--json", "found.json", "--report", "page.html")
+    text = tool("replay", "scene.obj", "scene.obj", "scene.obj", "--json", "found.json", "--report", "page.html")
+    assert text.startswith(PLAYED[made.word]), text
     found = tool.json("found.json")
     assert len(found["frames"]) == 2
     for frame in found["frames"]:
@@ -258,6 +263,26 @@ def test_python(scene: Tuple[Scene, Tool]) -> None:
     for event, kinds in zip(run.events, run.events.kind_names()):
         expect_depth(event.depth, made)
         assert ("same_solid" in kinds) == (made.word == "copies")
+
+
+def test_nested(tmp_path: Path) -> None:
+    """Of three nested boxes two lie inside others, in three pairs; what is left out is said, and the rest is counted."""
+    boxes: Dict[str, Box] = {"B": ((-3, -3, -3), (3, 3, 3)), "A": ((-4, -4, -4), (4, 4, 4)), "C": ((-2, -2, -2), (2, 2, 2))}
+    write(tmp_path / "nested.obj", [(name, box, False) for name, box in boxes.items()])
+    tool = Tool(tmp_path)
+    for words, count, pairs, left, said in (
+            ([], 2, 3, 0, ""),
+            (["--ignore-parts", "A,B"], 1, 2, 1, " As asked, 1 of 6 pairs of parts was not looked at."),
+            (["--only", "A"], 2, 2, 3, " As asked, 3 of 6 pairs of parts were not looked at.")):
+        first = tool("check", "nested.obj", "--json", "found.json", *words).splitlines()[0]
+        assert first.startswith("2 parts lie inside others; " if count == 2 else "1 part lies inside another; "), first
+        assert first.endswith(f" deep.{said}"), first
+        assert tool("check", "--each", "nested.obj", *words).splitlines()[0] == f"nested.obj: {first}"
+        tool("replay", "nested.obj", "nested.obj", "nested.obj", "--json", "played.json", *words)
+        for found in (tool.json("found.json"), tool.json("played.json")):
+            assert all(frame["inside_parts"] == count for frame in found["frames"])
+            assert len(found["events"]) == pairs
+            assert found["left_out"] == {"part_pairs": left, "of_part_pairs": 6, "component_pairs": 0, "triangle_pairs": 0}
 
 
 def test_the_worst_is_the_worst(tmp_path: Path) -> None:
