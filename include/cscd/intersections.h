@@ -108,9 +108,13 @@ typedef struct cscd_intersection_options {
      * fails with LIST_TOO_LONG. Vertices in the wrong order, as those of a file that was not exported from the same mesh, make
      * millions of pairs of a few thousand triangles, and what belongs to them would fill any machine. */
     size_t max_memory;
+    /* The most work that depths may take, in comparisons of a point with a part of a triangle; 0, the default: 2^28, which are some ten
+     * seconds. It is estimated before it is done, by how many parts curves cut triangles into: a few hundred triangles that all
+     * cross each other, as with vertices in the wrong order, have millions. Depths that would take more are left out. */
+    uint64_t max_work;
 } cscd_intersection_options;
 
-/* What a call may leave out because it does not fit max_memory. Later versions may add values. */
+/* What a call may leave out because it does not fit max_memory, or max_work. Later versions may add values. */
 typedef enum cscd_left_out {
     CSCD_LEFT_OUT_PAIRS, /* not in a list, but counted */
     CSCD_LEFT_OUT_CURVES,
@@ -164,11 +168,13 @@ typedef struct cscd_intersection_pairs {
     const cscd_part_pairs *parts;
 
     const uint32_t *collapsed_components; /* `collapsed` of them, ascending; NULL: there are none */
-    /* What was asked for and is NULL all the same, because it does not fit max_memory: (uint64_t)1 << CSCD_LEFT_OUT_CURVES,
+    /* What was asked for and is NULL all the same, because it does not fit max_memory or max_work: (uint64_t)1 << CSCD_LEFT_OUT_CURVES,
      * and so on, joined by |. 0: nothing. */
     uint64_t left_out;
     size_t
         wanted_memory; /* the max_memory with which the first of these would have gone on; more may be needed then */
+    uint64_t
+        wanted_work; /* the same of max_work, and then wanted_memory is 0; 0: work was not what did not fit */
 } cscd_intersection_pairs;
 
 /* Lists the triangle pairs that intersect or touch at the given positions, and how. options may be NULL. The pairs are

@@ -62,6 +62,9 @@ class Detector(LiveSettings):
     max_memory : int
         The bytes that what is found at one moment may take beside the pairs: curves, depths, sums by parts. What does not
         fit is left out, and raises ``MemoryError`` where it is asked for. 0: a quarter of the memory that is free.
+    max_work : int
+        The comparisons of points with parts of triangles that depths may take at one moment, by an estimate; depths that would
+        take more are left out like what does not fit ``max_memory``. 0: 2**28, which take some ten seconds.
     coherence : str
         "auto": steps in which little moves test a list of pairs; "off": each looks at the whole mesh.
     threads : int
@@ -87,7 +90,7 @@ class Detector(LiveSettings):
                  step_factor: float = 0.8, floor_ratio: float = 0.9, seams: Any = None, ignored: Any = None,
                  ignore: Optional[Callable[[str, int, int], bool]] = None, rules: Any = None,
                  thickness_matrix: Any = None, seam_reach: float = 0.0, longest_list: int = 0,
-                 max_memory: int = 0, coherence: str = "auto", threads: int = 1, simd: str = "auto",
+                 max_memory: int = 0, max_work: int = 0, coherence: str = "auto", threads: int = 1, simd: str = "auto",
                  progress: Optional[Callable[[str, float], Any]] = None, _left_out: Optional[Handle] = None) -> None:
         self._left_out = _left_out  # of a replay; it outlives the detector
         self.mesh: Mesh = mesh if isinstance(mesh, Mesh) else Mesh(as_faces("mesh", mesh))
@@ -95,8 +98,8 @@ class Detector(LiveSettings):
                             min_separation=min_separation, tolerance=tolerance, step_factor=step_factor,
                             floor_ratio=floor_ratio, seams=seams, ignored=ignored, rules=rules,
                             thickness_matrix=thickness_matrix, seam_reach=seam_reach, longest_list=longest_list,
-                            max_memory=count_of("max_memory", max_memory), coherence=coherence, threads=threads,
-                            simd=simd)
+                            max_memory=count_of("max_memory", max_memory), max_work=count_of("max_work", max_work),
+                            coherence=coherence, threads=threads, simd=simd)
         if plan is not None and not isinstance(plan, Plan):
             raise ValueError(f"plan: expected a Plan, got {type(plan).__name__}")
         pointer = self.mesh.pointer
@@ -334,7 +337,8 @@ class Detector(LiveSettings):
                    address_of(views), address_of(options), self._at["intersection_pairs"])
 
     def _find_options(self, kinds: int, stop_after: int, any_alone: bool, depths: bool, parts: bool) -> Array:
-        return intersection_options(kinds, stop_after, any_alone, depths, parts, self._inputs["max_memory"])
+        limits = self._inputs["max_memory"], self._inputs["max_work"]
+        return intersection_options(kinds, stop_after, any_alone, depths, parts, limits)
 
     def _positions_for(self, name: str, out: Optional[Array], kept: Any) -> Array:
         """Where positions are written."""

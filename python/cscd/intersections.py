@@ -93,8 +93,8 @@ class Intersections:
         self._surface: Optional[_Surface] = None
         #: Of a frame of ``replay``: what was found, summed up by pair of parts.
         self.part_pairs: Optional[PartPairs] = None
-        #: Of a frame of ``replay``: what does not fit ``max_memory``, as ("depths",), and raises ``MemoryError`` where it
-        #: is asked for; ``part_pairs`` is None then. () elsewhere.
+        #: Of a frame of ``replay``: what does not fit ``max_memory`` or ``max_work``, as ("depths",); it raises ``MemoryError``
+        #: where it is asked for; ``part_pairs`` is None then. () elsewhere.
         self.left_out: Tuple[str, ...] = ()
         #: The face that counts as row 0 of each column of ``pairs``.
         self.first_faces: Array = np.zeros(2, np.int64)
@@ -225,11 +225,13 @@ class _Surface:
         self._lists: Tuple[Array, Array, Array] = (np.empty(0), np.empty(0), np.empty(0))
         self._found_depths: Optional[Tuple[Array, Array, Array]] = None
         self._found_parts: Optional[PartPairs] = None
-        #: What did not fit max_memory, and how many bytes of it would have been enough to go on.
+        #: What did not fit max_memory or max_work, and how much of it would have been enough to go on.
         self.left_out: Tuple[str, ...] = ()
         if len(found) == 0:
             return
-        bits, self._pair_count, self._wanted = (int(found[name][0]) for name in ("left_out", "count", "wanted_memory"))
+        members = "left_out", "count", "wanted_memory", "wanted_work"
+        bits, self._pair_count, memory, work = (int(found[name][0]) for name in members)
+        self._wanted = f"max_work, of which {work} comparisons" if work else f"max_memory, of which {memory} bytes"
         self.left_out = tuple(name for i, name in enumerate(LEFT_OUT) if bits >> i & 1)
         if depths and "curves" not in self.left_out:
             self._copy_curves(int(found["curves"][0]))
@@ -240,8 +242,8 @@ class _Surface:
             self._found_parts = copy_items(int(sums["items"]), int(sums["count"]), "part_pair").view(PartPairs)
 
     def _refuse(self, name: str) -> NoReturn:
-        raise MemoryError(f"the {name} of {self._pair_count} pairs of triangles do not fit max_memory, of which "
-                          f"{self._wanted} bytes would be the least to try; are the vertices in another order than those "
+        raise MemoryError(f"the {name} of {self._pair_count} pairs of triangles do not fit {self._wanted} "
+                          "would be the least to try; are the vertices in another order than those "
                           "of the faces?")
 
     @classmethod
@@ -315,7 +317,7 @@ def copy_struct(name: str, address: int) -> Any:
 
 
 def intersection_options(kinds: int, stop_after: int, any_alone: bool, depths: bool, parts: bool,
-                         max_memory: int) -> Array:
+                         limits: Tuple[int, int]) -> Array:
     """Options of the library for one search."""
     options = new_struct("intersection_options")
     library.cscd_intersection_defaults_sized(address_of(options), options.nbytes)
@@ -325,7 +327,7 @@ def intersection_options(kinds: int, stop_after: int, any_alone: bool, depths: b
     options["curves"] = options["patches"] = options["depths"] = depths
     options["part_bodies"] = True
     options["parts"] = parts
-    options["max_memory"] = max_memory
+    options["max_memory"], options["max_work"] = limits
     return options
 
 

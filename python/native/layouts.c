@@ -138,7 +138,7 @@ FIELDS(intersection_options, FIELD(cscd_intersection_options, struct_size),
        FIELD(cscd_intersection_options, depths), FIELD(cscd_intersection_options, parts),
        FIELD(cscd_intersection_options, cut_offs), FIELD(cscd_intersection_options, part_bodies),
        FIELD(cscd_intersection_options, orientation), FIELD(cscd_intersection_options, depth_limit),
-       FIELD(cscd_intersection_options, max_memory))
+       FIELD(cscd_intersection_options, max_memory), FIELD(cscd_intersection_options, max_work))
 FIELDS(intersection_pair, FIELD(cscd_intersection_pair, a), FIELD(cscd_intersection_pair, b),
        FIELD(cscd_intersection_pair, kind), FIELD(cscd_intersection_pair, shared),
        FIELD(cscd_intersection_pair, components), FIELD(cscd_intersection_pair, objects))
@@ -152,7 +152,7 @@ FIELDS(intersection_pairs, FIELD(cscd_intersection_pairs, items), FIELD(cscd_int
        FIELD(cscd_intersection_pairs, overlaps), FIELD(cscd_intersection_pairs, depths),
        FIELD(cscd_intersection_pairs, cut_offs), FIELD(cscd_intersection_pairs, parts),
        FIELD(cscd_intersection_pairs, collapsed_components), FIELD(cscd_intersection_pairs, left_out),
-       FIELD(cscd_intersection_pairs, wanted_memory))
+       FIELD(cscd_intersection_pairs, wanted_memory), FIELD(cscd_intersection_pairs, wanted_work))
 FIELDS(curve, FIELD(cscd_curve, first_point), FIELD(cscd_curve, point_count), FIELD(cscd_curve, first_piece),
        FIELD(cscd_curve, piece_count), FIELD(cscd_curve, start), FIELD(cscd_curve, end),
        FIELD(cscd_curve, components), FIELD(cscd_curve, objects), FIELD(cscd_curve, closed),

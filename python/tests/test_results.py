@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, List, Tuple
 
 import numpy as np
+import pytest
 
 import cscd
 import oracle
@@ -126,3 +127,14 @@ def test_faces_without_a_part(tmp_path: Path) -> None:
     path.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\ng Named\nf 1 2 4\n", encoding="ascii")
     recording = cscd.read(path)
     assert recording.part_names == ["Named"] and recording.part_labels.tolist() == [-1, 0]
+
+
+def test_what_does_not_fit_is_not_given() -> None:
+    V, F = crossing_cubes()
+    mesh = cscd.self_intersections(V, F).mesh
+    for limit, value in (("max_memory", 1 << 12), ("max_work", 1)):
+        found = cscd.Detector(mesh, **{limit: value}).find_intersections(V)
+        with pytest.raises(MemoryError) as caught:
+            assert found.max_depth >= 0.0
+        assert f"do not fit {limit}, of which " in str(caught.value)
+    assert cscd.Detector(mesh, max_work=1 << 20).find_intersections(V).max_depth > 0.0

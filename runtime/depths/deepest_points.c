@@ -199,7 +199,7 @@ static bool cut_open(deepest_work *w, const depth_search *s, buried_triangle *t)
     t->area = taker.area * cut.stretch;
     t->left = taker.left;
     t->cell_count = (uint32_t)(w->finder->cell_count - t->first_cell);
-    return !w->out_of_memory;
+    return !w->out_of_memory && outer_surface_take_work(w->facts->outer, t->cell_count);
 }
 
 /* Those that may have something deeper than the corners. */

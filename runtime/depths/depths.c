@@ -298,6 +298,7 @@ static cscd_status find_points(depth_work *work, size_t *vertices) {
     *vertices = d->question_count;
     if (!ask_of_edges(work)) return CSCD_OUT_OF_MEMORY;
     size_t count = d->question_count;
+    if (!outer_surface_take_work(&d->outer, count)) return CSCD_OUT_OF_MEMORY;
     if (!context_renew_all(d->context, list_of_depths(d, room_with_spare(count)), &d->depth_capacity, count))
         return CSCD_OUT_OF_MEMORY;
     if (count > *vertices) /* depths are not there yet, so theirs is the room for sorting */

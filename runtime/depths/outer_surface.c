@@ -207,6 +207,11 @@ bool outer_surface_find(outer_surface *o, const surface_cuts *found, const bvh *
     return box_runs(o) && find_places(o, found);
 }
 
+bool outer_surface_take_work(const outer_surface *o, size_t points) {
+    const size_t parts = o->cut_count > 0 ? o->part_count / o->cut_count : 0;
+    return memory_budget_work(o->budget, points, 1 + (uint64_t)parts);
+}
+
 void outer_surface_whole(const outer_surface *o, const surface_cuts *found, uint32_t triangle,
                          outer_part *out) {
     const named_surface *s = found->surface;

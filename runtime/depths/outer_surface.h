@@ -45,6 +45,10 @@ void outer_surface_free(outer_surface *o);
 /* Finds the parts. False: no memory. */
 bool outer_surface_find(outer_surface *o, const surface_cuts *found, const bvh *f);
 
+/* Takes the work of comparing so many points with the parts that are near them, of which a triangle that is cut has as many as all of
+ * them have in the mean. False: it does not fit. */
+bool outer_surface_take_work(const outer_surface *o, size_t points);
+
 /* A triangle that is outer as a whole. */
 void outer_surface_whole(const outer_surface *o, const surface_cuts *found, uint32_t triangle,
                          outer_part *out);

@@ -326,13 +326,16 @@ static cscd_status sum_up_parts(cscd_detector *d, memory_budget *budget, cscd_in
     return CSCD_OK;
 }
 
+#define MAX_WORK_DEFAULT ((uint64_t)1 << 28)
+
 /* What calls keep for the next ones does not count, so a quarter is left for it. If they keep more than that, it is given
  * back first. */
 static memory_budget begin_memory(cscd_detector *d, const cscd_intersection_options *options) {
     size_t most = most_memory(d, options), kept = most / 8;
     if (d->part_sums.key_capacity > kept / sizeof(part_key)) part_sums_free(d->context, &d->part_sums);
     surface_answers_shrink(d, kept);
-    return (memory_budget){.most = most - most / 4};
+    return (memory_budget){.most = most - most / 4,
+                           .most_work = options->max_work > 0 ? options->max_work : MAX_WORK_DEFAULT};
 }
 
 static cscd_status find_kinds(cscd_detector *d, const double *positions, void *data) {

@@ -72,7 +72,10 @@ left_out_pairs *surface_answers_begin(cscd_detector *d) {
 
 void surface_answers_leave_out(memory_budget *budget, cscd_left_out what, cscd_intersection_pairs *found) {
     size_t wanted = budget->wanted < SIZE_MAX / 2 ? budget->wanted + budget->wanted / 3 + 1 : SIZE_MAX;
-    if (found->left_out == 0) found->wanted_memory = wanted; /* with the quarter that is for what is kept */
+    if (found->left_out == 0 && budget->wanted_work == 0)
+        found->wanted_memory = wanted; /* with the quarter that is for what is kept */
+    if (found->left_out == 0) found->wanted_work = budget->wanted_work;
+    budget->wanted_work = 0;
     found->left_out |= (uint64_t)1 << what;
     budget->exceeded = false;
 }

@@ -1,4 +1,4 @@
-/* How much memory a call may take for what it finds. Counted is what lists need, by how long they are, and not what is
+/* How much memory, and how much work, a call may take for what it finds. Counted is what lists need, by how long they are, and not what is
  * allocated: so what a call leaves out is the same for any number of threads, and whatever calls there were before. */
 #pragma once
 
@@ -11,7 +11,9 @@ typedef struct memory_budget {
     size_t most, taken; /* bytes */
     size_t
         wanted; /* so many were needed in all by the first one that did not fit, as far as it was counted */
-    bool exceeded; /* something did not fit, and has not been taken */
+    uint64_t most_work, work,
+        wanted_work; /* the same; wanted_work is 0 unless it was work that did not fit */
+    bool exceeded;   /* something did not fit, and has not been taken */
 } memory_budget;
 
 /* Takes count times size bytes. False if they do not fit: whoever asks then ends as if there were no memory, and gives back
@@ -25,6 +27,18 @@ static inline bool memory_budget_take(memory_budget *b, size_t count, size_t siz
         return false;
     }
     b->taken += count * size;
+    return true;
+}
+
+/* The same for work, which later work needs beside it. */
+static inline bool memory_budget_work(memory_budget *b, uint64_t count, uint64_t work) {
+    if (b == NULL) return true;
+    if (count > 0 && work > (b->most_work - b->work) / count) {
+        b->wanted_work = work > (UINT64_MAX - b->work) / count ? UINT64_MAX : b->work + count * work;
+        b->exceeded = true;
+        return false;
+    }
+    b->work += count * work;
     return true;
 }
 

@@ -148,6 +148,21 @@ static void a_case_that_is_not_known(void **state) {
     }
 }
 
+/* Depths that would take too much work are said first, and a gate of depth does not pass them. */
+static void depths_that_take_too_long(void **state) {
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        tool_run run = RUN_TOOL(i == 0 ? "check" : "replay", good.text, good.text, shuffled.text, good.text,
+                                "--max-work", "1", "--fail-depth", "100", "--junit", xml.text);
+        assert_int_equal(run.code, 1);
+        expect_in(run.out, ", and depths would take more than --max-work allows (");
+        tool_run_free(&run);
+        char *text = read_whole_file(xml.text, NULL);
+        expect_in(text, "failures=\"0\" errors=\"2\"");
+        free(text);
+    }
+}
+
 /* Of the first interval. */
 static void expect_nothing_of_contacts(void) {
     json_node *root = json_node_read_file(json.text);
@@ -221,8 +236,8 @@ static void sizes_of_memory(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_frame_of_three), cmocka_unit_test(a_case_that_is_not_known),
-        cmocka_unit_test(contacts_that_do_not_fit), cmocka_unit_test(exports_of_what_is_left_out),
-        cmocka_unit_test(sizes_of_memory)};
+        cmocka_unit_test(one_frame_of_three),        cmocka_unit_test(a_case_that_is_not_known),
+        cmocka_unit_test(contacts_that_do_not_fit),  cmocka_unit_test(exports_of_what_is_left_out),
+        cmocka_unit_test(depths_that_take_too_long), cmocka_unit_test(sizes_of_memory)};
     return cmocka_run_group_tests_name("left_out", tests, make_files, remove_files);
 }

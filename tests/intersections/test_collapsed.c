@@ -190,7 +190,7 @@ static void too_long_lists_say_it_too(void **state) {
         make_frames(seed);
         for (int f = 0; f + 1 < FRAME_COUNT; f++) {
             take_interval(f);
-            rig r = rig_create(&play, 1 + f % 2, NULL);
+            rig r = rig_create(&play, 1 + (uint32_t)f % 2, NULL);
             const cscd_contacts found = rig_step(&r, &play);
             const size_t count = found.count;
             const uint32_t hidden = found.collapsed;

@@ -4,7 +4,7 @@
 #include "cscd/events.h"
 #include "tests/support/counting_allocator.h"
 #include "tests/support/intersections/answer_lists.h"
-#include "tests/support/intersections/body_rig.h"
+#include "tests/support/intersections/tangles.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/test.h"
 
@@ -16,49 +16,12 @@ static body_rig full, without_depths, pairs_alone, rig; /* large; one test at a 
 
 /* ---- scenes ---------------------------------------------------------------------------------------------- */
 
-/* Puts the vertices of a body in another order, as a file does that was exported from another mesh. */
-static void shuffle_vertices(scene *s, uint32_t first, uint32_t count, uint64_t seed) {
-    random_stream random = stream_start(seed);
-    for (uint32_t i = count; i > 1; i--) {
-        double *a = &s->x0[(size_t)(first + i - 1) * 3],
-               *b = &s->x0[(size_t)(first + stream_below(&random, i)) * 3];
-        for (int k = 0; k < 3; k++) {
-            double x = a[k];
-            a[k] = b[k];
-            b[k] = x;
-        }
-    }
-}
-
-static void add_shuffled(body_rig *r, int rings, int segments) {
-    static const double origin[3] = {0, 0, 0}, beside[3] = {0.5, 0.25, 0.125};
-    body_rig_begin(r);
-    scene_add_sphere(&r->all, origin, 1.0, rings, segments);
-    shuffle_vertices(&r->all, 0, r->all.vertex_count, 1);
-    body_rig_end_body(r);
-    scene_add_sphere(&r->all, beside, 0.75, 4, 6);
-    body_rig_end_body(r);
-}
-
-/* Open triangles, so that there are cut-offs, and no depths. */
-static void add_soup(body_rig *r, uint32_t triangles) {
-    random_stream random = stream_start(2);
-    body_rig_begin(r);
-    for (uint32_t i = 0; i < 3 * triangles; i++) {
-        for (int k = 0; k < 3; k++) r->all.x0[3 * i + (uint32_t)k] = stream_between(&random, 0.0, 1.0);
-        r->all.triangles[i] = i;
-    }
-    r->all.vertex_count = 3 * triangles;
-    r->all.triangle_count = triangles;
-    body_rig_end_body(r);
-}
-
 static void add_small_shuffled(body_rig *r) {
-    add_shuffled(r, 5, 6);
+    tangle_add_shuffled(r, 5, 6);
 }
 
 static void add_small_soup(body_rig *r) {
-    add_soup(r, 120);
+    tangle_add_soup(r, 120);
 }
 
 /* ---- calls ----------------------------------------------------------------------------------------------- */
@@ -214,7 +177,7 @@ static void pairs_take_64_bytes_each(void **state) {
         counting_allocator counter = counting_allocator_start();
         cscd_intersection_options options = cscd_intersection_defaults();
         cscd_status status;
-        add_shuffled(&rig, MANY_RINGS, MANY_SEGMENTS);
+        tangle_add_shuffled(&rig, MANY_RINGS, MANY_SEGMENTS);
         rig.counter = &counter;
         body_rig_create(&rig, NULL, threads);
         warm_up(&rig);
@@ -351,7 +314,7 @@ static void events_stay_on_their_budget(void **state) {
     cscd_event_tracker *tracker = NULL;
     cscd_events events;
     static uint32_t labels[SCENE_TRIANGLES_MAX];
-    add_soup(&rig, 300);
+    tangle_add_soup(&rig, 300);
     for (uint32_t i = 0; i < rig.all.triangle_count; i++) labels[i] = i;
     rig.counter = &counter;
     body_rig_create(&rig, NULL, 1);

@@ -115,7 +115,7 @@ static bool find_answers(io_error *error) {
     const ignore_options none = {.path = NULL};
     if (!ignore_pairs_prepare(&none, &scene, &ignored, error)) return false;
     assert_int_equal(cscd_detector_create(scene.context, scene.mesh, NULL, &options, &detector), CSCD_OK);
-    bool found = answers_open(&scene, &ignored, true, 0, &a, error);
+    bool found = answers_open(&scene, &ignored, true, (answer_limits){0}, &a, error);
     if (found) found = answers_prepare(&a, detector, error) && add_frames(&a, detector, error);
     if (found) assert_true(a.event_count > 0 && a.frames.count == 8);
     answers_close(&a);

@@ -42,9 +42,12 @@ static const option_row rows[] = {
      "faster: find pairs and events, and neither how deep they are nor what lies inside"},
     {"orientation", "found|as-given", read_orientation, offsetof(answer_options, as_given),
      "found, the default: closed surfaces that are inside out are taken as turned around; as-given: they contain nothing"},
-    {"max-memory", "SIZE", read_size, offsetof(answer_options, max_memory),
+    {"max-memory", "SIZE", read_size, offsetof(answer_options, limits.memory),
      "what is found in one frame may take so much: 500M, 4G (default: a quarter of the memory that is free); what does not "
      "fit is left out, and said first"},
+    {"max-work", "NUMBER", read_size, offsetof(answer_options, limits.work),
+     "how deep it is in one frame may take so many comparisons: 1G, 16G (default: 256M, which take ten seconds or so); what "
+     "would take more is left out, and said first"},
     {"timings", NULL, read_flag, offsetof(answer_options, timings),
      "print more: how long it took, and a row for each frame that is not clean"},
 };

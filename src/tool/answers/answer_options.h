@@ -11,8 +11,8 @@ typedef struct answer_options {
     const char *events_path, *junit_path; /* NULL: not given */
     bool no_depths;                       /* pairs only */
     bool as_given;                        /* what is inside out is not turned around */
-    size_t max_memory; /* bytes that what is found in a frame may take; 0: the library's default */
-    bool timings;      /* print what a developer wants to know as well */
+    answer_limits limits;
+    bool timings; /* print what a developer wants to know as well */
 } answer_options;
 
 /* Their rows, but --fail-on, of which each command has kinds of its own. Places count from answer_options. */

@@ -5,6 +5,7 @@
 #include "src/tool/answers/consequences.h"
 #include "src/tool/common/event_order.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -17,7 +18,7 @@ static bool api_failed(const answers *a, io_error *error) {
 
 static bool create_tracker(answers *a, io_error *error) {
     cscd_event_options options = cscd_event_defaults();
-    options.max_memory = a->max_memory;
+    options.max_memory = a->limits.memory;
     options.part_count = a->parts->count;
     options.labels = a->parts->labels;
     return cscd_event_tracker_create(a->recording->context, a->recording->mesh, &options, &a->tracker) ==
@@ -25,14 +26,14 @@ static bool create_tracker(answers *a, io_error *error) {
            api_failed(a, error);
 }
 
-bool answers_open(recording *r, const ignore_pairs *ignored, bool depths, size_t max_memory, answers *out,
+bool answers_open(recording *r, const ignore_pairs *ignored, bool depths, answer_limits limits, answers *out,
                   io_error *error) {
     answers a = {.recording = r,
                  .parts = &ignored->parts,
                  .depths = depths,
                  .orientation = CSCD_ORIENTATION_BY_PART,
                  .depth_limit = (double)INFINITY,
-                 .max_memory = max_memory,
+                 .limits = limits,
                  .shown = shown_depths_of(ignored),
                  .collapsed = collapsed_parts_of(r, &ignored->parts),
                  .frames = growable_of(sizeof(frame_answer))};
@@ -222,7 +223,8 @@ bool answers_find(const answers *a, cscd_detector *detector, const double *posit
     options.orientation = a->orientation;
     options.depth_limit = a->depth_limit;
     options.part_bodies = true;
-    options.max_memory = a->max_memory;
+    options.max_memory = a->limits.memory;
+    options.max_work = a->limits.work;
     const cscd_view *view = CSCD_DOUBLES(positions, cscd_mesh_vertex_count(a->recording->mesh));
     const cscd_status status = cscd_detector_find_intersections(detector, view, &options, found);
     if (status != CSCD_OK && status != CSCD_LIST_TOO_LONG) return api_failed(a, error);
@@ -253,28 +255,31 @@ static void name_left_out(uint64_t left_out, char text[NAMES_SIZE]) {
                                    names[i]);
 }
 
-/* What to try, in megabytes, upwards, as --max-memory takes it. */
-static const char *size_text(size_t bytes, char text[SIZE_TEXT_SIZE]) {
-    snprintf(text, SIZE_TEXT_SIZE, " (%zuM or more)", (bytes >> 20) + 1);
+/* What to try, in binary millions, upwards, as --max-memory and --max-work take it. */
+static const char *size_text(uint64_t size, char text[SIZE_TEXT_SIZE]) {
+    snprintf(text, SIZE_TEXT_SIZE, " (%" PRIu64 "M or more)", (size >> 20) + 1);
     return text;
 }
 
 static void leave_out(answers *a, uint32_t frame, const cscd_intersection_pairs *found, const char *names,
-                      const char *size) {
+                      const char *option, const char *size) {
     const size_t pairs =
         found->crossing + found->coplanar + found->folded + found->touching + found->duplicate;
     answers_leave_unfinished(
         a,
-        "frame %d has %zu pairs of triangles that cross or touch, and %s would take more than --max-memory allows%s; does "
+        "frame %d has %zu pairs of triangles that cross or touch, and %s would take more than %s allows%s; does "
         "the file list its vertices in another order than the model?",
-        answers_frame_number(a, frame), pairs, names, size);
+        answers_frame_number(a, frame), pairs, names, option, size);
 }
 
 static void tell_left_out(answers *a, uint32_t frame, const cscd_intersection_pairs *found) {
     char names[NAMES_SIZE], size[SIZE_TEXT_SIZE];
     if (found->left_out == 0) return;
     name_left_out(found->left_out, names);
-    leave_out(a, frame, found, names, size_text(found->wanted_memory, size));
+    if (found->wanted_work > 0)
+        leave_out(a, frame, found, names, "--max-work", size_text(found->wanted_work, size));
+    else
+        leave_out(a, frame, found, names, "--max-memory", size_text(found->wanted_memory, size));
 }
 
 void answers_leave_out_contacts(answers *a, uint32_t frame, size_t count) {
@@ -288,7 +293,7 @@ void answers_leave_out_contacts(answers *a, uint32_t frame, size_t count) {
 
 static bool track_frame(answers *a, uint32_t frame, const cscd_intersection_pairs *found, io_error *error) {
     const cscd_status status = cscd_event_tracker_add_frame(a->tracker, frame, found);
-    if (status == CSCD_LIST_TOO_LONG) leave_out(a, frame, found, "events", "");
+    if (status == CSCD_LIST_TOO_LONG) leave_out(a, frame, found, "events", "--max-memory", "");
     return status == CSCD_OK || status == CSCD_LIST_TOO_LONG || api_failed(a, error);
 }
 

@@ -29,13 +29,19 @@ typedef struct frame_answer {
     double ms; /* how long it took */
 } frame_answer;
 
+/* How much what is found in a frame may take; 0: the library's defaults. */
+typedef struct answer_limits {
+    size_t memory; /* bytes */
+    size_t work;   /* as cscd_intersection_options.max_work */
+} answer_limits;
+
 typedef struct answers {
     recording *recording;
     const part_names *parts;
     bool depths;        /* curves and depths are looked for */
     double depth_limit; /* until each is known to be above this or not; INFINITY: nobody asks */
     cscd_orientation orientation;
-    size_t max_memory;  /* as answer_options has it */
+    answer_limits limits;
     shown_depths shown; /* of the frame found last */
     turned_parts turned;
     collapsed_parts collapsed; /* parts without a surface; their frames are places in `frames` */
@@ -52,9 +58,8 @@ typedef struct answers {
 } answers;
 
 /* The ignored pairs, which have the parts, outlive the answers. Without depths there are neither curves nor depths. What does not
- * fit max_memory, 0: the library's default, is left out, and the answers are unfinished. On false *out holds nothing to
- * close. */
-bool answers_open(recording *r, const ignore_pairs *ignored, bool depths, size_t max_memory, answers *out,
+ * fit the limits is left out, and the answers are unfinished. On false *out holds nothing to close. */
+bool answers_open(recording *r, const ignore_pairs *ignored, bool depths, answer_limits limits, answers *out,
                   io_error *error);
 void answers_close(answers *a); /* a zeroed struct is fine */
 

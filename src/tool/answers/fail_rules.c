@@ -84,7 +84,7 @@ const char *fail_rules_unknown(const fail_rules *rules, const answers *a, const 
     if (o->faces_limited && frame->unlisted)
         return "how many triangles cross others is not known, as a list of the pairs did not fit --max-memory";
     if (a->depths && !frame->spaces_known && (o->depth.given || o->kind >= FAIL_ON_CROSSING))
-        return "how deep it is, and what lies inside, is not known, as that did not fit --max-memory";
+        return "how deep it is, and what lies inside, is not known, as that did not fit --max-memory or --max-work";
     return NULL;
 }
 

@@ -124,12 +124,13 @@ static int run_list(const check_options *options, const given_options *given) {
 }
 
 static int refuse_beside_each(const check_options *o, const given_options *given) {
-    static const char *const own[] = {"each",        "json",         "weld",      "ignore-parts",
-                                      "only",        "threads",      "fail-on",   "fail-on-contact",
-                                      "fail-depth",  "max-faces",    "unit",      "no-depths",
-                                      "max-memory",  "fps",          "animation", "rest",
-                                      "quiet",       "shard",        "results",   "resume",
-                                      "job-timeout", "reproducible", "parts-by",  "orientation"};
+    static const char *const own[] = {"each",       "json",        "weld",         "ignore-parts",
+                                      "only",       "threads",     "fail-on",      "fail-on-contact",
+                                      "fail-depth", "max-faces",   "unit",         "no-depths",
+                                      "max-memory", "max-work",    "fps",          "animation",
+                                      "rest",       "quiet",       "shard",        "results",
+                                      "resume",     "job-timeout", "reproducible", "parts-by",
+                                      "orientation"};
     io_error error;
     const char *foreign = option_given_beside(&table, given, own, sizeof own / sizeof *own);
     if (foreign != NULL)

@@ -51,8 +51,7 @@ static bool check_frame(check_run *c, uint32_t frame, io_error *error) {
 
 static bool open_answers(check_run *c, io_error *error) {
     const answer_options *o = &c->options->answers;
-    if (!answers_open(&c->recording, &c->ignored, !o->no_depths, o->max_memory, &c->answers, error))
-        return false;
+    if (!answers_open(&c->recording, &c->ignored, !o->no_depths, o->limits, &c->answers, error)) return false;
     if (o->as_given) c->answers.orientation = CSCD_ORIENTATION_AS_GIVEN;
     return true;
 }

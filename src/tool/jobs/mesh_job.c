@@ -42,7 +42,7 @@ static bool prepare_check(mesh_check *c, io_error *error) {
     ignore_pairs_choose(&c->ignored, &options);
     if (cscd_detector_create(r->context, r->mesh, NULL, &options, &c->detector) != CSCD_OK)
         return io_fail(error, "%s", cscd_context_detail(r->context));
-    if (!answers_open(r, &c->ignored, !c->job->answers->no_depths, c->job->answers->max_memory, &c->answers,
+    if (!answers_open(r, &c->ignored, !c->job->answers->no_depths, c->job->answers->limits, &c->answers,
                       error))
         return false;
     if (c->job->answers->as_given) c->answers.orientation = CSCD_ORIENTATION_AS_GIVEN;

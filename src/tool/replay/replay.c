@@ -43,7 +43,7 @@ static bool prepare_answers(replay *r, io_error *error) {
     const answer_options *o = &r->options->answers;
     r->unit = answer_options_unit(o, &r->recording);
     if (!fail_rules_create(&o->fail, &r->unit, &r->rules, error) ||
-        !answers_open(&r->recording, &r->ignored, !o->no_depths, o->max_memory, &r->answers, error))
+        !answers_open(&r->recording, &r->ignored, !o->no_depths, o->limits, &r->answers, error))
         return false;
     if (o->as_given) r->answers.orientation = CSCD_ORIENTATION_AS_GIVEN;
     if (o->fail.depth.given) answers_decide_depth(&r->answers, r->rules.depth);

@@ -1,0 +1,62 @@
+/* Depths that would take too much work are left out before it is done, and nothing else is. */
+#include "tests/support/intersections/answer_lists.h"
+#include "tests/support/intersections/tangles.h"
+#include "tests/support/test.h"
+
+static body_rig rig, one_thread, without_depths, full; /* large */
+
+static void make_tangle(body_rig *r, uint32_t threads) {
+    tangle_add_shuffled(r, 5, 6);
+    body_rig_create(r, NULL, threads);
+}
+
+static void find_with(body_rig *r, const cscd_intersection_options *options) {
+    assert_int_equal(cscd_detector_find_intersections(
+                         r->detector, CSCD_DOUBLES(r->all.x0, r->all.vertex_count), options, &r->found),
+                     CSCD_OK);
+}
+
+/* Returns the options that ask for all. */
+static cscd_intersection_options find_references(void) {
+    cscd_intersection_options options = cscd_intersection_defaults();
+    options.overlaps = options.cut_offs = options.parts = true;
+    options.max_memory = 1 << 30;
+    find_with(&without_depths, &options);
+    options.depths = true;
+    find_with(&full, &options);
+    assert_int_equal(full.found.left_out, 0);
+    return options;
+}
+
+/* Work that does not fit leaves out depths alone, the same for any number of threads; what is wanted is enough to go on, and in the end
+ * to find all. */
+static void work_has_a_budget(void **state) {
+    (void)state;
+    make_tangle(&rig, 3);
+    make_tangle(&one_thread, 1);
+    make_tangle(&without_depths, 1);
+    make_tangle(&full, 1);
+    cscd_intersection_options options = find_references();
+    int rounds = 0;
+    for (options.max_work = 1;; options.max_work = rig.found.wanted_work, rounds++) {
+        find_with(&rig, &options);
+        if (rig.found.left_out == 0) break;
+        assert_int_equal(rig.found.left_out, 1 << CSCD_LEFT_OUT_DEPTHS);
+        assert_int_equal(rig.found.wanted_memory, 0);
+        assert_true(rig.found.wanted_work > options.max_work && rig.found.depths == NULL);
+        compare_surfaces(rig.mesh, &without_depths.found, &rig.found);
+        const uint64_t wanted = rig.found.wanted_work;
+        find_with(&one_thread, &options);
+        assert_int_equal(one_thread.found.wanted_work, wanted);
+    }
+    assert_true(rounds > 2);
+    assert_int_equal(rig.found.wanted_work, 0);
+    compare_surfaces(rig.mesh, &full.found, &rig.found);
+    body_rig *const rigs[] = {&rig, &one_thread, &without_depths, &full};
+    for (int i = 0; i < 4; i++) body_rig_free(rigs[i]);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(work_has_a_budget)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
