@@ -109,8 +109,9 @@ class Recording:
     part_labels : (t,) int64
         The part of each triangle of the mesh, -1 for none.
     body_labels : (t,) int64, optional
-        What belongs together where ``parts_by`` makes the parts: those that the triangles have without it. ``by_parts`` and
-        ``replay`` take it as ``bodies``, so that depths stay what they are. None: the parts say so.
+        What belongs together, where that is not the parts: the parts that the triangles have without ``parts_by``; all -1 where
+        the files name none, or one for all: then each component is by itself, and a cavity with what is around it. ``by_parts``
+        and ``replay`` take it as ``bodies``. None: the parts say so.
     file_vertices : (n,) int64
         The number that each vertex has in the file. Formats that store vertices several times, as STL and glTF, have
         several for one; this is the first.

@@ -26,7 +26,7 @@ def describe(path: str, recording: cscd.Recording, found: cscd.Intersections) ->
     print(f"{len(found.curves)} curves, {sum(curve.closed for curve in found.curves)} of them closed, "
           f"{sum(curve.length for curve in found.curves):.3f} long in all")
     print(f"{found.buried.sum()} vertices are buried, the deepest {found.max_depth:.3f} below the surface")
-    sums = found.by_parts(recording.part_labels, len(recording.part_names))
+    sums = found.by_parts(recording.part_labels, len(recording.part_names), bodies=recording.body_labels)
     for row in sorted(sums[sums.curves > 0], key=lambda row: -row.depth):
         print(f"  {recording.part_names[row.a]} x {recording.part_names[row.b]}: {row.crossing} pairs of triangles, "
               f"curves {row.length:.3f} long, {row.depth:.3f} deep")

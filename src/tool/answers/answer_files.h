@@ -16,6 +16,7 @@ void answers_write_frame(const answers *a, const frame_answer *frame, json *out)
 /* Writes a row for each event, in the order of their first frames. */
 void answers_write_csv(const answers *a, FILE *file);
 
-/* Writes a test case for each frame. It fails by the rules; without rules it fails if the frame crosses. A frame in which no
- * triangle has an area is an error, or of which it is not known whether it fails because that did not fit the memory, and where not all was looked at (answers_unfinished), a last case is one. suite: what the recording is called. */
+/* Writes a test case for each frame. It fails by the rules; without rules it fails if the frame crosses. A frame is an error if no triangle
+ * in it has an area, or if nobody knows whether it fails, because what says so did not fit the limits. Where not all was looked at
+ * (answers_unfinished), a last case is an error. suite: what the recording is called. */
 void answers_write_junit(const answers *a, const fail_rules *rules, const char *suite, FILE *file);
