@@ -174,7 +174,8 @@ typedef struct cscd_intersection_pairs {
     size_t
         wanted_memory; /* the max_memory with which the first of these would have gone on; more may be needed then */
     uint64_t
-        wanted_work; /* the same of max_work, and then wanted_memory is 0; 0: work was not what did not fit */
+        wanted_work; /* the max_work that all of it would take, by an estimate, and then wanted_memory is 0; 0: work was not
+                           * what did not fit */
 } cscd_intersection_pairs;
 
 /* Lists the triangle pairs that intersect or touch at the given positions, and how. options may be NULL. The pairs are

@@ -231,7 +231,8 @@ class _Surface:
             return
         members = "left_out", "count", "wanted_memory", "wanted_work"
         bits, self._pair_count, memory, work = (int(found[name][0]) for name in members)
-        self._wanted = f"max_work, of which {work} comparisons" if work else f"max_memory, of which {memory} bytes"
+        self._wanted = (f"max_work, of which they would take some {work} comparisons" if work else
+                        f"max_memory, of which {memory} bytes would be the least to try")
         self.left_out = tuple(name for i, name in enumerate(LEFT_OUT) if bits >> i & 1)
         if depths and "curves" not in self.left_out:
             self._copy_curves(int(found["curves"][0]))
@@ -242,9 +243,8 @@ class _Surface:
             self._found_parts = copy_items(int(sums["items"]), int(sums["count"]), "part_pair").view(PartPairs)
 
     def _refuse(self, name: str) -> NoReturn:
-        raise MemoryError(f"the {name} of {self._pair_count} pairs of triangles do not fit {self._wanted} "
-                          "would be the least to try; are the vertices in another order than those "
-                          "of the faces?")
+        raise MemoryError(f"the {name} of {self._pair_count} pairs of triangles do not fit {self._wanted}; "
+                          "are the vertices in another order than those of the faces?")
 
     @classmethod
     def none(cls, vertex_count: int) -> _Surface:

@@ -202,6 +202,16 @@ static bool cut_open(deepest_work *w, const depth_search *s, buried_triangle *t)
     return !w->out_of_memory && outer_surface_take_work(w->facts->outer, t->cell_count);
 }
 
+/* Where work does not fit, what all of it would be is reckoned from the triangles so far. */
+static bool stop_opening(const deepest_work *w, size_t opened) {
+    memory_budget *b = w->finder->budget;
+    if (b != NULL && b->wanted_work > 0) {
+        const double all = (double)b->wanted_work * (double)w->finder->triangle_count / (double)opened;
+        b->wanted_work = all < 0x1p63 ? (uint64_t)all : UINT64_MAX;
+    }
+    return false;
+}
+
 /* Those that may have something deeper than the corners. */
 static bool cut_triangles_open(deepest_work *w) {
     deepest_finder *d = w->finder;
@@ -211,7 +221,7 @@ static bool cut_triangles_open(deepest_work *w) {
         depth_search s = begin_search(w, d->triangles[group->first].body);
         begin_with_corners(w, group, &s);
         for (size_t i = group->first; i < group->end && depth_search_wants(&s, d->triangles[i].bound); i++) {
-            if (d->triangles[i].cut && !cut_open(w, &s, &d->triangles[i])) return false;
+            if (d->triangles[i].cut && !cut_open(w, &s, &d->triangles[i])) return stop_opening(w, i + 1);
         }
     }
     return true;

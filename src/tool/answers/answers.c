@@ -256,8 +256,11 @@ static void name_left_out(uint64_t left_out, char text[NAMES_SIZE]) {
 }
 
 /* What to try, in binary millions, upwards, as --max-memory and --max-work take it. */
-static const char *size_text(uint64_t size, char text[SIZE_TEXT_SIZE]) {
-    snprintf(text, SIZE_TEXT_SIZE, " (%" PRIu64 "M or more)", (size >> 20) + 1);
+static const char *size_text(const cscd_intersection_pairs *found, char text[SIZE_TEXT_SIZE]) {
+    if (found->wanted_work > 0)
+        snprintf(text, SIZE_TEXT_SIZE, " (some %" PRIu64 "M)", (found->wanted_work >> 20) + 1);
+    else
+        snprintf(text, SIZE_TEXT_SIZE, " (%zuM or more)", (found->wanted_memory >> 20) + 1);
     return text;
 }
 
@@ -276,10 +279,8 @@ static void tell_left_out(answers *a, uint32_t frame, const cscd_intersection_pa
     char names[NAMES_SIZE], size[SIZE_TEXT_SIZE];
     if (found->left_out == 0) return;
     name_left_out(found->left_out, names);
-    if (found->wanted_work > 0)
-        leave_out(a, frame, found, names, "--max-work", size_text(found->wanted_work, size));
-    else
-        leave_out(a, frame, found, names, "--max-memory", size_text(found->wanted_memory, size));
+    leave_out(a, frame, found, names, found->wanted_work > 0 ? "--max-work" : "--max-memory",
+              size_text(found, size));
 }
 
 void answers_leave_out_contacts(answers *a, uint32_t frame, size_t count) {
