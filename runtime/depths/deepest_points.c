@@ -178,6 +178,9 @@ static bool banks_rule_out(const deepest_work *w, const cell_banks *banks, const
     return !depth_search_wants(s, t->left);
 }
 
+/* To take up a line that divides a triangle costs so many comparisons. */
+enum { A_LINE = 4 };
+
 static bool cut_open(deepest_work *w, const depth_search *s, buried_triangle *t) {
     size_t first, end = triangle_cuts_of(w->facts->cuts, t->triangle, &first);
     cell_banks banks;
@@ -188,6 +191,7 @@ static bool cut_open(deepest_work *w, const depth_search *s, buried_triangle *t)
     if (banks_rule_out(w, &banks, s, t)) return true;
     t->left = 0.0;
     t->area = 0.0;
+    if (!memory_budget_work(w->finder->budget, end - first, A_LINE)) return false;
     if (!triangle_cuts_load(w->facts->cuts, w->facts->found, first, end, &cut)) return false;
     if (cut.stretch == 0.0) return true;
     cut_lift lift = cut_lift_of(w->facts->found->surface, &cut);
@@ -219,6 +223,7 @@ static bool cut_triangles_open(deepest_work *w) {
     for (size_t g = 0; g < d->group_count; g++) {
         const buried_group *group = &d->groups[g];
         depth_search s = begin_search(w, d->triangles[group->first].body);
+        if (!progress_go_on(&d->context->progress, 0.0)) return false;
         begin_with_corners(w, group, &s);
         for (size_t i = group->first; i < group->end && depth_search_wants(&s, d->triangles[i].bound); i++) {
             if (d->triangles[i].cut && !cut_open(w, &s, &d->triangles[i])) return stop_opening(w, i + 1);

@@ -288,6 +288,15 @@ static double rounding_of(const named_surface *s) {
     return largest * 0x1p-46;
 }
 
+/* A search costs so many comparisons. As many as there are vertices are work in proportion to the mesh; vertices that many bodies contain
+ * have more. */
+enum { A_SEARCH = 256 };
+
+static bool take_searches(const depth_work *work, size_t count) {
+    const size_t vertices = work->found->surface->mesh->vertex_count;
+    return memory_budget_work(work->found->budget, count > vertices ? count - vertices : 0, A_SEARCH);
+}
+
 /* Writes the answers of vertices and edges. */
 static cscd_status find_points(depth_work *work, size_t *vertices) {
     depth_finder *d = work->finder;
@@ -298,7 +307,7 @@ static cscd_status find_points(depth_work *work, size_t *vertices) {
     *vertices = d->question_count;
     if (!ask_of_edges(work)) return CSCD_OUT_OF_MEMORY;
     size_t count = d->question_count;
-    if (!outer_surface_take_work(&d->outer, count)) return CSCD_OUT_OF_MEMORY;
+    if (!outer_surface_take_work(&d->outer, count) || !take_searches(work, count)) return CSCD_OUT_OF_MEMORY;
     if (!context_renew_all(d->context, list_of_depths(d, room_with_spare(count)), &d->depth_capacity, count))
         return CSCD_OUT_OF_MEMORY;
     if (count > *vertices) /* depths are not there yet, so theirs is the room for sorting */
@@ -346,7 +355,8 @@ cscd_status depth_finder_run(depth_finder *d, const surface_cuts *found, const d
                                .vertex_count = vertices,
                                .limit = request->limit,
                                .rounding = work.rounding};
-    if (!deepest_finder_begin(&d->deepest, &facts)) return CSCD_OUT_OF_MEMORY;
+    if (!deepest_finder_begin(&d->deepest, &facts))
+        return progress_cancelled(&d->context->progress) ? CSCD_CANCELLED : CSCD_OUT_OF_MEMORY;
     if (!reserve_faces(d, points, d->deepest.group_count)) return CSCD_OUT_OF_MEMORY;
     depth_facts moved = facts;
     moved.vertices = d->depths;

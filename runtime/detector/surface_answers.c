@@ -150,8 +150,8 @@ static cscd_status find_patches(const answer_search *s) {
         .labels = shells_have_labels(s->options) ? detector_grouping(d)->triangles : NULL,
         .by_component = s->options->part_bodies && detector_bodies_are_components(d),
         .as_given = s->options->orientation == CSCD_ORIENTATION_AS_GIVEN,
-        .pieces = a->joiner.found,
-        .piece_count = a->joiner.piece_count};
+        .pairs = s->found->items,
+        .pair_count = s->found->count};
     if ((s->options->part_bodies || !shells.as_given) &&
         !orientation_finder_run(&a->orientations, s->surface, &d->space.bvh, &shells))
         return CSCD_OUT_OF_MEMORY;

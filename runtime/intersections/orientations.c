@@ -3,7 +3,9 @@
 #include "runtime/intersections/orientations.h"
 
 #include "src/core/context.h"
+#include "src/core/floating.h"
 #include "src/core/sort.h"
+#include "src/mesh/surface.h"
 
 #include <string.h>
 
@@ -21,8 +23,10 @@ static array_list list_arrays(orientation_finder *o) {
 }
 
 static array_list list_by_component(orientation_finder *o) {
-    return (array_list){{ARRAY(o->triangles, o->mesh->triangle_count),
-                         ARRAY(o->offsets, (size_t)o->mesh->component_count + 1)}};
+    return (array_list){
+        {ARRAY(o->triangles, o->mesh->triangle_count), ARRAY(o->touching, o->mesh->triangle_count),
+         ARRAY(o->boxes, o->mesh->component_count), ARRAY(o->holders, o->mesh->component_count),
+         ARRAY(o->offsets, (size_t)o->mesh->component_count + 1)}};
 }
 
 static array_list list_of_keys(component_keys *k, size_t count) {
@@ -133,10 +137,13 @@ static bool has_key(const component_keys *k, uint64_t key) {
     return low < k->count && k->items[low] == key;
 }
 
-static bool list_crossings(orientation_finder *o, const curve_piece *pieces, size_t piece_count) {
-    if (!reserve_keys(o, &o->crossings, 2 * piece_count)) return false;
-    for (size_t i = 0; i < piece_count; i++) {
-        uint32_t a = o->mesh->triangle_components[pieces[i].a], b = o->mesh->triangle_components[pieces[i].b];
+/* Those that share a triangle, as copies do, are neither in the other. */
+static bool list_crossings(orientation_finder *o, const cscd_intersection_pair *pairs, size_t pair_count) {
+    if (!reserve_keys(o, &o->crossings, 2 * pair_count)) return false;
+    for (size_t i = 0; i < pair_count; i++) {
+        if (pairs[i].kind != CSCD_INTERSECTION_CROSSING && pairs[i].kind != CSCD_INTERSECTION_DUPLICATE)
+            continue;
+        uint32_t a = o->mesh->triangle_components[pairs[i].a], b = o->mesh->triangle_components[pairs[i].b];
         if (a == b || o->objects[a] != o->objects[b] || !is_of_mixed(o, a)) continue;
         o->crossings.items[o->crossings.count++] = key_of(a, b);
         o->crossings.items[o->crossings.count++] = key_of(b, a);
@@ -159,13 +166,52 @@ static bool list_parts(const orientation_work *w) {
 
 /* ---- nesting ------------------------------------------------------------------------------------------- */
 
-static void find_samples(const orientation_work *w) {
+/* A triangle of each component, the first one that touches nothing if there is one: at others it is the symbolic motion that says
+ * what they lie in. */
+static void find_samples(const orientation_work *w, const cscd_intersection_pair *pairs, size_t pair_count) {
     orientation_finder *o = w->finder;
+    const uint32_t *components = o->mesh->triangle_components;
+    memset(o->touching, 0, o->mesh->triangle_count * sizeof *o->touching);
+    for (size_t i = 0; i < pair_count; i++)
+        if (components[pairs[i].a] != components[pairs[i].b])
+            o->touching[pairs[i].a] = o->touching[pairs[i].b] = true;
     memset(o->samples, 0xff, o->mesh->component_count * sizeof *o->samples);
     for (uint32_t t = 0; t < o->mesh->triangle_count; t++) {
-        uint32_t *sample = &o->samples[o->mesh->triangle_components[t]];
-        if (*sample == UINT32_MAX && !winding_is_collapsed(w->surface, t)) *sample = t;
+        uint32_t *sample = &o->samples[components[t]];
+        if (winding_is_collapsed(w->surface, t)) continue;
+        if (*sample == UINT32_MAX || (o->touching[*sample] && !o->touching[t])) *sample = t;
     }
+}
+
+static component_box empty_component_box(void) {
+    const double most = (double)INFINITY;
+    return (component_box){{most, most, most}, {-most, -most, -most}};
+}
+
+static void find_boxes(const orientation_work *w) {
+    orientation_finder *o = w->finder;
+    for (uint32_t c = 0; c < o->mesh->component_count; c++) o->boxes[c] = empty_component_box();
+    for (uint32_t t = 0; t < o->mesh->triangle_count; t++) {
+        component_box *box = &o->boxes[o->mesh->triangle_components[t]];
+        for (uint32_t i = 0; i < 3; i++) {
+            const double *x = surface_corner(o->mesh, w->surface->positions, t, i);
+            for (int k = 0; k < 3; k++) {
+                box->low[k] = min_of(box->low[k], x[k]);
+                box->high[k] = max_of(box->high[k], x[k]);
+            }
+        }
+    }
+}
+
+/* What lies in something has its box in the other's. This tells of crossings, too, that nobody looks at, because their pairs are left
+ * out. */
+static bool box_holds(const orientation_finder *o, uint32_t outer, uint32_t inner) {
+    for (int k = 0; k < 3; k++) {
+        if (o->boxes[inner].low[k] < o->boxes[outer].low[k] ||
+            o->boxes[inner].high[k] > o->boxes[outer].high[k])
+            return false;
+    }
+    return true;
 }
 
 /* May a component be a shell within another one, if it lies there? What has a part of its own is a body of its own. */
@@ -181,19 +227,45 @@ static bool is_larger(const orientation_finder *o, uint32_t a, uint32_t b) {
     return of_a != of_b ? of_a > of_b : a < b;
 }
 
-/* The one right around a component, among those that it lies in, or itself. They lie in each other, so the smallest is the innermost. */
+/* Copies enclose the same, but for rounding, and neither lies in the other. */
+static bool are_of_one_size(const orientation_finder *o, uint32_t a, uint32_t b) {
+    const double of_a = fabs(o->volumes[a].volume), of_b = fabs(o->volumes[b].volume);
+    return fabs(of_a - of_b) <= 0x1p-40 * max_of(of_a, of_b);
+}
+
+/* Does its size let a component lie in another one? */
+static bool size_holds(const orientation_finder *o, uint32_t outer, uint32_t inner) {
+    return is_larger(o, outer, inner) && !are_of_one_size(o, outer, inner) && box_holds(o, outer, inner);
+}
+
+/* Is a nearer to the component in the file than b? What comes before it is nearer than what comes after it. */
+static bool is_nearer(uint32_t component, uint32_t a, uint32_t b) {
+    if ((a < component) != (b < component)) return a < component;
+    return a < component ? a > b : a < b;
+}
+
+/* The one right around a component, among those that it lies in, or itself. Those that do not cross lie in each other, so the smallest is
+ * the innermost. Of copies it is the nearest in the file, since files mostly list a cavity behind its body. */
 static uint32_t find_innermost(const orientation_work *w, uint32_t component) {
     winding_tally *tally = &w->finder->tally;
     uint32_t innermost = component;
     winding_tally_clear(tally);
     winding_find_by_component(w->surface, w->bvh, (corner_side){w->finder->samples[component], 0, true},
                               tally);
+    uint32_t count = 0, *around = w->finder->holders;
     for (uint32_t i = 0; i < tally->count; i++) {
         uint32_t outer = tally->touched[i];
         if (tally->numbers[outer] == 0 || !may_hold(w, outer, component)) continue;
+        if (!size_holds(w->finder, outer, component)) continue;
         if (innermost == component || is_larger(w->finder, innermost, outer)) innermost = outer;
+        around[count++] = outer;
     }
-    return innermost;
+    uint32_t nearest = innermost;
+    for (uint32_t i = 0; i < count; i++) {
+        if (are_of_one_size(w->finder, innermost, around[i]) && is_nearer(component, around[i], nearest))
+            nearest = around[i];
+    }
+    return nearest;
 }
 
 static bool is_sampled(const orientation_finder *o, uint32_t component) {
@@ -206,7 +278,6 @@ enum { SHELL_UNKNOWN, SHELL_OF_BODY, SHELL_OF_CAVITY };
 /* Writes what is right around each component; without anything it is a body. */
 static void find_around(const orientation_work *w) {
     orientation_finder *o = w->finder;
-    find_samples(w);
     for (uint32_t c = 0; c < o->mesh->component_count; c++) {
         o->around[c] = is_sampled(o, c) ? find_innermost(w, c) : c;
         o->roles[c] = o->around[c] == c ? SHELL_OF_BODY : SHELL_UNKNOWN;
@@ -259,7 +330,10 @@ bool orientation_finder_run(orientation_finder *o, named_surface *s, const bvh *
     own_bodies(o, s, request->by_component);
     if (!find_signs(&work)) return false;
     if (any_object_is(o, MIXED)) {
-        if (!list_crossings(o, request->pieces, request->piece_count) || !list_parts(&work)) return false;
+        if (!sort_triangles(o) || !list_crossings(o, request->pairs, request->pair_count)) return false;
+        find_samples(&work, request->pairs, request->pair_count);
+        find_boxes(&work);
+        if (!list_parts(&work)) return false;
         turn_cavities(&work);
     }
     if (!request->as_given && any_object_is(o, INWARD)) s->turned = o->turned;

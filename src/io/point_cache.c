@@ -123,7 +123,7 @@ static void number_frames(point_cache *cache, double start, double rate) {
     cache->number_step = 1;
     const double last = start + rate * (cache->frame_count - 1.0);
     const bool whole = start == floor(start) && rate == floor(rate) && rate >= 1.0;
-    if (!whole || start < INT32_MIN || last > INT32_MAX) return;
+    if (!whole || start < INT32_MIN || last > INT32_MAX || rate > INT32_MAX) return;
     cache->first_number = (int32_t)start;
     cache->number_step = (int32_t)rate;
 }

@@ -135,6 +135,72 @@ static void bodies_go_by_parts(void **state) {
     }
 }
 
+/* A cavity that touches its hull along one side, or all of one face, whichever of the two comes first. */
+static void cavities_may_touch_their_hull(void **state) {
+    (void)state;
+    for (int round = 0; round < 12; round++) {
+        const bool inner_first = round % 2 == 1, flush = round % 4 >= 2;
+        body_rig_begin(&rig);
+        for (int i = 0; i < 2; i++) {
+            const double size[3] = {1.0, 1.0, 1.0}, low[3] = {flush ? 0.0 : 0.5, 1.0, 1.0};
+            if ((i == 0) == inner_first)
+                body_rig_add_box(&rig, low, size);
+            else
+                add_cube(0.0, 4.0);
+        }
+        body_rig_end_body(&rig);
+        body_rig_turn(&rig, inner_first ? 0 : CUBE, CUBE);
+        if (!flush) rig.all.x0[inner_first ? 0 : 8 * 3] = 0.0; /* one corner of the cavity is in the wall */
+        body_rig_place(&rig, round % 3, false, 1.0);
+        body_rig_create(&rig, NULL, 1);
+        rig.part_bodies = true;
+        body_rig_find(&rig);
+        assert_true(rig.found.touching + rig.found.coplanar > 0 && rig.found.crossing == 0);
+        assert_true(!body_rig_is_turned(&rig, 0) && !body_rig_is_turned(&rig, 1));
+        for (size_t i = 0; i < rig.found.patches->count; i++)
+            assert_int_equal(rig.found.patches->items[i].body, inner_first ? 1 : 0);
+        for (size_t i = 0; i < rig.found.depths->count; i++)
+            assert_true(rig.found.depths->items[i].depth == 0.0);
+        body_rig_free(&rig);
+    }
+}
+
+/* The first triangle of a cube becomes its last one. */
+static void rotate_triangles(uint32_t cube) {
+    uint32_t *first = rig.all.triangles + (size_t)cube * 3, kept[3];
+    memcpy(kept, first, sizeof kept);
+    memmove(first, first + 3, 3 * (CUBE - 1) * sizeof *first);
+    memcpy(first + 3 * (CUBE - 1), kept, sizeof kept);
+    body_rig_turn(&rig, 0, 0); /* tells the bodies */
+}
+
+/* Two that cross, one of them inside out, although no pair of their triangles is looked at: neither lies in the other. */
+static void left_out_pairs_make_no_cavity(void **state) {
+    (void)state;
+    static uint32_t ignored[2 * CUBE * CUBE];
+    cscd_detector_options options = cscd_detector_defaults();
+    body_rig_begin(&rig);
+    add_cube(0.0, 2.0);
+    add_cube(1.0, 2.0);
+    body_rig_end_body(&rig);
+    body_rig_turn(&rig, CUBE, CUBE);
+    for (uint32_t i = 0; i < CUBE * CUBE; i++) {
+        ignored[2 * i] = i / CUBE;
+        ignored[2 * i + 1] = CUBE + i % CUBE;
+    }
+    options.ignored = ignored;
+    options.ignored_count = CUBE * CUBE;
+    for (uint32_t turn = 0; turn < CUBE * CUBE; turn++) { /* each two triangles come first once */
+        rotate_triangles(turn % CUBE == 0 ? 0 : CUBE);
+        body_rig_create(&rig, &options, 1);
+        rig.part_bodies = true;
+        body_rig_find(&rig);
+        assert_int_equal(rig.found.count, 0);
+        assert_true(!body_rig_is_turned(&rig, 0) && body_rig_is_turned(&rig, 1));
+        body_rig_free(&rig);
+    }
+}
+
 static void parts_are_bodies_of_their_own(void **state) {
     (void)state;
     for (uint32_t shells = 1; shells <= 3; shells++) {
@@ -189,6 +255,8 @@ int main(void) {
         cmocka_unit_test(shells_keep_their_sense),
         cmocka_unit_test(cavities_belong_to_what_is_around_them),
         cmocka_unit_test(bodies_go_by_parts),
+        cmocka_unit_test(cavities_may_touch_their_hull),
+        cmocka_unit_test(left_out_pairs_make_no_cavity),
         cmocka_unit_test(parts_are_bodies_of_their_own),
         cmocka_unit_test(a_shell_of_a_skin_with_limbs),
         cmocka_unit_test(each_allocation_may_fail),

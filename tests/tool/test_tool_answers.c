@@ -145,13 +145,13 @@ static void expect_event(const json_node *root, const cscd_event *expected, uint
     assert_true(json_node_number(event, "worst") == (double)expected->worst_frame);
     assert_true(json_node_number(event, "pairs") == (double)expected->pairs);
     assert_true(json_node_number(event, "contacts") == (double)contacts);
-    assert_true(json_node_number(event, "depth") == expected->depth);
+    assert_int_equal(json_node_member(event, "depth")->kind == JSON_NULL, expected->depth == 0.0);
     assert_true(json_node_number(event, "length") == expected->length);
     assert_true(json_node_number(event, "triangle") == expected->triangle);
     assert_int_equal(json_node_member(event, "kinds")->count, 1);
     assert_string_equal(json_node_item(json_node_member(event, "kinds"), 0)->text, "crossing");
-    if (expected->depth == 0.0) return;
-    for (size_t k = 0; k < 3; k++) assert_true(json_node_item(point, k)->number == expected->x[k]);
+    for (size_t k = 0; k < 3 && expected->depth > 0.0; k++)
+        assert_true(json_node_item(point, k)->number == expected->x[k]);
 }
 
 static void events_are_those_of_the_library(void **state) {

@@ -49,7 +49,10 @@ static void write_event(const answers *a, const cscd_event *event, json *out) {
     write_kinds(event, out);
     json_integer(out, "pairs", event->pairs);
     json_integer(out, "contacts", event->contacts);
-    json_number(out, "depth", event->depth);
+    if (answers_event_depth_known(a, event))
+        json_number(out, "depth", event->depth);
+    else
+        json_null(out, "depth");
     json_number(out, "length", event->length);
     write_place(a, event, out);
     json_end_object(out);
@@ -154,8 +157,9 @@ static void write_row(const answers *a, const cscd_event *event, FILE *file) {
         before = " ";
     }
     if (event->kinds & CSCD_EVENT_SAME_SOLID) fprintf(file, "%ssame_solid", before);
-    fprintf(file, ",%" PRIu64 ",%" PRIu64 ",%.17g,%.17g,", event->pairs, event->contacts, event->depth,
-            event->length);
+    fprintf(file, ",%" PRIu64 ",%" PRIu64 ",", event->pairs, event->contacts);
+    if (answers_event_depth_known(a, event)) fprintf(file, "%.17g", event->depth);
+    fprintf(file, ",%.17g,", event->length);
     if (isnan(event->x[0]))
         fputs(",,,", file);
     else

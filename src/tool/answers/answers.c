@@ -96,6 +96,16 @@ size_t answers_frame_count(const answers *a) {
     return a->frames.count;
 }
 
+bool answers_event_depth_known(const answers *a, const cscd_event *event) {
+    const frame_answer *frames = answers_frames(a);
+    if (event->depth > 0.0) return true;
+    for (size_t i = 0; i < answers_frame_count(a); i++) {
+        const bool within = frames[i].frame >= event->first_frame && frames[i].frame <= event->last_frame;
+        if (within && !frames[i].spaces_known) return false;
+    }
+    return true;
+}
+
 size_t answers_count(const answers *a, frame_test *test) {
     size_t count = 0;
     for (size_t i = 0; i < answers_frame_count(a); i++) count += test(&answers_frames(a)[i]);
@@ -257,8 +267,10 @@ static void name_left_out(uint64_t left_out, char text[NAMES_SIZE]) {
 
 /* What to try, in binary millions, upwards, as --max-memory and --max-work take it. */
 static const char *size_text(const cscd_intersection_pairs *found, char text[SIZE_TEXT_SIZE]) {
+    const bool large = found->wanted_work >> 20 > 0;
     if (found->wanted_work > 0)
-        snprintf(text, SIZE_TEXT_SIZE, " (some %" PRIu64 "M)", (found->wanted_work >> 20) + 1);
+        snprintf(text, SIZE_TEXT_SIZE, " (some %" PRIu64 "%c)", (found->wanted_work >> (large ? 20 : 10)) + 1,
+                 large ? 'M' : 'K');
     else
         snprintf(text, SIZE_TEXT_SIZE, " (%zuM or more)", (found->wanted_memory >> 20) + 1);
     return text;
@@ -268,11 +280,12 @@ static void leave_out(answers *a, uint32_t frame, const cscd_intersection_pairs 
                       const char *option, const char *size) {
     const size_t pairs =
         found->crossing + found->coplanar + found->folded + found->touching + found->duplicate;
+    const bool tangled = pairs > cscd_mesh_triangle_count(a->recording->mesh);
     answers_leave_unfinished(
         a,
-        "frame %d has %zu pairs of triangles that cross or touch, and %s would take more than %s allows%s; does "
-        "the file list its vertices in another order than the model?",
-        answers_frame_number(a, frame), pairs, names, option, size);
+        "frame %d has %zu pairs of triangles that cross or touch, and %s would take more than %s allows%s%s",
+        answers_frame_number(a, frame), pairs, names, option, size,
+        tangled ? "; does the file list its vertices in another order than the model?" : "");
 }
 
 static void tell_left_out(answers *a, uint32_t frame, const cscd_intersection_pairs *found) {

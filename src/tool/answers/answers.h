@@ -63,6 +63,9 @@ bool answers_open(recording *r, const ignore_pairs *ignored, bool depths, answer
                   io_error *error);
 void answers_close(answers *a); /* a zeroed struct is fine */
 
+/* Is it known how deep an event is? If it has no depth, it is if somebody looked in all of its frames. */
+bool answers_event_depth_known(const answers *a, const cscd_event *event);
+
 /* Says how many frames are asked for: all of the recording, or those of a range. */
 void answers_expect(answers *a, size_t frame_count);
 

@@ -65,7 +65,10 @@ static void write_worst(json *out, const answers *a) {
     json_signed(out, "first", answers_frame_number(a, event->first_frame));
     json_signed(out, "last", answers_frame_number(a, event->last_frame));
     json_signed(out, "worst", answers_frame_number(a, event->worst_frame));
-    json_number(out, "depth", event->depth);
+    if (answers_event_depth_known(a, event))
+        json_number(out, "depth", event->depth);
+    else
+        json_null(out, "depth");
     json_number(out, "length", event->length);
     json_end_object(out);
 }
