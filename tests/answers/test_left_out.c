@@ -152,13 +152,17 @@ static void a_case_that_is_not_known(void **state) {
 static void depths_that_take_too_long(void **state) {
     (void)state;
     for (int i = 0; i < 2; i++) {
-        tool_run run = RUN_TOOL(i == 0 ? "check" : "replay", good.text, good.text, shuffled.text, good.text,
-                                "--max-work", "1", "--fail-depth", "100", "--junit", xml.text);
+        tool_run run =
+            RUN_TOOL(i == 0 ? "check" : "replay", good.text, good.text, shuffled.text, good.text,
+                     "--max-work", "1", "--fail-depth", "100", "--junit", xml.text, "--json", json.text);
         assert_int_equal(run.code, 1);
         expect_in(run.out, ", and depths would take more than --max-work allows (");
         tool_run_free(&run);
         char *text = read_whole_file(xml.text, NULL);
         expect_in(text, "failures=\"0\" errors=\"2\"");
+        free(text);
+        text = read_whole_file(json.text, NULL);
+        expect_in(text, "\"depth\":null,\"length\":"); /* of the event */
         free(text);
     }
 }
