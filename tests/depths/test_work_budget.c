@@ -56,7 +56,30 @@ static void work_has_a_budget(void **state) {
     for (int i = 0; i < 4; i++) body_rig_free(rigs[i]);
 }
 
+/* Bodies in each other: a vertex asks of each body around it, which is more work than the mesh is large. */
+static void searches_are_work(void **state) {
+    (void)state;
+    enum { SHELLS = 20 };
+    cscd_intersection_options options = cscd_intersection_defaults();
+    options.depths = options.part_bodies = true;
+    body_rig_begin(&rig);
+    for (int i = 1; i <= SHELLS; i++) {
+        const double low[3] = {-i, -i, -i}, size[3] = {2 * i, 2 * i, 2 * i};
+        body_rig_add_box(&rig, low, size);
+    }
+    body_rig_end_body(&rig);
+    body_rig_create(&rig, NULL, 1);
+    for (int i = 0; i < 2; i++) {
+        options.max_work = i == 0 ? 100000 : 1000000;
+        find_with(&rig, &options);
+        assert_int_equal(rig.found.left_out, i == 0 ? 1 << CSCD_LEFT_OUT_DEPTHS : 0);
+    }
+    assert_int_equal(rig.found.depths->vertex_count, 8 * SHELLS * (SHELLS - 1) / 2);
+    body_rig_free(&rig);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(work_has_a_budget)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(work_has_a_budget),
+                                       cmocka_unit_test(searches_are_work)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
