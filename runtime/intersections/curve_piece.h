@@ -1,6 +1,7 @@
 /* The piece of an intersection curve that lies in two triangles, under a symbolic perturbation of the vertices. */
 #pragma once
 
+#include "runtime/intersections/component_boxes.h"
 #include "src/mesh/bodies.h"
 #include "src/mesh/symbolic.h"
 
@@ -16,6 +17,7 @@ typedef struct named_surface {
     const surface_bodies *bodies; /* NULL: the objects are the bodies */
     const bool *
         collapsed; /* per component: it has no surface, so it contains nothing and is in nothing; NULL: none is */
+    const component_box *boxes; /* per component; NULL: not known */
 } named_surface;
 
 /* 1 where the normal of a triangle points outwards, -1 where its component is turned around. */

@@ -14,19 +14,19 @@
 static array_list list_arrays(orientation_finder *o) {
     size_t components = o->mesh->component_count;
     winding_tally *t = &o->tally;
-    return (array_list){{ARRAY(o->volumes, components), ARRAY(o->signs, components),
-                         ARRAY(o->turned, components), ARRAY(o->objects, components),
-                         ARRAY(o->samples, components), ARRAY(o->around, components),
-                         ARRAY(o->roles, components), ARRAY(o->bodies.components, components),
-                         ARRAY(t->numbers, components), ARRAY(t->is_touched, components),
-                         ARRAY(t->touched, components), ARRAY(o->orientations, o->mesh->object_count)}};
+    return (array_list){
+        {ARRAY(o->volumes, components), ARRAY(o->signs, components), ARRAY(o->turned, components),
+         ARRAY(o->objects, components), ARRAY(o->samples, components), ARRAY(o->around, components),
+         ARRAY(o->boxes, components), ARRAY(o->roles, components), ARRAY(o->bodies.components, components),
+         ARRAY(t->numbers, components), ARRAY(t->is_touched, components), ARRAY(t->touched, components),
+         ARRAY(o->orientations, o->mesh->object_count)}};
 }
 
 static array_list list_by_component(orientation_finder *o) {
-    return (array_list){
-        {ARRAY(o->triangles, o->mesh->triangle_count), ARRAY(o->touching, o->mesh->triangle_count),
-         ARRAY(o->boxes, o->mesh->component_count), ARRAY(o->holders, o->mesh->component_count),
-         ARRAY(o->offsets, (size_t)o->mesh->component_count + 1)}};
+    return (array_list){{ARRAY(o->triangles, o->mesh->triangle_count),
+                         ARRAY(o->touching, o->mesh->triangle_count),
+                         ARRAY(o->holders, o->mesh->component_count),
+                         ARRAY(o->offsets, (size_t)o->mesh->component_count + 1)}};
 }
 
 static array_list list_of_keys(component_keys *k, size_t count) {
@@ -183,37 +183,6 @@ static void find_samples(const orientation_work *w, const cscd_intersection_pair
     }
 }
 
-static component_box empty_component_box(void) {
-    const double most = (double)INFINITY;
-    return (component_box){{most, most, most}, {-most, -most, -most}};
-}
-
-static void find_boxes(const orientation_work *w) {
-    orientation_finder *o = w->finder;
-    for (uint32_t c = 0; c < o->mesh->component_count; c++) o->boxes[c] = empty_component_box();
-    for (uint32_t t = 0; t < o->mesh->triangle_count; t++) {
-        component_box *box = &o->boxes[o->mesh->triangle_components[t]];
-        for (uint32_t i = 0; i < 3; i++) {
-            const double *x = surface_corner(o->mesh, w->surface->positions, t, i);
-            for (int k = 0; k < 3; k++) {
-                box->low[k] = min_of(box->low[k], x[k]);
-                box->high[k] = max_of(box->high[k], x[k]);
-            }
-        }
-    }
-}
-
-/* What lies in something has its box in the other's. This tells of crossings, too, that nobody looks at, because their pairs are left
- * out. */
-static bool box_holds(const orientation_finder *o, uint32_t outer, uint32_t inner) {
-    for (int k = 0; k < 3; k++) {
-        if (o->boxes[inner].low[k] < o->boxes[outer].low[k] ||
-            o->boxes[inner].high[k] > o->boxes[outer].high[k])
-            return false;
-    }
-    return true;
-}
-
 /* May a component be a shell within another one, if it lies there? What has a part of its own is a body of its own. */
 static bool may_hold(const orientation_work *w, uint32_t outer, uint32_t inner) {
     const orientation_finder *o = w->finder;
@@ -233,9 +202,11 @@ static bool are_of_one_size(const orientation_finder *o, uint32_t a, uint32_t b)
     return fabs(of_a - of_b) <= 0x1p-40 * max_of(of_a, of_b);
 }
 
-/* Does its size let a component lie in another one? */
+/* Does its size let a component lie in another one? What lies in something has its box in the other's. This tells of crossings, too, that
+ * nobody looks at, because their pairs are left out. */
 static bool size_holds(const orientation_finder *o, uint32_t outer, uint32_t inner) {
-    return is_larger(o, outer, inner) && !are_of_one_size(o, outer, inner) && box_holds(o, outer, inner);
+    return is_larger(o, outer, inner) && !are_of_one_size(o, outer, inner) &&
+           component_box_has_box(&o->boxes[outer], &o->boxes[inner]);
 }
 
 /* Is a nearer to the component in the file than b? What comes before it is nearer than what comes after it. */
@@ -328,11 +299,14 @@ bool orientation_finder_run(orientation_finder *o, named_surface *s, const bvh *
                             const orientation_request *request) {
     const orientation_work work = {o, s, f, request->labels};
     own_bodies(o, s, request->by_component);
+    if (o->mesh->component_count > 1) {
+        component_boxes_find(o->mesh, s->positions, o->boxes);
+        s->boxes = o->boxes;
+    }
     if (!find_signs(&work)) return false;
     if (any_object_is(o, MIXED)) {
         if (!sort_triangles(o) || !list_crossings(o, request->pairs, request->pair_count)) return false;
         find_samples(&work, request->pairs, request->pair_count);
-        find_boxes(&work);
         if (!list_parts(&work)) return false;
         turn_cavities(&work);
     }

@@ -13,10 +13,6 @@ typedef struct component_keys {
     size_t count, capacity;
 } component_keys;
 
-typedef struct component_box {
-    double low[3], high[3];
-} component_box;
-
 /* The memory of all calls. Arrays without a remark are per component. */
 typedef struct orientation_finder {
     const cscd_mesh *mesh;
@@ -26,13 +22,13 @@ typedef struct orientation_finder {
     uint32_t *objects;     /* of the component */
     uint32_t *samples;     /* a triangle whose corners have different names; UINT32_MAX: none */
     uint32_t *around;      /* the component that it lies in, the innermost one; itself: in none */
+    component_box *boxes;  /* where there are several */
     uint8_t *roles;        /* body or cavity */
     surface_bodies bodies; /* of the surface, with cavities joined with what is around them */
     winding_tally tally;   /* of components */
     uint8_t *orientations; /* per object: which signs its components have */
     uint32_t *triangles, *offsets; /* those of each component, made when first needed */
-    component_box *boxes;          /* these are made with them */
-    uint32_t *holders;             /* room for those that one lies in */
+    uint32_t *holders;             /* made with them: room for those that one lies in */
     bool *touching;                /* per triangle: it is in a pair with another component */
     component_keys
         crossings; /* pairs of components of mixed objects that pass through each other, both ways round */
@@ -52,7 +48,7 @@ typedef struct orientation_request {
     size_t pair_count;
 } orientation_request;
 
-/* Finds what is turned around, of which nothing was before, and which bodies there are, and gives both to the surface. The bounds of
+/* Finds what is turned around, of which nothing was before, which bodies there are, and the boxes, and gives them to the surface. The bounds of
  * the trees are those of its positions. False: no memory. */
 bool orientation_finder_run(orientation_finder *o, named_surface *s, const bvh *f,
                             const orientation_request *request);

@@ -90,11 +90,18 @@ static bool is_collapsed(const named_surface *s, uint32_t component) {
     return s->collapsed != NULL && s->collapsed[component];
 }
 
+/* A closed surface winds around nothing that is outside its box. Its boundary counts, as the point is a little off the origin. */
+static bool box_has_origin(const ray_work *work, uint32_t component) {
+    const component_box *boxes = work->surface->boxes;
+    return boxes == NULL || component_box_has_point(&boxes[component], work->origin.x);
+}
+
 static void pass_triangle(void *data, uint32_t triangle) {
     const ray_work *work = data;
     const cscd_mesh *mesh = work->surface->mesh;
     uint32_t component = mesh->triangle_components[triangle];
     if (!mesh->components[component].closed_manifold || is_collapsed(work->surface, component)) return;
+    if (!box_has_origin(work, component)) return;
     symbolic_point p[3];
     load_points(work->surface, triangle, p);
     if (have_one_name(p)) return;
