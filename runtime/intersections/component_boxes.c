@@ -1,3 +1,4 @@
+/* Boxes around components, from their triangles. */
 #include "runtime/intersections/component_boxes.h"
 
 #include "src/core/floating.h"

@@ -1,6 +1,5 @@
 /* What was not looked at is said first, and nothing calls it clean: sentence, JSON, JUnit and exit code of check and replay. */
 #include "tests/support/own_folder.h"
-#include "tests/support/shell.h"
 #include "tests/support/test.h"
 #include "tests/support/tool/json_reader.h"
 #include "tests/support/tool/run_tool.h"
@@ -122,25 +121,6 @@ static void a_frame_that_cannot_be_read_comes_first(void **state) {
     expect_unfinished("check", &bad_frames[0], 4, 2);
     expect_unfinished("replay", &bad_frames[0], 3, 1);
     expect_unfinished("check", &bad_frames[0], 2, 3);
-}
-
-static size_t times_in(const char *text, const char *part) {
-    size_t count = 0;
-    for (const char *at = text; (at = strstr(at, part)) != NULL; at += strlen(part)) count++;
-    return count;
-}
-
-/* Where both outputs go to one place, the first line gives the reason and that is enough; it is not lost where only one is kept. */
-static void the_reason_is_said_once(void **state) {
-    (void)state;
-    static const char *const runs[] = {"", "--fail-on crossing", "--quiet", "2>/dev/null", ">/dev/null"};
-    const temp_path good = write_boxes("f_1.obj", 1.0, ""), bad = write_boxes("f_2.obj", 1.5, "v 1 2 3\n");
-    for (size_t i = 0; i < 2 * sizeof runs / sizeof *runs; i++) {
-        char *text = shell_output(1, "{ \"$CSCD_TOOL\" %s '%s' '%s' '%s' %s; } 2>&1",
-                                  i % 2 ? "replay" : "check", good.text, good.text, bad.text, runs[i / 2]);
-        if (times_in(text, "holds 17 vertices") != 1) fail_msg("%s: %s", runs[i / 2], text);
-        free(text);
-    }
 }
 
 /* Patterns that no shell has filled in, and what other programs call the number of a frame, come with what to do. */
@@ -280,7 +260,6 @@ static void what_lies_inside_is_not_clean(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_frame_that_cannot_be_read_comes_first),
-        cmocka_unit_test(the_reason_is_said_once),
         cmocka_unit_test(a_pattern_of_nothing_has_a_hint),
         cmocka_unit_test(a_range_is_complete_and_named),
         cmocka_unit_test(crossing_means_crossing),
