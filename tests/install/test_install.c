@@ -72,6 +72,18 @@ static void files_are_where_they_belong(void **state) {
 }
 
 /* Without the tool and its page; and nothing of it asks a package manager. */
+/* What Debian's packages and the builds in other ways are asked, too. */
+static void the_tool_answers(void **state) {
+    (void)state;
+    char *expected = shell_output(0, "cat tests/builds/crossing.txt");
+    expect_output(
+        "cscd check",
+        shell_output(0, "LD_LIBRARY_PATH='%s/lib' '%s/bin/cscd' check tests/builds/crossing.obj | head -1",
+                     prefix, prefix),
+        expected);
+    free(expected);
+}
+
 static void library_alone(void **state) {
     (void)state;
     char place[512];
@@ -261,6 +273,7 @@ static void uninstall_leaves_what_others_made(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(files_are_where_they_belong),
+        cmocka_unit_test(the_tool_answers),
         cmocka_unit_test(library_alone),
         cmocka_unit_test(plain_make_installs_no_package),
         cmocka_unit_test(shared_library_exports_the_api),
