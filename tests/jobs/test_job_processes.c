@@ -34,6 +34,7 @@ typedef struct watched {
     int signal;          /* sent to this process by the job behind that; 0: none */
     const char *refusal; /* why workers cannot begin; NULL: they can */
     int32_t barren;      /* so many workers are killed before they begin; -1: all */
+    bool has_left;       /* in a worker */
 } watched;
 
 static watched w;
@@ -53,10 +54,15 @@ static int share_counts(void **state) {
 
 /* ---- jobs ------------------------------------------------------------------------------------------------ */
 
+static void leave_watched(void *user) {
+    ((watched *)user)->has_left = true;
+}
+
 static bool begin_watched(void *user, io_error *error) {
     const watched *watch = user;
     const int born = atomic_fetch_add(&watch->shared->born, 1);
     if (watch->barren < 0 || born < watch->barren) raise(SIGKILL);
+    if (!watch->has_left) return io_fail(error, "has not left the calling process");
     return watch->refusal == NULL || io_fail(error, "%s", watch->refusal);
 }
 
@@ -119,12 +125,15 @@ static bool run_all(uint32_t count, uint32_t workers, double seconds, uint32_t *
                          .worker_count = workers,
                          .seconds = seconds,
                          .user = &w,
+                         .leave = leave_watched,
                          .begin = begin_watched,
                          .run = run_watched,
                          .take = take_watched,
                          .fail = fail_watched};
     *done = UINT32_MAX;
-    return jobs_run(&set, done, error);
+    const bool ran = jobs_run(&set, done, error);
+    assert_false(w.has_left); /* here */
+    return ran;
 }
 
 /* All jobs have ended once; those with a fate, for its reason. */

@@ -125,6 +125,7 @@ static bool work_on_jobs(const job_pool *pool, uint32_t worker) {
     job_slot *slot = &pool->board->slots[worker];
     const int socket = pool->workers[worker].socket;
     io_error error = {""};
+    pool->set->leave(pool->set->user);
     if (!pool->set->begin(pool->set->user, &error)) {
         send_message(socket, MESSAGE_REFUSED, NO_JOB, error.text, strlen(error.text));
         return true;
@@ -378,8 +379,7 @@ bool jobs_run(const job_set *set, uint32_t *done, io_error *error) {
     bool good = (pool.workers != NULL && pool.polled != NULL && pool.ended != NULL && shared != MAP_FAILED) ||
                 io_fail(error, "out of memory for %u jobs", set->count);
     pool.board = shared;
-    void (*const before)(int) =
-        signal(SIGCHLD, SIG_DFL); /* where it is ignored, nobody learns how a process ended */
+    void (*const before)(int) = signal(SIGCHLD, SIG_DFL); /* else nobody learns how a process ended */
     good = good && start_pool(&pool, error);
     if (good) {
         run_pool(&pool);

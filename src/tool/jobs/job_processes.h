@@ -15,6 +15,9 @@ typedef struct job_set {
     double seconds;        /* that a job may take; 0: any time */
     void *user;
 
+    /* In a worker that is a process of its own, first: drops the files that the calling process alone writes. */
+    void (*leave)(void *user);
+
     /* In a worker, before its first job. False, with the reason: no job runs. */
     bool (*begin)(void *user, io_error *error);
 

@@ -40,12 +40,16 @@ static bool goes_on(void *user, const char *stage, double fraction) {
     return !interrupted();
 }
 
+static void leave_caller(void *user) {
+    job_run *run = user;
+    job_results_drop(&run->results);
+}
+
 static bool begin_worker(void *user, io_error *error) {
     job_run *run = user;
     cscd_context_options options = cscd_context_defaults();
     options.thread_count = run->threads_each;
     options.progress.report = goes_on;
-    job_results_drop(&run->results);
     const cscd_status status = cscd_context_create(&options, &run->work.context);
     if (status == CSCD_SYSTEM_ERROR)
         return io_fail(error, "the system refused to start %u threads; give --threads a smaller number",
@@ -226,6 +230,7 @@ static int start_run(job_run *run) {
                          .worker_count = run->worker_count,
                          .seconds = run->request->seconds,
                          .user = run,
+                         .leave = leave_caller,
                          .begin = begin_worker,
                          .run = run_job,
                          .take = take_result,
