@@ -464,11 +464,11 @@ test-builds: packages
 test-without-baselines: packages
 	@tests/without_baselines.sh
 
-# Faults planted one at a time in a copy of the sources, and the tests that catch them: some minutes. SAMPLE=HASH: a few of them, the
-# same for the same commit; ONLY="word word": those with one of these words in their names.
+# Faults planted one at a time in copies of the sources, and the tests that catch them: tests/mutants/run.py says what the words are for.
 SAMPLE ?=
+export MATRIX KEEP RESUME
 test-mutants: packages
-	@CC='$(CC)' SAMPLE='$(SAMPLE)' ONLY='$(ONLY)' $(PYTHON) tests/mutants/run.py
+	@CC='$(CC)' SAMPLE='$(SAMPLE)' ONLY='$(ONLY)' ROOM='$(ROOM)' PYTHONDONTWRITEBYTECODE=1 $(PYTHON) tests/mutants/run.py
 
 # The tests that use threads, under the thread sanitizer.
 THREAD_TESTS := $(addprefix $(BUILD)/tests/,detector/test_threads bvh/test_traversal core/test_progress \
@@ -610,7 +610,7 @@ help:
 	@echo 'make check     build and run the tests that take less than a second each, for the inner loop'
 	@echo 'make test      build and run every test (CONFIG=sanitize: with sanitizers; ONLY="bvh line_search": of these rooms or names)'
 	@echo 'make test-without-baselines   build and test what is left when runtime/baselines is removed'
-	@echo 'make test-mutants   plant faults in a copy of the sources, and show which test catches each (SAMPLE=HASH: a few; ONLY="word word")'
+	@echo 'make test-mutants   plant faults in copies of the sources, and show which test catches each (ROOM="src/io": its own)'
 	@echo 'make test-blender   frames of glTF files beside those that Blender evaluates, faces selected in it, the extension, and the steps of docs/from-your-program.md'
 	@echo '               (installs blender); PAGE=--write puts what the steps print into the page, and draws its pictures'
 	@echo 'make blender-extension   the extension of Blender, with the Python package in it, in build/blender'

@@ -11,6 +11,9 @@ found=$3
 shift 3
 kept=tests/fuzz/corpus
 [ $# -gt 0 ] || set -- $(ls $kept)
+for format; do
+    [ -f "tests/fuzz/words/$format" ] || { echo "coverage.sh: no format is called $format; there are" tests/fuzz/words/* | sed 's: tests/fuzz/words/: :g' >&2; exit 2; }
+done
 # A reader may take five seconds of processor time, which readings.c looks at; here the clock counts, on a machine that does other work.
 options='-rss_limit_mb=2048 -timeout=60 -max_len=4096 -print_final_stats=1 -verbosity=0'
 export ASAN_OPTIONS="${ASAN_OPTIONS:-allocator_may_return_null=1}"
