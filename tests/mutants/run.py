@@ -118,7 +118,7 @@ class Run:
     def all(self):
         """Tries them, in as many trees as there are processors."""
         threads = []
-        for number in range(max(1, min(os.cpu_count() or 1, self.left.qsize()))):
+        for number in range(min(len(os.sched_getaffinity(0)), self.left.qsize())):
             tree = Tree(number)
             tree.copy()
             threads.append(threading.Thread(target=self.work, args=(tree,)))
