@@ -159,6 +159,14 @@ static void begin_seen_panels(const cscd_detector_options *options) {
     see_positions();
 }
 
+/* In the changed mesh. */
+static void list_new_seams(uint32_t (*seams)[2]) {
+    for (uint32_t v = 0; v < PANEL; v++) {
+        seams[v][0] = v;
+        seams[v][1] = TORN_PANEL + v;
+    }
+}
+
 /* The second vertex is sewn to nothing, and touches what the first one is sewn to, and its neighbours there. */
 static void a_sewn_vertex_tears(void **state) {
     (void)state;
@@ -168,11 +176,28 @@ static void a_sewn_vertex_tears(void **state) {
     begin_seen_panels(&options);
     change_panels();
     uint32_t seams[PANEL][2];
-    for (uint32_t v = 0; v < PANEL; v++) {
-        seams[v][0] = v;
-        seams[v][1] = TORN_PANEL + v;
-    }
+    list_new_seams(seams);
     options.seams = seams[0];
+    expect_waiting(new_detector(&options));
+}
+
+/* What is sewn to nothing waits already, because it was ignored before. */
+static void what_waits_still_does_after_a_tear(void **state) {
+    (void)state;
+    cscd_detector_options options = cscd_detector_defaults();
+    options.seams = p.seams[0];
+    options.seam_count = TORN + 1;
+    options.ignored = p.ignored[0];
+    options.ignored_count = TRIANGLES * TRIANGLES;
+    begin_seen_panels(&options);
+    assert_int_equal(cscd_detector_set_ignored(p.detector, NULL, 0), CSCD_OK);
+    see_positions();
+    change_panels();
+    uint32_t seams[PANEL][2];
+    list_new_seams(seams);
+    options.seams = seams[0];
+    options.ignored = NULL;
+    options.ignored_count = 0;
     expect_waiting(new_detector(&options));
 }
 
@@ -278,9 +303,13 @@ static void reversed_triangles_stay_ignored(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_sewn_vertex_tears),          cmocka_unit_test(opened_seams_are_remembered),
-        cmocka_unit_test(ignored_pairs_are_remembered), cmocka_unit_test(rules_are_remembered),
-        cmocka_unit_test(freed_obstacles_wait),         cmocka_unit_test(reversed_triangles_stay_ignored),
+        cmocka_unit_test(a_sewn_vertex_tears),
+        cmocka_unit_test(opened_seams_are_remembered),
+        cmocka_unit_test(ignored_pairs_are_remembered),
+        cmocka_unit_test(rules_are_remembered),
+        cmocka_unit_test(freed_obstacles_wait),
+        cmocka_unit_test(reversed_triangles_stay_ignored),
+        cmocka_unit_test(what_waits_still_does_after_a_tear),
     };
     return cmocka_run_group_tests_name("change_mesh_waiting", tests, NULL, NULL);
 }

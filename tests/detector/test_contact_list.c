@@ -2,6 +2,7 @@
  * ignores; long lists are moved, not copied, and are the same. */
 #include "runtime/detector/contact_list.h"
 #include "runtime/detector/detector.h"
+#include "runtime/detector/earliest_contacts.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 
@@ -9,7 +10,7 @@
 
 static scene shape; /* large; one test at a time */
 
-static const double times[] = {0.5, 0.25, 0.0, -0.0, 0.25, 1.0, 0.25, 0.0};
+static const double times[] = {1.0, 0.25, 0.0, -0.0, 0.25, 1.0, 0.25, 0.0};
 enum { CONTACT_COUNT = sizeof times / sizeof *times };
 
 /* Makes contacts of two kinds, some at equal times, and deals them out to all lanes. */
@@ -101,6 +102,34 @@ static void what_the_caller_ignores_is_not_counted(void **state) {
     collection_end(&c);
 }
 
+/* ---- mode EARLIEST ------------------------------------------------------------------------------------- */
+
+/* Of five contacts of a component with itself two were seen. Those stay that are at most 0.05 later than the earliest, and so
+ * is the number of those that were seen among them. */
+static void dropped_contacts_are_not_seen_any_more(void **state) {
+    static const double tois[] = {0.9, 0.1, 0.16, 0.95, 0.14};
+    (void)state;
+    scene_make(SCENE_SPIKE, 1, &shape);
+    rig r = rig_create(&shape, 1, NULL);
+    cscd_detector *d = r.detector;
+    contact_lane *lane = &d->space.lanes[0];
+    contact_lane_reset(lane);
+    for (size_t i = 0; i < sizeof tois / sizeof *tois; i++) {
+        elementary_contact hit = {.toi = tois[i]};
+        contact_lane_add(r.context, lane, CSCD_CONTACT_VF, r.mesh->triangles[0][0], 1, &hit, false);
+    }
+    d->contacts_seen[0] = 0;
+    earliest_begin(d);
+    earliest_note(d);
+    d->contacts_seen[0] = 2;
+    earliest_drop_later(d, 0.05);
+    assert_int_equal(lane->count, 2);
+    assert_true(contact_lane_at(lane, 0)->toi == 0.1 && contact_lane_at(lane, 1)->toi == 0.14);
+    assert_int_equal(d->contacts_seen[0], 1);
+    contact_lane_reset(lane);
+    rig_destroy(&r);
+}
+
 /* ---- long lists ---------------------------------------------------------------------------------------- */
 
 static void lanes_of_long_lists_give_back_their_memory(void **state) {
@@ -162,6 +191,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(lists_are_sorted_for_any_lane_count),
                                        cmocka_unit_test(lanes_of_long_lists_give_back_their_memory),
                                        cmocka_unit_test(steps_with_long_lists_are_the_same),
+                                       cmocka_unit_test(dropped_contacts_are_not_seen_any_more),
                                        cmocka_unit_test(what_the_caller_ignores_is_not_counted)};
     return cmocka_run_group_tests_name("contact_list", tests, NULL, NULL);
 }

@@ -6,6 +6,7 @@
 #include "tests/support/object_scene.h"
 #include "tests/support/packed.h"
 #include "tests/support/panels.h"
+#include "tests/support/rig.h"
 #include "tests/support/test.h"
 
 #include <math.h>
@@ -211,12 +212,34 @@ static void lines_begin_again_after_new_rules(void **state) {
     rules_rig_destroy(&s);
 }
 
+/* ---- what is known of starts --------------------------------------------------------------------------- */
+
+/* Nobody looks at a masked object with itself any more, so what was proven of it is not kept. */
+static void nothing_is_known_of_what_is_masked(void **state) {
+    (void)state;
+    static scene spheres; /* large */
+    cscd_detector_options options = cscd_detector_defaults();
+    cscd_object_rule rule = cscd_object_rule_default();
+    cscd_intersections found;
+    options.method = CSCD_METHOD_SINGLE;
+    scene_make(SCENE_TWO_SPHERES, 1, &spheres);
+    rig r = rig_create(&spheres, 1, &options);
+    const uint32_t triangles = cscd_mesh_component(r.mesh, 0).triangle_count;
+    assert_int_equal(check_packed(r.detector, spheres.x0, &found), CSCD_OK);
+    assert_int_equal(cscd_detector_start_knowledge(r.detector, 0).clean, triangles);
+    rule.self = false;
+    assert_int_equal(cscd_detector_set_rules(r.detector, &rule, 1, NULL, 0), CSCD_OK);
+    assert_int_equal(cscd_detector_start_knowledge(r.detector, 0).unknown, triangles);
+    rig_destroy(&r);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(moments_leave_out_what_is_masked),
         cmocka_unit_test(mistakes_have_a_sentence),
         cmocka_unit_test(rules_without_memory_change_nothing),
         cmocka_unit_test(lines_begin_again_after_new_rules),
+        cmocka_unit_test(nothing_is_known_of_what_is_masked),
     };
     return cmocka_run_group_tests_name("object_rules_calls", tests, NULL, NULL);
 }
