@@ -1,7 +1,10 @@
-/* Depths that would take too much work are left out before it is done, and nothing else is. */
+/* Depths that would take too much work are left out before it is done, and nothing else is; the work can be cancelled. */
+#include "runtime/detector/surface_answers.h"
 #include "tests/support/intersections/answer_lists.h"
 #include "tests/support/intersections/tangles.h"
 #include "tests/support/test.h"
+
+#include <string.h>
 
 static body_rig rig, one_thread, without_depths, full; /* large */
 
@@ -78,8 +81,32 @@ static void searches_are_work(void **state) {
     body_rig_free(&rig);
 }
 
+static bool count_report(void *user, const char *stage, double fraction) {
+    (void)fraction;
+    *(size_t *)user += strcmp(stage, "depths") == 0;
+    return true;
+}
+
+/* The host is asked before every 16th question, before every group of triangles is opened, and before every fourth is looked at. */
+static void the_host_is_asked_all_along(void **state) {
+    (void)state;
+    size_t asked = 0;
+    cscd_intersection_options options = cscd_intersection_defaults();
+    options.depths = true;
+    make_tangle(&rig, 1);
+    rig.context->progress.host = (cscd_progress){count_report, &asked};
+    rig.context->progress.interval_ms = 0.0;
+    find_with(&rig, &options);
+    const depth_finder *d = &rig.detector->answers->depth_finder;
+    const size_t groups = d->deepest.group_count, questions = d->question_count;
+    assert_true(groups > 20 && questions > 16);
+    assert_true(asked >= (questions + 15) / 16 + groups + (groups + 3) / 4);
+    body_rig_free(&rig);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(work_has_a_budget),
-                                       cmocka_unit_test(searches_are_work)};
+                                       cmocka_unit_test(searches_are_work),
+                                       cmocka_unit_test(the_host_is_asked_all_along)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
