@@ -1,6 +1,7 @@
 /* Polygons are cut into triangles that fill them: random ones by area, orientation and winding against an oracle in whole
  * numbers, and those on which fans fail. */
 #include "src/io/polygon.h"
+#include "src/io/polygon/ear_clipping.h"
 #include "tests/support/io/flat_polygon.h"
 #include "tests/support/test.h"
 
@@ -128,41 +129,30 @@ static void add_hole(flat_polygon *p, random_stream *random, int64_t x, int64_t 
     *p = with;
 }
 
+/* One of six kinds; false: it came out as none that is simple. */
+static bool make_random(flat_polygon *p, random_stream *random) {
+    const uint32_t kind = stream_below(random, 6);
+    *p = (flat_polygon){.vertex_count = 0};
+    if (kind == 0) make_star(p, random, 4 + stream_below(random, 30), 4.0, 30.0);
+    if (kind == 1) make_star(p, random, 4 + stream_below(random, 9), 1.0, 6.0);
+    if (kind == 2) make_skyline(p, random, 3 + stream_below(random, 20));
+    if (kind == 3) make_spiral(p, random, 3 + stream_below(random, 8));
+    if (kind == 4) make_labyrinth(p, random, 8 + stream_below(random, 60), 8 + stream_below(random, 56));
+    if (kind == 5) make_star(p, random, 8 + stream_below(random, 12), 25.0, 60.0);
+    if (flat_polygon_area(p) <= 0 || !flat_polygon_is_simple(p)) return false;
+    for (int hole = 0; kind == 5 && hole < 4; hole++) {
+        const int64_t x = (int64_t)stream_below(random, 31) - 15, y = (int64_t)stream_below(random, 31) - 15;
+        add_hole(p, random, x, y);
+    }
+    return true;
+}
+
 static uint32_t count_checked(uint32_t rounds, uint64_t seed) {
     uint32_t checked = 0;
     random_stream random = stream_start(seed);
     for (uint32_t round = 0; round < rounds; round++) {
-        flat_polygon p = {.vertex_count = 0};
-        switch (stream_below(&random, 6)) {
-        case 0:
-            make_star(&p, &random, 4 + stream_below(&random, 30), 4.0, 30.0);
-            break;
-        case 1:
-            make_star(&p, &random, 4 + stream_below(&random, 9), 1.0, 6.0);
-            break;
-        case 2:
-            make_skyline(&p, &random, 3 + stream_below(&random, 20));
-            break;
-        case 3:
-            make_spiral(&p, &random, 3 + stream_below(&random, 8));
-            break;
-        case 4:
-            make_labyrinth(&p, &random, 8 + stream_below(&random, 60), 8 + stream_below(&random, 56));
-            break;
-        default: {
-            make_star(&p, &random, 8 + stream_below(&random, 12), 25.0, 60.0);
-            if (!flat_polygon_is_simple(&p)) continue;
-            for (int hole = 0; hole < 4; hole++) {
-                const int64_t x = (int64_t)stream_below(&random, 31) - 15,
-                              y = (int64_t)stream_below(&random, 31) - 15;
-                add_hole(&p, &random, x, y);
-            }
-            flat_polygon_check(&p, &random);
-            checked++;
-            continue;
-        }
-        }
-        if (flat_polygon_area(&p) <= 0 || !flat_polygon_is_simple(&p)) continue;
+        flat_polygon p;
+        if (!make_random(&p, &random)) continue;
         flat_polygon_check(&p, &random);
         checked++;
     }
@@ -172,6 +162,92 @@ static uint32_t count_checked(uint32_t rounds, uint64_t seed) {
 static void random_polygons_are_filled(void **state) {
     (void)state;
     assert_true(count_checked(6000, 1) > 3000);
+}
+
+/* ---- the order of the ears --------------------------------------------------------------------------- */
+
+/* What is left of a polygon: each corner is a place in its list. */
+typedef struct polygon_rest {
+    const flat_polygon *p;
+    uint32_t corners[FLAT_CORNERS_MAX], count;
+} polygon_rest;
+
+static const int64_t *rest_point(const polygon_rest *rest, uint32_t place) {
+    return rest->p->points[rest->p->corners[rest->corners[place % rest->count]]];
+}
+
+/* Does the way to z leave into the polygon, within the angle of the corner? */
+static bool rest_opens(const polygon_rest *rest, uint32_t place, const int64_t z[2]) {
+    const int64_t *before = rest_point(rest, place + rest->count - 1), *at = rest_point(rest, place),
+                  *after = rest_point(rest, place + 1);
+    const bool left_of_after = flat_cross(at, after, z) > 0, right_of_before = flat_cross(before, at, z) > 0;
+    return flat_cross(before, at, after) > 0 ? left_of_after && right_of_before
+                                             : left_of_after || right_of_before;
+}
+
+/* By the definition: every corner is looked at. */
+static bool rest_has_ear(const polygon_rest *rest, uint32_t place) {
+    const uint32_t n = rest->count;
+    const int64_t *t[3] = {rest_point(rest, place + n - 1), rest_point(rest, place),
+                           rest_point(rest, place + 1)};
+    if (flat_cross(t[0], t[1], t[2]) <= 0) return false;
+    if (n == 3) return true;
+    if (!rest_opens(rest, place + n - 1, t[2]) || !rest_opens(rest, place + 1, t[0])) return false;
+    for (uint32_t i = 0; i < n; i++) {
+        const int64_t *z = rest_point(rest, i);
+        bool inside = true;
+        for (int k = 0; k < 3; k++)
+            inside = inside && !flat_points_equal(t[k], z) && flat_cross(t[k], t[(k + 1) % 3], z) >= 0;
+        if (inside) return false;
+    }
+    return true;
+}
+
+/* The place of the ear with the shortest diagonal; of equal ones the first corner of the polygon. */
+static uint32_t find_shortest_ear(const polygon_rest *rest) {
+    int64_t least = INT64_MAX;
+    uint32_t found = UINT32_MAX;
+    for (uint32_t i = 0; i < rest->count; i++) {
+        const int64_t *u = rest_point(rest, i + rest->count - 1), *w = rest_point(rest, i + 1);
+        const int64_t x = u[0] - w[0], y = u[1] - w[1], length = x * x + y * y;
+        if (length >= least || !rest_has_ear(rest, i)) continue;
+        least = length;
+        found = i;
+    }
+    return found;
+}
+
+static void check_ear_order(const flat_polygon *p) {
+    double points[FLAT_CORNERS_MAX][2];
+    uint32_t triangles[FLAT_CORNERS_MAX][3];
+    bool out_of_memory;
+    polygon_rest rest = {.p = p, .count = p->corner_count};
+    for (uint32_t i = 0; i < p->corner_count; i++) {
+        rest.corners[i] = i;
+        for (int k = 0; k < 2; k++) points[i][k] = (double)p->points[p->corners[i]][k];
+    }
+    assert_true(ear_clipping_fill((const double(*)[2])points, p->corner_count, triangles, &out_of_memory));
+    for (uint32_t t = 0; rest.count > 2; t++) {
+        const uint32_t ear = find_shortest_ear(&rest), n = rest.count;
+        assert_int_not_equal(ear, UINT32_MAX);
+        for (uint32_t k = 0; k < 3; k++)
+            assert_int_equal(triangles[t][k], rest.corners[(ear + n - 1 + k) % n]);
+        memmove(rest.corners + ear, rest.corners + ear + 1, (n - ear - 1) * sizeof *rest.corners);
+        rest.count--;
+    }
+}
+
+static void the_shortest_ear_comes_first(void **state) {
+    (void)state;
+    random_stream random = stream_start(5);
+    flat_polygon p;
+    uint32_t checked = 0;
+    for (uint32_t round = 0; round < 600; round++) {
+        if (!make_random(&p, &random)) continue;
+        check_ear_order(&p);
+        checked++;
+    }
+    assert_true(checked > 300);
 }
 
 /* ---- by hand ----------------------------------------------------------------------------------------- */
@@ -282,6 +358,7 @@ int main(int argument_count, char **arguments) {
     }
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(random_polygons_are_filled),
+        cmocka_unit_test(the_shortest_ear_comes_first),
         cmocka_unit_test(shapes_on_which_fans_fail_are_filled),
         cmocka_unit_test(letters_with_bridged_holes_are_filled),
         cmocka_unit_test(convex_polygons_of_many_corners_are_no_fans),

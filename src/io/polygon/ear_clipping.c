@@ -80,14 +80,6 @@ static int turn_at(const ear_clipper *c, uint32_t a, uint32_t b, uint32_t d) {
     return orientation_of(c->points[a], c->points[b], c->points[d]);
 }
 
-/* Does the way from a corner to another one leave into the polygon? */
-static bool leaves_inwards(const ear_clipper *c, uint32_t from, uint32_t to) {
-    const uint32_t previous = c->corners[from].previous, next = c->corners[from].next;
-    if (turn_at(c, previous, from, next) > 0)
-        return turn_at(c, from, to, previous) > 0 && turn_at(c, to, from, next) > 0;
-    return !(turn_at(c, from, to, next) >= 0 && turn_at(c, to, from, previous) >= 0);
-}
-
 /* The candidates that wait for a corner may be ears once it is clipped, and not before: a corner in the way stays there, even
  * when it has become convex. */
 static void release_waiting(ear_clipper *c, uint32_t corner) {
@@ -159,11 +151,12 @@ static void clip_ear(ear_clipper *c, uint32_t corner, uint32_t triangle[3]) {
 }
 
 /* The corner that keeps a candidate from being an ear: a neighbour from which the diagonal leaves outwards, or one in the
- * way. */
+ * way. The candidate turns left, so the diagonal lies to the left of its side at either end, and leaves outwards only where an
+ * angle of less than 180 degrees ends before it. */
 static uint32_t find_obstacle(ear_clipper *c, uint32_t corner) {
     const uint32_t u = c->corners[corner].previous, w = c->corners[corner].next;
-    if (!leaves_inwards(c, u, w)) return u;
-    if (!leaves_inwards(c, w, u)) return w;
+    if (c->corners[u].convex && turn_at(c, u, w, c->corners[u].previous) <= 0) return u;
+    if (c->corners[w].convex && turn_at(c, u, w, c->corners[w].next) <= 0) return w;
     return corner_tree_find(&c->tree, (const uint32_t[3]){u, corner, w});
 }
 
