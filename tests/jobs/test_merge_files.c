@@ -1,4 +1,5 @@
 /* The files of `cscd merge`: pipes, more than the system opens at once, and a process that is killed at any moment. */
+#include "src/tool/jobs/job_merge.h"
 #include "tests/support/shell.h"
 #include "tests/support/test.h"
 #include "tests/support/tool/run_tool.h"
@@ -100,6 +101,52 @@ static void foreign_results_are_compared_with_some(void **state) {
                  "merge", empty.text, first.text, odd.text);
 }
 
+/* ---- what changes between the two reads --------------------------------------------------------------------- */
+
+#define LINE(list, jobs, job, result, found)                                                                 \
+    "{\"list\":\"0123456789abcde" list "\",\"jobs\":" jobs ",\"job\":" job ",\"result\":\"" result           \
+    "\",\"found\":" found ",\"name\":\"body\"}\n"
+
+static bool count_line(void *user, const char *line, size_t length, const job_record *record,
+                       io_error *error) {
+    (void)error;
+    assert_int_equal(line[length - 1], '}');
+    assert_int_equal(record->job, *(uint32_t *)user);
+    ++*(uint32_t *)user;
+    return true;
+}
+
+/* Whatever of the second line is another one then, it is not written as if it had been proven. */
+static void a_file_that_changes_while_it_is_read_is_noticed(void **state) {
+    (void)state;
+    static const char first[] = LINE("f", "2", "1", "clean", "false"),
+                      second[] = LINE("f", "2", "2", "touching", "false");
+    static const char *const others[] = {second,
+                                         LINE("f", "2", "1", "touching", "false"),
+                                         LINE("e", "2", "2", "touching", "false"),
+                                         LINE("f", "3", "2", "touching", "false"),
+                                         LINE("f", "2", "2", "crossing", "false"),
+                                         LINE("f", "2", "2", "touching", "true "),
+                                         "{\"list\":\"0123456789abcdef\"",
+                                         ""};
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+        char text[400];
+        job_merge merge;
+        io_error error = {""};
+        uint32_t lines = 0;
+        snprintf(text, sizeof text, "%s%s", first, second);
+        const temp_path path = temp_file_write(&folder, "changed.jsonl", text, strlen(text));
+        const char *paths[] = {path.text};
+        assert_true(job_merge_read(paths, 1, MERGE_WHOLE, &merge, &error));
+        snprintf(text, sizeof text, "%s%s", first, others[i]);
+        temp_file_write(&folder, "changed.jsonl", text, strlen(text));
+        assert_int_equal(job_merge_visit(&merge, count_line, &lines, &error), i == 0);
+        assert_int_equal(lines, i == 0 ? 2 : 1);
+        assert_true(i == 0 || strstr(error.text, "changed.jsonl: has changed while it was read") != NULL);
+        job_merge_free(&merge);
+    }
+}
+
 /* ---- what is written --------------------------------------------------------------------------------------- */
 
 static void expect_old_or_whole(const char *whole, int *wholes) {
@@ -157,6 +204,7 @@ int main(void) {
         cmocka_unit_test(pipes_are_proven_and_not_written),
         cmocka_unit_test(a_damaged_count_is_no_line),
         cmocka_unit_test(foreign_results_are_compared_with_some),
+        cmocka_unit_test(a_file_that_changes_while_it_is_read_is_noticed),
         cmocka_unit_test(a_merge_that_is_stopped_leaves_no_half),
     };
     return cmocka_run_group_tests(tests, make_files, remove_files);

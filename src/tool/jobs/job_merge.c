@@ -167,6 +167,11 @@ static bool open_again(const char *path, line_copier *c, uint32_t index, io_erro
     return file != NULL || io_fail(error, "%s: cannot open: %s", path, strerror(errno));
 }
 
+static bool same_record(const job_record *a, const job_record *b) {
+    return a->list == b->list && a->jobs == b->jobs && a->job == b->job && a->outcome == b->outcome &&
+           a->found == b->found;
+}
+
 static bool read_again(const job_merge *m, line_copier *c, const merged_line *line, io_error *error) {
     const char *path = m->paths[line->file];
     if (line->length > c->capacity) {
@@ -181,7 +186,7 @@ static bool read_again(const job_merge *m, line_copier *c, const merged_line *li
         return io_fail(error, "%s: cannot read: %s", path, strerror(errno));
     job_record record;
     return (fread(c->text, 1, line->length, file) == line->length &&
-            job_record_read(c->text, line->length - 1, &record) && record.job == line->record.job) ||
+            job_record_read(c->text, line->length - 1, &record) && same_record(&record, &line->record)) ||
            io_fail(error, "%s: has changed while it was read; is its shard still running?", path);
 }
 
