@@ -29,12 +29,8 @@ static size_t write_path(char *message, const char *path) {
 static void write_rest(char *message, size_t used, const char *format, va_list arguments)
     __attribute__((format(printf, 3, 0)));
 
-/* Paths and files may hold line ends and other control characters, the message must not. */
 static void write_rest(char *message, size_t used, const char *format, va_list arguments) {
     vsnprintf(message + used, MESSAGE_SIZE - used, format, arguments);
-    for (char *c = message; *c != '\0'; c++) {
-        if ((unsigned char)*c < ' ' || *c == 0x7f) *c = '?';
-    }
 }
 
 bool file_reader_fail(file_reader *reader, const char *format, ...) {
