@@ -202,6 +202,13 @@ static void folder_says_why_names_clash(void **state) {
     check_folder_fails("one extension", "f1.obj", "f2.ply");
 }
 
+static void folder_knows_that_minus_zero_is_zero(void **state) {
+    (void)state;
+    write_frame("f_-0.obj", 1);
+    write_frame("f_0.obj", 1);
+    check_folder_fails("the same frame", "f_-0.obj", "f_0.obj");
+}
+
 /* ---- lists ------------------------------------------------------------------------------------------- */
 
 static void list_keeps_the_order_given(void **state) {
@@ -323,6 +330,7 @@ int main(void) {
         TEST(folder_without_frames_is_refused),
         TEST(folder_must_hold_one_series),
         TEST(folder_says_why_names_clash),
+        TEST(folder_knows_that_minus_zero_is_zero),
         TEST(list_keeps_the_order_given),
         TEST(list_with_a_stranger_is_refused),
         TEST(keeps_doubles),

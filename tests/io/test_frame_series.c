@@ -264,6 +264,16 @@ static void folders_have_subframes_and_gaps(void **state) {
 /* ---- the model --------------------------------------------------------------------------------------- */
 
 /* Words are no series: what is named first is looked at first. */
+/* 1.5 before 2.25: as numbers without their point, 15 and 225, they would lie in steps of 210. */
+static void fractions_of_other_lengths_are_no_subframes(void **state) {
+    (void)state;
+    write_frame("f_1.5.obj", 1);
+    write_frame("f_2.25.obj", 2);
+    io_error error;
+    frame_fixture_open_fails(frame_fixture_folder.path, VERTICES, &error);
+    frame_fixture_check_error(&error, "f_1.5.obj and f_2.25.obj", "differ in one number only", NULL);
+}
+
 static void a_model_among_words_is_the_first_frame(void **state) {
     (void)state;
     static const listed_files cases[] = {
@@ -355,6 +365,7 @@ int main(void) {
         TEST(missing_negative_numbers_are_named),
         TEST(subframes_are_taken_by_their_times),
         TEST(folders_have_subframes_and_gaps),
+        TEST(fractions_of_other_lengths_are_no_subframes),
         TEST(a_model_among_words_is_the_first_frame),
         TEST(a_model_of_the_series_is_a_frame),
         TEST(a_model_that_is_listed_too_is_a_frame_once),

@@ -54,6 +54,37 @@ static void rounds_text_to_its_type(void **state) {
     }
 }
 
+/* The parser takes a megabyte at a time: no byte is lost or read twice between two. */
+static void reads_files_of_several_megabytes(void **state) {
+    (void)state;
+    enum { POINTS = 100000, ROOM = 32 * POINTS };
+    static const char array[] =
+        "<DataArray Intent='NIFTI_INTENT_%s' DataType='NIFTI_TYPE_%s' Dim0='%d' Dim1='3' "
+        "Dimensionality='2' ArrayIndexingOrder='RowMajorOrder' Encoding='ASCII'><Data>";
+    char *text = malloc(ROOM);
+    assert_non_null(text);
+    int length = snprintf(text, ROOM, "<GIFTI>");
+    length += snprintf(text + length, (size_t)(ROOM - length), array, "POINTSET", "FLOAT64", POINTS);
+    for (int i = 0; i < POINTS; i++)
+        length += snprintf(text + length, (size_t)(ROOM - length), "%d.125 0.5 %d.75\n", 1000000 + i, i);
+    length += snprintf(text + length, (size_t)(ROOM - length), "</Data></DataArray>");
+    length += snprintf(text + length, (size_t)(ROOM - length), array, "TRIANGLE", "INT32", 1);
+    length += snprintf(text + length, (size_t)(ROOM - length), "0 1 99999</Data></DataArray></GIFTI>");
+    assert_true(length > 2 << 20);
+    mesh_file mesh;
+    io_error error;
+    if (!mesh_check_read((file_bytes){"lh.gii", text, (size_t)length}, &mesh, &error))
+        fail_msg("%s", error.text);
+    assert_int_equal(mesh.vertex_count, POINTS);
+    for (int i = 0; i < POINTS; i++) {
+        const double *p = mesh.positions + 3 * (size_t)i;
+        assert_true(p[0] == 1000000.125 + i && p[1] == 0.5 && p[2] == i + 0.75);
+    }
+    assert_int_equal(mesh.triangles[2], POINTS - 1);
+    mesh_file_free(&mesh);
+    free(text);
+}
+
 /* The file in ASCII with one text replaced. */
 static void check_replaced(gifti_style style, const char *text, const char *by, const char *place,
                            const char *found, const char *expected) {
@@ -97,12 +128,14 @@ static void refuses_wrong_data(void **state) {
     const gifti_style ascii = {0}, base64 = {.encoding = 1}, zipped = {.encoding = 2};
     check_replaced(ascii, "<Data>0 0 0", "<Data>0 0 x", ":10: ", "found 'x'", "a number");
     check_replaced(ascii, "<Data>0 1 2", "<Data>0 1 2.5", ":", "found '2.5'", "a whole number");
+    check_replaced(ascii, "<Data>0 1 2", "<Data>0 1 4294967298", ":", "found '4294967298'", "a whole number");
     check_replaced(ascii, "<Data>0 1 2", "<Data>0 1 4", ":", "triangle 0 names vertex 4", "there are 4");
     check_replaced(ascii, "<Data>0 1 2", "<Data>0 1 -1", ":", "triangle 0 names vertex -1", "there are 4");
     check_replaced(ascii, "<Data>0 0 0", "<Data>0 0", ":10: ", "have 11 numbers", "expected 12");
     check_replaced(ascii, "<Data>0 0 0", "<Data>0 0 0 7", ":10: ", "after the last of 12", "");
     check_replaced(ascii, "<Data>0 0 0", "<Data>0 0 1e39", ":", "coordinate z of vertex 0 is inf", "finite");
     check_replaced(base64, "<Data>AAAA", "<Data>AA*A", ":10: ", "no base64 at character 2", "");
+    check_replaced(base64, "<Data>AAAA", "<Data>AAAAA", ":10: ", "no base64 at character 65", "");
     check_replaced(base64, "<Data>AAAA", "<Data>", ":10: ", "the data have 45 bytes",
                    "expected 48 for 4 rows");
     check_replaced(base64, "<Data>AAAA", "<Data>AAAAAAAA", ":10: ", "the data have 51 bytes",
@@ -113,6 +146,16 @@ static void refuses_wrong_data(void **state) {
                    "expected 60");
     check_replaced(zipped, "Dim0=\"4\" Dim1", "Dim0=\"2147483647\" Dim1", ":10: ", "bytes", "25769803764");
     check_replaced(zipped, "<Data>e", "<Data>f", ":10: ", "cannot be unzipped", "damaged");
+}
+
+/* All numbers are there, but not the sum that is to prove them. */
+static void refuses_zipped_data_without_their_end(void **state) {
+    (void)state;
+    gifti_text file, other;
+    gifti_fixture_square(&file, (gifti_style){.encoding = 2});
+    const char *end = strstr(strstr(file.text, "<Data>e"), "</Data>");
+    snprintf(other.text, sizeof other.text, "%.*s%s", (int)(end - 4 - file.text), file.text, end);
+    mesh_check_error(gifti_fixture_file(&other), ":10: ", "cannot be unzipped", "damaged or cut off");
 }
 
 /* Elements where the format has none, in the data of each encoding, of every name that is known and of none. */
@@ -221,8 +264,10 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(reads_all_styles),
         cmocka_unit_test(rounds_text_to_its_type),
+        cmocka_unit_test(reads_files_of_several_megabytes),
         cmocka_unit_test(refuses_what_is_no_surface),
         cmocka_unit_test(refuses_wrong_data),
+        cmocka_unit_test(refuses_zipped_data_without_their_end),
         cmocka_unit_test(refuses_elements_out_of_place),
         cmocka_unit_test(refuses_entities),
         cmocka_unit_test(plays_files_as_frames),

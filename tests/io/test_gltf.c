@@ -250,8 +250,9 @@ static void places_nodes_in_their_tree(void **state) {
         "\"nodes\":[{\"mesh\":0,\"rotation\":[0,0,3,3]},{\"children\":[2]},{\"children\":[0],\"scale\":[2,2,2],"
         "\"translation\":[10,20,30]}]," ONE_TRIANGLE,
         1, placed, once);
-    static const double flipped[] = {0, 0, 0, -1, 0, 0, 0, 2, 0};
+    static const double flipped[] = {0, 0, 0, -1, 0, 0, 0, 2, 0}, plain[] = {0, 0, 0, 1, 0, 0, 0, 2, 0};
     check_nodes("\"nodes\":[{\"mesh\":0,\"scale\":[-1,1,1]}]," ONE_TRIANGLE, 1, flipped, mirrored);
+    check_nodes("\"nodes\":[{\"mesh\":0,\"scale\":[1,1,-1]}]," ONE_TRIANGLE, 1, plain, mirrored);
     static const double both[] = {0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 5, 1, 0, 5, 0, 2, 5};
     check_nodes("\"nodes\":[{\"mesh\":0},{\"mesh\":0,\"translation\":[0,0,5]}]," ONE_TRIANGLE, 2, both,
                 twice);
@@ -302,22 +303,33 @@ static void adds_morph_targets(void **state) {
 
 /* Three vertices at x = 0, 1 and 2. Joint 0 rests at the origin and stands at z = 10, joint 1 rests at x = 1 and is scaled by 3
  * there. Vertex 0 follows joint 0, vertex 1 both by halves, vertex 2 a quarter and three quarters. */
+static void add_weights(gltf_fixture *fixture, int component, const double weights[12]) {
+    const int view = gltf_fixture_view(fixture, component, 12, weights);
+    gltf_fixture_accessor(
+        fixture, "{\"bufferView\":%d,\"componentType\":%d,\"count\":3,\"type\":\"VEC4\",\"normalized\":%s}",
+        view, component, component == 5126 ? "false" : "true");
+}
+
+/* two_sets: the second weight of each vertex is the first one of another set. */
 static void check_skin(int weight_component, const double *weights, bool two_sets) {
     static const double positions[] = {0, 0, 0, 1, 1, 0, 2, 0, 0};
-    static const double joints[] = {0, 9, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0}, later[12] = {0};
+    static const double joints[] = {0, 9, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0};
     static const double inverse_bind[] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0,  0, 0, 1,
                                           1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 1};
-    static const uint32_t triangle[] = {0, 1, 2};
+    double first[12], later[12] = {0}, later_joints[12] = {0};
+    memcpy(first, weights, sizeof first);
+    for (int i = 0; i < 12 && two_sets; i += 4) {
+        later_joints[i] = joints[i + 1];
+        later[i] = first[i + 1];
+        first[i + 1] = 0;
+    }
     gltf_fixture fixture = {0};
     gltf_fixture_array(&fixture, 5126, "VEC3", 9, positions);
     gltf_fixture_array(&fixture, 5121, "VEC4", 12, joints);
-    const int view = gltf_fixture_view(&fixture, weight_component, 12, weights);
-    gltf_fixture_accessor(
-        &fixture, "{\"bufferView\":%d,\"componentType\":%d,\"count\":3,\"type\":\"VEC4\",\"normalized\":%s}",
-        view, weight_component, weight_component == 5126 ? "false" : "true");
+    add_weights(&fixture, weight_component, first);
     gltf_fixture_array(&fixture, 5126, "MAT4", 32, inverse_bind);
-    gltf_fixture_array(&fixture, 5123, "VEC4", 12, later);
-    gltf_fixture_array(&fixture, 5126, "VEC4", 12, later);
+    gltf_fixture_array(&fixture, 5123, "VEC4", 12, later_joints);
+    add_weights(&fixture, weight_component, later);
     char rest[1024];
     snprintf(
         rest, sizeof rest,
@@ -330,7 +342,7 @@ static void check_skin(int weight_component, const double *weights, bool two_set
     mesh_file mesh = {0};
     io_error error = {""};
     if (!mesh_check_read(gltf_fixture_glb(&fixture, rest), &mesh, &error)) fail_msg("%s", error.text);
-    assert_memory_equal(mesh.triangles, triangle, sizeof triangle);
+    assert_memory_equal(mesh.triangles, ((const uint32_t[]){0, 1, 2}), 3 * sizeof(uint32_t));
     for (int i = 0; i < 9; i++)
         if (!(fabs(mesh.positions[i] - expected[i]) < 1e-14)) fail_msg("%d: %.17g", i, mesh.positions[i]);
     mesh_file_free(&mesh);
@@ -354,7 +366,6 @@ static void leaves_vertices_without_weights(void **state) {
     (void)state;
     static const double positions[] = {0, 0, 0, 1, 0, 0, 0, 2, 0}, zeros[12] = {0};
     static const double expected[] = {5, 0, 0, 6, 0, 0, 5, 2, 0};
-    static const uint32_t triangle[] = {0, 1, 2};
     gltf_fixture fixture = {0};
     gltf_fixture_array(&fixture, 5126, "VEC3", 9, positions);
     gltf_fixture_array(&fixture, 5121, "VEC4", 12, zeros);
@@ -363,7 +374,7 @@ static void leaves_vertices_without_weights(void **state) {
         gltf_fixture_glb(&fixture, "\"nodes\":[{\"mesh\":0,\"skin\":0,\"translation\":[5,0,0]},{}],\"skins\":"
                                    "[{\"joints\":[1]}],\"meshes\":[{\"primitives\":[{\"attributes\":{"
                                    "\"POSITION\":0,\"JOINTS_0\":1,\"WEIGHTS_0\":2}}]}]"),
-        3, expected, 1, triangle);
+        3, expected, 1, (const uint32_t[]){0, 1, 2});
 }
 
 int main(void) {

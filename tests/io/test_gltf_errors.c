@@ -163,11 +163,26 @@ static void refuses_accessors_out_of_bounds(void **state) {
     check_accessor("{\"bufferView\":0,\"componentType\":5126,\"count\":4}", VIEW, "type is missing", "VEC3");
 }
 
+/* There are 36 bytes, and the buffer is said to have 24. */
+static void refuses_what_lies_behind_the_buffer(void **state) {
+    (void)state;
+    mesh_check_error(
+        FILE_OF("mesh.gltf",
+                "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":24,\"uri\":"
+                "\"data:;base64,AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA\"}],"
+                "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],\"accessors\":[{\"bufferView\":0,"
+                "\"componentType\":5126,\"type\":\"VEC3\",\"count\":3}],\"nodes\":[{\"mesh\":0}],"
+                "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}]}"),
+        ": ", "byteLength 36 reach beyond the 24 bytes of buffer 0", "");
+}
+
 /* Elements without data are zeros: of vertices, of sparse ones, and of indices. */
 static void refuses_more_zeros_than_bytes(void **state) {
     (void)state;
     check_accessor("{\"componentType\":5126,\"type\":\"VEC3\",\"count\":2147483647}", VIEW,
                    "accessor 0: has 2147483647 elements without a bufferView", "the bytes of the file");
+    check_accessor("{\"componentType\":5126,\"type\":\"VEC3\",\"count\":10000}", VIEW,
+                   "accessor 0: has 10000 elements without a bufferView", "the bytes of the file");
     check_accessor("{\"componentType\":5126,\"type\":\"VEC3\",\"count\":2147483646,\"sparse\":{\"count\":1,"
                    "\"indices\":{\"bufferView\":0,\"componentType\":5125},\"values\":{\"bufferView\":0}}}",
                    VIEW, "accessor 0: has 2147483646 elements without a bufferView", "the bytes of the file");
@@ -270,6 +285,7 @@ int main(void) {
         cmocka_unit_test(refuses_wrong_meshes),
         cmocka_unit_test(refuses_wrong_numbers),
         cmocka_unit_test(refuses_accessors_out_of_bounds),
+        cmocka_unit_test(refuses_what_lies_behind_the_buffer),
         cmocka_unit_test(refuses_more_zeros_than_bytes),
         cmocka_unit_test(refuses_sparse_indices_that_do_not_rise),
         cmocka_unit_test(refuses_wrong_containers),

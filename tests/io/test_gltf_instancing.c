@@ -132,6 +132,8 @@ static void wrong_copies_are_refused(void **state) {
     (void)state;
     check_refused(NODES(EXTENSION("\"TRANSLATION\":1,\"SCALE\":4")) MESH, "node 1",
                   "SCALE is of 2 instances");
+    check_refused(NODES(EXTENSION("\"TRANSLATION\":4,\"SCALE\":3")) MESH, "node 1",
+                  "SCALE is of 3 instances, the attribute before it of 2");
     check_refused(NODES(EXTENSION("\"TRANSLATION\":2")) MESH, "accessor 2: type is VEC4",
                   "VEC3 for TRANSLATION");
     check_refused(NODES(EXTENSION("\"ROTATION\":99")) MESH, "node 1", "ROTATION is 99");

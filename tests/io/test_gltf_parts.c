@@ -1,4 +1,4 @@
-/* The parts of glTF files, and which face of the file a triangle is. */
+/* The parts of glTF files, which face of the file a triangle is, and which vertices primitives share. */
 #include "src/io/growable.h"
 #include "tests/support/io/gltf_fixture.h"
 #include "tests/support/test.h"
@@ -84,6 +84,27 @@ static void numbers_the_faces_of_the_file(void **state) {
     assert_int_equal(mesh.repairs.first_dropped, 1);
     assert_int_equal(mesh.repairs.skipped_primitives, 3);
     mesh_file_free(&mesh);
+}
+
+/* Two with the same positions but not the same targets, and one with others, which has indices. */
+static void primitives_share_what_is_the_same_in_all(void **state) {
+    (void)state;
+    static const double first[] = {0, 0, 0, 1, 0, 0, 0, 1, 0}, other[] = {5, 0, 0, 6, 0, 0, 5, 1, 0},
+                        moved[] = {0, 0, 1, 0, 0, 2, 0, 0, 3}, corners[] = {2, 0, 1};
+    static const double expected[] = {0, 0, 1, 1, 0, 2, 0, 1, 3, 0, 0, 0, 1, 0,
+                                      0, 0, 1, 0, 5, 0, 0, 6, 0, 0, 5, 1, 0};
+    static const uint32_t triangles[] = {0, 1, 2, 3, 4, 5, 8, 6, 7};
+    gltf_fixture fixture = {0};
+    gltf_fixture_array(&fixture, 5126, "VEC3", 9, first);
+    gltf_fixture_array(&fixture, 5126, "VEC3", 9, other);
+    gltf_fixture_array(&fixture, 5126, "VEC3", 9, moved);
+    gltf_fixture_array(&fixture, 5121, "SCALAR", 3, corners);
+    mesh_check_equal(gltf_fixture_glb(&fixture,
+                                      "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"weights\":[1],\"primitives\":["
+                                      "{\"attributes\":{\"POSITION\":0},\"targets\":[{\"POSITION\":2}]},"
+                                      "{\"attributes\":{\"POSITION\":0},\"targets\":[{}]},"
+                                      "{\"attributes\":{\"POSITION\":1},\"targets\":[{}],\"indices\":3}]}]"),
+                     9, expected, 3, triangles);
 }
 
 /* ---- materials ----------------------------------------------------------------------------------------- */
@@ -175,6 +196,7 @@ int main(void) {
         cmocka_unit_test(calls_parts_by_their_nodes),
         cmocka_unit_test(tells_equal_names_apart),
         cmocka_unit_test(numbers_the_faces_of_the_file),
+        cmocka_unit_test(primitives_share_what_is_the_same_in_all),
         cmocka_unit_test(calls_parts_by_their_materials),
         cmocka_unit_test(refuses_materials_that_are_not_there),
         cmocka_unit_test(survives_failed_allocations),

@@ -40,6 +40,7 @@ static void chooses_the_format(void **state) {
     mesh_check_square(FILE_OF("a", SQUARE_PLY));
     mesh_check_square(FILE_OF("a.Off", "4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n"));
     mesh_check_error(FILE_OF("a.txt", SQUARE_OBJ), ": ", "unknown format", "expected a mesh: .obj, .ply");
+    mesh_check_error(FILE_OF(".obj", SQUARE_OBJ), ": ", "unknown format", "expected a mesh: .obj, .ply");
     mesh_check_error(FILE_OF("a.PLY", SQUARE_OBJ), ":1: ", "found 'v'", "expected ply");
     mesh_check_error(FILE_OF("a.off", SQUARE_OBJ), ":1: ", "found 'v'", "the number of vertices");
 }
@@ -78,6 +79,9 @@ static void refuses_what_is_no_file(void **state) {
     check_unreadable(folder.path, ": is a directory, expected a file");
     check_unreadable("/dev/zero", "/dev/zero: is a device, expected a file");
     check_unreadable("", ": cannot open: No such file");
+#ifdef __linux__
+    check_unreadable("/proc/self/mem", "/proc/self/mem: cannot read: "); /* nothing is at its address 0 */
+#endif
     temp_folder_remove(&folder);
     mesh_check_error(FILE_OF("a.obj", ""), ": ", "the file is empty",
                      "expected an OBJ, PLY, OFF, STL, glTF or GIFTI mesh");
