@@ -119,7 +119,7 @@ static bool count_line(void *user, const char *line, size_t length, const job_re
 /* Whatever of the second line is another one then, it is not written as if it had been proven. */
 static void a_file_that_changes_while_it_is_read_is_noticed(void **state) {
     (void)state;
-    static const char first[] = LINE("f", "2", "1", "clean", "false"),
+    static const char first[] = LINE("f", "2", "1", "touching", "false"),
                       second[] = LINE("f", "2", "2", "touching", "false");
     static const char *const others[] = {second,
                                          LINE("f", "2", "1", "touching", "false"),
@@ -129,7 +129,10 @@ static void a_file_that_changes_while_it_is_read_is_noticed(void **state) {
                                          LINE("f", "2", "2", "touching", "true "),
                                          "{\"list\":\"0123456789abcdef\"",
                                          ""};
-    for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+    enum {
+        CUT = 4
+    }; /* within the name, which is as long in both lines: "dy" of the first would make it whole */
+    for (size_t i = 0; i <= sizeof others / sizeof *others; i++) {
         char text[400];
         job_merge merge;
         io_error error = {""};
@@ -138,8 +141,9 @@ static void a_file_that_changes_while_it_is_read_is_noticed(void **state) {
         const temp_path path = temp_file_write(&folder, "changed.jsonl", text, strlen(text));
         const char *paths[] = {path.text};
         assert_true(job_merge_read(paths, 1, MERGE_WHOLE, &merge, &error));
-        snprintf(text, sizeof text, "%s%s", first, others[i]);
-        temp_file_write(&folder, "changed.jsonl", text, strlen(text));
+        const bool cut = i == sizeof others / sizeof *others;
+        snprintf(text, sizeof text, "%s%s", first, cut ? second : others[i]);
+        temp_file_write(&folder, "changed.jsonl", text, strlen(text) - (cut ? CUT : 0));
         assert_int_equal(job_merge_visit(&merge, count_line, &lines, &error), i == 0);
         assert_int_equal(lines, i == 0 ? 2 : 1);
         assert_true(i == 0 || strstr(error.text, "changed.jsonl: has changed while it was read") != NULL);

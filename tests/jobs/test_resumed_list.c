@@ -149,6 +149,18 @@ static void results_are_not_overwritten(void **state) {
 }
 
 /* Only those that failed run again, and their last lines count. */
+/* A rule that a job has failed before fails the run that goes on, too. */
+static void what_was_found_is_remembered(void **state) {
+    (void)state;
+    temp_path model = write_text("crossing.obj", "v 0 0 0\nv 4 0 0\nv 0 4 0\nv 1 1 -1\nv 1 1 1\nv 2 1 1\n"
+                                                 "f 1 2 3\nf 4 5 6\n"),
+              list = write_one_job(model.text);
+    EXPECT_TOOL(3, "check", "--list", list.text, "--results", results.text, "--fail-on", "crossing");
+    EXPECT_TOOL(3, "check", "--list", list.text, "--results", results.text, "--fail-on", "crossing",
+                "--resume");
+    remove(results.text);
+}
+
 static void failed_jobs_run_again(void **state) {
     (void)state;
     temp_path list = write_small_list(), merged = temp_file_path(&folder, "merged.jsonl");
@@ -191,6 +203,7 @@ int main(void) {
         cmocka_unit_test(a_limit_of_sizes_keeps_whole_lines),
         cmocka_unit_test(kills_at_any_time_lose_nothing),
         cmocka_unit_test(results_are_not_overwritten),
+        cmocka_unit_test(what_was_found_is_remembered),
         cmocka_unit_test(failed_jobs_run_again),
         cmocka_unit_test(two_processes_do_not_share_a_file),
     };
