@@ -94,6 +94,31 @@ static void a_single_mesh_names_no_frames(void **state) {
     tool_run_free(&run);
 }
 
+/* A part of which one piece alone has no surface. */
+static void pieces_without_a_surface_are_named(void **state) {
+    (void)state;
+    temp_path model = temp_file_path(&folder, "pieces.obj");
+    FILE *file = fopen(model.text, "w");
+    assert_non_null(file);
+    fputs("o Puff\n", file);
+    write_box(file, 0, 0.0, 1.0, 1.0);
+    write_box(file, 8, 3.0, 0.0, 1.0);
+    fputs("o Rock\n", file);
+    write_box(file, 16, 6.0, 1.0, 1.0);
+    assert_int_equal(fclose(file), 0);
+    tool_run run = RUN_TOOL("check", model.text, "--json", json.text);
+    expect_in(run.out,
+              "cross or touch. Some pieces of Puff have no surface (all their triangles have no area), "
+              "and were not looked at.\n");
+    tool_run_free(&run);
+    json_node *root = json_node_read_file(json.text);
+    const json_node *collapsed = json_node_member(root, "collapsed");
+    assert_int_equal(collapsed->count, 1);
+    expect_spans(json_node_item(collapsed, 0), "whole", NULL, 0);
+    expect_spans(json_node_item(collapsed, 0), "partly", (int[]){0, 0}, 1);
+    json_node_free(root);
+}
+
 /* A mesh without any area is not clean: nothing was looked at. */
 static void nothing_to_look_at_is_not_clean(void **state) {
     (void)state;
@@ -265,6 +290,7 @@ static void what_appears_has_lost_no_contact(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(hidden_parts_are_named),
                                        cmocka_unit_test(a_single_mesh_names_no_frames),
+                                       cmocka_unit_test(pieces_without_a_surface_are_named),
                                        cmocka_unit_test(nothing_to_look_at_is_not_clean),
                                        cmocka_unit_test(a_gate_passes_nothing_unseen),
                                        cmocka_unit_test(an_empty_frame_is_not_checked),

@@ -52,6 +52,25 @@ static double greatest_value(const char *member) {
     return most;
 }
 
+/* Triangles 0 and 1 are one face, through the second of which goes a pin: the face is one part. The pin and that triangle are
+ * one pair, whichever of them a list names first. */
+static void tables_and_lists_have_the_numbers_of_the_file(void **state) {
+    (void)state;
+    static const char text[] = "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 1 3 -1\nv 1.1 3 -1\nv 1 3 1\n"
+                               "f 1 2 3 4\nf 5 6 7\n",
+                      parts[] = "face,name\n0,Sheet\n1,Pin\n", pairs[] = "1 2\n2 1\n";
+    const temp_path pinned = temp_file_write(&folder, "pinned.obj", text, sizeof text - 1),
+                    table = temp_file_write(&folder, "parts.csv", parts, sizeof parts - 1),
+                    list = temp_file_write(&folder, "pairs.txt", pairs, sizeof pairs - 1);
+    EXPECT_TOOL(3, "check", pinned.text, "--quiet", "--fail-on", "crossing", "--parts", table.text);
+    EXPECT_TOOL(0, "check", pinned.text, "--quiet", "--fail-on", "crossing", "--parts", table.text,
+                "--ignore-parts", "Sheet,Pin");
+    tool_run run = RUN_TOOL("check", pinned.text, "--fail-on", "crossing", "--ignore", list.text);
+    assert_int_equal(run.code, 0);
+    assert_non_null(strstr(run.out, " As asked, 1 pair of triangles was not looked at."));
+    tool_run_free(&run);
+}
+
 /* As many as are allowed do not fail, and as deep as is allowed does not. */
 static void bounds_are_allowed(void **state) {
     (void)state;
@@ -170,6 +189,7 @@ static void shared_depths_are_still_there(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bounds_are_allowed),
+        cmocka_unit_test(tables_and_lists_have_the_numbers_of_the_file),
         cmocka_unit_test(contacts_count_for_the_end_of_their_interval),
         cmocka_unit_test(the_share_is_of_crossings),
         cmocka_unit_test(places_are_of_the_files),
