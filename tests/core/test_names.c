@@ -20,6 +20,30 @@ static void names_of_unknown_values(void **state) {
     }
 }
 
+/* Every reason has a sentence of its own, which says whether contacts are all found. */
+static void reasons_say_what_they_mean(void **state) {
+    (void)state;
+    static const struct {
+        cscd_reason reason;
+        const char *words;
+    } reasons[] = {
+        {CSCD_REASON_METHOD, "every pair of features"},
+        {CSCD_REASON_SURFACE, "open, non-manifold"},
+        {CSCD_REASON_CROSSING, "crosses or touches itself"},
+        {CSCD_REASON_UNPROVEN, "not known to be free"},
+        {CSCD_REASON_CLEAN, "no contact"},
+        {CSCD_REASON_FINISHED, "embedded at the start; all contacts found"},
+        {CSCD_REASON_PUBLISHED, "loses contacts"},
+        {CSCD_REASON_CONTOUR, "patches that cannot touch themselves"},
+        {CSCD_REASON_EARLIEST, "only the earliest"},
+        {CSCD_REASON_OBSTACLE, "an obstacle"},
+        {CSCD_REASON_MASK, "masked by its rule"},
+        {CSCD_REASON_COLLAPSED, "collapsed at an end"},
+    };
+    for (size_t i = 0; i < sizeof reasons / sizeof *reasons; i++)
+        assert_non_null(strstr(cscd_reason_text(reasons[i].reason), reasons[i].words));
+}
+
 /* "unknown" is no name that a function reads. */
 static void unknown_is_not_read(void **state) {
     (void)state;
@@ -66,6 +90,7 @@ static void other_methods_are_refused(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(names_of_unknown_values), cmocka_unit_test(unknown_is_not_read),
-        cmocka_unit_test(methods_are_listed), cmocka_unit_test(other_methods_are_refused)};
+        cmocka_unit_test(reasons_say_what_they_mean), cmocka_unit_test(methods_are_listed),
+        cmocka_unit_test(other_methods_are_refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -285,6 +285,35 @@ static void reports_come_now_and_then(void **state) {
     cscd_context_destroy(context);
 }
 
+static bool keep_fraction(void *user, const char *stage, double fraction) {
+    (void)stage;
+    *(double *)user = fraction;
+    return true;
+}
+
+/* A stage is a share of a part, which is a share of the call; what is reported never falls. */
+static void shares_of_parts_of_calls(void **state) {
+    (void)state;
+    double fraction = -1.0;
+    cscd_context_options options = cscd_context_defaults();
+    cscd_context *context = NULL;
+    options.progress = (cscd_progress){keep_fraction, &fraction};
+    assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
+    progress *p = &context->progress;
+    p->interval_ms = 0.0;
+    progress_begin(p);
+    progress_part(p, 0.5, 0.75);
+    progress_stage(p, "first", 0.25, 0.75);
+    assert_true(progress_go_on(p, 0.5) && fraction == 0.625);
+    assert_true(progress_go_on(p, 1.0) && fraction == 0.6875);
+    progress_part(p, 0.0, 1.0);
+    progress_stage(p, "second", 0.0, 0.5);
+    assert_true(progress_go_on(p, 1.0) && fraction == 0.6875);
+    progress_begin(p);
+    assert_true(progress_go_on(p, 0.125) && fraction == 0.125);
+    cscd_context_destroy(context);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(culling_goes_on),
                                        cmocka_unit_test(other_methods_go_on),
@@ -294,6 +323,7 @@ int main(void) {
                                        cmocka_unit_test(large_meshes_go_on),
                                        cmocka_unit_test(plans_go_on),
                                        cmocka_unit_test(plans_leave_nothing_behind),
-                                       cmocka_unit_test(reports_come_now_and_then)};
+                                       cmocka_unit_test(reports_come_now_and_then),
+                                       cmocka_unit_test(shares_of_parts_of_calls)};
     return cmocka_run_group_tests_name("progress", tests, NULL, NULL);
 }
