@@ -112,14 +112,17 @@ static void check_direction(cscd_curve_piece piece, const cscd_curve_point *from
 static void check_curve(const cscd_curve *curve, grid_family family) {
     const cscd_curve_point *points = traced.curves.points + curve->first_point;
     const cscd_curve_piece *pieces = traced.curves.pieces + curve->first_piece;
+    double length = 0.0;
     assert_int_equal(curve->point_count, curve->piece_count + !curve->closed);
     for (size_t i = 0; i < curve->piece_count; i++) {
+        length += sqrt(vec3_squared_distance(points[i].x, points[(i + 1) % curve->point_count].x));
         check_incidence(pieces[i], &points[i]);
         check_incidence(pieces[i], &points[(i + 1) % curve->point_count]);
         if (grid_family_is_closed(family))
             check_direction(pieces[i], &points[i], &points[(i + 1) % curve->point_count]);
         if (i > 0) assert_true((pieces[i].a == pieces[i - 1].a) != (pieces[i].b == pieces[i - 1].b));
     }
+    assert_true(fabs(curve->length - length) <= 1e-12 * length);
     assert_int_equal(curve->closed, curve->start == CSCD_CURVE_END_NONE);
     assert_int_equal(curve->closed, curve->end == CSCD_CURVE_END_NONE);
     if (curve->components[0] != curve->components[1] && grid_family_is_closed(family))
