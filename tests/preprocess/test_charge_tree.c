@@ -1,5 +1,6 @@
 /* Charges by the treecode against those of the dense system, and what may go wrong on the way. */
 #include "benchmarks/lib/density_ranks.h"
+#include "preprocess/treecode/tree_solve.h"
 #include "tests/support/counting_allocator.h"
 #include "tests/support/preprocess/charge_rig.h"
 #include "tests/support/preprocess/treecode_rig.h"
@@ -218,6 +219,19 @@ static void says_where_charges_cannot_be_told_apart(void **state) {
     conductor_free(&s);
 }
 
+/* Without a number for a residual there are no charges. */
+static void equations_without_numbers(void **state) {
+    (void)state;
+    conductor s = conductor_sphere(2);
+    treecode_rig r = treecode_rig_create(&s, 1, CSCD_SIMD_AUTO);
+    charge_timings timings = {0};
+    assert_int_equal(tree_solve(r.context, &r.system, SIZE_MAX, 1e-6, &timings), CSCD_OK);
+    r.system.sources[7].area = (double)NAN;
+    assert_int_equal(tree_solve(r.context, &r.system, SIZE_MAX, 1e-6, &timings), CSCD_INVALID_ARGUMENT);
+    treecode_rig_destroy(&r);
+    conductor_free(&s);
+}
+
 /* Sheets that lie almost on each other have no charges that can be told apart, and the sentence says so; the others are solved. */
 static void sheets_near_each_other(void **state) {
     (void)state;
@@ -337,6 +351,7 @@ int main(void) {
         cmocka_unit_test(iterations_end_at_the_tolerance),
         cmocka_unit_test(makes_do_with_a_small_residual),
         cmocka_unit_test(says_where_charges_cannot_be_told_apart),
+        cmocka_unit_test(equations_without_numbers),
         cmocka_unit_test(keeps_to_the_limit),
         cmocka_unit_test(memory_may_run_out),
         cmocka_unit_test(a_host_may_end_it),
