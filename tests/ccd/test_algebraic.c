@@ -273,6 +273,22 @@ static void room_for_the_worst(void **state) {
     assert_true(peak <= INTEGER_POOL_LIMBS && touching > 0);
 }
 
+/* A sign at both ends that is that of the middle coefficient, too, is the sign in between; another one leaves it open. */
+static void signs_on_the_interval(void **state) {
+    static const int known[][4] = {
+        /* coefficients, and the sign: no root, two roots, a double root, one beyond, and roots at the ends */
+        {2, -1, 1, 1},  {1, -5, 5, 0}, {-1, 5, -5, 0}, {1, -4, 4, 0},
+        {-3, 1, 1, -1}, {0, 1, 1, 0},  {-2, 1, 1, 0}};
+    (void)state;
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+        polynomial p =
+            polynomial_linear(integer_from_int(&pool, known[i][0]), integer_from_int(&pool, known[i][1]));
+        p.c[2] = integer_from_int(&pool, known[i][2]);
+        p.degree = 2;
+        assert_int_equal(polynomial_sign_on_interval(&pool, &p), known[i][3]);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(integers_against_gmp, seed_and_start_pool),
@@ -280,6 +296,7 @@ int main(void) {
         cmocka_unit_test_setup(kept_numbers, seed_and_start_pool),
         cmocka_unit_test_setup(rational_roots, seed_and_start_pool),
         cmocka_unit_test_setup(irrational_roots, seed_and_start_pool),
+        cmocka_unit_test_setup(signs_on_the_interval, seed_and_start_pool),
         cmocka_unit_test_setup(room_for_the_worst, seed_and_start_pool),
     };
     return cmocka_run_group_tests_name("algebraic", tests, NULL, NULL);

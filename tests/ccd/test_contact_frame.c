@@ -1,4 +1,5 @@
 /* What is told of a touch, where features are far smaller than their motion, or needles. */
+#include "runtime/ccd/closest.h"
 #include "runtime/ccd/min_separation.h"
 #include "tests/support/ccd/queue_test.h"
 #include "tests/support/test.h"
@@ -97,11 +98,28 @@ static void nearly_parallel_edges(void **state) {
     assert_false(separation_ee(&query, &limit, &hit, &bounded));
 }
 
+/* Beside each side of a face, a quarter of the way along it, and beyond each corner. */
+static void nearest_on_the_sides(void **state) {
+    static const struct {
+        double point[3], u, v, squared;
+    } known[] = {
+        {{1.0, -1.0, 0.0}, 0.25, 0.0, 1.0}, {{4.0, 2.0, 1.0}, 0.75, 0.25, 3.0},
+        {{-3.0, 3.0, 0.0}, 0.0, 0.75, 9.0}, {{-1.0, -2.0, 2.0}, 0.0, 0.0, 9.0},
+        {{6.0, -1.0, 0.0}, 1.0, 0.0, 5.0},  {{-1.0, 6.0, 0.0}, 0.0, 1.0, 5.0},
+    };
+    static const double a[3] = {0.0}, b[3] = {4.0, 0.0, 0.0}, c[3] = {0.0, 4.0, 0.0};
+    (void)state;
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+        double u, v, squared = closest_point_triangle(known[i].point, a, b, c, &u, &v);
+        assert_true(u == known[i].u && v == known[i].v && squared == known[i].squared);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(tiny_face_at_rest),       cmocka_unit_test(tiny_face_hit_aslant),
         cmocka_unit_test(tiny_edge_on_a_long_one), cmocka_unit_test(needle_face),
-        cmocka_unit_test(nearly_parallel_edges),
+        cmocka_unit_test(nearly_parallel_edges),   cmocka_unit_test(nearest_on_the_sides),
     };
     return cmocka_run_group_tests_name("contact_frame", tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
 /* Elementary tests in general position: contacts built backwards, near misses, invariances. Degenerate
  * configurations have their own suite. */
+#include "runtime/ccd/coplanarity.h"
 #include "runtime/ccd/elementary.h"
 #include "tests/support/ccd/elementary_cases.h"
 #include "tests/support/random.h"
@@ -172,6 +173,27 @@ static void powers_of_two(void **state) {
     for_each_kind_of_case(check_powers_of_two);
 }
 
+/* A vertex and a face with a corner at the origin, and three vectors between them along the axes: the determinant is one
+ * product, whichever axis is whose. */
+static void the_error_holds_for_each_product(void **state) {
+    static const int axes[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
+    static const int points[3] = {2, 3, 0};
+    (void)state;
+    for (int round = 0; round < 600; round++) {
+        elementary_query query = {.x0 = {{0.0}}};
+        point_vectors vectors;
+        long double volume = round % 6 < 3 ? 1.0L : -1.0L;
+        for (int i = 0; i < 3; i++) {
+            double at = 1.0 + random_unit() / 3.0;
+            query.x0[points[i]][axes[round % 6][i]] = query.x1[points[i]][axes[round % 6][i]] = at;
+            volume *= (long double)at;
+        }
+        point_vectors_from(&query, CSCD_CONTACT_VF, &vectors);
+        coplanarity f = coplanarity_cubic(&vectors);
+        for (int i = 0; i < 4; i++) assert_true(fabsl((long double)f.b[i] - volume) <= (long double)f.error);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(vf_contacts, seed_random),
@@ -181,6 +203,7 @@ int main(void) {
         cmocka_unit_test_setup(order_of_points, seed_random),
         cmocka_unit_test_setup(reversed_time, seed_random),
         cmocka_unit_test_setup(powers_of_two, seed_random),
+        cmocka_unit_test_setup(the_error_holds_for_each_product, seed_random),
     };
     return cmocka_run_group_tests_name("elementary", tests, NULL, NULL);
 }
