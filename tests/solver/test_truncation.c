@@ -281,11 +281,23 @@ static void obstacles_come_first(void **state) {
     }
 }
 
+/* Nothing is near, but what is farther away has not been looked for. */
+static void alone_it_goes_half_of_the_radius(void **state) {
+    (void)state;
+    scene_two_triangles(&interval, 5.0);
+    move_triangle(1, 1.5);
+    rig r = rig_apart(&interval, 0.0, CSCD_METHOD_NONE, 1);
+    cscd_truncation out = truncate_scene(&r, &interval, 1.0, CSCD_SCALAR_DOUBLE, end);
+    assert_true(out.near_count == 0 && out.shortened == 3 && fabs(out.fraction - 1.0 / 3.0) < 1e-9);
+    for (uint32_t v = 3; v < 6; v++) assert_true(fabs(end[3 * v + 2] - interval.x0[3 * v + 2] - 0.5) < 1e-9);
+    rig_destroy(&r);
+}
+
 /* Two sewn triangles fall, and only one of them onto something: sewn vertices stay on each other, bit for bit. */
 static void sewn_vertices_stay_together(void **state) {
     (void)state;
     static const uint32_t seams[] = {4, 1, 2, 3};
-    static const double corners[9][3] = {{0.0, 1.0, 0.3},   {-1.0, 0.3, 0.4}, {1.0, 0.1, 0.2},
+    static const double corners[9][3] = {{0.0, 1.0, 0.1},   {-1.0, 0.3, 0.4}, {1.0, 0.1, 0.2},
                                          {1.0, 0.1, 0.2},   {-1.0, 0.3, 0.4}, {0.1, -1.0, 0.1},
                                          {-3.0, -0.9, 0.0}, {3.0, -0.9, 0.0}, {0.0, -4.0, 0.0}};
     interval.vertex_count = 9;
@@ -297,8 +309,9 @@ static void sewn_vertices_stay_together(void **state) {
             interval.triangles[v] = v;
             for (uint32_t k = 0; k < 3; k++) {
                 double step = v < 6 ? 0.3 * random_unit() : 0.0;
-                interval.x0[3 * v + k] = corners[v][k];
-                interval.x1[3 * v + k] = corners[v][k] + step - (k == 2 && v < 6 ? 0.4 : 0.0);
+                bool mirrored = v >= 6 && k == 1 && i / 2 % 2 == 1; /* below the other triangle */
+                interval.x0[3 * v + k] = mirrored ? -corners[v][k] : corners[v][k];
+                interval.x1[3 * v + k] = interval.x0[3 * v + k] + step - (k == 2 && v < 6 ? 0.4 : 0.0);
             }
         }
         memcpy(interval.x1 + 9, interval.x1 + 6, sizeof(double[3]));
@@ -325,6 +338,7 @@ int main(void) {
         cmocka_unit_test(pressed_pairs_may_part),
         cmocka_unit_test(touching_pairs_are_held),
         cmocka_unit_test(obstacles_come_first),
+        cmocka_unit_test(alone_it_goes_half_of_the_radius),
         cmocka_unit_test(sewn_vertices_stay_together),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
