@@ -188,6 +188,29 @@ static void far_bodies_are_apart(void **state) {
     bench_destroy(&b);
 }
 
+/* Bodies that are in each other at one end of the interval, and on the line through their middles far from each other at the
+ * other one. */
+static void bodies_that_part_are_not_apart(void **state) {
+    (void)state;
+    scene_clear(&interval);
+    scene_add_sphere(&interval, origin, 1.0, 5, 8);
+    uint32_t first_of_second = interval.vertex_count;
+    scene_add_sphere(&interval, (double[3]){1.5, 0.0, 0.0}, 1.0, 5, 8);
+    for (uint32_t end = 0; end < 2; end++) {
+        bool boxes;
+        memcpy(interval.x1, interval.x0, sizeof interval.x1);
+        bounds_bench b = bench_create(NULL, 2, 1);
+        double *far = end == 0 ? interval.x0 : interval.x1;
+        for (uint32_t v = first_of_second; v < interval.vertex_count; v++) far[v * 3] += 20.0;
+        hand_partition_particles(b.partition, centres);
+        assert_true(exact_contact(&b));
+        assert_false(bounds_apart(&b, &boxes));
+        assert_false(boxes);
+        for (uint32_t v = first_of_second; v < interval.vertex_count; v++) far[v * 3] -= 20.0;
+        bench_destroy(&b);
+    }
+}
+
 /* The bounds never claim that parts are apart where squares or differences exceed the range of doubles. */
 static void extreme_lengths_are_safe(void **state) {
     (void)state;
@@ -263,9 +286,13 @@ static void parts_without_cells_are_never_apart(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(never_apart_in_contact), cmocka_unit_test(exact_touches_are_not_apart),
-        cmocka_unit_test(far_bodies_are_apart),   cmocka_unit_test(extreme_lengths_are_safe),
-        cmocka_unit_test(every_triangle_is_held), cmocka_unit_test(parts_without_cells_are_never_apart),
+        cmocka_unit_test(never_apart_in_contact),
+        cmocka_unit_test(exact_touches_are_not_apart),
+        cmocka_unit_test(far_bodies_are_apart),
+        cmocka_unit_test(extreme_lengths_are_safe),
+        cmocka_unit_test(every_triangle_is_held),
+        cmocka_unit_test(parts_without_cells_are_never_apart),
+        cmocka_unit_test(bodies_that_part_are_not_apart),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

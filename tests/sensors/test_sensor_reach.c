@@ -134,6 +134,21 @@ static void crossed_edges_need_it_all(void **state) {
     }
 }
 
+/* One corner alone moves: that is the motion of its part, and its longest side is the one at the end. */
+static void any_corner_may_move_most(void **state) {
+    (void)state;
+    for (uint32_t v = 3; v < 6; v++) {
+        make_cross(0.0);
+        s.x1[v * 3 + 2] -= 10.0;
+        sensor_rig r = sensor_rig_create(&s, NULL);
+        sensor_reach reach = measure_reach(&r);
+        double longest = sqrt(v < 5 ? 1.0 + 11.0 * 11.0 : 1.0 + 9.0 * 9.0);
+        assert_true(fabs(sensor_reach_mu(&reach, 0, 1) - (longest / sqrt(3.0) + 5.0)) < 1e-9);
+        sensor_reach_free(r.context, &reach);
+        sensor_rig_destroy(&r);
+    }
+}
+
 /* ---- how far around particles look -------------------------------------------------------------------- */
 
 /* Spheres that do not feel each other, and a large triangle below. */
@@ -177,6 +192,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_touches_has_near_vertices),
         cmocka_unit_test(crossed_edges_need_it_all),
+        cmocka_unit_test(any_corner_may_move_most),
         cmocka_unit_test(a_large_triangle_costs_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

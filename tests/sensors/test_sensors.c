@@ -197,6 +197,27 @@ static void a_given_mu_is_taken(void **state) {
     sensor_rig_destroy(&r);
 }
 
+/* One sphere comes nearer, or goes: the warning is of the moment at which the particles were nearer. */
+static void the_nearer_moment_is_told(void **state) {
+    (void)state;
+    for (uint32_t end = 0; end < 2; end++) {
+        two_spheres(0.2);
+        double *apart = end == 0 ? s.x1 : s.x0;
+        for (uint32_t v = s.vertex_count / 2; v < s.vertex_count; v++) apart[v * 3] += 0.5;
+        cscd_sensor_options options = cscd_sensor_defaults();
+        options.collision_distance = 1.0;
+        sensor_setup setup = {0, NULL, &options};
+        sensor_rig r = sensor_rig_create(&s, &setup);
+        cscd_warnings found = sensor_rig_step(&r, s.x0, s.x1);
+        assert_int_equal(found.count, 1);
+        const cscd_warning *w = found.items;
+        assert_true(w->time == end && w->part_a < w->part_b);
+        assert_true(fabs(w->distance - vertex_distance(end == 0 ? s.x0 : s.x1, w->vertex_a, w->vertex_b)) <
+                    1e-12);
+        sensor_rig_destroy(&r);
+    }
+}
+
 /* Particles walk when R_eff reaches the other object, and rest when it does not. */
 static void a_given_radius_is_taken(void **state) {
     (void)state;
@@ -337,6 +358,7 @@ int main(void) {
         cmocka_unit_test(walks_begin_where_they_ended),  cmocka_unit_test(a_given_mu_is_taken),
         cmocka_unit_test(a_given_radius_is_taken),       cmocka_unit_test(cells_do_not_miss_an_arm),
         cmocka_unit_test(repulsion_spreads_them),        cmocka_unit_test(new_cells_are_taken_up),
+        cmocka_unit_test(the_nearer_moment_is_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
