@@ -49,6 +49,15 @@ static void list_by_rule(uint32_t rule, const cscd_contacts *contacts, const csc
     }
 }
 
+/* Names the larger triangle of each pair first, so that none is named the other way round besides. */
+static void turn_round(ignored_pairs *list) {
+    for (size_t i = 0; i < list->count; i++) {
+        uint32_t *pair = &list->pairs[2 * i], a = pair[0], b = pair[1];
+        pair[0] = a < b ? b : a;
+        pair[1] = a < b ? a : b;
+    }
+}
+
 static bool is_in_list(const ignored_pairs *list, uint32_t a, uint32_t b) {
     for (size_t i = 0; i < list->count; i++) {
         uint32_t x = list->pairs[2 * i], y = list->pairs[2 * i + 1];
@@ -127,6 +136,7 @@ static void a_list_does_what_the_callback_does(void **state) {
         rig_destroy(&r);
         kept += compare_with_callback(&list, CSCD_METHOD_NONE, CSCD_MODE_ALL);
         compare_with_callback(&list, CSCD_METHOD_SINGLE, CSCD_MODE_EARLIEST);
+        turn_round(&list);
         compare_with_callback(&list, CSCD_METHOD_BRUTE, CSCD_MODE_ALL);
     }
     print_message("  %zu of %zu contacts kept\n", kept, all);
