@@ -94,11 +94,15 @@ static void each_component_on_its_own(void **state) {
     shape_add_tetrahedron(&s, 0, 1, 2, 3);
     shape_add_tetrahedron(&s, 4, 5, 6, 7);
     cscd_mesh *mesh = mesh_of(&s);
-    const double density[8] = {4, 3, 2, 1, 1e-9, 2e-9, -1e-9, 3e-9};
+    const double density[2][8] = {
+        {4, 3, 2, 1, 1e-9, 2e-9, -1e-9, 3e-9},
+        {4, 3, 2, 1, 1.5, 2.5, -1e-9, 3.5}}; /* far from those of the other, and among them */
     const double expected[8] = {1.0, 0.75, 0.5, 0.25, 0.5, 0.75, 0.25, 1.0};
-    double found[8];
-    assert_int_equal(equalize(mesh, density, false, found), CSCD_OK);
-    assert_doubles(found, expected, 8);
+    for (int i = 0; i < 2; i++) {
+        double found[8];
+        assert_int_equal(equalize(mesh, density[i], false, found), CSCD_OK);
+        assert_doubles(found, expected, 8);
+    }
     cscd_mesh_destroy(mesh);
 }
 

@@ -148,6 +148,38 @@ static void two_regions_cost_the_least(void **state) {
     }
 }
 
+/* Neither of two points sees a side of a cube, a sixth of its area: the nearer one takes it. */
+static void large_costs_are_compared(void **state) {
+    (void)state;
+    const labelling_prices prices = {0.0, 0.0};
+    tiled_body *b = tiled_body_make(BODY_CUBE, 12);
+    for (uint32_t side = 0; side < 12; side++) {
+        tile_labelling l;
+        sight_point points[2] = {{.rest = {0.0}}, {.rest = {0.0}}};
+        double least = 0.0;
+        assert_int_equal(labelling_create(&b->g, &prices, &l), CSCD_OK);
+        for (int i = 0; i < 2; i++)
+            for (int k = 0; k < 3; k++)
+                points[i].rest[k] = (i == 0 ? 3.0 : 1.5) * b->g.items[side].centroid[k];
+        l.regions.points[0] = points[0];
+        labelling_add(&l, &points[1], 0);
+        for (uint32_t t = 0; t < 12; t++) {
+            double costs[2];
+            for (uint32_t i = 0; i < 2; i++) {
+                labelling_give(&l, &t, 1, i);
+                costs[i] = labelling_cost(&l);
+            }
+            labelling_give(&l, &t, 1, 0);
+            if (t == 0) least = costs[0];
+            least += fmin(costs[1] - costs[0], 0.0);
+        }
+        labelling_share_out(&l);
+        assert_true(fabs(labelling_cost(&l) - least) <= 1e-9 * b->g.area);
+        labelling_destroy(&l);
+    }
+    tiled_body_free(b);
+}
+
 static void costs_never_rise(void **state) {
     (void)state;
     random_seed(3);
@@ -248,6 +280,7 @@ int main(void) {
         cmocka_unit_test(halves_lie_in_their_tiles),
         cmocka_unit_test(borders_are_parts_of_the_cost),
         cmocka_unit_test(two_regions_cost_the_least),
+        cmocka_unit_test(large_costs_are_compared),
         cmocka_unit_test(costs_never_rise),
         cmocka_unit_test(neighbours_take_what_is_not_seen),
         cmocka_unit_test(no_price_is_too_high),
