@@ -169,9 +169,13 @@ static void bad_options(void **state) {
     options = cscd_plan_defaults();
     options.method = CSCD_METHOD_NONE;
     assert_int_equal(plan_create_packed(mesh, shape.positions, &options, &plan), CSCD_INVALID_ARGUMENT);
-    options = cscd_plan_defaults();
-    options.threshold = NAN;
-    assert_int_equal(plan_create_packed(mesh, shape.positions, &options, &plan), CSCD_INVALID_ARGUMENT);
+    static const double thresholds[] = {0.0, 1.0, -0.1, 1.5, (double)INFINITY, (double)NAN};
+    for (size_t i = 0; i < sizeof thresholds / sizeof *thresholds; i++) {
+        options = cscd_plan_defaults();
+        options.threshold = thresholds[i];
+        assert_int_equal(plan_create_packed(mesh, shape.positions, &options, &plan), CSCD_INVALID_ARGUMENT);
+        assert_non_null(strstr(cscd_context_detail(context), "threshold is"));
+    }
     options = cscd_plan_defaults();
     options.method = CSCD_METHOD_KMEANS;
     options.k = 0;
