@@ -1,9 +1,11 @@
 /* A triangle that is there twice is said first, and nothing with one is called clean. */
 #include "tests/support/own_folder.h"
 #include "tests/support/test.h"
+#include "tests/support/tool/json_reader.h"
 #include "tests/support/tool/run_tool.h"
 #include "tests/support/tool/tool_fixture.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #define TWICE "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 2 3 1\n"
@@ -39,6 +41,32 @@ static void the_sentence_begins_with_them(void **state) {
     }
 }
 
+/* They are no pairs that cross or touch: lists have two others, each with its kind. */
+static void lists_of_pairs_leave_them_out(void **state) {
+    (void)state;
+    const temp_path path = write_text("one.obj",
+                                      "v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\nf 1 2 3\nv 1 1 -1\nv 2 1 -1\n"
+                                      "v 1 1 1\nf 4 5 6\n"),
+                    json = temp_file_path(&folder, "out.json"), csv = temp_file_path(&folder, "out.csv");
+    EXPECT_TOOL(0, "check", path.text, "--json", json.text, "--csv", csv.text, "--quiet");
+    json_node *root = json_node_read_file(json.text);
+    const json_node *frame = json_node_item(json_node_member(root, "frames"), 0),
+                    *pairs = json_node_member(frame, "pairs"), *kinds = json_node_member(frame, "kinds");
+    assert_int_equal(pairs->count, 2);
+    assert_int_equal(kinds->count, 2);
+    for (uint32_t i = 0; i < 2; i++) {
+        assert_int_equal(json_node_item(json_node_item(pairs, i), 1)->number, 2);
+        assert_string_equal(json_node_item(kinds, i)->text, "crossing");
+    }
+    json_node_free(root);
+    char *rows = read_whole_file(csv.text, NULL);
+    uint32_t lines = 0;
+    for (const char *c = rows; *c != '\0'; c++) lines += *c == '\n';
+    assert_int_equal(lines, 3);
+    assert_null(strstr(rows, "duplicate"));
+    free(rows);
+}
+
 static void frames_with_them_are_not_clean(void **state) {
     (void)state;
     const temp_path first = write_text("d_1.obj", TWICE), second = write_text("d_2.obj", TWICE);
@@ -70,6 +98,7 @@ static void among_many_they_are_an_outcome(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_sentence_begins_with_them),
+        cmocka_unit_test(lists_of_pairs_leave_them_out),
         cmocka_unit_test(frames_with_them_are_not_clean),
         cmocka_unit_test(among_many_they_are_an_outcome),
     };

@@ -89,6 +89,28 @@ static void lists_name_what_to_select(void **state) {
     json_node_free(root);
 }
 
+/* A corner that touches in one frame and crosses in the next is in both lists of the union. */
+static void the_union_has_what_any_frame_has(void **state) {
+    (void)state;
+    static const char still[] = "v 0 0 0\nv 4 0 0\nv 0 4 0\n",
+                      faces[] = "v 1 1 1\nv 2 1 1\nf 1 2 3\nf 4 5 6\n";
+    char text[200];
+    temp_path frames[2];
+    for (int i = 0; i < 2; i++) {
+        const int length = snprintf(text, sizeof text, "%sv 1 1 %d\n%s", still, -i, faces);
+        frames[i] = temp_file_write(&folder, i == 0 ? "u_1.obj" : "u_2.obj", text, (size_t)length);
+    }
+    EXPECT_TOOL(0, "check", frames[0].text, frames[1].text, "--select", list_path.text, "--quiet");
+    json_node *root = json_node_read_file(list_path.text);
+    const json_node *all = json_node_member(root, "union");
+    assert_int_equal(all->count, 2);
+    for (int i = 0; i < 2; i++) {
+        expect_list(json_node_item(all, (size_t)i), "polygons", &i, 1);
+        expect_list(json_node_item(all, (size_t)i), "touching_polygons", &i, 1);
+    }
+    json_node_free(root);
+}
+
 /* ---- what is refused ------------------------------------------------------------------------------------- */
 
 static void expect_misfit(const export_request *request, const char *const *texts) {
@@ -237,6 +259,7 @@ static void welded_corners_are_those_of_the_file(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lists_name_what_to_select),
+        cmocka_unit_test(the_union_has_what_any_frame_has),
         cmocka_unit_test(names_of_other_formats_are_refused),
         cmocka_unit_test(meshes_of_others_are_not_written_over),
         cmocka_unit_test(a_folder_of_frames_gets_no_meshes),

@@ -255,6 +255,9 @@ static void results_are_not_written_over(void **state) {
                  "--results", path, "--resume");
     EXPECT_ERROR(1, TEXTS("another number of shards"), "replay", fold.text, cache.text, "--results", path,
                  "--resume", "--shard", "1/2");
+    all_shards(fold_with(""), 2);
+    EXPECT_ERROR(1, TEXTS("results of another shard"), "replay", fold.text, cache.text, "--results", path,
+                 "--resume", "--shard", "2/2");
     EXPECT_ERROR(1, TEXTS("this is no shard"), "replay", fold.text, cache.text, "--results",
                  temp_file_write(&folder, "notes.txt", "bread\n", 6).text, "--resume");
     FILE *locked = fopen(path, "a");
