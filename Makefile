@@ -130,17 +130,26 @@ NOT_HERE        := $(if $(filter 0,$(GSL)),tests/ccd/test_cubic_guess.c tests/cc
                    $(if $(filter 0,$(EXPAT)),tests/io/test_gifti.c) \
                    $(if $(HAS_BASELINES),,$(wildcard tests/baselines/*.c))
 TEST_SOURCES    := $(filter-out $(NOT_HERE),$(wildcard tests/*/test_*.c tests/*/test_*.cpp))
-# ONLY="bvh line_search" chooses the tests of these rooms, or with one of these words in their names.
-ONLY ?=
-ifneq ($(strip $(ONLY)),)
-TEST_SOURCES    := $(sort $(foreach word,$(ONLY),$(filter $(TEST_SOURCES),\
-                     $(wildcard tests/*/test_*$(word)*.c* tests/$(word)/test_*.c*))))
-endif
 ifneq ($(findstring mingw,$(HOST)),)
 include src/windows/windows.mk
 endif
 ifdef WASM
 include src/packaging/wasm/wasm.mk
+endif
+# The thread sanitizer sees the tests that use threads, and no others are built for it.
+THREAD_TESTS := detector/test_threads bvh/test_traversal core/test_progress core/test_parallel_for core/test_contexts core/test_host_loop \
+                core/test_exceptions detector/test_reentry detector/test_lifetimes detector/test_shared_mesh detector/test_clone_threads \
+                intersections/test_first_pairs intersections/test_surface_answers cpp/test_callbacks
+ifeq ($(CONFIG),tsan)
+TEST_SOURCES    := $(filter $(addsuffix .%,$(addprefix tests/,$(THREAD_TESTS))),$(TEST_SOURCES))
+endif
+# The files of a room are one program, whichever of them ONLY="bvh line_search detector:step" chooses to run: those of these rooms, with
+# one of these words in their names, or with it in this room.
+ROOM_SOURCES    := $(TEST_SOURCES)
+ONLY ?=
+ifneq ($(strip $(ONLY)),)
+TEST_SOURCES    := $(sort $(foreach word,$(patsubst test_%,%,$(ONLY)),$(filter $(TEST_SOURCES),$(if $(findstring :,$(word)),\
+                     $(wildcard tests/$(subst :,/test_*,$(word))*.c*),$(wildcard tests/*/test_*$(word)*.c* tests/$(word)/test_*.c*)))))
 endif
 FUZZ_SOURCES    := $(wildcard tests/fuzz/fuzz_*.c)
 MODEL_SOURCES   := $(wildcard models/*.c)
@@ -150,7 +159,7 @@ CPP_MODEL_PARTS   := $(wildcard models/*/*.cpp)
 BENCHMARK_SOURCES := $(filter-out $(if $(HAS_BASELINES),,benchmarks/published_rules.c),$(wildcard benchmarks/*.c))
 BENCHMARK_PARTS   := $(filter-out %_simd.c,$(wildcard benchmarks/lib/*.c))
 PEER_SOURCES      := $(wildcard benchmarks/peers/*.c benchmarks/peers/*.cpp)
-SOURCES := $(CORE_SOURCES) $(CHARGE_SOURCES) $(KERNEL_SOURCES) $(COMMON_SOURCES) $(COMMAND_SOURCES) $(NATIVE_SOURCES) $(SUPPORT_SOURCES) $(TEST_SOURCES) $(FUZZ_SOURCES) \
+SOURCES := $(CORE_SOURCES) $(CHARGE_SOURCES) $(KERNEL_SOURCES) $(COMMON_SOURCES) $(COMMAND_SOURCES) $(NATIVE_SOURCES) $(SUPPORT_SOURCES) $(ROOM_SOURCES) $(FUZZ_SOURCES) \
            $(MODEL_SOURCES) $(MODEL_PARTS) $(CPP_MODEL_SOURCES) $(CPP_MODEL_PARTS) $(BENCHMARK_SOURCES) $(BENCHMARK_PARTS) \
            $(PEER_SOURCES)
 
@@ -181,7 +190,7 @@ SHARED  := $(BUILD)/$(if $(WINDOWS),libcscd-$(MAJOR).dll,libcscd.so.$(VERSION))
 CHARGE_SHARED := $(if $(filter 0,$(CHARGE)),,$(BUILD)/libcscd-charge.so.$(VERSION))
 TOOL    := $(BUILD)/cscd
 TESTS   := $(addprefix $(BUILD)/,$(basename $(TEST_SOURCES)))
-CPP_TESTS := $(addprefix $(BUILD)/,$(basename $(filter %.cpp,$(TEST_SOURCES))))
+ROOMS   := $(sort $(foreach source,$(ROOM_SOURCES),$(BUILD)/$(dir $(source))room))
 # Tests of a second or more of processor time in the release: `make test` runs them, `make check` leaves them out.
 # tests/run.sh ends with the slowest programs of a run and their seconds: programs that become slow are added here.
 SLOW_baselines     := contour iccd
@@ -471,15 +480,11 @@ test-mutants: packages
 	@CC='$(CC)' SAMPLE='$(SAMPLE)' ONLY='$(ONLY)' ROOM='$(ROOM)' PYTHONDONTWRITEBYTECODE=1 $(PYTHON) tests/mutants/run.py
 
 # The tests that use threads, under the thread sanitizer.
-THREAD_TESTS := $(addprefix $(BUILD)/tests/,detector/test_threads bvh/test_traversal core/test_progress \
-                  core/test_parallel_for core/test_contexts core/test_host_loop core/test_exceptions detector/test_reentry \
-                  detector/test_lifetimes detector/test_shared_mesh detector/test_clone_threads \
-                  intersections/test_first_pairs intersections/test_surface_answers cpp/test_callbacks)
 test-threads: packages
 	@$(MAKE) --no-print-directory CONFIG=tsan test-threads-run
 
-test-threads-run: $(THREAD_TESTS)
-	@BUILD=$(BUILD) TSAN_OPTIONS=halt_on_error=1 tests/run.sh $(THREAD_TESTS)
+test-threads-run: $(TESTS)
+	@BUILD=$(BUILD) TSAN_OPTIONS=halt_on_error=1 tests/run.sh $(TESTS)
 
 # Random queries against the exact oracle; 0 is no limit.
 SECONDS ?= 60
@@ -748,10 +753,29 @@ $(BENCHMARKS) $(BUILD)/benchmarks/peers: $(BUILD)/benchmarks/%: $(OBJECTS)/bench
 	$(say) '  LD $@'
 	$(Q)$(CC) $(LINK_ALL) -Wl,--as-needed -o $@ $(filter %.o,$^) $(filter %.a,$^) $(TOOL_LIBS) $(CHARGE_LIBS) -lgmp $(PEER_LIBS)
 
-# Tests use internals: they link the objects and libraries that they need and no others, because a test of the tool's
-# memory must be smaller than the tool. They are hundreds: the linker gold, where it is, takes half of the time.
-# LDFLAGS with another linker come after it, and win.
+# Tests use internals: they link the objects and libraries that they need and no others. The linker gold, where it is, takes half
+# of the time. LDFLAGS with another linker come after it, and win. What tests put in the place of the product's is wrapped.
 TEST_LINKER := $(if $(HOST),,$(shell $(CC) -fuse-ld=gold -Wl,--version >/dev/null 2>&1 && echo -fuse-ld=gold))
+TEST_PARTS  := $(OBJECTS)/tests/support/room.o $(OBJECTS)/tests/support/io_allocations.o $(BUILD)/tests/support.a $(BUILD)/inside.a
+WRAPPED     := -Wl,--wrap=io_realloc
+LINK_TEST    = $(Q)$(CC) $(TEST_LINKER) $(LINK_ALL) -Wl,--as-needed $(WRAPPED) -o $@ $(filter %.o,$^) $(filter %.a,$^) $(TEST_LIBS)
+$(ROOMS): $(TEST_PARTS)
+	@mkdir -p $(@D)
+	$(say) '  LD $@'
+	$(LINK_TEST)
+
+# A link with the name of each file starts the program of the room with it.
+define room_rules
+$(BUILD)/tests/$(1)/room: $(addprefix $(OBJECTS)/,$(addsuffix .o,$(basename $(filter tests/$(1)/%,$(ROOM_SOURCES)))))
+$(filter $(BUILD)/tests/$(1)/%,$(TESTS)): $(BUILD)/tests/$(1)/room
+	@ln -sfn room $$@
+endef
+$(foreach room,$(TEST_ROOMS),$(eval $(call room_rules,$(room))))
+
+# What was the main of each file: tests/support/room.h.
+test_file = $(if $(filter test_%,$(notdir $(1))),-DTEST_FILE='"$(basename $(notdir $(1)))"' -Dmain=main_of_$(basename $(notdir $(1))))
+
+# Programs beside those of rooms.
 $(BUILD)/tests/%: $(OBJECTS)/tests/%.o $(BUILD)/tests/support.a $(BUILD)/inside.a
 	@mkdir -p $(@D)
 	$(say) '  LD $@'
@@ -767,7 +791,7 @@ $(PYTHON_ORACLE): $(OBJECTS)/tests/python/oracle.o $(BUILD)/tests/support.a $(BU
 
 # Parts of tests that are compiled once per instruction set.
 TEST_LEVELS := $(foreach level,$(LEVELS),$(OBJECTS)/tests/core/simd_operations_simd.$(level).o)
-$(BUILD)/tests/core/test_simd: $(TEST_LEVELS)
+$(BUILD)/tests/core/room: $(TEST_LEVELS)
 
 # Whether there are baselines is a word on the command line, which a compiler cache looks at; at __has_include it does not.
 $(OBJECTS)/tests/support/methods.o: CFLAGS_ALL += $(if $(HAS_BASELINES),-DWITH_BASELINES)
@@ -779,9 +803,15 @@ $(BUILD)/tests/fuzz/fuzz_readers $(BUILD)/tests/fuzz/coverage_target: $(READING_
 $(BUILD)/tests/fuzz/coverage_target: TEST_LINKER :=
 $(BUILD)/tests/fuzz/coverage_target: LINK_ALL += -fsanitize=fuzzer
 
+# A test of the tool's memory must be smaller than the tool: like that, it opens the charge library where it is needed.
+$(BUILD)/tests/tool/room: $(OBJECTS)/preprocess/charge_library.opened.o
+
 # A host in C++, which throws; and tests in C++.
-$(BUILD)/tests/core/test_exceptions: $(OBJECTS)/tests/core/throwing_host.o
-$(BUILD)/tests/core/test_exceptions $(CPP_TESTS): TEST_LIBS += -lstdc++
+$(BUILD)/tests/core/room: $(OBJECTS)/tests/core/throwing_host.o
+$(BUILD)/tests/core/room $(BUILD)/tests/cpp/room: TEST_LIBS += -lstdc++
+ifneq ($(filter tests/ccd/test_root_finders.c,$(ROOM_SOURCES)),)
+$(BUILD)/tests/ccd/room: WRAPPED += -Wl,--wrap=cubic_guess_roots
+endif
 
 # Elementary tests go through the same batches in tests and benchmarks, and densities are compared alike.
 $(BUILD)/tests/support.a: $(call objects,$(SUPPORT_SOURCES) benchmarks/lib/pair_batches.c benchmarks/lib/density_ranks.c models/shapes/extreme_shapes.c)
@@ -821,12 +851,12 @@ endif
 $(OBJECTS)/%.o: %.c
 	@mkdir -p $(@D)
 	$(say) '  CC $<'
-	$(Q)$(CC) $(CFLAGS_ALL) -c -o $@ $<
+	$(Q)$(CC) $(CFLAGS_ALL) $(call test_file,$<) -c -o $@ $<
 
 $(OBJECTS)/%.o: %.cpp
 	@mkdir -p $(@D)
 	$(say) '  CXX $<'
-	$(Q)$(CXX) -std=c++17 $(OPTIMISE_$(CONFIG)) $(CPP_WARNINGS) -fPIC -pthread -MMD -MP -Iinclude -I. $(CPPFLAGS) $(call allowed,$(CXXFLAGS)) -c -o $@ $<
+	$(Q)$(CXX) -std=c++17 $(OPTIMISE_$(CONFIG)) $(CPP_WARNINGS) -fPIC -pthread -MMD -MP -Iinclude -I. $(CPPFLAGS) $(call allowed,$(CXXFLAGS)) $(call test_file,$<) -c -o $@ $<
 
 # Without errno in square roots and without traps in comparisons; otherwise its loops are not vectorised.
 $(OBJECTS)/preprocess/charge/potential.o: CFLAGS_ALL += -fno-math-errno -fno-trapping-math

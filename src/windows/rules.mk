@@ -38,7 +38,7 @@ test-windows-run: tool library $(MODELS) $(TESTS) $(WINDOWS_TESTS)
 
 # The macros of cmocka take the formats of Microsoft for granted; and what runs once need not be fast, but soon compiled.
 $(addprefix $(OBJECTS)/,tests/% benchmarks/%): CFLAGS_ALL += -Wno-format -Wno-format-extra-args -O1 -g0
-$(TESTS): LINK_ALL += -Wl,--strip-debug
+$(ROOMS): LINK_ALL += -Wl,--strip-debug
 
 # A solver that waits for -O1 is what takes longest.
 $(OBJECTS)/tests/windows/dense_solve.o: CFLAGS_ALL += -O3

@@ -3,6 +3,7 @@
 #include "src/io/growable.h"
 #include "src/io/point_cache_write.h"
 #include "tests/support/io/frame_fixture.h"
+#include "tests/support/io_allocations.h"
 #include "tests/support/test.h"
 
 #include <stdbool.h>
@@ -19,19 +20,8 @@ enum {
     FIRST = 10   /* what the first file's number is: a frame without its own would be called 0 */
 };
 
-static long allocations_left = -1; /* so many allocations succeed before one fails; negative: none fails */
-static bool has_failed;
-
-void *io_realloc(void *memory, size_t size) {
-    if (allocations_left-- == 0) {
-        has_failed = true;
-        return NULL;
-    }
-    return realloc(memory, size);
-}
-
 static int remove_folder(void **state) {
-    allocations_left = -1;
+    io_allocations_left = -1;
     return frame_fixture_remove_folder(state);
 }
 
@@ -49,11 +39,11 @@ static void fail_every_allocation(const char *const *paths, size_t path_count, i
     long successes = 0;
     for (;; successes++) {
         io_error error = {""};
-        allocations_left = successes;
-        has_failed = false;
+        io_allocations_left = successes;
+        io_allocation_failed = false;
         const bool done = animation_open(paths, path_count, VERTICES, NULL, &opened, &error);
-        allocations_left = -1;
-        assert_int_equal(done, !has_failed);
+        io_allocations_left = -1;
+        assert_int_equal(done, !io_allocation_failed);
         if (done) break;
         assert_null(opened);
         frame_fixture_check_error(&error, frame_fixture_folder.path, "out of memory", NULL);
@@ -94,11 +84,11 @@ static void reading_survives_failed_allocations(void **state) {
     io_error error;
     long successes = 0;
     for (;; successes++) {
-        allocations_left = successes;
-        has_failed = false;
+        io_allocations_left = successes;
+        io_allocation_failed = false;
         const bool done = animation_read(opened, 0, positions, &error);
-        allocations_left = -1;
-        if (done && !has_failed) break;
+        io_allocations_left = -1;
+        if (done && !io_allocation_failed) break;
         if (!done) frame_fixture_check_error(&error, path.text, NULL); /* arrays need not become shorter */
     }
     assert_true(successes > 0);
@@ -111,9 +101,9 @@ static void writer_survives_a_failed_allocation(void **state) {
     const temp_path path = temp_file_path(&frame_fixture_folder, "cache.pc2");
     point_cache_writer *writer = NULL;
     io_error error;
-    allocations_left = 0;
+    io_allocations_left = 0;
     assert_false(point_cache_writer_open(path.text, VERTICES, 1, &writer, &error));
-    allocations_left = -1;
+    io_allocations_left = -1;
     assert_null(writer);
     frame_fixture_check_error(&error, path.text, "out of memory", NULL);
     assert_int_not_equal(access(path.text, F_OK), 0);

@@ -2,20 +2,13 @@
 #include "src/io/animation.h"
 #include "src/io/growable.h"
 #include "tests/support/io/gifti_fixture.h"
+#include "tests/support/io_allocations.h"
 #include "tests/support/temp_file.h"
 #include "tests/support/test.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static long allocations_left = -1; /* so many allocations succeed before one fails; negative: none fails */
-
-void *io_realloc(void *memory, size_t size) {
-    if (allocations_left == 0) return NULL;
-    if (allocations_left > 0) allocations_left--;
-    return realloc(memory, size);
-}
 
 static void reads_all_styles(void **state) {
     (void)state;
@@ -229,12 +222,11 @@ static void survives_failed_allocations(void **state) {
         gifti_text file;
         gifti_fixture_square(&file, (gifti_style){.encoding = encoding});
         long successes = 0;
-        for (bool done = false; !done; successes++) {
+        for (bool done; io_allocations_go_on(successes); successes++) {
             mesh_file mesh = {0};
             io_error error = {""};
-            allocations_left = successes;
             done = mesh_check_read(gifti_fixture_file(&file), &mesh, &error);
-            allocations_left = -1;
+            io_allocations_left = -1;
             if (!done && strstr(error.text, "out of memory") == NULL) fail_msg("%s", error.text);
             mesh_file_free(&mesh);
         }

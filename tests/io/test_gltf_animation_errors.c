@@ -3,6 +3,7 @@
 #include "src/io/growable.h"
 #include "tests/support/io/file_damage.h"
 #include "tests/support/io/gltf_animations.h"
+#include "tests/support/io_allocations.h"
 #include "tests/support/temp_file.h"
 #include "tests/support/test.h"
 
@@ -11,14 +12,6 @@
 #include <string.h>
 
 enum { VERTICES = 3 };
-
-static long allocations_left = -1; /* so many allocations succeed before one fails; negative: none fails */
-
-void *io_realloc(void *memory, size_t size) {
-    if (allocations_left == 0) return NULL;
-    if (allocations_left > 0) allocations_left--;
-    return realloc(memory, size);
-}
 
 /* ---- what is refused --------------------------------------------------------------------------------- */
 
@@ -104,14 +97,13 @@ static void survives_failed_allocations(void **state) {
     const temp_path place = temp_file_write(&folder, file.name, file.bytes, file.size);
     const char *path = place.text;
     long successes = 0;
-    for (bool done = false; !done; successes++) {
+    for (bool done; io_allocations_go_on(successes); successes++) {
         animation *again = NULL;
         mesh_file mesh = {0};
         io_error error = {""};
-        allocations_left = successes;
         done =
             mesh_file_read(path, &mesh, &error) && animation_open(&path, 1, VERTICES, NULL, &again, &error);
-        allocations_left = -1;
+        io_allocations_left = -1;
         if (!done && (strstr(error.text, "out of memory") == NULL || strstr(error.text, path) == NULL))
             fail_msg("%s", error.text);
         if (!done) assert_null(again);
@@ -135,10 +127,10 @@ static void reads_frames_without_more_memory(void **state) {
     double positions[3 * VERTICES];
     assert_true(animation_open(&path, 1, VERTICES, &options, &frames, &error));
     assert_int_equal(animation_frame_count(frames), 2000001);
-    allocations_left = 0;
+    io_allocations_left = 0;
     assert_true(animation_read(frames, 1000000, positions, &error));
     assert_true(positions[0] == 4 && positions[3] == 7);
-    allocations_left = -1;
+    io_allocations_left = -1;
     animation_close(frames);
     temp_folder_remove(&folder);
 }

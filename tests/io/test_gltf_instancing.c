@@ -2,20 +2,13 @@
 #include "src/io/gltf.h"
 #include "src/io/growable.h"
 #include "tests/support/io/gltf_fixture.h"
+#include "tests/support/io_allocations.h"
 #include "tests/support/temp_file.h"
 #include "tests/support/test.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static long allocations_left = -1; /* so many allocations succeed before one fails; negative: none fails */
-
-void *io_realloc(void *memory, size_t size) {
-    if (allocations_left == 0) return NULL;
-    if (allocations_left > 0) allocations_left--;
-    return realloc(memory, size);
-}
 
 #define EXTENSION(attributes) "\"extensions\":{\"EXT_mesh_gpu_instancing\":{\"attributes\":{" attributes "}}}"
 #define ALL                   "\"TRANSLATION\":1,\"ROTATION\":2,\"SCALE\":3"
@@ -209,14 +202,13 @@ static void many_names_are_cut(void **state) {
 static void survives_failed_allocations(void **state) {
     long successes = 0;
     (void)state;
-    for (bool done = false; !done; successes++) {
+    for (bool done; io_allocations_go_on(successes); successes++) {
         gltf_fixture fixture = make_fixture();
         const file_bytes file = gltf_fixture_glb(&fixture, NODES(EXTENSION(ALL)) MESH ",\"scene\":0");
         mesh_file mesh = {0};
         io_error error = {""};
-        allocations_left = successes;
         done = mesh_check_read(file, &mesh, &error);
-        allocations_left = -1;
+        io_allocations_left = -1;
         if (!done && strstr(error.text, "out of memory") == NULL) fail_msg("%s", error.text);
         mesh_file_free(&mesh);
     }

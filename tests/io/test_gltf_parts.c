@@ -1,19 +1,12 @@
 /* The parts of glTF files, which face of the file a triangle is, and which vertices primitives share. */
 #include "src/io/growable.h"
 #include "tests/support/io/gltf_fixture.h"
+#include "tests/support/io_allocations.h"
 #include "tests/support/test.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static long allocations_left = -1; /* so many allocations succeed before one fails; negative: none fails */
-
-void *io_realloc(void *memory, size_t size) {
-    if (allocations_left == 0) return NULL;
-    if (allocations_left > 0) allocations_left--;
-    return realloc(memory, size);
-}
 
 /* Meshes: 0 has a triangle, a point and a triangle that names a vertex twice before a third one; 1, "Arm", has one triangle;
  * 2 has points alone. */
@@ -171,12 +164,11 @@ static void refuses_materials_that_are_not_there(void **state) {
 
 static void survives_failed_allocations_by(mesh_parts_by by, file_bytes file) {
     long successes = 0;
-    for (bool done = false; !done; successes++) {
+    for (bool done; io_allocations_go_on(successes); successes++) {
         mesh_file mesh = {0};
         io_error error = {""};
-        allocations_left = successes;
         done = mesh_check_read_parts(file, by, &mesh, &error);
-        allocations_left = -1;
+        io_allocations_left = -1;
         if (!done && strstr(error.text, "out of memory") == NULL) fail_msg("%s", error.text);
         mesh_file_free(&mesh);
     }

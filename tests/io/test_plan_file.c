@@ -2,6 +2,7 @@
 #include "src/io/growable.h"
 #include "src/io/mesh_file.h"
 #include "src/io/plan_file.h"
+#include "tests/support/io_allocations.h"
 #include "tests/support/own_folder.h"
 #include "tests/support/packed.h"
 #include "tests/support/test.h"
@@ -11,16 +12,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* So many allocations still succeed; negative: all of them. */
-static int allocations_left = -1;
-
-/* Replaces the readers' own allocation. */
-void *io_realloc(void *memory, size_t size) {
-    if (allocations_left == 0) return NULL;
-    if (allocations_left > 0) allocations_left--;
-    return realloc(memory, size);
-}
 
 /* A mesh with its plan, and the file that holds it. */
 typedef struct saved {
@@ -341,12 +332,11 @@ static void memory_that_runs_out_is_an_error(void **state) {
     (void)state;
     saved s = save_plan(recorded_cube(false), CSCD_METHOD_CHARGE);
     int failures = 0;
-    for (bool read = false; !read; failures++) {
+    for (bool read; io_allocations_go_on(failures); failures++) {
         cscd_plan *plan = NULL;
         io_error error = {""};
-        allocations_left = failures;
         read = plan_file_read(s.path.text, s.context, s.mesh, &plan, &error);
-        allocations_left = -1;
+        io_allocations_left = -1;
         if (!read) assert_non_null(strstr(error.text, "out of memory"));
         cscd_plan_destroy(plan);
     }

@@ -351,9 +351,9 @@ static void corners_at_one_place_keep_their_edges(void **state) {
     assert_int_equal(edges, 6);
 }
 
-int main(int argument_count, char **arguments) {
-    if (argument_count > 1) { /* the long run: test_polygon ROUNDS */
-        printf("%u polygons\n", count_checked((uint32_t)strtoul(arguments[1], NULL, 10), 2));
+int main(void) {
+    if (room_argument_count() > 1) { /* the long run: test_polygon ROUNDS */
+        printf("%u polygons\n", count_checked((uint32_t)strtoul(room_argument(1), NULL, 10), 2));
         return 0;
     }
     const struct CMUnitTest tests[] = {

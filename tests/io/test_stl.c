@@ -1,6 +1,7 @@
 /* STL meshes: binary and text told apart by their content, every form of both, and each error with its place. */
 #include "src/io/growable.h"
 #include "tests/support/io/mesh_check.h"
+#include "tests/support/io_allocations.h"
 #include "tests/support/test.h"
 
 #include <math.h>
@@ -16,14 +17,6 @@
 
 static const double two_facets[] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0, 1, 1, 0, 0, 1, 0};
 static const uint32_t two_triangles[] = {0, 1, 2, 3, 4, 5};
-
-static long allocations_left = -1; /* so many allocations succeed before one fails; negative: none fails */
-
-void *io_realloc(void *memory, size_t size) {
-    if (allocations_left == 0) return NULL;
-    if (allocations_left > 0) allocations_left--;
-    return realloc(memory, size);
-}
 
 static void check_two_facets(file_bytes file) {
     mesh_check_equal(file, 6, two_facets, 2, two_triangles);
@@ -193,12 +186,11 @@ static void survives_damage(void **state) {
 /* Reads with the first, second, ... allocation failing until none is left to fail. */
 static void refuses_failing_allocations(file_bytes file) {
     long allocations = 0;
-    for (bool read = false; !read; allocations++) {
+    for (bool read; io_allocations_go_on(allocations); allocations++) {
         mesh_file mesh = {0};
         io_error error = {""};
-        allocations_left = allocations;
         read = mesh_check_read(file, &mesh, &error);
-        allocations_left = -1;
+        io_allocations_left = -1;
         assert_true(read || (strstr(error.text, "out of memory") != NULL && mesh.positions == NULL));
         mesh_file_free(&mesh);
     }

@@ -249,8 +249,8 @@ static int print_table(uint32_t thread_count) {
 }
 
 /* With a number of threads as its argument it prints the table of docs/theory/charge.md and tests nothing. */
-int main(int argc, char **argv) {
-    if (argc > 1) return print_table((uint32_t)strtoul(argv[1], NULL, 10));
+int main(void) {
+    if (room_argument_count() > 1) return print_table((uint32_t)strtoul(room_argument(1), NULL, 10));
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(charge_of_sphere),      cmocka_unit_test(charge_of_cube),
         cmocka_unit_test(charge_of_ellipsoid),   cmocka_unit_test(one_triangle),

@@ -82,9 +82,9 @@ static void old_kernels_are_named(void **state) {
 
 #endif
 
-int main(int argument_count, char **arguments) {
-    program = arguments[0];
-    if (argument_count == 2 && strcmp(arguments[1], "describe") == 0) {
+int main(void) {
+    program = room_argument(0);
+    if (room_argument_count() == 2 && strcmp(room_argument(1), "describe") == 0) {
         char text[128];
         describe_plan(CSCD_METHOD_CHARGE, CSCD_CHARGE_DENSE, text);
         puts(text);

@@ -1,20 +1,11 @@
 /* Long arrays of a summary become columns of the page where all their rows are alike, and stay as they are where not. */
-#include "src/io/growable.h"
 #include "src/tool/report/json_table.h"
+#include "tests/support/io_allocations.h"
 #include "tests/support/test.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static size_t granted = SIZE_MAX; /* so many allocations are granted, and no more */
-
-/* In the place of the product's. */
-void *io_realloc(void *memory, size_t size) {
-    if (granted == 0) return NULL;
-    granted -= granted < SIZE_MAX;
-    return realloc(memory, size);
-}
 
 /* An object with an array of so many rows, `odd` being one of another form in their midst; to be freed. */
 static char *make_text(const char *name, int rows, const char *odd) {
@@ -120,11 +111,12 @@ static void memory_may_run_out(void **state) {
     char *text = make_text("intervals", JSON_TABLE_ROWS_LEAST, NULL), *moved = NULL;
     bool made = false;
     size_t refused = 0;
-    for (; !made; refused++) {
+    for (; io_allocations_go_on((long)refused); refused++) {
         page_arrays arrays = {.count = 0};
-        granted = refused;
+        free(moved);
+        moved = NULL;
         made = json_table_move(text, "s", &arrays, &moved);
-        granted = SIZE_MAX;
+        io_allocations_left = -1;
         if (!made) assert_null(moved);
         page_arrays_free(&arrays);
     }

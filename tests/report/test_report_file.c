@@ -2,6 +2,7 @@
 #include "src/io/growable.h"
 #include "src/io/output_file.h"
 #include "src/tool/report/template.h"
+#include "tests/support/io_allocations.h"
 #include "tests/support/report/page_reader.h"
 #include "tests/support/report/report_rig.h"
 #include "tests/support/test.h"
@@ -17,16 +18,6 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-/* The number of allocations that still succeed; negative means all. */
-static int allocations_left = -1;
-
-/* Replaces the writer's own allocation. */
-void *io_realloc(void *memory, size_t size) {
-    if (allocations_left == 0) return NULL;
-    if (allocations_left > 0) allocations_left--;
-    return realloc(memory, size);
-}
 
 static temp_folder folder;
 static report_rig rig;
@@ -199,11 +190,10 @@ static void memory_that_runs_out_leaves_nothing(void **state) {
     (void)state;
     temp_path path = temp_file_path(&folder, "report.html");
     int failures = 0;
-    for (bool written = false; !written; failures++) {
+    for (bool written; io_allocations_go_on(failures); failures++) {
         io_error error = {""};
-        allocations_left = failures;
         written = report_rig_write(&rig, path.text, &error);
-        allocations_left = -1;
+        io_allocations_left = -1;
         if (!written) {
             assert_non_null(strstr(error.text, "out of memory"));
             assert_int_equal(files_in_folder(), 0);

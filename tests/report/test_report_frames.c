@@ -2,6 +2,7 @@
  * made. */
 #include "src/io/growable.h"
 #include "src/tool/report/frame_stream.h"
+#include "tests/support/io_allocations.h"
 #include "tests/support/random.h"
 #include "tests/support/report/page_reader.h"
 #include "tests/support/test.h"
@@ -10,16 +11,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* The number of allocations that still succeed; negative means all. */
-static int allocations_left = -1;
-
-/* Replaces the writer's own allocation. */
-void *io_realloc(void *memory, size_t size) {
-    if (allocations_left == 0) return NULL;
-    if (allocations_left > 0) allocations_left--;
-    return realloc(memory, size);
-}
 
 enum { VERTICES = 50, FRAMES = 24, VALUES = VERTICES * 3 };
 
@@ -244,12 +235,12 @@ static void memory_that_runs_out_is_told(void **state) {
     double given[VALUES];
     still_motion(0, given);
     int failures = 0;
-    for (bool done = false; !done; failures++) {
+    for (; io_allocations_go_on(failures); failures++) {
         frame_stream stream = {0};
-        allocations_left = failures;
-        done = frame_stream_create(VERTICES, 1.0, &stream) && frame_stream_add(&stream, given) &&
-               packed_array_finish(stream.bytes);
-        allocations_left = -1;
+        const bool done = frame_stream_create(VERTICES, 1.0, &stream) && frame_stream_add(&stream, given) &&
+                          packed_array_finish(stream.bytes);
+        io_allocations_left = -1;
+        assert_int_equal(done, !io_allocation_failed);
         frame_stream_free(&stream);
     }
     assert_true(failures > 6);

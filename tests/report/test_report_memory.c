@@ -1,5 +1,6 @@
 /* What a report keeps of answers and events survives every failed allocation: it says so, and nothing leaks. */
 #include "src/io/growable.h"
+#include "tests/support/io_allocations.h"
 #include "tests/support/packed.h"
 #include "tests/support/report/page_reader.h"
 #include "tests/support/report/report_rig.h"
@@ -11,17 +12,6 @@
 #include <string.h>
 
 enum { FRAMES = 2, POINTS = 20000, EVENTS = REPORT_EVENTS_MAX + 3 };
-
-static long allocations_left = -1; /* so many allocations succeed before one fails; negative: none fails */
-static bool has_failed;
-
-void *io_realloc(void *memory, size_t size) {
-    if (allocations_left-- == 0) {
-        has_failed = true;
-        return NULL;
-    }
-    return realloc(memory, size);
-}
 
 static const char *name_of_part(void *user, uint32_t part, char buffer[REPORT_PART_NAME_SIZE]) {
     (void)user;
@@ -89,11 +79,11 @@ static void answers_and_events_survive_failed_allocations(void **state) {
     long successes = 0;
     for (;; successes++) {
         io_error error = {""};
-        allocations_left = successes;
-        has_failed = false;
+        io_allocations_left = successes;
+        io_allocation_failed = false;
         report *r = keep_answers(&options, rig.shape.frames, &error);
-        allocations_left = -1;
-        assert_int_equal(r != NULL, !has_failed);
+        io_allocations_left = -1;
+        assert_int_equal(r != NULL, !io_allocation_failed);
         if (r == NULL) {
             assert_non_null(strstr(error.text, "out of memory"));
             continue;

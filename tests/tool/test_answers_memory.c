@@ -2,6 +2,7 @@
 #include "src/io/growable.h"
 #include "src/tool/answers/answers.h"
 #include "src/tool/answers/consequences.h"
+#include "tests/support/io_allocations.h"
 #include "tests/support/test.h"
 #include "tests/support/tool/tool_fixture.h"
 
@@ -11,17 +12,6 @@
 static temp_folder folder;
 static temp_path model, cache, table;
 static recording scene;
-
-static long allocations_left = -1; /* so many allocations succeed before one fails; negative: none fails */
-static bool has_failed;
-
-void *io_realloc(void *memory, size_t size) {
-    if (allocations_left-- == 0) {
-        has_failed = true;
-        return NULL;
-    }
-    return realloc(memory, size);
-}
 
 /* The two tetrahedra, the first of which is a part, and the other one two. */
 static int open_scene(void **state) {
@@ -58,11 +48,11 @@ typedef bool attempt(io_error *error);
 static long fail_each(attempt *attempted) {
     for (long successes = 0;; successes++) {
         io_error error = {""};
-        allocations_left = successes;
-        has_failed = false;
+        io_allocations_left = successes;
+        io_allocation_failed = false;
         const bool done = attempted(&error);
-        allocations_left = -1;
-        assert_int_equal(done, !has_failed);
+        io_allocations_left = -1;
+        assert_int_equal(done, !io_allocation_failed);
         if (done) return successes;
         if (strstr(error.text, "out of memory") == NULL) fail_msg("'%s'", error.text);
     }
@@ -137,9 +127,9 @@ static void events_stay_without_memory(void **state) {
     (void)state;
     cscd_event events[] = {{.a = 0, .b = 1, .pairs = 1}, {.depths = 1}};
     size_t count = 2;
-    allocations_left = 0;
+    io_allocations_left = 0;
     assert_false(consequences_leave_out(events, &count));
-    allocations_left = -1;
+    io_allocations_left = -1;
     assert_int_equal(count, 2);
     assert_true(consequences_leave_out(events, &count));
     assert_int_equal(count, 1);

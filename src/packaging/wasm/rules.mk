@@ -13,12 +13,19 @@ $(BUILD)/tests/wasm/%.js: $(OBJECTS)/tests/wasm/%.o $(LIBRARY)
 	$(say) '  LD $@'
 	$(Q)$(CC) $(LINK_ALL) -o $@ $^
 
-$(BUILD)/tests/%.js: $(OBJECTS)/tests/%.o $(BUILD)/tests/support.a $(BUILD)/inside.a
+WASM_ROOMS := $(addsuffix .js,$(ROOMS))
+$(WASM_ROOMS): $(OBJECTS)/tests/support/room.o $(BUILD)/tests/support.a $(BUILD)/inside.a
 	@mkdir -p $(@D)
 	$(say) '  LD $@'
 	$(Q)$(CC) $(LINK_ALL) -o $@ $(filter %.o,$^) $(filter %.a,$^) $(TEST_LIBS)
 
-$(BUILD)/tests/core/test_simd.js: $(TEST_LEVELS)
+define wasm_room_rules
+$(BUILD)/tests/$(1)/room.js: $(addprefix $(OBJECTS)/,$(addsuffix .o,$(basename $(filter tests/$(1)/%,$(ROOM_SOURCES)))))
+$(addsuffix .js,$(filter $(BUILD)/tests/$(1)/%,$(TESTS))): $(BUILD)/tests/$(1)/room.js
+	@ln -sfn room.js $$@
+endef
+$(foreach room,$(TEST_ROOMS_HERE),$(eval $(call wasm_room_rules,$(room))))
+$(BUILD)/tests/core/room.js: $(TEST_LEVELS)
 
 # NATIVE: tests/wasm/contacts.c of this machine.
 WASM_TESTS := $(addsuffix .js,$(TESTS))
