@@ -7,12 +7,12 @@
 #include <stdlib.h>
 
 /* What the function writes. */
-static void check_written(void (*write)(json *out), const char *expected) {
+static void check_written(void (*put)(json *out), const char *expected) {
     char *text = NULL;
     size_t size = 0;
     json out = {.file = open_memstream(&text, &size)};
     assert_non_null(out.file);
-    write(&out);
+    put(&out);
     assert_int_equal(fclose(out.file), 0);
     assert_string_equal(text, expected);
     free(text);
