@@ -68,6 +68,7 @@ static pid_t start_group(const char *list) {
     const pid_t pid = fork();
     if (pid == 0) {
         setpgid(0, 0);
+        signal(SIGHUP, SIG_DFL); /* under nohup it is ignored, and what ignores it goes on */
         const char *tool = getenv("CSCD_TOOL");
         execl(tool, tool, "replay", "--list", list, "--results", results.text, "--threads", "2", "--quiet",
               "--method", "brute", (char *)NULL);
