@@ -767,7 +767,7 @@ $(ROOMS): $(TEST_PARTS)
 # A link with the name of each file starts the program of the room with it.
 define room_rules
 $(BUILD)/tests/$(1)/room: $(addprefix $(OBJECTS)/,$(addsuffix .o,$(basename $(filter tests/$(1)/%,$(ROOM_SOURCES)))))
-$(filter $(BUILD)/tests/$(1)/%,$(TESTS)): $(BUILD)/tests/$(1)/room
+$(addprefix $(BUILD)/,$(basename $(filter tests/$(1)/%,$(ROOM_SOURCES)))): $(BUILD)/tests/$(1)/room
 	@ln -sfn room $$@
 endef
 $(foreach room,$(TEST_ROOMS),$(eval $(call room_rules,$(room))))
