@@ -128,8 +128,8 @@ NOT_HERE        := $(if $(filter 0,$(GSL)),tests/ccd/test_cubic_guess.c tests/cc
                    $(if $(filter %/release,$(BUILD)),,tests/report/test_report_browser.c) \
                    $(if $(filter release,$(CONFIG)),,tests/install/test_flags.c tests/install/test_install.c tests/install/test_places.c) \
                    $(if $(filter 0,$(EXPAT)),tests/io/test_gifti.c) \
-                   $(if $(HAS_BASELINES),,$(wildcard tests/baselines/*.c))
-TEST_SOURCES    := $(filter-out $(NOT_HERE),$(wildcard tests/*/test_*.c tests/*/test_*.cpp))
+                   $(if $(HAS_BASELINES),,$(wildcard tests/baselines/*))
+TEST_SOURCES    := $(filter-out $(NOT_HERE),$(wildcard tests/*/test_*.c tests/*/test_*.cpp tests/*/test_*.py))
 ifneq ($(findstring mingw,$(HOST)),)
 include src/windows/windows.mk
 endif
@@ -143,13 +143,13 @@ THREAD_TESTS := detector/test_threads bvh/test_traversal core/test_progress core
 ifeq ($(CONFIG),tsan)
 TEST_SOURCES    := $(filter $(addsuffix .%,$(addprefix tests/,$(THREAD_TESTS))),$(TEST_SOURCES))
 endif
-# The files of a room are one program, whichever of them ONLY="bvh line_search detector:step" chooses to run: those of these rooms, with
+# The files of a room in C are one program, whichever of them ONLY="bvh line_search detector:step" chooses to run: those of these rooms, with
 # one of these words in their names, or with it in this room.
-ROOM_SOURCES    := $(TEST_SOURCES)
+ROOM_SOURCES    := $(filter-out %.py,$(TEST_SOURCES))
 ONLY ?=
 ifneq ($(strip $(ONLY)),)
 TEST_SOURCES    := $(sort $(foreach word,$(patsubst test_%,%,$(ONLY)),$(filter $(TEST_SOURCES),$(if $(findstring :,$(word)),\
-                     $(wildcard tests/$(subst :,/test_*,$(word))*.c*),$(wildcard tests/*/test_*$(word)*.c* tests/$(word)/test_*.c*)))))
+                     $(wildcard tests/$(subst :,/test_*,$(word))*.*),$(wildcard tests/*/test_*$(word)*.* tests/$(word)/test_*.*)))))
 endif
 FUZZ_SOURCES    := $(wildcard tests/fuzz/fuzz_*.c)
 MODEL_SOURCES   := $(wildcard models/*.c)
@@ -209,9 +209,10 @@ SLOW_report        := report_browser
 SLOW_sensors       := exact_check sensor_recall sensor_scenes
 SLOW_solver        := floors max_step proximity
 SLOW_tool          := tool_shards tool_streaming tool_preprocess tool_render tool_stop tool_figure
-TEST_ROOMS := $(sort $(notdir $(patsubst %/,%,$(dir $(wildcard tests/*/test_*.c*)))))
-SLOW_TESTS := $(foreach room,$(TEST_ROOMS),$(addprefix $(room)/test_,$(SLOW_$(room))))
-$(foreach test,$(SLOW_TESTS),$(if $(wildcard tests/$(test).c*),,$(warning tests/$(test).c is called slow, but there is none)))
+rooms_of = $(sort $(notdir $(patsubst %/,%,$(dir $(1)))))
+TEST_ROOMS := $(call rooms_of,$(wildcard tests/*/test_*.c*))
+SLOW_TESTS := $(foreach room,$(call rooms_of,$(wildcard tests/*/test_*)),$(addprefix $(room)/test_,$(SLOW_$(room))))
+$(foreach test,$(SLOW_TESTS),$(if $(wildcard tests/$(test).*),,$(warning tests/$(test) is called slow, but there is none)))
 # They start first, and of these the longest, so that no processor waits for one of them at the end.
 LONGEST_TESTS := report/test_report_browser install/test_embedding detector/test_waiting_random detector/test_object_rules
 IN_ORDER := $(filter $(addprefix $(BUILD)/tests/,$(LONGEST_TESTS)),$(TESTS))
@@ -771,6 +772,12 @@ $(addprefix $(BUILD)/,$(basename $(filter tests/$(1)/%,$(ROOM_SOURCES)))): $(BUI
 	@ln -sfn room $$@
 endef
 $(foreach room,$(TEST_ROOMS),$(eval $(call room_rules,$(room))))
+
+# A link with the name of a file of pytest starts that with it.
+PYTEST_LINKS := $(addprefix $(BUILD)/,$(basename $(filter %.py,$(TEST_SOURCES))))
+$(PYTEST_LINKS): tests/run_pytest.py
+	@mkdir -p $(@D)
+	@ln -sfn $(CURDIR)/$< $@
 
 # What was the main of each file: tests/support/room.h.
 test_file = $(if $(filter test_%,$(notdir $(1))),-DTEST_FILE='"$(basename $(notdir $(1)))"' -Dmain=main_of_$(basename $(notdir $(1))))

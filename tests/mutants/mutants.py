@@ -23,7 +23,7 @@ class Mutant:
     def own_tests(self):
         """The folder of tests that is called as the room, or as the nearest one above it."""
         for place in (Path(self.file).parent, *Path(self.file).parent.parents):
-            if place.name and any((ROOT / "tests" / place.name).glob("test_*.c*")):
+            if place.name and any((ROOT / "tests" / place.name).glob("test_*.*")):
                 return place.name
         return None
 
@@ -42,7 +42,7 @@ class Mutant:
     def programs(self):
         """The test programs that have caught it before, and are still there."""
         names = [caught.split(":")[0] for caught in self.caught]
-        return [name for name in names if any((ROOT / "tests").glob(f"{name}.c*"))]
+        return [name for name in names if any((ROOT / "tests").glob(f"{name}.*"))]
 
     def keep(self, caught):
         """Writes into its list what catches it now."""

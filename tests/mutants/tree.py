@@ -14,7 +14,7 @@ NOT_PASSED_ON = ("MAKEFLAGS", "MFLAGS", "MAKELEVEL", "MAKEOVERRIDES", "ONLY", "R
 PATIENCE = 100.0
 BUILD = "build/release"
 # What tests run besides: the words that their sources have then, and what is made.
-RUN_BY_TESTS = {r"run_tool|CSCD_TOOL|\bshell\(|shell_output": (f"{BUILD}/cscd",), "CSCD_MODELS|model_program": ("models",),
+RUN_BY_TESTS = {r"run_tool|support\.tool|CSCD_TOOL|\bshell\(|shell_output": (f"{BUILD}/cscd",), "CSCD_MODELS|model_program": ("models",),
                 **{f"CSCD_{name.upper()}": (f"{BUILD}/benchmarks/{name}",) for name in ("queries", "methods", "volumes")}}
 
 
@@ -61,11 +61,11 @@ class Tree:
 
     def tests_of(self, room):
         """The programs of a folder of tests, as room/test_name."""
-        return sorted(f"{room}/{path.stem}" for path in (self.folder / "tests" / room).glob("test_*.c*"))
+        return sorted(f"{room}/{path.stem}" for path in (self.folder / "tests" / room).glob("test_*.*"))
 
     def build(self, tests):
         """Builds tests and what they may run; returns what goes wrong."""
-        sources = "\n".join(next((self.folder / "tests").glob(f"{test}.c*")).read_text(encoding="utf-8") for test in tests)
+        sources = "\n".join(next((self.folder / "tests").glob(f"{test}.*")).read_text(encoding="utf-8") for test in tests)
         run = [target for words, targets in RUN_BY_TESTS.items() if re.search(words, sources) for target in targets]
         return self.make((*(f"{BUILD}/tests/{test}" for test in tests), *run))
 

@@ -1,5 +1,6 @@
 #!/bin/sh
-# Runs the test programs that are its arguments, built for Windows, under wine, and adds up their totals; `make test-windows` calls it.
+# Runs the test programs that are its arguments, built for Windows, under wine, and adds up their totals; `make test-windows` calls it. Files of
+# pytest run here, and the tool that they start runs under wine.
 # BUILD is the build folder, ANSWERS the file that a Linux run wrote, NATIVE the build folder of Linux, ARCHIVE what is given away, LIMIT the
 # seconds that one program may take. Says how many programs ran, and of each that did not, why: tests/windows/left_out.txt. Ends
 # non-zero when anything failed; its last line is `N passed, M failed`.
@@ -57,7 +58,7 @@ add_up() {
 
 # count_known NAME LOG: of the tests that are known to fail, how many did, and how many surprise by passing.
 count_known() {
-    for test in $(sed -n "s|^tests/$1\.c[p]* \([^:]*\): .*|\1|p" tests/windows/left_out.txt); do
+    for test in $(sed -n "s|^tests/$1\.[a-z]* \([^:]*\): .*|\1|p" tests/windows/left_out.txt); do
         if tr -d '\r' <"$2" | grep -q "^\[  FAILED  \] $test\$"; then
             known=$((known + 1))
         else
@@ -84,7 +85,10 @@ run_script() {
 printf '%s\n' "$@" | xargs -P "${JOBS:-$(nproc)}" -I PROGRAM sh -c '
     log=$2/$(echo "$1" | tr / :)
     began=$(date +%s)
-    timeout -k 5 "$LIMIT" "$WINE" "$1" >"$log" 2>&1
+    case $(readlink "$1") in
+    *.py) CSCD_RUNNER=$WINE timeout -k 5 "$LIMIT" "$1" >"$log" 2>&1 ;;
+    *) timeout -k 5 "$LIMIT" "$WINE" "$1" >"$log" 2>&1 ;;
+    esac
     echo "$?" >"$log.status"
     printf "%8d  %s\n" "$(($(date +%s) - began))" "${1#*/tests/}" >>"$2/seconds"' sh PROGRAM "$logs"
 for program in "$@"; do add_up "$program"; done
