@@ -40,18 +40,20 @@ typedef struct description {
 
 static void describe_share(void *data, uint32_t index) {
     const description *d = data;
-    if (!progress_go_on(d->progress, 1.0)) return; /* the call ends, and nobody reads the list */
+    if (!progress_go_on(d->progress, 1.0)) return; /* the call ends, and nobody must read the list */
     size_t begin = (size_t)index * PAIRS_PER_SHARE, end = begin + PAIRS_PER_SHARE;
     for (size_t i = begin; i < end && i < d->count; i++)
         proximity_describe(&d->scene, d->keys[i].contact, &d->items[i]);
 }
 
-static void describe_pairs(cscd_detector *d, const proximity_scene *scene, size_t count) {
+/* A call that has been cancelled fails here: callers look at what the items name. */
+static cscd_status describe_pairs(cscd_detector *d, const proximity_scene *scene, size_t count) {
     result_buffer *buffer = &d->proximities;
     sort_pairs(buffer->keys, buffer->spare_keys, count);
     description all = {&d->context->progress, *scene, buffer->keys, buffer->items, count};
     uint32_t shares = (uint32_t)((count + PAIRS_PER_SHARE - 1) / PAIRS_PER_SHARE);
     parallel_run(d->context->threads, shares, describe_share, &all);
+    return context_progress_status(d->context);
 }
 
 cscd_status proximity_collect(cscd_detector *d, const double *positions, cscd_near_form form,
@@ -70,7 +72,7 @@ cscd_status proximity_collect(cscd_detector *d, const double *positions, cscd_ne
     if (form == CSCD_NEAR_UNIQUE)
         status = unique_pairs_list(d->context, &scene, buffer->keys, found, &d->names, buffer->items, &count);
     else
-        describe_pairs(d, &scene, count);
+        status = describe_pairs(d, &scene, count);
     if (status == CSCD_OK) *out = (cscd_proximities){buffer->items, count, waiting_features(&d->waiting)};
     return status;
 }
