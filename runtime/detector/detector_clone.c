@@ -29,7 +29,7 @@ static cscd_status clone_starts(const start_states *s, const cscd_mesh *mesh, st
 /* Lanes are as many as the context has threads, and hold nothing between calls. */
 static cscd_status clone_space(const search_space *from, const cscd_mesh *mesh, search_space *to) {
     cscd_context *context = mesh->context;
-    *to = (search_space){.context = context, .mesh = mesh};
+    *to = (search_space){.context = context, .mesh = mesh, .moves_from = from->moves_from};
     cscd_status status = traversal_create(context, &to->traversal);
     if (status != CSCD_OK) return status;
     to->lanes = context_allocate(context, to->traversal.lane_count, sizeof *to->lanes);
