@@ -83,10 +83,17 @@ static void mark_share(void *data, uint32_t index) {
     }
 }
 
+static void mark_all(settling *s) {
+    progress *watched = &s->detector->context->progress;
+    progress_outer outer = progress_enter(watched, "waiting pairs");
+    parallel_run(s->detector->context->threads, s->detector->space.traversal.lane_count, mark_share, s);
+    progress_leave(watched, outer);
+}
+
 /* Lets go of the pairs that are apart now, or that are left out otherwise. */
 static cscd_status let_go(cscd_detector *d, const double *x, named_pair_set *set) {
     settling s = settle_at(d, x, set);
-    parallel_run(d->context->threads, d->space.traversal.lane_count, mark_share, &s);
+    mark_all(&s);
     cscd_status status = search_space_status(&d->space);
     if (status == CSCD_OK) status = context_progress_status(d->context);
     if (status == CSCD_OK) named_pair_set_keep_marked(set);
@@ -98,7 +105,7 @@ cscd_status waiting_only_touching(cscd_detector *d, const double *x) {
     settling s = settle_at(d, x, &d->waiting.pairs);
     s.search = interval_search_begin(&d->space, x, x, (separation){0.0, 0.0});
     s.touching = true;
-    parallel_run(d->context->threads, d->space.traversal.lane_count, mark_share, &s);
+    mark_all(&s);
     cscd_status status = search_space_status(&d->space);
     if (status == CSCD_OK) status = context_progress_status(d->context);
     d->exclusions.marked_wait = status == CSCD_OK;
