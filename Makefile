@@ -205,6 +205,7 @@ SLOW_mesh          := predicates triangle_intersection
 SLOW_models        := cloth_drivers cloth_scenes ipc_scenes record_program recording_pawn recordings shape_program shape_regions shapes soft_body
 SLOW_narrow_phase  := exclusions feature_queue
 SLOW_preprocess    := best_draft charge charge_tree connected_regions cover labelling motion partition partition_counts plan_failures rank_blocks regions stiffness
+SLOW_proofs        := creations solver_calls steps told
 SLOW_report        := report_browser
 SLOW_sensors       := exact_check sensor_recall sensor_scenes
 SLOW_solver        := floors max_step proximity

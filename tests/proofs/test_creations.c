@@ -1,0 +1,158 @@
+/* What every call promises (tests/support/proofs/proof.h), of those that make contexts, meshes, plans and detectors. */
+#include "tests/support/proofs/answers.h"
+#include "tests/support/proofs/openings.h"
+#include "tests/support/test.h"
+
+#include <string.h>
+
+/* ---- contexts and meshes -------------------------------------------------------------------------------- */
+
+static cscd_status create_context(proof *p) {
+    char reason[200] = "";
+    cscd_context_options options = p->options;
+    options.reason = reason;
+    options.reason_size = sizeof reason;
+    const cscd_status status = cscd_context_create(&options, &p->answer.context);
+    assert_int_equal(strstr(reason, "out of memory") != NULL, status != CSCD_OK);
+    return status;
+}
+
+static void keep_context(proof *p) {
+    proof_take_context(p, p->answer.context);
+}
+
+static cscd_status create_mesh(proof *p) {
+    cscd_object_desc objects[2];
+    uint32_t count;
+    open_shape(p);
+    describe_objects(p, objects, &count);
+    return cscd_mesh_create(p->context, objects, count, &p->answer.mesh);
+}
+
+static cscd_status create_loose(proof *p) {
+    static const uint32_t triangles[] = {0, 1, 2, 0, 2, 3}, wires[] = {0, 1, 1, 2, 3, 4};
+    static const double up[3] = {0, 0, 1};
+    const cscd_object_desc objects[] = {cscd_object_of_triangles(4, 2, triangles),
+                                        cscd_object_of_wires(5, 3, wires), cscd_object_of_points(3),
+                                        cscd_object_half_space(up)};
+    return cscd_mesh_create(p->context, objects, 4, &p->answer.mesh);
+}
+
+static void keep_mesh(proof *p) {
+    p->mesh = p->answer.mesh;
+    const cscd_mesh *mesh = p->mesh;
+    const uint64_t hash = cscd_mesh_hash(mesh);
+    const uint32_t triangles = cscd_mesh_triangle_count(mesh), edges = cscd_mesh_edge_count(mesh);
+    proof_add(p, &hash, sizeof hash);
+    proof_add_items(p, cscd_mesh_all_edges(mesh), edges, sizeof(uint32_t[2]));
+    proof_add_items(p, cscd_mesh_all_triangle_edges(mesh), triangles, sizeof(uint32_t[3]));
+    for (uint32_t v = 0, count; v < cscd_mesh_vertex_count(mesh); v++) {
+        const uint32_t *star = cscd_mesh_vertex_triangles(mesh, v, &count);
+        proof_add_items(p, star, count, sizeof *star);
+    }
+}
+
+static const proof_call context_made = {"context_create", PROOF_CREATES, create_context, keep_context};
+static const proof_call mesh_made = {"mesh_create", PROOF_CREATES, create_mesh, keep_mesh};
+static const proof_call loose_made = {"mesh_create", PROOF_CREATES, create_loose, keep_mesh};
+
+/* ---- plans ---------------------------------------------------------------------------------------------- */
+
+static cscd_status create_plan(proof *p) {
+    cscd_plan_options options = cscd_plan_defaults();
+    cscd_view x;
+    options.method = p->row->method;
+    return cscd_plan_create(p->context, p->mesh, at_moment(p, 0, &x), &options, &p->answer.plan);
+}
+
+static void keep_plan(proof *p) {
+    p->plan = p->answer.plan;
+    for (uint32_t r = 0; r < cscd_plan_region_count(p->plan); r++) {
+        const cscd_region region = cscd_plan_region(p->plan, r);
+        proof_add_items(p, region.detector_point, 3, sizeof(double));
+        proof_add(p, &region.visible_share, sizeof region.visible_share);
+    }
+    for (uint32_t t = 0; t < cscd_mesh_triangle_count(p->mesh); t++) {
+        const double charge = cscd_plan_triangle_charge(p->plan, t);
+        const uint32_t region = cscd_plan_triangle_region(p->plan, t);
+        proof_add(p, &charge, sizeof charge);
+        proof_add(p, &region, sizeof region);
+    }
+}
+
+static cscd_status create_from_parts(proof *p) {
+    static const uint32_t regions[SCENE_TRIANGLES_MAX];
+    static const double point[3] = {0.1, 0.2, 0.3};
+    const cscd_plan_parts parts = {CSCD_METHOD_SINGLE, 1, regions, point, NULL, NULL};
+    cscd_view x;
+    return cscd_plan_create_from_parts(p->context, p->mesh, at_moment(p, 0, &x), &parts, &p->answer.plan);
+}
+
+static const proof_call plan_made = {"plan_create", PROOF_CREATES, create_plan, keep_plan};
+static const proof_call plan_joined = {"plan_create_from_parts", PROOF_CREATES, create_from_parts, keep_plan};
+
+/* ---- detectors ------------------------------------------------------------------------------------------ */
+
+/* Everything that a detector may be told at its creation. */
+static cscd_status create_detector(proof *p) {
+    static const double matrix[1] = {0.01};
+    const uint32_t vertices = p->shape.vertex_count, triangles = p->shape.triangle_count;
+    const uint32_t seams[2] = {0, vertices - 1}, ignored[2] = {0, triangles - 1};
+    const cscd_object_rule rules[2] = {cscd_object_rule_default(), cscd_object_rule_default()};
+    cscd_detector_options options = cscd_detector_defaults();
+    options.seams = seams;
+    options.ignored = ignored;
+    options.seam_count = options.ignored_count = 1;
+    options.seam_reach = 10.0;
+    options.rules = rules;
+    options.rule_count = p->row->family == SCENE_TWO_SPHERES ? 2 : 1;
+    options.thickness_matrix = matrix;
+    options.thickness_class_count = 1;
+    options.longest_list = 100000;
+    return cscd_detector_create(p->context, p->mesh, p->plan, &options, &p->answer.detector);
+}
+
+static void keep_detector(proof *p) {
+    p->detector = p->answer.detector;
+}
+
+static const proof_call detector_made = {"detector_create", PROOF_CREATES, create_detector, keep_detector};
+
+/* ---- the table ------------------------------------------------------------------------------------------ */
+
+static const char makes[] = "a mesh is made by one thread, and soon";
+static const char soon[] = "it is made soon";
+static const char clusters[] = "clusters are found by one thread";
+
+static const proof_row rows[] = {
+    {"context",
+     {&context_made, &mesh_made, &detector_made, &step_first},
+     .without_context = true,
+     .family = SCENE_TWO_SPHERES},
+    {"mesh", {&mesh_made}, .family = SCENE_SOUP, .seed = 3, .no_report = makes, .one_thread = makes},
+    {"mesh_loose", {&loose_made}, .no_report = makes, .one_thread = makes},
+    {"plan_single",
+     {&plan_made},
+     open_mesh,
+     .family = SCENE_TWO_SPHERES,
+     .method = CSCD_METHOD_SINGLE,
+     .no_report = soon,
+     .one_thread = soon},
+    {"plan_kmeans",
+     {&plan_made},
+     open_mesh,
+     .family = SCENE_TWO_SPHERES,
+     .method = CSCD_METHOD_KMEANS,
+     .one_thread = clusters},
+    {"plan_charge", {&plan_made}, open_mesh, .family = SCENE_TWO_SPHERES, .method = CSCD_METHOD_CHARGE},
+    {"plan_parts",
+     {&plan_joined},
+     open_mesh,
+     .family = SCENE_BENT_CAPSULE,
+     .no_report = soon,
+     .one_thread = soon},
+};
+
+int main(void) {
+    return proofs_run("creations", rows, sizeof rows / sizeof *rows);
+}

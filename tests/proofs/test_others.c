@@ -1,0 +1,306 @@
+/* What every call promises (tests/support/proofs/proof.h), of event trackers, of single pairs, and of particle sensors. */
+#include "tests/support/events/recorded_frames.h"
+#include "tests/support/proofs/answers.h"
+#include "tests/support/proofs/openings.h"
+#include "tests/support/random.h"
+#include "tests/support/test.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- event trackers ------------------------------------------------------------------------------------- */
+
+/* A recording, whose first frames go to one tracker and whose last ones to another, which is saved and loaded. */
+typedef struct proof_recording {
+    recorded_frames frames;
+    uint32_t next;
+    uint8_t *saved;
+    size_t saved_size;
+} proof_recording;
+
+static void open_recording(proof *p) {
+    proof_recording *r = calloc(1, sizeof *r);
+    assert_non_null(r);
+    random_seed(p->row->seed);
+    recorded_frames_create(&r->frames, NULL, 4);
+    p->own = r;
+}
+
+static void close_recording(proof *p) {
+    proof_recording *r = p->own;
+    recorded_frames_free(&r->frames);
+    free(r->saved);
+    free(r);
+}
+
+static cscd_status create_tracker(proof *p, bool later) {
+    const proof_recording *r = p->own;
+    cscd_event_options options = r->frames.options;
+    options.later_chunk = later;
+    return cscd_event_tracker_create(p->context, r->frames.mesh, &options, &p->answer.tracker);
+}
+
+static cscd_status create_first(proof *p) {
+    return create_tracker(p, false);
+}
+
+static void keep_first(proof *p) {
+    p->tracker = p->answer.tracker;
+}
+
+static cscd_status create_later(proof *p) {
+    return create_tracker(p, true);
+}
+
+static void keep_later(proof *p) {
+    p->later = p->answer.tracker;
+}
+
+static cscd_event_tracker *tracker_now(const proof *p) {
+    return ((const proof_recording *)p->own)->next < 2 ? p->tracker : p->later;
+}
+
+static cscd_status add_contacts(proof *p) {
+    const proof_recording *r = p->own;
+    const recorded_frame *f = &r->frames.frames[r->next];
+    return cscd_event_tracker_add_contacts(tracker_now(p), f->contacts, f->contact_count);
+}
+
+static cscd_status add_frame(proof *p) {
+    const proof_recording *r = p->own;
+    const recorded_frame *f = &r->frames.frames[r->next];
+    return cscd_event_tracker_add_frame(tracker_now(p), f->number, f->looked ? &f->found : NULL);
+}
+
+static void go_on(proof *p) {
+    ((proof_recording *)p->own)->next++;
+}
+
+static cscd_status save_later(proof *p) {
+    return cscd_event_tracker_save(p->later, &p->answer.bytes.items, &p->answer.bytes.count);
+}
+
+static void keep_bytes(proof *p) {
+    proof_recording *r = p->own;
+    proof_add_items(p, p->answer.bytes.items, p->answer.bytes.count, 1);
+    r->saved_size = p->answer.bytes.count;
+    free(r->saved);
+    r->saved = malloc(r->saved_size);
+    assert_non_null(r->saved);
+    memcpy(r->saved, p->answer.bytes.items, r->saved_size);
+}
+
+static cscd_status load_later(proof *p) {
+    const proof_recording *r = p->own;
+    return cscd_event_tracker_load(p->later, r->saved, r->saved_size);
+}
+
+static cscd_status merge_later(proof *p) {
+    return cscd_event_tracker_merge(p->tracker, p->later);
+}
+
+static cscd_status take_events(proof *p) {
+    return cscd_event_tracker_take(p->tracker, &p->answer.events);
+}
+
+static cscd_status finish_events(proof *p) {
+    return cscd_event_tracker_finish(p->tracker, &p->answer.events);
+}
+
+static void read_events(proof *p) {
+    proof_add_items(p, p->answer.events.items, p->answer.events.count, sizeof *p->answer.events.items);
+    proof_add(p, &p->answer.events.open, sizeof p->answer.events.open);
+}
+
+static const proof_call first_made = {"event_tracker_create", PROOF_CREATES, create_first, keep_first};
+static const proof_call later_made = {"event_tracker_create", PROOF_CREATES, create_later, keep_later};
+static const proof_call contacts = {"event_tracker_add_contacts", PROOF_CHANGES, add_contacts, NULL};
+static const proof_call frame = {"event_tracker_add_frame", PROOF_BEGINS, add_frame, go_on};
+static const proof_call saved = {"event_tracker_save", PROOF_BEGINS, save_later, keep_bytes};
+static const proof_call loaded = {"event_tracker_load", PROOF_CHANGES, load_later, NULL};
+static const proof_call merged = {"event_tracker_merge", PROOF_CHANGES, merge_later, NULL};
+static const proof_call taken = {"event_tracker_take", PROOF_CHANGES, take_events, read_events};
+static const proof_call finished = {"event_tracker_finish", PROOF_CHANGES, finish_events, read_events};
+
+/* ---- single pairs --------------------------------------------------------------------------------------- */
+
+/* Random points of so many pairs, as doubles and as floats. */
+typedef struct proof_pairs {
+    double x[2][PROOF_PAIRS_MAX * 12];
+    float rounded[2][PROOF_PAIRS_MAX * 12];
+} proof_pairs;
+
+static void open_pairs(proof *p) {
+    proof_pairs *r = malloc(sizeof *r);
+    assert_non_null(r);
+    random_seed(7);
+    for (int i = 0; i < 2; i++) {
+        for (int k = 0; k < PROOF_PAIRS_MAX * 12; k++) {
+            r->x[i][k] = random_unit();
+            r->rounded[i][k] = (float)r->x[i][k];
+        }
+    }
+    p->own = r;
+}
+
+static void free_pairs(proof *p) {
+    free(p->own);
+}
+
+static cscd_pairs pairs_of(const proof *p, cscd_contact_kind kind) {
+    const uint32_t count = p->large ? PROOF_PAIRS_MAX : 50;
+    return (cscd_pairs){kind, 4 * count, count, NULL};
+}
+
+static cscd_status step_pairs(proof *p) {
+    const proof_pairs *r = p->own;
+    const cscd_pairs pairs = pairs_of(p, CSCD_CONTACT_EE);
+    return cscd_pairs_step(p->context, &pairs, CSCD_DOUBLES(r->x[0], pairs.point_count),
+                           CSCD_DOUBLES(r->x[1], pairs.point_count), 0.0, 0.0, p->answer.pair_contacts);
+}
+
+static cscd_status step_rounded(proof *p) {
+    const proof_pairs *r = p->own;
+    const cscd_pairs pairs = pairs_of(p, CSCD_CONTACT_VF);
+    return cscd_pairs_step(p->context, &pairs, CSCD_FLOATS(r->rounded[0], pairs.point_count),
+                           CSCD_FLOATS(r->rounded[1], pairs.point_count), 0.01, 0.0, p->answer.pair_contacts);
+}
+
+static void read_pair_contacts(proof *p) {
+    proof_add_items(p, p->answer.pair_contacts, pairs_of(p, CSCD_CONTACT_EE).pair_count,
+                    sizeof *p->answer.pair_contacts);
+}
+
+static cscd_status find_near_pairs(proof *p) {
+    const proof_pairs *r = p->own;
+    const cscd_pairs pairs = pairs_of(p, CSCD_CONTACT_VF);
+    return cscd_pairs_find_near(p->context, &pairs, CSCD_DOUBLES(r->x[0], pairs.point_count), 0.4,
+                                p->answer.pair_distances);
+}
+
+static cscd_status find_near_rounded(proof *p) {
+    const proof_pairs *r = p->own;
+    const cscd_pairs pairs = pairs_of(p, CSCD_CONTACT_EE);
+    return cscd_pairs_find_near(p->context, &pairs, CSCD_FLOATS(r->rounded[0], pairs.point_count), 0.4,
+                                p->answer.pair_distances);
+}
+
+static void read_pair_distances(proof *p) {
+    proof_add_items(p, p->answer.pair_distances, pairs_of(p, CSCD_CONTACT_EE).pair_count,
+                    sizeof *p->answer.pair_distances);
+}
+
+static const proof_call pair_step = {"pairs_step", PROOF_ASKS, step_pairs, read_pair_contacts};
+static const proof_call pair_near = {"pairs_find_near", PROOF_ASKS, find_near_pairs, read_pair_distances};
+static const proof_call rounded_step = {"pairs_step", PROOF_ASKS, step_rounded, read_pair_contacts};
+static const proof_call rounded_near = {"pairs_find_near", PROOF_ASKS, find_near_rounded,
+                                        read_pair_distances};
+
+/* ---- particle sensors ----------------------------------------------------------------------------------- */
+
+static cscd_status create_partition(proof *p) {
+    cscd_partition_options options = cscd_partition_defaults();
+    cscd_view x;
+    options.within = true;
+    return cscd_partition_create(p->context, p->mesh, p->plan, at_moment(p, 0, &x), &options,
+                                 &p->answer.partition);
+}
+
+static void read_cells(proof *p) {
+    for (uint32_t v = 0; v < p->shape.vertex_count; v++) {
+        const uint32_t cell = cscd_partition_vertex_cell(p->partition, v);
+        proof_add(p, &cell, sizeof cell);
+    }
+}
+
+static void keep_partition(proof *p) {
+    p->partition = p->answer.partition;
+    read_cells(p);
+}
+
+static cscd_status renew_part(proof *p) {
+    cscd_view x;
+    return cscd_partition_renew(p->partition, at_moment(p, 2, &x), 1);
+}
+
+static cscd_status create_sensors(proof *p) {
+    cscd_sensor_options options = cscd_sensor_defaults();
+    options.method = p->row->seed == 0 ? CSCD_SENSORS_CELLS : CSCD_SENSORS_RANDOM;
+    return cscd_sensors_create(p->context, p->mesh, p->partition, &options, &p->answer.sensors);
+}
+
+static void keep_sensors(proof *p) {
+    p->sensors = p->answer.sensors;
+}
+
+static cscd_status sense_between(proof *p, int from, int to) {
+    cscd_view x0, x1;
+    return cscd_sensors_step(p->sensors, at_moment(p, from, &x0), at_moment(p, to, &x1), &p->answer.warnings);
+}
+
+static cscd_status sense_first(proof *p) {
+    return sense_between(p, 0, 1);
+}
+
+static cscd_status sense_second(proof *p) {
+    return sense_between(p, 1, 2);
+}
+
+static void read_warnings(proof *p) {
+    for (size_t i = 0; i < p->answer.warnings.count; i++) {
+        const cscd_warning *w = &p->answer.warnings.items[i];
+        const uint32_t vertices[2] = {w->vertex_a, w->vertex_b};
+        const double numbers[2] = {w->distance, w->toi};
+        proof_add_items(p, vertices, 2, sizeof *vertices);
+        proof_add_items(p, numbers, 2, sizeof *numbers);
+    }
+}
+
+static const proof_call partition_made = {"partition_create", PROOF_CREATES, create_partition,
+                                          keep_partition};
+static const proof_call part_renewed = {"partition_renew", PROOF_CHANGES, renew_part, read_cells};
+static const proof_call sensors_made = {"sensors_create", PROOF_CREATES, create_sensors, keep_sensors};
+static const proof_call first_sensed = {"sensors_step", PROOF_CHANGES, sense_first, read_warnings};
+static const proof_call second_sensed = {"sensors_step", PROOF_CHANGES, sense_second, read_warnings};
+
+/* ---- the table ------------------------------------------------------------------------------------------ */
+
+static const char packed[] = "packed doubles are read where they are";
+static const char unasked[] = "single pairs report no progress";
+static const char rounded[] = "floats are made doubles, which nothing keeps";
+static const char tracked[] = "a frame has few things, which one thread adds";
+static const char walking[] = "particles are few, and walk one after the other";
+
+#define CHUNKS                                                                                               \
+    {                                                                                                        \
+        &first_made, &later_made, &contacts, &frame, &contacts, &frame, &contacts, &frame, &contacts,        \
+            &frame, &saved, &loaded, &merged, &taken, &finished                                              \
+    }
+#define SENSORS                                                                                              \
+    { &partition_made, &sensors_made, &first_sensed, &part_renewed, &second_sensed }
+
+static const proof_row rows[] = {
+    {"events", CHUNKS, open_recording, close_recording, .seed = 1, .no_report = tracked,
+     .one_thread = tracked},
+    {"events_seams", CHUNKS, open_recording, close_recording, .seed = 4, .no_report = tracked,
+     .one_thread = tracked},
+    {"pairs",
+     {&pair_step, &pair_near},
+     open_pairs,
+     free_pairs,
+     .no_allocation = packed,
+     .no_report = unasked},
+    {"pairs_of_floats",
+     {&rounded_step, &rounded_near},
+     open_pairs,
+     free_pairs,
+     .no_report = unasked,
+     .allocates = rounded},
+    {"sensors", SENSORS, open_mesh, .family = SCENE_TWO_SPHERES, .no_report = walking, .one_thread = walking},
+    {"sensors_random", SENSORS, open_mesh, .family = SCENE_TWO_SPHERES, .seed = 1, .no_report = walking,
+     .one_thread = walking},
+};
+
+int main(void) {
+    return proofs_run("others", rows, sizeof rows / sizeof *rows);
+}

@@ -1,0 +1,230 @@
+/* What every call promises (tests/support/proofs/proof.h), of those that tell a detector something, and what it answers then. */
+#include "tests/support/proofs/answers.h"
+#include "tests/support/proofs/openings.h"
+#include "tests/support/test.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static uint32_t list[SCENE_TRIANGLES_MAX]; /* what a call is given */
+
+/* ---- parts ---------------------------------------------------------------------------------------------- */
+
+static const uint32_t *labels_of(const proof *p, uint32_t count) {
+    for (uint32_t t = 0; t < p->shape.triangle_count; t++) list[t] = t / 7 % (count + 1) - 1;
+    return list;
+}
+
+static cscd_status set_parts(proof *p) {
+    return cscd_detector_set_parts(p->detector, labels_of(p, 3), 3);
+}
+
+static cscd_status set_bodies(proof *p) {
+    return cscd_detector_set_bodies(p->detector, labels_of(p, 2), 2);
+}
+
+static cscd_status find_parts(proof *p) {
+    cscd_intersection_options options = ask_everything();
+    cscd_view x;
+    options.part_bodies = true;
+    return cscd_detector_find_intersections(p->detector, at_moment(p, 2, &x), &options, &p->answer.pairs);
+}
+
+static const proof_call parts = {"detector_set_parts", PROOF_CHANGES, set_parts, NULL};
+static const proof_call bodies = {"detector_set_bodies", PROOF_CHANGES, set_bodies, NULL};
+static const proof_call parts_found = {"detector_find_intersections", PROOF_ASKS, find_parts, read_pairs};
+
+/* ---- what is said of contacts --------------------------------------------------------------------------- */
+
+typedef struct kept_contacts {
+    cscd_contact *items;
+    size_t count;
+} kept_contacts;
+
+static void keep_contacts(proof *p) {
+    kept_contacts *kept = p->own;
+    const cscd_contacts *found = &p->answer.contacts;
+    read_contacts(p);
+    if (kept->items == NULL) kept->items = calloc(found->count + 1, sizeof *kept->items);
+    assert_non_null(kept->items);
+    if (found->count > 0) memcpy(kept->items, found->items, found->count * sizeof *found->items);
+    kept->count = found->count;
+}
+
+static void open_keeping(proof *p) {
+    open_detector(p);
+    p->own = calloc(1, sizeof(kept_contacts));
+    assert_non_null(p->own);
+}
+
+static void free_contacts(proof *p) {
+    free(((kept_contacts *)p->own)->items);
+    free(p->own);
+}
+
+static cscd_status step_and_keep(proof *p) {
+    return step_second.make(p);
+}
+
+static cscd_status sum_contacts(proof *p) {
+    const kept_contacts *kept = p->own;
+    return cscd_detector_contact_parts(p->detector, kept->items, kept->count, &p->answer.part_pairs);
+}
+
+static void read_sums(proof *p) {
+    proof_add_items(p, p->answer.part_pairs.items, p->answer.part_pairs.count,
+                    sizeof *p->answer.part_pairs.items);
+}
+
+static cscd_status find_changes(proof *p) {
+    const kept_contacts *kept = p->own;
+    cscd_view x0, x1;
+    return cscd_detector_curve_changes(p->detector, at_moment(p, 1, &x0), at_moment(p, 2, &x1), kept->items,
+                                       kept->count, &p->answer.changes);
+}
+
+static void read_changes(proof *p) {
+    const cscd_curve_changes *c = &p->answer.changes;
+    proof_add_items(p, c->items, c->count, sizeof *c->items);
+    proof_add_items(p, c->causes, c->cause_count, sizeof *c->causes);
+    proof_add_items(p, c->of_contacts, c->cause_count, sizeof *c->of_contacts);
+}
+
+static const proof_call kept_step = {"detector_step", PROOF_BEGINS, step_and_keep, keep_contacts};
+static const proof_call sums = {"detector_contact_parts", PROOF_ASKS, sum_contacts, read_sums};
+static const proof_call changes = {"detector_curve_changes", PROOF_ASKS, find_changes, read_changes};
+
+/* ---- who is looked at with whom ------------------------------------------------------------------------- */
+
+static cscd_status give_rules(proof *p, uint64_t mask, double thickness) {
+    cscd_object_rule rules[2] = {cscd_object_rule_default(), cscd_object_rule_default()};
+    rules[1].mask = mask;
+    rules[0].thickness = thickness;
+    return cscd_detector_set_rules(p->detector, rules, 2, NULL, 0);
+}
+
+static cscd_status set_apart(proof *p) {
+    return give_rules(p, 0, 0.0);
+}
+
+static cscd_status set_thick(proof *p) {
+    return give_rules(p, UINT64_MAX, 0.05);
+}
+
+static cscd_status set_seams(proof *p) {
+    const uint32_t half = p->shape.vertex_count / 2;
+    for (uint32_t i = 0; i < 10; i++) {
+        list[2 * i] = 3 * i;
+        list[2 * i + 1] = half + 2 * i;
+    }
+    return cscd_detector_set_seams(p->detector, list, 10);
+}
+
+static cscd_status set_ignored(proof *p) {
+    const uint32_t half = p->shape.triangle_count / 2;
+    for (uint32_t i = 0; i < 40; i++) {
+        list[2 * i] = i;
+        list[2 * i + 1] = half + i;
+    }
+    return cscd_detector_set_ignored(p->detector, list, 40);
+}
+
+static cscd_status set_separation(proof *p) {
+    return cscd_detector_set_separation(p->detector, 0.02, 0.0);
+}
+
+static cscd_status set_longest(proof *p) {
+    return cscd_detector_set_longest_list(p->detector, 1000000);
+}
+
+static const proof_call apart = {"detector_set_rules", PROOF_CHANGES, set_apart, NULL};
+static const proof_call thick = {"detector_set_rules", PROOF_CHANGES, set_thick, NULL};
+static const proof_call seams = {"detector_set_seams", PROOF_CHANGES, set_seams, NULL};
+static const proof_call ignored = {"detector_set_ignored", PROOF_CHANGES, set_ignored, NULL};
+static const proof_call separation = {"detector_set_separation", PROOF_CHANGES, set_separation, NULL};
+static const proof_call longest = {"detector_set_longest_list", PROOF_CHANGES, set_longest, NULL};
+
+static void open_torn(proof *p) {
+    cscd_detector_options options = cscd_detector_defaults();
+    options.seam_reach = INFINITY;
+    open_detector_with(p, options);
+}
+
+/* ---- what may move -------------------------------------------------------------------------------------- */
+
+/* The first object rests, and the second one alone may move. */
+static void open_resting(proof *p) {
+    open_mesh(p);
+    const size_t half = (size_t)p->shape.vertex_count / 2 * 3;
+    for (int m = 1; m < PROOF_MOMENTS; m++) memcpy(p->x[m], p->x[0], half * sizeof *p->x[m]);
+    open_detector(p);
+}
+
+static cscd_status set_active(proof *p) {
+    const uint32_t half = p->shape.vertex_count / 2;
+    for (uint32_t i = 0; i < half; i++) list[i] = half + i;
+    return cscd_detector_set_active(p->detector, list, half);
+}
+
+static const proof_call active = {"detector_set_active", PROOF_CHANGES, set_active, NULL};
+
+/* ---- other meshes, other detectors ---------------------------------------------------------------------- */
+
+/* The second object loses its last triangle. */
+static cscd_status create_change(proof *p) {
+    cscd_object_desc objects[2];
+    uint32_t count;
+    describe_objects(p, objects, &count);
+    objects[1].triangle_count--;
+    const cscd_object_change change = {.object = 1, .desc = &objects[1]};
+    return cscd_mesh_change_create(p->context, p->mesh, &change, 1, &p->answer.change);
+}
+
+static void keep_change(proof *p) {
+    p->change = p->answer.change;
+    const uint64_t hash = cscd_mesh_hash(cscd_mesh_change_mesh(p->change));
+    uint32_t count;
+    const uint32_t *edges = cscd_mesh_change_edges(p->change, &count);
+    proof_add(p, &hash, sizeof hash);
+    proof_add_items(p, edges, count, sizeof *edges);
+}
+
+static cscd_status change_mesh(proof *p) {
+    return cscd_detector_change_mesh(p->detector, p->change);
+}
+
+static cscd_status clone_detector(proof *p) {
+    return cscd_detector_clone(p->context, p->detector, &p->answer.detector);
+}
+
+/* From here on the clone is asked. */
+static void keep_clone(proof *p) {
+    p->clone = p->detector;
+    p->detector = p->answer.detector;
+}
+
+static const proof_call change_made = {"mesh_change_create", PROOF_CREATES, create_change, keep_change};
+static const proof_call mesh_changed = {"detector_change_mesh", PROOF_CHANGES, change_mesh, NULL};
+static const proof_call cloned = {"detector_clone", PROOF_CREATES, clone_detector, keep_clone};
+
+/* ---- the table ------------------------------------------------------------------------------------------ */
+
+#define SPHERES .family = SCENE_TWO_SPHERES
+
+static const proof_row rows[] = {
+    {"parts", {&parts, &bodies, &parts_found}, open_detector, SPHERES},
+    {"parts_of_contacts", {&kept_step, &parts, &sums, &changes}, open_keeping, free_contacts, SPHERES},
+    {"rules", {&step_first, &apart, &step_second, &thick, &step_third}, open_detector, SPHERES},
+    {"seams", {&step_first, &seams, &step_second, &step_third}, open_torn, SPHERES},
+    {"ignored", {&step_first, &ignored, &step_second, &step_third}, open_detector, SPHERES},
+    {"separation", {&step_first, &separation, &step_second, &longest, &step_third}, open_detector, SPHERES},
+    {"active", {&active, &step_first, &step_second, &step_third}, open_resting, SPHERES},
+    {"active_later", {&step_first, &active, &step_second, &step_third}, open_resting, SPHERES},
+    {"change", {&step_first, &change_made, &mesh_changed, &step_second, &step_third}, open_detector, SPHERES},
+    {"clone", {&step_first, &cloned, &step_second, &step_third}, open_detector, SPHERES},
+};
+
+int main(void) {
+    return proofs_run("told", rows, sizeof rows / sizeof *rows);
+}

@@ -1,0 +1,240 @@
+/* One world in which the calls of a row are made, and what interferes with them. */
+#include "tests/support/proofs/proof.h"
+
+#include "src/core/context.h"
+#include "src/mesh/mesh.h"
+#include "tests/support/proofs/world.h"
+#include "tests/support/test.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { UNTOUCHED = 0xa5 };
+
+static const char *const source_names[PROOF_SOURCE_COUNT] = {"nothing",
+                                                             "a refused allocation",
+                                                             "a refusing report",
+                                                             "a cancelling report",
+                                                             "a cancelling allocation",
+                                                             "a cancelling task",
+                                                             "a cancelling ignore"};
+
+/* ---- callbacks ------------------------------------------------------------------------------------------ */
+
+/* Is this the call of a callback that the world has been waiting for? */
+static bool strikes_here(proof *p, proof_source source) {
+    if (!p->armed || source != p->source) return false;
+    if (atomic_fetch_add(&p->seen, 1) != p->at) return false;
+    atomic_store(&p->struck, true);
+    return true;
+}
+
+static void *allocate_block(void *user, size_t size, size_t alignment) {
+    proof *p = user;
+    cscd_allocator system = counting_allocator_interface(&p->counter);
+    if (strikes_here(p, PROOF_ALLOCATION_FAILS)) return NULL;
+    if (strikes_here(p, PROOF_ALLOCATION_CANCELS)) cscd_context_cancel(p->context);
+    return system.allocate(system.user, size, alignment);
+}
+
+static void release_block(void *user, void *block, size_t size) {
+    cscd_allocator system = counting_allocator_interface(&((proof *)user)->counter);
+    system.release(system.user, block, size);
+}
+
+static bool report_progress(void *user, const char *stage, double fraction) {
+    proof *p = user;
+    assert_true(pthread_equal(p->thread, pthread_self()));
+    assert_true(stage != NULL && stage[0] != '\0');
+    assert_true(fraction >= p->fraction && fraction <= 1.0);
+    p->fraction = fraction;
+    if (strikes_here(p, PROOF_REPORT_CANCELS)) cscd_context_cancel(p->context);
+    return !strikes_here(p, PROOF_REPORT_REFUSES);
+}
+
+static void run_backwards(void *user, uint32_t task_count, void (*task)(void *data, uint32_t index),
+                          void *data) {
+    proof *p = user;
+    p->wide_loops += task_count > 1;
+    for (uint32_t i = task_count; i-- > 0;) {
+        task(data, i);
+        if (strikes_here(p, PROOF_TASK_CANCELS)) cscd_context_cancel(p->context);
+    }
+}
+
+bool proof_ignore(void *user, cscd_contact_kind kind, uint32_t a, uint32_t b) {
+    proof *p = user;
+    if (strikes_here(p, PROOF_IGNORE_CANCELS)) cscd_context_cancel(p->context);
+    return kind == CSCD_CONTACT_TT && a == b;
+}
+
+/* ---- digests -------------------------------------------------------------------------------------------- */
+
+static const uint64_t empty_digest = 0xcbf29ce484222325u;
+
+static void add_bytes(uint64_t *digest, const void *bytes, size_t size) { /* FNV-1a */
+    const unsigned char *byte = bytes;
+    for (size_t i = 0; i < size; i++) *digest = (*digest ^ byte[i]) * 0x100000001b3u;
+}
+
+void proof_add(proof *p, const void *bytes, size_t size) {
+    add_bytes(&p->digests[p->at_call].answer, bytes, size);
+}
+
+void proof_add_items(proof *p, const void *items, size_t count, size_t size) {
+    proof_add(p, &count, sizeof count);
+    if (items != NULL) proof_add(p, items, count * size);
+    p->items += count;
+}
+
+/* Trees may have been built again by a call that has failed then, so their number is not compared. */
+static void read_detector(proof *p) {
+    cscd_counters counters = cscd_detector_counters(p->detector);
+    const cscd_mesh *mesh = cscd_detector_mesh(p->detector);
+    for (uint32_t c = 0; c < cscd_mesh_component_count(mesh); c++) {
+        cscd_start_knowledge known = cscd_detector_start_knowledge(p->detector, c);
+        add_bytes(&p->digests[p->at_call].counters, &known, sizeof known);
+    }
+    counters.rebuilds = 0;
+    add_bytes(&p->digests[p->at_call].counters, &counters, sizeof counters);
+}
+
+/* ---- calls ---------------------------------------------------------------------------------------------- */
+
+static void expect_bytes(const proof *p, const void *bytes, size_t size, unsigned char value) {
+    const unsigned char *byte = bytes;
+    for (size_t i = 0; i < size; i++)
+        if (byte[i] != value)
+            fail_msg("%s has failed and has written an output", p->row->calls[p->at_call]->function);
+}
+
+static void expect_failure(proof *p, const proof_call *call, cscd_status status, size_t held) {
+    const bool memory = p->source == PROOF_ALLOCATION_FAILS;
+    if (!atomic_load(&p->struck) || status != (memory ? CSCD_OUT_OF_MEMORY : CSCD_CANCELLED))
+        fail_msg("%s: %s, after %s, number %zu", call->function, cscd_status_string(status),
+                 source_names[p->source], p->at);
+    if (p->context != NULL)
+        assert_non_null(strstr(cscd_context_detail(p->context), memory ? "out of memory" : "cancel"));
+    expect_bytes(p, &p->answer, sizeof p->answer, UNTOUCHED);
+    expect_bytes(p, p->reached, sizeof p->reached, UNTOUCHED);
+    if (call->kind == PROOF_CREATES &&
+        p->options.parallel_for.run == NULL) /* its marks stay in the context */
+        assert_int_equal(p->counter.bytes, held);
+    if (memory)
+        p->failures++;
+    else
+        p->cancellations++;
+}
+
+static cscd_status make_once(proof *p, const proof_call *call) {
+    memset(&p->answer, UNTOUCHED, sizeof p->answer);
+    memset(p->reached, UNTOUCHED, sizeof p->reached);
+    p->fraction = 0.0;
+    p->armed = p->only < 0 || p->only == p->at_call;
+    cscd_status status = call->make(p);
+    p->armed = false;
+    return status;
+}
+
+static void read_answer(proof *p, const proof_call *call) {
+    p->digests[p->at_call].answer = p->digests[p->at_call].counters = empty_digest;
+    if (call->read != NULL) call->read(p);
+    if (p->detector != NULL) read_detector(p);
+}
+
+/* The last times find all lists long enough. */
+static void ask_again(proof *p, const proof_call *call) {
+    const uint64_t expected = p->digests[p->at_call].answer;
+    size_t allocations = 0;
+    for (int i = 0; i < p->again; i++) {
+        if (i == p->again - 2) allocations = p->counter.calls;
+        assert_int_equal(make_once(p, call), CSCD_OK);
+        read_answer(p, call);
+        if (p->digests[p->at_call].answer != expected)
+            fail_msg("%s answered something else when it was asked again", call->function);
+    }
+    if (p->again > 1 && p->counter.calls != allocations) p->allocates = call->function;
+}
+
+static void make_call(proof *p, const proof_call *call) {
+    const size_t held = p->counter.bytes;
+    cscd_status status = make_once(p, call);
+    if (status != CSCD_OK) {
+        expect_failure(p, call, status, held);
+        if (p->skips) return;
+        status = make_once(p, call);
+        if (status != CSCD_OK)
+            fail_msg("%s: %s (%s) when it was made after %s, number %zu", call->function,
+                     cscd_status_string(status), p->context != NULL ? cscd_context_detail(p->context) : "",
+                     source_names[p->source], p->at);
+    }
+    read_answer(p, call);
+    if (call->kind == PROOF_ASKS) ask_again(p, call);
+}
+
+/* ---- a world -------------------------------------------------------------------------------------------- */
+
+proof proof_world(const proof_row *row, uint32_t thread_count, proof_source source, size_t at) {
+    proof p = {.row = row, .source = source, .at = at, .only = -1, .out = -1};
+    p.options = cscd_context_defaults();
+    p.options.thread_count = thread_count;
+    return p;
+}
+
+void proof_need(proof *p, cscd_status status) {
+    if (status != CSCD_OK) fail_msg("%s: %s", p->row->name, cscd_context_detail(p->context));
+}
+
+void proof_take_context(proof *p, cscd_context *context) {
+    p->context = context;
+    p->context->progress.interval_ms = 0.0; /* asks whenever it can */
+    p->empty = p->counter.bytes;
+}
+
+static void open_context(proof *p) {
+    p->counter = counting_allocator_start();
+    p->thread = pthread_self();
+    p->options.allocator = (cscd_allocator){allocate_block, release_block, p};
+    if (!p->unwatched) p->options.progress = (cscd_progress){report_progress, p};
+    cscd_context *context;
+    if (p->row->without_context) return;
+    assert_int_equal(cscd_context_create(&p->options, &context), CSCD_OK);
+    proof_take_context(p, context);
+}
+
+void proof_host_loop(proof *p) {
+    p->options.parallel_for = (cscd_parallel_for){run_backwards, p};
+}
+
+/* In a release a context frees whatever is left when it goes, so what its objects leave behind is looked for before. */
+static void expect_nothing_left(const proof *p) {
+    if (p->options.parallel_for.run == NULL && p->counter.bytes != p->empty)
+        fail_msg("%s: %zu bytes are left after %s, number %zu", p->row->name, p->counter.bytes - p->empty,
+                 source_names[p->source], p->at);
+}
+
+static void destroy_all(proof *p) {
+    cscd_event_tracker_destroy(p->tracker);
+    cscd_event_tracker_destroy(p->later);
+    cscd_sensors_destroy(p->sensors);
+    cscd_partition_destroy(p->partition);
+    cscd_line_search_destroy(p->line);
+    cscd_detector_destroy(p->clone);
+    cscd_detector_destroy(p->detector);
+    cscd_plan_destroy(p->plan);
+    cscd_mesh_change_destroy(p->change);
+    cscd_mesh_destroy(p->mesh);
+    if (p->row->close != NULL) p->row->close(p);
+    expect_nothing_left(p);
+    cscd_context_destroy(p->context);
+    assert_int_equal(p->counter.live, 0);
+    assert_int_equal(p->counter.bytes, 0);
+}
+
+void proof_live(proof *p) {
+    open_context(p);
+    if (p->row->open != NULL) p->row->open(p);
+    for (p->at_call = 0; p->row->calls[p->at_call] != NULL; p->at_call++)
+        if (p->at_call != p->out) make_call(p, p->row->calls[p->at_call]);
+    destroy_all(p);
+}
