@@ -47,8 +47,8 @@ typedef struct cscd_patch {
  * Which components are inside out is found at each moment, and exactly (docs/theory/orientation.md). A closed component is
  * inverted if the volume that it encloses is negative; where it passes through itself, each place counts as often as its
  * surface winds around it. A *cavity* is a component that lies in another one of its object without crossing it, is turned the other
- * way round than the innermost such one, and that one is no cavity. A cavity is turned around if the shell around it is; each
- * other component if it is inverted. So a cavity stays a cavity, and a second body a second body, also in an object that is inverted as
+ * way round than the innermost such one, and that one is no cavity; but of two that cross the one that encloses less is none. A
+ * cavity is turned around if the shell around it is; each other component if it is inverted. So a cavity stays a cavity, and a second body a second body, also in an object that is inverted as
  * a whole. With CSCD_ORIENTATION_BY_PART, and with part_bodies, a component can only be a cavity of one that has the part of its first
  * triangle (or, of none, triangles of none), too. A component without volume is as given.
  *

@@ -125,7 +125,8 @@ static void sort_keys(component_keys *k) {
     for (size_t i = 0; i < count; i++) add_key(k, k->items[i]);
 }
 
-static bool has_key(const component_keys *k, uint64_t key) {
+/* The first of the keys that is not below. */
+static size_t place_of_key(const component_keys *k, uint64_t key) {
     size_t low = 0, high = k->count;
     while (low < high) {
         size_t middle = low + (high - low) / 2;
@@ -134,7 +135,12 @@ static bool has_key(const component_keys *k, uint64_t key) {
         else
             high = middle;
     }
-    return low < k->count && k->items[low] == key;
+    return low;
+}
+
+static bool has_key(const component_keys *k, uint64_t key) {
+    const size_t at = place_of_key(k, key);
+    return at < k->count && k->items[at] == key;
 }
 
 /* Those that share a triangle, as copies do, are neither in the other. */
@@ -256,6 +262,18 @@ static void find_around(const orientation_work *w) {
     winding_tally_clear(&o->tally);
 }
 
+/* Does a shell cross a larger one that is turned the same way, with the same one around both? Two cavities of one body do not cross: the
+ * smaller one is a mirrored body that reaches into the wall. */
+static bool crosses_larger_shell(const orientation_finder *o, uint32_t c) {
+    const component_keys *k = &o->crossings;
+    for (size_t i = place_of_key(k, key_of(c, 0)); i < k->count && k->items[i] >> 32 == c; i++) {
+        const uint32_t other = (uint32_t)k->items[i];
+        if (o->around[other] == o->around[c] && o->signs[other] == o->signs[c] && is_larger(o, other, c))
+            return true;
+    }
+    return false;
+}
+
 /* From the outermost shell that is not known yet down to the component: a shell is a cavity if it is turned the other way round than
  * the one around it, and that one is none. */
 static void find_role(orientation_finder *o, uint32_t component) {
@@ -263,7 +281,8 @@ static void find_role(orientation_finder *o, uint32_t component) {
     for (uint32_t c = component; o->roles[c] == SHELL_UNKNOWN; c = o->around[c]) path[depth++] = c;
     while (depth > 0) {
         const uint32_t c = path[--depth], outer = o->around[c];
-        const bool cavity = o->signs[c] != o->signs[outer] && o->roles[outer] == SHELL_OF_BODY;
+        const bool cavity =
+            o->signs[c] != o->signs[outer] && o->roles[outer] == SHELL_OF_BODY && !crosses_larger_shell(o, c);
         o->roles[c] = cavity ? SHELL_OF_CAVITY : SHELL_OF_BODY;
     }
 }

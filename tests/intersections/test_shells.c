@@ -165,6 +165,74 @@ static void cavities_may_touch_their_hull(void **state) {
     }
 }
 
+static double greatest_depth(void) {
+    double most = -1.0;
+    for (size_t i = 0; i < rig.found.depths->count; i++) {
+        const double depth = rig.found.depths->items[i].depth;
+        if (depth > most) most = depth;
+    }
+    return most;
+}
+
+/* A hull from -3 to 3, its cavity from -2 to 2, and a box that crosses the cavity's wall, in each order. A small box reaches 0.5 into the
+ * wall; if it has the cavity's sense it is a body all the same, turned around: two cavities do not cross. A large one encloses more
+ * than the cavity, which stays one, as the box has the hull's sense. */
+static void what_crosses_its_cavity_is_a_body(void **state) {
+    (void)state;
+    static const uint8_t orders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+    static const double low[2][3] = {{1.25, -0.5, -0.5}, {-2.5, -2.5, -2.5}},
+                        size[2][3] = {{1.25, 1, 1}, {5, 5, 4}};
+    for (int round = 0; round < 8 * 6; round++) {
+        const bool large = round / 4 % 2 == 1, hull_inverted = round / 2 % 2 == 1,
+                   box_inverted = large ? hull_inverted : round % 2 == 1;
+        const uint8_t *order = orders[round / 8]; /* of hull, cavity and box: their places */
+        body_rig_begin(&rig);
+        for (uint32_t place = 0; place < 3; place++) {
+            if (order[2] == place)
+                body_rig_add_box(&rig, low[large], size[large]);
+            else
+                add_cube(order[0] == place ? -3 : -2, order[0] == place ? 6 : 4);
+        }
+        body_rig_end_body(&rig);
+        if (box_inverted) body_rig_turn(&rig, order[2] * CUBE, CUBE);
+        body_rig_turn(&rig, order[hull_inverted ? 0 : 1] * CUBE, CUBE);
+        body_rig_place(&rig, round % 3, false, 1.0);
+        body_rig_create(&rig, NULL, 1);
+        rig.part_bodies = true;
+        body_rig_find(&rig);
+        assert_true(rig.found.crossing > 0 && (large || greatest_depth() == 0.5));
+        for (uint32_t i = 0; i < 2; i++) assert_int_equal(body_rig_is_turned(&rig, order[i]), hull_inverted);
+        assert_int_equal(body_rig_is_turned(&rig, order[2]), box_inverted);
+        for (size_t i = 0; i < rig.found.patches->count; i++) {
+            const cscd_patch *patch = &rig.found.patches->items[i];
+            assert_int_equal(patch->body, order[patch->component == order[2] ? 2 : 0]);
+        }
+        body_rig_free(&rig);
+    }
+}
+
+/* Two hollow bodies that cross so far that their cavities cross, too: each stays the cavity of its own body. */
+static void cavities_of_two_bodies_may_cross(void **state) {
+    (void)state;
+    body_rig_begin(&rig);
+    for (int i = 0; i < 2; i++) {
+        add_cube(2 * i - 3, 6);
+        add_cube(2 * i - 2, 4);
+    }
+    body_rig_end_body(&rig);
+    body_rig_turn(&rig, CUBE, CUBE);
+    body_rig_turn(&rig, 3 * CUBE, CUBE);
+    body_rig_create(&rig, NULL, 1);
+    rig.part_bodies = true;
+    body_rig_find(&rig);
+    for (uint32_t i = 0; i < 4; i++) assert_false(body_rig_is_turned(&rig, i));
+    for (size_t i = 0; i < rig.found.patches->count; i++) {
+        const cscd_patch *patch = &rig.found.patches->items[i];
+        assert_int_equal(patch->body, patch->component / 2 * 2);
+    }
+    body_rig_free(&rig);
+}
+
 /* The first triangle of a cube becomes its last one. */
 static void rotate_triangles(uint32_t cube) {
     uint32_t *first = rig.all.triangles + (size_t)cube * 3, kept[3];
@@ -256,6 +324,8 @@ int main(void) {
         cmocka_unit_test(cavities_belong_to_what_is_around_them),
         cmocka_unit_test(bodies_go_by_parts),
         cmocka_unit_test(cavities_may_touch_their_hull),
+        cmocka_unit_test(what_crosses_its_cavity_is_a_body),
+        cmocka_unit_test(cavities_of_two_bodies_may_cross),
         cmocka_unit_test(left_out_pairs_make_no_cavity),
         cmocka_unit_test(parts_are_bodies_of_their_own),
         cmocka_unit_test(a_shell_of_a_skin_with_limbs),
