@@ -1,6 +1,8 @@
 /* The detector of a replay: steps, checks, and a new one for each chunk. */
 #include "src/tool/replay/replay_detector.h"
 
+#include "src/tool/replay/half_turns.h"
+
 #include <stdlib.h>
 
 static bool api_failed(const replay_detector *d, io_error *error) {
@@ -65,9 +67,18 @@ static cscd_status step_within_memory(const replay_detector *d, const double *x0
     return status;
 }
 
+/* Before the step, which may take long just there. */
+static void look_for_half_turns(replay_detector *d, uint32_t k, const double *x0, const double *x1) {
+    half_turn found;
+    if (d->told_half_turn || d->options->quiet || !half_turn_find(d->recording->mesh, x0, x1, &found)) return;
+    half_turn_tell(d->recording, &d->ignored->parts, k, &found);
+    d->told_half_turn = true;
+}
+
 bool replay_detector_step(replay_detector *d, uint32_t k, const double *x0, const double *x1,
                           interval_step *out, io_error *error) {
     cscd_contacts contacts;
+    look_for_half_turns(d, k, x0, x1);
     const cscd_status status = step_within_memory(d, x0, x1, &contacts);
     if (status == CSCD_LIST_TOO_LONG) {
         orientation_row_forget(&d->orientations);

@@ -15,6 +15,7 @@ typedef struct replay_detector {
     ignore_pairs *ignored;
     const answers *answers;
     bool takes_orientations; /* else steps come without */
+    bool told_half_turn;     /* one note is enough */
 
     cscd_detector *detector;
     cscd_guarantee *guarantees;
