@@ -84,7 +84,8 @@ static cscd_status extend_basis(gmres *g, uint32_t k) {
 static double rotate_column(gmres *g, uint32_t k) {
     double *column = g->columns[k];
     for (uint32_t i = 0; i < k; i++) rotate_pair(g->cosines[i], g->sines[i], &column[i], &column[i + 1]);
-    const double length = hypot(column[k], column[k + 1]);
+    /* hypot ends in other bits elsewhere, and so would plans. */
+    const double length = sqrt(column[k] * column[k] + column[k + 1] * column[k + 1]);
     g->cosines[k] = length > 0.0 ? column[k] / length : 1.0;
     g->sines[k] = length > 0.0 ? column[k + 1] / length : 0.0;
     rotate_pair(g->cosines[k], g->sines[k], &column[k], &column[k + 1]);
