@@ -91,10 +91,10 @@ def compare_pairs(frame, answer, number):
 
 
 def compare_depth(frame, answer, number):
-    """No vertex is deeper than the JSON says, which also knows of points of edges. Is the deepest point a vertex?"""
+    """No vertex is deeper than the JSON says, which also knows of points of edges and faces. Is the deepest point near a vertex?"""
     deepest = max(frame['points']['depth'])
     assert (deepest > 0) == (answer['depth'] > 0) and deepest <= answer['depth'], f'{number}: {deepest}, {answer["depth"]}'
-    return deepest == answer['depth'] > 0
+    return deepest > 0.9 * answer['depth']
 
 
 def compare_lists(frame, lists, number):
