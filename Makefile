@@ -137,7 +137,7 @@ ifdef WASM
 include src/packaging/wasm/wasm.mk
 endif
 # The thread sanitizer sees the tests that use threads, and no others are built for it.
-THREAD_TESTS := detector/test_threads bvh/test_traversal core/test_progress core/test_parallel_for core/test_contexts core/test_host_loop \
+THREAD_TESTS := bvh/test_traversal core/test_threads core/test_progress core/test_parallel_for core/test_contexts core/test_host_loop \
                 core/test_exceptions detector/test_reentry detector/test_lifetimes detector/test_shared_mesh detector/test_clone_threads \
                 intersections/test_first_pairs intersections/test_surface_answers cpp/test_callbacks
 ifeq ($(CONFIG),tsan)
@@ -196,16 +196,16 @@ ROOMS   := $(sort $(foreach source,$(ROOM_SOURCES),$(BUILD)/$(dir $(source))room
 SLOW_baselines     := contour iccd
 SLOW_bvh           := traversal
 SLOW_ccd           := algebraic algebraic_oracle cubic cubic_guess elementary_degenerate elementary_exact elementary_oracle min_separation_random root_finders
-SLOW_core          := cancel float_environment host_loop left_calls exceptions parallel_for progress
+SLOW_core          := float_environment host_loop left_calls exceptions parallel_for progress
 SLOW_culling       := choice culling local_culling
-SLOW_detector      := list_cap min_separation_detector object_rules oracle threads reentry waiting_random
+SLOW_detector      := list_cap min_separation_detector object_rules oracle reentry waiting_random
 SLOW_intersections := collapsed static_check_kernel pair_kind find_intersections find_intersections_calls first_pairs
 SLOW_jobs          := stopped_jobs
 SLOW_mesh          := predicates triangle_intersection
 SLOW_models        := cloth_drivers cloth_scenes ipc_scenes record_program recording_pawn recordings shape_program shape_regions shapes soft_body
 SLOW_narrow_phase  := exclusions feature_queue
 SLOW_preprocess    := best_draft charge charge_tree connected_regions cover labelling motion partition partition_counts plan_failures rank_blocks regions stiffness
-SLOW_proofs        := creations solver_calls steps told
+SLOW_proofs        := creations intersections solver_calls steps told
 SLOW_report        := report_browser
 SLOW_sensors       := exact_check sensor_recall sensor_scenes
 SLOW_solver        := floors max_step proximity

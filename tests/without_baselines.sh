@@ -24,8 +24,8 @@ case ${CC:-} in
 esac
 tests=''
 for name in bvh/test_bulk_motion core/test_progress culling/test_culling_traps \
-    culling/test_region_points detector/test_detector detector/test_memory detector/test_oracle detector/test_threads \
-    solver/test_line_search solver/test_max_step solver/test_proximity solver/test_solver_memory; do
+    culling/test_region_points detector/test_detector detector/test_oracle proofs/test_steps proofs/test_solver_calls \
+    solver/test_line_search solver/test_max_step solver/test_proximity; do
     tests="$tests build/release/tests/$name"
 done
 make -s -j"$(nproc)" tool library $tests CFLAGS="$flags"

@@ -46,38 +46,6 @@ static void compare_lists(const cscd_contacts *found, const cscd_contacts *expec
         assert_memory_equal(found->items, expected->items, found->count * sizeof *found->items);
 }
 
-/* Cancels the first step at each place where it asks, and repeats it. The first two places are before there are trees. */
-static void first_steps_may_be_cancelled_anywhere(void **state) {
-    (void)state;
-    place_counter h = {0, 0};
-    cscd_context *context = create_context(&h);
-    cscd_mesh *mesh = NULL, *other = NULL;
-    cscd_contacts expected, found;
-    scene_make(SCENE_BENT_CAPSULE, 3, &shape);
-    cscd_detector *whole = create_detector(context, &mesh);
-    assert_int_equal(step_packed(whole, shape.x0, shape.x1, &expected), CSCD_OK);
-    const uint32_t places = h.asked;
-    uint32_t without_trees = 0;
-    for (uint32_t at = 1; at <= places; at++) {
-        cscd_detector *detector = create_detector(context, &other);
-        h = (place_counter){0, at};
-        assert_int_equal(step_packed(detector, shape.x0, shape.x1, &found), CSCD_CANCELLED);
-        assert_int_equal(h.asked, at);
-        without_trees += detector->space.bvh.mesh == NULL;
-        h = (place_counter){0, 0};
-        assert_int_equal(step_packed(detector, shape.x0, shape.x1, &found), CSCD_OK);
-        compare_lists(&found, &expected);
-        cscd_detector_destroy(detector);
-        cscd_mesh_destroy(other);
-    }
-    print_message("  %u places, %u of them before there are trees\n", (unsigned)places,
-                  (unsigned)without_trees);
-    assert_true(without_trees >= 2 && places > without_trees);
-    cscd_detector_destroy(whole);
-    cscd_mesh_destroy(mesh);
-    cscd_context_destroy(context);
-}
-
 /* A pleated strip that is pulled flat: at first its layers lie on each other, so leaves hold triangles of several layers, and
  * some later step builds its trees again. */
 enum { ROWS = 4, COLUMNS = 200, PLEAT = 8, STEPS = 40 };
@@ -145,7 +113,6 @@ static void rebuilds_may_be_cancelled_anywhere(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(first_steps_may_be_cancelled_anywhere),
         cmocka_unit_test(rebuilds_may_be_cancelled_anywhere),
     };
     return cmocka_run_group_tests_name("bvh cancelled", tests, NULL, NULL);

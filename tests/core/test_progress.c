@@ -153,33 +153,6 @@ static void culling_goes_on(void **state) {
     assert_true(culled > 0);
 }
 
-static void other_methods_go_on(void **state) {
-    static const cscd_method methods[] = {CSCD_METHOD_NONE, CSCD_METHOD_PUBLISHED, CSCD_METHOD_ICCD,
-                                          CSCD_METHOD_ICCD_PUBLISHED};
-    (void)state;
-    for (uint64_t i = 0; i < sizeof methods / sizeof *methods; i++) {
-        sequence_make(SEQUENCE_SCENE, i + 40, 8, &q);
-        check_interrupted(
-            i % 2 == 0 ? 1 : 3, UINT32_MAX,
-            (workload){.options = of_method(method_or_none(methods[i]), CSCD_MODE_ALL, CSCD_START_PROVE)});
-    }
-}
-
-static void separation_goes_on(void **state) {
-    cscd_detector_options options = cscd_detector_defaults();
-    (void)state;
-    options.min_separation = 0.02;
-    sequence_make(SEQUENCE_SCENE, 3, 6, &q);
-    check_interrupted(1, UINT32_MAX, (workload){.options = options});
-}
-
-static void brute_force_goes_on(void **state) {
-    (void)state;
-    sequence_make(SEQUENCE_GRID, 5, 4, &q);
-    check_interrupted(1, UINT32_MAX,
-                      (workload){.options = of_method(CSCD_METHOD_BRUTE, CSCD_MODE_ALL, CSCD_START_PROVE)});
-}
-
 /* A pleated sheet that is pulled flat, so that its trees are rebuilt in a call that is cancelled. */
 static void rebuilding_goes_on(void **state) {
     enum { COLUMNS = 140, PLEAT = 6 };
@@ -218,48 +191,6 @@ static void large_meshes_go_on(void **state) {
 /* ---- plans --------------------------------------------------------------------------------------------- */
 
 enum { PLAN_EVERY = 16 }; /* a plan by charge has hundreds of reports */
-
-static void plans_go_on(void **state) {
-    static const cscd_method methods[] = {CSCD_METHOD_CHARGE, CSCD_METHOD_KMEANS};
-    (void)state;
-    for (uint32_t i = 0; i < 4; i++) {
-        scene_clear(&q.shape);
-        scene_add_capsule(&q.shape, 5.0, 0.5, 20, 14);
-        q.frame_count = 1;
-        check_interrupted(1 + i / 2, PLAN_EVERY,
-                          (workload){.plan = methods[i % 2],
-                                     .options = of_method(methods[i % 2], CSCD_MODE_ALL, CSCD_START_PROVE)});
-    }
-}
-
-/* After each cancelled call the context holds as many bytes as before it. */
-static void plans_leave_nothing_behind(void **state) {
-    counting_allocator counter;
-    watcher host;
-    cscd_mesh *mesh = NULL;
-    cscd_plan *plan = NULL;
-    (void)state;
-    scene_clear(&q.shape);
-    scene_add_capsule(&q.shape, 5.0, 0.5, 20, 14);
-    cscd_object_desc desc =
-        cscd_object_of_triangles(q.shape.vertex_count, q.shape.triangle_count, q.shape.triangles);
-    cscd_context *context = make_context(2, &host, &counter);
-    context->progress.interval_ms = 0.0;
-    host.every = PLAN_EVERY;
-    assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
-    size_t bytes = cscd_context_bytes(context);
-    while (cancel_later(&host, context, plan_create_packed(mesh, q.shape.x0, NULL, &plan))) {
-        assert_null(plan);
-        assert_int_equal(host.bytes, bytes);
-    }
-    assert_non_null(plan);
-    assert_true(host.cancellations >= 3); /* how many more depends on which thread takes which task */
-    expect_good(&host);
-    cscd_plan_destroy(plan);
-    cscd_mesh_destroy(mesh);
-    cscd_context_destroy(context);
-    assert_int_equal(counter.live, 0);
-}
 
 /* Reports keep the library's own interval, and the fraction comes near 1. */
 static void reports_come_now_and_then(void **state) {
@@ -315,15 +246,9 @@ static void shares_of_parts_of_calls(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(culling_goes_on),
-                                       cmocka_unit_test(other_methods_go_on),
-                                       cmocka_unit_test(separation_goes_on),
-                                       cmocka_unit_test(brute_force_goes_on),
-                                       cmocka_unit_test(rebuilding_goes_on),
-                                       cmocka_unit_test(large_meshes_go_on),
-                                       cmocka_unit_test(plans_go_on),
-                                       cmocka_unit_test(plans_leave_nothing_behind),
-                                       cmocka_unit_test(reports_come_now_and_then),
-                                       cmocka_unit_test(shares_of_parts_of_calls)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(culling_goes_on), cmocka_unit_test(rebuilding_goes_on),
+        cmocka_unit_test(large_meshes_go_on), cmocka_unit_test(reports_come_now_and_then),
+        cmocka_unit_test(shares_of_parts_of_calls)};
     return cmocka_run_group_tests_name("progress", tests, NULL, NULL);
 }

@@ -171,32 +171,6 @@ static void two_threads(void **state) {
     for (int i = 0; i < 2; i++) cscd_context_destroy(contexts[i]);
 }
 
-static void failing_allocations(void **state) {
-    (void)state;
-    sequence_make(SEQUENCE_SCENE, 5, 20, &recording);
-    counting_allocator counters[2] = {counting_allocator_start(), counting_allocator_start()};
-    cscd_context *contexts[2] = {new_context(&counters[0], 1), new_context(&counters[1], 2)};
-    cscd_mesh *mesh = mesh_of(contexts[0], &recording.shape);
-    cscd_detector *first = detector_of(contexts[0], mesh), *clone = NULL;
-    free(step_frame(first, 0).items);
-    size_t live = counters[1].live, n = 0;
-    cscd_status status = CSCD_OUT_OF_MEMORY;
-    for (; status != CSCD_OK; n++) {
-        counters[1].fail_at = counters[1].calls + n;
-        status = cscd_detector_clone(contexts[1], first, &clone);
-        counters[1].fail_at = SIZE_MAX;
-        assert_true(status == CSCD_OK || (status == CSCD_OUT_OF_MEMORY && clone == NULL));
-        if (status != CSCD_OK) assert_int_equal(counters[1].live, live);
-    }
-    assert_true(n > 40);
-    for (uint32_t f = 1; f < 5; f++) check_same_steps(step_frame(first, f), step_frame(clone, f));
-    cscd_detector_destroy(clone);
-    cscd_detector_destroy(first);
-    cscd_mesh_destroy(mesh);
-    for (int i = 0; i < 2; i++) cscd_context_destroy(contexts[i]);
-    assert_int_equal(counters[0].live + counters[1].live, 0);
-}
-
 typedef struct cloner {
     cscd_context *other;
     cscd_detector *detector, *clone;
@@ -293,9 +267,9 @@ static void knowledge_of_starts(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(goes_on_as_the_first), cmocka_unit_test(goes_its_own_way),
-        cmocka_unit_test(two_threads),          cmocka_unit_test(failing_allocations),
-        cmocka_unit_test(refused_calls),        cmocka_unit_test(knowledge_of_starts)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(goes_on_as_the_first),
+                                       cmocka_unit_test(goes_its_own_way), cmocka_unit_test(two_threads),
+                                       cmocka_unit_test(refused_calls),
+                                       cmocka_unit_test(knowledge_of_starts)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

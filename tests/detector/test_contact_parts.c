@@ -209,36 +209,12 @@ static void what_is_refused(void **state) {
     body_rig_free(&rig);
 }
 
-static void every_allocation_may_fail(void **state) {
-    (void)state;
-    size_t failed = 0;
-    for (size_t n = 0, done = 0; done == 0; n++) {
-        counting_allocator counter = counting_allocator_start();
-        cscd_contact_part_pairs sums = {NULL, 4711};
-        open_scene(&counter, 1);
-        step_scene();
-        counter.fail_at = counter.calls + n;
-        cscd_status status = cscd_detector_contact_parts(rig.detector, found.items, found.count, &sums);
-        done = status == CSCD_OK;
-        failed += status == CSCD_OUT_OF_MEMORY;
-        assert_true(done ? sums.count == 2 : status == CSCD_OUT_OF_MEMORY && sums.count == 4711);
-        counter.fail_at = SIZE_MAX;
-        assert_int_equal(cscd_detector_contact_parts(rig.detector, found.items, found.count, &sums), CSCD_OK);
-        assert_int_equal(sums.count, 2);
-        size_t calls = counter.calls;
-        assert_int_equal(cscd_detector_contact_parts(rig.detector, found.items, found.count, &sums), CSCD_OK);
-        assert_int_equal(counter.calls, calls);
-        body_rig_free(&rig);
-        assert_int_equal(counter.live, 0);
-    }
-    assert_int_equal(failed, 3);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(objects_are_parts_by_default), cmocka_unit_test(parts_of_the_caller),
-        cmocka_unit_test(loose_objects_have_parts),     cmocka_unit_test(what_is_refused),
-        cmocka_unit_test(every_allocation_may_fail),
+        cmocka_unit_test(objects_are_parts_by_default),
+        cmocka_unit_test(parts_of_the_caller),
+        cmocka_unit_test(loose_objects_have_parts),
+        cmocka_unit_test(what_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

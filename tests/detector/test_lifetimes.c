@@ -219,33 +219,11 @@ static void all_at_once(void **state) {
     }
 }
 
-/* ---- a creation that fails ------------------------------------------------------------------------------ */
-
-/* Fails the n-th allocation of a creation. Returns whether there was an n-th. */
-static bool fail_creation(int kind, size_t n) {
-    family f;
-    family_create(&f, 1, kind);
-    f.counter.fail_at = f.counter.calls + n;
-    cscd_status status = member_create(f.members, kind, &f.counter, 1, &f.members[kind]);
-    assert_int_equal(status, f.members[kind] != NULL ? CSCD_OK : CSCD_OUT_OF_MEMORY);
-    for (int i = 0; i < KINDS; i++) member_destroy(f.members, i);
-    assert_int_equal(f.counter.live, 0);
-    return status != CSCD_OK;
-}
-
-/* Whatever allocation fails, nothing is held afterwards: destroying what was made before frees all memory. */
-static void failed_creations_hold_nothing(void **state) {
-    (void)state;
-    for (int kind = CONTEXT; kind < KINDS; kind++) {
-        size_t failures = 0;
-        while (fail_creation(kind, failures)) failures++;
-        assert_true(failures > 2);
-    }
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_order), cmocka_unit_test(threads_outlive_their_context),
-        cmocka_unit_test(all_at_once), cmocka_unit_test(failed_creations_hold_nothing)};
+        cmocka_unit_test(every_order),
+        cmocka_unit_test(threads_outlive_their_context),
+        cmocka_unit_test(all_at_once),
+    };
     return cmocka_run_group_tests_name("lifetimes", tests, move_up, NULL);
 }

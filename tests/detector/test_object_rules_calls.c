@@ -1,7 +1,6 @@
 /* Rules for objects beside contacts: moments, line searches, and what is refused. */
 #include "cscd/cscd.h"
 #include "cscd/research.h"
-#include "tests/support/counting_allocator.h"
 #include "tests/support/methods.h"
 #include "tests/support/object_scene.h"
 #include "tests/support/packed.h"
@@ -138,45 +137,6 @@ static void mistakes_have_a_sentence(void **state) {
     rules_rig_destroy(&s);
 }
 
-/* The rule of every second call: a thickness, and the panels do not see each other. */
-static cscd_status set_apart(panel_scene *p, bool apart) {
-    cscd_object_rule rules[2] = {cscd_object_rule_default(), cscd_object_rule_default()};
-    rules[0].mask = apart ? 0 : UINT64_MAX;
-    rules[1].thickness = apart ? 0.01 : 0.0;
-    return cscd_detector_set_rules(p->detector, rules, 2, NULL, 0);
-}
-
-/* Rules that find no memory leave the old ones in force. */
-static void rules_without_memory_change_nothing(void **state) {
-    (void)state;
-    counting_allocator counter = counting_allocator_start();
-    cscd_context_options options = cscd_context_defaults();
-    options.allocator = counting_allocator_interface(&counter);
-    panel_scene p = panels_create(8, &options, NULL);
-    cscd_contacts found;
-    assert_int_equal(panels_step(&p, &found), CSCD_OK);
-    size_t before = found.count, refused = 0;
-    for (int turn = 0; turn < 2; turn++) { /* with the trees, and once more with rules to replace */
-        for (size_t fail = 0;; fail++) {
-            size_t bytes = counter.bytes;
-            counter.fail_at = counter.calls + fail;
-            cscd_status status = set_apart(&p, turn == 0);
-            counter.fail_at = SIZE_MAX;
-            if (status == CSCD_OK) break;
-            assert_int_equal(status, CSCD_OUT_OF_MEMORY);
-            assert_int_equal(counter.bytes, bytes);
-            assert_int_equal(panels_step(&p, &found), CSCD_OK);
-            assert_int_equal(found.count, turn == 0 ? before : 0);
-            refused++;
-        }
-        assert_int_equal(panels_step(&p, &found), CSCD_OK);
-        assert_int_equal(found.count, turn == 0 ? 0 : before);
-    }
-    assert_true(before > 100 && refused > 4);
-    panels_destroy(&p);
-    assert_int_equal(counter.live, 0);
-}
-
 /* Candidates were collected under the rules of the begin. What is masked limits nothing. */
 static void lines_begin_again_after_new_rules(void **state) {
     (void)state;
@@ -237,7 +197,6 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(moments_leave_out_what_is_masked),
         cmocka_unit_test(mistakes_have_a_sentence),
-        cmocka_unit_test(rules_without_memory_change_nothing),
         cmocka_unit_test(lines_begin_again_after_new_rules),
         cmocka_unit_test(nothing_is_known_of_what_is_masked),
     };

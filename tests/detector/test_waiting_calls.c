@@ -33,71 +33,6 @@ static void mistakes_change_nothing(void **state) {
     panels_end(&p);
 }
 
-/* All calls of a change, in order; the first that fails for lack of memory is made again. */
-static void change_and_step(equal_panels *p, bool *failed) {
-    const cscd_object_rule rule = cscd_object_rule_default();
-    cscd_object_rule rules[] = {rule, rule};
-    cscd_contacts contacts;
-    cscd_intersections crossing;
-    rules[1].category = 2;
-    panels_part(p, 0.3, p->x1);
-    for (int call = 0; call < 6; call++) {
-        cscd_status status = CSCD_OK;
-        for (int tries = 0; tries < 2 && (tries == 0 || status != CSCD_OK); tries++) {
-            contacts.count = contacts.waiting = 0;
-            if (call == 0) status = cscd_detector_set_rules(p->detector, rules, 2, NULL, 0);
-            if (call == 1) status = cscd_detector_set_ignored(p->detector, &p->seams[1][0], 2);
-            if (call == 2) status = cscd_detector_set_seams(p->detector, NULL, 0);
-            if (call == 3) status = step_packed(p->detector, p->x0, p->x1, &contacts);
-            if (call == 3 && status == CSCD_OK)
-                assert_true(contacts.waiting == p->touching && contacts.count == 0);
-            if (call == 4) status = check_packed(p->detector, p->x0, &crossing);
-            if (call == 4 && status == CSCD_OK) assert_true(crossing.waiting > 0 && crossing.count == 0);
-            if (call == 5) status = step_packed(p->detector, p->x1, p->x0, &contacts);
-            if (call == 5 && status == CSCD_OK)
-                assert_true(contacts.waiting == 0 && contacts.count == p->touching);
-            if (status != CSCD_OK) assert_true(status == CSCD_OUT_OF_MEMORY && !*failed);
-            *failed |= status != CSCD_OK;
-        }
-        assert_int_equal(status, CSCD_OK);
-    }
-}
-
-static void every_allocation_may_fail(void **state) {
-    (void)state;
-    static equal_panels p;
-    bool failed = true;
-    for (size_t n = 0; failed; n++) {
-        panels_begin(&p, 0.0, 1, NULL);
-        p.counter.fail_at = p.counter.calls + n;
-        failed = false;
-        change_and_step(&p, &failed);
-        if (!failed) print_message("  %zu allocations\n", n);
-        assert_true(failed || n > 20);
-        panels_end(&p);
-    }
-}
-
-/* A call that is cancelled while it looks at what waits, at any place, can be repeated. */
-static void a_cancelled_call_can_be_repeated(void **state) {
-    (void)state;
-    static equal_panels p;
-    cscd_contacts contacts;
-    cscd_status status = CSCD_CANCELLED;
-    for (int n = 0; status == CSCD_CANCELLED; n++) {
-        int asked = 1 << 30;
-        panels_begin(&p, 0.0, 2, &asked);
-        panels_open(&p);
-        asked = n;
-        status = step_packed(p.detector, p.x0, p.x0, &contacts);
-        asked = 1 << 30;
-        assert_int_equal(step_packed(p.detector, p.x0, p.x0, &contacts), CSCD_OK);
-        assert_true(contacts.waiting == p.touching && contacts.count == 0);
-        panels_end(&p);
-    }
-    assert_int_equal(status, CSCD_OK);
-}
-
 static void steps_with_waiting_pairs_allocate_nothing(void **state) {
     (void)state;
     static equal_panels p;
@@ -168,8 +103,6 @@ static void changes_to_and_fro_take_no_memory(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(mistakes_change_nothing),
-        cmocka_unit_test(every_allocation_may_fail),
-        cmocka_unit_test(a_cancelled_call_can_be_repeated),
         cmocka_unit_test(steps_with_waiting_pairs_allocate_nothing),
         cmocka_unit_test(changes_to_and_fro_take_no_memory),
     };

@@ -221,49 +221,6 @@ static void copies_are_said_of_pairs(void **state) {
         }                                                                                                    \
     } while (0)
 
-static void allocations_that_fail(void **state) {
-    (void)state;
-    size_t failed = 0;
-    for (uint64_t seed = 0; seed < 8; seed++) {
-        counting_allocator counter = counting_allocator_start();
-        cscd_allocator allocator = counting_allocator_interface(&counter);
-        recorded_frames r;
-        random_seed(seed);
-        recorded_frames_create(&r, &allocator, 10);
-        cscd_event_tracker *tracker = NULL, *next = NULL, *loaded = NULL;
-        cscd_event_options later = r.options;
-        later.later_chunk = true;
-        WITH_FAILURES(counter, failed, cscd_event_tracker_create(r.context, r.mesh, &r.options, &tracker));
-        WITH_FAILURES(counter, failed, cscd_event_tracker_create(r.context, r.mesh, &later, &next));
-        assert_int_equal(cscd_event_tracker_create(r.context, r.mesh, &later, &loaded), CSCD_OK);
-        for (uint32_t i = 0; i < r.frame_count; i++) {
-            const recorded_frame *f = &r.frames[i];
-            cscd_event_tracker *to = i < 5 ? tracker : next;
-            WITH_FAILURES(counter, failed,
-                          cscd_event_tracker_add_contacts(to, f->contacts, f->contact_count));
-            WITH_FAILURES(counter, failed,
-                          cscd_event_tracker_add_frame(to, f->number, f->looked ? &f->found : NULL));
-        }
-        const uint8_t *bytes;
-        size_t size, count;
-        cscd_events events;
-        WITH_FAILURES(counter, failed, cscd_event_tracker_save(next, &bytes, &size));
-        WITH_FAILURES(counter, failed, cscd_event_tracker_load(loaded, bytes, size));
-        WITH_FAILURES(counter, failed, cscd_event_tracker_merge(tracker, loaded));
-        WITH_FAILURES(counter, failed, cscd_event_tracker_finish(tracker, &events));
-        cscd_event *expected = recording_oracle(&r, &count);
-        assert_int_equal(events.count, count);
-        assert_memory_equal(events.items, expected, count * sizeof *expected);
-        free(expected);
-        cscd_event_tracker_destroy(loaded);
-        cscd_event_tracker_destroy(next);
-        cscd_event_tracker_destroy(tracker);
-        recorded_frames_free(&r);
-        assert_int_equal(counter.live, 0);
-    }
-    assert_true(failed > 50);
-}
-
 /* A hundred times the same frames: after the first times nothing is allocated, and what is open stays bounded. */
 static void long_recordings(void **state) {
     (void)state;
@@ -302,8 +259,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(options_that_cannot_be),   cmocka_unit_test(frames_of_another_mesh),
         cmocka_unit_test(calls_out_of_order),       cmocka_unit_test(trackers_of_other_rules),
-        cmocka_unit_test(copies_are_said_of_pairs), cmocka_unit_test(allocations_that_fail),
-        cmocka_unit_test(long_recordings),
+        cmocka_unit_test(copies_are_said_of_pairs), cmocka_unit_test(long_recordings),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

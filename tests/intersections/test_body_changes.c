@@ -273,32 +273,6 @@ static void what_is_refused(void **state) {
     body_rig_free(&rig);
 }
 
-static void every_allocation_may_fail(void **state) {
-    (void)state;
-    size_t failed = 0, expected = 0;
-    for (size_t n = 0, done = 0; done == 0; n++) {
-        counting_allocator counter = counting_allocator_start();
-        cscd_curve_changes changes = {.count = 4711};
-        open_scene(&counter, NULL, 1);
-        cscd_contacts contacts = step_scene();
-        counter.fail_at = counter.calls + n;
-        cscd_status status = try_changes(contacts.items, contacts.count, &changes);
-        done = status == CSCD_OK;
-        failed += status == CSCD_OUT_OF_MEMORY;
-        assert_true(done || (status == CSCD_OUT_OF_MEMORY && changes.count == 4711));
-        counter.fail_at = SIZE_MAX;
-        assert_int_equal(try_changes(contacts.items, contacts.count, &changes), CSCD_OK);
-        if (n == 0) expected = changes.count;
-        assert_true(expected > 0 && changes.count == expected);
-        size_t calls = counter.calls;
-        assert_int_equal(try_changes(contacts.items, contacts.count, &changes), CSCD_OK);
-        assert_int_equal(counter.calls, calls);
-        body_rig_free(&rig);
-        assert_int_equal(counter.live, 0);
-    }
-    assert_int_equal(failed, 10);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(changes_are_those_of_curves),
@@ -307,7 +281,6 @@ int main(void) {
         cmocka_unit_test(triangles_of_two_vertices_change_nothing),
         cmocka_unit_test(changes_after_a_change_of_the_mesh),
         cmocka_unit_test(what_is_refused),
-        cmocka_unit_test(every_allocation_may_fail),
     };
     return cmocka_run_group_tests_name("body_changes", tests, NULL, NULL);
 }

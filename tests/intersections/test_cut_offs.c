@@ -200,50 +200,15 @@ static void balls_in_bent_sheets(void **state) {
     assert_true(divided > 20);
 }
 
-/* ---- calls ----------------------------------------------------------------------------------------------- */
-
-static void add_post(void) {
-    static const double corner[3] = {0.3, 0.4, -1}, size[3] = {2, 1.5, 2};
-    body_rig_begin(&rig);
-    body_rig_add_sheet(&rig, ORIGIN, X4, Y4, 7, 9, false);
-    body_rig_end_body(&rig);
-    body_rig_add_box(&rig, corner, size);
-    body_rig_end_body(&rig);
-}
-
-static void every_allocation_may_fail(void **state) {
-    (void)state;
-    size_t failed = 0;
-    for (size_t n = 0, done = 0; done == 0; n++) {
-        counting_allocator counter = counting_allocator_start();
-        add_post();
-        rig.counter = &counter;
-        body_rig_create(&rig, NULL, 1);
-        counter.fail_at = counter.calls + n;
-        cscd_status status = try_cut_offs();
-        done = status == CSCD_OK;
-        failed += status == CSCD_OUT_OF_MEMORY;
-        assert_true(done || status == CSCD_OUT_OF_MEMORY);
-        counter.fail_at = SIZE_MAX;
-        assert_int_equal(try_cut_offs(), CSCD_OK);
-        expect_cut_off(0, 3, 13);
-        size_t calls = counter.calls;
-        assert_int_equal(try_cut_offs(), CSCD_OK);
-        assert_int_equal(counter.calls, calls);
-        body_rig_free(&rig);
-        assert_int_equal(counter.live, 0);
-    }
-    assert_true(failed > 20);
-}
-
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_post_through_a_sheet),
-                                       cmocka_unit_test(the_smaller_part_is_outside),
-                                       cmocka_unit_test(sheets_cross),
-                                       cmocka_unit_test(a_narrow_sheet_is_divided),
-                                       cmocka_unit_test(a_cut_to_a_hole_divides_nothing),
-                                       cmocka_unit_test(traces_over_seams_divide_nothing),
-                                       cmocka_unit_test(balls_in_bent_sheets),
-                                       cmocka_unit_test(every_allocation_may_fail)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_post_through_a_sheet),
+        cmocka_unit_test(the_smaller_part_is_outside),
+        cmocka_unit_test(sheets_cross),
+        cmocka_unit_test(a_narrow_sheet_is_divided),
+        cmocka_unit_test(a_cut_to_a_hole_divides_nothing),
+        cmocka_unit_test(traces_over_seams_divide_nothing),
+        cmocka_unit_test(balls_in_bent_sheets),
+    };
     return cmocka_run_group_tests_name("cut_offs", tests, NULL, NULL);
 }

@@ -2,14 +2,12 @@
  * memory, and options that are wrong. */
 #include "cscd/research.h"
 #include "runtime/detector/detector.h"
-#include "tests/support/counting_allocator.h"
 #include "tests/support/intersections/crossing_scene.h"
 #include "tests/support/packed.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static scene s; /* large; one test at a time */
@@ -204,68 +202,6 @@ static void cancelled_calls_change_nothing(void **state) {
     }
 }
 
-/* ---- memory ---------------------------------------------------------------------------------------------- */
-
-static cscd_status ask_everything(cscd_detector *detector, size_t found_counts[3]) {
-    static const size_t stops[] = {0, 7, 0};
-    for (int i = 0; i < 3; i++) {
-        cscd_intersection_options options =
-            intersection_options(i < 2 ? CSCD_ANSWER_LIST : CSCD_ANSWER_COUNT, UINT64_MAX, stops[i]);
-        cscd_intersection_pairs found = {.count = 4711};
-        cscd_status status = find_intersections_packed(detector, s.x0, &options, &found);
-        if (status != CSCD_OK) {
-            assert_int_equal(found.count, 4711);
-            return status;
-        }
-        found_counts[i] = found.count;
-    }
-    return CSCD_OK;
-}
-
-/* Fails allocation n while a fresh detector is used; returns whether there was one. */
-static bool fail_allocation(size_t n, uint32_t threads) {
-    counting_allocator counter = counting_allocator_start();
-    cscd_context_options options = cscd_context_defaults();
-    cscd_context *context = NULL;
-    cscd_mesh *mesh = NULL;
-    cscd_detector *detector = NULL;
-    size_t counts[3] = {0};
-    options.allocator = counting_allocator_interface(&counter);
-    options.thread_count = threads;
-    cscd_object_desc desc = cscd_object_of_triangles(s.vertex_count, s.triangle_count, s.triangles);
-    assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
-    assert_int_equal(cscd_detector_create(context, mesh, NULL, NULL, &detector), CSCD_OK);
-    counter.fail_at = counter.calls + n;
-    cscd_status status = ask_everything(detector, counts);
-    bool failed = status == CSCD_OUT_OF_MEMORY;
-    assert_true(failed || status == CSCD_OK);
-    if (failed) assert_non_null(strstr(cscd_context_detail(context), "out of memory"));
-    counter.fail_at = SIZE_MAX;
-    assert_int_equal(ask_everything(detector, counts), CSCD_OK);
-    assert_true(counts[0] > 300 && counts[1] == 7 && counts[2] == counts[0]);
-    size_t calls = counter.calls;
-    for (int i = 0; i < 5; i++) assert_int_equal(ask_everything(detector, counts), CSCD_OK);
-    if (threads == 1)
-        assert_int_equal(counter.calls, calls); /* else lanes share the work in another way each time */
-    cscd_detector_destroy(detector);
-    cscd_mesh_destroy(mesh);
-    cscd_context_destroy(context);
-    assert_int_equal(counter.live, 0);
-    return failed;
-}
-
-static void every_allocation_may_fail(void **state) {
-    (void)state;
-    make_wavy_spheres(0.02, &s);
-    for (uint32_t threads = 1; threads <= 3; threads += 2) {
-        size_t n = 0;
-        while (fail_allocation(n, threads)) n++;
-        print_message("  %zu allocations\n", n);
-        assert_true(n >= 5);
-    }
-}
-
 /* ---- options --------------------------------------------------------------------------------------------- */
 
 static void expect_refused(cscd_detector *detector, cscd_intersection_options options, const char *sentence) {
@@ -299,6 +235,6 @@ int main(void) {
         cmocka_unit_test(caps_bound_lists),           cmocka_unit_test(states_are_known_afterwards),
         cmocka_unit_test(waiting_pairs_are_left_out), cmocka_unit_test(duplicates_mark_nothing),
         cmocka_unit_test(odd_seams_are_taken),        cmocka_unit_test(cancelled_calls_change_nothing),
-        cmocka_unit_test(every_allocation_may_fail),  cmocka_unit_test(wrong_options_are_refused)};
+        cmocka_unit_test(wrong_options_are_refused)};
     return cmocka_run_group_tests_name("find_intersections_calls", tests, NULL, NULL);
 }

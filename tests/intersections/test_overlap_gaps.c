@@ -153,31 +153,6 @@ static void seams_whose_vertices_are_apart(void **state) {
     assert_true(unknown > 0 && unknown < 64);
 }
 
-static void every_allocation_may_fail(void **state) {
-    (void)state;
-    ignored_range range = {12, UINT32_MAX};
-    cscd_detector_options options = cscd_detector_defaults();
-    options.ignore = ignore_pair;
-    options.ignore_user = &range;
-    size_t failed = 0;
-    for (bool done = false; !done; failed++) {
-        counting_allocator counter = counting_allocator_start();
-        add_cubes(false);
-        rig.counter = &counter;
-        body_rig_create(&rig, &options, 1);
-        counter.fail_at = counter.calls + failed;
-        cscd_status status = body_rig_try(&rig);
-        done = status == CSCD_OK;
-        assert_int_equal(status, done ? CSCD_OK : CSCD_OUT_OF_MEMORY);
-        counter.fail_at = SIZE_MAX;
-        body_rig_find(&rig);
-        expect_volumes(false);
-        body_rig_free(&rig);
-        assert_int_equal(counter.live, 0);
-    }
-    assert_true(failed > 40);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_whole_curve),
@@ -186,7 +161,6 @@ int main(void) {
         cmocka_unit_test(pairs_that_carry_nothing),
         cmocka_unit_test(open_components_have_none),
         cmocka_unit_test(seams_whose_vertices_are_apart),
-        cmocka_unit_test(every_allocation_may_fail),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,5 @@
 /* Labels of parts in a detector that moves over to another mesh, is cloned, is given wrong labels, or has no memory. */
 #include "tests/support/intersections/labelling.h"
-#include "tests/support/packed.h"
 #include "tests/support/test.h"
 
 #include <string.h>
@@ -148,41 +147,6 @@ static void what_is_refused(void **state) {
     body_rig_free(&rig);
 }
 
-static void every_allocation_may_fail(void **state) {
-    (void)state;
-    size_t failed = 0;
-    for (size_t n = 0, done = 0; done == 0; n++) {
-        counting_allocator counter = counting_allocator_start();
-        cscd_intersection_options options = cscd_intersection_defaults();
-        rig.counter = NULL;
-        labelled_scene_open(&rig, NULL, 1);
-        body_rig_free(&rig);
-        rig.counter = &counter;
-        body_rig_create(&rig, NULL, 2);
-        cscd_detector *clone = NULL;
-        labelling_draw(&labels, &rig, 5, 6);
-        find_intersections_packed(rig.detector, rig.all.x0, &options, &rig.found);
-        counter.fail_at = counter.calls + n;
-        cscd_status status = cscd_detector_set_parts(rig.detector, labels.items, labels.count);
-        if (status == CSCD_OK) status = cscd_detector_set_bodies(rig.detector, labels.items, labels.count);
-        if (status == CSCD_OK) status = labelled_scene_try(&rig, options);
-        if (status == CSCD_OK) status = cscd_detector_clone(rig.context, rig.detector, &clone);
-        done = status == CSCD_OK;
-        failed += status == CSCD_OUT_OF_MEMORY;
-        assert_int_equal(status, done ? CSCD_OK : CSCD_OUT_OF_MEMORY);
-        assert_true(done || strstr(cscd_context_detail(rig.context), "out of memory") != NULL);
-        counter.fail_at = SIZE_MAX;
-        labelling_set(&labels, &rig);
-        labelled_scene_find(&rig);
-        labelling_compare(&labels, &rig);
-        cscd_detector_destroy(clone);
-        body_rig_free(&rig);
-        assert_int_equal(counter.live, 0);
-    }
-    print_message("  %zu allocations\n", failed);
-    assert_true(failed > 8);
-}
-
 /* The same motion to and fro, so that no list is longer than before. */
 static void a_steady_state_allocates_nothing(void **state) {
     (void)state;
@@ -207,9 +171,9 @@ static void a_steady_state_allocates_nothing(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(labels_move_to_another_mesh),  cmocka_unit_test(sums_follow_to_a_larger_mesh),
-        cmocka_unit_test(clones_have_their_own_labels), cmocka_unit_test(what_is_refused),
-        cmocka_unit_test(every_allocation_may_fail),    cmocka_unit_test(a_steady_state_allocates_nothing),
+        cmocka_unit_test(labels_move_to_another_mesh),      cmocka_unit_test(sums_follow_to_a_larger_mesh),
+        cmocka_unit_test(clones_have_their_own_labels),     cmocka_unit_test(what_is_refused),
+        cmocka_unit_test(a_steady_state_allocates_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

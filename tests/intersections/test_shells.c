@@ -295,29 +295,6 @@ static void a_shell_of_a_skin_with_limbs(void **state) {
     body_rig_free(&rig);
 }
 
-static void each_allocation_may_fail(void **state) {
-    (void)state;
-    counting_allocator counter = counting_allocator_start();
-    make_nested(3, 2, false, 0);
-    body_rig_free(&rig);
-    rig.counter = &counter;
-    body_rig_create(&rig, NULL, 1);
-    uint32_t labels[4 * CUBE] = {0};
-    assert_int_equal(cscd_detector_set_parts(rig.detector, labels, 1), CSCD_OK);
-    rig.orientation = CSCD_ORIENTATION_BY_PART;
-    cscd_status status = CSCD_OUT_OF_MEMORY;
-    int failures = 0;
-    for (; status == CSCD_OUT_OF_MEMORY; failures++) {
-        counter.fail_at = counter.calls + (size_t)failures + 1;
-        status = body_rig_try(&rig);
-    }
-    assert_int_equal(status, CSCD_OK);
-    assert_true(failures > 10 && !body_rig_is_turned(&rig, 1));
-    counter.fail_at = SIZE_MAX;
-    body_rig_free(&rig);
-    assert_int_equal(counter.live, 0);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(shells_keep_their_sense),
@@ -329,7 +306,6 @@ int main(void) {
         cmocka_unit_test(left_out_pairs_make_no_cavity),
         cmocka_unit_test(parts_are_bodies_of_their_own),
         cmocka_unit_test(a_shell_of_a_skin_with_limbs),
-        cmocka_unit_test(each_allocation_may_fail),
     };
     return cmocka_run_group_tests_name("shells", tests, NULL, NULL);
 }

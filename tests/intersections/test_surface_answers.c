@@ -22,17 +22,6 @@ static void add_scene(body_rig *r) {
     body_rig_end_body(r);
 }
 
-/* A body of two boxes that cross, and a bar through both. */
-static void add_boxes(body_rig *r) {
-    static const double corners[3][3] = {{0, 0, 0}, {1.25, 1.5, 1.125}, {-1, 1.6, 1.2}};
-    static const double sizes[3][3] = {{2, 2, 2}, {2, 2, 2}, {6, 0.25, 0.5}};
-    body_rig_begin(r);
-    for (int i = 0; i < 3; i++) {
-        body_rig_add_box(r, corners[i], sizes[i]);
-        if (i > 0) body_rig_end_body(r);
-    }
-}
-
 static void methods_and_threads_agree(void **state) {
     (void)state;
     const cscd_method methods[] = {CSCD_METHOD_NONE, CSCD_METHOD_SINGLE, CSCD_METHOD_BRUTE};
@@ -156,34 +145,6 @@ static void only_what_is_asked_for(void **state) {
         assert_true(rig.found.overlaps == NULL);
     }
     body_rig_free(&rig);
-}
-
-/* A call that fails changes nothing, and can be repeated. */
-static void every_allocation_may_fail(void **state) {
-    (void)state;
-    size_t failed = 0;
-    add_boxes(&other);
-    body_rig_create(&other, NULL, 2);
-    body_rig_find(&other);
-    for (size_t n = 0, done = 0; done == 0; n++) {
-        counting_allocator counter = counting_allocator_start();
-        add_boxes(&rig);
-        rig.counter = &counter;
-        body_rig_create(&rig, NULL, 2);
-        counter.fail_at = counter.calls + n;
-        cscd_status status = body_rig_try(&rig);
-        done = status == CSCD_OK;
-        failed += status == CSCD_OUT_OF_MEMORY;
-        assert_int_equal(status, done ? CSCD_OK : CSCD_OUT_OF_MEMORY);
-        counter.fail_at = SIZE_MAX;
-        body_rig_find(&rig);
-        compare_answers(rig.mesh, &rig.found, &other.found);
-        body_rig_free(&rig);
-        assert_int_equal(counter.live, 0);
-    }
-    print_message("  %zu allocations\n", failed);
-    assert_true(failed > 40);
-    body_rig_free(&other);
 }
 
 /* Moves the ball forwards, and back again. */
@@ -312,11 +273,15 @@ static void names_of_ends(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(methods_and_threads_agree),     cmocka_unit_test(masked_objects_bury_nothing),
-        cmocka_unit_test(an_ignored_pair_opens_a_curve), cmocka_unit_test(the_list_of_all_pairs_is_needed),
-        cmocka_unit_test(only_what_is_asked_for),        cmocka_unit_test(names_of_ends),
-        cmocka_unit_test(every_allocation_may_fail),     cmocka_unit_test(a_steady_state_allocates_nothing),
-        cmocka_unit_test(clones_answer_alike),           cmocka_unit_test(a_larger_mesh_has_its_own_answers),
+        cmocka_unit_test(methods_and_threads_agree),
+        cmocka_unit_test(masked_objects_bury_nothing),
+        cmocka_unit_test(an_ignored_pair_opens_a_curve),
+        cmocka_unit_test(the_list_of_all_pairs_is_needed),
+        cmocka_unit_test(only_what_is_asked_for),
+        cmocka_unit_test(names_of_ends),
+        cmocka_unit_test(a_steady_state_allocates_nothing),
+        cmocka_unit_test(clones_answer_alike),
+        cmocka_unit_test(a_larger_mesh_has_its_own_answers),
         cmocka_unit_test(a_seam_within_a_triangle),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,12 +1,10 @@
 /* Scenes with loose objects beside the rest of the API: threads, instruction sets, starts in contact, floats and views,
  * memory; and triangles to which nothing has changed. */
 #include "cscd/cscd.h"
-#include "tests/support/counting_allocator.h"
 #include "tests/support/loose/loose_scene.h"
 #include "tests/support/packed.h"
 #include "tests/support/test.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -248,111 +246,12 @@ static void marching_in_floats(void **state) {
     assert_true(moved > steps / 2);
 }
 
-/* ---- memory -------------------------------------------------------------------------------------------------- */
-
-/* Everything from the mesh to a line search; after a failure the same call once more. */
-static cscd_status use_library(counting_allocator *counter, size_t *contacts) {
-    cscd_context *context = NULL;
-    cscd_mesh *mesh = NULL;
-    cscd_detector *detector = NULL;
-    cscd_line_search *line = NULL;
-    cscd_context_options options = cscd_context_defaults();
-    options.allocator = counting_allocator_interface(counter);
-    options.thread_count = 2;
-    cscd_detector_options chosen = loose_scene_options(&scene);
-    double reached[LOOSE_VERTICES_MAX * 3];
-    cscd_status status = cscd_context_create(&options, &context);
-    if (status == CSCD_OK) status = cscd_mesh_create(context, scene.objects, scene.object_count, &mesh);
-    if (status == CSCD_OK) status = detector_create_here(mesh, NULL, &chosen, &detector);
-    if (status == CSCD_OK) status = cscd_line_search_create(detector, &line);
-    for (int again = 0; line != NULL && again < 2; again++) {
-        cscd_contacts found = {.count = 0};
-        cscd_proximities near;
-        cscd_free_step step;
-        cscd_truncation cut;
-        status = step_packed(detector, scene.x0, scene.x1, &found);
-        if (status == CSCD_OK) *contacts = found.count;
-        if (status == CSCD_OK) status = find_unique_packed(detector, scene.x0, 0.3, &near);
-        if (status == CSCD_OK) status = truncate_packed(detector, scene.x0, scene.x1, 0.2, reached, &cut);
-        if (status == CSCD_OK) status = line_begin_packed(line, scene.x0, scene.x1, 0.1);
-        if (status == CSCD_OK) status = line_max_step_packed(line, 1.0, reached, &step);
-        if (status == CSCD_IN_CONTACT) status = CSCD_OK;
-        if (status == CSCD_OK) break;
-        assert_true(again == 0 && status == CSCD_OUT_OF_MEMORY);
-    }
-    cscd_line_search_destroy(line);
-    cscd_detector_destroy(detector);
-    cscd_mesh_destroy(mesh);
-    cscd_context_destroy(context);
-    assert_int_equal(counter->live, 0);
-    return line != NULL ? CSCD_OK : status;
-}
-
-static void every_allocation_may_fail(void **state) {
-    (void)state;
-    for (int triangles = 0; triangles < 2; triangles++) {
-        random_stream random = stream_start(500);
-        loose_recipe recipe = everything;
-        recipe.triangles = triangles == 1;
-        recipe.thickness = true;
-        loose_scene_make(&scene, &recipe, &random, 1, CSCD_SIMD_AUTO);
-        size_t expected = 0, contacts, failed = 0;
-        counting_allocator counter = counting_allocator_start();
-        assert_int_equal(use_library(&counter, &expected), CSCD_OK);
-        size_t calls = counter.calls;
-        assert_true(expected > 20 && calls > 60);
-        for (size_t n = 0; n < calls; n++) {
-            counter = counting_allocator_start();
-            counter.fail_at = n;
-            contacts = expected;
-            cscd_status status = use_library(&counter, &contacts);
-            assert_true(status == CSCD_OK || status == CSCD_OUT_OF_MEMORY);
-            assert_int_equal(contacts, expected);
-            failed += status != CSCD_OK;
-        }
-        assert_true(failed > 30 && failed < calls);
-        loose_scene_free(&scene);
-    }
-}
-
-/* A steady step allocates nothing. */
-static void steady_state(void **state) {
-    counting_allocator counter = counting_allocator_start();
-    random_stream random = stream_start(600);
-    loose_recipe recipe = everything;
-    recipe.thickness = true;
-    (void)state;
-    loose_scene_make(&scene, &recipe, &random, 1, CSCD_SIMD_AUTO);
-    cscd_context_options options = cscd_context_defaults();
-    options.allocator = counting_allocator_interface(&counter);
-    options.thread_count = 3;
-    cscd_context *context = NULL;
-    cscd_mesh *mesh = NULL;
-    cscd_detector *detector = NULL;
-    cscd_detector_options chosen = loose_scene_options(&scene);
-    assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(context, scene.objects, scene.object_count, &mesh), CSCD_OK);
-    assert_int_equal(detector_create_here(mesh, NULL, &chosen, &detector), CSCD_OK);
-    size_t calls = 0;
-    for (int i = 0; i < 10; i++) {
-        cscd_contacts found;
-        if (i == 2) calls = counter.calls;
-        assert_int_equal(step_packed(detector, scene.x0, scene.x1, &found), CSCD_OK);
-        assert_true(found.count > 20);
-    }
-    assert_int_equal(counter.calls, calls);
-    cscd_detector_destroy(detector);
-    cscd_mesh_destroy(mesh);
-    cscd_context_destroy(context);
-    loose_scene_free(&scene);
-}
-
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(same_bits),
-                                       cmocka_unit_test(triangles_unchanged),
-                                       cmocka_unit_test(contact_at_the_start),
-                                       cmocka_unit_test(marching_in_floats),
-                                       cmocka_unit_test(every_allocation_may_fail),
-                                       cmocka_unit_test(steady_state)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(same_bits),
+        cmocka_unit_test(triangles_unchanged),
+        cmocka_unit_test(contact_at_the_start),
+        cmocka_unit_test(marching_in_floats),
+    };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -281,37 +281,11 @@ static void changed_mesh(void **state) {
     assert_int_equal(counter.live, 0);
 }
 
-static void every_allocation_may_fail(void **state) {
-    cscd_object_desc descs[MIXED];
-    (void)state;
-    describe_mixed(descs);
-    size_t calls = SIZE_MAX;
-    for (size_t n = 0; n < calls; n++) {
-        counting_allocator counter = counting_allocator_start();
-        cscd_context *context = open_context(&counter);
-        cscd_mesh *mesh = NULL;
-        size_t before = counter.calls;
-        counter.fail_at = n == 0 ? SIZE_MAX : before + n - 1;
-        cscd_status status = cscd_mesh_create(context, descs, MIXED, &mesh);
-        if (n == 0) calls = counter.calls - before + 1;
-        assert_int_equal(status, n == 0 ? CSCD_OK : CSCD_OUT_OF_MEMORY);
-        counter.fail_at = SIZE_MAX;
-        if (n > 0) assert_int_equal(cscd_mesh_create(context, descs, MIXED, &mesh), CSCD_OK);
-        check_features(mesh);
-        cscd_mesh_destroy(mesh);
-        cscd_context_destroy(context);
-        assert_int_equal(counter.live, 0);
-    }
-    assert_true(calls > 20);
-}
-
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(mixed_objects),
-                                       cmocka_unit_test(hashes_differ),
-                                       cmocka_unit_test(refused_descriptions),
-                                       cmocka_unit_test(too_many),
-                                       cmocka_unit_test(plans_and_partitions),
-                                       cmocka_unit_test(changed_mesh),
-                                       cmocka_unit_test(every_allocation_may_fail)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(mixed_objects),        cmocka_unit_test(hashes_differ),
+        cmocka_unit_test(refused_descriptions), cmocka_unit_test(too_many),
+        cmocka_unit_test(plans_and_partitions), cmocka_unit_test(changed_mesh),
+    };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

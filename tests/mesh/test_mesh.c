@@ -337,62 +337,13 @@ static void refused_descriptions(void **state) {
     assert_int_equal(counter.live, 0);
 }
 
-/* ---- memory ---- */
-
-/* Lets allocation number fail_at of cscd_mesh_create fail; the next try must succeed. Returns false when
- * there were not so many allocations. */
-static bool fail_allocation(const shape *s, size_t fail_at, const expected_component *expected) {
-    counting_allocator counter = counting_allocator_start();
-    cscd_context *context = new_context(&counter);
-    size_t bytes = counter.bytes, live = counter.live;
-    cscd_mesh *const untouched = (cscd_mesh *)&bytes;
-    cscd_mesh *mesh = untouched;
-    counter.fail_at = counter.calls + fail_at;
-    cscd_status status = create_mesh(context, s, &mesh);
-    bool failed = counter.calls > counter.fail_at;
-    assert_int_equal(status, failed ? CSCD_OUT_OF_MEMORY : CSCD_OK);
-    if (failed) {
-        assert_ptr_equal(mesh, untouched);
-        assert_int_equal(counter.bytes, bytes);
-        assert_int_equal(counter.live, live);
-        assert_int_equal(cscd_context_bytes(context), bytes);
-        assert_non_null(strstr(cscd_context_detail(context), "out of memory"));
-        assert_int_equal(create_mesh(context, s, &mesh), CSCD_OK);
-    }
-    check_edges(mesh, s);
-    check_stars(mesh, s);
-    check_component(mesh, 0, expected);
-    cscd_mesh_destroy(mesh);
-    assert_int_equal(counter.bytes, bytes);
-    cscd_context_destroy(context);
-    assert_int_equal(counter.bytes, 0);
-    assert_int_equal(counter.live, 0);
-    return failed;
-}
-
-static void every_allocation_may_fail(void **state) {
-    static const expected_component torus = {30, 90, 60, 0, 0, 0, 0, 0, NO_EDGES, NONE};
-    (void)state;
-    shape s = {0};
-    shape_add_grid(&s, 5, 6, true, true);
-    size_t count = 0;
-    while (fail_allocation(&s, count, &torus)) count++;
-    assert_true(count >= 10);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(closed_surfaces),
-        cmocka_unit_test(isolated_vertices),
-        cmocka_unit_test(two_components),
-        cmocka_unit_test(open_surfaces),
-        cmocka_unit_test(moebius_strip),
-        cmocka_unit_test(bow_ties),
-        cmocka_unit_test(three_on_an_edge),
-        cmocka_unit_test(flipped_triangle),
-        cmocka_unit_test(doubled_triangle),
-        cmocka_unit_test(refused_descriptions),
-        cmocka_unit_test(every_allocation_may_fail),
+        cmocka_unit_test(closed_surfaces),  cmocka_unit_test(isolated_vertices),
+        cmocka_unit_test(two_components),   cmocka_unit_test(open_surfaces),
+        cmocka_unit_test(moebius_strip),    cmocka_unit_test(bow_ties),
+        cmocka_unit_test(three_on_an_edge), cmocka_unit_test(flipped_triangle),
+        cmocka_unit_test(doubled_triangle), cmocka_unit_test(refused_descriptions),
     };
     return cmocka_run_group_tests_name("mesh", tests, NULL, NULL);
 }

@@ -1,44 +1,12 @@
-/* Changes of meshes: failing allocations, orders of destruction, readers in other threads. */
+/* Changes of meshes: orders of destruction, readers in other threads. */
 #include "tests/support/same_mesh.h"
 #include "tests/support/test.h"
 
 #include <pthread.h>
 #include <stdatomic.h>
 
-static changing_scene changing, before;
+static changing_scene changing;
 static scene_change change;
-
-static void failing_allocations(void **state) {
-    (void)state;
-    random_stream random = stream_start(3);
-    changing_scene_make(&random, true, &before);
-    counting_allocator counter = counting_allocator_start();
-    cscd_context *context = counted_context(&counter);
-    cscd_mesh *old = changing_scene_mesh(context, &before);
-    for (int kind = 0; kind < 12; kind++) {
-        changing = before;
-        changing_scene_change(&random, &changing, &change);
-        size_t held = counter.live;
-        cscd_mesh *expected = changing_scene_mesh(context, &changing);
-        size_t live = counter.live;
-        cscd_mesh_change *made = NULL;
-        cscd_status status = CSCD_OUT_OF_MEMORY;
-        for (size_t n = 0; status != CSCD_OK; n++) {
-            counter.fail_at = counter.calls + n;
-            status = cscd_mesh_change_create(context, old, change.list, change.count, &made);
-            counter.fail_at = SIZE_MAX;
-            assert_true(status == CSCD_OK ? n > 15 : status == CSCD_OUT_OF_MEMORY && made == NULL);
-            if (status != CSCD_OK) assert_int_equal(counter.live, live);
-        }
-        check_same_mesh(cscd_mesh_change_mesh(made), expected);
-        cscd_mesh_change_destroy(made);
-        cscd_mesh_destroy(expected);
-        assert_int_equal(counter.live, held);
-    }
-    cscd_mesh_destroy(old);
-    cscd_context_destroy(context);
-    assert_int_equal(counter.live, 0);
-}
 
 /* The change keeps both meshes, and each of the three contexts lives as long as it is needed. */
 static void any_order_of_destruction(void **state) {
@@ -130,8 +98,7 @@ static void read_by_other_threads(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(failing_allocations),
-                                       cmocka_unit_test(any_order_of_destruction),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(any_order_of_destruction),
                                        cmocka_unit_test(read_by_other_threads)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

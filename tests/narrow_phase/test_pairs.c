@@ -1,7 +1,6 @@
 /* Single pairs: every bit is that of a detector on a mesh with just these features. */
 #include "cscd/cscd.h"
 #include "tests/support/ccd/elementary_generator.h"
-#include "tests/support/counting_allocator.h"
 #include "tests/support/levels.h"
 #include "tests/support/packed.h"
 #include "tests/support/test.h"
@@ -329,23 +328,6 @@ static void any_layout_will_do(void **state) {
     }
 }
 
-static void packed_pairs_take_no_memory(void **state) {
-    (void)state;
-    counting_allocator counter = counting_allocator_start();
-    cscd_context_options options = cscd_context_defaults();
-    options.allocator = counting_allocator_interface(&counter);
-    cscd_context *context;
-    assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
-    const cscd_pairs all = all_of(CSCD_CONTACT_VF), none = {CSCD_CONTACT_VF, 4, 0, NULL};
-    make_queries(CSCD_CONTACT_VF, 9);
-    size_t calls = counter.calls;
-    assert_int_equal(pairs_step_packed(context, &all, x0[0], x1[0], 0.0, 0.0, contacts), CSCD_OK);
-    assert_int_equal(pairs_near_packed(context, &all, x0[0], INFINITY, nearest), CSCD_OK);
-    assert_int_equal(pairs_step_packed(context, &none, x0[0], x1[0], 0.0, 0.0, contacts), CSCD_OK);
-    assert_int_equal(counter.calls, calls);
-    cscd_context_destroy(context);
-}
-
 /* ---- arguments ------------------------------------------------------------------------------------------------- */
 
 static void bad_arguments_are_named(void **state) {
@@ -382,7 +364,6 @@ int main(void) {
         cmocka_unit_test(distances_are_those_of_find_near),
         cmocka_unit_test(same_bits_in_every_way),
         cmocka_unit_test(any_layout_will_do),
-        cmocka_unit_test(packed_pairs_take_no_memory),
         cmocka_unit_test(bad_arguments_are_named),
     };
     return cmocka_run_group_tests_name("pairs", tests, open_levels, close_levels);

@@ -277,30 +277,6 @@ static void keeps_to_the_limit(void **state) {
     conductor_free(&s);
 }
 
-static void memory_may_run_out(void **state) {
-    (void)state;
-    conductor s = bent_body(2);
-    counting_allocator counter = counting_allocator_start();
-    const cscd_allocator allocator = counting_allocator_interface(&counter);
-    charge_rig r = charge_rig_create(&s, 2, &allocator);
-    const size_t held = cscd_context_bytes(r.context);
-    cscd_status status = CSCD_OUT_OF_MEMORY;
-    size_t refused = 0;
-    for (; status != CSCD_OK; refused++) {
-        counter.fail_at = counter.calls + refused;
-        status = charge_solve(r.mesh, s.positions, &by_tree, r.density, r.capacitance, NULL);
-        counter.fail_at = SIZE_MAX;
-        assert_int_equal(cscd_context_bytes(r.context), held);
-        if (status == CSCD_OK) break;
-        assert_int_equal(status, CSCD_OUT_OF_MEMORY);
-        assert_true(charge_rig_untouched(&r));
-    }
-    print_message("memory was refused in %zu places\n", refused);
-    assert_true(refused > 10);
-    charge_rig_destroy(&r);
-    conductor_free(&s);
-}
-
 /* The host's answers: false from so many calls on. */
 typedef struct patience {
     uint32_t calls, most;
@@ -353,7 +329,6 @@ int main(void) {
         cmocka_unit_test(says_where_charges_cannot_be_told_apart),
         cmocka_unit_test(equations_without_numbers),
         cmocka_unit_test(keeps_to_the_limit),
-        cmocka_unit_test(memory_may_run_out),
         cmocka_unit_test(a_host_may_end_it),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,8 +1,11 @@
 /* What every call promises (tests/support/proofs/proof.h), of those that make contexts, meshes, plans and detectors. */
+#include "tests/support/changing_mesh.h"
+#include "tests/support/models/body_of.h"
 #include "tests/support/proofs/answers.h"
 #include "tests/support/proofs/openings.h"
 #include "tests/support/test.h"
 
+#include <math.h>
 #include <string.h>
 
 /* ---- contexts and meshes -------------------------------------------------------------------------------- */
@@ -52,14 +55,62 @@ static void keep_mesh(proof *p) {
     }
 }
 
+/* Objects tear, are refined, lose triangles, are renumbered, come and go. */
+static changing_scene changing;
+static scene_change change;
+
+static void open_changing(proof *p) {
+    cscd_object_desc objects[CHANGING_OBJECTS_MAX];
+    random_stream random = stream_start(p->row->seed);
+    changing_scene_make(&random, true, &changing);
+    changing_scene_describe(&changing, objects);
+    proof_need(p, cscd_mesh_create(p->context, objects, changing.object_count, &p->mesh));
+    changing_scene_change(&random, &changing, &change);
+}
+
+static cscd_status create_change(proof *p) {
+    return cscd_mesh_change_create(p->context, p->mesh, change.list, change.count, &p->answer.change);
+}
+
+static void keep_change(proof *p) {
+    p->change = p->answer.change;
+    const uint64_t hash = cscd_mesh_hash(cscd_mesh_change_mesh(p->change));
+    uint32_t count;
+    const uint32_t *edges = cscd_mesh_change_edges(p->change, &count);
+    proof_add(p, &hash, sizeof hash);
+    proof_add_items(p, edges, count, sizeof *edges);
+    const uint32_t *origins = cscd_mesh_change_vertex_origins(p->change, &count);
+    proof_add_items(p, origins, count, sizeof *origins);
+}
+
+static const proof_call change_made = {"mesh_change_create", PROOF_CREATES, create_change, keep_change};
 static const proof_call context_made = {"context_create", PROOF_CREATES, create_context, keep_context};
 static const proof_call mesh_made = {"mesh_create", PROOF_CREATES, create_mesh, keep_mesh};
 static const proof_call loose_made = {"mesh_create", PROOF_CREATES, create_loose, keep_mesh};
 
 /* ---- plans ---------------------------------------------------------------------------------------------- */
 
+/* A dumbbell, which with the seed 1 is soft at its rod. */
+static double stiffness[SCENE_TRIANGLES_MAX];
+
+static void open_dumbbell(proof *p) {
+    body shape = body_of(BODY_DUMBBELL, p->large ? 1000 : 150);
+    const size_t corners = (size_t)shape.triangle_count * 3;
+    p->shape.vertex_count = shape.vertex_count;
+    p->shape.triangle_count = shape.triangle_count;
+    memcpy(p->shape.triangles, shape.triangles, corners * sizeof *shape.triangles);
+    memcpy(p->x[0], shape.positions, shape.vertex_count * sizeof(double[3]));
+    for (uint32_t t = 0; t < shape.triangle_count; t++)
+        stiffness[t] = fmin(1.0, 0.1 + fabs(shape.positions[shape.triangles[t * 3] * 3 + 2]));
+    const cscd_object_desc object =
+        cscd_object_of_triangles(shape.vertex_count, shape.triangle_count, p->shape.triangles);
+    body_free(&shape);
+    proof_need(p, cscd_mesh_create(p->context, &object, 1, &p->mesh));
+}
+
 static cscd_status create_plan(proof *p) {
     cscd_plan_options options = cscd_plan_defaults();
+    options.stiffness = p->row->seed == 1 ? stiffness : NULL;
     cscd_view x;
     options.method = p->row->method;
     return cscd_plan_create(p->context, p->mesh, at_moment(p, 0, &x), &options, &p->answer.plan);
@@ -124,33 +175,29 @@ static const char makes[] = "a mesh is made by one thread, and soon";
 static const char soon[] = "it is made soon";
 static const char clusters[] = "clusters are found by one thread";
 
+#define MESH .no_report = makes, .one_thread = makes
+
 static const proof_row rows[] = {
     {"context",
      {&context_made, &mesh_made, &detector_made, &step_first},
      .without_context = true,
      .family = SCENE_TWO_SPHERES},
-    {"mesh", {&mesh_made}, .family = SCENE_SOUP, .seed = 3, .no_report = makes, .one_thread = makes},
-    {"mesh_loose", {&loose_made}, .no_report = makes, .one_thread = makes},
+    {"mesh", {&mesh_made}, .family = SCENE_SOUP, .seed = 3, MESH},
+    {"mesh_loose", {&loose_made}, MESH},
+    {"mesh_change", {&change_made}, open_changing, .seed = 3, MESH},
+    {"mesh_change_4", {&change_made}, open_changing, .seed = 4, MESH},
+    {"mesh_change_5", {&change_made}, open_changing, .seed = 5, MESH},
+    {"mesh_change_6", {&change_made}, open_changing, .seed = 6, MESH},
     {"plan_single",
      {&plan_made},
-     open_mesh,
-     .family = SCENE_TWO_SPHERES,
+     open_dumbbell,
      .method = CSCD_METHOD_SINGLE,
      .no_report = soon,
      .one_thread = soon},
-    {"plan_kmeans",
-     {&plan_made},
-     open_mesh,
-     .family = SCENE_TWO_SPHERES,
-     .method = CSCD_METHOD_KMEANS,
-     .one_thread = clusters},
-    {"plan_charge", {&plan_made}, open_mesh, .family = SCENE_TWO_SPHERES, .method = CSCD_METHOD_CHARGE},
-    {"plan_parts",
-     {&plan_joined},
-     open_mesh,
-     .family = SCENE_BENT_CAPSULE,
-     .no_report = soon,
-     .one_thread = soon},
+    {"plan_kmeans", {&plan_made}, open_dumbbell, .method = CSCD_METHOD_KMEANS, .one_thread = clusters},
+    {"plan_charge", {&plan_made}, open_dumbbell, .method = CSCD_METHOD_CHARGE},
+    {"plan_soft", {&plan_made}, open_dumbbell, .seed = 1, .method = CSCD_METHOD_CHARGE},
+    {"plan_parts", {&plan_joined}, open_dumbbell, .no_report = soon, .one_thread = soon},
 };
 
 int main(void) {

@@ -120,7 +120,7 @@ static cscd_status find_on_line(proof *p) {
 
 static const proof_call line_create = {"line_search_create", PROOF_CREATES, create_line, keep_line};
 static const proof_call line_begin = {"line_search_begin", PROOF_BEGINS, begin_line, read_candidates};
-static const proof_call line_again = {"line_search_begin", PROOF_ASKS, begin_short, read_candidates};
+static const proof_call line_again = {"line_search_begin", PROOF_BEGINS, begin_short, read_candidates};
 static const proof_call line_positions = {"line_search_positions", PROOF_ASKS, write_positions, read_reached};
 static const proof_call line_step = {"line_search_max_step", PROOF_ASKS, go_along, read_step};
 static const proof_call line_near = {"line_search_find_near", PROOF_ASKS, find_on_line, read_near};
@@ -151,13 +151,12 @@ static void open_loose(proof *p) {
 
 #define ALL_CALLS                                                                                            \
     {                                                                                                        \
-        &near_pairs, &rest, &near_unique, &bounds, &max_step, &truncation, &line_create, &line_begin,        \
-            &line_positions, &line_step, &line_near, &line_again, &step_back                                 \
+        &rest, &line_create, &line_begin, &near_pairs, &near_unique, &bounds, &max_step, &truncation,        \
+            &line_positions, &line_step, &line_near, &step_back                                              \
     }
-
 #define LOOSE_CALLS                                                                                          \
     {                                                                                                        \
-        &near_pairs, &rest, &near_unique, &truncation, &line_create, &line_begin, &line_near, &step_first,   \
+        &rest, &line_create, &line_begin, &near_pairs, &near_unique, &truncation, &line_near, &step_first,   \
             &step_back                                                                                       \
     }
 
@@ -167,9 +166,13 @@ static const proof_row rows[] = {
     {"bounds", {&bounds}, open_detector, .family = SCENE_TWO_SPHERES},
     {"max_step", {&max_step}, open_detector, .family = SCENE_TWO_SPHERES},
     {"truncation", {&truncation}, open_detector, .family = SCENE_TWO_SPHERES},
-    {"line", {&line_create, &line_begin, &line_near, &line_step}, open_detector, .family = SCENE_TWO_SPHERES},
+    {"line",
+     {&line_create, &line_begin, &line_near, &line_step, &line_again},
+     open_detector,
+     .family = SCENE_TWO_SPHERES},
     {"single", ALL_CALLS, open_detector, .family = SCENE_TWO_SPHERES, .method = CSCD_METHOD_SINGLE},
     {"none", ALL_CALLS, open_detector, .family = SCENE_TWO_SPHERES, .method = CSCD_METHOD_NONE},
+    {"ignore", ALL_CALLS, open_ignoring, .family = SCENE_TWO_SPHERES},
     {"iccd", ALL_CALLS, open_detector, .family = SCENE_TWO_SPHERES, .method = CSCD_METHOD_ICCD},
     {"brute", ALL_CALLS, open_detector, .family = SCENE_TWO_SPHERES, .method = CSCD_METHOD_BRUTE},
     {"loose", LOOSE_CALLS, open_loose, .seed = 0},

@@ -7,13 +7,6 @@
 #define STEPS                                                                                                \
     { &step_first, &step_second, &step_third, &step_back }
 
-static void open_ignoring(proof *p) {
-    cscd_detector_options options = cscd_detector_defaults();
-    options.ignore = proof_ignore;
-    options.ignore_user = p;
-    open_detector_with(p, options);
-}
-
 static void open_separated(proof *p) {
     cscd_detector_options options = cscd_detector_defaults();
     options.min_separation = 0.01;
@@ -59,34 +52,6 @@ static cscd_status check_end(proof *p) {
 static const proof_call start_check = {"detector_check", PROOF_ASKS, check_start, read_check};
 static const proof_call end_check = {"detector_check", PROOF_ASKS, check_end, read_check};
 
-/* ---- intersections -------------------------------------------------------------------------------------- */
-
-static cscd_status find_pairs(proof *p, cscd_intersection_options options) {
-    cscd_view x;
-    return cscd_detector_find_intersections(p->detector, at_moment(p, 2, &x), &options, &p->answer.pairs);
-}
-
-static cscd_status find_everything(proof *p) {
-    return find_pairs(p, ask_everything());
-}
-
-static cscd_status find_first(proof *p) {
-    cscd_intersection_options options = cscd_intersection_defaults();
-    options.stop_after = 3;
-    return find_pairs(p, options);
-}
-
-static cscd_status count_pairs(proof *p) {
-    cscd_intersection_options options = cscd_intersection_defaults();
-    options.answer = CSCD_ANSWER_COUNT;
-    return find_pairs(p, options);
-}
-
-static const proof_call everything_found = {"detector_find_intersections", PROOF_ASKS, find_everything,
-                                            read_pairs};
-static const proof_call first_found = {"detector_find_intersections", PROOF_ASKS, find_first, read_pairs};
-static const proof_call pairs_counted = {"detector_find_intersections", PROOF_ASKS, count_pairs, read_pairs};
-
 /* ---- the table ------------------------------------------------------------------------------------------ */
 
 static const proof_row rows[] = {
@@ -108,15 +73,6 @@ static const proof_row rows[] = {
     {"check_ignore",
      {&start_check, &end_check, &step_back},
      open_ignoring,
-     .family = SCENE_FOLDED_SHEET,
-     .seed = 7},
-    {"intersections",
-     {&everything_found, &first_found, &pairs_counted},
-     open_detector,
-     .family = SCENE_TWO_SPHERES},
-    {"intersections_open",
-     {&everything_found, &step_back},
-     open_detector,
      .family = SCENE_FOLDED_SHEET,
      .seed = 7},
 };

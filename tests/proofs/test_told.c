@@ -151,6 +151,51 @@ static void open_torn(proof *p) {
     open_detector_with(p, options);
 }
 
+/* ---- what waits ------------------------------------------------------------------------------------------ */
+
+/* Two panels at one place, sewn together all over; they part and meet in turns. */
+static void open_sewn(proof *p) {
+    enum { SIDE = 5, HALF = SIDE * SIDE };
+    uint32_t sewn[HALF][2];
+    cscd_detector_options options = cscd_detector_defaults();
+    scene_clear(&p->shape);
+    for (int i = 0; i < 2; i++) scene_add_sheet(&p->shape, 4.0, 4.0, SIDE - 1, SIDE - 1);
+    for (uint32_t v = 0; v < 2 * HALF; v++) {
+        p->shape.x0[3 * v + 2] = 0.1 * sin(v % HALF * 1.3);
+        for (int m = 0; m < PROOF_MOMENTS; m++)
+            memcpy(&p->x[m][3 * v], &p->shape.x0[3 * v], sizeof(double[3]));
+        if (v >= HALF) continue;
+        p->x[1][3 * v + 2] += 0.3;
+        p->x[3][3 * v + 2] += 0.3;
+        sewn[v][0] = v;
+        sewn[v][1] = HALF + v;
+    }
+    options.seams = sewn[0];
+    options.seam_count = HALF;
+    cscd_object_desc objects[2];
+    uint32_t count;
+    describe_objects(p, objects, &count);
+    proof_need(p, cscd_mesh_create(p->context, objects, count, &p->mesh));
+    open_detector_with(p, options);
+}
+
+static cscd_status open_seams(proof *p) {
+    return cscd_detector_set_seams(p->detector, NULL, 0);
+}
+
+/* A step lets go of what is apart where it starts, also when it fails then. */
+static cscd_status step_apart(proof *p) {
+    return step_first.make(p);
+}
+
+static cscd_status step_together(proof *p) {
+    return step_second.make(p);
+}
+
+static const proof_call parted = {"detector_step", PROOF_BEGINS, step_apart, read_contacts};
+static const proof_call joined = {"detector_step", PROOF_BEGINS, step_together, read_contacts};
+static const proof_call opened = {"detector_set_seams", PROOF_CHANGES, open_seams, NULL};
+
 /* ---- what may move -------------------------------------------------------------------------------------- */
 
 /* The first object rests, and the second one alone may move. */
@@ -213,10 +258,11 @@ static const proof_call cloned = {"detector_clone", PROOF_CREATES, clone_detecto
 #define SPHERES .family = SCENE_TWO_SPHERES
 
 static const proof_row rows[] = {
-    {"parts", {&parts, &bodies, &parts_found}, open_detector, SPHERES},
+    {"parts", {&parts, &bodies, &parts_found, &cloned, &parts_found}, open_detector, SPHERES},
     {"parts_of_contacts", {&kept_step, &parts, &sums, &changes}, open_keeping, free_contacts, SPHERES},
     {"rules", {&step_first, &apart, &step_second, &thick, &step_third}, open_detector, SPHERES},
     {"seams", {&step_first, &seams, &step_second, &step_third}, open_torn, SPHERES},
+    {"waiting", {&opened, &parted, &joined, &step_third}, open_sewn, SPHERES},
     {"ignored", {&step_first, &ignored, &step_second, &step_third}, open_detector, SPHERES},
     {"separation", {&step_first, &separation, &step_second, &longest, &step_third}, open_detector, SPHERES},
     {"active", {&active, &step_first, &step_second, &step_third}, open_resting, SPHERES},

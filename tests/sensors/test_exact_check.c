@@ -1,13 +1,11 @@
 /* The exact check of particle sensors: against brute force over the same areas, and against the detector. */
 #include "runtime/sensors/exact_check.h"
 #include "tests/support/ccd/queue_test.h"
-#include "tests/support/counting_allocator.h"
 #include "tests/support/random.h"
 #include "tests/support/rig.h"
 #include "tests/support/sensors/hand_partition.h"
 #include "tests/support/test.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #ifdef SLOW_MACHINE
@@ -226,67 +224,11 @@ static void order_and_reuse_do_not_matter(void **state) {
     rig_destroy(&r);
 }
 
-/* Creates, checks twice; after a failure for want of memory the same call has to succeed. */
-static cscd_status check_with(counting_allocator *counter, const cscd_mesh *mesh, const cscd_partition *p,
-                              const area_query *query, const area_verdict *expected) {
-    exact_check exact;
-    area_verdict verdict = {.tests = 4711};
-    cscd_status status = exact_check_create(mesh, &exact);
-    if (status != CSCD_OK) return status;
-    status = exact_check_run(&exact, p, query, &verdict);
-    if (status != CSCD_OK) {
-        assert_int_equal(verdict.tests, 4711);
-        counter->fail_at = SIZE_MAX;
-        verdict = run_check(&exact, p, query);
-    }
-    assert_same(&verdict, expected);
-    size_t calls = counter->calls;
-    verdict = run_check(&exact, p, query);
-    assert_same(&verdict, expected);
-    assert_int_equal(counter->calls, calls);
-    exact_check_destroy(&exact);
-    return status;
-}
-
-static void every_allocation_fails_once(void **state) {
-    (void)state;
-    cscd_context *context;
-    cscd_mesh *mesh;
-    uint32_t cells[128];
-    scene_make(SCENE_NESTED_SPHERES, 1, &interval);
-    counting_allocator counter = counting_allocator_start();
-    cscd_context_options options = cscd_context_defaults();
-    options.allocator = counting_allocator_interface(&counter);
-    options.thread_count = 1;
-    cscd_object_desc desc =
-        cscd_object_of_triangles(interval.vertex_count, interval.triangle_count, interval.triangles);
-    assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
-    cscd_partition *p = hand_partition_create(mesh, interval.x0, NULL, 2, 9);
-    for (uint32_t i = 0; i < 128; i++) cells[i] = i;
-    uint32_t count = p->parts[0].cell_count;
-    area_query query = {interval.x0, interval.x1, cells, cells + count, count, p->parts[1].cell_count};
-    area_verdict expected = brute_force(p, &query);
-    assert_true(expected.contact);
-    size_t live = counter.live, failures = 0;
-    for (cscd_status status = CSCD_OUT_OF_MEMORY; status != CSCD_OK; failures++) {
-        counter.calls = 0;
-        counter.fail_at = failures;
-        status = check_with(&counter, mesh, p, &query, &expected);
-        assert_int_equal(counter.live, live);
-    }
-    assert_true(failures > 10);
-    hand_partition_destroy(p);
-    cscd_mesh_destroy(mesh);
-    cscd_context_destroy(context);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(equals_brute_force),
         cmocka_unit_test(equals_detector),
         cmocka_unit_test(order_and_reuse_do_not_matter),
-        cmocka_unit_test(every_allocation_fails_once),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -41,55 +41,6 @@ static void destroy_sensed(sensed *r) {
     *r = (sensed){0};
 }
 
-/* A step that failed for lack of memory succeeds when it is repeated, with the result that it would have
- * given. */
-static cscd_status step_twice(const sensed *r, cscd_warning *warning) {
-    cscd_warnings found = {NULL, 4711, 0};
-    cscd_status status = sensors_step_packed(r->sensors, s.x0, s.x1, &found);
-    if (status == CSCD_OUT_OF_MEMORY) {
-        assert_int_equal(found.count, 4711);
-        assert_non_null(strstr(cscd_context_detail(r->context), "out of memory"));
-        assert_int_equal(sensors_step_packed(r->sensors, s.x0, s.x1, &found), CSCD_OK);
-    }
-    assert_int_equal(found.count, 1);
-    *warning = found.items[0];
-    return status;
-}
-
-static void fail_each(cscd_sensor_method method) {
-    sensed r = {0};
-    cscd_warning expected, found;
-    counting_allocator counter = counting_allocator_start();
-    assert_int_equal(create_sensed(&counter, method, &r), CSCD_OK);
-    size_t created = counter.calls;
-    assert_int_equal(step_twice(&r, &expected), CSCD_OK);
-    size_t calls = counter.calls;
-    assert_true(calls > created + 3);
-    destroy_sensed(&r);
-    for (size_t n = 0; n < calls; n++) {
-        counter = counting_allocator_start();
-        counter.fail_at = n;
-        cscd_status status = create_sensed(&counter, method, &r);
-        assert_int_equal(status, n < created ? CSCD_OUT_OF_MEMORY : CSCD_OK);
-        if (status == CSCD_OK) {
-            assert_int_equal(step_twice(&r, &found), CSCD_OUT_OF_MEMORY);
-            assert_int_equal(found.vertex_a, expected.vertex_a);
-            assert_int_equal(found.vertex_b, expected.vertex_b);
-            assert_true(found.distance == expected.distance && found.toi == expected.toi);
-        }
-        destroy_sensed(&r);
-        assert_int_equal(counter.live, 0);
-        assert_int_equal(counter.bytes, 0);
-    }
-}
-
-static void every_allocation_may_fail(void **state) {
-    (void)state;
-    scene_make(SCENE_TWO_SPHERES, 3, &s);
-    fail_each(CSCD_SENSORS_CELLS);
-    fail_each(CSCD_SENSORS_RANDOM);
-}
-
 static void steady_steps_allocate_nothing(void **state) {
     (void)state;
     for (int method = 0; method < 2; method++) {
@@ -145,7 +96,6 @@ static void work_grows_with_the_scene(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_allocation_may_fail),
         cmocka_unit_test(steady_steps_allocate_nothing),
         cmocka_unit_test(work_grows_with_the_scene),
     };

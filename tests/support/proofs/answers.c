@@ -8,6 +8,7 @@
 void read_contacts(proof *p) {
     const cscd_contacts *c = &p->answer.contacts;
     proof_add_items(p, c->items, c->count, sizeof *c->items);
+    proof_add(p, &c->waiting, sizeof c->waiting);
     for (uint32_t i = 0; i < cscd_mesh_component_count(p->mesh); i++) {
         const cscd_guarantee g = cscd_detector_guarantee(p->detector, i);
         proof_add(p, &g.complete, sizeof g.complete);
@@ -66,6 +67,7 @@ void read_pairs(proof *p) {
     const cscd_intersection_pairs *c = &p->answer.pairs;
     proof_add_items(p, c->items, c->count, sizeof *c->items);
     proof_add(p, &c->zero_area_triangles, sizeof c->zero_area_triangles);
+    proof_add(p, &c->waiting, sizeof c->waiting);
     if (c->curves != NULL) read_curves(p, c->curves);
     if (c->patches != NULL) read_patches(p, c->patches);
     if (c->overlaps != NULL) read_overlaps(p, c->overlaps);

@@ -85,6 +85,13 @@ void open_detector(proof *p) {
     open_detector_with(p, cscd_detector_defaults());
 }
 
+void open_ignoring(proof *p) {
+    cscd_detector_options options = cscd_detector_defaults();
+    options.ignore = proof_ignore;
+    options.ignore_user = p;
+    open_detector_with(p, options);
+}
+
 const cscd_view *at_moment(const proof *p, int moment, cscd_view *view) {
     *view = cscd_view_doubles(p->x[moment], p->shape.vertex_count);
     return view;

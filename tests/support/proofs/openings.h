@@ -18,5 +18,8 @@ void open_detector(proof *p);
 /* With these options. */
 void open_detector_with(proof *p, cscd_detector_options options);
 
+/* With a function `ignore`, which leaves nothing out. */
+void open_ignoring(proof *p);
+
 /* The positions of a moment. */
 const cscd_view *at_moment(const proof *p, int moment, cscd_view *view);

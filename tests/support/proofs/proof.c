@@ -142,18 +142,36 @@ static void read_answer(proof *p, const proof_call *call) {
     if (p->detector != NULL) read_detector(p);
 }
 
+static void answer_again(proof *p, const proof_call *call) {
+    const uint64_t expected = p->digests[p->at_call].answer;
+    if (make_once(p, call) != CSCD_OK) fail_msg("%s fails when it is asked again", call->function);
+    read_answer(p, call);
+    if (p->digests[p->at_call].answer != expected)
+        fail_msg("%s answered something else when it was asked again", call->function);
+}
+
 /* The last times find all lists long enough. */
 static void ask_again(proof *p, const proof_call *call) {
-    const uint64_t expected = p->digests[p->at_call].answer;
     size_t allocations = 0;
     for (int i = 0; i < p->again; i++) {
         if (i == p->again - 2) allocations = p->counter.calls;
-        assert_int_equal(make_once(p, call), CSCD_OK);
-        read_answer(p, call);
-        if (p->digests[p->at_call].answer != expected)
-            fail_msg("%s answered something else when it was asked again", call->function);
+        answer_again(p, call);
     }
     if (p->again > 1 && p->counter.calls != allocations) p->allocates = call->function;
+}
+
+/* The same of all calls that ask, those behind the last one of another kind, in turns. */
+static void ask_in_turns(proof *p) {
+    const proof_call *const *calls = p->row->calls;
+    size_t allocations = p->counter.calls;
+    int end = 0, begin;
+    while (calls[end] != NULL) end++;
+    for (begin = end; begin > 0 && calls[begin - 1]->kind == PROOF_ASKS;) begin--;
+    for (int i = 0; i < p->again; i++) {
+        if (i == p->again - 2) allocations = p->counter.calls;
+        for (p->at_call = begin; p->at_call < end; p->at_call++) answer_again(p, calls[p->at_call]);
+    }
+    if (p->counter.calls != allocations) p->allocates = "one of the calls in turns";
 }
 
 static void make_call(proof *p, const proof_call *call) {
@@ -236,5 +254,6 @@ void proof_live(proof *p) {
     if (p->row->open != NULL) p->row->open(p);
     for (p->at_call = 0; p->row->calls[p->at_call] != NULL; p->at_call++)
         if (p->at_call != p->out) make_call(p, p->row->calls[p->at_call]);
+    ask_in_turns(p);
     destroy_all(p);
 }

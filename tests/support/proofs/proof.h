@@ -5,7 +5,8 @@
  *   skipped    a call that has failed is not repeated: those behind it answer as if it had not been made
  *   threads    1, 2 and 7 threads, and a loop of the host that runs the tasks backwards
  *   levels     each set of vector instructions that this processor has
- *   repeated   in a new world, and again and again in the same one, where the last times allocate nothing
+ *   repeated   in a new world, and again and again in the same one, each call by itself and all in turns, where the last times
+ *              allocate nothing
  * In all but `skipped` a call that has failed is repeated at once, and must then succeed. */
 #pragma once
 
