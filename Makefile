@@ -139,7 +139,8 @@ endif
 # The thread sanitizer sees the tests that use threads, and no others are built for it.
 THREAD_TESTS := bvh/test_traversal core/test_threads core/test_progress core/test_parallel_for core/test_contexts core/test_host_loop \
                 core/test_exceptions detector/test_reentry detector/test_lifetimes detector/test_shared_mesh detector/test_clone_threads \
-                intersections/test_first_pairs intersections/test_surface_answers cpp/test_callbacks
+                intersections/test_first_pairs intersections/test_surface_answers cpp/test_callbacks \
+                proofs/test_steps proofs/test_solver_calls proofs/test_told proofs/test_intersections proofs/test_creations
 ifeq ($(CONFIG),tsan)
 TEST_SOURCES    := $(filter $(addsuffix .%,$(addprefix tests/,$(THREAD_TESTS))),$(TEST_SOURCES))
 endif
