@@ -1,6 +1,5 @@
 """What a command writes takes the place of an older file when it is whole, and "-" is the standard output."""
 import os
-import resource
 import signal
 import time
 from pathlib import Path
@@ -9,7 +8,7 @@ import pytest
 
 from support.tool.reading import json_of
 from support.tool.recordings import fold, tetrahedra
-from support.tool.running import finish, run, start, usage_error
+from support.tool.running import finish, limited_to, run, start, usage_error
 
 FULL_DISK = 600
 OLDER = "what was there"
@@ -23,11 +22,8 @@ def files(own_folder):
 
 
 def fails_on_a_full_disk(line):
-    """Runs the tool where no file may have more than FULL_DISK bytes, as by ulimit -f. The signal of that must not end it."""
-    def limit():
-        resource.setrlimit(resource.RLIMIT_FSIZE, (FULL_DISK, resource.RLIM_INFINITY))
-
-    error = run(line, code=1, preexec_fn=limit).error
+    """Runs the tool where no file may have more than FULL_DISK bytes."""
+    error = run(line, code=1, preexec_fn=limited_to(FULL_DISK)).error
     assert error.count("File too large") == 1
     assert ": File too large: a limit of the system on the size of files; raise it" in error
 

@@ -1,7 +1,6 @@
 """`replay --shard` and `merge`: the shards of a recording give what one run gives, byte for byte."""
 import fcntl
 import os
-import resource
 import shutil
 import signal
 import time
@@ -11,7 +10,7 @@ import pytest
 
 from support.tool.reading import read_csv, read_json, read_json_lines
 from support.tool.recordings import fold, spindle
-from support.tool.running import fails, finish, run, start, usage_error
+from support.tool.running import fails, finish, limited_to, run, start, usage_error
 
 FOLD, SPINDLE = "fold.obj fold.pc2", "spindle.obj spindle.pc2"
 CLOSED = f"{SPINDLE} --method single"
@@ -137,12 +136,8 @@ def test_a_full_disk_loses_nothing():
     run(f"replay {CLOSED} --quiet --results 1.shard")
     whole = os.path.getsize("1.shard")
     for size in (0, 1, 100, whole // 3, whole // 2, whole - 1):
-        def limit(size=size):
-            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-            resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
-
         os.unlink("1.shard")
-        error = run(f"replay {CLOSED} --quiet --results 1.shard", code=1, preexec_fn=limit).error
+        error = run(f"replay {CLOSED} --quiet --results 1.shard", code=1, preexec_fn=limited_to(size)).error
         assert "1.shard: cannot write: File too large" in error
         run(f"replay {CLOSED} --quiet --results 1.shard --resume")
         merged_as_one()

@@ -1,11 +1,15 @@
 """Runs the built tool as a user would: a command line in; the exit code and both outputs out."""
 import os
+import resource
 import shlex
 import signal
 import subprocess
 import sys
 import time
 from typing import NamedTuple
+
+# With sanitizers, or in an emulator, programs take many times as long: tests repeat less.
+SLOW_MACHINE = "CSCD_RUNNER" in os.environ or os.path.basename(os.path.dirname(os.environ["CSCD_TOOL"])) in ("sanitize", "tsan")
 
 # Whoever runs the tests in the background, or by nohup, ignores some of these, and the tool would, too.
 for interrupt in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
@@ -40,7 +44,8 @@ def start(line, *words, **options):
 
 def finish(process, code=0):
     """Waits for a tool that has been started, and expects its exit code."""
-    out, error = (text.decode("utf-8", "surrogateescape").replace("\r\n", "\n") for text in process.communicate())
+    outputs = process.communicate(timeout=300)
+    out, error = (text.decode("utf-8", "surrogateescape").replace("\r\n", "\n") for text in outputs)
     run_of = Run(process.returncode if process.returncode >= 0 else 128 - process.returncode, out, error)
     assert run_of.code == code, f"expected exit code {code}, but {run_of.code}\n{out}\n{error}"
     return run_of
@@ -63,6 +68,11 @@ def fails(line, *says, code=1, **options):
 def usage_error(line, *says, **options):
     """Runs the tool, which must refuse its command line, say all of this, and point to --help."""
     fails(line, *says, code=2, **options)
+
+
+def limited_to(size):
+    """For preexec_fn: no file may have more bytes, as by ulimit -f. The signal of that must not end the tool."""
+    return lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
 
 
 def wait_until(condition, process=None, seconds=120):
