@@ -775,11 +775,10 @@ $(addprefix $(BUILD)/,$(basename $(filter tests/$(1)/%,$(ROOM_SOURCES)))): $(BUI
 endef
 $(foreach room,$(TEST_ROOMS),$(eval $(call room_rules,$(room))))
 
-# A link with the name of a file of pytest starts that with it.
+# A link with the name of a file of pytest starts that with it. It may have been one of the room, when the file was in C.
 PYTEST_LINKS := $(addprefix $(BUILD)/,$(basename $(filter %.py,$(TEST_SOURCES))))
-$(PYTEST_LINKS): tests/run_pytest.py
-	@mkdir -p $(@D)
-	@ln -sfn $(CURDIR)/$< $@
+$(PYTEST_LINKS): FORCE
+	@[ $@ -ef tests/run_pytest.py ] || { mkdir -p $(@D) && ln -sfn $(CURDIR)/tests/run_pytest.py $@; }
 
 # What was the main of each file: tests/support/room.h.
 test_file = $(if $(filter test_%,$(notdir $(1))),-DTEST_FILE='"$(basename $(notdir $(1)))"' -Dmain=main_of_$(basename $(notdir $(1))))
