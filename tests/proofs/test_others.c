@@ -246,7 +246,10 @@ static cscd_status sense_second(proof *p) {
     return sense_between(p, 1, 2);
 }
 
+/* How far particles have walked is counted, so one that is not put back after a failure is seen. */
 static void read_warnings(proof *p) {
+    const cscd_sensor_counters counters = cscd_sensors_counters(p->sensors);
+    proof_add(p, &counters, sizeof counters);
     for (size_t i = 0; i < p->answer.warnings.count; i++) {
         const cscd_warning *w = &p->answer.warnings.items[i];
         const uint32_t vertices[2] = {w->vertex_a, w->vertex_b};
