@@ -159,27 +159,6 @@ static void counted_end(counted_rig *r) {
     assert_int_equal(r->counter.live, 0);
 }
 
-/* Steps on the detector, and on a clone, which may fail at any allocation and then succeed. */
-static size_t step_often(counted_rig *r, const double *x0, const double *x1, size_t fail_in) {
-    cscd_contacts found;
-    cscd_detector *clone = NULL;
-    r->counter.fail_at = r->counter.calls + fail_in;
-    cscd_status status = step_packed(r->detector, x0, x1, &found);
-    assert_true(status == CSCD_OK || status == CSCD_OUT_OF_MEMORY);
-    status = cscd_detector_clone(r->context, r->detector, &clone);
-    assert_true(status == CSCD_OK || status == CSCD_OUT_OF_MEMORY);
-    r->counter.fail_at = SIZE_MAX;
-    if (clone == NULL) assert_int_equal(cscd_detector_clone(r->context, r->detector, &clone), CSCD_OK);
-    assert_int_equal(step_packed(clone, x0, x1, &found), CSCD_OK);
-    size_t of_clone = found.count;
-    cscd_counters boxes = cscd_detector_counters(clone);
-    assert_int_equal(step_packed(r->detector, x0, x1, &found), CSCD_OK);
-    assert_int_equal(found.count, of_clone);
-    assert_int_equal(cscd_detector_counters(r->detector).boxes_tested, boxes.boxes_tested);
-    cscd_detector_destroy(clone);
-    return found.count;
-}
-
 /* The set is given before there are trees, or after. */
 static void every_allocation_may_fail(void **state) {
     (void)state;
@@ -216,23 +195,6 @@ static void every_allocation_may_fail(void **state) {
         }
     }
     assert_true(failures > 4);
-}
-
-static void trees_and_clones_may_fail(void **state) {
-    (void)state;
-    static uint32_t vertices[SCENE_VERTICES_MAX];
-    size_t contacts = 0;
-    uint32_t count = make_flying_sphere(vertices);
-    for (size_t n = 0; n < 120; n++) {
-        counted_rig r;
-        counted_begin(&r);
-        set_vertices(r.detector, vertices, count);
-        size_t found = step_often(&r, s.x0, s.x1, n);
-        assert_true(n == 0 || found == contacts);
-        contacts = found;
-        counted_end(&r);
-    }
-    assert_true(contacts > 0);
 }
 
 /* One of two objects goes; the change and the trees that follow it may fail anywhere. */
@@ -283,7 +245,6 @@ int main(void) {
         cmocka_unit_test(rebuilt_trees_have_the_set),
         cmocka_unit_test(clones_and_changed_meshes_keep_the_set),
         cmocka_unit_test(every_allocation_may_fail),
-        cmocka_unit_test(trees_and_clones_may_fail),
         cmocka_unit_test(changes_may_fail),
     };
     return cmocka_run_group_tests_name("active_changes", tests, NULL, NULL);

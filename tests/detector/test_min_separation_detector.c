@@ -106,28 +106,6 @@ static void same_pairs_when_scaled(void **state) {
     }
 }
 
-static void same_bits_for_any_thread_count(void **state) {
-    (void)state;
-    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
-        scene_make((scene_family)family, 4, &interval);
-        cscd_detector_options options = options_within(0.05, CSCD_METHOD_NONE);
-        rig one = rig_create(&interval, 1, &options);
-        cscd_contacts expected = rig_step(&one, &interval);
-        cscd_counters counters = cscd_detector_counters(one.detector);
-        for (uint32_t threads = 2; threads <= 16; threads += 7) {
-            rig many = rig_create(&interval, threads, &options);
-            cscd_contacts found = rig_step(&many, &interval);
-            cscd_counters own = cscd_detector_counters(many.detector);
-            assert_int_equal(found.count, expected.count);
-            if (found.count > 0)
-                assert_memory_equal(found.items, expected.items, found.count * sizeof *found.items);
-            assert_memory_equal(&own, &counters, sizeof own);
-            rig_destroy(&many);
-        }
-        rig_destroy(&one);
-    }
-}
-
 /* ---- more distance, more pairs ---------------------------------------------------------------------- */
 
 static int compare_pairs(const void *left, const void *right) {
@@ -332,7 +310,6 @@ static void a_start_behind_a_wall_is_not_clean(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(every_method_equals_brute_force),
                                        cmocka_unit_test(same_pairs_when_scaled),
-                                       cmocka_unit_test(same_bits_for_any_thread_count),
                                        cmocka_unit_test(a_larger_distance_only_adds_pairs),
                                        cmocka_unit_test(unfit_lengths_are_refused),
                                        cmocka_unit_test(the_static_check_is_not_concerned),

@@ -155,53 +155,6 @@ static void odd_seams_are_taken(void **state) {
     rig_destroy(&r);
 }
 
-/* ---- cancelled calls ------------------------------------------------------------------------------------- */
-
-typedef struct impatient_host {
-    cscd_context *context;
-    uint32_t calls, at;
-} impatient_host;
-
-static bool go_on_until(void *user, const char *stage, double fraction) {
-    impatient_host *h = user;
-    return ++h->calls != h->at && stage != NULL && fraction >= 0.0;
-}
-
-static void cancelled_calls_change_nothing(void **state) {
-    static const size_t stops[] = {0, 400};
-    (void)state;
-    make_wavy_spheres(0.02, &s);
-    for (int i = 0; i < 2; i++) {
-        impatient_host h = {.at = 0};
-        uint32_t cancelled = 0;
-        cscd_context_options options = cscd_context_defaults();
-        options.progress = (cscd_progress){go_on_until, &h};
-        assert_int_equal(cscd_context_create(&options, &h.context), CSCD_OK);
-        h.context->progress.interval_ms = 0.0; /* asks as often as it can */
-        cscd_mesh *mesh = NULL;
-        cscd_detector *detector = NULL;
-        cscd_object_desc desc = cscd_object_of_triangles(s.vertex_count, s.triangle_count, s.triangles);
-        assert_int_equal(cscd_mesh_create(h.context, &desc, 1, &mesh), CSCD_OK);
-        assert_int_equal(cscd_detector_create(h.context, mesh, NULL, NULL, &detector), CSCD_OK);
-        size_t count = find_kinds_of(&s, detector, CSCD_ANSWER_LIST, stops[i]).count;
-        for (uint32_t at = 1; at < 40; at += 3) {
-            cscd_intersection_options asked = intersection_options(CSCD_ANSWER_LIST, UINT64_MAX, stops[i]);
-            cscd_intersection_pairs found = {.count = 4711};
-            h.calls = 0;
-            h.at = at;
-            cscd_status status = find_intersections_packed(detector, s.x0, &asked, &found);
-            assert_true(status == CSCD_CANCELLED ? found.count == 4711 : status == CSCD_OK);
-            cancelled += status == CSCD_CANCELLED;
-            h.at = 0;
-            assert_int_equal(find_kinds_of(&s, detector, CSCD_ANSWER_LIST, stops[i]).count, count);
-        }
-        assert_true(cancelled >= 5);
-        cscd_detector_destroy(detector);
-        cscd_mesh_destroy(mesh);
-        cscd_context_destroy(h.context);
-    }
-}
-
 /* ---- options --------------------------------------------------------------------------------------------- */
 
 static void expect_refused(cscd_detector *detector, cscd_intersection_options options, const char *sentence) {
@@ -234,7 +187,6 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(caps_bound_lists),           cmocka_unit_test(states_are_known_afterwards),
         cmocka_unit_test(waiting_pairs_are_left_out), cmocka_unit_test(duplicates_mark_nothing),
-        cmocka_unit_test(odd_seams_are_taken),        cmocka_unit_test(cancelled_calls_change_nothing),
-        cmocka_unit_test(wrong_options_are_refused)};
+        cmocka_unit_test(odd_seams_are_taken),        cmocka_unit_test(wrong_options_are_refused)};
     return cmocka_run_group_tests_name("find_intersections_calls", tests, NULL, NULL);
 }

@@ -147,33 +147,12 @@ static void what_is_refused(void **state) {
     body_rig_free(&rig);
 }
 
-/* The same motion to and fro, so that no list is longer than before. */
-static void a_steady_state_allocates_nothing(void **state) {
-    (void)state;
-    counting_allocator counter = counting_allocator_start();
-    size_t calls = 0;
-    labelled_scene_open(&rig, NULL, 1);
-    body_rig_free(&rig);
-    rig.counter = &counter;
-    body_rig_create(&rig, NULL, 1);
-    labelling_draw(&labels, &rig, 5, 7);
-    labelling_set(&labels, &rig);
-    for (int i = 0; i < 16; i++) {
-        for (uint32_t k = 0; k < rig.bodies[1].vertex_count * 3; k++)
-            rig.all.x0[rig.bodies[1].first_vertex * 3 + k] += i % 8 < 4 ? 0.001 : -0.001;
-        labelled_scene_find(&rig);
-        labelling_compare(&labels, &rig);
-        if (i == 8) calls = counter.calls;
-    }
-    assert_int_equal(counter.calls, calls);
-    body_rig_free(&rig);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(labels_move_to_another_mesh),      cmocka_unit_test(sums_follow_to_a_larger_mesh),
-        cmocka_unit_test(clones_have_their_own_labels),     cmocka_unit_test(what_is_refused),
-        cmocka_unit_test(a_steady_state_allocates_nothing),
+        cmocka_unit_test(labels_move_to_another_mesh),
+        cmocka_unit_test(sums_follow_to_a_larger_mesh),
+        cmocka_unit_test(clones_have_their_own_labels),
+        cmocka_unit_test(what_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -16,76 +16,6 @@ static const loose_recipe everything = {
 /* ---- the same bits ------------------------------------------------------------------------------------------ */
 
 enum { LIST_MAX = 20000 };
-static cscd_contact first_contacts[LIST_MAX];
-static cscd_proximity first_near[LIST_MAX];
-
-typedef struct call_outcome {
-    size_t contacts, near;
-    double fraction, least;
-} call_outcome;
-
-static call_outcome run_all(const cscd_detector_options *options, cscd_contact *contacts,
-                            cscd_proximity *near) {
-    call_outcome out = {0, 0, 0.0, 0.0};
-    double bounds[LOOSE_VERTICES_MAX], reached[LOOSE_VERTICES_MAX * 3];
-    cscd_contacts found;
-    cscd_proximities close;
-    cscd_free_step step;
-    cscd_displacement_bounds limits;
-    cscd_detector *detector = loose_scene_detector(&scene, options);
-    assert_int_equal(step_packed(detector, scene.x0, scene.x1, &found), CSCD_OK);
-    assert_true(found.count <= LIST_MAX);
-    out.contacts = found.count;
-    memcpy(contacts, found.items, found.count * sizeof *contacts);
-    assert_int_equal(find_unique_packed(detector, scene.x0, 0.3, &close), CSCD_OK);
-    assert_true(close.count <= LIST_MAX);
-    out.near = close.count;
-    memcpy(near, close.items, close.count * sizeof *near);
-    cscd_status status = max_step_packed(detector, scene.x0, scene.x1, reached, &step);
-    assert_true(status == CSCD_OK || status == CSCD_IN_CONTACT);
-    out.fraction = status == CSCD_OK ? step.fraction : -1.0;
-    assert_int_equal(displacement_bounds_packed(detector, scene.x0, 0.3, bounds, &limits), CSCD_OK);
-    out.least = limits.least;
-    cscd_detector_destroy(detector);
-    return out;
-}
-
-static bool machine_has(cscd_simd level) {
-    cscd_context_options options = cscd_context_defaults();
-    cscd_context *context = NULL;
-    options.simd = level;
-    cscd_status status = cscd_context_create(&options, &context);
-    cscd_context_destroy(context);
-    return status == CSCD_OK;
-}
-
-static void same_bits(void **state) {
-    static cscd_contact contacts[LIST_MAX];
-    static cscd_proximity near[LIST_MAX];
-    (void)state;
-    for (uint64_t seed = 0; seed < 6; seed++) {
-        call_outcome first = {0, 0, 0.0, 0.0};
-        loose_recipe recipe = everything;
-        recipe.thickness = seed % 2 == 1;
-        for (uint32_t run = 0; run < 6; run++) {
-            random_stream random = stream_start(seed);
-            static const cscd_simd levels[6] = {CSCD_SIMD_SCALAR, CSCD_SIMD_AVX2, CSCD_SIMD_AVX512,
-                                                CSCD_SIMD_AUTO,   CSCD_SIMD_AUTO, CSCD_SIMD_SCALAR};
-            if (!machine_has(levels[run])) continue;
-            loose_scene_make(&scene, &recipe, &random, 1 + run, levels[run]);
-            cscd_detector_options options = loose_scene_options(&scene);
-            call_outcome now =
-                run_all(&options, run == 0 ? first_contacts : contacts, run == 0 ? first_near : near);
-            if (run == 0) first = now;
-            assert_memory_equal(&now, &first, sizeof now);
-            assert_true(now.contacts > 20 && now.near > 100);
-            if (run > 0) assert_memory_equal(contacts, first_contacts, now.contacts * sizeof *contacts);
-            if (run > 0) assert_memory_equal(near, first_near, now.near * sizeof *near);
-            loose_scene_free(&scene);
-        }
-    }
-}
-
 /* ---- triangles are what they were --------------------------------------------------------------------------- */
 
 /* A mesh of the triangles alone, whose vertices and edges are numbered as if the loose ones were missing. */
@@ -248,7 +178,6 @@ static void marching_in_floats(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(same_bits),
         cmocka_unit_test(triangles_unchanged),
         cmocka_unit_test(contact_at_the_start),
         cmocka_unit_test(marching_in_floats),

@@ -254,8 +254,8 @@ static void expect_same_results(cscd_context *context, const cscd_pairs *desc, c
     assert_memory_equal(other_nearest, nearest, sizeof nearest);
 }
 
-/* Instruction sets, threads, and points that are named by numbers, in another order. */
-static void same_bits_in_every_way(void **state) {
+/* Points that are named by numbers, in another order. */
+static void points_may_be_named(void **state) {
     (void)state;
     static double start[POINTS][3], end[POINTS][3];
     static uint32_t points[POINTS];
@@ -276,17 +276,7 @@ static void same_bits_in_every_way(void **state) {
         }
         assert_int_equal(pairs_step_packed(contexts[0], &all, x0[0], x1[0], 0.0, 0.0, contacts), CSCD_OK);
         assert_int_equal(pairs_near_packed(contexts[0], &all, x0[0], INFINITY, nearest), CSCD_OK);
-        for (int level = 0; level < LEVEL_COUNT; level++) {
-            if (contexts[level] == NULL) continue;
-            expect_same_results(contexts[level], &all, x0[0], x1[0]);
-            expect_same_results(contexts[level], &named, start[0], end[0]);
-        }
-        cscd_context *threads;
-        cscd_context_options options = cscd_context_defaults();
-        options.thread_count = 3;
-        assert_int_equal(cscd_context_create(&options, &threads), CSCD_OK);
-        expect_same_results(threads, &all, x0[0], x1[0]);
-        cscd_context_destroy(threads);
+        expect_same_results(contexts[0], &named, start[0], end[0]);
     }
 }
 
@@ -362,7 +352,7 @@ int main(void) {
         cmocka_unit_test(contacts_are_those_of_a_step),
         cmocka_unit_test(separations_are_those_of_a_step),
         cmocka_unit_test(distances_are_those_of_find_near),
-        cmocka_unit_test(same_bits_in_every_way),
+        cmocka_unit_test(points_may_be_named),
         cmocka_unit_test(any_layout_will_do),
         cmocka_unit_test(bad_arguments_are_named),
     };

@@ -59,8 +59,11 @@ static const proof_call bounds = {"detector_displacement_bounds", PROOF_ASKS, bo
 static cscd_status go_free(proof *p) {
     cscd_view x0, x1;
     cscd_mutable_view end;
-    return cscd_detector_max_step(p->detector, at_moment(p, 0, &x0), at_moment(p, 3, &x1),
-                                  reached_of(p, &end), &p->answer.step);
+    const cscd_status status = cscd_detector_max_step(p->detector, at_moment(p, 0, &x0), at_moment(p, 3, &x1),
+                                                      reached_of(p, &end), &p->answer.step);
+    if (status != CSCD_IN_CONTACT) return status;
+    p->answer.step = (cscd_free_step){.fraction = -1.0}; /* an answer, too */
+    return CSCD_OK;
 }
 
 static cscd_status truncate_motion(proof *p) {
@@ -154,10 +157,12 @@ static void open_loose(proof *p) {
         &rest, &line_create, &line_begin, &near_pairs, &near_unique, &bounds, &max_step, &truncation,        \
             &line_positions, &line_step, &line_near, &step_back                                              \
     }
+#define FAMILY_CALLS                                                                                         \
+    { &step_first, &near_pairs, &near_unique, &step_second, &step_back }
 #define LOOSE_CALLS                                                                                          \
     {                                                                                                        \
-        &rest, &line_create, &line_begin, &near_pairs, &near_unique, &truncation, &line_near, &step_first,   \
-            &step_back                                                                                       \
+        &rest, &line_create, &line_begin, &near_pairs, &near_unique, &bounds, &max_step, &truncation,        \
+            &line_near, &step_first, &step_back                                                              \
     }
 
 static const proof_row rows[] = {
@@ -174,7 +179,16 @@ static const proof_row rows[] = {
     {"none", ALL_CALLS, open_detector, .family = SCENE_TWO_SPHERES, .method = CSCD_METHOD_NONE},
     {"ignore", ALL_CALLS, open_ignoring, .family = SCENE_TWO_SPHERES},
     {"iccd", ALL_CALLS, open_detector, .family = SCENE_TWO_SPHERES, .method = CSCD_METHOD_ICCD},
-    {"brute", ALL_CALLS, open_detector, .family = SCENE_TWO_SPHERES, .method = CSCD_METHOD_BRUTE},
+    {"brute",
+     {&line_create, &line_begin, &near_pairs, &max_step, &line_near},
+     open_detector,
+     .family = SCENE_TWO_SPHERES,
+     .method = CSCD_METHOD_BRUTE},
+    {"waves", FAMILY_CALLS, open_detector, .family = SCENE_NOISY_SPHERE, .seed = 4},
+    {"tori", FAMILY_CALLS, open_detector, .family = SCENE_LINKED_TORI, .seed = 4},
+    {"spike", FAMILY_CALLS, open_detector, .family = SCENE_SPIKE, .seed = 4},
+    {"grid", FAMILY_CALLS, open_detector, .family = SCENE_GRID, .seed = 4},
+    {"far_away", FAMILY_CALLS, open_detector, .family = SCENE_FAR_AWAY, .seed = 4},
     {"loose", LOOSE_CALLS, open_loose, .seed = 0},
     {"loose_and_triangles", LOOSE_CALLS, open_loose, .seed = 1},
 };

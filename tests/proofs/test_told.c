@@ -267,6 +267,7 @@ static const proof_row rows[] = {
     {"separation", {&step_first, &separation, &step_second, &longest, &step_third}, open_detector, SPHERES},
     {"active", {&active, &step_first, &step_second, &step_third}, open_resting, SPHERES},
     {"active_later", {&step_first, &active, &step_second, &step_third}, open_resting, SPHERES},
+    {"active_clone", {&active, &cloned, &step_first, &step_second}, open_resting, SPHERES},
     {"change", {&step_first, &change_made, &mesh_changed, &step_second, &step_third}, open_detector, SPHERES},
     {"clone", {&step_first, &cloned, &step_second, &step_third}, open_detector, SPHERES},
 };

@@ -297,24 +297,6 @@ static void steps_do_not_notice(void **state) {
     }
 }
 
-static void same_bits_for_any_thread_count(void **state) {
-    (void)state;
-    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
-        scene_make((scene_family)family, 4, &interval);
-        rig one = rig_of(&interval, CSCD_METHOD_NONE, 1);
-        cscd_proximities expected = find_near(&one, interval.x1, 0.2);
-        for (uint32_t threads = 2; threads <= 16; threads += 14) {
-            rig many = rig_of(&interval, CSCD_METHOD_NONE, threads);
-            cscd_proximities found = find_near(&many, interval.x1, 0.2);
-            assert_int_equal(found.count, expected.count);
-            if (found.count > 0)
-                assert_memory_equal(found.items, expected.items, found.count * sizeof *found.items);
-            rig_destroy(&many);
-        }
-        rig_destroy(&one);
-    }
-}
-
 /* ---- arguments ----------------------------------------------------------------------------------------- */
 
 static void expect_refused(const rig *r, const double *x, double distance, cscd_proximities *out,
@@ -347,7 +329,6 @@ int main(void) {
                                        cmocka_unit_test(same_when_scaled),
                                        cmocka_unit_test(same_as_brute_force_far_away),
                                        cmocka_unit_test(steps_do_not_notice),
-                                       cmocka_unit_test(same_bits_for_any_thread_count),
                                        cmocka_unit_test(bad_arguments_are_named)};
     return cmocka_run_group_tests_name("near", tests, NULL, NULL);
 }

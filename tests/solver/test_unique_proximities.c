@@ -212,26 +212,6 @@ static void expect_same_items(const item_list *list, const item_list *other) {
     if (list->count > 0) assert_memory_equal(list->items, other->items, list->count * sizeof *list->items);
 }
 
-static void same_bits_for_any_thread_count(void **state) {
-    (void)state;
-    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
-        scene_make((scene_family)family, 4, &at_rest);
-        rig one = near_rig(&at_rest, 1);
-        set_rest(&one, at_rest.x0);
-        item_list expected = find_items(&one, at_rest.x1, 0.3, CSCD_NEAR_UNIQUE);
-        for (uint32_t threads = 2; threads <= 16; threads += 14) {
-            rig many = near_rig(&at_rest, threads);
-            set_rest(&many, at_rest.x0);
-            item_list found = find_items(&many, at_rest.x1, 0.3, CSCD_NEAR_UNIQUE);
-            expect_same_items(&found, &expected);
-            free(found.items);
-            rig_destroy(&many);
-        }
-        free(expected.items);
-        rig_destroy(&one);
-    }
-}
-
 static void same_from_a_line_search(void **state) {
     (void)state;
     static double x[SCENE_VERTICES_MAX * 3];
@@ -329,8 +309,9 @@ static void arguments_are_checked(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(items_stand_for_all_pairs), cmocka_unit_test(same_bits_for_any_thread_count),
-        cmocka_unit_test(same_from_a_line_search),   cmocka_unit_test(same_when_scaled),
+        cmocka_unit_test(items_stand_for_all_pairs),
+        cmocka_unit_test(same_from_a_line_search),
+        cmocka_unit_test(same_when_scaled),
         cmocka_unit_test(arguments_are_checked),
     };
     return cmocka_run_group_tests_name("unique proximities", tests, NULL, NULL);

@@ -8,13 +8,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* So many places follow each other, then ever fewer. */
+/* So many places follow each other, then ever fewer: of refused allocations, of refusing reports, and of all else. */
 #ifdef SLOW_MACHINE
-enum { EVERY = 5, SOME = 2 };
+enum { ALLOCATIONS = 5, REPORTS = 3, PLACES = 2 };
 #else
-enum { EVERY = 1000, SOME = 12 };
+enum { ALLOCATIONS = 1000, REPORTS = 24, PLACES = 5 };
 #endif
-enum { ASKED_AGAIN = 10 };
+enum { ASKED_AGAIN = 16 };
 
 typedef enum proof_depth { COMPARE_ANSWERS, COMPARE_COUNTERS } proof_depth;
 
@@ -41,7 +41,10 @@ static void live_unharmed(const proof_row *row) {
 /* Lives in worlds that are harmed at one place after the other. Returns how many were. */
 static size_t harm_everywhere(const proof_row *row, proof_source source, uint32_t threads, int only,
                               bool skips, proof_depth depth) {
-    const size_t dense = source == PROOF_ALLOCATION_FAILS && threads == 1 ? EVERY : SOME;
+    const size_t dense = skips                                              ? PLACES
+                         : source == PROOF_REPORT_REFUSES                   ? REPORTS
+                         : source == PROOF_ALLOCATION_FAILS && threads == 1 ? ALLOCATIONS
+                                                                            : PLACES;
     size_t harmed = 0;
     for (size_t at = 0;; at += 1 + at / dense) {
         found = proof_world(row, threads, source, at);
@@ -108,16 +111,19 @@ static void prove_skipped(void **state) {
     print_message("  %zu calls failed\n", failures);
 }
 
+/* The last world is that of a host's loop. */
 static void prove_threads(void **state) {
     const proof_row *row = *state;
     static const uint32_t counts[] = {1, 2, 7, 7};
-    for (int i = 0; i < 4; i++) {
-        found = proof_world(row, counts[i], PROOF_UNHARMED, 0);
-        found.large = true;
-        if (i == 3) proof_host_loop(&found);
-        proof_live(&found);
-        if (i == 0) expected = found;
-        compare_worlds(COMPARE_COUNTERS, i < 3 ? "threads:" : "tasks of the host:", counts[i]);
+    for (int large = 0; large < 2; large++) {
+        for (int i = 0; i < 4; i++) {
+            found = proof_world(row, counts[i], PROOF_UNHARMED, 0);
+            found.large = large == 1;
+            if (i == 3) proof_host_loop(&found);
+            proof_live(&found);
+            if (i == 0) expected = found;
+            compare_worlds(COMPARE_COUNTERS, i < 3 ? "threads:" : "tasks of the host:", counts[i]);
+        }
     }
     expect_reason(row, found.wide_loops > 0, row->one_thread, "shared work");
 }
