@@ -1,7 +1,6 @@
 /* The parts of glTF files, which face of the file a triangle is, and which vertices primitives share. */
 #include "src/io/growable.h"
 #include "tests/support/io/gltf_fixture.h"
-#include "tests/support/io_allocations.h"
 #include "tests/support/test.h"
 
 #include <stdio.h>
@@ -162,25 +161,11 @@ static void refuses_materials_that_are_not_there(void **state) {
     if (strstr(error.text, "mesh 1, primitive 2: material is 6") == NULL) fail_msg("%s", error.text);
 }
 
-static void survives_failed_allocations_by(mesh_parts_by by, file_bytes file) {
-    long successes = 0;
-    for (bool done; io_allocations_go_on(successes); successes++) {
-        mesh_file mesh = {0};
-        io_error error = {""};
-        done = mesh_check_read_parts(file, by, &mesh, &error);
-        io_allocations_left = -1;
-        if (!done && strstr(error.text, "out of memory") == NULL) fail_msg("%s", error.text);
-        mesh_file_free(&mesh);
-    }
-    assert_true(successes > 25);
-}
-
 static void survives_failed_allocations(void **state) {
     (void)state;
     gltf_fixture fixture;
-    survives_failed_allocations_by(MESH_PARTS_BY_FILE,
-                                   parts_file(&fixture, "{\"mesh\":0},{\"mesh\":1},{\"mesh\":1}"));
-    survives_failed_allocations_by(MESH_PARTS_BY_MATERIAL, materials_file(&fixture, MATERIALS, 3));
+    mesh_check_memory(parts_file(&fixture, "{\"mesh\":0},{\"mesh\":1},{\"mesh\":1}"), MESH_PARTS_BY_FILE);
+    mesh_check_memory(materials_file(&fixture, MATERIALS, 3), MESH_PARTS_BY_MATERIAL);
 }
 
 int main(void) {

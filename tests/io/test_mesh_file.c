@@ -3,7 +3,6 @@
 #include "src/io/mesh_builder.h"
 #include "src/io/text.h"
 #include "tests/support/io/mesh_check.h"
-#include "tests/support/io_allocations.h"
 #include "tests/support/temp_file.h"
 #include "tests/support/test.h"
 
@@ -120,31 +119,6 @@ static void frees_zeroed_meshes(void **state) {
     mesh_file_free(&mesh);
     mesh_file_free(&mesh);
     assert_null(mesh.positions);
-}
-
-/* After a failure the next read works as if nothing had happened. */
-static void survives_every_failed_allocation(void **state) {
-    (void)state;
-    const file_bytes files[] = {FILE_OF("a.obj", SQUARE_OBJ), FILE_OF("a.off", SQUARE_OFF),
-                                FILE_OF("a.ply", SQUARE_PLY)};
-    for (size_t i = 0; i < 3; i++) {
-        int failures = 0;
-        for (; io_allocations_go_on(failures); failures++) {
-            mesh_file mesh = {0};
-            io_error error = {""};
-            bool done = mesh_check_read(files[i], &mesh, &error);
-            io_allocations_left = -1;
-            if (done) {
-                mesh_file_free(&mesh);
-                continue;
-            }
-            assert_non_null(strstr(error.text, files[i].name));
-            assert_non_null(strstr(error.text, "out of memory"));
-            assert_null(mesh.positions);
-            mesh_check_square(files[i]);
-        }
-        assert_true(failures >= 3);
-    }
 }
 
 static void grows_only_to_sizes_that_exist(void **state) {
@@ -291,7 +265,6 @@ int main(void) {
         cmocka_unit_test(keeps_messages_on_one_line),
         cmocka_unit_test(reads_pipes),
         cmocka_unit_test(frees_zeroed_meshes),
-        cmocka_unit_test(survives_every_failed_allocation),
         cmocka_unit_test(grows_only_to_sizes_that_exist),
         cmocka_unit_test(counts_up_to_the_limit),
         cmocka_unit_test(parses_integers_up_to_18_digits),

@@ -1,7 +1,6 @@
 /* STL meshes: binary and text told apart by their content, every form of both, and each error with its place. */
 #include "src/io/growable.h"
 #include "tests/support/io/mesh_check.h"
-#include "tests/support/io_allocations.h"
 #include "tests/support/test.h"
 
 #include <math.h>
@@ -183,38 +182,12 @@ static void survives_damage(void **state) {
         "solid s\nfacet outer loop vertex 0 0 0 vertex 1 0 0\nvertex 1 1 0 endloop endfacet\nendsolid s\n"));
 }
 
-/* Reads with the first, second, ... allocation failing until none is left to fail. */
-static void refuses_failing_allocations(file_bytes file) {
-    long allocations = 0;
-    for (bool read; io_allocations_go_on(allocations); allocations++) {
-        mesh_file mesh = {0};
-        io_error error = {""};
-        read = mesh_check_read(file, &mesh, &error);
-        io_allocations_left = -1;
-        assert_true(read || (strstr(error.text, "out of memory") != NULL && mesh.positions == NULL));
-        mesh_file_free(&mesh);
-    }
-    assert_true(allocations > 3);
-}
-
-static void survives_failing_allocations(void **state) {
-    (void)state;
-    const binary_file file = write_binary("", 2);
-    refuses_failing_allocations(file_of(&file));
-    refuses_failing_allocations(STL("solid s\n" FACET_0 FACET_1 "endsolid s\n"));
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reads_text),
-        cmocka_unit_test(reads_loose_text),
-        cmocka_unit_test(names_parts),
-        cmocka_unit_test(refuses_bad_text),
-        cmocka_unit_test(reads_binary),
-        cmocka_unit_test(keeps_floats),
-        cmocka_unit_test(refuses_bad_binary),
-        cmocka_unit_test(survives_damage),
-        cmocka_unit_test(survives_failing_allocations),
+        cmocka_unit_test(reads_text),         cmocka_unit_test(reads_loose_text),
+        cmocka_unit_test(names_parts),        cmocka_unit_test(refuses_bad_text),
+        cmocka_unit_test(reads_binary),       cmocka_unit_test(keeps_floats),
+        cmocka_unit_test(refuses_bad_binary), cmocka_unit_test(survives_damage),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

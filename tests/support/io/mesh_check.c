@@ -2,6 +2,7 @@
 #include "tests/support/io/mesh_check.h"
 #include "tests/support/test.h"
 
+#include "tests/support/io_allocations.h"
 #include "tests/support/temp_file.h"
 
 #include <math.h>
@@ -132,7 +133,39 @@ void mesh_check_survives(file_bytes file) {
     }
 }
 
+static void read_again(file_bytes file, mesh_parts_by parts_by, const mesh_file *expected) {
+    mesh_file mesh = {0};
+    io_error error = {""};
+    if (!mesh_check_read_parts(file, parts_by, &mesh, &error)) fail_msg("refused: %s", error.text);
+    assert_int_equal(mesh.vertex_count, expected->vertex_count);
+    assert_int_equal(mesh.triangle_count, expected->triangle_count);
+    assert_memory_equal(mesh.positions, expected->positions, 3 * mesh.vertex_count * sizeof *mesh.positions);
+    assert_memory_equal(mesh.triangles, expected->triangles,
+                        3 * mesh.triangle_count * sizeof *mesh.triangles);
+    mesh_file_free(&mesh);
+}
+
+void mesh_check_memory(file_bytes file, mesh_parts_by parts_by) {
+    mesh_file expected = {0};
+    io_error error = {""};
+    long failures = 0;
+    if (!mesh_check_read_parts(file, parts_by, &expected, &error)) fail_msg("refused: %s", error.text);
+    for (; io_allocations_go_on(failures); failures++) {
+        mesh_file mesh = {0};
+        const bool done = mesh_check_read_parts(file, parts_by, &mesh, &error);
+        io_allocations_left = -1;
+        if (!done && (strstr(error.text, "out of memory") == NULL || strstr(error.text, file.name) == NULL))
+            fail_msg("allocation %ld: %s", failures, error.text);
+        if (!done) assert_null(mesh.positions);
+        mesh_file_free(&mesh);
+        read_again(file, parts_by, &expected);
+    }
+    assert_true(failures >= 3);
+    mesh_file_free(&expected);
+}
+
 void mesh_check_damage(file_bytes file) {
+    mesh_check_memory(file, MESH_PARTS_BY_FILE);
     char *bytes = malloc(file.size + 1);
     assert_non_null(bytes);
     for (size_t i = 0; i < file.size; i++) {

@@ -42,6 +42,10 @@ void mesh_check_error(file_bytes file, const char *place, const char *found, con
 
 /* Checks that the file is refused with a message, or gives a mesh whose numbers are all in range. */
 void mesh_check_survives(file_bytes file);
-/* Checks the same for the file cut after every byte, with every bit flipped, and with every byte doubled
- * and dropped. */
+/* Checks that the file is refused for want of memory, by its name and with the mesh unchanged, when its first allocation fails, its second
+ * and so on, and that it is read the next time as if nothing had happened. */
+void mesh_check_memory(file_bytes file, mesh_parts_by parts_by);
+
+/* Checks its memory, and what mesh_check_survives does for the file cut after every byte, with every bit flipped, and with every
+ * byte doubled and dropped. */
 void mesh_check_damage(file_bytes file);
