@@ -44,12 +44,7 @@ static void make_motion(uint64_t seed) {
 static size_t compare_step(const oracle_list *truth, const cscd_detector_options *options) {
     rig r = rig_create(&shape, 1, options);
     const cscd_contacts found = rig_step(&r, &shape);
-    assert_int_equal(found.count, truth->count);
-    for (size_t i = 0; i < found.count; i++) {
-        const cscd_contact *c = &found.items[i];
-        const oracle_contact *t = &truth->items[i];
-        assert_true(c->kind == t->kind && c->a == t->a && c->b == t->b && c->toi == t->toi);
-    }
+    oracle_expect(truth, &found);
     rig_destroy(&r);
     return truth->count;
 }

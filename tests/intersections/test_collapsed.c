@@ -99,12 +99,7 @@ static void expect_collapsed(const rig *r, uint32_t count) {
 
 static void check_interval(const rig *r, const oracle_list *truth, collapse_tally *sum) {
     cscd_contacts found = rig_step(r, &play);
-    assert_int_equal(found.count, truth->count);
-    for (size_t i = 0; i < found.count; i++) {
-        const cscd_contact *c = &found.items[i];
-        const oracle_contact *t = &truth->items[i];
-        assert_true(c->kind == t->kind && c->a == t->a && c->b == t->b && c->toi == t->toi);
-    }
+    oracle_expect(truth, &found);
     collapsed_oracle_at_ends(&play, NULL, collapsed);
     expect_collapsed(r, found.collapsed);
     for (uint32_t t = 0; t < play.triangle_count; t++) {

@@ -2,7 +2,7 @@
 #include "cscd/cscd.h"
 #include "cscd/sensors.h"
 #include "src/mesh/mesh.h"
-#include "tests/support/counting_allocator.h"
+#include "tests/support/same_mesh.h"
 #include "tests/support/test.h"
 
 #include <math.h>
@@ -23,14 +23,6 @@ static void describe_mixed(cscd_object_desc out[MIXED]) {
     out[4] = cscd_object_of_wires(4, 4, wires);
     out[5] = cscd_object_of_points(3);
     out[1].obstacle = out[3].obstacle = true;
-}
-
-static cscd_context *open_context(counting_allocator *counter) {
-    cscd_context *context = NULL;
-    cscd_context_options options = cscd_context_defaults();
-    options.allocator = counting_allocator_interface(counter);
-    assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
-    return context;
 }
 
 static void check_object(const cscd_mesh *mesh, uint32_t object, const uint32_t expected[6],
@@ -79,7 +71,7 @@ static void mixed_objects(void **state) {
     cscd_object_desc descs[MIXED];
     counting_allocator counter = counting_allocator_start();
     (void)state;
-    cscd_context *context = open_context(&counter);
+    cscd_context *context = counted_context(&counter);
     cscd_mesh *mesh = NULL;
     describe_mixed(descs);
     assert_int_equal(cscd_mesh_create(context, descs, MIXED, &mesh), CSCD_OK);
@@ -115,7 +107,7 @@ static void hashes_differ(void **state) {
     counting_allocator counter = counting_allocator_start();
     uint64_t hashes[6];
     (void)state;
-    cscd_context *context = open_context(&counter);
+    cscd_context *context = counted_context(&counter);
     cscd_object_desc descs[2] = {cscd_object_of_triangles(4, 4, tetrahedron), cscd_object_of_points(4)};
     hashes[0] = hash_of(context, descs, 2);
     descs[1] = cscd_object_of_wires(4, 2, wires);
@@ -157,7 +149,7 @@ static void refused_descriptions(void **state) {
     static const uint32_t beyond[4] = {0, 1, 2, 4}, itself[4] = {0, 1, 2, 2};
     counting_allocator counter = counting_allocator_start();
     (void)state;
-    cscd_context *context = open_context(&counter);
+    cscd_context *context = counted_context(&counter);
     check_refused(context, cscd_object_of_wires(4, 2, beyond), CSCD_INVALID_MESH, "wire 1 names vertex 4");
     check_refused(context, cscd_object_of_wires(4, 2, itself), CSCD_INVALID_MESH, "wire 1 (2 2)");
     check_refused(context, cscd_object_of_wires(4, 0, wires), CSCD_INVALID_MESH, "0 wires");
@@ -197,7 +189,7 @@ static void refused_descriptions(void **state) {
 static void too_many(void **state) {
     counting_allocator counter = counting_allocator_start();
     (void)state;
-    cscd_context *context = open_context(&counter);
+    cscd_context *context = counted_context(&counter);
     cscd_object_desc descs[2] = {cscd_object_of_points((1u << 26) - 1), cscd_object_of_points(2)};
     cscd_mesh *mesh = NULL;
     assert_int_equal(cscd_mesh_create(context, descs, 2, &mesh), CSCD_INVALID_MESH);
@@ -214,7 +206,7 @@ static void plans_and_partitions(void **state) {
     static const double x[24] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 5, 5, 5, 6, 6, 6, 7, 7, 7, 8, 8, 8};
     counting_allocator counter = counting_allocator_start();
     (void)state;
-    cscd_context *context = open_context(&counter);
+    cscd_context *context = counted_context(&counter);
     cscd_object_desc descs[2] = {cscd_object_of_triangles(4, 4, tetrahedron),
                                  cscd_object_of_wires(4, 4, wires)};
     cscd_plan_options options = cscd_plan_defaults();
@@ -250,7 +242,7 @@ static void changed_mesh(void **state) {
     cscd_object_desc descs[MIXED], now[MIXED];
     counting_allocator counter = counting_allocator_start();
     (void)state;
-    cscd_context *context = open_context(&counter);
+    cscd_context *context = counted_context(&counter);
     cscd_mesh *mesh = NULL, *fresh = NULL;
     cscd_mesh_change *change = NULL;
     describe_mixed(descs);

@@ -1,7 +1,7 @@
 /* Meshes: edges, stars, components and what is wrong with them; bad input; memory. */
 #include "src/mesh/mesh.h"
-#include "tests/support/counting_allocator.h"
 #include "tests/support/mesh_shapes.h"
+#include "tests/support/same_mesh.h"
 #include "tests/support/test.h"
 
 #include <string.h>
@@ -66,14 +66,6 @@ static void check_stars(const cscd_mesh *mesh, const shape *s) {
     }
 }
 
-static cscd_context *new_context(counting_allocator *counter) {
-    cscd_context_options options = cscd_context_defaults();
-    cscd_context *context = NULL;
-    options.allocator = counting_allocator_interface(counter);
-    assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
-    return context;
-}
-
 static cscd_status create_mesh(cscd_context *context, const shape *s, cscd_mesh **out) {
     cscd_object_desc desc = cscd_object_of_triangles(s->vertex_count, s->triangle_count, s->triangles[0]);
     return cscd_mesh_create(context, &desc, 1, out);
@@ -119,7 +111,7 @@ static void check_component(const cscd_mesh *mesh, uint32_t index, const expecte
 
 static void check_shape(const shape *s, uint32_t component_count, const expected_component *expected) {
     counting_allocator counter = counting_allocator_start();
-    cscd_context *context = new_context(&counter);
+    cscd_context *context = counted_context(&counter);
     cscd_mesh *mesh = NULL;
     assert_int_equal(create_mesh(context, s, &mesh), CSCD_OK);
     assert_int_equal(cscd_mesh_vertex_count(mesh), s->vertex_count);
@@ -185,7 +177,7 @@ static void two_components(void **state) {
     check_shape(&s, 2, expected);
 
     counting_allocator counter = counting_allocator_start();
-    cscd_context *context = new_context(&counter);
+    cscd_context *context = counted_context(&counter);
     cscd_mesh *mesh = NULL;
     memcpy(s.triangles[15], s.triangles[0],
            sizeof s.triangles[0]); /* the tetrahedron once more, at the end */
@@ -296,7 +288,7 @@ static void refused_descriptions(void **state) {
     static const uint32_t repeats[3][6] = {{0, 1, 2, 3, 3, 1}, {0, 1, 2, 3, 1, 3}, {0, 1, 2, 1, 3, 3}};
     (void)state;
     counting_allocator counter = counting_allocator_start();
-    cscd_context *context = new_context(&counter);
+    cscd_context *context = counted_context(&counter);
     check_refused(context, &(cscd_object_desc){.vertex_count = 4, .triangle_count = 2, .triangles = beyond},
                   CSCD_INVALID_MESH, "triangle 1 ");
     check_refused(context, &(cscd_object_desc){.vertex_count = 4, .triangle_count = 2, .triangles = beyond},

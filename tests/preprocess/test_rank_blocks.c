@@ -65,17 +65,6 @@ static conductor crossing_needles(void) {
     return s;
 }
 
-static double exact_at(const treecode_rig *r, const double *charges, uint32_t target) {
-    const double *p = r->t.tree.sources[target].centroid;
-    double sum = 0.0, potential;
-    for (uint32_t i = 0; i < r->system.count; i++) {
-        const potential_source *triangle = triangle_of(&r->t.tree, i);
-        potential_at(triangle, &p[0], &p[1], &p[2], 1, &potential);
-        sum += charges[i] / triangle->area * potential;
-    }
-    return sum;
-}
-
 /* Returns the number of blocks; *full: of those that have all potentials. */
 static size_t count_blocks(const treecode *t, size_t *full) {
     size_t count = 0;
@@ -101,7 +90,7 @@ static void expect_close(const char *name, const conductor *s, bool expect_full)
     assert_int_equal(treecode_evaluate(&one.t, charges, same), CSCD_OK);
     assert_memory_equal(same, potentials, r.system.count * sizeof *same);
     for (uint32_t i = 0; i < r.system.count; i += r.system.count / 300 + 1)
-        worst = fmax(worst, fabs(potentials[i] / exact_at(&r, charges, i) - 1.0));
+        worst = fmax(worst, fabs(potentials[i] / treecode_rig_exact_at(&r, charges, i) - 1.0));
     size_t full, count = count_blocks(&r.t, &full);
     print_message("%s, %u triangles: %zu blocks, %zu of them full; within %.1e\n", name, r.system.count,
                   count, full, worst);

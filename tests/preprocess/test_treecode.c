@@ -26,18 +26,6 @@ static double *make_charges(const treecode_rig *r) {
     return charges;
 }
 
-/* The exact potential at one collocation point. */
-static double exact_at(const treecode_rig *r, const double *charges, uint32_t target) {
-    const double *p = r->t.tree.sources[target].centroid;
-    double sum = 0.0, potential;
-    for (uint32_t i = 0; i < r->system.count; i++) {
-        const potential_source *triangle = triangle_of(&r->t.tree, i);
-        potential_at(triangle, &p[0], &p[1], &p[2], 1, &potential);
-        sum += charges[i] / triangle->area * potential;
-    }
-    return sum;
-}
-
 static void expect_close(const char *name, const conductor *s, double tolerance) {
     treecode_rig r = treecode_rig_create(s, 2, CSCD_SIMD_AUTO);
     double *charges = make_charges(&r), *potentials = malloc(r.system.count * sizeof *potentials),
@@ -46,7 +34,7 @@ static void expect_close(const char *name, const conductor *s, double tolerance)
     assert_int_equal(treecode_evaluate(&r.t, charges, potentials), CSCD_OK);
     const uint32_t step = r.system.count / 300 + 1;
     for (uint32_t i = 0; i < r.system.count; i += step)
-        worst = fmax(worst, fabs(potentials[i] / exact_at(&r, charges, i) - 1.0));
+        worst = fmax(worst, fabs(potentials[i] / treecode_rig_exact_at(&r, charges, i) - 1.0));
     print_message("%s, %u triangles: %zu far pairs, %zu near; within %.1e\n", name, r.system.count,
                   r.t.lists.far_count, r.t.lists.near_count, worst);
     assert_true(worst <= tolerance);

@@ -3,6 +3,7 @@
 
 #include "tests/support/ccd/queue_test.h"
 #include "tests/support/collapsed_oracle.h"
+#include "tests/support/test.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -203,6 +204,15 @@ void oracle_find_by_rules(const scene *s, const oracle_rules *rules, oracle_list
     out->count = 0;
     find_both((queued_pairs){.scene = s, .rules = rules}, out);
     find_both((queued_pairs){.scene = s, .rules = rules, .apart = true}, out);
+}
+
+void oracle_expect(const oracle_list *truth, const cscd_contacts *found) {
+    assert_int_equal(found->count, truth->count);
+    for (size_t i = 0; i < found->count; i++) {
+        const cscd_contact *c = &found->items[i];
+        const oracle_contact *t = &truth->items[i];
+        assert_true(c->kind == t->kind && c->a == t->a && c->b == t->b && c->toi == t->toi);
+    }
 }
 
 void oracle_free(oracle_list *list) {

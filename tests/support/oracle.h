@@ -36,4 +36,7 @@ typedef struct oracle_rules {
 /* Finds contacts and what comes within the distance of its objects, with a tolerance of 1e-6 of it. */
 void oracle_find_by_rules(const scene *s, const oracle_rules *rules, oracle_list *out);
 
+/* Fails the test unless a step has found just these. */
+void oracle_expect(const oracle_list *truth, const cscd_contacts *found);
+
 void oracle_free(oracle_list *list);

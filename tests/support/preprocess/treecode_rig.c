@@ -52,3 +52,14 @@ double treecode_rig_residual(treecode_rig *r, const double *density) {
     free(charges);
     return sqrt(squares / system->count);
 }
+
+double treecode_rig_exact_at(const treecode_rig *r, const double *charges, uint32_t target) {
+    const double *p = r->t.tree.sources[target].centroid;
+    double sum = 0.0, potential;
+    for (uint32_t i = 0; i < r->system.count; i++) {
+        const potential_source *triangle = triangle_of(&r->t.tree, i);
+        potential_at(triangle, &p[0], &p[1], &p[2], 1, &potential);
+        sum += charges[i] / triangle->area * potential;
+    }
+    return sum;
+}

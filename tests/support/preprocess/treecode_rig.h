@@ -14,6 +14,9 @@ typedef struct treecode_rig {
 treecode_rig treecode_rig_create(const conductor *s, uint32_t thread_count, cscd_simd simd);
 void treecode_rig_destroy(treecode_rig *r);
 
+/* The exact potential at one collocation point, of charges in the order of the tree. */
+double treecode_rig_exact_at(const treecode_rig *r, const double *charges, uint32_t target);
+
 /* By how much the potential of the densities differs from 1, in the root of the mean square: what iterations make small. No triangle
  * may be there twice. */
 double treecode_rig_residual(treecode_rig *r, const double *density);
