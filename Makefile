@@ -123,10 +123,10 @@ SUPPORT_SOURCES := $(filter-out tests/support/tool/tool_process$(if $(WINDOWS),,
 HAS_BASELINES   := $(wildcard runtime/baselines/*.h)
 # The browser's tests look at pages, which no other configuration writes differently. Only a release is installed.
 NOT_HERE        := $(if $(filter 0,$(GSL)),tests/ccd/test_cubic_guess.c tests/ccd/test_root_finders.c) \
-                   $(if $(filter %/release,$(BUILD)),,tests/install/test_charge_library.c tests/install/test_embedding.c \
-                     tests/install/test_header_examples.c tests/install/test_header_versions.c) \
+                   $(if $(filter %/release,$(BUILD)),,tests/install/test_charge_library.py tests/install/test_embedding.py \
+                     tests/install/test_headers.py tests/install/test_header_versions.py) \
                    $(if $(filter %/release,$(BUILD)),,tests/report/test_report_browser.c) \
-                   $(if $(filter release,$(CONFIG)),,tests/install/test_flags.c tests/install/test_install.c tests/install/test_places.c) \
+                   $(if $(filter release,$(CONFIG)),,tests/install/test_flags.py tests/install/test_install.py tests/install/test_places.py) \
                    $(if $(filter 0,$(EXPAT)),tests/io/test_gifti.c) \
                    $(if $(HAS_BASELINES),,$(wildcard tests/baselines/*))
 TEST_SOURCES    := $(filter-out $(NOT_HERE),$(wildcard tests/*/test_*.c tests/*/test_*.cpp tests/*/test_*.py))
@@ -317,7 +317,7 @@ reference:
 	@mkdir -p build/reference
 	@VERSION='$(VERSION)' OUTPUT=build/reference doxygen docs/Doxyfile
 
-# Writes down what the public headers promise, for tests/install/test_api_frozen.c; once 2.0.0 is released, additions alone.
+# Writes down what the public headers promise, for tests/install/test_headers.py; once 2.0.0 is released, additions alone.
 freeze-api:
 	@CC="$(CC)" tests/install/api_headers.py write
 

@@ -3,15 +3,22 @@ import json
 import struct
 
 SIZES = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
+FLOAT, UNSIGNED_SHORT = 5126, 5123
 
 
 def write_glb(path, arrays, **document):
-    """Writes a binary file. arrays: the accessors, each a type, such as "VEC3", and its floats; document: all other members."""
+    """Writes a binary file.
+
+    arrays: the accessors, each a type, such as "VEC3", its numbers, and UNSIGNED_SHORT where they are no floats. document: all
+    other members.
+    """
     data, accessors, views = b"", [], []
-    for kind, values in arrays:
-        views.append({"buffer": 0, "byteOffset": len(data), "byteLength": 4 * len(values)})
-        accessors.append({"bufferView": len(accessors), "componentType": 5126, "type": kind, "count": len(values) // SIZES[kind]})
-        data += struct.pack(f"<{len(values)}f", *values)
+    for kind, values, component in (array if len(array) == 3 else (*array, FLOAT) for array in arrays):
+        packed = struct.pack(f"<{len(values)}{'f' if component == FLOAT else 'H'}", *values)
+        views.append({"buffer": 0, "byteOffset": len(data), "byteLength": len(packed)})
+        accessors.append({"bufferView": len(accessors), "componentType": component, "type": kind,
+                          "count": len(values) // SIZES[kind]})
+        data += packed + bytes(-len(packed) % 4)
     document.update(asset={"version": "2.0"}, buffers=[{"byteLength": len(data)}], bufferViews=views, accessors=accessors)
     text = json.dumps(document).encode("utf-8")
     text += b" " * (-len(text) % 4)

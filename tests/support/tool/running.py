@@ -45,7 +45,7 @@ def start(line, *words, **options):
 def finish(process, code=0):
     """Waits for a tool that has been started, and expects its exit code."""
     outputs = process.communicate(timeout=300)
-    out, error = (text.decode("utf-8", "surrogateescape").replace("\r\n", "\n") for text in outputs)
+    out, error = ((text or b"").decode("utf-8", "surrogateescape").replace("\r\n", "\n") for text in outputs)
     run_of = Run(process.returncode if process.returncode >= 0 else 128 - process.returncode, out, error)
     assert run_of.code == code, f"expected exit code {code}, but {run_of.code}\n{out}\n{error}"
     return run_of

@@ -1,0 +1,67 @@
+"""How `cscd replay` reports on baselines: their columns, their guarantees, and the plan that they use."""
+from pathlib import Path
+
+import pytest
+
+from support.tool.reading import read_json
+from support.tool.recordings import spindle
+from support.tool.running import run
+
+
+@pytest.fixture(autouse=True)
+def files(own_folder):
+    scene = spindle(24, 10, 16)
+    scene.write_mesh("spindle.obj")
+    scene.write_cache("spindle.pc2")
+
+
+def replay(options):
+    """What is said, and the summary."""
+    answer = run(f"replay spindle.obj spindle.pc2 --timings --json out.json {options}")
+    return answer, read_json("out.json")
+
+
+def test_published_is_marked_as_such():
+    """The method promises nothing, so the contacts that it loses are no reason for a warning."""
+    answer, root = replay("--method published")
+    assert answer.error == "" and "method published: in " in answer.out and "\npublished " in answer.out
+    assert root["summary"]["method"] == "published"
+
+
+def test_iccd_has_a_column_for_contours():
+    """It has contours instead of orientations, promises all contacts, and needs neither a proven start nor a plan."""
+    answer, root = replay("--method iccd")
+    _, none = replay("--method none")
+    assert "\niccd " in answer.out and " contour " in answer.out and "plan: none" in answer.out
+    assert "may be missing" not in answer.out and answer.out.count(" X ") == 4  # for orientation and proof, in both rows
+    total = root["summary"]
+    assert (total["method"], total["static_checks"], total["intervals_complete"]) == ("iccd", 0, 15)
+    assert total["contour_ms"]["mean"] > 0
+    for interval, plain in zip(root["intervals"], none["intervals"]):
+        (guarantee,) = interval["guarantee"]
+        assert guarantee["mode"] == "all" and "patches" in guarantee["reason"]
+        assert interval["ms"]["contour"] > 0 == plain["ms"]["contour"] and interval["pcp"] < plain["pcp"]
+
+
+def test_iccd_as_published_is_marked_as_such():
+    answer, root = replay("--method iccd-published")
+    assert answer.error == "" and "method iccd-published: in 15 of 15 intervals contacts" in answer.out
+    assert "\niccd-published " in answer.out and len(root["intervals"]) == 15
+    for interval in root["intervals"]:
+        (guarantee,) = interval["guarantee"]
+        assert guarantee["mode"] == "earliest" and "published" in guarantee["reason"]
+
+
+@pytest.mark.parametrize("options, lines", [("--threads 2", 10), ("--mode earliest", 1)])
+def test_iccd_finds_every_contact(options, lines):
+    tables = []
+    for method in ("none", "iccd"):
+        run(f"replay spindle.obj spindle.pc2 --quiet --contacts out.csv --method {method} {options}")
+        tables.append(Path("out.csv").read_text())
+    assert tables[0] == tables[1] and tables[0].count("\n") > lines
+
+
+def test_published_takes_any_plan():
+    run("preprocess spindle.obj --quiet --method kmeans:4")
+    answer, _ = replay("--method published --frames 0:2")
+    assert "plan: kmeans, 4 regions, " in answer.out and "\npublished " in answer.out

@@ -1,0 +1,89 @@
+"""The man pages have no warnings, and name every option of the tool and every function of the library, and no others.
+
+The examples are those of --help, and none is refused.
+"""
+import re
+import shlex
+
+import pytest
+
+from support.install.built_tree import ROOT, functions_of, shell
+from support.tool.running import run
+
+COMMANDS = ("preprocess", "replay", "report", "sense", "check", "merge", "info", "render")
+# The text of cscd(1) without fonts.
+PAGE = re.sub(r"\\f.", "", (ROOT / "docs/man/cscd.1").read_text()).replace("\\-", "-")
+
+
+def help_of(command=""):
+    return run(f"{command} --help").out
+
+
+def part_of(page, title):
+    """What stands below a title, up to the next."""
+    return re.split(r"^\.S[SH] ", page.split(f"\n.SS {title}\n")[1], flags=re.MULTILINE)[0]
+
+
+def options_in(text):
+    return sorted({option for option in re.findall(r"(?:^|[^-a-z])(-(?:o\b|-[a-z-]+))", text, re.MULTILINE)})
+
+
+def examples_of(command):
+    """Command lines and what they do, as --help shows them first."""
+    return [line.strip() for line in help_of(command).split("\n\n")[0].splitlines()]
+
+
+def test_pages_have_no_warnings():
+    assert shell("groff -man -ww -z docs/man/cscd.1 docs/man/cscd.3") == ""
+
+
+def test_commands_are_those_of_the_tool():
+    assert re.findall(r"^\.SS cscd (.*)$", PAGE, re.MULTILINE) == re.findall("^  ([a-z]+) .*", help_of(), re.MULTILINE) != []
+    codes = re.search(r"\.SH EXIT(.*?)\.SH EX[^I]", PAGE, re.DOTALL).group(1)
+    told = re.search("^exit: (.*)$", help_of(), re.MULTILINE).group(1)
+    assert re.findall(r"^\.B (\d+)$", codes, re.MULTILINE) == re.findall(r"(?:^|, )(\d+)", told) != []
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_options_are_those_of_the_tool(command):
+    """With their arguments, as --help lists them: two spaces end an option."""
+    part, text = part_of(PAGE, f"cscd {command}"), help_of(command)
+    assert options_in(part) == options_in(text) != []
+    for option in re.findall("^  (-.*)", text, re.MULTILINE):
+        assert option.split("  ")[0] in part.splitlines()
+
+
+def test_no_option_is_made_up():
+    """Options in examples exist, too."""
+    assert options_in(PAGE) == options_in("\n".join(map(help_of, ("", *COMMANDS))))
+
+
+def test_examples_are_those_of_the_tool():
+    examples = PAGE.split("\n.SH EXAMPLES\n")[1].split("\n.SH SEE")[0].replace("\\(aq", "'")
+    on_page = [line for line in re.sub(r"^\.TP$", "", examples, flags=re.MULTILINE).splitlines() if line]
+    assert on_page == [line for command in COMMANDS for line in examples_of(command)]
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_no_example_is_refused(command):
+    """In an empty folder an example ends with 1, because it finds no files.
+
+    With 2, if its options do not exist, have values that do not fit, or contradict each other.
+    """
+    lines = [line for line in examples_of(command) if line.startswith(f"cscd {command} ")]
+    assert len(lines) == 3
+    for line in lines:
+        run(" ".join(map(shlex.quote, shlex.split(line)[1:])), code=1)
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_help_fits_a_terminal(command):
+    assert all(len(line) <= 110 for line in help_of(command).splitlines())
+
+
+@pytest.mark.parametrize("header", [
+    "context.h", "mesh.h", "plan.h", "detector.h", "solver.h", "research.h", "sensors.h", "cscd.h",
+])
+def test_functions_are_those_of_the_headers(header):
+    part = part_of((ROOT / "docs/man/cscd.3").read_text(), f"<cscd/{header}>")
+    assert sorted(re.findall(r"^\\fB(cscd_[a-z_0-9]*)\\fR\(", part, re.MULTILINE)) == functions_of(header) != []
