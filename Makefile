@@ -125,7 +125,7 @@ HAS_BASELINES   := $(wildcard runtime/baselines/*.h)
 NOT_HERE        := $(if $(filter 0,$(GSL)),tests/ccd/test_cubic_guess.c tests/ccd/test_root_finders.c) \
                    $(if $(filter %/release,$(BUILD)),,tests/install/test_charge_library.py tests/install/test_embedding.py \
                      tests/install/test_headers.py tests/install/test_header_versions.py) \
-                   $(if $(filter %/release,$(BUILD)),,tests/report/test_report_browser.c) \
+                   $(if $(filter %/release,$(BUILD)),,tests/report/test_report_browser.py) \
                    $(if $(filter release,$(CONFIG)),,tests/install/test_flags.py tests/install/test_install.py tests/install/test_places.py) \
                    $(if $(filter 0,$(EXPAT)),tests/io/test_gifti.c) \
                    $(if $(HAS_BASELINES),,$(wildcard tests/baselines/*))
@@ -373,7 +373,7 @@ test-windows: packages windows-zip
 	+@ANSWERS=$(abspath $(ANSWERS)) NATIVE=$(abspath $(BUILD)) ARCHIVE=$(WINDOWS_ARCHIVE) $(ON_WINDOWS) test-windows-run
 
 test: packages
-	@$(if $(filter tests/report/test_report_browser.c,$(TEST_SOURCES)),.ci/packages browser)
+	@$(if $(filter tests/report/test_report_browser.py,$(TEST_SOURCES)),.ci/packages browser)
 	@$(MAKE) --no-print-directory test-run
 
 # The inner loop: the tests that take less than a second each.

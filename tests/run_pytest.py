@@ -17,13 +17,14 @@ TESTS = Path(__file__).resolve().parent
 
 
 class Totals:
-    """A plugin that chooses cases by their names, without `test_`, and counts them."""
+    """A plugin that chooses cases by their names, without `test_` and with or without parameters, and counts them."""
 
     def __init__(self, pattern):
         self.pattern, self.passed, self.failed = pattern, 0, []
 
     def pytest_collection_modifyitems(self, items):
-        items[:] = [item for item in items if fnmatch.fnmatch(case_of(item.name), self.pattern)]
+        items[:] = [item for item in items if fnmatch.fnmatch(case_of(item.name), self.pattern)
+                    or fnmatch.fnmatch(item.name, f"test_{self.pattern}")]
 
     def pytest_runtest_logreport(self, report):
         if report.failed or report.skipped:

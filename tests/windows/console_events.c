@@ -1,6 +1,5 @@
 /* What the console says to the tool: Ctrl-C ends it with the code of SIGINT, once it has written what it has. */
 #include "tests/support/test.h"
-#include "tests/support/tool/contact_rows.h"
 #include "tests/support/tool/json_reader.h"
 #include "tests/support/tool/run_tool.h"
 #include "tests/support/tool/tool_fixture.h"

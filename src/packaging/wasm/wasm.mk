@@ -13,7 +13,7 @@ TEST_LIBS       := -L$(WASM_LIBRARIES)/lib -lcmocka-static
 TEST_ROOMS_HERE := core mesh ccd bvh culling narrow_phase loose intersections events baselines detector solver sensors preprocess
 CHARGE_SOURCES  := $(filter-out src/blas/% %/dense_solve.c %/dense_export.c,$(CHARGE_SOURCES)) tests/windows/dense_solve.c
 COMMON_SOURCES  := src/io/io_error.c
-SUPPORT_SOURCES := $(filter-out tests/support/shell.c tests/support/ccd/algebraic_%.c tests/support/ccd/oracle_comparison.c tests/support/solver/exact_distance.c \
+SUPPORT_SOURCES := $(filter-out tests/support/ccd/algebraic_%.c tests/support/ccd/oracle_comparison.c tests/support/solver/exact_distance.c \
                      $(foreach room,install io models report tool,tests/support/$(room)/%),$(SUPPORT_SOURCES)) \
                    tests/support/models/body_of.c
 TEST_SOURCES    := $(filter-out $(shell sed -n 's|^\(tests/[^: ]*\):.*|\1|p' tests/wasm/left_out.txt) %.py, \
