@@ -3,12 +3,7 @@
 #include "models/objects/census.h"
 #include "models/objects/object_scene.h"
 #include "models/objects/tumble.h"
-#include "src/io/animation.h"
-#include "src/io/mesh_file.h"
-#include "tests/support/models/model_program.h"
-#include "tests/support/temp_file.h"
 #include "tests/support/test.h"
-#include "tests/support/tool/run_tool.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -17,7 +12,6 @@ static cscd_context *context;
 
 static int make_context(void **state) {
     (void)state;
-    model_program_use("objects");
     return cscd_context_create(NULL, &context) == CSCD_OK ? 0 : -1;
 }
 
@@ -190,55 +184,6 @@ static void soft_bodies_fall_onto_each_other(void **state) {
     tumble_close(&t);
 }
 
-static void the_program_writes_model_and_frames(void **state) {
-    (void)state;
-    temp_folder folder = temp_folder_make();
-    temp_path obj = temp_file_path(&folder, "two-spheres-unequal.obj");
-    temp_path pc2 = temp_file_path(&folder, "two-spheres-unequal.pc2");
-    tool_run run = RUN_TOOL("two-spheres-unequal", folder.path);
-    mesh_file mesh;
-    animation *frames;
-    io_error error;
-    if (run.code != 0) fail_msg("%s", run.error);
-    assert_string_equal(run.error, "");
-    assert_non_null(strstr(run.out, "90 frames of 2 objects, 1500 triangles"));
-    assert_non_null(strstr(run.out, "within objects in 0"));
-    tool_run_free(&run);
-    if (!mesh_file_read(obj.text, &mesh, &error)) fail_msg("%s", error.text);
-    if (!animation_open(&(const char *){pc2.text}, 1, mesh.vertex_count, NULL, &frames, &error))
-        fail_msg("%s", error.text);
-    assert_int_equal(animation_frame_count(frames), 90);
-    object_stage s = stage_of("two-spheres-unequal");
-    size_t bytes = (size_t)mesh.vertex_count * 3 * sizeof(double);
-    double *positions = malloc(bytes);
-    assert_non_null(positions);
-    assert_memory_equal(mesh.positions, s.placed.positions, bytes);
-    for (uint32_t frame = 0; frame < 90; frame += 89) {
-        if (!animation_read(frames, frame, positions, &error)) fail_msg("%s", error.text);
-        object_stage_go(&s, frame);
-        assert_memory_equal(positions, s.placed.positions, bytes);
-    }
-    free(positions);
-    object_stage_close(&s);
-    animation_close(frames);
-    mesh_file_free(&mesh);
-    temp_folder_remove(&folder);
-}
-
-static void the_program_names_its_scenes(void **state) {
-    (void)state;
-    temp_folder folder = temp_folder_make();
-    temp_path none = temp_file_path(&folder, "none");
-    tool_run run = RUN_TOOL("--help");
-    assert_int_equal(run.code, 0);
-    for (uint32_t i = 0; i < object_scene_count; i++) assert_non_null(strstr(run.out, object_scenes[i].name));
-    assert_non_null(strstr(run.out, tumble_text));
-    tool_run_free(&run);
-    model_program_refuses("objects", 2, "'two-cubes'", (const char *const[]){"two-cubes", folder.path, NULL});
-    model_program_refuses("objects", 1, none.text, (const char *const[]){"two-spheres", none.text, NULL});
-    temp_folder_remove(&folder);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(objects_touch_and_part),
@@ -247,8 +192,6 @@ int main(void) {
         cmocka_unit_test(rows_touch_their_neighbours),
         cmocka_unit_test(frames_repeat),
         cmocka_unit_test(soft_bodies_fall_onto_each_other),
-        cmocka_unit_test(the_program_writes_model_and_frames),
-        cmocka_unit_test(the_program_names_its_scenes),
     };
     return cmocka_run_group_tests_name("sensor scenes", tests, make_context, destroy_context);
 }
