@@ -146,7 +146,7 @@ static void check_bounds(const rig *r, double radius, double apart, cscd_scalar 
     for (uint32_t v = 0; v < interval.vertex_count; v++) {
         assert_true(bounds[v] == half || explained[v]);
         assert_true(bounds[v] >= 0.0 && bounds[v] <= half && in_scalar(bounds[v], scalar) == bounds[v]);
-        assert_true(bounds[v] >= found.least);
+        assert_true(bounds[v] > found.least || (bounds[v] == found.least && v >= found.vertex));
         limited += bounds[v] < half;
     }
     sum->limited += limited;
@@ -218,6 +218,32 @@ static void pairs_left_out_give_no_bounds(void **state) {
     }
 }
 
+/* Of two triangles that are sewn at a corner one, which is the first or the second, has a third one 0.1 above another. */
+static void a_seam_has_one_bound(void **state) {
+    (void)state;
+    static const double sewn[6][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}, {3, 0, 0}, {3, 1, 0}};
+    static const double third[2][3][3] = {{{0, 0, 0.1}, {-1, 0, 0.1}, {-1, -1, 0.1}},
+                                          {{3, 0, 0.1}, {4, 0, 0.1}, {4, 1, 0.1}}};
+    static const uint32_t seam[] = {1, 3};
+    interval.vertex_count = 9;
+    interval.triangle_count = 3;
+    for (uint32_t i = 0; i < 9; i++) interval.triangles[i] = i;
+    for (int near = 0; near < 2; near++) {
+        memcpy(interval.x0, sewn, sizeof sewn);
+        memcpy(interval.x0 + 18, third[near], sizeof third[near]);
+        memcpy(interval.x1, interval.x0, sizeof interval.x1);
+        cscd_detector_options options = cscd_detector_defaults();
+        options.seams = seam, options.seam_count = 1;
+        rig r = rig_create(&interval, 1, &options);
+        cscd_displacement_bounds found = find_bounds(&r, 0.5, CSCD_SCALAR_DOUBLE, bounds);
+        assert_true(bounds[1] > 0.049 && bounds[1] < 0.05 && bounds[3] == bounds[1]);
+        for (int v = 0; v < 6; v++)
+            assert_true(v == 1 || v == 3 || bounds[v] == (v / 3 == near ? bounds[1] : 0.25));
+        assert_true(found.vertex == (uint32_t)near && found.least == bounds[1]);
+        rig_destroy(&r);
+    }
+}
+
 /* Obstacles that nothing else is near may go half the radius; where cloth is near, both sides have bounds. */
 static void obstacles_have_bounds_for_what_they_may_touch(void **state) {
     (void)state;
@@ -262,14 +288,15 @@ static void bounds_are_the_same_for_all_threads_and_methods(void **state) {
 }
 
 /* Finds the bounds of two panels whose distances by classes are these; the number of pairs that have none is returned. */
-static size_t bounds_of_panels(const panel_scene *p, const double matrix[4], double separation, double *out) {
+static size_t bounds_of_panels(const panel_scene *p, double radius, const double matrix[4], double separation,
+                               double *out) {
     cscd_object_rule rules[2] = {cscd_object_rule_default(), cscd_object_rule_default()};
     cscd_displacement_bounds found;
     rules[1].thickness_class = matrix != NULL;
     assert_int_equal(cscd_detector_set_separation(p->detector, 0.0, 0.0), CSCD_OK);
     assert_int_equal(cscd_detector_set_rules(p->detector, rules, 2, matrix, matrix != NULL ? 2 : 0), CSCD_OK);
     assert_int_equal(cscd_detector_set_separation(p->detector, separation, 0.0), CSCD_OK);
-    assert_int_equal(displacement_bounds_packed(p->detector, p->x0, 3.0, out, &found), CSCD_OK);
+    assert_int_equal(displacement_bounds_packed(p->detector, p->x0, radius, out, &found), CSCD_OK);
     for (size_t i = 0; matrix != NULL && i < found.blocked_count; i++) {
         const cscd_proximity *pair = &found.blocked[i];
         uint32_t a = cscd_mesh_vertex_object(p->mesh, pair->vertices[0]),
@@ -285,18 +312,20 @@ static void distances_of_objects_count(void **state) {
     static const double each = 1.5, all[] = {1.5, 1.5, 1.5, 1.5}, cross[] = {0.0, 1.5, 1.5, 0.0};
     static double with_none[200], with_all[200], with_cross[200];
     panel_scene p = panels_create(10, NULL, NULL);
-    size_t wider = 0, narrower = 0;
-    size_t blocked = bounds_of_panels(&p, NULL, each, with_all);
-    assert_int_equal(bounds_of_panels(&p, all, 0.0, with_none), blocked);
-    assert_memory_equal(with_none, with_all, sizeof with_all);
-    bounds_of_panels(&p, NULL, 0.0, with_none);
-    assert_true(bounds_of_panels(&p, cross, 0.0, with_cross) < blocked);
-    for (int v = 0; v < 200; v++) {
-        assert_true(with_all[v] <= with_cross[v] && with_cross[v] <= with_none[v]);
-        wider += with_cross[v] > with_all[v];
-        narrower += with_cross[v] < with_none[v];
+    for (double radius = 3.0; radius > 0.1; radius *= 0.1) { /* also one that is less than the distances */
+        size_t wider = 0, narrower = 0;
+        size_t blocked = bounds_of_panels(&p, radius, NULL, each, with_all);
+        assert_int_equal(bounds_of_panels(&p, radius, all, 0.0, with_none), blocked);
+        assert_memory_equal(with_none, with_all, sizeof with_all);
+        bounds_of_panels(&p, radius, NULL, 0.0, with_none);
+        assert_true(bounds_of_panels(&p, radius, cross, 0.0, with_cross) < blocked);
+        for (int v = 0; v < 200; v++) {
+            assert_true(with_all[v] <= with_cross[v] && with_cross[v] <= with_none[v]);
+            wider += with_cross[v] > with_all[v];
+            narrower += with_cross[v] < with_none[v];
+        }
+        assert_true(wider > 20 && narrower > 20);
     }
-    assert_true(wider > 20 && narrower > 20);
     panels_destroy(&p);
 }
 
@@ -304,6 +333,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(motions_within_bounds_keep_pairs_apart),
         cmocka_unit_test(pairs_left_out_give_no_bounds),
+        cmocka_unit_test(a_seam_has_one_bound),
         cmocka_unit_test(obstacles_have_bounds_for_what_they_may_touch),
         cmocka_unit_test(distances_of_objects_count),
         cmocka_unit_test(bounds_are_the_same_for_all_threads_and_methods),

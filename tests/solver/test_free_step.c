@@ -82,9 +82,23 @@ static void no_step_is_free_from_within(void **state) {
     rig_destroy(&r);
 }
 
+/* A coordinate that would be nearer to 0 than any position may be is 0, at three quarters of the way from 2^-299 to it. */
+static void nothing_comes_too_near_to_zero(void **state) {
+    straight_motion m;
+    (void)state;
+    rig r = make_flight(&m);
+    shape.x0[0] = 0x1p-299;
+    ends[0] = 0.0;
+    motion_at(&m, 0.5, reached);
+    assert_true(reached[0] == 0x1p-300);
+    motion_at(&m, 0.75, reached);
+    assert_true(reached[0] == 0.0);
+    rig_destroy(&r);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(free_motions_are_whole_steps),
-                                       cmocka_unit_test(limited_steps_end_before_the_wall),
-                                       cmocka_unit_test(no_step_is_free_from_within)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(free_motions_are_whole_steps), cmocka_unit_test(limited_steps_end_before_the_wall),
+        cmocka_unit_test(nothing_comes_too_near_to_zero), cmocka_unit_test(no_step_is_free_from_within)};
     return cmocka_run_group_tests_name("free_step", tests, NULL, NULL);
 }

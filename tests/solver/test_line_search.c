@@ -236,14 +236,19 @@ static void the_detector_knows_the_end(void **state) {
 static void what_is_not_known_stays_so(void **state) {
     (void)state;
     make_limited(SCENE_SPIKE, 1);
-    step_search s = search_create(CSCD_METHOD_SINGLE, 0.0, 1);
-    cscd_contacts found;
-    begin_line(&s, interval.x0, interval.x1, 0.0);
-    step_on(s.line, interval.x0, interval.x1, 1.0);
-    assert_int_equal(call.status, CSCD_OK);
-    assert_int_equal(step_packed(s.r.detector, call.end, interval.x1, &found), CSCD_OK);
-    assert_int_equal(cscd_detector_counters(s.r.detector).static_checks, 1);
-    search_destroy(&s);
+    for (size_t i = 0; i < (size_t)interval.vertex_count * 3; i++) moment[i] = interval.x0[i] + 1.0;
+    for (int elsewhere = 0; elsewhere < 2;
+         elsewhere++) { /* nothing is known, or where the line does not begin */
+        step_search s = search_create(CSCD_METHOD_SINGLE, 0.0, 1);
+        cscd_contacts found;
+        if (elsewhere) assert_int_equal(step_packed(s.r.detector, moment, moment, &found), CSCD_OK);
+        begin_line(&s, interval.x0, interval.x1, 0.0);
+        step_on(s.line, interval.x0, interval.x1, 1.0);
+        assert_int_equal(call.status, CSCD_OK);
+        assert_int_equal(step_packed(s.r.detector, call.end, interval.x1, &found), CSCD_OK);
+        assert_int_equal(cscd_detector_counters(s.r.detector).static_checks, 1);
+        search_destroy(&s);
+    }
 }
 
 /* The pole of a sphere has been pushed through the other one. The cap there intersects nothing, but is cut

@@ -291,6 +291,24 @@ static void end_may_be_nowhere_or_an_argument(void **state) {
     rig_destroy(&r);
 }
 
+/* A limited step tries the whole motion, and then a shorter one: its counters are the sums of both. */
+static void counters_are_of_all_tries(void **state) {
+    (void)state;
+    make_limited();
+    cscd_detector_options options = options_of(&plain);
+    options.mode = CSCD_MODE_EARLIEST;
+    rig r = rig_create(&interval, 1, &options), other = rig_create(&interval, 1, &options);
+    cscd_contacts found;
+    step_from(&r, interval.x0, interval.x1, &plain);
+    assert_true(call.status == CSCD_OK && call.step.limited);
+    cscd_counters sums = cscd_detector_counters(r.detector);
+    assert_int_equal(step_packed(other.detector, interval.x0, call.end, &found), CSCD_OK);
+    cscd_counters last = cscd_detector_counters(other.detector);
+    assert_true(sums.boxes_tested > last.boxes_tested && sums.feature_pairs > last.feature_pairs);
+    rig_destroy(&other);
+    rig_destroy(&r);
+}
+
 static void step_factor_is_honoured(void **state) {
     (void)state;
     static const double factors[] = {0x1p-20, 0.1, 0.5, 0.8, 0.99, 1.0 - 0x1p-53};
@@ -339,6 +357,7 @@ int main(void) {
                                        cmocka_unit_test(never_crosses_when_pressed),
                                        cmocka_unit_test(never_crosses_on_the_way),
                                        cmocka_unit_test(end_may_be_nowhere_or_an_argument),
+                                       cmocka_unit_test(counters_are_of_all_tries),
                                        cmocka_unit_test(step_factor_is_honoured),
                                        cmocka_unit_test(bad_arguments_are_named)};
     return cmocka_run_group_tests_name("max_step", tests, NULL, NULL);

@@ -57,10 +57,27 @@ static void line_searches_in_disorder(void **state) {
     cscd_line_search_destroy(search);
 }
 
+/* What a line had before is gone, as its positions may be of other scalars. */
+static void a_begin_that_fails_leaves_no_motion(void **state) {
+    (void)state;
+    cscd_line_search *search;
+    float now[COORDINATES], wanted[COORDINATES], x[COORDINATES];
+    for (int i = 0; i < COORDINATES; i++) now[i] = wanted[i] = (float)x0[i];
+    wanted[7] = NAN;
+    expect_success(cscd_line_search_create(detector, &search));
+    expect_success(cscd_line_search_begin(search, AT_START, AT_END, 0.0));
+    EXPECT_ARGUMENT(
+        cscd_line_search_begin(search, CSCD_FLOATS(now, VERTICES), CSCD_FLOATS(wanted, VERTICES), 0.0), "x1");
+    EXPECT_ARGUMENT(cscd_line_search_positions(search, 0.5, CSCD_MUTABLE_FLOATS(x, VERTICES)),
+                    "call cscd_line_search_begin first");
+    cscd_line_search_destroy(search);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(distances_that_cannot_be),
         cmocka_unit_test(line_searches_in_disorder),
+        cmocka_unit_test(a_begin_that_fails_leaves_no_motion),
     };
     return cmocka_run_group_tests_name("misuse by solvers", tests, set_up, tear_down);
 }
