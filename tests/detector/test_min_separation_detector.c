@@ -72,6 +72,20 @@ static void every_method_equals_brute_force(void **state) {
     oracle_free(&truth);
 }
 
+/* The counters of a step are its own, not the sums of all steps. */
+static void tests_are_counted_for_each_step(void **state) {
+    (void)state;
+    scene_make(SCENE_TWO_SPHERES, 1, &interval);
+    cscd_detector_options options = options_within(0.2, CSCD_METHOD_NONE);
+    rig r = rig_create(&interval, 1, &options);
+    rig_step(&r, &interval);
+    uint64_t tests = cscd_detector_counters(r.detector).tests;
+    rig_step(&r, &interval);
+    assert_true(tests > 0);
+    assert_int_equal(cscd_detector_counters(r.detector).tests, tests);
+    rig_destroy(&r);
+}
+
 /* Far smaller and larger scenes round their volumes differently, but have the same pairs. */
 static void same_pairs_when_scaled(void **state) {
     (void)state;
@@ -304,6 +318,7 @@ static void a_start_behind_a_wall_is_not_clean(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(every_method_equals_brute_force),
+                                       cmocka_unit_test(tests_are_counted_for_each_step),
                                        cmocka_unit_test(same_pairs_when_scaled),
                                        cmocka_unit_test(a_larger_distance_only_adds_pairs),
                                        cmocka_unit_test(unfit_lengths_are_refused),

@@ -289,6 +289,40 @@ static void a_seam_may_gape(void **state) {
     cscd_context_destroy(context);
 }
 
+/* Two triangles that pierce each other are ignored, also when a change has numbered them the other way round. */
+static void ignored_triangles_may_change_places(void **state) {
+    (void)state;
+    const uint32_t triangles[] = {0, 1, 2, 3, 4, 5}, turned[] = {3, 4, 5, 0, 1, 2}, origins[] = {1, 0},
+                   pair[] = {0, 1};
+    const cscd_object_desc before = cscd_object_of_triangles(6, 2, triangles),
+                           after = cscd_object_of_triangles(6, 2, turned);
+    const cscd_object_change change = {.object = 0, .desc = &after, .triangle_origins = origins};
+    const double x[] = {-1, -1, 0, 1, -1, 0, 0, 1, 0, 0, 0, -1, 0, 0, 1, 0, 3, 0};
+    cscd_context *context;
+    cscd_mesh *mesh;
+    cscd_mesh_change *turn;
+    cscd_contacts found;
+    assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(context, &before, 1, &mesh), CSCD_OK);
+    assert_int_equal(cscd_mesh_change_create(context, mesh, &change, 1, &turn), CSCD_OK);
+    for (uint32_t ignored = 0; ignored < 2; ignored++) {
+        cscd_detector *detector;
+        cscd_detector_options options = cscd_detector_defaults();
+        options.ignored = pair;
+        options.ignored_count = ignored;
+        assert_int_equal(detector_create_here(mesh, NULL, &options, &detector), CSCD_OK);
+        for (int changed = 0; changed < 2; changed++) {
+            if (changed) assert_int_equal(cscd_detector_change_mesh(detector, turn), CSCD_OK);
+            assert_int_equal(step_packed(detector, x, x, &found), CSCD_OK);
+            assert_true((found.count > 0) == (ignored == 0));
+        }
+        cscd_detector_destroy(detector);
+    }
+    cscd_mesh_change_destroy(turn);
+    cscd_mesh_destroy(mesh);
+    cscd_context_destroy(context);
+}
+
 static void mistakes_are_named(void **state) {
     (void)state;
     const uint32_t triangles[] = {0, 1, 2}, pairs[] = {0, 0, 0, 3};
@@ -321,6 +355,7 @@ int main(void) {
         cmocka_unit_test(a_list_does_what_the_callback_does),
         cmocka_unit_test(seams_make_a_split_surface_whole),
         cmocka_unit_test(a_seam_may_gape),
+        cmocka_unit_test(ignored_triangles_may_change_places),
         cmocka_unit_test(mistakes_are_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

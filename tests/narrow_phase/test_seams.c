@@ -115,6 +115,23 @@ static void the_first_distant_pair_is_named(void **state) {
     free_panels(&p);
 }
 
+/* The triangle of either end, the first or the second, may be the small one. */
+static void the_longest_edge_of_both_ends_counts(void **state) {
+    (void)state;
+    cscd_detector_options options = options_sewn();
+    options.seam_count = 1;
+    for (int small = 0; small < 2; small++) {
+        double x[18];
+        sewn_panels p = sew_panels(&options);
+        place_panels(0.5, x);
+        for (int v = 3 * small; v < 3 * small + 3; v++) {
+            for (int k = 0; k < 2; k++) x[3 * v + k] *= 0.25;
+        }
+        assert_int_equal(see_positions(&p, STEP, x), CSCD_OK);
+        free_panels(&p);
+    }
+}
+
 /* The caller says what is far: farther than any edge, nearer, or nothing. */
 static void the_reach_of_seams(void **state) {
     (void)state;
@@ -155,6 +172,7 @@ static void equal_vertices_are_refused(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(distant_vertices_are_named_at_first_sight),
                                        cmocka_unit_test(the_first_distant_pair_is_named),
+                                       cmocka_unit_test(the_longest_edge_of_both_ends_counts),
                                        cmocka_unit_test(the_reach_of_seams),
                                        cmocka_unit_test(equal_vertices_are_refused)};
     return cmocka_run_group_tests_name("seams", tests, NULL, NULL);
