@@ -310,6 +310,23 @@ static void nothing_active_is_over_at_once(void **state) {
     }
 }
 
+/* Whichever lane runs out of memory. */
+static void no_lane_fails_unnoticed(void **state) {
+    (void)state;
+    bvh_rig r;
+    traversal t;
+    scene_make(SCENE_TWO_SPHERES, 1, &shape);
+    assert_true(bvh_rig_create(&shape, (bvh_setup){CSCD_SIMD_AUTO, 3, BOX_AXES, 1}, &r));
+    assert_int_equal(traversal_create(r.context, &t), CSCD_OK);
+    assert_int_equal(t.lane_count, 3);
+    for (uint32_t lane = 0; lane < t.lane_count; lane++) {
+        for (uint32_t i = 0; i < t.lane_count; i++) t.lanes[i].out_of_memory = i == lane;
+        assert_int_equal(traversal_status(&t), CSCD_OUT_OF_MEMORY);
+    }
+    traversal_destroy(&t);
+    bvh_rig_destroy(&r);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(finds_what_may_touch),
@@ -319,6 +336,7 @@ int main(void) {
         cmocka_unit_test(same_pairs_on_all_levels_and_threads),
         cmocka_unit_test(many_rounds),
         cmocka_unit_test(passes_are_what_flags_say),
+        cmocka_unit_test(no_lane_fails_unnoticed),
         cmocka_unit_test(nothing_active_is_over_at_once),
     };
     return cmocka_run_group_tests_name("traversal", tests, NULL, NULL);
