@@ -130,6 +130,9 @@ static void check_passes(uint64_t expected) {
     }
     assert_int_equal(counters.passes, expected + 1);
     assert_true(counters.plus * 3 > ring.triangle_count);
+    uint64_t facing[3] = {0, 0, 0};
+    for (uint32_t i = 0; i < ring.triangle_count; i++) facing[1 + cscd_detector_orientation(r.detector, i)]++;
+    assert_true(counters.minus == facing[0] && counters.plus == facing[2] && counters.minus > 0);
     assert_true(expect_one_number_everywhere(r.detector, true, "the end") > 0);
     rig_destroy(&r);
     oracle_free(&truth);
