@@ -2,7 +2,7 @@
 # Runs the test programs that are its arguments and adds up their totals; `make test` calls it.
 # BUILD is the build folder. CSCD_DATA names a folder with recordings to compare with (tests/io/check_recordings.py);
 # when it is not set, nothing is compared. Ends non-zero when anything failed; its last line is `N passed, M failed`,
-# and before it stand the ten programs that took most processor time.
+# and before it stand the SLOWEST programs (20) that took most processor time.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 : "${BUILD:?BUILD must name the build folder}"
@@ -86,7 +86,7 @@ for program in "$@"; do
     seconds=$(log_of "$program").seconds
     [ ! -s "$seconds" ] || awk -v name="$(name_of "$program")" -F '[ms ]+' \
         'NR == 2 {printf "%8.1f  %s\n", 60 * ($1 + $3) + $2 + $4, name}' "$seconds"
-done | sort -rn | head -10
+done | sort -rn | head -"${SLOWEST:-20}"
 
 [ -z "$failures" ] || echo "failed:$failures"
 echo "$passed passed, $failed failed"

@@ -40,12 +40,12 @@ class Tree:
         """Brings the copy up to date; files that are the same keep their times, for make."""
         listed = listed_files()
         for name in listed:
-            target, text = self.folder / name, (ROOT / name).read_bytes()
-            if target.is_file() and target.read_bytes() == text:
-                continue
-            target.parent.mkdir(parents=True, exist_ok=True)
-            target.write_bytes(text)
-            target.chmod((ROOT / name).stat().st_mode)
+            source, target = ROOT / name, self.folder / name
+            if not target.is_file() or target.read_bytes() != source.read_bytes():
+                target.parent.mkdir(parents=True, exist_ok=True)
+                target.write_bytes(source.read_bytes())
+            if target.stat().st_mode != source.stat().st_mode:
+                target.chmod(source.stat().st_mode)
         kept = set(listed)
         for top in COPIED:
             for path in (self.folder / top).rglob("*") if (self.folder / top).is_dir() else ():

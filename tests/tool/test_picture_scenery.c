@@ -147,6 +147,20 @@ static void shadow_lies_below_and_softens(void **state) {
     }
 }
 
+/* Beside its longest side a triangle leaves all light. */
+static void a_triangle_has_the_shadow_of_a_triangle(void **state) {
+    (void)state;
+    static const double positions[] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    for (uint32_t turn = 0; turn < 3; turn++) {
+        const uint32_t corners[] = {turn, (turn + 1) % 3, (turn + 2) % 3};
+        picture_shadow shadow;
+        assert_true(picture_shadow_create(positions, 3, corners, 1, false, &shadow, NULL));
+        assert_true(shadow_of(&shadow, false, 0.25, 0.25, -0.002) > 0.9);
+        assert_true(shadow_of(&shadow, false, 0.75, 0.75, -0.002) == 0.0);
+        picture_shadow_free(&shadow);
+    }
+}
+
 /* Scaling by a power of two, up to the limits of coordinates, changes nothing. */
 static void shadows_have_no_unit(void **state) {
     (void)state;
@@ -333,6 +347,7 @@ int main(void) {
         cmocka_unit_test(outermost_points_frame_a_motion),
         cmocka_unit_test(unproject_undoes_project),
         cmocka_unit_test(shadow_lies_below_and_softens),
+        cmocka_unit_test(a_triangle_has_the_shadow_of_a_triangle),
         cmocka_unit_test(shadows_have_no_unit),
         cmocka_unit_test(bodies_without_extent_cast_no_shadow),
         cmocka_unit_test(pictures_have_no_unit),

@@ -39,6 +39,18 @@ def test_the_answer_comes_first():
     assert "All 3 frames cross. 1 event, " in run("replay named.obj flight.pc2 --frames 4:6").out
 
 
+def test_quiet_says_nothing_of_the_mesh():
+    Path("one.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    assert "is an open surface" in run("check one.obj").error
+    assert run("check one.obj --quiet") == (0, "", "")
+
+
+def test_each_third_frame_is_looked_at():
+    assert run("check named.obj flight.pc2 --frames 0:6:3 --json out.json").first_line.startswith("Frame 6 crosses (1 of 3).")
+    assert [(frame["frame"], frame["crossing_pairs"] > 0) for frame in read_json("out.json")["frames"]] == \
+        [(0, False), (3, False), (6, True)]
+
+
 @pytest.mark.parametrize("text, sentence", [
     ("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "Clean: no two triangles cross or touch."),
     (CROSSING, "1 pair of triangles crosses, with 2 of 2 triangles (100 %). 1 place, A x B, crossing along 0.5."),

@@ -51,6 +51,28 @@ def test_makes_plans_for_a_motion():
     says("preprocess spindle.obj spindle.pc2 --method auto", "charge            3 ")
 
 
+def test_the_last_frame_of_a_motion_counts():
+    """At rest, in frame 0, there is one region; bent, in frame 11, there are three."""
+    says("preprocess spindle.obj spindle.pc2 --frames 0:11:11 --method auto", "charge            3 ")
+    says("preprocess spindle.obj spindle.pc2 --frames 0:0 --method auto", "charge            1 ")
+
+
+def test_what_the_points_see_is_counted_by_area():
+    """The first line has the mean of the table's column, by its shares of the area; a mean of equal weights is 94.1."""
+    torus(12, 8).write_mesh("torus.obj")
+    lines = run("preprocess torus.obj --method kmeans:4").out.split("\n")
+    rows = [line.split() for line in lines if line.count("%") == 2]
+    assert len(rows) == 4 and len({row[5] for row in rows}) > 1
+    seen = sum(float(row[3]) * float(row[5]) for row in rows) / 100
+    assert lines[0] == f"torus.obj: 4 regions by method kmeans; their points see {seen:.1f} % of the area"
+
+
+def test_published_rules_make_another_plan(scene):
+    scene.write_mesh("bent.obj", 11)
+    regions = [run(f"preprocess bent.obj {rules}").out.split("\n")[0] for rules in ("", "--published")]
+    assert regions[0] != regions[1]
+
+
 def test_seeds_choose_the_regions():
     plans = []
     for seed in (1, 1, 2):

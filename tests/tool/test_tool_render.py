@@ -128,6 +128,12 @@ def test_a_strip_shows_contacts_where_they_begin():
         assert marked[i].count(CONTACT) > 10 if i in (3, 5) else marked[i] == plain[i]
 
 
+def test_the_last_frame_has_no_contacts_of_the_tile_before():
+    tetrahedra(5).write_cache("short.pc2")
+    touching, last = strip("--frames 3:4 --columns 2 --colour contacts", 2, 1, "flight.obj short.pc2")
+    assert touching.count(CONTACT) > 10 and last.count(CONTACT) == 0
+
+
 def test_a_strip_shows_a_plan():
     plain, *painted = (strip(f"--frames 0:3 --colour {colour}", 2, 2) for colour in ("plain", "charge", "region"))
     for tiles in painted:

@@ -49,9 +49,6 @@ bool plan_picture_paint(contact_picture *picture, plan_legend *legend, const rec
     const char *colon = frame_shown ? ": " : "";
     picture->scene.legend = legend->lines;
     if (by_charge) {
-        if (cscd_plan_method(plan) != CSCD_METHOD_CHARGE)
-            return io_fail(error, "a plan of method %s has no charge to draw",
-                           cscd_method_name(cscd_plan_method(plan)));
         snprintf(picture->caption + used, sizeof picture->caption - used, "%scharge by rank", colon);
         legend_of_charge(picture, legend);
         return plan_colour_charge(plan, r->mesh, picture->colours) || io_fail(error, "out of memory");
