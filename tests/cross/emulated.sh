@@ -71,7 +71,7 @@ case $architecture:$1 in
 riscv64:*) names='' ;;
 *:all) names=$(ls tests/*/test_*.c tests/*/test_*.cpp tests/*/test_*.py | sed 's:^tests/::; s:\.[a-z]*$::') ;;
 *:quick) names='core/test_simd ccd/test_describe_kernel ccd/test_proximity_kernel detector/test_invariance' ;;
-*:rooms) names=$(ls tests/io/test_*.c tests/core/test_*.c tests/mesh/test_*.c tests/detector/test_*.c | sed 's:^tests/::; s:\.c$::') ;;
+*:rooms) names=$(ls tests/io/test_*.c tests/core/test_*.c tests/mesh/test_*.c tests/detector/test_*.c tests/proofs/test_*.c | sed 's:^tests/::; s:\.c$::') ;;
 *) names=$* ;;
 esac
 programs=''

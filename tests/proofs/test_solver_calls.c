@@ -184,7 +184,6 @@ static const proof_row rows[] = {
      open_detector,
      .family = SCENE_TWO_SPHERES,
      .method = CSCD_METHOD_BRUTE},
-    {"waves", FAMILY_CALLS, open_detector, .family = SCENE_NOISY_SPHERE, .seed = 4},
     {"tori", FAMILY_CALLS, open_detector, .family = SCENE_LINKED_TORI, .seed = 4},
     {"spike", FAMILY_CALLS, open_detector, .family = SCENE_SPIKE, .seed = 4},
     {"grid", FAMILY_CALLS, open_detector, .family = SCENE_GRID, .seed = 4},

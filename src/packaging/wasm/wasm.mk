@@ -10,7 +10,7 @@ STATIC_LIBS := -lm
 # The tests of the rooms of core, mesh, preprocessing and runtime. Readers and writers of files are not built, and the dense
 # solver is that of the tests on Windows; files of pytest run the tool, which is not built. tests/wasm/left_out.txt says why a program is missing.
 TEST_LIBS       := -L$(WASM_LIBRARIES)/lib -lcmocka-static
-TEST_ROOMS_HERE := core mesh ccd bvh culling narrow_phase loose intersections events baselines detector solver sensors preprocess
+TEST_ROOMS_HERE := core mesh ccd bvh culling narrow_phase loose intersections events baselines detector solver sensors preprocess proofs
 CHARGE_SOURCES  := $(filter-out src/blas/% %/dense_solve.c %/dense_export.c,$(CHARGE_SOURCES)) tests/windows/dense_solve.c
 COMMON_SOURCES  := src/io/io_error.c
 SUPPORT_SOURCES := $(filter-out tests/support/ccd/algebraic_%.c tests/support/ccd/oracle_comparison.c tests/support/solver/exact_distance.c \

@@ -12,7 +12,7 @@
 #ifdef SLOW_MACHINE
 enum { ALLOCATIONS = 5, REPORTS = 3, PLACES = 2 };
 #else
-enum { ALLOCATIONS = 1000, REPORTS = 24, PLACES = 5 };
+enum { ALLOCATIONS = 1000, REPORTS = 12, PLACES = 3 };
 #endif
 enum { ASKED_AGAIN = 16 };
 
