@@ -58,6 +58,20 @@ def test_tables_name_parts(table):
     run(f"{line} --only Wall,Dart", code=3)
 
 
+@pytest.mark.parametrize("faces, table, parts", [
+    ("f 1 2 3 4\nf 5 6 7 8", "face,name\n0,A\n1,B\n", "A,B"),
+    ("f 1 2 3\nf 5 6 7", "vertex,name\n0,A\n1,B\n2,B\n4,C\n5,D\n6,E\n", "B,C"),
+])
+def test_tables_of_faces_and_vertices_name_triangles(faces, table, parts):
+    """Both triangles of a quadrilateral; and the part of most corners, or of the first. What crosses is 0 1 2 3 and 4 5 6 7."""
+    corners = [(0, 0, 0), (4, 0, 0), (4, 4, 0), (0, 4, 0), (3, 2.5, -1), (1, 2.5, -1), (1, 0.5, 1), (3, 0.5, 1)]
+    Path("crossing.obj").write_text("".join("v {} {} {}\n".format(*x) for x in corners) + faces + "\n", encoding="utf-8")
+    Path("parts.csv").write_text(table, encoding="utf-8")
+    line = "check crossing.obj --quiet --fail-on-contact --parts parts.csv"
+    run(f"{line} --ignore-parts {parts}")
+    run(f"{line} --only {parts}", code=3)
+
+
 @pytest.mark.parametrize("table, reason", [
     (b"", "the file is empty"),
     (b"polygon,name\n", ":1: expected 'triangle,name'"),
