@@ -149,6 +149,24 @@ static void any_corner_may_move_most(void **state) {
     }
 }
 
+/* Particles look as far as mu and the diameters of both triangles, each of which is one cell; the one is three times as
+ * large. A diameter is twice the distance of a corner from the middle of the box, which is the square root of 1.25. */
+static void both_diameters_count(void **state) {
+    (void)state;
+    for (uint32_t large = 0; large < 2; large++) {
+        cscd_partition_options cells = cscd_partition_defaults();
+        cells.cells = 1;
+        make_cross(0.0);
+        for (uint32_t i = large * 9; i < large * 9 + 9; i++) s.x0[i] = s.x1[i] = 3.0 * s.x0[i];
+        sensor_rig r = sensor_rig_create(&s, &(sensor_setup){0, &cells, NULL});
+        sensor_reach reach = measure_reach(&r);
+        assert_int_equal(r.partition->cell_count, 2);
+        assert_true(fabs(reach.radius - reach.mu_most - 4.0 * 2.0 * sqrt(1.25)) < 1e-9);
+        sensor_reach_free(r.context, &reach);
+        sensor_rig_destroy(&r);
+    }
+}
+
 /* ---- how far around particles look -------------------------------------------------------------------- */
 
 /* Spheres that do not feel each other, and a large triangle below. */
@@ -190,9 +208,8 @@ static void a_large_triangle_costs_nothing(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_touches_has_near_vertices),
-        cmocka_unit_test(crossed_edges_need_it_all),
-        cmocka_unit_test(any_corner_may_move_most),
+        cmocka_unit_test(what_touches_has_near_vertices), cmocka_unit_test(crossed_edges_need_it_all),
+        cmocka_unit_test(any_corner_may_move_most),       cmocka_unit_test(both_diameters_count),
         cmocka_unit_test(a_large_triangle_costs_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
