@@ -78,6 +78,7 @@ static int describe_handle(HANDLE handle, struct windows_stat *out) {
     const DWORD type = GetFileType(handle);
     if (type == FILE_TYPE_CHAR || type == FILE_TYPE_PIPE) {
         out->st_mode = type == FILE_TYPE_CHAR ? S_IFCHR | 0666 : S_IFIFO | 0666;
+        out->st_ino = (uint64_t)(uintptr_t)handle; /* so no two pipes are one file */
         return 0;
     }
     if (!GetFileInformationByHandle(handle, &info)) return wide_failure();
