@@ -45,10 +45,10 @@ def test_lists_and_tables_may_have_a_mark(name, text, line, says, code):
 def test_results_may_have_a_mark():
     Path("jobs.jsonl").write_text('{"model":"model.obj"}\n{"model":"model.obj"}\n')
     run("check --list jobs.jsonl --results results.jsonl --quiet")
-    text = Path("results.jsonl").read_text()
-    write_marked("marked.jsonl", text)
+    write_marked("marked.jsonl", Path("results.jsonl").read_text())
+    merged = [run(f"merge {name} -o - --quiet").out for name in ("results.jsonl", "marked.jsonl")]
+    assert merged[0] == merged[1] and merged[0].count("\n") == 2
     for name in ("results.jsonl", "marked.jsonl"):
-        assert run(f"merge {name} -o - --quiet").out == text
         run(f"check --list jobs.jsonl --results {name} --resume --quiet")
 
 
