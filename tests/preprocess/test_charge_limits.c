@@ -182,6 +182,22 @@ static void one_centroid_for_two(void **state) {
     assert_refused(&s, "triangles 0 and 1 of component 0 have the same centroid");
 }
 
+/* A face of a tetrahedron and one that almost lies on it: one of the two is named, and none of the others. */
+static void what_lies_on_another_is_named(void **state) {
+    (void)state;
+    const double beside[3] = {0.0, -1e-13, 0.0};
+    const uint32_t extra[3] = {4, 1, 3};
+    conductor s = conductor_tetrahedron(), more = with_extra(&s, beside, 1, extra, 1);
+    charge_rig r = charge_rig_create(&more, 2, NULL);
+    assert_int_equal(charge_solve(r.mesh, more.positions, &by_dense_system, r.density, r.capacitance, NULL),
+                     CSCD_INVALID_ARGUMENT);
+    assert_true(strstr(cscd_context_detail(r.context), "triangle 1:") != NULL ||
+                strstr(cscd_context_detail(r.context), "triangle 4:") != NULL);
+    charge_rig_destroy(&r);
+    conductor_free(&s);
+    conductor_free(&more);
+}
+
 /* A sheet that lies close to another one is told apart from it while single precision tells their potentials
  * apart. */
 static void sheets_near_each_other(void **state) {
@@ -337,6 +353,7 @@ int main(void) {
                                        cmocka_unit_test(component_without_area),
                                        cmocka_unit_test(coincident_triangles_share),
                                        cmocka_unit_test(one_centroid_for_two),
+                                       cmocka_unit_test(what_lies_on_another_is_named),
                                        cmocka_unit_test(sheets_near_each_other),
                                        cmocka_unit_test(takes_what_it_estimates),
                                        cmocka_unit_test(keeps_to_the_limit),
