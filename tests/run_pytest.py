@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Runs a file of pytest as a program of its room: the link build/release/tests/tool/test_info runs tests/tool/test_info.py.
+"""Runs a file of pytest as a program of its room: the link build/release/tests/tool/test_tool_info runs tests/tool/test_tool_info.py.
 
 A name of cases may follow, with * and ?. The totals at the end are those of cmocka, which tests/run.sh adds up. A test that is
 skipped counts as failed: it has tested nothing.

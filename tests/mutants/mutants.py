@@ -124,4 +124,6 @@ def stale_of(mutants):
         problem = mutant.text_below(ROOT)[1]
         if problem:
             problems.append(f"mutant {mutant.name} {problem}")
+        gone = [caught for caught in mutant.caught if caught.split(":")[0] not in mutant.programs()]
+        problems += [f"mutant {mutant.name}: there is no test {caught}" for caught in gone]
     return problems
