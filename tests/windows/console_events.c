@@ -67,6 +67,22 @@ static void say_to(const tool_process *process, DWORD event) {
     SetConsoleCtrlHandler(NULL, FALSE);
 }
 
+/* Counts the contacts of the CSV: whole lines, each of one of the intervals below `end`. */
+static size_t count_contacts(size_t end) {
+    char line[1000];
+    size_t count = 0;
+    FILE *file = fopen(csv.text, "rb");
+    assert_non_null(file);
+    assert_non_null(fgets(line, sizeof line, file));
+    assert_int_equal(strncmp(line, "frame,kind,", 11), 0);
+    for (; fgets(line, sizeof line, file) != NULL; count++) {
+        assert_int_equal(line[strlen(line) - 1], '\n');
+        assert_true(strtoul(line, NULL, 10) < end);
+    }
+    fclose(file);
+    return count;
+}
+
 /* The JSON has the intervals so far and says that it is not complete; the CSV has whole lines of these intervals only. */
 static size_t expect_kept(void) {
     json_node *root = json_node_read_file(summary.text);
@@ -75,11 +91,9 @@ static size_t expect_kept(void) {
     assert_false(json_node_boolean(total, "complete"));
     assert_non_null(strstr(json_node_string(total, "stopped_by"), "interrupted"));
     assert_true(done >= 1 && done < INTERVALS);
-    contact_rows rows = contact_rows_read_csv(csv.text);
-    assert_true(rows.count > 0);
-    assert_true(json_node_number(total, "vf") + json_node_number(total, "ee") == (double)rows.count);
-    for (size_t i = 0; i < rows.count; i++) assert_true(rows.items[i].frame < (int32_t)done);
-    contact_rows_free(&rows);
+    const size_t contacts = count_contacts(done);
+    assert_true(contacts > 0);
+    assert_true(json_node_number(total, "vf") + json_node_number(total, "ee") == (double)contacts);
     json_node_free(root);
     return done;
 }
