@@ -1,20 +1,19 @@
 """The tool on a capsule whose ends touch in a known interval: a formula, brute force and all outputs agree."""
-import os
 import re
 import subprocess
 
 import pytest
 
 from support.tool.reading import read_contacts, read_json
-from support.tool.running import run
+from support.tool.running import model_program, run
 
 
 @pytest.fixture(scope="module")
 def capsule(tmp_path_factory):
     """The recording, and what a replay of it has left."""
     folder = tmp_path_factory.mktemp("capsule")
-    made = subprocess.run([f"{os.environ['CSCD_MODELS']}/capsule_bend", "capsule.obj", "capsule.pc2"], cwd=folder, check=True,
-                          capture_output=True, text=True)
+    made = subprocess.run(model_program("capsule_bend", "capsule.obj", "capsule.pc2"), cwd=folder, check=True, text=True,
+                          capture_output=True)
     answer = run("replay capsule.obj capsule.pc2 --method single --contacts contacts.csv --json summary.json", cwd=folder)
     return (folder, int(re.search(r"first contact expected in interval (\d+)", made.stdout).group(1)), answer.out,
             read_contacts(folder / "contacts.csv"), read_json(folder / "summary.json"))

@@ -2,7 +2,6 @@
 
 Its events, by name and frame, in each of the forms in which animations come, and with each of the options that leave parts out.
 """
-import os
 import subprocess
 from pathlib import Path
 from typing import NamedTuple, Optional
@@ -10,9 +9,8 @@ from typing import NamedTuple, Optional
 import pytest
 
 from support.tool.reading import read_json
-from support.tool.running import run
+from support.tool.running import model_program, run
 
-MANNEQUIN = os.path.join(os.environ.get("CSCD_MODELS", ""), "mannequin")
 PARTS = ("Trunk", "Head", "Eye.L", "Eye.R", "Teeth", "Belt", "Arm.L", "Arm.R", "Leg.L", "Leg.R")
 
 
@@ -34,7 +32,7 @@ ALWAYS = [Known("Head", part, 0, 47) for part in ("Eye.L", "Eye.R", "Teeth")] + 
 @pytest.fixture(scope="module")
 def figure(tmp_path_factory):
     folder = tmp_path_factory.mktemp("figure")
-    subprocess.run([MANNEQUIN, folder, "cache", "skin", "frames", "objects"], check=True, capture_output=True)
+    subprocess.run(model_program("mannequin", folder, "cache", "skin", "frames", "objects"), check=True, capture_output=True)
     return folder
 
 
@@ -129,6 +127,6 @@ def test_a_table_names_other_parts():
     ([], 2, "expected a folder"), ([".", "film"], 2, "'film' is not cache"), (["/no/folder"], 1, "No such file"),
 ])
 def test_the_program_refuses_what_it_does_not_know(words, code, text):
-    ended = subprocess.run([MANNEQUIN, *words], capture_output=True, text=True, check=False)
+    ended = subprocess.run(model_program("mannequin", *words), capture_output=True, text=True, check=False)
     assert ended.returncode == code and ended.stdout == "" and text in ended.stderr
     assert ended.stderr.startswith("mannequin: ") and ended.stderr.count("\n") == 1

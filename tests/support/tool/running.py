@@ -29,6 +29,11 @@ class Run(NamedTuple):
         return self.out.split("\n")[0]
 
 
+def model_program(name, *words):
+    """The words that start a program of models/, which CSCD_RUNNER starts, too."""
+    return [*shlex.split(os.environ.get("CSCD_RUNNER", "")), os.path.join(os.environ["CSCD_MODELS"], name), *map(str, words)]
+
+
 def command(line, *words):
     """The words of a command line as in a shell, and words behind it.
 
