@@ -785,8 +785,8 @@ PYTEST_LINKS := $(addprefix $(BUILD)/,$(basename $(filter %.py,$(TEST_SOURCES)))
 $(PYTEST_LINKS): FORCE
 	@[ $@ -ef tests/run_pytest.py ] || { mkdir -p $(@D) && ln -sfn $(CURDIR)/tests/run_pytest.py $@; }
 
-# What was the main of each file: tests/support/room.h.
-test_file = $(if $(filter test_%,$(notdir $(1))),-DTEST_FILE='"$(basename $(notdir $(1)))"' -Dmain=main_of_$(basename $(notdir $(1))))
+# By its name a test finds its file: tests/support/room.h.
+test_file = $(if $(filter test_%,$(notdir $(1))),-DTEST_FILE='"$(basename $(notdir $(1)))"')
 
 # Programs beside those of rooms.
 $(BUILD)/tests/%: $(OBJECTS)/tests/%.o $(BUILD)/tests/support.a $(BUILD)/inside.a

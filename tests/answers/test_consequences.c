@@ -5,8 +5,7 @@
 #include <string.h>
 
 /* What lies in itself while another part cuts it is no event of its own; at any other time it is. */
-static void what_follows_is_left_out(void **state) {
-    (void)state;
+TEST(what_follows_is_left_out) {
     cscd_event events[] = {
         {.a = 1, .b = 2, .first_frame = 4, .last_frame = 5, .pairs = 1},
         {.a = 1, .b = 2, .first_frame = 1, .last_frame = 9, .pairs = 3},
@@ -25,9 +24,4 @@ static void what_follows_is_left_out(void **state) {
     assert_true(consequences_leave_out(events, &count));
     assert_int_equal(count, 7);
     for (size_t i = 0; i < count; i++) assert_memory_equal(&events[i], &all[expected[i]], sizeof *events);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(what_follows_is_left_out)};
-    return cmocka_run_group_tests_name("consequences", tests, NULL, NULL);
 }

@@ -174,9 +174,8 @@ static polygon grid_polygon(random_stream *random) {
     return p;
 }
 
-static void simple_is_simple_throughout(void **state) {
+TEST(simple_is_simple_throughout) {
     static const char *const names[MOTION_COUNT] = {"small", "turn", "morph", "any", "grid"};
-    (void)state;
     for (int kind = 0; kind < MOTION_COUNT; kind++) {
         uint32_t simple = 0, said = 0;
         random_stream random = stream_start((uint64_t)kind);
@@ -198,10 +197,9 @@ static void simple_is_simple_throughout(void **state) {
 
 /* The polygons are convex or have long rays, turn by a little, move far, and are scaled and moved
  * together. */
-static void plain_motions_pass(void **state) {
+TEST(plain_motions_pass) {
     static const double scales[] = {1.0, 0x1p-240, 0x1p240, 1e-6, 1e6};
     random_stream random = stream_start(77);
-    (void)state;
     for (int i = 0; i < 1000; i++) {
         polygon p = {.count = 4 + stream_below(&random, CORNERS_MAX - 4)};
         choose_axis(&p, &random);
@@ -236,14 +234,13 @@ static polygon polygon_at_rest(const double (*corners)[2], uint32_t count) {
     return p;
 }
 
-static void degenerate_contours_fail(void **state) {
+TEST(degenerate_contours_fail) {
     static const double crossed[4][2] = {{0, 0}, {2, 2}, {2, 0}, {0, 2}};
     static const double square[4][2] = {{0, 0}, {2, 0}, {2, 2}, {0, 2}};
     static const double folded[4][2] = {{0, 0}, {2, 0}, {1, 0}, {0, 2}};
     static const double equal[4][2] = {{0, 0}, {2, 0}, {2, 0}, {0, 2}};
     static const double touching[5][2] = {{0, 0}, {4, 0}, {4, 4}, {2, 0}, {0, 4}};
     static const double one_point[4][2] = {{1, 1}, {1, 1}, {1, 1}, {1, 1}};
-    (void)state;
     polygon p = polygon_at_rest(square, 4);
     assert_true(stays_simple(&p, 0, false));
     p = polygon_at_rest(crossed, 4); /* not simple at the start, which as published is not tested */
@@ -269,13 +266,4 @@ static void degenerate_contours_fail(void **state) {
     p = polygon_at_rest(square, 4); /* all vertices pass one point in between */
     for (uint32_t i = 0; i < 4; i++) place_vertex(&p, p.x1, i, -square[i][0], -square[i][1], 0.0);
     assert_false(stays_simple(&p, 0, false));
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(simple_is_simple_throughout),
-        cmocka_unit_test(plain_motions_pass),
-        cmocka_unit_test(degenerate_contours_fail),
-    };
-    return cmocka_run_group_tests_name("contour", tests, NULL, NULL);
 }

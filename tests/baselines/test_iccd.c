@@ -102,9 +102,8 @@ static void run_interval(uint32_t seed, iccd_tally *sum) {
     rig_destroy(&published.objects);
 }
 
-static void contacts_equal_those_of_none(void **state) {
+TEST(contacts_equal_those_of_none) {
     iccd_tally sum = {0};
-    (void)state;
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         iccd_tally own = {0};
         for (uint32_t seed = 0; seed < INTERVALS_PER_FAMILY; seed++) {
@@ -128,9 +127,8 @@ static bool ignore_some(void *user, cscd_contact_kind kind, uint32_t a, uint32_t
 }
 
 /* Several threads and ignored pairs change no contact, in mode earliest neither; with a separation nothing is culled. */
-static void options_change_nothing(void **state) {
+TEST(options_change_nothing) {
     size_t kept = 0, near = 0;
-    (void)state;
     for (uint32_t seed = 0; seed < INTERVALS_PER_FAMILY * SCENE_FAMILY_COUNT; seed += OPTIONS_EVERY) {
         cscd_detector_options options = cscd_detector_defaults();
         scene_make((scene_family)(seed % SCENE_FAMILY_COUNT), seed + 40000, &interval);
@@ -164,8 +162,7 @@ static void options_change_nothing(void **state) {
 
 /* A detector follows a motion there and back. Patches belong to the mesh, and all else to one interval
  * only. */
-static void steps_do_not_remember(void **state) {
-    (void)state;
+TEST(steps_do_not_remember) {
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         cscd_detector_options options = cscd_detector_defaults();
         scene_make((scene_family)family, 50000, &interval);
@@ -187,9 +184,8 @@ static void steps_do_not_remember(void **state) {
 
 /* Scaling by a power of two changes nothing while squares stay in range; beyond that nothing is sealed and
  * nothing lost. */
-static void scales_change_nothing(void **state) {
+TEST(scales_change_nothing) {
     static const double scales[] = {0x1p-230, 0x1p-100, 0x1p100, 0x1p240, 0x1p-280, 0x1p285};
-    (void)state;
     for (uint32_t seed = 0; seed < SCENE_FAMILY_COUNT; seed++) {
         cscd_detector_options options = cscd_detector_defaults();
         scene_make((scene_family)seed, seed + 60000, &interval);
@@ -218,8 +214,7 @@ static void scales_change_nothing(void **state) {
 
 /* ---- guarantees ------------------------------------------------------------------------------------ */
 
-static void guarantees_say_how(void **state) {
-    (void)state;
+TEST(guarantees_say_how) {
     for (uint32_t family = 0; family < SCENE_FAMILY_COUNT; family++) {
         scene_make((scene_family)family, 70000, &interval);
         for (int mode = 0; mode < 2; mode++) {
@@ -243,13 +238,4 @@ static void guarantees_say_how(void **state) {
     assert_string_equal(cscd_method_name(CSCD_METHOD_ICCD), "iccd");
     cscd_method method = CSCD_METHOD_AUTO;
     assert_true(cscd_method_from_name("iccd-published", &method) && method == CSCD_METHOD_ICCD_PUBLISHED);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(contacts_equal_those_of_none), cmocka_unit_test(options_change_nothing),
-        cmocka_unit_test(steps_do_not_remember),        cmocka_unit_test(scales_change_nothing),
-        cmocka_unit_test(guarantees_say_how),
-    };
-    return cmocka_run_group_tests_name("iccd", tests, NULL, NULL);
 }

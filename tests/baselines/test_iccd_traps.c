@@ -104,8 +104,7 @@ static double wandering_motion(double angle) {
 }
 
 /* The turns of a ramp overlap in the projection, and pass through each other when the ramp turns over. */
-static void spiral_ramps(void **state) {
-    (void)state;
+TEST(spiral_ramps) {
     make_ramp(2.4, 97, 0.01, 0.3, steady_motion);
     assert_true(expect_complete(LOSES_ALL).sealed > 0);
     make_ramp(2.0, 80, 0.01, 0.1, wandering_motion);
@@ -116,9 +115,8 @@ static void spiral_ramps(void **state) {
 
 /* The fan of one vertex goes around twice: it is a disk, all normals point up, and the projection is not
  * one-to-one. */
-static void fan_of_two_turns(void **state) {
+TEST(fan_of_two_turns) {
     enum { BLADES = 17 };
-    (void)state;
     scene_clear(&s);
     add_vertex(0.0, 0.0, 0.0);
     for (int i = 0; i < BLADES; i++) {
@@ -135,8 +133,7 @@ static void fan_of_two_turns(void **state) {
 
 /* All vertices are in the centre half way. The normals at both ends point up, the middle Bernstein vectors
  * down. */
-static void sheet_after_half_a_turn(void **state) {
-    (void)state;
+TEST(sheet_after_half_a_turn) {
     scene_clear(&s);
     scene_add_sheet(&s, 2.0, 1.5, 6, 5);
     for (uint32_t v = 0; v < s.vertex_count; v++) {
@@ -160,9 +157,8 @@ static void add_ring(uint32_t corners, double size, double turn, double stretch)
 
 /* The innermost triangles turn by half a turn, and half way their map has a negative determinant: they are
  * upside down, though all triangles face up at both ends and the contour never moves. */
-static void middle_turns_inside_a_frame(void **state) {
+TEST(middle_turns_inside_a_frame) {
     enum { CORNERS = 12 };
-    (void)state;
     scene_clear(&s);
     add_vertex(0.0, 0.0, 0.0);
     add_ring(CORNERS, 1.0, 0.0, 1.0);
@@ -186,8 +182,7 @@ static void middle_turns_inside_a_frame(void **state) {
 /* ---- patches that are no disks --------------------------------------------------------------------- */
 
 /* The contours of the squares never touch in the projection. */
-static void square_falls_through_another(void **state) {
-    (void)state;
+TEST(square_falls_through_another) {
     scene_clear(&s);
     scene_add_sheet(&s, 4.0, 4.0, 1, 1);
     scene_add_sheet(&s, 1.0, 1.0, 1, 1);
@@ -224,8 +219,7 @@ static uint32_t add_double_ring(double x, uint32_t corners) {
 
 /* There is a flat disk beside the torus. Together they have V - E + F = 1, and the edges of one triangle
  * form one loop. */
-static void disk_beside_a_closed_part(void **state) {
-    (void)state;
+TEST(disk_beside_a_closed_part) {
     for (int side = -1; side <= 1; side += 2) {
         scene_clear(&s);
         scene_add_sheet(&s, 1.0, 1.0, 2, 2);
@@ -236,10 +230,9 @@ static void disk_beside_a_closed_part(void **state) {
 
 /* Two sheets, one above the other, change places across a slit. They form a ring with two simple loops
  * that never touch in the projection, and all normals point up, but the ring lies twice above itself. */
-static void sheets_joined_through_a_slit(void **state) {
+TEST(sheets_joined_through_a_slit) {
     enum { CELLS = 6, ROW = CELLS + 1, FIRST = 3 * ROW + 2, LAST = 3 * ROW + 4, MIDDLE = 3 * ROW + 3 };
     const uint32_t other = ROW * ROW; /* the first vertex of the second sheet */
-    (void)state;
     scene_clear(&s);
     scene_add_sheet(&s, 2.0, 2.0, CELLS, CELLS);
     scene_add_sheet(&s, 3.0, 3.0, CELLS, CELLS);
@@ -264,8 +257,7 @@ static void sheets_joined_through_a_slit(void **state) {
 }
 
 /* Two fans that share one vertex slide over and through each other. */
-static void fans_joined_in_a_vertex(void **state) {
-    (void)state;
+TEST(fans_joined_in_a_vertex) {
     scene_clear(&s);
     add_vertex(0.0, 0.0, 0.0);
     for (int fan = 0; fan < 2; fan++) {
@@ -282,8 +274,7 @@ static void fans_joined_in_a_vertex(void **state) {
 }
 
 /* The surfaces are closed and quite flat: the upper side falls through the lower one. */
-static void flat_closed_surfaces(void **state) {
-    (void)state;
+TEST(flat_closed_surfaces) {
     for (int torus = 0; torus < 2; torus++) {
         scene_clear(&s);
         if (torus == 1)
@@ -297,19 +288,4 @@ static void flat_closed_surfaces(void **state) {
         }
         expect_complete(LOSES_SOME);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(spiral_ramps),
-        cmocka_unit_test(fan_of_two_turns),
-        cmocka_unit_test(sheet_after_half_a_turn),
-        cmocka_unit_test(middle_turns_inside_a_frame),
-        cmocka_unit_test(square_falls_through_another),
-        cmocka_unit_test(disk_beside_a_closed_part),
-        cmocka_unit_test(sheets_joined_through_a_slit),
-        cmocka_unit_test(fans_joined_in_a_vertex),
-        cmocka_unit_test(flat_closed_surfaces),
-    };
-    return cmocka_run_group_tests_name("iccd_traps", tests, NULL, NULL);
 }

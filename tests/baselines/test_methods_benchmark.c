@@ -27,8 +27,7 @@ static int remove_folder(void **state) {
     return 0;
 }
 
-static void rows_have_all_columns(void **state) {
-    (void)state;
+TEST(rows_have_all_columns) {
     static const char *const numbers[] = {"threads",  "triangles",     "ttcd_ms",    "bvh_ms", "orient_ms",
                                           "cnc_ms",   "traverse_ms",   "contact_ms", "pcp",    "tests",
                                           "contacts", "earliest_lost", "lost"};
@@ -64,8 +63,7 @@ static void rows_have_all_columns(void **state) {
     json_node_free(json);
 }
 
-static void what_is_wrong_is_said(void **state) {
-    (void)state;
+TEST(what_is_wrong_is_said) {
     tool_run run = RUN_TOOL("no-such-scene", "--data", folder.path, "--cache", folder.path);
     assert_int_equal(run.code, 1);
     assert_non_null(strstr(run.error, "no-such-scene.obj"));
@@ -80,8 +78,7 @@ static void what_is_wrong_is_said(void **state) {
 
 /* A named folder must contain recordings; without a folder, scenes that the repository does not make
  * cannot be found. */
-static void data_comes_from_the_environment(void **state) {
-    (void)state;
+TEST(data_comes_from_the_environment) {
     assert_int_equal(setenv("CSCD_DATA", folder.path, 1), 0);
     tool_run run = RUN_TOOL("--cache", folder.path);
     assert_int_equal(run.code, 1);
@@ -94,8 +91,7 @@ static void data_comes_from_the_environment(void **state) {
     tool_run_free(&run);
 }
 
-static void wrong_arguments_are_named(void **state) {
-    (void)state;
+TEST(wrong_arguments_are_named) {
     static const char *const wrong[][3] = {{"--no-such-option", NULL, "--no-such-option is no option"},
                                            {"--json", NULL, "--json wants a value"},
                                            {"--json", "--quick", "--json wants a value"},
@@ -113,8 +109,7 @@ static void wrong_arguments_are_named(void **state) {
 }
 
 /* If all runs had one seed, the mean of their pairs would be that of the first run. */
-static void kmeans_runs_have_seeds_of_their_own(void **state) {
-    (void)state;
+TEST(kmeans_runs_have_seeds_of_their_own) {
     temp_path path = temp_file_path(&folder, "seeds.json");
     EXPECT_TOOL(0, "tiny", "--data", folder.path, "--cache", folder.path, "--json", path.text);
     json_node *json = json_node_read_file(path.text);
@@ -130,11 +125,4 @@ static void kmeans_runs_have_seeds_of_their_own(void **state) {
     json_node_free(json);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rows_have_all_columns),     cmocka_unit_test(kmeans_runs_have_seeds_of_their_own),
-        cmocka_unit_test(what_is_wrong_is_said),     cmocka_unit_test(data_comes_from_the_environment),
-        cmocka_unit_test(wrong_arguments_are_named),
-    };
-    return cmocka_run_group_tests_name("methods", tests, make_folder, remove_folder);
-}
+AROUND_ALL(make_folder, remove_folder)

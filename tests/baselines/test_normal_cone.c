@@ -109,11 +109,10 @@ static double random_change(random_stream *random) {
     return exp(stream_between(random, log(1e-6), log(2.0)));
 }
 
-static void cones_hold_all_normals(void **state) {
+TEST(cones_hold_all_normals) {
     uint32_t exist = 0, wide = 0;
     long double most = -10.0L;
     random_stream random = stream_start(1);
-    (void)state;
     for (int i = 0; i < TRIANGLES; i++) {
         moving_triangle m = random_triangle(&random, random_change(&random));
         normal_cone cone = cone_of(&m);
@@ -129,10 +128,9 @@ static void cones_hold_all_normals(void **state) {
     assert_true(most < 0.0L);
 }
 
-static void published_cones_lose_normals(void **state) {
+TEST(published_cones_lose_normals) {
     uint32_t lost = 0, exist = 0;
     random_stream random = stream_start(2);
-    (void)state;
     for (int i = 0; i < TRIANGLES; i++) {
         moving_triangle m = random_triangle(&random, random_change(&random));
         normal_cone cone = cone_between(m.x0, m.x1, true);
@@ -145,11 +143,10 @@ static void published_cones_lose_normals(void **state) {
 }
 
 /* Unites the cones of eight triangles in a tree, as the nodes of the hierarchy do. */
-static void unions_hold_all_normals(void **state) {
+TEST(unions_hold_all_normals) {
     uint32_t exist = 0;
     long double most = -10.0L;
     random_stream random = stream_start(3);
-    (void)state;
     for (int i = 0; i < TRIANGLES / 8; i++) {
         moving_triangle first = random_triangle(&random, 0.2), all[8];
         normal_cone cones[8];
@@ -183,11 +180,10 @@ static moving_triangle tilted_triangle(double angle, double direction) {
 
 /* Half the angle between two normals varies up to a right angle and beyond, where the bound on an angle
  * from its chord matters. */
-static void opposite_normals_have_no_cone(void **state) {
+TEST(opposite_normals_have_no_cone) {
     const double right = 1.57079632679489662;
     random_stream random = stream_start(4);
     uint32_t exist = 0;
-    (void)state;
     for (int i = 0; i < TRIANGLES; i++) {
         double angle = right + stream_between(&random, i % 2 == 0 ? -1e-3 : -0.5, 5e-4);
         double direction = stream_between(&random, 0.0, 6.3);
@@ -203,10 +199,9 @@ static void opposite_normals_have_no_cone(void **state) {
     assert_true(2 * exist > TRIANGLES);
 }
 
-static void scales_change_no_cone(void **state) {
+TEST(scales_change_no_cone) {
     random_stream random = stream_start(5);
     uint32_t same = 0;
-    (void)state;
     for (int i = 0; i < 50; i++) {
         moving_triangle m = random_triangle(&random, 0.1);
         normal_cone cone = cone_of(&m);
@@ -229,8 +224,7 @@ static void scales_change_no_cone(void **state) {
     assert_true(same > 400);
 }
 
-static void without_area_there_is_no_cone(void **state) {
-    (void)state;
+TEST(without_area_there_is_no_cone) {
     const double flat[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0}, line[9] = {0, 0, 0, 1, 1, 1, 3, 3, 3};
     const double point[9] = {5, 5, 5, 5, 5, 5, 5, 5, 5}, turned[9] = {0, 0, 0, -1, 0, 0, 0, -1, 0};
     const double over[9] = {0, 0, 0, 0, 1, 0, 1, 0, 0}, steep[9] = {0, 0, 0, 0, 0, 1, 0, 1, 0};
@@ -250,11 +244,4 @@ static void without_area_there_is_no_cone(void **state) {
     assert_true(normal_cone_exists(&quarter) && quarter.angle > 0.785398f && quarter.angle < 0.792f);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(cones_hold_all_normals),  cmocka_unit_test(published_cones_lose_normals),
-        cmocka_unit_test(unions_hold_all_normals), cmocka_unit_test(opposite_normals_have_no_cone),
-        cmocka_unit_test(scales_change_no_cone),   cmocka_unit_test(without_area_there_is_no_cone),
-    };
-    return cmocka_run_group_tests_name("normal_cone", tests, open_levels, close_levels);
-}
+AROUND_ALL(open_levels, close_levels)

@@ -213,8 +213,7 @@ static patch_tally check_mesh(cscd_object_desc desc, const double *positions) {
     return sum;
 }
 
-static void disks_of_scenes(void **state) {
-    (void)state;
+TEST(disks_of_scenes) {
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         patch_tally sum = {0};
         for (uint32_t seed = 0; seed < SCENES_PER_FAMILY; seed++) {
@@ -230,9 +229,8 @@ static void disks_of_scenes(void **state) {
     }
 }
 
-static void disks_of_bodies(void **state) {
+TEST(disks_of_bodies) {
     static const body_kind kinds[] = {BODY_PAWN, BODY_TORUS, BODY_GENUS2, BODY_COIL, BODY_CHAIN, BODY_CUBE};
-    (void)state;
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
         body b = body_of(kinds[i], body_nearest_count(kinds[i], BODY_TRIANGLES));
         patch_tally sum =
@@ -254,8 +252,7 @@ static void check_shape(const shape *given, uint32_t seed) {
                positions);
 }
 
-static void patches_of_any_shape(void **state) {
-    (void)state;
+TEST(patches_of_any_shape) {
     for (uint32_t seed = 0; seed < 10; seed++) {
         for (int kind = 0; kind < 4; kind++) {
             shape grid = {0};
@@ -286,8 +283,7 @@ static bool root_is_disk(const shape *given) {
     return disk;
 }
 
-static void roots_that_are_disks_and_not(void **state) {
-    (void)state;
+TEST(roots_that_are_disks_and_not) {
     shape sheet = {0}, ring = {0}, torus = {0}, strip = {0}, bow_tie = {0}, cube = {0}, beside = {0};
     shape_add_grid(&sheet, 4, 5, false, false);
     assert_true(root_is_disk(&sheet));
@@ -316,14 +312,4 @@ static void roots_that_are_disks_and_not(void **state) {
     }
     beside.vertex_count = 28;
     assert_false(root_is_disk(&beside));
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(disks_of_scenes),
-        cmocka_unit_test(disks_of_bodies),
-        cmocka_unit_test(patches_of_any_shape),
-        cmocka_unit_test(roots_that_are_disks_and_not),
-    };
-    return cmocka_run_group_tests_name("patches", tests, NULL, NULL);
 }

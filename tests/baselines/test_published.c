@@ -23,9 +23,8 @@ static rig step_by(cscd_method method, double min_separation, cscd_contacts *fou
     return r;
 }
 
-static void first_contacts_are_lost(void **state) {
+TEST(first_contacts_are_lost) {
     uint32_t with_contact = 0, lost = 0;
-    (void)state;
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         for (uint32_t seed = 0; seed < INTERVALS_PER_FAMILY; seed++) {
             static double expected[COMPONENTS_MAX], times[COMPONENTS_MAX];
@@ -54,9 +53,8 @@ static void first_contacts_are_lost(void **state) {
 }
 
 /* When nothing is culled every contact is found, and the guarantee says so. */
-static void nothing_is_culled_with_a_separation(void **state) {
+TEST(nothing_is_culled_with_a_separation) {
     size_t contacts = 0;
-    (void)state;
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         for (uint32_t seed = 0; seed < SEPARATED_INTERVALS_PER_FAMILY; seed++) {
             cscd_contacts truth, found;
@@ -79,9 +77,8 @@ static void nothing_is_culled_with_a_separation(void **state) {
 }
 
 /* A method that loses contacts certifies no step. */
-static void no_step_is_certified(void **state) {
+TEST(no_step_is_certified) {
     static const cscd_method methods[] = {CSCD_METHOD_PUBLISHED, CSCD_METHOD_ICCD_PUBLISHED};
-    (void)state;
     scene_make(SCENE_TWO_SPHERES, 1, &interval);
     for (int i = 0; i < 2; i++) {
         cscd_contacts found;
@@ -96,16 +93,8 @@ static void no_step_is_certified(void **state) {
 }
 
 /* Without this, the tests here would pass in a build without baselines. */
-static void baselines_are_present(void **state) {
+TEST(baselines_are_present) {
     static const cscd_method methods[] = {CSCD_METHOD_PUBLISHED, CSCD_METHOD_ICCD,
                                           CSCD_METHOD_ICCD_PUBLISHED};
-    (void)state;
     for (int i = 0; i < 3; i++) assert_int_equal(method_or_none(methods[i]), methods[i]);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(first_contacts_are_lost), cmocka_unit_test(nothing_is_culled_with_a_separation),
-        cmocka_unit_test(no_step_is_certified), cmocka_unit_test(baselines_are_present)};
-    return cmocka_run_group_tests_name("published", tests, NULL, NULL);
 }

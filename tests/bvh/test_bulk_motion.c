@@ -115,8 +115,7 @@ static void check_same_work(void) {
     assert_int_equal(a->sealed, b->sealed);
 }
 
-static void same_where_the_sums_are_exact(void **state) {
-    (void)state;
+TEST(same_where_the_sums_are_exact) {
     for_all(GRID_UNIT, 0, SCENE_FAMILY_COUNT, check_same_work);
 }
 
@@ -130,20 +129,11 @@ static void add_work(void) {
 }
 
 /* Scenes in generic position: all families before the grid. */
-static void nearly_the_same_where_they_are_not(void **state) {
-    (void)state;
+TEST(nearly_the_same_where_they_are_not) {
     for_all(0.0, 0, SCENE_GRID, add_work);
     for (int i = 0; i < 2; i++) {
         print_message("at rest %llu, in flight %llu\n", (unsigned long long)sums[0][i],
                       (unsigned long long)sums[1][i]);
         assert_true(fabs((double)sums[1][i] - (double)sums[0][i]) <= 1e-3 * (double)sums[0][i]);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(same_where_the_sums_are_exact),
-        cmocka_unit_test(nearly_the_same_where_they_are_not),
-    };
-    return cmocka_run_group_tests_name("bulk motion", tests, NULL, NULL);
 }

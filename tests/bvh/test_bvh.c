@@ -88,8 +88,7 @@ static void check_layout(const bvh_rig *r) {
     for (uint32_t t = 0; t < r->mesh->triangle_count; t++) assert_int_equal(seen[t], 1);
 }
 
-static void every_triangle_has_one_slot(void **state) {
-    (void)state;
+TEST(every_triangle_has_one_slot) {
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         scene_make((scene_family)family, 11, &shape);
         for (int i = 0; i < REGION_CHOICES; i++) {
@@ -206,9 +205,8 @@ static void check_scene(const scene *s, int axis_count, uint32_t region_count, d
     bvh_rig_destroy(&r);
 }
 
-static void bounds_hold_what_is_below(void **state) {
+TEST(bounds_hold_what_is_below) {
     static const int exponents[] = {-290, -90, 0, 120, 290};
-    (void)state;
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         scene_make((scene_family)family, 12, &shape);
         int exponent = exponents[family % 5];
@@ -221,9 +219,8 @@ static void bounds_hold_what_is_below(void **state) {
 }
 
 /* Some bodies fly on together, and one stays behind. */
-static void bounds_of_bodies_that_fly(void **state) {
+TEST(bounds_of_bodies_that_fly) {
     const double far[3] = {1e3, -3e5, 77.0};
-    (void)state;
     for (int i = 0; i < 2 * REGION_CHOICES; i++) {
         scene_make(SCENE_LINKED_TORI, 13, &shape);
         translate(shape.x1, shape.vertex_count, far);
@@ -234,12 +231,11 @@ static void bounds_of_bodies_that_fly(void **state) {
 }
 
 /* The scale follows positions that grow or shrink by far, also within one interval. */
-static void bounds_at_changing_scales(void **state) {
+TEST(bounds_at_changing_scales) {
     static const int from[] = {0, 290, -290, 290, 10, -40, -40, 0},
                      to[] = {290, -290, 290, 290, 30, -40, 3, 0};
     static scene start, end;
     bvh_rig r;
-    (void)state;
     scene_make(SCENE_TWO_SPHERES, 14, &shape);
     assert_true(bvh_rig_create(&shape, (bvh_setup){CSCD_SIMD_AUTO, 1, KDOP_AXES, 5}, &r));
     find_places(&r.bvh);
@@ -253,8 +249,7 @@ static void bounds_at_changing_scales(void **state) {
 }
 
 /* All vertices lie in one place, at the end or from the start. */
-static void bounds_of_points(void **state) {
-    (void)state;
+TEST(bounds_of_points) {
     scene_make(SCENE_GRID, 15, &shape);
     for (uint32_t i = 0; i < shape.vertex_count * 3; i++) shape.x0[i] = 0.1 * (i % 3);
     check_scene(&shape, KDOP_AXES, 1, 0.0);
@@ -278,8 +273,7 @@ static void assert_same_bvh(const bvh *a, const bvh *b) {
     }
 }
 
-static void same_on_all_levels_and_threads(void **state) {
-    (void)state;
+TEST(same_on_all_levels_and_threads) {
     for (int i = 0; i < 4; i++) {
         bvh_rig one, other;
         scene_make((scene_family)(i * 3), 16, &shape);
@@ -296,16 +290,4 @@ static void same_on_all_levels_and_threads(void **state) {
         }
         bvh_rig_destroy(&one);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_triangle_has_one_slot),
-        cmocka_unit_test(bounds_hold_what_is_below),
-        cmocka_unit_test(bounds_of_bodies_that_fly),
-        cmocka_unit_test(bounds_at_changing_scales),
-        cmocka_unit_test(bounds_of_points),
-        cmocka_unit_test(same_on_all_levels_and_threads),
-    };
-    return cmocka_run_group_tests_name("bvh", tests, NULL, NULL);
 }

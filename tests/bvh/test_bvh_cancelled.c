@@ -76,8 +76,7 @@ static void pull_strip(uint32_t step, double *out) {
 }
 
 /* A detector whose every step is cancelled at each place first finds what another one finds, also when trees are built again. */
-static void rebuilds_may_be_cancelled_anywhere(void **state) {
-    (void)state;
+TEST(rebuilds_may_be_cancelled_anywhere) {
     static double x[2][SCENE_VERTICES_MAX * 3];
     place_counter h = {0, 0};
     cscd_context *context = create_context(&h);
@@ -109,11 +108,4 @@ static void rebuilds_may_be_cancelled_anywhere(void **state) {
     cscd_mesh_destroy(mesh);
     cscd_mesh_destroy(other);
     cscd_context_destroy(context);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rebuilds_may_be_cancelled_anywhere),
-    };
-    return cmocka_run_group_tests_name("bvh cancelled", tests, NULL, NULL);
 }

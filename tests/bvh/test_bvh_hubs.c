@@ -82,8 +82,7 @@ static size_t compare_step(const oracle_list *truth, const cscd_detector_options
     return truth->count;
 }
 
-static void contacts_equal_brute_force(void **state) {
-    (void)state;
+TEST(contacts_equal_brute_force) {
     oracle_list truth = {0};
     size_t contacts = 0, without = 0;
     for (cone_kind kind = 0; kind < CONE_KINDS; kind++) {
@@ -104,8 +103,7 @@ static void contacts_equal_brute_force(void **state) {
 }
 
 /* Features that are near each other around the hub are found as well. */
-static void distances_equal_brute_force(void **state) {
-    (void)state;
+TEST(distances_equal_brute_force) {
     oracle_list truth = {0};
     size_t contacts = 0;
     for (cone_kind kind = 0; kind < CONE_KINDS; kind++) {
@@ -143,8 +141,7 @@ static size_t compare_check(const rig *r, const double *x) {
     return expected;
 }
 
-static void intersections_equal_all_pairs(void **state) {
-    (void)state;
+TEST(intersections_equal_all_pairs) {
     size_t pairs = 0, without = 0;
     for (cone_kind kind = 0; kind < CONE_KINDS; kind++) {
         for (uint64_t seed = 0; seed < SEEDS; seed++) {
@@ -163,8 +160,7 @@ static void intersections_equal_all_pairs(void **state) {
 }
 
 /* Neighbours intersect only where they lie in one plane, folded over their common edge. */
-static void folded_neighbours_are_found(void **state) {
-    (void)state;
+TEST(folded_neighbours_are_found) {
     make_motion(CONE_FLAT, 1);
     for (uint32_t v = 0; v < shape.vertex_count; v++) shape.x0[3 * v + 2] = 0.0;
     rig r = rig_create(&shape, 1, NULL);
@@ -174,8 +170,7 @@ static void folded_neighbours_are_found(void **state) {
 
 /* Between two directions that differ much, a triangle lies in directions that no box around the two holds: slivers around
  * the x-axis cross eight triangles there, whose corners are far from it. */
-static void wide_triangles_bulge(void **state) {
-    (void)state;
+TEST(wide_triangles_bulge) {
     enum { SLIVERS = HUB_TRIANGLES, WIDE = 8 };
     const double wide = 25.0 / 360.0 * turn;
     scene_clear(&shape);
@@ -225,23 +220,10 @@ static double count_boxes(cone_kind kind, uint32_t segments) {
     return (double)counters.boxes_tested;
 }
 
-static void four_times_the_triangles_take_no_sixteenfold(void **state) {
-    (void)state;
+TEST(four_times_the_triangles_take_no_sixteenfold) {
     for (cone_kind kind = 0; kind < CONE_KINDS; kind++) {
         const double few = count_boxes(kind, 2000), many = count_boxes(kind, 8000);
         print_message("  kind %d: %.0f and %.0f pairs of volumes\n", (int)kind, few, many);
         assert_true(many < fmax(6.0 * few, 15.0 * 8000)); /* without hubs 16 times, and 4,000 a triangle */
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(contacts_equal_brute_force),
-        cmocka_unit_test(distances_equal_brute_force),
-        cmocka_unit_test(intersections_equal_all_pairs),
-        cmocka_unit_test(folded_neighbours_are_found),
-        cmocka_unit_test(wide_triangles_bulge),
-        cmocka_unit_test(four_times_the_triangles_take_no_sixteenfold),
-    };
-    return cmocka_run_group_tests_name("bvh hubs", tests, NULL, NULL);
 }

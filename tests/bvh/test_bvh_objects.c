@@ -23,8 +23,7 @@ static void make_row(void) {
     }
 }
 
-static void any_two_objects_are_found(void **state) {
-    (void)state;
+TEST(any_two_objects_are_found) {
     cscd_context *context;
     cscd_mesh *mesh;
     cscd_detector *detector;
@@ -52,9 +51,4 @@ static void any_two_objects_are_found(void **state) {
     cscd_detector_destroy(detector);
     cscd_mesh_destroy(mesh);
     cscd_context_destroy(context);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(any_two_objects_are_found)};
-    return cmocka_run_group_tests_name("objects in a bvh", tests, NULL, NULL);
 }

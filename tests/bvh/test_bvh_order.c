@@ -110,8 +110,7 @@ static void compare_runs(uint32_t count, const uint32_t *offsets, uint32_t run_c
     }
 }
 
-static void large_runs(void **state) {
-    (void)state;
+TEST(large_runs) {
     for (item_family f = ITEMS_SPREAD; f < FAMILY_COUNT; f++) {
         const uint32_t whole[2] = {0, ITEMS_MAX}, parts[4] = {0, 16385, 81922, 100001};
         make_items(f, ITEMS_MAX);
@@ -120,8 +119,7 @@ static void large_runs(void **state) {
     }
 }
 
-static void small_runs(void **state) {
-    (void)state;
+TEST(small_runs) {
     for (int i = 0; i < 300; i++) {
         uint32_t offsets[RUNS_MAX + 1] = {0}, runs = (uint32_t)random_integer(1, RUNS_MAX);
         for (uint32_t r = 0; r < runs; r++)
@@ -131,10 +129,4 @@ static void small_runs(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(large_runs, seed_random),
-        cmocka_unit_test_setup(small_runs, seed_random),
-    };
-    return cmocka_run_group_tests_name("bvh_order", tests, NULL, NULL);
-}
+AROUND_EACH(seed_random, NULL)

@@ -73,11 +73,10 @@ static cscd_counters step_run(rebuild_run *r) {
     return cscd_detector_counters(r->detector);
 }
 
-static void pulled_flat(void **state) {
+TEST(pulled_flat) {
     rebuild_run one, three, rebuilt;
     cscd_counters last = {0};
     uint64_t rebuilds = 0;
-    (void)state;
     make_strip();
     open_run(&one, 1);
     open_run(&three, 3);
@@ -103,10 +102,9 @@ static void pulled_flat(void **state) {
 }
 
 /* Line searches alone also rebuild the trees. */
-static void lines_build_anew(void **state) {
+TEST(lines_build_anew) {
     rebuild_run r, rebuilt;
     cscd_line_search *line = NULL;
-    (void)state;
     make_strip();
     open_run(&r, 1);
     assert_int_equal(cscd_line_search_create(r.detector, &line), CSCD_OK);
@@ -128,9 +126,8 @@ static void lines_build_anew(void **state) {
 }
 
 /* A motion that only moves and bends the strip keeps its trees. */
-static void flat_stays(void **state) {
+TEST(flat_stays) {
     rebuild_run r;
-    (void)state;
     make_strip();
     open_run(&r, 1);
     for (uint32_t frame = 0; frame < FRAMES; frame++) {
@@ -178,10 +175,9 @@ static cscd_counters step_bodies(rebuild_run *r) {
 }
 
 /* Bodies that change places put the blocks of the trees into disorder, though no tree changes. */
-static void bodies_change_places(void **state) {
+TEST(bodies_change_places) {
     const cscd_object_desc desc = cscd_object_of_triangles(BODIES * 4, BODIES * 4, &faces[0][0]);
     rebuild_run r, rebuilt;
-    (void)state;
     make_bodies();
     place_bodies(0.0, rest);
     place_bodies(0.125, moved);
@@ -208,14 +204,4 @@ static void bodies_change_places(void **state) {
     assert_true(in_disorder > 2 * best && afterwards <= best + best / 4);
     close_run(&r);
     close_run(&rebuilt);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pulled_flat),
-        cmocka_unit_test(lines_build_anew),
-        cmocka_unit_test(flat_stays),
-        cmocka_unit_test(bodies_change_places),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

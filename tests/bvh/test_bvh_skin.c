@@ -172,10 +172,9 @@ static bool look_at(skin_rig *r, const double *x0, const double *x1, outcomes *c
     return holds;
 }
 
-static void what_holds_is_true(void **state) {
+TEST(what_holds_is_true) {
     static const scene_family kinds[] = {SCENE_LINKED_TORI, SCENE_NOISY_SPHERE, SCENE_TWO_SPHERES};
     outcomes count = {0};
-    (void)state;
     for (int i = 0; i < TRIALS; i++) {
         skin_rig r;
         scene_make(kinds[i % 3], 100 + (uint64_t)i, &shape);
@@ -224,10 +223,9 @@ static void place_flat_triangle(double x1, double y1, double x2, double y2, doub
 
 /* It turns away by more than its signs last for, in so small intervals that each of them is seen to keep the sign, and comes
  * back in one interval, in the midst of which it is turned over. Its end alone says nothing of that. */
-static void out_slowly_and_back_at_once(void **state) {
+TEST(out_slowly_and_back_at_once) {
     enum { WAY = 20 };
     skin_rig r;
-    (void)state;
     lay_triangles(0.5, 0.004);
     assert_true(skin_rig_begin(CSCD_SIMD_AUTO, 1, 0.2, 0.0005, 40.0, &r));
     memcpy(end, shape.x0, sizeof end);
@@ -248,11 +246,10 @@ static void out_slowly_and_back_at_once(void **state) {
 
 /* The first corner, between the others, moves across the side opposite it. No motion of so small an extent turns a flat
  * triangle sooner, so hardly anything is left between what a sign surely lasts for and where it is wrong. */
-static void turned_over_by_the_least_stretch(void **state) {
+TEST(turned_over_by_the_least_stretch) {
     enum { WAY = 40, UP_TO_SIDE = 20 };
     skin_rig r;
     int held = 0;
-    (void)state;
     lay_triangles(-1.0, 0.004);
     assert_true(skin_rig_begin(CSCD_SIMD_AUTO, 1, 0.2, 0.0005, 40.0, &r));
     for (int i = 1; i <= WAY; i++) {
@@ -267,8 +264,7 @@ static void turned_over_by_the_least_stretch(void **state) {
     skin_rig_end(&r);
 }
 
-static void levels_agree(void **state) {
-    (void)state;
+TEST(levels_agree) {
     scene_make(SCENE_LINKED_TORI, 7, &shape);
     double distance = 0.2 * extent_of_edges();
     skin_rig first;
@@ -290,12 +286,4 @@ static void levels_agree(void **state) {
     skin_rig_end(&first);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(what_holds_is_true, seed_random),
-        cmocka_unit_test(out_slowly_and_back_at_once),
-        cmocka_unit_test(turned_over_by_the_least_stretch),
-        cmocka_unit_test_setup(levels_agree, seed_random),
-    };
-    return cmocka_run_group_tests_name("bvh skin", tests, NULL, NULL);
-}
+AROUND_EACH(seed_random, NULL)

@@ -49,8 +49,7 @@ static size_t compare_step(const oracle_list *truth, const cscd_detector_options
     return truth->count;
 }
 
-static void contacts_equal_brute_force(void **state) {
-    (void)state;
+TEST(contacts_equal_brute_force) {
     oracle_list truth = {0};
     size_t contacts = 0;
     for (uint64_t seed = 0; seed < SEEDS; seed++) {
@@ -64,8 +63,7 @@ static void contacts_equal_brute_force(void **state) {
     oracle_free(&truth);
 }
 
-static void distances_equal_brute_force(void **state) {
-    (void)state;
+TEST(distances_equal_brute_force) {
     oracle_list truth = {0};
     size_t contacts = 0;
     for (uint64_t seed = 0; seed < SEEDS; seed++) {
@@ -84,8 +82,7 @@ static void distances_equal_brute_force(void **state) {
     oracle_free(&truth);
 }
 
-static void intersections_equal_all_pairs(void **state) {
-    (void)state;
+TEST(intersections_equal_all_pairs) {
     const uint32_t(*t)[3] = (const uint32_t(*)[3])shape.triangles;
     size_t pairs = 0;
     for (uint64_t seed = 0; seed < SEEDS; seed++) {
@@ -122,8 +119,7 @@ static cscd_counters count_step(extreme_kind kind, uint32_t count) {
     return counters;
 }
 
-static void four_times_the_triangles_take_no_sixteenfold(void **state) {
-    (void)state;
+TEST(four_times_the_triangles_take_no_sixteenfold) {
     static const extreme_kind kinds[] = {EXTREME_SLIVERS, EXTREME_PILE};
     for (int k = 0; k < 2; k++) {
         const cscd_counters few = count_step(kinds[k], 1000), many = count_step(kinds[k], 4000);
@@ -133,14 +129,4 @@ static void four_times_the_triangles_take_no_sixteenfold(void **state) {
         assert_true(many.boxes_tested < 6 * few.boxes_tested);
         assert_true(many.tests <= 6 * few.tests);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(contacts_equal_brute_force),
-        cmocka_unit_test(distances_equal_brute_force),
-        cmocka_unit_test(intersections_equal_all_pairs),
-        cmocka_unit_test(four_times_the_triangles_take_no_sixteenfold),
-    };
-    return cmocka_run_group_tests_name("bvh slivers", tests, NULL, NULL);
 }

@@ -20,8 +20,7 @@ static bvh *build_and_refit(bvh_setup setup) {
     return f;
 }
 
-static void sound_ones_have_no_fault(void **state) {
-    (void)state;
+TEST(sound_ones_have_no_fault) {
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         for (uint32_t regions = 0; regions < 24; regions += 8) {
             for (int axes = BOX_AXES; axes <= KDOP_AXES; axes += KDOP_AXES - BOX_AXES) {
@@ -35,8 +34,7 @@ static void sound_ones_have_no_fault(void **state) {
 }
 
 /* Trees may be farther apart than floats can say. */
-static void trees_at_any_distance_have_no_fault(void **state) {
-    (void)state;
+TEST(trees_at_any_distance_have_no_fault) {
     static const int exponents[] = {60, 126, 127, 128, 129, 200, 290};
     for (int i = 0; i < 7 * 3 * 2; i++) {
         double far = ldexp(1.0, exponents[i / 6]), side = i % 2 == 0 ? far : -far;
@@ -86,8 +84,7 @@ static bvh *many_trees_of_a_sphere(void) {
     return f;
 }
 
-static void faults_of_leaves(void **state) {
-    (void)state;
+TEST(faults_of_leaves) {
     bvh *f = many_trees_of_a_sphere();
     PLANT(f, f->leaf_flags[0].used, 0xfd, "the lanes of a leaf are no prefix");
     PLANT(f, f->leaf_flags[0].used, 0x7f, "the lanes of a leaf are not those of its triangles");
@@ -105,8 +102,7 @@ static void faults_of_leaves(void **state) {
     bvh_rig_destroy(&rig_of_shape);
 }
 
-static void faults_of_levels(void **state) {
-    (void)state;
+TEST(faults_of_levels) {
     bvh *f = many_trees_of_a_sphere();
     bvh_level *low = &f->levels[0], *trees = &f->levels[f->tree_level];
     PLANT(f, low->flags[0].used, 0x5, "the lanes of a block are no prefix");
@@ -121,8 +117,7 @@ static void faults_of_levels(void **state) {
 
 /* Plants faults on every level: in both bounds of a used lane along an axis and a diagonal, and in an
  * empty lane. */
-static void faults_of_bounds(void **state) {
-    (void)state;
+TEST(faults_of_bounds) {
     bvh *f = many_trees_of_a_sphere();
     static const int axes[] = {1, 5};
     for (int level = 0; level < f->level_count; level++) {
@@ -139,8 +134,7 @@ static void faults_of_bounds(void **state) {
 }
 
 /* One tree over two components becomes a fault when one of them is declared an obstacle afterwards. */
-static void obstacles_have_trees_of_their_own(void **state) {
-    (void)state;
+TEST(obstacles_have_trees_of_their_own) {
     bool obstacles[2] = {false, true};
     scene_clear(&shape);
     for (int i = 0; i < 2; i++) scene_add_sphere(&shape, (double[3]){3.0 * i, 0, 0}, 1.0, 8, 8);
@@ -148,13 +142,4 @@ static void obstacles_have_trees_of_their_own(void **state) {
     assert_null(bvh_validate(f, true));
     PLANT(f, rig_of_shape.mesh->obstacles, obstacles, "a tree holds obstacles and other triangles");
     bvh_rig_destroy(&rig_of_shape);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sound_ones_have_no_fault), cmocka_unit_test(trees_at_any_distance_have_no_fault),
-        cmocka_unit_test(faults_of_leaves),         cmocka_unit_test(faults_of_levels),
-        cmocka_unit_test(faults_of_bounds),         cmocka_unit_test(obstacles_have_trees_of_their_own),
-    };
-    return cmocka_run_group_tests_name("bvh_validate", tests, NULL, NULL);
 }

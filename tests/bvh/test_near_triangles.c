@@ -118,8 +118,7 @@ static void compare_cloud(const bvh *f, random_stream *random, size_t *within, s
     }
 }
 
-static void none_is_left_out(void **state) {
-    (void)state;
+TEST(none_is_left_out) {
     for (int level = 1; level <= SIMD_LAST; level++) {
         size_t within = 0, beyond = 0;
         for (uint32_t number = 0; number < SHAPES; number++) {
@@ -135,9 +134,4 @@ static void none_is_left_out(void **state) {
         print_message("  level %d: %zu within, %zu beyond\n", level, within, beyond);
         assert_true(within == 0 || beyond < within); /* 0: not on this processor */
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(none_is_left_out)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

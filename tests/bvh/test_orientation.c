@@ -163,10 +163,9 @@ static void check_batch(const bvh *f, const uint8_t *flags, int count[4], int *l
     }
 }
 
-static void signs_are_exact(void **state) {
+TEST(signs_are_exact) {
     int count[4] = {0}, lost = 0;
     bvh_rig levels[SIMD_LAST];
-    (void)state;
     make_triangles(BATCH_SIZE);
     uint32_t level_count = open_levels(levels);
     for (int i = 0; i < BATCH_COUNT; i++) {
@@ -203,12 +202,11 @@ static uint8_t orientation_from(bvh *f, double end_height, const double start[3]
     return flag;
 }
 
-static void sides_of_a_plane(void **state) {
+TEST(sides_of_a_plane) {
     static const double x[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
     static const double below[2][3] = {{0, 0, -1}, {5, 5, -1}}, above[2][3] = {{0, 0, 1}, {5, 5, 1}};
     static const double within[2][3] = {{7, 7, 0}, {8, 8, 0}};
     bvh_rig r;
-    (void)state;
     make_triangles(1);
     memcpy(shape.x0, x, sizeof x);
     memcpy(shape.x1, x, sizeof x);
@@ -255,9 +253,8 @@ static void check_points(const bvh_rig *r, const double (*offsets)[3], bool stil
     }
 }
 
-static void detector_points_follow_their_regions(void **state) {
+TEST(detector_points_follow_their_regions) {
     static uint8_t flags[SCENE_TRIANGLES_MAX];
-    (void)state;
     scene_make(SCENE_LINKED_TORI, 42, &shape);
     for (uint32_t region_count = 0; region_count < 4; region_count++) {
         bvh_rig r;
@@ -276,8 +273,7 @@ static void detector_points_follow_their_regions(void **state) {
     }
 }
 
-static void flags_of_sets(void **state) {
-    (void)state;
+TEST(flags_of_sets) {
     assert_false(orientations_may_touch(ORIENTATION_PLUS, ORIENTATION_PLUS));
     assert_false(orientations_may_touch(ORIENTATION_MINUS, ORIENTATION_MINUS));
     assert_true(orientations_may_touch(ORIENTATION_PLUS, ORIENTATION_MINUS));
@@ -286,12 +282,4 @@ static void flags_of_sets(void **state) {
     assert_true(orientations_may_touch(ORIENTATION_ZERO, ORIENTATION_ZERO));
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(signs_are_exact, seed_random),
-        cmocka_unit_test(sides_of_a_plane),
-        cmocka_unit_test_setup(detector_points_follow_their_regions, seed_random),
-        cmocka_unit_test(flags_of_sets),
-    };
-    return cmocka_run_group_tests_name("orientation", tests, NULL, NULL);
-}
+AROUND_EACH(seed_random, NULL)

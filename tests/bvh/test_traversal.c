@@ -89,9 +89,8 @@ static size_t check_scene(bvh_setup setup, double distance) {
     return required;
 }
 
-static void finds_what_may_touch(void **state) {
+TEST(finds_what_may_touch) {
     static const uint32_t region_counts[] = {1, 0, 5, 100};
-    (void)state;
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         for (int i = 0; i < 4; i++) {
             scene_make((scene_family)family, (uint64_t)(20 + i), &shape);
@@ -103,9 +102,8 @@ static void finds_what_may_touch(void **state) {
 }
 
 /* Some bodies fly together, and some past each other. */
-static void finds_what_may_touch_in_flight(void **state) {
+TEST(finds_what_may_touch_in_flight) {
     const double far[3] = {700.0, -3e4, 77.0};
-    (void)state;
     for (uint32_t i = 0; i < 3; i++) {
         scene_make(SCENE_LINKED_TORI, 25, &shape);
         translate(shape.x1, shape.vertex_count, far);
@@ -116,10 +114,9 @@ static void finds_what_may_touch_in_flight(void **state) {
 }
 
 /* The volumes of these pairs overlap by no more than rounding. */
-static void finds_what_just_touches(void **state) {
+TEST(finds_what_just_touches) {
     random_stream random = stream_start(26);
     size_t required = 0;
-    (void)state;
     for (uint32_t i = 0; i < 16; i++) {
         make_touching_pairs(&random, 90, i % 2 == 0 ? 3.0 : 300.0, &shape);
         required += check_scene((bvh_setup){CSCD_SIMD_AUTO, 1, i % 4 < 2 ? BOX_AXES : KDOP_AXES, i / 4}, 0.0);
@@ -129,9 +126,8 @@ static void finds_what_just_touches(void **state) {
 }
 
 /* More leaves than the cache of volumes can hold, all overlapping each other. */
-static void finds_what_may_touch_in_a_crowd(void **state) {
+TEST(finds_what_may_touch_in_a_crowd) {
     random_stream random = stream_start(27);
-    (void)state;
     scene_clear(&shape);
     shape.vertex_count = 300;
     shape.triangle_count = TRIANGLES_MAX;
@@ -172,10 +168,9 @@ static void check_all_ways(uint32_t region_count) {
     }
 }
 
-static void same_pairs_on_all_levels_and_threads(void **state) {
+TEST(same_pairs_on_all_levels_and_threads) {
     static const scene_family families[] = {SCENE_NOISY_SPHERE, SCENE_LINKED_TORI, SCENE_SOUP,
                                             SCENE_FAR_AWAY};
-    (void)state;
     for (uint32_t i = 0; i < 4; i++) {
         scene_make(families[i], 30, &shape);
         for (uint32_t region_count = 0; region_count < 3; region_count++) check_all_ways(10 * region_count);
@@ -183,9 +178,8 @@ static void same_pairs_on_all_levels_and_threads(void **state) {
 }
 
 /* All triangles are near all others, and there are more pairs than all batches can hold at once. */
-static void many_rounds(void **state) {
+TEST(many_rounds) {
     enum { COPIES = 4 };
-    (void)state;
     scene_make(SCENE_NOISY_SPHERE, 31, &shape);
     uint32_t corner_count = shape.triangle_count * 3;
     for (uint32_t i = corner_count; i < COPIES * corner_count; i++)
@@ -279,9 +273,8 @@ static void check_passes(random_stream *random, uint32_t region_count) {
     bvh_rig_destroy(&r);
 }
 
-static void passes_are_what_flags_say(void **state) {
+TEST(passes_are_what_flags_say) {
     random_stream random = stream_start(40);
-    (void)state;
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         scene_make((scene_family)family, 41, &shape);
         for (uint32_t region_count = 0; region_count < 3; region_count++)
@@ -289,8 +282,7 @@ static void passes_are_what_flags_say(void **state) {
     }
 }
 
-static void nothing_active_is_over_at_once(void **state) {
-    (void)state;
+TEST(nothing_active_is_over_at_once) {
     scene_make(SCENE_NOISY_SPHERE, 31, &shape);
     memset(active, false, sizeof active);
     for (uint32_t region_count = 0; region_count < 3; region_count++) {
@@ -311,8 +303,7 @@ static void nothing_active_is_over_at_once(void **state) {
 }
 
 /* Whichever lane runs out of memory. */
-static void no_lane_fails_unnoticed(void **state) {
-    (void)state;
+TEST(no_lane_fails_unnoticed) {
     bvh_rig r;
     traversal t;
     scene_make(SCENE_TWO_SPHERES, 1, &shape);
@@ -325,19 +316,4 @@ static void no_lane_fails_unnoticed(void **state) {
     }
     traversal_destroy(&t);
     bvh_rig_destroy(&r);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(finds_what_may_touch),
-        cmocka_unit_test(finds_what_may_touch_in_flight),
-        cmocka_unit_test(finds_what_just_touches),
-        cmocka_unit_test(finds_what_may_touch_in_a_crowd),
-        cmocka_unit_test(same_pairs_on_all_levels_and_threads),
-        cmocka_unit_test(many_rounds),
-        cmocka_unit_test(passes_are_what_flags_say),
-        cmocka_unit_test(no_lane_fails_unnoticed),
-        cmocka_unit_test(nothing_active_is_over_at_once),
-    };
-    return cmocka_run_group_tests_name("traversal", tests, NULL, NULL);
 }

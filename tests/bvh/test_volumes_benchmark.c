@@ -139,8 +139,7 @@ static json_node *run_program(void) {
     return json_node_read_file(path.text);
 }
 
-static void pairs_are_those_of_the_volumes(void **state) {
-    (void)state;
+TEST(pairs_are_those_of_the_volumes) {
     pair_bounds bounds = {{0}, {0}};
     for (int i = 0; i < INTERVALS; i++) add_interval(i, &bounds);
     json_node *json = run_program();
@@ -156,8 +155,7 @@ static void pairs_are_those_of_the_volumes(void **state) {
     json_node_free(json);
 }
 
-static void rows_have_all_columns(void **state) {
-    (void)state;
+TEST(rows_have_all_columns) {
     static const char *const names[KINDS] = {"sphere", "box", "14-DOP", "18-DOP", "26-DOP"};
     static const char *const methods[METHODS] = {"none", "single", "charge"};
     static const char *const numbers[] = {"tests",     "pairs",       "refit_ms",
@@ -180,8 +178,7 @@ static void rows_have_all_columns(void **state) {
     json_node_free(json);
 }
 
-static void wrong_arguments_are_named(void **state) {
-    (void)state;
+TEST(wrong_arguments_are_named) {
     static const char *const wrong[][3] = {{"--no-such-option", NULL, "--no-such-option is no option"},
                                            {"--threads", "2", "--threads is no option"},
                                            {"--simd", NULL, "--simd wants a value"},
@@ -195,11 +192,4 @@ static void wrong_arguments_are_named(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pairs_are_those_of_the_volumes),
-        cmocka_unit_test(rows_have_all_columns),
-        cmocka_unit_test(wrong_arguments_are_named),
-    };
-    return cmocka_run_group_tests_name("volumes", tests, make_folder, remove_folder);
-}
+AROUND_ALL(make_folder, remove_folder)

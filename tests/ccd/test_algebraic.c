@@ -57,10 +57,9 @@ static void check_equal(integer found, const mpz_t expected) {
     for (size_t i = 0; i < limbs; i++) assert_true(found.limbs[i] == mpz_getlimbn(expected, (mp_size_t)i));
 }
 
-static void integers_against_gmp(void **state) {
+TEST(integers_against_gmp) {
     mpz_t x, y, expected;
     mpz_inits(x, y, expected, NULL);
-    (void)state;
     for (int round = 0; round < ROUND_COUNT; round++) {
         pool.used = 0;
         random_mpz(x);
@@ -86,8 +85,7 @@ static void integers_against_gmp(void **state) {
     mpz_clears(x, y, expected, NULL);
 }
 
-static void doubles_as_integers(void **state) {
-    (void)state;
+TEST(doubles_as_integers) {
     for (int round = 0; round < ROUND_COUNT; round++) {
         pool.used = 0;
         double x = ldexp(random_unit(), random_integer(-300, 300));
@@ -102,9 +100,8 @@ static void doubles_as_integers(void **state) {
 }
 
 /* Numbers before the mark stay, kept ones move down unharmed, whatever their order. */
-static void kept_numbers(void **state) {
+TEST(kept_numbers) {
     mpz_t values[6];
-    (void)state;
     for (int i = 0; i < 6; i++) mpz_init(values[i]);
     for (int round = 0; round < ROUND_COUNT; round++) {
         integer numbers[6];
@@ -154,8 +151,7 @@ static int compare_fractions(const int64_t a[2], const int64_t b[2]) {
 }
 
 /* Products of up to three lines: rational roots, often multiple ones. */
-static void rational_roots(void **state) {
-    (void)state;
+TEST(rational_roots) {
     for (int round = 0; round < ROUND_COUNT; round++) {
         pool.used = 0;
         int degree = random_integer(1, 3), distinct = 0;
@@ -206,9 +202,8 @@ static void rational_roots(void **state) {
 }
 
 /* (b t - a) (t^2 - n) has the roots a / b and +-sqrt(n); signs of quadratics at them by squaring. */
-static void irrational_roots(void **state) {
+TEST(irrational_roots) {
     static const int64_t squares[6] = {2, 3, 5, 6, 7, 8};
-    (void)state;
     for (int round = 0; round < ROUND_COUNT; round++) {
         pool.used = 0;
         int64_t n = squares[random_integer(0, 5)], a = random_integer(-9, 9), b = random_integer(1, 4);
@@ -245,10 +240,9 @@ static double far_and_near(void) {
     return random_integer(0, 1) ? x : -x;
 }
 
-static void room_for_the_worst(void **state) {
+TEST(room_for_the_worst) {
     uint32_t peak = 0;
     int touching = 0;
-    (void)state;
     for (int round = 0; round < ROUND_COUNT; round++) {
         elementary_query query;
         double toi;
@@ -274,12 +268,11 @@ static void room_for_the_worst(void **state) {
 }
 
 /* A sign at both ends that is that of the middle coefficient, too, is the sign in between; another one leaves it open. */
-static void signs_on_the_interval(void **state) {
+TEST(signs_on_the_interval) {
     static const int known[][4] = {
         /* coefficients, and the sign: no root, two roots, a double root, one beyond, and roots at the ends */
         {2, -1, 1, 1},  {1, -5, 5, 0}, {-1, 5, -5, 0}, {1, -4, 4, 0},
         {-3, 1, 1, -1}, {0, 1, 1, 0},  {-2, 1, 1, 0}};
-    (void)state;
     for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
         polynomial p =
             polynomial_linear(integer_from_int(&pool, known[i][0]), integer_from_int(&pool, known[i][1]));
@@ -289,15 +282,4 @@ static void signs_on_the_interval(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(integers_against_gmp, seed_and_start_pool),
-        cmocka_unit_test_setup(doubles_as_integers, seed_and_start_pool),
-        cmocka_unit_test_setup(kept_numbers, seed_and_start_pool),
-        cmocka_unit_test_setup(rational_roots, seed_and_start_pool),
-        cmocka_unit_test_setup(irrational_roots, seed_and_start_pool),
-        cmocka_unit_test_setup(signs_on_the_interval, seed_and_start_pool),
-        cmocka_unit_test_setup(room_for_the_worst, seed_and_start_pool),
-    };
-    return cmocka_run_group_tests_name("algebraic", tests, NULL, NULL);
-}
+AROUND_EACH(seed_and_start_pool, NULL)

@@ -260,13 +260,11 @@ static void check_known(cscd_contact_kind kind, const algebraic_case *known, siz
     printf("%zu known cases\n", count);
 }
 
-static void known_vf(void **state) {
-    (void)state;
+TEST(known_vf) {
     check_known(CSCD_CONTACT_VF, vf_cases, sizeof vf_cases / sizeof *vf_cases);
 }
 
-static void known_ee(void **state) {
-    (void)state;
+TEST(known_ee) {
     check_known(CSCD_CONTACT_EE, ee_cases, sizeof ee_cases / sizeof *ee_cases);
 }
 
@@ -298,8 +296,7 @@ static void check_by_subdivision(cscd_contact_kind kind, const elementary_query 
     }
 }
 
-static void agrees_with_subdivision(void **state) {
-    (void)state;
+TEST(agrees_with_subdivision) {
     random_stream random = stream_start(21);
     for (int family = 0; family < FAMILY_NUDGED; family++) {
         subdivided counts = {0, 0, 0};
@@ -351,8 +348,7 @@ static void check_symmetries(cscd_contact_kind kind, const elementary_query *que
     assert_true(algebraic_oracle(kind, &reversed).touching == verdict.touching);
 }
 
-static void has_the_symmetries(void **state) {
-    (void)state;
+TEST(has_the_symmetries) {
     random_stream random = stream_start(22);
     for (int i = 0; i < 2 * SYMMETRIC * FAMILY_COUNT; i++) {
         cscd_contact_kind kind = (cscd_contact_kind)(i % 2);
@@ -367,9 +363,4 @@ static int finish_oracle(void **state) {
     return 0;
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(known_vf), cmocka_unit_test(known_ee),
-                                       cmocka_unit_test(agrees_with_subdivision),
-                                       cmocka_unit_test(has_the_symmetries)};
-    return cmocka_run_group_tests_name("algebraic_oracle", tests, NULL, finish_oracle);
-}
+AROUND_ALL(NULL, finish_oracle)

@@ -17,8 +17,7 @@ static void check_normal(const elementary_contact *hit, double x, double y, doub
 }
 
 /* A vertex falls through the middle of a face that is tiny beside the way that it falls. */
-static void tiny_face_at_rest(void **state) {
-    (void)state;
+TEST(tiny_face_at_rest) {
     for (int exponent = 0; exponent >= -290; exponent -= 10) {
         double s = ldexp(1.3, exponent);
         const elementary_query query = {{{s / 4, s / 4, 1}, {0, 0, 0}, {s, 0, 0}, {0, s, 0}},
@@ -31,8 +30,7 @@ static void tiny_face_at_rest(void **state) {
 }
 
 /* It crosses a tilted face at an angle: where along the face depends on the last bits of the time. */
-static void tiny_face_hit_aslant(void **state) {
-    (void)state;
+TEST(tiny_face_hit_aslant) {
     for (int exponent = 0; exponent >= -60; exponent -= 4) {
         double s = ldexp(1.3, exponent);
         const elementary_query query = {{{1, 1, 1}, {0, 0, 0}, {s, 0, -s}, {0, s, s}},
@@ -43,8 +41,7 @@ static void tiny_face_hit_aslant(void **state) {
 }
 
 /* Edges of very different lengths. */
-static void tiny_edge_on_a_long_one(void **state) {
-    (void)state;
+TEST(tiny_edge_on_a_long_one) {
     for (int exponent = 0; exponent >= -250; exponent -= 10) {
         double s = ldexp(1.5, exponent);
         const elementary_query query = {{{-1, 0, 0}, {1, 0, 0}, {0, -s, 1}, {0, s, 1}},
@@ -57,7 +54,7 @@ static void tiny_edge_on_a_long_one(void **state) {
 }
 
 /* The points named lie within 1e-8 of the largest displacement and 64 units in the last place. */
-static void needle_face(void **state) {
+TEST(needle_face) {
     static const elementary_query query = {
         {{-0x1.0b3a2d5415da1p-28, 0x1.03d08ac0a6fc9p-26, -0x1.a528fade0f952p-27},
          {-0x1.a6327cc1c6dfdp-2, 0x1.1f34b0eb52138p-3, -0x1.4cf47b36b12fp-4},
@@ -68,7 +65,6 @@ static void needle_face(void **state) {
          {0x1.b15c7aa8d8b2cp-3, -0x1.26cce383e49fap-4, 0x1.55c254bf46f66p-5},
          {-0x1.f93b0d09fbdcp-4, 0x1.57b0c982c252cp-5, -0x1.8e6fe32e498d6p-6}}};
     elementary_contact hit;
-    (void)state;
     assert_true(pair_test(CSCD_CONTACT_VF, &query, &hit).touching);
     long double squared = 0, t = hit.toi;
     for (int k = 0; k < 3; k++) {
@@ -81,7 +77,7 @@ static void needle_face(void **state) {
 }
 
 /* Edges at an angle of 2^-32 pass at twice the distance: not reported, and not given up. */
-static void nearly_parallel_edges(void **state) {
+TEST(nearly_parallel_edges) {
     static const elementary_query query = {
         {{0x1.4734f78ac82c5p-5, 0x1.30426583bee47p-4, -0x1.144c252fea1b7p-8},
          {-0x1.c719d247dbf6fp-3, -0x1.a7328eb9654cep-2, 0x1.80556a0d82512p-6},
@@ -94,12 +90,11 @@ static void nearly_parallel_edges(void **state) {
     const separation limit = {0x1.0c6f7a0b5ed8dp-21, 0x1.19799812dea11p-41};
     elementary_contact hit;
     bool bounded;
-    (void)state;
     assert_false(separation_ee(&query, &limit, &hit, &bounded));
 }
 
 /* Beside each side of a face, a quarter of the way along it, and beyond each corner. */
-static void nearest_on_the_sides(void **state) {
+TEST(nearest_on_the_sides) {
     static const struct {
         double point[3], u, v, squared;
     } known[] = {
@@ -108,18 +103,8 @@ static void nearest_on_the_sides(void **state) {
         {{6.0, -1.0, 0.0}, 1.0, 0.0, 5.0},  {{-1.0, 6.0, 0.0}, 0.0, 1.0, 5.0},
     };
     static const double a[3] = {0.0}, b[3] = {4.0, 0.0, 0.0}, c[3] = {0.0, 4.0, 0.0};
-    (void)state;
     for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
         double u, v, squared = closest_point_triangle(known[i].point, a, b, c, &u, &v);
         assert_true(u == known[i].u && v == known[i].v && squared == known[i].squared);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(tiny_face_at_rest),       cmocka_unit_test(tiny_face_hit_aslant),
-        cmocka_unit_test(tiny_edge_on_a_long_one), cmocka_unit_test(needle_face),
-        cmocka_unit_test(nearly_parallel_edges),   cmocka_unit_test(nearest_on_the_sides),
-    };
-    return cmocka_run_group_tests_name("contact_frame", tests, NULL, NULL);
 }

@@ -119,9 +119,8 @@ static long double tiny_number(void) {
 }
 
 /* Single, double and triple roots, roots near each other, roots at the ends, complex pairs near the axis. */
-static void known_roots(void **state) {
+TEST(known_roots) {
     int isolated = 0;
-    (void)state;
     for (int round = 0; round < 5 * ROUND_COUNT; round++) {
         test_polynomial f = {.root = random_root(), .centre = random_root()};
         if (random_integer(0, 2) == 0) f.root = f.centre + random_integer(-1, 1) * tiny_number();
@@ -135,8 +134,7 @@ static void known_roots(void **state) {
 }
 
 /* One root far outside: the cubic's leading coefficient is tiny beside the others. */
-static void tiny_leading_coefficient(void **state) {
-    (void)state;
+TEST(tiny_leading_coefficient) {
     for (int exponent = 1; exponent < 1000; exponent++) {
         test_polynomial f = {.root = ldexp(random_unit(), exponent), .centre = random_between(0.0, 1.0)};
         f.leading = ldexp(1.0, -exponent);
@@ -146,8 +144,7 @@ static void tiny_leading_coefficient(void **state) {
 }
 
 /* Well separated roots, a small error: as many intervals as roots, each about its root. */
-static void separate_roots(void **state) {
-    (void)state;
+TEST(separate_roots) {
     for (int round = 0; round < ROUND_COUNT; round++) {
         double spread = random_between(0.05, 0.25), between = random_between(0.3, 0.7);
         test_polynomial f = {1, between + (random_integer(0, 1) ? spread / 2 : -spread / 2), between,
@@ -166,9 +163,8 @@ static int isolate_roots(double b0, double b1, double b2, double b3, double erro
     return cubic_isolate(&f, found);
 }
 
-static void special_cases(void **state) {
+TEST(special_cases) {
     root_interval found[ROOTS_MAX];
-    (void)state;
     assert_int_equal(isolate_roots(1, 1, 1, 1, 0.5, found), 0);
     assert_int_equal(isolate_roots(-1, -1, -1, -1, 0.5, found), 0);
     assert_int_equal(isolate_roots(1, -0.25, 0.25, 1, 0x1p-44, found), 0); /* by subdivision */
@@ -276,10 +272,9 @@ static coplanarity computed_cubic(const tetrahedra *s) {
     return coplanarity_cubic(&vectors);
 }
 
-static void error_bound(void **state) {
+TEST(error_bound) {
     static tetrahedra s;
     int excluded = 0, zeros = 0, uncertain = 0;
-    (void)state;
     for (int round = 0; round < ROUND_COUNT; round++) {
         random_tetrahedra(&s);
         coplanarity f = computed_cubic(&s);
@@ -302,8 +297,7 @@ static void error_bound(void **state) {
     assert_true(excluded >= 500 && zeros >= 500);
 }
 
-static void excluded_by_signs(void **state) {
-    (void)state;
+TEST(excluded_by_signs) {
     assert_true(coplanarity_excluded(&(coplanarity){{1, 2, 3, 4}, 0.5}));
     assert_true(coplanarity_excluded(&(coplanarity){{-1, -2, -3, -4}, 0.5}));
     for (int i = 0; i < 4; i++) {
@@ -319,14 +313,4 @@ static void excluded_by_signs(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(known_roots, seed_random),
-        cmocka_unit_test_setup(tiny_leading_coefficient, seed_random),
-        cmocka_unit_test_setup(separate_roots, seed_random),
-        cmocka_unit_test(special_cases),
-        cmocka_unit_test_setup(error_bound, seed_random),
-        cmocka_unit_test(excluded_by_signs),
-    };
-    return cmocka_run_group_tests_name("cubic", tests, NULL, NULL);
-}
+AROUND_EACH(seed_random, NULL)

@@ -18,8 +18,7 @@ static void count_call(const char *reason, const char *file, int line, int error
     calls++;
 }
 
-static void handler_left_alone(void **state) {
-    (void)state;
+TEST(handler_left_alone) {
     random_seed(31);
     gsl_error_handler_t *before = gsl_set_error_handler(count_call);
     for (int i = 0; i < QUERY_COUNT; i++) {
@@ -35,9 +34,4 @@ static void handler_left_alone(void **state) {
     }
     assert_true(gsl_set_error_handler(before) == count_call);
     assert_int_equal(calls, 0);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(handler_left_alone)};
-    return cmocka_run_group_tests_name("gsl", tests, NULL, NULL);
 }

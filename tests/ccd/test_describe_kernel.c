@@ -79,20 +79,12 @@ static void same_bits_as_one_pair(cscd_contact_kind kind) {
     }
 }
 
-static void vertex_and_face(void **state) {
-    (void)state;
+TEST(vertex_and_face) {
     same_bits_as_one_pair(CSCD_CONTACT_VF);
 }
 
-static void two_edges(void **state) {
-    (void)state;
+TEST(two_edges) {
     same_bits_as_one_pair(CSCD_CONTACT_EE);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(vertex_and_face),
-        cmocka_unit_test(two_edges),
-    };
-    return cmocka_run_group_tests_name("describe_kernel", tests, open_levels, close_levels);
-}
+AROUND_ALL(open_levels, close_levels)

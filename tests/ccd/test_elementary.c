@@ -50,13 +50,11 @@ static void check_contacts(cscd_contact_kind kind) {
     assert_true(built >= 4000 && once >= 1000 && earlier >= 20);
 }
 
-static void vf_contacts(void **state) {
-    (void)state;
+TEST(vf_contacts) {
     check_contacts(CSCD_CONTACT_VF);
 }
 
-static void ee_contacts(void **state) {
-    (void)state;
+TEST(ee_contacts) {
     check_contacts(CSCD_CONTACT_EE);
 }
 
@@ -74,14 +72,12 @@ static void check_misses(cscd_contact_kind kind, const char *name, contact_case 
            count[ELEMENTARY_SIGNS], count[ELEMENTARY_ROOTS], count[ELEMENTARY_EXACT]);
 }
 
-static void vf_near_misses(void **state) {
-    (void)state;
+TEST(vf_near_misses) {
     check_misses(CSCD_CONTACT_VF, "side", random_side_miss);
     check_misses(CSCD_CONTACT_VF, "short", random_short_miss);
 }
 
-static void ee_near_misses(void **state) {
-    (void)state;
+TEST(ee_near_misses) {
     check_misses(CSCD_CONTACT_EE, "side", random_side_miss);
     check_misses(CSCD_CONTACT_EE, "short", random_short_miss);
 }
@@ -158,27 +154,23 @@ static void for_each_kind_of_case(void (*check)(const contact_case *)) {
     }
 }
 
-static void order_of_points(void **state) {
-    (void)state;
+TEST(order_of_points) {
     for_each_kind_of_case(check_orders);
 }
 
-static void reversed_time(void **state) {
-    (void)state;
+TEST(reversed_time) {
     for_each_kind_of_case(check_reversed);
 }
 
-static void powers_of_two(void **state) {
-    (void)state;
+TEST(powers_of_two) {
     for_each_kind_of_case(check_powers_of_two);
 }
 
 /* A vertex and a face with a corner at the origin, and three vectors between them along the axes: the determinant is one
  * product, whichever axis is whose. */
-static void the_error_holds_for_each_product(void **state) {
+TEST(the_error_holds_for_each_product) {
     static const int axes[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
     static const int points[3] = {2, 3, 0};
-    (void)state;
     for (int round = 0; round < 600; round++) {
         elementary_query query = {.x0 = {{0.0}}};
         point_vectors vectors;
@@ -194,16 +186,4 @@ static void the_error_holds_for_each_product(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(vf_contacts, seed_random),
-        cmocka_unit_test_setup(ee_contacts, seed_random),
-        cmocka_unit_test_setup(vf_near_misses, seed_random),
-        cmocka_unit_test_setup(ee_near_misses, seed_random),
-        cmocka_unit_test_setup(order_of_points, seed_random),
-        cmocka_unit_test_setup(reversed_time, seed_random),
-        cmocka_unit_test_setup(powers_of_two, seed_random),
-        cmocka_unit_test_setup(the_error_holds_for_each_product, seed_random),
-    };
-    return cmocka_run_group_tests_name("elementary", tests, NULL, NULL);
-}
+AROUND_EACH(seed_random, NULL)

@@ -71,9 +71,8 @@ static elementary_query grid_contact(cscd_contact_kind kind, place where, int ra
 
 /* Small ranges make all degeneracies frequent: coincident points, zero areas, common planes and lines for a
  * moment or throughout, roots of any multiplicity. */
-static void exact_contacts(void **state) {
+TEST(exact_contacts) {
     static const int ranges[] = {1, 2, 3, 10, 1000};
-    (void)state;
     for (int round = 0; round < ROUND_COUNT; round++) {
         for (int c = 0; c < 2 * PLACE_COUNT; c++) {
             cscd_contact_kind kind = c % 2 == 0 ? CSCD_CONTACT_VF : CSCD_CONTACT_EE;
@@ -84,9 +83,8 @@ static void exact_contacts(void **state) {
     }
 }
 
-static void ends_of_the_interval(void **state) {
+TEST(ends_of_the_interval) {
     int counts[2] = {0, 0};
-    (void)state;
     for (int round = 0; round < ROUND_COUNT; round++) {
         cscd_contact_kind kind = round % 2 == 0 ? CSCD_CONTACT_VF : CSCD_CONTACT_EE;
         place where = (place)(round / 2 % PLACE_COUNT);
@@ -151,8 +149,7 @@ static elementary_query turning_query(cscd_contact_kind kind, const turning *m, 
     return query_through((const double(*)[3])at, (const double(*)[3])velocity, 0.5, 0.5);
 }
 
-static void double_roots(void **state) {
-    (void)state;
+TEST(double_roots) {
     for (int round = 0; round < 2 * ROUND_COUNT; round++) {
         cscd_contact_kind kind = round % 2 == 0 ? CSCD_CONTACT_VF : CSCD_CONTACT_EE;
         turning m = random_turning();
@@ -165,8 +162,7 @@ static void double_roots(void **state) {
 }
 
 /* Two edges in a plane close like scissors and stop, parallel, at a gap. */
-static void closing_scissors(void **state) {
-    (void)state;
+TEST(closing_scissors) {
     for (int exponent = -10; exponent >= -30; exponent--) {
         double gap = ldexp(1.0, exponent);
         const elementary_query query = {{{-2, 2, 0}, {2, -2, 0}, {1, gap, 0}, {6, gap, 0}},
@@ -215,8 +211,7 @@ static void check_mirrored(cscd_contact_kind kind, const elementary_query *query
 }
 
 /* An edge and its image stay in a plane. */
-static void mirrored_edges(void **state) {
-    (void)state;
+TEST(mirrored_edges) {
     for (int round = 0; round < ROUND_COUNT; round++) {
         elementary_query query;
         for (int i = 0; i < 2; i++) {
@@ -228,8 +223,7 @@ static void mirrored_edges(void **state) {
 }
 
 /* A vertex meets its image, which is a corner of the face or the end of an edge; the others keep off. */
-static void mirrored_vertices(void **state) {
-    (void)state;
+TEST(mirrored_vertices) {
     for (int round = 0; round < ROUND_COUNT; round++) {
         elementary_query query;
         random_right(&query, 0, true);
@@ -244,8 +238,7 @@ static void mirrored_vertices(void **state) {
 }
 
 /* A vertex in the mirror meets a face that is its own image: on its axis. */
-static void symmetric_face(void **state) {
-    (void)state;
+TEST(symmetric_face) {
     for (int round = 0; round < ROUND_COUNT; round++) {
         double at[4][3], velocity[4][3], u = random_between(0.05, 0.45), toi = random_unit() * 0.4 + 0.5;
         for (int i = 0; i < 12; i++) {
@@ -270,15 +263,4 @@ static void symmetric_face(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(exact_contacts, seed_random),
-        cmocka_unit_test_setup(ends_of_the_interval, seed_random),
-        cmocka_unit_test_setup(double_roots, seed_random),
-        cmocka_unit_test(closing_scissors),
-        cmocka_unit_test_setup(mirrored_edges, seed_random),
-        cmocka_unit_test_setup(mirrored_vertices, seed_random),
-        cmocka_unit_test_setup(symmetric_face, seed_random),
-    };
-    return cmocka_run_group_tests_name("elementary_degenerate", tests, NULL, NULL);
-}
+AROUND_EACH(seed_random, NULL)

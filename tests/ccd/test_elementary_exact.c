@@ -51,8 +51,7 @@ static void edges_cross(double ratio) {
     }
 }
 
-static void nearly_parallel_edges(void **state) {
-    (void)state;
+TEST(nearly_parallel_edges) {
     for (double ratio = 1.0; ratio <= 1e8; ratio *= 10.0) edges_cross(ratio);
 }
 
@@ -78,14 +77,12 @@ static void vertex_meets(double ratio) {
     }
 }
 
-static void thin_faces(void **state) {
-    (void)state;
+TEST(thin_faces) {
     for (double ratio = 1.0; ratio <= 1e8; ratio *= 10.0) vertex_meets(ratio);
 }
 
 /* All four points pass through one place at t = 1/3, a triple root of the cubic. */
-static void everything_through_one_point(void **state) {
-    (void)state;
+TEST(everything_through_one_point) {
     random_stream random = stream_start(3);
     for (int n = 0; n < 10 * CASES; n++) {
         double place[3], motion[3];
@@ -102,8 +99,7 @@ static void everything_through_one_point(void **state) {
 }
 
 /* Everything stays in one plane, tilted so that its coordinates are not flat. */
-static void in_one_plane(void **state) {
-    (void)state;
+TEST(in_one_plane) {
     random_stream random = stream_start(4);
     for (int n = 0; n < 10 * CASES; n++) {
         double p[3], q[3], corners[4][3], motion[3];
@@ -125,11 +121,4 @@ static void in_one_plane(void **state) {
         }
         assert_touches(pair_test(CSCD_CONTACT_VF, &query, &hit), &hit);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(nearly_parallel_edges), cmocka_unit_test(thin_faces),
-                                       cmocka_unit_test(everything_through_one_point),
-                                       cmocka_unit_test(in_one_plane)};
-    return cmocka_run_group_tests_name("elementary_exact", tests, NULL, NULL);
 }

@@ -352,38 +352,24 @@ static void check_known(const known_case *c, bool resting) {
 #define CHECK_KNOWN(cases, resting)                                                                          \
     for (size_t i = 0; i < sizeof(cases) / sizeof *(cases); i++) check_known(&(cases)[i], resting)
 
-static void sliding_in_a_plane(void **state) {
-    (void)state;
+TEST(sliding_in_a_plane) {
     CHECK_KNOWN(in_a_plane, false);
 }
 
-static void moving_on_a_line(void **state) {
-    (void)state;
+TEST(moving_on_a_line) {
     CHECK_KNOWN(on_a_line, false);
 }
 
-static void zero_sizes(void **state) {
-    (void)state;
+TEST(zero_sizes) {
     CHECK_KNOWN(shrunken, false);
 }
 
-static void static_pairs(void **state) {
-    (void)state;
+TEST(static_pairs) {
     CHECK_KNOWN(at_rest, true);
 }
 
-static void for_a_moment(void **state) {
-    (void)state;
+TEST(for_a_moment) {
     CHECK_KNOWN(momentary, false);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(sliding_in_a_plane, seed_random),
-        cmocka_unit_test_setup(moving_on_a_line, seed_random),
-        cmocka_unit_test_setup(zero_sizes, seed_random),
-        cmocka_unit_test_setup(static_pairs, seed_random),
-        cmocka_unit_test_setup(for_a_moment, seed_random),
-    };
-    return cmocka_run_group_tests_name("elementary_known", tests, NULL, NULL);
-}
+AROUND_EACH(seed_random, NULL)

@@ -87,13 +87,11 @@ static void compare_kind(cscd_contact_kind kind) {
     if (f.count > 0) fail_msg("%d differences", f.count);
 }
 
-static void vf_agrees_with_oracle(void **state) {
-    (void)state;
+TEST(vf_agrees_with_oracle) {
     compare_kind(CSCD_CONTACT_VF);
 }
 
-static void ee_agrees_with_oracle(void **state) {
-    (void)state;
+TEST(ee_agrees_with_oracle) {
     compare_kind(CSCD_CONTACT_EE);
 }
 
@@ -141,8 +139,7 @@ static void check_symmetries(failures *f, cscd_contact_kind kind, const elementa
     }
 }
 
-static void has_the_symmetries(void **state) {
-    (void)state;
+TEST(has_the_symmetries) {
     on_each_family(33, QUERIES_A_FAMILY / 10, check_symmetries);
 }
 
@@ -166,8 +163,7 @@ static void check_named_points(failures *f, cscd_contact_kind kind, const elemen
     }
 }
 
-static void names_points_that_meet(void **state) {
-    (void)state;
+TEST(names_points_that_meet) {
     on_each_family(34, QUERIES_A_FAMILY / 4, check_named_points);
 }
 
@@ -204,8 +200,7 @@ static void check_step(failures *f, cscd_contact_kind kind, const elementary_que
         note_difference(f, "step", kind, &shorter);
 }
 
-static void steps_to_the_impact(void **state) {
-    (void)state;
+TEST(steps_to_the_impact) {
     stepped = 0;
     on_each_family(35, QUERIES_A_FAMILY / 4, check_step);
     printf("%d steps\n", stepped);
@@ -218,11 +213,4 @@ static int finish_oracle(void **state) {
     return 0;
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(vf_agrees_with_oracle), cmocka_unit_test(ee_agrees_with_oracle),
-        cmocka_unit_test(has_the_symmetries),    cmocka_unit_test(names_points_that_meet),
-        cmocka_unit_test(steps_to_the_impact),
-    };
-    return cmocka_run_group_tests_name("elementary_oracle", tests, NULL, finish_oracle);
-}
+AROUND_ALL(NULL, finish_oracle)

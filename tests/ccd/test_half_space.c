@@ -63,10 +63,9 @@ static void make_query(random_stream *random, half_space_query *q) {
     if (q->normal[0] == 0.0 && q->normal[1] == 0.0 && q->normal[2] == 0.0) q->normal[2] = 1.0;
 }
 
-static void verdicts_and_times(void **state) {
+TEST(verdicts_and_times) {
     random_stream random = stream_start(1);
     size_t touching = 0, apart = 0, by_integers = 0, in_between = 0;
-    (void)state;
     for (int i = 0; i < 300000; i++) {
         half_space_query q;
         elementary_contact c = {.toi = -1.0};
@@ -91,10 +90,9 @@ static void verdicts_and_times(void **state) {
 }
 
 /* At most what there is, and at least 0.985 of it, also where the length is the height up to its last bits. */
-static void gaps_below_truth(void **state) {
+TEST(gaps_below_truth) {
     random_stream random = stream_start(2);
     size_t some = 0, none = 0;
-    (void)state;
     for (int i = 0; i < 100000; i++) {
         double x[2][3], normal[3] = {3.0, 0.0, 4.0}; /* so that the height is rational */
         for (int k = 0; k < 6; k++)
@@ -113,10 +111,9 @@ static void gaps_below_truth(void **state) {
     assert_true(some > 10000 && none > 10000);
 }
 
-static void planes_of_half_spaces(void **state) {
+TEST(planes_of_half_spaces) {
     random_stream random = stream_start(3);
     size_t sound = 0;
-    (void)state;
     for (int i = 0; i < 100000; i++) {
         half_space_query q;
         pair_plane plane;
@@ -155,10 +152,9 @@ static void moment_of(const half_space_query *q, long double t, long double *hei
     *height = (1 - t) * height_of(q->x0, q->normal) + t * height_of(q->x1, q->normal);
 }
 
-static void with_a_distance(void **state) {
+TEST(with_a_distance) {
     random_stream random = stream_start(4);
     size_t within = 0, later = 0;
-    (void)state;
     for (int i = 0; i < 200000; i++) {
         half_space_query q;
         elementary_contact c;
@@ -182,11 +178,10 @@ static void with_a_distance(void **state) {
 }
 
 /* However often it is pressed down, a vertex loses no rung, and one that rises is never refused. */
-static void floors_hold(void **state) {
+TEST(floors_hold) {
     random_stream random = stream_start(5);
     const floor_ladder ladder = {0.1, 0.9, 1e-6};
     size_t broken = 0, kept = 0;
-    (void)state;
     for (int run = 0; run < 200; run++) {
         half_space_query q;
         for (int k = 0; k < 3; k++) {
@@ -225,10 +220,9 @@ static void floors_hold(void **state) {
 }
 
 /* On the plane, behind it and a hair above it there is no floor, so touching decides. */
-static void no_floor(void **state) {
+TEST(no_floor) {
     const floor_ladder ladder = {0.1, 0.9, 1e-6};
     static const double heights[4] = {0.0, -1.0, 0x1p-50, 0x1p-41};
-    (void)state;
     for (int i = 0; i < 4; i++) {
         half_space_query q = {
             {{1.0, 0.0, heights[i]}, {0.0, 0.0, 0.0}}, {{1.0, 0.0, 1.0}, {0.0, 0.0, 0.0}}, {0.0, 0.0, 7.0}};
@@ -236,12 +230,4 @@ static void no_floor(void **state) {
         assert_int_equal(half_space_floor_test(&q, &ladder, &c), FLOOR_NONE);
         assert_true(half_space_touch(&q, &c).touching == (heights[i] <= 0.0));
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(verdicts_and_times),    cmocka_unit_test(gaps_below_truth),
-        cmocka_unit_test(planes_of_half_spaces), cmocka_unit_test(with_a_distance),
-        cmocka_unit_test(floors_hold),           cmocka_unit_test(no_floor)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -16,8 +16,7 @@ static integer random_factor(random_stream *random, integer_pool *pool) {
     return factor;
 }
 
-static void multiples_have_the_same_quotient(void **state) {
-    (void)state;
+TEST(multiples_have_the_same_quotient) {
     random_stream random = stream_start(1);
     integer_pool pool;
     for (int round = 0; round < ROUNDS; round++) {
@@ -35,8 +34,7 @@ static void multiples_have_the_same_quotient(void **state) {
 }
 
 /* Between two doubles, to the even one; a little beside, to the nearer one. */
-static void ties_go_to_the_even_one(void **state) {
-    (void)state;
+TEST(ties_go_to_the_even_one) {
     integer_pool pool;
     integer_pool_start(&pool);
     integer large = integer_from_int(&pool, INT64_C(1) << 62), three = integer_from_int(&pool, 3);
@@ -47,12 +45,4 @@ static void ties_go_to_the_even_one(void **state) {
     assert_true(integer_nearest_quotient(&pool, above, large, 0) == 0x1p62 + 1024.0);
     integer odd = integer_add(&pool, middle, integer_scale(&pool, large, 1024));
     assert_true(integer_nearest_quotient(&pool, odd, large, 0) == 0x1p62 + 2048.0);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(multiples_have_the_same_quotient),
-        cmocka_unit_test(ties_go_to_the_even_one),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -140,14 +140,12 @@ static void check_known(const known *k) {
     if (k->u >= 0.0) assert_true(fabs(hit.u - k->u) <= 1e-9 && fabs(hit.v - k->v) <= 1e-9);
 }
 
-static void all_regions(void **state) {
-    (void)state;
+TEST(all_regions) {
     for (size_t i = 0; i < sizeof approaches / sizeof *approaches; i++) check_known(&approaches[i]);
 }
 
 /* At rest at their distance, or nearer, or just beyond; and flying apart. */
-static void distance_is_closed(void **state) {
-    (void)state;
+TEST(distance_is_closed) {
     elementary_query query = {{{1, 1, 0.5}, FACE}, {{1, 1, 0.5}, FACE}};
     elementary_contact hit;
     bool bounded;
@@ -163,8 +161,7 @@ static void distance_is_closed(void **state) {
 }
 
 /* Touching at the start: the direction is the features' own, against the motion. */
-static void touching_at_the_start(void **state) {
-    (void)state;
+TEST(touching_at_the_start) {
     elementary_query query = {{{1, 1, 0}, FACE}, {{1, 1, 2}, FACE}};
     separation limit = separation_within(0.25);
     elementary_contact hit;
@@ -190,8 +187,7 @@ static const elementary_query degenerate[] = {
     {{{1, 0, 3}, {1, 0, 3}, {0, 0, 0}, {4, 0, 0}}, {{1, 0, -1}, {1, 0, -1}, {0, 0, 0}, {4, 0, 0}}},
 };
 
-static void lines_and_points(void **state) {
-    (void)state;
+TEST(lines_and_points) {
     for (size_t i = 0; i < sizeof degenerate / sizeof *degenerate; i++) {
         separation limit = separation_within(1.0);
         elementary_contact hit;
@@ -216,8 +212,7 @@ static elementary_query passing_query(cscd_contact_kind kind, double h) {
                               {{3, -1, h}, {3, 1, h}, {0, 0, 0}, {4, 0, -4}}};
 }
 
-static void grazing_contacts(void **state) {
-    (void)state;
+TEST(grazing_contacts) {
     for (int exponent = 0; exponent > -20; exponent--) {
         for (int kind = 0; kind < 2; kind++) {
             double d = ldexp(1.0, exponent);
@@ -239,8 +234,7 @@ static void grazing_contacts(void **state) {
 /* ---- sizes ------------------------------------------------------------------------------------------ */
 
 /* Distances far beyond and far below what the coordinates resolve, and at the ends of the range. */
-static void extreme_distances(void **state) {
-    (void)state;
+TEST(extreme_distances) {
     elementary_query through = {{{1, 1, 1}, FACE}, {{1, 1, -1}, FACE}}, past = through;
     past.x0[0][0] = past.x1[0][0] = -1e-6;
     elementary_contact hit;
@@ -267,8 +261,7 @@ static void extreme_distances(void **state) {
 
 /* Of points that differ in the last bits of coordinates: nothing between them is resolved, nothing may be
  * lost. */
-static void next_to_each_other(void **state) {
-    (void)state;
+TEST(next_to_each_other) {
     elementary_query query;
     for (int i = 0; i < 4; i++) {
         for (int k = 0; k < 3; k++) {
@@ -286,8 +279,7 @@ static void next_to_each_other(void **state) {
 
 /* A vertex at the distance from a face's corner along an axis or a diagonal, anywhere: none of the directions
  * that are asked first takes them apart. */
-static void along_the_directions(void **state) {
-    (void)state;
+TEST(along_the_directions) {
     static const double places[] = {0.0, 1.0, -1.5, 1e6, -1e9};
     static const double directions[][4] = {
         {1, 0, 0, 1}, {0, 0, -1, 1}, {1, 1, 1, 1.7320508075688774}, {-1, 1, 1, 1.7320508075688774}};
@@ -321,8 +313,7 @@ static void along_the_directions(void **state) {
 static const elementary_query twisting = {{{1e-9, 1e-9, 2e-9}, {-1, 0, 1}, {1, -2, -1}, {1, 2, -1}},
                                           {{-1e-9, -1e-9, 2e-9}, {0, -1, -1}, {2, 1, 1}, {-2, 1, 1}}};
 
-static void bound_on_work(void **state) {
-    (void)state;
+TEST(bound_on_work) {
     separation limit = separation_within(1e-9);
     elementary_contact hit;
     bool bounded = false;
@@ -333,14 +324,4 @@ static void bound_on_work(void **state) {
     elementary_query diving = twisting; /* early, not late */
     diving.x1[0][2] = -3.0;
     assert_true(check_separation(CSCD_CONTACT_VF, &diving, &limit, &bounded));
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(all_regions),           cmocka_unit_test(distance_is_closed),
-        cmocka_unit_test(touching_at_the_start), cmocka_unit_test(lines_and_points),
-        cmocka_unit_test(grazing_contacts),      cmocka_unit_test(extreme_distances),
-        cmocka_unit_test(next_to_each_other),    cmocka_unit_test(along_the_directions),
-        cmocka_unit_test(bound_on_work)};
-    return cmocka_run_group_tests_name("separation", tests, NULL, NULL);
 }

@@ -32,8 +32,7 @@ static separation random_limit(cscd_contact_kind kind, const elementary_query *q
     return limit;
 }
 
-static void against_samples(void **state) {
-    (void)state;
+TEST(against_samples) {
     size_t all_reported = 0, all_bounded = 0;
     for (size_t f = 0; f < SEPARATION_FAMILY_COUNT; f++) {
         size_t reported = 0, bounded = 0;
@@ -61,8 +60,7 @@ static const int vf_orders[][4] = {{0, 2, 3, 1}, {0, 3, 1, 2}, {0, 1, 3, 2}, {0,
 static const int ee_orders[][4] = {{1, 0, 2, 3}, {0, 1, 3, 2}, {2, 3, 0, 1}, {3, 2, 1, 0}};
 
 /* All that must hold does so in any order. */
-static void order_of_points(void **state) {
-    (void)state;
+TEST(order_of_points) {
     for (int round = 0; round < ROUND_COUNT; round++) {
         elementary_query query;
         separation_families[(size_t)round % SEPARATION_FAMILY_COUNT].make(&query);
@@ -82,8 +80,7 @@ static void order_of_points(void **state) {
 }
 
 /* The same bits at any power of two. */
-static void powers_of_two(void **state) {
-    (void)state;
+TEST(powers_of_two) {
     for (int round = 0; round < ROUND_COUNT; round++) {
         elementary_query query;
         separation_families[(size_t)round % SEPARATION_FAMILY_COUNT].make(&query);
@@ -105,9 +102,4 @@ static void powers_of_two(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test_setup(against_samples, seed_random),
-                                       cmocka_unit_test_setup(order_of_points, seed_random),
-                                       cmocka_unit_test_setup(powers_of_two, seed_random)};
-    return cmocka_run_group_tests_name("separation_random", tests, NULL, NULL);
-}
+AROUND_EACH(seed_random, NULL)

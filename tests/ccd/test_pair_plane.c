@@ -113,8 +113,7 @@ static void check_plane(cscd_contact_kind kind, const points x, const pair_plane
     assert_true(distance_sign_of_sum(kind, p, plane->gap, 0.0, 1.0) > 0);
 }
 
-static void gaps_equal_rational_numbers(void **state) {
-    (void)state;
+TEST(gaps_equal_rational_numbers) {
     int proven = 0, blocked = 0;
     random_seed(1);
     for (int i = 0; i < 4500; i++) {
@@ -136,8 +135,7 @@ static void gaps_equal_rational_numbers(void **state) {
 }
 
 /* What the exact level is for: a step of one unit in the last place above a face, where no plane in doubles helps. */
-static void the_least_gaps_are_found(void **state) {
-    (void)state;
+TEST(the_least_gaps_are_found) {
     const points above = {{0.25, 0.25, 0x1p-52}, {0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}};
     double gap = pair_gap(CSCD_CONTACT_VF, above, 0.0);
     assert_true(gap <= 0x1p-52 && gap >= 0x1p-52 * (1.0 - 0x1p-39));
@@ -149,12 +147,4 @@ static void the_least_gaps_are_found(void **state) {
     gap = pair_gap(CSCD_CONTACT_VF, apart, 3.0 - 0x1p-51);
     assert_true(gap <= 0x1p-51 && gap >= 0x1p-51 * (1.0 - 0x1p-39));
     assert_true(pair_gap(CSCD_CONTACT_VF, apart, 3.0) == 0.0);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(gaps_equal_rational_numbers),
-        cmocka_unit_test(the_least_gaps_are_found),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

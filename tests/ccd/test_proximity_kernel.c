@@ -73,8 +73,7 @@ static void compare_with_pair_test(const proximity_batch *b, const separation *l
 }
 
 /* Limits about the pairs' own distances, from which verdicts change. */
-static void never_against_the_test_of_one_pair(void **state) {
-    (void)state;
+TEST(never_against_the_test_of_one_pair) {
     static proximity_batch b;
     proximity_tally sum = {0};
     random_seed(7);
@@ -112,8 +111,7 @@ static void never_against_the_test_of_one_pair(void **state) {
 
 static scene interval; /* large; one test at a time */
 
-static void same_bits_on_every_level(void **state) {
-    (void)state;
+TEST(same_bits_on_every_level) {
     cscd_detector_options options = cscd_detector_defaults();
     options.min_separation = 0.05;
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
@@ -151,8 +149,4 @@ static void same_bits_on_every_level(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(never_against_the_test_of_one_pair),
-                                       cmocka_unit_test(same_bits_on_every_level)};
-    return cmocka_run_group_tests_name("proximity_kernel", tests, open_levels, close_levels);
-}
+AROUND_ALL(open_levels, close_levels)

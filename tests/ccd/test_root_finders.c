@@ -113,13 +113,11 @@ static void compare_queries(cscd_contact_kind kind) {
     }
 }
 
-static void same_answers_vf(void **state) {
-    (void)state;
+TEST(same_answers_vf) {
     compare_queries(CSCD_CONTACT_VF);
 }
 
-static void same_answers_ee(void **state) {
-    (void)state;
+TEST(same_answers_ee) {
     compare_queries(CSCD_CONTACT_EE);
 }
 
@@ -129,8 +127,7 @@ enum { SEEDS = 8, CONTACTS_MAX = 100000 };
 
 static scene s; /* large; one test at a time */
 
-static void same_contacts_of_scenes(void **state) {
-    (void)state;
+TEST(same_contacts_of_scenes) {
     static cscd_contact expected[CONTACTS_MAX];
     size_t total = 0;
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
@@ -158,8 +155,7 @@ static void same_contacts_of_scenes(void **state) {
 }
 
 /* Steps, longest steps and line searches of a tube that comes down on itself; counters are the same, too. */
-static void same_calls_of_a_solver(void **state) {
-    (void)state;
+TEST(same_calls_of_a_solver) {
     sequence *tube = calloc(1, sizeof *tube);
     workload w = {.sequence = tube, .options = cscd_detector_defaults()};
     workload_result *expected = calloc(1, sizeof *expected), *found = calloc(1, sizeof *found);
@@ -178,11 +174,4 @@ static void same_calls_of_a_solver(void **state) {
     free(found);
     free(expected);
     free(tube);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(same_answers_vf), cmocka_unit_test(same_answers_ee),
-                                       cmocka_unit_test(same_contacts_of_scenes),
-                                       cmocka_unit_test(same_calls_of_a_solver)};
-    return cmocka_run_group_tests_name("root_finders", tests, NULL, NULL);
 }

@@ -16,10 +16,9 @@ static double random_margin(random_stream *random) {
 }
 
 /* The first touch is at most 2^-34 after the time that the exact test names. */
-static void never_about_a_contact(void **state) {
+TEST(never_about_a_contact) {
     random_stream random = stream_start(17);
     size_t touching = 0;
-    (void)state;
     for (int n = 0; n < 2 * FAMILY_COUNT * QUERIES_PER_FAMILY; n++) {
         cscd_contact_kind kind = n % 2 == 0 ? CSCD_CONTACT_VF : CSCD_CONTACT_EE;
         elementary_query query = generate_query(&random, kind, (query_family)(n / 2 % FAMILY_COUNT));
@@ -35,10 +34,9 @@ static void never_about_a_contact(void **state) {
 }
 
 /* Features that are far smaller than where they are and how far they go: only the slack covers what blending loses. */
-static void nor_far_from_the_origin(void **state) {
+TEST(nor_far_from_the_origin) {
     random_stream random = stream_start(18);
     size_t touching = 0;
-    (void)state;
     for (int n = 0; n < 20000; n++) {
         cscd_contact_kind kind = n % 2 == 0 ? CSCD_CONTACT_VF : CSCD_CONTACT_EE;
         elementary_query query;
@@ -60,10 +58,9 @@ static void nor_far_from_the_origin(void **state) {
 
 /* Edges of two horizontal rings of any height, turned about the same axis, that rise evenly: they are coplanar at one time,
  * for parallel edges always. */
-static void edges_of_rings_need_no_integers(void **state) {
+TEST(edges_of_rings_need_no_integers) {
     random_stream random = stream_start(19);
     uint64_t by_integers = 0;
-    (void)state;
     for (int n = 0; n < RINGS; n++) {
         double angle = 0.01 * n, along[2] = {cos(angle), sin(angle)},
                shift = 0.1 * (double)(1 + stream_below(&random, 9));
@@ -83,13 +80,4 @@ static void edges_of_rings_need_no_integers(void **state) {
         by_integers += pair_test_decided()[ELEMENTARY_EXACT];
     }
     assert_int_equal(by_integers, 0);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(never_about_a_contact),
-        cmocka_unit_test(nor_far_from_the_origin),
-        cmocka_unit_test(edges_of_rings_need_no_integers),
-    };
-    return cmocka_run_group_tests_name("separated_in_part", tests, NULL, NULL);
 }

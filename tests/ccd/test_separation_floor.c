@@ -69,8 +69,7 @@ static elementary_query make_query(int family, cscd_contact_kind kind) {
 
 /* A floor is below the distance; and where a rung is below the distance by what the header says and little more, it is
  * the floor. */
-static void floors_are_as_high_as_they_may_be(void **state) {
-    (void)state;
+TEST(floors_are_as_high_as_they_may_be) {
     size_t found = 0, none = 0;
     for (int round = 0; round < SEPARATION_FAMILY_COUNT * ROUND_COUNT; round++) {
         cscd_contact_kind kind = round % 2 == 0 ? CSCD_CONTACT_VF : CSCD_CONTACT_EE;
@@ -96,8 +95,7 @@ static void floors_are_as_high_as_they_may_be(void **state) {
 }
 
 /* The rungs of a ladder have one value each, whatever the distance that looks for them. */
-static void rungs_are_few(void **state) {
-    (void)state;
+TEST(rungs_are_few) {
     double x[4][3] = {{0.2, 0.3, 0.0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     const floor_ladder ladder = {1e-2, 0.9, 1e-6};
     double last = INFINITY;
@@ -151,8 +149,7 @@ static void check_parting(cscd_contact_kind kind, const elementary_query *q, con
 }
 
 /* What is kept is kept for certain, resting features are kept, and so are those that part. */
-static void motions_keep_floors(void **state) {
-    (void)state;
+TEST(motions_keep_floors) {
     motion_tally sum = {0};
     for (int round = 0; round < SEPARATION_FAMILY_COUNT * ROUND_COUNT; round++) {
         cscd_contact_kind kind = round % 2 == 0 ? CSCD_CONTACT_VF : CSCD_CONTACT_EE;
@@ -169,8 +166,7 @@ static void motions_keep_floors(void **state) {
 }
 
 /* Features that fly together, far and fast, have no motion of their own. */
-static void common_motion_is_no_motion(void **state) {
-    (void)state;
+TEST(common_motion_is_no_motion) {
     for (int round = 0; round < ROUND_COUNT; round++) {
         cscd_contact_kind kind = round % 2 == 0 ? CSCD_CONTACT_VF : CSCD_CONTACT_EE;
         elementary_query q = make_query(round % 7, kind);
@@ -186,10 +182,4 @@ static void common_motion_is_no_motion(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test_setup(floors_are_as_high_as_they_may_be, seed_random),
-                                       cmocka_unit_test(rungs_are_few),
-                                       cmocka_unit_test_setup(motions_keep_floors, seed_random),
-                                       cmocka_unit_test_setup(common_motion_is_no_motion, seed_random)};
-    return cmocka_run_group_tests_name("separation_floor", tests, NULL, NULL);
-}
+AROUND_EACH(seed_random, NULL)

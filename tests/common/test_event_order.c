@@ -25,8 +25,7 @@ static const cscd_event ordered[] = {
 
 enum { COUNT = sizeof ordered / sizeof *ordered };
 
-static void the_worst_comes_first(void **state) {
-    (void)state;
+TEST(the_worst_comes_first) {
     for (size_t turn = 0; turn < COUNT; turn++) { /* begun at each of them, forwards and backwards */
         const cscd_event *events[COUNT];
         for (size_t i = 0; i < COUNT; i++)
@@ -37,18 +36,9 @@ static void the_worst_comes_first(void **state) {
 }
 
 /* Whatever order they are handed over in. */
-static void equal_events_stay_as_they_are(void **state) {
-    (void)state;
+TEST(equal_events_stay_as_they_are) {
     const cscd_event equal[3] = {{.pairs = 1}, {.pairs = 1}, {.pairs = 1}};
     const cscd_event *events[] = {&equal[2], &equal[0], &equal[1]};
     event_order_sort(events, 3);
     for (size_t i = 0; i < 3; i++) assert_int_equal(events[i] - equal, i);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_worst_comes_first),
-        cmocka_unit_test(equal_events_stay_as_they_are),
-    };
-    return cmocka_run_group_tests_name("event_order", tests, NULL, NULL);
 }

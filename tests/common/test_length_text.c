@@ -12,8 +12,7 @@ static void check_text(const char *unit, double length, const char *expected) {
     assert_string_equal(length_text(length, &files, text), expected);
 }
 
-static void lengths_have_the_unit_that_suits(void **state) {
-    (void)state;
+TEST(lengths_have_the_unit_that_suits) {
     check_text(NULL, 0.01239, "0.0124");
     check_text("m", 0.01239, "12.4 mm");
     check_text("mm", 0.0124, "12.4 um");
@@ -28,8 +27,7 @@ static void lengths_have_the_unit_that_suits(void **state) {
 }
 
 /* Given in one unit for files of another one. */
-static void lengths_are_converted(void **state) {
-    (void)state;
+TEST(lengths_are_converted) {
     static const struct {
         const char *text, *unit;
         double expected;
@@ -48,20 +46,10 @@ static void lengths_are_converted(void **state) {
     }
 }
 
-static void other_texts_are_no_lengths(void **state) {
-    (void)state;
+TEST(other_texts_are_no_lengths) {
     static const char *const texts[] = {"", "-1", "2 yd", "mm", "2mm ", "1e999", "nan"};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         length_given given;
         assert_false(length_given_parse(texts[i], &given));
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lengths_have_the_unit_that_suits),
-        cmocka_unit_test(lengths_are_converted),
-        cmocka_unit_test(other_texts_are_no_lengths),
-    };
-    return cmocka_run_group_tests_name("length_text", tests, NULL, NULL);
 }

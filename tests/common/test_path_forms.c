@@ -106,8 +106,7 @@ static void expect_part(const temp_folder *folder, const char *name) {
 /* Letters of two, three and four bytes. */
 #define NAME "K\u00f6rper \u5f62 \U0001f9ca"
 
-static void names_are_utf8(void **state) {
-    (void)state;
+TEST(names_are_utf8) {
     const temp_folder outer = temp_folder_make(), folder = folder_inside(&outer, "Ordner " NAME);
     const temp_path model = recorded_write_mesh(&folder, NAME ".obj", &scene, 0);
     const temp_path cache = recorded_write_cache(&folder, NAME ".pc2", &scene);
@@ -133,8 +132,7 @@ static void names_are_utf8(void **state) {
 #define WORD_96 WORD_64 "-as-programs-for-Windows-believe"
 
 /* 260 characters were all that Windows took; it still takes no longer one for the current folder. */
-static void paths_are_long(void **state) {
-    (void)state;
+TEST(paths_are_long) {
     const temp_folder outer = temp_folder_make(), folder = folder_inside(&outer, WORD_96);
     const temp_path model = recorded_write_mesh(&folder, WORD_96 WORD_64 ".obj", &scene, 0);
     const temp_path cache = recorded_write_cache(&folder, WORD_96 WORD_64 ".pc2", &scene);
@@ -159,8 +157,7 @@ static temp_folder folder_of_length(const temp_folder *parent, size_t length) {
 }
 
 /* Each name is short, and the path that the system makes of it is not. */
-static void short_names_are_in_long_folders(void **state) {
-    (void)state;
+TEST(short_names_are_in_long_folders) {
     char before[1024];
     assert_non_null(getcwd(before, sizeof before));
     const temp_folder outer = temp_folder_make(), folder = folder_of_length(&outer, 240);
@@ -176,8 +173,7 @@ static void short_names_are_in_long_folders(void **state) {
 
 #ifdef _WIN32
 /* The folder is what precedes the last of either: outputs, plans and frames are in it, and the part is called by what follows. */
-static void backslashes_separate(void **state) {
-    (void)state;
+TEST(backslashes_separate) {
     const temp_folder folder = temp_folder_make();
     const temp_path model = with_backslashes(recorded_write_mesh(&folder, "pair.obj", &scene, 0));
     const temp_path cache = with_backslashes(recorded_write_cache(&folder, "pair.pc2", &scene));
@@ -198,8 +194,7 @@ static void backslashes_separate(void **state) {
 }
 #else
 /* A backslash is a letter like others. */
-static void backslashes_separate(void **state) {
-    (void)state;
+TEST(backslashes_separate) {
     const temp_folder folder = temp_folder_make();
     expect_part(&folder, "left\\right");
     temp_folder_remove(&folder);
@@ -207,8 +202,7 @@ static void backslashes_separate(void **state) {
 
 /* The names have quotes, a backslash, a tab, characters beyond ASCII, and a byte that is not valid UTF-8; the JSON is valid. Names
  * of Windows are text. */
-static void names_are_bytes(void **state) {
-    (void)state;
+TEST(names_are_bytes) {
     const temp_folder folder = temp_folder_make();
     const temp_path model = recorded_write_mesh(&folder, "\"Mod\\ell\"\t\u00e4\u20ac.obj", &scene, 0);
     const temp_path cache = recorded_write_cache(&folder, "'\xff frames\x01.pc2", &scene);
@@ -287,8 +281,7 @@ static void check_line_ends(const temp_folder *folder, const temp_folder *other,
     expect_same_bytes(&plain.json, &returns.json);
 }
 
-static void lines_end_either_way(void **state) {
-    (void)state;
+TEST(lines_end_either_way) {
     const temp_folder folder = temp_folder_make(), other = temp_folder_make();
     check_line_ends(&folder, &other, "model.obj");
     check_line_ends(&folder, &other, "model.ply");
@@ -322,8 +315,7 @@ static void *watch_output(void *user) {
     return NULL;
 }
 
-static void an_output_is_replaced_in_one_step(void **state) {
-    (void)state;
+TEST(an_output_is_replaced_in_one_step) {
     const temp_folder folder = temp_folder_make();
     const temp_path model = recorded_write_mesh(&folder, "pair.obj", &scene, 0);
     const temp_path cache = recorded_write_cache(&folder, "pair.pc2", &scene);
@@ -344,8 +336,7 @@ static void an_output_is_replaced_in_one_step(void **state) {
 }
 
 /* As a page that a browser shows: it keeps nobody from writing the next one, and stays as it was. */
-static void an_open_output_is_replaced(void **state) {
-    (void)state;
+TEST(an_open_output_is_replaced) {
     static const char older[] = "what was there";
     char kept[64] = "";
     const temp_folder folder = temp_folder_make();
@@ -361,18 +352,4 @@ static void an_open_output_is_replaced(void **state) {
     temp_folder_remove(&folder);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(names_are_utf8),
-        cmocka_unit_test(paths_are_long),
-        cmocka_unit_test(short_names_are_in_long_folders),
-        cmocka_unit_test(backslashes_separate),
-#ifndef _WIN32
-        cmocka_unit_test(names_are_bytes),
-#endif
-        cmocka_unit_test(lines_end_either_way),
-        cmocka_unit_test(an_output_is_replaced_in_one_step),
-        cmocka_unit_test(an_open_output_is_replaced),
-    };
-    return cmocka_run_group_tests_name("path_forms", tests, make_scene, free_scene);
-}
+AROUND_ALL(make_scene, free_scene)

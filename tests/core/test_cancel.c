@@ -18,8 +18,7 @@ static void cancel_call(void *host) {
     assert_int_equal(pthread_join(thread, NULL), 0);
 }
 
-static void threads_cancel(void **state) {
-    (void)state;
+TEST(threads_cancel) {
     callback_host h = {.from = HOST_IGNORE, .stop = cancel_call};
     cscd_contacts found = {.count = 12345}, expected;
     callback_host_open(&h, SIDE, 2);
@@ -34,8 +33,7 @@ static void threads_cancel(void **state) {
 }
 
 /* The contacts of a call that comes after are all there. */
-static void without_a_call(void **state) {
-    (void)state;
+TEST(without_a_call) {
     callback_host h = {.from = HOST_IGNORE};
     cscd_contacts found;
     size_t counts[2];
@@ -47,9 +45,4 @@ static void without_a_call(void **state) {
         callback_host_close(&h);
     }
     assert_int_equal(counts[0], counts[1]);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(threads_cancel), cmocka_unit_test(without_a_call)};
-    return cmocka_run_group_tests_name("cancel", tests, NULL, NULL);
 }

@@ -15,8 +15,7 @@ static cscd_context *make_context(uint32_t threads) {
 
 /* ---- memory -------------------------------------------------------------------------------------------- */
 
-static void what_is_given_back_counts_no_more(void **state) {
-    (void)state;
+TEST(what_is_given_back_counts_no_more) {
     cscd_context *context = make_context(1);
     const size_t before = cscd_context_bytes(context);
     void *one = context_allocate(context, 100, 8), *other = context_reserve(context, 3, 1);
@@ -32,9 +31,8 @@ static void what_is_given_back_counts_no_more(void **state) {
 }
 
 /* There are no such arrays, whatever their sizes are once they have overflowed. */
-static void sizes_do_not_overflow(void **state) {
+TEST(sizes_do_not_overflow) {
     static const size_t sizes[] = {2, 8, 24, SIZE_MAX / 2, SIZE_MAX};
-    (void)state;
     cscd_context *context = make_context(1);
     const size_t before = cscd_context_bytes(context);
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
@@ -58,8 +56,7 @@ static void count_run(void *data, uint32_t task) {
     atomic_fetch_add(&runs[task], 1);
 }
 
-static void every_task_is_run_once(void **state) {
-    (void)state;
+TEST(every_task_is_run_once) {
     for (uint32_t threads = 1; threads <= 7; threads++) {
         cscd_context *context = make_context(threads);
         for (uint32_t tasks = 0; tasks <= TASKS_MOST; tasks += tasks < 20 ? 1 : 35) {
@@ -69,13 +66,4 @@ static void every_task_is_run_once(void **state) {
         }
         cscd_context_destroy(context);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_given_back_counts_no_more),
-        cmocka_unit_test(sizes_do_not_overflow),
-        cmocka_unit_test(every_task_is_run_once),
-    };
-    return cmocka_run_group_tests_name("context parts", tests, NULL, NULL);
 }

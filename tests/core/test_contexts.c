@@ -71,10 +71,9 @@ static worker *make_workers(sequence **shapes) {
     return workers;
 }
 
-static void steps_and_checks(void **state) {
+TEST(steps_and_checks) {
     sequence *shapes;
     worker *workers = make_workers(&shapes);
-    (void)state;
     for (int i = 0; i < HOSTS; i++) {
         sequence_make(SEQUENCE_SCENE, (uint64_t)i + 7, 12, &shapes[i]);
         workers[i].work.options.method = i == 0 ? CSCD_METHOD_NONE : CSCD_METHOD_SINGLE;
@@ -86,12 +85,11 @@ static void steps_and_checks(void **state) {
 }
 
 /* OpenBLAS has one thread count for the whole process, which the library must leave as the host set it. */
-static void plans_by_charge(void **state) {
+TEST(plans_by_charge) {
     sequence *shapes;
     worker *workers = make_workers(&shapes);
     bool counts = openblas_set_num_threads != NULL && openblas_get_num_threads != NULL;
     int threads = counts ? openblas_get_num_threads() : 0;
-    (void)state;
     for (int i = 0; i < HOSTS; i++) {
         workload_tube(&shapes[i], 28 + 2 * i, 16, 1);
         workers[i].work.plan = workers[i].work.options.method = CSCD_METHOD_CHARGE;
@@ -104,9 +102,4 @@ static void plans_by_charge(void **state) {
     if (counts) openblas_set_num_threads(threads);
     free(workers);
     free(shapes);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(steps_and_checks), cmocka_unit_test(plans_by_charge)};
-    return cmocka_run_group_tests_name("contexts", tests, NULL, NULL);
 }

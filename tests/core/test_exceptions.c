@@ -69,8 +69,7 @@ static bool throw_and_look(host_callback from, uint32_t thread_count, uint32_t a
     return caught;
 }
 
-static void exceptions_arrive(void **state) {
-    (void)state;
+TEST(exceptions_arrive) {
     for (host_callback from = HOST_ALLOCATOR; from <= HOST_IGNORE; from++) {
         for (uint32_t threads = 1; threads <= 3; threads += 2) {
             uint32_t at = 1;
@@ -83,8 +82,7 @@ static void exceptions_arrive(void **state) {
 /* ---- pools of the host --------------------------------------------------------------------------------- */
 
 /* The allocator throws on a thread of the pool. Even if the pool drops that, the call does not succeed. */
-static void pools_pass_exceptions_on(void **state) {
-    (void)state;
+TEST(pools_pass_exceptions_on) {
     for (int mute = 0; mute < 2; mute++) {
         uint32_t in_tasks = 0;
         for (uint32_t at = 1; at < 60; at += 3) {
@@ -104,10 +102,4 @@ static void pools_pass_exceptions_on(void **state) {
         }
         assert_true(in_tasks > 0);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(exceptions_arrive),
-                                       cmocka_unit_test(pools_pass_exceptions_on)};
-    return cmocka_run_group_tests_name("exceptions", tests, NULL, NULL);
 }

@@ -208,9 +208,8 @@ static void compare_environments(const workload *w) {
     }
 }
 
-static void random_scenes(void **state) {
+TEST(random_scenes) {
     static const cscd_method methods[] = {CSCD_METHOD_NONE, CSCD_METHOD_SINGLE};
-    (void)state;
     ignored_pairs = reports = cancelled = 0;
     for (uint64_t seed = 0; seed < SCENES; seed++) {
         sequence_make(seed % 2 ? SEQUENCE_GRID : SEQUENCE_SCENE, seed, 9, &q);
@@ -222,9 +221,8 @@ static void random_scenes(void **state) {
     assert_true(ignored_pairs > 1000 && reports > 1000 && cancelled > 100);
 }
 
-static void plans_of_each_kind(void **state) {
+TEST(plans_of_each_kind) {
     static const cscd_method methods[] = {CSCD_METHOD_SINGLE, CSCD_METHOD_KMEANS, CSCD_METHOD_CHARGE};
-    (void)state;
     for (uint32_t i = 0; i < sizeof methods / sizeof *methods; i++) {
         workload_tube(&q, 28, 16, 3);
         workload w = {.sequence = &q, .plan = methods[i], .options = cscd_detector_defaults()};
@@ -234,8 +232,7 @@ static void plans_of_each_kind(void **state) {
 
 /* ---- loops of the host, and threads of the context ------------------------------------------------------- */
 
-static void many_threads(void **state) {
-    (void)state;
+TEST(many_threads) {
     static workload_result expected, found;
     watching_host h;
     workload_tube(&q, 40, 20, 6);
@@ -260,11 +257,10 @@ static bool raise_and_turn(void *user, cscd_contact_kind kind, uint32_t a, uint3
 }
 
 /* What a callback changes is the host's affair: it stays, and the library does not notice. */
-static void callbacks_may_change_it(void **state) {
+TEST(callbacks_may_change_it) {
     int mode = FE_UPWARD;
     cscd_detector_options options = cscd_detector_defaults();
     cscd_contacts found;
-    (void)state;
     options.ignore = raise_and_turn;
     options.ignore_user = &mode;
     panel_scene p = panels_create(12, NULL, &options);
@@ -282,9 +278,8 @@ static void callbacks_may_change_it(void **state) {
 
 /* ---- functions without a status -------------------------------------------------------------------------- */
 
-static void stencils_are_the_same(void **state) {
+TEST(stencils_are_the_same) {
     panel_scene p = panels_create(4, NULL, NULL);
-    (void)state;
     for (int kind = CSCD_CONTACT_VF; kind <= CSCD_CONTACT_EE; kind++) {
         cscd_stencil expected = cscd_mesh_stencil(p.mesh, (cscd_contact_kind)kind, 1, 2, 0.1, 0.3);
         for (int number = 0; number < ENVIRONMENTS; number++) {
@@ -298,11 +293,4 @@ static void stencils_are_the_same(void **state) {
         }
     }
     panels_destroy(&p);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(random_scenes), cmocka_unit_test(plans_of_each_kind), cmocka_unit_test(many_threads),
-        cmocka_unit_test(callbacks_may_change_it), cmocka_unit_test(stencils_are_the_same)};
-    return cmocka_run_group_tests_name("float_environment", tests, NULL, NULL);
 }

@@ -163,11 +163,10 @@ static void step_fails_and_recovers(int trick, uint32_t run, const cscd_contact 
     panels_destroy(&p);
 }
 
-static void faults_fail_the_call(void **state) {
+TEST(faults_fail_the_call) {
     size_t count;
     uint32_t runs;
     cscd_contact *expected = honest_contacts(&count, &runs);
-    (void)state;
     assert_true(count > 900 && runs > 1);
     for (int trick = DROP_LAST; trick < TRICKS; trick++) {
         for (uint32_t run = 0; run <= runs; run++) step_fails_and_recovers(trick, run, expected, count);
@@ -193,9 +192,8 @@ static cscd_status make_call(const panel_scene *p, int call) {
 }
 
 /* A call that uses no loop, or only one task, has nothing to complain of. */
-static void every_call_notices(void **state) {
+TEST(every_call_notices) {
     uint32_t noticed = 0;
-    (void)state;
     for (int call = 0; call < 5; call++) {
         for (int trick = DROP_LAST; trick <= REPEAT_ALL; trick++) {
             dishonest_host host = {HONEST, 0, 0};
@@ -261,18 +259,10 @@ static void step_beside_hammer(const cscd_contact *expected, size_t count) {
 }
 
 /* The first loops of a context are those that need more marks than the ones before. */
-static void late_threads_harm_nothing(void **state) {
+TEST(late_threads_harm_nothing) {
     size_t count;
     uint32_t runs;
     cscd_contact *expected = honest_contacts(&count, &runs);
-    (void)state;
     for (int context = 0; context < 10; context++) step_beside_hammer(expected, count);
     free(expected);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(faults_fail_the_call),
-                                       cmocka_unit_test(every_call_notices),
-                                       cmocka_unit_test(late_threads_harm_nothing)};
-    return cmocka_run_group_tests_name("host_loop", tests, NULL, NULL);
 }

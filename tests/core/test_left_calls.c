@@ -89,15 +89,13 @@ static void leave_everywhere(host_callback from, uint32_t thread_count) {
     assert_true(left > 4);
 }
 
-static void contexts_are_broken(void **state) {
-    (void)state;
+TEST(contexts_are_broken) {
     for (host_callback from = HOST_ALLOCATOR; from <= HOST_IGNORE; from++)
         leave_everywhere(from, 1 + (from == HOST_PARALLEL_FOR));
 }
 
 /* The helpers rest when the host leaves, and end with the context. */
-static void own_threads_end(void **state) {
-    (void)state;
+TEST(own_threads_end) {
     leave_everywhere(HOST_ALLOCATOR, 3);
     leave_everywhere(HOST_PROGRESS, 3);
 }
@@ -117,12 +115,11 @@ static void *call_from_thread(void *argument) {
 }
 
 /* Where frames tell nothing the context is busy; the first call that can tell marks it for all. */
-static void doubtful_calls_are_busy(void **state) {
+TEST(doubtful_calls_are_busy) {
     leaving_host h;
     panel_scene *p = &h.host.p;
     pthread_t thread;
     void *status;
-    (void)state;
     make_host(&h, HOST_IGNORE, 2);
     assert_true(leave_call(&h, 0, 3));
     for (int marked = 0; marked < 2; marked++) {
@@ -137,8 +134,7 @@ static void doubtful_calls_are_busy(void **state) {
 }
 
 /* Nothing but destruction follows, which notices by itself. */
-static void destruction_alone(void **state) {
-    (void)state;
+TEST(destruction_alone) {
     for (uint32_t threads = 1; threads < 4; threads++) {
         leaving_host h;
         make_host(&h, HOST_ALLOCATOR, threads);
@@ -148,10 +144,9 @@ static void destruction_alone(void **state) {
 }
 
 /* A mesh that another context uses outlives its own context, although that is broken. */
-static void shared_meshes_live_on(void **state) {
+TEST(shared_meshes_live_on) {
     leaving_host h;
     cscd_contacts found;
-    (void)state;
     make_host(&h, HOST_IGNORE, 2);
     panel_scene *p = &h.host.p, other = {.vertex_count = p->vertex_count};
     assert_int_equal(cscd_context_create(NULL, &other.context), CSCD_OK);
@@ -167,12 +162,4 @@ static void shared_meshes_live_on(void **state) {
     assert_true(h.host.counter.live > 0);
     panels_destroy(&other);
     assert_int_equal(h.host.counter.live, 0);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(contexts_are_broken), cmocka_unit_test(own_threads_end),
-        cmocka_unit_test(doubtful_calls_are_busy), cmocka_unit_test(destruction_alone),
-        cmocka_unit_test(shared_meshes_live_on)};
-    return cmocka_run_group_tests_name("left_calls", tests, NULL, NULL);
 }

@@ -22,8 +22,7 @@ static const char *validate_object(const reference_count *object) {
     return ((const listed_object *)object)->fault;
 }
 
-static void faults_are_found_in_any_order(void **state) {
-    (void)state;
+TEST(faults_are_found_in_any_order) {
     listed_object objects[OBJECTS] = {{.fault = NULL}};
     live_objects list;
     assert_true(live_objects_begin(&list));
@@ -54,8 +53,7 @@ static void faults_are_found_in_any_order(void **state) {
     live_objects_end(&list);
 }
 
-static void freed_objects_are_noticed(void **state) {
-    (void)state;
+TEST(freed_objects_are_noticed) {
     listed_object object = {.fault = NULL};
     live_objects list;
     assert_true(live_objects_begin(&list));
@@ -90,21 +88,11 @@ static int call_with_broken_mesh(void) {
     return outcome;
 }
 
-static void the_next_call_of_a_debug_build_stops(void **state) {
-    (void)state;
+TEST(the_next_call_of_a_debug_build_stops) {
     int outcome = call_with_broken_mesh();
 #ifdef NDEBUG
     assert_true(WIFEXITED(outcome) && WEXITSTATUS(outcome) == 0); /* release builds look at nothing */
 #else
     assert_true(WIFSIGNALED(outcome) && WTERMSIG(outcome) == SIGABRT);
 #endif
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(faults_are_found_in_any_order),
-        cmocka_unit_test(freed_objects_are_noticed),
-        cmocka_unit_test(the_next_call_of_a_debug_build_stops),
-    };
-    return cmocka_run_group_tests_name("live_objects", tests, NULL, NULL);
 }

@@ -27,8 +27,7 @@ static void release_nothing(void *user, void *block, size_t size) {
     (void)size;
 }
 
-static void contexts_that_cannot_be(void **state) {
-    (void)state;
+TEST(contexts_that_cannot_be) {
     cscd_context_options options = cscd_context_defaults();
     options.thread_count = 1000;
     expect_no_context(&options, CSCD_INVALID_ARGUMENT, "thread_count is 1000, expected at most 256");
@@ -49,8 +48,7 @@ static void contexts_that_cannot_be(void **state) {
 }
 
 /* A longer sentence is cut, and nothing is written behind its end. */
-static void short_places_for_reasons(void **state) {
-    (void)state;
+TEST(short_places_for_reasons) {
     cscd_context *none = NULL;
     for (size_t size = 0; size < 60; size++) {
         char reason[64];
@@ -69,8 +67,7 @@ static void short_places_for_reasons(void **state) {
 
 /* ---- meshes -------------------------------------------------------------------------------------------- */
 
-static void meshes_that_cannot_be(void **state) {
-    (void)state;
+TEST(meshes_that_cannot_be) {
     static const uint32_t twice[] = {0, 1, 2, 2, 3, 2};
     const cscd_object_desc second_is_bad[] = {*OBJECT(VERTICES, 8, triangles), *OBJECT(7, 8, triangles)};
     const cscd_object_desc too_many[] = {*OBJECT(4294967290u, 8, triangles),
@@ -112,8 +109,7 @@ static void expect_no_detector(cscd_detector_options options, const char *words)
         expect_no_detector(changed, words);                                                                  \
     } while (0)
 
-static void options_of_detectors(void **state) {
-    (void)state;
+TEST(options_of_detectors) {
     EXPECT_ARGUMENT(cscd_detector_create(context, mesh, NULL, NULL, NULL),
                     "cscd_detector_create: out is NULL");
     expect_no_detector((cscd_detector_options){.struct_size = 0}, "were not made by cscd_detector_defaults");
@@ -134,8 +130,7 @@ static void options_of_detectors(void **state) {
     EXPECT_NO_DETECTOR(seam_reach, -1.0, "seam_reach is -1, expected 0 (the default), a length");
 }
 
-static void lists_of_detectors(void **state) {
-    (void)state;
+TEST(lists_of_detectors) {
     static const uint32_t beyond[] = {0, 1, 0, 99}, equal[] = {0, 1, 3, 3};
     cscd_detector_options options = cscd_detector_defaults();
     options.seams = beyond;
@@ -149,8 +144,7 @@ static void lists_of_detectors(void **state) {
     expect_no_detector(options, "pair 1 of ignored names triangle 99, but there are 8");
 }
 
-static void plans_of_other_meshes(void **state) {
-    (void)state;
+TEST(plans_of_other_meshes) {
     cscd_mesh *other = NULL;
     cscd_plan *plan = NULL;
     cscd_detector *none = NULL;
@@ -179,8 +173,7 @@ static void expect_null_object(cscd_status status) {
     assert_string_equal(cscd_context_detail(context), "unknown method 99");
 }
 
-static void objects_that_are_null(void **state) {
-    (void)state;
+TEST(objects_that_are_null) {
     cscd_mesh *no_mesh;
     cscd_plan *no_plan;
     cscd_detector *no_detector;
@@ -245,8 +238,7 @@ static void objects_that_are_null(void **state) {
 }
 
 /* What is no mistake: odd, but defined. */
-static void oddities_that_are_allowed(void **state) {
-    (void)state;
+TEST(oddities_that_are_allowed) {
     static const uint32_t doubled[] = {0, 1, 2, 0, 1, 2};
     static const double nowhere[COORDINATES];
     cscd_mesh *odd = NULL;
@@ -269,12 +261,4 @@ static void oddities_that_are_allowed(void **state) {
     assert_string_equal(cscd_reason_text((cscd_reason)99), "unknown");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(contexts_that_cannot_be), cmocka_unit_test(short_places_for_reasons),
-        cmocka_unit_test(meshes_that_cannot_be),   cmocka_unit_test(options_of_detectors),
-        cmocka_unit_test(lists_of_detectors),      cmocka_unit_test(plans_of_other_meshes),
-        cmocka_unit_test(objects_that_are_null),   cmocka_unit_test(oddities_that_are_allowed),
-    };
-    return cmocka_run_group_tests_name("misuse", tests, set_up, tear_down);
-}
+AROUND_ALL(set_up, tear_down)

@@ -5,8 +5,7 @@
 
 #include <string.h>
 
-static void names_of_unknown_values(void **state) {
-    (void)state;
+TEST(names_of_unknown_values) {
     static const int values[] = {77, -1, 0x7fffffff, 1000};
     for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
         int value = values[i];
@@ -21,8 +20,7 @@ static void names_of_unknown_values(void **state) {
 }
 
 /* Every reason has a sentence of its own, which says whether contacts are all found. */
-static void reasons_say_what_they_mean(void **state) {
-    (void)state;
+TEST(reasons_say_what_they_mean) {
     static const struct {
         cscd_reason reason;
         const char *words;
@@ -45,8 +43,7 @@ static void reasons_say_what_they_mean(void **state) {
 }
 
 /* "unknown" is no name that a function reads. */
-static void unknown_is_not_read(void **state) {
-    (void)state;
+TEST(unknown_is_not_read) {
     cscd_method method = CSCD_METHOD_SINGLE;
     cscd_mode mode = CSCD_MODE_EARLIEST;
     cscd_volume volume = CSCD_VOLUME_KDOP14;
@@ -57,8 +54,7 @@ static void unknown_is_not_read(void **state) {
                 simd == CSCD_SIMD_SCALAR);
 }
 
-static void methods_are_listed(void **state) {
-    (void)state;
+TEST(methods_are_listed) {
     uint32_t count = cscd_method_count(), plan_makers = 0;
     assert_int_equal(count, 9);
     for (uint32_t i = 0; i < count; i++) {
@@ -78,19 +74,10 @@ static void methods_are_listed(void **state) {
     assert_int_equal(plan_makers, 3);
 }
 
-static void other_methods_are_refused(void **state) {
-    (void)state;
+TEST(other_methods_are_refused) {
     cscd_method_info info, before;
     memset(&info, 0xa5, sizeof info);
     before = info;
     assert_false(cscd_method_describe((cscd_method)77, &info));
     assert_memory_equal(&info, &before, sizeof info);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(names_of_unknown_values), cmocka_unit_test(unknown_is_not_read),
-        cmocka_unit_test(reasons_say_what_they_mean), cmocka_unit_test(methods_are_listed),
-        cmocka_unit_test(other_methods_are_refused)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -106,9 +106,8 @@ static void compare_loops(const workload *w) {
     }
 }
 
-static void steps_are_the_same(void **state) {
+TEST(steps_are_the_same) {
     static const cscd_method methods[] = {CSCD_METHOD_NONE, CSCD_METHOD_SINGLE, CSCD_METHOD_ICCD};
-    (void)state;
     workload_tube(&q, 36, 18, 5);
     for (uint32_t i = 0; i < sizeof methods / sizeof *methods; i++) {
         workload w = {.sequence = &q, .options = cscd_detector_defaults()};
@@ -118,8 +117,7 @@ static void steps_are_the_same(void **state) {
 }
 
 /* Charges and regions agree bit for bit, because any number of threads factorizes in the same tasks. */
-static void plans_are_the_same(void **state) {
-    (void)state;
+TEST(plans_are_the_same) {
     workload_tube(&q, 36, 18, 1);
     workload w = {.sequence = &q, .plan = CSCD_METHOD_CHARGE, .options = cscd_detector_defaults()};
     assert_true(q.shape.triangle_count > 3 * 256); /* several panels */
@@ -128,11 +126,10 @@ static void plans_are_the_same(void **state) {
 
 /* ---- the context --------------------------------------------------------------------------------------- */
 
-static void thread_count_is_how_work_is_cut(void **state) {
+TEST(thread_count_is_how_work_is_cut) {
     cscd_context *context = NULL;
     host h = {0, 0, 0};
     cscd_context_options options = cscd_context_defaults();
-    (void)state;
     options.parallel_for = (cscd_parallel_for){run_backwards, &h};
     options.thread_count = 5;
     uint32_t threads = threads_of_process();
@@ -145,11 +142,4 @@ static void thread_count_is_how_work_is_cut(void **state) {
     assert_true(cscd_context_thread_count(context) >= 1);
     cscd_context_destroy(context);
     assert_int_equal(h.runs, 0);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(steps_are_the_same),
-                                       cmocka_unit_test(plans_are_the_same),
-                                       cmocka_unit_test(thread_count_is_how_work_is_cut)};
-    return cmocka_run_group_tests_name("parallel_for", tests, NULL, NULL);
 }

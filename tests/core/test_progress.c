@@ -136,10 +136,9 @@ static cscd_detector_options of_method(cscd_method method, cscd_mode mode, cscd_
     return options;
 }
 
-static void culling_goes_on(void **state) {
+TEST(culling_goes_on) {
     static const cscd_start starts[] = {CSCD_START_PROVE, CSCD_START_VOUCHED, CSCD_START_UNKNOWN};
     uint64_t contacts = 0, culled = 0;
-    (void)state;
     for (uint64_t seed = 0; seed < 6; seed++) {
         sequence_make(seed % 3 == 2 ? SEQUENCE_GRID : SEQUENCE_SCENE, seed + 20, 14, &q);
         cscd_mode mode = seed % 2 == 0 ? CSCD_MODE_ALL : CSCD_MODE_EARLIEST;
@@ -154,9 +153,8 @@ static void culling_goes_on(void **state) {
 }
 
 /* A pleated sheet that is pulled flat, so that its trees are rebuilt in a call that is cancelled. */
-static void rebuilding_goes_on(void **state) {
+TEST(rebuilding_goes_on) {
     enum { COLUMNS = 140, PLEAT = 6 };
-    (void)state;
     scene_clear(&q.shape);
     scene_add_sheet(&q.shape, COLUMNS, 6.0, COLUMNS, 6);
     q.frame_count = 16;
@@ -177,8 +175,7 @@ static void rebuilding_goes_on(void **state) {
 }
 
 /* The tube is large enough that lanes share its trees, and it bends until it touches itself. */
-static void large_meshes_go_on(void **state) {
-    (void)state;
+TEST(large_meshes_go_on) {
     for (uint32_t threads = 1; threads < 4; threads += 2) {
         workload_tube(&q, 36, 18, 5);
         workload_result found = check_interrupted(
@@ -193,12 +190,11 @@ static void large_meshes_go_on(void **state) {
 enum { PLAN_EVERY = 16 }; /* a plan by charge has hundreds of reports */
 
 /* Reports keep the library's own interval, and the fraction comes near 1. */
-static void reports_come_now_and_then(void **state) {
+TEST(reports_come_now_and_then) {
     counting_allocator counter;
     watcher host;
     cscd_mesh *mesh = NULL;
     cscd_plan *plan = NULL;
-    (void)state;
     scene_clear(&q.shape);
     scene_add_capsule(&q.shape, 5.0, 0.5, 44, 22);
     cscd_object_desc desc =
@@ -223,8 +219,7 @@ static bool keep_fraction(void *user, const char *stage, double fraction) {
 }
 
 /* A stage is a share of a part, which is a share of the call; what is reported never falls. */
-static void shares_of_parts_of_calls(void **state) {
-    (void)state;
+TEST(shares_of_parts_of_calls) {
     double fraction = -1.0;
     cscd_context_options options = cscd_context_defaults();
     cscd_context *context = NULL;
@@ -243,12 +238,4 @@ static void shares_of_parts_of_calls(void **state) {
     progress_begin(p);
     assert_true(progress_go_on(p, 0.125) && fraction == 0.125);
     cscd_context_destroy(context);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(culling_goes_on), cmocka_unit_test(rebuilding_goes_on),
-        cmocka_unit_test(large_meshes_go_on), cmocka_unit_test(reports_come_now_and_then),
-        cmocka_unit_test(shares_of_parts_of_calls)};
-    return cmocka_run_group_tests_name("progress", tests, NULL, NULL);
 }

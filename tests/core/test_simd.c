@@ -95,8 +95,7 @@ static void check_floats(const simd_operations *o, random_stream *random) {
     assert_int_equal(below >> LANES, 0);
 }
 
-static void floats_as_in_c(void **state) {
-    (void)state;
+TEST(floats_as_in_c) {
     on_all_levels(check_floats);
 }
 
@@ -115,8 +114,7 @@ static void check_across(const simd_operations *o, random_stream *random) {
     for (int i = 0; i < 64; i++) assert_number(columns[i % 8][i / 8], rows[i / 8][i % 8]);
 }
 
-static void across_lanes_as_in_c(void **state) {
-    (void)state;
+TEST(across_lanes_as_in_c) {
     on_all_levels(check_across);
 }
 
@@ -150,14 +148,12 @@ static void check_above(const simd_operations *o, random_stream *random) {
     for (int i = 0; i < LANES; i++) assert_int_equal(above[i], a.x[i] > b.x[i] ? -1 : 0);
 }
 
-static void integers_as_in_c(void **state) {
-    (void)state;
+TEST(integers_as_in_c) {
     on_all_levels(check_negative);
     on_all_levels(check_equal);
 }
 
-static void masks_as_in_c(void **state) {
-    (void)state;
+TEST(masks_as_in_c) {
     on_all_levels(check_above);
 }
 
@@ -201,8 +197,7 @@ static void check_doubles(const simd_operations *o, random_stream *random) {
     assert_int_equal(at_most >> LANES, 0);
 }
 
-static void doubles_as_in_c(void **state) {
-    (void)state;
+TEST(doubles_as_in_c) {
     on_all_levels(check_doubles);
 }
 
@@ -217,8 +212,7 @@ static void check_conversions(const simd_operations *o, random_stream *random) {
     }
 }
 
-static void conversions_as_in_c(void **state) {
-    (void)state;
+TEST(conversions_as_in_c) {
     on_all_levels(check_conversions);
 }
 
@@ -240,26 +234,12 @@ static void check_points(const simd_operations *o, random_stream *random) {
     }
 }
 
-static void points_and_no_more_are_read(void **state) {
+TEST(points_and_no_more_are_read) {
     size_t page = (size_t)sysconf(_SC_PAGESIZE);
     char *pages = mmap(NULL, 2 * page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    (void)state;
     assert_true(pages != MAP_FAILED);
     assert_int_equal(mprotect(pages + page, page, PROT_NONE), 0);
     positions = (double *)(void *)(pages + page) - (ptrdiff_t)(3 * POINTS);
     on_all_levels(check_points);
     munmap(pages, 2 * page);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(floats_as_in_c),
-        cmocka_unit_test(across_lanes_as_in_c),
-        cmocka_unit_test(integers_as_in_c),
-        cmocka_unit_test(masks_as_in_c),
-        cmocka_unit_test(doubles_as_in_c),
-        cmocka_unit_test(conversions_as_in_c),
-        cmocka_unit_test(points_and_no_more_are_read),
-    };
-    return cmocka_run_group_tests_name("simd", tests, NULL, NULL);
 }

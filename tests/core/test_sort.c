@@ -17,8 +17,7 @@ static int compare_keys(const void *left, const void *right) {
 static sort_key merged[ITEMS_MAX], by_digits[ITEMS_MAX], scratch[ITEMS_MAX];
 
 /* Some inputs have few keys, so that stability shows, and some have keys that differ in high digits only. */
-static void digits_as_merging(void **state) {
-    (void)state;
+TEST(digits_as_merging) {
     for (uint32_t count = 0; count < ITEMS_MAX; count = 2 * count + 1) {
         for (uint64_t keys = 1; keys <= 1000000; keys *= 100) {
             for (int shift = 0; shift < 64; shift += 21) {
@@ -38,9 +37,4 @@ static void digits_as_merging(void **state) {
             }
         }
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(digits_as_merging)};
-    return cmocka_run_group_tests_name("sort", tests, NULL, NULL);
 }

@@ -16,8 +16,7 @@ static void fill_bytes(void) {
 }
 
 /* A newer caller gets zeros for what the library does not know, an older one no more than it has room for. */
-static void what_is_given_fits_the_caller(void **state) {
-    (void)state;
+TEST(what_is_given_fits_the_caller) {
     for (size_t size = 0; size <= LARGEST; size++) {
         fill_bytes();
         struct_give(other, size, known, KNOWN);
@@ -26,8 +25,7 @@ static void what_is_given_fits_the_caller(void **state) {
     }
 }
 
-static void options_begin_with_the_size_of_the_caller(void **state) {
-    (void)state;
+TEST(options_begin_with_the_size_of_the_caller) {
     for (size_t size = sizeof(uint32_t); size <= LARGEST; size++) {
         uint32_t own;
         fill_bytes();
@@ -40,8 +38,7 @@ static void options_begin_with_the_size_of_the_caller(void **state) {
 }
 
 /* What an older caller does not have keeps its default; what the library does not know has to be 0, at each byte. */
-static void what_is_taken_is_known(void **state) {
-    (void)state;
+TEST(what_is_taken_is_known) {
     char expected[64];
     cscd_context explained = {.detail = ""};
     for (size_t size = 0; size <= LARGEST; size++) {
@@ -63,13 +60,4 @@ static void what_is_taken_is_known(void **state) {
             other[i] = 0;
         }
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_given_fits_the_caller),
-        cmocka_unit_test(options_begin_with_the_size_of_the_caller),
-        cmocka_unit_test(what_is_taken_is_known),
-    };
-    return cmocka_run_group_tests_name("struct size", tests, NULL, NULL);
 }

@@ -5,15 +5,13 @@
 #include <stdint.h>
 
 /* Every system of the tests tells. Plans are refused that do not fit, so it may be neither nothing nor all that numbers hold. */
-static void memory_that_is_left(void **state) {
-    (void)state;
+TEST(memory_that_is_left) {
     const size_t left = system_memory_left();
     print_message("%.1f MiB are left\n", (double)left * 0x1p-20);
     assert_in_range(left, 16u << 20, SIZE_MAX - 1);
 }
 
-static void memory_is_aligned(void **state) {
-    (void)state;
+TEST(memory_is_aligned) {
     for (size_t alignment = 16; alignment <= 4096; alignment *= 2) {
         void *block = system_memory(alignment, alignment);
         assert_non_null(block);
@@ -23,17 +21,7 @@ static void memory_is_aligned(void **state) {
     system_memory_free(NULL);
 }
 
-static void processors_are_counted(void **state) {
-    (void)state;
+TEST(processors_are_counted) {
     assert_true(system_processors() >= 1);
     assert_in_range(system_processors_for_us(), 1, system_processors());
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(memory_that_is_left),
-        cmocka_unit_test(memory_is_aligned),
-        cmocka_unit_test(processors_are_counted),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

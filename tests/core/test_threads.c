@@ -21,8 +21,7 @@ static void count_task(void *data, uint32_t task) {
 }
 
 /* Runs of all lengths; some follow at once, some after the helper threads have gone to sleep. */
-static void each_task_runs_once(void **state) {
-    (void)state;
+TEST(each_task_runs_once) {
     for (int k = 0; k < COUNTS; k++) {
         cscd_context *context = NULL;
         cscd_context_options options = cscd_context_defaults();
@@ -39,9 +38,4 @@ static void each_task_runs_once(void **state) {
         }
         cscd_context_destroy(context);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(each_task_runs_once)};
-    return cmocka_run_group_tests_name("threads", tests, NULL, NULL);
 }

@@ -144,7 +144,7 @@ unsigned throw_from(source from, std::uint32_t threads) {
     return throws;
 }
 
-void exceptions_arrive(void **) {
+TEST(exceptions_arrive) {
     for (std::uint32_t threads = 1; threads <= 3; threads += 2) {
         assert_true(throw_from(ALLOCATE, threads) > 10);
         assert_true(throw_from(IGNORE, threads) > 10);
@@ -153,7 +153,7 @@ void exceptions_arrive(void **) {
 }
 
 /* Progress is asked every few milliseconds alone, so here the host is slow. */
-void progress_throws(void **) {
+TEST(progress_throws) {
     const panel_scene scene(30);
     throwing_host host(PROGRESS);
     cscd::context_options options = host.options(2);
@@ -176,7 +176,7 @@ void progress_throws(void **) {
 /* ---- creation, nesting, threads --------------------------------------------------------------------------- */
 
 /* Nothing can be caught by C code in a context that does not exist yet; and everything is freed. */
-void creation_throws(void **) {
+TEST(creation_throws) {
     const panel_scene scene(8);
     std::size_t live = 0;
     unsigned left = 0, tries = 0;
@@ -206,7 +206,7 @@ void creation_throws(void **) {
 }
 
 /* A callback that calls its own detector is refused, and what it throws then arrives; another context is free. */
-void nested_calls(void **) {
+TEST(nested_calls) {
     const panel_scene scene(12);
     const std::vector<particle> end = scene.moved();
     const cscd_view x0 = cscd::view_of(scene.particles, &particle::position);
@@ -238,7 +238,7 @@ void nested_calls(void **) {
 
 /* The allocator throws in a task, and the loop afterwards: the first exception arrives, and not in the call of another
  * thread, which is refused. */
-void first_exception_arrives(void **) {
+TEST(first_exception_arrives) {
     const panel_scene scene(30);
     const std::vector<float> x0 = packed(scene.particles), x1 = packed(scene.moved());
     bool in_tasks = false, thrown = false, armed = false;
@@ -277,7 +277,7 @@ void first_exception_arrives(void **) {
 }
 
 /* cancel() of another thread ends a call by an error. */
-void threads_cancel(void **) {
+TEST(threads_cancel) {
     const panel_scene scene(12);
     const std::vector<float> x0 = packed(scene.particles), x1 = packed(scene.moved());
     const cscd::context context;
@@ -302,7 +302,7 @@ void threads_cancel(void **) {
 /* ---- lifetimes ------------------------------------------------------------------------------------------- */
 
 /* Callbacks live as long as something may call them, in whatever order objects go. */
-void callbacks_outlive_their_context(void **) {
+TEST(callbacks_outlive_their_context) {
     const panel_scene scene(12);
     const std::vector<float> x0 = packed(scene.particles), x1 = packed(scene.moved());
     auto live = std::make_shared<std::atomic<std::size_t>>(0);
@@ -341,14 +341,3 @@ void callbacks_outlive_their_context(void **) {
 }
 
 } // namespace
-
-int main() {
-    const CMUnitTest tests[] = {cmocka_unit_test(exceptions_arrive),
-                                cmocka_unit_test(progress_throws),
-                                cmocka_unit_test(creation_throws),
-                                cmocka_unit_test(nested_calls),
-                                cmocka_unit_test(first_exception_arrives),
-                                cmocka_unit_test(threads_cancel),
-                                cmocka_unit_test(callbacks_outlive_their_context)};
-    return cmocka_run_group_tests_name("callbacks", tests, nullptr, nullptr);
-}

@@ -11,7 +11,7 @@ std::vector<float> half_of_the_way(const twins &t) {
     return x;
 }
 
-void compare_with_c(void **) {
+TEST(compare_with_c) {
     twins t;
     const std::vector<float> x1 = half_of_the_way(t);
     const cscd_view v1 = cscd::view_of(x1);
@@ -36,7 +36,7 @@ void compare_with_c(void **) {
     assert_int_equal(listed, expected.cause_count);
 }
 
-void what_is_refused(void **) {
+TEST(what_is_refused) {
     twins t;
     cscd_contact none = {};
     none.kind = CSCD_CONTACT_TT;
@@ -48,8 +48,3 @@ void what_is_refused(void **) {
 }
 
 } // namespace
-
-int main() {
-    const CMUnitTest tests[] = {cmocka_unit_test(compare_with_c), cmocka_unit_test(what_is_refused)};
-    return cmocka_run_group_tests_name("curve_changes_class", tests, nullptr, nullptr);
-}

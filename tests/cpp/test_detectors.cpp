@@ -3,7 +3,7 @@
 
 namespace {
 
-void steps(void **) {
+TEST(steps) {
     twins t;
     assert_true(t.compare_steps() > 50);
     assert_ptr_equal(t.ours.mesh().get(), t.mesh.get());
@@ -22,7 +22,7 @@ void steps(void **) {
     assert_true(!found.empty() && found[0].a == crossing.items[0].a && found.data() == found.begin());
 }
 
-void kinds(void **) {
+TEST(kinds) {
     twins t;
     cscd_intersection_options options = cscd_intersection_defaults();
     std::vector<double> lower(t.x0.begin(), t.x0.end());
@@ -64,7 +64,7 @@ void kinds(void **) {
 }
 
 /* The same labels, by component and by region, for both. */
-void parts(void **) {
+TEST(parts) {
     twins t;
     cscd_intersection_options options = cscd_intersection_defaults();
     options.curves = options.parts = true;
@@ -117,7 +117,7 @@ void parts(void **) {
                      CSCD_INVALID_ARGUMENT);
 }
 
-void culling(void **) {
+TEST(culling) {
     const cscd::context context;
     const cscd::mesh mesh(context, {cscd::object_of_triangles(8, body_triangles)});
     cscd::detector detector(context, mesh, cscd::plan(context, mesh, body_positions));
@@ -132,7 +132,7 @@ void culling(void **) {
     assert_true(detector.orientation(0) != 0);
 }
 
-void proximity(void **) {
+TEST(proximity) {
     twins t;
     for (int form = CSCD_NEAR_PAIRS; form <= CSCD_NEAR_UNIQUE; form++) {
         cscd_proximities expected;
@@ -161,7 +161,7 @@ void proximity(void **) {
     }
 }
 
-void contact_stencils(void **) {
+TEST(contact_stencils) {
     twins t;
     const cscd::contacts found = t.ours.step(t.x0, t.x1);
     const cscd::stencils stencils = cscd::stencils_of(found);
@@ -175,7 +175,7 @@ void contact_stencils(void **) {
 
 /* ---- what options leave out -------------------------------------------------------------------------------- */
 
-void options(void **) {
+TEST(options) {
     twins plain;
     const std::size_t all = plain.compare_steps();
     cscd::detector_options o;
@@ -196,7 +196,7 @@ void options(void **) {
 }
 
 /* Seams and ignored pairs come and go; what was sewn and touches waits. */
-void live_changes(void **) {
+TEST(live_changes) {
     twins t;
     const std::size_t all = t.compare_steps();
     std::vector<std::array<std::uint32_t, 2>> ignored;
@@ -228,7 +228,7 @@ void live_changes(void **) {
     assert_int_equal(error_of([&] { t.ours.set_seams(wrong); }).status(), CSCD_INVALID_ARGUMENT);
 }
 
-void rules(void **) {
+TEST(rules) {
     std::vector<cscd_object_rule> rules(2, cscd_object_rule_default());
     cscd::detector_options o;
     o.set_rules(rules);
@@ -251,7 +251,7 @@ void rules(void **) {
 }
 
 /* What is too long says how long it is. */
-void long_lists(void **) {
+TEST(long_lists) {
     twins t;
     const std::size_t all = t.compare_steps(), near = t.ours.find_near(t.x0, 1.2, CSCD_NEAR_PAIRS).size();
     t.ours.set_longest_list(10);
@@ -269,7 +269,7 @@ void long_lists(void **) {
 }
 
 /* Only one vertex may move, then none, then all. */
-void active_vertices(void **) {
+TEST(active_vertices) {
     twins t;
     const std::size_t all = t.compare_steps();
     std::uint32_t one = 0;
@@ -287,7 +287,7 @@ void active_vertices(void **) {
     assert_int_equal(t.ours.step(t.x0, t.x1).size(), all);
 }
 
-void separation(void **) {
+TEST(separation) {
     twins t;
     t.compare_steps();
     const double touching = t.first_time();
@@ -300,7 +300,7 @@ void separation(void **) {
 
 /* ---- motions ----------------------------------------------------------------------------------------------- */
 
-void motions(void **) {
+TEST(motions) {
     twins t;
     std::vector<float> reached(t.x0.size()), expected(t.x0.size());
     const cscd_mutable_view out = cscd::view_of(expected);
@@ -317,7 +317,7 @@ void motions(void **) {
     assert_int_equal(cscd::held_pairs(cut).size(), 0);
 }
 
-void bounds(void **) {
+TEST(bounds) {
     twins t;
     std::vector<float> floats(t.mesh.vertex_count()), expected(floats.size());
     std::vector<double> doubles(floats.size());
@@ -335,7 +335,7 @@ void bounds(void **) {
 }
 
 /* A start that touches: the error has the pair. */
-void touching_starts(void **) {
+TEST(touching_starts) {
     const cscd::context context;
     const cscd::mesh mesh(context, {cscd::object_of_triangles(8, body_triangles)});
     cscd::detector detector(context, mesh);
@@ -352,7 +352,7 @@ void touching_starts(void **) {
     assert_null(other.contact());
 }
 
-void line_searches(void **) {
+TEST(line_searches) {
     twins t;
     cscd_line_search *c;
     cscd::line_search ours(t.ours);
@@ -379,14 +379,3 @@ void line_searches(void **) {
 }
 
 } // namespace
-
-int main() {
-    const CMUnitTest tests[] = {
-        cmocka_unit_test(steps),        cmocka_unit_test(kinds),           cmocka_unit_test(parts),
-        cmocka_unit_test(culling),      cmocka_unit_test(proximity),       cmocka_unit_test(contact_stencils),
-        cmocka_unit_test(options),      cmocka_unit_test(live_changes),    cmocka_unit_test(rules),
-        cmocka_unit_test(long_lists),   cmocka_unit_test(active_vertices), cmocka_unit_test(separation),
-        cmocka_unit_test(motions),      cmocka_unit_test(bounds),          cmocka_unit_test(touching_starts),
-        cmocka_unit_test(line_searches)};
-    return cmocka_run_group_tests_name("detectors", tests, nullptr, nullptr);
-}

@@ -30,7 +30,7 @@ void expect_events(const cscd::events &found, const cscd_events &expected) {
     assert_memory_equal(found.data(), expected.items, expected.count * sizeof *expected.items);
 }
 
-void events(void **) {
+TEST(events) {
     twins t;
     cscd_event_tracker *c = nullptr;
     assert_int_equal(cscd_event_tracker_create(t.c_context.get(), t.mesh.get(), nullptr, &c), CSCD_OK);
@@ -60,7 +60,7 @@ void events(void **) {
     cscd_event_tracker_destroy(c);
 }
 
-void mistakes(void **) {
+TEST(mistakes) {
     twins t;
     const std::vector<std::uint32_t> labels(t.mesh.triangle_count() - 1);
     const std::vector<std::array<std::uint32_t, 2>> seams{{0, UINT32_MAX}};
@@ -78,8 +78,3 @@ void mistakes(void **) {
 }
 
 } // namespace
-
-int main() {
-    const CMUnitTest tests[] = {cmocka_unit_test(events), cmocka_unit_test(mistakes)};
-    return cmocka_run_group_tests_name("event_trackers", tests, nullptr, nullptr);
-}

@@ -14,7 +14,7 @@ void expect_array(cscd::span<const std::uint32_t> found, const cscd_mesh_change 
 }
 
 /* A panel's first triangle comes off, the other panel goes, and a body comes. */
-void changes(void **) {
+TEST(changes) {
     const panel_scene scene(4);
     const cscd::context context;
     const cscd::mesh old(context, scene.objects());
@@ -58,7 +58,7 @@ void changes(void **) {
 
 /* A detector that goes over to a mesh without the lower panel finds nothing; its clone stays, and finds what it found,
  * also when the first one is gone. `ignore` goes with both. */
-void detectors_move(void **) {
+TEST(detectors_move) {
     const panel_scene scene(10);
     const std::vector<float> x0 = packed(scene.particles), x1 = packed(scene.moved());
     const std::vector<float> upper0(x0.begin() + 300, x0.end()), upper1(x1.begin() + 300, x1.end());
@@ -97,7 +97,7 @@ void detectors_move(void **) {
     assert_int_equal(clone.step(x0, x1).size(), count);
 }
 
-void starts_are_known(void **) {
+TEST(starts_are_known) {
     const cscd::context context;
     const cscd::mesh mesh(context, {cscd::object_of_triangles(8, body_triangles)});
     cscd::detector detector(context, mesh, cscd::plan(context, mesh, body_positions));
@@ -110,9 +110,3 @@ void starts_are_known(void **) {
 }
 
 } // namespace
-
-int main() {
-    const CMUnitTest tests[] = {cmocka_unit_test(changes), cmocka_unit_test(detectors_move),
-                                cmocka_unit_test(starts_are_known)};
-    return cmocka_run_group_tests_name("mesh_changes", tests, nullptr, nullptr);
-}

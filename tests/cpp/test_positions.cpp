@@ -58,7 +58,7 @@ struct forms_scene {
 
 /* ---- forms that are read ----------------------------------------------------------------------------------- */
 
-void packed_scalars(void **) {
+TEST(packed_scalars) {
     forms_scene s;
     const std::vector<float> f0 = packed(s.panels.particles), f1 = packed(s.panels.moved());
     s.expect(f0, s.x1);
@@ -70,7 +70,7 @@ void packed_scalars(void **) {
     s.expect(array, s.x1);
 }
 
-void points_and_members(void **) {
+TEST(points_and_members) {
     forms_scene s;
     const std::vector<particle> end = s.panels.moved();
     std::vector<vec3> points;
@@ -92,7 +92,7 @@ void points_and_members(void **) {
     s.expect(cscd::view_of(nodes, &node::shown), points);
 }
 
-void columns(void **) {
+TEST(columns) {
     forms_scene s;
     const std::size_t n = s.vertex_count();
     std::vector<float> matrix(3 * n);
@@ -101,7 +101,7 @@ void columns(void **) {
 }
 
 /* Objects in arrays of their own. */
-void several_views(void **) {
+TEST(several_views) {
     forms_scene s;
     const std::size_t half = s.x0.size() / 2;
     const std::vector<double> lower(s.x0.begin(), s.x0.begin() + static_cast<std::ptrdiff_t>(half));
@@ -115,7 +115,7 @@ void several_views(void **) {
 
 /* ---- forms that are written -------------------------------------------------------------------------------- */
 
-void outputs(void **) {
+TEST(outputs) {
     forms_scene s;
     std::vector<double> expected(s.x0.size());
     const double fraction = s.detector.max_step(s.x0, s.x1, expected).fraction;
@@ -158,7 +158,7 @@ template <class Call> std::string sentence_of(Call &&call) {
     return "";
 }
 
-void mistakes(void **) {
+TEST(mistakes) {
     forms_scene s;
     const std::vector<float> empty, half(s.x0.size() / 2);
     cscd_view first = cscd::view_of(s.x0);
@@ -189,10 +189,3 @@ static_assert(std::is_convertible_v<std::vector<double> &, cscd::mutable_positio
 static_assert(std::is_convertible_v<std::vector<eigen_like>, cscd::positions>);
 
 } // namespace
-
-int main() {
-    const CMUnitTest tests[] = {cmocka_unit_test(packed_scalars), cmocka_unit_test(points_and_members),
-                                cmocka_unit_test(columns),        cmocka_unit_test(several_views),
-                                cmocka_unit_test(outputs),        cmocka_unit_test(mistakes)};
-    return cmocka_run_group_tests_name("positions", tests, nullptr, nullptr);
-}

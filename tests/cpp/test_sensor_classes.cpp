@@ -5,7 +5,7 @@
 
 namespace {
 
-void sensors(void **) {
+TEST(sensors) {
     const panel_scene scene(10);
     const std::vector<float> x0 = packed(scene.particles), x1 = packed(scene.moved());
     const cscd::context context;
@@ -40,7 +40,7 @@ void sensors(void **) {
 }
 
 /* A plan gives the parts. */
-void parts_of_plans(void **) {
+TEST(parts_of_plans) {
     const cscd::context context;
     const cscd::mesh mesh(context, {cscd::object_of_triangles(8, body_triangles)});
     cscd::partition partition(context, mesh, cscd::plan(context, mesh, body_positions), body_positions);
@@ -48,8 +48,3 @@ void parts_of_plans(void **) {
 }
 
 } // namespace
-
-int main() {
-    const CMUnitTest tests[] = {cmocka_unit_test(sensors), cmocka_unit_test(parts_of_plans)};
-    return cmocka_run_group_tests_name("sensor_classes", tests, nullptr, nullptr);
-}

@@ -9,7 +9,7 @@ bool equal(cscd::span<const std::uint32_t> a, const std::uint32_t *b, std::size_
 
 /* ---- contexts ---------------------------------------------------------------------------------------------- */
 
-void contexts(void **) {
+TEST(contexts) {
     cscd::context_options options;
     options.thread_count = 3;
     options.simd = CSCD_SIMD_SCALAR;
@@ -62,7 +62,7 @@ void features(const cscd::mesh &mesh) {
     }
 }
 
-void meshes(void **) {
+TEST(meshes) {
     const cscd::context context;
     const cscd::mesh mesh(context, {cscd::object_of_triangles(8, body_triangles),
                                     cscd::obstacle_of_triangles(8, body_triangles)});
@@ -94,7 +94,7 @@ void meshes(void **) {
 }
 
 /* Wires, points and a half-space are the objects that C makes. */
-void loose_objects(void **) {
+TEST(loose_objects) {
     const cscd::context context;
     const std::vector<std::array<std::uint32_t, 2>> wires{{0, 1}, {1, 2}};
     const cscd::mesh mesh(context,
@@ -109,7 +109,7 @@ void loose_objects(void **) {
 
 /* ---- plans ------------------------------------------------------------------------------------------------- */
 
-void plans(void **) {
+TEST(plans) {
     const cscd::context context;
     const cscd::mesh mesh(context, {cscd::object_of_triangles(8, body_triangles)});
     const cscd::plan plan(context, mesh, body_positions);
@@ -147,7 +147,7 @@ void plans(void **) {
 
 /* ---- single pairs ------------------------------------------------------------------------------------------ */
 
-void pairs(void **) {
+TEST(pairs) {
     const cscd::context context;
     const std::vector<std::array<double, 3>> x0{{0.2, 0.2, 1}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     std::vector<std::array<double, 3>> x1 = x0;
@@ -176,7 +176,7 @@ static_assert(std::is_nothrow_move_constructible_v<cscd::detector> &&
 static_assert(std::is_nothrow_move_assignable_v<cscd::mesh> &&
               std::is_nothrow_move_constructible_v<cscd::line_search>);
 
-void moved_objects(void **) {
+TEST(moved_objects) {
     twins t;
     const std::size_t count = t.compare_steps();
     cscd::detector taken = std::move(t.ours);
@@ -193,10 +193,3 @@ void moved_objects(void **) {
 }
 
 } // namespace
-
-int main() {
-    const CMUnitTest tests[] = {cmocka_unit_test(contexts),      cmocka_unit_test(meshes),
-                                cmocka_unit_test(loose_objects), cmocka_unit_test(plans),
-                                cmocka_unit_test(pairs),         cmocka_unit_test(moved_objects)};
-    return cmocka_run_group_tests_name("wrappers", tests, nullptr, nullptr);
-}

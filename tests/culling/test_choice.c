@@ -114,9 +114,8 @@ static void compare_free_steps(const rig *r, uint32_t k, random_stream *random, 
     cscd_detector_destroy(chosen);
 }
 
-static void any_choice_gives_the_same(void **state) {
+TEST(any_choice_gives_the_same) {
     choice_tally sum = {0};
-    (void)state;
     for (uint32_t seed = 0; seed < SCENES; seed++) {
         random_stream random = stream_start(seed);
         scene_make((scene_family)(seed % SCENE_FAMILY_COUNT), seed + 80000, &s);
@@ -143,9 +142,8 @@ static bool step_culls(cscd_detector *d, const double *from, const double *to) {
 }
 
 /* A sphere that begins each interval elsewhere is not worth its proof; one that goes on is, again and again. */
-static void culling_follows_the_motion(void **state) {
+TEST(culling_follows_the_motion) {
     static const double origin[3] = {0, 0, 0};
-    (void)state;
     scene_clear(&s);
     scene_add_sphere(&s, origin, 1.0, 24, 30);
     for (int k = 0; k <= INTERVALS; k++)
@@ -183,8 +181,7 @@ static void make_large_scene(void) {
 }
 
 /* The choice rests on counts, which the lanes share. */
-static void counters_do_not_depend_on_threads(void **state) {
-    (void)state;
+TEST(counters_do_not_depend_on_threads) {
     for (uint32_t seed = 0; seed < SCENES / 4; seed++) {
         random_stream random = stream_start(seed);
         scene_make((scene_family)(seed % SCENE_FAMILY_COUNT), seed + 90000, &s);
@@ -214,13 +211,4 @@ static void counters_do_not_depend_on_threads(void **state) {
             rig_destroy(&rigs[i]);
         }
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(any_choice_gives_the_same),
-        cmocka_unit_test(culling_follows_the_motion),
-        cmocka_unit_test(counters_do_not_depend_on_threads),
-    };
-    return cmocka_run_group_tests_name("choice", tests, NULL, NULL);
 }

@@ -120,17 +120,15 @@ static void run_jumps(scene_family family, uint64_t seed, chain_tally *sum) {
 static const scene_family families[] = {SCENE_NOISY_SPHERE, SCENE_BENT_CAPSULE, SCENE_SQUASHED_TORUS,
                                         SCENE_NESTED_SPHERES, SCENE_SPIKE};
 
-static void intervals_begin_elsewhere(void **state) {
+TEST(intervals_begin_elsewhere) {
     chain_tally sum = {0, 0, 0};
-    (void)state;
     for (size_t f = 0; f < sizeof families / sizeof *families; f++)
         for (uint64_t seed = 0; seed < SEEDS; seed++) run_jumps(families[f], seed, &sum);
     assert_true(sum.clean > 0);
 }
 
-static void clean_triangles_have_one_number(void **state) {
+TEST(clean_triangles_have_one_number) {
     chain_tally all = {0, 0, 0};
-    (void)state;
     for (size_t f = 0; f < sizeof families / sizeof *families; f++) {
         chain_tally sum = {0, 0, 0};
         for (uint64_t seed = 0; seed < SEEDS; seed++) run_chain(families[f], seed, &sum);
@@ -141,12 +139,4 @@ static void clean_triangles_have_one_number(void **state) {
         all.cut_off += sum.cut_off;
     }
     assert_true(all.clean > 0 && all.crossing > 0 && all.cut_off > 100);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(clean_triangles_have_one_number),
-        cmocka_unit_test(intervals_begin_elsewhere),
-    };
-    return cmocka_run_group_tests_name("clean_numbers", tests, NULL, NULL);
 }

@@ -53,8 +53,7 @@ static uint32_t count_between(const states *c, triangle_state state, double low,
     return found;
 }
 
-static void all_free_is_all_clean(void **state) {
-    (void)state;
+TEST(all_free_is_all_clean) {
     states c = states_of_sphere(2);
     check_with_belt(&c, 5, 6);
     assert_int_equal(count_between(&c, TRIANGLE_CLEAN, -2, 2), s.triangle_count);
@@ -63,8 +62,7 @@ static void all_free_is_all_clean(void **state) {
 }
 
 /* A belt of contacts cuts off a cap. The cap may be inside another part, so it is not clean. */
-static void what_is_cut_off_is_not_clean(void **state) {
-    (void)state;
+TEST(what_is_cut_off_is_not_clean) {
     states c = states_of_sphere(1);
     check_with_belt(&c, 0.3, 0.7);
     uint32_t cap = count_between(&c, TRIANGLE_FREE, 0.7, 2),
@@ -78,8 +76,7 @@ static void what_is_cut_off_is_not_clean(void **state) {
 }
 
 /* Healed triangles connect a patch that was cut off, and the clean state spreads through them only. */
-static void clean_spreads_through_what_has_healed(void **state) {
-    (void)state;
+TEST(clean_spreads_through_what_has_healed) {
     states c = states_of_sphere(1);
     check_with_belt(&c, 0.1, 0.6);
     uint32_t cap = count_between(&c, TRIANGLE_FREE, 0.6, 2);
@@ -98,8 +95,7 @@ static void clean_spreads_through_what_has_healed(void **state) {
 }
 
 /* When contacts have left only a remnant of a patch, a larger patch of free triangles takes its place. */
-static void a_larger_patch_replaces_a_remnant(void **state) {
-    (void)state;
+TEST(a_larger_patch_replaces_a_remnant) {
     states c = states_of_sphere(1);
     check_with_belt(&c, 0.3, 0.7);
     for (uint32_t t = 0; t < s.triangle_count; t++) {
@@ -116,8 +112,7 @@ static void a_larger_patch_replaces_a_remnant(void **state) {
     states_destroy(&c);
 }
 
-static void states_follow_positions(void **state) {
-    (void)state;
+TEST(states_follow_positions) {
     states c = states_of_sphere(2);
     uint32_t half = s.triangle_count / 2;
     check_with_belt(&c, 5, 6);
@@ -137,8 +132,7 @@ static void states_follow_positions(void **state) {
 }
 
 /* The caller's promise fills in unknown states but does not override known ones; a check takes it back. */
-static void vouching_fills_in(void **state) {
-    (void)state;
+TEST(vouching_fills_in) {
     states c = states_of_sphere(1);
     start_states_vouch(&c.starts);
     assert_int_equal(count_between(&c, TRIANGLE_CLEAN, -2, 2), s.triangle_count);
@@ -151,8 +145,7 @@ static void vouching_fills_in(void **state) {
 }
 
 /* As long as most of a component is not clean, its checks wait longer and longer. */
-static void checks_in_vain_wait(void **state) {
-    (void)state;
+TEST(checks_in_vain_wait) {
     states c = states_of_sphere(1);
     uint32_t checks = 0;
     for (int i = 0; i < 40; i++) {
@@ -168,8 +161,7 @@ static void checks_in_vain_wait(void **state) {
 
 /* The pole of a sphere is pulled through its floor. At the next start most triangles are clean, the tip is
  * not, and only pairs with unclean triangles are tested. */
-static void a_tip_through_the_floor(void **state) {
-    (void)state;
+TEST(a_tip_through_the_floor) {
     static scene next;
     scene_clear(&s);
     scene_add_sphere(&s, (double[3]){0, 0, 0}, 1.0, 12, 14);
@@ -196,8 +188,7 @@ static void a_tip_through_the_floor(void **state) {
 }
 
 /* Lists and counters are the same for any number of threads, also while parts intersect. */
-static void same_bits_for_any_thread_count(void **state) {
-    (void)state;
+TEST(same_bits_for_any_thread_count) {
     cscd_detector_options options = cscd_detector_defaults();
     options.method = CSCD_METHOD_SINGLE;
     rig rigs[3];
@@ -223,19 +214,4 @@ static void same_bits_for_any_thread_count(void **state) {
         }
         for (int i = 0; i < 3; i++) rig_destroy(&rigs[i]);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(all_free_is_all_clean),
-        cmocka_unit_test(what_is_cut_off_is_not_clean),
-        cmocka_unit_test(clean_spreads_through_what_has_healed),
-        cmocka_unit_test(a_larger_patch_replaces_a_remnant),
-        cmocka_unit_test(states_follow_positions),
-        cmocka_unit_test(vouching_fills_in),
-        cmocka_unit_test(checks_in_vain_wait),
-        cmocka_unit_test(a_tip_through_the_floor),
-        cmocka_unit_test(same_bits_for_any_thread_count),
-    };
-    return cmocka_run_group_tests_name("clean_patch", tests, NULL, NULL);
 }

@@ -145,13 +145,11 @@ static void check_rings(const profile_corner *corners, uint32_t count, uint64_t 
     }
 }
 
-static void two_closing_passes(void **state) {
-    (void)state;
+TEST(two_closing_passes) {
     check_rings(two_passes, sizeof two_passes / sizeof *two_passes, 2);
 }
 
-static void three_closing_passes(void **state) {
-    (void)state;
+TEST(three_closing_passes) {
     check_rings(three_passes, sizeof three_passes / sizeof *three_passes, 3);
 }
 
@@ -236,19 +234,9 @@ static void make_mouth(uint64_t seed) {
 
 /* f passes the spike, which is S- and looked at; this taints f. The dip is S+ as f is: only in the closing pass f is looked at with
  * it. No other triangle of the two stars reaches the dip, so f itself must be tainted. */
-static void faces_are_tainted(void **state) {
-    (void)state;
+TEST(faces_are_tainted) {
     for (uint64_t seed = 0; seed < SEEDS; seed++) {
         make_mouth(seed);
         check_passes(1);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(two_closing_passes),
-        cmocka_unit_test(three_closing_passes),
-        cmocka_unit_test(faces_are_tainted),
-    };
-    return cmocka_run_group_tests_name("closing_passes", tests, NULL, NULL);
 }

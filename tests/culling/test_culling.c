@@ -164,9 +164,8 @@ static void run_family(scene_family family, culling_tally *sum) {
     sum->pairs_without += own.pairs_without;
 }
 
-static void culling_loses_no_first_contact(void **state) {
+TEST(culling_loses_no_first_contact) {
     culling_tally sum = {0};
-    (void)state;
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) run_family((scene_family)family, &sum);
     print_tally("all", &sum);
     assert_true(sum.embedded * 4 >= sum.intervals && sum.first_contacts * 10 >= sum.intervals);
@@ -182,10 +181,9 @@ static bool ignore_some(void *user, cscd_contact_kind kind, uint32_t a, uint32_t
 }
 
 /* An ignored first contact must not hide a later one: mode earliest continues past it. */
-static void ignored_contacts_hide_none(void **state) {
+TEST(ignored_contacts_hide_none) {
     static const scene_family families[3] = {SCENE_BENT_CAPSULE, SCENE_SQUASHED_TORUS, SCENE_SPIKE};
     size_t kept = 0;
-    (void)state;
     for (uint32_t seed = 0; seed < 3 * IGNORING_INTERVALS_PER_FAMILY; seed++) {
         scene_make(families[seed % 3], seed + 5000, &interval);
         reference r = reference_create(&interval);
@@ -206,12 +204,4 @@ static void ignored_contacts_hide_none(void **state) {
         reference_destroy(&r);
     }
     assert_true(kept > 0);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(culling_loses_no_first_contact),
-        cmocka_unit_test(ignored_contacts_hide_none),
-    };
-    return cmocka_run_group_tests_name("culling", tests, NULL, NULL);
 }

@@ -83,7 +83,7 @@ static totals replay_poses(const share_recording *r, cscd_method method, cscd_mo
     return sum;
 }
 
-static void a_quarter_of_the_pairs(void **state) {
+TEST(a_quarter_of_the_pairs) {
     const share_recording *r = *state;
     totals none = replay_poses(r, CSCD_METHOD_NONE, CSCD_MODE_ALL);
     assert_int_equal(none.contacts, 0);
@@ -101,7 +101,4 @@ static void a_quarter_of_the_pairs(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_quarter_of_the_pairs)};
-    return cmocka_run_group_tests_name("culling_share", tests, record_poses, release_recording);
-}
+AROUND_ALL(record_poses, release_recording)

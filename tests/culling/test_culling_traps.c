@@ -97,8 +97,7 @@ static void check_first_contact(cscd_reason expected) {
 /* ---- surfaces without an inside -------------------------------------------------------------------- */
 
 /* Every triangle faces the centre, and yet the surface intersects itself because it winds around twice. */
-static void pentagrammic_bipyramid(void **state) {
-    (void)state;
+TEST(pentagrammic_bipyramid) {
     scene_clear(&s);
     for (int i = 0; i < 5; i++) add_vertex(cos(4.0 * PI * i / 5.0), sin(4.0 * PI * i / 5.0), 0.0);
     uint32_t top = add_vertex(0, 0, 1), bottom = add_vertex(0, 0, -1);
@@ -117,8 +116,7 @@ static void pentagrammic_bipyramid(void **state) {
 }
 
 /* An open sheet is rolled up about its axis. All triangles are S+, and its layers touch. */
-static void rolled_sheet(void **state) {
-    (void)state;
+TEST(rolled_sheet) {
     scene_clear(&s);
     scene_add_sheet(&s, 12.0, 2.0, 60, 6);
     for (uint32_t v = 0; v < s.vertex_count; v++) {
@@ -160,8 +158,7 @@ static void add_horseshoe(void) {
 }
 
 /* The tip of one arm touches the edge of the other where its sides turn away from the detector point. */
-static void vertex_meets_silhouette_edge(void **state) {
-    (void)state;
+TEST(vertex_meets_silhouette_edge) {
     add_horseshoe();
     move_to(2 * 3, -1, 8, 2);
     check_first_contact(CSCD_REASON_FINISHED);
@@ -169,8 +166,7 @@ static void vertex_meets_silhouette_edge(void **state) {
 }
 
 /* The same tip passes beside the edge: there is no contact, and the detector proves it. */
-static void vertex_misses_silhouette_edge(void **state) {
-    (void)state;
+TEST(vertex_misses_silhouette_edge) {
     add_horseshoe();
     move_to(2 * 3, 3.0 + 0x1p-40, 8, 2);
     check_first_contact(CSCD_REASON_CLEAN);
@@ -178,8 +174,7 @@ static void vertex_misses_silhouette_edge(void **state) {
 }
 
 /* An arm comes to lie flat on the other: all contacts are at one time, and all are degenerate. */
-static void side_comes_to_lie_on_side(void **state) {
-    (void)state;
+TEST(side_comes_to_lie_on_side) {
     add_horseshoe();
     move_to(2 * 3, 3, 8, 0);
     move_to(2 * 3 + 1, 3, 8, 4);
@@ -207,9 +202,8 @@ static uint32_t nearest_vertex(double x, double y, double z) {
 }
 
 /* Three points of a sphere are pulled inwards and arrive at one point at the end. */
-static void three_sheets_at_one_point(void **state) {
+TEST(three_sheets_at_one_point) {
     static const double origin[3] = {0, 0, 0};
-    (void)state;
     scene_clear(&s);
     scene_add_sphere(&s, origin, 1.0, 9, 12);
     keep_still();
@@ -222,9 +216,8 @@ static void three_sheets_at_one_point(void **state) {
 /* ---- components ------------------------------------------------------------------------------------ */
 
 /* The inner sphere grows through the outer one. Contacts between components are never culled. */
-static void inner_grows_through_outer(void **state) {
+TEST(inner_grows_through_outer) {
     static const double origin[3] = {0, 0, 0};
-    (void)state;
     scene_clear(&s);
     scene_add_sphere(&s, origin, 1.0, 7, 9);
     uint32_t outer = s.vertex_count;
@@ -241,8 +234,7 @@ static void inner_grows_through_outer(void **state) {
 /* ---- minimum separation ---------------------------------------------------------------------------- */
 
 /* The walls of a groove face the detector point and approach each other, so orientation proves nothing. */
-static void groove_with_minimum_separation(void **state) {
-    (void)state;
+TEST(groove_with_minimum_separation) {
     add_horseshoe();
     move_to(2 * 3, 3.5, 8, 0);
     move_to(2 * 3 + 1, 3.5, 8, 4);
@@ -285,9 +277,8 @@ static void end_chain(chain *c) {
 }
 
 /* The proof is handed on from clean interval to clean interval, so there is one static check in all. */
-static void one_check_while_clean(void **state) {
+TEST(one_check_while_clean) {
     static double frames[20][SCENE_VERTICES_MAX * 3];
-    (void)state;
     add_horseshoe();
     for (int i = 0; i < 20; i++) {
         for (uint32_t j = 0; j < s.vertex_count * 3; j++) frames[i][j] = s.x0[j] * (1.0 + 0.01 * i);
@@ -299,9 +290,8 @@ static void one_check_while_clean(void **state) {
 }
 
 /* The detector's knowledge follows a contact, an intersection, and the separation after it. */
-static void contact_and_recovery(void **state) {
+TEST(contact_and_recovery) {
     static double open[SCENE_VERTICES_MAX * 3], crossing[SCENE_VERTICES_MAX * 3];
-    (void)state;
     add_horseshoe();
     move_to(2 * 3, 1, 8, 2);
     memcpy(open, s.x0, sizeof open);
@@ -327,9 +317,8 @@ static void contact_and_recovery(void **state) {
     end_chain(&c);
 }
 
-static void without_a_proof_nothing_is_culled(void **state) {
+TEST(without_a_proof_nothing_is_culled) {
     cscd_intersections found;
-    (void)state;
     add_horseshoe();
     chain c = start_chain(CSCD_START_UNKNOWN);
     step_trap(&c, s.x0, s.x1, CSCD_REASON_UNPROVEN);
@@ -346,8 +335,7 @@ static void without_a_proof_nothing_is_culled(void **state) {
 }
 
 /* A start that touches itself exactly is not embedded. */
-static void touching_start(void **state) {
-    (void)state;
+TEST(touching_start) {
     add_horseshoe();
     double *tip = s.x0 + (size_t)2 * 3 * 3;
     tip[0] = 3;
@@ -355,22 +343,4 @@ static void touching_start(void **state) {
     keep_still();
     move_to(2 * 3, 7, 8, 0);
     check_first_contact(CSCD_REASON_CROSSING);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pentagrammic_bipyramid),
-        cmocka_unit_test(rolled_sheet),
-        cmocka_unit_test(vertex_meets_silhouette_edge),
-        cmocka_unit_test(vertex_misses_silhouette_edge),
-        cmocka_unit_test(side_comes_to_lie_on_side),
-        cmocka_unit_test(three_sheets_at_one_point),
-        cmocka_unit_test(inner_grows_through_outer),
-        cmocka_unit_test(groove_with_minimum_separation),
-        cmocka_unit_test(one_check_while_clean),
-        cmocka_unit_test(contact_and_recovery),
-        cmocka_unit_test(without_a_proof_nothing_is_culled),
-        cmocka_unit_test(touching_start),
-    };
-    return cmocka_run_group_tests_name("culling_traps", tests, NULL, NULL);
 }

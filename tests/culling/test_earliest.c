@@ -125,8 +125,7 @@ static uint32_t check_lists(uint32_t a, uint32_t b) {
 
 /* ---- tests --------------------------------------------------------------------------------------------- */
 
-static void three_sheets_at_once(void **state) {
-    (void)state;
+TEST(three_sheets_at_once) {
     make_hook();
     pass_through(vertex_of(4, RISES), 0.5);
     pass_through(vertex_of(4, FALLS), 0.5);
@@ -134,8 +133,7 @@ static void three_sheets_at_once(void **state) {
 }
 
 /* The three come together half of a billionth after the first contact, which is elsewhere. */
-static void three_sheets_after_the_first(void **state) {
-    (void)state;
+TEST(three_sheets_after_the_first) {
     make_hook();
     pass_through(vertex_of(2, FALLS), 0.5);
     pass_through(vertex_of(6, RISES), 0.5 + 0.5e-9);
@@ -144,20 +142,10 @@ static void three_sheets_after_the_first(void **state) {
 }
 
 /* Two billionths after the first are too late. */
-static void three_sheets_too_late(void **state) {
-    (void)state;
+TEST(three_sheets_too_late) {
     make_hook();
     pass_through(vertex_of(2, FALLS), 0.5);
     pass_through(vertex_of(6, RISES), 0.5 + 2.5e-9);
     pass_through(vertex_of(6, FALLS), 0.5 + 2.5e-9);
     assert_int_equal(check_lists(vertex_of(6, RISES), vertex_of(6, FALLS)), 0);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(three_sheets_at_once),
-        cmocka_unit_test(three_sheets_after_the_first),
-        cmocka_unit_test(three_sheets_too_late),
-    };
-    return cmocka_run_group_tests_name("earliest", tests, NULL, NULL);
 }

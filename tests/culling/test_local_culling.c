@@ -356,22 +356,14 @@ static void run_kind(sequence_kind kind, const char *name, local_tally *sum) {
     assert_true(sum->exactly * 100 > sum->small * EXACT_PERCENT && sum->windings > sum->small);
 }
 
-static void scenes_equal_no_culling(void **state) {
+TEST(scenes_equal_no_culling) {
     local_tally sum = {0};
-    (void)state;
     run_kind(SEQUENCE_SCENE, "scenes", &sum);
     assert_true(sum.partly_clean * 5 > sum.intervals && sum.closing_passes > 0 && sum.all_clean > 0);
 }
 
-static void grids_equal_no_culling(void **state) {
+TEST(grids_equal_no_culling) {
     local_tally sum = {0};
-    (void)state;
     run_kind(SEQUENCE_GRID, "grids", &sum);
     assert_true(sum.partly_clean * 5 > sum.intervals && sum.closing_passes > 0 && sum.all_clean > 0);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(scenes_equal_no_culling),
-                                       cmocka_unit_test(grids_equal_no_culling)};
-    return cmocka_run_group_tests_name("local_culling", tests, NULL, NULL);
 }

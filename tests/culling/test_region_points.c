@@ -39,8 +39,7 @@ static void mean_of(const rig *r, const scene *s, const double *x, uint32_t comp
     for (int k = 0; k < 3; k++) out[k] /= 3.0 * count;
 }
 
-static void without_a_plan_points_are_means(void **state) {
-    (void)state;
+TEST(without_a_plan_points_are_means) {
     cscd_detector_options options = cscd_detector_defaults();
     options.method = CSCD_METHOD_SINGLE;
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
@@ -95,8 +94,7 @@ static uint32_t check_facing(const rig *r, const cscd_plan *plan) {
     return checked;
 }
 
-static void orientations_are_seen_from_these_points(void **state) {
-    (void)state;
+TEST(orientations_are_seen_from_these_points) {
     static const scene_family families[] = {SCENE_NOISY_SPHERE, SCENE_BENT_CAPSULE, SCENE_SQUASHED_TORUS,
                                             SCENE_LINKED_TORI};
     cscd_plan_options plan_options = cscd_plan_defaults();
@@ -127,8 +125,7 @@ static void orientations_are_seen_from_these_points(void **state) {
     assert_true(checked > 1000);
 }
 
-static void other_methods_have_no_regions(void **state) {
-    (void)state;
+TEST(other_methods_have_no_regions) {
     scene_make(SCENE_NOISY_SPHERE, 1, &interval);
     static const cscd_method methods[] = {CSCD_METHOD_NONE, CSCD_METHOD_BRUTE, CSCD_METHOD_ICCD};
     cscd_detector_options options = cscd_detector_defaults();
@@ -143,11 +140,4 @@ static void other_methods_have_no_regions(void **state) {
     rig r = rig_create(&interval, 1, &options);
     assert_int_equal(cscd_detector_region_count(r.detector), 0);
     rig_destroy(&r);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(without_a_plan_points_are_means),
-                                       cmocka_unit_test(orientations_are_seen_from_these_points),
-                                       cmocka_unit_test(other_methods_have_no_regions)};
-    return cmocka_run_group_tests_name("region points", tests, NULL, NULL);
 }

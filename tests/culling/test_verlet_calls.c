@@ -87,12 +87,11 @@ static uint32_t walk_at_last(walker *w, const double *x0, const double *x1, walk
 }
 
 /* Two walkers go the same way, and one is stopped now and then, at any report of a call. */
-static void cancelled_calls_leave_lists_as_they_were(void **state) {
+TEST(cancelled_calls_leave_lists_as_they_were) {
     march m = march_make(MARCH_APPROACH);
     double *x0 = make_positions(&m), *x1 = make_positions(&m), s = 0.0;
     uint32_t answered = 0, cancelled = 0, with_contacts = 0;
     walker whole, stopped;
-    (void)state;
     walker_begin(&whole, &m);
     walker_begin(&stopped, &m);
     march_place(&m, s, x1);
@@ -118,8 +117,7 @@ static void cancelled_calls_leave_lists_as_they_were(void **state) {
 }
 
 /* Then what is there may be of two lists. */
-static void a_list_that_was_replaced_has_ended(void **state) {
-    (void)state;
+TEST(a_list_that_was_replaced_has_ended) {
     for (int replaced = 0; replaced < 2; replaced++) {
         verlet_list v = {.now = {.exists = true, .revision = 7, .served = 5, .was_quiet = true}};
         verlet_list_begin_call(&v);
@@ -133,11 +131,10 @@ static void a_list_that_was_replaced_has_ended(void **state) {
 }
 
 /* The first list takes memory. Where an allocation fails, the interval goes the usual way. */
-static void without_memory_there_is_no_list(void **state) {
+TEST(without_memory_there_is_no_list) {
     march m = march_make(MARCH_APPROACH);
     double *x[FIRST_LIST + 2];
     uint32_t without = 0, failed = 0;
-    (void)state;
     for (int i = 0; i < FIRST_LIST + 2; i++) {
         x[i] = make_positions(&m);
         march_place(&m, 0.001 * i, x[i]);
@@ -178,11 +175,4 @@ static int seed_walk(void **state) {
     return 0;
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(cancelled_calls_leave_lists_as_they_were, seed_walk),
-        cmocka_unit_test(a_list_that_was_replaced_has_ended),
-        cmocka_unit_test(without_memory_there_is_no_list),
-    };
-    return cmocka_run_group_tests_name("verlet calls", tests, NULL, NULL);
-}
+AROUND_EACH(seed_walk, NULL)

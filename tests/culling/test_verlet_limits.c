@@ -152,11 +152,10 @@ static bool step_is_answered(const facing_spheres *f, cscd_detector *d, size_t *
 /* ---- both features move ------------------------------------------------------------------------------------ */
 
 /* At the list's reference the tip is farther from the wall than one skin, and nearer than two. Either goes less than a skin. */
-static void features_meet_within_two_skins(void **state) {
+TEST(features_meet_within_two_skins) {
     facing_spheres f;
     uint32_t answered = 0;
     size_t contacts = 0, expected = 0;
-    (void)state;
     spheres_begin(&f, 1.7 * skin);
     cscd_detector *with = make_detector(&f, CSCD_COHERENCE_AUTO),
                   *without = make_detector(&f, CSCD_COHERENCE_OFF);
@@ -178,12 +177,11 @@ static void features_meet_within_two_skins(void **state) {
 
 /* A vertex jumps beyond every skin as soon as there is a list, which so serves once. The next one waits, twice as long each time,
  * up to 64 intervals. */
-static void lists_of_no_use_wait_longer_and_longer(void **state) {
+TEST(lists_of_no_use_wait_longer_and_longer) {
     static const uint32_t expected[] = {4, 8, 16, 32, 64, 64};
     facing_spheres f;
     double out = 1.0;
     size_t contacts;
-    (void)state;
     spheres_begin(&f, 20.0);
     cscd_detector *d = make_detector(&f, CSCD_COHERENCE_AUTO);
     for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {
@@ -198,12 +196,4 @@ static void lists_of_no_use_wait_longer_and_longer(void **state) {
     }
     cscd_detector_destroy(d);
     spheres_end(&f);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(features_meet_within_two_skins),
-        cmocka_unit_test(lists_of_no_use_wait_longer_and_longer),
-    };
-    return cmocka_run_group_tests_name("verlet limits", tests, NULL, NULL);
 }

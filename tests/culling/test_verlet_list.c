@@ -305,33 +305,29 @@ static void run_march(march_kind kind, cscd_method method, cscd_mode mode, doubl
     sum->strays += a.strays;
 }
 
-static void smooth_marches(void **state) {
+TEST(smooth_marches) {
     marches_met sum = {0, 0};
-    (void)state;
     for (int kind = 0; kind < MARCH_KINDS; kind++)
         run_march((march_kind)kind, CSCD_METHOD_SINGLE, CSCD_MODE_ALL, 0.0, false, &sum);
     assert_true(sum.ended_by_contact >= INTERVALS / 72 && sum.strays > 0);
 }
 
-static void rough_marches(void **state) {
+TEST(rough_marches) {
     marches_met sum = {0, 0};
-    (void)state;
     for (int kind = 0; kind < MARCH_KINDS; kind++)
         run_march((march_kind)kind, CSCD_METHOD_AUTO, CSCD_MODE_ALL, 0.002, false, &sum);
 }
 
-static void marches_by_regions(void **state) {
+TEST(marches_by_regions) {
     marches_met sum = {0, 0};
-    (void)state;
     for (int kind = MARCH_JAWS; kind < MARCH_KINDS; kind++) {
         run_march((march_kind)kind, CSCD_METHOD_KMEANS, CSCD_MODE_ALL, 0.0, false, &sum);
         run_march((march_kind)kind, CSCD_METHOD_KMEANS, CSCD_MODE_EARLIEST, 0.001, false, &sum);
     }
 }
 
-static void disturbed_marches(void **state) {
+TEST(disturbed_marches) {
     marches_met sum = {0, 0};
-    (void)state;
     for (int kind = 0; kind < MARCH_KINDS; kind++)
         run_march((march_kind)kind, CSCD_METHOD_SINGLE, CSCD_MODE_ALL, 0.0, true, &sum);
 }
@@ -342,12 +338,4 @@ static int seed_march(void **state) {
     return 0;
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(smooth_marches, seed_march),
-        cmocka_unit_test_setup(rough_marches, seed_march),
-        cmocka_unit_test_setup(marches_by_regions, seed_march),
-        cmocka_unit_test_setup(disturbed_marches, seed_march),
-    };
-    return cmocka_run_group_tests_name("verlet list", tests, NULL, NULL);
-}
+AROUND_EACH(seed_march, NULL)

@@ -46,8 +46,7 @@ static double greatest_depth(const cscd_depths *depths) {
 
 /* A ball that is sunk 0.1 into a slab: as two objects, as two parts of one, without parts, and as two parts that have triangles of both:
  * then the surface under the ball is within the body, and the way out is longer. */
-static void a_part_is_a_body_if_it_is_closed(void **state) {
-    (void)state;
+TEST(a_part_is_a_body_if_it_is_closed) {
     static uint32_t labels[SCENE_TRIANGLES_MAX];
     cscd_context *context;
     cscd_mesh *meshes[4];
@@ -112,8 +111,7 @@ static void check_changed_bodies(cscd_detector *detector, const cscd_mesh *mesh,
 
 /* The same ball and slab, of which two parts have triangles of both: what belongs together is said apart, to a clone and after a change
  * of the mesh, too. */
-static void bodies_have_labels_of_their_own(void **state) {
-    (void)state;
+TEST(bodies_have_labels_of_their_own) {
     static uint32_t parts[SCENE_TRIANGLES_MAX], bodies[SCENE_TRIANGLES_MAX], told[SCENE_TRIANGLES_MAX];
     cscd_context *context;
     cscd_mesh *mesh;
@@ -143,12 +141,4 @@ static void bodies_have_labels_of_their_own(void **state) {
     cscd_detector_destroy(detector);
     cscd_mesh_destroy(mesh);
     cscd_context_destroy(context);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_part_is_a_body_if_it_is_closed),
-        cmocka_unit_test(bodies_have_labels_of_their_own),
-    };
-    return cmocka_run_group_tests_name("body_labels", tests, NULL, NULL);
 }

@@ -89,8 +89,7 @@ static const two_boxes by_hand[] = {
     {"apart", {{0, 1, 0, 1, 0, 1}, {1.5, 2, 0, 1, 0, 1}}, 0.0},
 };
 
-static void boxes_by_hand(void **state) {
-    (void)state;
+TEST(boxes_by_hand) {
     for (size_t i = 0; i < sizeof by_hand / sizeof *by_hand; i++) {
         for (int p = 0; p < PLACEMENTS; p++) {
             for (int order = 0; order < 2; order++) {
@@ -194,8 +193,7 @@ static void turn_body(random_stream *random, uint32_t first) {
     }
 }
 
-static void random_bodies(void **state) {
-    (void)state;
+TEST(random_bodies) {
     random_stream random = stream_start(19);
     const char *asked = getenv("SCENES"); /* so many instead, such as 20000 */
     const size_t scenes = asked != NULL ? strtoul(asked, NULL, 10) : SCENES;
@@ -229,8 +227,7 @@ static void random_bodies(void **state) {
 
 /* Below the bumps of a disc: the plate is of few triangles, so much of it may have the deepest point, and not all of that fits in the
  * queue at once. */
-static void a_plate_below_bumps(void **state) {
-    (void)state;
+TEST(a_plate_below_bumps) {
     random_stream random = stream_start(23);
     const double centre[3] = {0, 0, 0}, low[3] = {-0.6, -0.6, 0.9}, size[3] = {1.2, 1.2, 0.01};
     enum { SIDE = 40 };
@@ -261,8 +258,7 @@ static void a_plate_below_bumps(void **state) {
 /* ---- a limit ------------------------------------------------------------------------------------------------ */
 
 /* The depth of a tilted box in a box is 0.49 to the last digits of its bounds; a limit within them decides. */
-static void a_limit_is_decided(void **state) {
-    (void)state;
+TEST(a_limit_is_decided) {
     random_stream random = stream_start(5);
     body_rig_begin(&rig);
     const double low[3] = {-1, -1, -1}, size[3] = {2, 2, 2}, thin[3] = {0.9, 0.3, 0.2}, origin[3] = {0, 0, 0};
@@ -300,8 +296,7 @@ static void a_limit_is_decided(void **state) {
 /* ---- edges ------------------------------------------------------------------------------------------------- */
 
 /* An edge of a box lies between two of its curves in another body, and its first triangle has no area. */
-static void an_edge_whose_first_triangle_has_no_area(void **state) {
-    (void)state;
+TEST(an_edge_whose_first_triangle_has_no_area) {
     static const double low[3] = {0, 0, 0}, size[3] = {4, 1, 1}, wall[3] = {1.5, -1, -1},
                         thick[3] = {1, 3, 3};
     for (int flat = 0; flat < 2; flat++) {
@@ -341,15 +336,4 @@ static void an_edge_whose_first_triangle_has_no_area(void **state) {
         assert_true(along >= 1);
         body_rig_free(&rig);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(boxes_by_hand),
-        cmocka_unit_test(random_bodies),
-        cmocka_unit_test(a_plate_below_bumps),
-        cmocka_unit_test(a_limit_is_decided),
-        cmocka_unit_test(an_edge_whose_first_triangle_has_no_area),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -30,8 +30,7 @@ static double deepest_of(uint32_t first, uint32_t end, uint32_t object) {
     return deepest;
 }
 
-static void a_box_sunk_into_a_slab(void **state) {
-    (void)state;
+TEST(a_box_sunk_into_a_slab) {
     body_rig_begin(&rig);
     add_box(0, 0, -2, 10, 10, 2);
     add_box(3, 4, -0.125, 1, 1, 1);
@@ -49,8 +48,7 @@ static void a_box_sunk_into_a_slab(void **state) {
 }
 
 /* The long bar goes through the wall; its lower edges are near to the bottom of the wall. */
-static void a_bar_through_a_wall(void **state) {
-    (void)state;
+TEST(a_bar_through_a_wall) {
     body_rig_begin(&rig);
     add_box(-3, 0.1, 0.2, 6, 0.5, 0.25);
     add_box(0.3, -2, 0.1, 0.5, 5, 2);
@@ -72,8 +70,7 @@ static void a_bar_through_a_wall(void **state) {
 }
 
 /* All that is buried under the infinitely small motion has depth 0. */
-static void a_box_on_a_table(void **state) {
-    (void)state;
+TEST(a_box_on_a_table) {
     body_rig_begin(&rig);
     add_box(0, 0, -2, 10, 10, 2);
     add_box(3, 4, 0, 1, 1, 1);
@@ -86,8 +83,7 @@ static void a_box_on_a_table(void **state) {
 }
 
 /* The octahedron's equator lies in the face of a box: no two triangles cross, but half of it is buried. */
-static void an_equator_in_a_face(void **state) {
-    (void)state;
+TEST(an_equator_in_a_face) {
     static const double corners[6][3] = {{1, 1, 0}, {3, 1, 0}, {3, 3, 0}, {1, 3, 0}, {2, 2, 1}, {2, 2, -1}};
     body_rig_begin(&rig);
     add_box(0, 0, -2, 4, 4, 2);
@@ -116,8 +112,7 @@ static const double *corner_of(uint32_t triangle, uint32_t i) {
     return rig.all.x0 + (size_t)rig.all.triangles[triangle * 3 + i] * 3;
 }
 
-static void balls_in_rings(void **state) {
-    (void)state;
+TEST(balls_in_rings) {
     static const double origin[3] = {0, 0, 0};
     random_stream random = stream_start(8);
     size_t compared = 0;
@@ -163,8 +158,7 @@ static void sample_outer_surface(random_stream *random, const cscd_depth *depth)
     }
 }
 
-static void a_snake_in_its_own_tail(void **state) {
-    (void)state;
+TEST(a_snake_in_its_own_tail) {
     random_stream random = stream_start(9);
     body_rig_begin(&rig);
     body_rig_add_snake(&rig);
@@ -179,13 +173,4 @@ static void a_snake_in_its_own_tail(void **state) {
         for (int k = 0; k < SAMPLES; k++) sample_outer_surface(&random, d);
     }
     body_rig_free(&rig);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_box_sunk_into_a_slab), cmocka_unit_test(a_bar_through_a_wall),
-        cmocka_unit_test(a_box_on_a_table),       cmocka_unit_test(an_equator_in_a_face),
-        cmocka_unit_test(balls_in_rings),         cmocka_unit_test(a_snake_in_its_own_tail),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

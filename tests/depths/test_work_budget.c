@@ -33,8 +33,7 @@ static cscd_intersection_options find_references(void) {
 
 /* Work that does not fit leaves out depths alone, the same for any number of threads; what is wanted is more, and
  * in the end enough. */
-static void work_has_a_budget(void **state) {
-    (void)state;
+TEST(work_has_a_budget) {
     make_tangle(&rig, 3);
     make_tangle(&one_thread, 1);
     make_tangle(&without_depths, 1);
@@ -60,8 +59,7 @@ static void work_has_a_budget(void **state) {
 }
 
 /* Bodies in each other: a vertex asks of each body around it, which is more work than the mesh is large. */
-static void searches_are_work(void **state) {
-    (void)state;
+TEST(searches_are_work) {
     enum { SHELLS = 20 };
     cscd_intersection_options options = cscd_intersection_defaults();
     options.depths = options.part_bodies = true;
@@ -88,8 +86,7 @@ static bool count_report(void *user, const char *stage, double fraction) {
 }
 
 /* The host is asked before every 16th question, before every group of triangles is opened, and before every fourth is looked at. */
-static void the_host_is_asked_all_along(void **state) {
-    (void)state;
+TEST(the_host_is_asked_all_along) {
     size_t asked = 0;
     cscd_intersection_options options = cscd_intersection_defaults();
     options.depths = true;
@@ -102,11 +99,4 @@ static void the_host_is_asked_all_along(void **state) {
     assert_true(groups > 20 && questions > 16);
     assert_true(asked >= (questions + 15) / 16 + groups + (groups + 3) / 4);
     body_rig_free(&rig);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(work_has_a_budget),
-                                       cmocka_unit_test(searches_are_work),
-                                       cmocka_unit_test(the_host_is_asked_all_along)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -43,8 +43,7 @@ static cscd_counters count_step(const rig *r, size_t *contacts) {
 }
 
 /* A patch of 1 % of two spheres that almost touch everywhere. */
-static void work_falls_with_the_active_part(void **state) {
-    (void)state;
+TEST(work_falls_with_the_active_part) {
     static const cscd_method methods[] = {CSCD_METHOD_NONE, CSCD_METHOD_SINGLE, CSCD_METHOD_BRUTE};
     static uint32_t vertices[SCENE_VERTICES_MAX];
     scene_clear(&s);
@@ -84,8 +83,7 @@ static void expect_refused(const rig *r, cscd_status status, const char *sentenc
         fail_msg("\"%s\" does not say \"%s\"", cscd_context_detail(r->context), sentence);
 }
 
-static void moved_vertices_are_refused(void **state) {
-    (void)state;
+TEST(moved_vertices_are_refused) {
     static double end[SCENE_VERTICES_MAX * 3];
     static uint32_t vertices[SCENE_VERTICES_MAX];
     cscd_contacts contacts;
@@ -124,8 +122,7 @@ static void moved_vertices_are_refused(void **state) {
 }
 
 /* A third has no float. */
-static void rounding_moves_vertices(void **state) {
-    (void)state;
+TEST(rounding_moves_vertices) {
     static float floats[SCENE_VERTICES_MAX * 3];
     cscd_free_step step;
     const uint32_t vertex = 0;
@@ -147,8 +144,7 @@ static void rounding_moves_vertices(void **state) {
     rig_destroy(&r);
 }
 
-static void mistakes_are_refused(void **state) {
-    (void)state;
+TEST(mistakes_are_refused) {
     cscd_contacts found;
     scene_make(SCENE_TWO_SPHERES, 3, &s);
     rig r = rig_create(&s, 1, NULL);
@@ -171,8 +167,7 @@ static void mistakes_are_refused(void **state) {
     rig_destroy(&r);
 }
 
-static void lines_begin_again(void **state) {
-    (void)state;
+TEST(lines_begin_again) {
     static double end[SCENE_VERTICES_MAX * 3];
     cscd_line_search *line = NULL;
     cscd_proximities near;
@@ -223,8 +218,7 @@ static void make_crossing_sphere(void) {
 }
 
 /* What was not compared is not known, however much it crosses. */
-static void checks_leave_open_what_they_do_not_compare(void **state) {
-    (void)state;
+TEST(checks_leave_open_what_they_do_not_compare) {
     static uint32_t vertices[SCENE_VERTICES_MAX];
     size_t open = 0, crossing = 0, known = 0, missed = 0;
     for (int start = CSCD_START_PROVE; start <= CSCD_START_UNKNOWN; start++) {
@@ -263,8 +257,7 @@ static void checks_leave_open_what_they_do_not_compare(void **state) {
 }
 
 /* The steps of a detector without a set prove no more. */
-static void proofs_look_at_everything(void **state) {
-    (void)state;
+TEST(proofs_look_at_everything) {
     static uint32_t vertices[SCENE_VERTICES_MAX];
     cscd_detector_options options = cscd_detector_defaults();
     options.method = CSCD_METHOD_SINGLE;
@@ -291,8 +284,7 @@ static void proofs_look_at_everything(void **state) {
 }
 
 /* What a seam uncovers waits, wherever the active vertices are. */
-static void pairs_wait_without_active_vertices(void **state) {
-    (void)state;
+TEST(pairs_wait_without_active_vertices) {
     static const double separations[] = {0.0, 0.05};
     for (int i = 0; i < 2; i++) {
         equal_panels p;
@@ -323,18 +315,4 @@ static void pairs_wait_without_active_vertices(void **state) {
         active_twins_end(&twins);
         panels_end(&p);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(work_falls_with_the_active_part),
-        cmocka_unit_test(moved_vertices_are_refused),
-        cmocka_unit_test(rounding_moves_vertices),
-        cmocka_unit_test(mistakes_are_refused),
-        cmocka_unit_test(lines_begin_again),
-        cmocka_unit_test(checks_leave_open_what_they_do_not_compare),
-        cmocka_unit_test(proofs_look_at_everything),
-        cmocka_unit_test(pairs_wait_without_active_vertices),
-    };
-    return cmocka_run_group_tests_name("active_calls", tests, NULL, NULL);
 }

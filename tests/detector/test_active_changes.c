@@ -33,8 +33,7 @@ static uint32_t make_flying_sphere(uint32_t *vertices) {
 enum { BALLS = 60 };
 
 /* Balls that jump about between steps, so that trees are built again. Every third one rests, but for some of its vertices. */
-static void rebuilt_trees_have_the_set(void **state) {
-    (void)state;
+TEST(rebuilt_trees_have_the_set) {
     static double next[SCENE_VERTICES_MAX * 3];
     double jump[3] = {0, 0, 0}, shift[3] = {0, 0, 0};
     random_stream random = stream_start(4);
@@ -118,8 +117,7 @@ static void run_changes(cscd_context *context, uint64_t seed, size_t *told) {
     moving_end_scene();
 }
 
-static void clones_and_changed_meshes_keep_the_set(void **state) {
-    (void)state;
+TEST(clones_and_changed_meshes_keep_the_set) {
     cscd_context_options options = cscd_context_defaults();
     cscd_context *context = NULL;
     size_t told = 0;
@@ -160,8 +158,7 @@ static void counted_end(counted_rig *r) {
 }
 
 /* The set is given before there are trees, or after. */
-static void every_allocation_may_fail(void **state) {
-    (void)state;
+TEST(every_allocation_may_fail) {
     static uint32_t vertices[SCENE_VERTICES_MAX];
     size_t failures = 0;
     uint32_t count = make_flying_sphere(vertices);
@@ -198,8 +195,7 @@ static void every_allocation_may_fail(void **state) {
 }
 
 /* One of two objects goes; the change and the trees that follow it may fail anywhere. */
-static void changes_may_fail(void **state) {
-    (void)state;
+TEST(changes_may_fail) {
     size_t failures = 0;
     bool failed = true;
     cscd_contacts found;
@@ -238,14 +234,4 @@ static void changes_may_fail(void **state) {
         counted_end(&r);
     }
     assert_true(failures > 10);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rebuilt_trees_have_the_set),
-        cmocka_unit_test(clones_and_changed_meshes_keep_the_set),
-        cmocka_unit_test(every_allocation_may_fail),
-        cmocka_unit_test(changes_may_fail),
-    };
-    return cmocka_run_group_tests_name("active_changes", tests, NULL, NULL);
 }

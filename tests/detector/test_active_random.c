@@ -132,8 +132,7 @@ static void compare_scene(uint64_t seed, random_stream *random, filtered_tally *
     destroy_made(&m);
 }
 
-static void scenes_equal_brute_force(void **state) {
-    (void)state;
+TEST(scenes_equal_brute_force) {
     filtered_tally sum = {0, 0, 0, 0};
     for (uint64_t seed = 0; seed < 96; seed++) {
         random_stream random = stream_start(seed);
@@ -207,8 +206,7 @@ static void run_sequence(uint64_t seed) {
     destroy_made(&m);
 }
 
-static void sequences_equal_the_whole(void **state) {
-    (void)state;
+TEST(sequences_equal_the_whole) {
     clear_tally();
     for (uint64_t seed = 0; seed < 60 / SLOWER; seed++) run_sequence(seed);
     print_tally("sequences");
@@ -251,8 +249,7 @@ static void run_objects(uint64_t seed) {
     rules_rig_destroy(&made);
 }
 
-static void objects_equal_the_whole(void **state) {
-    (void)state;
+TEST(objects_equal_the_whole) {
     clear_tally();
     for (uint64_t seed = 0; seed < 18 / SLOWER; seed++) run_objects(seed);
     print_tally("objects");
@@ -298,20 +295,9 @@ static void run_loose(uint64_t seed) {
     loose_scene_free(&loose);
 }
 
-static void loose_objects_equal_the_whole(void **state) {
-    (void)state;
+TEST(loose_objects_equal_the_whole) {
     clear_tally();
     for (uint64_t seed = 0; seed < 60 / SLOWER; seed++) run_loose(seed);
     print_tally("loose");
     assert_true(twins.contacts > 1000 && twins.near > 500 && twins.left_out > 1000);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(scenes_equal_brute_force),
-        cmocka_unit_test(sequences_equal_the_whole),
-        cmocka_unit_test(objects_equal_the_whole),
-        cmocka_unit_test(loose_objects_equal_the_whole),
-    };
-    return cmocka_run_group_tests_name("active_random", tests, NULL, NULL);
 }

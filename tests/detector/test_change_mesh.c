@@ -99,8 +99,7 @@ static void settle_model(cscd_detector *expected) {
 }
 
 /* Several changes in a row, some without a call between them; between others, several calls. */
-static void equals_a_new_detector(void **state) {
-    (void)state;
+TEST(equals_a_new_detector) {
     size_t contacts = 0, culled = 0, waited = 0;
     for (uint64_t seed = 0; seed < 170; seed++) {
         counting_allocator counter = counting_allocator_start();
@@ -139,9 +138,4 @@ static void equals_a_new_detector(void **state) {
         assert_int_equal(counter.live, 0);
     }
     assert_true(contacts > 10000 && culled > 50 && waited > 1000);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(equals_a_new_detector)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

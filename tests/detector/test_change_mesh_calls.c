@@ -86,8 +86,7 @@ static void check_trees(const cscd_mesh_change *made, const bvh *old, size_t *ke
     }
 }
 
-static void keeps_what_is_untouched(void **state) {
-    (void)state;
+TEST(keeps_what_is_untouched) {
     size_t kept = 0, forgotten = 0, in_trees = 0;
     for (uint64_t seed = 1000; seed < 1060; seed++) {
         cscd_context *context = NULL;
@@ -115,8 +114,7 @@ static void keeps_what_is_untouched(void **state) {
 }
 
 /* Rest lengths of edges that were there stay; those of others are unknown. */
-static void keeps_rest_lengths(void **state) {
-    (void)state;
+TEST(keeps_rest_lengths) {
     size_t kept = 0, unknown = 0;
     for (uint64_t seed = 2000; seed < 2020; seed++) {
         cscd_context *context = NULL;
@@ -145,8 +143,7 @@ static void keeps_rest_lengths(void **state) {
 }
 
 /* What earlier calls have said is gone. */
-static void forgets_what_was_said(void **state) {
-    (void)state;
+TEST(forgets_what_was_said) {
     cscd_context *context = NULL;
     assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
     moving_begin_scene(context, 3000, true);
@@ -164,8 +161,7 @@ static void forgets_what_was_said(void **state) {
 /* ---- what is refused ------------------------------------------------------------------------------------- */
 
 /* Positions of new vertices have not been seen: they are checked, whatever bits they have. */
-static void positions_that_are_no_numbers(void **state) {
-    (void)state;
+TEST(positions_that_are_no_numbers) {
     const uint32_t triangles[6] = {0, 1, 2, 2, 1, 3}, torn[6] = {0, 1, 2, 4, 1, 3};
     const uint32_t origins[5] = {0, 1, 2, 3, 2};
     const cscd_object_desc whole = cscd_object_of_triangles(4, 2, triangles);
@@ -194,8 +190,7 @@ static void positions_that_are_no_numbers(void **state) {
     cscd_context_destroy(context);
 }
 
-static void refused_changes(void **state) {
-    (void)state;
+TEST(refused_changes) {
     cscd_context *context = NULL;
     assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
     moving_begin_scene(context, 4000, true);
@@ -230,8 +225,7 @@ static void check_line_refused(cscd_line_search *line) {
     assert_int_equal(cscd_line_search_candidate_count(line), 0);
 }
 
-static void line_searches_begin_again(void **state) {
-    (void)state;
+TEST(line_searches_begin_again) {
     static double reached[2][MOVING_VERTICES * 3];
     for (uint64_t seed = 5000; seed < 5030; seed++) {
         counting_allocator counter = counting_allocator_start();
@@ -274,8 +268,7 @@ static void check_step_as_new(cscd_detector *expected) {
 }
 
 /* The detector stays what it was; and when the next step runs out of memory, it can be repeated. */
-static void failing_allocations(void **state) {
-    (void)state;
+TEST(failing_allocations) {
     for (uint64_t seed = 6000; seed < 6012; seed++) {
         counting_allocator counter = counting_allocator_start();
         cscd_context *context = counted_context(&counter);
@@ -320,13 +313,4 @@ static void failing_allocations(void **state) {
         cscd_context_destroy(context);
         assert_int_equal(counter.live, 0);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(keeps_what_is_untouched), cmocka_unit_test(keeps_rest_lengths),
-        cmocka_unit_test(forgets_what_was_said),   cmocka_unit_test(positions_that_are_no_numbers),
-        cmocka_unit_test(refused_changes),         cmocka_unit_test(line_searches_begin_again),
-        cmocka_unit_test(failing_allocations)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

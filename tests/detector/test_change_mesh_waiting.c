@@ -168,8 +168,7 @@ static void list_new_seams(uint32_t (*seams)[2]) {
 }
 
 /* The second vertex is sewn to nothing, and touches what the first one is sewn to, and its neighbours there. */
-static void a_sewn_vertex_tears(void **state) {
-    (void)state;
+TEST(a_sewn_vertex_tears) {
     cscd_detector_options options = cscd_detector_defaults();
     options.seams = p.seams[0];
     options.seam_count = PANEL;
@@ -182,8 +181,7 @@ static void a_sewn_vertex_tears(void **state) {
 }
 
 /* What is sewn to nothing waits already, because it was ignored before. */
-static void what_waits_still_does_after_a_tear(void **state) {
-    (void)state;
+TEST(what_waits_still_does_after_a_tear) {
     cscd_detector_options options = cscd_detector_defaults();
     options.seams = p.seams[0];
     options.seam_count = TORN + 1;
@@ -208,8 +206,7 @@ static void expect_remembered(void) {
     expect_waiting(new_detector(NULL));
 }
 
-static void opened_seams_are_remembered(void **state) {
-    (void)state;
+TEST(opened_seams_are_remembered) {
     cscd_detector_options options = cscd_detector_defaults();
     options.seams = p.seams[0];
     options.seam_count = PANEL;
@@ -218,8 +215,7 @@ static void opened_seams_are_remembered(void **state) {
     expect_remembered();
 }
 
-static void ignored_pairs_are_remembered(void **state) {
-    (void)state;
+TEST(ignored_pairs_are_remembered) {
     cscd_detector_options options = cscd_detector_defaults();
     options.ignored = p.ignored[0];
     options.ignored_count = TRIANGLES * TRIANGLES;
@@ -228,8 +224,7 @@ static void ignored_pairs_are_remembered(void **state) {
     expect_remembered();
 }
 
-static void rules_are_remembered(void **state) {
-    (void)state;
+TEST(rules_are_remembered) {
     cscd_detector_options options = cscd_detector_defaults();
     cscd_object_rule rules[3];
     for (int i = 0; i < 3; i++) rules[i] = cscd_object_rule_default();
@@ -243,8 +238,7 @@ static void rules_are_remembered(void **state) {
 }
 
 /* The first panel is an obstacle no more. */
-static void freed_obstacles_wait(void **state) {
-    (void)state;
+TEST(freed_obstacles_wait) {
     cscd_object_rule rules[3];
     cscd_detector_options options = cscd_detector_defaults();
     for (int i = 0; i < 3; i++) rules[i] = cscd_object_rule_default();
@@ -261,8 +255,7 @@ static void freed_obstacles_wait(void **state) {
 
 /* ---- ignored pairs whose triangles change their order ------------------------------------------------------ */
 
-static void reversed_triangles_stay_ignored(void **state) {
-    (void)state;
+TEST(reversed_triangles_stay_ignored) {
     enum { BOTH = 2 * TRIANGLES };
     uint32_t triangles[2][BOTH][3], origins[BOTH];
     cscd_detector_options options = cscd_detector_defaults();
@@ -299,17 +292,4 @@ static void reversed_triangles_stay_ignored(void **state) {
     cscd_mesh_change_destroy(change);
     cscd_mesh_destroy(mesh);
     end_panels();
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_sewn_vertex_tears),
-        cmocka_unit_test(opened_seams_are_remembered),
-        cmocka_unit_test(ignored_pairs_are_remembered),
-        cmocka_unit_test(rules_are_remembered),
-        cmocka_unit_test(freed_obstacles_wait),
-        cmocka_unit_test(reversed_triangles_stay_ignored),
-        cmocka_unit_test(what_waits_still_does_after_a_tear),
-    };
-    return cmocka_run_group_tests_name("change_mesh_waiting", tests, NULL, NULL);
 }

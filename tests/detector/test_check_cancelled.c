@@ -76,8 +76,7 @@ static bool step_after_check(ignoring_host *h, const cscd_mesh *mesh) {
     return status == CSCD_CANCELLED;
 }
 
-static void later_steps_lose_nothing(void **state) {
-    (void)state;
+TEST(later_steps_lose_nothing) {
     random_stream random = stream_start(17);
     ignoring_host h = {NULL, false};
     cscd_context_options options = cscd_context_defaults();
@@ -95,9 +94,4 @@ static void later_steps_lose_nothing(void **state) {
     }
     assert_true(cancelled > TRIALS / 2);
     cscd_context_destroy(h.context);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(later_steps_lose_nothing)};
-    return cmocka_run_group_tests_name("check_cancelled", tests, NULL, NULL);
 }

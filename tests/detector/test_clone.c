@@ -71,8 +71,7 @@ static void check_same_steps(step_list a, step_list b) {
 }
 
 /* Counters too: the trees are the same, and nothing is proven twice. */
-static void goes_on_as_the_first(void **state) {
-    (void)state;
+TEST(goes_on_as_the_first) {
     size_t clean = 0, contacts = 0;
     for (uint64_t seed = 0; seed < 40; seed++) {
         counting_allocator counters[2] = {counting_allocator_start(), counting_allocator_start()};
@@ -104,8 +103,7 @@ static void goes_on_as_the_first(void **state) {
 }
 
 /* What is changed in one is not changed in the other. */
-static void goes_its_own_way(void **state) {
-    (void)state;
+TEST(goes_its_own_way) {
     sequence_make(SEQUENCE_SCENE, 3, 20, &recording);
     cscd_context *context = new_context(NULL, 1);
     cscd_mesh *mesh = mesh_of(context, &recording.shape);
@@ -154,8 +152,7 @@ static void *step_all(void *data) {
     return NULL;
 }
 
-static void two_threads(void **state) {
-    (void)state;
+TEST(two_threads) {
     sequence_make(SEQUENCE_SCENE, 8, 20, &recording);
     cscd_context *contexts[2] = {new_context(NULL, 1), new_context(NULL, 2)};
     cscd_mesh *mesh = mesh_of(contexts[0], &recording.shape);
@@ -186,8 +183,7 @@ static bool clone_inside(void *user, cscd_contact_kind kind, uint32_t a, uint32_
     return false;
 }
 
-static void refused_calls(void **state) {
-    (void)state;
+TEST(refused_calls) {
     sequence_make(SEQUENCE_GRID, 5, 20, &recording);
     cscd_context *context = new_context(NULL, 1);
     cloner c = {.other = new_context(NULL, 1)};
@@ -223,8 +219,7 @@ static uint32_t knowledge_sum(cscd_start_knowledge k) {
 
 /* Before the first call nothing is known; after a check of intersecting triangles these are crossing, and far from
  * them there are clean ones; after a step that touches, some are unknown. */
-static void knowledge_of_starts(void **state) {
-    (void)state;
+TEST(knowledge_of_starts) {
     uint32_t seen[4] = {0};
     for (uint64_t seed = 0; seed < 30; seed++) {
         sequence_make(SEQUENCE_SCENE, seed, 20, &recording);
@@ -264,12 +259,4 @@ static void knowledge_of_starts(void **state) {
     }
     assert_true(seen[CSCD_START_STATE_CLEAN] > 1000 && seen[CSCD_START_STATE_UNKNOWN] > 100 &&
                 seen[CSCD_START_STATE_FREE] > 0);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(goes_on_as_the_first),
-                                       cmocka_unit_test(goes_its_own_way), cmocka_unit_test(two_threads),
-                                       cmocka_unit_test(refused_calls),
-                                       cmocka_unit_test(knowledge_of_starts)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

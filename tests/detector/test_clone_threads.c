@@ -89,9 +89,8 @@ static size_t use_at_once(cscd_detector *detector) {
     return creator.found;
 }
 
-static void clones_work_at_the_same_time(void **state) {
+TEST(clones_work_at_the_same_time) {
     size_t found = 0;
-    (void)state;
     for (uint64_t seed = 0; seed < SCENES; seed++) {
         random_stream random = stream_start(seed);
         const loose_recipe recipe = {.triangles = true,
@@ -175,18 +174,11 @@ static size_t contacts_of_crowd(uint32_t thread_count, uint64_t *digest) {
     return count;
 }
 
-static void loose_objects_of_several_threads(void **state) {
+TEST(loose_objects_of_several_threads) {
     uint64_t one, four;
-    (void)state;
     size_t count = contacts_of_crowd(1, &one);
     assert_int_equal(contacts_of_crowd(4, &four), count);
     assert_int_equal(one, four);
     print_message("  %zu contacts\n", count);
     assert_true(count > 3000);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(clones_work_at_the_same_time),
-                                       cmocka_unit_test(loose_objects_of_several_threads)};
-    return cmocka_run_group_tests_name("clone threads", tests, NULL, NULL);
 }

@@ -65,9 +65,8 @@ static cscd_contacts collect_contacts(collection *c) {
     return found;
 }
 
-static void lists_are_sorted_for_any_lane_count(void **state) {
+TEST(lists_are_sorted_for_any_lane_count) {
     static cscd_contact expected[CONTACT_COUNT];
-    (void)state;
     const cscd_detector_options options = cscd_detector_defaults();
     scene_make(SCENE_SPIKE, 1, &shape);
     for (uint32_t threads = 1; threads <= 4; threads++) {
@@ -90,8 +89,7 @@ static bool ignore_everything(void *user, cscd_contact_kind kind, uint32_t a, ui
     return user == NULL && (kind == CSCD_CONTACT_VF || a < b);
 }
 
-static void what_the_caller_ignores_is_not_counted(void **state) {
-    (void)state;
+TEST(what_the_caller_ignores_is_not_counted) {
     cscd_detector_options options = cscd_detector_defaults();
     options.ignore = ignore_everything;
     scene_make(SCENE_SPIKE, 1, &shape);
@@ -106,9 +104,8 @@ static void what_the_caller_ignores_is_not_counted(void **state) {
 
 /* Of five contacts of a component with itself two were seen. Those stay that are at most 0.05 later than the earliest, and so
  * is the number of those that were seen among them. */
-static void dropped_contacts_are_not_seen_any_more(void **state) {
+TEST(dropped_contacts_are_not_seen_any_more) {
     static const double tois[] = {0.9, 0.1, 0.16, 0.95, 0.14};
-    (void)state;
     scene_make(SCENE_SPIKE, 1, &shape);
     rig r = rig_create(&shape, 1, NULL);
     cscd_detector *d = r.detector;
@@ -132,8 +129,7 @@ static void dropped_contacts_are_not_seen_any_more(void **state) {
 
 /* ---- long lists ---------------------------------------------------------------------------------------- */
 
-static void lanes_of_long_lists_give_back_their_memory(void **state) {
-    (void)state;
+TEST(lanes_of_long_lists_give_back_their_memory) {
     const cscd_detector_options options = cscd_detector_defaults();
     scene_make(SCENE_SPIKE, 1, &shape);
     for (uint32_t threads = 1; threads <= 4; threads++) {
@@ -160,8 +156,7 @@ static bool ignore_some(void *user, cscd_contact_kind kind, uint32_t a, uint32_t
 }
 
 /* Whole steps there and back, with lists that are copied and lists that are moved. */
-static void steps_with_long_lists_are_the_same(void **state) {
-    (void)state;
+TEST(steps_with_long_lists_are_the_same) {
     static scene back;
     size_t contacts = 0;
     for (uint32_t seed = 0; seed < 4 * SCENE_FAMILY_COUNT; seed++) {
@@ -185,13 +180,4 @@ static void steps_with_long_lists_are_the_same(void **state) {
         rig_destroy(&moving);
     }
     assert_true(contacts > 1000);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(lists_are_sorted_for_any_lane_count),
-                                       cmocka_unit_test(lanes_of_long_lists_give_back_their_memory),
-                                       cmocka_unit_test(steps_with_long_lists_are_the_same),
-                                       cmocka_unit_test(dropped_contacts_are_not_seen_any_more),
-                                       cmocka_unit_test(what_the_caller_ignores_is_not_counted)};
-    return cmocka_run_group_tests_name("contact_list", tests, NULL, NULL);
 }

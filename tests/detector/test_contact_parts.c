@@ -89,8 +89,7 @@ static size_t compare_with_brute_force(const cscd_contact *items, size_t count) 
 
 /* ---- sums ------------------------------------------------------------------------------------------------- */
 
-static void objects_are_parts_by_default(void **state) {
-    (void)state;
+TEST(objects_are_parts_by_default) {
     open_scene(NULL, 1);
     step_scene();
     part_count = 2;
@@ -101,8 +100,7 @@ static void objects_are_parts_by_default(void **state) {
 }
 
 /* Any selection, in any order; the list of the step stays. */
-static void parts_of_the_caller(void **state) {
-    (void)state;
+TEST(parts_of_the_caller) {
     size_t pairs = 0;
     for (uint32_t threads = 1; threads <= 3; threads++) {
         open_scene(NULL, threads);
@@ -127,8 +125,7 @@ static void parts_of_the_caller(void **state) {
 enum { LOOSE_VERTICES = 3 + 2 + 2 + 1 };
 
 /* A triangle, a wire and two drops fall through each other and the ground. */
-static void loose_objects_have_parts(void **state) {
-    (void)state;
+TEST(loose_objects_have_parts) {
     static const uint32_t triangle[3] = {0, 1, 2}, wire[2] = {0, 1};
     static const double up[3] = {0, 0, 1};
     static const double x0[LOOSE_VERTICES * 3] = {0, 0, 1, 4, 0, 1, 0, 4, 1, 1, 1, 2,
@@ -177,8 +174,7 @@ static void loose_objects_have_parts(void **state) {
 
 /* ---- calls ------------------------------------------------------------------------------------------------ */
 
-static void what_is_refused(void **state) {
-    (void)state;
+TEST(what_is_refused) {
     cscd_contact_part_pairs sums;
     open_scene(NULL, 1);
     step_scene();
@@ -207,14 +203,4 @@ static void what_is_refused(void **state) {
         assert_non_null(strstr(cscd_context_detail(rig.context), "contact 1 (kind "));
     }
     body_rig_free(&rig);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(objects_are_parts_by_default),
-        cmocka_unit_test(parts_of_the_caller),
-        cmocka_unit_test(loose_objects_have_parts),
-        cmocka_unit_test(what_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

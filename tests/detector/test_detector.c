@@ -12,8 +12,7 @@
 
 static scene interval, other; /* large; one test at a time */
 
-static void earlier_steps_leave_no_trace(void **state) {
-    (void)state;
+TEST(earlier_steps_leave_no_trace) {
     scene_make(SCENE_BOW_TIE, 1, &interval);
     rig r = rig_create(&interval, 1, NULL);
     cscd_contacts found = rig_step(&r, &interval);
@@ -63,8 +62,7 @@ static bool ignore_all_of_one(void *user, cscd_contact_kind kind, uint32_t a, ui
     return touches_triangle(&interval, chosen->rig, &contact, chosen->triangle);
 }
 
-static void ignored_pairs_are_left_out(void **state) {
-    (void)state;
+TEST(ignored_pairs_are_left_out) {
     uint32_t tested = 0;
     size_t left_out = 0;
     for (uint64_t seed = 1; seed < 40; seed++) {
@@ -100,8 +98,7 @@ static void ignored_pairs_are_left_out(void **state) {
 
 /* ---- statuses -------------------------------------------------------------------------------------- */
 
-static void bad_positions_are_named(void **state) {
-    (void)state;
+TEST(bad_positions_are_named) {
     static const double bad[] = {NAN, INFINITY, -INFINITY, 1e300, 1e-300, 5e-324};
     scene_make(SCENE_SPIKE, 1, &interval);
     rig r = rig_create(&interval, 1, NULL);
@@ -120,8 +117,7 @@ static void bad_positions_are_named(void **state) {
     rig_destroy(&r);
 }
 
-static void bad_arguments_are_refused(void **state) {
-    (void)state;
+TEST(bad_arguments_are_refused) {
     scene_make(SCENE_SPIKE, 1, &interval);
     rig r = rig_create(&interval, 1, NULL);
     cscd_contacts found;
@@ -142,8 +138,7 @@ static void bad_arguments_are_refused(void **state) {
     rig_destroy(&r);
 }
 
-static void names_and_values_match(void **state) {
-    (void)state;
+TEST(names_and_values_match) {
     cscd_method method = CSCD_METHOD_NONE;
     cscd_mode mode = CSCD_MODE_ALL;
     assert_true(cscd_method_from_name("brute", &method));
@@ -155,12 +150,4 @@ static void names_and_values_match(void **state) {
     assert_true(cscd_mode_from_name("all", &mode));
     assert_false(cscd_mode_from_name("some", &mode));
     assert_string_equal(cscd_version_string(), "2.0.0");
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(earlier_steps_leave_no_trace), cmocka_unit_test(ignored_pairs_are_left_out),
-        cmocka_unit_test(bad_positions_are_named), cmocka_unit_test(bad_arguments_are_refused),
-        cmocka_unit_test(names_and_values_match)};
-    return cmocka_run_group_tests_name("detector", tests, NULL, NULL);
 }

@@ -33,10 +33,9 @@ static size_t search_by(const rig *r, search_kind *kind, result_buffer *buffer, 
     return found.count;
 }
 
-static void trees_find_what_brute_force_finds(void **state) {
+TEST(trees_find_what_brute_force_finds) {
     size_t contacts = 0, of_orphans = 0;
     uint64_t adjacent = 0;
-    (void)state;
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         for (uint64_t seed = 0; seed < 6; seed++) {
             result_buffer expected = {.capacity = 0}, found = {.capacity = 0};
@@ -60,9 +59,4 @@ static void trees_find_what_brute_force_finds(void **state) {
     print_message("  %zu contacts, %zu of orphan pairs; %llu adjacent pairs skipped\n", contacts, of_orphans,
                   (unsigned long long)adjacent);
     assert_true(contacts > 1000 && of_orphans > 0 && adjacent > 10000);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(trees_find_what_brute_force_finds)};
-    return cmocka_run_group_tests_name("interval_search", tests, NULL, NULL);
 }

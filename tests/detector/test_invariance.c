@@ -100,14 +100,12 @@ static void scale_down(scene *s) {
     }
 }
 
-static void same_pairs_when_scaled(void **state) {
-    (void)state;
+TEST(same_pairs_when_scaled) {
     for_generic_scenes(scale_up, false);
     for_generic_scenes(scale_down, false);
 }
 
-static void same_pairs_in_reversed_time(void **state) {
-    (void)state;
+TEST(same_pairs_in_reversed_time) {
     for_generic_scenes(NULL, true);
 }
 
@@ -119,8 +117,7 @@ static void round_positions(scene *s) {
     }
 }
 
-static void same_pairs_under_bulk_motion(void **state) {
-    (void)state;
+TEST(same_pairs_under_bulk_motion) {
     static const double motion[3] = {64.0, -32.0, 17.0};
     for (int i = 0; i < GENERIC_COUNT; i++) {
         scene_make(generic_families[i], 200, &interval);
@@ -134,8 +131,7 @@ static void same_pairs_under_bulk_motion(void **state) {
 }
 
 /* Vertices and triangles are numbered in reverse order, and corners are rotated. */
-static void same_pairs_when_renumbered(void **state) {
-    (void)state;
+TEST(same_pairs_when_renumbered) {
     static uint32_t old_vertex[SCENE_VERTICES_MAX], old_triangle[SCENE_TRIANGLES_MAX];
     for (int i = 0; i < GENERIC_COUNT; i++) {
         scene_make(generic_families[i], 300, &interval);
@@ -155,11 +151,4 @@ static void same_pairs_when_renumbered(void **state) {
         collect_pairs(&other, old_vertex, old_triangle, &found_pairs);
         assert_same_pairs();
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(same_pairs_when_scaled), cmocka_unit_test(same_pairs_in_reversed_time),
-        cmocka_unit_test(same_pairs_under_bulk_motion), cmocka_unit_test(same_pairs_when_renumbered)};
-    return cmocka_run_group_tests_name("invariance", tests, NULL, NULL);
 }

@@ -156,8 +156,7 @@ enum { ORDERS_APART = 61 };
 enum { ORDERS_APART = 1 };
 #endif
 
-static void every_order(void **state) {
-    (void)state;
+TEST(every_order) {
     int factorial = 1, order[KINDS];
     for (int i = 2; i <= KINDS; i++) factorial *= i;
     for (int number = 0; number < factorial; number += ORDERS_APART) {
@@ -167,8 +166,7 @@ static void every_order(void **state) {
 }
 
 /* The threads of a context are joined by whichever object goes last. */
-static void threads_outlive_their_context(void **state) {
-    (void)state;
+TEST(threads_outlive_their_context) {
     for (int last = 0; last < KINDS; last++) {
         family f;
         family_create(&f, 3, KINDS);
@@ -198,8 +196,7 @@ static void *destroy_at_once(void *argument) {
 }
 
 /* As the finalizers of a language with a garbage collector do: each object on a thread of its own. */
-static void all_at_once(void **state) {
-    (void)state;
+TEST(all_at_once) {
     for (int round = 0; round < 50; round++) {
         family f;
         destroyer destroyers[KINDS];
@@ -219,11 +216,4 @@ static void all_at_once(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_order),
-        cmocka_unit_test(threads_outlive_their_context),
-        cmocka_unit_test(all_at_once),
-    };
-    return cmocka_run_group_tests_name("lifetimes", tests, move_up, NULL);
-}
+AROUND_ALL(move_up, NULL)

@@ -226,8 +226,7 @@ static void run_scene(int family, uint64_t seed, cscd_detector_options options, 
     pair_end(&p);
 }
 
-static void lists_are_counted_without_being_kept(void **state) {
-    (void)state;
+TEST(lists_are_counted_without_being_kept) {
     const cscd_method methods[] = {CSCD_METHOD_NONE, CSCD_METHOD_SINGLE, CSCD_METHOD_BRUTE,
                                    CSCD_METHOD_KMEANS, method_or_none(CSCD_METHOD_ICCD)};
     size_t sum[2] = {0};
@@ -243,8 +242,7 @@ static void lists_are_counted_without_being_kept(void **state) {
 }
 
 /* Lanes are suspended in the middle of a pass, and contacts that have left them taint as others. */
-static void lanes_are_suspended_in_mid_pass(void **state) {
-    (void)state;
+TEST(lanes_are_suspended_in_mid_pass) {
     const cscd_method methods[] = {CSCD_METHOD_SINGLE, CSCD_METHOD_NONE, CSCD_METHOD_KMEANS,
                                    CSCD_METHOD_BRUTE};
     size_t sum[2] = {0};
@@ -261,8 +259,7 @@ static void lanes_are_suspended_in_mid_pass(void **state) {
 
 /* ---- lines --------------------------------------------------------------------------------------------- */
 
-static void lines_have_the_cap_too(void **state) {
-    (void)state;
+TEST(lines_have_the_cap_too) {
     capped_pair p = {.ignores = false};
     cscd_line_search *lines[2];
     cscd_proximities truth, found;
@@ -292,8 +289,7 @@ static void lines_have_the_cap_too(void **state) {
 /* ---- memory -------------------------------------------------------------------------------------------- */
 
 /* A long list takes no more memory under a cap than the cap and the lanes' own room call for. */
-static void memory_is_bounded(void **state) {
-    (void)state;
+TEST(memory_is_bounded) {
     for (uint32_t threads = 1; threads <= 3; threads += 2) {
         capped_pair p = {.ignores = threads == 1};
         any_list list;
@@ -321,8 +317,7 @@ static void memory_is_bounded(void **state) {
 }
 
 /* The cap goes over to a clone, and to a larger mesh. */
-static void clones_and_torn_meshes_keep_the_cap(void **state) {
-    (void)state;
+TEST(clones_and_torn_meshes_keep_the_cap) {
     static double x0[2 * SCENE_VERTICES_MAX * 3], x1[2 * SCENE_VERTICES_MAX * 3];
     capped_pair p = {.ignores = false};
     cscd_detector *clone;
@@ -355,15 +350,4 @@ static void clones_and_torn_meshes_keep_the_cap(void **state) {
     assert_int_equal(cscd_detector_set_longest_list(NULL, 1), CSCD_NULL_OBJECT);
     cscd_mesh_change_destroy(change);
     pair_end(&p);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lists_are_counted_without_being_kept),
-        cmocka_unit_test(lanes_are_suspended_in_mid_pass),
-        cmocka_unit_test(lines_have_the_cap_too),
-        cmocka_unit_test(memory_is_bounded),
-        cmocka_unit_test(clones_and_torn_meshes_keep_the_cap),
-    };
-    return cmocka_run_group_tests_name("list_cap", tests, NULL, NULL);
 }

@@ -43,8 +43,7 @@ static void compare_with_truth(const oracle_list *truth, const cscd_detector_opt
     rig_destroy(&r);
 }
 
-static void every_method_equals_brute_force(void **state) {
-    (void)state;
+TEST(every_method_equals_brute_force) {
     oracle_list truth = {0};
     size_t contacts = 0, with_contact = 0, intervals = 0;
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
@@ -73,8 +72,7 @@ static void every_method_equals_brute_force(void **state) {
 }
 
 /* The counters of a step are its own, not the sums of all steps. */
-static void tests_are_counted_for_each_step(void **state) {
-    (void)state;
+TEST(tests_are_counted_for_each_step) {
     scene_make(SCENE_TWO_SPHERES, 1, &interval);
     cscd_detector_options options = options_within(0.2, CSCD_METHOD_NONE);
     rig r = rig_create(&interval, 1, &options);
@@ -87,8 +85,7 @@ static void tests_are_counted_for_each_step(void **state) {
 }
 
 /* Far smaller and larger scenes round their volumes differently, but have the same pairs. */
-static void same_pairs_when_scaled(void **state) {
-    (void)state;
+TEST(same_pairs_when_scaled) {
     static const int exponents[] = {-250, -140, 100, 270};
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         scene_make((scene_family)family, 11, &interval);
@@ -138,8 +135,7 @@ static cscd_contact *pairs_within(double distance, size_t *count) {
     return pairs;
 }
 
-static void a_larger_distance_only_adds_pairs(void **state) {
-    (void)state;
+TEST(a_larger_distance_only_adds_pairs) {
     size_t touching = 0, added = 0;
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         for (uint64_t seed = 30; seed < 34; seed++) {
@@ -178,8 +174,7 @@ static void expect_refused(const rig *r, double min_separation, double tolerance
         fail_msg("%s", cscd_context_detail(r->context));
 }
 
-static void unfit_lengths_are_refused(void **state) {
-    (void)state;
+TEST(unfit_lengths_are_refused) {
     static const double bad[] = {NAN, INFINITY, -INFINITY, -1.0, -1e-300, 5e-324, 0x1p-301, 0x1p301};
     static const double no_shares[] = {NAN, INFINITY, -INFINITY, -1.0, -1e-300, 1.0000001, 1e300};
     scene_make(SCENE_SPIKE, 1, &interval);
@@ -201,8 +196,7 @@ static void unfit_lengths_are_refused(void **state) {
 }
 
 /* The check of one moment looks for intersections only, with any options. */
-static void the_static_check_is_not_concerned(void **state) {
-    (void)state;
+TEST(the_static_check_is_not_concerned) {
     for (uint64_t seed = 0; seed < 4; seed++) {
         scene_make(SCENE_FOLDED_SHEET, seed, &interval);
         cscd_detector_options options = options_within(0.2, CSCD_METHOD_NONE);
@@ -221,8 +215,7 @@ static void the_static_check_is_not_concerned(void **state) {
 
 /* A detector whose separation changes, to 0 and back, finds what new detectors find; a bad separation
  * changes nothing. */
-static void separation_can_change(void **state) {
-    (void)state;
+TEST(separation_can_change) {
     static const double changes[] = {0.0, 0.03, 0.0, 0.2, 1e-3, 0.0};
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         scene_make((scene_family)family, 5, &interval);
@@ -248,8 +241,7 @@ static void separation_can_change(void **state) {
 
 /* A line search's candidates serve separations up to the one that it was begun with, or up to its reach; a
  * larger one is refused. */
-static void lines_follow_what_they_can(void **state) {
-    (void)state;
+TEST(lines_follow_what_they_can) {
     static const double changes[] = {0.0, 1e-3, 0.03, 0.2};
     static free_step_call call;
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
@@ -285,8 +277,7 @@ static bool ignore_all(void *user, cscd_contact_kind kind, uint32_t a, uint32_t 
 
 /* A line search begins without separation and then goes with one through a pair that is ignored. What the
  * detector knew of the start must not be taken for its end. */
-static void a_start_behind_a_wall_is_not_clean(void **state) {
-    (void)state;
+TEST(a_start_behind_a_wall_is_not_clean) {
     cscd_intersections crossing;
     cscd_contacts found;
     cscd_free_step step;
@@ -314,17 +305,4 @@ static void a_start_behind_a_wall_is_not_clean(void **state) {
         rig_destroy(&r);
     }
     assert_true(through > 0);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(every_method_equals_brute_force),
-                                       cmocka_unit_test(tests_are_counted_for_each_step),
-                                       cmocka_unit_test(same_pairs_when_scaled),
-                                       cmocka_unit_test(a_larger_distance_only_adds_pairs),
-                                       cmocka_unit_test(unfit_lengths_are_refused),
-                                       cmocka_unit_test(the_static_check_is_not_concerned),
-                                       cmocka_unit_test(separation_can_change),
-                                       cmocka_unit_test(lines_follow_what_they_can),
-                                       cmocka_unit_test(a_start_behind_a_wall_is_not_clean)};
-    return cmocka_run_group_tests_name("separation_detector", tests, NULL, NULL);
 }

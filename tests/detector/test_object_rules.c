@@ -132,15 +132,13 @@ static rules_tally run_method(cscd_method method, cscd_mode mode, int sequences,
     return sum;
 }
 
-static void without_culling_as_brute_force(void **state) {
-    (void)state;
+TEST(without_culling_as_brute_force) {
     run_method(CSCD_METHOD_NONE, CSCD_MODE_ALL, SCENES, 0);
     run_method(CSCD_METHOD_BRUTE, CSCD_MODE_ALL, 2, 100);
     run_method(method_or_none(CSCD_METHOD_ICCD), CSCD_MODE_ALL, SCENES / 2, 200);
 }
 
-static void with_culling_as_brute_force(void **state) {
-    (void)state;
+TEST(with_culling_as_brute_force) {
     rules_tally single = run_method(CSCD_METHOD_SINGLE, CSCD_MODE_ALL, SCENES, 3000);
     rules_tally kmeans = run_method(CSCD_METHOD_KMEANS, CSCD_MODE_ALL, SCENES / 2, 400);
     rules_tally earliest = run_method(CSCD_METHOD_SINGLE, CSCD_MODE_EARLIEST, SCENES, 3000);
@@ -191,8 +189,7 @@ static void make_many_rules(random_stream *random, double *distances) {
     }
 }
 
-static void many_objects_with_a_rule_each(void **state) {
-    (void)state;
+TEST(many_objects_with_a_rule_each) {
     cscd_object_desc descs[MANY];
     rules_rig s;
     random_stream random = stream_start(1);
@@ -227,8 +224,7 @@ static void many_objects_with_a_rule_each(void **state) {
 }
 
 /* A check of an object with self = false proves nothing of it, so a later step must not believe that it is embedded. */
-static void masked_objects_are_not_proven(void **state) {
-    (void)state;
+TEST(masked_objects_are_not_proven) {
     size_t crossing = 0;
     for (uint64_t seed = 0; seed < 12; seed++) {
         cscd_detector_options options = cscd_detector_defaults();
@@ -265,14 +261,4 @@ static void masked_objects_are_not_proven(void **state) {
         rules_rig_destroy(&s);
     }
     assert_true(crossing > 0);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(without_culling_as_brute_force),
-        cmocka_unit_test(with_culling_as_brute_force),
-        cmocka_unit_test(many_objects_with_a_rule_each),
-        cmocka_unit_test(masked_objects_are_not_proven),
-    };
-    return cmocka_run_group_tests_name("object_rules", tests, NULL, NULL);
 }

@@ -50,8 +50,7 @@ static void compare_moment(const rules_rig *all, const rules_rig *s, const rando
     sum[3] += crossing.count - listed.count;
 }
 
-static void moments_leave_out_what_is_masked(void **state) {
-    (void)state;
+TEST(moments_leave_out_what_is_masked) {
     size_t sum[4] = {0};
     const cscd_method methods[] = {CSCD_METHOD_NONE, CSCD_METHOD_BRUTE, CSCD_METHOD_SINGLE,
                                    method_or_none(CSCD_METHOD_ICCD_PUBLISHED)};
@@ -94,8 +93,7 @@ static void refuse_rules(cscd_detector *d, const cscd_object_rule *rules, uint32
     assert_non_null(strstr(detail, says));
 }
 
-static void mistakes_have_a_sentence(void **state) {
-    (void)state;
+TEST(mistakes_have_a_sentence) {
     random_rules set;
     random_stream random = stream_start(9);
     cscd_detector_options options = cscd_detector_defaults();
@@ -138,8 +136,7 @@ static void mistakes_have_a_sentence(void **state) {
 }
 
 /* Candidates were collected under the rules of the begin. What is masked limits nothing. */
-static void lines_begin_again_after_new_rules(void **state) {
-    (void)state;
+TEST(lines_begin_again_after_new_rules) {
     random_rules set;
     random_stream random = stream_start(10);
     cscd_detector_options options = cscd_detector_defaults();
@@ -175,8 +172,7 @@ static void lines_begin_again_after_new_rules(void **state) {
 /* ---- what is known of starts --------------------------------------------------------------------------- */
 
 /* Nobody looks at a masked object with itself any more, so what was proven of it is not kept. */
-static void nothing_is_known_of_what_is_masked(void **state) {
-    (void)state;
+TEST(nothing_is_known_of_what_is_masked) {
     static scene spheres; /* large */
     cscd_detector_options options = cscd_detector_defaults();
     cscd_object_rule rule = cscd_object_rule_default();
@@ -191,14 +187,4 @@ static void nothing_is_known_of_what_is_masked(void **state) {
     assert_int_equal(cscd_detector_set_rules(r.detector, &rule, 1, NULL, 0), CSCD_OK);
     assert_int_equal(cscd_detector_start_knowledge(r.detector, 0).unknown, triangles);
     rig_destroy(&r);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(moments_leave_out_what_is_masked),
-        cmocka_unit_test(mistakes_have_a_sentence),
-        cmocka_unit_test(lines_begin_again_after_new_rules),
-        cmocka_unit_test(nothing_is_known_of_what_is_masked),
-    };
-    return cmocka_run_group_tests_name("object_rules_calls", tests, NULL, NULL);
 }

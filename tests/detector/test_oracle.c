@@ -69,8 +69,7 @@ static void run_family(scene_family family, method_tally *sum) {
     oracle_free(&truth);
 }
 
-static void mode_all_equals_brute_force(void **state) {
-    (void)state;
+TEST(mode_all_equals_brute_force) {
     method_tally sum = {0};
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) run_family((scene_family)family, &sum);
     print_message("  %-15s %3u intervals, %3u with contact, %6zu contacts\n", "all", sum.intervals,
@@ -78,9 +77,4 @@ static void mode_all_equals_brute_force(void **state) {
     assert_true(sum.intervals >= 500);
     assert_true(sum.with_contact * 3 >= sum.intervals);
     assert_true((sum.intervals - sum.with_contact) * 3 >= sum.intervals);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(mode_all_equals_brute_force)};
-    return cmocka_run_group_tests_name("oracle", tests, NULL, NULL);
 }

@@ -153,8 +153,7 @@ static void come_back(returning_host *h) {
     h->wrong += corners[0] == corners[1] || cscd_mesh_vertex_count(h->p->mesh) != h->p->vertex_count;
 }
 
-static void calls_from_callbacks_are_busy(void **state) {
-    (void)state;
+TEST(calls_from_callbacks_are_busy) {
     for (host_callback from = HOST_ALLOCATOR; from <= HOST_IGNORE; from++) {
         for (int what = 0; what < CALLS; what++) {
             returning_host h = {.from = from, .inside = come_back, .what = what};
@@ -190,8 +189,7 @@ static void *step_on_thread(void *argument) {
     return NULL;
 }
 
-static void other_threads_are_refused(void **state) {
-    (void)state;
+TEST(other_threads_are_refused) {
     for (host_callback from = HOST_ALLOCATOR; from <= HOST_IGNORE; from++) {
         returning_host h = {.from = from, .inside = wait_inside};
         panel_scene p = make_panels(&h, 2);
@@ -232,10 +230,9 @@ static void *step_often(void *argument) {
     return NULL;
 }
 
-static void threads_at_once(void **state) {
+TEST(threads_at_once) {
     returning_host h = {.from = HOST_PROGRESS}, first, second;
     panel_scene p = make_panels(&h, 1);
-    (void)state;
     h.p = &p;
     first = second = h;
     pthread_t threads[2];
@@ -261,8 +258,7 @@ static void destroy_all(returning_host *h) {
     h->p->detector = NULL;
 }
 
-static void destroyed_objects_live_on(void **state) {
-    (void)state;
+TEST(destroyed_objects_live_on) {
     for (host_callback from = HOST_ALLOCATOR; from <= HOST_IGNORE; from++) {
         returning_host h = {.from = from, .inside = destroy_all};
         panel_scene p = make_panels(&h, 2);
@@ -288,11 +284,10 @@ static void destroy_elsewhere(returning_host *h) {
     h->wrong += pthread_create(&thread, NULL, destroy_on_thread, h) != 0 || pthread_join(thread, NULL) != 0;
 }
 
-static void another_thread_destroys(void **state) {
+TEST(another_thread_destroys) {
     returning_host h = {.from = HOST_IGNORE, .inside = destroy_elsewhere};
     panel_scene p = make_panels(&h, 2);
     cscd_contacts found;
-    (void)state;
     h.p = &p;
     h.at = 1;
     assert_int_equal(panels_step(&p, &found), CSCD_OK);
@@ -301,12 +296,4 @@ static void another_thread_destroys(void **state) {
     assert_int_equal(h.wrong, 0);
     assert_int_equal(h.counter.live, 0);
     panels_destroy(&p);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(calls_from_callbacks_are_busy), cmocka_unit_test(other_threads_are_refused),
-        cmocka_unit_test(threads_at_once), cmocka_unit_test(destroyed_objects_live_on),
-        cmocka_unit_test(another_thread_destroys)};
-    return cmocka_run_group_tests_name("reentry", tests, NULL, NULL);
 }

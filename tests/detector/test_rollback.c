@@ -53,13 +53,7 @@ static bool comes_back(bool cancellable) {
     return same;
 }
 
-static void a_call_that_can_be_cancelled_is_undone(void **state) {
-    (void)state;
+TEST(a_call_that_can_be_cancelled_is_undone) {
     assert_true(comes_back(true));
     assert_false(comes_back(false)); /* no memory is taken and nothing is restored */
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_call_that_can_be_cancelled_is_undone)};
-    return cmocka_run_group_tests_name("rollback", tests, NULL, NULL);
 }

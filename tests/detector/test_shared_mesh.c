@@ -34,8 +34,7 @@ static cscd_mesh *make_mesh(cscd_context *context) {
 /* ---- whose memory, whose sentence ---------------------------------------------------------------------- */
 
 /* Objects allocate from their own context and fail into it; the mesh's context is left alone. */
-static void objects_work_in_their_own_context(void **state) {
-    (void)state;
+TEST(objects_work_in_their_own_context) {
     counting_allocator of_home, of_guest;
     scene_make(SCENE_TWO_SPHERES, 3, &s);
     cscd_context *home = make_context(&of_home, 1), *guest = make_context(&of_guest, 2);
@@ -184,16 +183,9 @@ static size_t share_once(scene_family family) {
     return creator.contacts;
 }
 
-static void many_threads_use_one_mesh(void **state) {
-    (void)state;
+TEST(many_threads_use_one_mesh) {
     size_t contacts = 0;
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) contacts += share_once((scene_family)family);
     print_message("  %zu contacts\n", contacts);
     assert_true(contacts > 100);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(objects_work_in_their_own_context),
-                                       cmocka_unit_test(many_threads_use_one_mesh)};
-    return cmocka_run_group_tests_name("shared mesh", tests, NULL, NULL);
 }

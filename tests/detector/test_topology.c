@@ -137,8 +137,7 @@ static size_t tear_once(cscd_context *context, uint64_t seed) {
     return count;
 }
 
-static void a_sheet_tears_while_the_context_lives(void **state) {
-    (void)state;
+TEST(a_sheet_tears_while_the_context_lives) {
     for (uint32_t threads = 1; threads <= 2; threads++) {
         cscd_context *context = make_context(threads);
         size_t at_rest = cscd_context_bytes(context), count = 0;
@@ -151,8 +150,7 @@ static void a_sheet_tears_while_the_context_lives(void **state) {
     }
 }
 
-static void seams_keep_the_lips_quiet_until_they_have_parted(void **state) {
-    (void)state;
+TEST(seams_keep_the_lips_quiet_until_they_have_parted) {
     uint32_t pairs[TIP][2];
     cscd_context *context = make_context(1);
     make_sheet(1);
@@ -279,8 +277,7 @@ static carried carry_once(cscd_context *context, uint64_t seed) {
     return result;
 }
 
-static void regions_carried_over_change_no_contact(void **state) {
-    (void)state;
+TEST(regions_carried_over_change_no_contact) {
     cscd_context *context = make_context(1);
     size_t at_rest = cscd_context_bytes(context);
     carried sum = {0, 0};
@@ -292,13 +289,4 @@ static void regions_carried_over_change_no_contact(void **state) {
     }
     assert_true(sum.contacts > 0 && sum.oriented > 0);
     cscd_context_destroy(context);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_sheet_tears_while_the_context_lives),
-        cmocka_unit_test(seams_keep_the_lips_quiet_until_they_have_parted),
-        cmocka_unit_test(regions_carried_over_change_no_contact),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -87,8 +87,7 @@ static void expect_sentence(const char *fault, const char *expected) {
         assert_null(validate(object));                                                                       \
     } while (0)
 
-static void faults_of_meshes(void **state) {
-    (void)state;
+TEST(faults_of_meshes) {
     whole_set w = whole_set_create();
     cscd_mesh *m = w.mesh;
     PLANT(mesh_validate, m, m->triangles[3][1], m->vertex_count,
@@ -119,8 +118,7 @@ static void faults_of_meshes(void **state) {
     whole_set_destroy(&w);
 }
 
-static void faults_of_plans_and_partitions(void **state) {
-    (void)state;
+TEST(faults_of_plans_and_partitions) {
     whole_set w = whole_set_create();
     PLANT(plan_validate, w.plan, w.plan->triangle_regions[2], 99, "a plan names a region that there is not");
     PLANT(plan_validate, w.plan, w.plan->triangle_weights[2], (double)NAN,
@@ -141,8 +139,7 @@ static void faults_of_plans_and_partitions(void **state) {
     whole_set_destroy(&w);
 }
 
-static void faults_of_detectors(void **state) {
-    (void)state;
+TEST(faults_of_detectors) {
     whole_set w = whole_set_create();
     cscd_detector *d = w.detector;
     PLANT(detector_validate, d, d->rebuild.mesh, w.mesh, "the parts of a detector are of different meshes");
@@ -175,8 +172,7 @@ static void faults_of_detectors(void **state) {
     whole_set_destroy(&w);
 }
 
-static void faults_of_active_sets(void **state) {
-    (void)state;
+TEST(faults_of_active_sets) {
     whole_set w = whole_set_create();
     cscd_detector *d = w.detector;
     const uint32_t vertices[2] = {3, 40};
@@ -199,14 +195,4 @@ static void faults_of_active_sets(void **state) {
     assert_int_equal(cscd_detector_set_active(d, NULL, 0), CSCD_OK);
     assert_null(detector_validate(d));
     whole_set_destroy(&w);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(faults_of_meshes),
-        cmocka_unit_test(faults_of_plans_and_partitions),
-        cmocka_unit_test(faults_of_detectors),
-        cmocka_unit_test(faults_of_active_sets),
-    };
-    return cmocka_run_group_tests_name("validators", tests, NULL, NULL);
 }

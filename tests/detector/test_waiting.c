@@ -81,8 +81,7 @@ static void run_panels(double min_separation, uint32_t threads, bool by_line) {
     panels_end(&p);
 }
 
-static void a_seam_opens_in_mid_run(void **state) {
-    (void)state;
+TEST(a_seam_opens_in_mid_run) {
     run_panels(0.0, 1, false);
     run_panels(0.0, 2, true);
     run_panels(0.01, 2, false);
@@ -92,8 +91,7 @@ static void a_seam_opens_in_mid_run(void **state) {
 /* ---- who waits, and how long --------------------------------------------------------------------------- */
 
 /* Every function leaves out what waits, and says how many pairs do. */
-static void every_function_leaves_out_what_waits(void **state) {
-    (void)state;
+TEST(every_function_leaves_out_what_waits) {
     static equal_panels p;
     cscd_contacts contacts;
     cscd_intersections crossing;
@@ -145,8 +143,7 @@ static void every_function_leaves_out_what_waits(void **state) {
 
 /* Positions at which a motion starts let go of what is apart there; those of find_near, and where a motion ends, do
  * not. */
-static void a_pair_waits_until_it_is_apart_where_a_motion_starts(void **state) {
-    (void)state;
+TEST(a_pair_waits_until_it_is_apart_where_a_motion_starts) {
     static equal_panels p;
     static double apart[VERTICES * 3];
     cscd_contacts contacts;
@@ -176,8 +173,7 @@ static void a_pair_waits_until_it_is_apart_where_a_motion_starts(void **state) {
 }
 
 /* A seam that is sewn anew leaves out its pairs itself. What opens where nothing touches does not wait. */
-static void what_is_left_out_anew_waits_no_more(void **state) {
-    (void)state;
+TEST(what_is_left_out_anew_waits_no_more) {
     static equal_panels p;
     cscd_contacts contacts;
     panels_begin(&p, 0.0, 1, NULL);
@@ -195,8 +191,7 @@ static void what_is_left_out_anew_waits_no_more(void **state) {
 }
 
 /* Rules and lists uncover as seams do. */
-static void rules_and_lists_uncover_too(void **state) {
-    (void)state;
+TEST(rules_and_lists_uncover_too) {
     static equal_panels p;
     cscd_contacts contacts;
     cscd_object_rule rules[] = {cscd_object_rule_default(), cscd_object_rule_default()};
@@ -233,8 +228,7 @@ static bool ignore_all(void *user, cscd_contact_kind kind, uint32_t a, uint32_t 
 }
 
 /* The caller's function is asked for each list: what it does not leave out any more is reported at once. */
-static void what_a_function_uncovers_does_not_wait(void **state) {
-    (void)state;
+TEST(what_a_function_uncovers_does_not_wait) {
     static equal_panels p;
     cscd_contacts contacts;
     cscd_detector *other;
@@ -251,16 +245,4 @@ static void what_a_function_uncovers_does_not_wait(void **state) {
     assert_true(contacts.waiting == 0 && contacts.count == p.touching);
     cscd_detector_destroy(other);
     panels_end(&p);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_seam_opens_in_mid_run),
-        cmocka_unit_test(every_function_leaves_out_what_waits),
-        cmocka_unit_test(a_pair_waits_until_it_is_apart_where_a_motion_starts),
-        cmocka_unit_test(what_is_left_out_anew_waits_no_more),
-        cmocka_unit_test(rules_and_lists_uncover_too),
-        cmocka_unit_test(what_a_function_uncovers_does_not_wait),
-    };
-    return cmocka_run_group_tests_name("waiting", tests, NULL, NULL);
 }

@@ -6,8 +6,7 @@
 
 #include <string.h>
 
-static void mistakes_change_nothing(void **state) {
-    (void)state;
+TEST(mistakes_change_nothing) {
     static equal_panels p;
     cscd_contacts contacts;
     const uint32_t beyond[] = {0, VERTICES}, same[] = {3, 3};
@@ -33,8 +32,7 @@ static void mistakes_change_nothing(void **state) {
     panels_end(&p);
 }
 
-static void steps_with_waiting_pairs_allocate_nothing(void **state) {
-    (void)state;
+TEST(steps_with_waiting_pairs_allocate_nothing) {
     static equal_panels p;
     cscd_contacts contacts;
     cscd_intersections crossing;
@@ -79,8 +77,7 @@ static void change_to_and_fro(const equal_panels *p, int way, uint32_t i) {
 }
 
 /* What is uncovered again and again, while no positions are seen, is remembered once. */
-static void changes_to_and_fro_take_no_memory(void **state) {
-    (void)state;
+TEST(changes_to_and_fro_take_no_memory) {
     static equal_panels p;
     cscd_contacts contacts;
     for (int way = 0; way < 4; way++) {
@@ -98,13 +95,4 @@ static void changes_to_and_fro_take_no_memory(void **state) {
         assert_true(contacts.count == 0 && contacts.waiting == p.touching);
         panels_end(&p);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(mistakes_change_nothing),
-        cmocka_unit_test(steps_with_waiting_pairs_allocate_nothing),
-        cmocka_unit_test(changes_to_and_fro_take_no_memory),
-    };
-    return cmocka_run_group_tests_name("waiting_calls", tests, NULL, NULL);
 }

@@ -314,8 +314,7 @@ static waiting_tally run_method(cscd_method method, cscd_mode mode, int sequence
     return sum;
 }
 
-static void without_culling(void **state) {
-    (void)state;
+TEST(without_culling) {
     waiting_tally none = run_method(CSCD_METHOD_NONE, CSCD_MODE_ALL, 2 * SEQUENCES, 0);
     run_method(CSCD_METHOD_BRUTE, CSCD_MODE_ALL, SEQUENCES, 100);
     run_method(method_or_none(CSCD_METHOD_ICCD), CSCD_MODE_ALL, SEQUENCES, 200);
@@ -323,15 +322,9 @@ static void without_culling(void **state) {
                 none.crossing > 0);
 }
 
-static void with_culling(void **state) {
-    (void)state;
+TEST(with_culling) {
     waiting_tally single = run_method(CSCD_METHOD_SINGLE, CSCD_MODE_ALL, 3 * SEQUENCES, 300);
     waiting_tally kmeans = run_method(CSCD_METHOD_KMEANS, CSCD_MODE_ALL, SEQUENCES, 400);
     run_method(CSCD_METHOD_SINGLE, CSCD_MODE_EARLIEST, 2 * SEQUENCES, 500);
     assert_true(single.let_go > 100 && single.steps.culled > 0 && kmeans.steps.culled > 0);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(without_culling), cmocka_unit_test(with_culling)};
-    return cmocka_run_group_tests_name("waiting_random", tests, NULL, NULL);
 }

@@ -52,8 +52,7 @@ static void use_tracker(const recorded_frames *r, cscd_event_tracker *tracker, u
     cscd_event_tracker_destroy(next);
 }
 
-static void changed_bytes_are_refused(void **state) {
-    (void)state;
+TEST(changed_bytes_are_refused) {
     size_t loaded = 0;
     for (uint64_t seed = 0; seed < FUZZED; seed++) {
         recorded_frames r;
@@ -157,8 +156,7 @@ static void expect_order_matters(known_state *s, size_t place, size_t numbers) {
     assert_int_equal(cscd_event_tracker_load(s->target, changed, s->size), CSCD_INVALID_ARGUMENT);
 }
 
-static void wrong_numbers_are_refused(void **state) {
-    (void)state;
+TEST(wrong_numbers_are_refused) {
     static known_state s;
     make_known_state(&s);
     size_t second = s.stamps + 4;
@@ -181,12 +179,4 @@ static void wrong_numbers_are_refused(void **state) {
     expect_order_matters(&s, s.stamps, OF_STAMP);
     cscd_event_tracker_destroy(s.target);
     recorded_frames_free(&s.r);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(changed_bytes_are_refused),
-        cmocka_unit_test(wrong_numbers_are_refused),
-    };
-    return cmocka_run_group_tests_name("event state", tests, NULL, NULL);
 }

@@ -45,8 +45,7 @@ static void expect_oracle(const recorded_frames *r, cscd_event_tracker *tracker)
     free(expected);
 }
 
-static void events_are_those_of_the_oracle(void **state) {
-    (void)state;
+TEST(events_are_those_of_the_oracle) {
     size_t long_ones = 0, joined = 0;
     for (uint64_t seed = 0; seed < RECORDINGS; seed++) {
         recorded_frames r;
@@ -79,8 +78,7 @@ static int compare_events(const void *left, const void *right) {
 }
 
 /* What is taken on the way has ended, and together it is everything. Events of loose features alone may have equal keys. */
-static void what_is_taken_is_everything(void **state) {
-    (void)state;
+TEST(what_is_taken_is_everything) {
     for (uint64_t seed = 0; seed < RECORDINGS; seed++) {
         recorded_frames r;
         random_seed(seed);
@@ -161,8 +159,7 @@ static void expect_same_bytes(cscd_event_tracker *a, cscd_event_tracker *b) {
     assert_memory_equal(bytes_a, bytes_b, size_a);
 }
 
-static void chunks_give_the_same(void **state) {
-    (void)state;
+TEST(chunks_give_the_same) {
     for (uint64_t seed = 0; seed < RECORDINGS; seed++) {
         recorded_frames r;
         random_seed(seed);
@@ -183,8 +180,7 @@ static void chunks_give_the_same(void **state) {
 }
 
 /* All 2^(n-1) ways to cut, merged from the left. */
-static void every_way_to_cut(void **state) {
-    (void)state;
+TEST(every_way_to_cut) {
     enum { FRAMES = 7 };
     for (uint64_t seed = 0; seed < RECORDINGS / 20; seed++) {
         recorded_frames r;
@@ -208,14 +204,4 @@ static void every_way_to_cut(void **state) {
         cscd_event_tracker_destroy(whole);
         recorded_frames_free(&r);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(events_are_those_of_the_oracle),
-        cmocka_unit_test(what_is_taken_is_everything),
-        cmocka_unit_test(chunks_give_the_same),
-        cmocka_unit_test(every_way_to_cut),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

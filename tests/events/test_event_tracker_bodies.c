@@ -111,8 +111,7 @@ static void record_flight(recorded_frames *r, const flight *f) {
 
 /* Three boxes fly through each other. Where something is buried in every frame from the first crossing to the last, that
  * is one event. */
-static void bodies_that_move(void **state) {
-    (void)state;
+TEST(bodies_that_move) {
     size_t deep = 0, long_ones = 0;
     for (uint64_t seed = 0; seed < FLIGHTS; seed++) {
         recorded_frames r = {.frame_count = 0};
@@ -137,9 +136,4 @@ static void bodies_that_move(void **state) {
         recorded_frames_free(&r);
     }
     assert_true(deep >= FLIGHTS / 3 && long_ones >= FLIGHTS / 2);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(bodies_that_move)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -17,8 +17,7 @@ static void expect_refused(const recorded_frames *r, cscd_status status, const c
     if (strstr(detail, words) == NULL) fail_msg("\"%s\" has no \"%s\"", detail, words);
 }
 
-static void options_that_cannot_be(void **state) {
-    (void)state;
+TEST(options_that_cannot_be) {
     recorded_frames r;
     random_seed(1);
     recorded_frames_create(&r, NULL, 0);
@@ -51,8 +50,7 @@ static void expect_refused_frame(const recorded_frames *r, const cscd_intersecti
     cscd_event_tracker_destroy(tracker);
 }
 
-static void frames_of_another_mesh(void **state) {
-    (void)state;
+TEST(frames_of_another_mesh) {
     recorded_frames r;
     random_seed(2);
     recorded_frames_create(&r, NULL, 0);
@@ -92,8 +90,7 @@ static void frames_of_another_mesh(void **state) {
     recorded_frames_free(&r);
 }
 
-static void calls_out_of_order(void **state) {
-    (void)state;
+TEST(calls_out_of_order) {
     recorded_frames r;
     random_seed(3);
     recorded_frames_create(&r, NULL, 0);
@@ -137,8 +134,7 @@ static void calls_out_of_order(void **state) {
 }
 
 /* Each of these rules joins frames in another way, so trackers that have different ones do not fit together. */
-static void trackers_of_other_rules(void **state) {
-    (void)state;
+TEST(trackers_of_other_rules) {
     recorded_frames r;
     random_seed(4);
     recorded_frames_create(&r, NULL, 0);
@@ -175,8 +171,7 @@ static void trackers_of_other_rules(void **state) {
 /* ---- solids --------------------------------------------------------------------------------------------- */
 
 /* Two parts are copies of one solid. That is said where pairs of theirs lie on each other, not where they only touch. */
-static void copies_are_said_of_pairs(void **state) {
-    (void)state;
+TEST(copies_are_said_of_pairs) {
     recorded_frames r;
     random_seed(5);
     recorded_frames_create(&r, NULL, 0);
@@ -222,8 +217,7 @@ static void copies_are_said_of_pairs(void **state) {
     } while (0)
 
 /* A hundred times the same frames: after the first times nothing is allocated, and what is open stays bounded. */
-static void long_recordings(void **state) {
-    (void)state;
+TEST(long_recordings) {
     enum { FRAMES = 12, TIMES = 100 };
     for (uint64_t seed = 0; seed < 10; seed++) {
         counting_allocator counter = counting_allocator_start();
@@ -253,13 +247,4 @@ static void long_recordings(void **state) {
         recorded_frames_free(&r);
         assert_int_equal(counter.live, 0);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(options_that_cannot_be),   cmocka_unit_test(frames_of_another_mesh),
-        cmocka_unit_test(calls_out_of_order),       cmocka_unit_test(trackers_of_other_rules),
-        cmocka_unit_test(copies_are_said_of_pairs), cmocka_unit_test(long_recordings),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -46,8 +46,7 @@ static bool go_on_until(void *user, const char *stage, double fraction) {
 }
 
 /* A call that is cancelled gives nothing, and the next one gives everything. */
-static void cancelled_anywhere(void **state) {
-    (void)state;
+TEST(cancelled_anywhere) {
     uint32_t cancelled = 0, in_answers = 0;
     answer_stopper h = {.at = 0};
     add_boxes(&other);
@@ -90,8 +89,7 @@ static bool ask_again(void *user, cscd_contact_kind kind, uint32_t a, uint32_t b
     return false;
 }
 
-static void called_from_within(void **state) {
-    (void)state;
+TEST(called_from_within) {
     size_t asked = 0;
     cscd_detector_options options = cscd_detector_defaults();
     options.ignore = ask_again;
@@ -107,12 +105,4 @@ static void called_from_within(void **state) {
     compare_answers();
     body_rig_free(&rig);
     body_rig_free(&other);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(cancelled_anywhere),
-        cmocka_unit_test(called_from_within),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -58,8 +58,7 @@ static void compare_patches(const cscd_patches *a, const cscd_patches *b) {
 }
 
 /* Down to where squares of lengths vanish and up to where they overflow, let alone squares of areas. */
-static void scales_change_no_bit(void **state) {
-    (void)state;
+TEST(scales_change_no_bit) {
     static const int exponents[] = {-269, -200, -130, 40, 250, 297};
     add_scene(&rig, 1);
     body_rig_create(&rig, NULL, 2);
@@ -94,8 +93,7 @@ static void scales_change_no_bit(void **state) {
     body_rig_free(&rig);
 }
 
-static void places_change_nothing(void **state) {
-    (void)state;
+TEST(places_change_nothing) {
     static const double move[3] = {1024, -2048, 512};
     add_scene(&rig, 2);
     body_rig_create(&rig, NULL, 1);
@@ -192,8 +190,7 @@ static void compare_overlap(cscd_overlap a, cscd_overlap b, bool turned) {
 }
 
 /* Objects, triangles and vertices in another order have the same points, and the same numbers to go with them. */
-static void numbers_mean_nothing(void **state) {
-    (void)state;
+TEST(numbers_mean_nothing) {
     static const uint32_t objects[4] = {2, 0, 3, 1}, places[4] = {1, 3, 0, 2};
     random_stream random = stream_start(3);
     add_scene(&rig, 3);
@@ -233,8 +230,7 @@ static void find_scene(uint64_t seed) {
 }
 
 /* From point to point a curve goes as normal a times normal b. */
-static void curves_run_as_normals_say(void **state) {
-    (void)state;
+TEST(curves_run_as_normals_say) {
     size_t compared = 0;
     find_scene(4);
     const cscd_curves *c = rig.found.curves;
@@ -286,8 +282,7 @@ static int number_of(const cscd_patch *patch, uint32_t object) {
 }
 
 /* Above the middle of each whole triangle. */
-static void numbers_are_solid_angles(void **state) {
-    (void)state;
+TEST(numbers_are_solid_angles) {
     size_t wound = 0;
     find_scene(5);
     for (uint32_t t = 0; t < rig.all.triangle_count; t += 3) {
@@ -312,8 +307,7 @@ static void numbers_are_solid_angles(void **state) {
 }
 
 /* What a body shares with two bodies that are apart it shares with the object of both. */
-static void volumes_add_up(void **state) {
-    (void)state;
+TEST(volumes_add_up) {
     static const double origin[3] = {0, 0, 0}, centres[2][3] = {{0.91, 0.21, 0.13}, {-0.93, 0.14, 0.22}};
     double sums[2] = {0.0, 0.0}, areas[2] = {0.0, 0.0};
     for (int joined = 0; joined < 2; joined++) {
@@ -335,13 +329,4 @@ static void volumes_add_up(void **state) {
     }
     assert_true(sums[0] > 0.1 && fabs(sums[0] - sums[1]) < 1e-13);
     assert_true(areas[0] > 0.1 && fabs(areas[0] - areas[1]) < 1e-12);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(scales_change_no_bit),     cmocka_unit_test(places_change_nothing),
-        cmocka_unit_test(numbers_mean_nothing),     cmocka_unit_test(curves_run_as_normals_say),
-        cmocka_unit_test(numbers_are_solid_angles), cmocka_unit_test(volumes_add_up),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -84,8 +84,7 @@ static void compare_with_points(const cscd_curve_changes *changes, const uint64_
     assert_int_equal(next, changes->count);
 }
 
-static void changes_are_those_of_curves(void **state) {
-    (void)state;
+TEST(changes_are_those_of_curves) {
     const cscd_method methods[] = {CSCD_METHOD_NONE, CSCD_METHOD_SINGLE, CSCD_METHOD_ICCD};
     cscd_curve_change *first = NULL;
     size_t count = 0;
@@ -119,8 +118,7 @@ static void changes_are_those_of_curves(void **state) {
 /* ---- calls ----------------------------------------------------------------------------------------------- */
 
 /* Half of the contacts, in reverse order, give the changes that these are causes of; the step's list stays. */
-static void any_selection_of_contacts(void **state) {
-    (void)state;
+TEST(any_selection_of_contacts) {
     cscd_curve_changes changes;
     open_scene(NULL, NULL, 2);
     cscd_contacts contacts = step_scene();
@@ -148,8 +146,7 @@ static void any_selection_of_contacts(void **state) {
 }
 
 /* A wire falls through a triangle and onto the ground: no curve has an edge that has no triangle. */
-static void wires_change_nothing(void **state) {
-    (void)state;
+TEST(wires_change_nothing) {
     static const uint32_t triangle[3] = {0, 1, 2}, wire[2] = {0, 1};
     static const double up[3] = {0, 0, 1};
     static const double x0[18] = {0, 0, 1, 4, 0, 1, 0, 4, 1, 1, 1, 2, -3, 1, 3, 9, 9, 0};
@@ -178,8 +175,7 @@ static void wires_change_nothing(void **state) {
 
 /* A seam unites two corners, at one place, of a triangle that falls through another one. Then it has two vertices and no
  * curves, and so no changes. */
-static void triangles_of_two_vertices_change_nothing(void **state) {
-    (void)state;
+TEST(triangles_of_two_vertices_change_nothing) {
     static const uint32_t triangle[3] = {0, 1, 2}, seam[2] = {4, 5};
     static const double x0[18] = {0, 0, 0, 4, 0, 0, 0, 4, 0, 1, 1, 3, 2, 1, 1, 2, 1, 1};
     static const double x1[18] = {0, 0, 0, 4, 0, 0, 0, 4, 0, 1, 1, 1, 2, 1, -1, 2, 1, -1};
@@ -210,8 +206,7 @@ static void triangles_of_two_vertices_change_nothing(void **state) {
 }
 
 /* Two sewn triangles and one that they fall through; then there are 300 more vertices, with the seam at other numbers. */
-static void changes_after_a_change_of_the_mesh(void **state) {
-    (void)state;
+TEST(changes_after_a_change_of_the_mesh) {
     enum { MORE = 300 };
     static const uint32_t triangle[3] = {0, 1, 2}, seam[2] = {4, 7};
     static const double x0[27] = {0, 0, 0, 4, 0, 0, 0, 4, 0, 1, 1, 3, 1, 2,
@@ -253,8 +248,7 @@ static void changes_after_a_change_of_the_mesh(void **state) {
     cscd_context_destroy(context);
 }
 
-static void what_is_refused(void **state) {
-    (void)state;
+TEST(what_is_refused) {
     cscd_curve_changes changes;
     open_scene(NULL, NULL, 1);
     cscd_contacts contacts = step_scene();
@@ -271,16 +265,4 @@ static void what_is_refused(void **state) {
     assert_int_equal(try_changes(contacts.items, contacts.count, &changes), CSCD_INVALID_ARGUMENT);
     assert_non_null(strstr(cscd_context_detail(rig.context), "x1"));
     body_rig_free(&rig);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(changes_are_those_of_curves),
-        cmocka_unit_test(any_selection_of_contacts),
-        cmocka_unit_test(wires_change_nothing),
-        cmocka_unit_test(triangles_of_two_vertices_change_nothing),
-        cmocka_unit_test(changes_after_a_change_of_the_mesh),
-        cmocka_unit_test(what_is_refused),
-    };
-    return cmocka_run_group_tests_name("body_changes", tests, NULL, NULL);
 }

@@ -167,8 +167,7 @@ static void play_sequence(uint64_t seed, collapse_tally *sum) {
     oracle_free(&truth);
 }
 
-static void methods_equal_brute_force(void **state) {
-    (void)state;
+TEST(methods_equal_brute_force) {
     collapse_tally sum = {0};
     for (uint64_t seed = 0; seed < SEQUENCES; seed++) play_sequence(seed, &sum);
     print_message("  %zu intervals, %zu with collapsed components; %zu contacts, %zu pairs\n", sum.intervals,
@@ -178,8 +177,7 @@ static void methods_equal_brute_force(void **state) {
 }
 
 /* A step whose list is too long says how many are collapsed, as one does that lists all. */
-static void too_long_lists_say_it_too(void **state) {
-    (void)state;
+TEST(too_long_lists_say_it_too) {
     size_t checked = 0;
     for (uint64_t seed = 0; seed < SEQUENCES; seed++) {
         make_frames(seed);
@@ -207,8 +205,7 @@ static void too_long_lists_say_it_too(void **state) {
 
 /* A ball that shrinks to a point, or to a line, does not get there, and the way that is certified has no contact of any
  * pair. */
-static void certified_steps_see_all(void **state) {
-    (void)state;
+TEST(certified_steps_see_all) {
     for (int line = 0; line < 2; line++) {
         cscd_free_step step;
         double reached[SCENE_VERTICES_MAX * 3];
@@ -230,8 +227,7 @@ static void certified_steps_see_all(void **state) {
 
 /* Triangles (a, b, b') whose b' a seam joins to b are wires, and no surface that could collapse: two that cross themselves
  * are seen as ever. Without the seam they are collapsed. */
-static void wires_do_not_collapse(void **state) {
-    (void)state;
+TEST(wires_do_not_collapse) {
     static const uint32_t triangles[] = {0, 1, 4, 2, 3, 5}, seams[] = {1, 4, 3, 5};
     static const double x0[] = {-1, 0, 0, 1, 0, 0, 0, -1, 1, 0, 1, 1, 1, 0, 0, 0, 1, 1};
     static const double x1[] = {-1, 0, 0, 1, 0, 0, 0, -1, -1, 0, 1, -1, 1, 0, 0, 0, 1, -1};
@@ -260,8 +256,7 @@ static void wires_do_not_collapse(void **state) {
 /* ---- inside ---------------------------------------------------------------------------------------------- */
 
 /* A ball that is hidden at the centre of another one is not inside it, as it is when it is shown. */
-static void what_is_hidden_is_in_nothing(void **state) {
-    (void)state;
+TEST(what_is_hidden_is_in_nothing) {
     cscd_intersection_options options = cscd_intersection_defaults();
     options.overlaps = options.depths = true;
     scene_clear(&play);
@@ -288,8 +283,7 @@ static void what_is_hidden_is_in_nothing(void **state) {
 }
 
 /* A clone says of the last moment what the detector says. */
-static void clones_say_the_same(void **state) {
-    (void)state;
+TEST(clones_say_the_same) {
     cscd_detector *clone;
     cscd_intersections moment;
     scene_clear(&play);
@@ -310,8 +304,7 @@ static void clones_say_the_same(void **state) {
 
 /* Two balls of 1,824 triangles in all, which are both hidden at the origin, cost no more pairs of boxes than when they are
  * shown apart. */
-static void costs_no_pairs(void **state) {
-    (void)state;
+TEST(costs_no_pairs) {
     scene_clear(&play);
     scene_add_sphere(&play, (double[3]){-2, 0, 0}, 1.0, 20, 24);
     scene_add_sphere(&play, (double[3]){2, 0, 0}, 1.0, 20, 24);
@@ -331,15 +324,4 @@ static void costs_no_pairs(void **state) {
         memset(play.x0, 0, sizeof play.x0);
     }
     rig_destroy(&r);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(methods_equal_brute_force),
-                                       cmocka_unit_test(too_long_lists_say_it_too),
-                                       cmocka_unit_test(certified_steps_see_all),
-                                       cmocka_unit_test(wires_do_not_collapse),
-                                       cmocka_unit_test(what_is_hidden_is_in_nothing),
-                                       cmocka_unit_test(clones_say_the_same),
-                                       cmocka_unit_test(costs_no_pairs)};
-    return cmocka_run_group_tests_name("collapsed", tests, NULL, NULL);
 }

@@ -181,9 +181,8 @@ static void check_grid(grid_family family, uint64_t seed, change_totals *totals)
     grid_scene_free(&start);
 }
 
-static void points_come_and_go_at_contacts(void **state) {
+TEST(points_come_and_go_at_contacts) {
     change_totals totals = {0};
-    (void)state;
     for (int family = 0; family < GRID_FAMILIES; family++) {
         for (uint64_t seed = 0; seed < 16; seed++) check_grid((grid_family)family, seed, &totals);
     }
@@ -191,9 +190,4 @@ static void points_come_and_go_at_contacts(void **state) {
                   totals.coming, totals.going, totals.with_several_causes, totals.contacts_without_change);
     assert_true(totals.coming > 1000 && totals.going > 1000);
     assert_true(totals.with_several_causes > 500 && totals.contacts_without_change > 1000);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(points_come_and_go_at_contacts)};
-    return cmocka_run_group_tests_name("curve_changes", tests, NULL, NULL);
 }

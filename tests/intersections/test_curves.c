@@ -66,8 +66,7 @@ static size_t compare_events(bool closed) {
     return events;
 }
 
-static void events_are_those_of_polynomials(void **state) {
-    (void)state;
+TEST(events_are_those_of_polynomials) {
     for (int family = 0; family < GRID_FAMILIES; family++) {
         size_t events = 0;
         for (uint64_t seed = 0; seed < COMPARED; seed++) {
@@ -165,8 +164,7 @@ static curve_tally trace_family(grid_family family) {
     return sum;
 }
 
-static void curves_close_where_they_must(void **state) {
-    (void)state;
+TEST(curves_close_where_they_must) {
     size_t crossings = 0;
     for (int family = 0; family < GRID_FAMILIES; family++) {
         curve_tally sum = trace_family((grid_family)family);
@@ -182,8 +180,7 @@ static void curves_close_where_they_must(void **state) {
 }
 
 /* In one of some thousand Klein bottles. */
-static void sheets_may_change_places(void **state) {
-    (void)state;
+TEST(sheets_may_change_places) {
     size_t swapped = 0;
     traced_scene_make(GRID_KLEIN_BOTTLE, 5347, &traced);
     for (size_t i = 0; i < traced.curves.count; i++) {
@@ -192,13 +189,4 @@ static void sheets_may_change_places(void **state) {
     }
     assert_int_equal(swapped, 1);
     traced_scene_free(&traced);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(events_are_those_of_polynomials),
-        cmocka_unit_test(curves_close_where_they_must),
-        cmocka_unit_test(sheets_may_change_places),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

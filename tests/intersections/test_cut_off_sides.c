@@ -203,8 +203,7 @@ static size_t expect_patches(const cscd_cut_off *item) {
 }
 
 /* Crumpled sheets, with a hole or not, whose traces are looked at one by one. */
-static void sheets_in_themselves(void **state) {
-    (void)state;
+TEST(sheets_in_themselves) {
     size_t divide = 0, do_not = 0, joined = 0, named = 0;
     random_stream random = stream_start(7);
     for (int i = 0; i < 60; i++) {
@@ -238,9 +237,4 @@ static void sheets_in_themselves(void **state) {
         "%zu traces divide their sheet, %zu do not; %zu of them with the other trace; %zu corners\n", divide,
         do_not, joined, named);
     assert_true(divide > 80 && do_not > 100 && joined > 5 && named > 400);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(sheets_in_themselves)};
-    return cmocka_run_group_tests_name("cut_off_sides", tests, NULL, NULL);
 }

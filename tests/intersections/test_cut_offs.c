@@ -41,8 +41,7 @@ static void expect_cut_off(uint32_t object, double area, double rest) {
 static const double X4[3] = {4, 0, 0}, Y4[3] = {0, 4, 0}, Z4[3] = {0, 0, 4}, ORIGIN[3] = {0, 0, 0};
 
 /* A post through a sheet: over many triangles, and within one. */
-static void a_post_through_a_sheet(void **state) {
-    (void)state;
+TEST(a_post_through_a_sheet) {
     static const double corners[2][3] = {{0.3, 0.4, -1}, {2.26, 2.05, -1}};
     static const double sizes[2][3] = {{2, 1.5, 2}, {0.02, 0.03, 2}};
     for (int i = 0; i < 2; i++) {
@@ -61,8 +60,7 @@ static void a_post_through_a_sheet(void **state) {
 }
 
 /* Most of the sheet is in the box, so what is outside is cut off. */
-static void the_smaller_part_is_outside(void **state) {
-    (void)state;
+TEST(the_smaller_part_is_outside) {
     static const double corner[3] = {-1, -1, -1}, size[3] = {4.5, 6, 2};
     body_rig_begin(&rig);
     body_rig_add_sheet(&rig, ORIGIN, X4, Y4, 7, 9, false);
@@ -75,8 +73,7 @@ static void the_smaller_part_is_outside(void **state) {
 }
 
 /* From border to border on both sheets; then one of them ends within the other. */
-static void sheets_cross(void **state) {
-    (void)state;
+TEST(sheets_cross) {
     for (int i = 0; i < 2; i++) {
         const double corner[3] = {1.1, i == 0 ? -0.5 : 1.5, -1.3}, along[3] = {0, 5, 0};
         body_rig_begin(&rig);
@@ -97,8 +94,7 @@ static void sheets_cross(void **state) {
 }
 
 /* A narrow upright sheet ends within the flat one: the flat one is not divided, the upright one is. */
-static void a_narrow_sheet_is_divided(void **state) {
-    (void)state;
+TEST(a_narrow_sheet_is_divided) {
     static const double corner[3] = {1.1, 1.5, -1.3}, along[3] = {0, 1, 0};
     body_rig_begin(&rig);
     body_rig_add_sheet(&rig, ORIGIN, X4, Y4, 7, 9, false);
@@ -112,8 +108,7 @@ static void a_narrow_sheet_is_divided(void **state) {
 }
 
 /* From the border of a sheet to its hole: one may still walk around the hole. */
-static void a_cut_to_a_hole_divides_nothing(void **state) {
-    (void)state;
+TEST(a_cut_to_a_hole_divides_nothing) {
     static const double corner[3] = {2.0, -0.5, -1.3};
     for (int i = 0; i < 2; i++) {
         const double along[3] = {0, i == 0 ? 2.5 : 5, 0};
@@ -147,8 +142,7 @@ static void add_sewn_slit(uint32_t seams[SLIT_LENGTH][2]) {
 }
 
 /* A post beside the seam cuts its cross-section off; one on the seam has a closed curve, and cuts nothing off. */
-static void traces_over_seams_divide_nothing(void **state) {
-    (void)state;
+TEST(traces_over_seams_divide_nothing) {
     static const double size[3] = {0.8, 1.6, 2};
     for (int i = 0; i < 4; i++) {
         const double corner[3] = {0.63, 0.35 + i, -1};
@@ -173,8 +167,7 @@ static void traces_over_seams_divide_nothing(void **state) {
 }
 
 /* Balls in a sheet that is bent: what they bury of it is what their curves cut off, or the rest. */
-static void balls_in_bent_sheets(void **state) {
-    (void)state;
+TEST(balls_in_bent_sheets) {
     uint32_t divided = 0;
     for (int i = 0; i < 40; i++) {
         const double centre[3] = {1.0 + 0.05 * i, 2.0 - 0.03 * i, 0.02 * (i % 11)};
@@ -198,17 +191,4 @@ static void balls_in_bent_sheets(void **state) {
         body_rig_free(&rig);
     }
     assert_true(divided > 20);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_post_through_a_sheet),
-        cmocka_unit_test(the_smaller_part_is_outside),
-        cmocka_unit_test(sheets_cross),
-        cmocka_unit_test(a_narrow_sheet_is_divided),
-        cmocka_unit_test(a_cut_to_a_hole_divides_nothing),
-        cmocka_unit_test(traces_over_seams_divide_nothing),
-        cmocka_unit_test(balls_in_bent_sheets),
-    };
-    return cmocka_run_group_tests_name("cut_offs", tests, NULL, NULL);
 }

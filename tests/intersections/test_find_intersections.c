@@ -170,18 +170,12 @@ static void compare_scene(uint64_t seed, size_t of_kind[]) {
     }
 }
 
-static void equals_the_oracle(void **state) {
+TEST(equals_the_oracle) {
     size_t of_kind[CSCD_INTERSECTION_TOUCHING + 1] = {0};
-    (void)state;
     for (uint64_t seed = 0; seed < SCENES; seed++) compare_scene(seed, of_kind);
     for (int kind = 0; kind <= CSCD_INTERSECTION_TOUCHING; kind++) {
         printf("%s %zu  ", cscd_intersection_kind_name((cscd_intersection_kind)kind), of_kind[kind]);
         assert_true(of_kind[kind] > SCENES);
     }
     puts("");
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(equals_the_oracle)};
-    return cmocka_run_group_tests_name("find_intersections", tests, NULL, NULL);
 }

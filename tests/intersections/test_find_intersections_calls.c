@@ -14,8 +14,7 @@ static scene s; /* large; one test at a time */
 
 /* ---- caps ------------------------------------------------------------------------------------------------ */
 
-static void caps_bound_lists(void **state) {
-    (void)state;
+TEST(caps_bound_lists) {
     make_wavy_spheres(0.02, &s);
     rig r = rig_create(&s, 2, NULL);
     size_t all = find_kinds_of(&s, r.detector, CSCD_ANSWER_LIST, 0).count;
@@ -53,10 +52,9 @@ static void expect_same_knowledge(const rig *a, const rig *b) {
 }
 
 /* A whole search tells a later step as much as a check; one that may stop early tells nothing. */
-static void states_are_known_afterwards(void **state) {
+TEST(states_are_known_afterwards) {
     cscd_detector_options options = cscd_detector_defaults();
     cscd_intersections plain;
-    (void)state;
     options.method = CSCD_METHOD_SINGLE;
     make_wavy_spheres(0.02, &s);
     for (uint64_t kinds = 1; kinds < 32; kinds *= 2) {
@@ -99,9 +97,8 @@ static void expect_trio(cscd_detector *detector, size_t crossing, size_t duplica
         assert_int_equal(found.items[i].kind == CSCD_INTERSECTION_DUPLICATE, found.items[i].a == 1);
 }
 
-static void waiting_pairs_are_left_out(void **state) {
+TEST(waiting_pairs_are_left_out) {
     static const uint32_t ignored[][2] = {{1, 0}, {0, 2}, {2, 1}};
-    (void)state;
     make_trio(0.0);
     rig r = rig_create(&s, 2, NULL);
     expect_trio(r.detector, 2, 1, 0);
@@ -117,10 +114,9 @@ static void waiting_pairs_are_left_out(void **state) {
 }
 
 /* A check knows no duplicates, so what is known afterwards does not depend on them. */
-static void duplicates_mark_nothing(void **state) {
+TEST(duplicates_mark_nothing) {
     cscd_detector_options options = cscd_detector_defaults();
     cscd_intersections plain;
-    (void)state;
     options.method = CSCD_METHOD_SINGLE;
     make_trio(5.0);
     rig checked = rig_create(&s, 1, &options), asked = rig_create(&s, 1, &options);
@@ -134,10 +130,9 @@ static void duplicates_mark_nothing(void **state) {
 }
 
 /* A seam may even unite two corners of one triangle: nothing is refused. */
-static void odd_seams_are_taken(void **state) {
+TEST(odd_seams_are_taken) {
     static const uint32_t seams[][2] = {{3, 4}, {4, 0}};
     cscd_detector_options options = cscd_detector_defaults();
-    (void)state;
     make_trio(0.0);
     options.seams = seams[0];
     options.seam_count = 2;
@@ -164,9 +159,8 @@ static void expect_refused(cscd_detector *detector, cscd_intersection_options op
     assert_int_equal(found.count, 4711);
 }
 
-static void wrong_options_are_refused(void **state) {
+TEST(wrong_options_are_refused) {
     cscd_intersection_pairs found;
-    (void)state;
     make_trio(0.0);
     rig r = rig_create(&s, 1, NULL);
     expect_refused(r.detector, intersection_options((cscd_intersection_answer)3, UINT64_MAX, 0),
@@ -181,12 +175,4 @@ static void wrong_options_are_refused(void **state) {
     assert_string_equal(cscd_intersection_kind_name((cscd_intersection_kind)5), "unknown");
     assert_int_equal(cscd_intersection_set(CSCD_INTERSECTION_TOUCHING), 16);
     rig_destroy(&r);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(caps_bound_lists),           cmocka_unit_test(states_are_known_afterwards),
-        cmocka_unit_test(waiting_pairs_are_left_out), cmocka_unit_test(duplicates_mark_nothing),
-        cmocka_unit_test(odd_seams_are_taken),        cmocka_unit_test(wrong_options_are_refused)};
-    return cmocka_run_group_tests_name("find_intersections_calls", tests, NULL, NULL);
 }

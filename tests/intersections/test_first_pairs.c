@@ -43,8 +43,7 @@ static void compare_first_pairs(bool ignores) {
     for (int i = 0; i < 4; i++) rig_destroy(&rigs[i]);
 }
 
-static void first_pairs_are_the_same(void **state) {
-    (void)state;
+TEST(first_pairs_are_the_same) {
     make_wavy_spheres(0.02, &s);
     rig r = rig_create(&s, 3, NULL);
     cscd_intersection_pairs found = find_kinds_of(&s, r.detector, CSCD_ANSWER_LIST, 0);
@@ -91,11 +90,10 @@ static cscd_detector *make_sheets(cscd_context *context, uint32_t patches, doubl
 }
 
 /* Whichever thread is first, and though threads leave tasks that others have made needless. */
-static void first_pairs_do_not_depend_on_luck(void **state) {
+TEST(first_pairs_do_not_depend_on_luck) {
     static const size_t stops[] = {1, 30, 100, 300};
     static double x[2 * GRID * 3];
     static cscd_intersection_pair before[4][300];
-    (void)state;
     for (uint32_t i = 0; i < 4 * REPETITIONS; i++) {
         cscd_context_options context_options = cscd_context_defaults();
         cscd_context *context = NULL;
@@ -118,8 +116,7 @@ static void first_pairs_do_not_depend_on_luck(void **state) {
 }
 
 /* The first pair ends the search: with one thread few boxes are compared. */
-static void searches_end_early(void **state) {
-    (void)state;
+TEST(searches_end_early) {
     make_wavy_spheres(0.02, &s);
     rig r = rig_create(&s, 1, NULL);
     find_kinds_of(&s, r.detector, CSCD_ANSWER_LIST, 0);
@@ -133,11 +130,4 @@ static void searches_end_early(void **state) {
     r = rig_create(&s, 1, NULL);
     assert_int_equal(find_kinds_of(&s, r.detector, CSCD_ANSWER_ANY, 0).count, 0);
     rig_destroy(&r);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(first_pairs_are_the_same),
-                                       cmocka_unit_test(first_pairs_do_not_depend_on_luck),
-                                       cmocka_unit_test(searches_end_early)};
-    return cmocka_run_group_tests_name("first_pairs", tests, NULL, NULL);
 }

@@ -231,8 +231,7 @@ static void end_life(void) {
     cscd_context_destroy(context);
 }
 
-static void everything_changes(void **state) {
-    (void)state;
+TEST(everything_changes) {
     memset(&twins, 0, sizeof twins);
     make_shapes();
     for (uint64_t seed = 0; seed < LIVES; seed++) {
@@ -260,9 +259,4 @@ static void everything_changes(void **state) {
     assert_true(curves_seen > 50 * LIVES && depths_seen > 100 * LIVES && partly_seen > 10 * LIVES);
     assert_true(cut_offs_seen > LIVES && parts_seen > 50 * LIVES && causes_seen > 50 * LIVES);
     assert_true(changes_seen > 4 * LIVES);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(everything_changes)};
-    return cmocka_run_group_tests_name("live_answers", tests, NULL, NULL);
 }

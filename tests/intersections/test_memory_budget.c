@@ -137,13 +137,11 @@ static void try_budgets(void (*add)(body_rig *r), uint64_t expected_at_some) {
     free_references();
 }
 
-static void a_shuffled_frame_stays_on_its_budget(void **state) {
-    (void)state;
+TEST(a_shuffled_frame_stays_on_its_budget) {
     try_budgets(add_small_shuffled, 0x7f);
 }
 
-static void what_is_wanted_is_the_same_for_any_threads(void **state) {
-    (void)state;
+TEST(what_is_wanted_is_the_same_for_any_threads) {
     body_rig *const rigs[2] = {&rig, &full};
     cscd_intersection_options options = cscd_intersection_defaults();
     options.patches = true;
@@ -158,8 +156,7 @@ static void what_is_wanted_is_the_same_for_any_threads(void **state) {
     for (int i = 0; i < 2; i++) body_rig_free(rigs[i]);
 }
 
-static void a_soup_stays_on_its_budget(void **state) {
-    (void)state;
+TEST(a_soup_stays_on_its_budget) {
     try_budgets(add_small_soup, 0x7f);
 }
 
@@ -171,8 +168,7 @@ enum { MANY_RINGS = 13, MANY_SEGMENTS = 18 };
 enum { MANY_RINGS = 25, MANY_SEGMENTS = 36 };
 #endif
 
-static void pairs_take_64_bytes_each(void **state) {
-    (void)state;
+TEST(pairs_take_64_bytes_each) {
     for (uint32_t threads = 1; threads <= 4; threads += 3) {
         counting_allocator counter = counting_allocator_start();
         cscd_intersection_options options = cscd_intersection_defaults();
@@ -193,8 +189,7 @@ static void pairs_take_64_bytes_each(void **state) {
 }
 
 /* Lists without an end are not made; they are counted, and a caller sees from the status that there is none. */
-static void pairs_that_do_not_fit_are_counted(void **state) {
-    (void)state;
+TEST(pairs_that_do_not_fit_are_counted) {
     cscd_intersection_options options = cscd_intersection_defaults();
     add_small_shuffled(&rig);
     body_rig_create(&rig, NULL, 2);
@@ -236,8 +231,7 @@ static void pairs_that_do_not_fit_are_counted(void **state) {
 /* ---- other calls ------------------------------------------------------------------------------------------ */
 
 /* What is left out does not depend on what earlier calls have kept, nor does memory grow by it. */
-static void earlier_frames_change_nothing(void **state) {
-    (void)state;
+TEST(earlier_frames_change_nothing) {
     counting_allocator counter = counting_allocator_start();
     random_stream random = stream_start(3);
     cscd_status status;
@@ -273,8 +267,7 @@ static void earlier_frames_change_nothing(void **state) {
 }
 
 /* A step, and the answers for a frame in the right order, are those of a detector that has never seen the wrong one. */
-static void a_step_afterwards_is_right(void **state) {
-    (void)state;
+TEST(a_step_afterwards_is_right) {
     static double good[SCENE_VERTICES_MAX * 3], moved[SCENE_VERTICES_MAX * 3];
     static const double origin[3] = {0, 0, 0}, beside[3] = {0.5, 0.25, 0.125};
     cscd_contacts contacts[2];
@@ -307,8 +300,7 @@ static void a_step_afterwards_is_right(void **state) {
 /* ---- events ----------------------------------------------------------------------------------------------- */
 
 /* A frame that does not fit is one in which nothing was looked for; the others have their events. */
-static void events_stay_on_their_budget(void **state) {
-    (void)state;
+TEST(events_stay_on_their_budget) {
     counting_allocator counter = counting_allocator_start();
     cscd_event_options options = cscd_event_defaults();
     cscd_event_tracker *tracker = NULL;
@@ -341,23 +333,9 @@ static void events_stay_on_their_budget(void **state) {
     assert_int_equal(counter.live, 0);
 }
 
-static void names_are_those_of_the_header(void **state) {
-    (void)state;
+TEST(names_are_those_of_the_header) {
     assert_string_equal(cscd_left_out_name(CSCD_LEFT_OUT_PAIRS), "pairs");
     assert_string_equal(cscd_left_out_name(CSCD_LEFT_OUT_CUT_OFFS), "cut-offs");
     assert_string_equal(cscd_left_out_name(CSCD_LEFT_OUT_PARTS), "parts");
     assert_string_equal(cscd_left_out_name((cscd_left_out)77), "unknown");
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_shuffled_frame_stays_on_its_budget),
-                                       cmocka_unit_test(a_soup_stays_on_its_budget),
-                                       cmocka_unit_test(what_is_wanted_is_the_same_for_any_threads),
-                                       cmocka_unit_test(pairs_take_64_bytes_each),
-                                       cmocka_unit_test(pairs_that_do_not_fit_are_counted),
-                                       cmocka_unit_test(earlier_frames_change_nothing),
-                                       cmocka_unit_test(a_step_afterwards_is_right),
-                                       cmocka_unit_test(events_stay_on_their_budget),
-                                       cmocka_unit_test(names_are_those_of_the_header)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -54,8 +54,7 @@ static void make_two(double offset, double size, int inverted, placing at) {
     body_rig_find(&rig);
 }
 
-static void crossing_cubes_have_one_depth(void **state) {
-    (void)state;
+TEST(crossing_cubes_have_one_depth) {
     for (int round = 0; round < 30; round++) {
         placing at = placing_of(round);
         for (int inverted = 0; inverted < 4; inverted++) {
@@ -73,8 +72,7 @@ static void crossing_cubes_have_one_depth(void **state) {
     }
 }
 
-static void a_cube_within_another(void **state) {
-    (void)state;
+TEST(a_cube_within_another) {
     for (int round = 0; round < 30; round++) {
         placing at = placing_of(round);
         for (int inverted = 0; inverted < 4; inverted++) {
@@ -88,8 +86,7 @@ static void a_cube_within_another(void **state) {
     }
 }
 
-static void as_given_it_encloses_nothing(void **state) {
-    (void)state;
+TEST(as_given_it_encloses_nothing) {
     make_two(0.5, 1, 2, placing_of(0));
     rig.orientation = CSCD_ORIENTATION_AS_GIVEN;
     body_rig_find(&rig);
@@ -106,8 +103,7 @@ static void as_given_it_encloses_nothing(void **state) {
 }
 
 /* A box on the floor of another one: where the depth is 0, the direction is that of the normal outwards. */
-static void directions_are_outwards(void **state) {
-    (void)state;
+TEST(directions_are_outwards) {
     for (int inverted = 0; inverted < 4; inverted++) {
         body_rig_begin(&rig);
         const double low[3] = {-1, -1, -1}, size[3] = {4, 4, 1};
@@ -132,8 +128,7 @@ static void directions_are_outwards(void **state) {
 
 /* What crosses another component, or lies beside it, is a body of its own. Some corners of the second cube lie in the first
  * one, all of the third lies in its box, and the fourth is beside them. */
-static void what_is_not_within_stands_alone(void **state) {
-    (void)state;
+TEST(what_is_not_within_stands_alone) {
     for (int inverted = 0; inverted < 16; inverted++) {
         body_rig_begin(&rig);
         add_cube(0, 0, 0, 2);
@@ -157,8 +152,7 @@ static void what_is_not_within_stands_alone(void **state) {
 /* ---- no volume ----------------------------------------------------------------------------------------- */
 
 /* A cube that is flat or at one place is as given, and takes nothing away from the others. */
-static void what_is_collapsed_is_as_given(void **state) {
-    (void)state;
+TEST(what_is_collapsed_is_as_given) {
     for (int round = 0; round < 12; round++) {
         make_two(0.5, 1, 1, placing_of(0));
         uint32_t first = rig.bodies[1].first_vertex;
@@ -174,8 +168,7 @@ static void what_is_collapsed_is_as_given(void **state) {
 }
 
 /* A scale that goes to -1 over time: the volume turns at 0, the depth stays. */
-static void a_scale_that_goes_negative(void **state) {
-    (void)state;
+TEST(a_scale_that_goes_negative) {
     make_two(0.5, 1, 0, placing_of(0));
     double given[8];
     for (uint32_t v = 0; v < 8; v++) given[v] = rig.all.x0[v * 3] - 0.5;
@@ -207,8 +200,7 @@ static void make_rows(random_stream *random, double rows[3][3]) {
 
 /* Tetrahedra of a volume of 1/6 with edges of millions: rounded, the volume is anything, and only the exact sign tells which of
  * them are inside out. */
-static void the_sign_is_exact(void **state) {
-    (void)state;
+TEST(the_sign_is_exact) {
     static const uint32_t triangles[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
     random_stream random = stream_start(51);
     for (int round = 0; round < 100; round++) {
@@ -226,18 +218,4 @@ static void the_sign_is_exact(void **state) {
         assert_int_equal(body_rig_is_turned(&rig, 0), round % 2);
         body_rig_free(&rig);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_sign_is_exact),
-        cmocka_unit_test(crossing_cubes_have_one_depth),
-        cmocka_unit_test(a_cube_within_another),
-        cmocka_unit_test(as_given_it_encloses_nothing),
-        cmocka_unit_test(directions_are_outwards),
-        cmocka_unit_test(what_is_not_within_stands_alone),
-        cmocka_unit_test(what_is_collapsed_is_as_given),
-        cmocka_unit_test(a_scale_that_goes_negative),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -51,8 +51,7 @@ static void expect_volumes(bool known) {
 }
 
 /* Not even a piece of the curve tells that something is missing. */
-static void a_whole_curve(void **state) {
-    (void)state;
+TEST(a_whole_curve) {
     ignored_range range = {12, UINT32_MAX};
     add_cubes(false);
     find_ignoring(&range);
@@ -62,8 +61,7 @@ static void a_whole_curve(void **state) {
 }
 
 /* Two bars across each other have no vertices in each other, so nothing but the curves tells that they overlap. */
-static void nothing_else_is_buried(void **state) {
-    (void)state;
+TEST(nothing_else_is_buried) {
     static const double low[3] = {-3, 0.1, 0.2}, size[3] = {6, 0.5, 0.25}, across[3] = {0.3, -2, 0.1},
                         other[3] = {0.5, 5, 2};
     ignored_range range = {12, UINT32_MAX};
@@ -78,8 +76,7 @@ static void nothing_else_is_buried(void **state) {
     body_rig_free(&rig);
 }
 
-static void all_but_some_pieces(void **state) {
-    (void)state;
+TEST(all_but_some_pieces) {
     size_t open = 0;
     for (uint32_t kept = 0; kept < 12; kept++) {
         ignored_range range = {12, kept};
@@ -93,8 +90,7 @@ static void all_but_some_pieces(void **state) {
 }
 
 /* Pairs without a piece of a curve may be left out: here two that only touch. */
-static void pairs_that_carry_nothing(void **state) {
-    (void)state;
+TEST(pairs_that_carry_nothing) {
     size_t ignored = 0;
     add_cubes(false);
     body_rig_create(&rig, NULL, 1);
@@ -112,8 +108,7 @@ static void pairs_that_carry_nothing(void **state) {
 }
 
 /* A curve with an open component bounds nothing. */
-static void open_components_have_none(void **state) {
-    (void)state;
+TEST(open_components_have_none) {
     ignored_range range = {11, UINT32_MAX};
     add_cubes(true);
     find_ignoring(&range);
@@ -132,8 +127,7 @@ static bool has_closed_curve(void) {
 
 /* A seam whose vertices are apart leaves out pairs whose features that meet have vertices of it, as many as all of a curve:
  * each pair of triangles at the two corners that are in the other cube. */
-static void seams_whose_vertices_are_apart(void **state) {
-    (void)state;
+TEST(seams_whose_vertices_are_apart) {
     size_t unknown = 0;
     for (uint32_t v = 0; v < 64; v++) {
         const uint32_t seam[2] = {v / 8, 8 + v % 8};
@@ -151,16 +145,4 @@ static void seams_whose_vertices_are_apart(void **state) {
         body_rig_free(&rig);
     }
     assert_true(unknown > 0 && unknown < 64);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_whole_curve),
-        cmocka_unit_test(nothing_else_is_buried),
-        cmocka_unit_test(all_but_some_pieces),
-        cmocka_unit_test(pairs_that_carry_nothing),
-        cmocka_unit_test(open_components_have_none),
-        cmocka_unit_test(seams_whose_vertices_are_apart),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -28,8 +28,7 @@ static void expect_overlap(uint32_t a, uint32_t b, double area_a, double area_b,
     assert_true(fabs(found.volume - volume) <= 1e-12);
 }
 
-static void corners_of_two_boxes(void **state) {
-    (void)state;
+TEST(corners_of_two_boxes) {
     body_rig_begin(&rig);
     add_cube(0, 0, 0, 2);
     add_cube(1.25, 1.5, 1.125, 2);
@@ -41,8 +40,7 @@ static void corners_of_two_boxes(void **state) {
 }
 
 /* No vertex of the one is in the other. */
-static void bars_across_each_other(void **state) {
-    (void)state;
+TEST(bars_across_each_other) {
     const double low[3] = {-3, 0.1, 0.2}, size[3] = {6, 0.5, 0.25}, across[3] = {0.3, -2, 0.1},
                  other[3] = {0.5, 5, 2};
     body_rig_begin(&rig);
@@ -56,8 +54,7 @@ static void bars_across_each_other(void **state) {
 }
 
 /* A box within a box within a ball of wax: nothing crosses, and everything is buried. */
-static void boxes_within_each_other(void **state) {
-    (void)state;
+TEST(boxes_within_each_other) {
     body_rig_begin(&rig);
     add_cube(0, 0, 0, 4);
     add_cube(1, 1, 1, 2);
@@ -80,8 +77,7 @@ static void turn_inside_out(uint32_t first, uint32_t end) {
 }
 
 /* A box with a cavity has normals into the cavity, in which a third box is not buried. */
-static void a_cavity_is_outside(void **state) {
-    (void)state;
+TEST(a_cavity_is_outside) {
     const double low[3] = {1, 1, 1}, size[3] = {2, 2, 2}, outer[3] = {0, 0, 0}, all[3] = {4, 4, 4};
     body_rig_begin(&rig);
     body_rig_add_box(&rig, outer, all);
@@ -97,8 +93,7 @@ static void a_cavity_is_outside(void **state) {
     body_rig_free(&rig);
 }
 
-static void a_body_that_is_inside_out(void **state) {
-    (void)state;
+TEST(a_body_that_is_inside_out) {
     const double low[3] = {0, 0, 0}, size[3] = {2, 2, 2};
     body_rig_begin(&rig);
     body_rig_add_box(&rig, low, size);
@@ -116,8 +111,7 @@ static void a_body_that_is_inside_out(void **state) {
 }
 
 /* Two bodies of one object: what is in both is contained twice. */
-static void two_bodies_of_one_object(void **state) {
-    (void)state;
+TEST(two_bodies_of_one_object) {
     const double low[3] = {0, 0, 0}, size[3] = {2, 2, 2}, second[3] = {1, 1, 1};
     body_rig_begin(&rig);
     body_rig_add_box(&rig, low, size);
@@ -132,8 +126,7 @@ static void two_bodies_of_one_object(void **state) {
 
 /* Two bars of one object cross each other where they pass through a face of a box: their outlines cross within one
  * triangle. */
-static void bars_that_cross_in_a_face(void **state) {
-    (void)state;
+TEST(bars_that_cross_in_a_face) {
     const double low[3] = {-20, -11, -5}, size[3] = {40, 33, 5};
     const double bars[2][2][3] = {{{-3, -0.2, -1}, {6, 0.4, 2}}, {{-3, -0.3, -1.5}, {6, 0.6, 2}}};
     const double pi = acos(-1.0), angle = 40.0 * pi / 180.0, turn = 0.3;
@@ -158,8 +151,7 @@ static void bars_that_cross_in_a_face(void **state) {
 
 /* Digits are lost where volumes are measured from far away: the first triangle of the first object is 10^6 away, and the faces
  * of the slab reach as far, but nothing of the overlap does. */
-static void far_from_everything_else(void **state) {
-    (void)state;
+TEST(far_from_everything_else) {
     const double origin[3] = {-1e6, -1e6, -1e6}, one[3] = {1, 1, 1}, low[3] = {-1e6, -1e6, -1},
                  slab[3] = {2e6, 2e6, 1};
     body_rig_begin(&rig);
@@ -177,8 +169,7 @@ static void far_from_everything_else(void **state) {
 
 /* Two boxes of one object that is not looked at with itself. Nobody knows where the one is in the other, so what they share
  * of a third box counts twice. */
-static void an_object_that_is_not_looked_at_with_itself(void **state) {
-    (void)state;
+TEST(an_object_that_is_not_looked_at_with_itself) {
     const double low[3] = {0, 0, 0}, size[3] = {2, 2, 2}, second[3] = {1, 0.5, 0.5};
     cscd_object_rule rules[2] = {cscd_object_rule_default(), cscd_object_rule_default()};
     cscd_detector_options options = cscd_detector_defaults();
@@ -214,8 +205,7 @@ static void compare_volume(const char *what, double found, double truth, double 
     assert_true(fabs(found - truth) <= 2e-3 * truth + 2e-5 * whole);
 }
 
-static void balls_and_rings(void **state) {
-    (void)state;
+TEST(balls_and_rings) {
     random_stream random = stream_start(5);
     for (int round = 0; round < ROUNDS; round++) {
         double centre[3] = {stream_between(&random, 0.5, 1.1), stream_between(&random, -0.3, 0.3),
@@ -235,8 +225,7 @@ static void balls_and_rings(void **state) {
 }
 
 /* A snake that bends into a ring and swallows its tail. */
-static void a_body_in_itself(void **state) {
-    (void)state;
+TEST(a_body_in_itself) {
     body_rig_begin(&rig);
     body_rig_add_snake(&rig);
     body_rig_end_body(&rig);
@@ -248,8 +237,7 @@ static void a_body_in_itself(void **state) {
 }
 
 /* Edge against edge: no vertex is within the other ball. */
-static void balls_that_overlap_by_less_than_an_edge(void **state) {
-    (void)state;
+TEST(balls_that_overlap_by_less_than_an_edge) {
     static const double left[3] = {0, 0, 0}, right[3] = {1.84, 0.011, 0.007};
     body_rig_begin(&rig);
     scene_add_sphere(&rig.all, left, 1.0, 7, 8);
@@ -270,22 +258,4 @@ static void balls_that_overlap_by_less_than_an_edge(void **state) {
     for (size_t i = 0; i < rig.all.vertex_count; i++)
         assert_int_equal(rig.found.patches->items[rig.found.patches->vertex_patches[i]].winding_count, 0);
     body_rig_free(&rig);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(corners_of_two_boxes),
-        cmocka_unit_test(bars_across_each_other),
-        cmocka_unit_test(boxes_within_each_other),
-        cmocka_unit_test(a_cavity_is_outside),
-        cmocka_unit_test(a_body_that_is_inside_out),
-        cmocka_unit_test(two_bodies_of_one_object),
-        cmocka_unit_test(bars_that_cross_in_a_face),
-        cmocka_unit_test(far_from_everything_else),
-        cmocka_unit_test(an_object_that_is_not_looked_at_with_itself),
-        cmocka_unit_test(balls_and_rings),
-        cmocka_unit_test(a_body_in_itself),
-        cmocka_unit_test(balls_that_overlap_by_less_than_an_edge),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -147,13 +147,11 @@ static void compare_class(int shared, bool named) {
     if (!named && shared >= 2) assert_int_equal(of[CSCD_INTERSECTION_CROSSING], 0);
 }
 
-static void shared_by_index(void **state) {
-    (void)state;
+TEST(shared_by_index) {
     for (int shared = 0; shared < 4; shared++) compare_class(shared, false);
 }
 
-static void shared_by_name(void **state) {
-    (void)state;
+TEST(shared_by_name) {
     for (int shared = 0; shared < 4; shared++) compare_class(shared, true);
 }
 
@@ -172,8 +170,7 @@ static void expect_known(uint32_t p, uint32_t q, uint32_t r, int kind, uint32_t 
     assert_int_equal(found.shared, shared);
 }
 
-static void known_pairs(void **state) {
-    (void)state;
+TEST(known_pairs) {
     expect_known(3, 4, 5, CSCD_INTERSECTION_CROSSING, 0);
     expect_known(3, 5, 6, CSCD_INTERSECTION_TOUCHING, 0);  /* a corner on the face */
     expect_known(3, 5, 7, CSCD_INTERSECTION_TOUCHING, 0);  /* a corner on an edge */
@@ -195,11 +192,4 @@ static void known_pairs(void **state) {
     expect_known(2, 1, 0, CSCD_INTERSECTION_DUPLICATE, 3);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(known_pairs),
-        cmocka_unit_test_setup(shared_by_index, seed_random),
-        cmocka_unit_test_setup(shared_by_name, seed_random),
-    };
-    return cmocka_run_group_tests_name("pair_kind", tests, NULL, NULL);
-}
+AROUND_EACH(seed_random, NULL)

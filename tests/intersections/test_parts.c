@@ -10,8 +10,7 @@ static labelling labels;
 
 /* ---- sums ------------------------------------------------------------------------------------------------ */
 
-static void objects_are_parts_by_default(void **state) {
-    (void)state;
+TEST(objects_are_parts_by_default) {
     labelled_scene_open(&rig, NULL, 2);
     labelled_scene_find(&rig);
     labelling_of_objects(&labels, &rig);
@@ -27,8 +26,7 @@ static void objects_are_parts_by_default(void **state) {
     body_rig_free(&rig);
 }
 
-static void parts_of_the_caller(void **state) {
-    (void)state;
+TEST(parts_of_the_caller) {
     static const uint32_t counts[4] = {1, 2, 7, 40};
     size_t pairs = 0;
     for (uint32_t i = 0; i < 4; i++) {
@@ -44,8 +42,7 @@ static void parts_of_the_caller(void **state) {
 }
 
 /* A curve that runs through several pairs of parts is one of each, and its length is shared. */
-static void components_and_regions(void **state) {
-    (void)state;
+TEST(components_and_regions) {
     cscd_plan_options options = cscd_plan_defaults();
     cscd_plan *plan = NULL;
     options.method = CSCD_METHOD_KMEANS;
@@ -79,8 +76,7 @@ static void components_and_regions(void **state) {
 }
 
 /* The numbers of the guide: the corner of a small box in a large one. */
-static void two_boxes_by_hand(void **state) {
-    (void)state;
+TEST(two_boxes_by_hand) {
     static const double low[2][3] = {{0, 0, 0}, {1.5, 0.5, 1.75}}, sizes[2][3] = {{2, 2, 2}, {1, 1, 1}};
     body_rig_begin(&rig);
     for (int i = 0; i < 2; i++) {
@@ -104,8 +100,7 @@ static void two_boxes_by_hand(void **state) {
 
 /* ---- other questions --------------------------------------------------------------------------------------- */
 
-static void sums_are_of_the_list(void **state) {
-    (void)state;
+TEST(sums_are_of_the_list) {
     size_t before = 0;
     labelled_scene_open(&rig, NULL, 2);
     labelling_draw(&labels, &rig, 4, 9);
@@ -133,8 +128,7 @@ static void sums_are_of_the_list(void **state) {
     body_rig_free(&rig);
 }
 
-static void masked_objects_are_in_no_pair(void **state) {
-    (void)state;
+TEST(masked_objects_are_in_no_pair) {
     cscd_object_rule rules[3] = {cscd_object_rule_default(), cscd_object_rule_default(),
                                  cscd_object_rule_default()};
     cscd_detector_options options = cscd_detector_defaults();
@@ -151,8 +145,7 @@ static void masked_objects_are_in_no_pair(void **state) {
 }
 
 /* A body that is wholly inside another one intersects nothing, and has a depth. */
-static void a_swallowed_body_is_listed(void **state) {
-    (void)state;
+TEST(a_swallowed_body_is_listed) {
     static const double low[2][3] = {{0, 0, 0}, {1, 1, 1}}, sizes[2][3] = {{4, 4, 4}, {1, 1, 1.5}};
     body_rig_begin(&rig);
     for (int i = 0; i < 2; i++) {
@@ -167,14 +160,4 @@ static void a_swallowed_body_is_listed(void **state) {
     const cscd_part_pair *pair = &rig.found.parts->items[0]; /* deepest on an edge, at (2, 2, 2) */
     assert_true(pair->depth <= 2.0 && pair->bound >= 2.0 && pair->bound <= 1.01 * pair->depth);
     body_rig_free(&rig);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(objects_are_parts_by_default), cmocka_unit_test(parts_of_the_caller),
-        cmocka_unit_test(components_and_regions),       cmocka_unit_test(two_boxes_by_hand),
-        cmocka_unit_test(sums_are_of_the_list),         cmocka_unit_test(masked_objects_are_in_no_pair),
-        cmocka_unit_test(a_swallowed_body_is_listed),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

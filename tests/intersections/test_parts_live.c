@@ -38,8 +38,7 @@ static cscd_mesh_change *change_bodies(const body_rig *r, body_rig *to) {
     return change;
 }
 
-static void labels_move_to_another_mesh(void **state) {
-    (void)state;
+TEST(labels_move_to_another_mesh) {
     static uint32_t before[SCENE_TRIANGLES_MAX];
     uint32_t count;
     labelled_scene_open(&rig, NULL, 2);
@@ -74,8 +73,7 @@ static void labels_move_to_another_mesh(void **state) {
 }
 
 /* A small ball comes, so that there are triangles with larger numbers than ever before. */
-static void sums_follow_to_a_larger_mesh(void **state) {
-    (void)state;
+TEST(sums_follow_to_a_larger_mesh) {
     static const double centre[3] = {0.95, 0.25, 0.15};
     counting_allocator counter = counting_allocator_start();
     labelled_scene_open(&rig, NULL, 1);
@@ -105,8 +103,7 @@ static void sums_follow_to_a_larger_mesh(void **state) {
     assert_int_equal(counter.live, 0);
 }
 
-static void clones_have_their_own_labels(void **state) {
-    (void)state;
+TEST(clones_have_their_own_labels) {
     cscd_detector *first, *second;
     labelled_scene_open(&rig, NULL, 1);
     labelling_draw(&labels, &rig, 6, 4);
@@ -127,8 +124,7 @@ static void clones_have_their_own_labels(void **state) {
 
 /* ---- calls ------------------------------------------------------------------------------------------------ */
 
-static void what_is_refused(void **state) {
-    (void)state;
+TEST(what_is_refused) {
     labelled_scene_open(&rig, NULL, 1);
     labelling_draw(&labels, &rig, 3, 5);
     labelling_set(&labels, &rig);
@@ -145,14 +141,4 @@ static void what_is_refused(void **state) {
     labelled_scene_find(&rig);
     labelling_compare(&labels, &rig);
     body_rig_free(&rig);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(labels_move_to_another_mesh),
-        cmocka_unit_test(sums_follow_to_a_larger_mesh),
-        cmocka_unit_test(clones_have_their_own_labels),
-        cmocka_unit_test(what_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -78,8 +78,7 @@ static void check_counts(const patched_scene *p) {
     assert_int_equal(triangles, listed_triangles);
 }
 
-static void corners_have_the_numbers_of_their_patch(void **state) {
-    (void)state;
+TEST(corners_have_the_numbers_of_their_patch) {
     size_t cut = 0, buried = 0;
     for (int family = 0; family < GRID_FAMILIES; family++) {
         for (uint64_t seed = 0; seed < SEEDS; seed++) {
@@ -96,11 +95,4 @@ static void corners_have_the_numbers_of_their_patch(void **state) {
     }
     print_message("  %zu scenes are cut, %zu times an object winds around a patch\n", cut, buried);
     assert_true(cut > 2 * SEEDS && buried > 5 * SEEDS);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(corners_have_the_numbers_of_their_patch),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -75,7 +75,7 @@ static int compare_points(point_rig *r, uint64_t seed, double offset, double gri
     return found;
 }
 
-static void points_are_those_of_integers(void **state) {
+TEST(points_are_those_of_integers) {
     point_rig *r = *state;
     assert_true(compare_points(r, 1, 0.0, 0.0, 1.0) > POINTS - POINTS / 1000);
     assert_true(compare_points(r, 2, 0.0, 0x1p20, 1.0) > POINTS - POINTS / 1000);
@@ -89,7 +89,7 @@ static void points_are_those_of_integers(void **state) {
 }
 
 /* The point is above the middle between two doubles by 2^-106, which two doubles do not hold: they round to even, below. */
-static void points_near_the_middle_are_left(void **state) {
+TEST(points_near_the_middle_are_left) {
     point_rig *r = *state;
     const double x[5][3] = {{1.0, 0.0, -1.0 - 0x1p-52},
                             {1.0 + 0x1p-52, 0.0, 1.0},
@@ -104,10 +104,4 @@ static void points_near_the_middle_are_left(void **state) {
     assert_true(at.x[0] == 1.0 + 0x1p-52);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(points_are_those_of_integers),
-        cmocka_unit_test(points_near_the_middle_are_left),
-    };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+AROUND_ALL(set_up, tear_down)

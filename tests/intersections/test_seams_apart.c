@@ -55,31 +55,27 @@ static void expect_as_without(const uint32_t (*seams)[2], size_t count) {
     body_rig_free(&other);
 }
 
-static void a_seam_across_a_body(void **state) {
-    (void)state;
+TEST(a_seam_across_a_body) {
     static const uint32_t far[][2] = {{0, 7}}, many[][2] = {{0, 7}, {7, 1}, {1, 6}};
     expect_as_without(far, 1);
     expect_as_without(many, 3);
 }
 
-static void a_seam_between_bodies(void **state) {
-    (void)state;
+TEST(a_seam_between_bodies) {
     static const uint32_t far[][2] = {{0, 15}}, near[][2] = {{0, 8}};
     expect_as_without(far, 1);
     expect_as_without(near, 1);
 }
 
 /* A seam along an edge of a triangle does not make the triangle a line. */
-static void a_seam_along_an_edge(void **state) {
-    (void)state;
+TEST(a_seam_along_an_edge) {
     static const uint32_t seams[][2] = {{7, 6}, {8, 9}, {9, 10}};
     expect_as_without(seams, 3);
 }
 
 /* Of three vertices of one seam, the second and the third are at one place, and these are one: there the curve of two open
  * triangles ends, at a vertex that both have. The first one is in a triangle far away. */
-static void those_at_one_place_are_one(void **state) {
-    (void)state;
+TEST(those_at_one_place_are_one) {
     static const double places[9][3] = {{9, 9, 9},  {0, 0, 0}, {0, 0, 0}, {9, 8, 9}, {0, 1, 1},
                                         {0, 1, -1}, {9, 9, 8}, {1, 2, 0}, {-1, 2, 0}};
     static const uint32_t triangles[3][3] = {{0, 3, 6}, {1, 4, 5}, {2, 7, 8}}, seams[][2] = {{0, 1}, {0, 2}};
@@ -103,8 +99,7 @@ static void those_at_one_place_are_one(void **state) {
 
 /* A seam that makes a point of an edge leaves its two triangles without area, and their neighbours are neighbours of each
  * other: the curve goes on there. */
-static void an_edge_that_is_a_point(void **state) {
-    (void)state;
+TEST(an_edge_that_is_a_point) {
     static const uint32_t seams[][2] = {{6, 7}};
     add_cubes(&rig);
     add_cubes(&other);
@@ -124,8 +119,7 @@ static void an_edge_that_is_a_point(void **state) {
 
 /* Two triangles that are sewn together along x = 0, or three, and a blade through them. The pairs of the blade with all but
  * the first are ignored: its curve ends at the seam, where it would go on, or where three triangles meet. */
-static void a_pair_is_left_out_at_a_seam(void **state) {
-    (void)state;
+TEST(a_pair_is_left_out_at_a_seam) {
     static const double corners[4][3] = {{-2, 1, 0}, {2, 1, 0}, {0, 1, -2}, {0, 0, 0}};
     static const double blade[3][3] = {{-1, 1.25, -1}, {1, 1.25, -1}, {0, 1.25, 2}};
     static const uint32_t seams[4][2] = {{0, 3}, {1, 4}, {0, 6}, {1, 7}};
@@ -164,13 +158,4 @@ static void a_pair_is_left_out_at_a_seam(void **state) {
         assert_true(curve->start == CSCD_CURVE_END_BORDER || curve->end == CSCD_CURVE_END_BORDER);
         body_rig_free(&rig);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_seam_across_a_body),    cmocka_unit_test(a_seam_between_bodies),
-        cmocka_unit_test(a_seam_along_an_edge),    cmocka_unit_test(those_at_one_place_are_one),
-        cmocka_unit_test(an_edge_that_is_a_point), cmocka_unit_test(a_pair_is_left_out_at_a_seam),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -63,8 +63,7 @@ static int read_inverted(const char *senses) {
     return inverted;
 }
 
-static void shells_keep_their_sense(void **state) {
-    (void)state;
+TEST(shells_keep_their_sense) {
     for (size_t n = 0; n < sizeof nestings / sizeof *nestings; n++) {
         const char *senses = nestings[n].senses, *roles = nestings[n].roles;
         const uint32_t shells = (uint32_t)strlen(senses);
@@ -81,8 +80,7 @@ static void shells_keep_their_sense(void **state) {
 
 /* The same shells in an object of their own, each of no part, from the outermost one or from the innermost one: a cavity has the body of
  * what it is a cavity of. */
-static void cavities_belong_to_what_is_around_them(void **state) {
-    (void)state;
+TEST(cavities_belong_to_what_is_around_them) {
     for (size_t n = 0; n < 4 * sizeof nestings / sizeof *nestings; n++) {
         const char *senses = nestings[n / 4].senses, *roles = nestings[n / 4].roles;
         const uint32_t shells = (uint32_t)strlen(senses);
@@ -111,8 +109,7 @@ static void cavities_belong_to_what_is_around_them(void **state) {
 }
 
 /* What is of another part is no cavity, whatever is asked about orientation; and parts join what comes after a component of none. */
-static void bodies_go_by_parts(void **state) {
-    (void)state;
+TEST(bodies_go_by_parts) {
     static const uint32_t parts[][3] = {{0, 1, 2}, {UINT32_MAX, 0, 0}, {0, UINT32_MAX, 0}, {1, 1, 1}},
                           bodies[][3] = {{0, 1, 2}, {0, 1, 1}, {0, 1, 0}, {0, 0, 0}};
     static const char *const turned[] = {".t.", ".tt", ".t.", "..."};
@@ -136,8 +133,7 @@ static void bodies_go_by_parts(void **state) {
 }
 
 /* A cavity that touches its hull along one side, or all of one face, whichever of the two comes first. */
-static void cavities_may_touch_their_hull(void **state) {
-    (void)state;
+TEST(cavities_may_touch_their_hull) {
     for (int round = 0; round < 12; round++) {
         const bool inner_first = round % 2 == 1, flush = round % 4 >= 2;
         body_rig_begin(&rig);
@@ -177,8 +173,7 @@ static double greatest_depth(void) {
 /* A hull from -3 to 3, its cavity from -2 to 2, and a box that crosses the cavity's wall, in each order. A small box reaches 0.5 into the
  * wall; if it has the cavity's sense it is a body all the same, turned around: two cavities do not cross. A large one encloses more
  * than the cavity, which stays one, as the box has the hull's sense. */
-static void what_crosses_its_cavity_is_a_body(void **state) {
-    (void)state;
+TEST(what_crosses_its_cavity_is_a_body) {
     static const uint8_t orders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
     static const double low[2][3] = {{1.25, -0.5, -0.5}, {-2.5, -2.5, -2.5}},
                         size[2][3] = {{1.25, 1, 1}, {5, 5, 4}};
@@ -212,8 +207,7 @@ static void what_crosses_its_cavity_is_a_body(void **state) {
 }
 
 /* Two hollow bodies that cross so far that their cavities cross, too: each stays the cavity of its own body. */
-static void cavities_of_two_bodies_may_cross(void **state) {
-    (void)state;
+TEST(cavities_of_two_bodies_may_cross) {
     body_rig_begin(&rig);
     for (int i = 0; i < 2; i++) {
         add_cube(2 * i - 3, 6);
@@ -243,8 +237,7 @@ static void rotate_triangles(uint32_t cube) {
 }
 
 /* Two that cross, one of them inside out, although no pair of their triangles is looked at: neither lies in the other. */
-static void left_out_pairs_make_no_cavity(void **state) {
-    (void)state;
+TEST(left_out_pairs_make_no_cavity) {
     static uint32_t ignored[2 * CUBE * CUBE];
     cscd_detector_options options = cscd_detector_defaults();
     body_rig_begin(&rig);
@@ -269,8 +262,7 @@ static void left_out_pairs_make_no_cavity(void **state) {
     }
 }
 
-static void parts_are_bodies_of_their_own(void **state) {
-    (void)state;
+TEST(parts_are_bodies_of_their_own) {
     for (uint32_t shells = 1; shells <= 3; shells++) {
         for (int inverted = 0; inverted < 1 << shells; inverted++) {
             make_nested(shells, inverted, true, inverted % 3);
@@ -283,8 +275,7 @@ static void parts_are_bodies_of_their_own(void **state) {
 }
 
 /* One component of a part each, but the outer one has both parts: the inner one is a shell of it. */
-static void a_shell_of_a_skin_with_limbs(void **state) {
-    (void)state;
+TEST(a_shell_of_a_skin_with_limbs) {
     make_nested(2, 2, true, 0);
     uint32_t labels[3 * CUBE];
     for (uint32_t t = 0; t < 3 * CUBE; t++) labels[t] = t < 5 ? 0 : t < 2 * CUBE ? 1 : 2;
@@ -293,19 +284,4 @@ static void a_shell_of_a_skin_with_limbs(void **state) {
     assert_true(!body_rig_is_turned(&rig, 0) && !body_rig_is_turned(&rig, 1));
     assert_int_equal(number_in_the_middle(2), 0);
     body_rig_free(&rig);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(shells_keep_their_sense),
-        cmocka_unit_test(cavities_belong_to_what_is_around_them),
-        cmocka_unit_test(bodies_go_by_parts),
-        cmocka_unit_test(cavities_may_touch_their_hull),
-        cmocka_unit_test(what_crosses_its_cavity_is_a_body),
-        cmocka_unit_test(cavities_of_two_bodies_may_cross),
-        cmocka_unit_test(left_out_pairs_make_no_cavity),
-        cmocka_unit_test(parts_are_bodies_of_their_own),
-        cmocka_unit_test(a_shell_of_a_skin_with_limbs),
-    };
-    return cmocka_run_group_tests_name("shells", tests, NULL, NULL);
 }

@@ -47,8 +47,7 @@ static size_t compare_with_all_pairs(uint32_t thread_count) {
     return next;
 }
 
-static void equals_all_pairs(void **state) {
-    (void)state;
+TEST(equals_all_pairs) {
     uint32_t embedded = 0, crossing = 0;
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         uint64_t seeds = family == SCENE_GRID ? 500 : family == SCENE_SOUP ? 60 : 12;
@@ -71,8 +70,7 @@ static size_t pairs_at(double x, double y, double z) {
 }
 
 /* The spheres' poles are exactly at z = centre - 1 and z = centre + 1. */
-static void touching_counts(void **state) {
-    (void)state;
+TEST(touching_counts) {
     assert_true(pairs_at(0, 0, 2.0) > 0);
     assert_int_equal(pairs_at(0, 0, 2.0 + 0x1p-50), 0);
     assert_true(pairs_at(0, 0, 2.0 - 0x1p-50) > 0);
@@ -80,8 +78,7 @@ static void touching_counts(void **state) {
 }
 
 /* A sheet is folded flat onto itself about its middle, so neighbours across the fold overlap in the plane. */
-static void flat_folds_count(void **state) {
-    (void)state;
+TEST(flat_folds_count) {
     scene_clear(&s);
     scene_add_sheet(&s, 2.0, 1.0, 2, 1);
     assert_int_equal(compare_with_all_pairs(1), 0);
@@ -89,10 +86,4 @@ static void flat_folds_count(void **state) {
         if (s.x0[v * 3] > 0) s.x0[v * 3] = -s.x0[v * 3];
     }
     assert_true(compare_with_all_pairs(1) > 0);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(equals_all_pairs), cmocka_unit_test(touching_counts),
-                                       cmocka_unit_test(flat_folds_count)};
-    return cmocka_run_group_tests_name("static_check", tests, NULL, NULL);
 }

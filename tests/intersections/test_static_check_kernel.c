@@ -169,14 +169,12 @@ static void check_family(family f, int shared, double most) {
     assert_true(apart > 10000 && share <= most);
 }
 
-static void near_pairs(void **state) {
-    (void)state;
+TEST(near_pairs) {
     for (int shared = 0; shared < 4; shared++) check_family(NEAR, shared, 0.1);
     check_family(NEAR, -1, 0.1);
 }
 
-static void crossing_pairs(void **state) {
-    (void)state;
+TEST(crossing_pairs) {
     for (family f = NEAR; f < FAMILY_COUNT; f++) {
         uint64_t meeting = 0, found = 0;
         for (int i = 0; i < BATCHES / 6; i++) {
@@ -191,8 +189,7 @@ static void crossing_pairs(void **state) {
     }
 }
 
-static void degenerate_pairs(void **state) {
-    (void)state;
+TEST(degenerate_pairs) {
     for (int shared = -1; shared < 4; shared++) {
         check_family(GRID, shared, 1.0);
         check_family(FLAT, shared, 75.0);
@@ -202,8 +199,7 @@ static void degenerate_pairs(void **state) {
 
 /* Intersecting pairs are scaled until products or differences overflow. An infinity must not prove them
  * disjoint. */
-static void overflow_certifies_nothing(void **state) {
-    (void)state;
+TEST(overflow_certifies_nothing) {
     for (int i = 0; i < BATCHES; i++) {
         triangle_pair pairs[BATCH_MAX];
         uint32_t meeting = 0;
@@ -263,8 +259,7 @@ static void check_signs(uint32_t triangle, uint8_t normals, uint64_t *signs, uin
     }
 }
 
-static void signs_of_normals(void **state) {
-    (void)state;
+TEST(signs_of_normals) {
     uint64_t signs = 0, found = 0;
     for (int i = 0; i < BATCHES; i++) {
         static uint8_t normals[2][2 * BATCH_MAX], rises[2][2 * BATCH_MAX];
@@ -289,13 +284,5 @@ static void signs_of_normals(void **state) {
     assert_true(signs > 1000 && found * 10 > signs * 9);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(near_pairs, seed_random),
-        cmocka_unit_test_setup(crossing_pairs, seed_random),
-        cmocka_unit_test_setup(degenerate_pairs, seed_random),
-        cmocka_unit_test_setup(overflow_certifies_nothing, seed_random),
-        cmocka_unit_test_setup(signs_of_normals, seed_random),
-    };
-    return cmocka_run_group_tests_name("static_kernel", tests, open_levels, close_levels);
-}
+AROUND_EACH(seed_random, NULL)
+AROUND_ALL(open_levels, close_levels)

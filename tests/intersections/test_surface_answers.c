@@ -22,8 +22,7 @@ static void add_scene(body_rig *r) {
     body_rig_end_body(r);
 }
 
-static void methods_and_threads_agree(void **state) {
-    (void)state;
+TEST(methods_and_threads_agree) {
     const cscd_method methods[] = {CSCD_METHOD_NONE, CSCD_METHOD_SINGLE, CSCD_METHOD_BRUTE};
     add_scene(&rig);
     body_rig_create(&rig, NULL, 1);
@@ -62,8 +61,7 @@ static bool names_object(uint32_t object) {
     return false;
 }
 
-static void masked_objects_bury_nothing(void **state) {
-    (void)state;
+TEST(masked_objects_bury_nothing) {
     cscd_object_rule rules[3] = {cscd_object_rule_default(), cscd_object_rule_default(),
                                  cscd_object_rule_default()};
     cscd_detector_options options = cscd_detector_defaults();
@@ -79,8 +77,7 @@ static void masked_objects_bury_nothing(void **state) {
 }
 
 /* Without one of its pairs a curve is open there, and the overlap has no volume. */
-static void an_ignored_pair_opens_a_curve(void **state) {
-    (void)state;
+TEST(an_ignored_pair_opens_a_curve) {
     static const double low[3] = {0, 0, 0}, size[3] = {2, 2, 2}, second[3] = {1.25, 1.5, 1.125};
     body_rig_begin(&rig);
     body_rig_add_box(&rig, low, size);
@@ -104,8 +101,7 @@ static void an_ignored_pair_opens_a_curve(void **state) {
 
 /* ---- calls ------------------------------------------------------------------------------------------------ */
 
-static void the_list_of_all_pairs_is_needed(void **state) {
-    (void)state;
+TEST(the_list_of_all_pairs_is_needed) {
     add_scene(&rig);
     body_rig_create(&rig, NULL, 1);
     for (int i = 0; i < 4; i++) {
@@ -126,8 +122,7 @@ static void the_list_of_all_pairs_is_needed(void **state) {
     body_rig_free(&rig);
 }
 
-static void only_what_is_asked_for(void **state) {
-    (void)state;
+TEST(only_what_is_asked_for) {
     add_scene(&rig);
     body_rig_create(&rig, NULL, 1);
     for (int i = 0; i < 4; i++) {
@@ -163,8 +158,7 @@ enum { STEADY_RUNS = 5 };
 #endif
 
 /* With several threads, which of them finds what differs from call to call. */
-static void a_steady_state_allocates_nothing(void **state) {
-    (void)state;
+TEST(a_steady_state_allocates_nothing) {
     for (uint32_t run = 0; run < STEADY_RUNS; run++) {
         counting_allocator counter = counting_allocator_start();
         add_scene(&rig);
@@ -180,8 +174,7 @@ static void a_steady_state_allocates_nothing(void **state) {
 }
 
 /* A new mesh and a second detector have answers of their own. */
-static void clones_answer_alike(void **state) {
-    (void)state;
+TEST(clones_answer_alike) {
     cscd_detector *first, *second;
     add_scene(&rig);
     body_rig_create(&rig, NULL, 2);
@@ -203,8 +196,7 @@ static void clones_answer_alike(void **state) {
 
 /* A box in a ball has a triangle, the first one, with two corners that a seam unites at one place: nothing is to the sides of
  * that triangle, and the box is buried all the same. Then all corners of the box are one point. */
-static void a_seam_within_a_triangle(void **state) {
-    (void)state;
+TEST(a_seam_within_a_triangle) {
     static const double origin[3] = {0, 0, 0}, low[3] = {-0.25, -0.25, -0.25}, size[3] = {0.5, 0.5, 0.5};
     uint32_t seams[7][2];
     body_rig_begin(&rig);
@@ -239,8 +231,7 @@ static void a_seam_within_a_triangle(void **state) {
 }
 
 /* A body comes to the mesh: nothing of the old answers fits. */
-static void a_larger_mesh_has_its_own_answers(void **state) {
-    (void)state;
+TEST(a_larger_mesh_has_its_own_answers) {
     cscd_mesh_change *change;
     cscd_object_desc desc;
     add_scene(&other);
@@ -264,25 +255,8 @@ static void a_larger_mesh_has_its_own_answers(void **state) {
     body_rig_free(&other);
 }
 
-static void names_of_ends(void **state) {
-    (void)state;
+TEST(names_of_ends) {
     assert_string_equal(cscd_curve_end_name(CSCD_CURVE_END_NONE), "none");
     assert_string_equal(cscd_curve_end_name(CSCD_CURVE_END_LEFT_OUT), "left out");
     assert_string_equal(cscd_curve_end_name((cscd_curve_end)77), "unknown");
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(methods_and_threads_agree),
-        cmocka_unit_test(masked_objects_bury_nothing),
-        cmocka_unit_test(an_ignored_pair_opens_a_curve),
-        cmocka_unit_test(the_list_of_all_pairs_is_needed),
-        cmocka_unit_test(only_what_is_asked_for),
-        cmocka_unit_test(names_of_ends),
-        cmocka_unit_test(a_steady_state_allocates_nothing),
-        cmocka_unit_test(clones_answer_alike),
-        cmocka_unit_test(a_larger_mesh_has_its_own_answers),
-        cmocka_unit_test(a_seam_within_a_triangle),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -48,8 +48,7 @@ static void compare_terms(const grid_point p[4]) {
     }
 }
 
-static void terms_are_those_of_polynomials(void **state) {
-    (void)state;
+TEST(terms_are_those_of_polynomials) {
     random_stream random = stream_start(1);
     for (int i = 0; i < DETERMINANTS; i++) {
         grid_point p[4];
@@ -60,8 +59,7 @@ static void terms_are_those_of_polynomials(void **state) {
 
 /* ---- scenes -------------------------------------------------------------------------------------------- */
 
-static void numbers_are_those_of_polynomials(void **state) {
-    (void)state;
+TEST(numbers_are_those_of_polynomials) {
     const grid_family families[] = {GRID_TWO_TETRAHEDRA, GRID_PILLOW, GRID_OCTAHEDRON};
     int wound = 0;
     for (uint64_t seed = 0; seed < NUMBERS; seed++) {
@@ -81,8 +79,7 @@ static void numbers_are_those_of_polynomials(void **state) {
     assert_true(wound > NUMBERS);
 }
 
-static void library_agrees(void **state) {
-    (void)state;
+TEST(library_agrees) {
     memset(&trial.totals, 0, sizeof trial.totals);
     for (int family = 0; family < GRID_FAMILIES; family++) {
         for (uint64_t seed = 0; seed < SCENES; seed++) {
@@ -96,13 +93,4 @@ static void library_agrees(void **state) {
     const trial_totals *sum = &trial.totals;
     assert_true(sum->curves > 20 * SCENES && sum->open_curves > SCENES && sum->degenerate > 10 * SCENES);
     assert_true(sum->wound > 50 * SCENES && sum->twice > 0 && sum->cut > SCENES);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(terms_are_those_of_polynomials),
-        cmocka_unit_test(numbers_are_those_of_polynomials),
-        cmocka_unit_test(library_agrees),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

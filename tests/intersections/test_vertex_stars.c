@@ -100,8 +100,7 @@ static uint32_t check_scene(bool *first) {
     return clear;
 }
 
-static void any_mesh(void **state) {
-    (void)state;
+TEST(any_mesh) {
     uint64_t clear = 0, all = 0;
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         for (uint64_t seed = 0; seed < (family == SCENE_GRID ? 100 : 5); seed++) {
@@ -114,8 +113,7 @@ static void any_mesh(void **state) {
     assert_true(clear * 3 > all);
 }
 
-static void spheres_are_clear(void **state) {
-    (void)state;
+TEST(spheres_are_clear) {
     scene_clear(&s);
     scene_add_sphere(&s, (double[3]){0, 0, 0}, 1.0, 16, 24);
     assert_int_equal(check_scene(NULL), s.vertex_count);
@@ -176,8 +174,7 @@ static void make_fan(fan_family f) {
 }
 
 /* A star that winds twice around its tip intersects itself, although all of its triangles face one way. */
-static void fans_around_a_tip(void **state) {
-    (void)state;
+TEST(fans_around_a_tip) {
     uint32_t clear[FAN_COUNT] = {0};
     for (int i = 0; i < 2000; i++) {
         for (fan_family f = FAN_AROUND; f < FAN_COUNT; f++) {
@@ -192,11 +189,5 @@ static void fans_around_a_tip(void **state) {
     assert_int_equal(clear[FAN_TWICE] + clear[FAN_TWO_CONES] + clear[FAN_ONE_TURNED], 0);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(any_mesh, seed_random),
-        cmocka_unit_test_setup(spheres_are_clear, seed_random),
-        cmocka_unit_test_setup(fans_around_a_tip, seed_random),
-    };
-    return cmocka_run_group_tests_name("vertex_stars", tests, open_levels, close_levels);
-}
+AROUND_EACH(seed_random, NULL)
+AROUND_ALL(open_levels, close_levels)

@@ -41,8 +41,7 @@ static int compare_corner(const grid_scene *s, const bvh *f, corner_side at) {
     return largest;
 }
 
-static void numbers_are_those_of_polynomials(void **state) {
-    (void)state;
+TEST(numbers_are_those_of_polynomials) {
     const grid_family families[] = {GRID_TWO_TETRAHEDRA, GRID_BOX_AND_OCTAHEDRON, GRID_PILLOW,
                                     GRID_OCTAHEDRON, GRID_TORUS};
     int wound = 0, twice = 0;
@@ -61,11 +60,4 @@ static void numbers_are_those_of_polynomials(void **state) {
     }
     print_message("  %d points are wound around, %d of them more than once\n", wound, twice);
     assert_true(wound > 20 * GRIDS && twice > GRIDS);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(numbers_are_those_of_polynomials),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -34,8 +34,7 @@ static void check_all_frames(const char *path) {
     animation_close(opened);
 }
 
-static void reads_both_formats(void **state) {
-    (void)state;
+TEST(reads_both_formats) {
     for (int mdd = 0; mdd < 2; mdd++) {
         const frame_fixture_bytes bytes = cache_bytes(mdd);
         check_all_frames(write_cache(mdd, &bytes).text);
@@ -43,8 +42,7 @@ static void reads_both_formats(void **state) {
 }
 
 /* 1.5, -2 and 2^-149, every byte written out by hand. */
-static void decodes_bytes_exactly(void **state) {
-    (void)state;
+TEST(decodes_bytes_exactly) {
     static const unsigned char pc2[] = {'P', 'O', 'I', 'N', 'T', 'C', 'A', 'C', 'H', 'E', '2', 0,
                                         1,   0,   0,   0,   1,   0,   0,   0,   0,   0,   0,   0,
                                         0,   0,   0,   0,   1,   0,   0,   0, /* header */
@@ -63,8 +61,7 @@ static void decodes_bytes_exactly(void **state) {
     }
 }
 
-static void recognises_pc2_by_its_content(void **state) {
-    (void)state;
+TEST(recognises_pc2_by_its_content) {
     const frame_fixture_bytes pc2 = cache_bytes(false), mdd = cache_bytes(true);
     check_all_frames(frame_fixture_write(&frame_fixture_folder, "without_extension", &pc2).text);
     check_all_frames(frame_fixture_write(&frame_fixture_folder, "misnamed.mdd", &pc2).text);
@@ -72,8 +69,7 @@ static void recognises_pc2_by_its_content(void **state) {
     check_all_frames(frame_fixture_write(&frame_fixture_folder, "percent_%d.MDD", &mdd).text);
 }
 
-static void reads_in_any_order(void **state) {
-    (void)state;
+TEST(reads_in_any_order) {
     static const uint32_t order[] = {3, 0, 2, 2, 1, 3, 0};
     for (int mdd = 0; mdd < 2; mdd++) {
         const frame_fixture_bytes bytes = cache_bytes(mdd);
@@ -84,8 +80,7 @@ static void reads_in_any_order(void **state) {
     }
 }
 
-static void refuses_a_frame_past_the_end(void **state) {
-    (void)state;
+TEST(refuses_a_frame_past_the_end) {
     const frame_fixture_bytes bytes = cache_bytes(false);
     const temp_path path = write_cache(false, &bytes);
     animation *opened = frame_fixture_open(path.text, VERTICES);
@@ -97,8 +92,7 @@ static void refuses_a_frame_past_the_end(void **state) {
     animation_close(opened);
 }
 
-static void refuses_wrong_magic_and_version(void **state) {
-    (void)state;
+TEST(refuses_wrong_magic_and_version) {
     io_error error;
     frame_fixture_bytes bytes = cache_bytes(false);
     bytes.data[10] = '\n';
@@ -115,8 +109,7 @@ static void refuses_wrong_magic_and_version(void **state) {
 }
 
 /* All of a header in the order of the other format. */
-static void tells_the_other_byte_order(void **state) {
-    (void)state;
+TEST(tells_the_other_byte_order) {
     io_error error;
     frame_fixture_bytes bytes = cache_bytes(false);
     frame_fixture_put_int(&bytes, 12, 1, true);
@@ -132,8 +125,7 @@ static void tells_the_other_byte_order(void **state) {
                               "its numbers are little-endian, and those of an MDD file are big-endian", NULL);
 }
 
-static void refuses_wrong_counts(void **state) {
-    (void)state;
+TEST(refuses_wrong_counts) {
     static const int32_t points[] = {VERTICES - 1, VERTICES + 1, 0, -1, INT32_MIN, INT32_MAX};
     static const int32_t frames[] = {0, -1, INT32_MIN};
     char text[64];
@@ -156,8 +148,7 @@ static void refuses_wrong_counts(void **state) {
     }
 }
 
-static void refuses_counts_that_overflow(void **state) {
-    (void)state;
+TEST(refuses_counts_that_overflow) {
     for (int mdd = 0; mdd < 2; mdd++) {
         frame_fixture_bytes bytes = cache_bytes(mdd);
         frame_fixture_put_int(&bytes, mdd ? 4 : 16, INT32_MAX, mdd);
@@ -169,8 +160,7 @@ static void refuses_counts_that_overflow(void **state) {
     }
 }
 
-static void refuses_every_truncation(void **state) {
-    (void)state;
+TEST(refuses_every_truncation) {
     for (int mdd = 0; mdd < 2; mdd++) {
         frame_fixture_bytes bytes = cache_bytes(mdd);
         for (size_t size = bytes.size; size-- > 0;) {
@@ -182,8 +172,7 @@ static void refuses_every_truncation(void **state) {
     }
 }
 
-static void says_how_far_the_size_is_off(void **state) {
-    (void)state;
+TEST(says_how_far_the_size_is_off) {
     io_error error;
     frame_fixture_bytes bytes = cache_bytes(false);
     bytes.size = 32 + 2 * 60 + 7;
@@ -203,8 +192,7 @@ static void says_how_far_the_size_is_off(void **state) {
 }
 
 /* A flipped bit in the times changes nothing; any other one is refused. */
-static void survives_flipped_header_bits(void **state) {
-    (void)state;
+TEST(survives_flipped_header_bits) {
     for (int mdd = 0; mdd < 2; mdd++) {
         const size_t header_size = mdd ? 8 + 4 * FRAMES : 32, times_start = mdd ? 8 : 20;
         const size_t times_end = mdd ? header_size : 28;
@@ -220,8 +208,7 @@ static void survives_flipped_header_bits(void **state) {
     }
 }
 
-static void refuses_values_that_are_not_finite(void **state) {
-    (void)state;
+TEST(refuses_values_that_are_not_finite) {
     static const float values[] = {NAN, INFINITY, -INFINITY};
     for (int mdd = 0; mdd < 2; mdd++) {
         for (size_t i = 0; i < 3; i++) {
@@ -241,8 +228,7 @@ static void refuses_values_that_are_not_finite(void **state) {
     }
 }
 
-static void notices_that_the_file_shrinks(void **state) {
-    (void)state;
+TEST(notices_that_the_file_shrinks) {
     for (int mdd = 0; mdd < 2; mdd++) {
         const frame_fixture_bytes bytes = cache_bytes(mdd);
         const temp_path path = write_cache(mdd, &bytes);
@@ -258,8 +244,7 @@ static void notices_that_the_file_shrinks(void **state) {
 }
 
 /* More vertices than are read at a time, the last of them not finite in the last frame. */
-static void reads_frames_of_many_vertices(void **state) {
-    (void)state;
+TEST(reads_frames_of_many_vertices) {
     enum { MANY = 9001, LAST_VALUE = 32 + 2 * MANY * 12 - 4 };
     const temp_path path = temp_file_path(&frame_fixture_folder, "many.pc2");
     double *positions = malloc((size_t)MANY * 3 * sizeof *positions);
@@ -287,8 +272,7 @@ static void reads_frames_of_many_vertices(void **state) {
     animation_close(opened);
 }
 
-static void refuses_what_is_no_animation(void **state) {
-    (void)state;
+TEST(refuses_what_is_no_animation) {
     io_error error;
     animation *opened = NULL;
     assert_false(animation_open(NULL, 0, VERTICES, NULL, &opened, &error));
@@ -314,26 +298,4 @@ static void refuses_what_is_no_animation(void **state) {
     animation_close(NULL);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-#define TEST(name)                                                                                           \
-    cmocka_unit_test_setup_teardown(name, frame_fixture_make_folder, frame_fixture_remove_folder)
-        TEST(reads_both_formats),
-        TEST(decodes_bytes_exactly),
-        TEST(recognises_pc2_by_its_content),
-        TEST(reads_in_any_order),
-        TEST(refuses_a_frame_past_the_end),
-        TEST(refuses_wrong_magic_and_version),
-        TEST(tells_the_other_byte_order),
-        TEST(refuses_wrong_counts),
-        TEST(refuses_counts_that_overflow),
-        TEST(refuses_every_truncation),
-        TEST(says_how_far_the_size_is_off),
-        TEST(survives_flipped_header_bits),
-        TEST(refuses_values_that_are_not_finite),
-        TEST(notices_that_the_file_shrinks),
-        TEST(reads_frames_of_many_vertices),
-        TEST(refuses_what_is_no_animation),
-    };
-    return cmocka_run_group_tests_name("animation", tests, NULL, NULL);
-}
+AROUND_EACH(frame_fixture_make_folder, frame_fixture_remove_folder)

@@ -55,16 +55,14 @@ static void fail_every_allocation(const char *const *paths, size_t path_count, i
     animation_close(opened);
 }
 
-static void point_cache_survives_failed_allocations(void **state) {
-    (void)state;
+TEST(point_cache_survives_failed_allocations) {
     const frame_fixture_bytes bytes = frame_fixture_pc2(VERTICES, 3);
     const temp_path path = frame_fixture_write(&frame_fixture_folder, "cache.pc2", &bytes);
     const char *const paths[] = {path.text};
     fail_every_allocation(paths, 1, 0, 2);
 }
 
-static void sequences_survive_failed_allocations(void **state) {
-    (void)state;
+TEST(sequences_survive_failed_allocations) {
     write_frames();
     const temp_path pattern = temp_file_path(&frame_fixture_folder, "f%d.obj"),
                     first = temp_file_path(&frame_fixture_folder, "f10.obj");
@@ -76,8 +74,7 @@ static void sequences_survive_failed_allocations(void **state) {
     fail_every_allocation(list_paths, 2, FIRST, 2 + 4);
 }
 
-static void reading_survives_failed_allocations(void **state) {
-    (void)state;
+TEST(reading_survives_failed_allocations) {
     const temp_path path = frame_fixture_write_mesh(&frame_fixture_folder, "f0.obj", VERTICES, 0);
     animation *opened = frame_fixture_open(path.text, VERTICES);
     double positions[VERTICES * 3];
@@ -96,8 +93,7 @@ static void reading_survives_failed_allocations(void **state) {
     animation_close(opened);
 }
 
-static void writer_survives_a_failed_allocation(void **state) {
-    (void)state;
+TEST(writer_survives_a_failed_allocation) {
     const temp_path path = temp_file_path(&frame_fixture_folder, "cache.pc2");
     point_cache_writer *writer = NULL;
     io_error error;
@@ -145,8 +141,7 @@ static long peak_of_reading(const char *path, uint32_t frame_count) {
 }
 
 /* The 540 frames more are 12,960 KiB; the system itself counts resident pages in batches. */
-static void peak_does_not_grow_with_the_frames(void **state) {
-    (void)state;
+TEST(peak_does_not_grow_with_the_frames) {
     static const char *const names[][2] = {{"short.pc2", "long.pc2"}, {"short.mdd", "long.mdd"}};
     for (size_t i = 0; i < 2; i++) {
         const temp_path few = write_large(names[i][0], 60), many = write_large(names[i][1], 600);
@@ -156,12 +151,4 @@ static void peak_does_not_grow_with_the_frames(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-#define TEST(name) cmocka_unit_test_setup_teardown(name, frame_fixture_make_folder, remove_folder)
-        TEST(point_cache_survives_failed_allocations), TEST(sequences_survive_failed_allocations),
-        TEST(reading_survives_failed_allocations),     TEST(writer_survives_a_failed_allocation),
-        TEST(peak_does_not_grow_with_the_frames),
-    };
-    return cmocka_run_group_tests_name("animation_memory", tests, NULL, NULL);
-}
+AROUND_EACH(frame_fixture_make_folder, remove_folder)

@@ -38,8 +38,7 @@ static void check_pattern_fails(const char *pattern, const char *part, const cha
 
 /* ---- patterns ---------------------------------------------------------------------------------------- */
 
-static void pattern_takes_the_numbers_in_order(void **state) {
-    (void)state;
+TEST(pattern_takes_the_numbers_in_order) {
     write_frame("f_9.obj", 9);
     write_frame("f_11.obj", 11);
     write_frame("f_10.obj", 10);
@@ -54,8 +53,7 @@ static void pattern_takes_the_numbers_in_order(void **state) {
     check_frames(temp_file_path(&frame_fixture_folder, "f_%d.obj").text, expected, 4);
 }
 
-static void pattern_pads_with_zeros(void **state) {
-    (void)state;
+TEST(pattern_pads_with_zeros) {
     write_frame("f_098.ply", 98);
     write_frame("f_099.ply", 99);
     write_frame("f_100.ply", 100);
@@ -65,16 +63,14 @@ static void pattern_pads_with_zeros(void **state) {
     check_frames(temp_file_path(&frame_fixture_folder, "f_%03d.ply").text, expected, 3);
 }
 
-static void pattern_outgrows_its_width(void **state) {
-    (void)state;
+TEST(pattern_outgrows_its_width) {
     write_frame("f9.off", 9);
     write_frame("f10.off", 10);
     static const uint32_t expected[] = {9, 10};
     check_frames(temp_file_path(&frame_fixture_folder, "f%01d.off").text, expected, 2);
 }
 
-static void pattern_has_digits_and_percent_signs_around(void **state) {
-    (void)state;
+TEST(pattern_has_digits_and_percent_signs_around) {
     write_frame("10%s2_3.obj", 2);
     write_frame("10%s10_3.obj", 10);
     write_frame("10%s9_3.obj", 9);
@@ -85,8 +81,7 @@ static void pattern_has_digits_and_percent_signs_around(void **state) {
     check_frames(temp_file_path(&frame_fixture_folder, "10%%s%d_3.obj").text, expected, 3);
 }
 
-static void pattern_works_in_the_current_folder(void **state) {
-    (void)state;
+TEST(pattern_works_in_the_current_folder) {
     write_frame("f0.obj", 0);
     write_frame("f1.obj", 1);
     char before[4096];
@@ -98,23 +93,20 @@ static void pattern_works_in_the_current_folder(void **state) {
     assert_int_equal(chdir(before), 0);
 }
 
-static void an_existing_name_is_no_pattern(void **state) {
-    (void)state;
+TEST(an_existing_name_is_no_pattern) {
     write_frame("f_1.obj", 1);
     static const uint32_t expected[] = {7};
     check_frames(write_frame("f_%d.obj", 7).text, expected, 1);
 }
 
-static void pattern_with_a_gap_names_the_missing_file(void **state) {
-    (void)state;
+TEST(pattern_with_a_gap_names_the_missing_file) {
     write_frame("f_0001.obj", 1);
     write_frame("f_0002.obj", 2);
     write_frame("f_0005.obj", 5);
     check_pattern_fails("f_%04d.obj", "/f_0003.obj: missing", "from f_0001.obj to f_0005.obj");
 }
 
-static void bad_patterns_are_refused(void **state) {
-    (void)state;
+TEST(bad_patterns_are_refused) {
     static const char *const patterns[] = {
         "f_%s.obj",    "f_%n.obj",   "f_%5d.obj", "f_%0d.obj", "f_%00d.obj",
         "f_%033d.obj", "f_%-3d.obj", "f_%ld.obj", "f_%.obj",   "f_%",
@@ -132,8 +124,7 @@ static void bad_patterns_are_refused(void **state) {
 
 /* ---- folders ----------------------------------------------------------------------------------------- */
 
-static void folder_is_in_natural_order(void **state) {
-    (void)state;
+TEST(folder_is_in_natural_order) {
     write_frame("f2.obj", 2);
     write_frame("f10.obj", 10);
     write_frame("f1.obj", 1);
@@ -143,8 +134,7 @@ static void folder_is_in_natural_order(void **state) {
     check_frames(frame_fixture_folder.path, expected, 5);
 }
 
-static void folder_ignores_other_files(void **state) {
-    (void)state;
+TEST(folder_ignores_other_files) {
     write_frame("take2_f2_v3.OFF", 2);
     write_frame("take2_f10_v3.OFF", 10);
     write_frame("._take2_f11_v3.OFF", 11);
@@ -160,22 +150,19 @@ static void folder_ignores_other_files(void **state) {
     check_frames(slashed, expected, 2);
 }
 
-static void folder_with_one_file_is_one_frame(void **state) {
-    (void)state;
+TEST(folder_with_one_file_is_one_frame) {
     write_frame("pose.ply", 6);
     static const uint32_t expected[] = {6};
     check_frames(frame_fixture_folder.path, expected, 1);
 }
 
-static void folder_without_frames_is_refused(void **state) {
-    (void)state;
+TEST(folder_without_frames_is_refused) {
     check_folder_fails("no frames in this folder", ".obj, .ply, .off", "");
     temp_file_write(&frame_fixture_folder, "readme.txt", "x", 1);
     check_folder_fails("no frames in this folder", "", "");
 }
 
-static void folder_must_hold_one_series(void **state) {
-    (void)state;
+TEST(folder_must_hold_one_series) {
     static const char *const names[][2] = {
         {"f1.obj", "g2.obj"},  {"f1.obj", "f2b.obj"}, {"f.obj", "f1.obj"}, {"f1_1.obj", "f2_2.obj"},
         {"f01.obj", "f1.obj"}, {"f1.obj", "f2.ply"},  {"f1.obj", "f2.OBJ"}};
@@ -192,8 +179,7 @@ static void folder_must_hold_one_series(void **state) {
     check_folder_fails("differ in one number only", "f1_1.obj", "f2_1.obj");
 }
 
-static void folder_says_why_names_clash(void **state) {
-    (void)state;
+TEST(folder_says_why_names_clash) {
     write_frame("f1.obj", 1);
     const temp_path same = write_frame("f01.obj", 1);
     check_folder_fails("the same frame", "f1.obj", "f01.obj");
@@ -202,8 +188,7 @@ static void folder_says_why_names_clash(void **state) {
     check_folder_fails("one extension", "f1.obj", "f2.ply");
 }
 
-static void folder_knows_that_minus_zero_is_zero(void **state) {
-    (void)state;
+TEST(folder_knows_that_minus_zero_is_zero) {
     write_frame("f_-0.obj", 1);
     write_frame("f_0.obj", 1);
     check_folder_fails("the same frame", "f_-0.obj", "f_0.obj");
@@ -211,8 +196,7 @@ static void folder_knows_that_minus_zero_is_zero(void **state) {
 
 /* ---- lists ------------------------------------------------------------------------------------------- */
 
-static void list_keeps_the_order_given(void **state) {
-    (void)state;
+TEST(list_keeps_the_order_given) {
     const temp_path b = write_frame("b.obj", 1), a = write_frame("a.ply", 2), c = write_frame("%d.off", 3);
     const char *const paths[] = {b.text, a.text, c.text, b.text};
     animation *opened;
@@ -235,8 +219,7 @@ static void check_list_fails(const char *second, const char *part) {
     frame_fixture_check_error(&error, second, part, NULL);
 }
 
-static void list_with_a_stranger_is_refused(void **state) {
-    (void)state;
+TEST(list_with_a_stranger_is_refused) {
     const frame_fixture_bytes pc2 = frame_fixture_pc2(VERTICES, 1);
     check_list_fails(frame_fixture_write(&frame_fixture_folder, "cache.pc2", &pc2).text,
                      "a point cache among several");
@@ -254,8 +237,7 @@ static void list_with_a_stranger_is_refused(void **state) {
 
 /* ---- frames ------------------------------------------------------------------------------------------ */
 
-static void keeps_doubles(void **state) {
-    (void)state;
+TEST(keeps_doubles) {
     static const char obj[] = "v 0.1 1e-300 -3.0000000000000004\nv 0 0 0\nv 1 0 0\nf 1 2 3\n";
     static const char ply[] =
         "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\n"
@@ -273,8 +255,7 @@ static void keeps_doubles(void **state) {
     }
 }
 
-static void bad_frames_are_named(void **state) {
-    (void)state;
+TEST(bad_frames_are_named) {
     write_frame("f0.obj", 0);
     const temp_path other = frame_fixture_write_mesh(&frame_fixture_folder, "f1.obj", VERTICES + 1, 1);
     const temp_path garbage = temp_file_write(&frame_fixture_folder, "f2.obj", "v 0 0\n", 6);
@@ -297,8 +278,7 @@ static void bad_frames_are_named(void **state) {
     animation_close(opened);
 }
 
-static void values_that_are_not_finite_are_refused(void **state) {
-    (void)state;
+TEST(values_that_are_not_finite_are_refused) {
     static const char *const values[] = {"nan", "inf", "-inf", "1e999"};
     for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
         char obj[128];
@@ -312,30 +292,4 @@ static void values_that_are_not_finite_are_refused(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-#define TEST(name)                                                                                           \
-    cmocka_unit_test_setup_teardown(name, frame_fixture_make_folder, frame_fixture_remove_folder)
-        TEST(pattern_takes_the_numbers_in_order),
-        TEST(pattern_pads_with_zeros),
-        TEST(pattern_outgrows_its_width),
-        TEST(pattern_has_digits_and_percent_signs_around),
-        TEST(pattern_works_in_the_current_folder),
-        TEST(an_existing_name_is_no_pattern),
-        TEST(pattern_with_a_gap_names_the_missing_file),
-        TEST(bad_patterns_are_refused),
-        TEST(folder_is_in_natural_order),
-        TEST(folder_ignores_other_files),
-        TEST(folder_with_one_file_is_one_frame),
-        TEST(folder_without_frames_is_refused),
-        TEST(folder_must_hold_one_series),
-        TEST(folder_says_why_names_clash),
-        TEST(folder_knows_that_minus_zero_is_zero),
-        TEST(list_keeps_the_order_given),
-        TEST(list_with_a_stranger_is_refused),
-        TEST(keeps_doubles),
-        TEST(bad_frames_are_named),
-        TEST(values_that_are_not_finite_are_refused),
-    };
-    return cmocka_run_group_tests_name("animation_sequences", tests, NULL, NULL);
-}
+AROUND_EACH(frame_fixture_make_folder, frame_fixture_remove_folder)

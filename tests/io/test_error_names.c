@@ -57,8 +57,7 @@ static void check_json(const char *json, size_t most, const char *before, const 
 #define ASSET "{\"asset\":{\"version\":\"2.0\"},"
 #define MESH  "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"
 
-static void names_of_gltf_are_cut(void **state) {
-    (void)state;
+TEST(names_of_gltf_are_cut) {
     check_json("{\"asset\":{\"version\":\"%s\"}}", 20, "is a glTF file of version ", ", expected 2.0");
     check_json("{\"asset\":{\"version\":\"2.1\",\"minVersion\":\"%s\"}}", 20, "needs a reader of glTF ",
                ", this one");
@@ -79,8 +78,7 @@ static void names_of_gltf_are_cut(void **state) {
     "\"accessors\":[{\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"bufferView\":0}],\"bufferViews\":" \
     "[{\"buffer\":0,\"byteLength\":36}],\"buffers\":[{\"byteLength\":36,\"uri\":\""
 
-static void places_of_gltf_are_cut(void **state) {
-    (void)state;
+TEST(places_of_gltf_are_cut) {
     check_json(BUFFER "/%s\"}]}", 79, "buffer 0: uri /", ", expected a file in the folder");
     check_json(BUFFER "%s%\"}]}", 80, "buffer 0: uri ", " has a percent sign");
 }
@@ -99,8 +97,7 @@ static io_error fail_animation(file_bytes file, const char *name) {
 }
 
 /* Names of animations that do not fit are three dots. */
-static void names_of_animations_are_cut(void **state) {
-    (void)state;
+TEST(names_of_animations_are_cut) {
     const cut_name own = name_cut_at(60), wanted = name_cut_at(100), interpolation = name_cut_at(40);
     static const double times[] = {0, 1}, values[] = {0, 0, 0, 1, 0, 0};
     char rest[2500], list[1200], *end = rest;
@@ -134,8 +131,7 @@ static void check_gifti(const char *text, const char *by, size_t most, const cha
     check_file(gifti_fixture_file(&other), before, &name, after);
 }
 
-static void words_of_gifti_are_cut(void **state) {
-    (void)state;
+TEST(words_of_gifti_are_cut) {
     check_gifti("NIFTI_TYPE_FLOAT32", "%s", 40, "DataType is '", "', expected NIFTI_TYPE_FLOAT32");
     check_gifti("Dim0=\"4\" Dim1", "Dim0=\"%s\" Dim1", 40, "Dim0 is '", "', expected 1 to");
     check_gifti("Dim1=\"3\"", "Dim1=\"%s\"", 40, "Dim1 is '", "', expected two dimensions");
@@ -145,8 +141,7 @@ static void words_of_gifti_are_cut(void **state) {
 }
 
 /* The end of a long path is shown, from a whole character on. */
-static void paths_are_cut(void **state) {
-    (void)state;
+TEST(paths_are_cut) {
     for (size_t shift = 0; shift < 2; shift++) {
         char path[800] = "", *end = path;
         memset(path, 'x', shift);
@@ -159,15 +154,4 @@ static void paths_are_cut(void **state) {
         expect_whole_characters(error.text);
         assert_memory_equal(error.text, "...\xc3\xa9", 5);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(names_of_gltf_are_cut),
-        cmocka_unit_test(places_of_gltf_are_cut),
-        cmocka_unit_test(names_of_animations_are_cut),
-        cmocka_unit_test(words_of_gifti_are_cut),
-        cmocka_unit_test(paths_are_cut),
-    };
-    return cmocka_run_group_tests_name("error_names", tests, NULL, NULL);
 }

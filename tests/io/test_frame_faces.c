@@ -34,28 +34,18 @@ static void check_faces(const char *model, const char *first, const char *second
 }
 
 /* What shape a face has in a frame plays no part: in the second one it is concave. */
-static void same_faces_are_read(void **state) {
-    (void)state;
+TEST(same_faces_are_read) {
     const char *dart = "v 0 0 1\nv 0.9 0.8 1\nv 1 1 1\nv 0 1 1\nf 1 2 3 4\n";
     check_faces(quad, quad, dart, NULL);
     check_faces(split, quad, dart, NULL); /* the model is triangulated, the frames are not */
     check_faces(quad, split, split, NULL);
 }
 
-static void other_faces_are_refused(void **state) {
-    (void)state;
+TEST(other_faces_are_refused) {
     check_faces(quad, turned, turned, "s1.obj: has other faces than the model, though as many");
     check_faces(quad, quad, split, "s2.obj: has other faces than");
     check_faces(quad, split, other_split, "export without triangulating");
     check_faces(split, other_split, other_split, "export without triangulating");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(same_faces_are_read, frame_fixture_make_folder,
-                                        frame_fixture_remove_folder),
-        cmocka_unit_test_setup_teardown(other_faces_are_refused, frame_fixture_make_folder,
-                                        frame_fixture_remove_folder),
-    };
-    return cmocka_run_group_tests_name("frame_faces", tests, NULL, NULL);
-}
+AROUND_EACH(frame_fixture_make_folder, frame_fixture_remove_folder)

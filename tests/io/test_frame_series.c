@@ -48,8 +48,7 @@ static void check_opened(animation *opened, const uint32_t *expected, const int3
     }
 }
 
-static void lists_are_taken_in_the_order_of_their_numbers(void **state) {
-    (void)state;
+TEST(lists_are_taken_in_the_order_of_their_numbers) {
     const listed_files files = {{"f_1.obj", "f_10.obj", "f_11.obj", "f_2.obj"}, {1, 10, 11, 2}};
     io_error error;
     animation *opened = open_listed(&files, -1, true, &error);
@@ -58,8 +57,7 @@ static void lists_are_taken_in_the_order_of_their_numbers(void **state) {
     animation_close(opened);
 }
 
-static void sorted_lists_need_no_note(void **state) {
-    (void)state;
+TEST(sorted_lists_need_no_note) {
     const listed_files files = {{"f_09.obj", "f_10.obj", "f_11.obj"}, {9, 10, 11}};
     io_error error;
     animation *opened = open_listed(&files, -1, false, &error);
@@ -68,8 +66,7 @@ static void sorted_lists_need_no_note(void **state) {
     animation_close(opened);
 }
 
-static void names_that_differ_in_two_numbers_stay_as_given(void **state) {
-    (void)state;
+TEST(names_that_differ_in_two_numbers_stay_as_given) {
     const listed_files files = {{"s2_f1.obj", "s1_f2.obj", "s1_f1.obj"}, {21, 12, 11}};
     io_error error;
     animation *opened = open_listed(&files, -1, false, &error);
@@ -78,8 +75,7 @@ static void names_that_differ_in_two_numbers_stay_as_given(void **state) {
     animation_close(opened);
 }
 
-static void regular_steps_are_no_gaps(void **state) {
-    (void)state;
+TEST(regular_steps_are_no_gaps) {
     const listed_files files = {{"f1003.obj", "f1001.obj", "f1005.obj"}, {3, 1, 5}};
     io_error error;
     animation *opened = open_listed(&files, -1, false, &error);
@@ -87,8 +83,7 @@ static void regular_steps_are_no_gaps(void **state) {
     animation_close(opened);
 }
 
-static void missing_members_are_named(void **state) {
-    (void)state;
+TEST(missing_members_are_named) {
     static const struct {
         listed_files files;
         const char *missing;
@@ -109,16 +104,14 @@ static void missing_members_are_named(void **state) {
     }
 }
 
-static void a_missing_member_in_steps_says_the_step(void **state) {
-    (void)state;
+TEST(a_missing_member_in_steps_says_the_step) {
     const listed_files files = {{"f1.obj", "f3.obj", "f7.obj"}, {0}};
     io_error error;
     assert_null(open_listed(&files, -1, false, &error));
     frame_fixture_check_error(&error, "f5.obj: missing", "in steps of 2", NULL);
 }
 
-static void folders_and_patterns_have_gaps_and_numbers_too(void **state) {
-    (void)state;
+TEST(folders_and_patterns_have_gaps_and_numbers_too) {
     write_frame("g_0101.obj", 1);
     write_frame("g_0103.obj", 3);
     write_frame("g_0104.obj", 4);
@@ -139,8 +132,7 @@ static void folders_and_patterns_have_gaps_and_numbers_too(void **state) {
 /* ---- negative numbers -------------------------------------------------------------------------------- */
 
 /* A sign stands behind a dot, an underscore or another '-'; elsewhere a '-' only separates. */
-static void signs_count(void **state) {
-    (void)state;
+TEST(signs_count) {
     static const struct {
         listed_files files;
         int32_t numbers[4];
@@ -169,8 +161,7 @@ static void signs_count(void **state) {
     }
 }
 
-static void folders_and_patterns_have_negative_numbers(void **state) {
-    (void)state;
+TEST(folders_and_patterns_have_negative_numbers) {
     static const char *const names[][4] = {{"f.-0002.obj", "f.-0001.obj", "f.0000.obj", "f.0001.obj"},
                                            {"f.-002.obj", "f.-001.obj", "f.0000.obj", "f.0001.obj"}};
     static const uint32_t in_order[] = {1, 2, 3, 4};
@@ -196,8 +187,7 @@ static void folders_and_patterns_have_negative_numbers(void **state) {
     animation_close(opened);
 }
 
-static void missing_negative_numbers_are_named(void **state) {
-    (void)state;
+TEST(missing_negative_numbers_are_named) {
     io_error error;
     const listed_files files = {{"f.-0003.obj", "f.-0001.obj", "f.0000.obj"}, {0}};
     assert_null(open_listed(&files, -1, false, &error));
@@ -219,8 +209,7 @@ static void missing_negative_numbers_are_named(void **state) {
 
 /* ---- subframes --------------------------------------------------------------------------------------- */
 
-static void subframes_are_taken_by_their_times(void **state) {
-    (void)state;
+TEST(subframes_are_taken_by_their_times) {
     static const listed_files cases[] = {
         {{"f.0001.00.obj", "f.0001.50.obj", "f.0002.00.obj", "f.0002.50.obj"}, {1, 2, 3, 4}},
         {{"g_8.250.obj", "g_8.500.obj", "g_9.000.obj", "g_10.000.obj"}, {1, 2, 3, 4}},
@@ -244,8 +233,7 @@ static void subframes_are_taken_by_their_times(void **state) {
     }
 }
 
-static void folders_have_subframes_and_gaps(void **state) {
-    (void)state;
+TEST(folders_have_subframes_and_gaps) {
     write_frame("f.0001.00.obj", 1);
     write_frame("f.0001.50.obj", 2);
     const temp_path third = write_frame("f.0002.00.obj", 3);
@@ -265,8 +253,7 @@ static void folders_have_subframes_and_gaps(void **state) {
 
 /* Words are no series: what is named first is looked at first. */
 /* 1.5 before 2.25: as numbers without their point, 15 and 225, they would lie in steps of 210. */
-static void fractions_of_other_lengths_are_no_subframes(void **state) {
-    (void)state;
+TEST(fractions_of_other_lengths_are_no_subframes) {
     write_frame("f_1.5.obj", 1);
     write_frame("f_2.25.obj", 2);
     io_error error;
@@ -274,8 +261,7 @@ static void fractions_of_other_lengths_are_no_subframes(void **state) {
     frame_fixture_check_error(&error, "f_1.5.obj and f_2.25.obj", "differ in one number only", NULL);
 }
 
-static void a_model_among_words_is_the_first_frame(void **state) {
-    (void)state;
+TEST(a_model_among_words_is_the_first_frame) {
     static const listed_files cases[] = {
         {{"crouch.obj", "run.obj", "stand.obj", "walk.obj"}, {1, 2, 3, 4}},
         {{"s2_f1.obj", "s1_f2.obj", "s1_f1.obj", "x.obj"}, {1, 2, 3, 4}},
@@ -290,8 +276,7 @@ static void a_model_among_words_is_the_first_frame(void **state) {
     }
 }
 
-static void a_model_of_the_series_is_a_frame(void **state) {
-    (void)state;
+TEST(a_model_of_the_series_is_a_frame) {
     const listed_files files = {{"f_1.obj", "f_10.obj", "f_2.obj"}, {1, 10, 2}};
     io_error error;
     for (int model = 0; model < 3; model++) {
@@ -301,8 +286,7 @@ static void a_model_of_the_series_is_a_frame(void **state) {
     }
 }
 
-static void a_model_that_is_listed_too_is_a_frame_once(void **state) {
-    (void)state;
+TEST(a_model_that_is_listed_too_is_a_frame_once) {
     const temp_path first = write_frame("f_1.obj", 1), second = write_frame("f_2.obj", 2);
     const char *const paths[] = {second.text, first.text};
     const animation_options options = {.model_path = first.text};
@@ -313,8 +297,7 @@ static void a_model_that_is_listed_too_is_a_frame_once(void **state) {
     animation_close(opened);
 }
 
-static void other_models_are_no_frames(void **state) {
-    (void)state;
+TEST(other_models_are_no_frames) {
     static const char *const models[] = {"rest.obj", "f_1.off", "f_1_v2.obj", "g_1.obj"};
     for (size_t i = 0; i < sizeof models / sizeof *models; i++) {
         const listed_files files = {{models[i], "f_2.obj", "f_3.obj"}, {7, 2, 3}};
@@ -337,8 +320,7 @@ static void check_pc2_numbers(float start, float rate, const int32_t numbers[3])
     animation_close(opened);
 }
 
-static void pc2_headers_say_what_frames_are_called(void **state) {
-    (void)state;
+TEST(pc2_headers_say_what_frames_are_called) {
     check_pc2_numbers(1001.0f, 1.0f, (const int32_t[]){1001, 1002, 1003});
     check_pc2_numbers(-5.0f, 2.0f, (const int32_t[]){-5, -3, -1});
     check_pc2_numbers(1.0f, 0.5f, (const int32_t[]){0, 1, 2});
@@ -349,28 +331,4 @@ static void pc2_headers_say_what_frames_are_called(void **state) {
     check_pc2_numbers(0.0f / 0.0f, 1.0f, (const int32_t[]){0, 1, 2});
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-#define TEST(name)                                                                                           \
-    cmocka_unit_test_setup_teardown(name, frame_fixture_make_folder, frame_fixture_remove_folder)
-        TEST(lists_are_taken_in_the_order_of_their_numbers),
-        TEST(sorted_lists_need_no_note),
-        TEST(names_that_differ_in_two_numbers_stay_as_given),
-        TEST(regular_steps_are_no_gaps),
-        TEST(missing_members_are_named),
-        TEST(a_missing_member_in_steps_says_the_step),
-        TEST(folders_and_patterns_have_gaps_and_numbers_too),
-        TEST(signs_count),
-        TEST(folders_and_patterns_have_negative_numbers),
-        TEST(missing_negative_numbers_are_named),
-        TEST(subframes_are_taken_by_their_times),
-        TEST(folders_have_subframes_and_gaps),
-        TEST(fractions_of_other_lengths_are_no_subframes),
-        TEST(a_model_among_words_is_the_first_frame),
-        TEST(a_model_of_the_series_is_a_frame),
-        TEST(a_model_that_is_listed_too_is_a_frame_once),
-        TEST(other_models_are_no_frames),
-        TEST(pc2_headers_say_what_frames_are_called),
-    };
-    return cmocka_run_group_tests_name("frame_series", tests, NULL, NULL);
-}
+AROUND_EACH(frame_fixture_make_folder, frame_fixture_remove_folder)

@@ -32,8 +32,7 @@ static temp_path write_large(const char *name, uint32_t frame) {
     return path;
 }
 
-static void an_expected_frame_comes_from_its_disk(void **state) {
-    (void)state;
+TEST(an_expected_frame_comes_from_its_disk) {
     write_large("f_0.obj", 0);
     const temp_path expected = write_large("f_1.obj", 1), other = write_large("f_2.obj", 2);
     animation *opened = frame_fixture_open(frame_fixture_folder.path, VERTICES);
@@ -46,8 +45,7 @@ static void an_expected_frame_comes_from_its_disk(void **state) {
     if (!dropped) skip();
 }
 
-static void an_expected_frame_need_not_be_there(void **state) {
-    (void)state;
+TEST(an_expected_frame_need_not_be_there) {
     const temp_path path = write_large("f_0.obj", 0);
     animation *opened = frame_fixture_open(frame_fixture_folder.path, VERTICES);
     assert_int_equal(unlink(path.text), 0);
@@ -65,8 +63,7 @@ static void *write_pipe(void *path) {
 }
 
 /* The writer of a pipe waits for its reader, and one that only looks would leave it alone. */
-static void a_pipe_is_left_alone(void **state) {
-    (void)state;
+TEST(a_pipe_is_left_alone) {
     temp_path path = frame_fixture_write_mesh(&frame_fixture_folder, "f_0.obj", VERTICES, 0);
     animation *opened = frame_fixture_open(frame_fixture_folder.path, VERTICES);
     char text[9] = "";
@@ -88,13 +85,4 @@ static void a_pipe_is_left_alone(void **state) {
     animation_close(opened);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-#define TEST(name)                                                                                           \
-    cmocka_unit_test_setup_teardown(name, frame_fixture_make_folder, frame_fixture_remove_folder)
-        TEST(an_expected_frame_comes_from_its_disk),
-        TEST(an_expected_frame_need_not_be_there),
-        TEST(a_pipe_is_left_alone),
-    };
-    return cmocka_run_group_tests_name("frames_expected", tests, NULL, NULL);
-}
+AROUND_EACH(frame_fixture_make_folder, frame_fixture_remove_folder)

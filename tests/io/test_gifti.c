@@ -9,8 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void reads_all_styles(void **state) {
-    (void)state;
+TEST(reads_all_styles) {
     uint32_t count = 0;
     for (int i = 0; i < 48; i++) {
         const gifti_style style = {.encoding = i % 3,
@@ -28,8 +27,7 @@ static void reads_all_styles(void **state) {
 }
 
 /* Numbers of a file are its floats; as text they are rounded to the type that the file names. */
-static void rounds_text_to_its_type(void **state) {
-    (void)state;
+TEST(rounds_text_to_its_type) {
     static const uint32_t triangle[] = {0, 1, 2};
     for (int doubles = 0; doubles < 2; doubles++) {
         char text[1200];
@@ -47,8 +45,7 @@ static void rounds_text_to_its_type(void **state) {
 }
 
 /* The parser takes a megabyte at a time: no byte is lost or read twice between two. */
-static void reads_files_of_several_megabytes(void **state) {
-    (void)state;
+TEST(reads_files_of_several_megabytes) {
     enum { POINTS = 100000, ROOM = 32 * POINTS };
     static const char array[] =
         "<DataArray Intent='NIFTI_INTENT_%s' DataType='NIFTI_TYPE_%s' Dim0='%d' Dim1='3' "
@@ -89,8 +86,7 @@ static void check_replaced(gifti_style style, const char *text, const char *by, 
     mesh_check_error(gifti_fixture_file(&other), place, found, expected);
 }
 
-static void refuses_what_is_no_surface(void **state) {
-    (void)state;
+TEST(refuses_what_is_no_surface) {
     const gifti_style ascii = {0};
     check_replaced(ascii, "NIFTI_INTENT_TRIANGLE", "NIFTI_INTENT_SHAPE", ": ",
                    "no data array of NIFTI_INTENT_TRIANGLE", "points and triangles");
@@ -115,8 +111,7 @@ static void refuses_what_is_no_surface(void **state) {
     mesh_check_error(FILE_OF("lh.gii", "\n<GIFTI>"), ":2: ", "no valid XML", "");
 }
 
-static void refuses_wrong_data(void **state) {
-    (void)state;
+TEST(refuses_wrong_data) {
     const gifti_style ascii = {0}, base64 = {.encoding = 1}, zipped = {.encoding = 2};
     check_replaced(ascii, "<Data>0 0 0", "<Data>0 0 x", ":10: ", "found 'x'", "a number");
     check_replaced(ascii, "<Data>0 1 2", "<Data>0 1 2.5", ":", "found '2.5'", "a whole number");
@@ -141,8 +136,7 @@ static void refuses_wrong_data(void **state) {
 }
 
 /* All numbers are there, but not the sum that is to prove them. */
-static void refuses_zipped_data_without_their_end(void **state) {
-    (void)state;
+TEST(refuses_zipped_data_without_their_end) {
     gifti_text file, other;
     gifti_fixture_square(&file, (gifti_style){.encoding = 2});
     const char *end = strstr(strstr(file.text, "<Data>e"), "</Data>");
@@ -151,8 +145,7 @@ static void refuses_zipped_data_without_their_end(void **state) {
 }
 
 /* Elements where the format has none, in the data of each encoding, of every name that is known and of none. */
-static void refuses_elements_out_of_place(void **state) {
-    (void)state;
+TEST(refuses_elements_out_of_place) {
     static const char *const names[] = {"DataArray", "Data", "GIFTI", "MetaData", "b"};
     static const char *const starts[] = {"<Data>0 0 0", "<Data>AAAA", "<Data>e"};
     for (int i = 0; i < 15; i++) {
@@ -177,8 +170,7 @@ static void refuses_elements_out_of_place(void **state) {
 }
 
 /* Text that grows a hundredfold, from the file or from another one, whether it is used or not. */
-static void refuses_entities(void **state) {
-    (void)state;
+TEST(refuses_entities) {
     const gifti_style ascii = {0};
     check_replaced(ascii, ".dtd\">", ".dtd\" [<!ENTITY a '0 0 0 0 0 0 0 0'>\n<!ENTITY b '&a;&a;&a;&a;'>]>",
                    ":2: ", "the entity 'a'", "without any");
@@ -189,8 +181,7 @@ static void refuses_entities(void **state) {
     check_replaced(ascii, "<Data>0 0 0", "<Data>&a;0 0 0", ":10: ", "the entity 'a'", "without any");
 }
 
-static void plays_files_as_frames(void **state) {
-    (void)state;
+TEST(plays_files_as_frames) {
     const temp_folder folder = temp_folder_make();
     char pattern[300];
     for (int frame = 0; frame < 3; frame++) {
@@ -215,8 +206,7 @@ static void plays_files_as_frames(void **state) {
     temp_folder_remove(&folder);
 }
 
-static void survives_failed_allocations(void **state) {
-    (void)state;
+TEST(survives_failed_allocations) {
     for (int encoding = 0; encoding < 3; encoding++) {
         gifti_text file;
         gifti_fixture_square(&file, (gifti_style){.encoding = encoding});
@@ -225,8 +215,7 @@ static void survives_failed_allocations(void **state) {
 }
 
 /* Every byte of the file would be thousands of readings: a fault in each third one, a different one each time. */
-static void survives_damage(void **state) {
-    (void)state;
+TEST(survives_damage) {
     for (int encoding = 0; encoding < 3; encoding++) {
         gifti_text file;
         gifti_fixture_square(&file, (gifti_style){.encoding = encoding});
@@ -240,21 +229,4 @@ static void survives_damage(void **state) {
             mesh_check_survives((file_bytes){"lh.surf.gii", damaged.text, size - 1});
         }
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reads_all_styles),
-        cmocka_unit_test(rounds_text_to_its_type),
-        cmocka_unit_test(reads_files_of_several_megabytes),
-        cmocka_unit_test(refuses_what_is_no_surface),
-        cmocka_unit_test(refuses_wrong_data),
-        cmocka_unit_test(refuses_zipped_data_without_their_end),
-        cmocka_unit_test(refuses_elements_out_of_place),
-        cmocka_unit_test(refuses_entities),
-        cmocka_unit_test(plays_files_as_frames),
-        cmocka_unit_test(survives_failed_allocations),
-        cmocka_unit_test(survives_damage),
-    };
-    return cmocka_run_group_tests_name("gifti", tests, NULL, NULL);
 }

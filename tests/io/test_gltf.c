@@ -23,8 +23,7 @@ static gltf_fixture square_fixture(int index_component) {
 
 #define SQUARE_MESH MESH("\"attributes\":{\"POSITION\":0},\"indices\":1")
 
-static void reads_all_containers(void **state) {
-    (void)state;
+TEST(reads_all_containers) {
     gltf_fixture fixture = square_fixture(5123);
     mesh_check_square(gltf_fixture_glb(&fixture, SQUARE_MESH));
     mesh_check_square(gltf_fixture_embedded(&fixture, SQUARE_MESH));
@@ -45,8 +44,7 @@ static bool read_beside(const char *uri, const char *name, mesh_file *mesh, io_e
     return done;
 }
 
-static void reads_buffers_beside_the_file(void **state) {
-    (void)state;
+TEST(reads_buffers_beside_the_file) {
     static const char *const names[][2] = {
         {"mesh.bin", "mesh.bin"}, {"my%20mesh%2b.bin", "my mesh+.bin"}, {"%C3%A4.bin", "\xc3\xa4.bin"}};
     for (size_t i = 0; i < 3; i++) {
@@ -59,8 +57,7 @@ static void reads_buffers_beside_the_file(void **state) {
     }
 }
 
-static void refuses_buffers_that_are_not_there(void **state) {
-    (void)state;
+TEST(refuses_buffers_that_are_not_there) {
     static const char *const cases[][2] = {{"other.bin", "cannot open"},
                                            {"my%2.bin", "percent sign"},
                                            {"my%00.bin", "percent sign"},
@@ -84,8 +81,7 @@ static void refuses_buffers_that_are_not_there(void **state) {
 
 /* ---- accessors --------------------------------------------------------------------------------------- */
 
-static void reads_all_types_of_indices(void **state) {
-    (void)state;
+TEST(reads_all_types_of_indices) {
     static const int components[] = {5121, 5123, 5125};
     for (size_t i = 0; i < 3; i++) {
         gltf_fixture fixture = square_fixture(components[i]);
@@ -94,8 +90,7 @@ static void reads_all_types_of_indices(void **state) {
 }
 
 /* Positions may be integers, which stand for themselves or, normalised, for -1 to 1 or 0 to 1. */
-static void reads_all_types_of_positions(void **state) {
-    (void)state;
+TEST(reads_all_types_of_positions) {
     static const struct {
         int component;
         double numbers[9], normalised[9];
@@ -128,8 +123,7 @@ static void reads_all_types_of_positions(void **state) {
 }
 
 /* Data that are compressed and, for readers without that extension, also not compressed. */
-static void reads_what_compressed_files_have_besides(void **state) {
-    (void)state;
+TEST(reads_what_compressed_files_have_besides) {
     gltf_fixture fixture = square_fixture(5123);
     mesh_check_square(gltf_fixture_glb(
         &fixture,
@@ -138,8 +132,7 @@ static void reads_what_compressed_files_have_besides(void **state) {
 }
 
 /* Each vertex has a normal behind its position, and the view begins four bytes before. */
-static void reads_interleaved_elements(void **state) {
-    (void)state;
+TEST(reads_interleaved_elements) {
     static const double numbers[] = {9, 0, 0, 0, 5, 5, 5, 1, 0, 0, 5, 5, 5, 0, 2, 0, 5, 5, 5};
     static const double positions[] = {0, 0, 0, 1, 0, 0, 0, 2, 0};
     static const uint32_t triangle[] = {0, 1, 2};
@@ -153,8 +146,7 @@ static void reads_interleaved_elements(void **state) {
                      triangle);
 }
 
-static void reads_sparse_accessors(void **state) {
-    (void)state;
+TEST(reads_sparse_accessors) {
     static const double values[] = {1, 0, 0, 0, 1, 0}, base[] = {9, 9, 9, 3, 3, 3, 8, 8, 8};
     static const double places[] = {0, 2};
     static const double on_zeros[] = {1, 0, 0, 0, 0, 0, 0, 1, 0}, on_base[] = {1, 0, 0, 3, 3, 3, 0, 1, 0};
@@ -176,8 +168,7 @@ static void reads_sparse_accessors(void **state) {
         }
 }
 
-static void reads_accessors_without_data_as_zeros(void **state) {
-    (void)state;
+TEST(reads_accessors_without_data_as_zeros) {
     static const double zeros[9];
     static const uint32_t triangle[] = {0, 1, 2};
     gltf_fixture fixture = {0};
@@ -198,8 +189,7 @@ static void check_triangles(const char *primitive, uint32_t triangle_count, cons
     mesh_check_equal(gltf_fixture_glb(&fixture, primitive), 6, positions, triangle_count, triangles);
 }
 
-static void reads_triangles_strips_and_fans(void **state) {
-    (void)state;
+TEST(reads_triangles_strips_and_fans) {
     static const uint32_t list[] = {0, 1, 2, 3, 4, 5};
     static const uint32_t strip[] = {0, 1, 2, 1, 3, 2, 2, 3, 4, 3, 5, 4};
     static const uint32_t fan[] = {0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 5};
@@ -212,8 +202,7 @@ static void reads_triangles_strips_and_fans(void **state) {
 }
 
 /* Primitives of one set of vertices share it; points and lines are passed over. */
-static void reads_several_primitives(void **state) {
-    (void)state;
+TEST(reads_several_primitives) {
     static const uint32_t triangles[] = {0, 1, 2, 3, 4, 5, 0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 5};
     check_triangles(
         "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"mode\":0},"
@@ -235,8 +224,7 @@ static void check_nodes(const char *rest, uint32_t instance_count, const double 
                      triangles);
 }
 
-static void places_nodes_in_their_tree(void **state) {
-    (void)state;
+TEST(places_nodes_in_their_tree) {
     static const uint32_t once[] = {0, 1, 2}, twice[] = {0, 1, 2, 3, 4, 5}, mirrored[] = {0, 2, 1};
     /* Scaled by 2, turned by 90 degrees around z (x becomes y, y becomes -x), and moved. */
     static const double placed[] = {10, 20, 30, 10, 22, 30, 6, 20, 30};
@@ -258,8 +246,7 @@ static void places_nodes_in_their_tree(void **state) {
                 twice);
 }
 
-static void shows_the_default_scene(void **state) {
-    (void)state;
+TEST(shows_the_default_scene) {
     static const uint32_t once[] = {0, 1, 2};
     static const double behind[] = {0, 0, 5, 1, 0, 5, 0, 2, 5};
 #define TWO_NODES "\"nodes\":[{\"mesh\":0},{\"mesh\":0,\"translation\":[0,0,5]}]," ONE_TRIANGLE
@@ -294,8 +281,7 @@ static void check_weights(const char *node, const char *mesh, double first, doub
     mesh_check_equal(gltf_fixture_glb(&fixture, rest), 3, expected, 1, triangle);
 }
 
-static void adds_morph_targets(void **state) {
-    (void)state;
+TEST(adds_morph_targets) {
     check_weights("", "", 0, 0);
     check_weights("", ",\"weights\":[0.5,0.25,1]", 0.5, 0.25);
     check_weights(",\"weights\":[0.75,-1,7]", ",\"weights\":[0.5,0.25,1]", 0.75, -1);
@@ -348,8 +334,7 @@ static void check_skin(int weight_component, const double *weights, bool two_set
     mesh_file_free(&mesh);
 }
 
-static void moves_skins_by_their_joints(void **state) {
-    (void)state;
+TEST(moves_skins_by_their_joints) {
     static const double floats[] = {1, 0, 0, 0, 0.5, 0.5, 0, 0, 0.75, 0.25, 0, 0};
     static const double doubled[] = {2, 0, 0, 0, 1, 1, 0, 0, 1.5, 0.5, 0, 0};
     static const double bytes[] = {255, 0, 0, 0, 100, 100, 0, 0, 150, 50, 0, 0};
@@ -362,8 +347,7 @@ static void moves_skins_by_their_joints(void **state) {
 }
 
 /* Without weights a vertex goes with its node, as an unskinned one does. */
-static void leaves_vertices_without_weights(void **state) {
-    (void)state;
+TEST(leaves_vertices_without_weights) {
     static const double positions[] = {0, 0, 0, 1, 0, 0, 0, 2, 0}, zeros[12] = {0};
     static const double expected[] = {5, 0, 0, 6, 0, 0, 5, 2, 0};
     gltf_fixture fixture = {0};
@@ -375,26 +359,4 @@ static void leaves_vertices_without_weights(void **state) {
                                    "[{\"joints\":[1]}],\"meshes\":[{\"primitives\":[{\"attributes\":{"
                                    "\"POSITION\":0,\"JOINTS_0\":1,\"WEIGHTS_0\":2}}]}]"),
         3, expected, 1, (const uint32_t[]){0, 1, 2});
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reads_all_containers),
-        cmocka_unit_test(reads_buffers_beside_the_file),
-        cmocka_unit_test(refuses_buffers_that_are_not_there),
-        cmocka_unit_test(reads_all_types_of_indices),
-        cmocka_unit_test(reads_all_types_of_positions),
-        cmocka_unit_test(reads_what_compressed_files_have_besides),
-        cmocka_unit_test(reads_interleaved_elements),
-        cmocka_unit_test(reads_sparse_accessors),
-        cmocka_unit_test(reads_accessors_without_data_as_zeros),
-        cmocka_unit_test(reads_triangles_strips_and_fans),
-        cmocka_unit_test(reads_several_primitives),
-        cmocka_unit_test(places_nodes_in_their_tree),
-        cmocka_unit_test(shows_the_default_scene),
-        cmocka_unit_test(adds_morph_targets),
-        cmocka_unit_test(moves_skins_by_their_joints),
-        cmocka_unit_test(leaves_vertices_without_weights),
-    };
-    return cmocka_run_group_tests_name("gltf", tests, NULL, NULL);
 }

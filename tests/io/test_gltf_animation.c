@@ -61,8 +61,7 @@ static void check_moved(const open_file *opened, uint32_t frame, double x, doubl
     check_frame(opened, frame, expected);
 }
 
-static void moves_along_lines(void **state) {
-    (void)state;
+TEST(moves_along_lines) {
     static const double times[] = {0, 1, 3}, values[] = {0, 0, 0, 2, 4, 6, 2, 0, 6};
     open_file opened =
         open_channel((gltf_channel_keys){"translation", "LINEAR", "VEC3", 3, 9, times, values}, 4);
@@ -73,8 +72,7 @@ static void moves_along_lines(void **state) {
 }
 
 /* Half of a tangent is the slope there: by the polynomials of the format, 0.25 + 1 - 0.75 at the middle. */
-static void moves_along_splines(void **state) {
-    (void)state;
+TEST(moves_along_splines) {
     static const double times[] = {1, 3};
     static const double values[] = {9, 9, 9, 0, 1, 5, 1, 0, 0, 3, 0, 0, 2, 1, 5, 9, 9, 9};
     open_file opened =
@@ -98,8 +96,7 @@ static void check_turned(const open_file *opened, uint32_t frame, double angle, 
 
 /* From rest to a quaternion around z of either sign, at constant speed and the shorter way: to 90 degrees, to 90 by
  * the opposite quaternion, to 240, which is -120, to a small angle, and to none. */
-static void turns_the_shorter_way(void **state) {
-    (void)state;
+TEST(turns_the_shorter_way) {
     static const double times[] = {0, 1};
     static const double ends[][2] = {{1, 1}, {-1, -1}, {1.75, -1}, {1e-6, 1}, {0, -1}}; /* z and w */
     for (size_t i = 0; i < sizeof ends / sizeof *ends; i++) {
@@ -115,8 +112,7 @@ static void turns_the_shorter_way(void **state) {
     }
 }
 
-static void changes_weights(void **state) {
-    (void)state;
+TEST(changes_weights) {
     static const double times[] = {0, 2}, values[] = {0, 1, 1, -1};
     open_file opened =
         open_channel((gltf_channel_keys){"weights", "LINEAR", "SCALAR", 2, 4, times, values}, 2);
@@ -134,8 +130,7 @@ static void changes_weights(void **state) {
 }
 
 /* Keys are rounded to floats, some of them past the frame that they belong to. */
-static void steps_at_the_frame_of_the_key(void **state) {
-    (void)state;
+TEST(steps_at_the_frame_of_the_key) {
     static const double values[] = {0, 0, 0, 7, 0, 0};
     uint32_t late = 0;
     for (uint32_t n = 1; n < 300; n += 3) {
@@ -152,8 +147,7 @@ static void steps_at_the_frame_of_the_key(void **state) {
     assert_true(late > 20);
 }
 
-static void counts_frames_from_the_start_to_the_end(void **state) {
-    (void)state;
+TEST(counts_frames_from_the_start_to_the_end) {
     static const double values[] = {0, 0, 0, 1, 0, 0};
     static const struct {
         double start, end, fps;
@@ -184,8 +178,7 @@ static void counts_frames_from_the_start_to_the_end(void **state) {
 
 /* ---- several channels and animations ----------------------------------------------------------------- */
 
-static void plays_channels_together(void **state) {
-    (void)state;
+TEST(plays_channels_together) {
     gltf_fixture fixture;
     /* The third channel is of an extension, the fourth of no node. */
     open_file opened =
@@ -205,8 +198,7 @@ static void plays_channels_together(void **state) {
     close_file(&opened);
 }
 
-static void chooses_animations_by_name(void **state) {
-    (void)state;
+TEST(chooses_animations_by_name) {
     gltf_fixture fixture;
     open_file opened = open_bytes(gltf_animations_two(&fixture, GLTF_MOVE_NODE_1), 4, "B");
     assert_int_equal(animation_frame_count(opened.frames), 3);
@@ -221,8 +213,7 @@ static void chooses_animations_by_name(void **state) {
 }
 
 /* Joint 1 stands on joint 0 and turns around z by 180 degrees in two seconds; the triangle's vertex 1 follows it. */
-static void moves_skins(void **state) {
-    (void)state;
+TEST(moves_skins) {
     static const double joints[12] = {[4] = 1}, weights[] = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0},
                         times[] = {0, 1, 2};
     static const double turns[] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
@@ -248,19 +239,4 @@ static void moves_skins(void **state) {
         {0, 0, 3, 1, 0, 3, 0, 1, 3}, {0, 0, 3, 0.5, 0.5, 3, 0, 1, 3}, {0, 0, 3, 0, 0, 3, 0, 1, 3}};
     for (uint32_t i = 0; i < 3; i++) check_frame(&opened, i, expected[i]);
     close_file(&opened);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(moves_along_lines),
-        cmocka_unit_test(moves_along_splines),
-        cmocka_unit_test(turns_the_shorter_way),
-        cmocka_unit_test(changes_weights),
-        cmocka_unit_test(steps_at_the_frame_of_the_key),
-        cmocka_unit_test(counts_frames_from_the_start_to_the_end),
-        cmocka_unit_test(plays_channels_together),
-        cmocka_unit_test(chooses_animations_by_name),
-        cmocka_unit_test(moves_skins),
-    };
-    return cmocka_run_group_tests_name("gltf_animation", tests, NULL, NULL);
 }

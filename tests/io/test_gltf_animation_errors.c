@@ -31,8 +31,7 @@ static void check_refused(file_bytes file, uint32_t vertex_count, double fps, co
     temp_folder_remove(&folder);
 }
 
-static void refuses_wrong_channels(void **state) {
-    (void)state;
+TEST(refuses_wrong_channels) {
     static const char *const cases[][3] = {
         {"{\"sampler\":0,\"target\":{\"node\":3,\"path\":\"scale\"}}", "animation 0, channel 0: node is 3",
          "3 nodes"},
@@ -64,8 +63,7 @@ static void refuses_wrong_channels(void **state) {
     }
 }
 
-static void refuses_what_has_no_frames(void **state) {
-    (void)state;
+TEST(refuses_what_has_no_frames) {
     static const double falling[] = {1, 0.5}, endless[] = {0, 1e30}, values[] = {0, 0, 0, 1, 0, 0};
     gltf_fixture fixture;
     const file_bytes file = gltf_animations_two(&fixture, GLTF_MOVE_NODE_1);
@@ -89,8 +87,7 @@ static void refuses_what_has_no_frames(void **state) {
 
 /* ---- memory and damage ------------------------------------------------------------------------------- */
 
-static void survives_failed_allocations(void **state) {
-    (void)state;
+TEST(survives_failed_allocations) {
     gltf_fixture fixture;
     const file_bytes file = gltf_animations_two(&fixture, GLTF_MOVE_NODE_1 "," GLTF_SCALE_NODE_0);
     const temp_folder folder = temp_folder_make();
@@ -114,8 +111,7 @@ static void survives_failed_allocations(void **state) {
     temp_folder_remove(&folder);
 }
 
-static void reads_frames_without_more_memory(void **state) {
-    (void)state;
+TEST(reads_frames_without_more_memory) {
     gltf_fixture fixture;
     const file_bytes file = gltf_animations_two(&fixture, GLTF_MOVE_NODE_1 "," GLTF_SCALE_NODE_0);
     const temp_folder folder = temp_folder_make();
@@ -135,21 +131,9 @@ static void reads_frames_without_more_memory(void **state) {
     temp_folder_remove(&folder);
 }
 
-static void survives_damage(void **state) {
-    (void)state;
+TEST(survives_damage) {
     gltf_fixture fixture;
     const file_bytes file = gltf_animations_two(&fixture, GLTF_MOVE_NODE_1 "," GLTF_SCALE_NODE_0);
     const file_damage_counts counts = file_damage_rounds(file, 4000, 2);
     assert_true(counts.animated > 400 && counts.unanimated > 100 && counts.refused > 400);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(refuses_wrong_channels),
-        cmocka_unit_test(refuses_what_has_no_frames),
-        cmocka_unit_test(survives_failed_allocations),
-        cmocka_unit_test(reads_frames_without_more_memory),
-        cmocka_unit_test(survives_damage),
-    };
-    return cmocka_run_group_tests_name("gltf_animation_errors", tests, NULL, NULL);
 }

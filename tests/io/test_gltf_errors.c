@@ -51,8 +51,7 @@ static void check_replaced(const char *text, const char *by, const char *found, 
     mesh_check_error(gltf_fixture_glb(&fixture, rest), ": ", found, expected);
 }
 
-static void refuses_wrong_nodes(void **state) {
-    (void)state;
+TEST(refuses_wrong_nodes) {
     check_replaced("\"mesh\":1", "\"mesh\":2", "node 1: mesh is 2", "2 meshes, from 0");
     check_replaced("\"mesh\":1", "\"mesh\":-1", "node 1: mesh is -1", "expected 0 to");
     check_replaced("\"mesh\":1", "\"mesh\":0.5", "node 1: mesh is 0.5", "a whole number");
@@ -72,8 +71,7 @@ static void refuses_wrong_nodes(void **state) {
     check_replaced("\"nodes\":[0,1]", "\"nodes\":[2]", "no triangles found", "default scene");
 }
 
-static void refuses_wrong_meshes(void **state) {
-    (void)state;
+TEST(refuses_wrong_meshes) {
     check_replaced("\"POSITION\":0,", "", "mesh 0, primitive 0: POSITION is missing", "");
     check_replaced("\"POSITION\":0,", "\"POSITION\":1,", "accessor 1: type is SCALAR", "VEC3 for POSITION");
     check_replaced("\"POSITION\":0,", "\"POSITION\":9,", "primitive 0: POSITION is 9", "8 accessors");
@@ -96,8 +94,7 @@ static void refuses_wrong_meshes(void **state) {
         "KHR_draco_mesh_compression, which is not read", "without compression");
 }
 
-static void refuses_wrong_numbers(void **state) {
-    (void)state;
+TEST(refuses_wrong_numbers) {
     static const double far[] = {0, 1, 2, 0, 2, 4};
     static const double large[] = {0, 0, 0, 1e30, 0, 0, 1, 1, 0};
     gltf_fixture fixture = {0};
@@ -130,8 +127,7 @@ static void check_accessor(const char *accessor, const char *view, const char *f
 #define VIEW          "{\"buffer\":0,\"byteLength\":48}"
 #define ACCESSOR(all) "{\"bufferView\":0,\"componentType\":5126,\"type\":\"VEC3\"," all "}"
 
-static void refuses_accessors_out_of_bounds(void **state) {
-    (void)state;
+TEST(refuses_accessors_out_of_bounds) {
     check_accessor(ACCESSOR("\"count\":5"), VIEW, "accessor 0: 5 elements end at byte 60", "48 bytes");
     check_accessor(ACCESSOR("\"count\":4,\"byteOffset\":1"), VIEW, "4 elements end at byte 49", "48 bytes");
     check_accessor(ACCESSOR("\"count\":4,\"byteOffset\":9007199254740992"), VIEW, "4 elements end at byte",
@@ -164,8 +160,7 @@ static void refuses_accessors_out_of_bounds(void **state) {
 }
 
 /* There are 36 bytes, and the buffer is said to have 24. */
-static void refuses_what_lies_behind_the_buffer(void **state) {
-    (void)state;
+TEST(refuses_what_lies_behind_the_buffer) {
     mesh_check_error(
         FILE_OF("mesh.gltf",
                 "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":24,\"uri\":"
@@ -177,8 +172,7 @@ static void refuses_what_lies_behind_the_buffer(void **state) {
 }
 
 /* Elements without data are zeros: of vertices, of sparse ones, and of indices. */
-static void refuses_more_zeros_than_bytes(void **state) {
-    (void)state;
+TEST(refuses_more_zeros_than_bytes) {
     check_accessor("{\"componentType\":5126,\"type\":\"VEC3\",\"count\":2147483647}", VIEW,
                    "accessor 0: has 2147483647 elements without a bufferView", "the bytes of the file");
     check_accessor("{\"componentType\":5126,\"type\":\"VEC3\",\"count\":10000}", VIEW,
@@ -195,8 +189,7 @@ static void refuses_more_zeros_than_bytes(void **state) {
         ": ", "accessor 1: has 2100000000 elements without a bufferView", "the bytes of the file");
 }
 
-static void refuses_sparse_indices_that_do_not_rise(void **state) {
-    (void)state;
+TEST(refuses_sparse_indices_that_do_not_rise) {
     static const double cases[][2] = {{2, 2}, {2, 1}, {0, 4}};
     for (size_t i = 0; i < 3; i++) {
         gltf_fixture fixture = {0};
@@ -216,8 +209,7 @@ static void refuses_sparse_indices_that_do_not_rise(void **state) {
 
 /* ---- containers -------------------------------------------------------------------------------------- */
 
-static void refuses_wrong_containers(void **state) {
-    (void)state;
+TEST(refuses_wrong_containers) {
     gltf_fixture fixture = rich_fixture();
     file_bytes file = gltf_fixture_glb(&fixture, RICH);
     char *bytes = fixture.file;
@@ -243,8 +235,7 @@ static void refuses_wrong_containers(void **state) {
 }
 
 /* Each object would take a thousand bytes of memory. */
-static void refuses_nothing_but_objects(void **state) {
-    (void)state;
+TEST(refuses_nothing_but_objects) {
     char text[8000] = "{\"asset\":{\"version\":\"2.0\"},\"nodes\":[{}";
     for (int i = 0; i < 2000; i++) strcat(text, ",{}");
     strcat(text, "]}");
@@ -252,8 +243,7 @@ static void refuses_nothing_but_objects(void **state) {
                      "more objects than one in ten bytes", "a glTF file");
 }
 
-static void refuses_other_versions_and_extensions(void **state) {
-    (void)state;
+TEST(refuses_other_versions_and_extensions) {
 #define ASSET(version) FILE_OF("mesh.gltf", "{\"asset\":{" version "}}")
     mesh_check_error(ASSET("\"version\":\"1.0\""), ": ", "version 1.0", "expected 2.0");
     mesh_check_error(ASSET("\"version\":\"2.1\",\"minVersion\":\"2.1\""), ": ", "needs a reader of glTF 2.1",
@@ -271,27 +261,9 @@ static void refuses_other_versions_and_extensions(void **state) {
     }
 }
 
-static void survives_damage(void **state) {
-    (void)state;
+TEST(survives_damage) {
     gltf_fixture fixture = rich_fixture();
     const file_bytes file = gltf_fixture_glb(&fixture, RICH);
     const file_damage_counts counts = file_damage_rounds(file, 4000, 1);
     assert_true(counts.read > 400 && counts.refused > 400);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(refuses_wrong_nodes),
-        cmocka_unit_test(refuses_wrong_meshes),
-        cmocka_unit_test(refuses_wrong_numbers),
-        cmocka_unit_test(refuses_accessors_out_of_bounds),
-        cmocka_unit_test(refuses_what_lies_behind_the_buffer),
-        cmocka_unit_test(refuses_more_zeros_than_bytes),
-        cmocka_unit_test(refuses_sparse_indices_that_do_not_rise),
-        cmocka_unit_test(refuses_wrong_containers),
-        cmocka_unit_test(refuses_nothing_but_objects),
-        cmocka_unit_test(refuses_other_versions_and_extensions),
-        cmocka_unit_test(survives_damage),
-    };
-    return cmocka_run_group_tests_name("gltf_errors", tests, NULL, NULL);
 }

@@ -48,10 +48,9 @@ static const double placed[] = {10, 0, 0, 11, 0,  0, 10, 1,  0, 10, 0,  5, 10, 2
                                 5,  7, 0, 5,  11, 1, 1,  10, 1, 1,  11, 0, 1};
 static const uint32_t triangles[] = {0, 1, 2, 3, 4, 5, 6, 8, 7}; /* copy 2 is mirrored */
 
-static void copies_stand_where_they_should(void **state) {
+TEST(copies_stand_where_they_should) {
     static const char *const used[] = {"\"extensionsUsed\":[\"EXT_mesh_gpu_instancing\"],",
                                        "\"extensionsRequired\":[\"EXT_mesh_gpu_instancing\"],", ""};
-    (void)state;
     for (size_t i = 0; i < 3; i++)
         for (int integers = 0; integers < 2; integers++) {
             gltf_fixture fixture = make_fixture();
@@ -63,14 +62,13 @@ static void copies_stand_where_they_should(void **state) {
         }
 }
 
-static void some_attributes_are_enough(void **state) {
+TEST(some_attributes_are_enough) {
     static const double moved[] = {10, 0,  0, 11, 0,  0, 10, 1,  0, 10, 0,  5, 11, 0,
                                    5,  10, 1, 5,  11, 1, 1,  12, 1, 1,  11, 2, 1};
     static const double scaled[] = {10, 0,  0, 11, 0,  0, 10, 1, 0, 10, 0,  0, 12, 0,
                                     0,  10, 3, 0,  10, 0, 0,  9, 0, 0,  10, 1, 0};
     static const uint32_t plain[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
     gltf_fixture fixture = make_fixture();
-    (void)state;
     mesh_check_equal(gltf_fixture_glb(&fixture, NODES(EXTENSION("\"TRANSLATION\":1,\"_AGE\":5")) MESH), 9,
                      moved, 3, plain);
     fixture = make_fixture();
@@ -81,21 +79,19 @@ static void some_attributes_are_enough(void **state) {
                      scaled, 3, triangles);
 }
 
-static void each_copy_is_a_part(void **state) {
+TEST(each_copy_is_a_part) {
     static const char *const names[] = {"tree", "tree.001", "tree.002", NULL};
     static const uint32_t labels[] = {0, 1, 2};
     gltf_fixture fixture = make_fixture();
-    (void)state;
     mesh_check_parts(gltf_fixture_glb(&fixture, NODES(EXTENSION(ALL)) MESH), names, labels);
 }
 
 /* Node 0 moves by (8, 4, 0) in a second. */
-static void copies_go_with_nodes_that_move(void **state) {
+TEST(copies_go_with_nodes_that_move) {
     gltf_fixture fixture = make_fixture();
     temp_folder folder = temp_folder_make();
     gltf_frames *frames = NULL;
     io_error error;
-    (void)state;
     const file_bytes file = gltf_fixture_glb(
         &fixture, NODES(EXTENSION(ALL)) MESH
         ",\"animations\":[{\"samplers\":[{\"input\":5,\"output\":6}],\"channels\":[{\"sampler\":0,\"target\":"
@@ -120,8 +116,7 @@ static void check_refused(const char *rest, const char *found, const char *expec
     mesh_check_error(gltf_fixture_glb(&fixture, rest), ": ", found, expected);
 }
 
-static void wrong_copies_are_refused(void **state) {
-    (void)state;
+TEST(wrong_copies_are_refused) {
     check_refused(NODES(EXTENSION("\"TRANSLATION\":1,\"SCALE\":4")) MESH, "node 1",
                   "SCALE is of 2 instances");
     check_refused(NODES(EXTENSION("\"TRANSLATION\":4,\"SCALE\":3")) MESH, "node 1",
@@ -157,8 +152,7 @@ static void check_note(const char *rest, const char *const *texts) {
 
 #define TEXTS(...) ((const char *const[]){__VA_ARGS__, NULL})
 
-static void what_is_not_read_is_named(void **state) {
-    (void)state;
+TEST(what_is_not_read_is_named) {
     check_note(NODES(EXTENSION("\"TRANSLATION\":1")) MESH, NULL);
     check_note(NODES("\"extensions\":{\"KHR_lights_punctual\":{},\"EXT_instance_features\":{}}") MESH, NULL);
     check_note(NODES("\"extensions\":{\"ACME_fur\":{}}") MESH,
@@ -177,8 +171,7 @@ static void what_is_not_read_is_named(void **state) {
 }
 
 /* Node 2 and mesh 1 are in no scene. */
-static void what_is_not_shown_is_not_named(void **state) {
-    (void)state;
+TEST(what_is_not_shown_is_not_named) {
     check_note(
         "\"nodes\":[{\"mesh\":0},{},{\"mesh\":1,\"extensions\":{\"ACME_fur\":{}}}],\"scenes\":[{\"nodes\":[0]}],"
         "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]},{\"extensions\":{\"ACME_fur\":{}},"
@@ -186,10 +179,9 @@ static void what_is_not_shown_is_not_named(void **state) {
         NULL);
 }
 
-static void many_names_are_cut(void **state) {
+TEST(many_names_are_cut) {
     char extensions[1024] = "", rest[2048];
     size_t used = 0;
-    (void)state;
     for (int i = 0; i < 12; i++)
         used += (size_t)snprintf(extensions + used, sizeof extensions - used,
                                  "%s\"ACME_%d_of_a_name_that_is_so_long_that_it_is_cut\":{}",
@@ -198,24 +190,8 @@ static void many_names_are_cut(void **state) {
     check_note(rest, TEXTS("ACME_0_of", "ACME_7_of", " and others are not read"));
 }
 
-static void survives_failed_allocations(void **state) {
-    (void)state;
+TEST(survives_failed_allocations) {
     gltf_fixture fixture = make_fixture();
     mesh_check_memory(gltf_fixture_glb(&fixture, NODES(EXTENSION(ALL)) MESH ",\"scene\":0"),
                       MESH_PARTS_BY_FILE);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(copies_stand_where_they_should),
-        cmocka_unit_test(some_attributes_are_enough),
-        cmocka_unit_test(each_copy_is_a_part),
-        cmocka_unit_test(copies_go_with_nodes_that_move),
-        cmocka_unit_test(wrong_copies_are_refused),
-        cmocka_unit_test(what_is_not_read_is_named),
-        cmocka_unit_test(what_is_not_shown_is_not_named),
-        cmocka_unit_test(many_names_are_cut),
-        cmocka_unit_test(survives_failed_allocations),
-    };
-    return cmocka_run_group_tests_name("gltf_instancing", tests, NULL, NULL);
 }

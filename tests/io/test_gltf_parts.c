@@ -38,8 +38,7 @@ static void check_names(const char *nodes, uint32_t count, const char *const *na
     assert_int_equal(mesh.parts.count, 0);
 }
 
-static void calls_parts_by_their_nodes(void **state) {
-    (void)state;
+TEST(calls_parts_by_their_nodes) {
     static const char *const plain[] = {"Body", "Arm", "node 2", "Hand/L"};
     check_names(
         "{\"name\":\"Body\",\"mesh\":0},{\"mesh\":1},{\"mesh\":0,\"name\":\"\"},{\"name\":\"Hand/L\",\"mesh\":1},{\"name\":"
@@ -47,8 +46,7 @@ static void calls_parts_by_their_nodes(void **state) {
         4, plain);
 }
 
-static void tells_equal_names_apart(void **state) {
-    (void)state;
+TEST(tells_equal_names_apart) {
     static const char *const names[] = {"Body",     "Body.001", "Body.001.001",
                                         "Body.003", "Body.002", "Body.004"};
     check_names(
@@ -58,8 +56,7 @@ static void tells_equal_names_apart(void **state) {
 }
 
 /* Two nodes with mesh 0, and one with mesh 1 between them. */
-static void numbers_the_faces_of_the_file(void **state) {
-    (void)state;
+TEST(numbers_the_faces_of_the_file) {
     static const uint32_t polygons[] = {0, 2, 3, 4, 6}, parts[] = {0, 0, 1, 2, 2};
     static const uint32_t triangles[] = {0, 1, 2, 1, 2, 3, 4, 5, 6, 8, 9, 10, 9, 10, 11};
     gltf_fixture fixture;
@@ -79,8 +76,7 @@ static void numbers_the_faces_of_the_file(void **state) {
 }
 
 /* Two with the same positions but not the same targets, and one with others, which has indices. */
-static void primitives_share_what_is_the_same_in_all(void **state) {
-    (void)state;
+TEST(primitives_share_what_is_the_same_in_all) {
     static const double first[] = {0, 0, 0, 1, 0, 0, 0, 1, 0}, other[] = {5, 0, 0, 6, 0, 0, 5, 1, 0},
                         moved[] = {0, 0, 1, 0, 0, 2, 0, 0, 3}, corners[] = {2, 0, 1};
     static const double expected[] = {0, 0, 1, 1, 0, 2, 0, 1, 3, 0, 0, 0, 1, 0,
@@ -129,8 +125,7 @@ static file_bytes materials_file(gltf_fixture *fixture, const char *materials, i
     "\"materials\":[{\"name\":\"Steel\"},{\"name\":\"Unused\"},{\"name\":\"Red Skin #1\"},{},{\"name\":\"Seen " \
     "nowhere\"},{\"name\":\"Steel\"}],"
 
-static void calls_parts_by_their_materials(void **state) {
-    (void)state;
+TEST(calls_parts_by_their_materials) {
     enum { N = NO_MESH_PART };
     gltf_fixture fixture;
     /* Mesh 0: one triangle each, but two of material 0, whose third names a vertex twice; then two of mesh 1. */
@@ -149,8 +144,7 @@ static void calls_parts_by_their_materials(void **state) {
 }
 
 /* Where nobody asks for materials, nobody misses one. */
-static void refuses_materials_that_are_not_there(void **state) {
-    (void)state;
+TEST(refuses_materials_that_are_not_there) {
     gltf_fixture fixture;
     mesh_file mesh;
     io_error error = {""};
@@ -161,22 +155,8 @@ static void refuses_materials_that_are_not_there(void **state) {
     if (strstr(error.text, "mesh 1, primitive 2: material is 6") == NULL) fail_msg("%s", error.text);
 }
 
-static void survives_failed_allocations(void **state) {
-    (void)state;
+TEST(survives_failed_allocations) {
     gltf_fixture fixture;
     mesh_check_memory(parts_file(&fixture, "{\"mesh\":0},{\"mesh\":1},{\"mesh\":1}"), MESH_PARTS_BY_FILE);
     mesh_check_memory(materials_file(&fixture, MATERIALS, 3), MESH_PARTS_BY_MATERIAL);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(calls_parts_by_their_nodes),
-        cmocka_unit_test(tells_equal_names_apart),
-        cmocka_unit_test(numbers_the_faces_of_the_file),
-        cmocka_unit_test(primitives_share_what_is_the_same_in_all),
-        cmocka_unit_test(calls_parts_by_their_materials),
-        cmocka_unit_test(refuses_materials_that_are_not_there),
-        cmocka_unit_test(survives_failed_allocations),
-    };
-    return cmocka_run_group_tests_name("gltf_parts", tests, NULL, NULL);
 }

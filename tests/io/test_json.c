@@ -30,8 +30,7 @@ static void write_texts(json *out) {
 
 #define MARK "\xef\xbf\xbd"
 
-static void texts_are_always_utf8(void **state) {
-    (void)state;
+TEST(texts_are_always_utf8) {
     check_written(write_texts,
                   "[\"\\\"a\\\\b\\\"\",\"\\u0009\\u000a\\u001f\",\"\xc3\xa4\xf0\x9f\x98\x80\",\"a" MARK
                   "\",\"" MARK "z\",\"" MARK MARK "\",\"" MARK MARK MARK "\",\"" MARK MARK MARK MARK "\"]");
@@ -46,8 +45,7 @@ static void write_numbers(json *out) {
     json_end_array(out);
 }
 
-static void numbers_are_finite_or_null(void **state) {
-    (void)state;
+TEST(numbers_are_finite_or_null) {
     check_written(write_numbers,
                   "[0.10000000000000001,-0,1.0000000000000001e+300,null,null,null,18446744073709551615,"
                   "-9223372036854775808]");
@@ -68,16 +66,6 @@ static void write_nested(json *out) {
     json_end_object(out);
 }
 
-static void commas_stand_between_items(void **state) {
-    (void)state;
+TEST(commas_stand_between_items) {
     check_written(write_nested, "{\"none\":[],\"some\":[true,\n{\"a\\\"\":null}],\"last\":[1]}");
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(texts_are_always_utf8),
-        cmocka_unit_test(numbers_are_finite_or_null),
-        cmocka_unit_test(commas_stand_between_items),
-    };
-    return cmocka_run_group_tests_name("json", tests, NULL, NULL);
 }

@@ -21,8 +21,7 @@
     "element face 1\nproperty list uchar int vertex_index\nend_header\n"                                     \
     "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n"
 
-static void chooses_the_format(void **state) {
-    (void)state;
+TEST(chooses_the_format) {
     mesh_check_square(FILE_OF("a.obj", SQUARE_OBJ));
     mesh_check_square(FILE_OF("a.OBJ", SQUARE_OBJ));
     mesh_check_square(FILE_OF("a.obj", SQUARE_OFF));
@@ -35,8 +34,7 @@ static void chooses_the_format(void **state) {
     mesh_check_error(FILE_OF("a.off", SQUARE_OBJ), ":1: ", "found 'v'", "the number of vertices");
 }
 
-static void names_the_way_out_of_other_formats(void **state) {
-    (void)state;
+TEST(names_the_way_out_of_other_formats) {
     static const file_bytes files[] = {
         FILE_OF("a.abc", "?"),           FILE_OF("a", "Ogawa\xff"),    FILE_OF("a.usd", "?"),
         FILE_OF("a.USDA", "?"),          FILE_OF("a.usdc", "?"),       FILE_OF("a.usdz", "PK"),
@@ -61,8 +59,7 @@ static void check_unreadable(const char *path, const char *found) {
     assert_false(mesh_file_read(path, &mesh, NULL));
 }
 
-static void refuses_what_is_no_file(void **state) {
-    (void)state;
+TEST(refuses_what_is_no_file) {
     temp_folder folder = temp_folder_make();
     check_unreadable(temp_file_path(&folder, "none.obj").text, "/none.obj: cannot open: No such file");
     check_unreadable(temp_file_path(&folder, "none/a.obj").text, "/none/a.obj: cannot open: No such file");
@@ -79,8 +76,7 @@ static void refuses_what_is_no_file(void **state) {
                      "expected an OBJ, PLY, OFF, STL, glTF or GIFTI mesh");
 }
 
-static void keeps_messages_on_one_line(void **state) {
-    (void)state;
+TEST(keeps_messages_on_one_line) {
     io_error error = {""};
     mesh_file mesh;
     char path[3000];
@@ -93,8 +89,7 @@ static void keeps_messages_on_one_line(void **state) {
 }
 
 /* A pipe does not say how much it will give. */
-static void reads_pipes(void **state) {
-    (void)state;
+TEST(reads_pipes) {
     int ends[2];
     char path[64], bytes[20000];
     io_error error = {""};
@@ -113,16 +108,14 @@ static void reads_pipes(void **state) {
     mesh_file_free(&mesh);
 }
 
-static void frees_zeroed_meshes(void **state) {
-    (void)state;
+TEST(frees_zeroed_meshes) {
     mesh_file mesh = {0};
     mesh_file_free(&mesh);
     mesh_file_free(&mesh);
     assert_null(mesh.positions);
 }
 
-static void grows_only_to_sizes_that_exist(void **state) {
-    (void)state;
+TEST(grows_only_to_sizes_that_exist) {
     growable array = growable_of(24);
     assert_false(growable_reserve(&array, SIZE_MAX / 24 + 1));
     assert_false(growable_reserve(&array, SIZE_MAX));
@@ -132,8 +125,7 @@ static void grows_only_to_sizes_that_exist(void **state) {
     assert_int_equal(array.count, SIZE_MAX / 24);
 }
 
-static void counts_up_to_the_limit(void **state) {
-    (void)state;
+TEST(counts_up_to_the_limit) {
     io_error error = {""};
     file_reader reader = {.path = "big.obj", .error = &error, .line = 12};
     mesh_builder builder = mesh_builder_of(&reader, 1);
@@ -148,8 +140,7 @@ static void counts_up_to_the_limit(void **state) {
     mesh_builder_free(&builder);
 }
 
-static void parses_integers_up_to_18_digits(void **state) {
-    (void)state;
+TEST(parses_integers_up_to_18_digits) {
     int64_t value = 0;
     assert_true(text_parse_integer((text_token){"-999999999999999999", 19}, &value));
     assert_int_equal(value, -999999999999999999);
@@ -166,8 +157,7 @@ static uint64_t next_random(uint64_t *random) {
     return *random;
 }
 
-static void survives_garbage(void **state) {
-    (void)state;
+TEST(survives_garbage) {
     static const char *const names[] = {"a.obj", "a.off", "a.ply", "a"};
     static const char *const starts[] = {"", "OFF\n", "ply\nformat binary_big_endian 1.0\nelement vertex 3\n",
                                          "f v "};
@@ -186,8 +176,7 @@ static void survives_garbage(void **state) {
     }
 }
 
-static void writes_what_it_reads(void **state) {
-    (void)state;
+TEST(writes_what_it_reads) {
     double positions[] = {0.1, -1.0 / 3, 1e-300, 4.9406564584124654e-324, 1.7976931348623157e308, -0.0,
                           3,   2,        1};
     uint32_t triangles[] = {0, 1, 2, 2, 1, 0};
@@ -213,8 +202,7 @@ static const mesh_file some_mesh = {
 static const mesh_file many_triangles = {
     .vertex_count = 1, .triangle_count = 1000, .positions = some_positions, .triangles = some_triangles};
 
-static void reports_where_it_cannot_write(void **state) {
-    (void)state;
+TEST(reports_where_it_cannot_write) {
     struct stat status;
     io_error error = {""};
     temp_folder folder = temp_folder_make();
@@ -231,8 +219,7 @@ static void reports_where_it_cannot_write(void **state) {
 }
 
 /* What was there before stays. */
-static void leaves_nothing_that_it_cannot_finish(void **state) {
-    (void)state;
+TEST(leaves_nothing_that_it_cannot_finish) {
     struct rlimit before, limit;
     struct stat status;
     io_error error = {""};
@@ -255,23 +242,4 @@ static void leaves_nothing_that_it_cannot_finish(void **state) {
     assert_int_equal(stat(path.text, &status), 0);
     assert_int_equal(status.st_size, 5);
     temp_folder_remove(&folder);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(chooses_the_format),
-        cmocka_unit_test(names_the_way_out_of_other_formats),
-        cmocka_unit_test(refuses_what_is_no_file),
-        cmocka_unit_test(keeps_messages_on_one_line),
-        cmocka_unit_test(reads_pipes),
-        cmocka_unit_test(frees_zeroed_meshes),
-        cmocka_unit_test(grows_only_to_sizes_that_exist),
-        cmocka_unit_test(counts_up_to_the_limit),
-        cmocka_unit_test(parses_integers_up_to_18_digits),
-        cmocka_unit_test(survives_garbage),
-        cmocka_unit_test(writes_what_it_reads),
-        cmocka_unit_test(reports_where_it_cannot_write),
-        cmocka_unit_test(leaves_nothing_that_it_cannot_finish),
-    };
-    return cmocka_run_group_tests_name("mesh_file", tests, NULL, NULL);
 }

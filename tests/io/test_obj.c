@@ -9,8 +9,7 @@
 #define OBJ(literal) FILE_OF("mesh.obj", literal)
 #define SQUARE       "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
 
-static void reads_all_index_forms(void **state) {
-    (void)state;
+TEST(reads_all_index_forms) {
     mesh_check_square(OBJ(SQUARE "f 1 2 3\nf 1 3 4\n"));
     mesh_check_square(OBJ(SQUARE "vt 0 0\nf 1/1 2/1 3/1\nf 1/1 3/1 4/1\n"));
     mesh_check_square(OBJ(SQUARE "vn 0 0 1\nf 1//1 2//1 3//1\nf 1//1 3//1 4//1\n"));
@@ -19,8 +18,7 @@ static void reads_all_index_forms(void **state) {
     mesh_check_square(OBJ(SQUARE "f 1/ 2// 3\nf 1 +3 4\n"));
 }
 
-static void reads_polygons_as_fans(void **state) {
-    (void)state;
+TEST(reads_polygons_as_fans) {
     static const double positions[] = {0, 0, 0, 2, 0, 0, 3, 1, 0, 2, 2, 0, 0, 2, 0};
     static const uint32_t triangles[] = {4, 0, 1, 4, 1, 2, 4, 2, 3};
     mesh_check_square(OBJ(SQUARE "f 1 2 3 4\n"));
@@ -28,21 +26,18 @@ static void reads_polygons_as_fans(void **state) {
                      triangles);
 }
 
-static void reads_negative_indices_from_where_the_face_is(void **state) {
-    (void)state;
+TEST(reads_negative_indices_from_where_the_face_is) {
     static const double positions[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 5, 0, 0, 6, 0, 0, 5, 1, 0};
     static const uint32_t triangles[] = {0, 1, 2, 3, 4, 5};
     mesh_check_equal(OBJ("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 5 0 0\nv 6 0 0\nv 5 1 0\nf -3 -2 -1\n"), 6,
                      positions, 2, triangles);
 }
 
-static void reads_faces_ahead_of_their_vertices(void **state) {
-    (void)state;
+TEST(reads_faces_ahead_of_their_vertices) {
     mesh_check_square(OBJ("f 1 2 3\nf 1 3 4\n" SQUARE));
 }
 
-static void reads_layouts(void **state) {
-    (void)state;
+TEST(reads_layouts) {
     mesh_check_square(OBJ("# a square\r\n\r\nv 0 0 0\r\nv 1 0 0\r\nv 1 1 0\r\nv 0 1 0\r\nf 1 2 3 4\r\n"));
     mesh_check_square(OBJ("v 0 0 0\rv 1 0 0\rv 1 1 0\rv 0 1 0\rf 1 2 3 4"));
     mesh_check_square(OBJ("\xef\xbb\xbf" SQUARE "f 1 2 3 4"));
@@ -56,8 +51,7 @@ static void reads_layouts(void **state) {
             "vp 1 2\nvt 1\nvn 0 0 1\ng all\nusemtl red\ns off\nl 1 2\np 1\nf 1 2 3 4\nfoo\n"));
 }
 
-static void reads_numbers_exactly(void **state) {
-    (void)state;
+TEST(reads_numbers_exactly) {
     static const double positions[] = {0.1,
                                        -0.1,
                                        1e-300,
@@ -79,8 +73,7 @@ static void reads_numbers_exactly(void **state) {
                      4, positions, 1, triangles);
 }
 
-static void refuses_bad_vertices(void **state) {
-    (void)state;
+TEST(refuses_bad_vertices) {
     mesh_check_error(OBJ("v 0 0 0\nv 1 0\nv 0 1 0\n"), ":2: ", "the line ends", "coordinate z of the vertex");
     mesh_check_error(OBJ("v 0 0 0\n\n# c\nv"), ":4: ", "the file ends", "coordinate x of the vertex");
     mesh_check_error(OBJ("v 0 0,5 0\n"), ":1: ", "found '0,5'", "coordinate y");
@@ -93,8 +86,7 @@ static void refuses_bad_vertices(void **state) {
     mesh_check_error(OBJ("v 0 \\\n 0 \\\n q\n"), ":3: ", "found 'q'", "coordinate z");
 }
 
-static void refuses_bad_faces(void **state) {
-    (void)state;
+TEST(refuses_bad_faces) {
     mesh_check_error(OBJ(SQUARE "f 1 2\n"), ": ", "no faces found", "expected a triangle mesh");
     mesh_check_error(OBJ(SQUARE "f 1\n"), ": ", "no faces found", "expected a triangle mesh");
     mesh_check_error(OBJ(SQUARE "f"), ": ", "no faces found", "expected a triangle mesh");
@@ -107,8 +99,7 @@ static void refuses_bad_faces(void **state) {
 
 /* Faces that name a vertex twice are shortened, and dropped when fewer than three corners are left; the others keep their
  * numbers. */
-static void repairs_faces(void **state) {
-    (void)state;
+TEST(repairs_faces) {
     static const uint32_t triangles[] = {0, 1, 2, 0, 1, 2, 0, 2, 3}, polygons[] = {0, 3, 3};
     mesh_file mesh = {0};
     io_error error = {""};
@@ -141,8 +132,7 @@ static void check_parts(const char *text, const char *const *names, const uint32
 }
 
 /* Each of many names is one part, wherever it comes again. */
-static void finds_many_names_again(void **state) {
-    (void)state;
+TEST(finds_many_names_again) {
     enum { NAMES = 3000 };
     char *text = malloc(60 * NAMES), number[16];
     mesh_file mesh = {0};
@@ -162,8 +152,7 @@ static void finds_many_names_again(void **state) {
     free(text);
 }
 
-static void names_parts(void **state) {
-    (void)state;
+TEST(names_parts) {
     const uint32_t none = NO_MESH_PART;
     check_parts(SQUARE "f 1 2 3\n", (const char *const[]){NULL}, NULL);
     check_parts(SQUARE "g default\nf 1 2 3\ng off\nf 1 2 3\n", (const char *const[]){NULL}, NULL);
@@ -183,8 +172,7 @@ static void check_parts_by(const char *text, mesh_parts_by parts_by, const char 
 }
 
 /* Objects, groups and materials that begin and end at different faces. */
-static void names_parts_by_what_is_asked_for(void **state) {
-    (void)state;
+TEST(names_parts_by_what_is_asked_for) {
     enum { N = NO_MESH_PART };
     static const char text[] =
         SQUARE "f 1 2 3\nusemtl  Brushed Steel #2 \nf 1 2 3\no Body\nf 1 2 3\ng Arm L\nf 1 2 3\nusemtl "
@@ -202,8 +190,7 @@ static void names_parts_by_what_is_asked_for(void **state) {
 }
 
 /* What the file does not have is no part, and what it has besides is still known. */
-static void has_no_parts_of_another_kind(void **state) {
-    (void)state;
+TEST(has_no_parts_of_another_kind) {
     const char *const none[] = {NULL}, *const stone[] = {"Stone", NULL};
     const uint32_t zero[] = {0};
     check_parts_by(SQUARE "g A\nf 1 2 3\n", MESH_PARTS_BY_OBJECT, none, NULL, zero);
@@ -213,8 +200,7 @@ static void has_no_parts_of_another_kind(void **state) {
     check_parts_by(SQUARE "usemtl (null)\nf 1 2 3\n", MESH_PARTS_BY_MATERIAL, none, NULL, NULL);
 }
 
-static void refuses_indices_out_of_range(void **state) {
-    (void)state;
+TEST(refuses_indices_out_of_range) {
     mesh_check_error(OBJ(SQUARE "f 1 2 0\n"), ":5: ", "face index 0 is out of range",
                      "the first vertex is 1");
     mesh_check_error(OBJ(SQUARE "f 1 2 3\nf 1 2 5\nf 1 2 3\n"), ":6: ", "face index 5 is out of range",
@@ -229,45 +215,19 @@ static void refuses_indices_out_of_range(void **state) {
                      "the file has 4 vertices");
 }
 
-static void refuses_incomplete_meshes(void **state) {
-    (void)state;
+TEST(refuses_incomplete_meshes) {
     mesh_check_error(OBJ("# nothing\n"), ": ", "no vertices", "expected a triangle mesh");
     mesh_check_error(OBJ("f 1 2 3\n"), ": ", "no vertices", "expected a triangle mesh");
     mesh_check_error(OBJ(SQUARE), ": ", "no faces found for the 4 vertices", "expected a triangle mesh");
     mesh_check_error(OBJ("\x01\x02\xff\xfe garbage \0\0\0"), ": ", "no vertices", "expected a triangle mesh");
 }
 
-static void shows_long_tokens_cut(void **state) {
-    (void)state;
+TEST(shows_long_tokens_cut) {
     mesh_check_error(OBJ("v 0 0 0123456789012345678901234567890123456789012345678901234567890123456789x\n"),
                      ":1: ", "found '01234567890123456789012345678901234567890123...'", "coordinate z");
 }
 
-static void survives_damage(void **state) {
-    (void)state;
+TEST(survives_damage) {
     mesh_check_damage(OBJ("# a\r\nv 0 0 0\nv 1 .5e1 \\\n-2\nv 1 1 0 1\nvn 1 0 0\nv 0 1 0\nf 1 2/1 3//2 4\n"
                           "f -4/1/1 -2 -1\n"));
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reads_all_index_forms),
-        cmocka_unit_test(reads_polygons_as_fans),
-        cmocka_unit_test(reads_negative_indices_from_where_the_face_is),
-        cmocka_unit_test(reads_faces_ahead_of_their_vertices),
-        cmocka_unit_test(reads_layouts),
-        cmocka_unit_test(reads_numbers_exactly),
-        cmocka_unit_test(refuses_bad_vertices),
-        cmocka_unit_test(refuses_bad_faces),
-        cmocka_unit_test(repairs_faces),
-        cmocka_unit_test(names_parts),
-        cmocka_unit_test(names_parts_by_what_is_asked_for),
-        cmocka_unit_test(has_no_parts_of_another_kind),
-        cmocka_unit_test(finds_many_names_again),
-        cmocka_unit_test(refuses_indices_out_of_range),
-        cmocka_unit_test(refuses_incomplete_meshes),
-        cmocka_unit_test(shows_long_tokens_cut),
-        cmocka_unit_test(survives_damage),
-    };
-    return cmocka_run_group_tests_name("obj", tests, NULL, NULL);
 }

@@ -33,11 +33,10 @@ static file_bytes text_with(const text_format *format, const char *word, char te
     return (file_bytes){format->name, text, (size_t)length};
 }
 
-static void words_for_no_number_are_refused(void **state) {
+TEST(words_for_no_number_are_refused) {
     static const char *const words[] = {"1.#QNAN", "-1.#IND", "1.#INF",  "-1.#INF00",    "1.#SNAN",
                                         "1.#R",    "-1.#J",   "+1.#INF", "-1.#IND000000"};
     char text[1024];
-    (void)state;
     for (int f = 0; f < FORMATS; f++) {
         mesh_check_square(text_with(&formats[f], "1.0", text));
         for (size_t i = 0; i < sizeof words / sizeof *words; i++)
@@ -48,11 +47,10 @@ static void words_for_no_number_are_refused(void **state) {
 }
 
 /* A # within a word is of the word, so that such a word is no number. */
-static void words_with_a_hash_are_no_numbers(void **state) {
+TEST(words_with_a_hash_are_no_numbers) {
     static const char *const words[] = {"1#",     "1.#",    "1.#1",     "1.#inf", "1.#INF1",
                                         "2.#INF", "1#QNAN", "1.#QNAN.", "1.#-"};
     char text[1024], found[64];
-    (void)state;
     for (int f = 0; f < FORMATS; f++)
         for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
             snprintf(found, sizeof found, "found '%s'", words[i]);
@@ -62,10 +60,9 @@ static void words_with_a_hash_are_no_numbers(void **state) {
     mesh_check_square(text_with(&formats[1], "1 0 0 #2", text));
 }
 
-static void decimal_commas_are_told(void **state) {
+TEST(decimal_commas_are_told) {
     static const char advice[] = "this is a decimal comma: write numbers with a decimal point";
     char text[1024];
-    (void)state;
     for (int f = 0; f < FORMATS; f++) {
         mesh_check_error(text_with(&formats[f], "1,0", text), formats[f].place, "found '1,0'", advice);
         mesh_check_error(text_with(&formats[f], "-1,25e-3", text), formats[f].place, "found '-1,25e-3'",
@@ -75,12 +72,11 @@ static void decimal_commas_are_told(void **state) {
 }
 
 /* Numbers between commas are none with a comma in it. */
-static void other_commas_are_not(void **state) {
+TEST(other_commas_are_not) {
     static const char *const words[] = {"1,0,0", "1,", ",", "a,5", "1,-5", "1,x"};
     io_error error;
     mesh_file mesh;
     char text[1024];
-    (void)state;
     for (int f = 0; f < FORMATS; f++)
         for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
             assert_false(mesh_check_read(text_with(&formats[f], words[i], text), &mesh, &error));
@@ -102,9 +98,8 @@ static size_t widen_text(const char *narrow, size_t size, bool big, bool marked,
     return at;
 }
 
-static void wide_texts_are_told(void **state) {
+TEST(wide_texts_are_told) {
     char text[1024], wide[2050];
-    (void)state;
     for (int f = 0; f < FORMATS; f++)
         for (int way = 0; way < 4; way++) {
             const file_bytes narrow = text_with(&formats[f], "1", text);
@@ -114,9 +109,8 @@ static void wide_texts_are_told(void **state) {
         }
 }
 
-static void marks_of_utf8_are_passed(void **state) {
+TEST(marks_of_utf8_are_passed) {
     char text[1024], marked[1027] = "\xef\xbb\xbf";
-    (void)state;
     for (int f = 0; f < FORMATS; f++) {
         const file_bytes plain = text_with(&formats[f], "1", text);
         memcpy(marked + 3, plain.bytes, plain.size);
@@ -127,26 +121,12 @@ static void marks_of_utf8_are_passed(void **state) {
     assert_false(text_is_utf16("\xff\xfe\0\0\0\0\0\0\0\0", 10));
 }
 
-static void names_keep_blanks_and_hashes(void **state) {
+TEST(names_keep_blanks_and_hashes) {
     static const char text[] =
         "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\no  Left Arm \t\nf 1 2 3\no Part#1\r\nf 1 3 4\n"
         "g Sleeve # 2 of 3\nf 1 2 3\ng # 4\nf 1 3 4\no a\\\nb\nf 1 2 4\no\nf 2 3 4\n";
     static const char *const names[] = {"Left Arm",   "Part#1", "Part#1/Sleeve # 2 of 3",
                                         "Part#1/# 4", "a",      NULL};
     static const uint32_t labels[] = {0, 1, 2, 3, 4, NO_MESH_PART};
-    (void)state;
     mesh_check_parts(FILE_OF("mesh.obj", text), names, labels);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(words_for_no_number_are_refused),
-        cmocka_unit_test(words_with_a_hash_are_no_numbers),
-        cmocka_unit_test(decimal_commas_are_told),
-        cmocka_unit_test(other_commas_are_not),
-        cmocka_unit_test(wide_texts_are_told),
-        cmocka_unit_test(marks_of_utf8_are_passed),
-        cmocka_unit_test(names_keep_blanks_and_hashes),
-    };
-    return cmocka_run_group_tests_name("odd texts", tests, NULL, NULL);
 }

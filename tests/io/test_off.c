@@ -9,8 +9,7 @@
 #define FACES        "3 0 1 2\n3 0 2 3\n"
 #define REST         VERTICES FACES
 
-static void reads_headers(void **state) {
-    (void)state;
+TEST(reads_headers) {
     mesh_check_square(OFF("OFF\n4 2 5\n" REST));
     mesh_check_square(OFF("OFF 4 2 5\n" REST));
     mesh_check_square(OFF("OFF4 2 5\n" REST));
@@ -22,8 +21,7 @@ static void reads_headers(void **state) {
     mesh_check_square(OFF("OFF\r4 2 0\r0 0 0\r1 0 0\r1 1 0\r0 1 0\r3 0 1 2\r3 0 2 3\r"));
 }
 
-static void reads_extra_vertex_data(void **state) {
-    (void)state;
+TEST(reads_extra_vertex_data) {
     mesh_check_square(
         OFF("COFF\n4 1 0\n0 0 0 1 0 0 1\n1 0 0 1 0 0 1\n1 1 0 1 0 0 1\n0 1 0 1 0 0 1\n4 0 1 2 3\n"));
     mesh_check_square(OFF("NOFF\n4 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n1 1 0 0 0 1\n0 1 0 0 0 1\n4 0 1 2 3\n"));
@@ -32,8 +30,7 @@ static void reads_extra_vertex_data(void **state) {
 }
 
 /* Vertices of four coordinates are divided by the last one; n is followed by the number of dimensions. */
-static void reads_other_dimensions(void **state) {
-    (void)state;
+TEST(reads_other_dimensions) {
     mesh_check_square(OFF("4OFF\n4 1 0\n0 0 0 1\n2 0 0 2\n-.5 -.5 -0 -.5\n0 1 0 1\n4 0 1 2 3\n"));
     mesh_check_square(
         OFF("C4OFF\n4 1 0\n0 0 0 1 255 0 0\n1 0 0 1 255 0 0\n1 1 0 1 0 0 0\n0 1 0 1\n4 0 1 2 3\n"));
@@ -42,8 +39,7 @@ static void reads_other_dimensions(void **state) {
     mesh_check_square(OFF("4nOFF\n3\n4 1 0\n0 0 0 1\n1 0 0 1\n1 1 0 1\n0 1 0 1\n4 0 1 2 3\n"));
 }
 
-static void reads_headers_and_indices_over_several_lines(void **state) {
-    (void)state;
+TEST(reads_headers_and_indices_over_several_lines) {
     mesh_check_square(OFF("NCOFF\n4\n2\n5\n" REST));
     mesh_check_square(OFF("off\n4\n2\n" REST));
     mesh_check_square(OFF("OFF\n4 2\n# edges\n0\n\n" REST));
@@ -52,8 +48,7 @@ static void reads_headers_and_indices_over_several_lines(void **state) {
         OFF("OFF\r\n4 2 0\r\n" VERTICES "3 0 1 # one more\r\n\r\n 2 255 0 0\r\n3 0 2\r\n3 0.5 0.5 1\r\n"));
 }
 
-static void reads_rows(void **state) {
-    (void)state;
+TEST(reads_rows) {
     static const double positions[] = {0.1, -1e-5, 3, 9, 2, 3, 4, 5, 3, -3, 8, 3, 0, 0, -0.0};
     static const uint32_t triangles[] = {4, 0, 1, 4, 1, 2, 4, 2, 3, 0, 1, 2};
     mesh_check_square(
@@ -65,8 +60,7 @@ static void reads_rows(void **state) {
     mesh_check_square(FILE_OF("mesh.obj", "OFF\n4 2 5\n" REST));
 }
 
-static void refuses_bad_headers(void **state) {
-    (void)state;
+TEST(refuses_bad_headers) {
     mesh_check_error(OFF("OFF"), ":1: ", "the file ends", "the number of vertices");
     mesh_check_error(OFF("# only this\n"), ":2: ", "the file ends", "the number of vertices");
     mesh_check_error(OFF("OFF\n4\n"), ":3: ", "the file ends", "the number of faces");
@@ -87,8 +81,7 @@ static void refuses_bad_headers(void **state) {
     mesh_check_error(OFF("\x01\x02\xff\xfe\0\0\0"), ":1: ", "found '????", "the number of vertices");
 }
 
-static void refuses_bad_rows(void **state) {
-    (void)state;
+TEST(refuses_bad_rows) {
     mesh_check_error(OFF("OFF\n4 2 0\n0 0 0\n1 0\n1 1 0\n0 1 0\n" FACES), ":4: ", "the line ends",
                      "coordinate z");
     mesh_check_error(OFF("OFF\n4 2 0\n0 0 0\n1 zero 0\n"), ":4: ", "found 'zero'", "coordinate y");
@@ -108,8 +101,7 @@ static void refuses_bad_rows(void **state) {
                      "the file has 4 vertices");
 }
 
-static void refuses_counts_that_do_not_fit(void **state) {
-    (void)state;
+TEST(refuses_counts_that_do_not_fit) {
     mesh_check_error(OFF("OFF\n4 3 0\n" REST), ":9: ", "file ends before face 3 of 3", "");
     mesh_check_error(OFF("OFF\n4 2000000000 0\n" REST), ":9: ", "file ends before face 3 of 2000000000", "");
     mesh_check_error(OFF("OFF\n2000000000 2 0\n" VERTICES), ":7: ", "file ends before vertex 5 of 2000000000",
@@ -123,24 +115,8 @@ static void refuses_counts_that_do_not_fit(void **state) {
                      "expected a triangle");
 }
 
-static void survives_damage(void **state) {
-    (void)state;
+TEST(survives_damage) {
     mesh_check_damage(
         OFF("# a\nOFF 4 2 0\r\n0 0 0\n1 0.5e1 -2\n\n1 1 0 1 1 1\n0 1 0\n4 0 1 2 3 255 0 0\n3 0 2 1\n"));
     mesh_check_damage(FILE_OF("mesh", "OFF\n3 1 0\n0 0 0\n1 0 0\n1 1 0\n3 0 1 2\n"));
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reads_headers),
-        cmocka_unit_test(reads_extra_vertex_data),
-        cmocka_unit_test(reads_other_dimensions),
-        cmocka_unit_test(reads_headers_and_indices_over_several_lines),
-        cmocka_unit_test(reads_rows),
-        cmocka_unit_test(refuses_bad_headers),
-        cmocka_unit_test(refuses_bad_rows),
-        cmocka_unit_test(refuses_counts_that_do_not_fit),
-        cmocka_unit_test(survives_damage),
-    };
-    return cmocka_run_group_tests_name("off", tests, NULL, NULL);
 }

@@ -72,8 +72,7 @@ static void expect_refused(const char *path, int cause) {
 
 /* ---- files ------------------------------------------------------------------------------------------- */
 
-static void the_older_file_stays_until_the_new_one_is_whole(void **state) {
-    (void)state;
+TEST(the_older_file_stays_until_the_new_one_is_whole) {
     temp_path path = temp_file_write(&folder, "out", "older", 5);
     struct stat status;
     assert_int_equal(chmod(path.text, 0640), 0);
@@ -89,8 +88,7 @@ static void the_older_file_stays_until_the_new_one_is_whole(void **state) {
     assert_int_equal(status.st_mode & 07777, 0640);
 }
 
-static void a_new_file_has_the_usual_permissions(void **state) {
-    (void)state;
+TEST(a_new_file_has_the_usual_permissions) {
     struct stat status;
     temp_path path = temp_file_path(&folder, "out");
     const mode_t before = umask(027);
@@ -101,8 +99,7 @@ static void a_new_file_has_the_usual_permissions(void **state) {
     assert_int_equal(status.st_mode & 07777, 0640);
 }
 
-static void an_abandoned_file_leaves_nothing(void **state) {
-    (void)state;
+TEST(an_abandoned_file_leaves_nothing) {
     temp_path path = temp_file_write(&folder, "out", "older", 5);
     output_file out = open_output(path.text);
     fputs("newer", out.file);
@@ -112,8 +109,7 @@ static void an_abandoned_file_leaves_nothing(void **state) {
 }
 
 /* The names that this process would take first are taken already, and a name may be as long as names can be. */
-static void names_beside_do_not_collide(void **state) {
-    (void)state;
+TEST(names_beside_do_not_collide) {
     char taken[64], longest[256];
     memset(longest, 'x', 255);
     longest[255] = '\0';
@@ -128,8 +124,7 @@ static void names_beside_do_not_collide(void **state) {
     expect_files(4);
 }
 
-static void a_folder_must_be_there(void **state) {
-    (void)state;
+TEST(a_folder_must_be_there) {
     expect_refused(temp_file_path(&folder, "none/out").text, ENOENT);
     expect_refused(folder.path, EISDIR);
     temp_path file = temp_file_write(&folder, "file", "mine", 4);
@@ -165,8 +160,7 @@ static bool fill_disk(const char *path, bool flush, output_ending ending) {
     return closed;
 }
 
-static void a_full_disk_keeps_the_older_file(void **state) {
-    (void)state;
+TEST(a_full_disk_keeps_the_older_file) {
     temp_path path = temp_file_write(&folder, "out", "older", 5);
     assert_false(fill_disk(path.text, false, OUTPUT_WHOLE));
     assert_false(fill_disk(path.text, true, OUTPUT_WHOLE));
@@ -175,8 +169,7 @@ static void a_full_disk_keeps_the_older_file(void **state) {
     expect_files(1);
 }
 
-static void a_full_disk_keeps_whole_lines(void **state) {
-    (void)state;
+TEST(a_full_disk_keeps_whole_lines) {
     temp_path path = temp_file_write(&folder, "out", "older", 5);
     char lines[2 * LINE + 1];
     assert_false(fill_disk(path.text, true, OUTPUT_WHOLE_LINES));
@@ -188,8 +181,7 @@ static void a_full_disk_keeps_whole_lines(void **state) {
     expect_files(1);
 }
 
-static void a_full_device_says_so(void **state) {
-    (void)state;
+TEST(a_full_device_says_so) {
     struct stat status;
     output_file out = open_output("/dev/full");
     fputs("text", out.file);
@@ -213,8 +205,7 @@ static void expect_link(const char *path) {
 }
 
 /* A link that names its target as seen from its own folder, and one over two links; a path without a folder. */
-static void links_stay_and_lead_to_the_new_file(void **state) {
-    (void)state;
+TEST(links_stay_and_lead_to_the_new_file) {
     char here[1000];
     temp_path file = temp_file_write(&folder, "file", "older", 5);
     temp_path link = temp_file_path(&folder, "link"), second = temp_file_path(&folder, "second");
@@ -234,8 +225,7 @@ static void links_stay_and_lead_to_the_new_file(void **state) {
     expect_files(3);
 }
 
-static void a_broken_link_gets_its_file(void **state) {
-    (void)state;
+TEST(a_broken_link_gets_its_file) {
     temp_path link = temp_file_path(&folder, "link"), nowhere = temp_file_path(&folder, "nowhere");
     assert_int_equal(symlink("later", link.text), 0);
     assert_int_equal(symlink("none/file", nowhere.text), 0);
@@ -249,8 +239,7 @@ static void a_broken_link_gets_its_file(void **state) {
     expect_files(3);
 }
 
-static void links_in_a_circle_are_refused(void **state) {
-    (void)state;
+TEST(links_in_a_circle_are_refused) {
     temp_path one = temp_file_path(&folder, "one"), two = temp_file_path(&folder, "two");
     assert_int_equal(symlink("two", one.text), 0);
     assert_int_equal(symlink("one", two.text), 0);
@@ -258,8 +247,7 @@ static void links_in_a_circle_are_refused(void **state) {
     expect_files(2);
 }
 
-static void a_pipe_is_written_to(void **state) {
-    (void)state;
+TEST(a_pipe_is_written_to) {
     char text[16] = "";
     struct stat status;
     temp_path path = temp_file_path(&folder, "pipe");
@@ -278,8 +266,7 @@ static void a_pipe_is_written_to(void **state) {
 }
 
 /* The path of an open file names that very file, so it is not replaced. */
-static void an_open_file_is_written_itself(void **state) {
-    (void)state;
+TEST(an_open_file_is_written_itself) {
     char name[64];
     struct stat before, after;
     temp_path path = temp_file_write(&folder, "out", "older and longer", 16);
@@ -313,8 +300,7 @@ static int write_as_nobody(const char *path) {
 }
 
 /* Where no file may be made, one that may be written is written itself. */
-static void permissions_are_those_of_the_file(void **state) {
-    (void)state;
+TEST(permissions_are_those_of_the_file) {
     temp_path open_one = temp_file_write(&folder, "open", "older and longer", 16);
     temp_path closed_one = temp_file_write(&folder, "closed", "older", 5);
     assert_int_equal(chmod(open_one.text, 0666), 0);
@@ -331,23 +317,4 @@ static void permissions_are_those_of_the_file(void **state) {
     expect_files(2);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-#define TEST(name) cmocka_unit_test_setup_teardown(name, make_folder, remove_folder)
-        TEST(the_older_file_stays_until_the_new_one_is_whole),
-        TEST(a_new_file_has_the_usual_permissions),
-        TEST(an_abandoned_file_leaves_nothing),
-        TEST(names_beside_do_not_collide),
-        TEST(a_folder_must_be_there),
-        TEST(a_full_disk_keeps_the_older_file),
-        TEST(a_full_disk_keeps_whole_lines),
-        TEST(a_full_device_says_so),
-        TEST(links_stay_and_lead_to_the_new_file),
-        TEST(a_broken_link_gets_its_file),
-        TEST(links_in_a_circle_are_refused),
-        TEST(a_pipe_is_written_to),
-        TEST(an_open_file_is_written_itself),
-        TEST(permissions_are_those_of_the_file),
-    };
-    return cmocka_run_group_tests_name("output_file", tests, NULL, NULL);
-}
+AROUND_EACH(make_folder, remove_folder)

@@ -41,8 +41,7 @@ static temp_path write_addition(const temp_folder *folder, const cscd_mesh *mesh
     return temp_file_write(folder, "added.plan.ply", text, (size_t)end);
 }
 
-static void additions_are_skipped(void **state) {
-    (void)state;
+TEST(additions_are_skipped) {
     static const char *const additions[] = {"uchar part",          "int label",     "float part",
                                             "float stiffness",     "int stiffness", "double x",
                                             "list uchar int part", "uchar red"};
@@ -65,9 +64,4 @@ static void additions_are_skipped(void **state) {
     cscd_mesh_destroy(mesh);
     cscd_context_destroy(context);
     temp_folder_remove(&folder);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(additions_are_skipped)};
-    return cmocka_run_group_tests_name("plan_additions", tests, NULL, NULL);
 }

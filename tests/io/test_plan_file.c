@@ -83,8 +83,7 @@ static cscd_plan *read_back(const saved *s) {
     return plan;
 }
 
-static void comes_back_bit_for_bit(void **state) {
-    (void)state;
+TEST(comes_back_bit_for_bit) {
     static const cscd_method methods[] = {CSCD_METHOD_CHARGE, CSCD_METHOD_KMEANS, CSCD_METHOD_SINGLE};
     for (int shape = 0; shape < 3; shape++) {
         for (int i = 0; i < 3; i++) {
@@ -101,8 +100,7 @@ static void comes_back_bit_for_bit(void **state) {
     }
 }
 
-static void reads_as_a_mesh(void **state) {
-    (void)state;
+TEST(reads_as_a_mesh) {
     saved s = save_plan(recorded_cube(true), CSCD_METHOD_CHARGE);
     mesh_file mesh = {0};
     io_error error = {""};
@@ -140,8 +138,7 @@ static void expect_other_mesh(saved *s, recorded other, const char *const *texts
     recorded_free(&reader.shape);
 }
 
-static void another_mesh_is_refused(void **state) {
-    (void)state;
+TEST(another_mesh_is_refused) {
     saved s = save_plan(recorded_cube(false), CSCD_METHOD_SINGLE);
     expect_other_mesh(
         &s, recorded_cube(true),
@@ -158,8 +155,7 @@ static void another_mesh_is_refused(void **state) {
     saved_free(&s);
 }
 
-static void nothing_to_read_is_refused(void **state) {
-    (void)state;
+TEST(nothing_to_read_is_refused) {
     saved s = save_plan(recorded_cube(false), CSCD_METHOD_SINGLE);
     temp_path mesh = recorded_write_mesh(&folder, "mesh.ply", &s.shape, 0);
     expect_refused(&s, temp_file_path(&folder, "none.ply").text, TEXTS("No such file"));
@@ -173,8 +169,7 @@ static void nothing_to_read_is_refused(void **state) {
 
 /* Every prefix of the file is refused. The error names a line when it ends in the header, a byte or a number
  * when it ends behind it. */
-static void every_truncation_is_refused(void **state) {
-    (void)state;
+TEST(every_truncation_is_refused) {
     saved s = save_plan(recorded_tetrahedra(1), CSCD_METHOD_CHARGE);
     size_t size, line = 1;
     char *bytes = read_whole_file(s.path.text, &size), *end = strstr(bytes, "end_header");
@@ -190,8 +185,7 @@ static void every_truncation_is_refused(void **state) {
 }
 
 /* A file with one flipped bit is either refused or gives a plan whose numbers are all in range. */
-static void every_flipped_bit_is_survived(void **state) {
-    (void)state;
+TEST(every_flipped_bit_is_survived) {
     saved s = save_plan(recorded_tetrahedra(1), CSCD_METHOD_CHARGE);
     size_t size;
     char *bytes = read_whole_file(s.path.text, &size);
@@ -250,8 +244,7 @@ static saved tetrahedron_mesh(void) {
     return s;
 }
 
-static void text_is_read_too(void **state) {
-    (void)state;
+TEST(text_is_read_too) {
     saved s = tetrahedron_mesh();
     s.path = write_text(&s, HEADER VERTICES FACES REST);
     cscd_plan *plan = read_back(&s);
@@ -271,8 +264,7 @@ static void expect_all_refused(const char *const (*cases)[3], size_t count) {
     saved_free(&s);
 }
 
-static void bad_headers_are_refused(void **state) {
-    (void)state;
+TEST(bad_headers_are_refused) {
     static const char *const cases[][3] = {
         {HEAD "comment cscd plan 2\n" VERTEX FACE REGION REGIONS END, ":3: found '2'", "expected 1"},
         {HEAD "comment cscd plan\n" VERTEX FACE REGION REGIONS END, ":3: found ''", "expected 1"},
@@ -306,8 +298,7 @@ static void bad_headers_are_refused(void **state) {
     expect_all_refused(cases, sizeof cases / sizeof *cases);
 }
 
-static void bad_rows_are_refused(void **state) {
-    (void)state;
+TEST(bad_rows_are_refused) {
     static const char *const cases[][3] = {
         {HEADER "0 0 nan\n", ":21: 'z' of vertex 0 is nan", "finite"},
         {HEADER VERTICES "4 0 2 1 3 .5 0\n", ":25: a face of 4 corners", "expected 3"},
@@ -328,8 +319,7 @@ static void bad_rows_are_refused(void **state) {
     expect_all_refused(cases, sizeof cases / sizeof *cases);
 }
 
-static void memory_that_runs_out_is_an_error(void **state) {
-    (void)state;
+TEST(memory_that_runs_out_is_an_error) {
     saved s = save_plan(recorded_cube(false), CSCD_METHOD_CHARGE);
     int failures = 0;
     for (bool read; io_allocations_go_on(failures); failures++) {
@@ -344,8 +334,7 @@ static void memory_that_runs_out_is_an_error(void **state) {
     saved_free(&s);
 }
 
-static void what_cannot_be_written_is_not_left(void **state) {
-    (void)state;
+TEST(what_cannot_be_written_is_not_left) {
     saved s = save_plan(recorded_cube(false), CSCD_METHOD_SINGLE);
     uint8_t colours[48] = {0};
     io_error error = {""};
@@ -357,19 +346,4 @@ static void what_cannot_be_written_is_not_left(void **state) {
     saved_free(&s);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(comes_back_bit_for_bit),
-        cmocka_unit_test(reads_as_a_mesh),
-        cmocka_unit_test(another_mesh_is_refused),
-        cmocka_unit_test(nothing_to_read_is_refused),
-        cmocka_unit_test(every_truncation_is_refused),
-        cmocka_unit_test(every_flipped_bit_is_survived),
-        cmocka_unit_test(text_is_read_too),
-        cmocka_unit_test(bad_headers_are_refused),
-        cmocka_unit_test(bad_rows_are_refused),
-        cmocka_unit_test(memory_that_runs_out_is_an_error),
-        cmocka_unit_test(what_cannot_be_written_is_not_left),
-    };
-    return cmocka_run_group_tests_name("plan_file", tests, own_folder_make, own_folder_remove);
-}
+AROUND_ALL(own_folder_make, own_folder_remove)

@@ -13,8 +13,7 @@
 #define VERTICES     "0 0 0\n1 0 0\n1 1 0\n0 1 0\n"
 #define FACES        "3 0 1 2\n3 0 2 3\n"
 
-static void reads_text(void **state) {
-    (void)state;
+TEST(reads_text) {
     mesh_check_square(PLY(HEADER VERTICES FACES));
     mesh_check_square(PLY(HEADER "\n" VERTICES "\n\n3 0 1 2\n 3\t0  2 3 \n\n"));
     mesh_check_square(
@@ -31,8 +30,7 @@ static void reads_text(void **state) {
     mesh_check_square(FILE_OF("mesh", HEADER VERTICES FACES));
 }
 
-static void reads_all_type_names(void **state) {
-    (void)state;
+TEST(reads_all_type_names) {
     mesh_check_square(
         PLY(START "comment all types\nobj_info of PLY\nelement vertex 4\nproperty char a\n"
                   "property int8 b\nproperty uchar c\nproperty uint8 d\nproperty short e\n"
@@ -46,8 +44,7 @@ static void reads_all_type_names(void **state) {
                   "4 0 1 2 3\n"));
 }
 
-static void skips_what_is_not_the_mesh(void **state) {
-    (void)state;
+TEST(skips_what_is_not_the_mesh) {
     mesh_check_square(PLY(
         START
         "element camera 2\nproperty list uchar float m\nproperty double far\nelement nothing 1000000000000\n"
@@ -59,8 +56,7 @@ static void skips_what_is_not_the_mesh(void **state) {
         "1 0 2 5 6 0 0 9\n1 0 0 0 1 9\nx 0 1 4 1 1 9\n1 0 0 1 0 9\n4\n"));
 }
 
-static void reads_numbers_exactly(void **state) {
-    (void)state;
+TEST(reads_numbers_exactly) {
     static const double positions[] = {
         0.1, -1e-300, 1.7976931348623157e308, 1.0 / 3, 4.9406564584124654e-324, -0.0, 1, 2, 3};
     static const uint32_t triangles[] = {2, 1, 0};
@@ -71,8 +67,7 @@ static void reads_numbers_exactly(void **state) {
                      3, positions, 1, triangles);
 }
 
-static void refuses_bad_headers(void **state) {
-    (void)state;
+TEST(refuses_bad_headers) {
     mesh_check_error(PLY("plywood\n"), ":1: ", "found 'plywood'", "expected ply");
     mesh_check_error(PLY("\nply\n"), ":1: ", "the line ends", "expected ply");
     mesh_check_error(PLY("\xff\xfe\0\1garbage"), ":1: ", "found '????garbage'", "expected ply");
@@ -95,8 +90,7 @@ static void refuses_bad_headers(void **state) {
     mesh_check_error(PLY(START "element vertex 4\n" XYZ END), ":7: ", "the header ends", "an element 'face'");
 }
 
-static void refuses_bad_properties(void **state) {
-    (void)state;
+TEST(refuses_bad_properties) {
     mesh_check_error(PLY(START "property float x\n"), ":3: ", "a property before any element", "");
     mesh_check_error(PLY(START "element a 1\nproperty real x\n"), ":4: ", "found 'real'", "a type: char");
     mesh_check_error(PLY(START "element a 1\nproperty list float int x\n"), ":4: ", "found 'float'",
@@ -116,8 +110,7 @@ static void refuses_bad_properties(void **state) {
                      ":8: ", "element 'face' lacks", "property 'vertex_indices'");
 }
 
-static void refuses_bad_rows(void **state) {
-    (void)state;
+TEST(refuses_bad_rows) {
     mesh_check_error(PLY(HEADER "0 0 0\n1 0\n1 1 0\n"), ":11: ", "the line ends inside vertex 2 of 4",
                      "expected its property 'z'");
     mesh_check_error(PLY(HEADER "0 0 0 0\n"), ":10: ", "found '0'", "the end of the line");
@@ -142,8 +135,7 @@ static void refuses_bad_rows(void **state) {
                      ":14: ", "face index 1.5", "expected an integer");
 }
 
-static void refuses_counts_that_do_not_fit(void **state) {
-    (void)state;
+TEST(refuses_counts_that_do_not_fit) {
     mesh_check_error(PLY(HEADER "0 0 0\n1 0 0\n"), ":12: ", "file ends inside vertex 3 of 4", "");
     mesh_check_error(PLY(HEADER "0 0 0\n1 0"), ":11: ", "file ends inside vertex 2 of 4", "");
     mesh_check_error(PLY(HEADER VERTICES "3 0 1 2\n"), ":15: ", "file ends inside face 2 of 2", "");
@@ -160,8 +152,7 @@ static void refuses_counts_that_do_not_fit(void **state) {
                      "no faces found for the 4 vertices", "expected a triangle mesh");
 }
 
-static void survives_damage(void **state) {
-    (void)state;
+TEST(survives_damage) {
     mesh_check_damage(PLY(START "element vertex 3\n" XYZ "element face 1\nproperty int part\n" CORNERS END
                                 "0 0 0\n1 0 0\n1 1 0\n7 3 0 1 2\n"));
     mesh_check_damage(
@@ -171,8 +162,7 @@ static void survives_damage(void **state) {
 }
 
 /* A face's integer part or label, before its corners or behind them, names its part. */
-static void names_parts(void **state) {
-    (void)state;
+TEST(names_parts) {
 #define LABELLED(before, behind, faces)                                                                      \
     PLY(START "element vertex 4\n" XYZ "element face 4\n" before CORNERS behind END VERTICES faces)
     static const uint32_t labels[] = {0, 1, 1, 1, 0};
@@ -206,8 +196,7 @@ static void check_stiffness(file_bytes file, const double *expected) {
 }
 
 /* A face's stiffness goes to the triangles that it is cut into, and those that are left out take theirs with them. */
-static void reads_stiffness(void **state) {
-    (void)state;
+TEST(reads_stiffness) {
     static const double expected[] = {0.5, 0.5, 2.0, -1.0}, whole[] = {5.0, 5.0, 2.0, 1.0};
     check_stiffness(
         LABELLED("property double stiffness\n", "", "7 3 0 0 2\n.5 4 0 1 2 3\n2 3 0 1 2\n-1 3 0 2 3\n"),
@@ -224,21 +213,4 @@ static void reads_stiffness(void **state) {
                      "a number");
     mesh_check_damage(
         LABELLED("", "property float stiffness\n", "3 0 1 2 1\n4 0 1 2 3 2\n3 0 1 2 3\n3 0 2 3 4\n"));
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reads_text),
-        cmocka_unit_test(reads_all_type_names),
-        cmocka_unit_test(skips_what_is_not_the_mesh),
-        cmocka_unit_test(reads_numbers_exactly),
-        cmocka_unit_test(names_parts),
-        cmocka_unit_test(reads_stiffness),
-        cmocka_unit_test(refuses_bad_headers),
-        cmocka_unit_test(refuses_bad_properties),
-        cmocka_unit_test(refuses_bad_rows),
-        cmocka_unit_test(refuses_counts_that_do_not_fit),
-        cmocka_unit_test(survives_damage),
-    };
-    return cmocka_run_group_tests_name("ply", tests, NULL, NULL);
 }

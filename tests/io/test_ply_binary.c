@@ -83,8 +83,7 @@ static byte_writer square_file(bool big_endian) {
     return writer;
 }
 
-static void reads_both_byte_orders(void **state) {
-    (void)state;
+TEST(reads_both_byte_orders) {
     for (int big_endian = 0; big_endian < 2; big_endian++) {
         byte_writer writer = square_file(big_endian);
         mesh_check_square(file_of(&writer));
@@ -93,8 +92,7 @@ static void reads_both_byte_orders(void **state) {
     }
 }
 
-static void reads_all_types(void **state) {
-    (void)state;
+TEST(reads_all_types) {
     static const double positions[] = {0.1f, 0.1, -128, 255, -1.0 / 3, 127, 1, 65535, -1};
     static const uint32_t triangles[] = {2, 1, 0};
     static const char *const index_types[] = {"char", "uint8",  "short", "ushort",
@@ -117,8 +115,7 @@ static void reads_all_types(void **state) {
     }
 }
 
-static void reads_integer_coordinates(void **state) {
-    (void)state;
+TEST(reads_integer_coordinates) {
     static const double positions[] = {-32768, 65535, 4294967295.0, 32767, 1, 2147483648.0, -1, 0, 3};
     static const uint32_t triangles[] = {0, 1, 2};
     for (int big_endian = 0; big_endian < 2; big_endian++) {
@@ -131,8 +128,7 @@ static void reads_integer_coordinates(void **state) {
     }
 }
 
-static void skips_what_is_not_the_mesh(void **state) {
-    (void)state;
+TEST(skips_what_is_not_the_mesh) {
     for (int big_endian = 0; big_endian < 2; big_endian++) {
         byte_writer writer = begin_file(
             big_endian, "element a 2\nproperty list short double l\nproperty short s\nelement b 99999999999\n"
@@ -152,8 +148,7 @@ static void skips_what_is_not_the_mesh(void **state) {
 }
 
 /* Data may begin with bytes that look like line ends. */
-static void finds_the_first_byte_of_the_data(void **state) {
-    (void)state;
+TEST(finds_the_first_byte_of_the_data) {
     static const double positions[] = {10, 0, 0, 13, 0, 0, 0, 1, 0};
     static const uint32_t triangles[] = {0, 1, 2};
     static const char *const line_ends[] = {"\n", "\r\n", "\r"};
@@ -179,8 +174,7 @@ static void check_error_at(const byte_writer *writer, size_t offset, const char 
     mesh_check_error(file_of(writer), place, found, expected);
 }
 
-static void refuses_bad_vertices(void **state) {
-    (void)state;
+TEST(refuses_bad_vertices) {
     byte_writer writer = begin_file(false, SQUARE_LINES);
     put_values(&writer, "ffffff", 0., 0., 0., 1., (double)NAN, 0.);
     check_error_at(&writer, 12, "coordinate y of vertex 1 is nan", "finite");
@@ -202,8 +196,7 @@ static void check_face_error(const char *corners, size_t offset, const char *fou
     }
 }
 
-static void refuses_bad_faces(void **state) {
-    (void)state;
+TEST(refuses_bad_faces) {
     const char *floats = "property list char float vertex_indices\n";
     check_face_error(CORNERS, 9, "face index 4 is out of range", "has 4 vertices", "ciii", 3, 0, 1, 4);
     check_face_error(CORNERS, 5, "face index -1 is out of range", "has 4 vertices", "ciii", 3, 0, -1, 2);
@@ -212,8 +205,7 @@ static void refuses_bad_faces(void **state) {
     check_face_error(floats, 1, "face index nan is out of range", "has 4 vertices", "cfff", 3, NAN, 1, 2);
 }
 
-static void refuses_counts_that_do_not_fit(void **state) {
-    (void)state;
+TEST(refuses_counts_that_do_not_fit) {
     byte_writer writer = square_file(false);
     writer.size -= 1;
     check_error_at(&writer, 73, "file ends inside face 2 of 2", "");
@@ -236,8 +228,7 @@ static void refuses_counts_that_do_not_fit(void **state) {
     check_error_at(&writer, 64, "file ends inside face 1 of 1", "");
 }
 
-static void survives_damage(void **state) {
-    (void)state;
+TEST(survives_damage) {
     for (int big_endian = 0; big_endian < 2; big_endian++) {
         byte_writer writer = begin_file(big_endian, "element e 1\nproperty list uchar short a\n" SQUARE_LINES
                                                     "property uchar red\n");
@@ -246,19 +237,4 @@ static void survives_damage(void **state) {
         put_values(&writer, "ciiicciiic", 3., 0., 1., 2., 7., 3., 0., 2., 3., 8.);
         mesh_check_damage(file_of(&writer));
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reads_both_byte_orders),
-        cmocka_unit_test(reads_all_types),
-        cmocka_unit_test(reads_integer_coordinates),
-        cmocka_unit_test(skips_what_is_not_the_mesh),
-        cmocka_unit_test(finds_the_first_byte_of_the_data),
-        cmocka_unit_test(refuses_bad_vertices),
-        cmocka_unit_test(refuses_bad_faces),
-        cmocka_unit_test(refuses_counts_that_do_not_fit),
-        cmocka_unit_test(survives_damage),
-    };
-    return cmocka_run_group_tests_name("ply_binary", tests, NULL, NULL);
 }

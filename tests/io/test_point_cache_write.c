@@ -55,8 +55,7 @@ static void check_gone(const char *path) {
     assert_int_not_equal(access(path, F_OK), 0);
 }
 
-static void writes_what_the_format_says(void **state) {
-    (void)state;
+TEST(writes_what_the_format_says) {
     frame_fixture_bytes expected[] = {frame_fixture_pc2(VERTICES, FRAMES),
                                       frame_fixture_mdd(VERTICES, FRAMES)};
     frame_fixture_put_float(&expected[0], 20, 0.0F, false);
@@ -71,16 +70,14 @@ static void writes_what_the_format_says(void **state) {
     }
 }
 
-static void replaces_an_existing_file(void **state) {
-    (void)state;
+TEST(replaces_an_existing_file) {
     static const char old[1000] = "old";
     const temp_path path = temp_file_write(&folder, "cache.pc2", old, sizeof old);
     write_fixture(path.text);
     assert_int_equal(read_bytes(path.text).size, 32 + FRAMES * VERTICES * 12);
 }
 
-static void rounds_to_float(void **state) {
-    (void)state;
+TEST(rounds_to_float) {
     const temp_path path = temp_file_path(&folder, "cache.mdd");
     point_cache_writer *writer = open_writer(path.text, 1, 1);
     const double written[] = {0.1, -(double)FLT_MAX, 1e-300};
@@ -94,8 +91,7 @@ static void rounds_to_float(void **state) {
     animation_close(opened);
 }
 
-static void refuses_what_float_cannot_hold(void **state) {
-    (void)state;
+TEST(refuses_what_float_cannot_hold) {
     static const double values[] = {NAN, INFINITY, -1e39};
     const temp_path path = temp_file_path(&folder, "cache.pc2");
     for (size_t i = 0; i < 3; i++) {
@@ -116,8 +112,7 @@ static void refuses_what_float_cannot_hold(void **state) {
     }
 }
 
-static void refuses_a_wrong_number_of_frames(void **state) {
-    (void)state;
+TEST(refuses_a_wrong_number_of_frames) {
     const temp_path path = temp_file_path(&folder, "cache.pc2");
     io_error error;
     point_cache_writer *writer = open_writer(path.text, VERTICES, 2);
@@ -144,8 +139,7 @@ static void check_open_fails(const char *path, uint32_t vertex_count, uint32_t f
     frame_fixture_check_error(&error, path, part, NULL);
 }
 
-static void refuses_bad_arguments(void **state) {
-    (void)state;
+TEST(refuses_bad_arguments) {
     const temp_path path = temp_file_path(&folder, "cache.pc2");
     check_open_fails(path.text, 0, 1, "1 frames of 0 vertices");
     check_open_fails(path.text, 1, 0, "0 frames of 1 vertices");
@@ -160,8 +154,7 @@ static void refuses_bad_arguments(void **state) {
 
 /* A limit on file sizes stands for a full disk. It is reached within a frame, or only when the last bytes are
  * flushed. */
-static void removes_the_file_when_the_disk_is_full(void **state) {
-    (void)state;
+TEST(removes_the_file_when_the_disk_is_full) {
     static double large[4000 * 3];
     struct rlimit before;
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
@@ -191,8 +184,7 @@ static void removes_the_file_when_the_disk_is_full(void **state) {
 }
 
 /* Until the last frame is there, and for good when there is an error. */
-static void leaves_the_older_file_until_it_is_whole(void **state) {
-    (void)state;
+TEST(leaves_the_older_file_until_it_is_whole) {
     const temp_path path = temp_file_write(&folder, "cache.pc2", "older", 5);
     io_error error;
     point_cache_writer *writer = open_writer(path.text, VERTICES, 2);
@@ -208,8 +200,7 @@ static void leaves_the_older_file_until_it_is_whole(void **state) {
 }
 
 /* A device (here behind a link that has the extension) must not be removed. */
-static void leaves_devices_alone(void **state) {
-    (void)state;
+TEST(leaves_devices_alone) {
     const temp_path path = temp_file_path(&folder, "device.pc2");
     assert_int_equal(symlink("/dev/null", path.text), 0);
     point_cache_writer *writer = open_writer(path.text, VERTICES, 1);
@@ -218,18 +209,4 @@ static void leaves_devices_alone(void **state) {
     assert_int_equal(lstat(path.text, &status), 0);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-#define TEST(name) cmocka_unit_test_setup_teardown(name, make_folder, own_folder_remove)
-        TEST(writes_what_the_format_says),
-        TEST(replaces_an_existing_file),
-        TEST(rounds_to_float),
-        TEST(refuses_what_float_cannot_hold),
-        TEST(refuses_a_wrong_number_of_frames),
-        TEST(refuses_bad_arguments),
-        TEST(removes_the_file_when_the_disk_is_full),
-        TEST(leaves_the_older_file_until_it_is_whole),
-        TEST(leaves_devices_alone),
-    };
-    return cmocka_run_group_tests_name("point_cache_write", tests, NULL, NULL);
-}
+AROUND_EACH(make_folder, own_folder_remove)

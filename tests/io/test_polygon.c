@@ -159,8 +159,7 @@ static uint32_t count_checked(uint32_t rounds, uint64_t seed) {
     return checked;
 }
 
-static void random_polygons_are_filled(void **state) {
-    (void)state;
+TEST(random_polygons_are_filled) {
     assert_true(count_checked(6000, 1) > 3000);
 }
 
@@ -237,8 +236,7 @@ static void check_ear_order(const flat_polygon *p) {
     }
 }
 
-static void the_shortest_ear_comes_first(void **state) {
-    (void)state;
+TEST(the_shortest_ear_comes_first) {
     random_stream random = stream_start(5);
     flat_polygon p;
     uint32_t checked = 0;
@@ -267,8 +265,7 @@ static void check_shape(const int64_t (*points)[2], uint32_t vertex_count, const
                 sizeof((const int64_t[][2]){__VA_ARGS__}) / sizeof(int64_t[2]), NULL,                        \
                 sizeof((const int64_t[][2]){__VA_ARGS__}) / sizeof(int64_t[2]))
 
-static void shapes_on_which_fans_fail_are_filled(void **state) {
-    (void)state;
+TEST(shapes_on_which_fans_fail_are_filled) {
     CHECK_SHAPE({0, 0}, {4, -2}, {1, 0}, {4, 2});                                      /* dart */
     CHECK_SHAPE({0, 0}, {4, 0}, {4, 1}, {1, 1}, {1, 4}, {0, 4});                       /* L */
     CHECK_SHAPE({0, 0}, {2, 0}, {4, 0}, {4, 4}, {2, 4}, {0, 4});                       /* corners on sides */
@@ -279,8 +276,7 @@ static void shapes_on_which_fans_fail_are_filled(void **state) {
 }
 
 /* The letter A and the figure 8, as exporters bridge their holes. */
-static void letters_with_bridged_holes_are_filled(void **state) {
-    (void)state;
+TEST(letters_with_bridged_holes_are_filled) {
     static const int64_t a[][2] = {{0, 0},  {3, 0},  {4, 3}, {8, 3}, {9, 0}, {12, 0},
                                    {7, 14}, {5, 14}, {5, 5}, {6, 9}, {7, 5}};
     static const uint32_t a_corners[] = {0, 1, 2, 8, 9, 10, 8, 2, 3, 4, 5, 6, 7};
@@ -315,8 +311,7 @@ static uint32_t most_at_corner(uint32_t count) {
 }
 
 /* What looks at all pairs of triangles at a corner would take the square of their number. */
-static void convex_polygons_of_many_corners_are_no_fans(void **state) {
-    (void)state;
+TEST(convex_polygons_of_many_corners_are_no_fans) {
     assert_int_equal(most_at_corner(128), 126);
     assert_true(most_at_corner(129) < 24);
     assert_true(most_at_corner(20000) < 48);
@@ -330,16 +325,14 @@ static void check_fanned(const double (*positions)[3], uint32_t count) {
         assert_true(triangles[t][0] == 0 && triangles[t][1] == t + 1 && triangles[t][2] == t + 2);
 }
 
-static void polygons_without_a_shape_become_fans(void **state) {
-    (void)state;
+TEST(polygons_without_a_shape_become_fans) {
     check_fanned((const double[][3]){{0, 0, 0}, {4, 4, 0}, {4, 0, 0}, {0, 3, 0}}, 4);            /* bow-tie */
     check_fanned((const double[][3]){{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {3, 3, 3}}, 4);            /* a line */
     check_fanned((const double[][3]){{1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}}, 5); /* a place */
 }
 
 /* Corners with vertices of their own at one place get triangles without area, so that all edges have a face. */
-static void corners_at_one_place_keep_their_edges(void **state) {
-    (void)state;
+TEST(corners_at_one_place_keep_their_edges) {
     static const double positions[][3] = {{0, 0, 0}, {4, 0, 0}, {4, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}};
     static const uint32_t corners[] = {2, 3, 4, 5, 0, 1};
     uint32_t triangles[4][3], edges = 0;
@@ -349,21 +342,4 @@ static void corners_at_one_place_keep_their_edges(void **state) {
             for (int k = 0; k < 3; k++)
                 edges += triangles[t][k] == corners[i] && triangles[t][(k + 1) % 3] == corners[(i + 1) % 6];
     assert_int_equal(edges, 6);
-}
-
-int main(void) {
-    if (room_argument_count() > 1) { /* the long run: test_polygon ROUNDS */
-        printf("%u polygons\n", count_checked((uint32_t)strtoul(room_argument(1), NULL, 10), 2));
-        return 0;
-    }
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(random_polygons_are_filled),
-        cmocka_unit_test(the_shortest_ear_comes_first),
-        cmocka_unit_test(shapes_on_which_fans_fail_are_filled),
-        cmocka_unit_test(letters_with_bridged_holes_are_filled),
-        cmocka_unit_test(convex_polygons_of_many_corners_are_no_fans),
-        cmocka_unit_test(polygons_without_a_shape_become_fans),
-        cmocka_unit_test(corners_at_one_place_keep_their_edges),
-    };
-    return cmocka_run_group_tests_name("polygon", tests, NULL, NULL);
 }

@@ -23,8 +23,7 @@ static double whole_number(random_stream *random) {
     return (double)(int64_t)(stream_bits(random) >> 13) - 0x1p50;
 }
 
-static void turns_of_nearly_collinear_points_are_exact(void **state) {
-    (void)state;
+TEST(turns_of_nearly_collinear_points_are_exact) {
     random_stream random = stream_start(7);
     uint32_t counts[3] = {0, 0, 0};
     for (uint32_t round = 0; round < 20000; round++) {
@@ -51,8 +50,7 @@ static void turns_of_nearly_collinear_points_are_exact(void **state) {
 }
 
 /* A quad that is a dart by the last bit of a coordinate has the diagonal from its notch, from whichever corner it begins. */
-static void notches_of_one_bit_are_seen(void **state) {
-    (void)state;
+TEST(notches_of_one_bit_are_seen) {
     static const double positions[][3] = {{0, 0, 0}, {0.3, 0.1, 0}, {0.9, 0.3, 0}, {0.25, 0.75, 0}};
     const double *a = positions[0], *b = positions[1], *c = positions[2];
     const int turn = orientation_of(a, b, c);
@@ -98,8 +96,7 @@ static void place_outline(random_stream *random, uint32_t count, double (*points
         }
 }
 
-static void corners_in_triangles_are_found(void **state) {
-    (void)state;
+TEST(corners_in_triangles_are_found) {
     enum { COUNT = 200 };
     random_stream random = stream_start(11);
     uint32_t found_count = 0, empty_count = 0;
@@ -134,8 +131,7 @@ static void corners_in_triangles_are_found(void **state) {
 /* ---- windings and planes ------------------------------------------------------------------------------- */
 
 /* All corners turn left, and yet the sides cross: around twice, three times. */
-static void stars_that_cross_themselves_become_fans(void **state) {
-    (void)state;
+TEST(stars_that_cross_themselves_become_fans) {
     static const uint32_t steps[][2] = {{5, 2}, {7, 2}, {7, 3}, {11, 4}, {17, 2}};
     for (size_t s = 0; s < sizeof steps / sizeof *steps; s++) {
         double positions[17][3];
@@ -155,8 +151,7 @@ static void stars_that_cross_themselves_become_fans(void **state) {
 }
 
 /* A loop within a loop: all corners turn left, so none stands in the way of an ear, but not all diagonals lead inside. */
-static void loops_in_loops_become_fans(void **state) {
-    (void)state;
+TEST(loops_in_loops_become_fans) {
     for (uint32_t count = 9; count < 400; count += 30) {
         double positions[400][3];
         uint32_t corners[400], triangles[400][3];
@@ -183,8 +178,7 @@ static bool sides_cross_whole(const flat_polygon *p, uint32_t i, uint32_t j) {
 }
 
 /* Some of them have ears until nothing is left, whose triangles lie twofold where the polygon winds twice. */
-static void random_polygons_that_cross_themselves_become_fans(void **state) {
-    (void)state;
+TEST(random_polygons_that_cross_themselves_become_fans) {
     random_stream random = stream_start(3);
     uint32_t crossing_count = 0;
     for (uint32_t round = 0; round < 20000; round++) {
@@ -207,8 +201,7 @@ static void random_polygons_that_cross_themselves_become_fans(void **state) {
 }
 
 /* A dart seen along its largest area, and convex seen from the side, along each axis and in every direction. */
-static void faces_that_are_not_flat_are_cut_where_they_are_large(void **state) {
-    (void)state;
+TEST(faces_that_are_not_flat_are_cut_where_they_are_large) {
     static const double dart[4][3] = {{0, 0, -0.1}, {4, -2, 0}, {1, 0, 0.1}, {4, 2, 0}};
     for (uint32_t round = 0; round < 3 * 2 * 4; round++) {
         const uint32_t axis = round % 3, start = round / 6;
@@ -226,17 +219,4 @@ static void faces_that_are_not_flat_are_cut_where_they_are_large(void **state) {
             assert_int_equal(orientation_of(p[0], p[1], p[2]), 1);
         }
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(turns_of_nearly_collinear_points_are_exact),
-        cmocka_unit_test(notches_of_one_bit_are_seen),
-        cmocka_unit_test(corners_in_triangles_are_found),
-        cmocka_unit_test(stars_that_cross_themselves_become_fans),
-        cmocka_unit_test(loops_in_loops_become_fans),
-        cmocka_unit_test(random_polygons_that_cross_themselves_become_fans),
-        cmocka_unit_test(faces_that_are_not_flat_are_cut_where_they_are_large),
-    };
-    return cmocka_run_group_tests_name("polygon_corners", tests, NULL, NULL);
 }

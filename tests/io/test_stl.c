@@ -23,8 +23,7 @@ static void check_two_facets(file_bytes file) {
 
 /* ---- text -------------------------------------------------------------------------------------------- */
 
-static void reads_text(void **state) {
-    (void)state;
+TEST(reads_text) {
     check_two_facets(STL("solid square\n" FACET_0 FACET_1 "endsolid square\n"));
     check_two_facets(STL("solid\n" FACET_0 FACET_1 "endsolid"));
     check_two_facets(STL("\xef\xbb\xbfsolid a # b\n\n" FACET_0 "\n\n" FACET_1 "endsolid a # b\n\n"));
@@ -36,8 +35,7 @@ static void reads_text(void **state) {
                          "vertex 1 1 0\r\nendloop\r\nendfacet\r\n" FACET_1 "endsolid\r\n"));
 }
 
-static void reads_loose_text(void **state) {
-    (void)state;
+TEST(reads_loose_text) {
     /* Several solids, their names of any words, "facet" among them. */
     check_two_facets(STL("solid left facet\n" FACET_0 "endsolid left facet\nsolid\n" FACET_1 "endsolid\n"));
     /* A facet in one line, no normal, and one that is no number. */
@@ -54,8 +52,7 @@ static void reads_loose_text(void **state) {
 }
 
 /* Several solids are parts; one alone is none, since exporters write their own name there. */
-static void names_parts(void **state) {
-    (void)state;
+TEST(names_parts) {
     mesh_check_parts(STL("solid left  arm \r\n" FACET_0 "endsolid left  arm\nsolid\n" FACET_1
                          "endsolid\nsolid b\n" FACET_0 "endsolid b\nsolid left  arm\n" FACET_1 "endsolid\n"),
                      (const char *const[]){"left  arm", "b", NULL},
@@ -64,8 +61,7 @@ static void names_parts(void **state) {
                      (const char *const[]){NULL}, NULL);
 }
 
-static void refuses_bad_text(void **state) {
-    (void)state;
+TEST(refuses_bad_text) {
     mesh_check_error(STL("solid s\n" FACET_0), ":9: ", "the file ends", "expected facet or endsolid");
     mesh_check_error(STL("solid s\nendsolid s\n"), ": ", "no vertices found", "expected a triangle mesh");
     mesh_check_error(STL("solid s\nfacet normal 0 0 1\nouter lop\n"), ":3: ", "found 'lop'", "expected loop");
@@ -122,8 +118,7 @@ static file_bytes file_of(const binary_file *file) {
     return (file_bytes){"mesh.stl", file->bytes, file->size};
 }
 
-static void reads_binary(void **state) {
-    (void)state;
+TEST(reads_binary) {
     static const char *const headers[] = {
         "",          "binary", "solid square", "solid\nfacet normal", "COLOR=\xff\1\2\3", "\xef\xbb\xbf",
         "# comment", "ply",    "OFF 4 2"};
@@ -138,8 +133,7 @@ static void reads_binary(void **state) {
 }
 
 /* Coordinates are the file's floats, none of which is rounded. */
-static void keeps_floats(void **state) {
-    (void)state;
+TEST(keeps_floats) {
     binary_file file = write_binary("", 2);
     const float tenth = 0.1f, least = 0x1p-149f;
     memcpy(file.bytes + 84 + 12, &tenth, sizeof tenth);
@@ -151,8 +145,7 @@ static void keeps_floats(void **state) {
     mesh_check_equal(file_of(&file), 6, expected, 2, two_triangles);
 }
 
-static void refuses_bad_binary(void **state) {
-    (void)state;
+TEST(refuses_bad_binary) {
     static const char *const headers[] = {"", "solid square"};
     for (size_t i = 0; i < 2; i++) {
         binary_file file = write_binary(headers[i], 3);
@@ -174,20 +167,9 @@ static void refuses_bad_binary(void **state) {
     mesh_check_error(file_of(&file), ": byte 146: ", "coordinate y of vertex 3 is inf", "finite");
 }
 
-static void survives_damage(void **state) {
-    (void)state;
+TEST(survives_damage) {
     const binary_file file = write_binary("solid", 2);
     mesh_check_damage(file_of(&file));
     mesh_check_damage(STL(
         "solid s\nfacet outer loop vertex 0 0 0 vertex 1 0 0\nvertex 1 1 0 endloop endfacet\nendsolid s\n"));
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reads_text),         cmocka_unit_test(reads_loose_text),
-        cmocka_unit_test(names_parts),        cmocka_unit_test(refuses_bad_text),
-        cmocka_unit_test(reads_binary),       cmocka_unit_test(keeps_floats),
-        cmocka_unit_test(refuses_bad_binary), cmocka_unit_test(survives_damage),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -19,7 +19,7 @@ static void expect_option(const job_line *line, size_t i, const char *name, cons
         assert_string_equal(line->options[i].value, value);
 }
 
-static void a_line_says_all(void **state) {
+TEST(a_line_says_all) {
     static const char text[] =
         "{\"model\": \"a b.obj\", \"frames\": [\"f1.obj\", \"f2.obj\"], \"name\": \"shot 41\", "
         "\"size\": 1200, \"parts\": \"p.csv\", \"options\": {\"fps\": 24, \"weld\": 0.125, "
@@ -27,7 +27,6 @@ static void a_line_says_all(void **state) {
         "\"outputs\": {\"json\": \"o\\u00e4.json\"}}";
     job_line line;
     io_error error;
-    (void)state;
     if (!job_line_read(text, strlen(text), &line, &error)) fail_msg("%s", error.text);
     assert_string_equal(line.name, "shot 41");
     assert_int_equal(line.input_count, 3);
@@ -46,10 +45,9 @@ static void a_line_says_all(void **state) {
     job_line_free(&line);
 }
 
-static void a_model_is_enough(void **state) {
+TEST(a_model_is_enough) {
     static const char text[] = " {\"model\":\"a.glb\",\"frames\":\"a.glb\"}\r";
     job_line line;
-    (void)state;
     assert_true(job_line_read(text, strlen(text), &line, NULL));
     assert_string_equal(line.name, "a.glb");
     assert_int_equal(line.input_count, 2);
@@ -58,7 +56,7 @@ static void a_model_is_enough(void **state) {
     job_line_free(&line);
 }
 
-static void wrong_lines_say_what_is_wrong(void **state) {
+TEST(wrong_lines_say_what_is_wrong) {
     static char many_objects[8000];
     for (int k = 0; k < 2000; k++) strcat(many_objects, k == 0 ? "[{}" : ",{}");
     const struct {
@@ -88,7 +86,6 @@ static void wrong_lines_say_what_is_wrong(void **state) {
         {"{\"model\": \"a.obj\", \"options\": {\"weld\": {}}}", "'weld' must be a text or a number"},
         {"{\"model\": \"a.obj\", \"outputs\": \"a.json\"}", "'outputs' must be an object"},
     };
-    (void)state;
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         job_line line;
         io_error error = {""};
@@ -99,10 +96,9 @@ static void wrong_lines_say_what_is_wrong(void **state) {
 }
 
 /* A line is a part of a text, and what follows it is not read. */
-static void a_line_ends_where_it_ends(void **state) {
+TEST(a_line_ends_where_it_ends) {
     static const char text[] = "{\"model\": \"a.obj\"}garbage";
     job_line line;
-    (void)state;
     assert_true(job_line_read(text, 18, &line, NULL));
     job_line_free(&line);
     assert_false(job_line_read(text, 17, &line, NULL));
@@ -114,11 +110,10 @@ static temp_path write_list(const char *text) {
     return temp_file_write(&folder, "jobs.jsonl", text, strlen(text));
 }
 
-static void blank_lines_hold_no_job(void **state) {
+TEST(blank_lines_hold_no_job) {
     io_error error;
     job_list list;
     job_line line;
-    (void)state;
     temp_path path = write_list("\n{\"model\": \"a.obj\", \"size\": 3}\r\n  \n\t{\"model\": \"b.obj\"}");
     if (!job_list_read(path.text, &list, &error)) fail_msg("%s", error.text);
     assert_int_equal(list.count, 2);
@@ -131,7 +126,7 @@ static void blank_lines_hold_no_job(void **state) {
     job_list_free(&list);
 }
 
-static void faults_name_their_line(void **state) {
+TEST(faults_name_their_line) {
     static const struct {
         const char *text, *error;
     } wrong[] = {{"{\"model\": \"a.obj\"}\n\n{\"model\": 3}\n", "jobs.jsonl:3: 'model' must be the name"},
@@ -140,7 +135,6 @@ static void faults_name_their_line(void **state) {
                  {" \n\n", "there is no job in the list"}};
     io_error error;
     job_list list;
-    (void)state;
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         temp_path path = write_list(wrong[i].text);
         assert_false(job_list_read(path.text, &list, &error));
@@ -151,12 +145,11 @@ static void faults_name_their_line(void **state) {
 }
 
 /* Any other text is another list, and so are other names or the same in another order. */
-static void hashes_tell_lists_apart(void **state) {
+TEST(hashes_tell_lists_apart) {
     static const char *const names[][3] = {
         {"a", "b", "c"}, {"a", "c", "b"}, {"ab", "", "c"}, {"a", "b", "d"}};
     job_list lists[4];
     io_error error;
-    (void)state;
     for (int i = 0; i < 4; i++) assert_true(job_list_of_names(names[i], 3, &lists[i], &error));
     for (int i = 0; i < 4; i++)
         for (int k = 0; k < i; k++) assert_true(lists[i].hash != lists[k].hash);
@@ -197,11 +190,10 @@ static void find_shards(const job_list *list, uint32_t shard_count, uint32_t *sh
     for (uint32_t i = 0; i < list->count; i++) assert_true(shards[i] > 0);
 }
 
-static void jobs_without_a_size_go_round(void **state) {
+TEST(jobs_without_a_size_go_round) {
     uint64_t sizes[10];
     uint32_t shards[10];
     listed_job jobs[10];
-    (void)state;
     for (int i = 0; i < 10; i++) sizes[i] = NO_JOB_SIZE;
     job_list list = list_of_sizes(jobs, sizes, 10);
     find_shards(&list, 3, shards);
@@ -213,24 +205,22 @@ static void jobs_without_a_size_go_round(void **state) {
 }
 
 /* By hand: 9 to 1, 7 to 2, 5 to 3, then 4 to 3 (9), 3 to 2 (10), 2 to 1 (11), 2 to 3; the one without a size is the third. */
-static void the_largest_goes_to_the_least(void **state) {
+TEST(the_largest_goes_to_the_least) {
     static const uint64_t sizes[] = {2, 4, NO_JOB_SIZE, 9, 5, 2, 7, 3};
     static const uint32_t expected[] = {1, 3, 3, 1, 3, 3, 2, 2};
     uint32_t shards[8];
     listed_job jobs[8];
-    (void)state;
     job_list list = list_of_sizes(jobs, sizes, 8);
     find_shards(&list, 3, shards);
     for (uint32_t i = 0; i < 8; i++) assert_int_equal(shards[i], expected[i]);
 }
 
 /* Graham's bound: no shard has more than the mean and the largest job together; and never one without work beside one with two jobs. */
-static void random_lists_are_balanced(void **state) {
+TEST(random_lists_are_balanced) {
     random_stream random = stream_start(11);
     uint64_t sizes[JOBS_MAX];
     uint32_t shards[JOBS_MAX];
     listed_job jobs[JOBS_MAX];
-    (void)state;
     for (int trial = 0; trial < 300; trial++) {
         const uint32_t count = 1 + stream_below(&random, JOBS_MAX),
                        shard_count = 1 + stream_below(&random, 40);
@@ -249,12 +239,11 @@ static void random_lists_are_balanced(void **state) {
     }
 }
 
-static void shards_are_read(void **state) {
+TEST(shards_are_read) {
     static const char *const wrong[] = {
         "",   "1",    "/",     "0/3",  "4/3",  "1/0",       "1/",
         "/3", "-1/3", "1/3/4", "1/3x", " 1/3", "1/1000001", "99999999999999999999/3"};
     shard_choice shard = {0, 0};
-    (void)state;
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
         if (read_shard(wrong[i], &shard)) fail_msg("'%s' was read", wrong[i]);
     assert_int_equal(shard.count, 0);
@@ -264,19 +253,4 @@ static void shards_are_read(void **state) {
     assert_true(read_shard("1/1000000", &shard));
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_line_says_all),
-        cmocka_unit_test(a_model_is_enough),
-        cmocka_unit_test(wrong_lines_say_what_is_wrong),
-        cmocka_unit_test(a_line_ends_where_it_ends),
-        cmocka_unit_test(blank_lines_hold_no_job),
-        cmocka_unit_test(faults_name_their_line),
-        cmocka_unit_test(hashes_tell_lists_apart),
-        cmocka_unit_test(jobs_without_a_size_go_round),
-        cmocka_unit_test(the_largest_goes_to_the_least),
-        cmocka_unit_test(random_lists_are_balanced),
-        cmocka_unit_test(shards_are_read),
-    };
-    return cmocka_run_group_tests(tests, own_folder_make, own_folder_remove);
-}
+AROUND_ALL(own_folder_make, own_folder_remove)

@@ -20,8 +20,7 @@ static bool count_line(void *user, const char *line, size_t length, const job_re
 }
 
 /* Whatever of the second line is another one then, it is not written as if it had been proven. */
-static void a_file_that_changes_while_it_is_read_is_noticed(void **state) {
-    (void)state;
+TEST(a_file_that_changes_while_it_is_read_is_noticed) {
     static const char first[] = LINE("f", "2", "1", "touching", "false"),
                       second[] = LINE("f", "2", "2", "touching", "false");
     static const char *const others[] = {second,
@@ -54,7 +53,4 @@ static void a_file_that_changes_while_it_is_read_is_noticed(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_file_that_changes_while_it_is_read_is_noticed)};
-    return cmocka_run_group_tests_name("job_merge", tests, own_folder_make, own_folder_remove);
-}
+AROUND_ALL(own_folder_make, own_folder_remove)

@@ -149,8 +149,7 @@ static void expect_all(const char *const *reasons) {
 
 /* ---- tests ----------------------------------------------------------------------------------------------- */
 
-static void every_job_is_taken_once(void **state) {
-    (void)state;
+TEST(every_job_is_taken_once) {
     for (uint32_t workers = 1; workers <= WORKERS; workers++) {
         uint32_t done;
         io_error error;
@@ -163,8 +162,7 @@ static void every_job_is_taken_once(void **state) {
     }
 }
 
-static void no_jobs_are_done_at_once(void **state) {
-    (void)state;
+TEST(no_jobs_are_done_at_once) {
     uint32_t done;
     io_error error;
     watch_nothing();
@@ -173,13 +171,12 @@ static void no_jobs_are_done_at_once(void **state) {
 }
 
 /* The others are taken all the same, also those that the process of the one would have run. */
-static void a_process_that_dies_fails_its_job_alone(void **state) {
+TEST(a_process_that_dies_fails_its_job_alone) {
     static const char *const reasons[] = {[FATE_NONE] = "",
                                           [FATE_KILLED] =
                                               "its process was killed by signal 9 (Killed), as the system",
                                           [FATE_CRASH] = "its process was killed by signal 11",
                                           [FATE_EXIT] = "its process ended with code 7"};
-    (void)state;
     for (uint32_t workers = 1; workers <= 3; workers += 2) {
         uint32_t done;
         io_error error;
@@ -193,13 +190,12 @@ static void a_process_that_dies_fails_its_job_alone(void **state) {
 }
 
 /* One that is told to stop does; one that does not listen is killed. */
-static void a_job_that_takes_too_long_fails(void **state) {
+TEST(a_job_that_takes_too_long_fails) {
     static const char *const reasons[] = {[FATE_NONE] = "",
                                           [FATE_LATE] = "it took longer than 0.3 s, which is its time limit",
                                           [FATE_DEAF] = "it took longer than 0.3 s, which is its time limit"};
     uint32_t done;
     io_error error;
-    (void)state;
     interrupt_catch();
     watch_nothing();
     w.fates[0] = w.fates[100] = w.fates[101] = FATE_LATE;
@@ -209,10 +205,9 @@ static void a_job_that_takes_too_long_fails(void **state) {
     expect_all(reasons);
 }
 
-static void a_worker_that_cannot_begin_ends_the_run(void **state) {
+TEST(a_worker_that_cannot_begin_ends_the_run) {
     uint32_t done;
     io_error error;
-    (void)state;
     watch_nothing();
     w.refusal = "no threads today";
     assert_false(run_all(JOBS, 3, 0.0, &done, &error));
@@ -221,10 +216,9 @@ static void a_worker_that_cannot_begin_ends_the_run(void **state) {
 }
 
 /* As the system does when memory is short for a moment, or for good. */
-static void workers_that_die_at_once_end_the_run(void **state) {
+TEST(workers_that_die_at_once_end_the_run) {
     uint32_t done;
     io_error error;
-    (void)state;
     watch_nothing();
     w.barren = 15;
     assert_true(run_all(JOBS, 2, 0.0, &done, &error));
@@ -237,10 +231,9 @@ static void workers_that_die_at_once_end_the_run(void **state) {
 }
 
 /* As after a full disk. */
-static void a_result_that_is_not_kept_is_the_last(void **state) {
+TEST(a_result_that_is_not_kept_is_the_last) {
     uint32_t done;
     io_error error;
-    (void)state;
     watch_nothing();
     w.stop_after = 40;
     assert_true(run_all(JOBS, 2, 0.0, &done, &error));
@@ -254,8 +247,7 @@ static void a_result_that_is_not_kept_is_the_last(void **state) {
 }
 
 /* What a killed process leaves running would compute for nobody. */
-static void workers_die_with_the_process(void **state) {
-    (void)state;
+TEST(workers_die_with_the_process) {
     watch_nothing();
     for (uint32_t i = 0; i < JOBS; i++) w.fates[i] = FATE_DEAF;
     int ends[2];
@@ -280,10 +272,9 @@ static void workers_die_with_the_process(void **state) {
 }
 
 /* The flag of an interrupt stays, so this comes last. */
-static void an_interrupt_keeps_what_is_done(void **state) {
+TEST(an_interrupt_keeps_what_is_done) {
     uint32_t done;
     io_error error;
-    (void)state;
     signal(SIGINT, SIG_DFL); /* who runs the tests in the background ignores it */
     interrupt_catch();
     watch_nothing();
@@ -296,17 +287,4 @@ static void an_interrupt_keeps_what_is_done(void **state) {
     for (uint32_t i = 0; i < JOBS; i++) assert_string_equal(w.reasons[i], "");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_job_is_taken_once),
-        cmocka_unit_test(no_jobs_are_done_at_once),
-        cmocka_unit_test(a_process_that_dies_fails_its_job_alone),
-        cmocka_unit_test(a_job_that_takes_too_long_fails),
-        cmocka_unit_test(a_worker_that_cannot_begin_ends_the_run),
-        cmocka_unit_test(workers_that_die_at_once_end_the_run),
-        cmocka_unit_test(a_result_that_is_not_kept_is_the_last),
-        cmocka_unit_test(workers_die_with_the_process),
-        cmocka_unit_test(an_interrupt_keeps_what_is_done),
-    };
-    return cmocka_run_group_tests(tests, share_counts, NULL);
-}
+AROUND_ALL(share_counts, NULL)

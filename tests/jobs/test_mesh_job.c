@@ -17,8 +17,7 @@ static bool give_up(void *user, const char *stage, double fraction) {
 }
 
 /* Thousands of triangles through one place take long enough to be asked whether they should go on. */
-static void a_cancelled_search_has_no_answer(void **state) {
-    (void)state;
+TEST(a_cancelled_search_has_no_answer) {
     enum { FAN = 700 };
     temp_path path = temp_file_path(&folder, "fan.obj");
     FILE *file = fopen(path.text, "w");
@@ -42,7 +41,4 @@ static void a_cancelled_search_has_no_answer(void **state) {
     cscd_context_destroy(context);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_cancelled_search_has_no_answer)};
-    return cmocka_run_group_tests_name("mesh_job", tests, own_folder_make, own_folder_remove);
-}
+AROUND_ALL(own_folder_make, own_folder_remove)

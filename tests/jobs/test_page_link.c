@@ -12,8 +12,7 @@ static void expect_link(const char *from, const char *here, const char *path, co
     free(link);
 }
 
-static void links_are_relative_to_the_page(void **state) {
-    (void)state;
+TEST(links_are_relative_to_the_page) {
     expect_link("/a/b", "/a/b", "c.html", "c.html");
     expect_link("/a/b", "/a/b", "./x/../c//d.html", "c/d.html");
     expect_link("/a/b", "/a", "c.html", "../c.html");
@@ -24,9 +23,4 @@ static void links_are_relative_to_the_page(void **state) {
     expect_link("", "", "a.html", "a.html");
     expect_link("", "/x", "../../../a", "a");
     expect_link("/a", "", "/b/c", "../b/c");
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(links_are_relative_to_the_page)};
-    return cmocka_run_group_tests_name("page_link", tests, NULL, NULL);
 }

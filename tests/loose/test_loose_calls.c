@@ -45,9 +45,8 @@ static bool of_triangles(const cscd_contact *c) {
     return true;
 }
 
-static void triangles_unchanged(void **state) {
+TEST(triangles_unchanged) {
     size_t compared = 0;
-    (void)state;
     for (uint64_t seed = 0; seed < 12; seed++) {
         random_stream random = stream_start(100 + seed);
         uint32_t vertex_of[LOOSE_VERTICES_MAX];
@@ -83,7 +82,7 @@ static void triangles_unchanged(void **state) {
 /* ---- touching at the start --------------------------------------------------------------------------------- */
 
 /* A vertex behind the plane, a point in a face and crossing wires are in contact, and say so. */
-static void contact_at_the_start(void **state) {
+TEST(contact_at_the_start) {
     static const uint32_t triangle[3] = {0, 1, 2}, wire[2] = {0, 1};
     static const double up[3] = {0, 0, 2};
     double x[] = {0,  0,  0,   1, 0, 0,   0, 1, 0,  0.25, 0.25, 1, 0, 0,
@@ -95,7 +94,6 @@ static void contact_at_the_start(void **state) {
                                          "vertex 3 and the half-space, object 2 touch",
                                          "edge 3 and edge 4 touch"};
     static const cscd_contact_kind kinds[3] = {CSCD_CONTACT_VF, CSCD_CONTACT_VH, CSCD_CONTACT_EE};
-    (void)state;
     cscd_context *context = NULL;
     cscd_mesh *mesh = NULL;
     cscd_detector *detector = NULL;
@@ -125,12 +123,11 @@ static void contact_at_the_start(void **state) {
 /* ---- floats and views --------------------------------------------------------------------------------------- */
 
 /* Positions as a float solver keeps them: a view for each object, floats in structs. What it stores is certified. */
-static void marching_in_floats(void **state) {
+TEST(marching_in_floats) {
     typedef struct particle {
         float mass, x[3];
     } particle;
     size_t moved = 0, steps = 0;
-    (void)state;
     for (uint64_t seed = 0; seed < 6; seed++) {
         random_stream random = stream_start(400 + seed);
         loose_recipe recipe = everything;
@@ -174,13 +171,4 @@ static void marching_in_floats(void **state) {
         loose_scene_free(&scene);
     }
     assert_true(moved > steps / 2);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(triangles_unchanged),
-        cmocka_unit_test(contact_at_the_start),
-        cmocka_unit_test(marching_in_floats),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -22,9 +22,8 @@ static void expect_same(const cscd_contacts *a, const cscd_contacts *b) {
     if (a->count > 0) assert_memory_equal(a->items, b->items, a->count * sizeof *a->items);
 }
 
-static void clones_find_the_same(void **state) {
+TEST(clones_find_the_same) {
     size_t contacts = 0;
-    (void)state;
     for (uint64_t seed = 0; seed < 8; seed++) {
         random_stream random = stream_start(seed);
         loose_recipe recipe = everything;
@@ -87,9 +86,8 @@ static cscd_detector *new_detector(const cscd_mesh *mesh, uint32_t removed) {
     return detector;
 }
 
-static void changed_meshes(void **state) {
+TEST(changed_meshes) {
     size_t contacts = 0;
-    (void)state;
     for (uint32_t removed = 0; removed < 8; removed++) {
         random_stream random = stream_start(100 + removed);
         loose_scene_make(&scene, &everything, &random, 2, CSCD_SIMD_AUTO);
@@ -118,7 +116,7 @@ static void changed_meshes(void **state) {
 /* ---- tears ---------------------------------------------------------------------------------------------------- */
 
 /* A rope is cut at vertex 1, and particle 0 becomes two: what was one vertex waits until it has been apart. */
-static void cut_rope(void **state) {
+TEST(cut_rope) {
     static const uint32_t rope[4] = {0, 1, 1, 2}, cut[4] = {0, 1, 3, 2}, origins[4] = {0, 1, 2, 1},
                           twins[2] = {0, 0};
     const double x[] = {0, 0, 0, 1, 0, 0, 2, 0, 0, 1, 0, 0, 0, 5, 0, 0, 5, 0};
@@ -127,7 +125,6 @@ static void cut_rope(void **state) {
     cscd_object_desc after[2] = {cscd_object_of_wires(4, 2, cut), cscd_object_of_points(2)};
     const cscd_object_change changes[2] = {{.object = 0, .desc = &after[0], .vertex_origins = origins},
                                            {.object = 1, .desc = &after[1], .vertex_origins = twins}};
-    (void)state;
     cscd_mesh *mesh = NULL;
     cscd_mesh_change *change = NULL;
     cscd_detector *detector = NULL;
@@ -163,7 +160,7 @@ static void cut_rope(void **state) {
 
 /* A rope, a particle and a half-space are sewn to a vertex of a cloth; cloth and rope tear there. What the second
  * vertices were sewn to waits, each kind of pair, until it has been apart. */
-static void tear_where_all_is_sewn(void **state) {
+TEST(tear_where_all_is_sewn) {
     static const uint32_t whole[6] = {0, 1, 2, 2, 1, 3}, torn[6] = {0, 1, 2, 4, 1, 3},
                           origins[5] = {0, 1, 2, 3, 2};
     static const uint32_t rope[4] = {0, 1, 0, 2}, cut[4] = {0, 1, 3, 2}, rope_origins[4] = {0, 1, 2, 0};
@@ -171,7 +168,6 @@ static void tear_where_all_is_sewn(void **state) {
     static const double up[3] = {0, 0, 1};
     const double x[] = {0, 0, 1, 1, 0, 1, 0, 1, 0, 1, 1, 1, 0, 1, 0, -1, 2, 1, -1, 0, 2, 0, 1, 0, 0, 1, 0};
     double now[33], parted[33];
-    (void)state;
     cscd_object_desc descs[4] = {cscd_object_of_triangles(4, 2, whole), cscd_object_of_wires(3, 2, rope),
                                  cscd_object_of_points(1), cscd_object_half_space(up)};
     cscd_object_desc after[2] = {cscd_object_of_triangles(5, 2, torn), cscd_object_of_wires(4, 2, cut)};
@@ -223,13 +219,12 @@ static void tear_where_all_is_sewn(void **state) {
 
 /* A cloth loses the triangle, and a rope the wire, at a vertex that was sewn to a triangle and to the ground: what is left of
  * nothing waits no more, whether positions were seen between the two changes or not. */
-static void vertices_of_nothing_wait_no_more(void **state) {
+TEST(vertices_of_nothing_wait_no_more) {
     static const uint32_t cloth[6] = {0, 1, 2, 1, 3, 2}, rope[4] = {0, 1, 1, 2}, other[3] = {0, 1, 2};
     static const uint32_t seams[10] = {3, 7, 3, 10, 6, 10, 2, 10, 5, 10};
     static const double up[3] = {0, 0, 1};
     const double x[] = {0, 0, 1, 1, 0, 1, 0, 1, 0, 1, 1, 0, 3, 0, 1, 3, 1,
                         0, 3, 2, 0, 1, 1, 0, 2, 1, 1, 1, 2, 1, 0, 0, 0};
-    (void)state;
     const cscd_object_desc descs[4] = {cscd_object_of_triangles(4, 2, cloth),
                                        cscd_object_of_wires(3, 2, rope),
                                        cscd_object_of_triangles(3, 1, other), cscd_object_half_space(up)};
@@ -267,11 +262,4 @@ static void vertices_of_nothing_wait_no_more(void **state) {
         cscd_mesh_destroy(mesh);
         cscd_context_destroy(scene.context);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(clones_find_the_same), cmocka_unit_test(changed_meshes), cmocka_unit_test(cut_rope),
-        cmocka_unit_test(tear_where_all_is_sewn), cmocka_unit_test(vertices_of_nothing_wait_no_more)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -30,8 +30,7 @@ static bool ignore_even(void *user, cscd_contact_kind kind, uint32_t a, uint32_t
     return (a + b) % 2 == 0;
 }
 
-static void ignored_by_callback(void **state) {
-    (void)state;
+TEST(ignored_by_callback) {
     for (uint64_t seed = 0; seed < 6; seed++) {
         random_stream random = stream_start(200 + seed);
         loose_recipe recipe = everything;
@@ -75,9 +74,8 @@ static bool in_seam(const cscd_contact *c, const uint32_t seams[][2], size_t cou
     return false;
 }
 
-static void seams_of_all_kinds(void **state) {
+TEST(seams_of_all_kinds) {
     size_t left_out[CSCD_CONTACT_VH + 1] = {0};
-    (void)state;
     for (uint64_t seed = 0; seed < 10; seed++) {
         random_stream random = stream_start(300 + seed);
         loose_recipe recipe = everything;
@@ -118,14 +116,13 @@ static void seams_of_all_kinds(void **state) {
 }
 
 /* Without a reach, a seam may be as long as the longest wire at its ends. */
-static void reach_of_seams(void **state) {
+TEST(reach_of_seams) {
     static const uint32_t wires[4] = {0, 1, 1, 2}, seam[2] = {2, 3};
     const double near[12] = {0, 0, 0, 1, 0, 0, 3, 0, 0, 3, 1.9, 0},
                  far[12] = {0, 0, 0, 1, 0, 0, 3, 0, 0, 3, 2.1, 0};
     const cscd_object_desc descs[2] = {cscd_object_of_wires(3, 2, wires), cscd_object_of_points(1)};
     cscd_context *context = NULL;
     cscd_mesh *mesh = NULL;
-    (void)state;
     assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
     assert_int_equal(cscd_mesh_create(context, descs, 2, &mesh), CSCD_OK);
     for (int i = 0; i < 2; i++) {
@@ -155,10 +152,9 @@ static void spread_vertex(uint32_t v, double *out) {
 }
 
 /* What an opened seam uncovers waits until it has been apart once, whatever its kind. */
-static void opened_seams(void **state) {
+TEST(opened_seams) {
     static cscd_contact kept[20000];
     size_t waited[CSCD_CONTACT_VH + 1] = {0};
-    (void)state;
     for (uint64_t seed = 0; seed < 32; seed++) {
         random_stream random = stream_start(500 + seed);
         loose_recipe recipe = everything;
@@ -200,11 +196,4 @@ static void opened_seams(void **state) {
         loose_scene_free(&scene);
     }
     for (int k = 0; k <= CSCD_CONTACT_VH; k++) assert_true(k == CSCD_CONTACT_TT || waited[k] > 0);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(ignored_by_callback),
-                                       cmocka_unit_test(seams_of_all_kinds), cmocka_unit_test(reach_of_seams),
-                                       cmocka_unit_test(opened_seams)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

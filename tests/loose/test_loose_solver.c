@@ -136,9 +136,8 @@ static void compare_near(cscd_detector *detector, double distance, size_t by_kin
     assert_true(merged == all && loose == 0 && fabs(energy - energy_merged) < 1e-9 * (1.0 + energy));
 }
 
-static void proximity_of_all_kinds(void **state) {
+TEST(proximity_of_all_kinds) {
     size_t by_kind[CSCD_CONTACT_VH + 1] = {0};
-    (void)state;
     for (uint64_t seed = 0; seed < 24; seed++) {
         random_stream random;
         loose_recipe recipe = everything;
@@ -236,9 +235,8 @@ static void march_on(const loose_recipe *recipe, uint64_t seed, solver_tally *ta
     close_scene(detector);
 }
 
-static void certified_steps(void **state) {
+TEST(certified_steps) {
     solver_tally tally = {.steps = 0};
-    (void)state;
     for (uint64_t seed = 0; seed < 24; seed++) {
         loose_recipe recipe = everything;
         recipe.triangles = seed % 5 != 0;
@@ -259,8 +257,7 @@ static void certified_steps(void **state) {
 }
 
 /* On a line, proximity at any moment is that of the detector there. */
-static void moments_on_a_line(void **state) {
-    (void)state;
+TEST(moments_on_a_line) {
     for (uint64_t seed = 0; seed < 8; seed++) {
         random_stream random;
         loose_recipe recipe = everything;
@@ -335,9 +332,8 @@ static void check_truncation(cscd_detector *detector, size_t *shortened) {
     }
 }
 
-static void bounds_and_truncation(void **state) {
+TEST(bounds_and_truncation) {
     size_t shortened = 0;
-    (void)state;
     for (uint64_t seed = 0; seed < 24; seed++) {
         random_stream random;
         loose_recipe recipe = everything;
@@ -355,11 +351,4 @@ static void bounds_and_truncation(void **state) {
         close_scene(detector);
     }
     assert_true(shortened > 100);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(proximity_of_all_kinds),
-                                       cmocka_unit_test(certified_steps), cmocka_unit_test(moments_on_a_line),
-                                       cmocka_unit_test(bounds_and_truncation)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

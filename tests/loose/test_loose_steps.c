@@ -146,8 +146,7 @@ static kind_tally run_scenes(const char *name, loose_recipe recipe, cscd_method 
 static const loose_recipe everything = {
     .triangles = true, .wires = true, .points = true, .half_spaces = true, .motion = 0.5};
 
-static void touching_pairs(void **state) {
-    (void)state;
+TEST(touching_pairs) {
     loose_recipe grid = everything, still = everything;
     grid.grid = true;
     still.motion = 0.0;
@@ -163,8 +162,7 @@ static void touching_pairs(void **state) {
     run_scenes("ICCD", grid, method_or_none(CSCD_METHOD_ICCD), 8, 600);
 }
 
-static void with_a_distance(void **state) {
-    (void)state;
+TEST(with_a_distance) {
     loose_recipe apart = everything, thick = everything;
     apart.min_separation = 0.15;
     thick.thickness = true;
@@ -178,8 +176,7 @@ static void with_a_distance(void **state) {
     run_scenes("the same on a grid, brute force", thick, CSCD_METHOD_BRUTE, 8, 1100);
 }
 
-static void with_rules(void **state) {
-    (void)state;
+TEST(with_rules) {
     loose_recipe rules = everything, obstacles = everything;
     rules.rules = true;
     obstacles.obstacles = true;
@@ -191,8 +188,7 @@ static void with_rules(void **state) {
 }
 
 /* Any kinds may be missing, triangles among them. */
-static void without_some(void **state) {
-    (void)state;
+TEST(without_some) {
     for (int set = 1; set < 16; set++) {
         loose_recipe r = {.triangles = set & 1,
                           .wires = (set & 2) != 0,
@@ -208,10 +204,4 @@ static void without_some(void **state) {
         r.min_separation = 0.1;
         run_scenes(name, r, CSCD_METHOD_NONE, 3, 2000 + (uint64_t)set * 10);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(touching_pairs), cmocka_unit_test(with_a_distance),
-                                       cmocka_unit_test(with_rules), cmocka_unit_test(without_some)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

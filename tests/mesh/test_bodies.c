@@ -26,11 +26,10 @@ static void expect_bodies(const cscd_mesh *mesh, const uint32_t labels[4], const
     bodies_free(mesh->context, &found);
 }
 
-static void parts_join_components_of_one_object(void **state) {
+TEST(parts_join_components_of_one_object) {
     cscd_context *context;
     cscd_mesh *mesh = make_mesh(&context);
     const uint32_t none = UINT32_MAX;
-    (void)state;
     expect_bodies(mesh, (uint32_t[]){0, 0, 0, 1}, (uint32_t[]){0, 0, 2, 3}, 5, (uint32_t[]){0, 1, 2, 2, 3});
     expect_bodies(mesh, (uint32_t[]){0, 1, 0, 1}, (uint32_t[]){0, 1, 3, 4}, 6,
                   (uint32_t[]){0, 0, 1, 2, 2, 3});
@@ -38,9 +37,4 @@ static void parts_join_components_of_one_object(void **state) {
                   (uint32_t[]){0, 0, 1, 2, 3});
     cscd_mesh_destroy(mesh);
     cscd_context_destroy(context);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(parts_join_components_of_one_object)};
-    return cmocka_run_group_tests_name("bodies", tests, NULL, NULL);
 }

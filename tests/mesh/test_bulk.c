@@ -8,8 +8,7 @@
 
 static scene interval; /* large; one test at a time */
 
-static void arrays_are_those_of_single_calls(void **state) {
-    (void)state;
+TEST(arrays_are_those_of_single_calls) {
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         scene_make((scene_family)family, 2, &interval);
         rig r = rig_create(&interval, 1, NULL);
@@ -81,8 +80,7 @@ static size_t compare_proximities(const rig *r, const cscd_proximities *found) {
     return found->count;
 }
 
-static void stencils_are_those_of_single_calls(void **state) {
-    (void)state;
+TEST(stencils_are_those_of_single_calls) {
     size_t contacts = 0, proximities = 0;
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         cscd_proximities near;
@@ -97,12 +95,4 @@ static void stencils_are_those_of_single_calls(void **state) {
         rig_destroy(&r);
     }
     assert_true(contacts > 100 && proximities > 1000);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(arrays_are_those_of_single_calls),
-        cmocka_unit_test(stencils_are_those_of_single_calls),
-    };
-    return cmocka_run_group_tests_name("bulk", tests, NULL, NULL);
 }

@@ -67,10 +67,9 @@ static void check_features(const cscd_mesh *mesh) {
     }
 }
 
-static void mixed_objects(void **state) {
+TEST(mixed_objects) {
     cscd_object_desc descs[MIXED];
     counting_allocator counter = counting_allocator_start();
-    (void)state;
     cscd_context *context = counted_context(&counter);
     cscd_mesh *mesh = NULL;
     describe_mixed(descs);
@@ -101,12 +100,11 @@ static uint64_t hash_of(cscd_context *context, const cscd_object_desc *descs, ui
 }
 
 /* Meshes of the same triangles and as many vertices differ by their loose objects. */
-static void hashes_differ(void **state) {
+TEST(hashes_differ) {
     static const uint32_t other_wires[4] = {0, 1, 1, 2};
     static const double other[3] = {0.0, 3.0, 4.0};
     counting_allocator counter = counting_allocator_start();
     uint64_t hashes[6];
-    (void)state;
     cscd_context *context = counted_context(&counter);
     cscd_object_desc descs[2] = {cscd_object_of_triangles(4, 4, tetrahedron), cscd_object_of_points(4)};
     hashes[0] = hash_of(context, descs, 2);
@@ -145,10 +143,9 @@ static cscd_object_desc half_space_along(double x, double y, double z) {
     return cscd_object_half_space(n);
 }
 
-static void refused_descriptions(void **state) {
+TEST(refused_descriptions) {
     static const uint32_t beyond[4] = {0, 1, 2, 4}, itself[4] = {0, 1, 2, 2};
     counting_allocator counter = counting_allocator_start();
-    (void)state;
     cscd_context *context = counted_context(&counter);
     check_refused(context, cscd_object_of_wires(4, 2, beyond), CSCD_INVALID_MESH, "wire 1 names vertex 4");
     check_refused(context, cscd_object_of_wires(4, 2, itself), CSCD_INVALID_MESH, "wire 1 (2 2)");
@@ -186,9 +183,8 @@ static void refused_descriptions(void **state) {
 }
 
 /* Counts that no data stand behind do not take memory for seconds. */
-static void too_many(void **state) {
+TEST(too_many) {
     counting_allocator counter = counting_allocator_start();
-    (void)state;
     cscd_context *context = counted_context(&counter);
     cscd_object_desc descs[2] = {cscd_object_of_points((1u << 26) - 1), cscd_object_of_points(2)};
     cscd_mesh *mesh = NULL;
@@ -202,10 +198,9 @@ static void too_many(void **state) {
 
 /* ---- what is of triangles alone --------------------------------------------------------------------------- */
 
-static void plans_and_partitions(void **state) {
+TEST(plans_and_partitions) {
     static const double x[24] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 5, 5, 5, 6, 6, 6, 7, 7, 7, 8, 8, 8};
     counting_allocator counter = counting_allocator_start();
-    (void)state;
     cscd_context *context = counted_context(&counter);
     cscd_object_desc descs[2] = {cscd_object_of_triangles(4, 4, tetrahedron),
                                  cscd_object_of_wires(4, 4, wires)};
@@ -238,10 +233,9 @@ static void plans_and_partitions(void **state) {
 /* ---- a new mesh from an old one --------------------------------------------------------------------------- */
 
 /* What is put together is what its descriptions make, points behind the edges and wires at vertices included. */
-static void changed_mesh(void **state) {
+TEST(changed_mesh) {
     cscd_object_desc descs[MIXED], now[MIXED];
     counting_allocator counter = counting_allocator_start();
-    (void)state;
     cscd_context *context = counted_context(&counter);
     cscd_mesh *mesh = NULL, *fresh = NULL;
     cscd_mesh_change *change = NULL;
@@ -271,13 +265,4 @@ static void changed_mesh(void **state) {
     cscd_mesh_destroy(fresh);
     cscd_context_destroy(context);
     assert_int_equal(counter.live, 0);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(mixed_objects),        cmocka_unit_test(hashes_differ),
-        cmocka_unit_test(refused_descriptions), cmocka_unit_test(too_many),
-        cmocka_unit_test(plans_and_partitions), cmocka_unit_test(changed_mesh),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -132,12 +132,11 @@ static void check_shape(const shape *s, uint32_t component_count, const expected
 
 /* ---- closed surfaces ---- */
 
-static void closed_surfaces(void **state) {
+TEST(closed_surfaces) {
     static const expected_component tetrahedron = {4, 6, 4, 0, 0, 0, 0, 2, NO_EDGES, NONE};
     static const expected_component cube = {8, 18, 12, 0, 0, 0, 0, 2, NO_EDGES, NONE};
     static const expected_component torus = {30, 90, 60, 0, 0, 0, 0, 0, NO_EDGES, NONE};
     static const expected_component cones = {102, 300, 200, 0, 0, 0, 0, 2, NO_EDGES, NONE};
-    (void)state;
     shape s = {0};
     shape_add_tetrahedron(&s, 0, 1, 2, 3);
     check_shape(&s, 1, &tetrahedron);
@@ -156,19 +155,17 @@ static void closed_surfaces(void **state) {
     check_shape(&s, 1, &cones);
 }
 
-static void isolated_vertices(void **state) {
+TEST(isolated_vertices) {
     static const expected_component tetrahedron = {4, 6, 4, 0, 0, 0, 0, 2, NO_EDGES, NONE};
-    (void)state;
     shape s = {0};
     shape_add_tetrahedron(&s, 1, 2, 4, 5);
     s.vertex_count = 8;
     check_shape(&s, 1, &tetrahedron);
 }
 
-static void two_components(void **state) {
+TEST(two_components) {
     static const expected_component expected[2] = {{4, 6, 4, 0, 0, 0, 0, 2, NO_EDGES, NONE},
                                                    {8, 18, 12, 0, 0, 0, 0, 2, NO_EDGES, NONE}};
-    (void)state;
     shape cube = {0}, s = {0};
     shape_add_cube(&cube);
     shape_add_tetrahedron(&s, 9, 11, 8, 10); /* numbered by the first triangle, not by vertices */
@@ -190,14 +187,13 @@ static void two_components(void **state) {
 
 /* ---- flawed ones ---- */
 
-static void open_surfaces(void **state) {
+TEST(open_surfaces) {
     static const expected_component triangle = {3,   3, 1, 3, 0, 0, 0, 1, {0, 1}, {NONE, NONE}, {NONE, NONE},
                                                 NONE};
     static const expected_component sheet = {20, 43,     24,           14,           0,   0, 0,
                                              1,  {0, 1}, {NONE, NONE}, {NONE, NONE}, NONE};
     static const expected_component cylinder = {24, 60,     36,           12,           0,   0, 0,
                                                 0,  {0, 1}, {NONE, NONE}, {NONE, NONE}, NONE};
-    (void)state;
     shape s = {0};
     shape_add_triangle(&s, 0, 1, 2);
     check_shape(&s, 1, &triangle);
@@ -209,19 +205,17 @@ static void open_surfaces(void **state) {
     check_shape(&s, 1, &cylinder);
 }
 
-static void moebius_strip(void **state) {
+TEST(moebius_strip) {
     static const expected_component strip = {12, 24, 12, 12, 0, 0, 1, 0, {0, 2}, {NONE, NONE}, {0, 1}, NONE};
-    (void)state;
     shape s = {0};
     shape_add_moebius_strip(&s, 6);
     check_shape(&s, 1, &strip);
 }
 
-static void bow_ties(void **state) {
+TEST(bow_ties) {
     static const expected_component tetrahedra = {7, 12, 8, 0, 0, 1, 0, 3, NO_EDGES, 3};
     static const expected_component triangles = {5, 6, 2, 6, 0, 1, 0, 1, {0, 1}, {NONE, NONE}, {NONE, NONE},
                                                  2};
-    (void)state;
     shape s = {0};
     shape_add_tetrahedron(&s, 0, 1, 2, 3);
     shape_add_tetrahedron(&s, 4, 3, 6, 5);
@@ -232,9 +226,8 @@ static void bow_ties(void **state) {
     check_shape(&s, 1, &triangles);
 }
 
-static void three_on_an_edge(void **state) {
+TEST(three_on_an_edge) {
     static const expected_component fins = {5, 7, 3, 6, 1, 0, 0, 1, {0, 2}, {0, 1}, {NONE, NONE}, NONE};
-    (void)state;
     shape s = {0};
     shape_add_triangle(&s, 0, 1, 2);
     shape_add_triangle(&s, 1, 0, 3);
@@ -242,10 +235,9 @@ static void three_on_an_edge(void **state) {
     check_shape(&s, 1, &fins);
 }
 
-static void flipped_triangle(void **state) {
+TEST(flipped_triangle) {
     static const expected_component flipped = {8, 18,           12,           0,      0,   0, 3,
                                                2, {NONE, NONE}, {NONE, NONE}, {0, 1}, NONE};
-    (void)state;
     shape s = {0};
     shape_add_cube(&s);
     uint32_t *v = s.triangles[1], second = v[1]; /* 0 3 1 */
@@ -255,11 +247,10 @@ static void flipped_triangle(void **state) {
 }
 
 /* The same triangle twice is a closed surface without volume; the other way round, an inconsistent one. */
-static void doubled_triangle(void **state) {
+TEST(doubled_triangle) {
     static const expected_component pillow = {3, 3, 2, 0, 0, 0, 0, 2, NO_EDGES, NONE};
     static const expected_component doubled = {3,      3,   2, 0, 0, 0, 3, 2, {NONE, NONE}, {NONE, NONE},
                                                {0, 1}, NONE};
-    (void)state;
     shape s = {0};
     shape_add_triangle(&s, 0, 1, 2);
     shape_add_triangle(&s, 2, 1, 0);
@@ -282,11 +273,10 @@ static void check_refused(cscd_context *context, const cscd_object_desc *desc, c
         fail_msg("no '%s' in '%s'", detail, cscd_context_detail(context));
 }
 
-static void refused_descriptions(void **state) {
+TEST(refused_descriptions) {
     static const uint32_t good[] = {0, 1, 2, 0, 2, 3}, beyond[] = {0, 1, 2, 0, 2, 4};
     static const uint32_t last[] = {0, 1, 2, 3, 2, UINT32_MAX};
     static const uint32_t repeats[3][6] = {{0, 1, 2, 3, 3, 1}, {0, 1, 2, 3, 1, 3}, {0, 1, 2, 1, 3, 3}};
-    (void)state;
     counting_allocator counter = counting_allocator_start();
     cscd_context *context = counted_context(&counter);
     check_refused(context, &(cscd_object_desc){.vertex_count = 4, .triangle_count = 2, .triangles = beyond},
@@ -327,15 +317,4 @@ static void refused_descriptions(void **state) {
     cscd_mesh_destroy(NULL);
     cscd_context_destroy(context);
     assert_int_equal(counter.live, 0);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(closed_surfaces),  cmocka_unit_test(isolated_vertices),
-        cmocka_unit_test(two_components),   cmocka_unit_test(open_surfaces),
-        cmocka_unit_test(moebius_strip),    cmocka_unit_test(bow_ties),
-        cmocka_unit_test(three_on_an_edge), cmocka_unit_test(flipped_triangle),
-        cmocka_unit_test(doubled_triangle), cmocka_unit_test(refused_descriptions),
-    };
-    return cmocka_run_group_tests_name("mesh", tests, NULL, NULL);
 }

@@ -118,8 +118,7 @@ static uint32_t check_components(const cscd_mesh_change *made, const cscd_mesh *
 }
 
 /* Many changes in a row, each from the mesh that the last one made. */
-static void equal_new_meshes(void **state) {
-    (void)state;
+TEST(equal_new_meshes) {
     random_stream random = stream_start(1);
     uint32_t untouched = 0, components = 0;
     for (int round = 0; round < 60; round++) {
@@ -166,10 +165,9 @@ static void check_refused(cscd_context *context, const cscd_mesh *old, const csc
         fail_msg("no '%s' in '%s'", detail, cscd_context_detail(context));
 }
 
-static void refused_changes(void **state) {
+TEST(refused_changes) {
     static const uint32_t triangles[] = {0, 1, 2, 0, 2, 3}, bad[] = {0, 1, 2, 0, 2, 4};
     static const uint32_t far_origins[] = {0, 1, 4, 3};
-    (void)state;
     counting_allocator counter = counting_allocator_start();
     cscd_context *context = counted_context(&counter);
     cscd_object_desc desc = cscd_object_of_triangles(4, 2, triangles), wrong = desc, empty = desc;
@@ -213,8 +211,7 @@ static void refused_changes(void **state) {
 }
 
 /* No change at all: a mesh of its own that equals the old one. */
-static void no_change(void **state) {
-    (void)state;
+TEST(no_change) {
     random_stream random = stream_start(2);
     counting_allocator counter = counting_allocator_start();
     cscd_context *context = counted_context(&counter);
@@ -230,10 +227,4 @@ static void no_change(void **state) {
     cscd_mesh_destroy(old);
     cscd_context_destroy(context);
     assert_int_equal(counter.live, 0);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(equal_new_meshes), cmocka_unit_test(refused_changes),
-                                       cmocka_unit_test(no_change)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

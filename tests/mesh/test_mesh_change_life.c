@@ -9,8 +9,7 @@ static changing_scene changing;
 static scene_change change;
 
 /* The change keeps both meshes, and each of the three contexts lives as long as it is needed. */
-static void any_order_of_destruction(void **state) {
-    (void)state;
+TEST(any_order_of_destruction) {
     random_stream random = stream_start(4);
     for (int order = 0; order < 6; order++) {
         counting_allocator counters[2] = {counting_allocator_start(), counting_allocator_start()};
@@ -64,8 +63,7 @@ static void *read_mesh(void *data) {
 }
 
 /* Both meshes are read from other threads while the next one is made. */
-static void read_by_other_threads(void **state) {
-    (void)state;
+TEST(read_by_other_threads) {
     random_stream random = stream_start(5);
     counting_allocator counter = counting_allocator_start();
     cscd_context *context = counted_context(&counter);
@@ -95,10 +93,4 @@ static void read_by_other_threads(void **state) {
     cscd_mesh_destroy(first);
     cscd_context_destroy(context);
     assert_int_equal(counter.live, 0);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(any_order_of_destruction),
-                                       cmocka_unit_test(read_by_other_threads)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -10,7 +10,7 @@ enum { VERTICES = 5000 }; /* of more than one task */
 
 static double x[VERTICES * 3];
 
-static void limits_are_those_that_are_said(void **state) {
+TEST(limits_are_those_that_are_said) {
     static const size_t places[] = {0, 1, 2, 6143, 6144, 3 * VERTICES - 1};
     const double good[] = {0.0, -0.0, 0x1p-300, -0x1p-300, 0x1p300, -0x1p300, 1.0};
     const double bad[] = {nextafter(0x1p-300, 0.0),
@@ -23,7 +23,6 @@ static void limits_are_those_that_are_said(void **state) {
                           NAN};
     cscd_context *context = NULL;
     char words[64];
-    (void)state;
     assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
     for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
         const size_t at = places[i];
@@ -40,9 +39,4 @@ static void limits_are_those_that_are_said(void **state) {
         x[at] = 0.0;
     }
     cscd_context_destroy(context);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(limits_are_those_that_are_said)};
-    return cmocka_run_group_tests_name("positions", tests, NULL, NULL);
 }

@@ -121,11 +121,10 @@ static void check_collinear(double p[3][3], struct tally *tally) {
     tally->count[turns == 0]++;
 }
 
-static void known_signs(void **state) {
+TEST(known_signs) {
     const double o[3] = {0, 0, 0}, x[3] = {1, 0, 0}, y[3] = {0, 1, 0}, z[3] = {0, 0, 1};
     const double d1[3] = {1, 1, 1}, d3[3] = {3, 3, 3}, bent[3] = {3, 3, nextafter(3, 4)};
 
-    (void)state;
     assert_int_equal(orient2d(0, 0, 1, 0, 0, 1), 1);
     assert_int_equal(orient2d(0, 0, 0, 1, 1, 0), -1);
     assert_int_equal(orient2d(0, 0, 1, 1, 3, 3), 0);
@@ -141,10 +140,9 @@ static void known_signs(void **state) {
 }
 
 /* Integers below 2^40 are also computed in 128 bits, which checks the oracle as well. */
-static void integer_coordinates(void **state) {
+TEST(integer_coordinates) {
     struct tally tally = {{0}};
 
-    (void)state;
     for (int round = 0; round < ROUND_COUNT; round++) {
         double p[4][3];
         __int128 e[3][3], sum = 0;
@@ -178,11 +176,10 @@ static double random_wide(void) {
     return into_domain(ldexp(random_unit(), exponent));
 }
 
-static void mixed_magnitudes(void **state) {
+TEST(mixed_magnitudes) {
     static const int choices[] = {-300, -299, -150, 0, 150, 297, 298};
     struct tally plane = {{0}}, space = {{0}}, lines = {{0}};
 
-    (void)state;
     for (int round = 0; round < ROUND_COUNT; round++) {
         const int exponents[2] = {choices[round % 7], choices[round / 7 % 7]};
         double p[4][3];
@@ -212,10 +209,9 @@ static double random_weight(void) {
     return random_integer(0, 1) ? random_unit() : ldexp(random_integer(-8, 8), -2);
 }
 
-static void near_planes(void **state) {
+TEST(near_planes) {
     struct tally space = {{0}};
 
-    (void)state;
     for (int round = 0; round < ROUND_COUNT; round++) {
         int bits = random_integer(2, 53), exponent = random_integer(-295, 296);
         double p[4][3] = {{0.0}};
@@ -231,10 +227,9 @@ static void near_planes(void **state) {
     require_all_signs("an ulp off a plane", &space);
 }
 
-static void near_lines(void **state) {
+TEST(near_lines) {
     struct tally plane = {{0}}, lines = {{0}};
 
-    (void)state;
     for (int round = 0; round < ROUND_COUNT; round++) {
         int bits = random_integer(2, 53), exponent = random_integer(-295, 296);
         double p[3][3] = {{0.0}};
@@ -252,11 +247,10 @@ static void near_lines(void **state) {
 }
 
 /* n (n + 2) - (n + 1)^2 = -1: determinants of one lowest bit, down to 2^-1056, the last that can occur. */
-static void lowest_bit(void **state) {
+TEST(lowest_bit) {
     const double n = 0x1p52 + 1;
     struct tally tally = {{0}};
 
-    (void)state;
     for (int exponent = -352; exponent <= 247; exponent++) {
         double x = ldexp(n, exponent), y = ldexp(n + 1, exponent), z = ldexp(n + 2, exponent);
         double p[4][3] = {{0, 0, 0}, {x, y, 0}, {y, z, 0}, {0, 0, 0}};
@@ -274,8 +268,7 @@ static void lowest_bit(void **state) {
 }
 
 /* Scaling by powers of two, up to the ends of the domain, changes no sign. */
-static void powers_of_two(void **state) {
-    (void)state;
+TEST(powers_of_two) {
     for (int round = 0; round < ROUND_COUNT; round++) {
         double p[4][3], q[4][3];
         int exponent = random_integer(-300, 297);
@@ -290,16 +283,4 @@ static void powers_of_two(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(known_signs),
-        cmocka_unit_test_setup(integer_coordinates, seed_random),
-        cmocka_unit_test_setup(mixed_magnitudes, seed_random),
-        cmocka_unit_test_setup(near_planes, seed_random),
-        cmocka_unit_test_setup(near_lines, seed_random),
-        cmocka_unit_test(lowest_bit),
-        cmocka_unit_test_setup(powers_of_two, seed_random),
-    };
-
-    return cmocka_run_group_tests_name("predicates", tests, NULL, NULL);
-}
+AROUND_EACH(seed_random, NULL)

@@ -35,8 +35,7 @@ static void make_points(random_stream *random, random_points *r) {
     }
 }
 
-static void orientations_in_space(void **state) {
-    (void)state;
+TEST(orientations_in_space) {
     random_stream random = stream_start(1);
     random_points r;
     int degenerate = 0;
@@ -52,8 +51,7 @@ static void orientations_in_space(void **state) {
     assert_true(degenerate > ROUNDS / 3);
 }
 
-static void orientations_in_projections(void **state) {
-    (void)state;
+TEST(orientations_in_projections) {
     random_stream random = stream_start(2);
     random_points r;
     for (int round = 0; round < ROUNDS; round++) {
@@ -67,8 +65,7 @@ static void orientations_in_projections(void **state) {
 }
 
 /* Two tetrahedra with a common face: their first terms may have one power. */
-static void powers_of_terms(void **state) {
-    (void)state;
+TEST(powers_of_terms) {
     random_stream random = stream_start(3);
     random_points r;
     int equal = 0, smaller = 0;
@@ -86,13 +83,4 @@ static void powers_of_terms(void **state) {
         smaller += p < q;
     }
     assert_true(equal > 100 && smaller > 1000);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(orientations_in_space),
-        cmocka_unit_test(orientations_in_projections),
-        cmocka_unit_test(powers_of_terms),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -121,33 +121,28 @@ static void check_class(int shared_count) {
     if (shared_count < 3) assert_true(meeting >= 500);
 }
 
-static void no_shared_vertex(void **state) {
-    (void)state;
+TEST(no_shared_vertex) {
     check_class(0);
 }
 
-static void one_shared_vertex(void **state) {
-    (void)state;
+TEST(one_shared_vertex) {
     check_class(1);
 }
 
-static void two_shared_vertices(void **state) {
-    (void)state;
+TEST(two_shared_vertices) {
     check_class(2);
 }
 
-static void three_shared_vertices(void **state) {
-    (void)state;
+TEST(three_shared_vertices) {
     check_class(3);
 }
 
-static void known_pairs(void **state) {
+TEST(known_pairs) {
     /* A triangle in z = 0, then points above, below, within and beside it. */
     const double positions[] = {0, 0, 0, 4, 0, 0, 0, 4, 0, 1, 1, 1, 1, 1, -1, 9, 9, 1,
                                 1, 1, 0, 2, 2, 0, 5, 5, 0, 1, 2, 0, 4, 4, 0,  0, 0, 0};
     const uint32_t base[3] = {0, 1, 2};
 
-    (void)state;
     assert_true(triangles_intersect(base, (uint32_t[]){3, 4, 5}, positions));   /* pierced */
     assert_true(triangles_intersect(base, (uint32_t[]){3, 5, 6}, positions));   /* touched by a vertex */
     assert_true(triangles_intersect(base, (uint32_t[]){7, 8, 5}, positions));   /* touched on an edge */
@@ -162,14 +157,4 @@ static void known_pairs(void **state) {
     assert_false(triangles_intersect(base, (uint32_t[]){2, 1, 0}, positions));  /* the same three */
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(known_pairs),
-        cmocka_unit_test_setup(no_shared_vertex, seed_random),
-        cmocka_unit_test_setup(one_shared_vertex, seed_random),
-        cmocka_unit_test_setup(two_shared_vertices, seed_random),
-        cmocka_unit_test_setup(three_shared_vertices, seed_random),
-    };
-
-    return cmocka_run_group_tests_name("triangle_intersection", tests, NULL, NULL);
-}
+AROUND_EACH(seed_random, NULL)

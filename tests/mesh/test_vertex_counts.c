@@ -31,8 +31,7 @@ static int close_context(void **state) {
 }
 
 /* The counts of a mistake: one too many, and numbers that were negative. */
-static void absurd_counts_are_refused(void **state) {
-    (void)state;
+TEST(absurd_counts_are_refused) {
     cscd_mesh *none = NULL;
     size_t peak = counter.peak;
     assert_int_equal(create_one_triangle(MOST + 1, &none), CSCD_INVALID_MESH);
@@ -43,16 +42,11 @@ static void absurd_counts_are_refused(void **state) {
     assert_true(counter.peak < peak + 1000); /* a copy of the description only */
 }
 
-static void spare_vertices_cost_little(void **state) {
-    (void)state;
+TEST(spare_vertices_cost_little) {
     cscd_mesh *mesh = NULL;
     assert_int_equal(create_one_triangle(MOST, &mesh), CSCD_OK);
     assert_true(counter.peak < (size_t)MOST * 4 + 10000);
     cscd_mesh_destroy(mesh);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(absurd_counts_are_refused),
-                                       cmocka_unit_test(spare_vertices_cost_little)};
-    return cmocka_run_group_tests_name("vertex counts", tests, open_context, close_context);
-}
+AROUND_ALL(open_context, close_context)

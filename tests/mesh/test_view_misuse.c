@@ -12,8 +12,7 @@ static void expect_coordinate(double x, const char *words) {
     assert_int_equal(found.count, 77);
 }
 
-static void positions_that_cannot_be(void **state) {
-    (void)state;
+TEST(positions_that_cannot_be) {
     cscd_contacts found;
     EXPECT_ARGUMENT(cscd_detector_step(detector, NULL, AT_END, &found), "x0 is NULL");
     EXPECT_ARGUMENT(cscd_detector_step(detector, AT_START, NULL, &found), "x1 is NULL");
@@ -41,8 +40,7 @@ static void expect_no_view(cscd_view view, const char *words) {
         expect_no_view(changed, words);                                                                      \
     } while (0)
 
-static void views_that_cannot_be_read(void **state) {
-    (void)state;
+TEST(views_that_cannot_be_read) {
     EXPECT_NO_VIEW(data, NULL, "x0[0].data is NULL");
     EXPECT_NO_VIEW(scalar, (cscd_scalar)9,
                    "x0[0].scalar is 9, expected CSCD_SCALAR_DOUBLE or CSCD_SCALAR_FLOAT");
@@ -69,8 +67,7 @@ static void expect_not_written(const cscd_mutable_view *reached, const char *wor
     assert_true(step.fraction == 77.0);
 }
 
-static void views_that_cannot_be_written(void **state) {
-    (void)state;
+TEST(views_that_cannot_be_written) {
     double out[COORDINATES] = {0};
     cscd_mutable_view view = cscd_mutable_view_doubles(out, VERTICES);
     expect_not_written(CSCD_MUTABLE_DOUBLES(out, 4), "reached[0] has 96 bytes, room for 4 of its 8 vertices");
@@ -81,8 +78,7 @@ static void views_that_cannot_be_written(void **state) {
 }
 
 /* Views of two objects: side by side, interlocked, or on each other. */
-static void views_on_each_other(void **state) {
-    (void)state;
+TEST(views_on_each_other) {
     cscd_mesh *both = NULL;
     cscd_detector *of_both = NULL;
     cscd_free_step step;
@@ -110,8 +106,7 @@ static void views_on_each_other(void **state) {
 }
 
 /* What is written may lie on what was read: on x0, on x1, or across both. */
-static void reached_positions_may_replace_others(void **state) {
-    (void)state;
+TEST(reached_positions_may_replace_others) {
     double expected[COORDINATES], both[2 * COORDINATES];
     cscd_free_step step;
     expect_success(
@@ -126,13 +121,4 @@ static void reached_positions_may_replace_others(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(positions_that_cannot_be),
-        cmocka_unit_test(views_that_cannot_be_read),
-        cmocka_unit_test(views_that_cannot_be_written),
-        cmocka_unit_test(views_on_each_other),
-        cmocka_unit_test(reached_positions_may_replace_others),
-    };
-    return cmocka_run_group_tests_name("misuse of views", tests, set_up, tear_down);
-}
+AROUND_ALL(set_up, tear_down)

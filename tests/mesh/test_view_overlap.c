@@ -53,8 +53,7 @@ static view_grid random_grid(size_t stride) {
     return g;
 }
 
-static void one_view(void **state) {
-    (void)state;
+TEST(one_view) {
     int overlapping = 0;
     random_seed(1);
     for (int i = 0; i < VIEWS; i++) {
@@ -71,8 +70,7 @@ static void one_view(void **state) {
 }
 
 /* Only views that do not overlap themselves are compared, half of them with equal strides. */
-static void two_views(void **state) {
-    (void)state;
+TEST(two_views) {
     int overlapping = 0, compared = 0;
     random_seed(2);
     while (compared < VIEWS) {
@@ -91,8 +89,7 @@ static void two_views(void **state) {
 }
 
 /* Views that hold all the memory that there can be are compared without overflow. */
-static void large_views(void **state) {
-    (void)state;
+TEST(large_views) {
     const size_t most = SIZE_MAX / 16 + 1;
     view_grid a = {memory, most / 2, 8, 8, 2}, b = {memory + 24, most / 4, 8, 8, 3};
     view_clash clash;
@@ -101,10 +98,4 @@ static void large_views(void **state) {
     b.data = memory + 16;
     assert_true(views_overlap(&a, &b, &clash));
     assert_true(clash.vertices[0] == 0 && clash.coordinates[0] == 2 && clash.coordinates[1] == 0);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(one_view), cmocka_unit_test(two_views),
-                                       cmocka_unit_test(large_views)};
-    return cmocka_run_group_tests_name("view overlap", tests, NULL, NULL);
 }

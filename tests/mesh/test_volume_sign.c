@@ -93,8 +93,7 @@ static double any_coordinate(random_stream *random, uint32_t family) {
     }
 }
 
-static void signs_are_those_of_integers(void **state) {
-    (void)state;
+TEST(signs_are_those_of_integers) {
     uint32_t of_sign[3] = {0, 0, 0};
     for (int cube = 0; cube < 2; cube++) {
         volume_rig r;
@@ -115,8 +114,7 @@ static void signs_are_those_of_integers(void **state) {
 }
 
 /* Carries go through all limbs. */
-static void sums_carry(void **state) {
-    (void)state;
+TEST(sums_carry) {
     volume_rig r;
     make_rig(&r, false);
     static const double corners[] = {0, 0, 0, 0x1p300, 0, 0, 0, 0x1p300, 0, 0x1p-300, 0x1p-300, 0};
@@ -133,8 +131,7 @@ static void sums_carry(void **state) {
 
 /* A cube whose opposite halves are as large, one of them inside out: mirror symmetric, with its middle passing through
  * itself. */
-static void what_encloses_nothing_has_no_sign(void **state) {
-    (void)state;
+TEST(what_encloses_nothing_has_no_sign) {
     volume_rig r;
     make_rig(&r, true);
     for (uint32_t v = 0; v < 8; v++) {
@@ -147,13 +144,4 @@ static void what_encloses_nothing_has_no_sign(void **state) {
     r.x[0] = nextafter(r.x[0], 1.0);
     assert_int_not_equal(compare_sign(&r), 0);
     free_rig(&r);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(signs_are_those_of_integers),
-        cmocka_unit_test(sums_carry),
-        cmocka_unit_test(what_encloses_nothing_has_no_sign),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -76,8 +76,7 @@ static void expect_within_bounds(const driver_trial *t) {
 }
 
 /* With one round a frame, the straight motion of the frame is what was certified. */
-static void single_rounds_have_no_contact(void **state) {
-    (void)state;
+TEST(single_rounds_have_no_contact) {
     static const char *const scenes[] = {"cloth-drape", "sleeve", "bag"};
     uint32_t shortened = 0;
     for (int i = 0; i < 6; i++) {
@@ -98,8 +97,7 @@ static void single_rounds_have_no_contact(void **state) {
 }
 
 /* With more rounds most of the motion is left, obstacles hardly wait, and planes need fewer rounds than balls. */
-static void rounds_leave_most_of_the_motion(void **state) {
-    (void)state;
+TEST(rounds_leave_most_of_the_motion) {
     uint64_t rounds[DRIVER_COUNT] = {0};
     for (motion_driver driver = DRIVER_BOUNDS; driver < DRIVER_COUNT; driver++) {
         driver_trial t = begin_trial("cloth-drape", driver);
@@ -117,8 +115,7 @@ static void rounds_leave_most_of_the_motion(void **state) {
 
 /* An obstacle that falls onto a triangle at rest stops before it, as a whole, though only one of its corners is in the
  * way. */
-static void obstacles_stop_as_a_whole(void **state) {
-    (void)state;
+TEST(obstacles_stop_as_a_whole) {
     static const uint32_t triangle[] = {0, 1, 2};
     static const double x0[18] = {-1.0, -1.0, 0.0,  1.0, -1.0, 0.0, 0.0, 1.0, 0.0,
                                   0.0,  0.0,  0.25, 4.0, 0.0,  2.0, 0.0, 4.0, 2.0};
@@ -148,13 +145,4 @@ static void obstacles_stop_as_a_whole(void **state) {
         cscd_mesh_destroy(mesh);
         cscd_context_destroy(context);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(single_rounds_have_no_contact),
-        cmocka_unit_test(obstacles_stop_as_a_whole),
-        cmocka_unit_test(rounds_leave_most_of_the_motion),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

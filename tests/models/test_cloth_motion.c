@@ -88,8 +88,7 @@ static void lift_vertices(press *p, uint32_t first, uint32_t last, double by) {
     for (uint32_t v = first; v < last; v++) p->x1[v * 3 + 2] += by;
 }
 
-static void free_motions_are_left_alone(void **state) {
-    (void)state;
+TEST(free_motions_are_left_alone) {
     press p = make_press(0.3, 0.3);
     random_stream random = stream_start(3);
     for (uint32_t i = 0; i < p.floor * 3; i++) p.x1[i] += stream_between(&random, -0.02, 0.02);
@@ -105,8 +104,7 @@ static void free_motions_are_left_alone(void **state) {
 }
 
 /* The sheet stops at the floor, not nearer than the separation, and keeps its motion along the floor. */
-static void what_falls_stops_at_the_floor(void **state) {
-    (void)state;
+TEST(what_falls_stops_at_the_floor) {
     press p = make_press(0.1, 1.0);
     lift_vertices(&p, 0, p.floor, -0.5);
     for (uint32_t v = 0; v < p.floor; v++) p.x1[v * 3] += 0.2;
@@ -121,8 +119,7 @@ static void what_falls_stops_at_the_floor(void **state) {
 }
 
 /* Vertices jump by more than an edge, again and again: the sheet ends in a tangle without intersections. */
-static void shaken_sheets_never_intersect(void **state) {
-    (void)state;
+TEST(shaken_sheets_never_intersect) {
     for (uint64_t seed = 0; seed < 2; seed++) {
         press p = make_press(0.3, 0.3);
         random_stream random = stream_start(seed);
@@ -137,8 +134,7 @@ static void shaken_sheets_never_intersect(void **state) {
 
 /* The lid is asked to move through sheet and floor, and waits above the sheet. Then it moves up again, and
  * everything comes free. */
-static void obstacles_wait_for_what_they_press(void **state) {
-    (void)state;
+TEST(obstacles_wait_for_what_they_press) {
     press p = make_press(0.05, 0.05);
     double way = 0.0;
     for (int motion = 0; motion < 40; motion++) {
@@ -160,8 +156,7 @@ static void obstacles_wait_for_what_they_press(void **state) {
 }
 
 /* A sheet that moves as a whole while it folds onto itself keeps its momentum. */
-static void what_meets_itself_keeps_its_momentum(void **state) {
-    (void)state;
+TEST(what_meets_itself_keeps_its_momentum) {
     press p = make_press(5.0, 5.0);
     double wanted[3] = {0.0}, got[3] = {0.0};
     for (uint32_t v = 0; v < p.floor; v++) {
@@ -178,15 +173,4 @@ static void what_meets_itself_keeps_its_momentum(void **state) {
         got[i % 3] += (p.x0[i] - p.sheet.positions[i]) / p.inverse_masses[i / 3];
     for (int k = 0; k < 3; k++) assert_true(fabs(wanted[k] - got[k]) < 1e-12 * SIDE * SIDE);
     free_press(&p);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(free_motions_are_left_alone),
-        cmocka_unit_test(what_falls_stops_at_the_floor),
-        cmocka_unit_test(shaken_sheets_never_intersect),
-        cmocka_unit_test(obstacles_wait_for_what_they_press),
-        cmocka_unit_test(what_meets_itself_keeps_its_momentum),
-    };
-    return cmocka_run_group_tests_name("cloth motion", tests, NULL, NULL);
 }

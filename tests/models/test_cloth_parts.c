@@ -26,8 +26,7 @@ static cscd_component only_component(const body *b) {
     return component;
 }
 
-static void sheets_are_open(void **state) {
-    (void)state;
+TEST(sheets_are_open) {
     for (uint32_t side = 2; side < 30; side += 9) {
         body b = {0};
         garment_add_sheet(&b, side, 1.5);
@@ -43,8 +42,7 @@ static void sheets_are_open(void **state) {
 }
 
 /* The seams join the two panels into one disc with an open edge as long as both lower edges. */
-static void bags_are_sewn_from_two_panels(void **state) {
-    (void)state;
+TEST(bags_are_sewn_from_two_panels) {
     enum { COLUMNS = 7, ROWS = 9 };
     body b = {0};
     uint32_t seam_count, *seams = garment_bag_seams(COLUMNS, ROWS, &seam_count);
@@ -73,8 +71,7 @@ static void check_closed(body *b, double volume) {
     body_free(b);
 }
 
-static void tubes_balls_and_boxes_are_closed(void **state) {
-    (void)state;
+TEST(tubes_balls_and_boxes_are_closed) {
     body tube = {0}, ball = {0}, box = {0};
     io_error error;
     garment_add_tube(&tube, 3000, 0.25, 1.3);
@@ -115,8 +112,7 @@ static void check_rest(const body *b) {
     fabric_free(&f);
 }
 
-static void what_rests_stays(void **state) {
-    (void)state;
+TEST(what_rests_stays) {
     body sheet = make_sheet(12), tube = {0};
     garment_add_tube(&tube, 1500, 0.25, 1.0);
     check_rest(&sheet);
@@ -126,8 +122,7 @@ static void what_rests_stays(void **state) {
 }
 
 /* There is one spring for each edge and one hinge for each inner edge; masses add up to that of the area. */
-static void fabric_counts(void **state) {
-    (void)state;
+TEST(fabric_counts) {
     body b = make_sheet(10);
     fabric f = fabric_make(&b, &cotton);
     double mass = 0.0;
@@ -141,8 +136,7 @@ static void fabric_counts(void **state) {
 
 /* Checks the sums of mass * change and of its moment. Each constraint keeps both where it is solved; since
  * vertices move during the pass, this holds for small changes. */
-static void springs_and_hinges_keep_momentum(void **state) {
-    (void)state;
+TEST(springs_and_hinges_keep_momentum) {
     body b = make_sheet(10);
     fabric f = fabric_make(&b, &cotton);
     double *before = copy_of(b.positions, b.vertex_count * 3), *x, linear[3] = {0}, angular[3] = {0},
@@ -169,8 +163,7 @@ static void springs_and_hinges_keep_momentum(void **state) {
 
 /* A sheet is held at its upper edge for three seconds: no edge is more than 3 % longer, and it hangs
  * still. */
-static void a_hanging_sheet_stretches_little(void **state) {
-    (void)state;
+TEST(a_hanging_sheet_stretches_little) {
     enum { SIDE = 12, STEPS = 3000 };
     body b = make_sheet(SIDE);
     fabric_material stuff = cotton;
@@ -221,8 +214,7 @@ static void solve_one(double from_height, const double motion[3], double x[12], 
     assert_memory_equal(x + 3, triangle + 3, 9 * sizeof *x);
 }
 
-static void what_approaches_is_stopped_at_the_thickness(void **state) {
-    (void)state;
+TEST(what_approaches_is_stopped_at_the_thickness) {
     double x[12], previous[12];
     solve_one(0.03, (double[3]){0.0, 0.0, -0.01}, x, previous); /* still far enough */
     assert_true(x[2] == 0.03 - 0.01);
@@ -233,8 +225,7 @@ static void what_approaches_is_stopped_at_the_thickness(void **state) {
 }
 
 /* When a pair is too near, position and previous position move alike. */
-static void what_is_too_near_parts_without_speed(void **state) {
-    (void)state;
+TEST(what_is_too_near_parts_without_speed) {
     double x[12], previous[12];
     solve_one(0.004, (double[3]){0.0, 0.0, 0.0}, x, previous);
     assert_true(fabs(x[2] - 0.0046) < 1e-15);
@@ -242,8 +233,7 @@ static void what_is_too_near_parts_without_speed(void **state) {
 }
 
 /* The tangential motion shrinks by friction times what was stopped, at most to zero. */
-static void friction_is_coulombs(void **state) {
-    (void)state;
+TEST(friction_is_coulombs) {
     double x[12], previous[12];
     solve_one(0.01, (double[3]){0.03, 0.04, -0.02}, x, previous);
     assert_true(fabs(hypot(x[0], x[1]) - (0.05 - 0.5 * 0.02)) < 1e-15);
@@ -254,8 +244,7 @@ static void friction_is_coulombs(void **state) {
     assert_true(fabs(hypot(x[0], x[1]) - 0.05) < 1e-15);
 }
 
-static void obstacles_move_as_told(void **state) {
-    (void)state;
+TEST(obstacles_move_as_told) {
     const cloth_obstacle o = {.kind = CLOTH_BALL,
                               .size = 0.5,
                               .centre = {1.0, 2.0, 3.0},
@@ -277,21 +266,4 @@ static void obstacles_move_as_told(void **state) {
     }
     free(x);
     body_free(&shape);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sheets_are_open),
-        cmocka_unit_test(tubes_balls_and_boxes_are_closed),
-        cmocka_unit_test(bags_are_sewn_from_two_panels),
-        cmocka_unit_test(what_rests_stays),
-        cmocka_unit_test(fabric_counts),
-        cmocka_unit_test(springs_and_hinges_keep_momentum),
-        cmocka_unit_test(a_hanging_sheet_stretches_little),
-        cmocka_unit_test(what_approaches_is_stopped_at_the_thickness),
-        cmocka_unit_test(what_is_too_near_parts_without_speed),
-        cmocka_unit_test(friction_is_coulombs),
-        cmocka_unit_test(obstacles_move_as_told),
-    };
-    return cmocka_run_group_tests_name("cloth parts", tests, NULL, NULL);
 }

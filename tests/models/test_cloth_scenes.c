@@ -157,8 +157,7 @@ static bool run_scene(cloth_trial *t, size_t *most_folds) {
 }
 
 /* The sheet lies on the ball and the floor: above both, and near the ball's top where it covers it. */
-static void the_sheet_drapes_over_the_ball(void **state) {
-    (void)state;
+TEST(the_sheet_drapes_over_the_ball) {
     cloth_trial t = begin_trial("cloth-drape", 1);
     const cloth_obstacle *ball = &t.run.scene->obstacles[1];
     double top = ball->centre[2] + ball->rise + ball->size, highest = 0.0;
@@ -178,8 +177,7 @@ static void the_sheet_drapes_over_the_ball(void **state) {
 }
 
 /* The sleeve ends flat on the floor, below the height of the ball. */
-static void the_sleeve_lies_in_folds(void **state) {
-    (void)state;
+TEST(the_sleeve_lies_in_folds) {
     cloth_trial t = begin_trial("sleeve", 1);
     double highest = 0.0;
     size_t most_folds;
@@ -199,8 +197,7 @@ static void the_sleeve_lies_in_folds(void **state) {
 
 /* The panels of the bag touch only each other, at their seams, where their vertices stay equal bit for
  * bit. */
-static void seams_hold(void **state) {
-    (void)state;
+TEST(seams_hold) {
     cloth_trial t = begin_trial("bag", 1);
     expect_embedded(t.judge, t.after);
     assert_true(t.run.seam_count > 3 * (RESOLUTION - 1));
@@ -247,14 +244,12 @@ static void expect_reason(const char *name, cscd_reason reason, bool culls) {
     end_trial(&t);
 }
 
-static void guarantees_say_what_was_culled(void **state) {
-    (void)state;
+TEST(guarantees_say_what_was_culled) {
     expect_reason("cloth-drape", CSCD_REASON_SURFACE, false);
     expect_reason("sleeve", CSCD_REASON_CLEAN, true);
 }
 
-static void threads_change_nothing(void **state) {
-    (void)state;
+TEST(threads_change_nothing) {
     for (uint32_t i = 0; i < cloth_scene_count; i++) {
         cloth_trial one = begin_trial(cloth_scenes[i].name, 1), three = begin_trial(cloth_scenes[i].name, 3);
         for (uint32_t frame = 1; frame < THREADED_FRAMES; frame++) {
@@ -268,15 +263,4 @@ static void threads_change_nothing(void **state) {
         end_trial(&one);
         end_trial(&three);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_sheet_drapes_over_the_ball),
-        cmocka_unit_test(the_sleeve_lies_in_folds),
-        cmocka_unit_test(seams_hold),
-        cmocka_unit_test(guarantees_say_what_was_culled),
-        cmocka_unit_test(threads_change_nothing),
-    };
-    return cmocka_run_group_tests_name("cloth scenes", tests, NULL, NULL);
 }

@@ -16,8 +16,7 @@ static void assert_close(double a, double b, double tolerance) {
     if (!(fabs(a - b) <= tolerance)) fail_msg("%.17g is not within %g of %.17g", a, tolerance, b);
 }
 
-static void barrier_has_its_derivatives(void **state) {
-    (void)state;
+TEST(barrier_has_its_derivatives) {
     const double reach = 0.03, small = 1e-6;
     for (int i = 1; i < 100; i++) {
         double d = reach * i / 100.0, h = small * d;
@@ -30,8 +29,7 @@ static void barrier_has_its_derivatives(void **state) {
 }
 
 /* The value and two derivatives go to 0 at the reach; the value exceeds every bound at 0. */
-static void barrier_begins_smoothly_and_has_no_end(void **state) {
-    (void)state;
+TEST(barrier_begins_smoothly_and_has_no_end) {
     ipc_curve before = ipc_barrier(1.0 - 1e-9, 1.0), at = ipc_barrier(1.0, 1.0), far = ipc_barrier(7.0, 1.0);
     assert_close(before.value, 0.0, 1e-25);
     assert_close(before.slope, 0.0, 1e-16);
@@ -47,8 +45,7 @@ static void barrier_begins_smoothly_and_has_no_end(void **state) {
     assert_true(ipc_barrier(1e-300, 1.0).value > 600.0);
 }
 
-static void mollifier_goes_from_none_to_all(void **state) {
-    (void)state;
+TEST(mollifier_goes_from_none_to_all) {
     const double threshold = 0.7, h = 1e-6;
     assert_true(ipc_mollifier(0.0, threshold).value == 0.0);
     assert_true(ipc_mollifier(threshold, threshold).value == 1.0);
@@ -82,8 +79,7 @@ static double *moved_copy(const body *b, double scale, double noise, uint64_t se
 
 /* Each edge has one spring, each vertex one strut or more, and all are sorted. There is no energy at rest,
  * wherever the body is. */
-static void springs_hold_the_body(void **state) {
-    (void)state;
+TEST(springs_hold_the_body) {
     static const body_kind kinds[] = {BODY_SPHERE, BODY_TORUS, BODY_PAWN};
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
         body b = make_body(kinds[k], 600);
@@ -114,8 +110,7 @@ static double directional_derivative(const double *gradient, const double *direc
     return sum;
 }
 
-static void springs_have_their_gradient(void **state) {
-    (void)state;
+TEST(springs_have_their_gradient) {
     body b = make_body(BODY_TORUS, 400);
     ipc_springs springs = {0};
     uint32_t count = b.vertex_count * 3;
@@ -142,8 +137,7 @@ static void springs_have_their_gradient(void **state) {
 
 /* When a spring is stretched, its Hessian is the derivative of the force; when it is compressed, only the
  * part along it is kept. */
-static void spring_hessians_are_semidefinite(void **state) {
-    (void)state;
+TEST(spring_hessians_are_semidefinite) {
     ipc_spring spring = {0, 1, 1.0, 3.0};
     const ipc_springs springs = {&spring, 1, 1};
     for (int stretched = 0; stretched < 2; stretched++) {
@@ -244,8 +238,7 @@ static void check_gradient(near_fixture *f, double tolerance) {
     ipc_contacts_free(&moved);
 }
 
-static void near_pairs_have_their_gradient(void **state) {
-    (void)state;
+TEST(near_pairs_have_their_gradient) {
     for (uint64_t seed = 0; seed < 40; seed++) {
         near_fixture f = proximity_make(seed, seed % 2 == 0, 0.3 + 0.03 * (double)seed);
         check_gradient(&f, 1e-5);
@@ -254,8 +247,7 @@ static void near_pairs_have_their_gradient(void **state) {
 }
 
 /* The edges are so nearly parallel that they fade: the mollifier's part of the gradient counts. */
-static void nearly_parallel_edges_have_their_gradient(void **state) {
-    (void)state;
+TEST(nearly_parallel_edges_have_their_gradient) {
     for (uint64_t seed = 0; seed < 20; seed++) {
         near_fixture f = proximity_make(seed, true, 0.012);
         for (int v = 0; v < 8; v++) {
@@ -270,8 +262,7 @@ static void nearly_parallel_edges_have_their_gradient(void **state) {
 
 /* x . Hessian x is the sum of curvature * (change of distance)^2; differences give the change of each
  * distance. */
-static void near_pairs_have_their_curvature(void **state) {
-    (void)state;
+TEST(near_pairs_have_their_curvature) {
     for (uint64_t seed = 0; seed < 20; seed++) {
         near_fixture f = proximity_make(seed, seed % 2 == 0, 0.9);
         random_stream random = stream_start(1000 + seed);
@@ -300,19 +291,4 @@ static void near_pairs_have_their_curvature(void **state) {
         ipc_contacts_free(&contacts);
         proximity_free(&f);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(barrier_has_its_derivatives),
-        cmocka_unit_test(barrier_begins_smoothly_and_has_no_end),
-        cmocka_unit_test(mollifier_goes_from_none_to_all),
-        cmocka_unit_test(springs_hold_the_body),
-        cmocka_unit_test(springs_have_their_gradient),
-        cmocka_unit_test(spring_hessians_are_semidefinite),
-        cmocka_unit_test(near_pairs_have_their_gradient),
-        cmocka_unit_test(nearly_parallel_edges_have_their_gradient),
-        cmocka_unit_test(near_pairs_have_their_curvature),
-    };
-    return cmocka_run_group_tests_name("ipc: energies", tests, NULL, NULL);
 }

@@ -75,8 +75,7 @@ static void free_system(system_fixture *f) {
 
 /* Compares column by column: the matrix is symmetric and positive where vertices are free, and the
  * preconditioner has the inverses of the blocks on its diagonal. */
-static void product_is_that_of_a_symmetric_positive_matrix(void **state) {
-    (void)state;
+TEST(product_is_that_of_a_symmetric_positive_matrix) {
     system_fixture f;
     make_system(&f, 1);
     double *matrix = body_allocate((size_t)f.count * f.count, sizeof *matrix);
@@ -122,8 +121,7 @@ static void product_is_that_of_a_symmetric_positive_matrix(void **state) {
 }
 
 /* The solution satisfies matrix * x = -gradient where vertices are free; the others move as prescribed. */
-static void solution_solves(void **state) {
-    (void)state;
+TEST(solution_solves) {
     for (uint64_t seed = 0; seed < 10; seed++) {
         system_fixture f;
         make_system(&f, seed);
@@ -143,8 +141,7 @@ static void solution_solves(void **state) {
 }
 
 /* Every iterate is a descent direction, however early the solver stops. */
-static void every_iterate_leads_down(void **state) {
-    (void)state;
+TEST(every_iterate_leads_down) {
     system_fixture f;
     make_system(&f, 5);
     double last = 0.0;
@@ -159,22 +156,11 @@ static void every_iterate_leads_down(void **state) {
     free_system(&f);
 }
 
-static void nothing_to_solve_takes_nothing(void **state) {
-    (void)state;
+TEST(nothing_to_solve_takes_nothing) {
     system_fixture f;
     make_system(&f, 6);
     memset(f.gradient, 0, f.count * sizeof *f.gradient);
     assert_int_equal(ipc_system_solve(&f.system, f.gradient, 1e-3, 100, f.x), 0);
     for (uint32_t i = 0; i < f.count; i++) assert_true(f.x[i] == 0.0);
     free_system(&f);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(product_is_that_of_a_symmetric_positive_matrix),
-        cmocka_unit_test(solution_solves),
-        cmocka_unit_test(every_iterate_leads_down),
-        cmocka_unit_test(nothing_to_solve_takes_nothing),
-    };
-    return cmocka_run_group_tests_name("ipc: newton system", tests, NULL, NULL);
 }

@@ -151,8 +151,7 @@ static void mean_of(const ipc_solver *p, uint32_t object, double out[3]) {
 
 /* Without contact the links would be 11 below the first by then. Two linked rings are at most two inner
  * radii of 0.78 apart, or somewhat more when they are stretched. */
-static void links_bear_each_other(void **state) {
-    (void)state;
+TEST(links_bear_each_other) {
     cscd_context *context = open_context(1);
     ipc_solver p = run_and_judge(&extents[0], context);
     double above[3], below[3], between[3];
@@ -180,8 +179,7 @@ static void links_bear_each_other(void **state) {
 }
 
 /* Half way, the upper plate has arrived, and the coil has contacts with the plates and itself. */
-static void the_press_arrives_and_the_coil_gives_way(void **state) {
-    (void)state;
+TEST(the_press_arrives_and_the_coil_gives_way) {
     cscd_context *context = open_context(1);
     ipc_solver p = run_and_judge(&extents[1], context);
     cscd_object coil = cscd_mesh_object(p.mesh, 0), plate = cscd_mesh_object(p.mesh, 2);
@@ -209,8 +207,7 @@ static void the_press_arrives_and_the_coil_gives_way(void **state) {
 }
 
 /* Vertices fly apart in all directions, so fast that whole Newton steps go too far. */
-static void the_energy_falls_however_wild_the_motion(void **state) {
-    (void)state;
+TEST(the_energy_falls_however_wild_the_motion) {
     cscd_context *context = open_context(1);
     ipc_solver p = open_scene(&extents[1], context);
     judges j = call_judges(&p);
@@ -238,8 +235,7 @@ static double *positions_after(const struct extent *e, uint32_t threads, size_t 
     return out;
 }
 
-static void motion_is_the_same_for_any_number_of_threads(void **state) {
-    (void)state;
+TEST(motion_is_the_same_for_any_number_of_threads) {
     for (int i = 0; i < SCENE_COUNT; i++) {
         size_t size, again_size;
         double *once = positions_after(&extents[i], 1, &size),
@@ -252,8 +248,7 @@ static void motion_is_the_same_for_any_number_of_threads(void **state) {
 }
 
 /* Frame 0 is in single precision, without intersections and without pairs nearer than the least distance. */
-static void scenes_begin_apart(void **state) {
-    (void)state;
+TEST(scenes_begin_apart) {
     cscd_context *context = open_context(1);
     assert_int_equal(ipc_scene_count, SCENE_COUNT);
     assert_null(ipc_scene_find("ring"));
@@ -276,8 +271,7 @@ static void scenes_begin_apart(void **state) {
     cscd_context_destroy(context);
 }
 
-static void obstacles_travel_there_and_back(void **state) {
-    (void)state;
+TEST(obstacles_travel_there_and_back) {
     const ipc_scene *s = ipc_scene_find("press");
     double last = 0.0;
     assert_true(ipc_scene_travelled(s, 0.0) == 0.0 && ipc_scene_travelled(s, s->travel_seconds / 2.0) == 1.0);
@@ -287,16 +281,4 @@ static void obstacles_travel_there_and_back(void **state) {
                     fabs(share - ipc_scene_travelled(s, s->travel_seconds * (100 - i) / 100.0)) < 1e-9);
         last = share;
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(links_bear_each_other),
-        cmocka_unit_test(the_press_arrives_and_the_coil_gives_way),
-        cmocka_unit_test(the_energy_falls_however_wild_the_motion),
-        cmocka_unit_test(motion_is_the_same_for_any_number_of_threads),
-        cmocka_unit_test(scenes_begin_apart),
-        cmocka_unit_test(obstacles_travel_there_and_back),
-    };
-    return cmocka_run_group_tests_name("ipc: scenes", tests, NULL, NULL);
 }

@@ -76,8 +76,7 @@ static void tear_down(object_setting *s) {
 
 /* ---- numbering ----------------------------------------------------------------------------------------- */
 
-static void features_follow_each_other(void **state) {
-    (void)state;
+TEST(features_follow_each_other) {
     make_objects(1);
     object_setting s = set_up(2, CSCD_METHOD_NONE, 1);
     uint32_t vertices = 0, edges = 0, triangles = 0;
@@ -109,8 +108,7 @@ static void features_follow_each_other(void **state) {
     tear_down(&s);
 }
 
-static void a_mesh_is_one_object(void **state) {
-    (void)state;
+TEST(a_mesh_is_one_object) {
     cscd_context *context;
     cscd_mesh *mesh;
     const uint32_t triangles[] = {0, 1, 2};
@@ -125,8 +123,7 @@ static void a_mesh_is_one_object(void **state) {
     cscd_context_destroy(context);
 }
 
-static void mistakes_name_the_object(void **state) {
-    (void)state;
+TEST(mistakes_name_the_object) {
     cscd_context *context;
     cscd_mesh *mesh = NULL;
     const uint32_t good[] = {0, 1, 2}, outside[] = {0, 1, 3}, repeated[] = {2, 1, 2};
@@ -203,8 +200,7 @@ static void check_guarantees(const object_setting *s, unsigned obstacles) {
 }
 
 /* The list equals the one without obstacles, minus the contacts between two of them. */
-static void obstacles_meet_only_others(void **state) {
-    (void)state;
+TEST(obstacles_meet_only_others) {
     static const cscd_method methods[] = {CSCD_METHOD_BRUTE, CSCD_METHOD_NONE, CSCD_METHOD_SINGLE,
                                           CSCD_METHOD_ICCD};
     size_t contacts = 0;
@@ -227,8 +223,7 @@ static void obstacles_meet_only_others(void **state) {
 
 /* Pairs within obstacles are skipped from the beginning: a scene of obstacles alone costs no test of
  * volumes. */
-static void obstacles_cost_nothing(void **state) {
-    (void)state;
+TEST(obstacles_cost_nothing) {
     make_objects(3);
     cscd_contacts found;
     object_setting s = set_up(7, CSCD_METHOD_NONE, 1);
@@ -240,8 +235,7 @@ static void obstacles_cost_nothing(void **state) {
 
 /* A plan by charge neither charges nor divides an obstacle, and divides other objects as it does without
  * the obstacle. */
-static void obstacles_are_not_planned(void **state) {
-    (void)state;
+TEST(obstacles_are_not_planned) {
     for (int i = 0; i < OBJECTS; i++) scene_make(SCENE_BENT_CAPSULE, (uint64_t)i, &objects[i]);
     static double x[3 * SCENE_VERTICES_MAX * 3];
     uint32_t vertices = 0;
@@ -277,8 +271,7 @@ static void obstacles_are_not_planned(void **state) {
 /* ---- layouts ------------------------------------------------------------------------------------------- */
 
 /* Positions come as rows of seven floats, unaligned, as columns of doubles, and as packed doubles. */
-static void positions_come_in_any_layout(void **state) {
-    (void)state;
+TEST(positions_come_in_any_layout) {
     make_objects(5);
     object_setting s = set_up(0, CSCD_METHOD_NONE, 1);
     static char floats[SCENE_VERTICES_MAX * 28 + 1];
@@ -313,8 +306,7 @@ static void expect_refused(const object_setting *s, const cscd_view *views, cons
     assert_non_null(strstr(cscd_context_detail(s->context), sentence));
 }
 
-static void bad_views_are_named(void **state) {
-    (void)state;
+TEST(bad_views_are_named) {
     make_objects(5);
     object_setting s = set_up(0, CSCD_METHOD_NONE, 1);
     cscd_view views[OBJECTS];
@@ -341,14 +333,4 @@ static void bad_views_are_named(void **state) {
     expect_refused(&s, views, "positions[0] has");
     expect_refused(&s, NULL, "positions is NULL");
     tear_down(&s);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(features_follow_each_other),   cmocka_unit_test(a_mesh_is_one_object),
-        cmocka_unit_test(mistakes_name_the_object),     cmocka_unit_test(obstacles_meet_only_others),
-        cmocka_unit_test(obstacles_cost_nothing),       cmocka_unit_test(obstacles_are_not_planned),
-        cmocka_unit_test(positions_come_in_any_layout), cmocka_unit_test(bad_views_are_named),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

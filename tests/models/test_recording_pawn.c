@@ -52,20 +52,17 @@ static int record_pawn(void **state) {
     return 0;
 }
 
-static void is_visibly_soft(void **state) {
-    (void)state;
+TEST(is_visibly_soft) {
     assert_int_equal(m.totals.frame_count, FRAMES);
     assert_true(m.totals.soft_frames * 4 >= FRAMES);
     assert_true(m.totals.largest_residual > 0.05 && m.totals.largest_residual < 0.4);
 }
 
-static void moves_a_few_edge_lengths_at_most(void **state) {
-    (void)state;
+TEST(moves_a_few_edge_lengths_at_most) {
     assert_true(m.totals.largest_motion > 0.5 && m.totals.largest_motion < 5.0);
 }
 
-static void runs_into_itself_at_times(void **state) {
-    (void)state;
+TEST(runs_into_itself_at_times) {
     uint32_t intervals = FRAMES - 1, contacts = m.totals.contact_intervals;
     print_message("contacts in %u of %u intervals, intersections in %u frames\n", contacts, intervals,
                   m.totals.intersecting_frames);
@@ -77,8 +74,7 @@ static void runs_into_itself_at_times(void **state) {
 }
 
 /* Intersections begin and end. */
-static void intersections_heal(void **state) {
-    (void)state;
+TEST(intersections_heal) {
     uint32_t begun = 0, healed = 0;
     assert_false(m.intersects[0]);
     for (uint32_t frame = 1; frame < FRAMES; frame++) {
@@ -94,18 +90,10 @@ static void intersections_heal(void **state) {
 }
 
 /* The body never gains energy, loses a part of that of its height, and ends on the ground. */
-static void comes_down_on_the_ground(void **state) {
-    (void)state;
+TEST(comes_down_on_the_ground) {
     assert_true(m.most_energy <= m.first_energy * (1.0 + 1e-9));
     assert_true(m.last_energy > 0.0 && m.last_energy < 0.9 * m.first_energy);
     assert_true(m.lowest > -1e-9 && m.lowest < 0.01);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(is_visibly_soft),           cmocka_unit_test(moves_a_few_edge_lengths_at_most),
-        cmocka_unit_test(runs_into_itself_at_times), cmocka_unit_test(intersections_heal),
-        cmocka_unit_test(comes_down_on_the_ground),
-    };
-    return cmocka_run_group_tests_name("recording: pawn-drop", tests, record_pawn, NULL);
-}
+AROUND_ALL(record_pawn, NULL)

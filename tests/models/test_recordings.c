@@ -58,8 +58,7 @@ static void check_frame(const recorder *r, double start_energy) {
 }
 
 /* Frame 0 is the model, has no intersection, and is above its obstacles. */
-static void scenes_begin_embedded(void **state) {
-    (void)state;
+TEST(scenes_begin_embedded) {
     assert_int_equal(soft_scene_count, SCENE_COUNT);
     for (int i = 0; i < SCENE_COUNT; i++) {
         recorder r = open_scene(extents[i].name);
@@ -97,8 +96,7 @@ static uint64_t run_scene(const char *name, uint32_t frames, uint32_t hashed, bo
     return hash;
 }
 
-static void first_frames_are_repeatable(void **state) {
-    (void)state;
+TEST(first_frames_are_repeatable) {
     for (int i = 0; i < SCENE_COUNT; i++) {
         const struct extent *e = &extents[i];
         bool met = false, met_again = false;
@@ -113,8 +111,7 @@ static void first_frames_are_repeatable(void **state) {
 }
 
 /* Scenes are found by their names, and no others are found. */
-static void scenes_have_their_names(void **state) {
-    (void)state;
+TEST(scenes_have_their_names) {
     for (uint32_t i = 0; i < soft_scene_count; i++) {
         assert_ptr_equal(soft_scene_find(soft_scenes[i].name), &soft_scenes[i]);
         assert_true(soft_scenes[i].text[0] != '\0');
@@ -122,13 +119,4 @@ static void scenes_have_their_names(void **state) {
     assert_null(soft_scene_find("pawn"));
     assert_null(soft_scene_find(""));
     assert_null(soft_scene_find("pawn-drop-free-"));
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(scenes_begin_embedded),
-        cmocka_unit_test(first_frames_are_repeatable),
-        cmocka_unit_test(scenes_have_their_names),
-    };
-    return cmocka_run_group_tests_name("recordings", tests, NULL, NULL);
 }

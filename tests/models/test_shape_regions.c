@@ -28,29 +28,17 @@ static void check_counts(body_kind kind, uint32_t triangle_count, uint32_t least
     body_free(&b);
 }
 
-static void pawn_has_two(void **state) {
-    (void)state;
+TEST(pawn_has_two) {
     const uint32_t counts[] = {1000, 1500, 2000};
     for (int i = 0; i < 3; i++) check_counts(BODY_PAWN, counts[i], 2, 2, 0.99);
 }
 
-static void dumbbell_has_two(void **state) {
-    (void)state;
+TEST(dumbbell_has_two) {
     const uint32_t counts[] = {1000, 1200, 1710};
     for (int i = 0; i < 3; i++) check_counts(BODY_DUMBBELL, counts[i], 2, 2, 0.99);
 }
 
-static void figure_has_its_limbs(void **state) {
-    (void)state;
+TEST(figure_has_its_limbs) {
     const uint32_t counts[] = {1500, 2000};
     for (int i = 0; i < 2; i++) check_counts(BODY_FIGURE, counts[i], 6, 9, 0.98);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pawn_has_two),
-        cmocka_unit_test(dumbbell_has_two),
-        cmocka_unit_test(figure_has_its_limbs),
-    };
-    return cmocka_run_group_tests_name("regions of the shapes", tests, NULL, NULL);
 }

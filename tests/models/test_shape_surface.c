@@ -36,8 +36,7 @@ static void check_surface(const surface *s) {
 }
 
 /* The torus stays a torus over thousands of random operations. */
-static void operations_keep_a_manifold(void **state) {
-    (void)state;
+TEST(operations_keep_a_manifold) {
     body b = body_of(BODY_TORUS, 400);
     surface s;
     uint32_t done[3] = {0, 0, 0};
@@ -72,8 +71,7 @@ static void operations_keep_a_manifold(void **state) {
 }
 
 /* No edge of a tetrahedron can be collapsed or flipped. */
-static void a_tetrahedron_stays(void **state) {
-    (void)state;
+TEST(a_tetrahedron_stays) {
     body b = {0};
     surface s;
     for (int i = 0; i < 4; i++) body_add_vertex(&b, i == 1, i == 2, i == 3);
@@ -93,8 +91,7 @@ static void a_tetrahedron_stays(void **state) {
 }
 
 /* Rings reach every even count, with open and with closed outlines. */
-static void rings_add_up(void **state) {
-    (void)state;
+TEST(rings_add_up) {
     outline half = {.end = {0.0, -1.0}}, whole = {.closed = true, .end = {1.4, 0.0}};
     outline_arc(&half, 0.0, 0.0, 1.0, -90.0, 90.0);
     outline_arc(&whole, 1.0, 0.0, 0.4, 0.0, 360.0);
@@ -112,8 +109,7 @@ static void rings_add_up(void **state) {
 }
 
 /* A square with a rounded corner: corners are kept, and lengths add up. */
-static void outlines_follow_their_pieces(void **state) {
-    (void)state;
+TEST(outlines_follow_their_pieces) {
     outline o = {.end = {0.0, 0.0}};
     double point[2];
     uint32_t piece = 0;
@@ -139,8 +135,7 @@ static double to_ball(const double p[3]) {
 static const implicit ball = {to_ball, {-1.3, -1.3, -1.3}, {1.3, 1.3, 1.3}, false};
 
 /* Remeshing goes up and down from any count, always on the surface; impossible counts are refused. */
-static void remeshing_reaches_counts(void **state) {
-    (void)state;
+TEST(remeshing_reaches_counts) {
     const uint32_t counts[] = {1000, 998, 3002, 400, 5000, 60};
     body b = body_of(BODY_SPHERE, 500);
     for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
@@ -154,15 +149,4 @@ static void remeshing_reaches_counts(void **state) {
     assert_false(body_remesh(&b, &ball, 2));
     check_closed(&b, 2);
     body_free(&b);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(operations_keep_a_manifold),
-        cmocka_unit_test(a_tetrahedron_stays),
-        cmocka_unit_test(rings_add_up),
-        cmocka_unit_test(outlines_follow_their_pieces),
-        cmocka_unit_test(remeshing_reaches_counts),
-    };
-    return cmocka_run_group_tests_name("surfaces of shapes", tests, NULL, NULL);
 }

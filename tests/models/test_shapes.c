@@ -123,8 +123,7 @@ static void find_unevenness(const body *b, double *areas, double *lengths) {
     *lengths = longest / shortest;
 }
 
-static void the_three_bodies(void **state) {
-    (void)state;
+TEST(the_three_bodies) {
     const uint32_t counts[] = {5130, 1710, 4014};
     for (int i = 0; i < 3; i++) {
         body b = body_of((body_kind)i, 0);
@@ -142,8 +141,7 @@ static void the_three_bodies(void **state) {
     }
 }
 
-static void all_bodies_at_several_counts(void **state) {
-    (void)state;
+TEST(all_bodies_at_several_counts) {
     const uint32_t wanted[] = {0, 700, 1498};
     for (int kind = 0; kind < BODY_KIND_COUNT; kind++) {
         double least = 180.0;
@@ -173,8 +171,7 @@ static void find_extent(const body *b, double low[3], double high[3]) {
 
 /* When the count grows to four and sixteen times as many, the volume converges to the intended one with the square of
  * an edge's length, the body stays in place, and no triangle is thin. */
-static void refinement_keeps_the_shape(void **state) {
-    (void)state;
+TEST(refinement_keeps_the_shape) {
     for (int i = 0; i < BODY_KIND_COUNT; i++) {
         body_kind kind = (body_kind)i;
         const bool fine =
@@ -237,8 +234,7 @@ static double sharpest_fold(const body *b) {
 
 /* Where fingers and arms nearly touch, coarse nets are refined, and the surface is round, without an edge that would
  * fold its triangles. A slow machine makes the hand alone. */
-static void fine_limbs_are_round_where_they_meet(void **state) {
-    (void)state;
+TEST(fine_limbs_are_round_where_they_meet) {
     const body_kind kinds[2] = {BODY_HAND, BODY_OCTOPUS};
     for (int i = 0; i < REFINEMENTS; i++) {
         body b = body_of(kinds[i], 64002);
@@ -253,8 +249,7 @@ static void fine_limbs_are_round_where_they_meet(void **state) {
 
 /* Volumes by the theorem of Pappus: the axis of the tube and the middle of the slab run through the
  * centres of their sections. */
-static void bent_bodies_have_the_volume_of_straight_ones(void **state) {
-    (void)state;
+TEST(bent_bodies_have_the_volume_of_straight_ones) {
     double length = 5.0 * hypot(2.0 * pi, 0.7), tube = pi * 0.04 * length + 4.0 / 3.0 * pi * 0.008;
     double sheet = 1.6 * 0.16 * (6.0 + 2.0 * pi * 0.2);
     body coil = body_of(BODY_COIL, 40000), slab = body_of(BODY_SLAB, body_nearest_count(BODY_SLAB, 40000));
@@ -265,8 +260,7 @@ static void bent_bodies_have_the_volume_of_straight_ones(void **state) {
 }
 
 /* Each ring of the chain lies across its neighbours, and its tube passes through their holes. */
-static void links_are_linked(void **state) {
-    (void)state;
+TEST(links_are_linked) {
     body b = body_of(BODY_CHAIN, 1000);
     double middles[5];
     for (uint32_t i = 0; i < 5; i++) {
@@ -282,8 +276,7 @@ static void links_are_linked(void **state) {
     body_free(&b);
 }
 
-static void bodies_are_repeatable(void **state) {
-    (void)state;
+TEST(bodies_are_repeatable) {
     for (int kind = 0; kind < BODY_KIND_COUNT; kind++) {
         uint32_t count = body_nearest_count((body_kind)kind, 700);
         body a = body_of((body_kind)kind, count), b = body_of((body_kind)kind, count);
@@ -295,8 +288,7 @@ static void bodies_are_repeatable(void **state) {
     }
 }
 
-static void refusals_name_the_nearest(void **state) {
-    (void)state;
+TEST(refusals_name_the_nearest) {
     static const struct refusal {
         body_kind kind;
         uint32_t count;
@@ -318,8 +310,7 @@ static void refusals_name_the_nearest(void **state) {
     }
 }
 
-static void names_lead_to_their_bodies(void **state) {
-    (void)state;
+TEST(names_lead_to_their_bodies) {
     body_kind kind = BODY_TORUS;
     for (int i = 0; i < BODY_KIND_COUNT; i++) {
         assert_true(body_kind_from_name(body_kind_name((body_kind)i), &kind) && kind == (body_kind)i);
@@ -333,17 +324,4 @@ static void names_lead_to_their_bodies(void **state) {
     assert_true(kind == BODY_TORUS);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_three_bodies),
-        cmocka_unit_test(all_bodies_at_several_counts),
-        cmocka_unit_test(refinement_keeps_the_shape),
-        cmocka_unit_test(fine_limbs_are_round_where_they_meet),
-        cmocka_unit_test(bent_bodies_have_the_volume_of_straight_ones),
-        cmocka_unit_test(links_are_linked),
-        cmocka_unit_test(bodies_are_repeatable),
-        cmocka_unit_test(refusals_name_the_nearest),
-        cmocka_unit_test(names_lead_to_their_bodies),
-    };
-    return cmocka_run_group_tests_name("shapes", tests, make_context, destroy_context);
-}
+AROUND_ALL(make_context, destroy_context)

@@ -38,8 +38,7 @@ static void advance_body(soft_body *b, obstacles *o, double seconds) {
 
 /* ---- placing and pushing ---- */
 
-static void masses_are_those_of_the_cells(void **state) {
-    (void)state;
+TEST(masses_are_those_of_the_cells) {
     material heavy = rubber;
     heavy.density = 2.5;
     soft_body b = soft_body_of(&sphere, 0.4, &heavy);
@@ -50,8 +49,7 @@ static void masses_are_those_of_the_cells(void **state) {
     soft_body_free(&b);
 }
 
-static void placing_moves_everything(void **state) {
-    (void)state;
+TEST(placing_moves_everything) {
     soft_body b = soft_body_of(&sphere, 0.4, &rubber);
     double turn[3][3], *expected = body_allocate(sphere.vertex_count, 3 * sizeof *expected);
     const double offset[3] = {1.0, 2.0, 3.0};
@@ -65,8 +63,7 @@ static void placing_moves_everything(void **state) {
 }
 
 /* The body spins about its centre of mass, whichever way it is thrown. */
-static void throwing_gives_velocity_and_spin(void **state) {
-    (void)state;
+TEST(throwing_gives_velocity_and_spin) {
     soft_body b = soft_body_of(&sphere, 0.4, &rubber);
     const double velocity[3] = {1.0, -2.0, 0.5}, spin[3] = {0.0, 0.0, 3.0};
     soft_body_throw(&b, velocity, spin);
@@ -83,8 +80,7 @@ static void throwing_gives_velocity_and_spin(void **state) {
 }
 
 /* A push moves its vertex exactly, and has the momentum of a point of that mobility. */
-static void pushes_move_their_vertex(void **state) {
-    (void)state;
+TEST(pushes_move_their_vertex) {
     soft_body b = soft_body_of(&sphere, 0.4, &rubber);
     const double change[3] = {0.01, -0.02, 0.005};
     for (uint32_t v = 0; v < sphere.vertex_count; v += 17) {
@@ -139,8 +135,7 @@ static double angular_drift(double damping, uint32_t steps_per_second) {
 /* Linear momentum is kept up to rounding, angular momentum as far as small steps allow: steps that are
  * implicit in the positions slow a spin by its square times the step. Damping adds nothing to that, since
  * it leaves rigid motion alone. */
-static void free_bodies_keep_their_momentum(void **state) {
-    (void)state;
+TEST(free_bodies_keep_their_momentum) {
     double undamped = angular_drift(0.0, 800), damped = angular_drift(4.0, 800),
            finer = angular_drift(4.0, 1600);
     print_message("angular momentum lost: %.3g undamped, %.3g damped, %.3g with half the step\n", undamped,
@@ -149,8 +144,7 @@ static void free_bodies_keep_their_momentum(void **state) {
     assert_true(finer > 0.4 * damped && finer < 0.6 * damped);
 }
 
-static void damping_stills_vibrations(void **state) {
-    (void)state;
+TEST(damping_stills_vibrations) {
     double energies[2];
     for (int i = 0; i < 2; i++) {
         material m = rubber;
@@ -167,8 +161,7 @@ static void damping_stills_vibrations(void **state) {
 
 /* Free fall is the sum of n small steps of gravity after velocity, and approaches a parabola with finer
  * steps. */
-static void free_fall_is_a_parabola(void **state) {
-    (void)state;
+TEST(free_fall_is_a_parabola) {
     soft_body b = soft_body_of(&sphere, 0.4, &rubber);
     obstacles falling = {.gravity = 10.0};
     const double velocity[3] = {1.5, 0.0, 4.0};
@@ -191,8 +184,7 @@ static void free_fall_is_a_parabola(void **state) {
 /* ---- contacts ---- */
 
 /* Up to rounding, nothing is ever below the ground, and the energy never rises. */
-static void dropped_bodies_come_to_rest(void **state) {
-    (void)state;
+TEST(dropped_bodies_come_to_rest) {
     material damped = rubber;
     damped.damping = 20.0;
     soft_body b = soft_body_of(&sphere, 0.4, &damped);
@@ -214,8 +206,7 @@ static void dropped_bodies_come_to_rest(void **state) {
 }
 
 /* The ground pushes upwards only, unless there is friction. */
-static void friction_alone_brakes(void **state) {
-    (void)state;
+TEST(friction_alone_brakes) {
     double speeds[3];
     const double frictions[3] = {0.0, 0.2, 0.8};
     for (int i = 0; i < 3; i++) {
@@ -234,8 +225,7 @@ static void friction_alone_brakes(void **state) {
 }
 
 /* A box that slides is braked by mu g, as by Coulomb's law, and not more. */
-static void friction_is_coulombs(void **state) {
-    (void)state;
+TEST(friction_is_coulombs) {
     body box = box_body((double[3]){-1.0, -1.0, -0.25}, (double[3]){1.0, 1.0, 0.25});
     material stiff = {.density = 1.0, .young = 2000.0, .poisson = 0.3, .damping = 10.0};
     soft_body b = soft_body_of(&box, 0.5, &stiff);
@@ -253,8 +243,7 @@ static void friction_is_coulombs(void **state) {
 }
 
 /* The contact is off centre and has friction: the ball gains what the body loses. */
-static void balls_and_bodies_share_their_momentum(void **state) {
-    (void)state;
+TEST(balls_and_bodies_share_their_momentum) {
     soft_body b = soft_body_of(&sphere, 0.4, &rubber);
     obstacles o = {.friction = 0.6, .ball_count = 1};
     o.balls[0] = (ball){.centre = {2.2, 0.4, soft_fixture_height + 0.3},
@@ -279,8 +268,7 @@ static void balls_and_bodies_share_their_momentum(void **state) {
     soft_body_free(&b);
 }
 
-static void motion_is_repeatable(void **state) {
-    (void)state;
+TEST(motion_is_repeatable) {
     soft_body bodies[2];
     for (int i = 0; i < 2; i++) {
         obstacles ground = {.gravity = 10.0, .friction = 0.6, .ball_count = 1};
@@ -295,20 +283,4 @@ static void motion_is_repeatable(void **state) {
     for (int i = 0; i < 2; i++) soft_body_free(&bodies[i]);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(masses_are_those_of_the_cells),
-        cmocka_unit_test(placing_moves_everything),
-        cmocka_unit_test(throwing_gives_velocity_and_spin),
-        cmocka_unit_test(pushes_move_their_vertex),
-        cmocka_unit_test(free_bodies_keep_their_momentum),
-        cmocka_unit_test(damping_stills_vibrations),
-        cmocka_unit_test(free_fall_is_a_parabola),
-        cmocka_unit_test(dropped_bodies_come_to_rest),
-        cmocka_unit_test(friction_alone_brakes),
-        cmocka_unit_test(friction_is_coulombs),
-        cmocka_unit_test(balls_and_bodies_share_their_momentum),
-        cmocka_unit_test(motion_is_repeatable),
-    };
-    return cmocka_run_group_tests_name("soft body", tests, make_sphere, free_sphere);
-}
+AROUND_ALL(make_sphere, free_sphere)

@@ -119,8 +119,7 @@ static double height_above_slab(const two_parts *p) {
     return p->soft.vertices[p->lowest * 3 + 2] - soft_fixture_height;
 }
 
-static void pairs_are_taken_up_on_the_way_in(void **state) {
-    (void)state;
+TEST(pairs_are_taken_up_on_the_way_in) {
     two_parts p = make_corner();
     assert_int_equal(move_block(&p, 0.03, 0.01), 0);
     assert_int_equal(p.contacts.count, 0);
@@ -133,8 +132,7 @@ static void pairs_are_taken_up_on_the_way_in(void **state) {
     free_parts(&p);
 }
 
-static void pairs_on_the_way_out_are_left(void **state) {
-    (void)state;
+TEST(pairs_on_the_way_out_are_left) {
     two_parts corner = make_corner(), flat = make_flat();
     assert_int_equal(move_block(&corner, -0.01, 0.01), 1);
     assert_int_equal(corner.contacts.count, 0);
@@ -145,8 +143,7 @@ static void pairs_on_the_way_out_are_left(void **state) {
 }
 
 /* The corner leaves through the lower side of the slab. It was inside before, so the response ignores it. */
-static void pairs_from_the_inside_are_left(void **state) {
-    (void)state;
+TEST(pairs_from_the_inside_are_left) {
     two_parts p = make_corner();
     place_block(&p, -0.49, 0.0, 0.0);
     memcpy(p.start, p.soft.vertices, (size_t)p.surface.vertex_count * 3 * sizeof *p.start);
@@ -162,8 +159,7 @@ static void pairs_from_the_inside_are_left(void **state) {
     free_parts(&p);
 }
 
-static void pairs_are_sorted_and_single(void **state) {
-    (void)state;
+TEST(pairs_are_sorted_and_single) {
     two_parts p = make_flat();
     size_t found = move_block(&p, 0.005, -0.05), kinds[2] = {0, 0};
     found += move_block(&p, 0.006, -0.06);
@@ -181,8 +177,7 @@ static void pairs_are_sorted_and_single(void **state) {
 }
 
 /* Pairs that are near at rest are left to the lattice. */
-static void near_pairs_are_ignored(void **state) {
-    (void)state;
+TEST(near_pairs_are_ignored) {
     two_parts p = make_flat();
     self_contacts_free(&p.contacts);
     p.contacts = self_contacts_make(p.mesh, p.surface.positions, 4.0);
@@ -191,8 +186,7 @@ static void near_pairs_are_ignored(void **state) {
     free_parts(&p);
 }
 
-static void pairs_are_kept_until_they_part_or_are_lost(void **state) {
-    (void)state;
+TEST(pairs_are_kept_until_they_part_or_are_lost) {
     two_parts p = make_corner();
     const double gap = p.contacts.gap, depth = p.contacts.depth;
     const double heights[] = {-0.5 * gap, 0.5 * gap, 1.9 * gap, 2.1 * gap, -0.95 * depth, -1.05 * depth};
@@ -208,8 +202,7 @@ static void pairs_are_kept_until_they_part_or_are_lost(void **state) {
 }
 
 /* Pairs that are too near are moved apart without gaining speed: nodes and previous nodes move alike. */
-static void healing_gives_no_velocity(void **state) {
-    (void)state;
+TEST(healing_gives_no_velocity) {
     two_parts p = make_corner();
     move_block(&p, 0.01, -0.01);
     double last = height_above_slab(&p);
@@ -224,8 +217,7 @@ static void healing_gives_no_velocity(void **state) {
 }
 
 /* Pairs farther apart than the gap are not pushed. */
-static void pairs_apart_are_left_alone(void **state) {
-    (void)state;
+TEST(pairs_apart_are_left_alone) {
     two_parts p = make_corner();
     move_block(&p, 0.01, -0.01);
     place_block(&p, 1.5 * p.contacts.gap, 0.0, 0.0);
@@ -251,8 +243,7 @@ static bool is_above(const two_parts *p, uint32_t vertex, uint32_t triangle) {
 }
 
 /* The block slides over the slab: the pair of its corner always has the triangle below. */
-static void pairs_follow_a_sliding_vertex(void **state) {
-    (void)state;
+TEST(pairs_follow_a_sliding_vertex) {
     two_parts p = make_corner();
     uint32_t visited = 1;
     move_block(&p, 0.01, -0.01);
@@ -318,8 +309,7 @@ static void check_bounce(two_parts *p) {
     assert_int_equal(crossing_at_end, 0);
 }
 
-static void parts_bounce_off_each_other(void **state) {
-    (void)state;
+TEST(parts_bounce_off_each_other) {
     two_parts corner = make_corner(), flat = make_flat();
     check_bounce(&corner);
     check_bounce(&flat);
@@ -328,8 +318,7 @@ static void parts_bounce_off_each_other(void **state) {
 }
 
 /* Without the response the block goes into the slab. */
-static void without_a_response_parts_intersect(void **state) {
-    (void)state;
+TEST(without_a_response_parts_intersect) {
     two_parts p = make_flat();
     place_block(&p, 0.05, 0.0, 0.0);
     throw_block(&p, (double[3]){0.2, 0.0, -1.5});
@@ -337,21 +326,4 @@ static void without_a_response_parts_intersect(void **state) {
     assert_true(count_intersections(&p) > 0);
     assert_true(height_above_slab(&p) < -0.1);
     free_parts(&p);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pairs_are_taken_up_on_the_way_in),
-        cmocka_unit_test(pairs_on_the_way_out_are_left),
-        cmocka_unit_test(pairs_from_the_inside_are_left),
-        cmocka_unit_test(pairs_are_sorted_and_single),
-        cmocka_unit_test(near_pairs_are_ignored),
-        cmocka_unit_test(pairs_are_kept_until_they_part_or_are_lost),
-        cmocka_unit_test(healing_gives_no_velocity),
-        cmocka_unit_test(pairs_apart_are_left_alone),
-        cmocka_unit_test(pairs_follow_a_sliding_vertex),
-        cmocka_unit_test(parts_bounce_off_each_other),
-        cmocka_unit_test(without_a_response_parts_intersect),
-    };
-    return cmocka_run_group_tests_name("soft body: contacts", tests, NULL, NULL);
 }

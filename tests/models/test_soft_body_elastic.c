@@ -64,8 +64,7 @@ static void assert_close(double a, double b, double tolerance) {
     if (!(fabs(a - b) <= tolerance)) fail_msg("%.17g is not within %g of %.17g", a, tolerance, b);
 }
 
-static void rest_and_turned_shapes_have_no_energy(void **state) {
-    (void)state;
+TEST(rest_and_turned_shapes_have_no_energy) {
     double turn[3][3];
     for (int i = 0; i < 12; i++) {
         rotation_matrix((double[3]){1.0, 0.3 * i - 1.0, 0.5}, 0.6 * i, turn);
@@ -74,8 +73,7 @@ static void rest_and_turned_shapes_have_no_energy(void **state) {
 }
 
 /* A rotation before or after the deformation changes nothing: the material has no grain. */
-static void energy_is_that_of_the_formula(void **state) {
-    (void)state;
+TEST(energy_is_that_of_the_formula) {
     double turn[3][3], shapes[4][3][3] = {{{1.0, 0.4, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}},
                                           {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 0.5}},
                                           {{1.2, 0.1, 0.3}, {0.0, 0.9, -0.2}, {0.4, 0.0, 1.1}},
@@ -97,8 +95,7 @@ static void energy_is_that_of_the_formula(void **state) {
     }
 }
 
-static void energy_grows_with_the_deformation(void **state) {
-    (void)state;
+TEST(energy_grows_with_the_deformation) {
     double last[4] = {0.0, 0.0, 0.0, 0.0};
     for (int i = 1; i <= 20; i++) {
         double amount = 0.045 * i;
@@ -116,8 +113,7 @@ static void energy_grows_with_the_deformation(void **state) {
 
 /* Forces would move the nodes by the square of the step. Here they move by the fourth power, since the two
  * constraints, whose forces cancel at rest, are solved one after the other. */
-static void rest_shape_has_no_forces(void **state) {
-    (void)state;
+TEST(rest_shape_has_no_forces) {
     double motion[3], step = 1.0 / 200.0;
     for (int i = 0; i < 3; i++, step /= 2.0) {
         memcpy(moved, soft.frame.rest, soft.frame.node_count * 3 * sizeof *moved);
@@ -130,8 +126,7 @@ static void rest_shape_has_no_forces(void **state) {
 }
 
 /* The constraints act as inner forces: the centre of mass stays, and the energy falls. */
-static void solving_keeps_the_centre_and_relaxes(void **state) {
-    (void)state;
+TEST(solving_keeps_the_centre_and_relaxes) {
     double squash[3][3] = {{1.2, 0.1, 0.3}, {0.0, 0.9, -0.2}, {0.4, 0.0, 0.7}};
     double energy = energy_under(squash), sum[3] = {0.0, 0.0, 0.0};
     double *before = body_allocate(soft.frame.node_count, 3 * sizeof *before);
@@ -148,8 +143,7 @@ static void solving_keeps_the_centre_and_relaxes(void **state) {
 }
 
 /* A material of twice the stiffness has twice the energy. */
-static void stiffness_scales_energy(void **state) {
-    (void)state;
+TEST(stiffness_scales_energy) {
     material stiffer = rubber;
     stiffer.young *= 2.0;
     const lattice *l = &soft.frame;
@@ -163,8 +157,7 @@ static void stiffness_scales_energy(void **state) {
 }
 
 /* A corner is pushed through the opposite sides: all cells there are inside out. */
-static void what_is_turned_inside_out_comes_back(void **state) {
-    (void)state;
+TEST(what_is_turned_inside_out_comes_back) {
     body box = box_body((double[3]){-0.7, -0.7, -0.7}, (double[3]){0.7, 0.7, 0.7});
     soft_body b = soft_body_of(&box, 0.5, &rubber);
     obstacles nothing = {0};
@@ -183,15 +176,4 @@ static void what_is_turned_inside_out_comes_back(void **state) {
     body_free(&box);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rest_and_turned_shapes_have_no_energy),
-        cmocka_unit_test(energy_is_that_of_the_formula),
-        cmocka_unit_test(energy_grows_with_the_deformation),
-        cmocka_unit_test(rest_shape_has_no_forces),
-        cmocka_unit_test(solving_keeps_the_centre_and_relaxes),
-        cmocka_unit_test(stiffness_scales_energy),
-        cmocka_unit_test(what_is_turned_inside_out_comes_back),
-    };
-    return cmocka_run_group_tests_name("soft body: elastic", tests, make_body, free_body);
-}
+AROUND_ALL(make_body, free_body)

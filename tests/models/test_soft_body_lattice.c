@@ -26,6 +26,7 @@ static lattice lattice_of(const body *b, double spacing) {
 
 static int make_lattices(void **state) {
     (void)state;
+    random_seed(5);
     for (int i = 0; i < CASE_COUNT; i++) {
         surfaces[i] = body_of(cases[i].kind, body_nearest_count(cases[i].kind, 600));
         lattices[i] = lattice_of(&surfaces[i], cases[i].spacing);
@@ -54,8 +55,7 @@ static double distance_to_cells(const lattice *l, const double p[3]) {
     return nearest;
 }
 
-static void cells_are_cubes_of_the_grid(void **state) {
-    (void)state;
+TEST(cells_are_cubes_of_the_grid) {
     for (int i = 0; i < CASE_COUNT; i++) {
         const lattice *l = &lattices[i];
         bool *used = body_allocate(l->node_count, sizeof *used);
@@ -80,8 +80,7 @@ static void cells_are_cubes_of_the_grid(void **state) {
 
 /* The cube from -1 to 1 has two cells along each axis, from -2 to 2; with the finer spacing it has five,
  * from -1.25 to 1.25. */
-static void counts_are_those_of_a_cube(void **state) {
-    (void)state;
+TEST(counts_are_those_of_a_cube) {
     body cube = body_of(BODY_CUBE, body_least_count(BODY_CUBE));
     lattice coarse = lattice_of(&cube, 2.0), fine = lattice_of(&cube, 0.5);
     assert_int_equal(coarse.cell_count, 8);
@@ -94,8 +93,7 @@ static void counts_are_those_of_a_cube(void **state) {
 }
 
 /* The surface is sampled at a quarter of the spacing: a cell that it only grazes may be left out. */
-static void cells_cover_the_surface(void **state) {
-    (void)state;
+TEST(cells_cover_the_surface) {
     for (int i = 0; i < CASE_COUNT; i++) {
         const body *b = &surfaces[i];
         for (uint32_t t = 0; t < b->triangle_count; t++) {
@@ -109,8 +107,7 @@ static void cells_cover_the_surface(void **state) {
     }
 }
 
-static void cells_fill_the_inside_only(void **state) {
-    (void)state;
+TEST(cells_fill_the_inside_only) {
     for (int i = 0; i < 500; i++) { /* the sphere has radius 1, the torus 1 and 0.35 */
         double p[3] = {random_unit(), random_unit(), random_unit()}, turn = 3.2 * random_unit();
         if (vec3_norm(p) > 1.0) continue;
@@ -123,8 +120,7 @@ static void cells_fill_the_inside_only(void **state) {
     assert_true(distance_to_cells(&lattices[0], (double[3]){1.0, 1.0, 1.0}) > 0.0);
 }
 
-static void vertices_lie_in_their_cells(void **state) {
-    (void)state;
+TEST(vertices_lie_in_their_cells) {
     for (int i = 0; i < CASE_COUNT; i++) {
         const lattice *l = &lattices[i];
         assert_int_equal(l->vertex_count, surfaces[i].vertex_count);
@@ -140,8 +136,7 @@ static void vertices_lie_in_their_cells(void **state) {
     }
 }
 
-static void vertices_follow_affine_maps(void **state) {
-    (void)state;
+TEST(vertices_follow_affine_maps) {
     double maps[3][3][3] = {{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}},
                             {{0.0, -1.0, 0.0}, {1.0, 0.0, 0.0}, {0.0, 0.0, 1.0}},
                             {{1.3, 0.4, -0.2}, {-0.7, 0.6, 0.1}, {0.3, 0.9, 1.8}}};
@@ -165,8 +160,7 @@ static void vertices_follow_affine_maps(void **state) {
 
 /* ---- tetrahedra ---- */
 
-static void volumes_add_up(void **state) {
-    (void)state;
+TEST(volumes_add_up) {
     const material rubber = {.density = 1.0, .young = 100.0, .poisson = 0.4};
     for (int i = 0; i < CASE_COUNT; i++) {
         const lattice *l = &lattices[i];
@@ -243,23 +237,9 @@ static uint32_t outer_tetrahedron_faces(const lattice *l) {
 
 /* If two cells cut their common square along different diagonals, its four triangles would all be outer
  * ones. */
-static void diagonals_of_neighbours_match(void **state) {
-    (void)state;
+TEST(diagonals_of_neighbours_match) {
     for (int i = 0; i < CASE_COUNT; i++)
         assert_int_equal(outer_tetrahedron_faces(&lattices[i]), 2 * outer_cell_faces(&lattices[i]));
 }
 
-int main(void) {
-    random_seed(5);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(cells_are_cubes_of_the_grid),
-        cmocka_unit_test(counts_are_those_of_a_cube),
-        cmocka_unit_test(cells_cover_the_surface),
-        cmocka_unit_test(cells_fill_the_inside_only),
-        cmocka_unit_test(vertices_lie_in_their_cells),
-        cmocka_unit_test(vertices_follow_affine_maps),
-        cmocka_unit_test(volumes_add_up),
-        cmocka_unit_test(diagonals_of_neighbours_match),
-    };
-    return cmocka_run_group_tests_name("soft body: lattice", tests, make_lattices, free_lattices);
-}
+AROUND_ALL(make_lattices, free_lattices)

@@ -34,8 +34,7 @@ static void assert_near(double a, double b, double tolerance) {
 
 /* Half turns and more are hard for quaternions. The residual is the root of a difference, so half of the
  * digits are lost. */
-static void rigid_motions_leave_nothing(void **state) {
-    (void)state;
+TEST(rigid_motions_leave_nothing) {
     double turn[3][3];
     const double pi = 3.14159265358979323846;
     for (int i = 0; i <= 24; i++) {
@@ -51,8 +50,7 @@ static void rigid_motions_leave_nothing(void **state) {
 }
 
 /* Points come in opposite pairs, so that the best motion is a pure rotation. */
-static void deformations_leave_what_they_must(void **state) {
-    (void)state;
+TEST(deformations_leave_what_they_must) {
     const double cross_shape[6][3] = {{3, 0, 0}, {-3, 0, 0}, {0, 2, 0}, {0, -2, 0}, {0, 0, 1}, {0, 0, -1}};
     double stretched[6][3], turn[3][3];
     /* Stretched by s along x, two of six points move by 3 (s - 1), turned or not. */
@@ -76,8 +74,7 @@ static void deformations_leave_what_they_must(void **state) {
 }
 
 /* Except for its arms, the figure is its own mirror image; a screw of points is not. */
-static void mirror_images_are_no_motions(void **state) {
-    (void)state;
+TEST(mirror_images_are_no_motions) {
     double screw[40][3], mirrored[40][3], mirror[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, -1}};
     for (int i = 0; i < 40; i++) {
         screw[i][0] = cos(0.5 * i);
@@ -103,8 +100,7 @@ static cscd_mesh *mesh_of(cscd_context *context, uint32_t vertex_count, uint32_t
 
 /* The tip of a tetrahedron flies through another one: contacts in intervals 3 and 5, intersections from
  * frame 4 on. */
-static void counts_contacts_and_intersections(void **state) {
-    (void)state;
+TEST(counts_contacts_and_intersections) {
     enum { FRAMES = 8 };
     recorded flight = recorded_tetrahedra(FRAMES);
     cscd_context *context;
@@ -125,8 +121,7 @@ static void counts_contacts_and_intersections(void **state) {
 }
 
 /* A box grows along x: residual and motion are those of its eight corners. */
-static void measures_softness_and_speed(void **state) {
-    (void)state;
+TEST(measures_softness_and_speed) {
     body box = box_body((double[3]){-1.0, -0.5, -0.5}, (double[3]){1.0, 0.5, 0.5});
     double diagonal = sqrt(6.0), frame[24],
            edge_length = (4.0 * 2.0 + 8.0 + 4.0 * sqrt(5.0) + 2.0 * sqrt(2.0)) / 18.0;
@@ -154,8 +149,7 @@ static void measures_softness_and_speed(void **state) {
 }
 
 /* Nothing is left to free, which the sanitizers check. */
-static void bad_positions_are_refused(void **state) {
-    (void)state;
+TEST(bad_positions_are_refused) {
     cscd_context *context;
     recording_motion m;
     assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
@@ -172,11 +166,4 @@ static void bad_positions_are_refused(void **state) {
     cscd_context_destroy(context);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rigid_motions_leave_nothing),  cmocka_unit_test(deformations_leave_what_they_must),
-        cmocka_unit_test(mirror_images_are_no_motions), cmocka_unit_test(counts_contacts_and_intersections),
-        cmocka_unit_test(measures_softness_and_speed),  cmocka_unit_test(bad_positions_are_refused),
-    };
-    return cmocka_run_group_tests_name("soft body: motion", tests, make_figure, free_figure);
-}
+AROUND_ALL(make_figure, free_figure)

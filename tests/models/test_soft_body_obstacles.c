@@ -8,8 +8,7 @@
 static const obstacles stairs = {.step_count = 3, .start = 1.0, .tread = 2.0, .riser = 0.5, .gravity = 10.0};
 static const double step = 1.0 / 800.0;
 
-static void heights_are_those_of_the_steps(void **state) {
-    (void)state;
+TEST(heights_are_those_of_the_steps) {
     const obstacles ground = {0};
     const double places[][2] = {{-100.0, 1.5}, {0.0, 1.5}, {1.0, 1.5}, {2.9, 1.5}, {3.1, 1.0},
                                 {4.9, 1.0},    {5.1, 0.5}, {6.9, 0.5}, {7.1, 0.0}, {100.0, 0.0}};
@@ -29,8 +28,7 @@ static void expect_way_out(const obstacles *o, double x, double z, double forwar
 
 /* The way out leads upwards, or forwards through a riser when that is nearer. Below the ground it always
  * leads upwards. */
-static void way_out_is_the_nearer_one(void **state) {
-    (void)state;
+TEST(way_out_is_the_nearer_one) {
     const obstacles ground = {0};
     expect_way_out(&ground, 2.0, -0.25, 0.0, 0.25);
     expect_way_out(&stairs, 2.0, 1.4, 0.0, 0.1);
@@ -45,8 +43,7 @@ static void way_out_is_the_nearer_one(void **state) {
 }
 
 /* Between walls the way out leads back over the wall, or up where the point is deeper in the ground. */
-static void trays_have_walls(void **state) {
-    (void)state;
+TEST(trays_have_walls) {
     const obstacles o = {.tray = 2.0};
     static const struct {
         double point[3], normal[3], depth;
@@ -65,8 +62,7 @@ static void trays_have_walls(void **state) {
 }
 
 /* After moving along the way out, a point is outside of all obstacles, or on a surface. */
-static void way_out_leads_out(void **state) {
-    (void)state;
+TEST(way_out_leads_out) {
     uint32_t inside = 0, forwards = 0;
     for (int i = 0; i < 2000; i++) {
         double point[3] = {0.005 * i - 1.003, 0.0, 0.0};
@@ -85,8 +81,7 @@ static void way_out_leads_out(void **state) {
     assert_true(inside > 1000 && forwards > 100 && forwards < inside);
 }
 
-static void balls_push_from_their_centres(void **state) {
-    (void)state;
+TEST(balls_push_from_their_centres) {
     obstacles o = {.ball_count = 2, .balls = {{.radius = 1.0, .mass = 1.0}, {.radius = 0.5, .mass = 1.0}}};
     obstacle_hit hit;
     o.balls[1].centre[0] = 5.0;
@@ -109,8 +104,7 @@ static void run_steps(obstacles *o, int steps) {
 }
 
 /* The centre falls by n steps of gravity after velocity, and stays on the ground. */
-static void balls_fall_and_come_to_rest(void **state) {
-    (void)state;
+TEST(balls_fall_and_come_to_rest) {
     const ball high = {.centre = {0.0, 0.0, 5.0}, .velocity = {1.0, 0.0, 0.0}, .radius = 0.5, .mass = 2.0};
     obstacles o = {.ball_count = 1, .gravity = 10.0, .balls = {high}};
     run_steps(&o, 400);
@@ -124,8 +118,7 @@ static void balls_fall_and_come_to_rest(void **state) {
     assert_true(obstacles_energy(&o) < energy);
 }
 
-static void balls_stay_on_the_stairs(void **state) {
-    (void)state;
+TEST(balls_stay_on_the_stairs) {
     obstacles o = stairs;
     o.ball_count = 1;
     o.balls[0] = (ball){.centre = {0.0, 0.0, 2.0}, .velocity = {3.0, 0.0, 0.0}, .radius = 0.25, .mass = 1.0};
@@ -141,8 +134,7 @@ static void balls_stay_on_the_stairs(void **state) {
 }
 
 /* Balls of unequal mass touch off centre: momentum stays, energy does not rise, and they part. */
-static void colliding_balls_keep_their_momentum(void **state) {
-    (void)state;
+TEST(colliding_balls_keep_their_momentum) {
     obstacles o = {.ball_count = 2};
     o.balls[0] = (ball){.centre = {-2.0, 0.0, 9.0}, .velocity = {4.0, 0.0, 0.0}, .radius = 0.5, .mass = 3.0};
     o.balls[1] = (ball){.centre = {1.0, 0.4, 9.1}, .velocity = {-1.0, 0.0, 0.5}, .radius = 0.7, .mass = 1.0};
@@ -166,8 +158,7 @@ static void colliding_balls_keep_their_momentum(void **state) {
 }
 
 /* The scenery has boxes for the ground and for each step, as high as they are, followed by the balls. */
-static void scenery_shows_them(void **state) {
-    (void)state;
+TEST(scenery_shows_them) {
     obstacles o = stairs;
     body scenery;
     io_error error;
@@ -193,19 +184,4 @@ static void scenery_shows_them(void **state) {
     }
     assert_true(body_volume(&scenery) > 24.0 * 24.0 * 0.5);
     body_free(&scenery);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(heights_are_those_of_the_steps),
-        cmocka_unit_test(way_out_is_the_nearer_one),
-        cmocka_unit_test(trays_have_walls),
-        cmocka_unit_test(way_out_leads_out),
-        cmocka_unit_test(balls_push_from_their_centres),
-        cmocka_unit_test(balls_fall_and_come_to_rest),
-        cmocka_unit_test(balls_stay_on_the_stairs),
-        cmocka_unit_test(colliding_balls_keep_their_momentum),
-        cmocka_unit_test(scenery_shows_them),
-    };
-    return cmocka_run_group_tests_name("soft body: obstacles", tests, NULL, NULL);
 }

@@ -122,8 +122,7 @@ static size_t compare_with_callback(const ignored_pairs *list, cscd_method metho
     return count;
 }
 
-static void a_list_does_what_the_callback_does(void **state) {
-    (void)state;
+TEST(a_list_does_what_the_callback_does) {
     static ignored_pairs list;
     size_t all = 0, kept = 0;
     static const scene_family closed[] = {SCENE_BENT_CAPSULE, SCENE_SPIKE, SCENE_TWO_SPHERES};
@@ -244,8 +243,7 @@ static size_t compare_split(cscd_method method, const ignored_pairs *seams) {
     return expected_count;
 }
 
-static void seams_make_a_split_surface_whole(void **state) {
-    (void)state;
+TEST(seams_make_a_split_surface_whole) {
     static ignored_pairs seams;
     size_t contacts = 0;
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
@@ -263,8 +261,7 @@ static void seams_make_a_split_surface_whole(void **state) {
 }
 
 /* Two sheets sewn together along an edge, a little apart: near each other at the seam only there. */
-static void a_seam_may_gape(void **state) {
-    (void)state;
+TEST(a_seam_may_gape) {
     const uint32_t triangles[] = {0, 1, 2, 3, 4, 5}, seams[] = {0, 3, 1, 4};
     const cscd_object_desc desc = cscd_object_of_triangles(6, 2, triangles);
     const double x[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0.01, 1, 0, 0.01, 0, -1, 0};
@@ -290,8 +287,7 @@ static void a_seam_may_gape(void **state) {
 }
 
 /* Two triangles that pierce each other are ignored, also when a change has numbered them the other way round. */
-static void ignored_triangles_may_change_places(void **state) {
-    (void)state;
+TEST(ignored_triangles_may_change_places) {
     const uint32_t triangles[] = {0, 1, 2, 3, 4, 5}, turned[] = {3, 4, 5, 0, 1, 2}, origins[] = {1, 0},
                    pair[] = {0, 1};
     const cscd_object_desc before = cscd_object_of_triangles(6, 2, triangles),
@@ -323,8 +319,7 @@ static void ignored_triangles_may_change_places(void **state) {
     cscd_context_destroy(context);
 }
 
-static void mistakes_are_named(void **state) {
-    (void)state;
+TEST(mistakes_are_named) {
     const uint32_t triangles[] = {0, 1, 2}, pairs[] = {0, 0, 0, 3};
     const cscd_object_desc desc = cscd_object_of_triangles(3, 1, triangles);
     cscd_context *context;
@@ -348,15 +343,4 @@ static void mistakes_are_named(void **state) {
     assert_null(detector);
     cscd_mesh_destroy(mesh);
     cscd_context_destroy(context);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_list_does_what_the_callback_does),
-        cmocka_unit_test(seams_make_a_split_surface_whole),
-        cmocka_unit_test(a_seam_may_gape),
-        cmocka_unit_test(ignored_triangles_may_change_places),
-        cmocka_unit_test(mistakes_are_named),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -154,21 +154,18 @@ static void check_families(uint64_t seed, const double far[3], int exponent, dou
 
 static const double nowhere[3] = {0.0, 0.0, 0.0};
 
-static void keeps_what_may_touch(void **state) {
-    (void)state;
+TEST(keeps_what_may_touch) {
     check_families(50, nowhere, 0, 0.0);
 }
 
-static void keeps_what_may_touch_in_flight(void **state) {
+TEST(keeps_what_may_touch_in_flight) {
     const double far[3] = {3000.0, -0.75, -2e5};
-    (void)state;
     check_families(60, far, 0, 0.0);
 }
 
 /* What overlaps by nothing but rounding. */
-static void keeps_what_just_touches(void **state) {
+TEST(keeps_what_just_touches) {
     random_stream random = stream_start(55);
-    (void)state;
     kept_count = dropped_count = 0;
     for (uint32_t i = 0; i < 24; i++) {
         make_touching_pairs(&random, 100, i % 2 == 0 ? 2.0 : 300.0, &shape);
@@ -190,22 +187,11 @@ static void keeps_what_just_touches(void **state) {
     assert_true(kept_count > 1000);
 }
 
-static void keeps_what_comes_within_the_distance(void **state) {
-    (void)state;
+TEST(keeps_what_comes_within_the_distance) {
     check_families(70, nowhere, 0, 0.1);
 }
 
-static void keeps_at_any_scale(void **state) {
-    (void)state;
+TEST(keeps_at_any_scale) {
     check_families(80, nowhere, 280, 0.0);
     check_families(90, nowhere, -250, 0.05);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(keeps_what_may_touch),    cmocka_unit_test(keeps_what_may_touch_in_flight),
-        cmocka_unit_test(keeps_what_just_touches), cmocka_unit_test(keeps_what_comes_within_the_distance),
-        cmocka_unit_test(keeps_at_any_scale),
-    };
-    return cmocka_run_group_tests_name("feature_filter", tests, NULL, NULL);
 }

@@ -125,8 +125,7 @@ static void check_open(random_stream *random, const ccd_kernels *table) {
     pair_total += work.count;
 }
 
-static void signs_as_scalar(void **state) {
-    (void)state;
+TEST(signs_as_scalar) {
     kept_total = pair_total = 0;
     for_each_batch(72, check_open);
     assert_true(kept_total * 10 > pair_total && kept_total * 10 < pair_total * 9);
@@ -192,8 +191,7 @@ static void check_roots(random_stream *random, const ccd_kernels *table) {
 }
 
 /* The counts prove that each answer is given, and that all levels give it to the same pairs. */
-static void roots_as_scalar(void **state) {
-    (void)state;
+TEST(roots_as_scalar) {
     root_counts first = {0};
     for (int level = 0; level < LEVEL_COUNT; level++) {
         cscd_context *others[LEVEL_COUNT];
@@ -272,8 +270,7 @@ static size_t check_interval(cscd_method method, double distance) {
     return first.count;
 }
 
-static void same_on_all_levels(void **state) {
-    (void)state;
+TEST(same_on_all_levels) {
     size_t contacts = 0;
     for (int i = 0; i < SCENE_FAMILY_COUNT * 6; i++) {
         scene_make((scene_family)(i % SCENE_FAMILY_COUNT), (uint64_t)i, &interval);
@@ -286,11 +283,4 @@ static void same_on_all_levels(void **state) {
     assert_true(contacts >= 1000);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(signs_as_scalar),
-        cmocka_unit_test(roots_as_scalar),
-        cmocka_unit_test(same_on_all_levels),
-    };
-    return cmocka_run_group_tests_name("feature_queue", tests, open_levels, close_levels);
-}
+AROUND_ALL(open_levels, close_levels)

@@ -168,10 +168,9 @@ static void check_pairs(const cscd_mesh *mesh, size_t sum[2]) {
     orphan_pairs_free(mesh->context, &found);
 }
 
-static void pairs_are_those_of_the_definition(void **state) {
+TEST(pairs_are_those_of_the_definition) {
     size_t sum[2] = {0, 0};
     cscd_context *context = NULL;
-    (void)state;
     assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
     for (uint64_t seed = 0; seed < SURFACES; seed++) {
         cscd_mesh *mesh = NULL;
@@ -241,8 +240,7 @@ static cscd_context *context_of_threads(uint32_t count) {
 }
 
 /* Tasks of several thousand triangles find what the surfaces have, in the same order, whoever does them. */
-static void tasks_find_all_pairs(void **state) {
-    (void)state;
+TEST(tasks_find_all_pairs) {
     for (uint32_t threads = 1; threads <= 3; threads++) {
         cscd_context *context = context_of_threads(threads);
         cscd_mesh *mesh = NULL;
@@ -268,8 +266,7 @@ static void tasks_find_all_pairs(void **state) {
 }
 
 /* All triangles of a fan are adjacent: no task finds more than all may have, but all tasks together do. */
-static void too_many_in_all_tasks(void **state) {
-    (void)state;
+TEST(too_many_in_all_tasks) {
     for (uint32_t threads = 1; threads <= 3; threads++) {
         cscd_context *context = context_of_threads(threads);
         cscd_mesh *mesh = NULL;
@@ -290,8 +287,7 @@ static void too_many_in_all_tasks(void **state) {
 }
 
 /* Two tips over a ring have few orphan pairs, but looking for them takes the square of the ring's size: it is given up. */
-static void looks_are_limited(void **state) {
-    (void)state;
+TEST(looks_are_limited) {
     enum { RINGS = 2 };
     static const uint32_t rings[RINGS] = {96, 1 << 12};
     static uint32_t triangles[1 << 13][3];
@@ -316,11 +312,4 @@ static void looks_are_limited(void **state) {
         cscd_mesh_destroy(mesh);
     }
     cscd_context_destroy(context);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pairs_are_those_of_the_definition), cmocka_unit_test(tasks_find_all_pairs),
-        cmocka_unit_test(too_many_in_all_tasks), cmocka_unit_test(looks_are_limited)};
-    return cmocka_run_group_tests_name("orphan_pairs", tests, NULL, NULL);
 }

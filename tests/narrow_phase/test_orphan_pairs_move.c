@@ -37,8 +37,7 @@ static void check_failures(counting_allocator *counter, const orphan_pairs *pair
     orphan_pairs_free(made->context, &out);
 }
 
-static void equal_those_of_the_whole_mesh(void **state) {
-    (void)state;
+TEST(equal_those_of_the_whole_mesh) {
     size_t kept = 0, known = 0;
     for (uint64_t seed = 0; seed < 120; seed++) {
         random_stream random = stream_start(seed);
@@ -79,9 +78,4 @@ static void equal_those_of_the_whole_mesh(void **state) {
         assert_int_equal(counter.live, 0);
     }
     assert_true(kept > 10000 && known > 10000);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(equal_those_of_the_whole_mesh)};
-    return cmocka_run_group_tests_name("orphan_pairs_move", tests, NULL, NULL);
 }

@@ -157,8 +157,7 @@ static size_t compare_contacts(pair_rig *r) {
     return touching;
 }
 
-static void contacts_are_those_of_a_step(void **state) {
-    (void)state;
+TEST(contacts_are_those_of_a_step) {
     for (int kind = 0; kind < 2; kind++) {
         pair_rig r = pair_rig_make((cscd_contact_kind)kind);
         const cscd_pairs all = all_of(r.kind);
@@ -175,8 +174,7 @@ static void contacts_are_those_of_a_step(void **state) {
 }
 
 /* Each query has a separation of its own size, so it is a call of its own. */
-static void separations_are_those_of_a_step(void **state) {
-    (void)state;
+TEST(separations_are_those_of_a_step) {
     static const double shares[] = {1e-6, 0.01, 0.3};
     for (int kind = 0; kind < 2; kind++) {
         pair_rig r = pair_rig_make((cscd_contact_kind)kind);
@@ -213,8 +211,7 @@ static void expect_same_distance(const cscd_pair_distance *found, const cscd_pro
     assert_memory_equal(found->normal, expected->normal, sizeof found->normal);
 }
 
-static void distances_are_those_of_find_near(void **state) {
-    (void)state;
+TEST(distances_are_those_of_find_near) {
     static const double shares[] = {1e-3, 0.1, 0.5};
     for (int kind = 0; kind < 2; kind++) {
         pair_rig r = pair_rig_make((cscd_contact_kind)kind);
@@ -255,8 +252,7 @@ static void expect_same_results(cscd_context *context, const cscd_pairs *desc, c
 }
 
 /* Points that are named by numbers, in another order. */
-static void points_may_be_named(void **state) {
-    (void)state;
+TEST(points_may_be_named) {
     static double start[POINTS][3], end[POINTS][3];
     static uint32_t points[POINTS];
     random_stream random = stream_start(7);
@@ -281,8 +277,7 @@ static void points_may_be_named(void **state) {
 }
 
 /* Floats by columns give what the same numbers give as packed doubles. */
-static void any_layout_will_do(void **state) {
-    (void)state;
+TEST(any_layout_will_do) {
     static float columns[2][3][POINTS];
     for (int kind = 0; kind < 2; kind++) {
         const cscd_pairs all = all_of((cscd_contact_kind)kind);
@@ -320,8 +315,7 @@ static void any_layout_will_do(void **state) {
 
 /* ---- arguments ------------------------------------------------------------------------------------------------- */
 
-static void bad_arguments_are_named(void **state) {
-    (void)state;
+TEST(bad_arguments_are_named) {
     static const uint32_t points[8] = {0, 1, 2, 3, 4, 5, 8, 7};
     const cscd_pairs two = {CSCD_CONTACT_EE, 8, 2, NULL}, few = {CSCD_CONTACT_EE, 7, 2, NULL},
                      wild = {CSCD_CONTACT_VF, 8, 2, points}, vv = {CSCD_CONTACT_VV, 8, 2, NULL};
@@ -347,14 +341,4 @@ static void bad_arguments_are_named(void **state) {
     assert_memory_equal(contacts, &before, sizeof before);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(contacts_are_those_of_a_step),
-        cmocka_unit_test(separations_are_those_of_a_step),
-        cmocka_unit_test(distances_are_those_of_find_near),
-        cmocka_unit_test(points_may_be_named),
-        cmocka_unit_test(any_layout_will_do),
-        cmocka_unit_test(bad_arguments_are_named),
-    };
-    return cmocka_run_group_tests_name("pairs", tests, open_levels, close_levels);
-}
+AROUND_ALL(open_levels, close_levels)

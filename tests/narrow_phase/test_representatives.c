@@ -94,8 +94,7 @@ static size_t check_triangles(cscd_context *context, uint32_t vertex_count, uint
 }
 
 /* Few vertices, so that edges have many triangles and triangles come twice. */
-static void any_triangles(void **state) {
-    (void)state;
+TEST(any_triangles) {
     cscd_context *context = NULL;
     random_stream random = stream_start(5);
     size_t orphans = 0;
@@ -116,8 +115,7 @@ static void any_triangles(void **state) {
 }
 
 /* Large ones with few seeds: their seeds move vertices, and the triangles stay the same. */
-static void all_scenes(void **state) {
-    (void)state;
+TEST(all_scenes) {
     static scene s;
     cscd_context *context = NULL;
     settled_pairs = 0;
@@ -136,8 +134,7 @@ static void all_scenes(void **state) {
 }
 
 /* All triangles of a fan are adjacent: its orphan pairs grow with the square. */
-static void fans_have_too_many(void **state) {
-    (void)state;
+TEST(fans_have_too_many) {
     cscd_context *context = NULL;
     cscd_mesh *mesh = NULL;
     uint32_t triangles[FAN][3];
@@ -155,13 +152,4 @@ static void fans_have_too_many(void **state) {
     assert_true(too_many && orphans.vf_count == 0 && orphans.ee_count == 0);
     cscd_mesh_destroy(mesh);
     cscd_context_destroy(context);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(any_triangles),
-        cmocka_unit_test(all_scenes),
-        cmocka_unit_test(fans_have_too_many),
-    };
-    return cmocka_run_group_tests_name("representatives", tests, NULL, NULL);
 }

@@ -52,11 +52,10 @@ static size_t check_marks(const cscd_mesh *mesh) {
     return disjoint;
 }
 
-static void all_scenes(void **state) {
+TEST(all_scenes) {
     static scene s;
     cscd_context *context = NULL;
     size_t disjoint = 0;
-    (void)state;
     assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         cscd_mesh *mesh = NULL;
@@ -69,9 +68,4 @@ static void all_scenes(void **state) {
     print_message("%zu pairs of triangles have nothing in common\n", disjoint);
     assert_true(disjoint > 30000);
     cscd_context_destroy(context);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(all_scenes)};
-    return cmocka_run_group_tests_name("ring_marks", tests, NULL, NULL);
 }

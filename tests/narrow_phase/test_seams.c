@@ -78,8 +78,7 @@ static void expect_refusal(const sewn_panels *p, int call, double gap, const cha
 
 /* Whatever call sees positions first refuses seams that gape wider than an edge, as often as they do. Seams that
  * have been seen near each other may be pulled apart. */
-static void distant_vertices_are_named_at_first_sight(void **state) {
-    (void)state;
+TEST(distant_vertices_are_named_at_first_sight) {
     cscd_detector_options options = options_sewn();
     for (int first = 0; first < CALLS; first++) {
         for (int second = 0; second < CALLS; second++) {
@@ -101,8 +100,7 @@ static void distant_vertices_are_named_at_first_sight(void **state) {
 }
 
 /* Pairs are checked one by one, each by its own edges: the second one gapes where the first does not. */
-static void the_first_distant_pair_is_named(void **state) {
-    (void)state;
+TEST(the_first_distant_pair_is_named) {
     const uint32_t ends[] = {0, 3, 2, 5};
     cscd_detector_options options = options_sewn();
     options.seams = ends;
@@ -116,8 +114,7 @@ static void the_first_distant_pair_is_named(void **state) {
 }
 
 /* The triangle of either end, the first or the second, may be the small one. */
-static void the_longest_edge_of_both_ends_counts(void **state) {
-    (void)state;
+TEST(the_longest_edge_of_both_ends_counts) {
     cscd_detector_options options = options_sewn();
     options.seam_count = 1;
     for (int small = 0; small < 2; small++) {
@@ -133,8 +130,7 @@ static void the_longest_edge_of_both_ends_counts(void **state) {
 }
 
 /* The caller says what is far: farther than any edge, nearer, or nothing. */
-static void the_reach_of_seams(void **state) {
-    (void)state;
+TEST(the_reach_of_seams) {
     double x[18];
     cscd_detector_options options = options_sewn();
     options.seam_reach = 28.0;
@@ -155,8 +151,7 @@ static void the_reach_of_seams(void **state) {
     free_panels(&p);
 }
 
-static void equal_vertices_are_refused(void **state) {
-    (void)state;
+TEST(equal_vertices_are_refused) {
     const uint32_t same[] = {0, 3, 4, 4};
     cscd_detector_options options = options_sewn();
     sewn_panels p = sew_panels(&options);
@@ -167,13 +162,4 @@ static void equal_vertices_are_refused(void **state) {
                         "pair 1 of seams has vertex 4 twice, expected two vertices; leave it out");
     assert_null(none);
     free_panels(&p);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(distant_vertices_are_named_at_first_sight),
-                                       cmocka_unit_test(the_first_distant_pair_is_named),
-                                       cmocka_unit_test(the_longest_edge_of_both_ends_counts),
-                                       cmocka_unit_test(the_reach_of_seams),
-                                       cmocka_unit_test(equal_vertices_are_refused)};
-    return cmocka_run_group_tests_name("seams", tests, NULL, NULL);
 }

@@ -62,19 +62,16 @@ static void check_kind(cscd_contact_kind kind) {
     }
 }
 
-static void vf_agrees_with_integers(void **state) {
-    (void)state;
+TEST(vf_agrees_with_integers) {
     check_kind(CSCD_CONTACT_VF);
 }
 
-static void ee_agrees_with_integers(void **state) {
-    (void)state;
+TEST(ee_agrees_with_integers) {
     check_kind(CSCD_CONTACT_EE);
 }
 
 /* One coordinate of one point moves, by as little as it can. */
-static void leaves_what_moves(void **state) {
-    (void)state;
+TEST(leaves_what_moves) {
     random_stream random = stream_start(93);
     for (int i = 0; i < 24 * QUERIES_A_FAMILY; i++) {
         cscd_contact_kind kind = (cscd_contact_kind)(i % 2);
@@ -161,8 +158,7 @@ static size_t compare_step(cscd_method method) {
 }
 
 /* Small integer coordinates: faces and edges that touch, cross, lie in one plane, coincide and have collapsed. */
-static void steps_at_rest_agree_with_integers(void **state) {
-    (void)state;
+TEST(steps_at_rest_agree_with_integers) {
     size_t contacts = 0;
     for (uint64_t seed = 0; seed < SCENES_AT_REST; seed++) {
         scene_make(SCENE_GRID, seed, &at_rest);
@@ -172,14 +168,4 @@ static void steps_at_rest_agree_with_integers(void **state) {
     }
     print_message("%zu contacts\n", contacts);
     assert_true(contacts > 5 * SCENES_AT_REST);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(vf_agrees_with_integers),
-        cmocka_unit_test(ee_agrees_with_integers),
-        cmocka_unit_test(leaves_what_moves),
-        cmocka_unit_test(steps_at_rest_agree_with_integers),
-    };
-    return cmocka_run_group_tests_name("still_pair", tests, NULL, NULL);
 }

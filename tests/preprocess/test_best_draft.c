@@ -7,8 +7,7 @@
 #include <string.h>
 
 /* The plan kept is that of its own method, and leaves no more than any other. */
-static void keeps_the_best(void **state) {
-    (void)state;
+TEST(keeps_the_best) {
     static const body_kind kinds[] = {BODY_SPHERE, BODY_FIGURE, BODY_TORUS, BODY_CAPSULE};
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
         bending b = bending_of(kinds[i], 1500, 0.0, 1);
@@ -88,8 +87,7 @@ static double tested_in(const bending *b, const cscd_plan *plan, const double *f
 }
 
 /* What is predicted is what a detector does not cull, and a part of what is seen at a low angle. */
-static void predicts_what_a_detector_does(void **state) {
-    (void)state;
+TEST(predicts_what_a_detector_does) {
     enum { TAKEN = 4 };
     bending b = bending_of(BODY_HAND, 3000, 1.5, 1);
     cscd_plan *best = bending_plan(&b, CSCD_METHOD_AUTO, bending_frames(&b), TAKEN);
@@ -140,16 +138,14 @@ static double share_of_figure(bool turned, uint32_t left_out) {
     return share;
 }
 
-static void inside_out_is_the_same_but_open_is_not(void **state) {
-    (void)state;
+TEST(inside_out_is_the_same_but_open_is_not) {
     const double share = share_of_figure(false, 0);
     assert_true(fabs(share - share_of_figure(true, 0)) < 1e-6 && share < 0.5);
     assert_true(share_of_figure(false, 1) == 1.0);
 }
 
 /* Two triangles with one centroid: their charge is an error, and the other methods go on. */
-static void goes_on_without_charge(void **state) {
-    (void)state;
+TEST(goes_on_without_charge) {
     static const double corners[] = {3, 0, 0, 0, 3, 0, -3, -3, 0, -3, 0, 0, 0, -3, 0, 3, 3, 0};
     static const uint32_t triangles[] = {0, 1, 2, 3, 4, 5, 0, 3, 5};
     cscd_context *context = NULL;
@@ -170,8 +166,7 @@ static void goes_on_without_charge(void **state) {
     cscd_context_destroy(context);
 }
 
-static void threads_change_nothing(void **state) {
-    (void)state;
+TEST(threads_change_nothing) {
     bending one = bending_of(BODY_HAND, 3000, 1.0, 1), four = bending_of(BODY_HAND, 3000, 1.0, 4);
     cscd_plan *a = bending_plan(&one, CSCD_METHOD_AUTO, bending_frames(&one), BENDING_FRAMES),
               *b = bending_plan(&four, CSCD_METHOD_AUTO, bending_frames(&four), BENDING_FRAMES);
@@ -182,15 +177,4 @@ static void threads_change_nothing(void **state) {
     cscd_plan_destroy(b);
     bending_free(&one);
     bending_free(&four);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(keeps_the_best),
-        cmocka_unit_test(predicts_what_a_detector_does),
-        cmocka_unit_test(inside_out_is_the_same_but_open_is_not),
-        cmocka_unit_test(goes_on_without_charge),
-        cmocka_unit_test(threads_change_nothing),
-    };
-    return cmocka_run_group_tests_name("best_draft", tests, NULL, NULL);
 }

@@ -42,8 +42,7 @@ static double triangle_area(const conductor *s, uint32_t triangle, double centro
     return 0.5 * sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
 }
 
-static void charge_of_sphere(void **state) {
-    (void)state;
+TEST(charge_of_sphere) {
     double error_before = NAN, spread_before = NAN;
     for (int level = 1; level <= FINEST; level++) {
         conductor s = conductor_sphere(level);
@@ -71,8 +70,7 @@ static void charge_of_sphere(void **state) {
 
 /* 0.6606782 (the best values known agree in these digits). The density is infinite at the edges, so even
  * steps converge at first order; crowded towards the edges they do better. */
-static void charge_of_cube(void **state) {
-    (void)state;
+TEST(charge_of_cube) {
     const double exact = 0.6606782;
     double before = NAN, crowded = NAN;
     for (int level = 1; level <= FINEST; level++) {
@@ -102,8 +100,7 @@ static double carlson_rf(double x, double y, double z) {
 }
 
 /* density = Q / (4 pi a b c) / sqrt(x^2 / a^4 + y^2 / b^4 + z^2 / c^4) */
-static void charge_of_ellipsoid(void **state) {
-    (void)state;
+TEST(charge_of_ellipsoid) {
     const double axes[3] = {1.6, 1.0, 0.7}, nowhere[3] = {0.0, 0.0, 0.0};
     const double exact = 1.0 / carlson_rf(axes[0] * axes[0], axes[1] * axes[1], axes[2] * axes[2]);
     double error_before = NAN, worst = 0.0;
@@ -134,8 +131,7 @@ static void charge_of_ellipsoid(void **state) {
 }
 
 /* The charge of one triangle at potential 1 at its centroid. */
-static void one_triangle(void **state) {
-    (void)state;
+TEST(one_triangle) {
     double positions[9] = {0, 0, 0, 1, 0, 0, 0.5, sqrt(0.75), 0};
     uint32_t triangle[3] = {0, 1, 2};
     conductor s = {3, 1, positions, triangle};
@@ -146,8 +142,7 @@ static void one_triangle(void **state) {
 }
 
 /* Four triangles; the capacitance lies between those of the spheres inside and around. */
-static void charge_of_tetrahedron(void **state) {
-    (void)state;
+TEST(charge_of_tetrahedron) {
     conductor s = conductor_tetrahedron();
     charge_rig r = charge_rig_solve(&s, 3);
     assert_true(r.capacitance[0] > 1.0 / (3.0 + sqrt(3.0)) && r.capacitance[0] < sqrt(0.75));
@@ -163,8 +158,7 @@ static void assert_same(const double *a, const double *b, uint32_t count) {
 }
 
 /* Each component gives what it gives alone. */
-static void components_are_independent(void **state) {
-    (void)state;
+TEST(components_are_independent) {
     const double half[3] = {0.5, 0.5, 0.5}, near[3] = {0.9, 0.1, 0.2};
     conductor first = conductor_sphere(2), second = conductor_cube(2), both = conductor_sphere(2);
     conductor_transform(&second, half, near);
@@ -184,8 +178,7 @@ static void components_are_independent(void **state) {
 }
 
 /* density ~ 1 / length, capacitance ~ length; with powers of two, to the bit. */
-static void scales_with_length(void **state) {
-    (void)state;
+TEST(scales_with_length) {
     const double factors[4] = {0x1p20, 0x1p-250, 0x1p280, 3.7}, nowhere[3] = {0.0, 0.0, 0.0};
     for (int f = 0; f < 4; f++) {
         const double scale[3] = {factors[f], factors[f], factors[f]}, off[3] = {0.75, 0.25, 0.5};
@@ -206,8 +199,7 @@ static void scales_with_length(void **state) {
 }
 
 /* The cube's coordinates stay exact far from the origin, and so does the result. */
-static void far_from_the_origin(void **state) {
-    (void)state;
+TEST(far_from_the_origin) {
     const double same[3] = {1.0, 1.0, 1.0}, offset[3] = {1e6, -1e6, 5e5};
     conductor s = conductor_cube(2);
     charge_rig a = charge_rig_solve(&s, 2);
@@ -218,43 +210,4 @@ static void far_from_the_origin(void **state) {
     charge_rig_destroy(&a);
     charge_rig_destroy(&b);
     conductor_free(&s);
-}
-
-/* A row of docs/theory/charge.md. */
-static void print_row(const char *name, conductor s, uint32_t thread_count) {
-    charge_report report;
-    charge_rig r = charge_rig_create(&s, thread_count, NULL);
-    assert_int_equal(charge_solve(r.mesh, s.positions, &by_dense_system, r.density, r.capacitance, &report),
-                     CSCD_OK);
-    const charge_timings timings = report.timings;
-    printf("| %s | %u | %.7f | %.0f ms | %.0f ms | %.0f ms | %.0f ms | %.1f MiB |\n", name, s.triangle_count,
-           r.capacitance[0], timings.assembly_ms, timings.factor_ms, timings.refine_ms, timings.total_ms,
-           (double)charge_memory(r.mesh) / 0x1p20);
-    charge_rig_destroy(&r);
-    conductor_free(&s);
-}
-
-static int print_table(uint32_t thread_count) {
-    conductor crowded = conductor_cube(4), finer = conductor_cube(5);
-    conductor_crowd_edges(&crowded);
-    conductor_crowd_edges(&finer);
-    print_row("warm-up", conductor_sphere(3), thread_count);
-    print_row("sphere", conductor_sphere(3), thread_count);
-    print_row("sphere", conductor_sphere(4), thread_count);
-    print_row("cube", conductor_cube(4), thread_count);
-    print_row("cube", conductor_cube(5), thread_count);
-    print_row("cube, crowded", crowded, thread_count);
-    print_row("cube, crowded", finer, thread_count);
-    return 0;
-}
-
-/* With a number of threads as its argument it prints the table of docs/theory/charge.md and tests nothing. */
-int main(void) {
-    if (room_argument_count() > 1) return print_table((uint32_t)strtoul(room_argument(1), NULL, 10));
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(charge_of_sphere),      cmocka_unit_test(charge_of_cube),
-        cmocka_unit_test(charge_of_ellipsoid),   cmocka_unit_test(one_triangle),
-        cmocka_unit_test(charge_of_tetrahedron), cmocka_unit_test(components_are_independent),
-        cmocka_unit_test(scales_with_length),    cmocka_unit_test(far_from_the_origin)};
-    return cmocka_run_group_tests_name("charge", tests, NULL, NULL);
 }

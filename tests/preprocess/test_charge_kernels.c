@@ -35,18 +35,16 @@ static void describe_plan(cscd_method method, cscd_charge_solver solver, char te
     body_free(&shape);
 }
 
-static void charge_names_its_kernels(void **state) {
+TEST(charge_names_its_kernels) {
     char text[128], expected[128];
     const char *name = blas_choice_name(), *better = blas_choice_better();
-    (void)state;
     describe_plan(CSCD_METHOD_CHARGE, CSCD_CHARGE_DENSE, text);
     snprintf(expected, sizeof expected, "%s %s", name != NULL ? name : "-", better != NULL ? better : "-");
     assert_string_equal(text, expected);
 }
 
-static void others_have_none(void **state) {
+TEST(others_have_none) {
     char text[128];
-    (void)state;
     describe_plan(CSCD_METHOD_CHARGE, CSCD_CHARGE_TREE, text);
     assert_string_equal(text, "- -");
     describe_plan(CSCD_METHOD_KMEANS, CSCD_CHARGE_DENSE, text);
@@ -56,9 +54,8 @@ static void others_have_none(void **state) {
 #if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 
 /* What this program says behind such a library. */
-static void old_kernels_are_named(void **state) {
+TEST(old_kernels_are_named) {
     char command[8192], text[128] = "";
-    (void)state;
     __builtin_cpu_init();
     if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) skip();
     temp_folder folder = temp_folder_make();
@@ -82,20 +79,15 @@ static void old_kernels_are_named(void **state) {
 
 #endif
 
-int main(void) {
+/* As the program that old_kernels_are_named starts, it describes. */
+static int describe_or_test(void) {
     program = room_argument(0);
-    if (room_argument_count() == 2 && strcmp(room_argument(1), "describe") == 0) {
-        char text[128];
-        describe_plan(CSCD_METHOD_CHARGE, CSCD_CHARGE_DENSE, text);
-        puts(text);
-        return 0;
-    }
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(charge_names_its_kernels),
-        cmocka_unit_test(others_have_none),
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-        cmocka_unit_test(old_kernels_are_named),
-#endif
-    };
-    return cmocka_run_group_tests_name("charge_kernels", tests, NULL, NULL);
+    if (room_argument_count() != 2 || strcmp(room_argument(1), "describe") != 0)
+        return room_run_tests(TEST_FILE);
+    char text[128];
+    describe_plan(CSCD_METHOD_CHARGE, CSCD_CHARGE_DENSE, text);
+    puts(text);
+    return 0;
 }
+
+FILE_MAIN(describe_or_test)

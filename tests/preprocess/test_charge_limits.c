@@ -46,8 +46,7 @@ static uint32_t *rounded_ranks(const charge_rig *r, uint32_t count) {
     return ranks;
 }
 
-static void repeats_to_the_bit(void **state) {
-    (void)state;
+TEST(repeats_to_the_bit) {
     conductor s = odd_ellipsoid(FINE);
     for (uint32_t threads = 1; threads <= 3; threads++) {
         charge_rig a = charge_rig_solve(&s, threads), b = charge_rig_solve(&s, threads);
@@ -59,8 +58,7 @@ static void repeats_to_the_bit(void **state) {
     conductor_free(&s);
 }
 
-static void thread_count_changes_no_rank(void **state) {
-    (void)state;
+TEST(thread_count_changes_no_rank) {
     conductor s = odd_ellipsoid(FINE);
     charge_rig one = charge_rig_solve(&s, 1);
     uint32_t *expected = rounded_ranks(&one, s.triangle_count);
@@ -78,8 +76,7 @@ static void thread_count_changes_no_rank(void **state) {
 }
 
 /* Triangles in another order have the same densities, to the bit. */
-static void numbering_does_not_matter(void **state) {
-    (void)state;
+TEST(numbering_does_not_matter) {
     conductor s = odd_ellipsoid(2), turned = odd_ellipsoid(2);
     uint32_t n = s.triangle_count;
     for (uint32_t t = 0; t < n; t++)
@@ -92,8 +89,7 @@ static void numbering_does_not_matter(void **state) {
     conductor_free(&turned);
 }
 
-static void puts_the_threads_of_blas_back(void **state) {
-    (void)state;
+TEST(puts_the_threads_of_blas_back) {
     conductor s = odd_ellipsoid(1);
     int before = openblas_get_num_threads != NULL ? openblas_get_num_threads() : 0;
     for (uint32_t threads = 1; threads <= 3; threads++) {
@@ -121,8 +117,7 @@ static conductor with_extra(const conductor *s, const double *positions, uint32_
     return r;
 }
 
-static void zero_area_triangles_take_no_part(void **state) {
-    (void)state;
+TEST(zero_area_triangles_take_no_part) {
     const double middle[3] = {0.25, 0.0, 0.0};
     const uint32_t extra[3] = {0, 4, 1};
     conductor s = conductor_tetrahedron(), more = with_extra(&s, middle, 1, extra, 1);
@@ -135,8 +130,7 @@ static void zero_area_triangles_take_no_part(void **state) {
     conductor_free(&more);
 }
 
-static void component_without_area(void **state) {
-    (void)state;
+TEST(component_without_area) {
     double positions[12] = {1, 1, 1, 2, 2, 2, 3, 3, 3, 1, 1, 1};
     uint32_t triangles[6] = {0, 1, 2, 3, 0, 1};
     conductor s = {4, 2, positions, triangles};
@@ -146,8 +140,7 @@ static void component_without_area(void **state) {
 }
 
 /* A face that is there three times, once inside out: its charge is shared. */
-static void coincident_triangles_share(void **state) {
-    (void)state;
+TEST(coincident_triangles_share) {
     const uint32_t extra[6] = {3, 1, 0, 1, 3, 0};
     conductor s = conductor_tetrahedron(), more = with_extra(&s, NULL, 0, extra, 2);
     charge_rig a = charge_rig_solve(&s, 2), b = charge_rig_solve(&more, 2);
@@ -174,8 +167,7 @@ static void assert_refused(const conductor *s, const char *words) {
 }
 
 /* Two triangles with one centroid give two equal equations. */
-static void one_centroid_for_two(void **state) {
-    (void)state;
+TEST(one_centroid_for_two) {
     double positions[18] = {3, 0, 0, 0, 3, 0, -3, -3, 0, -3, 0, 0, 0, -3, 0, 3, 3, 0};
     uint32_t triangles[9] = {0, 1, 2, 3, 4, 5, 0, 3, 5};
     conductor s = {6, 3, positions, triangles};
@@ -183,8 +175,7 @@ static void one_centroid_for_two(void **state) {
 }
 
 /* A face of a tetrahedron and one that almost lies on it: one of the two is named, and none of the others. */
-static void what_lies_on_another_is_named(void **state) {
-    (void)state;
+TEST(what_lies_on_another_is_named) {
     const double beside[3] = {0.0, -1e-13, 0.0};
     const uint32_t extra[3] = {4, 1, 3};
     conductor s = conductor_tetrahedron(), more = with_extra(&s, beside, 1, extra, 1);
@@ -200,8 +191,7 @@ static void what_lies_on_another_is_named(void **state) {
 
 /* A sheet that lies close to another one is told apart from it while single precision tells their potentials
  * apart. */
-static void sheets_near_each_other(void **state) {
-    (void)state;
+TEST(sheets_near_each_other) {
     for (int digits = 2; digits <= 14; digits += 4) {
         double h = pow(10.0, -digits);
         double positions[18] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, h, 1, 0, h, 0, 1, h};
@@ -239,8 +229,7 @@ static void watching_free(void *user, void *block, size_t size) {
     system_memory_free(block);
 }
 
-static void takes_what_it_estimates(void **state) {
-    (void)state;
+TEST(takes_what_it_estimates) {
     watching_allocator watcher = {0, 0, false};
     const cscd_allocator allocator = {watching_allocate, watching_free, &watcher};
     conductor s = conductor_cube(2);
@@ -272,8 +261,7 @@ static void takes_what_it_estimates(void **state) {
     conductor_free(&s);
 }
 
-static void keeps_to_the_limit(void **state) {
-    (void)state;
+TEST(keeps_to_the_limit) {
     conductor s = conductor_cube(3);
     charge_rig r = charge_rig_create(&s, 2, NULL);
     size_t needed = charge_memory(r.mesh);
@@ -293,8 +281,7 @@ static void keeps_to_the_limit(void **state) {
 }
 
 /* A fan of 500,000 triangles: 1 TB. */
-static void what_does_not_fit_is_refused(void **state) {
-    (void)state;
+TEST(what_does_not_fit_is_refused) {
     enum { COUNT = 500000 };
     conductor s = {COUNT + 2, COUNT, calloc((COUNT + 2) * 3, sizeof(double)),
                    malloc(COUNT * 3 * sizeof(uint32_t))};
@@ -315,8 +302,7 @@ static void what_does_not_fit_is_refused(void **state) {
 
 /* ---- bad input ---- */
 
-static void bad_arguments(void **state) {
-    (void)state;
+TEST(bad_arguments) {
     conductor s = conductor_tetrahedron();
     charge_rig r = charge_rig_create(&s, 1, NULL);
     charge_report report = {.timings = {-1.0, -1.0, -1.0, -1.0}};
@@ -342,22 +328,4 @@ static void bad_arguments(void **state) {
     assert_true(timings.total_ms >= timings.assembly_ms + timings.factor_ms + timings.refine_ms);
     charge_rig_destroy(&r);
     conductor_free(&s);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(repeats_to_the_bit),
-                                       cmocka_unit_test(thread_count_changes_no_rank),
-                                       cmocka_unit_test(numbering_does_not_matter),
-                                       cmocka_unit_test(puts_the_threads_of_blas_back),
-                                       cmocka_unit_test(zero_area_triangles_take_no_part),
-                                       cmocka_unit_test(component_without_area),
-                                       cmocka_unit_test(coincident_triangles_share),
-                                       cmocka_unit_test(one_centroid_for_two),
-                                       cmocka_unit_test(what_lies_on_another_is_named),
-                                       cmocka_unit_test(sheets_near_each_other),
-                                       cmocka_unit_test(takes_what_it_estimates),
-                                       cmocka_unit_test(keeps_to_the_limit),
-                                       cmocka_unit_test(what_does_not_fit_is_refused),
-                                       cmocka_unit_test(bad_arguments)};
-    return cmocka_run_group_tests_name("charge limits", tests, NULL, NULL);
 }

@@ -41,8 +41,7 @@ static conductor crowded_body(int level) {
     return s;
 }
 
-static void agrees_with_the_dense_system(void **state) {
-    (void)state;
+TEST(agrees_with_the_dense_system) {
     conductor crowded = crowded_body(FINE), bent = bent_body(FINE), sphere = conductor_sphere(FINE);
     const conductor *all[] = {&bent, &crowded, &sphere};
     static const char *const names[] = {"bent body", "crowded cube", "sphere"};
@@ -78,8 +77,7 @@ static void agrees_with_the_dense_system(void **state) {
 }
 
 /* A millionth and a million times as large, somewhere else: the same densities but for the scale. */
-static void scale_and_place_do_not_matter(void **state) {
-    (void)state;
+TEST(scale_and_place_do_not_matter) {
     conductor s = bent_body(2);
     charge_rig a = charge_rig_solve_by(&by_tree, &s, 1);
     for (int exponent = -20; exponent <= 20; exponent += 40) {
@@ -97,8 +95,7 @@ static void scale_and_place_do_not_matter(void **state) {
     conductor_free(&s);
 }
 
-static void components_are_solved_alone(void **state) {
-    (void)state;
+TEST(components_are_solved_alone) {
     conductor one = bent_body(2), both = bent_body(2), other = conductor_cube(2);
     conductor_append(&both, &other);
     charge_rig a = charge_rig_solve_by(&by_tree, &one, 2), b = charge_rig_solve_by(&by_tree, &both, 2);
@@ -112,8 +109,7 @@ static void components_are_solved_alone(void **state) {
     conductor_free(&other);
 }
 
-static void threads_give_the_same_bits(void **state) {
-    (void)state;
+TEST(threads_give_the_same_bits) {
     conductor s = bent_body(3);
     charge_rig a = charge_rig_solve_by(&by_tree, &s, 1);
     for (uint32_t threads = 2; threads <= 3; threads++) {
@@ -175,8 +171,7 @@ static double residual_of(const conductor *s, const charge_rig *r) {
 }
 
 /* The potential is 1 to the tolerance: densities of fine meshes need 1e-6 of it. */
-static void iterations_end_at_the_tolerance(void **state) {
-    (void)state;
+TEST(iterations_end_at_the_tolerance) {
     conductor s = bent_body(FINE);
     charge_rig fine = charge_rig_solve_by(&by_tree, &s, 2),
                coarse = charge_rig_solve_by(&by_coarse_tree, &s, 2);
@@ -190,8 +185,7 @@ static void iterations_end_at_the_tolerance(void **state) {
 }
 
 /* The iteration comes no closer to sheets that are 1e-9 apart: what it has found is good enough. */
-static void makes_do_with_a_small_residual(void **state) {
-    (void)state;
+TEST(makes_do_with_a_small_residual) {
     conductor s = sphere_with_sheets(1e-9), wide = sphere_with_sheets(1e-6);
     charge_rig r = charge_rig_solve_by(&by_tree, &s, 1), expected = charge_rig_solve_by(&by_tree, &wide, 1);
     const double residual = residual_of(&s, &r);
@@ -206,8 +200,7 @@ static void makes_do_with_a_small_residual(void **state) {
     conductor_free(&wide);
 }
 
-static void says_where_charges_cannot_be_told_apart(void **state) {
-    (void)state;
+TEST(says_where_charges_cannot_be_told_apart) {
     conductor s = sphere_with_sheets(1e-13);
     charge_rig r = charge_rig_create(&s, 1, NULL);
     assert_int_equal(charge_solve(r.mesh, s.positions, &by_tree, r.density, r.capacitance, NULL),
@@ -220,8 +213,7 @@ static void says_where_charges_cannot_be_told_apart(void **state) {
 }
 
 /* Without a number for a residual there are no charges. */
-static void equations_without_numbers(void **state) {
-    (void)state;
+TEST(equations_without_numbers) {
     conductor s = conductor_sphere(2);
     treecode_rig r = treecode_rig_create(&s, 1, CSCD_SIMD_AUTO);
     charge_timings timings = {0};
@@ -233,8 +225,7 @@ static void equations_without_numbers(void **state) {
 }
 
 /* Sheets that lie almost on each other have no charges that can be told apart, and the sentence says so; the others are solved. */
-static void sheets_near_each_other(void **state) {
-    (void)state;
+TEST(sheets_near_each_other) {
     for (int digits = 2; digits <= 14; digits += 4) {
         double h = pow(10.0, -digits);
         double positions[18] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, h, 1, 0, h, 0, 1, h};
@@ -254,8 +245,7 @@ static void sheets_near_each_other(void **state) {
     }
 }
 
-static void keeps_to_the_limit(void **state) {
-    (void)state;
+TEST(keeps_to_the_limit) {
     conductor s = bent_body(3);
     counting_allocator counter = counting_allocator_start();
     const cscd_allocator allocator = counting_allocator_interface(&counter);
@@ -291,8 +281,7 @@ static bool is_patient(void *user, const char *stage, double fraction) {
     return ++p->calls <= p->most;
 }
 
-static void a_host_may_end_it(void **state) {
-    (void)state;
+TEST(a_host_may_end_it) {
     conductor s = bent_body(2);
     patience p = {0, UINT32_MAX, 0.0};
     charge_rig r = charge_rig_create(&s, 1, NULL);
@@ -315,21 +304,4 @@ static void a_host_may_end_it(void **state) {
     assert_true(calls > 20);
     charge_rig_destroy(&r);
     conductor_free(&s);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(agrees_with_the_dense_system),
-        cmocka_unit_test(scale_and_place_do_not_matter),
-        cmocka_unit_test(components_are_solved_alone),
-        cmocka_unit_test(threads_give_the_same_bits),
-        cmocka_unit_test(sheets_near_each_other),
-        cmocka_unit_test(iterations_end_at_the_tolerance),
-        cmocka_unit_test(makes_do_with_a_small_residual),
-        cmocka_unit_test(says_where_charges_cannot_be_told_apart),
-        cmocka_unit_test(equations_without_numbers),
-        cmocka_unit_test(keeps_to_the_limit),
-        cmocka_unit_test(a_host_may_end_it),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -58,8 +58,7 @@ static uint32_t count_pieces(const tiled_body *b, const tile_labelling *l,
     return count;
 }
 
-static void regions_become_connected(void **state) {
-    (void)state;
+TEST(regions_become_connected) {
     random_seed(4);
     for (int round = 0; round < 10; round++) {
         const labelling_prices prices = {0.01, 0.01};
@@ -152,8 +151,7 @@ static void check_patch(const tiled_body *b, patched *p, bool large) {
     free(before);
 }
 
-static void odd_pieces_find_a_region(void **state) {
-    (void)state;
+TEST(odd_pieces_find_a_region) {
     random_seed(5);
     tiled_body *b = tiled_body_make(BODY_TORUS, 1000);
     patched *p = body_allocate(1, sizeof *p);
@@ -174,12 +172,4 @@ static void odd_pieces_find_a_region(void **state) {
     assert_true(between >= 20 && large >= 20);
     free(p);
     tiled_body_free(b);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(regions_become_connected),
-        cmocka_unit_test(odd_pieces_find_a_region),
-    };
-    return cmocka_run_group_tests_name("connected regions", tests, NULL, NULL);
 }

@@ -124,8 +124,7 @@ static void add_tube(body *b, double R, double r, double angle, const double off
 static const double nowhere[3] = {0.0, 0.0, 0.0};
 
 /* An arc that a point at its outer side sees spans 2 acos((R - r) / (R + r)). */
-static void tori_fall_into_arcs(void **state) {
-    (void)state;
+TEST(tori_fall_into_arcs) {
     static const double radii[] = {1.5, 2.5, 4.0, 10.0};
     for (int i = 0; i < 4; i++) {
         body b = {0};
@@ -142,8 +141,7 @@ static void tori_fall_into_arcs(void **state) {
     }
 }
 
-static void each_link_of_a_chain(void **state) {
-    (void)state;
+TEST(each_link_of_a_chain) {
     body b = {0};
     double share, alone, border;
     add_tube(&b, 3.0, 1.0, 2.0 * pi, nowhere);
@@ -155,8 +153,7 @@ static void each_link_of_a_chain(void **state) {
 }
 
 /* A straight capsule stays whole, and a bent one is cut, also where nothing but its bend tells where. */
-static void bent_capsules_are_cut(void **state) {
-    (void)state;
+TEST(bent_capsules_are_cut) {
     static const double angles[] = {0.02, 2.0, 3.0, 4.5};
     static const uint32_t least[] = {1, 2, 2, 2}, most[] = {1, 2, 3, 4};
     for (int i = 0; i < 4; i++) {
@@ -181,8 +178,7 @@ typedef struct expectation {
     double share, border;
 } expectation;
 
-static void bodies_of_the_catalogue(void **state) {
-    (void)state;
+TEST(bodies_of_the_catalogue) {
     static const expectation expected[] = {
         {BODY_SPHERE, 2000, 1, 1, 1.0, 0.0},   {BODY_ELLIPSOID, 2000, 1, 1, 1.0, 0.0},
         {BODY_CUBE, 1200, 1, 1, 1.0, 0.0},     {BODY_CAPSULE, 2000, 1, 1, 1.0, 0.0},
@@ -204,14 +200,4 @@ static void bodies_of_the_catalogue(void **state) {
         assert_true(border <= e->border);
         body_free(&b);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(tori_fall_into_arcs),
-        cmocka_unit_test(each_link_of_a_chain),
-        cmocka_unit_test(bent_capsules_are_cut),
-        cmocka_unit_test(bodies_of_the_catalogue),
-    };
-    return cmocka_run_group_tests_name("cover", tests, NULL, NULL);
 }

@@ -75,8 +75,7 @@ static uint32_t part_size(uint32_t part) {
     return size;
 }
 
-static void belt_separates_at_once(void **state) {
-    (void)state;
+TEST(belt_separates_at_once) {
     open_can(9, 10);
     add_quads(10, 6, 0, 10);
     for (int may_grow = 0; may_grow < 2; may_grow++) {
@@ -92,8 +91,7 @@ static void belt_separates_at_once(void **state) {
 }
 
 /* A belt with a gap: two contours in one, and the seed's ring in two once it has grown by one. */
-static void gap_is_closed_by_growth(void **state) {
-    (void)state;
+TEST(gap_is_closed_by_growth) {
     open_can(9, 12);
     add_quads(12, 5, 0, 7);
     assert_false(cluster_separates(false, 5.0));
@@ -105,8 +103,7 @@ static void gap_is_closed_by_growth(void **state) {
 
 /* A loop around a torus has two contours, and the seed's growing ring is in two pieces at once; but the rest
  * hangs together, and does so until nothing is left. */
-static void loop_on_a_torus_does_not_separate(void **state) {
-    (void)state;
+TEST(loop_on_a_torus_does_not_separate) {
     open_grid(12, 8, true);
     add_quads(8, 3, 0, 8);
     assert_false(cluster_separates(false, 1.0));
@@ -118,8 +115,7 @@ static void loop_on_a_torus_does_not_separate(void **state) {
     close_field();
 }
 
-static void growth_over_everything(void **state) {
-    (void)state;
+TEST(growth_over_everything) {
     open_can(8, 10);
     for (uint32_t j = 0; j < 10; j++) f.cluster[f.cluster_size++] = 160 + j; /* the lower fan */
     assert_false(cluster_separates(true, 1.0));
@@ -132,8 +128,7 @@ static void growth_over_everything(void **state) {
 }
 
 /* A hole in the cluster belongs to the band, unless it is as large as a part. */
-static void islands_of_band(void **state) {
-    (void)state;
+TEST(islands_of_band) {
     open_can(9, 10);
     for (uint32_t row = 3; row < 6; row++) add_quads(10, row, 0, row == 4 ? 8 : 10);
     assert_true(cluster_separates(false, 5.0));
@@ -173,8 +168,7 @@ static void cuts_of_all_parts(uint32_t *owners) {
 }
 
 /* The rest falls into three parts at once, like a body with two legs. */
-static void more_than_two_parts(void **state) {
-    (void)state;
+TEST(more_than_two_parts) {
     uint32_t owners[TRIANGLES_MAX];
     open_can(11, 8);
     add_quads(8, 3, 0, 8);
@@ -187,8 +181,7 @@ static void more_than_two_parts(void **state) {
 }
 
 /* Two arms come off together, although the second alone would come off a little later than the first. */
-static void a_little_further_for_more_parts(void **state) {
-    (void)state;
+TEST(a_little_further_for_more_parts) {
     open_can(18, 6);
     add_quads(6, 4, 0, 4);
     for (uint32_t row = 5; row < 13; row++) add_quads(6, row, 2, 1);
@@ -199,8 +192,7 @@ static void a_little_further_for_more_parts(void **state) {
     close_field();
 }
 
-static void other_components_take_no_part(void **state) {
-    (void)state;
+TEST(other_components_take_no_part) {
     shape s = {0};
     shape_add_grid(&s, 6, 6, false, true);
     shape_add_tetrahedron(&s, s.vertex_count, s.vertex_count + 1, s.vertex_count + 2, s.vertex_count + 3);
@@ -232,8 +224,7 @@ static int64_t cost_of(const int64_t *capacities, const uint32_t *parts, const u
 }
 
 /* The band is two rows of a cylinder; all 65,536 ways to cut it are tried, once per seed. */
-static void shortest_of_all_cuts(void **state) {
-    (void)state;
+TEST(shortest_of_all_cuts) {
     int64_t capacities[TRIANGLES_MAX * 4];
     uint32_t parts[TRIANGLES_MAX], places[TRIANGLES_MAX] = {0}, band[16], side[16], band_size = 0;
     open_grid(4, 4, false);
@@ -264,8 +255,7 @@ static void shortest_of_all_cuts(void **state) {
     close_field();
 }
 
-static void pieces_by_label(void **state) {
-    (void)state;
+TEST(pieces_by_label) {
     open_grid(6, 5, false);
     static const uint32_t expected[6] = {0, 1, 2, 2, 3, 4}; /* by row */
     uint32_t labels[60], scratch[60], list[60];
@@ -276,20 +266,4 @@ static void pieces_by_label(void **state) {
     assert_int_equal(dual_graph_pieces(&f.graph, list, 60, labels, labels, scratch), 5);
     for (uint32_t t = 0; t < 60; t++) assert_int_equal(labels[t], expected[t / 10]);
     close_field();
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(belt_separates_at_once),
-        cmocka_unit_test(gap_is_closed_by_growth),
-        cmocka_unit_test(loop_on_a_torus_does_not_separate),
-        cmocka_unit_test(growth_over_everything),
-        cmocka_unit_test(islands_of_band),
-        cmocka_unit_test(more_than_two_parts),
-        cmocka_unit_test(a_little_further_for_more_parts),
-        cmocka_unit_test(other_components_take_no_part),
-        cmocka_unit_test(shortest_of_all_cuts),
-        cmocka_unit_test(pieces_by_label),
-    };
-    return cmocka_run_group_tests_name("cuts", tests, NULL, NULL);
 }

@@ -76,8 +76,7 @@ static equations random_equations(uint32_t count) {
     return e;
 }
 
-static void known_solutions_are_found(void **state) {
-    (void)state;
+TEST(known_solutions_are_found) {
     static const uint32_t counts[] = {1, 2, PANEL - 1, PANEL, PANEL + 1, 2 * PANEL, 2 * PANEL + 88};
     for (size_t n = 0; n < sizeof counts / sizeof *counts; n++) {
         equations e = random_equations(counts[n]);
@@ -93,8 +92,7 @@ static void known_solutions_are_found(void **state) {
     }
 }
 
-static void who_runs_the_tasks_changes_no_bit(void **state) {
-    (void)state;
+TEST(who_runs_the_tasks_changes_no_bit) {
     const uint32_t count = 2 * PANEL + 88;
     equations e[2] = {random_equations(count), random_equations(count)};
     for (int i = 0; i < 2; i++) {
@@ -109,8 +107,7 @@ static void who_runs_the_tasks_changes_no_bit(void **state) {
 }
 
 /* In the identity without some of its columns the first of these is named, whichever panel it is in. */
-static void the_first_zero_pivot_is_named(void **state) {
-    (void)state;
+TEST(the_first_zero_pivot_is_named) {
     const uint32_t count = 2 * PANEL + 88, missing[] = {0, PANEL - 1, PANEL, 2 * PANEL + 1, count - 1};
     for (size_t n = 0; n < sizeof missing / sizeof *missing; n++) {
         equations e = equations_of(count);
@@ -126,8 +123,7 @@ static void the_first_zero_pivot_is_named(void **state) {
     }
 }
 
-static void cancelled_after_each_panel(void **state) {
-    (void)state;
+TEST(cancelled_after_each_panel) {
     for (uint32_t at = 1; at <= 2; at++) {
         equations e = random_equations(2 * PANEL + 88);
         plain_host h = {.cancels_at = at};
@@ -137,14 +133,4 @@ static void cancelled_after_each_panel(void **state) {
         assert_true(h.reports == at && h.rounds == at); /* and no more */
         equations_free(&e);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(known_solutions_are_found),
-        cmocka_unit_test(who_runs_the_tasks_changes_no_bit),
-        cmocka_unit_test(the_first_zero_pivot_is_named),
-        cmocka_unit_test(cancelled_after_each_panel),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

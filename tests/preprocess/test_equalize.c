@@ -44,8 +44,7 @@ static void assert_doubles(const double *found, const double *expected, uint32_t
     for (uint32_t i = 0; i < count; i++) assert_true(found[i] == expected[i]);
 }
 
-static void ranks_of_densities(void **state) {
-    (void)state;
+TEST(ranks_of_densities) {
     cscd_mesh *mesh = strip_mesh(8);
     const double density[8] = {3.0, -0.5, 1e300, -1e-300, 0.0, -1e300, 1e-320, 2.0};
     const double expected[8] = {7 / 8.0, 2 / 8.0, 8 / 8.0, 3 / 8.0, 4 / 8.0, 1 / 8.0, 5 / 8.0, 6 / 8.0};
@@ -55,8 +54,7 @@ static void ranks_of_densities(void **state) {
     cscd_mesh_destroy(mesh);
 }
 
-static void ties_go_by_index(void **state) {
-    (void)state;
+TEST(ties_go_by_index) {
     cscd_mesh *mesh = strip_mesh(6);
     double found[6];
     const double same[6] = {1, 1, 1, 1, 1, 1}, zeros[6] = {0.0, -0.0, 1.0, 0.0, -1.0, -0.0};
@@ -70,8 +68,7 @@ static void ties_go_by_index(void **state) {
 }
 
 /* Noise beyond 24 bits does not change the order; a difference in the 23rd bit does. */
-static void rounded_to_24_bits(void **state) {
-    (void)state;
+TEST(rounded_to_24_bits) {
     cscd_mesh *mesh = strip_mesh(3);
     double found[3];
     for (int exponent = -1000; exponent <= 1000; exponent += 100) {
@@ -88,8 +85,7 @@ static void rounded_to_24_bits(void **state) {
 }
 
 /* An inner component with hardly any charge is not all low, nor does it change the outer one's ranks. */
-static void each_component_on_its_own(void **state) {
-    (void)state;
+TEST(each_component_on_its_own) {
     shape s = {0};
     shape_add_tetrahedron(&s, 0, 1, 2, 3);
     shape_add_tetrahedron(&s, 4, 5, 6, 7);
@@ -107,8 +103,7 @@ static void each_component_on_its_own(void **state) {
 }
 
 /* Counts equation 3.18 naively. */
-static void published_bins(void **state) {
-    (void)state;
+TEST(published_bins) {
     enum { COUNT = 200 };
     cscd_mesh *mesh = strip_mesh(COUNT);
     double density[COUNT], found[COUNT];
@@ -132,8 +127,7 @@ static void published_bins(void **state) {
     cscd_mesh_destroy(mesh);
 }
 
-static void not_finite_is_refused(void **state) {
-    (void)state;
+TEST(not_finite_is_refused) {
     cscd_mesh *mesh = strip_mesh(4);
     const double bad[3] = {NAN, INFINITY, -INFINITY};
     for (int i = 0; i < 3; i++) {
@@ -165,8 +159,7 @@ static void assert_clusters(const cscd_mesh *mesh, const double *equalized, doub
     dual_graph_free(mesh, &graph);
 }
 
-static void clusters_on_a_strip(void **state) {
-    (void)state;
+TEST(clusters_on_a_strip) {
     cscd_mesh *mesh = strip_mesh(10);
     const double equalized[10] = {0.1, 0.3, 0.2, 0.2, 0.9, 0.2, 0.8, 0.21, 0.1, 0.1};
     assert_clusters(mesh, equalized, 0.2, 4, (uint32_t[]){0, 1, 3, 4, 6}, (uint32_t[]){0, 2, 3, 5, 8, 9});
@@ -176,8 +169,7 @@ static void clusters_on_a_strip(void **state) {
 }
 
 /* Triangles that share only a vertex are two clusters, the three of one edge are one. */
-static void edges_join_clusters(void **state) {
-    (void)state;
+TEST(edges_join_clusters) {
     const double low[6] = {0.1, 0.1, 0.1, 0.1, 0.1, 0.1};
     shape bow_tie = {0}, fin = {0};
     shape_add_triangle(&bow_tie, 0, 1, 2);
@@ -191,12 +183,4 @@ static void edges_join_clusters(void **state) {
     cscd_mesh_destroy(mesh);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(ranks_of_densities),  cmocka_unit_test(ties_go_by_index),
-        cmocka_unit_test(rounded_to_24_bits),  cmocka_unit_test(each_component_on_its_own),
-        cmocka_unit_test(published_bins),      cmocka_unit_test(not_finite_is_refused),
-        cmocka_unit_test(clusters_on_a_strip), cmocka_unit_test(edges_join_clusters),
-    };
-    return cmocka_run_group_tests_name("equalize", tests, open_context, close_context);
-}
+AROUND_ALL(open_context, close_context)

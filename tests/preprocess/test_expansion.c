@@ -97,8 +97,7 @@ static double value_at(const double *coefficients, const double center[3], const
 }
 
 /* Of every order, at every distance: never above the bound, and near it for charges at one point. */
-static void errors_keep_to_the_bound(void **state) {
-    (void)state;
+TEST(errors_keep_to_the_bound) {
     for (uint32_t order = 0; order <= EXPANSION_ORDER; order++) {
         double largest = 0.0;
         for (int trial = 0; trial < 200; trial++) {
@@ -122,8 +121,7 @@ static void errors_keep_to_the_bound(void **state) {
 }
 
 /* Moments about another centre are those of the charges about it, and coefficients about another centre are the same polynomial. */
-static void centres_may_move(void **state) {
-    (void)state;
+TEST(centres_may_move) {
     for (int trial = 0; trial < 50; trial++) {
         const two_balls b = make_balls(0.3, 1.0);
         double moments[HARMONIC_COUNT], moved[HARMONIC_COUNT], expected[HARMONIC_COUNT],
@@ -149,8 +147,7 @@ static void centres_may_move(void **state) {
 }
 
 /* As many items as there may be in the last batch, of mixed orders, on every level. */
-static void levels_give_the_same_bits(void **state) {
-    (void)state;
+TEST(levels_give_the_same_bits) {
     enum { ITEMS = 21 };
     source_node nodes[ITEMS];
     double moments[ITEMS * HARMONIC_COUNT];
@@ -176,11 +173,4 @@ static void levels_give_the_same_bits(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(errors_keep_to_the_bound),
-        cmocka_unit_test(centres_may_move),
-        cmocka_unit_test(levels_give_the_same_bits),
-    };
-    return cmocka_run_group_tests(tests, make_tables, close_levels);
-}
+AROUND_ALL(make_tables, close_levels)

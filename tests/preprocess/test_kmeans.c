@@ -38,8 +38,7 @@ static void assert_same(const kmeans_division *a, const kmeans_division *b) {
     assert_memory_equal(a->points, b->points, a->count * 3 * sizeof(double));
 }
 
-static void one_is_the_mean(void **state) {
-    (void)state;
+TEST(one_is_the_mean) {
     body b = body_of(BODY_PAWN, 1500);
     double mean[3] = {0, 0, 0};
     for (uint32_t i = 0; i < b.vertex_count * 3; i++) mean[i % 3] += b.positions[i] / b.vertex_count;
@@ -51,8 +50,7 @@ static void one_is_the_mean(void **state) {
 }
 
 /* Two well separated clusters are found from any start. */
-static void two_balls(void **state) {
-    (void)state;
+TEST(two_balls) {
     body b = body_of(BODY_DUMBBELL, 2000);
     for (uint32_t seed = 0; seed < 20; seed++) {
         divide_body(&b, 2, seed, &found);
@@ -65,8 +63,7 @@ static void two_balls(void **state) {
     body_free(&b);
 }
 
-static void different_seeds(void **state) {
-    (void)state;
+TEST(different_seeds) {
     body b = body_of(BODY_FIGURE, 2000);
     bool differ = false;
     for (uint32_t k = 2; k <= 9; k++) {
@@ -83,8 +80,7 @@ static void different_seeds(void **state) {
 
 /* Each component gets at least one region and shares the others by its vertices; no region spans two
  * components. */
-static void components_share_k(void **state) {
-    (void)state;
+TEST(components_share_k) {
     body b = body_of(BODY_SPHERE, 2000), small = {0};
     for (int i = 0; i < 4; i++) body_add_vertex(&small, i == 1, i == 2, i == 3);
     body_add_triangle(&small, 0, 2, 1);
@@ -104,8 +100,7 @@ static void components_share_k(void **state) {
 
 /* Even with as many centroids as vertices, or more, there are no more regions than fit, and each is
  * connected. */
-static void more_than_vertices(void **state) {
-    (void)state;
+TEST(more_than_vertices) {
     body b = body_of(BODY_DUMBBELL, 1500);
     const uint32_t ks[] = {100,     500,       750, b.vertex_count - 1, b.vertex_count, b.vertex_count + 1,
                            1000000, UINT32_MAX};
@@ -145,8 +140,7 @@ static uint32_t nearest_vertex(const body *b, const double *point) {
 
 /* Each triangle belongs to a detector point that is fewest edges away, except the few that joined a
  * neighbour. */
-static void fewest_edges(void **state) {
-    (void)state;
+TEST(fewest_edges) {
     enum { K = 5 };
     static uint32_t distances[K][TRIANGLES_MAX];
     body b = body_of(BODY_SPHERE, 1500);
@@ -170,8 +164,7 @@ static void fewest_edges(void **state) {
     body_free(&b);
 }
 
-static void lloyd_on_a_line(void **state) {
-    (void)state;
+TEST(lloyd_on_a_line) {
     double positions[12 * 3] = {0};
     uint32_t points[10], clusters[12], scratch[10];
     for (uint32_t i = 0; i < 12; i++) positions[i * 3] = i < 5 ? i : i < 10 ? 100.0 + i : 1e9;
@@ -192,8 +185,7 @@ static void lloyd_on_a_line(void **state) {
     cscd_context_destroy(context);
 }
 
-static void zero_is_refused(void **state) {
-    (void)state;
+TEST(zero_is_refused) {
     body b = body_of(BODY_SPHERE, 1500);
     cscd_mesh *mesh = body_mesh(&b, 1);
     uint32_t count = 77;
@@ -202,14 +194,4 @@ static void zero_is_refused(void **state) {
     assert_int_equal(count, 77);
     body_mesh_destroy(mesh);
     body_free(&b);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_is_the_mean),    cmocka_unit_test(two_balls),
-        cmocka_unit_test(different_seeds),    cmocka_unit_test(components_share_k),
-        cmocka_unit_test(more_than_vertices), cmocka_unit_test(fewest_edges),
-        cmocka_unit_test(lloyd_on_a_line),    cmocka_unit_test(zero_is_refused),
-    };
-    return cmocka_run_group_tests_name("kmeans", tests, NULL, NULL);
 }

@@ -28,8 +28,7 @@ static void check_sums(const tiled_body *b) {
     assert_true(fabs(linked - between) < 1e-12 * between);
 }
 
-static void tiles_add_up(void **state) {
-    (void)state;
+TEST(tiles_add_up) {
     tiled_body *small = tiled_body_make(BODY_PAWN, 1000), *large = tiled_body_make(BODY_FIGURE, 12000);
     assert_int_equal(small->tile_count, 1000);
     assert_true(large->tile_count > 2000 && large->tile_count < 6000);
@@ -40,8 +39,7 @@ static void tiles_add_up(void **state) {
 }
 
 /* Marked tiles fall into pieces, and others stay as they are. */
-static void halves_lie_in_their_tiles(void **state) {
-    (void)state;
+TEST(halves_lie_in_their_tiles) {
     tiled_body *b = tiled_body_make(BODY_FIGURE, 12000);
     const uint32_t count = b->shape.triangle_count;
     uint32_t *before = body_allocate(count, sizeof *before), *first = body_allocate(count, sizeof *first);
@@ -90,8 +88,7 @@ static uint32_t count_regions(const tile_labelling *l) {
 }
 
 /* Without a price of its own a border costs nothing: what it costs is the difference. */
-static void borders_are_parts_of_the_cost(void **state) {
-    (void)state;
+TEST(borders_are_parts_of_the_cost) {
     const labelling_prices prices = {0.01, 0.05};
     tiled_body *b = tiled_body_make(BODY_FIGURE, 1000);
     tile_labelling l;
@@ -119,8 +116,7 @@ static void borders_are_parts_of_the_cost(void **state) {
 }
 
 /* Against all labellings of twelve triangles with two regions. */
-static void two_regions_cost_the_least(void **state) {
-    (void)state;
+TEST(two_regions_cost_the_least) {
     random_seed(2);
     for (int round = 0; round < 40; round++) {
         const labelling_prices prices = {0.01, random_between(0.0, 0.5)};
@@ -149,8 +145,7 @@ static void two_regions_cost_the_least(void **state) {
 }
 
 /* Neither of two points sees a side of a cube, a sixth of its area: the nearer one takes it. */
-static void large_costs_are_compared(void **state) {
-    (void)state;
+TEST(large_costs_are_compared) {
     const labelling_prices prices = {0.0, 0.0};
     tiled_body *b = tiled_body_make(BODY_CUBE, 12);
     for (uint32_t side = 0; side < 12; side++) {
@@ -180,8 +175,7 @@ static void large_costs_are_compared(void **state) {
     tiled_body_free(b);
 }
 
-static void costs_never_rise(void **state) {
-    (void)state;
+TEST(costs_never_rise) {
     random_seed(3);
     for (int round = 0; round < 20; round++) {
         const labelling_prices prices = {0.01, random_between(0.0, 0.1)};
@@ -216,8 +210,7 @@ static void costs_never_rise(void **state) {
 }
 
 /* A region that has not changed itself takes tiles of one beside it, whose point has come to see nothing. */
-static void neighbours_take_what_is_not_seen(void **state) {
-    (void)state;
+TEST(neighbours_take_what_is_not_seen) {
     random_seed(5);
     for (int round = 0; round < 20; round++) {
         const labelling_prices prices = {0.01, random_between(0.0, 0.05)};
@@ -252,8 +245,7 @@ static void neighbours_take_what_is_not_seen(void **state) {
 }
 
 /* Borders that cost many times what the body's area does, as those of a needle do, are not made. */
-static void no_price_is_too_high(void **state) {
-    (void)state;
+TEST(no_price_is_too_high) {
     static const double heights[] = {1e6, 1e10, 1e30, 1e300};
     random_seed(4);
     for (int i = 0; i < 4; i++) {
@@ -272,18 +264,4 @@ static void no_price_is_too_high(void **state) {
         labelling_destroy(&l);
         tiled_body_free(b);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(tiles_add_up),
-        cmocka_unit_test(halves_lie_in_their_tiles),
-        cmocka_unit_test(borders_are_parts_of_the_cost),
-        cmocka_unit_test(two_regions_cost_the_least),
-        cmocka_unit_test(large_costs_are_compared),
-        cmocka_unit_test(costs_never_rise),
-        cmocka_unit_test(neighbours_take_what_is_not_seen),
-        cmocka_unit_test(no_price_is_too_high),
-    };
-    return cmocka_run_group_tests_name("labelling", tests, NULL, NULL);
 }

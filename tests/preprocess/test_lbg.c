@@ -93,8 +93,7 @@ static void scatter_vectors(uint32_t vector_count, int dimensions) {
     }
 }
 
-static void random_clouds(void **state) {
-    (void)state;
+TEST(random_clouds) {
     random_seed(1);
     for (int n = 0; n < 400; n++) {
         uint32_t vector_count = (uint32_t)random_integer(1, VECTORS_MAX);
@@ -107,8 +106,7 @@ static void random_clouds(void **state) {
 }
 
 /* Rings, lines and lattices have many equal distances. */
-static void regular_shapes(void **state) {
-    (void)state;
+TEST(regular_shapes) {
     random_seed(2);
     for (uint32_t codes_max = 1; codes_max <= 40; codes_max++) {
         memset(vectors, 0, sizeof vectors);
@@ -131,8 +129,7 @@ static void regular_shapes(void **state) {
 }
 
 /* Splitting by (1 + epsilon) C finds no direction where C = 0. */
-static void symmetric_about_the_origin(void **state) {
-    (void)state;
+TEST(symmetric_about_the_origin) {
     for (uint32_t i = 0; i < 8; i++) {
         for (uint32_t k = 0; k < D; k++) vectors[i * D + k] = (i >> (k % 3) & 1) != 0 ? 1.0 : -1.0;
     }
@@ -141,8 +138,7 @@ static void symmetric_about_the_origin(void **state) {
     assert_true(told.distortions[told.length - 1] == 0.0);
 }
 
-static void equal_vectors(void **state) {
-    (void)state;
+TEST(equal_vectors) {
     for (uint32_t i = 0; i < 30 * D; i++) vectors[i] = 0.1 * (double)(1 + i % D);
     assert_int_equal(check_run(30, 12, 1e-3), 1);
     assert_true(told.distortions[0] == 0.0);
@@ -150,8 +146,7 @@ static void equal_vectors(void **state) {
 }
 
 /* There are as many codes as different vectors and no more; equal vectors have one code. */
-static void repeated_vectors(void **state) {
-    (void)state;
+TEST(repeated_vectors) {
     random_seed(3);
     for (int n = 0; n < 50; n++) {
         uint32_t different = (uint32_t)random_integer(2, 20), count = different * 5;
@@ -164,8 +159,7 @@ static void repeated_vectors(void **state) {
     }
 }
 
-static void two_points(void **state) {
-    (void)state;
+TEST(two_points) {
     scatter_vectors(2, 0);
     vectors[D + 2] = 1.0;
     assert_int_equal(check_run(2, 1, 1e-3), 1);
@@ -178,8 +172,7 @@ static void two_points(void **state) {
     assert_int_equal(check_run(2, 2, 1e-3), 2);
 }
 
-static void a_code_for_every_vector(void **state) {
-    (void)state;
+TEST(a_code_for_every_vector) {
     random_seed(4);
     scatter_vectors(300, D);
     assert_int_equal(check_run(300, 300, 1e-3), 300);
@@ -187,8 +180,7 @@ static void a_code_for_every_vector(void **state) {
 }
 
 /* The same vectors give the same bits again, also when they are scaled by a power of two. */
-static void repeatable_and_scaled(void **state) {
-    (void)state;
+TEST(repeatable_and_scaled) {
     static uint32_t before[VECTORS_MAX];
     static double distortions[TRACE_MAX];
     random_seed(5);
@@ -207,21 +199,10 @@ static void repeatable_and_scaled(void **state) {
 }
 
 /* Four far clusters are found with four codes. */
-static void far_clusters(void **state) {
-    (void)state;
+TEST(far_clusters) {
     random_seed(6);
     scatter_vectors(VECTORS_MAX, D);
     for (uint32_t i = 0; i < VECTORS_MAX; i++) vectors[i * D + i % 4] += 50.0;
     assert_int_equal(check_run(VECTORS_MAX, 4, 1e-3), 4);
     for (uint32_t i = 0; i < VECTORS_MAX; i++) assert_int_equal(labels[i], labels[i % 4]);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(random_clouds),        cmocka_unit_test(regular_shapes),
-        cmocka_unit_test(equal_vectors),        cmocka_unit_test(symmetric_about_the_origin),
-        cmocka_unit_test(repeated_vectors),     cmocka_unit_test(two_points),
-        cmocka_unit_test(far_clusters),         cmocka_unit_test(a_code_for_every_vector),
-        cmocka_unit_test(repeatable_and_scaled)};
-    return cmocka_run_group_tests_name("vector quantization", tests, NULL, NULL);
 }

@@ -56,8 +56,7 @@ static uint32_t size_of(uint32_t set) {
     return size;
 }
 
-static void costs_the_least_and_keeps_the_fewest(void **state) {
-    (void)state;
+TEST(costs_the_least_and_keeps_the_fewest) {
     cscd_context *context;
     assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
     const size_t bytes = cscd_context_bytes(context);
@@ -86,9 +85,4 @@ static void costs_the_least_and_keeps_the_fewest(void **state) {
     }
     assert_int_equal(cscd_context_bytes(context), bytes);
     cscd_context_destroy(context);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(costs_the_least_and_keeps_the_fewest)};
-    return cmocka_run_group_tests_name("min_cut", tests, NULL, NULL);
 }

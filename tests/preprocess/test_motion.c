@@ -21,8 +21,7 @@ static double unseen_in(const bending *b, const cscd_plan *plan, int frame) {
     return 1.0 - plus / b->shape.triangle_count;
 }
 
-static void a_capsule_is_cut_for_its_bend(void **state) {
-    (void)state;
+TEST(a_capsule_is_cut_for_its_bend) {
     bending b = bending_of(BODY_CAPSULE, 2000, 3.0, 1);
     cscd_plan *rest = bending_plan(&b, CSCD_METHOD_CHARGE, NULL, 0),
               *motion = bending_plan(&b, CSCD_METHOD_CHARGE, bending_frames(&b), BENDING_FRAMES);
@@ -36,8 +35,7 @@ static void a_capsule_is_cut_for_its_bend(void **state) {
 }
 
 /* Frames as the rest, one and three of them, so that a mean of them is the same bits. */
-static void frames_at_rest_change_nothing(void **state) {
-    (void)state;
+TEST(frames_at_rest_change_nothing) {
     static const uint32_t counts[] = {1, 3};
     bending b = bending_of(BODY_FIGURE, 2000, 0.0, 1);
     cscd_plan *rest = bending_plan(&b, CSCD_METHOD_CHARGE, NULL, 0);
@@ -51,8 +49,7 @@ static void frames_at_rest_change_nothing(void **state) {
 }
 
 /* Of more frames than eight the first and the last count. */
-static void some_of_many_frames_count(void **state) {
-    (void)state;
+TEST(some_of_many_frames_count) {
     bending b = bending_of(BODY_CAPSULE, 1000, 0.0, 1);
     bending_bend(&b.shape, 3.0, b.frames[BENDING_FRAMES - 1]);
     cscd_plan *last = bending_plan(&b, CSCD_METHOD_CHARGE, bending_frames(&b), BENDING_FRAMES),
@@ -79,8 +76,7 @@ static void expect_refusal(const bending *b, const cscd_view *const *frames, uin
         fail_msg("expected '%s' in: %s", word, cscd_context_detail(b->context));
 }
 
-static void refuses_bad_frames(void **state) {
-    (void)state;
+TEST(refuses_bad_frames) {
     bending b = bending_of(BODY_CAPSULE, 200, 1.0, 1);
     bending_frames(&b);
     expect_refusal(&b, NULL, 2, "frame_count is 2");
@@ -90,14 +86,4 @@ static void refuses_bad_frames(void **state) {
     b.frames[2][4] = NAN;
     expect_refusal(&b, b.items, 3, "frames[2]");
     bending_free(&b);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_capsule_is_cut_for_its_bend),
-        cmocka_unit_test(frames_at_rest_change_nothing),
-        cmocka_unit_test(some_of_many_frames_count),
-        cmocka_unit_test(refuses_bad_frames),
-    };
-    return cmocka_run_group_tests_name("motion", tests, NULL, NULL);
 }

@@ -30,8 +30,7 @@ static uint32_t cells_of(const body *b, uint32_t cells) {
 /* ---- shapes ------------------------------------------------------------------------------------------ */
 
 /* Eight vertices about the origin, which published splitting cannot part. */
-static void symmetric_cube(void **state) {
-    (void)state;
+TEST(symmetric_cube) {
     static const uint32_t quads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
                                          {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
     body b = {0};
@@ -50,8 +49,7 @@ static void symmetric_cube(void **state) {
     body_free(&b);
 }
 
-static void any_number(void **state) {
-    (void)state;
+TEST(any_number) {
     const body_kind kinds[] = {BODY_SPHERE, BODY_TORUS, BODY_ELLIPSOID};
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
         body b = body_of(kinds[k], 600);
@@ -61,8 +59,7 @@ static void any_number(void **state) {
 }
 
 /* Concave bodies: quantization alone would join what lies beside each other but is not connected. */
-static void concave_bodies(void **state) {
-    (void)state;
+TEST(concave_bodies) {
     for (int kind = 0; kind < BODY_KIND_COUNT; kind++) {
         body b = body_of((body_kind)kind, body_nearest_count((body_kind)kind, 1500));
         cscd_mesh *mesh = body_mesh(&b, 1);
@@ -79,8 +76,7 @@ static void concave_bodies(void **state) {
     }
 }
 
-static void random_scenes(void **state) {
-    (void)state;
+TEST(random_scenes) {
     static scene s;
     random_seed(1);
     for (uint64_t seed = 0; seed < 3; seed++) {
@@ -108,8 +104,7 @@ static void random_scenes(void **state) {
 }
 
 /* Moved without rounding, and scaled by powers of two, it has the same cells. */
-static void scale_and_place(void **state) {
-    (void)state;
+TEST(scale_and_place) {
     const body_kind kinds[] = {BODY_SPHERE, BODY_FIGURE, BODY_CHAIN};
     const double scales[] = {0x1p-250, 0x1p-40, 4.0, 0x1p200};
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
@@ -137,8 +132,7 @@ static void scale_and_place(void **state) {
 }
 
 /* All positions are equal, or some vertices have no triangle. */
-static void degenerate_meshes(void **state) {
-    (void)state;
+TEST(degenerate_meshes) {
     body b = body_of(BODY_SPHERE, 200);
     uint32_t lonely = body_add_vertex(&b, 1.0, 2.0, 3.0);
     cscd_mesh *mesh = body_mesh(&b, 1);
@@ -158,8 +152,7 @@ static void degenerate_meshes(void **state) {
 }
 
 /* More cells, and the distortion falls. */
-static void distortion_falls(void **state) {
-    (void)state;
+TEST(distortion_falls) {
     body b = body_of(BODY_SPHERE, 800);
     cscd_mesh *mesh = body_mesh(&b, 1);
     double last = INFINITY;
@@ -179,8 +172,7 @@ static void distortion_falls(void **state) {
 
 /* ---- renewing ---------------------------------------------------------------------------------------- */
 
-static void renewing_one_part(void **state) {
-    (void)state;
+TEST(renewing_one_part) {
     const body_kind kinds[3] = {BODY_SPHERE, BODY_DUMBBELL, BODY_SPHERE};
     partition_row r = row_of(3, kinds, (double[]){1.0, 1.0, 0.7}, NULL);
     cscd_part before[3];
@@ -213,8 +205,7 @@ static void renewing_one_part(void **state) {
 /* ---- scenes ------------------------------------------------------------------------------------------ */
 
 /* Objects of a scene may have several components; obstacles have cells, too, and two are not watched. */
-static void objects_of_scenes(void **state) {
-    (void)state;
+TEST(objects_of_scenes) {
     body chain = body_of(BODY_CHAIN, 0), ball = body_of(BODY_SPHERE, 200), all = {0};
     const body *bodies[4] = {&chain, &ball, &ball, &ball};
     cscd_object_desc descs[4];
@@ -260,8 +251,7 @@ static void check_refused(const cscd_mesh *mesh, const cscd_plan *plan, const do
         fail_msg("\"%s\" does not name %s", cscd_context_detail(mesh->context), word);
 }
 
-static void bad_arguments(void **state) {
-    (void)state;
+TEST(bad_arguments) {
     body b = body_of(BODY_SPHERE, 200), other = body_of(BODY_CUBE, 0);
     cscd_mesh *mesh = body_mesh(&b, 1), *other_mesh = body_mesh(&other, 1);
     cscd_plan_options plan_options = cscd_plan_defaults();
@@ -305,16 +295,4 @@ static void bad_arguments(void **state) {
     body_mesh_destroy(mesh);
     body_free(&other);
     body_free(&b);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(symmetric_cube),    cmocka_unit_test(any_number),
-        cmocka_unit_test(concave_bodies),    cmocka_unit_test(random_scenes),
-        cmocka_unit_test(scale_and_place),   cmocka_unit_test(degenerate_meshes),
-        cmocka_unit_test(distortion_falls),
-
-        cmocka_unit_test(renewing_one_part), cmocka_unit_test(objects_of_scenes),
-        cmocka_unit_test(bad_arguments)};
-    return cmocka_run_group_tests_name("partition", tests, NULL, NULL);
 }

@@ -5,8 +5,7 @@
 
 #include <math.h>
 
-static void kissing_numbers(void **state) {
-    (void)state;
+TEST(kissing_numbers) {
     assert_int_equal(kissing_number(1.0, 1.0, 64), 12);
     assert_int_equal(kissing_number(1.0, 0.991, 64), 12);
     assert_int_equal(kissing_number(1.0, 1.009, 64), 12);
@@ -29,8 +28,7 @@ static uint32_t cells_in(const partition_row *r, uint32_t part) {
     return cscd_partition_part(r->partition, part).cell_count;
 }
 
-static void how_many_cells(void **state) {
-    (void)state;
+TEST(how_many_cells) {
     const body_kind spheres[3] = {BODY_SPHERE, BODY_SPHERE, BODY_SPHERE};
     const body_kind mixed[3] = {BODY_SPHERE, BODY_TORUS, BODY_SPHERE};
     partition_row r = row_of(2, spheres, (double[]){1.0, 0.5}, NULL);
@@ -93,8 +91,7 @@ static bool is_hull(const body *b) {
     return true;
 }
 
-static void convex_bodies(void **state) {
-    (void)state;
+TEST(convex_bodies) {
     uint32_t convex_count = 0;
     for (int kind = 0; kind < BODY_KIND_COUNT; kind++) {
         if (kind == BODY_CHAIN) continue; /* five components */
@@ -118,10 +115,4 @@ static void convex_bodies(void **state) {
     }
     assert_false(is_convex(&b));
     body_free(&b);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(kissing_numbers), cmocka_unit_test(how_many_cells),
-                                       cmocka_unit_test(convex_bodies)};
-    return cmocka_run_group_tests_name("partition counts", tests, NULL, NULL);
 }

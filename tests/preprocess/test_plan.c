@@ -52,8 +52,7 @@ static void check_regions(const cscd_plan *plan) {
         assert_true(cscd_plan_triangle_region(plan, t) < count);
 }
 
-static void every_method(void **state) {
-    (void)state;
+TEST(every_method) {
     cscd_plan *single = plan_by(CSCD_METHOD_SINGLE, 0), *kmeans = plan_by(CSCD_METHOD_KMEANS, 3),
               *charge = plan_by(CSCD_METHOD_CHARGE, 0);
     assert_int_equal(cscd_plan_region_count(single), 1);
@@ -92,8 +91,7 @@ static double *points_of(const cscd_plan *plan) {
     return points;
 }
 
-static void from_parts(void **state) {
-    (void)state;
+TEST(from_parts) {
     cscd_plan *plan = plan_by(CSCD_METHOD_KMEANS, 4), *again = NULL;
     uint32_t *regions = regions_of(plan);
     double *points = points_of(plan);
@@ -118,8 +116,7 @@ static void expect_refusal(const cscd_plan_parts *parts, const char *word) {
     assert_non_null(strstr(cscd_context_detail(context), word));
 }
 
-static void bad_parts(void **state) {
-    (void)state;
+TEST(bad_parts) {
     cscd_plan *plan = plan_by(CSCD_METHOD_KMEANS, 4);
     uint32_t *regions = regions_of(plan);
     double *points = points_of(plan);
@@ -157,8 +154,7 @@ static void bad_parts(void **state) {
 
 /* ---- errors ---------------------------------------------------------------------------------------- */
 
-static void bad_options(void **state) {
-    (void)state;
+TEST(bad_options) {
     cscd_plan *plan = NULL;
     cscd_plan_options options = {0};
     assert_int_equal(plan_create_packed(NULL, shape.positions, NULL, &plan), CSCD_NULL_OBJECT);
@@ -187,9 +183,8 @@ static void bad_options(void **state) {
     assert_null(plan);
 }
 
-static void plans_fit_their_mesh(void **state) {
+TEST(plans_fit_their_mesh) {
     static const uint32_t tetrahedron[12] = {0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2};
-    (void)state;
     cscd_object_desc desc = cscd_object_of_triangles(4, 4, tetrahedron);
     cscd_mesh *other = NULL;
     cscd_detector *detector = NULL;
@@ -210,10 +205,4 @@ static void plans_fit_their_mesh(void **state) {
     cscd_mesh_destroy(other);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_method), cmocka_unit_test(from_parts),           cmocka_unit_test(bad_parts),
-        cmocka_unit_test(bad_options),  cmocka_unit_test(plans_fit_their_mesh),
-    };
-    return cmocka_run_group_tests_name("plan", tests, make_body, destroy_body);
-}
+AROUND_ALL(make_body, destroy_body)

@@ -93,8 +93,7 @@ static cscd_status make_plan(const plan_scene *s, cscd_plan **out) {
 }
 
 /* Where memory fails in the charge the other methods go on, and the plan says so. */
-static void every_allocation_may_fail(void **state) {
-    (void)state;
+TEST(every_allocation_may_fail) {
     counting_allocator counter = counting_allocator_start();
     cscd_context_options options = cscd_context_defaults();
     options.allocator = counting_allocator_interface(&counter);
@@ -138,8 +137,7 @@ static bool report_progress(void *user, const char *stage, double fraction) {
     return count->reports++ != count->refuse_at;
 }
 
-static void every_report_may_cancel(void **state) {
-    (void)state;
+TEST(every_report_may_cancel) {
     progress_count count = {0};
     cscd_context_options options = cscd_context_defaults();
     options.progress = (cscd_progress){report_progress, &count};
@@ -164,8 +162,7 @@ static void every_report_may_cancel(void **state) {
 }
 
 /* Powers of two, so that every product is the same but for its exponent. */
-static void sizes_change_nothing(void **state) {
-    (void)state;
+TEST(sizes_change_nothing) {
     static const double scales[] = {1.0, 0x1p-250, 0x1p290};
     cscd_context_options options = cscd_context_defaults();
     plan_scene *scenes[3];
@@ -187,13 +184,4 @@ static void sizes_change_nothing(void **state) {
         cscd_plan_destroy(plans[i]);
         free_scene(scenes[i]);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_allocation_may_fail),
-        cmocka_unit_test(every_report_may_cancel),
-        cmocka_unit_test(sizes_change_nothing),
-    };
-    return cmocka_run_group_tests_name("plan failures", tests, NULL, NULL);
 }

@@ -144,8 +144,7 @@ static real by_edges(const double corners[3][3], const double point[3]) {
 
 /* ---- tests ---- */
 
-static void agrees_with_surface_quadrature(void **state) {
-    (void)state;
+TEST(agrees_with_surface_quadrature) {
     random_seed(1);
     for (int round = 0; round < 40; round++) {
         double corners[3][3], p[3];
@@ -158,8 +157,7 @@ static void agrees_with_surface_quadrature(void **state) {
 }
 
 /* The weights a and b and the height of a place, and the relative error that is allowed there. */
-static void agrees_with_edge_quadrature(void **state) {
-    (void)state;
+TEST(agrees_with_edge_quadrature) {
     static const struct {
         const char *name;
         double a, b, height;
@@ -191,8 +189,7 @@ static void agrees_with_edge_quadrature(void **state) {
 }
 
 /* There the seven-point rule is all but exact, while the sum over the edges cancels. */
-static void agrees_with_surface_quadrature_far_away(void **state) {
-    (void)state;
+TEST(agrees_with_surface_quadrature_far_away) {
     random_seed(9);
     for (int round = 0; round < 60; round++) {
         double corners[3][3], p[3], distance = pow(10.0, 2.5 + round * 0.1);
@@ -204,8 +201,7 @@ static void agrees_with_surface_quadrature_far_away(void **state) {
     }
 }
 
-static void known_values(void **state) {
-    (void)state;
+TEST(known_values) {
     const double h = sqrt(0.75);
     const double equilateral[3][3] = {{0, 0, 0}, {1, 0, 0}, {0.5, h, 0}}, centroid[3] = {0.5, h / 3.0, 0};
     const double right[3][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, corner[3] = {0, 0, 0};
@@ -213,8 +209,7 @@ static void known_values(void **state) {
     assert_close(potential_of(right, corner), sqrtl(2.0L) * logl(1.0L + sqrtl(2.0L)), 1e-15L);
 }
 
-static void potential_of_slivers(void **state) {
-    (void)state;
+TEST(potential_of_slivers) {
     random_seed(3);
     for (int round = 0; round < 60; round++) {
         double width = pow(10.0, random_between(-8.0, -2.0)), p[3];
@@ -229,8 +224,7 @@ static void potential_of_slivers(void **state) {
     }
 }
 
-static void without_area(void **state) {
-    (void)state;
+TEST(without_area) {
     potential_source source, before;
     memset(&source, 7, sizeof source);
     before = source;
@@ -242,8 +236,7 @@ static void without_area(void **state) {
     assert_memory_equal(&source, &before, sizeof source);
 }
 
-static void scales_with_length(void **state) {
-    (void)state;
+TEST(scales_with_length) {
     random_seed(4);
     for (int round = 0; round < 50; round++) {
         double corners[3][3], p[3], scaled[3][3], q[3];
@@ -265,8 +258,7 @@ static void scales_with_length(void **state) {
 }
 
 /* Coordinates that are multiples of 2^-20 stay exact when moved by 10^6: so does the result. */
-static void far_from_the_origin(void **state) {
-    (void)state;
+TEST(far_from_the_origin) {
     random_seed(5);
     for (int round = 0; round < 50; round++) {
         double here[3][3], there[3][3], p[3], q[3];
@@ -284,8 +276,7 @@ static void far_from_the_origin(void **state) {
     }
 }
 
-static void does_not_depend_on_the_frame(void **state) {
-    (void)state;
+TEST(does_not_depend_on_the_frame) {
     random_seed(6);
     for (int round = 0; round < 50; round++) {
         double corners[3][3], turned[3][3], p[3], q[3];
@@ -306,8 +297,7 @@ static void does_not_depend_on_the_frame(void **state) {
     }
 }
 
-static void parts_add_up(void **state) {
-    (void)state;
+TEST(parts_add_up) {
     random_seed(7);
     for (int round = 0; round < 50; round++) {
         double corners[3][3], middles[3][3], p[3], sum = 0.0;
@@ -329,8 +319,7 @@ static void parts_add_up(void **state) {
 }
 
 /* Vectors, their remainders and single points give the same bits. */
-static void many_points_at_once(void **state) {
-    (void)state;
+TEST(many_points_at_once) {
     enum { COUNT = 61 };
     double corners[3][3], points[3][COUNT], together[COUNT + 1];
     potential_source source;
@@ -352,19 +341,4 @@ static void many_points_at_once(void **state) {
             assert_true(together[i] == potential_of((const double(*)[3])corners, p));
         }
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(agrees_with_surface_quadrature),
-                                       cmocka_unit_test(agrees_with_edge_quadrature),
-                                       cmocka_unit_test(agrees_with_surface_quadrature_far_away),
-                                       cmocka_unit_test(known_values),
-                                       cmocka_unit_test(potential_of_slivers),
-                                       cmocka_unit_test(without_area),
-                                       cmocka_unit_test(scales_with_length),
-                                       cmocka_unit_test(far_from_the_origin),
-                                       cmocka_unit_test(does_not_depend_on_the_frame),
-                                       cmocka_unit_test(parts_add_up),
-                                       cmocka_unit_test(many_points_at_once)};
-    return cmocka_run_group_tests_name("potential", tests, NULL, NULL);
 }

@@ -20,8 +20,7 @@ static const extreme_kind kinds[] = {EXTREME_FAN,     EXTREME_CYLINDER, EXTREME_
                                      EXTREME_NEEDLES, EXTREME_BOOK,     EXTREME_SPIRE};
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
-static void densities_are_those_of_the_dense_system(void **state) {
-    (void)state;
+TEST(densities_are_those_of_the_dense_system) {
     for (int k = 0; k < KINDS; k++) {
         conductor s = conductor_extreme(kinds[k], SMALL);
         charge_rig a = charge_rig_solve(&s, 2), b = charge_rig_solve_by(&by_tree, &s, 2);
@@ -101,8 +100,7 @@ static void expect_close(const char *name, const conductor *s, bool expect_full)
     treecode_rig_destroy(&one);
 }
 
-static void potentials_are_those_of_all_triangles(void **state) {
-    (void)state;
+TEST(potentials_are_those_of_all_triangles) {
     for (int k = 0; k < KINDS; k++) {
         conductor s = conductor_extreme(kinds[k], 2 * SMALL);
         expect_close(extreme_kind_name(kinds[k]), &s, false);
@@ -129,21 +127,11 @@ static double bytes_of(extreme_kind kind, uint32_t count) {
     return bytes;
 }
 
-static void memory_grows_with_the_triangles(void **state) {
-    (void)state;
+TEST(memory_grows_with_the_triangles) {
     for (int k = 0; k < KINDS; k++) {
         const double few = bytes_of(kinds[k], 2 * SMALL), many = bytes_of(kinds[k], 8 * SMALL);
         print_message("%s: %.0f and %.0f bytes a triangle\n", extreme_kind_name(kinds[k]), few / (2 * SMALL),
                       many / (8 * SMALL));
         assert_true(many < 4.0 * growth_most * few); /* 13 to 15 times as much without blocks */
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(densities_are_those_of_the_dense_system),
-        cmocka_unit_test(potentials_are_those_of_all_triangles),
-        cmocka_unit_test(memory_grows_with_the_triangles),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -145,8 +145,7 @@ static uint32_t region_at(const body *b, const division *d, double x, double y, 
 }
 
 /* Foot, ring and head; two balls; head, arms, legs and trunk. */
-static void bodies_are_divided(void **state) {
-    (void)state;
+TEST(bodies_are_divided) {
     static const struct expectation {
         uint32_t least, most;
         double share, apart[6][3]; /* points of different regions */
@@ -183,8 +182,7 @@ static void bodies_are_divided(void **state) {
     }
 }
 
-static void repeatable_regions(void **state) {
-    (void)state;
+TEST(repeatable_regions) {
     const charged *c = &bodies[BODY_FIGURE];
     double capacitance[1], *density = malloc(c->shape.triangle_count * sizeof *density);
     divide_body(&c->shape, c->density, &found);
@@ -199,8 +197,7 @@ static void repeatable_regions(void **state) {
 }
 
 /* A scale of a power of two changes no rounding, the unit of charge no rank. */
-static void units_do_not_matter(void **state) {
-    (void)state;
+TEST(units_do_not_matter) {
     const charged *c = &bodies[BODY_PAWN];
     divide_body(&c->shape, c->density, &found);
     for (int exponent = -290; exponent <= 290; exponent += 145) {
@@ -218,8 +215,7 @@ static void units_do_not_matter(void **state) {
 }
 
 /* Each component is divided as if it were alone. */
-static void two_components(void **state) {
-    (void)state;
+TEST(two_components) {
     const charged *a = &bodies[BODY_DUMBBELL], *b = &bodies[BODY_SPHERE];
     static charged both;
     both.shape = (body){0};
@@ -239,8 +235,7 @@ static void two_components(void **state) {
 }
 
 /* Whatever the density, a ball stays whole: clusters of noise grow over everything, and no cut would pay. */
-static void noise_does_not_cut_a_ball(void **state) {
-    (void)state;
+TEST(noise_does_not_cut_a_ball) {
     const body *b = &bodies[BODY_SPHERE].shape;
     double *density = malloc(b->triangle_count * sizeof *density);
     for (int round = 0; round < 10; round++) {
@@ -257,8 +252,7 @@ static void noise_does_not_cut_a_ball(void **state) {
 
 /* The detector points never see less than a single one would, even when gain 0 allows every cut that does not
  * lower the share and waves of density suggest the cuts. */
-static void never_less_than_single(void **state) {
-    (void)state;
+TEST(never_less_than_single) {
     region_options options = region_options_defaults();
     options.published = true;
     options.gain = 0.0;
@@ -283,8 +277,7 @@ static void never_less_than_single(void **state) {
 }
 
 /* Without the last test every cut is made: the belt then cuts the ball. */
-static void all_cuts(void **state) {
-    (void)state;
+TEST(all_cuts) {
     const body *b = &bodies[BODY_SPHERE].shape;
     double *density = malloc(b->triangle_count * sizeof *density);
     for (uint32_t t = 0; t < b->triangle_count; t++)
@@ -300,8 +293,7 @@ static void all_cuts(void **state) {
 }
 
 /* A hole changes little, and a body that is inside out is still divided. */
-static void open_and_inside_out(void **state) {
-    (void)state;
+TEST(open_and_inside_out) {
     body b = {0};
     const charged *c = &bodies[BODY_DUMBBELL];
     body_append(&b, &c->shape, (double[3]){0, 0, 0});
@@ -326,8 +318,7 @@ static void open_and_inside_out(void **state) {
 }
 
 /* Two cones that share a tip, a fin on an edge, a triangle alone: a region each, or what can be cut off. */
-static void odd_meshes(void **state) {
-    (void)state;
+TEST(odd_meshes) {
     const double positions[][3] = {{0, 0, 0},  {1, 0, 1},    {0, 1, 1}, {-1, -1, 1}, {1, 0, -1},
                                    {0, 1, -1}, {-1, -1, -1}, {5, 5, 5}, {6, 5, 5},   {5, 6, 5}};
     const uint32_t triangles[][3] = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {0, 5, 4}, {0, 6, 5},
@@ -349,8 +340,7 @@ static void odd_meshes(void **state) {
     }
 }
 
-static void refuses_bad_options(void **state) {
-    (void)state;
+TEST(refuses_bad_options) {
     const charged *c = &bodies[BODY_PAWN];
     cscd_mesh *mesh = body_mesh(&c->shape, 1);
     uint32_t count = 77, regions[1] = {78};
@@ -369,18 +359,4 @@ static void refuses_bad_options(void **state) {
     body_mesh_destroy(mesh);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bodies_are_divided),
-        cmocka_unit_test(repeatable_regions),
-        cmocka_unit_test(units_do_not_matter),
-        cmocka_unit_test(two_components),
-        cmocka_unit_test(noise_does_not_cut_a_ball),
-        cmocka_unit_test(never_less_than_single),
-        cmocka_unit_test(all_cuts),
-        cmocka_unit_test(open_and_inside_out),
-        cmocka_unit_test(odd_meshes),
-        cmocka_unit_test(refuses_bad_options),
-    };
-    return cmocka_run_group_tests_name("regions", tests, make_bodies, free_bodies);
-}
+AROUND_ALL(make_bodies, free_bodies)

@@ -73,8 +73,7 @@ static sight_point random_point(void) {
     return point;
 }
 
-static void blindness_is_a_mean(void **state) {
-    (void)state;
+TEST(blindness_is_a_mean) {
     random_seed(11);
     for (int round = 0; round < 4; round++) {
         moving_tiles m = make_moving(round < 2 ? BODY_FIGURE : BODY_TORUS, round % 2 == 1);
@@ -100,8 +99,7 @@ static void blindness_is_a_mean(void **state) {
 }
 
 /* Wherever a point is moved to, it stays as far from the centroid in all frames. */
-static void points_move_with_centroids(void **state) {
-    (void)state;
+TEST(points_move_with_centroids) {
     random_seed(12);
     moving_tiles m = make_moving(BODY_FIGURE, false);
     for (int i = 0; i < 10; i++) {
@@ -117,12 +115,4 @@ static void points_move_with_centroids(void **state) {
         assert_true(tiles_unseen(&set, &point) <= cost);
     }
     free_moving(&m);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(blindness_is_a_mean),
-        cmocka_unit_test(points_move_with_centroids),
-    };
-    return cmocka_run_group_tests_name("sight", tests, NULL, NULL);
 }

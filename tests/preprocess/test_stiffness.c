@@ -94,8 +94,7 @@ static double *scaled_values(const double *values, double factor) {
 }
 
 /* The whole of it is seen from one point at rest, and yet it is cut. */
-static void a_soft_place_parts_a_body(void **state) {
-    (void)state;
+TEST(a_soft_place_parts_a_body) {
     stiff_division plain = divide_capsule(NULL), d = divide_capsule(soft);
     print_message("  capsule with a soft place: %u regions\n", d.count);
     assert_int_equal(plain.count, 1);
@@ -122,8 +121,7 @@ static void a_soft_place_parts_a_body(void **state) {
     free(d.regions);
 }
 
-static void only_ratios_count(void **state) {
-    (void)state;
+TEST(only_ratios_count) {
     static const double factors[] = {3.0, 1e-5, 0x1p-900, 7e200};
     for (size_t i = 0; i < sizeof factors / sizeof *factors; i++) {
         double *scaled = scaled_values(soft, factors[i]);
@@ -133,8 +131,7 @@ static void only_ratios_count(void **state) {
 }
 
 /* As stiff everywhere, or stiffer in one small place, is the same as no stiffness. */
-static void nothing_soft_changes_nothing(void **state) {
-    (void)state;
+TEST(nothing_soft_changes_nothing) {
     double *values = body_allocate(capsule.triangle_count, sizeof *values);
     for (uint32_t t = 0; t < capsule.triangle_count; t++) values[t] = 0.3;
     expect_same(divide_capsule(NULL), divide_capsule(values));
@@ -144,15 +141,13 @@ static void nothing_soft_changes_nothing(void **state) {
     free(values);
 }
 
-static void threads_change_nothing(void **state) {
-    (void)state;
+TEST(threads_change_nothing) {
     for (uint32_t threads = 2; threads <= 3; threads++)
         expect_same(divide_capsule(soft), divide_by_threads(soft, threads));
 }
 
 /* An edge weighs its length times the share of the charge or of the stiffness, whichever is less. */
-static void edges_weigh_less_where_it_is_soft(void **state) {
-    (void)state;
+TEST(edges_weigh_less_where_it_is_soft) {
     const region_options options = region_options_defaults();
     cscd_mesh *mesh = body_mesh(&capsule, 1);
     const uint32_t triangle_count = capsule.triangle_count;
@@ -176,8 +171,7 @@ static void edges_weigh_less_where_it_is_soft(void **state) {
     free(weights);
 }
 
-static void bad_values_are_refused(void **state) {
-    (void)state;
+TEST(bad_values_are_refused) {
     static const double bad[] = {0.0, -1.0, -0.0, INFINITY, -INFINITY, NAN};
     cscd_mesh *mesh = body_mesh(&capsule, 1);
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
@@ -193,8 +187,7 @@ static void bad_values_are_refused(void **state) {
 }
 
 /* Shares are those of the stiffer half of the area, in each component, and never above 1. */
-static void shares_are_of_the_component(void **state) {
-    (void)state;
+TEST(shares_are_of_the_component) {
     body two = {0};
     body_append(&two, &capsule, (const double[3]){0.0, 0.0, 0.0});
     body_append(&two, &capsule, (const double[3]){5.0, 0.0, 0.0});
@@ -271,8 +264,7 @@ static void walk_slowly(const region_scene *s, const body *b, const double *shar
 }
 
 /* Two regions, the second with a soft place on the way from its point and a piece that no way leads to. */
-static void ways_are_the_shortest(void **state) {
-    (void)state;
+TEST(ways_are_the_shortest) {
     static const double points[2][3] = {{0.1, 0.0, -0.6}, {0.0, 0.2, 1.2}};
     body b = body_of(BODY_CAPSULE, 500);
     cscd_mesh *mesh = body_mesh(&b, 1);
@@ -317,8 +309,7 @@ static double compared_share(const cscd_plan *plan, cscd_method method) {
 }
 
 /* The capsule is seen whole from one point at rest, and a cut has borders to test: only what lies beyond the soft place pays for it. */
-static void auto_knows_what_is_soft(void **state) {
-    (void)state;
+TEST(auto_knows_what_is_soft) {
     cscd_mesh *mesh = body_mesh(&capsule, 1);
     cscd_plan_options options = cscd_plan_defaults();
     cscd_plan *plans[2] = {NULL};
@@ -338,13 +329,4 @@ static void auto_knows_what_is_soft(void **state) {
     body_mesh_destroy(mesh);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_soft_place_parts_a_body),         cmocka_unit_test(only_ratios_count),
-        cmocka_unit_test(nothing_soft_changes_nothing),      cmocka_unit_test(threads_change_nothing),
-        cmocka_unit_test(edges_weigh_less_where_it_is_soft), cmocka_unit_test(bad_values_are_refused),
-        cmocka_unit_test(shares_are_of_the_component),       cmocka_unit_test(ways_are_the_shortest),
-        cmocka_unit_test(auto_knows_what_is_soft),
-    };
-    return cmocka_run_group_tests_name("stiffness", tests, make_capsule, free_capsule);
-}
+AROUND_ALL(make_capsule, free_capsule)

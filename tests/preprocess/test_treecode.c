@@ -64,8 +64,7 @@ static conductor large_beside_small(void) {
     return s;
 }
 
-static void potentials_are_those_of_all_triangles(void **state) {
-    (void)state;
+TEST(potentials_are_those_of_all_triangles) {
     conductor one = conductor_tetrahedron(), sphere = conductor_sphere(LEVEL),
               disc = flat_ellipsoid(LEVEL, 0.01), mixed = large_beside_small(),
               crowded = conductor_cube(LEVEL);
@@ -108,8 +107,7 @@ static void expect_pairs_once(const conductor *s) {
     treecode_rig_destroy(&r);
 }
 
-static void pairs_are_taken_once(void **state) {
-    (void)state;
+TEST(pairs_are_taken_once) {
     conductor mixed = large_beside_small(), cylinder = conductor_extreme(EXTREME_CYLINDER, 1000);
     expect_pairs_once(&mixed);
     expect_pairs_once(&cylinder);
@@ -117,8 +115,7 @@ static void pairs_are_taken_once(void **state) {
     conductor_free(&cylinder);
 }
 
-static void threads_and_levels_give_the_same_bits(void **state) {
-    (void)state;
+TEST(threads_and_levels_give_the_same_bits) {
     conductor s = large_beside_small();
     treecode_rig expected = treecode_rig_create(&s, 1, CSCD_SIMD_SCALAR);
     double *charges = make_charges(&expected),
@@ -136,13 +133,4 @@ static void threads_and_levels_give_the_same_bits(void **state) {
     free(potentials);
     treecode_rig_destroy(&expected);
     conductor_free(&s);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(potentials_are_those_of_all_triangles),
-        cmocka_unit_test(pairs_are_taken_once),
-        cmocka_unit_test(threads_and_levels_give_the_same_bits),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -28,8 +28,7 @@ static void add_torus(body *b, double major, double minor, uint32_t rings, uint3
 }
 
 /* The centre sees the outer side, where cos(across) > -minor / major. */
-static void share_in_torus(void **state) {
-    (void)state;
+TEST(share_in_torus) {
     const double minor[3] = {0.2, 0.5, 0.8};
     for (int i = 0; i < 3; i++) {
         body b = {0};
@@ -54,8 +53,7 @@ static void share_in_torus(void **state) {
 }
 
 /* Areas count and not triangles, which a box with one finely divided side shows. */
-static void weighted_by_area(void **state) {
-    (void)state;
+TEST(weighted_by_area) {
     body b = {0};
     for (uint32_t i = 0; i < 8; i++) body_add_vertex(&b, i & 1, i >> 1 & 1, i >> 2);
     const uint32_t quads[5][4] = {{0, 2, 3, 1}, {0, 1, 5, 4}, {0, 4, 6, 2}, {1, 3, 7, 5}, {2, 6, 7, 3}};
@@ -84,8 +82,7 @@ static void weighted_by_area(void **state) {
 }
 
 /* Two tetrahedra, one seen whole and one from outside; then without any area. */
-static void regions_on_their_own(void **state) {
-    (void)state;
+TEST(regions_on_their_own) {
     body b = {0}, other = {0};
     for (uint32_t i = 0; i < 4; i++) body_add_vertex(&other, i == 1, i == 2, i == 3);
     const uint32_t corners[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
@@ -108,13 +105,4 @@ static void regions_on_their_own(void **state) {
     body_mesh_destroy(mesh);
     body_free(&other);
     body_free(&b);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(share_in_torus),
-        cmocka_unit_test(weighted_by_area),
-        cmocka_unit_test(regions_on_their_own),
-    };
-    return cmocka_run_group_tests_name("visibility", tests, NULL, NULL);
 }

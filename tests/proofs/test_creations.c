@@ -200,6 +200,4 @@ static const proof_row rows[] = {
     {"plan_parts", {&plan_joined}, open_dumbbell, .no_report = soon, .one_thread = soon},
 };
 
-int main(void) {
-    return proofs_run("creations", rows, sizeof rows / sizeof *rows);
-}
+PROOFS(rows)

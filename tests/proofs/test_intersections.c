@@ -151,6 +151,4 @@ static const proof_row rows[] = {
     {"post", {&everything}, open_post, .seed = 0},
 };
 
-int main(void) {
-    return proofs_run("intersections", rows, sizeof rows / sizeof *rows);
-}
+PROOFS(rows)

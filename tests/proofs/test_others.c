@@ -304,6 +304,4 @@ static const proof_row rows[] = {
      .one_thread = walking},
 };
 
-int main(void) {
-    return proofs_run("others", rows, sizeof rows / sizeof *rows);
-}
+PROOFS(rows)

@@ -192,6 +192,4 @@ static const proof_row rows[] = {
     {"loose_and_triangles", LOOSE_CALLS, open_loose, .seed = 1},
 };
 
-int main(void) {
-    return proofs_run("solver_calls", rows, sizeof rows / sizeof *rows);
-}
+PROOFS(rows)

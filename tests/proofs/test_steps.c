@@ -77,6 +77,4 @@ static const proof_row rows[] = {
      .seed = 7},
 };
 
-int main(void) {
-    return proofs_run("steps", rows, sizeof rows / sizeof *rows);
-}
+PROOFS(rows)

@@ -267,6 +267,4 @@ static const proof_row rows[] = {
     {"clone", {&step_first, &cloned, &step_second, &step_third}, open_detector, SPHERES},
 };
 
-int main(void) {
-    return proofs_run("told", rows, sizeof rows / sizeof *rows);
-}
+PROOFS(rows)

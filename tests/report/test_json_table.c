@@ -47,8 +47,7 @@ static void expect_moved(const char *name, int rows, const char *odd, bool expec
     free(text);
 }
 
-static void rows_that_are_alike_are_moved(void **state) {
-    (void)state;
+TEST(rows_that_are_alike_are_moved) {
     page_arrays arrays;
     char *text = make_text("intervals", JSON_TABLE_ROWS_LEAST, NULL), *moved = move_text(text, &arrays);
     assert_string_equal(
@@ -69,8 +68,7 @@ static void rows_that_are_alike_are_moved(void **state) {
     expect_moved("in<tervals", JSON_TABLE_ROWS_LEAST, NULL, false);
 }
 
-static void other_rows_stay(void **state) {
-    (void)state;
+TEST(other_rows_stay) {
     static const char *const odd[] = {
         "{}",
         "{\"frame\": 1}",
@@ -87,8 +85,7 @@ static void other_rows_stay(void **state) {
 }
 
 /* What is cut anywhere, or is no JSON, is copied or left alone, and nothing is read beyond its end. */
-static void damaged_text_is_survived(void **state) {
-    (void)state;
+TEST(damaged_text_is_survived) {
     char *text = make_text("intervals", JSON_TABLE_ROWS_LEAST, NULL);
     const size_t size = strlen(text);
     for (size_t length = 0; length < size; length += length < 80 || length + 80 > size ? 1 : 997) {
@@ -106,8 +103,7 @@ static void damaged_text_is_survived(void **state) {
 
 /* ---- memory ---------------------------------------------------------------------------------------------- */
 
-static void memory_may_run_out(void **state) {
-    (void)state;
+TEST(memory_may_run_out) {
     char *text = make_text("intervals", JSON_TABLE_ROWS_LEAST, NULL), *moved = NULL;
     bool made = false;
     size_t refused = 0;
@@ -125,14 +121,4 @@ static void memory_may_run_out(void **state) {
     assert_non_null(moved);
     free(moved);
     free(text);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rows_that_are_alike_are_moved),
-        cmocka_unit_test(other_rows_stay),
-        cmocka_unit_test(damaged_text_is_survived),
-        cmocka_unit_test(memory_may_run_out),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

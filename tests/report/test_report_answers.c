@@ -58,8 +58,7 @@ static void expect_numbers(const page *p, const char *name, const void *numbers,
     free(bytes.data);
 }
 
-static void answers_are_bounded_and_each_frame_keeps_its_share(void **state) {
-    (void)state;
+TEST(answers_are_bounded_and_each_frame_keeps_its_share) {
     enum { KEPT = REPORT_ANSWER_POINTS_MAX / ANSWERED };
     report_rig rig = report_rig_create(recorded_tetrahedra(FRAMES), CSCD_METHOD_SINGLE);
     page p = answered_page(&rig);
@@ -84,8 +83,7 @@ static const char *name_of_part(void *user, uint32_t part, char buffer[REPORT_PA
 }
 
 /* More events than a page has room for: the deep ones stay, in their order. */
-static void of_many_events_the_worst_are_kept(void **state) {
-    (void)state;
+TEST(of_many_events_the_worst_are_kept) {
     enum { EVENTS = REPORT_EVENTS_MAX + 500 };
     static cscd_event events[EVENTS];
     for (uint32_t i = 0; i < EVENTS; i++)
@@ -114,10 +112,4 @@ static void of_many_events_the_worst_are_kept(void **state) {
     report_rig_destroy(&rig);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(answers_are_bounded_and_each_frame_keeps_its_share),
-        cmocka_unit_test(of_many_events_the_worst_are_kept),
-    };
-    return cmocka_run_group_tests_name("report_answers", tests, own_folder_make, own_folder_remove);
-}
+AROUND_ALL(own_folder_make, own_folder_remove)

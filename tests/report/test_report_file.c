@@ -78,8 +78,7 @@ static void expect_page(const char *path) {
     page_free(&p);
 }
 
-static void what_cannot_be_opened_is_told(void **state) {
-    (void)state;
+TEST(what_cannot_be_opened_is_told) {
     expect_failure(temp_file_path(&folder, "no/such.html").text, "cannot write: No such file");
     expect_failure(folder.path, "cannot write: Is a directory");
     temp_path loop = temp_file_path(&folder, "loop.html");
@@ -98,8 +97,7 @@ static rlim_t size_of_report(void) {
 }
 
 /* A full disk is simulated by a device that is always full and by a limit on the size of files. */
-static void a_full_disk_leaves_the_older_file(void **state) {
-    (void)state;
+TEST(a_full_disk_leaves_the_older_file) {
     expect_failure("/dev/full", "cannot write: No space left");
     temp_path old = temp_file_write(&folder, "old.html", "older", 5);
     temp_path fresh = temp_file_path(&folder, "new.html");
@@ -120,8 +118,7 @@ static void a_full_disk_leaves_the_older_file(void **state) {
     remove(old.text);
 }
 
-static void permissions_are_as_ever(void **state) {
-    (void)state;
+TEST(permissions_are_as_ever) {
     temp_path path = temp_file_path(&folder, "report.html");
     mode_t mask = umask(027);
     write_report(path.text);
@@ -136,8 +133,7 @@ static void permissions_are_as_ever(void **state) {
 }
 
 /* Links are relative and absolute, to a file and to none. The link stays, and its target is the report. */
-static void links_are_followed(void **state) {
-    (void)state;
+TEST(links_are_followed) {
     temp_path link = temp_file_path(&folder, "link.html"), target = temp_file_path(&folder, "target.html");
     for (int i = 0; i < 4; i++) {
         assert_int_equal(symlink(i % 2 == 0 ? "target.html" : target.text, link.text), 0);
@@ -152,8 +148,7 @@ static void links_are_followed(void **state) {
 }
 
 /* A name as long as the system allows leaves no room for a longer name beside it. */
-static void long_names_are_fine(void **state) {
-    (void)state;
+TEST(long_names_are_fine) {
     char name[256];
     memset(name, 'n', 255);
     memcpy(name + 250, ".html", 6);
@@ -173,8 +168,7 @@ static void *copy_pipe(void *paths) {
     return NULL;
 }
 
-static void a_pipe_is_written_to(void **state) {
-    (void)state;
+TEST(a_pipe_is_written_to) {
     temp_path paths[] = {temp_file_path(&folder, "pipe"), temp_file_path(&folder, "copy.html")};
     pthread_t reader;
     assert_int_equal(mkfifo(paths[0].text, 0600), 0);
@@ -186,8 +180,7 @@ static void a_pipe_is_written_to(void **state) {
     for (int i = 0; i < 2; i++) remove(paths[i].text);
 }
 
-static void memory_that_runs_out_leaves_nothing(void **state) {
-    (void)state;
+TEST(memory_that_runs_out_leaves_nothing) {
     temp_path path = temp_file_path(&folder, "report.html");
     int failures = 0;
     for (bool written; io_allocations_go_on(failures); failures++) {
@@ -212,8 +205,7 @@ static void expect_divided(const char *text, const char *complaint) {
     if (!divided) assert_non_null(strstr(error.text, complaint));
 }
 
-static void a_template_has_one_place_for_data(void **state) {
-    (void)state;
+TEST(a_template_has_one_place_for_data) {
     expect_divided("<html>\n<!--cscd:data-->\n</html>\n", NULL);
     expect_divided("", "lacks the line <!--cscd:data-->");
     expect_divided("<html>\n</html>\n", "lacks the line <!--cscd:data-->; run make template");
@@ -221,16 +213,4 @@ static void a_template_has_one_place_for_data(void **state) {
     expect_divided("<html>\n<!--cscd:data-->\n<!--cscd:data-->\n</html>\n", "twice");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_cannot_be_opened_is_told),
-        cmocka_unit_test(a_full_disk_leaves_the_older_file),
-        cmocka_unit_test(permissions_are_as_ever),
-        cmocka_unit_test(links_are_followed),
-        cmocka_unit_test(long_names_are_fine),
-        cmocka_unit_test(a_pipe_is_written_to),
-        cmocka_unit_test(memory_that_runs_out_leaves_nothing),
-        cmocka_unit_test(a_template_has_one_place_for_data),
-    };
-    return cmocka_run_group_tests_name("report_file", tests, set_up, tear_down);
-}
+AROUND_ALL(set_up, tear_down)

@@ -184,19 +184,16 @@ static void check_motion(const frame_motion *m, double relative_max) {
     frame_stream_free(&stream);
 }
 
-static void motions_come_back(void **state) {
-    (void)state;
+TEST(motions_come_back) {
     for (size_t i = 0; i < sizeof motions / sizeof *motions; i++) check_motion(&motions[i], 2e-5);
 }
 
-static void what_cannot_be_shown_is_told(void **state) {
-    (void)state;
+TEST(what_cannot_be_shown_is_told) {
     check_motion(&bursts, 1.1);
 }
 
 /* A mesh that stands still costs next to nothing. */
-static void still_frames_are_small(void **state) {
-    (void)state;
+TEST(still_frames_are_small) {
     frame_stream stream;
     double given[VALUES];
     char *text = NULL;
@@ -213,8 +210,7 @@ static void still_frames_are_small(void **state) {
 }
 
 /* Tests arrays of every length modulo three that are longer than a buffer. */
-static void bytes_come_back(void **state) {
-    (void)state;
+TEST(bytes_come_back) {
     for (size_t size = 0; size < 20000; size = size * 3 / 2 + 1) {
         uint8_t *given = malloc(size + 1);
         random_seed(size);
@@ -230,8 +226,7 @@ static void bytes_come_back(void **state) {
     }
 }
 
-static void memory_that_runs_out_is_told(void **state) {
-    (void)state;
+TEST(memory_that_runs_out_is_told) {
     double given[VALUES];
     still_motion(0, given);
     int failures = 0;
@@ -244,15 +239,4 @@ static void memory_that_runs_out_is_told(void **state) {
         frame_stream_free(&stream);
     }
     assert_true(failures > 6);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(motions_come_back),
-        cmocka_unit_test(what_cannot_be_shown_is_told),
-        cmocka_unit_test(still_frames_are_small),
-        cmocka_unit_test(bytes_come_back),
-        cmocka_unit_test(memory_that_runs_out_is_told),
-    };
-    return cmocka_run_group_tests_name("report_frames", tests, NULL, NULL);
 }

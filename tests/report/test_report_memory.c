@@ -71,8 +71,7 @@ static void check_page(report *r) {
     temp_folder_remove(&folder);
 }
 
-static void answers_and_events_survive_failed_allocations(void **state) {
-    (void)state;
+TEST(answers_and_events_survive_failed_allocations) {
     report_rig rig = report_rig_create(recorded_tetrahedra(FRAMES), CSCD_METHOD_SINGLE);
     report_options options = report_rig_options(&rig);
     options.oriented = false;
@@ -94,11 +93,4 @@ static void answers_and_events_survive_failed_allocations(void **state) {
     }
     assert_true(successes > 40); /* five of each of the nine arrays of answers alone */
     report_rig_destroy(&rig);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(answers_and_events_survive_failed_allocations),
-    };
-    return cmocka_run_group_tests_name("report_memory", tests, NULL, NULL);
 }

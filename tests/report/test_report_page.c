@@ -101,8 +101,7 @@ static void expect_ranks(const page *p, const report_rig *rig) {
     free(bytes.data);
 }
 
-static void scene_and_plan_come_back(void **state) {
-    (void)state;
+TEST(scene_and_plan_come_back) {
     report_rig rig = report_rig_create(recorded_tetrahedra(FRAMES), CSCD_METHOD_CHARGE);
     report_options options = report_rig_options(&rig);
     page p = page_of(&rig, &options);
@@ -130,8 +129,7 @@ static void scene_and_plan_come_back(void **state) {
 
 /* Coordinates beyond the range of float32 reach the page in another unit, and lose no more precision than
  * others. */
-static void huge_scenes_have_a_unit(void **state) {
-    (void)state;
+TEST(huge_scenes_have_a_unit) {
     static const double scales[] = {0x1p280, 0x1p-280};
     for (int i = 0; i < 2; i++) {
         recorded shape = recorded_tetrahedra(FRAMES);
@@ -160,8 +158,7 @@ static size_t count_of(const char *text, char c) {
     return count;
 }
 
-static void names_are_never_markup(void **state) {
-    (void)state;
+TEST(names_are_never_markup) {
 #define NAME "</script><img src=x onerror=alert(1)>.obj"
     report_rig rig = report_rig_create(recorded_tetrahedra(2), CSCD_METHOD_CHARGE);
     report_options options = report_rig_options(&rig);
@@ -190,8 +187,7 @@ static void names_are_never_markup(void **state) {
 
 /* ---- the other kinds --------------------------------------------------------------------------------- */
 
-static void a_comparison_has_no_scene(void **state) {
-    (void)state;
+TEST(a_comparison_has_no_scene) {
     const report_options options = {.kind = REPORT_COMPARE, .title = "two", .generator = "cscd"};
     const report_summary summaries[] = {{"a.json", "{\"a\":1}"}, {"b.json", "{\"b\":2}"}};
     report *r = NULL;
@@ -205,8 +201,7 @@ static void a_comparison_has_no_scene(void **state) {
     page_free(&p);
 }
 
-static void a_preprocess_has_one_frame(void **state) {
-    (void)state;
+TEST(a_preprocess_has_one_frame) {
     report_rig rig = report_rig_create(recorded_torus(8, 6), CSCD_METHOD_CHARGE);
     report_options options = report_rig_options(&rig);
     options.kind = REPORT_PREPROCESS;
@@ -241,8 +236,7 @@ static bool policy_has(const char *policy, size_t size, const char *directive) {
 }
 
 /* default-src says nothing about the base of links and the targets of forms. */
-static void pages_load_send_and_move_nothing(void **state) {
-    (void)state;
+TEST(pages_load_send_and_move_nothing) {
     static const char begin[] = "<meta http-equiv=\"Content-Security-Policy\" content=\"";
     static const char *const directives[] = {"default-src 'none'", "base-uri 'none'", "form-action 'none'"};
     for (template_kind kind = TEMPLATE_REPORT; kind <= TEMPLATE_JOBS; kind++) {
@@ -262,11 +256,4 @@ static void pages_load_send_and_move_nothing(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(scene_and_plan_come_back),   cmocka_unit_test(huge_scenes_have_a_unit),
-        cmocka_unit_test(names_are_never_markup),     cmocka_unit_test(a_comparison_has_no_scene),
-        cmocka_unit_test(a_preprocess_has_one_frame), cmocka_unit_test(pages_load_send_and_move_nothing),
-    };
-    return cmocka_run_group_tests_name("report_page", tests, own_folder_make, own_folder_remove);
-}
+AROUND_ALL(own_folder_make, own_folder_remove)

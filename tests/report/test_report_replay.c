@@ -157,8 +157,7 @@ static void check_replay(recorded shape, recorded again, cscd_method method) {
     report_rig_destroy(&own);
 }
 
-static void contacts_and_orientations_come_back(void **state) {
-    (void)state;
+TEST(contacts_and_orientations_come_back) {
     check_replay(recorded_tetrahedra(FRAMES), recorded_tetrahedra(FRAMES), CSCD_METHOD_CHARGE);
     check_replay(recorded_cube(false), recorded_cube(false), CSCD_METHOD_SINGLE);
     check_replay(recorded_fold(9, 3, FOLD_FRAMES), recorded_fold(9, 3, FOLD_FRAMES), CSCD_METHOD_KMEANS);
@@ -175,8 +174,7 @@ static void expect_list(const json_node *list, const uint32_t *numbers, size_t c
 
 /* The recording has eight vertices in more than half a million frames. Every fifth is kept, and the replay
  * is interrupted after frame 112. */
-static void of_long_recordings_few_frames_are_kept(void **state) {
-    (void)state;
+TEST(of_long_recordings_few_frames_are_kept) {
     static const uint32_t kept[] = {100, 105, 110, 112};
     report_rig rig = report_rig_create(recorded_tetrahedra(13), CSCD_METHOD_SINGLE);
     report_options options = report_rig_options(&rig);
@@ -205,8 +203,7 @@ static void of_long_recordings_few_frames_are_kept(void **state) {
 }
 
 /* The surroundings count, too: with this many vertices there is room only for the first and last frame. */
-static void moving_scenery_takes_room(void **state) {
-    (void)state;
+TEST(moving_scenery_takes_room) {
     static const uint32_t triangle[] = {0, 1, 2};
     report_rig rig = report_rig_create(recorded_tetrahedra(FRAMES), CSCD_METHOD_SINGLE);
     report_options options = report_rig_options(&rig);
@@ -224,8 +221,7 @@ static void moving_scenery_takes_room(void **state) {
     report_rig_destroy(&rig);
 }
 
-static void scenery_comes_back(void **state) {
-    (void)state;
+TEST(scenery_comes_back) {
     static const uint32_t triangle[] = {0, 1, 2};
     static const double positions[2][9] = {{0, 0, 0, 1, 0, 0, 0, 1, 0}, {0, 0, 1, 1, 0, 1, 0, 1, 1}};
     for (int moves = 0; moves < 2; moves++) {
@@ -283,8 +279,7 @@ static page crowded_page(const report_rig *rig, uint32_t *file_offset) {
     return write_page(r);
 }
 
-static void of_many_contacts_each_interval_keeps_its_share(void **state) {
-    (void)state;
+TEST(of_many_contacts_each_interval_keeps_its_share) {
     uint32_t offset = 1000, i = 0;
     report_rig rig = report_rig_create(recorded_tetrahedra(FRAMES), CSCD_METHOD_SINGLE);
     page p = crowded_page(&rig, &offset);
@@ -317,13 +312,4 @@ static void of_many_contacts_each_interval_keeps_its_share(void **state) {
     report_rig_destroy(&rig);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(contacts_and_orientations_come_back),
-        cmocka_unit_test(of_long_recordings_few_frames_are_kept),
-        cmocka_unit_test(moving_scenery_takes_room),
-        cmocka_unit_test(scenery_comes_back),
-        cmocka_unit_test(of_many_contacts_each_interval_keeps_its_share),
-    };
-    return cmocka_run_group_tests_name("report_replay", tests, own_folder_make, own_folder_remove);
-}
+AROUND_ALL(own_folder_make, own_folder_remove)

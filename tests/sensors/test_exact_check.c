@@ -123,8 +123,7 @@ static void choose_parts(const scene *s, uint32_t part_count, uint32_t *triangle
     }
 }
 
-static void equals_brute_force(void **state) {
-    (void)state;
+TEST(equals_brute_force) {
     static uint32_t triangle_parts[SCENE_TRIANGLES_MAX];
     uint32_t contacts = 0, none = 0, cells_a[64], cells_b[64];
     random_seed(1);
@@ -167,8 +166,7 @@ static const cscd_contact *first_between(const rig *r, cscd_contacts found) {
     return first;
 }
 
-static void equals_detector(void **state) {
-    (void)state;
+TEST(equals_detector) {
     const scene_family families[] = {SCENE_TWO_SPHERES, SCENE_NESTED_SPHERES, SCENE_LINKED_TORI};
     uint32_t contacts = 0, none = 0, cells[128];
     for (uint32_t i = 0; i < 128; i++) cells[i] = i;
@@ -196,8 +194,7 @@ static void equals_detector(void **state) {
 
 /* ---- order, reuse, memory ------------------------------------------------------------------------------ */
 
-static void order_and_reuse_do_not_matter(void **state) {
-    (void)state;
+TEST(order_and_reuse_do_not_matter) {
     uint32_t cells[128], reversed[128];
     random_seed(3);
     scene_make(SCENE_LINKED_TORI, 5, &interval);
@@ -222,13 +219,4 @@ static void order_and_reuse_do_not_matter(void **state) {
     exact_check_destroy(&exact);
     hand_partition_destroy(p);
     rig_destroy(&r);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(equals_brute_force),
-        cmocka_unit_test(equals_detector),
-        cmocka_unit_test(order_and_reuse_do_not_matter),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -57,8 +57,7 @@ static void expect_all_found(particle_grid *grid, double radius) {
     }
 }
 
-static void the_grid_finds_each_neighbour_once(void **state) {
-    (void)state;
+TEST(the_grid_finds_each_neighbour_once) {
     static const double places[][3] = {{0, 0, 0}, {-3, 8, 1e3}, {1e9, -1e9, 1e9}, {1e60, 0, -1e-60}};
     static const double radii[] = {1e-3, 0.07, 0.3, 1.0, 5.0, 1e9};
     particle_grid grid = {0};
@@ -145,8 +144,7 @@ static void expect_best(const particles *p, const uint32_t *before, uint32_t i) 
     assert_true(there);
 }
 
-static void every_particle_takes_the_best_way(void **state) {
-    (void)state;
+TEST(every_particle_takes_the_best_way) {
     static const double centre[3] = {1e6, 0, -5};
     uint32_t before[WALKERS];
     random_seed(2);
@@ -175,8 +173,7 @@ static uint64_t plain_pairs(const particles *p) {
     return pairs;
 }
 
-static void counters_count(void **state) {
-    (void)state;
+TEST(counters_count) {
     static const double centre[3] = {0, 0, 0};
     random_seed(3);
     scatter_points(centre, 1.0);
@@ -218,8 +215,7 @@ static void put_point(uint32_t point, double x, double y) {
 }
 
 /* Two lines that cross at an angle: the walk ends where they are nearest. */
-static void a_walk_rests_at_the_nearest_points(void **state) {
-    (void)state;
+TEST(a_walk_rests_at_the_nearest_points) {
     enum { LENGTH = 30 };
     particles p;
     lay_paths(&p, 2, LENGTH);
@@ -243,8 +239,7 @@ static void a_walk_rests_at_the_nearest_points(void **state) {
 }
 
 /* Each particle wants to be opposite to the place where the other one is. */
-static void swapping_for_ever_is_noticed(void **state) {
-    (void)state;
+TEST(swapping_for_ever_is_noticed) {
     particles p;
     lay_paths(&p, 2, 2);
     put_point(0, 0, 0), put_point(1, 1, 0), put_point(2, 0, 1), put_point(3, 1, 1);
@@ -260,8 +255,7 @@ static void swapping_for_ever_is_noticed(void **state) {
 
 /* Worlds beside each other, whose cycles are of different lengths, come back together after more rounds than
  * are remembered one by one. */
-static void cycles_are_as_long_as_they_say(void **state) {
-    (void)state;
+TEST(cycles_are_as_long_as_they_say) {
     enum { WORLDS = 8 };
     static const double centre[3] = {0, 0, 0};
     uint32_t start[WALKERS], longest = 0;
@@ -286,8 +280,7 @@ static void cycles_are_as_long_as_they_say(void **state) {
 }
 
 /* Two particles of one object on a ring flee until neither gains by going on. */
-static void repulsion_spreads(void **state) {
-    (void)state;
+TEST(repulsion_spreads) {
     enum { RING = 24 };
     particles p = {.context = context,
                    .rule = PARTICLE_POTENTIAL,
@@ -334,8 +327,7 @@ static uint64_t distances_of(uint32_t clusters, uint64_t *vertices) {
     return distances;
 }
 
-static void work_grows_with_the_scene(void **state) {
-    (void)state;
+TEST(work_grows_with_the_scene) {
     random_seed(4);
     uint64_t few, many;
     uint64_t distances_few = distances_of(12, &few), distances_many = distances_of(48, &many);
@@ -343,16 +335,4 @@ static void work_grows_with_the_scene(void **state) {
     assert_true(distances_many < 5 * distances_few && distances_many > 3 * distances_few);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_grid_finds_each_neighbour_once),
-        cmocka_unit_test(every_particle_takes_the_best_way),
-        cmocka_unit_test(counters_count),
-        cmocka_unit_test(a_walk_rests_at_the_nearest_points),
-        cmocka_unit_test(swapping_for_ever_is_noticed),
-        cmocka_unit_test(cycles_are_as_long_as_they_say),
-        cmocka_unit_test(repulsion_spreads),
-        cmocka_unit_test(work_grows_with_the_scene),
-    };
-    return cmocka_run_group_tests(tests, create_context, destroy_context);
-}
+AROUND_ALL(create_context, destroy_context)

@@ -107,8 +107,7 @@ static void bend_point(const double at[3], double amount, double out[3]) {
 
 /* ---- nothing is due ------------------------------------------------------------------------------------ */
 
-static void rest_and_rigid_motion_need_nothing(void **state) {
-    (void)state;
+TEST(rest_and_rigid_motion_need_nothing) {
     random_seed(1);
     make_two_bodies();
     renewal_bench b = bench_create(12);
@@ -126,8 +125,7 @@ static void rest_and_rigid_motion_need_nothing(void **state) {
 
 /* ---- one reason each ----------------------------------------------------------------------------------- */
 
-static void growth_is_seen(void **state) {
-    (void)state;
+TEST(growth_is_seen) {
     random_seed(2);
     make_two_bodies();
     renewal_bench b = bench_create(12);
@@ -141,8 +139,7 @@ static void growth_is_seen(void **state) {
 }
 
 /* Walks alone find growth, too. */
-static void growth_is_estimated(void **state) {
-    (void)state;
+TEST(growth_is_estimated) {
     random_seed(3);
     make_two_bodies();
     renewal_bench b = bench_create(12);
@@ -156,8 +153,7 @@ static void growth_is_estimated(void **state) {
     bench_destroy(&b);
 }
 
-static void long_edges_are_seen(void **state) {
-    (void)state;
+TEST(long_edges_are_seen) {
     random_seed(4);
     make_two_bodies();
     renewal_bench b = bench_create(12);
@@ -175,8 +171,7 @@ static void long_edges_are_seen(void **state) {
 }
 
 /* A long edge stays long, and does not hide that new cells are due. */
-static void bending_is_told_before_long_edges(void **state) {
-    (void)state;
+TEST(bending_is_told_before_long_edges) {
     random_seed(10);
     make_two_bodies();
     renewal_bench b = bench_create(12);
@@ -199,8 +194,7 @@ static void flip_triangles(void) {
 }
 
 /* Bending is found also when all triangles face inwards. */
-static void bending_is_seen(void **state) {
-    (void)state;
+TEST(bending_is_seen) {
     for (int flipped = 0; flipped < 2; flipped++) {
         random_seed(5);
         make_two_bodies();
@@ -217,8 +211,7 @@ static void bending_is_seen(void **state) {
 }
 
 /* Renewed cells are measured again; those of another part stay due. */
-static void renewal_settles_one_part(void **state) {
-    (void)state;
+TEST(renewal_settles_one_part) {
     random_seed(6);
     make_two_bodies();
     renewal_bench b = bench_create(12);
@@ -247,8 +240,7 @@ static void make_cross(void) {
     memcpy(body.x0, points, sizeof points);
 }
 
-static void estimates_are_rectangles(void **state) {
-    (void)state;
+TEST(estimates_are_rectangles) {
     random_seed(7);
     make_cross();
     renewal_bench b = bench_create(1);
@@ -260,8 +252,7 @@ static void estimates_are_rectangles(void **state) {
 }
 
 /* Estimates the area of one of a sphere's dozen cells, and of a whole sphere that is one cell. */
-static void estimates_are_near_areas(void **state) {
-    (void)state;
+TEST(estimates_are_near_areas) {
     random_seed(8);
     scene_clear(&body);
     scene_add_sphere(&body, origin, 1.0, 24, 32);
@@ -276,8 +267,7 @@ static void estimates_are_near_areas(void **state) {
 }
 
 /* Walks end on every mesh, even when the motion has flattened, scattered or inflated it. */
-static void walks_end_on_any_mesh(void **state) {
-    (void)state;
+TEST(walks_end_on_any_mesh) {
     random_seed(9);
     for (int i = 0; i < WALKED_SCENES; i++) {
         scene_make((scene_family)(i % SCENE_FAMILY_COUNT), (uint64_t)i, &body);
@@ -293,20 +283,4 @@ static void walks_end_on_any_mesh(void **state) {
         count_due(&b, &usual);
         bench_destroy(&b);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rest_and_rigid_motion_need_nothing),
-        cmocka_unit_test(growth_is_seen),
-        cmocka_unit_test(growth_is_estimated),
-        cmocka_unit_test(long_edges_are_seen),
-        cmocka_unit_test(bending_is_told_before_long_edges),
-        cmocka_unit_test(bending_is_seen),
-        cmocka_unit_test(renewal_settles_one_part),
-        cmocka_unit_test(estimates_are_rectangles),
-        cmocka_unit_test(estimates_are_near_areas),
-        cmocka_unit_test(walks_end_on_any_mesh),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

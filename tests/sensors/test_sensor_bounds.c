@@ -87,8 +87,7 @@ static void move_bodies(const scene *rest, uint32_t first_of_second) {
     }
 }
 
-static void never_apart_in_contact(void **state) {
-    (void)state;
+TEST(never_apart_in_contact) {
     static scene rest;
     uint32_t found_apart = 0, contacts = 0, beyond_boxes = 0, by_middles = 0;
     random_seed(1);
@@ -144,8 +143,7 @@ static void make_touch(double offset, double gap) {
     }
 }
 
-static void exact_touches_are_not_apart(void **state) {
-    (void)state;
+TEST(exact_touches_are_not_apart) {
     const uint32_t triangles[6] = {0, 1, 2, 3, 4, 5};
     scene_clear(&interval);
     interval.vertex_count = 6;
@@ -171,8 +169,7 @@ static void exact_touches_are_not_apart(void **state) {
 /* ---- other cases --------------------------------------------------------------------------------------- */
 
 /* Bodies are far from each other; some fly one behind the other through each other's boxes. */
-static void far_bodies_are_apart(void **state) {
-    (void)state;
+TEST(far_bodies_are_apart) {
     scene_clear(&interval);
     scene_add_sphere(&interval, origin, 1.0, 5, 8);
     scene_add_sphere(&interval, (double[3]){9.0, 0.0, 0.0}, 1.0, 5, 8);
@@ -190,8 +187,7 @@ static void far_bodies_are_apart(void **state) {
 
 /* Bodies that are in each other at one end of the interval, and on the line through their middles far from each other at the
  * other one. */
-static void bodies_that_part_are_not_apart(void **state) {
-    (void)state;
+TEST(bodies_that_part_are_not_apart) {
     scene_clear(&interval);
     scene_add_sphere(&interval, origin, 1.0, 5, 8);
     uint32_t first_of_second = interval.vertex_count;
@@ -212,8 +208,7 @@ static void bodies_that_part_are_not_apart(void **state) {
 }
 
 /* The bounds never claim that parts are apart where squares or differences exceed the range of doubles. */
-static void extreme_lengths_are_safe(void **state) {
-    (void)state;
+TEST(extreme_lengths_are_safe) {
     const double scales[] = {1e-320, 1e-200, 1e-160, 1e160, 1e200, 1e307};
     static scene rest;
     scene_make(SCENE_LINKED_TORI, 1, &rest);
@@ -234,8 +229,7 @@ static void extreme_lengths_are_safe(void **state) {
 
 /* Parts any triangle of which may be without a corner of its own, and a part without a cell: balls must hold
  * every triangle's corners at any time, and nothing is said without balls. */
-static void every_triangle_is_held(void **state) {
-    (void)state;
+TEST(every_triangle_is_held) {
     static uint32_t triangle_parts[SCENE_TRIANGLES_MAX];
     random_seed(4);
     for (int i = 0; i < 40; i++) {
@@ -264,8 +258,7 @@ static void every_triangle_is_held(void **state) {
 }
 
 /* The tip of a fan in a part of its own: its corners are those of the first triangles. */
-static void parts_without_cells_are_never_apart(void **state) {
-    (void)state;
+TEST(parts_without_cells_are_never_apart) {
     const uint32_t triangles[12] = {0, 1, 2, 2, 1, 3, 3, 0, 2, 4, 5, 6}, parts[4] = {0, 1, 2, 3};
     scene_clear(&interval);
     interval.vertex_count = 7;
@@ -282,17 +275,4 @@ static void parts_without_cells_are_never_apart(void **state) {
     assert_false(sensor_bounds_apart(&b.bounds, b.partition, 2, 3));
     assert_false(sensor_bounds_boxes_apart(&b.bounds, 3, 2));
     bench_destroy(&b);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(never_apart_in_contact),
-        cmocka_unit_test(exact_touches_are_not_apart),
-        cmocka_unit_test(far_bodies_are_apart),
-        cmocka_unit_test(extreme_lengths_are_safe),
-        cmocka_unit_test(every_triangle_is_held),
-        cmocka_unit_test(parts_without_cells_are_never_apart),
-        cmocka_unit_test(bodies_that_part_are_not_apart),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

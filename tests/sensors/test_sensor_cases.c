@@ -121,16 +121,14 @@ static void expect_found(const meeting *m, const sensor_setup *setup, uint32_t a
 
 /* ---- spheres ------------------------------------------------------------------------------------------ */
 
-static void case_1_two_equal_spheres(void **state) {
-    (void)state;
+TEST(case_1_two_equal_spheres) {
     meeting m = begin_meeting();
     add_sphere(&m, -1.0, 1.0, 3.0);
     add_sphere(&m, 1.0, 1.0, -3.0);
     expect_found(&m, NULL, 0, 1);
 }
 
-static void case_2_three_equal_spheres(void **state) {
-    (void)state;
+TEST(case_2_three_equal_spheres) {
     meeting m = begin_meeting();
     add_sphere(&m, -2.0, 1.0, 2.0);
     add_sphere(&m, 0.0, 1.0, 0.0);
@@ -139,8 +137,7 @@ static void case_2_three_equal_spheres(void **state) {
     expect_found(&m, NULL, 1, 2);
 }
 
-static void case_3_unequal_spheres(void **state) {
-    (void)state;
+TEST(case_3_unequal_spheres) {
     meeting m = begin_meeting();
     add_sphere(&m, -1.5, 1.0, 2.0);
     add_sphere(&m, 0.0, 0.5, 0.0);
@@ -154,8 +151,7 @@ static void case_3_unequal_spheres(void **state) {
 /* A U is divided into three parts, as in figure 4-10. */
 static const sensor_setup in_parts = {ALL_REGIONS_MAX, NULL, NULL};
 
-static void case_4_two_concave(void **state) {
-    (void)state;
+TEST(case_4_two_concave) {
     meeting m = begin_meeting(); /* an arm of each goes into the other one */
     add_u(&m, 0.0, 0.0, 0.0, 1.0, 0.0);
     add_u(&m, 1.0, 0.3, 0.0, -1.0, -2.0);
@@ -163,8 +159,7 @@ static void case_4_two_concave(void **state) {
     expect_found(&m, NULL, 0, 1);
 }
 
-static void case_5_three_concave(void **state) {
-    (void)state;
+TEST(case_5_three_concave) {
     meeting m = begin_meeting();
     add_u(&m, 0.0, 0.0, 0.0, 1.0, 0.0);
     add_u(&m, 1.0, 0.3, 0.0, -1.0, -2.0);
@@ -173,8 +168,7 @@ static void case_5_three_concave(void **state) {
     expect_found(&m, &in_parts, 0, 2);
 }
 
-static void case_6_convex_and_concave(void **state) {
-    (void)state;
+TEST(case_6_convex_and_concave) {
     meeting m = begin_meeting();
     add_u(&m, 0.0, 0.0, 0.0, 1.0, 0.0);
     const double inside[3] = {0.0, -0.2, 0.0};
@@ -183,13 +177,4 @@ static void case_6_convex_and_concave(void **state) {
     add_u(&m, 0.3, -2.3, 0.0, 1.0, 2.0);
     expect_found(&m, &in_parts, 0, 1);
     expect_found(&m, &in_parts, 0, 2);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(case_1_two_equal_spheres), cmocka_unit_test(case_2_three_equal_spheres),
-        cmocka_unit_test(case_3_unequal_spheres),   cmocka_unit_test(case_4_two_concave),
-        cmocka_unit_test(case_5_three_concave),     cmocka_unit_test(case_6_convex_and_concave),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

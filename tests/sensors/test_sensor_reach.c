@@ -82,8 +82,7 @@ static double largest_in_mu(const sensor_rig *r, size_t *count) {
     return largest;
 }
 
-static void what_touches_has_near_vertices(void **state) {
-    (void)state;
+TEST(what_touches_has_near_vertices) {
     size_t count = 0;
     double largest = 0.0;
     for (uint64_t seed = 1; seed <= SEEDS; seed++) {
@@ -118,8 +117,7 @@ static void make_cross(double motion) {
 }
 
 /* Crossed edges at rest need 0.71 edge lengths, and the motion adds half of its length to that. */
-static void crossed_edges_need_it_all(void **state) {
-    (void)state;
+TEST(crossed_edges_need_it_all) {
     for (int i = 0; i < 2; i++) {
         size_t count = 0;
         make_cross(10.0 * i);
@@ -135,8 +133,7 @@ static void crossed_edges_need_it_all(void **state) {
 }
 
 /* One corner alone moves: that is the motion of its part, and its longest side is the one at the end. */
-static void any_corner_may_move_most(void **state) {
-    (void)state;
+TEST(any_corner_may_move_most) {
     for (uint32_t v = 3; v < 6; v++) {
         make_cross(0.0);
         s.x1[v * 3 + 2] -= 10.0;
@@ -151,8 +148,7 @@ static void any_corner_may_move_most(void **state) {
 
 /* Particles look as far as mu and the diameters of both triangles, each of which is one cell; the one is three times as
  * large. A diameter is twice the distance of a corner from the middle of the box, which is the square root of 1.25. */
-static void both_diameters_count(void **state) {
-    (void)state;
+TEST(both_diameters_count) {
     for (uint32_t large = 0; large < 2; large++) {
         cscd_partition_options cells = cscd_partition_defaults();
         cells.cells = 1;
@@ -201,16 +197,6 @@ static uint64_t distances_with(bool floor) {
 }
 
 /* No particle walks along the floor's sides, which lead from cell to cell. */
-static void a_large_triangle_costs_nothing(void **state) {
-    (void)state;
+TEST(a_large_triangle_costs_nothing) {
     assert_int_equal(distances_with(true), distances_with(false));
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_touches_has_near_vertices), cmocka_unit_test(crossed_edges_need_it_all),
-        cmocka_unit_test(any_corner_may_move_most),       cmocka_unit_test(both_diameters_count),
-        cmocka_unit_test(a_large_triangle_costs_nothing),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -138,8 +138,7 @@ static void count_family(scene_family family, const sensor_setup *setup, const c
 
 /* When the shares were set, sensors in cells reached 100 % of all three. Random ones reached at least 95, 68
  * and 43 %. */
-static void most_contacts_are_found_and_all_are_true(void **state) {
-    (void)state;
+TEST(most_contacts_are_found_and_all_are_true) {
     static const scene_family families[] = {SCENE_TWO_SPHERES, SCENE_NESTED_SPHERES, SCENE_LINKED_TORI};
     cscd_sensor_options random = cscd_sensor_defaults();
     random.method = CSCD_SENSORS_RANDOM;
@@ -170,8 +169,7 @@ static bool expect_found(const sensor_rig *r) {
     return toi < INFINITY;
 }
 
-static void mu_is_sound(void **state) {
-    (void)state;
+TEST(mu_is_sound) {
     static const scene_family families[] = {SCENE_TWO_SPHERES, SCENE_NESTED_SPHERES, SCENE_LINKED_TORI};
     cscd_partition_options cells = cscd_partition_defaults();
     uint32_t touching = 0;
@@ -188,12 +186,4 @@ static void mu_is_sound(void **state) {
         sensor_rig_destroy(&r);
     }
     assert_true(touching > 10);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(most_contacts_are_found_and_all_are_true),
-        cmocka_unit_test(mu_is_sound),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -62,8 +62,7 @@ static census count_contacts(object_stage *s, const cscd_mesh *mesh, uint32_t st
     return c;
 }
 
-static void objects_touch_and_part(void **state) {
-    (void)state;
+TEST(objects_touch_and_part) {
     for (uint32_t i = 0; i < object_scene_count; i++) {
         object_stage s = stage_of(object_scenes[i].name);
         uint32_t stride = s.placed.triangle_count > 10000 ? 4 : 2, intervals, touched;
@@ -86,8 +85,7 @@ static void objects_touch_and_part(void **state) {
     }
 }
 
-static void letters_have_the_counts_of_the_seed(void **state) {
-    (void)state;
+TEST(letters_have_the_counts_of_the_seed) {
     assert_int_equal(body_default_count(BODY_LETTER_T), 1380);
     assert_int_equal(body_default_count(BODY_LETTER_W), 11920);
     for (int i = 0; i < 2; i++) {
@@ -98,8 +96,7 @@ static void letters_have_the_counts_of_the_seed(void **state) {
 }
 
 /* Figure 2-20 of the thesis: the ball touches only one arm of the V. */
-static void the_second_ball_stays_near(void **state) {
-    (void)state;
+TEST(the_second_ball_stays_near) {
     object_stage s = stage_of("v-shape");
     cscd_mesh *mesh = mesh_of(&s.placed);
     census c = count_contacts(&s, mesh, 2);
@@ -112,8 +109,7 @@ static void the_second_ball_stays_near(void **state) {
 }
 
 /* Neighbours in a row touch, and no others do. */
-static void rows_touch_their_neighbours(void **state) {
-    (void)state;
+TEST(rows_touch_their_neighbours) {
     static const char *const names[] = {"three-spheres", "three-spheres-unequal", "u-three"};
     static const bool first_with_third[] = {false, false, true};
     for (int i = 0; i < 3; i++) {
@@ -131,8 +127,7 @@ static void rows_touch_their_neighbours(void **state) {
 }
 
 /* A frame is the same, regardless of the frames that were shown before it. */
-static void frames_repeat(void **state) {
-    (void)state;
+TEST(frames_repeat) {
     object_stage a = stage_of("three-spheres"), b = stage_of("three-spheres");
     size_t bytes = (size_t)a.placed.vertex_count * 3 * sizeof(double);
     object_stage_go(&a, 89);
@@ -162,8 +157,7 @@ static void check_second(const double *frame) {
 }
 
 /* The bodies fall freely for ten frames, and later touch each other but never themselves. */
-static void soft_bodies_fall_onto_each_other(void **state) {
-    (void)state;
+TEST(soft_bodies_fall_onto_each_other) {
     io_error error;
     tumble t = tumble_of(0);
     census c;
@@ -184,14 +178,4 @@ static void soft_bodies_fall_onto_each_other(void **state) {
     tumble_close(&t);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(objects_touch_and_part),
-        cmocka_unit_test(letters_have_the_counts_of_the_seed),
-        cmocka_unit_test(the_second_ball_stays_near),
-        cmocka_unit_test(rows_touch_their_neighbours),
-        cmocka_unit_test(frames_repeat),
-        cmocka_unit_test(soft_bodies_fall_onto_each_other),
-    };
-    return cmocka_run_group_tests_name("sensor scenes", tests, make_context, destroy_context);
-}
+AROUND_ALL(make_context, destroy_context)

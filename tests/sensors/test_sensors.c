@@ -34,8 +34,7 @@ static void expect_refused(const sensor_rig *r, const cscd_sensor_options *optio
     assert_non_null(strstr(cscd_context_detail(r->context), name));
 }
 
-static void bad_options_are_named(void **state) {
-    (void)state;
+TEST(bad_options_are_named) {
     two_spheres(1.0);
     sensor_rig r = sensor_rig_create(&s, NULL);
     static const double bad_lengths[] = {-1.0, NAN, INFINITY, 1e-200, 1e200};
@@ -64,8 +63,7 @@ static void bad_options_are_named(void **state) {
     sensor_rig_destroy(&r);
 }
 
-static void bad_arguments_are_named(void **state) {
-    (void)state;
+TEST(bad_arguments_are_named) {
     two_spheres(1.0);
     sensor_rig r = sensor_rig_create(&s, NULL), other = sensor_rig_create(&s, NULL);
     cscd_sensors *made = NULL;
@@ -96,8 +94,7 @@ static void expect_in_cells(const sensor_rig *r) {
     }
 }
 
-static void particles_stay_in_their_cells(void **state) {
-    (void)state;
+TEST(particles_stay_in_their_cells) {
     for (uint64_t seed = 1; seed < 30; seed++) {
         scene_make(seed % 2 ? SCENE_LINKED_TORI : SCENE_NESTED_SPHERES, seed, &s);
         cscd_partition_options cells = cscd_partition_defaults();
@@ -126,8 +123,7 @@ static void same_warnings(const cscd_warnings *a, const cscd_warning *items, siz
 }
 
 /* Two creations give the same bits, in every frame. */
-static void results_are_repeated(void **state) {
-    (void)state;
+TEST(results_are_repeated) {
     for (int method = 0; method < 2; method++) {
         cscd_sensor_options options = cscd_sensor_defaults();
         options.method = (cscd_sensor_method)method;
@@ -149,8 +145,7 @@ static void results_are_repeated(void **state) {
 }
 
 /* A step that fails leaves the particles where they were, and in a second step at rest they walk nowhere. */
-static void walks_begin_where_they_ended(void **state) {
-    (void)state;
+TEST(walks_begin_where_they_ended) {
     two_spheres(0.05);
     sensor_rig r = sensor_rig_create(&s, NULL);
     cscd_warnings found = sensor_rig_step(&r, s.x0, s.x0);
@@ -177,8 +172,7 @@ static cscd_warnings step_with(double mu, sensor_rig *r) {
     return sensor_rig_step(r, s.x0, s.x0);
 }
 
-static void a_given_mu_is_taken(void **state) {
-    (void)state;
+TEST(a_given_mu_is_taken) {
     sensor_rig r;
     two_spheres(0.2);
     cscd_warnings found = step_with(1.0, &r);
@@ -198,8 +192,7 @@ static void a_given_mu_is_taken(void **state) {
 }
 
 /* One sphere comes nearer, or goes: the warning is of the moment at which the particles were nearer. */
-static void the_nearer_moment_is_told(void **state) {
-    (void)state;
+TEST(the_nearer_moment_is_told) {
     for (uint32_t end = 0; end < 2; end++) {
         two_spheres(0.2);
         double *apart = end == 0 ? s.x1 : s.x0;
@@ -219,8 +212,7 @@ static void the_nearer_moment_is_told(void **state) {
 }
 
 /* Particles walk when R_eff reaches the other object, and rest when it does not. */
-static void a_given_radius_is_taken(void **state) {
-    (void)state;
+TEST(a_given_radius_is_taken) {
     two_spheres(1.0);
     for (int wider = 0; wider < 2; wider++) {
         cscd_sensor_options options = cscd_sensor_defaults();
@@ -275,8 +267,7 @@ static bool all_on_the_right(const sensor_rig *r, uint32_t first) {
     return right == own;
 }
 
-static void cells_do_not_miss_an_arm(void **state) {
-    (void)state;
+TEST(cells_do_not_miss_an_arm) {
     uint32_t first = make_v(), one_sided = 0, missed = 0;
     sensor_rig r = sensor_rig_create(&s, NULL);
     assert_true(sensed_on_the_left(&r, first));
@@ -301,8 +292,7 @@ static void cells_do_not_miss_an_arm(void **state) {
 }
 
 /* With repulsion all over the object, particles do not stay on one arm. */
-static void repulsion_spreads_them(void **state) {
-    (void)state;
+TEST(repulsion_spreads_them) {
     uint32_t first = make_v(), one_sided = 0;
     for (uint32_t seed = 1; seed <= 20; seed++) {
         cscd_sensor_options options = cscd_sensor_defaults();
@@ -326,8 +316,7 @@ static void repulsion_spreads_them(void **state) {
 
 /* ---- renewed cells ------------------------------------------------------------------------------------ */
 
-static void new_cells_are_taken_up(void **state) {
-    (void)state;
+TEST(new_cells_are_taken_up) {
     scene_make(SCENE_LINKED_TORI, 1, &s);
     sensor_rig r = sensor_rig_create(&s, NULL);
     sensor_rig_step(&r, s.x0, s.x0);
@@ -349,16 +338,4 @@ static void new_cells_are_taken_up(void **state) {
     assert_int_equal(found.renewals_due, 0);
     expect_in_cells(&r);
     sensor_rig_destroy(&r);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bad_options_are_named),         cmocka_unit_test(bad_arguments_are_named),
-        cmocka_unit_test(particles_stay_in_their_cells), cmocka_unit_test(results_are_repeated),
-        cmocka_unit_test(walks_begin_where_they_ended),  cmocka_unit_test(a_given_mu_is_taken),
-        cmocka_unit_test(a_given_radius_is_taken),       cmocka_unit_test(cells_do_not_miss_an_arm),
-        cmocka_unit_test(repulsion_spreads_them),        cmocka_unit_test(new_cells_are_taken_up),
-        cmocka_unit_test(the_nearer_moment_is_told),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

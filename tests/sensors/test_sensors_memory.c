@@ -41,8 +41,7 @@ static void destroy_sensed(sensed *r) {
     *r = (sensed){0};
 }
 
-static void steady_steps_allocate_nothing(void **state) {
-    (void)state;
+TEST(steady_steps_allocate_nothing) {
     for (int method = 0; method < 2; method++) {
         sensed r = {0};
         counting_allocator counter = counting_allocator_start();
@@ -86,18 +85,9 @@ static void expect_twice(uint64_t few, uint64_t many) {
     assert_true(many > 3 * few / 2 && many < 5 * few / 2);
 }
 
-static void work_grows_with_the_scene(void **state) {
-    (void)state;
+TEST(work_grows_with_the_scene) {
     cscd_sensor_counters few = work_of(7), many = work_of(14);
     expect_twice(few.vertices, many.vertices);
     expect_twice(few.particle_pairs, many.particle_pairs);
     expect_twice(few.tests, many.tests);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(steady_steps_allocate_nothing),
-        cmocka_unit_test(work_grows_with_the_scene),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

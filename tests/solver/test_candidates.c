@@ -30,9 +30,8 @@ static size_t compare_share(const rig *r, const rig *reference, const candidates
     return found.count;
 }
 
-static void candidates_hold_every_contact(void **state) {
+TEST(candidates_hold_every_contact) {
     size_t contacts = 0, collected = 0, farther = 0;
-    (void)state;
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         candidates c = {.lists = {{.count = 0}}};
         result_buffer buffer = {.capacity = 0};
@@ -55,9 +54,4 @@ static void candidates_hold_every_contact(void **state) {
     }
     print_message("  %zu contacts of %zu candidates; %zu within 0.1\n", contacts, collected, farther);
     assert_true(contacts > 100 && farther > collected);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(candidates_hold_every_contact)};
-    return cmocka_run_group_tests_name("candidates", tests, NULL, NULL);
 }

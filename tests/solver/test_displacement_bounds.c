@@ -170,8 +170,7 @@ static void make_floats(void) {
         interval.x0[i] = (double)(float)interval.x0[i];
 }
 
-static void motions_within_bounds_keep_pairs_apart(void **state) {
-    (void)state;
+TEST(motions_within_bounds_keep_pairs_apart) {
     static const double radii[] = {0.01, 0.05, 0.1};
     tally sum = {0, 0, 0};
     random_seed(2);
@@ -195,8 +194,7 @@ static bool ignore_all(void *user, cscd_contact_kind kind, uint32_t a, uint32_t 
     return user == NULL && (kind == CSCD_CONTACT_VF || a < b);
 }
 
-static void pairs_left_out_give_no_bounds(void **state) {
-    (void)state;
+TEST(pairs_left_out_give_no_bounds) {
     static const uint32_t ignored[] = {1, 0}, seams[] = {0, 3, 1, 4, 2, 5};
     scene_two_triangles(&interval, 0.25);
     for (int i = 0; i < 4; i++) {
@@ -219,8 +217,7 @@ static void pairs_left_out_give_no_bounds(void **state) {
 }
 
 /* Of two triangles that are sewn at a corner one, which is the first or the second, has a third one 0.1 above another. */
-static void a_seam_has_one_bound(void **state) {
-    (void)state;
+TEST(a_seam_has_one_bound) {
     static const double sewn[6][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}, {3, 0, 0}, {3, 1, 0}};
     static const double third[2][3][3] = {{{0, 0, 0.1}, {-1, 0, 0.1}, {-1, -1, 0.1}},
                                           {{3, 0, 0.1}, {4, 0, 0.1}, {4, 1, 0.1}}};
@@ -245,8 +242,7 @@ static void a_seam_has_one_bound(void **state) {
 }
 
 /* Obstacles that nothing else is near may go half the radius; where cloth is near, both sides have bounds. */
-static void obstacles_have_bounds_for_what_they_may_touch(void **state) {
-    (void)state;
+TEST(obstacles_have_bounds_for_what_they_may_touch) {
     scene_two_triangles(&interval, 0.25);
     static const uint32_t triangle[] = {0, 1, 2};
     for (int obstacles = 1; obstacles < 3; obstacles++) {
@@ -266,8 +262,7 @@ static void obstacles_have_bounds_for_what_they_may_touch(void **state) {
 
 /* ---- the same for everyone ----------------------------------------------------------------------------- */
 
-static void bounds_are_the_same_for_all_threads_and_methods(void **state) {
-    (void)state;
+TEST(bounds_are_the_same_for_all_threads_and_methods) {
     for (uint64_t seed = 0; seed < 4; seed++) {
         scene_make(seed % 2 == 0 ? SCENE_BENT_CAPSULE : SCENE_GRID, seed, &interval);
         rig one = rig_with(0.01, 1), many = rig_with(0.01, 4);
@@ -307,8 +302,7 @@ static size_t bounds_of_panels(const panel_scene *p, double radius, const double
 }
 
 /* Every pair keeps the distance of its own objects: as with that distance for all, or with none, or in between. */
-static void distances_of_objects_count(void **state) {
-    (void)state;
+TEST(distances_of_objects_count) {
     static const double each = 1.5, all[] = {1.5, 1.5, 1.5, 1.5}, cross[] = {0.0, 1.5, 1.5, 0.0};
     static double with_none[200], with_all[200], with_cross[200];
     panel_scene p = panels_create(10, NULL, NULL);
@@ -327,16 +321,4 @@ static void distances_of_objects_count(void **state) {
         assert_true(wider > 20 && narrower > 20);
     }
     panels_destroy(&p);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(motions_within_bounds_keep_pairs_apart),
-        cmocka_unit_test(pairs_left_out_give_no_bounds),
-        cmocka_unit_test(a_seam_has_one_bound),
-        cmocka_unit_test(obstacles_have_bounds_for_what_they_may_touch),
-        cmocka_unit_test(distances_of_objects_count),
-        cmocka_unit_test(bounds_are_the_same_for_all_threads_and_methods),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

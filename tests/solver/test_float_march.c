@@ -132,8 +132,7 @@ static march_tally march_on(cage_march *c, int steps, uint64_t seed) {
 }
 
 /* Floats are up to 2^-10 apart at 10,000, a hundredth of the gaps of 0.1 here. */
-static void floats_go_as_far_as_doubles(void **state) {
-    (void)state;
+TEST(floats_go_as_far_as_doubles) {
     enum { STEPS = 10000 };
     static const double places[] = {1.0, 100.0, 1000.0, 9900.0};
     static const double distances[] = {0.1, 0.0, 0.1, 0.1};
@@ -218,8 +217,7 @@ static cscd_free_step step_on_line(cage_march *c, cscd_line_search *line, double
 
 /* At 2^22 floats are 0.5 apart. The bodies rise by 0.3, which is rounded to 0.5; the lid of the cage, in doubles, is 0.4
  * above them. No bounding volume of the line comes near it. */
-static void rounding_reaches_beyond_the_line(void **state) {
-    (void)state;
+TEST(rounding_reaches_beyond_the_line) {
     cage_march c;
     cscd_line_search *line = NULL;
     double reached[VERTICES * 3], top = 0.0;
@@ -239,8 +237,7 @@ static void rounding_reaches_beyond_the_line(void **state) {
 }
 
 /* Far from the origin floats are coarser than many a gap: what a line certifies is what is stored. */
-static void lines_certify_floats(void **state) {
-    (void)state;
+TEST(lines_certify_floats) {
     enum { STEPS = 1000 };
     static const double places[] = {3e5, 4e6};
     for (int i = 0; i < 2; i++) {
@@ -264,8 +261,7 @@ static void lines_certify_floats(void **state) {
 }
 
 /* What does not fit into a float is refused, by name. */
-static void overflow_is_refused(void **state) {
-    (void)state;
+TEST(overflow_is_refused) {
     cage_march c;
     cscd_free_step step;
     open_march(&c, 1.0, 0.0, CSCD_SCALAR_FLOAT);
@@ -282,8 +278,7 @@ static void overflow_is_refused(void **state) {
 }
 
 /* Objects have their own scalars: only floats are rounded. */
-static void each_object_has_its_scalar(void **state) {
-    (void)state;
+TEST(each_object_has_its_scalar) {
     cage_march c;
     double at[VERTICES * 3];
     open_march(&c, 1.0, 0.0, CSCD_SCALAR_FLOAT);
@@ -299,12 +294,4 @@ static void each_object_has_its_scalar(void **state) {
     m.scalars = NULL;
     assert_true(motion_rounding(&m) < 42.0 * 0x1p-47);
     close_march(&c);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(floats_go_as_far_as_doubles), cmocka_unit_test(rounding_reaches_beyond_the_line),
-        cmocka_unit_test(lines_certify_floats), cmocka_unit_test(overflow_is_refused),
-        cmocka_unit_test(each_object_has_its_scalar)};
-    return cmocka_run_group_tests_name("float_march", tests, NULL, NULL);
 }

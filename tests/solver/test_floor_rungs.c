@@ -42,8 +42,7 @@ static double go_on(const rig *r) {
 
 /* Two edges that cross, one of them far from its middle: the extent from their first point is nearly twice the longest
  * of the vectors in which the kernel measures. */
-static void pairs_just_above_stay_above(void **state) {
-    (void)state;
+TEST(pairs_just_above_stay_above) {
     static const double flat[18] = {0, 0, 0, .99, 0, 0, .5, 0, -.9, .95, -.02, 0, 1.85, .5, 0, 1.4, .2, .5};
     const double distance = 0.5;
     for (int level = 0; level < 2; level++) {
@@ -83,8 +82,7 @@ static void place_torn(random_stream *random, double height) {
 }
 
 /* A hundred steps bring it as near to its floor as doubles allow, where the last bit of the rung counts. */
-static void pressed_pairs_keep_their_rung(void **state) {
-    (void)state;
+TEST(pressed_pairs_keep_their_rung) {
     random_stream random = stream_start(4711);
     for (int trial = 0; trial < 300; trial++) {
         double distance = stream_between(&random, 0.001, 0.02), share = stream_between(&random, 0.3, 0.9);
@@ -100,12 +98,4 @@ static void pressed_pairs_keep_their_rung(void **state) {
             fail_msg("trial %d sinks from %.9g to %.9g of its distance", trial, share, end);
         rig_destroy(&r);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pairs_just_above_stay_above),
-        cmocka_unit_test(pressed_pairs_keep_their_rung),
-    };
-    return cmocka_run_group_tests_name("floor_rungs", tests, NULL, NULL);
 }

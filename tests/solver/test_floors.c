@@ -119,8 +119,7 @@ static void press_panels(double distance, double height, int steps, double tremb
     close_panels(&p);
 }
 
-static void pressed_pairs_lose_no_more_than_a_rung(void **state) {
-    (void)state;
+TEST(pressed_pairs_lose_no_more_than_a_rung) {
     press_panels(0.01, 0.05, MOST_STEPS, 0.0); /* above d: stays above d */
     press_panels(0.01, 0.05, MOST_STEPS / 5, 1e-3);
     press_panels(0.01, 0.0095, MOST_STEPS, 0.0); /* below: one rung at most, 0.9 d here */
@@ -131,8 +130,7 @@ static void pressed_pairs_lose_no_more_than_a_rung(void **state) {
 
 /* An end that lies between d and what is surely above d is not reached, though volumes part the panels by more than d
  * on the whole way: the next start would find a rung below. */
-static void ends_are_surely_above(void **state) {
-    (void)state;
+TEST(ends_are_surely_above) {
     static const double beyond[] = {1e-9, 5e-7, 9e-7, 2e-6};
     for (size_t i = 0; i < 2 * sizeof beyond / sizeof *beyond; i++) {
         panels p;
@@ -149,8 +147,7 @@ static void ends_are_surely_above(void **state) {
 /* ---- torn apart ---------------------------------------------------------------------------------------- */
 
 /* Panels much nearer than they should be leave each other at once. */
-static void torn_panels_part(void **state) {
-    (void)state;
+TEST(torn_panels_part) {
     static const double shares[] = {0.999, 0.5, 1e-3, 1e-7, 1e-9};
     for (size_t i = 0; i < sizeof shares / sizeof *shares; i++) {
         panels p;
@@ -169,8 +166,7 @@ static void torn_panels_part(void **state) {
 }
 
 /* A panel at 1e-7 d above another one shivers while both fly and the wound opens slowly: no step is lost. */
-static void torn_panels_move_on(void **state) {
-    (void)state;
+TEST(torn_panels_move_on) {
     panels p;
     random_stream random = stream_start(5);
     uint32_t lost = 0;
@@ -192,8 +188,7 @@ static void torn_panels_move_on(void **state) {
 /* ---- touching ------------------------------------------------------------------------------------------ */
 
 /* Only what truly touches is in contact, and the result says what. */
-static void only_touching_is_in_contact(void **state) {
-    (void)state;
+TEST(only_touching_is_in_contact) {
     panels p;
     cscd_free_step step = {.fraction = -1.0};
     open_panels(&p, 0.01, 1e-80);
@@ -210,12 +205,4 @@ static void only_touching_is_in_contact(void **state) {
     assert_int_equal(step.limit.a, PANEL);
     assert_non_null(strstr(cscd_context_detail(p.context), "vertex 9 and triangle"));
     close_panels(&p);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pressed_pairs_lose_no_more_than_a_rung), cmocka_unit_test(ends_are_surely_above),
-        cmocka_unit_test(torn_panels_part), cmocka_unit_test(torn_panels_move_on),
-        cmocka_unit_test(only_touching_is_in_contact)};
-    return cmocka_run_group_tests_name("floors", tests, NULL, NULL);
 }

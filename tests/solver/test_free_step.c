@@ -36,10 +36,9 @@ static rig make_flight(straight_motion *m) {
     return r;
 }
 
-static void free_motions_are_whole_steps(void **state) {
+TEST(free_motions_are_whole_steps) {
     straight_motion m;
     cscd_free_step out;
-    (void)state;
     rig r = make_flight(&m);
     wall nowhere = {.at = INFINITY};
     assert_int_equal(free_step_find(r.detector, &m, 1.0, test_wall, &nowhere, reached, &out), CSCD_OK);
@@ -50,10 +49,9 @@ static void free_motions_are_whole_steps(void **state) {
     rig_destroy(&r);
 }
 
-static void limited_steps_end_before_the_wall(void **state) {
+TEST(limited_steps_end_before_the_wall) {
     straight_motion m;
     cscd_free_step out;
-    (void)state;
     rig r = make_flight(&m);
     for (double share = 0.9; share > 1e-6; share *= 0.1) {
         wall w = {.at = shape.x0[0] + share};
@@ -70,10 +68,9 @@ static void limited_steps_end_before_the_wall(void **state) {
     rig_destroy(&r);
 }
 
-static void no_step_is_free_from_within(void **state) {
+TEST(no_step_is_free_from_within) {
     straight_motion m;
     cscd_free_step out = {.fraction = -1.0};
-    (void)state;
     rig r = make_flight(&m);
     wall w = {.at = shape.x0[0]};
     assert_int_equal(free_step_find(r.detector, &m, 1.0, test_wall, &w, reached, &out), CSCD_IN_CONTACT);
@@ -83,9 +80,8 @@ static void no_step_is_free_from_within(void **state) {
 }
 
 /* A coordinate that would be nearer to 0 than any position may be is 0, at three quarters of the way from 2^-299 to it. */
-static void nothing_comes_too_near_to_zero(void **state) {
+TEST(nothing_comes_too_near_to_zero) {
     straight_motion m;
-    (void)state;
     rig r = make_flight(&m);
     shape.x0[0] = 0x1p-299;
     ends[0] = 0.0;
@@ -94,11 +90,4 @@ static void nothing_comes_too_near_to_zero(void **state) {
     motion_at(&m, 0.75, reached);
     assert_true(reached[0] == 0.0);
     rig_destroy(&r);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(free_motions_are_whole_steps), cmocka_unit_test(limited_steps_end_before_the_wall),
-        cmocka_unit_test(nothing_comes_too_near_to_zero), cmocka_unit_test(no_step_is_free_from_within)};
-    return cmocka_run_group_tests_name("free_step", tests, NULL, NULL);
 }

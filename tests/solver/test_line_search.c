@@ -80,8 +80,7 @@ static void check_steps(const step_search *s, const rig *reference, line_tally *
     }
 }
 
-static void steps_are_certified(void **state) {
-    (void)state;
+TEST(steps_are_certified) {
     static const double distances[] = {0.0, 0.0, 1e-3, 0.02};
     line_tally sum = {0};
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
@@ -144,8 +143,7 @@ static size_t check_moments(const step_search *s, double reach, uint64_t seed) {
     return pairs;
 }
 
-static void near_equals_the_detectors(void **state) {
-    (void)state;
+TEST(near_equals_the_detectors) {
     static const double reaches[] = {1e-6, 0.02, 0.15};
     size_t pairs = 0;
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
@@ -164,8 +162,7 @@ static void near_equals_the_detectors(void **state) {
     assert_true(pairs > 3000);
 }
 
-static void scales_do_not_matter(void **state) {
-    (void)state;
+TEST(scales_do_not_matter) {
     static const int exponents[] = {-250, 270};
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         int exponent = exponents[family % 2];
@@ -210,8 +207,7 @@ static void expect_known(const step_search *s, const rig *reference, const doubl
 
 /* The detector knows the state at the end of each step of the line search, however many there are and
  * whatever lies between them. */
-static void the_detector_knows_the_end(void **state) {
-    (void)state;
+TEST(the_detector_knows_the_end) {
     static const scene_family families[] = {SCENE_SPIKE, SCENE_TWO_SPHERES, SCENE_NESTED_SPHERES,
                                             SCENE_BENT_CAPSULE};
     static const double longest[] = {1.0, 0.5, 0.01, 1.0};
@@ -233,8 +229,7 @@ static void the_detector_knows_the_end(void **state) {
 }
 
 /* The detector did not know the start, so its next step checks its own start. */
-static void what_is_not_known_stays_so(void **state) {
-    (void)state;
+TEST(what_is_not_known_stays_so) {
     make_limited(SCENE_SPIKE, 1);
     for (size_t i = 0; i < (size_t)interval.vertex_count * 3; i++) moment[i] = interval.x0[i] + 1.0;
     for (int elsewhere = 0; elsewhere < 2;
@@ -273,8 +268,7 @@ static uint64_t clean_when_checked(cscd_detector *d, const double *x) {
 }
 
 /* A caller's promise is no proof: a check takes it back, even after a line search has passed it on. */
-static void a_word_stays_a_word(void **state) {
-    (void)state;
+TEST(a_word_stays_a_word) {
     make_cut_off();
     cscd_detector_options options = cscd_detector_defaults();
     options.method = CSCD_METHOD_SINGLE;
@@ -298,8 +292,7 @@ static void a_word_stays_a_word(void **state) {
 /* ---- lines and steps in turn --------------------------------------------------------------------------- */
 
 /* Two line searches and the steps of one detector take turns, and none notices the others. */
-static void lines_and_steps_take_turns(void **state) {
-    (void)state;
+TEST(lines_and_steps_take_turns) {
     size_t bytes = sizeof interval.x0;
     double *x2 = malloc(bytes);
     assert_non_null(x2);
@@ -344,8 +337,7 @@ static void expect_words(const step_search *s, cscd_status status, const char *w
         fail_msg("\"%s\" in \"%s\"", words, cscd_context_detail(s->r.context));
 }
 
-static void misuse_is_named(void **state) {
-    (void)state;
+TEST(misuse_is_named) {
     static const double bad[] = {-0x1p-1000, 1.0 + 0x1p-52, NAN, INFINITY, -1.0};
     scene_make(SCENE_SPIKE, 1, &interval);
     step_search s = search_create(CSCD_METHOD_NONE, 0.0, 1);
@@ -382,13 +374,4 @@ static void misuse_is_named(void **state) {
     expect_words(&s, cscd_line_search_find_near(s.line, 0.5, 0x1p-300, CSCD_NEAR_PAIRS, &near), "reach of 0");
     search_destroy(&s);
     cscd_line_search_destroy(NULL);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(steps_are_certified),        cmocka_unit_test(near_equals_the_detectors),
-        cmocka_unit_test(scales_do_not_matter),       cmocka_unit_test(the_detector_knows_the_end),
-        cmocka_unit_test(what_is_not_known_stays_so), cmocka_unit_test(a_word_stays_a_word),
-        cmocka_unit_test(lines_and_steps_take_turns), cmocka_unit_test(misuse_is_named)};
-    return cmocka_run_group_tests_name("line", tests, NULL, NULL);
 }

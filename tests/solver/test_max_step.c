@@ -126,8 +126,7 @@ static void check_step(const setting *s, step_tally *sum) {
     tested_destroy(&t);
 }
 
-static void is_certified(void **state) {
-    (void)state;
+TEST(is_certified) {
     static const cscd_method methods[] = {CSCD_METHOD_SINGLE, CSCD_METHOD_NONE,  CSCD_METHOD_KMEANS,
                                           CSCD_METHOD_ICCD,   CSCD_METHOD_BRUTE, CSCD_METHOD_CHARGE};
     step_tally sum = {0};
@@ -179,8 +178,7 @@ static bool starts_well(const rig *reference) {
     return found.count > 0;
 }
 
-static void never_crosses_when_pressed(void **state) {
-    (void)state;
+TEST(never_crosses_when_pressed) {
     static const double distances[] = {0.0, 0.0, 1e-3, 1e-7};
     step_tally sum = {0};
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
@@ -239,8 +237,7 @@ static void march_through(uint64_t seed, const setting *s, step_tally *sum) {
     rig_destroy(&reference);
 }
 
-static void never_crosses_on_the_way(void **state) {
-    (void)state;
+TEST(never_crosses_on_the_way) {
     step_tally sum = {0};
     for (uint64_t seed = 0; seed < 7; seed++) {
         setting s = plain;
@@ -265,8 +262,7 @@ static void make_limited(void) {
     }
 }
 
-static void end_may_be_nowhere_or_an_argument(void **state) {
-    (void)state;
+TEST(end_may_be_nowhere_or_an_argument) {
     make_limited();
     cscd_detector_options options = options_of(&plain);
     rig r = rig_create(&interval, 1, &options);
@@ -292,8 +288,7 @@ static void end_may_be_nowhere_or_an_argument(void **state) {
 }
 
 /* A limited step tries the whole motion, and then a shorter one: its counters are the sums of both. */
-static void counters_are_of_all_tries(void **state) {
-    (void)state;
+TEST(counters_are_of_all_tries) {
     make_limited();
     cscd_detector_options options = options_of(&plain);
     options.mode = CSCD_MODE_EARLIEST;
@@ -309,8 +304,7 @@ static void counters_are_of_all_tries(void **state) {
     rig_destroy(&r);
 }
 
-static void step_factor_is_honoured(void **state) {
-    (void)state;
+TEST(step_factor_is_honoured) {
     static const double factors[] = {0x1p-20, 0.1, 0.5, 0.8, 0.99, 1.0 - 0x1p-53};
     make_limited();
     for (size_t i = 0; i < sizeof factors / sizeof *factors; i++) {
@@ -334,8 +328,7 @@ static void expect_refused(const rig *r, const double *x0, const double *x1, csc
         fail_msg("\"%s\" in \"%s\"", words, cscd_context_detail(r->context));
 }
 
-static void bad_arguments_are_named(void **state) {
-    (void)state;
+TEST(bad_arguments_are_named) {
     static double bad[SCENE_VERTICES_MAX * 3];
     cscd_free_step out = {.fraction = -1.0};
     make_limited();
@@ -350,15 +343,4 @@ static void bad_arguments_are_named(void **state) {
     expect_refused(&r, interval.x0, bad, &out, "x1: vertex 1 has y");
     rig_destroy(&r);
     assert_true(out.fraction == -1.0);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(is_certified),
-                                       cmocka_unit_test(never_crosses_when_pressed),
-                                       cmocka_unit_test(never_crosses_on_the_way),
-                                       cmocka_unit_test(end_may_be_nowhere_or_an_argument),
-                                       cmocka_unit_test(counters_are_of_all_tries),
-                                       cmocka_unit_test(step_factor_is_honoured),
-                                       cmocka_unit_test(bad_arguments_are_named)};
-    return cmocka_run_group_tests_name("max_step", tests, NULL, NULL);
 }

@@ -143,8 +143,7 @@ static void compare_with_oracle(const rig *r, const oracle_list *truth, double d
     }
 }
 
-static void every_method_equals_brute_force(void **state) {
-    (void)state;
+TEST(every_method_equals_brute_force) {
     oracle_list truth = {0};
     size_t pairs = 0, empty = 0;
     long double worst = 0.0L;
@@ -173,8 +172,7 @@ static void every_method_equals_brute_force(void **state) {
 }
 
 /* The largest distances find all pairs without a common vertex. */
-static void any_length_will_do(void **state) {
-    (void)state;
+TEST(any_length_will_do) {
     static const double lengths[] = {0x1p-300, 1e3, 0x1p300};
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         if (family != SCENE_SPIKE && family != SCENE_GRID) continue;
@@ -197,8 +195,7 @@ static void scale_scene(double *x, uint32_t vertex_count, int exponent) {
     for (uint32_t i = 0; i < vertex_count * 3; i++) x[i] = ldexp(x[i], exponent);
 }
 
-static void same_when_scaled(void **state) {
-    (void)state;
+TEST(same_when_scaled) {
     static const int exponents[] = {-250, -140, 100, 270};
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         for (size_t e = (size_t)family % 2; e < sizeof exponents / sizeof *exponents; e += 2) {
@@ -223,8 +220,7 @@ static void same_when_scaled(void **state) {
 }
 
 /* A small shape lies so far from the origin that coordinates round to 1e-7. */
-static void same_as_brute_force_far_away(void **state) {
-    (void)state;
+TEST(same_as_brute_force_far_away) {
     oracle_list truth = {0};
     size_t pairs = 0;
     long double worst = 0.0L;
@@ -263,8 +259,7 @@ static void expect_same_state(const rig *r, const rig *other) {
 }
 
 /* Asks between the steps of one detector but not of the other, and compares their contacts. */
-static void steps_do_not_notice(void **state) {
-    (void)state;
+TEST(steps_do_not_notice) {
     static const cscd_method of_steps[] = {CSCD_METHOD_SINGLE, CSCD_METHOD_NONE, CSCD_METHOD_ICCD,
                                            CSCD_METHOD_BRUTE};
     static double x2[SCENE_VERTICES_MAX * 3];
@@ -306,8 +301,7 @@ static void expect_refused(const rig *r, const double *x, double distance, cscd_
         fail_msg("\"%s\" in \"%s\"", words, cscd_context_detail(r->context));
 }
 
-static void bad_arguments_are_named(void **state) {
-    (void)state;
+TEST(bad_arguments_are_named) {
     static const double bad[] = {0.0, -1.0, NAN, INFINITY, 5e-324, 0x1p-301, 0x1p301};
     cscd_proximities out = {.count = 4711};
     scene_make(SCENE_SPIKE, 1, &interval);
@@ -321,14 +315,4 @@ static void bad_arguments_are_named(void **state) {
     expect_refused(&r, interval.x0, 0.1, &out, "positions: vertex 1 has z");
     assert_true(out.items == NULL && out.count == 4711);
     rig_destroy(&r);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(every_method_equals_brute_force),
-                                       cmocka_unit_test(any_length_will_do),
-                                       cmocka_unit_test(same_when_scaled),
-                                       cmocka_unit_test(same_as_brute_force_far_away),
-                                       cmocka_unit_test(steps_do_not_notice),
-                                       cmocka_unit_test(bad_arguments_are_named)};
-    return cmocka_run_group_tests_name("near", tests, NULL, NULL);
 }

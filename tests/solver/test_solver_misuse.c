@@ -3,8 +3,7 @@
 
 /* ---- questions of solvers ------------------------------------------------------------------------------ */
 
-static void distances_that_cannot_be(void **state) {
-    (void)state;
+TEST(distances_that_cannot_be) {
     cscd_proximities near;
     EXPECT_ARGUMENT(cscd_detector_find_near(detector, AT_START, 0.0, CSCD_NEAR_PAIRS, &near),
                     "distance is 0, expected a length");
@@ -26,8 +25,7 @@ static void distances_that_cannot_be(void **state) {
                     "cscd_detector_max_step: out is NULL");
 }
 
-static void line_searches_in_disorder(void **state) {
-    (void)state;
+TEST(line_searches_in_disorder) {
     cscd_line_search *search;
     cscd_proximities near;
     cscd_free_step step;
@@ -58,8 +56,7 @@ static void line_searches_in_disorder(void **state) {
 }
 
 /* What a line had before is gone, as its positions may be of other scalars. */
-static void a_begin_that_fails_leaves_no_motion(void **state) {
-    (void)state;
+TEST(a_begin_that_fails_leaves_no_motion) {
     cscd_line_search *search;
     float now[COORDINATES], wanted[COORDINATES], x[COORDINATES];
     for (int i = 0; i < COORDINATES; i++) now[i] = wanted[i] = (float)x0[i];
@@ -73,11 +70,4 @@ static void a_begin_that_fails_leaves_no_motion(void **state) {
     cscd_line_search_destroy(search);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(distances_that_cannot_be),
-        cmocka_unit_test(line_searches_in_disorder),
-        cmocka_unit_test(a_begin_that_fails_leaves_no_motion),
-    };
-    return cmocka_run_group_tests_name("misuse by solvers", tests, set_up, tear_down);
-}
+AROUND_ALL(set_up, tear_down)

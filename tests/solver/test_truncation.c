@@ -110,8 +110,7 @@ static void check_separation(const rig *r, double apart, double radius) {
     }
 }
 
-static void truncated_motions_keep_pairs_apart(void **state) {
-    (void)state;
+TEST(truncated_motions_keep_pairs_apart) {
     static const double radii[] = {0.03, 0.1, 0.3};
     size_t held = 0, shortened = 0, moved = 0;
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
@@ -135,8 +134,7 @@ static void truncated_motions_keep_pairs_apart(void **state) {
 }
 
 /* Random motions, again and again from where the last one ended: nothing ever touches, and nothing gets stuck. */
-static void a_march_never_touches(void **state) {
-    (void)state;
+TEST(a_march_never_touches) {
     random_seed(3);
     for (int scalar_of = 0; scalar_of < 2; scalar_of++) {
         cscd_scalar scalar = (cscd_scalar)scalar_of;
@@ -182,8 +180,7 @@ static void check_plane(const division_plane *plane, double apart) {
     assert_true(low > high);
 }
 
-static void planes_divide_near_pairs(void **state) {
-    (void)state;
+TEST(planes_divide_near_pairs) {
     static size_t first[SCENE_VERTICES_MAX];
     size_t divided = 0;
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
@@ -212,8 +209,7 @@ static void move_triangle(uint32_t which, double by) {
 }
 
 /* The room between two sides goes to whoever needs it, down to the separation. */
-static void room_goes_to_whoever_needs_it(void **state) {
-    (void)state;
+TEST(room_goes_to_whoever_needs_it) {
     static const double wanted[][2] = {{0.0, -1.0}, {1.0, 0.0}, {0.2, -0.6}, {-0.5, -0.4}, {0.05, -0.02}};
     static const double gone[][2] = {
         {0.0, -0.15}, {0.15, 0.0}, {0.0375, -0.1125}, {-0.5, -0.15}, {0.05, -0.02}};
@@ -232,8 +228,7 @@ static void room_goes_to_whoever_needs_it(void **state) {
 }
 
 /* Pairs within the separation may part, and come no nearer. */
-static void pressed_pairs_may_part(void **state) {
-    (void)state;
+TEST(pressed_pairs_may_part) {
     for (int i = 0; i < 2; i++) {
         scene_two_triangles(&interval, 0.05);
         move_triangle(1, i == 0 ? 0.5 : -0.01);
@@ -247,8 +242,7 @@ static void pressed_pairs_may_part(void **state) {
 }
 
 /* Pairs that touch stay, and are listed. */
-static void touching_pairs_are_held(void **state) {
-    (void)state;
+TEST(touching_pairs_are_held) {
     scene_two_triangles(&interval, 0.0);
     move_triangle(1, 0.5);
     rig r = rig_apart(&interval, 0.0, CSCD_METHOD_NONE, 1);
@@ -259,8 +253,7 @@ static void touching_pairs_are_held(void **state) {
 }
 
 /* An obstacle gets its way as far as the gap allows; cloth has the rest. */
-static void obstacles_come_first(void **state) {
-    (void)state;
+TEST(obstacles_come_first) {
     static const uint32_t triangle[] = {0, 1, 2};
     for (uint32_t obstacle = 0; obstacle < 2; obstacle++) {
         scene_two_triangles(&interval, 0.25);
@@ -282,8 +275,7 @@ static void obstacles_come_first(void **state) {
 }
 
 /* Nothing is near, but what is farther away has not been looked for. */
-static void alone_it_goes_half_of_the_radius(void **state) {
-    (void)state;
+TEST(alone_it_goes_half_of_the_radius) {
     scene_two_triangles(&interval, 5.0);
     move_triangle(1, 1.5);
     rig r = rig_apart(&interval, 0.0, CSCD_METHOD_NONE, 1);
@@ -294,8 +286,7 @@ static void alone_it_goes_half_of_the_radius(void **state) {
 }
 
 /* Two sewn triangles fall, and only one of them onto something: sewn vertices stay on each other, bit for bit. */
-static void sewn_vertices_stay_together(void **state) {
-    (void)state;
+TEST(sewn_vertices_stay_together) {
     static const uint32_t seams[] = {4, 1, 2, 3};
     static const double corners[9][3] = {{0.0, 1.0, 0.1},   {-1.0, 0.3, 0.4}, {1.0, 0.1, 0.2},
                                          {1.0, 0.1, 0.2},   {-1.0, 0.3, 0.4}, {0.1, -1.0, 0.1},
@@ -327,19 +318,4 @@ static void sewn_vertices_stay_together(void **state) {
         assert_memory_equal(end + 12, end + 3, sizeof(double[3]));
         rig_destroy(&r);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(truncated_motions_keep_pairs_apart),
-        cmocka_unit_test(a_march_never_touches),
-        cmocka_unit_test(planes_divide_near_pairs),
-        cmocka_unit_test(room_goes_to_whoever_needs_it),
-        cmocka_unit_test(pressed_pairs_may_part),
-        cmocka_unit_test(touching_pairs_are_held),
-        cmocka_unit_test(obstacles_come_first),
-        cmocka_unit_test(alone_it_goes_half_of_the_radius),
-        cmocka_unit_test(sewn_vertices_stay_together),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

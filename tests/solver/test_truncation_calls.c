@@ -20,8 +20,7 @@ static void expect_refused(const rig *r, cscd_status status, const char *words) 
     assert_non_null(strstr(cscd_context_detail(r->context), words));
 }
 
-static void wrong_arguments_are_refused(void **state) {
-    (void)state;
+TEST(wrong_arguments_are_refused) {
     float floats[18] = {0.0f};
     double short_array[17];
     cscd_truncation out = {.near_count = 4711};
@@ -67,8 +66,7 @@ static void wrong_arguments_are_refused(void **state) {
 }
 
 /* Objects of one scene may be stored differently: each end is a number of its own object's scalar. */
-static void objects_have_their_own_scalars(void **state) {
-    (void)state;
+TEST(objects_have_their_own_scalars) {
     static const uint32_t triangle[] = {0, 1, 2};
     float from[9], to[9];
     double reached[9];
@@ -100,8 +98,7 @@ static void objects_have_their_own_scalars(void **state) {
 /* ---- what is known, and the same for everyone ---------------------------------------------------------- */
 
 /* The step from where a truncated motion ended need not prove its start, and finds what a new detector finds. */
-static void the_end_is_known(void **state) {
-    (void)state;
+TEST(the_end_is_known) {
     for (uint64_t seed = 0; seed < 4; seed++) {
         scene_make(SCENE_BENT_CAPSULE, seed, &interval);
         rig r = rig_apart(&interval, 0.0, CSCD_METHOD_SINGLE, 1);
@@ -130,8 +127,7 @@ static bool ignore_all(void *user, cscd_contact_kind kind, uint32_t a, uint32_t 
 }
 
 /* Pairs that are left out may pass through each other, so what is near such a pair is checked anew. */
-static void pairs_left_out_leave_nothing_known(void **state) {
-    (void)state;
+TEST(pairs_left_out_leave_nothing_known) {
     scene_make(SCENE_BENT_CAPSULE, 0, &interval);
     cscd_detector_options options = cscd_detector_defaults();
     options.method = CSCD_METHOD_SINGLE;
@@ -147,8 +143,7 @@ static void pairs_left_out_leave_nothing_known(void **state) {
     rig_destroy(&r);
 }
 
-static void truncation_is_the_same_for_all_threads_and_methods(void **state) {
-    (void)state;
+TEST(truncation_is_the_same_for_all_threads_and_methods) {
     static double first[SCENE_VERTICES_MAX * 3];
     for (uint64_t seed = 0; seed < 4; seed++) {
         scene_make(seed % 2 == 0 ? SCENE_BENT_CAPSULE : SCENE_SOUP, seed, &interval);
@@ -163,15 +158,4 @@ static void truncation_is_the_same_for_all_threads_and_methods(void **state) {
             rig_destroy(&r);
         }
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(wrong_arguments_are_refused),
-        cmocka_unit_test(objects_have_their_own_scalars),
-        cmocka_unit_test(the_end_is_known),
-        cmocka_unit_test(pairs_left_out_leave_nothing_known),
-        cmocka_unit_test(truncation_is_the_same_for_all_threads_and_methods),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -69,8 +69,7 @@ static path_jumps follow_path(const rig *r, double reach) {
 
 /* The vertices of the path move by less than 0.01 from moment to moment, and the energy of a pair changes by at most
  * 2.1 times its share of the reach; about twenty pairs are near. A list without counts jumps by whole energies. */
-static void energy_does_not_jump_on_a_fan(void **state) {
-    (void)state;
+TEST(energy_does_not_jump_on_a_fan) {
     make_fan(&moment);
     for (int with_rest = 0; with_rest < 2; with_rest++) {
         rig r = near_rig(&moment, 1);
@@ -88,8 +87,7 @@ static void energy_does_not_jump_on_a_fan(void **state) {
 
 /* Two edges turn through parallel, one above the other: they stay one item, whose mollifier goes to 0 and back, while
  * their nearest points jump from end to end. */
-static void parallel_edges_stay_an_item(void **state) {
-    (void)state;
+TEST(parallel_edges_stay_an_item) {
     static const uint32_t triangles[] = {0, 1, 2, 3, 4, 5};
     static const double corners[] = {-1, 0, 0, 1, 0, 0, 0, 0.1, -2, -0.9, 0, 0.1, 1.1, 0, 0.1, 0, 0.1, 2};
     double before = -1.0, largest = 0.0, least = INFINITY;
@@ -125,12 +123,4 @@ static void parallel_edges_stay_an_item(void **state) {
                   largest, least, at_ends);
     assert_true(largest < 0.02 && least < 1e-9 && at_ends > 10);
     rig_destroy(&r);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(energy_does_not_jump_on_a_fan),
-        cmocka_unit_test(parallel_edges_stay_an_item),
-    };
-    return cmocka_run_group_tests_name("unique energy", tests, NULL, NULL);
 }

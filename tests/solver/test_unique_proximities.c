@@ -183,8 +183,7 @@ static void compare_forms(const rig *r, const double *x, double distance, form_t
     free(items.items);
 }
 
-static void items_stand_for_all_pairs(void **state) {
-    (void)state;
+TEST(items_stand_for_all_pairs) {
     form_tally t = {0};
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         for (uint64_t seed = 0; seed < 6; seed++) {
@@ -212,8 +211,7 @@ static void expect_same_items(const item_list *list, const item_list *other) {
     if (list->count > 0) assert_memory_equal(list->items, other->items, list->count * sizeof *list->items);
 }
 
-static void same_from_a_line_search(void **state) {
-    (void)state;
+TEST(same_from_a_line_search) {
     static double x[SCENE_VERTICES_MAX * 3];
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         cscd_line_search *line;
@@ -234,8 +232,7 @@ static void same_from_a_line_search(void **state) {
     }
 }
 
-static void same_when_scaled(void **state) {
-    (void)state;
+TEST(same_when_scaled) {
     static const int exponents[] = {-240, -140, 100, 240};
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         int exponent = exponents[family % 4];
@@ -281,8 +278,7 @@ static size_t count_mollified(const rig *r) {
     return count;
 }
 
-static void arguments_are_checked(void **state) {
-    (void)state;
+TEST(arguments_are_checked) {
     cscd_proximities out = {.count = 4711};
     scene_make(SCENE_SPIKE, 1, &at_rest);
     moment = at_rest;
@@ -305,14 +301,4 @@ static void arguments_are_checked(void **state) {
     set_rest(&r, NULL);
     assert_int_equal(count_mollified(&r), 0);
     rig_destroy(&r);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(items_stand_for_all_pairs),
-        cmocka_unit_test(same_from_a_line_search),
-        cmocka_unit_test(same_when_scaled),
-        cmocka_unit_test(arguments_are_checked),
-    };
-    return cmocka_run_group_tests_name("unique proximities", tests, NULL, NULL);
 }

@@ -32,8 +32,7 @@ static void expect_apart(const panel_scene *p, double gap) {
     for (uint32_t v = HALF; v < 2 * HALF; v++) assert_true(p->x0[3 * v + 2] > 0.8 * gap);
 }
 
-static void steps_pass_through_nothing(void **state) {
-    (void)state;
+TEST(steps_pass_through_nothing) {
     const double gap = 0.9 * distance;
     panel_scene p = uncover_panels(gap);
     for (int i = 0; i < 10; i++) {
@@ -46,8 +45,7 @@ static void steps_pass_through_nothing(void **state) {
     panels_destroy(&p);
 }
 
-static void line_searches_pass_through_nothing(void **state) {
-    (void)state;
+TEST(line_searches_pass_through_nothing) {
     const double gap = 0.9 * distance;
     panel_scene p = uncover_panels(gap);
     cscd_line_search *line;
@@ -64,8 +62,7 @@ static void line_searches_pass_through_nothing(void **state) {
     panels_destroy(&p);
 }
 
-static void truncation_passes_through_nothing(void **state) {
-    (void)state;
+TEST(truncation_passes_through_nothing) {
     const double gap = 0.9 * distance;
     panel_scene p = uncover_panels(gap);
     for (int i = 0; i < 5; i++) {
@@ -79,21 +76,10 @@ static void truncation_passes_through_nothing(void **state) {
 }
 
 /* Panels that touch have no side, and part as they want. */
-static void touching_pairs_are_left_out(void **state) {
-    (void)state;
+TEST(touching_pairs_are_left_out) {
     panel_scene p = uncover_panels(0.0);
     cscd_free_step step;
     assert_int_equal(max_step_packed(p.detector, p.x0, p.x1, p.x0, &step), CSCD_OK);
     assert_true(step.fraction == 1.0 && step.waiting > 0);
     panels_destroy(&p);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(steps_pass_through_nothing),
-        cmocka_unit_test(line_searches_pass_through_nothing),
-        cmocka_unit_test(truncation_passes_through_nothing),
-        cmocka_unit_test(touching_pairs_are_left_out),
-    };
-    return cmocka_run_group_tests_name("waiting_floors", tests, NULL, NULL);
 }

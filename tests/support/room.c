@@ -4,13 +4,19 @@
 #include "tests/support/test.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { FILES_MAX = 64 };
 
+typedef int (*room_fixture)(void **state);
+
 typedef struct room_file {
     const char *name;
     int (*run)(void);
+    room_test *tests; /* by their lines */
+    int test_count;
+    room_fixture set_up[2], tear_down[2]; /* by room_span */
 } room_file;
 
 static room_file files[FILES_MAX];
@@ -18,9 +24,48 @@ static int file_count;
 static int argument_count;
 static char **arguments;
 
-void room_add(const char *name, int (*run)(void)) {
-    if (file_count < FILES_MAX) files[file_count] = (room_file){name, run};
-    file_count++;
+static room_file *file_of(const char *name) {
+    for (int i = 0; i < file_count; i++)
+        if (strcmp(files[i].name, name) == 0) return &files[i];
+    if (file_count == FILES_MAX) {
+        fprintf(stderr, "room.c has room for %d files\n", FILES_MAX);
+        exit(2);
+    }
+    files[file_count].name = name;
+    return &files[file_count++];
+}
+
+void room_add_test(const char *name, room_test *test) {
+    room_file *file = file_of(name);
+    room_test **place = &file->tests;
+    while (*place != NULL && (*place)->line < test->line) place = &(*place)->next;
+    test->next = *place;
+    *place = test;
+    file->test_count++;
+}
+
+void room_add_around(const char *name, room_span span, room_fixture set_up, room_fixture tear_down) {
+    room_file *file = file_of(name);
+    file->set_up[span] = set_up;
+    file->tear_down[span] = tear_down;
+}
+
+void room_add_main(const char *name, int (*run)(void)) {
+    file_of(name)->run = run;
+}
+
+int room_run_tests(const char *name) {
+    const room_file *file = file_of(name);
+    struct CMUnitTest *tests = calloc((size_t)file->test_count + 1, sizeof *tests);
+    if (tests == NULL) return 1;
+    size_t count = 0;
+    for (const room_test *t = file->tests; t != NULL; t = t->next)
+        tests[count++] = (struct CMUnitTest){t->name, t->run, file->set_up[ROOM_EACH_TEST],
+                                             file->tear_down[ROOM_EACH_TEST], NULL};
+    int failed = _cmocka_run_group_tests(name, tests, count, file->set_up[ROOM_ALL_TESTS],
+                                         file->tear_down[ROOM_ALL_TESTS]);
+    free(tests);
+    return failed;
 }
 
 int room_argument_count(void) {
@@ -50,7 +95,6 @@ static int tell_files(const char *program) {
 }
 
 int main(int argc, char **argv) {
-    if (file_count > FILES_MAX) return fprintf(stderr, "room.c has room for %d files\n", FILES_MAX), 2;
     const room_file *file = argc > 0 ? find_file(argv[0]) : NULL;
     const int own = file == NULL; /* the name is an argument */
     if (own && argc > 1) file = find_file(argv[1]);
@@ -58,5 +102,5 @@ int main(int argc, char **argv) {
     argument_count = argc - own;
     arguments = argv + own;
     if (argument_count > 1) cmocka_set_test_filter(arguments[1]);
-    return file->run();
+    return file->run != NULL ? file->run() : room_run_tests(file->name);
 }

@@ -1,4 +1,4 @@
-/* Included by every file of tests: cmocka, the headers that must come before it, and its place in the program of its room. */
+/* Included by every file of tests: cmocka, the headers that must come before it, and what makes a function a test. */
 #pragma once
 
 #include <setjmp.h>
@@ -14,11 +14,27 @@ extern "C" {
 }
 #endif
 
-#ifdef TEST_FILE /* its name; the compiler is told that main is called otherwise, too */
+#ifdef TEST_FILE /* its name */
 #include "tests/support/room.h"
 
-int main(void);
-__attribute__((constructor)) static void room_add_file(void) {
-    room_add(TEST_FILE, main);
-}
+#define BEFORE_MAIN(function, call)                                                                          \
+    __attribute__((constructor)) static void function(void) {                                                \
+        call;                                                                                                \
+    }
+
+/* TEST(name) { ... } is a test of this file. What it is given as `state` is what a set-up has left there. */
+#define TEST(name)                                                                                           \
+    static void name(void **state);                                                                          \
+    static room_test test_##name = {#name, name, __LINE__, NULL};                                            \
+    BEFORE_MAIN(add_##name, room_add_test(TEST_FILE, &test_##name))                                          \
+    static void name(__attribute__((unused)) void **state)
+
+/* Runs before and after each test of this file, or all of them. */
+#define AROUND_EACH(set_up, tear_down)                                                                       \
+    BEFORE_MAIN(add_around_each, room_add_around(TEST_FILE, ROOM_EACH_TEST, set_up, tear_down))
+#define AROUND_ALL(set_up, tear_down)                                                                        \
+    BEFORE_MAIN(add_around_all, room_add_around(TEST_FILE, ROOM_ALL_TESTS, set_up, tear_down))
+
+/* What this file does in place of running its tests. */
+#define FILE_MAIN(function) BEFORE_MAIN(add_main, room_add_main(TEST_FILE, function))
 #endif

@@ -114,8 +114,7 @@ static bool find_answers(io_error *error) {
     return found;
 }
 
-static void each_allocation_may_fail(void **state) {
-    (void)state;
+TEST(each_allocation_may_fail) {
     assert_true(fail_each(find_parts) >= 7); /* labels, and two for each part */
     assert_true(fail_each(read_parts) >= 7);
     assert_true(fail_each(prepare_rules) >= 10);
@@ -123,8 +122,7 @@ static void each_allocation_may_fail(void **state) {
 }
 
 /* What cannot be left out for want of memory stays. */
-static void events_stay_without_memory(void **state) {
-    (void)state;
+TEST(events_stay_without_memory) {
     cscd_event events[] = {{.a = 0, .b = 1, .pairs = 1}, {.depths = 1}};
     size_t count = 2;
     io_allocations_left = 0;
@@ -135,10 +133,4 @@ static void events_stay_without_memory(void **state) {
     assert_int_equal(count, 1);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_allocation_may_fail),
-        cmocka_unit_test(events_stay_without_memory),
-    };
-    return cmocka_run_group_tests_name("answers_memory", tests, open_scene, close_scene);
-}
+AROUND_ALL(open_scene, close_scene)

@@ -67,8 +67,7 @@ static void project_point(const picture_scene *scene, const picture_options *opt
     pixel[1] = at[1] / at[2];
 }
 
-static void triangle_covers_the_middle_with_its_colour(void **state) {
-    (void)state;
+TEST(triangle_covers_the_middle_with_its_colour) {
     picture_scene scene = facing_scene();
     picture_options options = front_view(PICTURE_UNLIT);
     picture_image image = render_scene(&scene, &options);
@@ -84,8 +83,7 @@ static void triangle_covers_the_middle_with_its_colour(void **state) {
     picture_image_free(&image);
 }
 
-static void camera_keeps_everything_within_the_margin(void **state) {
-    (void)state;
+TEST(camera_keeps_everything_within_the_margin) {
     static const double positions[] = {-3, 2, 5, 7, -1, 0, 0, 11, -2, 4, 4, 4};
     picture_scene scene = {.vertex_count = 4, .positions = positions};
     picture_options options = front_view(PICTURE_SMOOTH);
@@ -107,8 +105,7 @@ static void camera_keeps_everything_within_the_margin(void **state) {
     }
 }
 
-static void axes_point_where_the_header_says(void **state) {
-    (void)state;
+TEST(axes_point_where_the_header_says) {
     picture_scene scene = facing_scene();
     picture_options options = front_view(PICTURE_SMOOTH);
     double origin[2], x[2], up[2];
@@ -121,8 +118,7 @@ static void axes_point_where_the_header_says(void **state) {
     }
 }
 
-static void nearer_hides_farther_in_either_order(void **state) {
-    (void)state;
+TEST(nearer_hides_farther_in_either_order) {
     static const double positions[] = {-1, 0.5,  -1, 1, 0.5,  -1, 0, 0.5,  1,
                                        -1, -0.5, -1, 1, -0.5, -1, 0, -0.5, 1};
     static const uint32_t orders[2][6] = {{0, 1, 2, 3, 4, 5}, {3, 4, 5, 0, 1, 2}};
@@ -139,8 +135,7 @@ static void nearer_hides_farther_in_either_order(void **state) {
     }
 }
 
-static void back_faces_are_tinted(void **state) {
-    (void)state;
+TEST(back_faces_are_tinted) {
     picture_scene scene = facing_scene();
     picture_options options = front_view(PICTURE_SMOOTH);
     scene.triangle_colours = blue;
@@ -155,8 +150,7 @@ static void back_faces_are_tinted(void **state) {
 
 /* A square of slivers that fan out from a point on its lower side: no sample may fall between two triangles.
  */
-static void neighbours_leave_no_gap(void **state) {
-    (void)state;
+TEST(neighbours_leave_no_gap) {
     enum { slivers = 300 };
     static double positions[3 * (slivers + 2)];
     static uint32_t triangles[3 * slivers];
@@ -180,8 +174,7 @@ static void neighbours_leave_no_gap(void **state) {
 }
 
 /* The middle column of samples lies exactly on the edge that the two triangles share. */
-static void shared_edge_is_drawn(void **state) {
-    (void)state;
+TEST(shared_edge_is_drawn) {
     static const double positions[] = {0, 0, -1, 0, 0, 1, -1, 0, 0, 1, 0, 0};
     static const uint32_t triangles[] = {0, 1, 2, 1, 0, 3};
     picture_scene scene = scene_of(4, positions, 2, triangles);
@@ -194,8 +187,7 @@ static void shared_edge_is_drawn(void **state) {
     picture_image_free(&image);
 }
 
-static void cube_keeps_its_creases(void **state) {
-    (void)state;
+TEST(cube_keeps_its_creases) {
     double positions[24];
     for (int i = 0; i < 24; i++) positions[i] = i / 3 >> i % 3 & 1;
     static const uint32_t triangles[] = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
@@ -212,8 +204,7 @@ static void cube_keeps_its_creases(void **state) {
     picture_image_free(&flat);
 }
 
-static void wires_darken_the_edges(void **state) {
-    (void)state;
+TEST(wires_darken_the_edges) {
     picture_scene scene = facing_scene();
     picture_options options = front_view(PICTURE_SMOOTH);
     picture_image plain = render_scene(&scene, &options);
@@ -228,8 +219,7 @@ static void wires_darken_the_edges(void **state) {
     picture_image_free(&wired);
 }
 
-static void marker_appears_where_it_projects(void **state) {
-    (void)state;
+TEST(marker_appears_where_it_projects) {
     picture_marker markers[] = {{{0.3, 0.0, -0.4}, 6.0f, {40, 60, 220, 255}},
                                 {{-0.3, 2.0, -0.4}, 6.0f, {40, 60, 220, 255}}};
     picture_scene scene = facing_scene();
@@ -246,8 +236,7 @@ static void marker_appears_where_it_projects(void **state) {
     picture_image_free(&image);
 }
 
-static void ground_under_and_behind_the_camera_is_drawn(void **state) {
-    (void)state;
+TEST(ground_under_and_behind_the_camera_is_drawn) {
     static const double positions[] = {-1000, -1000, -1, 1000, -1000, -1, 1000, 1000, -1, -1000, 1000, -1};
     static const uint32_t triangles[] = {0, 1, 2, 0, 2, 3};
     picture_marker behind = {{0, -500, 0}, 5.0f, {0, 0, 0, 255}};
@@ -266,8 +255,7 @@ static void ground_under_and_behind_the_camera_is_drawn(void **state) {
     picture_image_free(&image);
 }
 
-static void caption_and_legend_are_written(void **state) {
-    (void)state;
+TEST(caption_and_legend_are_written) {
     const picture_legend legend = {{220, 40, 30}, "VF"};
     picture_scene scene = {.caption = "frame 44", .legend = &legend, .legend_count = 1};
     picture_options options = front_view(PICTURE_SMOOTH);
@@ -281,8 +269,7 @@ static void caption_and_legend_are_written(void **state) {
     picture_image_free(&image);
 }
 
-static void same_scene_same_pixels(void **state) {
-    (void)state;
+TEST(same_scene_same_pixels) {
     picture_scene scene = facing_scene();
     picture_options options = picture_options_defaults();
     picture_image first = render_scene(&scene, &options), second = render_scene(&scene, &options);
@@ -291,8 +278,7 @@ static void same_scene_same_pixels(void **state) {
     picture_image_free(&second);
 }
 
-static void bad_requests_are_refused(void **state) {
-    (void)state;
+TEST(bad_requests_are_refused) {
     static const uint32_t wild[] = {0, 1, 3};
     picture_image image;
     io_error error;
@@ -310,8 +296,7 @@ static void bad_requests_are_refused(void **state) {
     assert_false(picture_render_image(&scene, &options, &image, NULL));
 }
 
-static void colour_map_ends_and_clamps(void **state) {
-    (void)state;
+TEST(colour_map_ends_and_clamps) {
     uint8_t low[3], high[3], outside[3];
     picture_colour_map(0.0, low);
     picture_colour_map(1.0, high);
@@ -322,8 +307,7 @@ static void colour_map_ends_and_clamps(void **state) {
     assert_memory_equal(outside, high, 3);
 }
 
-static void png_reads_back_the_same(void **state) {
-    (void)state;
+TEST(png_reads_back_the_same) {
     temp_folder folder = temp_folder_make();
     temp_path path = temp_file_path(&folder, "a.png");
     picture_scene scene = facing_scene();
@@ -344,8 +328,7 @@ static void png_reads_back_the_same(void **state) {
     temp_folder_remove(&folder);
 }
 
-static void failed_writes_leave_no_file(void **state) {
-    (void)state;
+TEST(failed_writes_leave_no_file) {
     temp_folder folder = temp_folder_make();
     temp_path missing = temp_file_path(&folder, "missing/a.png"), path = temp_file_path(&folder, "a.png");
     io_error error = {""};
@@ -370,27 +353,4 @@ static void failed_writes_leave_no_file(void **state) {
     assert_non_null(strstr(error.text, "File too large"));
     assert_int_equal(access(path.text, F_OK), -1);
     temp_folder_remove(&folder);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(triangle_covers_the_middle_with_its_colour),
-        cmocka_unit_test(camera_keeps_everything_within_the_margin),
-        cmocka_unit_test(axes_point_where_the_header_says),
-        cmocka_unit_test(nearer_hides_farther_in_either_order),
-        cmocka_unit_test(back_faces_are_tinted),
-        cmocka_unit_test(neighbours_leave_no_gap),
-        cmocka_unit_test(shared_edge_is_drawn),
-        cmocka_unit_test(cube_keeps_its_creases),
-        cmocka_unit_test(wires_darken_the_edges),
-        cmocka_unit_test(marker_appears_where_it_projects),
-        cmocka_unit_test(ground_under_and_behind_the_camera_is_drawn),
-        cmocka_unit_test(caption_and_legend_are_written),
-        cmocka_unit_test(same_scene_same_pixels),
-        cmocka_unit_test(bad_requests_are_refused),
-        cmocka_unit_test(colour_map_ends_and_clamps),
-        cmocka_unit_test(png_reads_back_the_same),
-        cmocka_unit_test(failed_writes_leave_no_file),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

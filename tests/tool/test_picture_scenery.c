@@ -22,8 +22,7 @@ static const uint8_t *pixel_at(const picture_image *image, double x, double y) {
     return image->pixels + 4 * ((size_t)y * image->width + (size_t)x);
 }
 
-static void sheet_places_tiles_row_by_row(void **state) {
-    (void)state;
+TEST(sheet_places_tiles_row_by_row) {
     picture_sheet sheet;
     assert_true(picture_sheet_create(5, 3, 20, 10, &sheet, NULL));
     assert_true(sheet.image.width == 60 && sheet.image.height == 20);
@@ -43,8 +42,7 @@ static void sheet_places_tiles_row_by_row(void **state) {
     picture_image_free(&sheet.image);
 }
 
-static void sheets_too_large_are_refused(void **state) {
-    (void)state;
+TEST(sheets_too_large_are_refused) {
     picture_sheet sheet;
     io_error error;
     assert_false(picture_sheet_create(3, 3, 8000, 10, &sheet, &error));
@@ -64,8 +62,7 @@ static void random_points(random_stream *random, double spread, double points[3 
 }
 
 /* The camera is chosen from five points of each frame, and still shows all frames. */
-static void outermost_points_frame_a_motion(void **state) {
-    (void)state;
+TEST(outermost_points_frame_a_motion) {
     enum { frames = 7 };
     static double points[frames][3 * POINTS], outermost[frames][PICTURE_OUTERMOST][3];
     random_stream random = stream_start(7);
@@ -89,8 +86,7 @@ static void outermost_points_frame_a_motion(void **state) {
     }
 }
 
-static void unproject_undoes_project(void **state) {
-    (void)state;
+TEST(unproject_undoes_project) {
     static double points[3 * POINTS];
     random_stream random = stream_start(11);
     picture_camera camera;
@@ -121,8 +117,7 @@ static double shadow_of(const picture_shadow *shadow, bool y_up, double x, doubl
     return picture_shadow_at(shadow, (const double[3]){x, y_up ? height : across, y_up ? across : height});
 }
 
-static void shadow_lies_below_and_softens(void **state) {
-    (void)state;
+TEST(shadow_lies_below_and_softens) {
     double positions[24];
     for (int y_up = 0; y_up < 2; y_up++) {
         picture_shadow shadow;
@@ -148,8 +143,7 @@ static void shadow_lies_below_and_softens(void **state) {
 }
 
 /* Beside its longest side a triangle leaves all light. */
-static void a_triangle_has_the_shadow_of_a_triangle(void **state) {
-    (void)state;
+TEST(a_triangle_has_the_shadow_of_a_triangle) {
     static const double positions[] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
     for (uint32_t turn = 0; turn < 3; turn++) {
         const uint32_t corners[] = {turn, (turn + 1) % 3, (turn + 2) % 3};
@@ -162,8 +156,7 @@ static void a_triangle_has_the_shadow_of_a_triangle(void **state) {
 }
 
 /* Scaling by a power of two, up to the limits of coordinates, changes nothing. */
-static void shadows_have_no_unit(void **state) {
-    (void)state;
+TEST(shadows_have_no_unit) {
     const double scales[] = {1.0, 0x1p290, 0x1p-290};
     double positions[24], expected = 0.0;
     for (int i = 0; i < 3; i++) {
@@ -178,8 +171,7 @@ static void shadows_have_no_unit(void **state) {
     }
 }
 
-static void bodies_without_extent_cast_no_shadow(void **state) {
-    (void)state;
+TEST(bodies_without_extent_cast_no_shadow) {
     const uint32_t triangle[3] = {0, 1, 2};
     const double still[9] = {1, 2, 3, 1, 2, 3, 1, 2, 3}, line[9] = {0, 0, 0, 0, 0, 1, 0, 0, 2},
                  huge[9] = {-1.7e308, 0, 0, 1.7e308, 0, 0, 0, 1.7e308, 1.7e308};
@@ -232,8 +224,7 @@ static const uint8_t *pixel_of(const picture_image *image, const picture_scene *
 
 /* The picture is the same to the last bit from the largest coordinates to the smallest, also with a
  * caption beside it. */
-static void pictures_have_no_unit(void **state) {
-    (void)state;
+TEST(pictures_have_no_unit) {
     const double scales[] = {1.0, 0x1p-7, 0x1p280, 0x1p-290};
     picture_image images[4];
     for (int i = 0; i < 4; i++) {
@@ -256,8 +247,7 @@ static void pictures_have_no_unit(void **state) {
 
 /* A ground that passes below and behind the camera fills the picture, whichever way its triangles turn,
  * and moves nothing. It is darker below the body. */
-static void ground_is_drawn_around_the_body(void **state) {
-    (void)state;
+TEST(ground_is_drawn_around_the_body) {
     const picture_mesh ground = {4, 2, ground_positions, ground_triangles},
                        turned = {4, 2, ground_positions, turned_ground};
     double positions[24];
@@ -282,8 +272,7 @@ static void ground_is_drawn_around_the_body(void **state) {
     picture_image_free(&again);
 }
 
-static void squares_alternate_on_level_ground(void **state) {
-    (void)state;
+TEST(squares_alternate_on_level_ground) {
     const picture_mesh ground = {4, 2, ground_positions, ground_triangles};
     double positions[24];
     make_box(0.0, false, positions);
@@ -299,8 +288,7 @@ static void squares_alternate_on_level_ground(void **state) {
     picture_image_free(&image);
 }
 
-static void given_camera_is_used(void **state) {
-    (void)state;
+TEST(given_camera_is_used) {
     double positions[24], moved[24];
     make_box(0.0, false, positions);
     memcpy(moved, positions, sizeof moved);
@@ -323,8 +311,7 @@ static void given_camera_is_used(void **state) {
     picture_image_free(&third);
 }
 
-static void bad_scenery_is_refused(void **state) {
-    (void)state;
+TEST(bad_scenery_is_refused) {
     static const uint32_t wild[] = {0, 1, 4};
     const picture_mesh scenery = {4, 1, ground_positions, wild};
     double positions[24];
@@ -338,23 +325,4 @@ static void bad_scenery_is_refused(void **state) {
     const picture_mesh many = {4, UINT32_MAX, ground_positions, wild};
     scene.scenery = &many;
     assert_false(picture_render_image(&scene, &options, &image, &error));
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sheet_places_tiles_row_by_row),
-        cmocka_unit_test(sheets_too_large_are_refused),
-        cmocka_unit_test(outermost_points_frame_a_motion),
-        cmocka_unit_test(unproject_undoes_project),
-        cmocka_unit_test(shadow_lies_below_and_softens),
-        cmocka_unit_test(a_triangle_has_the_shadow_of_a_triangle),
-        cmocka_unit_test(shadows_have_no_unit),
-        cmocka_unit_test(bodies_without_extent_cast_no_shadow),
-        cmocka_unit_test(pictures_have_no_unit),
-        cmocka_unit_test(ground_is_drawn_around_the_body),
-        cmocka_unit_test(squares_alternate_on_level_ground),
-        cmocka_unit_test(given_camera_is_used),
-        cmocka_unit_test(bad_scenery_is_refused),
-    };
-    return cmocka_run_group_tests_name("picture_scenery", tests, NULL, NULL);
 }

@@ -48,8 +48,7 @@ static int remove_files(void **state) {
     return 0;
 }
 
-static void the_processor_decides(void **state) {
-    (void)state;
+TEST(the_processor_decides) {
     assert_string_equal(blas_better_core("Prescott", true, true), "SkylakeX");
     assert_string_equal(blas_better_core("Prescott", true, false), "Haswell");
     assert_string_equal(blas_better_core("Sandybridge", true, false), "Haswell");
@@ -90,15 +89,13 @@ static void expect_choice(const char *method) {
     tool_run_free(&run);
 }
 
-static void it_chooses_kernels(void **state) {
-    (void)state;
+TEST(it_chooses_kernels) {
     if (!has_avx2()) skip();
     expect_choice("charge");
     expect_choice("auto");
 }
 
-static void a_choice_of_the_user_stays(void **state) {
-    (void)state;
+TEST(a_choice_of_the_user_stays) {
     if (!has_avx2()) skip();
     setenv("OPENBLAS_CORETYPE", "Prescott", 1);
     setenv("OPENBLAS_NUM_THREADS", "2", 1);
@@ -113,8 +110,7 @@ static void a_choice_of_the_user_stays(void **state) {
 }
 
 /* Other ways to solve for the charge ask nobody, and warn of nothing. */
-static void others_need_none(void **state) {
-    (void)state;
+TEST(others_need_none) {
     tool_run run = preprocess_with_old_openblas("auto", "tree");
     assert_int_equal(run.code, 0);
     assert_string_equal(run.error, "");
@@ -123,14 +119,4 @@ static void others_need_none(void **state) {
 
 #endif
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_processor_decides),
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-        cmocka_unit_test(it_chooses_kernels),
-        cmocka_unit_test(a_choice_of_the_user_stays),
-        cmocka_unit_test(others_need_none),
-#endif
-    };
-    return cmocka_run_group_tests_name("tool_blas", tests, make_files, remove_files);
-}
+AROUND_ALL(make_files, remove_files)

@@ -144,8 +144,13 @@ typedef struct proof_row {
     const char *allocates;     /* also when nothing has changed */
 } proof_row;
 
-/* The main of a file of tests: one for each row and promise, called ROW_PROMISE. */
+/* The tests of a file: one for each row and promise, called ROW_PROMISE. */
 int proofs_run(const char *name, const proof_row *rows, size_t row_count);
+#define PROOFS(rows)                                                                                         \
+    static int run_proofs(void) {                                                                            \
+        return proofs_run(TEST_FILE, rows, sizeof rows / sizeof *rows);                                      \
+    }                                                                                                        \
+    FILE_MAIN(run_proofs)
 
 /* Adds bytes of the answer to the digest; a list with its count. Each row must find some items. */
 void proof_add(proof *p, const void *bytes, size_t size);
