@@ -99,8 +99,8 @@ static bool read_number(const char *path, const char *key, uint64_t *out) {
     return found;
 }
 
-/* The memory that a control group's limit leaves; its file cache counts as free, since it can be dropped. */
-static uint64_t left_in_group(const char *limit_path, const char *usage_path, const char *stat_path) {
+/* A group's file cache counts as free, since it can be dropped. */
+uint64_t system_group_memory_left(const char *limit_path, const char *usage_path, const char *stat_path) {
     uint64_t limit, usage, cache = 0;
     if (!read_number(limit_path, "", &limit) || !read_number(usage_path, "", &usage)) return UINT64_MAX;
     read_number(stat_path, "inactive_file ", &cache);
@@ -116,11 +116,12 @@ size_t system_memory_left(void) {
     } else if (pages > 0 && page_size > 0) {
         available = (uint64_t)pages * (uint64_t)page_size;
     }
-    const uint64_t groups[] = {left_in_group("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory.current",
-                                             "/sys/fs/cgroup/memory.stat"),
-                               left_in_group("/sys/fs/cgroup/memory/memory.limit_in_bytes",
-                                             "/sys/fs/cgroup/memory/memory.usage_in_bytes",
-                                             "/sys/fs/cgroup/memory/memory.stat")};
+    const uint64_t groups[] = {system_group_memory_left("/sys/fs/cgroup/memory.max",
+                                                        "/sys/fs/cgroup/memory.current",
+                                                        "/sys/fs/cgroup/memory.stat"),
+                               system_group_memory_left("/sys/fs/cgroup/memory/memory.limit_in_bytes",
+                                                        "/sys/fs/cgroup/memory/memory.usage_in_bytes",
+                                                        "/sys/fs/cgroup/memory/memory.stat")};
     for (int i = 0; i < 2; i++) available = groups[i] < available ? groups[i] : available;
     return available < SIZE_MAX ? (size_t)available : SIZE_MAX;
 }

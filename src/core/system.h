@@ -15,6 +15,9 @@ void system_memory_free(void *block);
  * that the system shows; SIZE_MAX where the system does not tell. */
 size_t system_memory_left(void);
 
+/* What a control group's limit leaves of memory, by the files that say so; UINT64_MAX where they do not. Linux alone has it. */
+uint64_t system_group_memory_left(const char *limit_path, const char *usage_path, const char *stat_path);
+
 /* The processors of the machine, at least 1. */
 uint32_t system_processors(void);
 

@@ -50,6 +50,10 @@ static void check_knowledge(const cscd_mesh_change *made, size_t *kept, size_t *
     const cscd_mesh *mesh = cscd_mesh_change_mesh(made);
     const uint32_t *origins = cscd_mesh_change_triangle_origins(made, NULL);
     const uint32_t *components = cscd_mesh_change_component_origins(made, NULL);
+    static uint32_t sizes[SCENE_TRIANGLES_MAX]; /* of regions; none is left without a triangle */
+    memset(sizes, 0, sizeof sizes);
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) sizes[d->culling.triangle_regions[t]]++;
+    for (uint32_t r = 0; r < d->culling.region_count; r++) assert_true(sizes[r] > 0);
     for (uint32_t t = 0; t < mesh->triangle_count; t++) {
         known_triangle now = knowledge_of(d, t);
         uint32_t component = mesh->triangle_components[t];

@@ -1,6 +1,6 @@
 /* Orphan pairs are those of their definition, on small surfaces whose vertices have few triangles, with boundaries and with edges of
  * more than two triangles. */
-#include "runtime/narrow_phase/orphan_pairs.h"
+#include "runtime/narrow_phase/narrow_phase.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/test.h"
 
@@ -284,6 +284,40 @@ TEST(too_many_in_all_tasks) {
         cscd_mesh_destroy(mesh);
         cscd_context_destroy(context);
     }
+}
+
+/* Lanes that are suspended after each pair go on with the next: between them they test each orphan pair once. */
+TEST(suspended_lanes_leave_none_out) {
+    enum { SHARES = 3 };
+    static contact_lane lane;
+    static const double at_rest[VERTICES_MAX * 3];
+    const feature_list *vf = &lane.queue[CSCD_CONTACT_VF], *ee = &lane.queue[CSCD_CONTACT_EE];
+    cscd_context *context = NULL;
+    cscd_mesh *mesh = NULL;
+    orphan_pairs pairs;
+    bool too_many;
+    size_t queued[2] = {0, 0};
+    assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
+    make_bipyramid(3);
+    const cscd_object_desc desc =
+        cscd_object_of_triangles(s.vertex_count, s.triangle_count, &s.triangles[0][0]);
+    assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
+    assert_int_equal(orphan_pairs_create(mesh, &pairs, &too_many), CSCD_OK);
+    const swept_interval interval = {.mesh = mesh, .x0 = at_rest, .x1 = at_rest};
+    for (uint32_t i = 0; i < SHARES; i++) {
+        contact_lane_reset(&lane);
+        for (lane.limit = 0; i + lane.cursor * SHARES < pairs.vf_count + pairs.ee_count;)
+            narrow_phase_test_orphan_pairs(&interval, &pairs, i, SHARES, &lane);
+        for (uint32_t k = 0; k < vf->count; k++)
+            queued[0] += count_in(pairs.vf, pairs.vf_count, vf->a[k], vf->b[k]);
+        for (uint32_t k = 0; k < ee->count; k++)
+            queued[1] += count_in(pairs.ee, pairs.ee_count, ee->a[k], ee->b[k]);
+    }
+    assert_true(pairs.vf_count == 12 && pairs.ee_count == 12);
+    assert_true(queued[0] == 12 && queued[1] == 12);
+    orphan_pairs_free(context, &pairs);
+    cscd_mesh_destroy(mesh);
+    cscd_context_destroy(context);
 }
 
 /* Two tips over a ring have few orphan pairs, but looking for them takes the square of the ring's size: it is given up. */

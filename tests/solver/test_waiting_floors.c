@@ -75,6 +75,39 @@ TEST(truncation_passes_through_nothing) {
     panels_destroy(&p);
 }
 
+/* A wire, a point over it, and one over that, hidden from each other, and then not: whichever point goes down stays above. */
+TEST(points_pass_through_nothing) {
+    const double gap = 0.9 * distance;
+    const uint32_t wire[2] = {0, 1};
+    for (int moving = 2; moving < 4; moving++) {
+        const cscd_object_desc objects[] = {cscd_object_of_wires(2, 1, wire), cscd_object_of_points(1),
+                                            cscd_object_of_points(1)};
+        cscd_object_rule rules[] = {cscd_object_rule_default(), cscd_object_rule_default(),
+                                    cscd_object_rule_default()};
+        cscd_detector_options options = cscd_detector_defaults();
+        panel_scene p = {.vertex_count = 4};
+        double x0[12] = {0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.5, 0.0, gap, 0.5, 0.0, 2.0 * gap}, x1[12];
+        cscd_free_step step;
+        rules[1].mask = 0;
+        options.min_separation = distance;
+        options.rules = rules;
+        options.rule_count = 3;
+        assert_int_equal(cscd_context_create(NULL, &p.context), CSCD_OK);
+        assert_int_equal(cscd_mesh_create(p.context, objects, 3, &p.mesh), CSCD_OK);
+        assert_int_equal(panels_create_detector(&p, &options, &p.detector), CSCD_OK);
+        assert_int_equal(max_step_packed(p.detector, x0, x0, NULL, &step), CSCD_OK);
+        assert_int_equal(cscd_detector_set_rules(p.detector, NULL, 0, NULL, 0), CSCD_OK);
+        for (int i = 0; i < 10; i++) {
+            memcpy(x1, x0, sizeof x1);
+            x1[3 * moving + 2] -= 0.04;
+            assert_int_equal(max_step_packed(p.detector, x0, x1, x0, &step), CSCD_OK);
+            assert_true(step.waiting == 2 && step.limited);
+            assert_true(x0[3 * moving + 2] - x0[3 * moving - 1] > 0.8 * gap);
+        }
+        panels_destroy(&p);
+    }
+}
+
 /* Panels that touch have no side, and part as they want. */
 TEST(touching_pairs_are_left_out) {
     panel_scene p = uncover_panels(0.0);
