@@ -203,6 +203,9 @@ TEST(bending_is_seen) {
         assert_true(b.renewal.first[1].concave < 0.01);
         move_vertices(false, bend_point, 0.05);
         assert_int_equal(count_due(&b, &usual), 0);
+        move_vertices(false, bend_point, 0.8); /* a twelfth of its inner edges is concave now */
+        assert_int_equal(count_due(&b, &usual), 0);
+        assert_true(b.renewal.now[1].concave > 0.05);
         move_vertices(false, bend_point, 3.0);
         assert_int_equal(count_due(&b, &usual), 1);
         assert_int_equal(renewals[1], CSCD_RENEWAL_CONCAVE);

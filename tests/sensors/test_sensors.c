@@ -339,3 +339,51 @@ TEST(new_cells_are_taken_up) {
     expect_in_cells(&r);
     sensor_rig_destroy(&r);
 }
+
+/* Spheres that are far from each other are apart, but not between the renewal of cells and the next step. */
+TEST(bounds_are_those_of_the_cells) {
+    two_spheres(3.0);
+    sensor_rig r = sensor_rig_create(&s, NULL);
+    for (int round = 0; round < 3; round++) {
+        sensor_rig_step(&r, s.x0, s.x0);
+        assert_true(cscd_sensors_apart(r.sensors, 0, 1));
+        for (uint32_t v = 0; v < s.vertex_count; v++) s.x0[v * 3 + 1] *= 1.5;
+        assert_int_equal(partition_renew_packed(r.partition, s.x0, (uint32_t)round % 2), CSCD_OK);
+        assert_false(cscd_sensors_apart(r.sensors, 0, 1));
+    }
+    sensor_rig_destroy(&r);
+}
+
+/* ---- obstacles ---------------------------------------------------------------------------------------- */
+
+/* Returns how many pairs of particles feel each other, if the objects of the mask are obstacles. */
+static uint64_t pairs_with(uint32_t mask) {
+    cscd_context *context = NULL;
+    cscd_mesh *mesh = NULL;
+    cscd_partition *partition = NULL;
+    cscd_sensors *sensors = NULL;
+    cscd_object_desc objects[2];
+    cscd_warnings found;
+    two_spheres(0.05); /* the second has the same triangles, with numbers of its own */
+    for (uint32_t i = 0; i < 2; i++) {
+        objects[i] = cscd_object_of_triangles(s.vertex_count / 2, s.triangle_count / 2, s.triangles);
+        objects[i].obstacle = (mask >> i & 1) != 0;
+    }
+    assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(context, objects, 2, &mesh), CSCD_OK);
+    assert_int_equal(partition_create_packed(mesh, NULL, s.x0, NULL, &partition), CSCD_OK);
+    assert_int_equal(sensors_create_here(mesh, partition, NULL, &sensors), CSCD_OK);
+    assert_int_equal(sensors_step_packed(sensors, s.x0, s.x0, &found), CSCD_OK);
+    const uint64_t pairs = cscd_sensors_counters(sensors).particle_pairs;
+    assert_int_equal(found.count > 0, pairs > 0);
+    cscd_sensors_destroy(sensors);
+    cscd_partition_destroy(partition);
+    cscd_mesh_destroy(mesh);
+    cscd_context_destroy(context);
+    return pairs;
+}
+
+TEST(obstacles_do_not_feel_each_other) {
+    for (uint32_t mask = 0; mask < 3; mask++) assert_true(pairs_with(mask) > 0);
+    assert_int_equal(pairs_with(3), 0);
+}
