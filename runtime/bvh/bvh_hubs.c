@@ -128,6 +128,7 @@ static bool look_at_page(const bvh *f, uint32_t triangle, const hub_volume *v, c
         vec3_subtract(ends[e] + (size_t)v->other * 3, ends[e] + (size_t)v->hub * 3, edges[e]);
         vec3_subtract(ends[e] + (size_t)corner * 3, ends[e] + (size_t)v->hub * 3, sides[e]);
     }
+    /* corners may be near the edge, so that pages are never apart by a distance */
     *view = (corner_view){.nearest = 0.0, .count = f->still ? 1 : 3};
     for (int i = 0; i < view->count; i++) {
         const int from = i / 2, to = (i + 1) / 2; /* 0 0, 0 1, 1 1 */
@@ -245,7 +246,6 @@ static bool directions_apart(const hub_volume *a, const hub_volume *b, double di
         if (gap > 0.0) chord += gap * gap;
     }
     if (distance == 0.0) return chord > 0.0;
-    if (a->other != NO_HUB) return false; /* corners of pages may be near their edge */
     return 0.7 * sqrt(fmin(chord, 2.0)) * (double)fminf(a->reach, b->reach) > distance;
 }
 

@@ -1,6 +1,9 @@
 /* Vertices of very many triangles: the same contacts and intersections as of all pairs, and in near-linear time. */
+#include "runtime/bvh/bvh_hubs.h"
+#include "src/core/vec3.h"
 #include "src/mesh/mesh.h"
 #include "src/mesh/triangle_intersection.h"
+#include "tests/support/bvh/bvh_rig.h"
 #include "tests/support/oracle.h"
 #include "tests/support/packed.h"
 #include "tests/support/random_stream.h"
@@ -70,6 +73,66 @@ static void make_motion(cone_kind kind, uint64_t seed) {
         q[2] += fold * fabs(p[0]) + wave * cos(9.0 * p[0]);
     }
     shape.x1[2] -= stream_between(&random, 0.0, 2.5);
+}
+
+/* ---- directions ------------------------------------------------------------------------------------------ */
+
+static void move_vertex(random_stream *random, uint32_t vertex) {
+    for (uint32_t k = 3 * vertex; k < 3 * vertex + 3; k++) {
+        shape.x0[k] = stream_between(random, -1.0, 1.0);
+        shape.x1[k] = shape.x0[k] + stream_between(random, -1.0, 1.0);
+    }
+}
+
+static void difference_at(double t, uint32_t from, uint32_t to, double out[3]) {
+    for (uint32_t k = 0; k < 3; k++)
+        out[k] = (1.0 - t) * (shape.x0[3 * to + k] - shape.x0[3 * from + k]) +
+                 t * (shape.x1[3 * to + k] - shape.x1[3 * from + k]);
+}
+
+static void check_normals(const hub_volume *v, uint32_t corner) {
+    for (int i = 0; i <= 16; i++) {
+        double edge[3], side[3], normal[3];
+        difference_at(i / 16.0, v->hub, v->other, edge);
+        difference_at(i / 16.0, v->hub, corner, side);
+        vec3_cross(edge, side, normal);
+        const double length = sqrt(vec3_dot(normal, normal));
+        for (int k = 0; k < 3; k++) assert_true(normal[k] >= v->low[k] * length - 1e-12);
+        for (int k = 0; k < 3; k++) assert_true(normal[k] <= v->high[k] * length + 1e-12);
+    }
+}
+
+/* A book in any motion, all pages of a leaf in the same one: whenever they are looked at, their normal is in the leaf's box. */
+TEST(normals_of_pages_stay_in_their_box) {
+    random_stream random = stream_start(17);
+    size_t known = 0;
+    bvh_rig r;
+    make_motion(CONE_BOOK, 0);
+    assert_true(bvh_rig_create(&shape, (bvh_setup){CSCD_SIMD_AUTO, 1, BOX_AXES, 1}, &r));
+    const bvh_level *lowest = &r.bvh.levels[0];
+    for (int round = 0; round < 1000; round++) {
+        move_vertex(&random, 0);
+        move_vertex(&random, 1 + SEGMENTS);
+        for (uint32_t slot = 0; slot < r.bvh.leaf_count * LANES; slot++) {
+            const uint32_t page = bvh_triangle(&r.bvh, slot);
+            const uint32_t first = bvh_triangle(&r.bvh, slot / LANES * LANES);
+            if (page == UINT32_MAX) continue;
+            if (page == first) move_vertex(&random, 1 + page);
+            memcpy(shape.x0 + 3 * (1 + page), shape.x0 + 3 * (1 + first), sizeof(double[3]));
+            memcpy(shape.x1 + 3 * (1 + page), shape.x1 + 3 * (1 + first), sizeof(double[3]));
+        }
+        bvh_refit(&r.bvh, shape.x0, shape.x1, uniform_growth(0.0));
+        for (uint32_t i = 0; i < lowest->block_count * LANES; i++) {
+            const hub_volume *v = &lowest->child_hubs[i];
+            if ((lowest->flags[i / LANES].used >> i % LANES & 1) == 0 || v->hub == NO_HUB) continue;
+            const uint32_t leaf = lowest->first_children[i / LANES] + i % LANES;
+            check_normals(v, 1 + bvh_triangle(&r.bvh, leaf * LANES));
+            known++;
+        }
+    }
+    print_message("  %zu pages have a box\n", known);
+    assert_true(known > 1000);
+    bvh_rig_destroy(&r);
 }
 
 /* ---- the same answers ------------------------------------------------------------------------------------ */

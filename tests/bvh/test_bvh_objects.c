@@ -1,5 +1,9 @@
-/* Blocks of many objects: two that are looked at are found, wherever in the blocks they are. */
+/* Blocks and trees of many objects: two that are looked at are found, wherever in the blocks they are, and what is said of a
+ * tree holds for all that is in it. */
 #include "cscd/cscd.h"
+#include "cscd/research.h"
+#include "tests/support/bvh/bvh_rig.h"
+#include "tests/support/methods.h"
 #include "tests/support/packed.h"
 #include "tests/support/test.h"
 
@@ -51,4 +55,58 @@ TEST(any_two_objects_are_found) {
     cscd_detector_destroy(detector);
     cscd_mesh_destroy(mesh);
     cscd_context_destroy(context);
+}
+
+/* Under the published ICCD both objects are in one tree, which must keep the distance of whichever has one. */
+TEST(a_tree_has_the_distance_of_all_its_objects) {
+    static const cscd_method methods[] = {CSCD_METHOD_NONE, CSCD_METHOD_ICCD_PUBLISHED};
+    static const uint32_t triangle[] = {0, 1, 2};
+    const double x[18] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0.1, 1, 0, 0.1, 0, 1, 0.1};
+    for (int i = 0; i < 4; i++) {
+        cscd_context *context;
+        cscd_mesh *mesh;
+        cscd_detector *detector;
+        cscd_contacts found;
+        cscd_detector_options options = cscd_detector_defaults();
+        cscd_object_rule thick[2] = {cscd_object_rule_default(), cscd_object_rule_default()};
+        for (int k = 0; k < 2; k++) objects[k] = cscd_object_of_triangles(3, 1, triangle);
+        thick[i % 2].thickness = 0.3; /* a pair keeps the mean of two */
+        options.method = method_or_none(methods[i / 2]);
+        options.rules = thick;
+        options.rule_count = 2;
+        assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
+        assert_int_equal(cscd_mesh_create(context, objects, 2, &mesh), CSCD_OK);
+        assert_int_equal(detector_create_here(mesh, NULL, &options, &detector), CSCD_OK);
+        assert_int_equal(step_packed(detector, x, x, &found), CSCD_OK);
+        assert_int_equal(found.count, 15);
+        cscd_detector_destroy(detector);
+        cscd_mesh_destroy(mesh);
+        cscd_context_destroy(context);
+    }
+}
+
+/* A tree is left out as collapsed only if all components in it are, not those of its first leaf alone. */
+TEST(trees_are_collapsed_as_a_whole) {
+    enum { TRIANGLES = 80, REGIONS = 2 };
+    static scene apart;
+    static bool collapsed[TRIANGLES];
+    bvh_rig r;
+    scene_clear(&apart);
+    apart.vertex_count = 3 * TRIANGLES;
+    apart.triangle_count = TRIANGLES;
+    for (uint32_t i = 0; i < 3 * TRIANGLES; i++) {
+        apart.triangles[i] = i;
+        for (uint32_t k = 0; k < 3; k++) apart.x0[3 * i + k] = 3.0 * (i / 3) + (i % 3 == k ? 1.0 : 0.0);
+    }
+    assert_true(bvh_rig_create(&apart, (bvh_setup){CSCD_SIMD_AUTO, 1, BOX_AXES, REGIONS}, &r));
+    assert_int_equal(r.bvh.tree_count, REGIONS);
+    for (uint32_t t = 0; t <= TRIANGLES; t++) { /* one more after the other, in the order of the leaves */
+        uint32_t whole = 0;
+        assert_true(bvh_mark_collapsed(&r.bvh, collapsed));
+        for (uint32_t i = 0; i < REGIONS; i++)
+            whole |= (uint32_t)(t >= (r.bvh.trees[i].first_leaf + r.bvh.trees[i].leaf_count) * LANES) << i;
+        assert_int_equal(r.bvh.levels[r.bvh.tree_level].collapsed_lanes[0], whole);
+        if (t < TRIANGLES) collapsed[r.mesh->triangle_components[bvh_triangle(&r.bvh, t)]] = true;
+    }
+    bvh_rig_destroy(&r);
 }

@@ -273,6 +273,69 @@ TEST(detector_points_follow_their_regions) {
     }
 }
 
+/* ---- flags of leaves and blocks ---- */
+
+static uint8_t orientations[2][SCENE_TRIANGLES_MAX];
+
+/* A sphere seen from its middle: all of its triangles face that, whichever task their leaves are in. */
+static void orient_sphere(bvh_rig *r) {
+    static const double middle[1][3];
+    static const bool culled[1] = {true};
+    const orientation_query view = {.culled = culled, .detector_offsets = middle, .still = true};
+    scene_clear(&shape);
+    scene_add_sphere(&shape, middle[0], 1.0, 24, 32);
+    assert_true(bvh_rig_create(&shape, (bvh_setup){CSCD_SIMD_AUTO, 2, BOX_AXES, 1}, r));
+    bvh_refit(&r->bvh, shape.x0, shape.x0, uniform_growth(0.0));
+    memset(orientations[0], ORIENTATION_ZERO, sizeof orientations[0]);
+    bvh_orient(&r->bvh, &view, orientations[0]);
+}
+
+/* Returns how many leaves and children of blocks have a flag. */
+static uint32_t count_flags(const bvh *f) {
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < f->leaf_count; i++)
+        count += (f->leaf_flags[i].plus | f->leaf_flags[i].minus | f->leaf_flags[i].newly_kept) != 0;
+    for (int level = 0; level < f->level_count; level++) {
+        for (uint32_t b = 0; b < f->levels[level].block_count; b++) {
+            const lane_flags flags = f->levels[level].flags[b];
+            count += (flags.plus | flags.minus | flags.newly_kept) != 0;
+        }
+    }
+    return count;
+}
+
+TEST(all_leaves_are_oriented_and_refits_forget_it) {
+    bvh_rig r;
+    orient_sphere(&r);
+    assert_true(r.bvh.leaf_count > 150); /* several tasks */
+    for (uint32_t t = 0; t < shape.triangle_count; t++)
+        assert_int_equal(orientations[0][t], ORIENTATION_PLUS);
+    assert_true(count_flags(&r.bvh) > r.bvh.leaf_count);
+    bvh_refit(&r.bvh, shape.x0, shape.x1, uniform_growth(0.0));
+    assert_int_equal(count_flags(&r.bvh), 0);
+    bvh_rig_destroy(&r);
+}
+
+TEST(what_had_a_sign_and_has_none_is_newly_kept) {
+    bvh_rig r;
+    orient_sphere(&r);
+    const bvh *f = &r.bvh;
+    for (uint32_t t = 0; t < shape.triangle_count; t++) {
+        orientations[0][t] = (uint8_t)random_integer(ORIENTATION_ZERO, ORIENTATION_MINUS);
+        orientations[1][t] = random_integer(0, 1) == 0 ? orientations[0][t] : ORIENTATION_ZERO;
+    }
+    bvh_mark_newly_kept(&r.bvh, orientations[0], orientations[1]);
+    for (uint32_t i = 0; i < f->leaf_count; i++) {
+        for (uint32_t lane = 0; lane < LANES && (f->leaf_flags[i].used >> lane & 1) != 0; lane++) {
+            const uint32_t t = f->leaves[i].triangles[lane];
+            const bool expected =
+                orientations[0][t] != ORIENTATION_ZERO && orientations[1][t] == ORIENTATION_ZERO;
+            assert_int_equal(f->leaf_flags[i].newly_kept >> lane & 1, expected);
+        }
+    }
+    bvh_rig_destroy(&r);
+}
+
 TEST(flags_of_sets) {
     assert_false(orientations_may_touch(ORIENTATION_PLUS, ORIENTATION_PLUS));
     assert_false(orientations_may_touch(ORIENTATION_MINUS, ORIENTATION_MINUS));
