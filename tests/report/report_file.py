@@ -83,7 +83,22 @@ class Report:
 
     def frames(self, name="frames", vertices=None):
         """Returns the positions that the page shows in each kept frame: [x of all vertices, y of all, z of all]."""
-        return list(shown_frames(self.arrays[name].tobytes(), vertices or self.scene["vertices"]))
+        return [[shown_axis(origin[k], step, q[k]) for k in range(3)] for _, origin, step, q in self.records(name, vertices)]
+
+    def records(self, name="frames", vertices=None):
+        """Decodes the records one after the other: (1 where a grid begins, its origin, its step, values of each axis)."""
+        return list(decoded(self.arrays[name].tobytes(), vertices or self.scene["vertices"]))
+
+    def errors(self, given):
+        """Returns the largest error of a coordinate of frames [(x, y, z)], and the largest by the longest side of its frame."""
+        largest = relative = 0.0
+        for shown, points in zip(self.frames(), given):
+            axes = list(zip(*points))
+            error = max(abs(a * self.scene["unit"] - b) for s, g in zip(shown, axes) for a, b in zip(s, g))
+            side = max(max(axis) - min(axis) for axis in axes)
+            largest = max(largest, error)
+            relative = max(relative, (error / side if side > 0.0 else 1.0) if error > 0.0 else 0.0)
+        return largest, relative
 
 
 def unpack(text, entry):
@@ -116,8 +131,8 @@ def read_body(data, at, count):
     return axes, at + width * 3 * count
 
 
-def shown_frames(data, count):
-    """Decodes the records one after the other."""
+def decoded(data, count):
+    """Yields what Report.records returns."""
     at, q, origin, step = 0, None, None, None
     while at < len(data):
         key, at = data[at], at + 1
@@ -129,7 +144,7 @@ def shown_frames(data, count):
             d, at = read_body(data, at + 12, count)
             q = [[a + b + s for a, b in zip(old, new)] for old, new, s in zip(q, d, shift)]
         q = [[wrap(value) for value in axis] for axis in q]
-        yield [shown_axis(origin[k], step, q[k]) for k in range(3)]
+        yield key, origin, step, q
 
 
 def shown_axis(origin, step, q):

@@ -11,7 +11,7 @@ import pytest
 from support.tool.reading import read_json
 from support.tool.recordings import fold, tetrahedra
 from support.tool.report_page import read_page
-from support.tool.running import fails, finish, run, start, usage_error
+from support.tool.running import fails, finish, limited_to, run, start, usage_error
 
 
 @pytest.fixture(autouse=True)
@@ -51,7 +51,7 @@ def test_summaries_stand_side_by_side():
     run("report out.json other.json -o page.html")
     root = read_page("page.html")
     assert root["kind"] == "compare" and [each["name"] for each in root["summaries"]] == ["out.json", "other.json"]
-    assert same(root["summaries"][1]["summary"], read_json("other.json"))
+    assert same(root["summaries"][1]["summary"], read_json("other.json")) and root["scene"] is None
 
 
 @pytest.mark.parametrize("line, says", [
@@ -75,18 +75,48 @@ def test_an_unwritable_report_loses_nothing_else():
     assert "no report was written" in answer.error and "No space left" in answer.error and "contacts: " in answer.out
     assert read_json("out.json")["summary"]["complete"] is True and os.path.exists("out.csv")
     fails("replay model.obj frames.pc2 --contacts new.csv --report nowhere/page.html", "nowhere/page.html", "No such file")
+    Path("loop.html").symlink_to("loop.html")
+    fails("replay model.obj frames.pc2 --contacts new.csv --report loop.html", "loop.html", "Too many levels")
+    os.mkdir("folder.html")
+    fails("replay model.obj frames.pc2 --contacts new.csv --report folder.html", "folder.html", "Is a directory")
     assert not os.path.exists("new.csv")  # refused before anything is opened
 
 
-def test_outputs_are_where_links_lead():
-    """Links to files that do not exist yet stay links, and the outputs are at their targets."""
+def test_a_full_disk_leaves_the_older_file():
+    """Whether there is room for nothing, for half of the page, or for all of it but a byte."""
+    run("replay model.obj frames.pc2 --json out.json")
+    run("report out.json -o page.html")
+    whole = os.path.getsize("page.html")
+    Path("older.html").write_text("older")
+    before = set(os.listdir())
+    for limit in (0, 1, whole // 2, whole - 1):
+        for name in ("older.html", "newer.html"):
+            fails(f"report out.json -o {name}", name, "cannot write: File too large", preexec_fn=limited_to(limit))
+    assert Path("older.html").read_text() == "older" and set(os.listdir()) == before
+
+
+def test_permissions_are_as_ever():
+    """Those of a new file, and those that an older one had. A name as long as may be leaves no room for a longer one."""
+    run("replay model.obj frames.pc2 --json out.json")
+    name, before = "n" * 250 + ".html", set(os.listdir())
+    for mode in (0o640, 0o604):
+        run("report out.json -o", name, umask=0o027)
+        assert os.stat(name).st_mode & 0o7777 == mode and read_page(name)["kind"] == "compare"
+        os.chmod(name, 0o604)
+    assert set(os.listdir()) == before | {name}
+
+
+def test_outputs_are_where_links_lead(own_folder):
+    """Links to files that do not exist yet, and to older ones, stay links, and the outputs are at their targets."""
     endings = ("html", "json", "csv")
-    for ending in endings:
-        Path(f"link.{ending}").symlink_to(f"led.{ending}")
-    run("replay model.obj frames.pc2 --report link.html --json link.json --contacts link.csv")
-    for ending in endings:
-        led = Path(f"led.{ending}")
-        assert Path(f"link.{ending}").is_symlink() and not led.is_symlink() and led.stat().st_size > 0
+    for ending, target in zip(endings, ("led.html", own_folder / "led.json", "led.csv")):
+        Path(f"link.{ending}").symlink_to(target)
+    for _ in range(2):
+        run("replay model.obj frames.pc2 --report link.html --json link.json --contacts link.csv")
+        for ending in endings:
+            led = Path(f"led.{ending}")
+            assert Path(f"link.{ending}").is_symlink() and not led.is_symlink() and led.stat().st_size > 5
+            led.write_text("older")
 
 
 def test_a_pipe_gets_the_page():
@@ -138,11 +168,25 @@ def test_an_interrupted_replay_reports_what_it_has(own_folder):
     assert 1 <= done < 4999 and root["scene"]["last"] == done
 
 
-def test_names_are_never_markup():
-    """Names are text in the page, whatever they contain."""
-    name = "a<img src=x onerror=alert(1)>&\"'<!--<script>.obj"
+def test_texts_are_never_markup():
+    """Beside its blocks, whatever names and texts they hold, a page is the same as any other."""
+    name, title = "a<img src=x onerror=alert(1)>&\"'<!--<script>.obj", "</script><img src=x><!--"
+    run("replay model.obj frames.pc2 --report page.html --json out.json")
+    ends = frame_of("page.html")
     tetrahedra(3).write_mesh(name)
     run("replay --frames 0:2 --report page.html", name, "frames.pc2")
-    assert read_page("page.html")["title"] == name
-    text = Path("page.html").read_text(encoding="utf-8")
-    assert "<img src=x" not in text and "<!--<script>" not in text
+    assert read_page("page.html")["title"] == name and frame_of("page.html") == ends
+    summary = {**read_json("out.json"), "more": title}
+    Path(name).write_text(json.dumps(summary))
+    run("report -o page.html", name, "--title", title)
+    root = read_page("page.html")
+    assert root["title"] == title and root["summaries"] == [{"name": name, "summary": summary}]
+    assert frame_of("page.html") == ends
+
+
+def frame_of(path):
+    """What stands before and behind the blocks of a page, none of which has markup."""
+    before, *blocks, last = Path(path).read_text(encoding="utf-8").split('<script type="application/')
+    *_, after = last.split("</script>\n", 1)
+    assert all(block.count("<") == block.count("</script>") == 1 for block in blocks)
+    return before, after
