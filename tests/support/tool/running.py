@@ -11,6 +11,9 @@ from typing import NamedTuple
 # With sanitizers, or in an emulator, programs take many times as long: tests repeat less.
 SLOW_MACHINE = "CSCD_RUNNER" in os.environ or os.path.basename(os.path.dirname(os.environ["CSCD_TOOL"])) in ("sanitize", "tsan")
 
+# The tool runs on Windows, or under wine.
+WINDOWS = os.environ["CSCD_TOOL"].endswith(".exe")
+
 # Whoever runs the tests in the background, or by nohup, ignores some of these, and the tool would, too.
 for interrupt in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
     if signal.getsignal(interrupt) == signal.SIG_IGN:
