@@ -1,4 +1,4 @@
-/* Areas and volumes of overlaps: boxes by hand, bodies of all kinds by columns, and what is inside out. */
+/* Areas and volumes of overlaps: boxes by hand, bodies of all kinds by columns, and what is inside out; curves that touch. */
 #include "tests/support/intersections/body_rig.h"
 #include "tests/support/intersections/column_count.h"
 #include "tests/support/random_stream.h"
@@ -110,6 +110,45 @@ TEST(a_body_that_is_inside_out) {
     body_rig_free(&rig);
 }
 
+/* A box and one that is inside out, of one object, cross: the faces of the first that the second holds are inverted, and all of
+ * the second that the first does not hold. */
+TEST(a_cut_body_that_is_inside_out) {
+    const double low[3] = {0, 0, 0}, size[3] = {2, 2, 2}, second[3] = {1, 1, 1};
+    body_rig_begin(&rig);
+    body_rig_add_box(&rig, low, size);
+    body_rig_add_box(&rig, second, size);
+    turn_inside_out(12, 24);
+    body_rig_end_body(&rig);
+    rig.orientation = CSCD_ORIENTATION_AS_GIVEN;
+    body_rig_find_all(&rig);
+    expect_overlap(0, 0, 0.0, 3.0 + 21.0, 0.0);
+    body_rig_free(&rig);
+}
+
+/* Of three boxes that overlap the last two, one in the other, are obstacles: nobody asks what they have of each other. */
+TEST(obstacles_have_nothing_in_each_other) {
+    body_rig_begin(&rig);
+    add_cube(0, 0, 0, 2);
+    add_cube(1.25, 1.5, 1.125, 1);
+    add_cube(1.0, 1.25, 0.875, 3);
+    body_rig_create(&rig, NULL, 1);
+    body_rig_find(&rig);
+    assert_int_equal(rig.found.overlaps->count, 3);
+    body_rig_free(&rig);
+    cscd_object_desc descs[3];
+    for (uint32_t i = 0; i < 3; i++) {
+        descs[i] = cscd_object_of_triangles(8, 12, rig.bodies[i].triangles);
+        descs[i].obstacle = i > 0;
+    }
+    assert_int_equal(cscd_context_create(NULL, &rig.context), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(rig.context, descs, 3, &rig.mesh), CSCD_OK);
+    assert_int_equal(cscd_detector_create(rig.context, rig.mesh, NULL, NULL, &rig.detector), CSCD_OK);
+    body_rig_find(&rig);
+    assert_int_equal(rig.found.overlaps->count, 2);
+    assert_int_equal(rig.found.overlaps->items[1].a, 0);
+    body_rig_free(&rig);
+}
+
 /* Two bodies of one object: what is in both is contained twice. */
 TEST(two_bodies_of_one_object) {
     const double low[3] = {0, 0, 0}, size[3] = {2, 2, 2}, second[3] = {1, 1, 1};
@@ -188,6 +227,29 @@ TEST(an_object_that_is_not_looked_at_with_itself) {
         assert_int_equal(rig.found.overlaps->count, 1);
         assert_true(fabs(found.volume - (1.0 + 0.5 * 1.0 * 0.75)) <= 1e-12);
         assert_true(fabs(found.area_b - 6.0) <= 1e-12);
+        body_rig_free(&rig);
+    }
+}
+
+/* Open sheets have no depth, so only their pairs tell. Of two pairs of sheets each crosses or does not. */
+TEST(open_sheets_that_cross_do_not_touch) {
+    static const double up[3] = {0, 0, 1}, along[3] = {1, 0.25, 0}, across[3] = {0.125, 1, 0};
+    for (int crossing = 0; crossing < 4; crossing++) {
+        body_rig_begin(&rig);
+        for (int i = 0; i < 2; i++) { /* the second sheet of each begins at the first, or behind it */
+            const double back = (crossing >> i & 1) != 0 ? 0.5 : 0.0, corner[3] = {4.0 * i, 0, 0};
+            const double other[3] = {4.0 * i + 0.5 - 0.125 * back, 0.125 - back, 0.375};
+            body_rig_add_sheet(&rig, corner, along, up, 1, 1, false);
+            body_rig_end_body(&rig);
+            body_rig_add_sheet(&rig, other, across, up, 1, 1, false);
+            body_rig_end_body(&rig);
+        }
+        body_rig_find_all(&rig);
+        for (size_t i = 0; i < rig.found.curves->count; i++) {
+            const cscd_curve *c = &rig.found.curves->items[i];
+            assert_int_equal(c->touching, (crossing >> c->objects[0] / 2 & 1) == 0);
+        }
+        assert_int_equal(rig.found.curves->count, (crossing & 1) + (crossing >> 1));
         body_rig_free(&rig);
     }
 }

@@ -1,6 +1,7 @@
 /* The static check equals a test of all triangle pairs, each decided exactly, and reports the right
  * states. */
 #include "cscd/cscd.h"
+#include "runtime/detector/detector.h"
 #include "src/mesh/predicates.h"
 #include "src/mesh/triangle_intersection.h"
 #include "tests/support/collapsed_oracle.h"
@@ -8,6 +9,8 @@
 #include "tests/support/rig.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"
+
+#include <string.h>
 
 static scene s; /* large; one test at a time */
 static bool collapsed[SCENE_VERTICES_MAX];
@@ -86,4 +89,36 @@ TEST(flat_folds_count) {
         if (s.x0[v * 3] > 0) s.x0[v * 3] = -s.x0[v * 3];
     }
     assert_true(compare_with_all_pairs(1) > 0);
+}
+
+/* Nothing is proven of a triangle without area, also where it crosses nothing: here it has one corner in common with another. */
+TEST(triangles_without_area_are_not_clean) {
+    static const uint32_t triangles[] = {0, 1, 2, 0, 3, 4};
+    static const double x[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, -1, 0, 0, -2, 0, 0};
+    scene_clear(&s);
+    s.vertex_count = 5;
+    s.triangle_count = 2;
+    memcpy(s.triangles, triangles, sizeof triangles);
+    memcpy(s.x0, x, sizeof x);
+    rig r = rig_create(&s, 1, NULL);
+    cscd_intersections found;
+    assert_int_equal(check_packed(r.detector, s.x0, &found), CSCD_OK);
+    assert_true(found.count == 0 && found.zero_area_triangles == 1 && found.first_zero_area == 1);
+    assert_int_equal(cscd_detector_start_state(r.detector, 1), CSCD_START_STATE_CROSSING);
+    assert_true(cscd_detector_start_state(r.detector, 0) > CSCD_START_STATE_CROSSING);
+    rig_destroy(&r);
+}
+
+/* Whoever asks is told, whatever has been found by then. */
+TEST(cancelled_checks_say_so) {
+    scene_clear(&s);
+    scene_add_sphere(&s, (double[3]){0, 0, 0}, 1.0, 9, 14);
+    rig r = rig_create(&s, 2, NULL);
+    cscd_detector *d = r.detector;
+    cscd_intersections found;
+    assert_int_equal(check_packed(d, s.x0, &found), CSCD_OK);
+    assert_int_equal(static_check_all(&d->check, &d->space.traversal, &d->space.bvh, s.x0), CSCD_OK);
+    cscd_context_cancel(r.context);
+    assert_int_equal(static_check_all(&d->check, &d->space.traversal, &d->space.bvh, s.x0), CSCD_CANCELLED);
+    rig_destroy(&r);
 }
