@@ -13,27 +13,12 @@ from replayed import report_of, write
 from report_file import Report
 from support.tool.boxes import SIDES, box, corners_of
 from support.tool.jobs import CLEAN, write_list
+from support.tool.ply import read_ply
 from support.tool.reading import read_json
 from support.tool.recordings import Recording, cube, fold, spindle, tetrahedra, torus
 from support.tool.running import run
 
 # ---- scene and plan
-
-def read_plan(path):
-    """The rows of a plan's file, by the names of its elements and of their properties."""
-    header, data = Path(path).read_bytes().split(b"end_header\n")
-    formats, elements, at = {"double": "d", "uint": "I", "uchar": "B"}, {}, 0
-    for element in header.decode().split("element ")[1:]:
-        (name, count), *properties = (line.split() for line in element.splitlines())
-        names = [words[-1] for words in properties]
-        form = "<" + "".join("B3I" if words[1] == "list" else formats[words[1]] for words in properties)
-        names = [part for each in names for part in (("size", "a", "b", "c") if each == "vertex_indices" else (each,))]
-        size = struct.calcsize(form)
-        elements[name] = [dict(zip(names, struct.unpack_from(form, data, at + i * size))) for i in range(int(count))]
-        at += int(count) * size
-    assert at == len(data)
-    return elements
-
 
 def as_float32(x):
     return struct.unpack("<f", struct.pack("<f", x))[0]
@@ -69,7 +54,7 @@ def test_a_preprocess_has_one_frame():
     assert report.scene["contacts"] is None and report.scene["last"] == 0
     assert not {"heat", "orientation", "detector_points", "contact_interval", "contact_toi"} & set(report.arrays)
     expect_mesh(report, scene)
-    expect_plan(report, read_plan("model.plan.ply"))
+    expect_plan(report, read_ply("model.plan.ply").elements)
 
 
 def test_scene_and_plan_come_back():
@@ -81,7 +66,7 @@ def test_scene_and_plan_come_back():
     assert {key: report.scene[key] for key in own} == own
     assert not {"scenery_triangles", "contact_file_vertices"} & set(report.arrays)
     expect_mesh(report, scene)
-    expect_plan(report, read_plan("model.plan.ply"))
+    expect_plan(report, read_ply("model.plan.ply").elements)
 
 
 # ---- contacts and orientations
@@ -128,7 +113,7 @@ def test_contacts_and_orientations_come_back(scene, method, seen):
     assert report.contacts() == contacts != []
     assert report.scene["contacts"]["found"] == report.scene["contacts"]["kept"] == len(contacts)
     assert list(report.arrays["heat"]) == heat(scene.triangles, contacts)
-    expect_orientations(report, scene, read_plan("model.plan.ply"))
+    expect_orientations(report, scene, read_ply("model.plan.ply").elements)
     sides = [side for _, orientation in report.orientations() for side in orientation]
     assert len(sides) == len(scene.triangles) * (len(scene.frames) - 1) and sides.count(0) <= (1 - seen) * len(sides)
 

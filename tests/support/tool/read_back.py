@@ -1,0 +1,48 @@
+"""What the tool makes of a file of a mesh: every frame as it exports it, or what it says of one that is wrong."""
+import os
+from pathlib import Path
+
+from support.tool.jobs import read_results, write_list
+from support.tool.ply import read_ply
+from support.tool.running import run
+
+
+def write_file(path, content):
+    """Writes a text or bytes; returns the path."""
+    Path(path).write_bytes(content.encode("utf-8") if isinstance(content, str) else content)
+    return path
+
+
+def frames_read(content, name="mesh.glb", options=""):
+    """The frames of a file, exactly as they were read: no vertices are joined."""
+    write_file(name, content)
+    for path in Path().glob("out_*.ply"):
+        path.unlink()
+    run(f"check {name} --weld none --no-depths --quiet --ply out --json out.json {options}")
+    return [read_ply(path) for path in sorted(Path().glob("out_*.ply"))]
+
+
+def expect_mesh(content, points, triangles, name="mesh.glb", options=""):
+    """A file of one frame has these points and triangles, to the last bit."""
+    (mesh,) = frames_read(content, name, options)
+    assert mesh.points == [tuple(map(float, point)) for point in points] and mesh.triangles == [tuple(each) for each in triangles]
+
+
+def errors_of(contents, name="mesh.glb", **members):
+    """What the tool says of each file, all of which it must refuse, without its name. members: of their jobs."""
+    for i, content in enumerate(contents):
+        os.makedirs(f"case{i}", exist_ok=True)
+        write_file(f"case{i}/{name}", content)
+    write_list("jobs.jsonl", *({"model": f"case{i}/{name}", **members} for i in range(len(contents))))
+    run("check --list jobs.jsonl --results out.jsonl --quiet", code=1)
+    errors = [line["error"] for _, line in sorted(read_results("out.jsonl").items())]
+    os.remove("out.jsonl")
+    assert all(error and error.count(f"{name}:") == 1 and "\n" not in error for error in errors), errors
+    return [error.split(f"{name}:")[1] for error in errors]
+
+
+def expect_errors(table, **options):
+    """table: rows of a content and the texts that are in what is said of it."""
+    errors = errors_of([content for content, *_ in table], **options)
+    missing = [(error, says) for error, (_, *says) in zip(errors, table) if not all(text in error for text in says)]
+    assert missing == [], missing
