@@ -82,6 +82,51 @@ TEST(a_part_is_a_body_if_it_is_closed) {
     cscd_context_destroy(context);
 }
 
+/* A box that lies askew in a slab's surface, its two halves being parts: each has a deepest point, the patch names the deeper one. */
+TEST(parts_of_a_patch_have_their_own_points) {
+    static const double low[3] = {-4, -4, -2}, size[3] = {8, 8, 2}, small[3] = {-1, -1, -0.25},
+                        sizes[3] = {2, 2, 1};
+    static uint32_t labels[SCENE_TRIANGLES_MAX];
+    for (int turned = 0; turned < 2; turned++) {
+        cscd_context *context;
+        cscd_mesh *mesh;
+        cscd_detector *detector;
+        double deepest[2] = {0.0, 0.0}, most = 0.0;
+        size_t points[2] = {0, 0};
+        body_rig_begin(&rig);
+        body_rig_add_box(&rig, low, size);
+        body_rig_end_body(&rig);
+        body_rig_add_box(&rig, small, sizes);
+        body_rig_end_body(&rig);
+        for (uint32_t v = 8; v < 16; v++) /* one side is 0.1 deeper */
+            rig.all.x0[3 * v + 2] -= (v % 2 == 1) == (turned == 0) ? 0.1 : 0.0;
+        for (uint32_t t = 0; t < 24; t++) {
+            const uint32_t *c = rig.all.triangles + 3 * (size_t)t;
+            const uint32_t to_the_right = c[0] % 2 + c[1] % 2 + c[2] % 2;
+            const bool right =
+                to_the_right > (turned == 0 ? 0 : 2); /* no corner of the other part is as deep */
+            labels[t] = t < 12 ? 0 : right ? 2 : 1;
+        }
+        assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
+        const cscd_depths found = find_as(2, labels, 3, context, &mesh, &detector);
+        for (size_t i = found.vertex_count + found.edge_count; i < found.count; i++) {
+            const cscd_depth *at = &found.items[i];
+            if (at->face < 12) continue;
+            const uint32_t part = labels[at->face] - 1;
+            deepest[part] = fmax(deepest[part], at->depth);
+            points[part]++;
+        }
+        assert_true(points[0] == 1 && points[1] == 1);
+        assert_true(fabs(deepest[turned == 0] - 0.35) < 1e-12 && fabs(deepest[turned == 1] - 0.25) < 1e-12);
+        for (size_t i = 0; i < found.patch_count; i++)
+            most = fmax(most, found.items[found.patches[i].deepest].depth);
+        assert_true(most == fmax(deepest[0], deepest[1]));
+        cscd_detector_destroy(detector);
+        cscd_mesh_destroy(mesh);
+        cscd_context_destroy(context);
+    }
+}
+
 static double depth_of(cscd_detector *detector) {
     cscd_intersection_options options = cscd_intersection_defaults();
     cscd_intersection_pairs found;

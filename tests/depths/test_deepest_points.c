@@ -113,6 +113,50 @@ TEST(boxes_by_hand) {
     }
 }
 
+/* A rod from wall to wall of a cube is deepest in its middle, where no corner is, while one end of it has a corner that is nearly as
+ * deep. Each long triangle has two corners beside each other, and one far away. */
+TEST(a_rod_with_a_deep_corner) {
+    static const double cube[6] = {0, 1, 0, 1, 0, 1}, around[3][2] = {{0, 0}, {0.02, 0}, {0, 0.02}};
+    static const uint32_t triangles[][3] = {{1, 0, 3}, {3, 4, 1}, {2, 1, 4}, {4, 5, 2}, {0, 2, 5},
+                                            {5, 3, 0}, {3, 5, 4}, {0, 1, 6}, {1, 2, 6}, {2, 0, 6}};
+    double bound;
+    body_rig_begin(&rig);
+    add_box(&placements[0], cube);
+    for (uint32_t v = 0; v < 7; v++, rig.all.vertex_count++) {
+        double *x = rig.all.x0 + 3 * (size_t)rig.all.vertex_count;
+        for (int k = 0; k < 3; k++)
+            x[k] = v == 6 ? 0.4 : k == 0 ? (v < 3 ? 0.05 : 0.95) : 0.49 + around[v % 3][k - 1];
+    }
+    for (uint32_t i = 0; i < 30; i++) rig.all.triangles[36 + i] = 8 + triangles[i / 3][i % 3];
+    rig.all.triangle_count += 10;
+    body_rig_end_body(&rig);
+    body_rig_find_all(&rig);
+    const double depth = deepest_of_all(&bound);
+    assert_true(depth > 0.49 * 0.99 && bound >= 0.49 && depth <= 0.5 && bound <= 1.01 * depth);
+    body_rig_free(&rig);
+}
+
+/* Where the depth is 0, the way out of a body is that of its surface outwards, also where its triangles look inwards. */
+TEST(ways_out_of_what_touches) {
+    static const double floor_box[6] = {-4, 4, -4, 4, -1, 0}, crate[6] = {-1, 1, -1, 1, 0, 2};
+    for (int inverted = 0; inverted < 4; inverted++) {
+        size_t faces = 0;
+        body_rig_begin(&rig);
+        add_box(&placements[0], floor_box);
+        add_box(&placements[0], crate);
+        for (int i = 0; i < 2; i++)
+            if ((inverted >> i & 1) != 0) body_rig_turn(&rig, (uint32_t)i * 12, 12);
+        body_rig_find_all(&rig);
+        const cscd_depths *d = rig.found.depths;
+        for (size_t i = d->vertex_count + d->edge_count; i < d->count; i++, faces++) {
+            assert_true(d->items[i].depth == 0.0 && fabs(d->items[i].direction[2]) == 1.0);
+            assert_int_equal(d->items[i].direction[2] > 0.0, d->items[i].body == 0);
+        }
+        assert_true(faces > 0);
+        body_rig_free(&rig);
+    }
+}
+
 /* ---- beside samples ---------------------------------------------------------------------------------------- */
 
 static double (*corner_of(uint32_t t, uint32_t i))[3] {

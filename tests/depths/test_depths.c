@@ -1,6 +1,10 @@
 /* Depths: by hand where one sees them, else no less and no more than the distance from a body's outer surface. */
+#include "cscd/research.h"
+#include "runtime/depths/body_point.h"
+#include "runtime/detector/detector.h"
 #include "src/core/vec3.h"
 #include "tests/support/intersections/body_measures.h"
+#include "tests/support/methods.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/test.h"
 
@@ -45,6 +49,116 @@ TEST(a_box_sunk_into_a_slab) {
     assert_int_equal(rig.found.depths->patch_count, 1);
     assert_true(rig.found.depths->items[rig.found.depths->patches[0].deepest].depth == 0.125);
     body_rig_free(&rig);
+}
+
+/* Under the published ICCD both are in one tree, and so is the surface that the corners lie on themselves. */
+TEST(bodies_of_one_tree) {
+    cscd_detector_options options = cscd_detector_defaults();
+    options.method = method_or_none(CSCD_METHOD_ICCD_PUBLISHED);
+    body_rig_begin(&rig);
+    add_box(0, 0, -2, 10, 10, 2);
+    add_box(3, 4, -0.125, 1, 1, 1);
+    body_rig_create(&rig, &options, 1);
+    body_rig_find(&rig);
+    assert_int_equal(rig.found.depths->vertex_count, 4);
+    for (size_t i = 0; i < 4; i++) assert_true(rig.found.depths->items[i].depth == 0.125);
+    body_rig_free(&rig);
+}
+
+/* A corner that is as near to both triangles of a face names the first, whichever the trees show first. */
+TEST(the_first_of_equals_is_named) {
+    for (int turned = 0; turned < 2; turned++) { /* the numbers of the face's triangles are exchanged */
+        size_t found = 0;
+        body_rig_begin(&rig);
+        add_box(0, 0, 0, 4, 4, 4);
+        add_box(1, 1, 0.5, 1, 1, 1);
+        for (uint32_t k = 0; k < 3 && turned == 1; k++) {
+            uint32_t *first = &rig.bodies[0].triangles[k], *second = first + 3, kept = *first;
+            *first = *second;
+            *second = kept;
+        }
+        body_rig_find_all(&rig);
+        for (size_t i = 0; i < rig.found.depths->vertex_count; i++) {
+            const cscd_depth *d = &rig.found.depths->items[i];
+            if (d->x[0] != d->x[1] || d->x[2] != 0.5) continue; /* over the diagonal of the floor */
+            assert_true(d->depth == 0.5);
+            assert_int_equal(d->triangle, 0);
+            found++;
+        }
+        assert_int_equal(found, 2);
+        body_rig_free(&rig);
+    }
+}
+
+/* The edge is deepest a little before its middle, where it comes as near to the ceiling as it has been to the floor. */
+TEST(an_edge_is_deepest_beside_its_middle) {
+    static const double corners[4][3] = {
+        {-1.5, 0, -1.85}, {4.5, 0, 1.95}, {4.5, 0.01, 1.97}, {4.5, -0.02, 1.96}};
+    static const uint32_t triangles[12] = {0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2};
+    double deepest = 0.0;
+    body_rig_begin(&rig);
+    add_box(0, -5, -1, 10, 10, 2);
+    memcpy(rig.all.x0 + (size_t)rig.all.vertex_count * 3, corners, sizeof corners);
+    for (int i = 0; i < 12; i++)
+        rig.all.triangles[rig.all.triangle_count * 3 + (uint32_t)i] = rig.all.vertex_count + triangles[i];
+    rig.all.vertex_count += 4;
+    rig.all.triangle_count += 4;
+    body_rig_end_body(&rig);
+    body_rig_find_all(&rig);
+    for (size_t i = 0; i < rig.found.depths->edge_count; i++)
+        deepest = fmax(deepest, rig.found.depths->items[rig.found.depths->vertex_count + i].depth);
+    assert_true(deepest > 0.9999 && deepest <= 1.0);
+    body_rig_free(&rig);
+}
+
+/* ---- corners that touch ---------------------------------------------------------------------------------- */
+
+/* A whole number below 2^20 in magnitude, times 8. */
+static double whole_number(random_stream *random) {
+    return 8.0 * floor(stream_between(random, -0x1p20, 0x1p20));
+}
+
+/* A corner that lies on another body's face, or on an edge of it, to the last bit has no depth, whatever rounding makes of the
+ * way there; and it lies there by the exact question, too, while its neighbours do not. */
+TEST(corners_on_a_surface_have_no_depth) {
+    static const uint32_t triangles[12] = {0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2};
+    random_stream random = stream_start(12);
+    size_t asked = 0;
+    for (int round = 0; round < 40 * ROUNDS; round++) {
+        const double weights[2][3] = {{0.375, 0.625, 0.0}, {0.25, 0.375, 0.375}};
+        body_rig_begin(&rig);
+        double *x = rig.all.x0, volume, sides[3][3], normal[3];
+        for (int k = 0; k < 12; k++) x[k] = whole_number(&random);
+        for (int i = 0; i < 3; i++) vec3_subtract(x + 3 * i + 3, x, sides[i]);
+        vec3_cross(sides[0], sides[1], normal);
+        volume = vec3_dot(normal, sides[2]);
+        for (uint32_t k = 0; k < 24; k++) /* both face outwards */
+            rig.all.triangles[k] =
+                triangles[k % 12 / 3 * 3 + (volume > 0.0 ? 2 - k % 3 : k % 3)] + k / 12 * 4;
+        for (int k = 0; k < 3; k++) {
+            double *own = x + 12 + k, middle = 0.25 * (x[k] + x[3 + k] + x[6 + k] + x[9 + k]);
+            own[0] = 0.0;
+            for (int i = 0; i < 3; i++) own[0] += weights[round % 2][i] * x[3 * i + k];
+            for (int i = 1; i < 4; i++) own[3 * i] = middle + 0.0625 * (x[3 * i + k] - x[k]);
+        }
+        rig.all.vertex_count = rig.all.triangle_count = 4;
+        body_rig_end_body(&rig);
+        rig.all.vertex_count = rig.all.triangle_count = 8;
+        body_rig_end_body(&rig);
+        body_rig_find_all(&rig);
+        const named_surface surface = {.mesh = rig.mesh, .positions = x};
+        for (uint32_t v = 4; v < 8; v++)
+            assert_int_equal(body_has_point(&surface, &rig.detector->space.bvh, 0, x + 3 * v), v == 4);
+        for (size_t i = 0; i < rig.found.depths->vertex_count; i++) {
+            const cscd_depth *d = &rig.found.depths->items[i];
+            if (d->vertex != 4) continue;
+            assert_true(d->depth == 0.0);
+            asked++;
+        }
+        body_rig_free(&rig);
+    }
+    print_message("  %zu corners\n", asked);
+    assert_true(asked > 10 * ROUNDS);
 }
 
 /* The long bar goes through the wall; its lower edges are near to the bottom of the wall. */
@@ -173,4 +287,38 @@ TEST(a_snake_in_its_own_tail) {
         for (int k = 0; k < SAMPLES; k++) sample_outer_surface(&random, d);
     }
     body_rig_free(&rig);
+}
+
+/* Two tips over a ring that goes around twice, the second time nearer: around a tip some triangles are within the body and others
+ * are not, so the tip itself is not, whichever of them is the first. */
+TEST(tips_of_a_star_that_goes_around_twice) {
+    enum { RING = 10 };
+    size_t buried = 0;
+    for (uint32_t first = 0; first < RING; first++) {
+        scene *all = &rig.all;
+        body_rig_begin(&rig);
+        for (uint32_t i = 0; i < RING + 2; i++, all->vertex_count++) {
+            const double angle = 4 * 3.141592653589793 * i / RING, radius = i < RING / 2 ? 1.0 : 0.5;
+            const double place[3] = {radius * cos(angle), radius * sin(angle), 0.01 * i};
+            const double tip[3] = {0, 0, i == RING ? 1 : -1};
+            memcpy(all->x0 + 3 * (size_t)i, i < RING ? place : tip, sizeof place);
+        }
+        for (uint32_t i = 0; i < RING; i++) {
+            const uint32_t a = (first + i) % RING, b = (a + 1) % RING;
+            const uint32_t corners[6] = {a, b, RING, b, a, RING + 1};
+            memcpy(all->triangles + 6 * (size_t)i, corners, sizeof corners);
+            all->triangle_count += 2;
+        }
+        body_rig_end_body(&rig);
+        body_rig_find_all(&rig);
+        for (size_t i = 0; i < rig.found.depths->vertex_count; i++)
+            assert_true(rig.found.depths->items[i].vertex < RING);
+        for (uint32_t k = 2; k < 6; k += 3) {
+            const cscd_patch *at = &rig.found.patches->items[rig.found.patches->corner_patches[k]];
+            for (uint32_t i = 0; i < at->winding_count; i++)
+                buried += rig.found.patches->windings[at->first_winding + i].number >= 1;
+        }
+        body_rig_free(&rig);
+    }
+    assert_true(buried > 0);
 }
