@@ -95,6 +95,11 @@ def test_depths_that_take_too_long(command):
     assert read_json("out.json")["events"][0]["depth"] is None
 
 
+def test_the_work_that_it_may_take_has_a_unit_that_suits():
+    count, unit = re.search(r"more than --max-work allows \(some (\d+)([KM])\)", run(f"check {FRAMES} --max-work 1", code=1).out).groups()
+    assert 1 <= int(count) <= 1024 and unit == "M"
+
+
 def nothing_of_contacts():
     """Of the first interval."""
     interval = read_json("out.json")["intervals"][0]

@@ -4,7 +4,7 @@ from pathlib import Path
 import pytest
 
 from support.tool.boxes import box
-from support.tool.reading import read_json
+from support.tool.reading import read_csv, read_json
 from support.tool.running import fails, run
 
 UNIT = ((0, 0, 0), (1, 1, 1))
@@ -31,6 +31,24 @@ def test_words_say_who_shares_space(a, b, cut, line, word, code):
         assert out.startswith(line) and word in out
         run(f"check {files} --quiet --fail-on crossing", code=code)
         run(f"check {files} --quiet --fail-depth 0.1", code=code)
+
+
+def test_tables_say_that_parts_are_copies():
+    """As the file for programs does."""
+    Path("both.obj").write_text(box(*UNIT, "a", cut=0) + box(*UNIT, "b", cut=0))
+    run("check both.obj --events out.csv --json out.json")
+    kinds = read_json("out.json")["events"][0]["kinds"]
+    assert "same_solid" in kinds and [row["kinds"] for row in read_csv("out.csv")] == [" ".join(kinds)]
+
+
+@pytest.mark.parametrize("shift", [0, 1, 2])
+def test_what_lies_in_itself_is_not_the_worst(shift):
+    """A part with a second shell in it, which meets nothing, comes after parts that cross, whatever their order is."""
+    parts = [box((0, 0, 0), (4, 4, 4), "shells", cut=0) + box((1, 1, 1), (3, 3, 3), cut=0),
+             box((10, 0, 0), (11, 1, 1), "b", cut=0), box((10.75, 0.5, 0.5), (12, 2, 2), "c", cut=0)]
+    Path("three.obj").write_text("".join(parts[(shift + i) % 3] for i in range(3)))
+    error = run("check three.obj --fail-on crossing", code=3).error
+    assert ", worst: b x c" in error or ", worst: c x b" in error
 
 
 # ---- how many lie inside

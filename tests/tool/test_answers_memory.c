@@ -1,4 +1,4 @@
-/* Parts, rules and answers survive every failed allocation: they say so, and nothing leaks. */
+/* Parts, rules and answers survive every failed allocation: they say so, and nothing leaks. And contacts without a frame are kept. */
 #include "src/io/growable.h"
 #include "src/tool/answers/answers.h"
 #include "src/tool/answers/consequences.h"
@@ -119,6 +119,27 @@ TEST(each_allocation_may_fail) {
     assert_true(fail_each(read_parts) >= 7);
     assert_true(fail_each(prepare_rules) >= 10);
     assert_true(fail_each(find_answers) >= 10);
+}
+
+/* Contacts on the way to a frame that was never looked at count for it all the same. */
+TEST(contacts_of_the_last_interval_have_a_frame) {
+    const cscd_contact contact = {
+        .kind = CSCD_CONTACT_VF, .a = 0, .b = 4, .vertices = {0, 4, 5, 6}, .toi = 0.5};
+    const ignore_options none = {.path = NULL};
+    ignore_pairs ignored;
+    io_error error;
+    assert_true(ignore_pairs_prepare(&none, &scene, &ignored, &error));
+    for (size_t count = 0; count < 3; count++) {
+        const cscd_contact items[] = {contact, contact};
+        const cscd_contacts contacts = {.items = items, .count = count};
+        answers a = {0};
+        assert_true(answers_open(&scene, &ignored, true, (answer_limits){0}, &a, &error));
+        assert_true(answers_add_contacts(&a, &contacts, &error) && answers_finish(&a, &error));
+        assert_int_equal(a.frames.count, count > 0);
+        if (count > 0) assert_int_equal(answers_frames(&a)[0].contacts, count);
+        answers_close(&a);
+    }
+    ignore_pairs_free(&ignored);
 }
 
 /* What cannot be left out for want of memory stays. */
