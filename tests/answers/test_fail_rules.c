@@ -4,7 +4,8 @@
 
 static void check_depth(double depth, double bound, const char *expected) {
     const fail_rules rules = {.options.depth.given = true, .depth = 1.0};
-    const frame_answer frame = {.checked = true, .depth = depth, .bound = bound, .worst_parts = {NO_PART, NO_PART}};
+    const frame_answer frame = {
+        .checked = true, .depth = depth, .bound = bound, .worst_parts = {NO_PART, NO_PART}};
     char text[FAIL_TEXT_SIZE];
     assert_int_equal(fail_rules_meet(&rules, NULL, &frame, text), expected != NULL);
     if (expected != NULL) assert_string_equal(text, expected);

@@ -96,7 +96,8 @@ def test_depths_that_take_too_long(command):
 
 
 def test_the_work_that_it_may_take_has_a_unit_that_suits():
-    count, unit = re.search(r"more than --max-work allows \(some (\d+)([KM])\)", run(f"check {FRAMES} --max-work 1", code=1).out).groups()
+    out = run(f"check {FRAMES} --max-work 1", code=1).out
+    count, unit = re.search(r"more than --max-work allows \(some (\d+)([KM])\)", out).groups()
     assert 1 <= int(count) <= 1024 and unit == "M"
 
 
