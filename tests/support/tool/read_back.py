@@ -4,7 +4,11 @@ from pathlib import Path
 
 from support.tool.jobs import read_results, write_list
 from support.tool.ply import read_ply
+from support.tool.reading import read_json
 from support.tool.running import run
+
+SQUARE = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
+HALVES = [(0, 1, 2), (0, 2, 3)]
 
 
 def write_file(path, content):
@@ -46,3 +50,23 @@ def expect_errors(table, **options):
     errors = errors_of([content for content, *_ in table], **options)
     missing = [(error, says) for error, (_, *says) in zip(errors, table) if not all(text in error for text in says)]
     assert missing == [], missing
+
+
+def expect_squares(contents, name):
+    """Each of these files is the square of two triangles."""
+    for content in contents:
+        expect_mesh(content, SQUARE, HALVES, name)
+
+
+def info_of(content, name="mesh.glb", options=""):
+    """What --json of info says of a file."""
+    run(f"info {write_file(name, content)} --json info.json {options}")
+    return read_json("info.json")
+
+
+def expect_parts(content, names, name, parts_by=None):
+    """The parts of a file, and what each triangle is in; names: of the triangles' parts, None for none."""
+    options = f"--parts-by {parts_by}" if parts_by else ""
+    (mesh,) = frames_read(content, name, options)
+    known = mesh.named("part") if any(names) else {}
+    assert [known.get(part) for part in mesh.faces("part")] == names
