@@ -1,4 +1,4 @@
-/* Reads bytes as a mesh file and checks the mesh or the error; used inside cmocka tests. */
+/* Reads bytes as a mesh file and checks the mesh, whatever happens to the file or to memory; used inside cmocka tests. */
 #include "tests/support/io/mesh_check.h"
 #include "tests/support/test.h"
 
@@ -49,64 +49,6 @@ void mesh_check_square(file_bytes file) {
     static const double positions[] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
     static const uint32_t triangles[] = {0, 1, 2, 0, 2, 3};
     mesh_check_equal(file, 4, positions, 2, triangles);
-}
-
-static void check_names(const mesh_file *mesh, const char *const *names, const uint32_t *labels) {
-    uint32_t count = 0;
-    for (; names[count] != NULL; count++) {
-        assert_true(count < mesh->parts.count);
-        assert_string_equal(mesh->parts.names[count], names[count]);
-    }
-    assert_int_equal(mesh->parts.count, count);
-    for (uint32_t t = 0; t < mesh->triangle_count && count > 0; t++)
-        assert_int_equal(mesh->parts.of_triangle[t], labels[t]);
-    if (count == 0) assert_null(mesh->parts.of_triangle);
-}
-
-void mesh_check_parts(file_bytes file, const char *const *names, const uint32_t *labels) {
-    mesh_file mesh = {0};
-    io_error error = {""};
-    if (!mesh_check_read(file, &mesh, &error)) fail_msg("refused: %s", error.text);
-    check_names(&mesh, names, labels);
-    assert_int_equal(mesh.own_parts.count, 0);
-    mesh_file_free(&mesh);
-}
-
-void mesh_check_parts_by(file_bytes file, mesh_parts_by parts_by, const char *const *names,
-                         const uint32_t *labels, const uint32_t *own) {
-    mesh_file mesh = {0}, plain = {0};
-    io_error error = {""};
-    if (!mesh_check_read_parts(file, parts_by, &mesh, &error)) fail_msg("refused: %s", error.text);
-    if (!mesh_check_read(file, &plain, &error)) fail_msg("refused: %s", error.text);
-    check_names(&mesh, names, labels);
-    const mesh_parts *parts = mesh_file_own_parts(&mesh);
-    assert_int_equal(parts->count, plain.parts.count);
-    assert_true((parts->of_triangle != NULL) == (own != NULL));
-    for (uint32_t i = 0; i < parts->count; i++) assert_string_equal(parts->names[i], plain.parts.names[i]);
-    for (uint32_t t = 0; t < mesh.triangle_count && own != NULL; t++)
-        assert_true(parts->of_triangle[t] == own[t] && plain.parts.of_triangle[t] == own[t]);
-    assert_int_equal(mesh.triangle_count, plain.triangle_count);
-    assert_memory_equal(mesh.triangles, plain.triangles, 3 * plain.triangle_count * sizeof *plain.triangles);
-    mesh_file_free(&mesh);
-    mesh_file_free(&plain);
-}
-
-void mesh_check_error(file_bytes file, const char *place, const char *found, const char *expected) {
-    double untouched;
-    mesh_file mesh = {.vertex_count = 7, .positions = &untouched};
-    io_error error = {""};
-    char start[256];
-    snprintf(start, sizeof start, "%s%s", file.name, place);
-    if (mesh_check_read(file, &mesh, &error)) {
-        mesh_file_free(&mesh);
-        fail_msg("accepted, expected '%s' and '%s'", start, found);
-    }
-    const char *texts[] = {start, found, expected};
-    for (size_t i = 0; i < 3; i++) {
-        if (strstr(error.text, texts[i]) == NULL) fail_msg("no '%s' in '%s'", texts[i], error.text);
-    }
-    assert_null(strpbrk(error.text, "\r\n"));
-    assert_true(mesh.vertex_count == 7 && mesh.positions == &untouched && mesh.triangles == NULL);
 }
 
 static void check_in_range(const mesh_file *mesh) {

@@ -1,4 +1,4 @@
-/* Reads bytes as a mesh file and checks the mesh or the error; used inside cmocka tests. */
+/* Reads bytes as a mesh file and checks the mesh, whatever happens to the file or to memory; used inside cmocka tests. */
 #pragma once
 
 #include "src/io/mesh_file.h"
@@ -28,17 +28,6 @@ void mesh_check_equal(file_bytes file, uint32_t vertex_count, const double *posi
                       uint32_t triangle_count, const uint32_t *triangles);
 /* Checks the same for a square: 0 0 0, 1 0 0, 1 1 0, 0 1 0 with the triangles 0 1 2 and 0 2 3. */
 void mesh_check_square(file_bytes file);
-
-/* Checks that the file is read and has these parts, a list up to NULL; labels: per triangle, or NULL without parts. */
-void mesh_check_parts(file_bytes file, const char *const *names, const uint32_t *labels);
-
-/* The same by parts that are asked for; own: per triangle, the part that it has otherwise, or NULL without such parts. */
-void mesh_check_parts_by(file_bytes file, mesh_parts_by parts_by, const char *const *names,
-                         const uint32_t *labels, const uint32_t *own);
-
-/* Checks that the file is refused in one line that contains the file's name followed by `place` (":3: ", ": byte 7: "
- * or ": ") and the two texts, and that the mesh is unchanged. */
-void mesh_check_error(file_bytes file, const char *place, const char *found, const char *expected);
 
 /* Checks that the file is refused with a message, or gives a mesh whose numbers are all in range. */
 void mesh_check_survives(file_bytes file);
