@@ -56,9 +56,10 @@ add_up() {
     printf '%s\n' "$@" | xargs -P "${JOBS:-$(nproc)}" -I PROGRAM sh -c '
     case $1 in /*) program=$1 ;; *) program=./$1 ;; esac
     log=$2/$(echo "$1" | tr / :)
+    started=$(date +%s.%N)
     "$program" >"$log" 2>&1
     echo "$?" >"$log.part"
-    times >"$log.seconds"
+    { echo "$started $(date +%s.%N)" && times; } >"$log.seconds"
     mv "$log.part" "$log.status"' sh PROGRAM "$logs"
     : >"$logs/.all"
 } &
@@ -80,12 +81,12 @@ elif ! python3 tests/io/check_recordings.py "$CSCD_DATA"; then
     failures="$failures check_recordings.py"
 fi
 
-# The second line of `times` is of the program and all that it started: user and system, as `0m1.23s 0m0.05s`.
-echo 'slowest, in seconds of processor time:'
+# Behind the two moments, the second line of `times` is of the program and all that it started: user and system, as `0m1.23s 0m0.05s`.
+echo 'slowest, in seconds of processor time, and seconds that passed:'
 for program in "$@"; do
     seconds=$(log_of "$program").seconds
     [ ! -s "$seconds" ] || awk -v name="$(name_of "$program")" -F '[ms ]+' \
-        'NR == 2 {printf "%8.1f  %s\n", 60 * ($1 + $3) + $2 + $4, name}' "$seconds"
+        'NR == 1 {passed = $2 - $1} NR == 3 {printf "%8.1f %8.1f  %s\n", 60 * ($1 + $3) + $2 + $4, passed, name}' "$seconds"
 done | sort -rn | head -"${SLOWEST:-20}"
 
 [ -z "$failures" ] || echo "failed:$failures"
