@@ -22,7 +22,6 @@ import extremes_scenarios  # noqa: E402
 import frames_scenarios  # noqa: E402
 import jobs_scenarios  # noqa: E402
 import layout_scenarios  # noqa: E402
-import speed_scenarios  # noqa: E402
 import tables_scenarios  # noqa: E402
 import view_scenarios  # noqa: E402
 from material import Material  # noqa: E402
@@ -30,7 +29,7 @@ from page import Page  # noqa: E402
 from pictures import Pictures  # noqa: E402
 
 MODULES = (data_scenarios, answer_scenarios, changes_scenarios, controls_scenarios, frames_scenarios, view_scenarios,
-           charts_scenarios, tables_scenarios, layout_scenarios, extremes_scenarios, jobs_scenarios, speed_scenarios)
+           charts_scenarios, tables_scenarios, layout_scenarios, extremes_scenarios, jobs_scenarios)
 SCENARIOS = {scenario.__name__: scenario for module in MODULES for scenario in module.SCENARIOS}
 
 
