@@ -857,9 +857,8 @@ ifneq ($(filter sanitize tsan,$(CONFIG)),)
 $(addprefix $(OBJECTS)/,src/core/% src/mesh/% preprocess/% runtime/% models/%): CFLAGS_ALL += -O2
 endif
 # A machine on which tests repeat less, because programs take many times as long there: with sanitizers, or in an emulator.
-ifneq ($(filter sanitize tsan,$(CONFIG))$(HOST),)
-$(addprefix $(OBJECTS)/,tests/%): CFLAGS_ALL += -DSLOW_MACHINE
-endif
+TEST_PACE := $(if $(filter sanitize tsan,$(CONFIG))$(HOST),-DSLOW_MACHINE)
+$(addprefix $(OBJECTS)/,tests/%): CFLAGS_ALL += $(TEST_PACE)
 
 $(OBJECTS)/%.o: %.c
 	@mkdir -p $(@D)
@@ -869,7 +868,7 @@ $(OBJECTS)/%.o: %.c
 $(OBJECTS)/%.o: %.cpp
 	@mkdir -p $(@D)
 	$(say) '  CXX $<'
-	$(Q)$(CXX) -std=c++17 $(OPTIMISE_$(CONFIG)) $(CPP_WARNINGS) -fPIC -pthread -MMD -MP -Iinclude -I. $(CPPFLAGS) $(call allowed,$(CXXFLAGS)) $(call test_file,$<) -c -o $@ $<
+	$(Q)$(CXX) -std=c++17 $(OPTIMISE_$(CONFIG)) $(CPP_WARNINGS) -fPIC -pthread -MMD -MP -Iinclude -I. $(CPPFLAGS) $(call allowed,$(CXXFLAGS)) $(TEST_PACE) $(call test_file,$<) -c -o $@ $<
 
 # Without errno in square roots and without traps in comparisons; otherwise its loops are not vectorised.
 $(OBJECTS)/preprocess/charge/potential.o: CFLAGS_ALL += -fno-math-errno -fno-trapping-math

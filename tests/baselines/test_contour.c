@@ -7,11 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-#ifdef SLOW_MACHINE
-enum { POLYGONS = 2000 };
-#else
-enum { POLYGONS = 12000 };
-#endif
+enum { POLYGONS = PACED(12000, 2000) };
 
 enum { CORNERS_MAX = 40, MOMENTS = 128 };
 

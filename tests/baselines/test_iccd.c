@@ -7,11 +7,7 @@
 
 #include <string.h>
 
-#ifdef SLOW_MACHINE
-enum { INTERVALS_PER_FAMILY = 25 };
-#else
-enum { INTERVALS_PER_FAMILY = 200 };
-#endif
+enum { INTERVALS_PER_FAMILY = PACED(200, 25) };
 
 enum { BRUTE_EVERY = 25, OPTIONS_EVERY = 5 };
 

@@ -9,11 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#ifdef SLOW_MACHINE
-enum { SCENES_PER_FAMILY = 3, BODY_TRIANGLES = 600 };
-#else
-enum { SCENES_PER_FAMILY = 20, BODY_TRIANGLES = 3000 };
-#endif
+enum { SCENES_PER_FAMILY = PACED(20, 3), BODY_TRIANGLES = PACED(3000, 600) };
 
 static scene s; /* large; one test at a time */
 

@@ -139,7 +139,7 @@ TEST(finds_what_may_touch_in_a_crowd) {
         uint32_t first = stream_below(&random, shape.vertex_count - 2);
         for (uint32_t i = 0; i < 3; i++) shape.triangles[t * 3 + i] = first + i;
     }
-    for (uint32_t region_count = 1; region_count < 5; region_count += 2)
+    for (uint32_t region_count = 1; region_count < PACED(5, 2); region_count += 2)
         check_scene((bvh_setup){CSCD_SIMD_AUTO, 2, BOX_AXES, region_count}, 0.0);
 }
 
@@ -275,7 +275,7 @@ static void check_passes(random_stream *random, uint32_t region_count) {
 
 TEST(passes_are_what_flags_say) {
     random_stream random = stream_start(40);
-    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
+    for (int family = 0; family < SCENE_FAMILY_COUNT; family += PACED(1, 3)) {
         scene_make((scene_family)family, 41, &shape);
         for (uint32_t region_count = 0; region_count < 3; region_count++)
             check_passes(&random, region_count * region_count * 5);

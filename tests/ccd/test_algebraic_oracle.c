@@ -270,11 +270,7 @@ TEST(known_ee) {
 
 /* ---- subdivision ---- */
 
-#ifdef SLOW_MACHINE
-enum { SUBDIVIDED = 60 };
-#else
-enum { SUBDIVIDED = 300 };
-#endif
+enum { SUBDIVIDED = PACED(300, 60) };
 
 typedef struct subdivided {
     uint32_t hits, misses, open;
@@ -312,11 +308,7 @@ TEST(agrees_with_subdivision) {
 
 /* ---- symmetries ---- */
 
-#ifdef SLOW_MACHINE
-enum { SYMMETRIC = 100 };
-#else
-enum { SYMMETRIC = 500 };
-#endif
+enum { SYMMETRIC = PACED(500, 100) };
 
 static void assert_same(cscd_contact_kind kind, const elementary_query *query, oracle_verdict expected) {
     oracle_verdict found = algebraic_oracle(kind, query);

@@ -8,11 +8,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#ifdef SLOW_MACHINE
-enum { ROUND_COUNT = 5000 };
-#else
-enum { ROUND_COUNT = 20000 };
-#endif
+enum { ROUND_COUNT = PACED(20000, 5000) };
 
 static int seed_random(void **state) {
     (void)state;

@@ -9,11 +9,7 @@
 #include <stdio.h>
 
 /* make fuzz-elementary asks millions; here each family comes often enough for every count below to be large. */
-#ifdef SLOW_MACHINE
-enum { QUERIES_A_FAMILY = 300 };
-#else
-enum { QUERIES_A_FAMILY = 1000 };
-#endif
+enum { QUERIES_A_FAMILY = PACED(1000, 300) };
 
 enum { SHOWN = 3 };
 

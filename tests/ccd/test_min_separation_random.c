@@ -7,11 +7,7 @@
 
 #include <math.h>
 
-#ifdef SLOW_MACHINE
-enum { ROUND_COUNT = 100 };
-#else
-enum { ROUND_COUNT = 800 };
-#endif
+enum { ROUND_COUNT = PACED(800, 100) };
 
 static int seed_random(void **state) {
     (void)state;

@@ -73,11 +73,7 @@ int __wrap_cubic_guess_roots(const double c[4], double roots[3]) {
 
 /* ---- queries of every degeneracy ---- */
 
-#ifdef SLOW_MACHINE
-enum { QUERIES = 100 * FAMILY_COUNT };
-#else
-enum { QUERIES = 400 * FAMILY_COUNT };
-#endif
+enum { QUERIES = PACED(400 * FAMILY_COUNT, 100 * FAMILY_COUNT) };
 
 static elementary_query queries[QUERIES];
 static query_answer expected_answers[QUERIES], answers[QUERIES];

@@ -9,11 +9,7 @@
 __attribute__((weak)) void openblas_set_num_threads(int count);
 __attribute__((weak)) int openblas_get_num_threads(void);
 
-#ifdef SLOW_MACHINE
-enum { HOSTS = 3, ROUNDS = 1 };
-#else
-enum { HOSTS = 3, ROUNDS = 2 };
-#endif
+enum { HOSTS = PACED(3, 3), ROUNDS = PACED(2, 1) };
 
 /* One thread of the host, and what it does with its context. */
 typedef struct worker {

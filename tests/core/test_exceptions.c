@@ -73,7 +73,7 @@ TEST(exceptions_arrive) {
     for (host_callback from = HOST_ALLOCATOR; from <= HOST_IGNORE; from++) {
         for (uint32_t threads = 1; threads <= 3; threads += 2) {
             uint32_t at = 1;
-            while (throw_and_look(from, threads, at)) at += 1 + at / 2;
+            while (throw_and_look(from, threads, at)) at += 1 + PACED(at / 2, at);
             assert_true(at > 1 || (from == HOST_PARALLEL_FOR && threads == 1));
         }
     }
@@ -85,7 +85,7 @@ TEST(exceptions_arrive) {
 TEST(pools_pass_exceptions_on) {
     for (int mute = 0; mute < 2; mute++) {
         uint32_t in_tasks = 0;
-        for (uint32_t at = 1; at < 60; at += 3) {
+        for (uint32_t at = 1; at < 60; at += PACED(3, 9)) {
             throwing_host h = {
                 {.from = HOST_ALLOCATOR, .stop = throw_it, .run = run_on_threads, .on_any_thread = true},
                 .pool_is_mute = mute};

@@ -10,11 +10,7 @@
 #include <pthread.h>
 #include <stdlib.h>
 
-#ifdef SLOW_MACHINE
-enum { SCENES = 5 };
-#else
-enum { SCENES = 24 };
-#endif
+enum { SCENES = PACED(24, 5) };
 
 /* ---- environments -------------------------------------------------------------------------------------- */
 

@@ -75,11 +75,7 @@ static bool leave_and_look(host_callback from, uint32_t thread_count, int what, 
     return left;
 }
 
-#ifdef SLOW_MACHINE
-enum { SPARSENESS = 1 };
-#else
-enum { SPARSENESS = 4 };
-#endif
+enum { SPARSENESS = PACED(4, 1) };
 
 static void leave_everywhere(host_callback from, uint32_t thread_count) {
     uint32_t left = 0;

@@ -83,16 +83,13 @@ static workload_result run_with(uint32_t thread_count, cscd_parallel_for loop, c
     return result;
 }
 
-#ifdef SLOW_MACHINE
-static const uint32_t counts[] = {1, 3};
-#else
-static const uint32_t counts[] = {1, 2, 3, 8};
-#endif
+static const uint32_t counts[] = {3, 1, 2, 8};
+enum { COUNTS = PACED(4, 1) };
 
 static void compare_loops(const workload *w) {
     static workload_result expected, found;
     expected = run_with(1, (cscd_parallel_for){NULL, NULL}, w);
-    for (uint32_t i = 0; i < sizeof counts / sizeof *counts; i++) {
+    for (uint32_t i = 0; i < COUNTS; i++) {
         for (int loop = 0; loop < 3; loop++) {
             host h = {0, 0, 0};
             cscd_parallel_for loops[] = {{NULL, NULL}, {run_backwards, &h}, {run_elsewhere, &h}};

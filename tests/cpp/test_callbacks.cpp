@@ -71,7 +71,7 @@ struct throwing_host {
 template <class Call, class After>
 unsigned throw_everywhere(throwing_host &host, Call &&call, After &&after) {
     unsigned throws = 0;
-    for (unsigned at = 1;; at += 1 + at / 4) {
+    for (unsigned at = 1;; at += 1 + PACED(at / 4, at)) {
         host.calls = 0;
         host.at = at;
         bool arrived = false;
@@ -93,7 +93,7 @@ unsigned throw_everywhere(throwing_host &host, Call &&call, After &&after) {
 /* ---- every callback, in the calls of a solver ------------------------------------------------------------ */
 
 unsigned throw_from(source from, std::uint32_t threads) {
-    const panel_scene scene(16);
+    const panel_scene scene(PACED(16, 10));
     throwing_host host(from);
     const cscd::context context(host.options(threads));
     const cscd::mesh mesh(context, scene.objects());
@@ -207,7 +207,7 @@ TEST(creation_throws) {
 
 /* A callback that calls its own detector is refused, and what it throws then arrives; another context is free. */
 TEST(nested_calls) {
-    const panel_scene scene(12);
+    const panel_scene scene(PACED(12, 4));
     const std::vector<particle> end = scene.moved();
     const cscd_view x0 = cscd::view_of(scene.particles, &particle::position);
     const cscd_view x1 = cscd::view_of(end, &particle::position);

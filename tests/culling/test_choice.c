@@ -8,11 +8,7 @@
 
 #include <string.h>
 
-#ifdef SLOW_MACHINE
-enum { SCENES = 4 * SCENE_FAMILY_COUNT };
-#else
-enum { SCENES = 24 * SCENE_FAMILY_COUNT };
-#endif
+enum { SCENES = PACED(24 * SCENE_FAMILY_COUNT, 4 * SCENE_FAMILY_COUNT) };
 
 enum { INTERVALS = 12 };
 

@@ -9,11 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#ifdef SLOW_MACHINE
-enum { INTERVALS_PER_FAMILY = 25 };
-#else
-enum { INTERVALS_PER_FAMILY = 250 };
-#endif
+enum { INTERVALS_PER_FAMILY = PACED(250, 25) };
 
 enum { IGNORING_INTERVALS_PER_FAMILY = 150 };
 

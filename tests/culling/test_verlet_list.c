@@ -14,11 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#ifdef SLOW_MACHINE
-enum { INTERVALS = 200, ORACLE_EVERY = 24 };
-#else
-enum { INTERVALS = 360, ORACLE_EVERY = 24 };
-#endif
+enum { INTERVALS = PACED(360, 200), ORACLE_EVERY = PACED(24, 24) };
 
 /* ---- detectors ------------------------------------------------------------------------------------------- */
 

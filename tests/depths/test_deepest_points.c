@@ -8,11 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#ifdef SLOW_MACHINE
-enum { SCENES = 30, PLATES = 2 };
-#else
-enum { SCENES = 400, PLATES = 10 };
-#endif
+enum { SCENES = PACED(400, 30), PLATES = PACED(10, 2) };
 enum { SAMPLES = 60 };
 
 static body_rig rig; /* large; one test at a time */

@@ -11,11 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-#ifdef SLOW_MACHINE
-enum { ROUNDS = 3, SAMPLES = 4 };
-#else
-enum { ROUNDS = 20, SAMPLES = 30 };
-#endif
+enum { ROUNDS = PACED(20, 3), SAMPLES = PACED(30, 4) };
 
 static body_rig rig; /* large; one test at a time */
 

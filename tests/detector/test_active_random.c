@@ -14,11 +14,7 @@
 
 #include <string.h>
 
-#ifdef SLOW_MACHINE
-enum { SLOWER = 2 };
-#else
-enum { SLOWER = 1 };
-#endif
+enum { SLOWER = PACED(1, 2) };
 
 static active_twins twins; /* large, as the others; one test at a time */
 static scene s;

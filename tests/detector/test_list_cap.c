@@ -12,11 +12,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#ifdef SLOW_MACHINE
-enum { SCENES = 6 };
-#else
-enum { SCENES = 12 };
-#endif
+enum { SCENES = PACED(12, 6) };
 
 static scene s; /* large; one test at a time */
 

@@ -10,11 +10,7 @@
 
 #include <string.h>
 
-#ifdef SLOW_MACHINE
-enum { SCENES = 4 };
-#else
-enum { SCENES = 10 };
-#endif
+enum { SCENES = PACED(10, 4) };
 
 enum { MANY = 60, STEPS = 5 };
 

@@ -12,11 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#ifdef SLOW_MACHINE
-enum { SEQUENCES = 2 };
-#else
-enum { SEQUENCES = 3 };
-#endif
+enum { SEQUENCES = PACED(3, 2) };
 
 enum { STEPS = 6, CHANGES_MAX = 3 * STEPS + 2 };
 

@@ -6,11 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#ifdef SLOW_MACHINE
-enum { FUZZED = 30 };
-#else
-enum { FUZZED = 200 };
-#endif
+enum { FUZZED = PACED(200, 30) };
 
 /* ---- bytes that were changed ---------------------------------------------------------------------------- */
 

@@ -9,11 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#ifdef SLOW_MACHINE
-enum { RECORDINGS = 60 };
-#else
-enum { RECORDINGS = 600 };
-#endif
+enum { RECORDINGS = PACED(600, 60) };
 
 static void print_events(const char *name, const cscd_event *events, size_t count) {
     for (size_t i = 0; i < count; i++) {

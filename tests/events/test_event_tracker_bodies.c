@@ -6,11 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#ifdef SLOW_MACHINE
-enum { FLIGHTS = 6 };
-#else
-enum { FLIGHTS = 40 };
-#endif
+enum { FLIGHTS = PACED(40, 6) };
 
 enum { BODY_VERTICES = 26, BODY_TRIANGLES = 48, BODIES = 3 };
 

@@ -13,11 +13,7 @@
 
 #include <string.h>
 
-#ifdef SLOW_MACHINE
-enum { SEQUENCES = 3 };
-#else
-enum { SEQUENCES = 10 };
-#endif
+enum { SEQUENCES = PACED(10, 3) };
 
 enum { PART_COUNT = 4, FRAME_COUNT = 6 };
 

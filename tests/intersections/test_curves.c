@@ -8,11 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#ifdef SLOW_MACHINE
-enum { COMPARED = 30, TRACED = 300 };
-#else
-enum { COMPARED = 100, TRACED = 4000 };
-#endif
+enum { COMPARED = PACED(100, 30), TRACED = PACED(4000, 300) };
 
 static traced_scene traced; /* large; one test at a time */
 

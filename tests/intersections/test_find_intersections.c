@@ -8,11 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#ifdef SLOW_MACHINE
-enum { SCENES = 12 };
-#else
-enum { SCENES = 150 };
-#endif
+enum { SCENES = PACED(150, 12) };
 
 static integer_scene s; /* large; one test at a time */
 static cscd_intersection_pair expected[PAIRS_MAX], before[PAIRS_MAX];

@@ -8,11 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#ifdef SLOW_MACHINE
-enum { REPETITIONS = 1 };
-#else
-enum { REPETITIONS = 8 };
-#endif
+enum { REPETITIONS = PACED(8, 1) };
 
 static scene s; /* large; one test at a time */
 
@@ -102,7 +98,7 @@ TEST(first_pairs_do_not_depend_on_luck) {
         assert_int_equal(cscd_context_create(&context_options, &context), CSCD_OK);
         cscd_detector *detector = make_sheets(context, i / 4, x);
         detector->space.traversal.tasks_wanted = 60;
-        for (int k = 0; k < 16; k++) {
+        for (int k = 0; k < PACED(16, 4); k++) {
             cscd_intersection_options options =
                 intersection_options(CSCD_ANSWER_LIST, UINT64_MAX, stops[k % 4]);
             assert_int_equal(find_intersections_packed(detector, x, &options, &found), CSCD_OK);

@@ -6,11 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#ifdef SLOW_MACHINE
-enum { ROUNDS = 6 };
-#else
-enum { ROUNDS = 60 };
-#endif
+enum { ROUNDS = PACED(60, 6) };
 
 static body_rig rig, twin; /* large */
 

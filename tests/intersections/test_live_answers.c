@@ -11,11 +11,7 @@
 
 enum { SHAPES = 7, BODIES = 3, OBJECTS_MAX = 9, ROUNDS = 10, PARTS = 4 };
 
-#ifdef SLOW_MACHINE
-enum { LIVES = 6 };
-#else
-enum { LIVES = 10 };
-#endif
+enum { LIVES = PACED(10, 6) };
 
 typedef struct live_object {
     uint32_t shape;

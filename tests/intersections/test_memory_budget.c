@@ -162,11 +162,7 @@ TEST(a_soup_stays_on_its_budget) {
 
 /* ---- pairs ------------------------------------------------------------------------------------------------ */
 
-#ifdef SLOW_MACHINE
-enum { MANY_RINGS = 13, MANY_SEGMENTS = 18 };
-#else
-enum { MANY_RINGS = 25, MANY_SEGMENTS = 36 };
-#endif
+enum { MANY_RINGS = PACED(25, 13), MANY_SEGMENTS = PACED(36, 18) };
 
 TEST(pairs_take_64_bytes_each) {
     for (uint32_t threads = 1; threads <= 4; threads += 3) {

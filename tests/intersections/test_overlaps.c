@@ -7,11 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-#ifdef SLOW_MACHINE
-enum { LINES = 60, ROUNDS = 3 };
-#else
-enum { LINES = 200, ROUNDS = 8 };
-#endif
+enum { LINES = PACED(200, 60), ROUNDS = PACED(8, 3) };
 
 static body_rig rig; /* large; one test at a time */
 

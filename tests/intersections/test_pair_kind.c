@@ -8,11 +8,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#ifdef SLOW_MACHINE
-enum { ROUNDS = 10000 };
-#else
-enum { ROUNDS = 130000 };
-#endif
+enum { ROUNDS = PACED(130000, 10000) };
 
 enum { VERTEX_COUNT = 6, KIND_COUNT = CSCD_INTERSECTION_TOUCHING + 1 };
 

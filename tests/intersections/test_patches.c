@@ -7,11 +7,7 @@
 
 #include <string.h>
 
-#ifdef SLOW_MACHINE
-enum { SEEDS = 40 };
-#else
-enum { SEEDS = 400 };
-#endif
+enum { SEEDS = PACED(400, 40) };
 
 enum { LANES_USED = 3 };
 

@@ -8,11 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-#ifdef SLOW_MACHINE
-enum { POINTS = 2000 };
-#else
-enum { POINTS = 10000 };
-#endif
+enum { POINTS = PACED(10000, 2000) };
 
 /* Edge 0 belongs to the first triangle, and its points are the first two; the third one is used by nobody. */
 typedef struct point_rig {

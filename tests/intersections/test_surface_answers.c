@@ -151,11 +151,7 @@ static void sway_ball(int steps) {
     }
 }
 
-#ifdef SLOW_MACHINE
-enum { STEADY_RUNS = 2 };
-#else
-enum { STEADY_RUNS = 5 };
-#endif
+enum { STEADY_RUNS = PACED(5, 2) };
 
 /* With several threads, which of them finds what differs from call to call. */
 TEST(a_steady_state_allocates_nothing) {

@@ -6,11 +6,7 @@
 
 #include <string.h>
 
-#ifdef SLOW_MACHINE
-enum { DETERMINANTS = 500, NUMBERS = 10, SCENES = 5 };
-#else
-enum { DETERMINANTS = 5000, NUMBERS = 40, SCENES = 60 };
-#endif
+enum { DETERMINANTS = PACED(5000, 500), NUMBERS = PACED(40, 10), SCENES = PACED(60, 5) };
 
 static leading_terms terms;
 static surface_trial trial; /* large, as the terms */

@@ -7,11 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#ifdef SLOW_MACHINE
-enum { GRIDS = 10 };
-#else
-enum { GRIDS = 20 };
-#endif
+enum { GRIDS = PACED(20, 10) };
 
 enum { OBJECTS_MAX = 4 };
 

@@ -9,11 +9,7 @@
 
 #include <string.h>
 
-#ifdef SLOW_MACHINE
-enum { ROUNDS = 200 };
-#else
-enum { ROUNDS = 4000 };
-#endif
+enum { ROUNDS = PACED(4000, 200) };
 
 enum { VERTICES = 8 };
 

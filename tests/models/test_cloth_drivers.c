@@ -7,11 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#ifdef SLOW_MACHINE
-enum { FRAMES = 60 };
-#else
-enum { FRAMES = 90 };
-#endif
+enum { FRAMES = PACED(90, 60) };
 
 enum { RESOLUTION = 13 };
 

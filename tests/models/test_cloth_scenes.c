@@ -10,11 +10,12 @@
 
 /* Sanitizers run only the first frames, which have no folds. Some intervals are also tested by brute
  * force. */
-#ifdef SLOW_MACHINE
-enum { FRAMES = 75, THREADED_FRAMES = 16, SEWN_FRAMES = 48, BRUTE_EVERY = 70 };
-#else
-enum { FRAMES = 1000, THREADED_FRAMES = 30, SEWN_FRAMES = 70, BRUTE_EVERY = 70 };
-#endif
+enum {
+    FRAMES = PACED(1000, 75),
+    THREADED_FRAMES = PACED(30, 16),
+    SEWN_FRAMES = PACED(70, 48),
+    BRUTE_EVERY = PACED(70, 70)
+};
 
 enum { RESOLUTION = 18 };
 

@@ -12,11 +12,12 @@
 
 /* RING_TRIANGLES is the number of triangles of all rings. The other detectors check the lines of every
  * STRIDE-th time step. */
-#ifdef SLOW_MACHINE
-enum { RING_TRIANGLES = 480, RING_STEPS = 60, STRIDE = 25, REPEATED = 12 };
-#else
-enum { RING_TRIANGLES = 900, RING_STEPS = 90, STRIDE = 4, REPEATED = 30 };
-#endif
+enum {
+    RING_TRIANGLES = PACED(900, 480),
+    RING_STEPS = PACED(90, 60),
+    STRIDE = PACED(4, 25),
+    REPEATED = PACED(30, 12)
+};
 
 /* The chain is taut after about 50 steps; the coil is compressed most after 75. */
 static const struct extent {

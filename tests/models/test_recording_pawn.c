@@ -8,11 +8,7 @@
 #include <string.h>
 
 /* Sanitizer builds run only to the first contacts, since the whole takes half a minute there. */
-#ifdef SLOW_MACHINE
-enum { FRAMES = 40 };
-#else
-enum { FRAMES = 150 };
-#endif
+enum { FRAMES = PACED(150, 40) };
 
 /* The measurements, and the frames with intersections. */
 typedef struct measured {

@@ -10,11 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#ifdef SLOW_MACHINE
-enum { TRIANGLES = 3000 };
-#else
-enum { TRIANGLES = 6000 };
-#endif
+enum { TRIANGLES = PACED(6000, 3000) };
 
 /* The soft place of the capsule, which is 3 long about 0: off the middle. */
 static const double band[2] = {0.4, 0.8};

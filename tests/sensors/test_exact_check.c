@@ -8,11 +8,7 @@
 
 #include <string.h>
 
-#ifdef SLOW_MACHINE
-enum { SCENES_PER_FAMILY = 3, SCENES_OF_TWO = 30 };
-#else
-enum { SCENES_PER_FAMILY = 12, SCENES_OF_TWO = 60 };
-#endif
+enum { SCENES_PER_FAMILY = PACED(12, 3), SCENES_OF_TWO = PACED(60, 30) };
 
 static scene interval; /* large; one test at a time */
 

@@ -8,11 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-#ifdef SLOW_MACHINE
-enum { ROUNDS = 5, WALKED_SCENES = 36 };
-#else
-enum { ROUNDS = 50, WALKED_SCENES = 240 };
-#endif
+enum { ROUNDS = PACED(50, 5), WALKED_SCENES = PACED(240, 36) };
 
 static scene body; /* large; one test at a time */
 static double moved[SCENE_VERTICES_MAX * 3];

@@ -9,11 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-#ifdef SLOW_MACHINE
-enum { MESHES = 60, INTERVALS_PER_MESH = 40, TOUCHES = 1000 };
-#else
-enum { MESHES = 60, INTERVALS_PER_MESH = 120, TOUCHES = 5000 };
-#endif
+enum { MESHES = PACED(60, 60), INTERVALS_PER_MESH = PACED(120, 40), TOUCHES = PACED(5000, 1000) };
 
 static scene interval; /* large; one test at a time */
 static uint32_t centres[SCENE_VERTICES_MAX];

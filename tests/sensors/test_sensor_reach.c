@@ -9,11 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#ifdef SLOW_MACHINE
-enum { SEEDS = 2 };
-#else
-enum { SEEDS = 12 };
-#endif
+enum { SEEDS = PACED(12, 2) };
 
 static scene s; /* large; one test at a time */
 

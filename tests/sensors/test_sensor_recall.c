@@ -8,11 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-#ifdef SLOW_MACHINE
-enum { SEEDS = 20, FRAMES = 10 };
-#else
-enum { SEEDS = 40, FRAMES = 10 };
-#endif
+enum { SEEDS = PACED(40, 20), FRAMES = PACED(10, 10) };
 
 static scene s; /* large; one test at a time */
 static double x0[SCENE_VERTICES_MAX * 3], x1[SCENE_VERTICES_MAX * 3];

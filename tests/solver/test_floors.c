@@ -8,11 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-#ifdef SLOW_MACHINE
-enum { MOST_STEPS = 1000 };
-#else
-enum { MOST_STEPS = 10000 };
-#endif
+enum { MOST_STEPS = PACED(10000, 1000) };
 
 enum { SIDE = 3, PANEL = SIDE * SIDE, VERTICES = 2 * PANEL, TRIANGLES = 4 * (SIDE - 1) * (SIDE - 1) };
 

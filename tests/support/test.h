@@ -14,6 +14,13 @@ extern "C" {
 }
 #endif
 
+/* How often something is repeated: less with sanitizers and in emulators. */
+#ifdef SLOW_MACHINE
+#define PACED(usual, slow) (slow)
+#else
+#define PACED(usual, slow) (usual)
+#endif
+
 #ifdef TEST_FILE /* its name */
 #include "tests/support/room.h"
 

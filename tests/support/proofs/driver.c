@@ -9,11 +9,7 @@
 #include <string.h>
 
 /* So many places follow each other, then ever fewer: of refused allocations, of refusing reports, and of all else. */
-#ifdef SLOW_MACHINE
-enum { ALLOCATIONS = 5, REPORTS = 3, PLACES = 2 };
-#else
-enum { ALLOCATIONS = 1000, REPORTS = 12, PLACES = 3 };
-#endif
+enum { ALLOCATIONS = PACED(1000, 5), REPORTS = PACED(12, 3), PLACES = PACED(3, 2) };
 enum { ASKED_AGAIN = 16 };
 
 typedef enum proof_depth { COMPARE_ANSWERS, COMPARE_COUNTERS } proof_depth;

@@ -7,11 +7,7 @@
 
 #include <string.h>
 
-#ifdef SLOW_MACHINE
-enum { RINGS = 14, SEGMENTS = 14 };
-#else
-enum { RINGS = 22, SEGMENTS = 22 };
-#endif
+enum { RINGS = PACED(22, 14), SEGMENTS = PACED(22, 14) };
 
 /* ---- scenes --------------------------------------------------------------------------------------------- */
 
