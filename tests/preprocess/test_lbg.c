@@ -206,3 +206,12 @@ TEST(far_clusters) {
     assert_int_equal(check_run(VECTORS_MAX, 4, 1e-3), 4);
     for (uint32_t i = 0; i < VECTORS_MAX; i++) assert_int_equal(labels[i], labels[i % 4]);
 }
+
+/* 3 is as near to the mean of the two 0 and itself as to 5: it stays with the code of the lower number. */
+TEST(equally_near_codes) {
+    static const double line[6] = {0, 0, 3, 5, 5, 5};
+    scatter_vectors(6, 0);
+    for (uint32_t i = 0; i < 6; i++) vectors[i * D] = line[i];
+    assert_int_equal(check_run(6, 2, 0.0), 2);
+    for (uint32_t i = 0; i < 6; i++) assert_int_equal(labels[i], i < 3 ? 0 : 1);
+}

@@ -170,6 +170,21 @@ TEST(distortion_falls) {
     body_free(&b);
 }
 
+/* On a sphere positions and normals vary alike, so that what the weight makes of the normals is seen. */
+TEST(normals_have_their_weight) {
+    body b = body_of(BODY_SPHERE, 800);
+    cscd_mesh *mesh = body_mesh(&b, 1);
+    for (int weight = 0; weight < 4; weight++) {
+        cscd_partition_options options = with_cells(1);
+        options.normal_weight = weight;
+        cscd_partition *partition = partition_of(mesh, NULL, b.positions, &options);
+        assert_true(fabs(cscd_partition_distortion(partition, 0) - (1.0 + weight * weight) / 6.0) < 0.02);
+        cscd_partition_destroy(partition);
+    }
+    body_mesh_destroy(mesh);
+    body_free(&b);
+}
+
 /* ---- renewing ---------------------------------------------------------------------------------------- */
 
 TEST(renewing_one_part) {
@@ -237,6 +252,48 @@ TEST(objects_of_scenes) {
     body_free(&all);
     body_free(&ball);
     body_free(&chain);
+}
+
+/* Balls of these radii, as objects of their own or in the first one; the last ones are obstacles. Returns a part's cells. */
+static uint32_t cells_of_ball(const double radii[3], bool two_in_one, uint32_t obstacles, uint32_t part) {
+    body all = {0};
+    cscd_object_desc descs[3];
+    cscd_context *context = NULL;
+    cscd_mesh *mesh = NULL;
+    const uint32_t count = two_in_one ? 2 : 3;
+    for (uint32_t i = 0; i < 3; i++) {
+        body ball = body_of(BODY_SPHERE, 800);
+        for (uint32_t k = 0; k < 3 * ball.vertex_count; k++) ball.positions[k] *= radii[i];
+        body_append(&all, &ball, (double[3]){0, 5.0 * i, 0});
+        body_free(&ball);
+    }
+    const uint32_t vertices = all.vertex_count / 3, triangles = all.triangle_count / 3;
+    for (uint32_t i = 0; i < count; i++) {
+        const uint32_t balls = two_in_one && i == 0 ? 2 : 1;
+        descs[i] = cscd_object_of_triangles(balls * vertices, balls * triangles, all.triangles);
+        descs[i].obstacle = i + obstacles >= count;
+    }
+    assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(context, descs, count, &mesh), CSCD_OK);
+    cscd_partition *partition = partition_of(mesh, NULL, all.positions, NULL);
+    assert_int_equal(cscd_partition_part_count(partition), 3);
+    const uint32_t cells = cscd_partition_part(partition, part).cell_count;
+    cscd_partition_destroy(partition);
+    cscd_mesh_destroy(mesh);
+    cscd_context_destroy(context);
+    body_free(&all);
+    return cells;
+}
+
+/* Obstacles have cells for bodies alone, and parts of one object for other objects. */
+TEST(cells_are_for_what_is_watched) {
+    assert_int_equal(cells_of_ball((double[3]){1.0, 1.0, 0.125}, false, 0, 1), 64);
+    assert_int_equal(cells_of_ball((double[3]){1.0, 1.0, 0.125}, false, 2, 1), 12);
+    assert_int_equal(cells_of_ball((double[3]){1.0, 1.0, 0.125}, false, 2, 0), 64);
+    assert_int_equal(cells_of_ball((double[3]){0.25, 0.5, 1.0}, true, 0, 0),
+                     cells_of_ball((double[3]){0.25, 2.0, 1.0}, true, 0, 0));
+    assert_int_equal(cells_of_ball((double[3]){0.5, 0.25, 1.0}, true, 0, 1),
+                     cells_of_ball((double[3]){2.0, 0.25, 1.0}, true, 0, 1));
 }
 
 /* ---- what is refused --------------------------------------------------------------------------------- */

@@ -1,5 +1,6 @@
 /* How many cells a part gets: kissing numbers, two convex objects, the cap; and which parts are convex. */
 #include "preprocess/partition/spheres.h"
+#include "tests/support/packed.h"
 #include "tests/support/preprocess/partition_check.h"
 #include "tests/support/test.h"
 
@@ -114,5 +115,49 @@ TEST(convex_bodies) {
         b.triangles[t * 3 + 1] = kept;
     }
     assert_false(is_convex(&b));
+    body_free(&b);
+}
+
+/* Two tetrahedra with a face in common, whose tips lean over one edge of it: nothing else is concave. It is seen from either
+ * triangle, wherever their corners begin. A third triangle on an edge of a tetrahedron, without area, makes it no surface. */
+TEST(one_concave_edge) {
+    static const double leaning[15] = {0, 0, 0, 2, 0, 0, 1, 2, 0, 1, -1, 1, 1, -1, -1};
+    static const double upright[15] = {0, 0, 0, 2, 0, 0, 1, 2, 0, 1, 0.5, 1, 1, 0.5, -1};
+    static const uint32_t sides[18] = {0, 1, 3, 1, 2, 3, 2, 0, 3, 1, 0, 4, 2, 1, 4, 0, 2, 4};
+    static const double flat[15] = {0, 0, 0, 2, 0, 0, 1, 2, 0, 1, 0.5, 1, 1, 0, 0};
+    static const uint32_t with_flap[15] = {0, 1, 3, 1, 2, 3, 2, 0, 3, 1, 0, 2, 0, 1, 4};
+    for (uint32_t turn = 0; turn < 3; turn++) {
+        uint32_t turned[18];
+        for (uint32_t i = 0; i < 18; i++) turned[i] = sides[i / 3 * 3 + (i + turn) % 3];
+        body b = {
+            .vertex_count = 5, .triangle_count = 6, .triangles = turned, .positions = (double *)leaning};
+        assert_false(is_convex(&b));
+        b.positions = (double *)upright;
+        assert_true(is_convex(&b));
+    }
+    body b = {.vertex_count = 5,
+              .triangle_count = 4,
+              .triangles = (uint32_t *)with_flap,
+              .positions = (double *)flat};
+    assert_true(is_convex(&b));
+    b.triangle_count = 5;
+    assert_false(is_convex(&b));
+}
+
+TEST(a_part_of_a_ball_is_not_convex) {
+    body b = body_of(BODY_SPHERE, 800);
+    cscd_mesh *mesh = body_mesh(&b, 1);
+    cscd_plan_options options = cscd_plan_defaults();
+    options.method = CSCD_METHOD_KMEANS;
+    for (options.k = 1; options.k < 3; options.k++) {
+        cscd_plan *plan = NULL;
+        assert_int_equal(plan_create_packed(mesh, b.positions, &options, &plan), CSCD_OK);
+        cscd_partition *partition = partition_of(mesh, plan, b.positions, NULL);
+        for (uint32_t p = 0; p < options.k; p++)
+            assert_int_equal(cscd_partition_part(partition, p).convex, options.k == 1);
+        cscd_partition_destroy(partition);
+        cscd_plan_destroy(plan);
+    }
+    body_mesh_destroy(mesh);
     body_free(&b);
 }

@@ -1,6 +1,7 @@
 /* Plans through the public API: every method, parts and their errors, the mesh's hash, refusals. */
 #include "cscd/cscd.h"
 #include "cscd/research.h"
+#include "src/mesh/plan.h"
 #include "tests/support/models/body_of.h"
 #include "tests/support/packed.h"
 #include "tests/support/test.h"
@@ -72,6 +73,68 @@ TEST(every_method) {
     cscd_plan_destroy(kmeans);
     cscd_plan_destroy(charge);
     cscd_plan_destroy(NULL);
+}
+
+TEST(variants_differ) {
+    body torus = body_of(BODY_TORUS, body_nearest_count(BODY_TORUS, 800));
+    const cscd_object_desc desc =
+        cscd_object_of_triangles(torus.vertex_count, torus.triangle_count, torus.triangles);
+    cscd_plan_options options = cscd_plan_defaults();
+    cscd_mesh *own = NULL;
+    uint32_t regions[2];
+    assert_int_equal(cscd_mesh_create(context, &desc, 1, &own), CSCD_OK);
+    for (int i = 0; i < 2; i++) {
+        cscd_plan *plan = NULL;
+        if (i == 1) options.variant = CSCD_PLAN_VARIANT_PUBLISHED;
+        assert_int_equal(plan_create_packed(own, torus.positions, &options, &plan), CSCD_OK);
+        regions[i] = cscd_plan_region_count(plan);
+        cscd_plan_destroy(plan);
+    }
+    assert_true(regions[0] > 1 &&
+                regions[1] == 1); /* as published, a cut must divide, and no arc of a ring does */
+    cscd_mesh_destroy(own);
+    body_free(&torus);
+}
+
+/* ---- two components ---------------------------------------------------------------------------------- */
+
+/* A ball, and two triangles with one centroid, which have no charges, or none. What is an obstacle needs none. */
+static cscd_status charge_two(bool flat_first, uint32_t obstacles, double capacitances[2]) {
+    const double corners[18] = {3, 0, 0, 0, 3, 0, -3, -3, 0, -3, 0, 0, 0, -3, 0, 3, 3, 0};
+    const uint32_t flat[9] = {0, 1, 2, 3, 4, 5, 0, 3, 5};
+    body ball = body_of(BODY_SPHERE, 200);
+    double *positions = body_allocate((size_t)ball.vertex_count * 3 + 18, sizeof *positions);
+    cscd_object_desc descs[2];
+    cscd_mesh *own = NULL;
+    cscd_plan *plan = NULL;
+    descs[flat_first] = cscd_object_of_triangles(ball.vertex_count, ball.triangle_count, ball.triangles);
+    descs[!flat_first] = cscd_object_of_triangles(6, 3, flat);
+    memcpy(positions + (flat_first ? 18 : 0), ball.positions, (size_t)ball.vertex_count * sizeof(double[3]));
+    memcpy(positions + (flat_first ? 0 : (size_t)ball.vertex_count * 3), corners, sizeof corners);
+    for (uint32_t i = 0; i < 2; i++) descs[i].obstacle = (obstacles >> i & 1) != 0;
+    assert_int_equal(cscd_mesh_create(context, descs, 2, &own), CSCD_OK);
+    const cscd_status status = plan_create_packed(own, positions, NULL, &plan);
+    for (uint32_t i = 0; i < 2 && status == CSCD_OK; i++) capacitances[i] = cscd_plan_capacitance(plan, i);
+    cscd_plan_destroy(plan);
+    cscd_mesh_destroy(own);
+    free(positions);
+    body_free(&ball);
+    return status;
+}
+
+TEST(each_component_needs_charges_but_obstacles) {
+    double capacitances[2];
+    for (uint32_t flat = 0; flat < 2; flat++) {
+        for (uint32_t obstacles = 0; obstacles < 4; obstacles++) {
+            const bool left_out = (obstacles >> flat & 1) != 0;
+            assert_int_equal(charge_two(flat == 0, obstacles, capacitances),
+                             left_out ? CSCD_OK : CSCD_INVALID_ARGUMENT);
+            if (!left_out) assert_non_null(strstr(cscd_context_detail(context), "have the same centroid"));
+            if (!left_out) continue;
+            assert_true(capacitances[flat] == 0.0);
+            assert_int_equal(capacitances[1 - flat] > 0.0, obstacles != 3);
+        }
+    }
 }
 
 /* ---- parts ----------------------------------------------------------------------------------------- */
@@ -153,6 +216,31 @@ TEST(bad_parts) {
 }
 
 /* ---- errors ---------------------------------------------------------------------------------------- */
+
+/* Triangles that touch nowhere: the regions are by the number in each place. Without an area they weigh the same. */
+TEST(regions_lie_in_one_component) {
+    static const uint32_t triangles[9] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
+    static const uint32_t wrong[][3] = {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}}, right[3] = {0, 1, 2};
+    static const double points[9] = {0};
+    double positions[27] = {0};
+    const cscd_object_desc desc = cscd_object_of_triangles(9, 3, triangles);
+    cscd_plan_parts parts = {CSCD_METHOD_KMEANS, 2, wrong[0], points, NULL, NULL};
+    cscd_mesh *own = NULL;
+    cscd_plan *plan = NULL;
+    for (int i = 0; i < 27; i++) positions[i] = i / 3;
+    assert_int_equal(cscd_mesh_create(context, &desc, 1, &own), CSCD_OK);
+    for (int i = 0; i < 3; i++) {
+        parts.triangle_regions = wrong[i];
+        assert_int_equal(plan_from_parts_packed(own, positions, &parts, &plan), CSCD_INVALID_ARGUMENT);
+        assert_non_null(strstr(cscd_context_detail(context), "spans the components "));
+    }
+    parts.triangle_regions = right;
+    parts.region_count = 3;
+    assert_int_equal(plan_from_parts_packed(own, positions, &parts, &plan), CSCD_OK);
+    for (int t = 0; t < 3; t++) assert_true(plan->triangle_weights[t] == 1.0);
+    cscd_plan_destroy(plan);
+    cscd_mesh_destroy(own);
+}
 
 TEST(bad_options) {
     cscd_plan *plan = NULL;
