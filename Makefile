@@ -118,7 +118,7 @@ COMMON_SOURCES  := $(filter-out $(OTHER_PROCESSES) $(if $(filter 0,$(EXPAT)),$(f
                      src/tool/jobs/*.c src/tool/export/*.c src/tool/report/*.c))
 COMMAND_SOURCES := $(wildcard src/tool/*.c $(patsubst %,src/tool/%/*.c,check preprocess replay render sense))
 NATIVE_SOURCES  := $(wildcard python/native/*.c)
-SUPPORT_SOURCES := $(filter-out tests/support/tool/tool_process$(if $(WINDOWS),,_windows).c,$(wildcard tests/support/*.c tests/support/*/*.c))
+SUPPORT_SOURCES := $(filter-out $(if $(WINDOWS),,tests/support/tool/tool_process.c),$(wildcard tests/support/*.c tests/support/*/*.c))
 # `rm -r runtime/baselines`, and its lines in runtime/detector/method_table.c: what needs them is not built then.
 HAS_BASELINES   := $(wildcard runtime/baselines/*.h)
 # The browser's tests look at pages, which no other configuration writes differently. Only a release is installed.

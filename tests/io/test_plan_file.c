@@ -6,12 +6,13 @@
 #include "tests/support/own_folder.h"
 #include "tests/support/packed.h"
 #include "tests/support/test.h"
-#include "tests/support/tool/run_tool.h"
 #include "tests/support/tool/tool_fixture.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#define TEXTS(...) ((const char *const[]){__VA_ARGS__, NULL})
 
 /* A mesh with its plan, and the file that holds it. */
 typedef struct saved {
@@ -172,7 +173,7 @@ TEST(nothing_to_read_is_refused) {
 TEST(every_truncation_is_refused) {
     saved s = save_plan(recorded_tetrahedra(1), CSCD_METHOD_CHARGE);
     size_t size, line = 1;
-    char *bytes = read_whole_file(s.path.text, &size), *end = strstr(bytes, "end_header");
+    char *bytes = temp_file_read(s.path.text, &size), *end = strstr(bytes, "end_header");
     for (size_t cut = 0; cut < size; line += bytes[cut++] == '\n') {
         char place[40];
         temp_path path = temp_file_write(&folder, "cut.ply", bytes, cut);
@@ -188,7 +189,7 @@ TEST(every_truncation_is_refused) {
 TEST(every_flipped_bit_is_survived) {
     saved s = save_plan(recorded_tetrahedra(1), CSCD_METHOD_CHARGE);
     size_t size;
-    char *bytes = read_whole_file(s.path.text, &size);
+    char *bytes = temp_file_read(s.path.text, &size);
     for (size_t i = 0; i < size * 8; i++) {
         bytes[i / 8] = (char)(bytes[i / 8] ^ 1 << i % 8);
         temp_path path = temp_file_write(&folder, "bit.ply", bytes, size);

@@ -14,7 +14,7 @@ NOT_PASSED_ON = ("MAKEFLAGS", "MFLAGS", "MAKELEVEL", "MAKEOVERRIDES", "ONLY", "R
 PATIENCE = 100.0
 BUILD = "build/release"
 # What tests run besides: the words that their sources have then, and what is made.
-RUN_BY_TESTS = {r"run_tool|support\.tool|CSCD_TOOL": (f"{BUILD}/cscd",), "CSCD_MODELS|model_program": ("models",),
+RUN_BY_TESTS = {r"support\.tool|CSCD_TOOL": (f"{BUILD}/cscd",), "CSCD_MODELS|model_program": ("models",),
                 **{f"CSCD_{name.upper()}": (f"{BUILD}/benchmarks/{name}",) for name in ("queries", "methods", "volumes")}}
 
 

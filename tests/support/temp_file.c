@@ -54,3 +54,16 @@ temp_path temp_file_write(const temp_folder *folder, const char *name, const voi
     require_done(fclose(file) == 0, "close", path.text);
     return path;
 }
+
+char *temp_file_read(const char *path, size_t *size) {
+    FILE *file = fopen(path, "rb");
+    require_done(file != NULL && fseek(file, 0, SEEK_END) == 0, "open", path);
+    const long length = ftell(file);
+    char *text = malloc((size_t)length + 1);
+    rewind(file);
+    require_done(text != NULL && fread(text, 1, (size_t)length, file) == (size_t)length, "read", path);
+    text[length] = '\0';
+    fclose(file);
+    if (size != NULL) *size = (size_t)length;
+    return text;
+}

@@ -24,3 +24,6 @@ temp_path temp_file_path(const temp_folder *folder, const char *name);
 
 /* Writes the bytes to the file `name` in the folder and returns its path. */
 temp_path temp_file_write(const temp_folder *folder, const char *name, const void *bytes, size_t size);
+
+/* Reads a whole file as a string, which the caller frees. size may be NULL. */
+char *temp_file_read(const char *path, size_t *size);

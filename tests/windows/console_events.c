@@ -1,7 +1,7 @@
 /* What the console says to the tool: Ctrl-C ends it with the code of SIGINT, once it has written what it has. */
 #include "tests/support/test.h"
-#include "tests/support/tool/run_tool.h"
 #include "tests/support/tool/tool_fixture.h"
+#include "tests/support/tool/tool_process.h"
 
 #include <dirent.h>
 #include <stdio.h>
@@ -92,7 +92,7 @@ static const char *value_of(const char *text, const char *key) {
 
 /* The JSON says that it is not complete, and has the contacts of the CSV, which has whole lines of the intervals so far only. */
 static void expect_kept(size_t done) {
-    char *text = read_whole_file(summary.text, NULL);
+    char *text = temp_file_read(summary.text, NULL);
     const char *reason = value_of(text, "\"stopped_by\":\""), *word = strstr(reason, "interrupted");
     assert_int_equal(strncmp(value_of(text, "\"complete\":"), "false", 5), 0);
     assert_true(word != NULL && word < strchr(reason, '"'));
@@ -133,18 +133,18 @@ static void control_c_keeps_what_is_written(void **state) {
     static const char older[] = "what was there";
     temp_file_write(&folder, "out.csv", older, strlen(older));
     temp_file_write(&folder, "out.json", older, strlen(older));
-    tool_process process = run_tool_start_in_console(
-        (const char *const[]){"replay", model.text, cache.text, "--method", "brute", "--contacts", csv.text,
-                              "--json", summary.text, NULL});
+    tool_process process =
+        tool_process_start((const char *const[]){"replay", model.text, cache.text, "--method", "brute",
+                                                 "--contacts", csv.text, "--json", summary.text, NULL});
     wait_for_contacts(&process);
     say_to(&process, CTRL_C_EVENT);
     if (WaitForSingleObject((HANDLE)(intptr_t)process.pid, 1000 * WAIT_S) != WAIT_OBJECT_0)
         end_tool(&process, "the event was not heard");
-    tool_run run = run_tool_finish(&process);
+    tool_run run = tool_process_finish(&process);
     if (run.code != 130) fail_msg("code %d: %s", run.code, run.error);
     expect_kept(expect_sentence(&run));
     assert_int_equal(count_outputs(0), 0);
-    tool_run_free(&run);
+    free(run.error);
 }
 
 int main(void) {

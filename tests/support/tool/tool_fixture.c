@@ -156,62 +156,12 @@ recorded recorded_cube(bool split) {
     return r;
 }
 
-recorded recorded_bow_tie(void) {
-    recorded r = make_recorded(7, 8, 1);
-    add_tetrahedron(&r, 0, (uint32_t[4]){1, 2, 3, 0});
-    add_tetrahedron(&r, 4, (uint32_t[4]){6, 5, 4, 0});
-    for (uint32_t v = 1; v < 7; v++) {
-        double x = v < 4 ? 2.0 : -2.0, turn = 2.0 * pi * (v % 3) / 3.0;
-        put_position(&r, 0, v, x, cos(turn), sin(turn));
-    }
-    return r;
-}
-
 recorded recorded_torus(uint32_t rings, uint32_t segments) {
     recorded r = make_recorded(rings * segments, rings * segments * 2, 1);
     add_grid(&r, segments, rings, true);
     for (uint32_t v = 0; v < r.vertex_count; v++) {
         double u = 2.0 * pi * (v % segments) / segments, w = 2.0 * pi * (v / segments) / rings;
         put_position(&r, 0, v, (3.0 + cos(u)) * cos(w), (3.0 + cos(u)) * sin(w), -sin(u));
-    }
-    return r;
-}
-
-/* Adds a spindle whose tips are the last two vertices. */
-static void add_spindle(const recorded *r, uint32_t rings, uint32_t segments) {
-    uint32_t *t = r->triangles, first = rings * segments, last = first + 1;
-    for (uint32_t i = 0; i < segments; i++) {
-        uint32_t next = (i + 1) % segments, end = (rings - 1) * segments;
-        memcpy(t, (uint32_t[6]){first, next, i, last, end + i, end + next}, 6 * sizeof *t);
-        t += 6;
-        for (uint32_t j = 0; j + 1 < rings; j++, t += 6) {
-            uint32_t a = j * segments + i, b = j * segments + next;
-            memcpy(t, (uint32_t[6]){a, b, a + segments, b, b + segments, a + segments}, 6 * sizeof *t);
-        }
-    }
-}
-
-/* Places a vertex of the spindle: s runs along it from -6 to 6, w around it. The spindle is bent by the
- * angle in the xy plane, and a little out of it. */
-static void put_spindle(const recorded *r, uint32_t frame, uint32_t vertex, double s, double w,
-                        double angle) {
-    double radius = 12.0 / angle, turned = s / radius, thick = sqrt(fmax(0.0, 1.0 - s * s / 36.0));
-    double from_centre = radius + thick * cos(w);
-    put_position(r, frame, vertex, from_centre * sin(turned), from_centre * cos(turned) - radius,
-                 thick * sin(w) + 0.03 * s + 0.01 * sin(3.0 * s));
-}
-
-recorded recorded_spindle(uint32_t rings, uint32_t segments, uint32_t frame_count) {
-    recorded r = make_recorded(rings * segments + 2, rings * segments * 2, frame_count);
-    add_spindle(&r, rings, segments);
-    for (uint32_t k = 0; k < frame_count; k++) {
-        double angle = (30.0 + 370.0 * k / (frame_count - 1.0)) / 180.0 * pi;
-        for (uint32_t v = 0; v < rings * segments; v++) {
-            double s = 12.0 * (v / segments + 1) / (rings + 1.0) - 6.0;
-            put_spindle(&r, k, v, s, 2.0 * pi * (v % segments + 0.3 * (v / segments)) / segments, angle);
-        }
-        put_spindle(&r, k, rings * segments, -6.0, 0.0, angle);
-        put_spindle(&r, k, rings * segments + 1, 6.0, 0.0, angle);
     }
     return r;
 }
@@ -290,15 +240,3 @@ temp_path recorded_write_cache(const temp_folder *folder, const char *name, cons
 }
 
 /* The pattern's %04d is replaced here, since the compiler cannot check a format that is not a literal. */
-temp_path recorded_write_sequence(const temp_folder *folder, const char *pattern, const recorded *r) {
-    const char *conversion = strchr(pattern, '%');
-    require_done(conversion != NULL && strchr(conversion, 'd') != NULL, "a pattern needs its %0Nd");
-    int digits = atoi(conversion + 1);
-    for (uint32_t k = 0; k < r->frame_count; k++) {
-        char name[256];
-        snprintf(name, sizeof name, "%.*s%0*u%s", (int)(conversion - pattern), pattern, digits, k,
-                 strchr(conversion, 'd') + 1);
-        recorded_write_mesh(folder, name, r, k);
-    }
-    return temp_file_path(folder, pattern);
-}

@@ -29,15 +29,8 @@ recorded recorded_fold(uint32_t columns, uint32_t rows, uint32_t frame_count);
  * write them. The triangles come in the same order. */
 recorded recorded_cube(bool split);
 
-/* Two quads form a bow-tie: two closed tetrahedra that share one vertex (0). One frame. */
-recorded recorded_bow_tie(void);
-
 /* A closed torus of rings by segments quads. One frame. */
 recorded recorded_torus(uint32_t rings, uint32_t segments);
-
-/* A closed spindle of rings by segments quads and two tips, twelve units long, that bends from 30 degrees
- * to 400: its tips touch shortly before the last frame. */
-recorded recorded_spindle(uint32_t rings, uint32_t segments, uint32_t frame_count);
 
 void recorded_free(recorded *r);
 
@@ -56,7 +49,3 @@ temp_path recorded_write_cache(const temp_folder *folder, const char *name, cons
 /* Writes frame_count frames as a point cache: those of the recording forwards, backwards, forwards, ... */
 temp_path recorded_write_cycle(const temp_folder *folder, const char *name, const recorded *r,
                                uint32_t frame_count);
-
-/* Writes frame k as the file whose name the pattern (f_%04d.obj) gives for k; returns the pattern with its
- * folder. */
-temp_path recorded_write_sequence(const temp_folder *folder, const char *pattern, const recorded *r);
