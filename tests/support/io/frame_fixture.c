@@ -74,35 +74,18 @@ temp_path frame_fixture_write(const temp_folder *folder, const char *name, const
     return temp_file_write(folder, name, bytes->data, bytes->size);
 }
 
-static void append_text(frame_fixture_bytes *bytes, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
-
-static void append_text(frame_fixture_bytes *bytes, const char *format, ...) {
-    va_list arguments;
-    va_start(arguments, format);
-    const size_t room = sizeof bytes->data - bytes->size;
-    const int length = vsnprintf((char *)bytes->data + bytes->size, room, format, arguments);
-    va_end(arguments);
-    assert_true(length >= 0 && (size_t)length < room);
-    bytes->size += (size_t)length;
-}
-
 temp_path frame_fixture_write_mesh(const temp_folder *folder, const char *name, uint32_t vertex_count,
                                    uint32_t frame) {
-    const char *extension = strrchr(name, '.');
-    const bool obj = strcmp(extension, ".obj") == 0, ply = strcmp(extension, ".ply") == 0;
     frame_fixture_bytes bytes = {.size = 0};
-    if (ply)
-        append_text(&bytes,
-                    "ply\nformat ascii 1.0\nelement vertex %u\nproperty double x\nproperty double y\n"
-                    "property double z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n",
-                    vertex_count);
-    else if (!obj)
-        append_text(&bytes, "OFF\n%u 1 0\n", vertex_count);
-    for (uint32_t vertex = 0; vertex < vertex_count; vertex++)
-        append_text(&bytes, "%s%.17g %.17g %.17g\n", obj ? "v " : "", frame_fixture_value(frame, vertex, 0),
-                    frame_fixture_value(frame, vertex, 1), frame_fixture_value(frame, vertex, 2));
-    append_text(&bytes, obj ? "f 1 2 3\n" : "3 0 1 2\n");
+    for (uint32_t vertex = 0; vertex <= vertex_count; vertex++) {
+        char line[100] = "f 1 2 3\n";
+        if (vertex < vertex_count)
+            snprintf(line, sizeof line, "v %.17g %.17g %.17g\n", frame_fixture_value(frame, vertex, 0),
+                     frame_fixture_value(frame, vertex, 1), frame_fixture_value(frame, vertex, 2));
+        assert_true(bytes.size + strlen(line) < sizeof bytes.data);
+        memcpy(bytes.data + bytes.size, line, strlen(line));
+        bytes.size += strlen(line);
+    }
     return frame_fixture_write(folder, name, &bytes);
 }
 

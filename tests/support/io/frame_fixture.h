@@ -33,7 +33,7 @@ frame_fixture_bytes frame_fixture_mdd(uint32_t vertex_count, uint32_t frame_coun
 
 temp_path frame_fixture_write(const temp_folder *folder, const char *name, const frame_fixture_bytes *bytes);
 
-/* Writes the frame as a mesh file with one triangle, in the format that the name's extension chooses. */
+/* Writes the frame as an OBJ file with one triangle. */
 temp_path frame_fixture_write_mesh(const temp_folder *folder, const char *name, uint32_t vertex_count,
                                    uint32_t frame);
 
