@@ -160,14 +160,15 @@ static void take_text(void *user, const char *text, int length) {
     gifti_parser *parser = user;
     if (parser->receiver == NULL || parser->failed) return;
     growable *all = &parser->receiver->text;
-    const size_t needed = all->count + (size_t)length;
+    const size_t needed = all->count + (size_t)length + 1; /* numbers are read up to what is none: a 0 */
     if (needed > all->capacity && !growable_reserve(all, needed > SIZE_MAX / 2 ? needed : 2 * needed)) {
         file_reader_fail_here(reader_here(parser), "out of memory for %zu characters", needed);
         stop_parsing(parser);
         return;
     }
     memcpy((char *)all->data + all->count, text, (size_t)length);
-    all->count = needed;
+    all->count = needed - 1;
+    ((char *)all->data)[all->count] = '\0';
 }
 
 /* A few hundred bytes of entities become gigabytes of text, and no program writes them into a surface. */

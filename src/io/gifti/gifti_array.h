@@ -17,7 +17,7 @@ typedef struct gifti_array {
     bool big_endian, column_major;
     uint32_t row_count; /* of three numbers each */
     size_t line;        /* where its data begin */
-    growable text;      /* of char: its data, as in the file */
+    growable text;      /* of char: its data, as in the file, and a 0 that does not count */
     growable bytes; /* of unsigned char: decoded, unless it is ASCII; as numbers in this machine's order */
 } gifti_array;
 
