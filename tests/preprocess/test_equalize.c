@@ -110,6 +110,7 @@ TEST(published_bins) {
     for (uint32_t i = 0; i < COUNT; i++) density[i] = random_integer(-20, 300);
     density[7] = -20.0;
     density[70] = 300.0;
+    density[71] = 299.0; /* the last bin has others than the highest */
     assert_int_equal(equalize(mesh, density, true, found), CSCD_OK);
     for (uint32_t i = 0; i < COUNT; i++) {
         double bin = fmin(floor((density[i] + 20.0) / 320.0 * 256.0), 255.0), below = 0.0;
@@ -166,6 +167,21 @@ TEST(clusters_on_a_strip) {
     assert_clusters(mesh, equalized, 0.05, 0, (uint32_t[]){0}, NULL);
     assert_clusters(mesh, equalized, 1.0, 1, (uint32_t[]){0, 10}, (uint32_t[]){0, 1, 2, 3, 4, 5, 6, 7, 8, 9});
     cscd_mesh_destroy(mesh);
+}
+
+/* Obstacles are not cut, so none of their triangles is in a cluster. */
+TEST(obstacles_have_no_clusters) {
+    const uint32_t triangles[6] = {0, 1, 2, 1, 3, 2}, members[2][2] = {{2, 3}, {0, 1}};
+    const double low[4] = {0.1, 0.1, 0.1, 0.1};
+    for (int second = 0; second < 2; second++) {
+        cscd_object_desc descs[2] = {cscd_object_of_triangles(4, 2, triangles),
+                                     cscd_object_of_triangles(4, 2, triangles)};
+        cscd_mesh *mesh = NULL;
+        descs[second].obstacle = true;
+        assert_int_equal(cscd_mesh_create(context, descs, 2, &mesh), CSCD_OK);
+        assert_clusters(mesh, low, 0.1, 1, (uint32_t[]){0, 2}, members[second]);
+        cscd_mesh_destroy(mesh);
+    }
 }
 
 /* Triangles that share only a vertex are two clusters, the three of one edge are one. */

@@ -185,6 +185,27 @@ TEST(lloyd_on_a_line) {
     cscd_context_destroy(context);
 }
 
+/* 3 is as near to the mean of the two 0 and itself as to 5: it belongs to the first of the two, and stays only there. */
+TEST(equally_near_centroids) {
+    static const double line[6] = {0, 0, 3, 5, 5, 5};
+    double positions[18] = {0};
+    uint32_t points[6], clusters[6], scratch[6], stayed = 0;
+    cscd_context *context = NULL;
+    for (uint32_t i = 0; i < 6; i++) positions[3 * (points[i] = i)] = line[i];
+    assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
+    for (uint64_t seed = 0; seed < 50; seed++) {
+        double centroids[6];
+        uint64_t counts[2];
+        memset(clusters, 0xff, sizeof clusters);
+        lloyd l = {context, positions, points, 6, 2, centroids, clusters, counts, scratch};
+        assert_int_equal(lloyd_run(&l, seed), CSCD_OK);
+        assert_true(centroids[3] != 1.0);
+        stayed += centroids[0] == 1.0;
+    }
+    assert_true(stayed > 0);
+    cscd_context_destroy(context);
+}
+
 TEST(zero_is_refused) {
     body b = body_of(BODY_SPHERE, 1500);
     cscd_mesh *mesh = body_mesh(&b, 1);

@@ -317,6 +317,32 @@ TEST(open_and_inside_out) {
     body_free(&b);
 }
 
+/* The published selection asks what points see, and a body that is inside out sees what it has seen. */
+TEST(published_cuts_of_what_is_inside_out) {
+    const charged *c = &bodies[BODY_DUMBBELL];
+    region_options published = region_options_defaults();
+    uint32_t counts[2];
+    published.published = true;
+    for (int turned = 0; turned < 2; turned++) {
+        body b = {0};
+        double *points = NULL;
+        body_append(&b, &c->shape, (double[3]){0, 0, 0});
+        for (uint32_t t = 0; t < b.triangle_count && turned == 1; t++) {
+            uint32_t swap = b.triangles[t * 3];
+            b.triangles[t * 3] = b.triangles[t * 3 + 1];
+            b.triangles[t * 3 + 1] = swap;
+        }
+        cscd_mesh *mesh = body_mesh(&b, 1);
+        assert_int_equal(regions_from_charge(mesh, b.positions, c->density, &published, found.regions,
+                                             &counts[turned], &points),
+                         CSCD_OK);
+        context_free(mesh->context, points);
+        body_mesh_destroy(mesh);
+        body_free(&b);
+    }
+    assert_true(counts[0] > 1 && counts[1] == counts[0]);
+}
+
 /* Two cones that share a tip, a fin on an edge, a triangle alone: a region each, or what can be cut off. */
 TEST(odd_meshes) {
     const double positions[][3] = {{0, 0, 0},  {1, 0, 1},    {0, 1, 1}, {-1, -1, 1}, {1, 0, -1},

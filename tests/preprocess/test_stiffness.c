@@ -158,6 +158,9 @@ TEST(edges_weigh_less_where_it_is_soft) {
     for (uint32_t e = 0; e < mesh->edge_count; e++) {
         const double share = fmax(0.1, stiffness_beside(mesh, softer, e)),
                      length = surface_edge_length(mesh, capsule.positions, e);
+        const uint32_t *star = mesh->edge_stars + mesh->edge_star_offsets[e];
+        const double rank = fmin(1.0, (ranks[star[0]] + ranks[star[1]]) / 2.0 / 0.3);
+        assert_true(fabs(plain[e] - length * (1.0 - 0.9 * (1.0 - rank))) <= 1e-12 * length);
         assert_true(fabs(weights[e] - fmin(plain[e], length * share)) <= 1e-12 * length);
     }
     body_mesh_destroy(mesh);
@@ -210,6 +213,19 @@ TEST(shares_are_of_the_component) {
     free(shares);
 }
 
+/* A large stiff triangle and three small soft ones: half of the area is stiff. */
+TEST(medians_are_of_areas) {
+    double positions[15] = {0, 0, 0, 10, 0, 0, 0, 10, 0, 5, -0.1, 0, 5, -0.2, 0};
+    uint32_t triangles[12] = {0, 1, 2, 1, 0, 3, 1, 3, 4, 0, 4, 3};
+    const double given[4] = {1.0, 0.125, 0.125, 0.125};
+    double shares[4];
+    const body b = {.vertex_count = 5, .triangle_count = 4, .positions = positions, .triangles = triangles};
+    cscd_mesh *mesh = body_mesh(&b, 1);
+    assert_int_equal(stiffness_shares(mesh, positions, given, shares), CSCD_OK);
+    for (int t = 0; t < 4; t++) assert_true(shares[t] == given[t]);
+    body_mesh_destroy(mesh);
+}
+
 /* ---- what method auto compares --------------------------------------------------------------------------- */
 
 static void find_centroid(const body *b, uint32_t t, double out[3]) {
@@ -259,9 +275,12 @@ static void walk_slowly(const region_scene *s, const body *b, const double *shar
     }
 }
 
-/* Two regions, the second with a soft place on the way from its point and a piece that no way leads to. */
-TEST(ways_are_the_shortest) {
-    static const double points[2][3] = {{0.1, 0.0, -0.6}, {0.0, 0.2, 1.2}};
+/* Two regions, one of them with a soft place on the way from its point and a piece that no way leads to: the second, or the first. */
+static void check_ways(uint32_t softer) {
+    static const double places[2][3] = {{0.1, 0.0, -0.6}, {0.0, 0.2, 1.2}};
+    double points[2][3];
+    memcpy(points[1 - softer], places[0], sizeof places[0]);
+    memcpy(points[softer], places[1], sizeof places[1]);
     body b = body_of(BODY_CAPSULE, 500);
     cscd_mesh *mesh = body_mesh(&b, 1);
     uint32_t *regions = body_allocate(b.triangle_count, sizeof *regions), beyond = 0, between = 0;
@@ -271,7 +290,7 @@ TEST(ways_are_the_shortest) {
     for (uint32_t t = 0; t < b.triangle_count; t++) {
         double middle[3];
         find_centroid(&b, t, middle);
-        regions[t] = middle[2] > 0.0 || middle[2] < -1.3;
+        regions[t] = middle[2] > 0.0 || middle[2] < -1.3 ? softer : 1 - softer;
         shares[t] = middle[2] > 0.4 && middle[2] < 0.8 ? 0.25 + 0.5 * (t % 2) : 1.0;
     }
     const region_scene scene = {.mesh = mesh,
@@ -279,7 +298,7 @@ TEST(ways_are_the_shortest) {
                                 .count = b.triangle_count,
                                 .of_triangle = regions,
                                 .region_count = 2,
-                                .points = points};
+                                .points = (const double(*)[3])points};
     assert_int_equal(soft_ways_find(&scene, shares, ways), CSCD_OK);
     walk_slowly(&scene, &b, shares, expected);
     for (uint32_t t = 0; t < b.triangle_count; t++) {
@@ -295,6 +314,10 @@ TEST(ways_are_the_shortest) {
     free(shares);
     free(ways);
     free(expected);
+}
+
+TEST(ways_are_the_shortest) {
+    for (uint32_t softer = 0; softer < 2; softer++) check_ways(softer);
 }
 
 static double compared_share(const cscd_plan *plan, cscd_method method) {

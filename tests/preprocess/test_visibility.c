@@ -97,6 +97,10 @@ TEST(regions_on_their_own) {
     for (int k = 0; k < 3; k++) points[3 + k] = k == 0 ? 19.0 : 10.0; /* beyond the large face */
     assert_int_equal(visible_shares(mesh, b.positions, regions, 2, points, shares), CSCD_OK);
     assert_true(shares[0] == 1.0 && fabs(shares[1] - (1.0 - large)) < 1e-14);
+    points[0] = points[1] = 0.25; /* in the plane of a face, which is seen edge-on */
+    points[2] = 0.0;
+    assert_int_equal(visible_shares(mesh, b.positions, regions, 2, points, shares), CSCD_OK);
+    assert_true(fabs(shares[0] - (1.0 - 0.5 / (1.5 + sqrt(0.75)))) < 1e-14);
     for (uint32_t i = 0; i < 24; i++) b.positions[i] = i % 3 == 0 ? 4.0 : 5.0;
     assert_int_equal(detector_points_from_regions(mesh, b.positions, regions, 2, points), CSCD_OK);
     assert_int_equal(visible_shares(mesh, b.positions, regions, 2, points, shares), CSCD_OK);
