@@ -127,7 +127,7 @@ NOT_HERE        := $(if $(filter 0,$(GSL)),tests/ccd/test_cubic_guess.c tests/cc
                      tests/install/test_headers.py tests/install/test_header_versions.py) \
                    $(if $(filter %/release,$(BUILD)),,tests/report/test_report_browser.py) \
                    $(if $(filter release,$(CONFIG)),,tests/install/test_flags.py tests/install/test_install.py tests/install/test_places.py) \
-                   $(if $(filter 0,$(EXPAT)),tests/io/test_gifti.c) \
+                   $(if $(filter 0,$(EXPAT)),tests/io/test_gifti.py tests/io/test_gifti_memory.c) \
                    $(if $(HAS_BASELINES),,$(wildcard tests/baselines/*))
 TEST_SOURCES    := $(filter-out $(NOT_HERE),$(wildcard tests/*/test_*.c tests/*/test_*.cpp tests/*/test_*.py))
 ifneq ($(findstring mingw,$(HOST)),)
