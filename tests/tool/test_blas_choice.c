@@ -6,6 +6,8 @@ TEST(the_processor_decides) {
     assert_string_equal(blas_better_core("Prescott", true, true), "SkylakeX");
     assert_string_equal(blas_better_core("Prescott", true, false), "Haswell");
     assert_string_equal(blas_better_core("Sandybridge", true, false), "Haswell");
+    assert_string_equal(blas_better_core("Katmai", true, false), "Haswell");
+    assert_string_equal(blas_better_core("Steamroller", true, true), "SkylakeX");
     assert_null(blas_better_core("Prescott", false, false));
     assert_null(blas_better_core("Haswell", true, true));
     assert_null(blas_better_core("Zen", true, true));
