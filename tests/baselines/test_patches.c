@@ -1,6 +1,7 @@
 /* The patches of all nodes of trees, compared with a reference that counts and walks: their contours,
  * which edges the parent has too, and which patches are disks. */
 #include "runtime/baselines/iccd/patch.h"
+#include "tests/support/bvh/bvh_rig.h"
 #include "tests/support/mesh_shapes.h"
 #include "tests/support/models/body_of.h"
 #include "tests/support/scenes.h"
@@ -308,4 +309,42 @@ TEST(roots_that_are_disks_and_not) {
     }
     beside.vertex_count = 28;
     assert_false(root_is_disk(&beside));
+}
+
+/* What is hidden of a patch is in the blocks of its own tree. */
+TEST(patches_are_hidden_in_their_tree) {
+    const double far_away[3] = {9.0, 0.0, 0.0}, origin[3] = {0.0, 0.0, 0.0};
+    size_t hidden = 0;
+    bvh_rig r;
+    patch_tree tree;
+    scene_clear(&s);
+    scene_add_sphere(&s, origin, 1.0, 12, 16);
+    scene_add_sphere(&s, far_away, 1.0, 12, 16);
+    assert_true(bvh_rig_create(&s, (bvh_setup){CSCD_SIMD_AUTO, 1, BOX_AXES, 0}, &r));
+    bvh *f = &r.bvh;
+    assert_int_equal(f->tree_count, 2);
+    assert_true(bvh_allow_hiding(f));
+    assert_int_equal(patch_tree_build(f, &tree), CSCD_OK);
+    bool *sealed = calloc(tree.node_count, sizeof *sealed);
+    assert_non_null(sealed);
+    for (uint32_t i = 0; i < tree.node_count; i++) {
+        bvh_show_all(f);
+        sealed[i] = true;
+        patch_tree_hide(&tree, sealed, f);
+        sealed[i] = false;
+        const uint32_t other = 1 - tree.nodes[i].tree;
+        for (int level = 0; level < f->tree_level; level++) {
+            const uint32_t first = f->trees[other].first_blocks[level];
+            const uint32_t end = other == 0 ? f->trees[1].first_blocks[level] : f->levels[level].block_count;
+            for (uint32_t b = 0; b < f->levels[level].block_count; b++) {
+                const bool whole = f->levels[level].self_pairs[b] == UINT64_MAX;
+                assert_true(whole || b < first || b >= end);
+                hidden += !whole;
+            }
+        }
+    }
+    assert_true(hidden > 10);
+    free(sealed);
+    patch_tree_free(r.context, &tree);
+    bvh_rig_destroy(&r);
 }
