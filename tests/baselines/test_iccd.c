@@ -178,6 +178,37 @@ TEST(steps_do_not_remember) {
     }
 }
 
+/* Small squares that have changed places: after some steps their trees are replaced, and the patches of the old ones with them. */
+TEST(patches_follow_their_trees) {
+    enum { SQUARES = 64, STEPS = 40 };
+    static const uint32_t halves[6] = {0, 1, 2, 2, 1, 3};
+    cscd_detector_options options = cscd_detector_defaults();
+    uint64_t sealed = 0;
+    scene_clear(&interval);
+    interval.triangle_count = 2 * SQUARES;
+    interval.vertex_count = 4 * SQUARES;
+    for (uint32_t i = 0; i < 6 * SQUARES; i++) interval.triangles[i] = i / 6 * 4 + halves[i % 6];
+    options.method = CSCD_METHOD_ICCD;
+    rig r = {NULL, NULL, NULL};
+    for (uint32_t step = 0; step < STEPS; step++) {
+        cscd_contacts found;
+        for (uint32_t v = 0; v < 4 * SQUARES; v++) {
+            const uint32_t place =
+                step == 0 ? v / 4 : v / 4 * 29 % SQUARES; /* 29 and 64 have no divisor in common */
+            const double x[3] = {place % 8 + 0.1 * (v % 2), place / 8 + 0.1 * (v / 2 % 2), 0.0};
+            memcpy(interval.x0 + 3 * v, x, sizeof x);
+            memcpy(interval.x1 + 3 * v, x, sizeof x);
+            interval.x1[3 * v + 2] += 0.4 * (place % 3);
+        }
+        if (step == 0) r = rig_create(&interval, 1, &options);
+        assert_int_equal(step_packed(r.detector, interval.x0, interval.x1, &found), CSCD_OK);
+        assert_int_equal(found.count, 0);
+        sealed += cscd_detector_counters(r.detector).sealed;
+    }
+    assert_true(sealed > 0);
+    rig_destroy(&r);
+}
+
 /* Scaling by a power of two changes nothing while squares stay in range; beyond that nothing is sealed and
  * nothing lost. */
 TEST(scales_change_nothing) {
