@@ -166,11 +166,14 @@ TEST(steps_do_not_remember) {
                      iccd = run_method(options, CSCD_METHOD_ICCD, 1);
         const double *ends[4] = {interval.x1, interval.x0, interval.x0, interval.x1};
         const double *x = interval.x0;
+        uint64_t sealed = 0;
         for (int i = 0; i < 4; i++) {
             cscd_contacts expected, found;
             assert_int_equal(step_packed(none.objects.detector, x, ends[i], &expected), CSCD_OK);
             assert_int_equal(step_packed(iccd.objects.detector, x, ends[i], &found), CSCD_OK);
             check_same(&found, &expected);
+            if (i == 0) sealed = cscd_detector_counters(iccd.objects.detector).sealed;
+            if (i == 3) assert_int_equal(cscd_detector_counters(iccd.objects.detector).sealed, sealed);
             x = ends[i];
         }
         rig_destroy(&none.objects);
