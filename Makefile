@@ -121,12 +121,15 @@ NATIVE_SOURCES  := $(wildcard python/native/*.c)
 SUPPORT_SOURCES := $(filter-out $(if $(WINDOWS),,tests/support/tool/tool_process.c),$(wildcard tests/support/*.c tests/support/*/*.c))
 # `rm -r runtime/baselines`, and its lines in runtime/detector/method_table.c: what needs them is not built then.
 HAS_BASELINES   := $(wildcard runtime/baselines/*.h)
-# The browser's tests look at pages, which no other configuration writes differently. Only a release is installed.
+# The browser's tests look at pages, which no other configuration writes differently. Only a release is installed. Under sanitizers each
+# program of models/ runs (models/test_programs); how bodies and cloth move in them is looked at in a release.
 NOT_HERE        := $(if $(filter 0,$(GSL)),tests/ccd/test_cubic_guess.c tests/ccd/test_root_finders.c) \
                    $(if $(filter %/release,$(BUILD)),,tests/install/test_charge_library.py tests/install/test_embedding.py \
                      tests/install/test_headers.py tests/install/test_header_versions.py) \
                    $(if $(filter %/release,$(BUILD)),,tests/report/test_report_browser.py) \
                    $(if $(filter release,$(CONFIG)),,tests/install/test_flags.py tests/install/test_install.py tests/install/test_places.py) \
+                   $(if $(filter sanitize,$(CONFIG)),$(wildcard tests/models/test_cloth_*.c tests/models/test_recording*.c tests/models/test_soft_body*.c) \
+                     tests/models/test_shapes.c) \
                    $(if $(filter 0,$(EXPAT)),tests/io/test_gifti.py tests/io/test_gifti_memory.c) \
                    $(if $(HAS_BASELINES),,$(wildcard tests/baselines/*))
 TEST_SOURCES    := $(filter-out $(NOT_HERE),$(wildcard tests/*/test_*.c tests/*/test_*.cpp tests/*/test_*.py))

@@ -9,7 +9,7 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { ROUND_COUNT = 20000, LIMBS_MAX = 12 };
+enum { ROUND_COUNT = PACED(20000, 4000), LIMBS_MAX = 12 };
 
 static integer_pool pool;
 

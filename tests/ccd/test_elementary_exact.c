@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-enum { CASES = 2000 };
+enum { CASES = PACED(2000, 400) };
 
 static double integer_between(random_stream *random, double extent) {
     return floor(stream_between(random, -extent, extent + 1.0));

@@ -10,7 +10,7 @@
 #include <pthread.h>
 #include <stdlib.h>
 
-enum { SCENES = PACED(24, 5) };
+enum { SCENES = PACED(24, 4) };
 
 /* ---- environments -------------------------------------------------------------------------------------- */
 
@@ -214,7 +214,7 @@ TEST(random_scenes) {
         if (seed % 5 == 4) w.options.min_separation = 0.01;
         compare_environments(&w);
     }
-    assert_true(ignored_pairs > 1000 && reports > 1000 && cancelled > 100);
+    assert_true(ignored_pairs > PACED(1000, 300) && reports > PACED(1000, 300) && cancelled > PACED(100, 30));
 }
 
 TEST(plans_of_each_kind) {
@@ -234,7 +234,7 @@ TEST(many_threads) {
     workload_tube(&q, 40, 20, 6);
     workload w = {.sequence = &q, .options = cscd_detector_defaults()};
     expected = run_in(environment_of(0), w, 1, false, &h);
-    for (int number = 0; number < ENVIRONMENTS; number++) {
+    for (int number = 0; number < ENVIRONMENTS; number += PACED(1, 5)) {
         for (int pool = 0; pool < 2; pool++) {
             found = run_in(environment_of(number), w, 3, pool, &h);
             assert_false(found.failed);

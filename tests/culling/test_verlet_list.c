@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { INTERVALS = PACED(360, 200), ORACLE_EVERY = PACED(24, 24) };
+enum { INTERVALS = PACED(360, 200), ORACLE_EVERY = 24 };
 
 /* ---- detectors ------------------------------------------------------------------------------------------- */
 

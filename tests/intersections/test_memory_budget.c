@@ -149,7 +149,8 @@ TEST(what_is_wanted_is_the_same_for_any_threads) {
         add_small_shuffled(rigs[i]);
         body_rig_create(rigs[i], NULL, i == 0 ? 1 : 4);
     }
-    for (options.max_memory = 1 << 14; options.max_memory < 1 << 20; options.max_memory += 1 << 10) {
+    for (options.max_memory = 1 << 14; options.max_memory < 1 << 20;
+         options.max_memory += PACED(1, 8) << 10) {
         for (int i = 0; i < 2; i++) find_with(rigs[i], &options);
         assert_int_equal(rig.found.wanted_memory, full.found.wanted_memory);
     }

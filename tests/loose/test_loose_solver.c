@@ -138,7 +138,7 @@ static void compare_near(cscd_detector *detector, double distance, size_t by_kin
 
 TEST(proximity_of_all_kinds) {
     size_t by_kind[CSCD_CONTACT_VH + 1] = {0};
-    for (uint64_t seed = 0; seed < 24; seed++) {
+    for (uint64_t seed = 0; seed < PACED(24, 12); seed++) {
         random_stream random;
         loose_recipe recipe = everything;
         recipe.rules = seed % 3 == 1;
@@ -150,7 +150,7 @@ TEST(proximity_of_all_kinds) {
         compare_near(detector, 0.25, by_kind);
         close_scene(detector);
     }
-    for (int k = 0; k <= CSCD_CONTACT_VH; k++) assert_true(k == CSCD_CONTACT_TT || by_kind[k] > 20);
+    for (int k = 0; k <= CSCD_CONTACT_VH; k++) assert_true(k == CSCD_CONTACT_TT || by_kind[k] > PACED(20, 5));
 }
 
 /* ---- steps ------------------------------------------------------------------------------------------------ */
@@ -237,7 +237,7 @@ static void march_on(const loose_recipe *recipe, uint64_t seed, solver_tally *ta
 
 TEST(certified_steps) {
     solver_tally tally = {.steps = 0};
-    for (uint64_t seed = 0; seed < 24; seed++) {
+    for (uint64_t seed = 0; seed < PACED(24, 12); seed++) {
         loose_recipe recipe = everything;
         recipe.triangles = seed % 5 != 0;
         recipe.half_spaces = seed % 5 != 1;
@@ -334,7 +334,7 @@ static void check_truncation(cscd_detector *detector, size_t *shortened) {
 
 TEST(bounds_and_truncation) {
     size_t shortened = 0;
-    for (uint64_t seed = 0; seed < 24; seed++) {
+    for (uint64_t seed = 0; seed < PACED(24, 12); seed++) {
         random_stream random;
         loose_recipe recipe = everything;
         recipe.triangles = seed % 4 != 0;

@@ -7,7 +7,7 @@
 #include "tests/support/random.h"
 #include "tests/support/test.h"
 
-#define ROUND_COUNT 100000
+enum { ROUND_COUNT = PACED(100000, 20000) };
 
 static int seed_random(void **state) {
     (void)state;

@@ -103,7 +103,7 @@ TEST(every_allocation_may_fail) {
     size_t refused = 0, without_charge = 0;
     for (bool reached = true; reached;) {
         cscd_plan *plan = NULL;
-        counter.fail_at = counter.calls + refused + without_charge;
+        counter.fail_at = counter.calls + PACED(1, 4) * (refused + without_charge);
         const cscd_status status = make_plan(s, &plan);
         reached = counter.calls > counter.fail_at;
         if (status == CSCD_OK) {
@@ -119,7 +119,7 @@ TEST(every_allocation_may_fail) {
         cscd_plan_destroy(plan);
         assert_int_equal(cscd_context_bytes(s->context), bytes);
     }
-    assert_true(refused > 20 && without_charge > 40);
+    assert_true(refused > PACED(20, 4) && without_charge > PACED(40, 8));
     free_scene(s);
     assert_int_equal(counter.live, 0);
 }
@@ -148,7 +148,7 @@ TEST(every_report_may_cancel) {
     const size_t bytes = cscd_context_bytes(s->context);
     cscd_status status = CSCD_CANCELLED;
     size_t rounds = 0;
-    for (size_t refused = 0; status != CSCD_OK; rounds++, refused += 1 + refused / 8) {
+    for (size_t refused = 0; status != CSCD_OK; rounds++, refused += 1 + refused / PACED(8, 2)) {
         cscd_plan *plan = NULL;
         count = (progress_count){.refuse_at = refused};
         status = make_plan(s, &plan);
@@ -157,7 +157,7 @@ TEST(every_report_may_cancel) {
         cscd_plan_destroy(plan);
         assert_int_equal(cscd_context_bytes(s->context), bytes);
     }
-    assert_true(rounds > 20);
+    assert_true(rounds > PACED(20, 8));
     free_scene(s);
 }
 

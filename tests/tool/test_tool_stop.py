@@ -9,10 +9,7 @@ import pytest
 
 from support.tool.reading import read_contacts, read_json
 from support.tool.recordings import cube, fold, tetrahedra
-from support.tool.running import fails, finish, peak_kib, run, start, wait_until
-
-# A sanitizer keeps freed memory, so that there is nothing to measure.
-SANITIZED = os.path.basename(os.path.dirname(os.environ["CSCD_TOOL"])) == "sanitize"
+from support.tool.running import SANITIZED, fails, finish, peak_kib, run, start, wait_until
 
 
 def stopped(interval_count, frame_count, reason):

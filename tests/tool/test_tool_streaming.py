@@ -12,7 +12,7 @@ import pytest
 
 from support.tool import page_cache
 from support.tool.recordings import fold, tetrahedra
-from support.tool.running import command, fails, finish, peak_kib, run, start, wait_until
+from support.tool.running import SANITIZED, command, fails, finish, peak_kib, run, start, wait_until
 
 # ---- a large recording
 
@@ -21,8 +21,8 @@ FRAME = 121 * 81 * 12
 # A point cache of 100 GB that takes no room: all frames are holes but those of one shard of 32 intervals, in the middle.
 CHUNKS = (100 * 1000**3 // FRAME - 1) // CHUNK
 SHARD = f"--shard {CHUNKS // 2 + 1}/{CHUNKS}"
-# What a sanitizer keeps of memory that was freed.
-ROOM_KIB = 80 * 1024
+# What an allocator may keep, and what one run has more than another.
+ROOM_KIB = 16 * 1024
 
 
 @pytest.fixture(scope="module")
@@ -47,7 +47,7 @@ def bytes_read(line):
     return int(subprocess.run(["sh", "-c", script], check=True, capture_output=True, text=True).stdout)
 
 
-@pytest.mark.skipif(not os.access("/proc/self/io", os.R_OK), reason="nobody counts here")
+@pytest.mark.skipif(SANITIZED or not os.access("/proc/self/io", os.R_OK), reason="nobody counts here")
 def test_a_shard_of_100_gb_reads_its_own_frames(large):
     files = sum(os.path.getsize(large / name) for name in ("wide.obj", "small.pc2"))
     least = bytes_read(f"replay {large}/wide.obj {large}/small.pc2 --quiet --no-depths --results small.shard")
@@ -56,6 +56,7 @@ def test_a_shard_of_100_gb_reads_its_own_frames(large):
     assert (CHUNK + 1) * FRAME <= most <= least + FRAME // 2
 
 
+@pytest.mark.skipif(SANITIZED, reason="nothing to measure")
 def test_its_memory_is_that_of_an_interval(large):
     small = peak_kib(f"replay {large}/wide.obj {large}/small.pc2 --quiet --no-depths")
     numbers = CHUNKS * CHUNK * 4 // 1024  # a frame's number takes 4 bytes
@@ -63,10 +64,11 @@ def test_its_memory_is_that_of_an_interval(large):
         <= small + numbers + ROOM_KIB
 
 
+@pytest.mark.skipif(SANITIZED, reason="nothing to measure")
 def test_frames_are_not_kept(large):
-    """Sixteen times as many frames need no more memory: they would take half as much again as the room that a sanitizer gets."""
+    """Eight times as many frames need no more memory: they would take half as much again as the room."""
     small = (large / "small.pc2").read_bytes()
-    for name, count in (("few.pc2", CHUNK + 1), ("many.pc2", 16 * CHUNK + 1)):
+    for name, count in (("few.pc2", CHUNK + 1), ("many.pc2", 8 * CHUNK + 1)):
         Path(name).write_bytes(small[: HEADER - 4] + struct.pack("<i", count) + count * small[HEADER : HEADER + FRAME])
     few, many = (peak_kib(f"replay {large}/wide.obj {name} --quiet --no-check") for name in ("few.pc2", "many.pc2"))
     assert many <= few + ROOM_KIB
