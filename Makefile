@@ -129,7 +129,7 @@ NOT_HERE        := $(if $(filter 0,$(GSL)),tests/ccd/test_cubic_guess.c tests/cc
                    $(if $(filter %/release,$(BUILD)),,tests/report/test_report_browser.py) \
                    $(if $(filter release,$(CONFIG)),,tests/install/test_flags.py tests/install/test_install.py tests/install/test_places.py) \
                    $(if $(filter sanitize,$(CONFIG)),$(wildcard tests/models/test_cloth_*.c tests/models/test_recording*.c tests/models/test_soft_body*.c) \
-                     tests/models/test_shapes.c) \
+                     tests/models/test_shapes.c tests/tool/test_large_recordings.py) \
                    $(if $(filter 0,$(EXPAT)),tests/io/test_gifti.py tests/io/test_gifti_memory.c) \
                    $(if $(HAS_BASELINES),,$(wildcard tests/baselines/*))
 TEST_SOURCES    := $(filter-out $(NOT_HERE),$(wildcard tests/*/test_*.c tests/*/test_*.cpp tests/*/test_*.py))
@@ -218,7 +218,7 @@ SLOW_proofs        := creations intersections solver_calls steps told
 SLOW_report        := report_browser report_page
 SLOW_sensors       := exact_check sensor_recall sensor_scenes
 SLOW_solver        := float_march floors max_step proximity
-SLOW_tool          := tool_shards tool_streaming tool_preprocess tool_render tool_stop tool_figure
+SLOW_tool          := large_recordings tool_shards tool_streaming tool_preprocess tool_render tool_stop tool_figure
 rooms_of = $(sort $(notdir $(patsubst %/,%,$(dir $(1)))))
 TEST_ROOMS := $(call rooms_of,$(wildcard tests/*/test_*.c*))
 SLOW_TESTS := $(foreach room,$(call rooms_of,$(wildcard tests/*/test_*)),$(addprefix $(room)/test_,$(SLOW_$(room))))

@@ -10,7 +10,7 @@ import pytest
 
 from support.tool.reading import read_csv, read_json, read_json_lines
 from support.tool.recordings import fold, spindle
-from support.tool.running import fails, finish, limited_to, run, start, usage_error
+from support.tool.running import SLOW_MACHINE, fails, finish, limited_to, run, start, usage_error
 
 FOLD, SPINDLE = "fold.obj fold.pc2", "spindle.obj spindle.pc2"
 CLOSED = f"{SPINDLE} --method single"
@@ -61,7 +61,7 @@ def merged_as_one():
 # ---- the same bytes
 
 
-@pytest.mark.parametrize("options", [
+WHOLE_RUNS = [
     FOLD,
     f"{FOLD} --no-check",  # each shard proves its start
     f"{FOLD} --frames 11:100 --no-depths --first-frame 1",
@@ -73,7 +73,10 @@ def merged_as_one():
     f"{SPINDLE} --method brute",
     # Two objects, one closed and at rest, of which more is promised than of the open one.
     f"{FOLD} --object Spindle=spindle.obj --method single --mode earliest",
-])
+]
+
+
+@pytest.mark.parametrize("options", WHOLE_RUNS[:: 3 if SLOW_MACHINE else 1])
 def test_shards_give_what_one_run_gives(options):
     whole_run(options)
     for count in (1, 3, 5, 7):

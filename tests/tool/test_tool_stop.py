@@ -1,4 +1,4 @@
-"""Replays that end early keep what they have written; replays that last do not grow in memory."""
+"""Replays that end early keep what they have written."""
 import os
 import signal
 import struct
@@ -9,7 +9,7 @@ import pytest
 
 from support.tool.reading import read_contacts, read_json
 from support.tool.recordings import cube, fold, tetrahedra
-from support.tool.running import SANITIZED, fails, finish, peak_kib, run, start, wait_until
+from support.tool.running import fails, finish, run, start, wait_until
 
 
 def stopped(interval_count, frame_count, reason):
@@ -123,20 +123,3 @@ def test_an_interrupted_preprocess_writes_nothing():
         if error:
             break
     assert "interrupted; no plan was written" in error and not os.path.exists("wide.plan.ply")
-
-
-def test_memory_does_not_grow_with_the_frames():
-    """Ten times the frames need no more memory, up to what the measurement itself can tell."""
-    scene = fold(70, 40, 16)
-    scene.write_mesh("large.obj")
-    scene.write_cache("short.pc2", 30)
-    scene.write_cache("long.pc2", 300)
-    if SANITIZED:
-        run("replay large.obj short.pc2 --frames :20")
-        run("replay large.obj long.pc2 --frames 280:")
-        return
-    at_30, at_300 = (min(peak_kib(f"replay large.obj {name} --quiet --contacts out.csv --json out.json") for _ in range(3))
-                     for name in ("short.pc2", "long.pc2"))
-    # The 270 further frames hold about 9,000 KiB, and the answers about them, which are kept, about 900. The system itself counts
-    # up to 600 KiB more or less of the shared libraries from run to run.
-    assert at_300 <= at_30 + at_30 / 50 + 1536

@@ -1,9 +1,6 @@
-"""What a replay reads, and when: of a large recording its own frames only, and files that come late."""
+"""When a replay reads its frames: before they are needed, and files that come late."""
 import os
-import shlex
 import signal
-import struct
-import subprocess
 import threading
 import time
 from pathlib import Path
@@ -12,67 +9,7 @@ import pytest
 
 from support.tool import page_cache
 from support.tool.recordings import fold, tetrahedra
-from support.tool.running import SANITIZED, command, fails, finish, peak_kib, run, start, wait_until
-
-# ---- a large recording
-
-CHUNK, HEADER = 32, 32
-FRAME = 121 * 81 * 12
-# A point cache of 100 GB that takes no room: all frames are holes but those of one shard of 32 intervals, in the middle.
-CHUNKS = (100 * 1000**3 // FRAME - 1) // CHUNK
-SHARD = f"--shard {CHUNKS // 2 + 1}/{CHUNKS}"
-# What an allocator may keep, and what one run has more than another.
-ROOM_KIB = 16 * 1024
-
-
-@pytest.fixture(scope="module")
-def large(tmp_path_factory):
-    """A small recording, and its frames within a large one."""
-    folder = tmp_path_factory.mktemp("large")
-    scene = fold(120, 80, 3)
-    scene.write_mesh(folder / "wide.obj")
-    scene.write_cache(folder / "small.pc2", CHUNK + 1)
-    small = (folder / "small.pc2").read_bytes()
-    with open(folder / "large.pc2", "wb") as file:
-        file.write(small[: HEADER - 4] + struct.pack("<i", CHUNKS * CHUNK + 1))
-        file.seek(HEADER + CHUNKS // 2 * CHUNK * FRAME)
-        file.write(small[HEADER:])
-        file.truncate(HEADER + (CHUNKS * CHUNK + 1) * FRAME)
-    return folder
-
-
-def bytes_read(line):
-    """The bytes that a command reads: Linux counts them, those of ended children too."""
-    script = f"{shlex.join(command(line))} && sed -n 's/rchar: //p' /proc/$$/io"
-    return int(subprocess.run(["sh", "-c", script], check=True, capture_output=True, text=True).stdout)
-
-
-@pytest.mark.skipif(SANITIZED or not os.access("/proc/self/io", os.R_OK), reason="nobody counts here")
-def test_a_shard_of_100_gb_reads_its_own_frames(large):
-    files = sum(os.path.getsize(large / name) for name in ("wide.obj", "small.pc2"))
-    least = bytes_read(f"replay {large}/wide.obj {large}/small.pc2 --quiet --no-depths --results small.shard")
-    most = bytes_read(f"replay {large}/wide.obj {large}/large.pc2 --quiet --no-depths {SHARD} --results large.shard")
-    assert files <= least <= files + 2 * FRAME  # each frame once
-    assert (CHUNK + 1) * FRAME <= most <= least + FRAME // 2
-
-
-@pytest.mark.skipif(SANITIZED, reason="nothing to measure")
-def test_its_memory_is_that_of_an_interval(large):
-    small = peak_kib(f"replay {large}/wide.obj {large}/small.pc2 --quiet --no-depths")
-    numbers = CHUNKS * CHUNK * 4 // 1024  # a frame's number takes 4 bytes
-    assert peak_kib(f"replay {large}/wide.obj {large}/large.pc2 --quiet --no-depths {SHARD} --results memory.shard") \
-        <= small + numbers + ROOM_KIB
-
-
-@pytest.mark.skipif(SANITIZED, reason="nothing to measure")
-def test_frames_are_not_kept(large):
-    """Eight times as many frames need no more memory: they would take half as much again as the room."""
-    small = (large / "small.pc2").read_bytes()
-    for name, count in (("few.pc2", CHUNK + 1), ("many.pc2", 8 * CHUNK + 1)):
-        Path(name).write_bytes(small[: HEADER - 4] + struct.pack("<i", count) + count * small[HEADER : HEADER + FRAME])
-    few, many = (peak_kib(f"replay {large}/wide.obj {name} --quiet --no-check") for name in ("few.pc2", "many.pc2"))
-    assert many <= few + ROOM_KIB
-
+from support.tool.running import fails, finish, run, start, wait_until
 
 # ---- a cold disk
 

@@ -11,9 +11,6 @@ from typing import NamedTuple
 # With sanitizers, or in an emulator, programs take many times as long: tests repeat less.
 SLOW_MACHINE = "CSCD_RUNNER" in os.environ or os.path.basename(os.path.dirname(os.environ["CSCD_TOOL"])) in ("sanitize", "tsan")
 
-# A sanitizer keeps freed memory, so that there is nothing to measure.
-SANITIZED = os.path.basename(os.path.dirname(os.environ["CSCD_TOOL"])) == "sanitize"
-
 # The tool runs on Windows, or under wine.
 WINDOWS = os.environ["CSCD_TOOL"].endswith(".exe")
 
