@@ -212,6 +212,23 @@ static cscd_status set_active(proof *p) {
     return cscd_detector_set_active(p->detector, list, half);
 }
 
+/* What is not active must not move. */
+static cscd_status move_resting(proof *p) {
+    cscd_view x0, x1;
+    const double kept = p->x[2][0];
+    p->x[2][0] += 0.5;
+    const cscd_status status =
+        cscd_detector_step(p->detector, at_moment(p, 1, &x0), at_moment(p, 2, &x1), &p->answer.contacts);
+    p->x[2][0] = kept;
+    return status == CSCD_INVALID_ARGUMENT ? CSCD_OK : CSCD_INVALID_ARGUMENT;
+}
+
+static void open_active(proof *p) {
+    open_resting(p);
+    proof_need(p, set_active(p));
+}
+
+static const proof_call refused = {"detector_step", PROOF_BEGINS, move_resting, NULL};
 static const proof_call active = {"detector_set_active", PROOF_CHANGES, set_active, NULL};
 
 /* ---- other meshes, other detectors ---------------------------------------------------------------------- */
@@ -263,7 +280,15 @@ static const proof_row rows[] = {
     {"active", {&active, &step_first, &step_second, &step_third}, open_resting, SPHERES},
     {"active_later", {&step_first, &active, &step_second, &step_third}, open_resting, SPHERES},
     {"active_clone", {&active, &cloned, &step_first, &step_second}, open_resting, SPHERES},
+    {"active_change",
+     {&step_first, &change_made, &mesh_changed, &refused, &step_second},
+     open_active,
+     SPHERES},
     {"change", {&step_first, &change_made, &mesh_changed, &step_second, &step_third}, open_detector, SPHERES},
+    {"change_told",
+     {&step_first, &seams, &ignored, &thick, &change_made, &mesh_changed, &step_second, &step_third},
+     open_torn,
+     SPHERES},
     {"clone", {&step_first, &cloned, &step_second, &step_third}, open_detector, SPHERES},
 };
 
