@@ -192,7 +192,7 @@ TEST(patches_follow_their_trees) {
     interval.vertex_count = 4 * SQUARES;
     for (uint32_t i = 0; i < 6 * SQUARES; i++) interval.triangles[i] = i / 6 * 4 + halves[i % 6];
     options.method = CSCD_METHOD_ICCD;
-    rig r = {NULL, NULL, NULL};
+    rig r = {NULL};
     for (uint32_t step = 0; step < STEPS; step++) {
         cscd_contacts found;
         for (uint32_t v = 0; v < 4 * SQUARES; v++) {

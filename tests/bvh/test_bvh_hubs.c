@@ -265,14 +265,11 @@ static double count_boxes(cone_kind kind, uint32_t segments) {
     write_cone(kind, segments, x0, triangles);
     for (uint32_t v = 0; v < vertices; v++)
         place_vertex(x1, v, x0[3 * v] + 0.01 * x0[3 * v + 2], x0[3 * v + 1], x0[3 * v + 2]);
-    rig r = {NULL, NULL, NULL};
     cscd_contacts found;
     cscd_detector_options options = cscd_detector_defaults();
     const cscd_object_desc desc = cscd_object_of_triangles(vertices, count, triangles);
     options.method = CSCD_METHOD_NONE;
-    assert_int_equal(cscd_context_create(NULL, &r.context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(r.context, &desc, 1, &r.mesh), CSCD_OK);
-    assert_int_equal(detector_create_here(r.mesh, NULL, &options, &r.detector), CSCD_OK);
+    rig r = rig_of_objects(context_of(0, NULL), &desc, 1, NULL, &options);
     assert_int_equal(step_packed(r.detector, x0, x1, &found), CSCD_OK);
     assert_int_equal(found.count, 0);
     const cscd_counters counters = cscd_detector_counters(r.detector);

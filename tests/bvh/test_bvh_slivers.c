@@ -105,12 +105,9 @@ TEST(intersections_equal_all_pairs) {
 
 static cscd_counters count_step(extreme_kind kind, uint32_t count) {
     extreme_shape s = extreme_shape_make(kind, count);
-    rig r = {NULL, NULL, NULL};
     cscd_contacts found;
     const cscd_object_desc desc = cscd_object_of_triangles(s.vertex_count, s.triangle_count, s.triangles);
-    assert_int_equal(cscd_context_create(NULL, &r.context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(r.context, &desc, 1, &r.mesh), CSCD_OK);
-    assert_int_equal(detector_create_here(r.mesh, NULL, NULL, &r.detector), CSCD_OK);
+    rig r = rig_of_objects(context_of(0, NULL), &desc, 1, NULL, NULL);
     assert_int_equal(step_packed(r.detector, s.x0, s.x1, &found), CSCD_OK);
     assert_int_equal(found.count, 0);
     const cscd_counters counters = cscd_detector_counters(r.detector);

@@ -31,8 +31,7 @@ static cscd_depths find_as(uint32_t object_count, const uint32_t *labels, uint32
 static void sink_ball(uint32_t *labels, uint32_t ball) {
     const double low[3] = {-2, -2, -1}, size[3] = {4, 4, 1}, centre[3] = {0.1, 0.2, 0.4};
     body_rig_begin(&rig);
-    body_rig_add_box(&rig, low, size);
-    body_rig_end_body(&rig);
+    body_rig_box(&rig, low, size);
     scene_add_sphere(&rig.all, centre, 0.5, 16, 24);
     body_rig_end_body(&rig);
     for (uint32_t t = 0; t < rig.all.triangle_count; t++) labels[t] = t < 12 ? 0 : ball;

@@ -103,7 +103,6 @@ TEST(boxes_by_hand) {
                     print_error("%s, placed %d, order %d: %.17g to %.17g in place of %g\n", by_hand[i].name,
                                 p, order, depth, bound, truth);
                 assert_true(right);
-                body_rig_free(&rig);
             }
         }
     }
@@ -129,7 +128,6 @@ TEST(a_rod_with_a_deep_corner) {
     body_rig_find_all(&rig);
     const double depth = deepest_of_all(&bound);
     assert_true(depth > 0.49 * 0.99 && bound >= 0.49 && depth <= 0.5 && bound <= 1.01 * depth);
-    body_rig_free(&rig);
 }
 
 /* Where the depth is 0, the way out of a body is that of its surface outwards, also where its triangles look inwards. */
@@ -149,7 +147,6 @@ TEST(ways_out_of_what_touches) {
             assert_int_equal(d->items[i].direction[2] > 0.0, d->items[i].body == 0);
         }
         assert_true(faces > 0);
-        body_rig_free(&rig);
     }
 }
 
@@ -259,7 +256,6 @@ TEST(random_bodies) {
         buried += compare_samples(&random);
         compare_items();
         faces += rig.found.depths->count - rig.found.depths->vertex_count - rig.found.depths->edge_count;
-        body_rig_free(&rig);
     }
     print_message("  %zu samples, %zu deepest points\n", buried, faces);
     assert_true(buried > 5 * scenes && faces > scenes);
@@ -280,8 +276,7 @@ TEST(a_plate_below_bumps) {
             if (*z == 1.0) *z += v % 2 == 0 ? stream_between(&random, 0.0, 0.1) : 0.0;
         }
         body_rig_end_body(&rig);
-        body_rig_add_box(&rig, low, size);
-        body_rig_end_body(&rig);
+        body_rig_box(&rig, low, size);
         body_rig_find_all(&rig);
         const double bound = greatest_bound(0);
         for (int i = 0; i <= SIDE; i++) {
@@ -291,7 +286,6 @@ TEST(a_plate_below_bumps) {
             }
         }
         compare_items();
-        body_rig_free(&rig);
     }
 }
 
@@ -302,8 +296,7 @@ TEST(a_limit_is_decided) {
     random_stream random = stream_start(5);
     body_rig_begin(&rig);
     const double low[3] = {-1, -1, -1}, size[3] = {2, 2, 2}, thin[3] = {0.9, 0.3, 0.2}, origin[3] = {0, 0, 0};
-    body_rig_add_box(&rig, low, size);
-    body_rig_end_body(&rig);
+    body_rig_box(&rig, low, size);
     body_rig_add_box(&rig, origin, thin);
     turn_body(&random, 8);
     body_rig_end_body(&rig);
@@ -330,7 +323,6 @@ TEST(a_limit_is_decided) {
     assert_int_equal(cscd_detector_find_intersections(
                          rig.detector, CSCD_DOUBLES(rig.all.x0, rig.all.vertex_count), &options, &rig.found),
                      CSCD_INVALID_ARGUMENT);
-    body_rig_free(&rig);
 }
 
 /* ---- edges ------------------------------------------------------------------------------------------------- */
@@ -365,8 +357,7 @@ TEST(an_edge_whose_first_triangle_has_no_area) {
             rig.all.vertex_count++;
         }
         body_rig_end_body(&rig);
-        body_rig_add_box(&rig, wall, thick);
-        body_rig_end_body(&rig);
+        body_rig_box(&rig, wall, thick);
         body_rig_find_all(&rig);
         const cscd_depths *d = rig.found.depths;
         size_t along = 0;
@@ -374,6 +365,7 @@ TEST(an_edge_whose_first_triangle_has_no_area) {
             along +=
                 d->items[i].x[1] == 0.0 && d->items[i].x[2] == 0.0 && fabs(d->items[i].depth - 0.5) < 1e-5;
         assert_true(along >= 1);
-        body_rig_free(&rig);
     }
 }
+
+AROUND_EACH(NULL, body_rigs_free)

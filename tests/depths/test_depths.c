@@ -17,8 +17,7 @@ static body_rig rig; /* large; one test at a time */
 
 static void add_box(double x, double y, double z, double width, double depth, double height) {
     const double low[3] = {x, y, z}, size[3] = {width, depth, height};
-    body_rig_add_box(&rig, low, size);
-    body_rig_end_body(&rig);
+    body_rig_box(&rig, low, size);
 }
 
 static double deepest_of(uint32_t first, uint32_t end, uint32_t object) {
@@ -44,7 +43,6 @@ TEST(a_box_sunk_into_a_slab) {
     }
     assert_int_equal(rig.found.depths->patch_count, 1);
     assert_true(rig.found.depths->items[rig.found.depths->patches[0].deepest].depth == 0.125);
-    body_rig_free(&rig);
 }
 
 /* Under the published ICCD both are in one tree, and so is the surface that the corners lie on themselves. */
@@ -58,7 +56,6 @@ TEST(bodies_of_one_tree) {
     body_rig_find(&rig);
     assert_int_equal(rig.found.depths->vertex_count, 4);
     for (size_t i = 0; i < 4; i++) assert_true(rig.found.depths->items[i].depth == 0.125);
-    body_rig_free(&rig);
 }
 
 /* A corner that is as near to both triangles of a face names the first, whichever the trees show first. */
@@ -82,7 +79,6 @@ TEST(the_first_of_equals_is_named) {
             found++;
         }
         assert_int_equal(found, 2);
-        body_rig_free(&rig);
     }
 }
 
@@ -104,7 +100,6 @@ TEST(an_edge_is_deepest_beside_its_middle) {
     for (size_t i = 0; i < rig.found.depths->edge_count; i++)
         deepest = fmax(deepest, rig.found.depths->items[rig.found.depths->vertex_count + i].depth);
     assert_true(deepest > 0.9999 && deepest <= 1.0);
-    body_rig_free(&rig);
 }
 
 /* ---- corners that touch ---------------------------------------------------------------------------------- */
@@ -151,7 +146,6 @@ TEST(corners_on_a_surface_have_no_depth) {
             assert_true(d->depth == 0.0);
             asked++;
         }
-        body_rig_free(&rig);
     }
     print_message("  %zu corners\n", asked);
     assert_true(asked > 10 * ROUNDS);
@@ -176,7 +170,6 @@ TEST(a_bar_through_a_wall) {
         deepest = fmax(deepest, d->depth);
     }
     assert_true(fabs(deepest - 0.25) < 6e-6);
-    body_rig_free(&rig);
 }
 
 /* All that is buried under the infinitely small motion has depth 0. */
@@ -189,7 +182,6 @@ TEST(a_box_on_a_table) {
     assert_true(rig.found.curves->count > 0);
     for (size_t i = 0; i < rig.found.curves->count; i++) assert_true(rig.found.curves->items[i].touching);
     for (size_t i = 0; i < rig.found.depths->count; i++) assert_true(rig.found.depths->items[i].depth == 0.0);
-    body_rig_free(&rig);
 }
 
 /* The octahedron's equator lies in the face of a box: no two triangles cross, but half of it is buried. */
@@ -213,7 +205,6 @@ TEST(an_equator_in_a_face) {
     assert_int_equal(rig.found.crossing, 0);
     assert_true(fabs(deepest_of(first + 5, first + 6, 0) - 1.0) < 1e-12);
     assert_true(fabs(body_rig_overlap(&rig, 0, 1).volume - 4.0 / 3.0) < 1e-12);
-    body_rig_free(&rig);
 }
 
 /* ---- against all triangles ----------------------------------------------------------------------------- */
@@ -243,7 +234,6 @@ TEST(balls_in_rings) {
             assert_true(body_distance(&rig, d->body, there) < 1e-12);
             compared++;
         }
-        body_rig_free(&rig);
     }
     print_message("  %zu depths\n", compared);
     assert_true(compared > 20 * ROUNDS);
@@ -282,7 +272,6 @@ TEST(a_snake_in_its_own_tail) {
         assert_int_equal(body_number(&rig, 0, beyond), 0);
         for (int k = 0; k < SAMPLES; k++) sample_outer_surface(&random, d);
     }
-    body_rig_free(&rig);
 }
 
 /* Two tips over a ring that goes around twice, the second time nearer: around a tip some triangles are within the body and others
@@ -314,7 +303,8 @@ TEST(tips_of_a_star_that_goes_around_twice) {
             for (uint32_t i = 0; i < at->winding_count; i++)
                 buried += rig.found.patches->windings[at->first_winding + i].number >= 1;
         }
-        body_rig_free(&rig);
     }
     assert_true(buried > 0);
 }
+
+AROUND_EACH(NULL, body_rigs_free)

@@ -54,8 +54,6 @@ TEST(work_has_a_budget) {
     assert_true(rounds > 0);
     assert_int_equal(rig.found.wanted_work, 0);
     compare_surfaces(rig.mesh, &full.found, &rig.found);
-    body_rig *const rigs[] = {&rig, &one_thread, &without_depths, &full};
-    for (int i = 0; i < 4; i++) body_rig_free(rigs[i]);
 }
 
 /* Bodies in each other: a vertex asks of each body around it, which is more work than the mesh is large. */
@@ -76,7 +74,6 @@ TEST(searches_are_work) {
         assert_int_equal(rig.found.left_out, i == 0 ? 1 << CSCD_LEFT_OUT_DEPTHS : 0);
     }
     assert_int_equal(rig.found.depths->vertex_count, 8 * SHELLS * (SHELLS - 1) / 2);
-    body_rig_free(&rig);
 }
 
 static bool count_report(void *user, const char *stage, double fraction) {
@@ -98,5 +95,6 @@ TEST(the_host_is_asked_all_along) {
     const size_t groups = d->deepest.group_count, questions = d->question_count;
     assert_true(groups > 20 && questions > 16);
     assert_true(asked >= (questions + 15) / 16 + groups + (groups + 3) / 4);
-    body_rig_free(&rig);
 }
+
+AROUND_EACH(NULL, body_rigs_free)

@@ -9,24 +9,16 @@
 #include "tests/support/object_scene.h"
 #include "tests/support/oracle.h"
 #include "tests/support/packed.h"
+#include "tests/support/rig.h"
 #include "tests/support/sequences.h"
 #include "tests/support/test.h"
 
 #include <string.h>
 
-enum { SLOWER = PACED(1, 2) };
-
 static active_twins twins; /* large, as the others; one test at a time */
 static scene s;
 static sequence recording;
 static loose_scene loose;
-
-typedef struct made_detector {
-    cscd_context *context;
-    cscd_mesh *mesh;
-    cscd_plan *plan;
-    cscd_detector *detector;
-} made_detector;
 
 static const cscd_method methods[] = {CSCD_METHOD_NONE,   CSCD_METHOD_SINGLE, CSCD_METHOD_KMEANS,
                                       CSCD_METHOD_CHARGE, CSCD_METHOD_BRUTE,  CSCD_METHOD_ICCD};
@@ -41,29 +33,20 @@ static cscd_detector_options options_for(uint64_t seed) {
     return options;
 }
 
-static made_detector make_detector(const scene *of, const cscd_detector_options *options, uint64_t seed) {
-    made_detector m = {NULL, NULL, NULL, NULL};
+static rig make_detector(const scene *of, const cscd_detector_options *options, uint64_t seed) {
+    rig r = {NULL};
     cscd_context_options context_options = cscd_context_defaults();
     context_options.thread_count = 1 + (uint32_t)(seed % 3);
     context_options.simd = seed % 4 == 1 ? CSCD_SIMD_SCALAR : CSCD_SIMD_AUTO;
-    const cscd_object_desc desc =
-        cscd_object_of_triangles(of->vertex_count, of->triangle_count, of->triangles);
-    assert_int_equal(cscd_context_create(&context_options, &m.context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(m.context, &desc, 1, &m.mesh), CSCD_OK);
+    expect_ok(cscd_context_create(&context_options, &r.context));
+    r.mesh = mesh_of_scene(r.context, of);
     if (options->method == CSCD_METHOD_KMEANS || options->method == CSCD_METHOD_CHARGE) {
         cscd_plan_options plan = cscd_plan_defaults();
         plan.method = options->method;
-        assert_int_equal(plan_create_packed(m.mesh, of->x0, &plan, &m.plan), CSCD_OK);
+        expect_ok(plan_create_packed(r.mesh, of->x0, &plan, &r.plan));
     }
-    assert_int_equal(detector_create_here(m.mesh, m.plan, options, &m.detector), CSCD_OK);
-    return m;
-}
-
-static void destroy_made(made_detector *m) {
-    cscd_detector_destroy(m->detector);
-    cscd_plan_destroy(m->plan);
-    cscd_mesh_destroy(m->mesh);
-    cscd_context_destroy(m->context);
+    expect_ok(detector_create_here(r.mesh, r.plan, options, &r.detector));
+    return r;
 }
 
 /* ---- steps against the oracle ------------------------------------------------------------------------- */
@@ -102,7 +85,7 @@ typedef struct filtered_tally {
 
 static void compare_scene(uint64_t seed, random_stream *random, filtered_tally *sum) {
     cscd_detector_options options = options_for(seed);
-    made_detector m = make_detector(&s, &options, seed);
+    rig m = make_detector(&s, &options, seed);
     oracle_list truth = {NULL, 0, 0};
     active_twins_join(&twins, m.detector, NULL);
     for (int i = 0; i < 3; i++) {
@@ -117,7 +100,7 @@ static void compare_scene(uint64_t seed, random_stream *random, filtered_tally *
         active_twins_hold(&twins, motion.x0, motion.x1);
         oracle_find(&motion, &truth);
         sum->dropped += filter_truth(&twins, &truth);
-        assert_int_equal(step_packed(m.detector, motion.x0, motion.x1, &found), CSCD_OK);
+        expect_ok(step_packed(m.detector, motion.x0, motion.x1, &found));
         expect_one_number(m.detector, "active objects");
         sum->later += compare_with_truth(&truth, &found, options.mode == CSCD_MODE_EARLIEST);
         sum->contacts += found.count;
@@ -125,7 +108,7 @@ static void compare_scene(uint64_t seed, random_stream *random, filtered_tally *
             sum->oriented += cscd_detector_orientation(m.detector, t) != 0;
     }
     oracle_free(&truth);
-    destroy_made(&m);
+    rig_destroy(&m);
 }
 
 TEST(scenes_equal_brute_force) {
@@ -188,7 +171,7 @@ static void run_sequence(uint64_t seed) {
     options.mode = CSCD_MODE_ALL;
     if (seed % 5 == 3) options.min_separation = 0.02;
     sequence_make((sequence_kind)(seed % SEQUENCE_KIND_COUNT), seed, 14, &recording);
-    made_detector m = make_detector(&recording.shape, &options, seed);
+    rig m = make_detector(&recording.shape, &options, seed);
     active_twins_begin(&twins, m.detector, &options, seed % 7 == 0);
     memcpy(x0, recording.frames[0], sizeof x0);
     for (uint32_t f = 1; f < recording.frame_count; f++) {
@@ -199,25 +182,18 @@ static void run_sequence(uint64_t seed) {
         memcpy(x0, x1, sizeof x0);
     }
     active_twins_end(&twins);
-    destroy_made(&m);
+    rig_destroy(&m);
 }
 
 TEST(sequences_equal_the_whole) {
     clear_tally();
-    for (uint64_t seed = 0; seed < 60 / SLOWER; seed++) run_sequence(seed);
+    for (uint64_t seed = 0; seed < 30; seed++) run_sequence(seed);
     print_tally("sequences");
     assert_true(twins.contacts > 1000 && twins.intersections > 100 && twins.near > 1000 && twins.limited > 2);
     assert_true(twins.blocked > 100 && twins.held > 100 && twins.left_out > 1000);
 }
 
 /* ---- several objects, with rules ------------------------------------------------------------------------ */
-
-static void set_rules(cscd_detector *d, const random_rules *set) {
-    assert_int_equal(cscd_detector_set_rules(d, set->objects, SCENE_OBJECTS,
-                                             set->uses_matrix ? set->matrix : NULL,
-                                             set->uses_matrix ? RULE_CLASSES : 0),
-                     CSCD_OK);
-}
 
 static void run_objects(uint64_t seed) {
     random_stream random = stream_start(1000 + seed);
@@ -229,25 +205,25 @@ static void run_objects(uint64_t seed) {
     object_scene_make(&random);
     for (int i = 0; i < SCENE_OBJECTS; i++) set.obstacles[i] = stream_below(&random, 3) == 0;
     random_rules_neutral(&set);
-    rules_rig made = rules_rig_create(&set, &options, 1 + (uint32_t)(seed % 2));
+    rig made = rules_rig(&set, &options, 1 + (uint32_t)(seed % 2));
     active_twins_begin(&twins, made.detector, &options, false);
     for (int step = 0; step < 6; step++) {
         object_scene_go(0.2 * step, 0.2 * step + 0.2);
         if (stream_below(&random, 2) == 0) random_rules_make(&random, (uint32_t)(seed % 3), &set);
-        set_rules(made.detector, &set);
-        set_rules(twins.theirs, &set);
+        rules_set(made.detector, &set);
+        rules_set(twins.theirs, &set);
         active_twins_choose(&twins, objects_motion.x0, &random);
         active_twins_hold(&twins, objects_motion.x0, objects_motion.x1);
         active_twins_step(&twins, objects_motion.x0, objects_motion.x1);
         call_something(&random, objects_motion.x0, objects_motion.x1);
     }
     active_twins_end(&twins);
-    rules_rig_destroy(&made);
+    rig_destroy(&made);
 }
 
 TEST(objects_equal_the_whole) {
     clear_tally();
-    for (uint64_t seed = 0; seed < 18 / SLOWER; seed++) run_objects(seed);
+    for (uint64_t seed = 0; seed < 9; seed++) run_objects(seed);
     print_tally("objects");
     assert_true(twins.contacts > 1000 && twins.left_out > 1000);
 }
@@ -277,7 +253,7 @@ static void run_loose(uint64_t seed) {
     options.method = seed % 7 == 1   ? CSCD_METHOD_BRUTE
                      : seed % 2 == 0 ? CSCD_METHOD_SINGLE
                                      : CSCD_METHOD_NONE;
-    assert_int_equal(detector_create_here(loose.mesh, NULL, &options, &ours), CSCD_OK);
+    expect_ok(detector_create_here(loose.mesh, NULL, &options, &ours));
     active_twins_begin(&twins, ours, &options, seed % 5 == 2);
     for (int step = 0; step < 8; step++) {
         loose_scene_move(&loose, &random);
@@ -293,7 +269,7 @@ static void run_loose(uint64_t seed) {
 
 TEST(loose_objects_equal_the_whole) {
     clear_tally();
-    for (uint64_t seed = 0; seed < 60 / SLOWER; seed++) run_loose(seed);
+    for (uint64_t seed = 0; seed < 30; seed++) run_loose(seed);
     print_tally("loose");
     assert_true(twins.contacts > 1000 && twins.near > 500 && twins.left_out > 1000);
 }

@@ -2,6 +2,7 @@
 #include "tests/support/moving_scene.h"
 #include "tests/support/oracle.h"
 #include "tests/support/packed.h"
+#include "tests/support/rig.h"
 #include "tests/support/test.h"
 #include "tests/support/torn_model.h"
 
@@ -37,8 +38,8 @@ static void check_missing(const cscd_contacts *found, const cscd_contacts *all, 
 static void compare_steps(cscd_detector *expected, size_t *contacts) {
     cscd_contacts a, b;
     size_t i = 0;
-    assert_int_equal(step_packed(moving.detector, moving.x0, moving.x1, &a), CSCD_OK);
-    assert_int_equal(step_packed(expected, moving.x0, moving.x1, &b), CSCD_OK);
+    expect_ok(step_packed(moving.detector, moving.x0, moving.x1, &a));
+    expect_ok(step_packed(expected, moving.x0, moving.x1, &b));
     assert_int_equal(a.waiting, torn_model_count());
     for (size_t j = 0; j < b.count; j++) {
         if (torn_model_waits(b.items[j].kind, b.items[j].a, b.items[j].b)) continue;
@@ -57,7 +58,7 @@ static void compare_with_oracle(void) {
     memcpy(moving_joined.x0, moving.x0, moving_joined.vertex_count * sizeof(double[3]));
     memcpy(moving_joined.x1, moving.x1, moving_joined.vertex_count * sizeof(double[3]));
     oracle_find(&moving_joined, &truth);
-    assert_int_equal(step_packed(moving.detector, moving.x0, moving.x1, &found), CSCD_OK);
+    expect_ok(step_packed(moving.detector, moving.x0, moving.x1, &found));
     assert_int_equal(found.count, truth.count);
     for (size_t i = 0; i < found.count; i++) {
         assert_true(found.items[i].kind == truth.items[i].kind && found.items[i].a == truth.items[i].a &&
@@ -68,8 +69,8 @@ static void compare_with_oracle(void) {
 
 static void compare_checks(cscd_detector *expected) {
     cscd_intersections a, b;
-    assert_int_equal(check_packed(moving.detector, moving.x0, &a), CSCD_OK);
-    assert_int_equal(check_packed(expected, moving.x0, &b), CSCD_OK);
+    expect_ok(check_packed(moving.detector, moving.x0, &a));
+    expect_ok(check_packed(expected, moving.x0, &b));
     assert_int_equal(a.zero_area_triangles, b.zero_area_triangles);
     size_t i = 0;
     for (size_t j = 0; j < b.count; j++) {
@@ -93,8 +94,8 @@ static void compare_max_steps(cscd_detector *expected) {
 static void settle_model(cscd_detector *expected) {
     cscd_contacts at_rest;
     cscd_intersections crossing;
-    assert_int_equal(step_packed(expected, moving.x0, moving.x0, &at_rest), CSCD_OK);
-    assert_int_equal(check_packed(expected, moving.x0, &crossing), CSCD_OK);
+    expect_ok(step_packed(expected, moving.x0, moving.x0, &at_rest));
+    expect_ok(check_packed(expected, moving.x0, &crossing));
     torn_model_settle(&at_rest, &crossing);
 }
 
@@ -103,7 +104,7 @@ TEST(equals_a_new_detector) {
     size_t contacts = 0, culled = 0, waited = 0;
     for (uint64_t seed = 0; seed < 170; seed++) {
         counting_allocator counter = counting_allocator_start();
-        cscd_context *context = counted_context(&counter);
+        cscd_context *context = context_of(0, &counter);
         bool plain = seed % 3 == 0;
         moving_begin_scene(context, seed, plain);
         for (int round = 0; round < 5; round++) {

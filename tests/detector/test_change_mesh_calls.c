@@ -1,8 +1,10 @@
-/* What a detector keeps when it moves over to another mesh, what it refuses, and what happens without memory. */
+/* What a detector keeps when it moves over to another mesh, and what it refuses. */
 #include "runtime/detector/detector.h"
 #include "src/mesh/mesh_change.h"
 #include "tests/support/moving_scene.h"
 #include "tests/support/packed.h"
+#include "tests/support/refusal.h"
+#include "tests/support/rig.h"
 #include "tests/support/test.h"
 
 #include <math.h>
@@ -12,9 +14,8 @@
 static cscd_mesh_change *make_change(cscd_context *context) {
     cscd_mesh_change *made = NULL;
     changing_scene_change(&moving.random, &moving.shape, &moving_change);
-    assert_int_equal(
-        cscd_mesh_change_create(context, moving_mesh_now(), moving_change.list, moving_change.count, &made),
-        CSCD_OK);
+    expect_ok(
+        cscd_mesh_change_create(context, moving_mesh_now(), moving_change.list, moving_change.count, &made));
     return made;
 }
 
@@ -22,7 +23,7 @@ static void step_some(uint32_t count) {
     cscd_contacts found;
     for (uint32_t i = 0; i < count; i++) {
         moving_move_scene(0.02);
-        assert_int_equal(step_packed(moving.detector, moving.x0, moving.x1, &found), CSCD_OK);
+        expect_ok(step_packed(moving.detector, moving.x0, moving.x1, &found));
         moving_go_on();
     }
 }
@@ -93,17 +94,16 @@ static void check_trees(const cscd_mesh_change *made, const bvh *old, size_t *ke
 TEST(keeps_what_is_untouched) {
     size_t kept = 0, forgotten = 0, in_trees = 0;
     for (uint64_t seed = 1000; seed < 1060; seed++) {
-        cscd_context *context = NULL;
-        assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
+        cscd_context *context = context_of(0, NULL);
         moving_begin_scene(context, seed, true);
         step_some(3);
         for (int i = 0; i < 3; i++) {
             const cscd_detector *d = moving.detector;
             for (uint32_t t = 0; t < d->mesh->triangle_count; t++) known[t] = knowledge_of(d, t);
             cscd_detector *before = NULL;
-            assert_int_equal(cscd_detector_clone(context, d, &before), CSCD_OK);
+            expect_ok(cscd_detector_clone(context, d, &before));
             cscd_mesh_change *made = make_change(context);
-            assert_int_equal(cscd_detector_change_mesh(moving.detector, made), CSCD_OK);
+            expect_ok(cscd_detector_change_mesh(moving.detector, made));
             check_knowledge(made, &kept, &forgotten);
             if (before->space.bvh.mesh != NULL) check_trees(made, &before->space.bvh, &in_trees);
             cscd_detector_destroy(before);
@@ -121,15 +121,14 @@ TEST(keeps_what_is_untouched) {
 TEST(keeps_rest_lengths) {
     size_t kept = 0, unknown = 0;
     for (uint64_t seed = 2000; seed < 2020; seed++) {
-        cscd_context *context = NULL;
-        assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
+        cscd_context *context = context_of(0, NULL);
         moving_begin_scene(context, seed, true);
-        assert_int_equal(set_rest_packed(moving.detector, moving_joined.x0), CSCD_OK);
+        expect_ok(set_rest_packed(moving.detector, moving_joined.x0));
         uint32_t old_edges = cscd_mesh_edge_count(moving_mesh_now());
         double *before = malloc(old_edges * sizeof *before);
         memcpy(before, moving.detector->rest.squared_lengths, old_edges * sizeof *before);
         cscd_mesh_change *made = make_change(context);
-        assert_int_equal(cscd_detector_change_mesh(moving.detector, made), CSCD_OK);
+        expect_ok(cscd_detector_change_mesh(moving.detector, made));
         uint32_t count;
         const uint32_t *origins = cscd_mesh_change_edge_origins(made, &count);
         for (uint32_t e = 0; e < count; e++) {
@@ -148,8 +147,7 @@ TEST(keeps_rest_lengths) {
 
 /* What earlier calls have said is gone. */
 TEST(forgets_what_was_said) {
-    cscd_context *context = NULL;
-    assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
+    cscd_context *context = context_of(0, NULL);
     moving_begin_scene(context, 3000, true);
     step_some(2);
     moving_change_scene();
@@ -173,36 +171,28 @@ TEST(positions_that_are_no_numbers) {
     const cscd_object_change tear = {.object = 0, .desc = &parted, .vertex_origins = origins};
     const double x1[15] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 2, 0};
     double x0[15];
-    cscd_context *context = NULL;
-    cscd_mesh *mesh = NULL;
     cscd_mesh_change *change = NULL;
-    cscd_detector *detector = NULL;
     cscd_intersections crossing;
     cscd_contacts found;
-    assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(context, &whole, 1, &mesh), CSCD_OK);
-    assert_int_equal(detector_create_here(mesh, NULL, NULL, &detector), CSCD_OK);
-    assert_int_equal(check_packed(detector, x1, &crossing), CSCD_OK);
-    assert_int_equal(cscd_mesh_change_create(context, mesh, &tear, 1, &change), CSCD_OK);
-    assert_int_equal(cscd_detector_change_mesh(detector, change), CSCD_OK);
+    rig r = rig_of_objects(context_of(0, NULL), &whole, 1, NULL, NULL);
+    expect_ok(check_packed(r.detector, x1, &crossing));
+    expect_ok(cscd_mesh_change_create(r.context, r.mesh, &tear, 1, &change));
+    expect_ok(cscd_detector_change_mesh(r.detector, change));
     memset(x0, 0xff, sizeof x0);
-    assert_int_equal(step_packed(detector, x0, x1, &found), CSCD_INVALID_ARGUMENT);
-    assert_int_equal(step_packed(detector, x1, x1, &found), CSCD_OK);
-    cscd_detector_destroy(detector);
+    assert_int_equal(step_packed(r.detector, x0, x1, &found), CSCD_INVALID_ARGUMENT);
+    expect_ok(step_packed(r.detector, x1, x1, &found));
     cscd_mesh_change_destroy(change);
-    cscd_mesh_destroy(mesh);
-    cscd_context_destroy(context);
+    rig_destroy(&r);
 }
 
 TEST(refused_changes) {
-    cscd_context *context = NULL;
-    assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
+    cscd_context *context = context_of(0, NULL);
     moving_begin_scene(context, 4000, true);
     cscd_mesh *other = changing_scene_mesh(context, &moving.shape);
     cscd_mesh_change *made = NULL;
-    assert_int_equal(cscd_mesh_change_create(context, other, NULL, 0, &made), CSCD_OK);
-    assert_int_equal(cscd_detector_change_mesh(moving.detector, made), CSCD_INVALID_ARGUMENT);
-    assert_non_null(strstr(cscd_context_detail(context), "another mesh than the detector's"));
+    expect_ok(cscd_mesh_change_create(context, other, NULL, 0, &made));
+    expect_invalid(context, cscd_detector_change_mesh(moving.detector, made),
+                   "another mesh than the detector's");
     assert_int_equal(cscd_detector_change_mesh(NULL, made), CSCD_NULL_OBJECT);
     assert_int_equal(cscd_detector_change_mesh(moving.detector, NULL), CSCD_NULL_OBJECT);
     step_some(1);
@@ -219,13 +209,10 @@ static void check_line_refused(cscd_line_search *line) {
     const cscd_mutable_view *view =
         CSCD_MUTABLE_DOUBLES(positions, cscd_mesh_vertex_count(moving_mesh_now()));
     cscd_context *context = cscd_mesh_context(moving_mesh_now());
-    assert_int_equal(cscd_line_search_max_step(line, 1.0, NULL, &step), CSCD_INVALID_ARGUMENT);
-    assert_non_null(strstr(cscd_context_detail(context), "moved to another mesh"));
-    assert_int_equal(cscd_line_search_positions(line, 0.5, view), CSCD_INVALID_ARGUMENT);
-    assert_non_null(strstr(cscd_context_detail(context), "moved to another mesh"));
-    assert_int_equal(cscd_line_search_find_near(line, 0.5, 0.0, CSCD_NEAR_PAIRS, &near),
-                     CSCD_INVALID_ARGUMENT);
-    assert_non_null(strstr(cscd_context_detail(context), "moved to another mesh"));
+    expect_invalid(context, cscd_line_search_max_step(line, 1.0, NULL, &step), "moved to another mesh");
+    expect_invalid(context, cscd_line_search_positions(line, 0.5, view), "moved to another mesh");
+    expect_invalid(context, cscd_line_search_find_near(line, 0.5, 0.0, CSCD_NEAR_PAIRS, &near),
+                   "moved to another mesh");
     assert_int_equal(cscd_line_search_candidate_count(line), 0);
 }
 
@@ -233,12 +220,12 @@ TEST(line_searches_begin_again) {
     static double reached[2][MOVING_VERTICES * 3];
     for (uint64_t seed = 5000; seed < 5030; seed++) {
         counting_allocator counter = counting_allocator_start();
-        cscd_context *context = counted_context(&counter);
+        cscd_context *context = context_of(0, &counter);
         moving_begin_scene(context, seed, true);
         cscd_line_search *line = NULL, *fresh = NULL;
-        assert_int_equal(cscd_line_search_create(moving.detector, &line), CSCD_OK);
+        expect_ok(cscd_line_search_create(moving.detector, &line));
         moving_move_scene(0.2);
-        assert_int_equal(line_begin_packed(line, moving.x0, moving.x1, 0.1), CSCD_OK);
+        expect_ok(line_begin_packed(line, moving.x0, moving.x1, 0.1));
         moving_change_scene();
         check_line_refused(line);
         moving_move_scene(0.2);
@@ -246,73 +233,15 @@ TEST(line_searches_begin_again) {
         assert_int_equal(line_begin_packed(line, moving.x0, moving.x1, 0.1), CSCD_OUT_OF_MEMORY);
         counter.fail_at = SIZE_MAX;
         check_line_refused(line);
-        assert_int_equal(line_begin_packed(line, moving.x0, moving.x1, 0.1), CSCD_OK);
-        assert_int_equal(cscd_line_search_create(moving.detector, &fresh), CSCD_OK);
-        assert_int_equal(line_begin_packed(fresh, moving.x0, moving.x1, 0.1), CSCD_OK);
+        expect_ok(line_begin_packed(line, moving.x0, moving.x1, 0.1));
+        expect_ok(cscd_line_search_create(moving.detector, &fresh));
+        expect_ok(line_begin_packed(fresh, moving.x0, moving.x1, 0.1));
         cscd_free_step a, b;
         cscd_status status = line_max_step_packed(line, 1.0, reached[0], &a);
         assert_int_equal(line_max_step_packed(fresh, 1.0, reached[1], &b), status);
         assert_true(status != CSCD_OK || a.fraction == b.fraction);
         cscd_line_search_destroy(fresh);
         cscd_line_search_destroy(line);
-        moving_end_scene();
-        cscd_context_destroy(context);
-        assert_int_equal(counter.live, 0);
-    }
-}
-
-/* ---- memory ---------------------------------------------------------------------------------------------- */
-
-static void check_step_as_new(cscd_detector *expected) {
-    cscd_contacts a, b;
-    assert_int_equal(step_packed(moving.detector, moving.x0, moving.x1, &a), CSCD_OK);
-    assert_int_equal(step_packed(expected, moving.x0, moving.x1, &b), CSCD_OK);
-    assert_int_equal(a.count, b.count);
-    if (a.count > 0) assert_memory_equal(a.items, b.items, a.count * sizeof *a.items);
-}
-
-/* The detector stays what it was; and when the next step runs out of memory, it can be repeated. */
-TEST(failing_allocations) {
-    for (uint64_t seed = 6000; seed < 6012; seed++) {
-        counting_allocator counter = counting_allocator_start();
-        cscd_context *context = counted_context(&counter);
-        moving_begin_scene(context, seed, false);
-        if (moving.earliest) assert_int_equal(moving.options.mode, CSCD_MODE_ALL);
-        step_some(2);
-        cscd_detector *old = NULL;
-        assert_int_equal(cscd_detector_clone(context, moving.detector, &old), CSCD_OK);
-        moving_move_scene(0.2);
-        cscd_mesh_change *made = make_change(context);
-        size_t live = counter.live, n = 0;
-        cscd_status status = CSCD_OUT_OF_MEMORY;
-        for (; status != CSCD_OK; n++) {
-            counter.fail_at = counter.calls + n;
-            status = cscd_detector_change_mesh(moving.detector, made);
-            counter.fail_at = SIZE_MAX;
-            assert_true(status == CSCD_OK || status == CSCD_OUT_OF_MEMORY);
-            if (status == CSCD_OK) break;
-            assert_ptr_equal(moving_mesh_now(), cscd_detector_mesh(old));
-            assert_int_equal(counter.live, live);
-            if (n % 7 == 0) {
-                check_step_as_new(old);
-                live = counter.live;
-            }
-        }
-        assert_true(n > 30);
-        cscd_detector_destroy(old);
-        moving_take_change(made);
-        moving_move_scene(0.2);
-        cscd_contacts found;
-        status = CSCD_OUT_OF_MEMORY;
-        for (n = 0; status != CSCD_OK; n++) {
-            counter.fail_at = counter.calls + n;
-            status = step_packed(moving.detector, moving.x0, moving.x1, &found);
-            counter.fail_at = SIZE_MAX;
-            assert_true(status == CSCD_OK || status == CSCD_OUT_OF_MEMORY);
-        }
-        cscd_detector *expected = moving_new_detector(moving_mesh_now(), NULL);
-        if (!moving.earliest && found.waiting == 0) check_step_as_new(expected);
-        cscd_detector_destroy(expected);
         moving_end_scene();
         cscd_context_destroy(context);
         assert_int_equal(counter.live, 0);

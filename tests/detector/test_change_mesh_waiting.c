@@ -2,6 +2,7 @@
  * the change but not seen. */
 #include "tests/support/counting_allocator.h"
 #include "tests/support/packed.h"
+#include "tests/support/rig.h"
 #include "tests/support/test.h"
 
 #include <math.h>
@@ -15,10 +16,9 @@ enum { FIRST = 1, SECOND = 1 + TRIANGLES }; /* triangles of the panels, in the o
 
 typedef struct torn_panels {
     counting_allocator counter;
-    cscd_context *context;
-    cscd_mesh *mesh;
+    rig rig;
     cscd_mesh_change *change;
-    cscd_detector *detector;
+    cscd_detector *detector;                    /* of the rig */
     uint32_t triangles[2][(TRIANGLES + 1) * 3]; /* of a panel, whole and torn */
     uint32_t seams[PANEL][2], ignored[TRIANGLES * TRIANGLES][2];
     double x0[VERTICES * 3], now[NEW_VERTICES * 3], moved[NEW_VERTICES * 3];
@@ -74,11 +74,8 @@ static void begin_panels(const cscd_detector_options *options, bool obstacles) {
                                  cscd_object_of_triangles(PANEL, TRIANGLES, p.triangles[0])};
     descs[1].obstacle = descs[2].obstacle = obstacles;
     p.counter = counting_allocator_start();
-    cscd_context_options context_options = cscd_context_defaults();
-    context_options.allocator = counting_allocator_interface(&p.counter);
-    assert_int_equal(cscd_context_create(&context_options, &p.context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(p.context, descs, 3, &p.mesh), CSCD_OK);
-    assert_int_equal(detector_create_here(p.mesh, NULL, options, &p.detector), CSCD_OK);
+    p.rig = rig_of_objects(context_of(0, &p.counter), descs, 3, NULL, options);
+    p.detector = p.rig.detector;
 }
 
 static void change_panels(void) {
@@ -90,16 +87,14 @@ static void change_panels(void) {
     const cscd_object_change list[3] = {{.object = 0},
                                         {.object = 1, .desc = &torn, .vertex_origins = origins},
                                         {.object = UINT32_MAX, .desc = &point}};
-    assert_int_equal(cscd_mesh_change_create(p.context, p.mesh, list, 3, &p.change), CSCD_OK);
-    assert_int_equal(cscd_detector_change_mesh(p.detector, p.change), CSCD_OK);
+    expect_ok(cscd_mesh_change_create(p.rig.context, p.rig.mesh, list, 3, &p.change));
+    expect_ok(cscd_detector_change_mesh(p.detector, p.change));
 }
 
 static void end_panels(void) {
-    cscd_detector_destroy(p.detector);
     cscd_mesh_change_destroy(p.change);
     p.change = NULL;
-    cscd_mesh_destroy(p.mesh);
-    cscd_context_destroy(p.context);
+    rig_destroy(&p.rig);
     assert_int_equal(p.counter.live, 0);
 }
 
@@ -111,15 +106,15 @@ typedef struct touching_pairs {
 
 static cscd_detector *new_detector(const cscd_detector_options *options) {
     cscd_detector *made = NULL;
-    assert_int_equal(detector_create_here(cscd_mesh_change_mesh(p.change), NULL, options, &made), CSCD_OK);
+    expect_ok(detector_create_here(cscd_mesh_change_mesh(p.change), NULL, options, &made));
     return made;
 }
 
 static touching_pairs pairs_at_rest(cscd_detector *d) {
     cscd_contacts contacts;
     cscd_intersections crossing;
-    assert_int_equal(step_packed(d, p.now, p.now, &contacts), CSCD_OK);
-    assert_int_equal(check_packed(d, p.now, &crossing), CSCD_OK);
+    expect_ok(step_packed(d, p.now, p.now, &contacts));
+    expect_ok(check_packed(d, p.now, &crossing));
     return (touching_pairs){contacts.count, crossing.count};
 }
 
@@ -129,16 +124,16 @@ static void expect_waiting(cscd_detector *other) {
     cscd_contacts contacts, expected;
     cscd_intersections crossing;
     assert_true(touching.features > 0 && touching.triangles > 0);
-    assert_int_equal(step_packed(p.detector, p.now, p.now, &contacts), CSCD_OK);
+    expect_ok(step_packed(p.detector, p.now, p.now, &contacts));
     assert_int_equal(contacts.count, 0);
     assert_int_equal(contacts.waiting, touching.features);
-    assert_int_equal(check_packed(p.detector, p.now, &crossing), CSCD_OK);
+    expect_ok(check_packed(p.detector, p.now, &crossing));
     assert_int_equal(crossing.count, 0);
     assert_int_equal(crossing.waiting, touching.triangles);
     memcpy(p.moved, p.now, sizeof p.moved);
     for (uint32_t v = 0; v <= PANEL; v++) p.moved[3 * v + 2] += v == PANEL ? 2.0 : 1.0;
-    assert_int_equal(step_packed(p.detector, p.moved, p.now, &contacts), CSCD_OK);
-    assert_int_equal(step_packed(other, p.moved, p.now, &expected), CSCD_OK);
+    expect_ok(step_packed(p.detector, p.moved, p.now, &contacts));
+    expect_ok(step_packed(other, p.moved, p.now, &expected));
     assert_int_equal(contacts.waiting, 0);
     assert_int_equal(contacts.count, expected.count);
     assert_memory_equal(contacts.items, expected.items, expected.count * sizeof *expected.items);
@@ -150,7 +145,7 @@ static void expect_waiting(cscd_detector *other) {
 
 static void see_positions(void) {
     cscd_contacts contacts;
-    assert_int_equal(step_packed(p.detector, p.x0, p.x0, &contacts), CSCD_OK);
+    expect_ok(step_packed(p.detector, p.x0, p.x0, &contacts));
     assert_int_equal(contacts.count, 0);
 }
 
@@ -188,7 +183,7 @@ TEST(what_waits_still_does_after_a_tear) {
     options.ignored = p.ignored[0];
     options.ignored_count = TRIANGLES * TRIANGLES;
     begin_seen_panels(&options);
-    assert_int_equal(cscd_detector_set_ignored(p.detector, NULL, 0), CSCD_OK);
+    expect_ok(cscd_detector_set_ignored(p.detector, NULL, 0));
     see_positions();
     change_panels();
     uint32_t seams[PANEL][2];
@@ -211,7 +206,7 @@ TEST(opened_seams_are_remembered) {
     options.seams = p.seams[0];
     options.seam_count = PANEL;
     begin_seen_panels(&options);
-    assert_int_equal(cscd_detector_set_seams(p.detector, NULL, 0), CSCD_OK);
+    expect_ok(cscd_detector_set_seams(p.detector, NULL, 0));
     expect_remembered();
 }
 
@@ -220,7 +215,7 @@ TEST(ignored_pairs_are_remembered) {
     options.ignored = p.ignored[0];
     options.ignored_count = TRIANGLES * TRIANGLES;
     begin_seen_panels(&options);
-    assert_int_equal(cscd_detector_set_ignored(p.detector, NULL, 0), CSCD_OK);
+    expect_ok(cscd_detector_set_ignored(p.detector, NULL, 0));
     expect_remembered();
 }
 
@@ -233,7 +228,7 @@ TEST(rules_are_remembered) {
     options.rules = rules;
     options.rule_count = 3;
     begin_seen_panels(&options);
-    assert_int_equal(cscd_detector_set_rules(p.detector, NULL, 0, NULL, 0), CSCD_OK);
+    expect_ok(cscd_detector_set_rules(p.detector, NULL, 0, NULL, 0));
     expect_remembered();
 }
 
@@ -280,13 +275,13 @@ TEST(reversed_triangles_stay_ignored) {
     cscd_detector *detector = NULL;
     options.ignored = p.ignored[0];
     options.ignored_count = TRIANGLES * TRIANGLES;
-    assert_int_equal(cscd_mesh_create(p.context, &before, 1, &mesh), CSCD_OK);
-    assert_int_equal(detector_create_here(mesh, NULL, &options, &detector), CSCD_OK);
-    assert_int_equal(cscd_mesh_change_create(p.context, mesh, &reversed, 1, &change), CSCD_OK);
-    assert_int_equal(cscd_detector_change_mesh(detector, change), CSCD_OK);
-    assert_int_equal(step_packed(detector, p.x0 + 9, p.x0 + 9, &contacts), CSCD_OK);
+    expect_ok(cscd_mesh_create(p.rig.context, &before, 1, &mesh));
+    expect_ok(detector_create_here(mesh, NULL, &options, &detector));
+    expect_ok(cscd_mesh_change_create(p.rig.context, mesh, &reversed, 1, &change));
+    expect_ok(cscd_detector_change_mesh(detector, change));
+    expect_ok(step_packed(detector, p.x0 + 9, p.x0 + 9, &contacts));
     assert_true(contacts.count == 0 && contacts.waiting == 0);
-    assert_int_equal(check_packed(detector, p.x0 + 9, &crossing), CSCD_OK);
+    expect_ok(check_packed(detector, p.x0 + 9, &crossing));
     assert_true(crossing.count == 0 && crossing.waiting == 0);
     cscd_detector_destroy(detector);
     cscd_mesh_change_destroy(change);

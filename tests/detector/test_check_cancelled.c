@@ -2,6 +2,7 @@
 #include "cscd/research.h"
 #include "tests/support/packed.h"
 #include "tests/support/random_stream.h"
+#include "tests/support/rig.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"
 
@@ -52,7 +53,7 @@ static cscd_detector *create_detector(ignoring_host *h, const cscd_mesh *mesh, c
     options.method = method;
     options.ignore = cancel_in_ignore;
     options.ignore_user = h;
-    assert_int_equal(cscd_detector_create(h->context, mesh, NULL, &options, &detector), CSCD_OK);
+    expect_ok(cscd_detector_create(h->context, mesh, NULL, &options, &detector));
     return detector;
 }
 
@@ -63,13 +64,13 @@ static bool step_after_check(ignoring_host *h, const cscd_mesh *mesh) {
     cscd_contacts found, expected;
     cscd_intersections state;
     h->cancels = false;
-    assert_int_equal(step_packed(culling, shape.x0, shape.x0, &found), CSCD_OK); /* the sphere is proven */
+    expect_ok(step_packed(culling, shape.x0, shape.x0, &found)); /* the sphere is proven */
     h->cancels = true;
     cscd_status status = check_packed(culling, crossing, &state);
     h->cancels = false;
     assert_true(status == CSCD_OK || status == CSCD_CANCELLED);
-    assert_int_equal(step_packed(culling, crossing, end, &found), CSCD_OK);
-    assert_int_equal(step_packed(brute, crossing, end, &expected), CSCD_OK);
+    expect_ok(step_packed(culling, crossing, end, &found));
+    expect_ok(step_packed(brute, crossing, end, &expected));
     assert_int_equal(found.count, expected.count);
     cscd_detector_destroy(culling);
     cscd_detector_destroy(brute);
@@ -82,13 +83,10 @@ TEST(later_steps_lose_nothing) {
     cscd_context_options options = cscd_context_defaults();
     uint32_t cancelled = 0;
     options.progress.report = report_nothing;
-    assert_int_equal(cscd_context_create(&options, &h.context), CSCD_OK);
+    expect_ok(cscd_context_create(&options, &h.context));
     for (int trial = 0; trial < TRIALS; trial++) {
-        cscd_mesh *mesh;
         make_positions(&random);
-        cscd_object_desc sphere =
-            cscd_object_of_triangles(shape.vertex_count, shape.triangle_count, shape.triangles);
-        assert_int_equal(cscd_mesh_create(h.context, &sphere, 1, &mesh), CSCD_OK);
+        cscd_mesh *mesh = mesh_of_scene(h.context, &shape);
         cancelled += step_after_check(&h, mesh);
         cscd_mesh_destroy(mesh);
     }

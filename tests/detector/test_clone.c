@@ -1,6 +1,6 @@
 /* A second detector on one mesh: it begins with what the first one knows, and goes its own way. */
-#include "tests/support/counting_allocator.h"
 #include "tests/support/packed.h"
+#include "tests/support/rig.h"
 #include "tests/support/scenes.h"
 #include "tests/support/sequences.h"
 #include "tests/support/test.h"
@@ -10,22 +10,6 @@
 #include <string.h>
 
 static sequence recording;
-
-static cscd_context *new_context(counting_allocator *counter, uint32_t threads) {
-    cscd_context_options options = cscd_context_defaults();
-    cscd_context *context = NULL;
-    options.thread_count = threads;
-    if (counter != NULL) options.allocator = counting_allocator_interface(counter);
-    assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
-    return context;
-}
-
-static cscd_mesh *mesh_of(cscd_context *context, const scene *s) {
-    cscd_object_desc desc = cscd_object_of_triangles(s->vertex_count, s->triangle_count, s->triangles);
-    cscd_mesh *mesh = NULL;
-    assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
-    return mesh;
-}
 
 /* A detector by k-means, with rest lengths, an ignored pair and a rule. */
 static cscd_detector *detector_of(cscd_context *context, const cscd_mesh *mesh) {
@@ -41,9 +25,9 @@ static cscd_detector *detector_of(cscd_context *context, const cscd_mesh *mesh) 
     rule.category = 2;
     options.rules = &rule;
     options.rule_count = 1;
-    assert_int_equal(plan_create_packed(mesh, recording.shape.x0, &plan_options, &plan), CSCD_OK);
-    assert_int_equal(cscd_detector_create(context, mesh, plan, &options, &detector), CSCD_OK);
-    assert_int_equal(set_rest_packed(detector, recording.shape.x0), CSCD_OK);
+    expect_ok(plan_create_packed(mesh, recording.shape.x0, &plan_options, &plan));
+    expect_ok(cscd_detector_create(context, mesh, plan, &options, &detector));
+    expect_ok(set_rest_packed(detector, recording.shape.x0));
     cscd_plan_destroy(plan);
     return detector;
 }
@@ -56,7 +40,7 @@ typedef struct step_list {
 
 static step_list step_frame(cscd_detector *d, uint32_t frame) {
     cscd_contacts found;
-    assert_int_equal(step_packed(d, recording.frames[frame], recording.frames[frame + 1], &found), CSCD_OK);
+    expect_ok(step_packed(d, recording.frames[frame], recording.frames[frame + 1], &found));
     step_list list = {malloc(found.count * sizeof *found.items + 1), found.count, cscd_detector_counters(d)};
     if (found.count > 0) memcpy(list.items, found.items, found.count * sizeof *found.items);
     return list;
@@ -75,14 +59,14 @@ TEST(goes_on_as_the_first) {
     size_t clean = 0, contacts = 0;
     for (uint64_t seed = 0; seed < 40; seed++) {
         counting_allocator counters[2] = {counting_allocator_start(), counting_allocator_start()};
-        cscd_context *contexts[2] = {new_context(&counters[0], 1),
-                                     new_context(&counters[1], 1 + (uint32_t)(seed % 3))};
+        cscd_context *contexts[2] = {context_of(1, &counters[0]),
+                                     context_of(1 + (uint32_t)(seed % 3), &counters[1])};
         sequence_make((sequence_kind)(seed % SEQUENCE_KIND_COUNT), seed, 20, &recording);
-        cscd_mesh *mesh = mesh_of(contexts[0], &recording.shape);
+        cscd_mesh *mesh = mesh_of_scene(contexts[0], &recording.shape);
         cscd_detector *first = detector_of(contexts[0], mesh), *clone = NULL;
         uint32_t begin = (uint32_t)(seed % 5);
         for (uint32_t f = 0; f < begin; f++) free(step_frame(first, f).items);
-        assert_int_equal(cscd_detector_clone(contexts[seed % 2], first, &clone), CSCD_OK);
+        expect_ok(cscd_detector_clone(contexts[seed % 2], first, &clone));
         assert_ptr_equal(cscd_detector_mesh(clone), mesh);
         for (uint32_t t = 0; t < recording.shape.triangle_count; t++)
             assert_int_equal(cscd_detector_start_state(clone, t), cscd_detector_start_state(first, t));
@@ -105,16 +89,16 @@ TEST(goes_on_as_the_first) {
 /* What is changed in one is not changed in the other. */
 TEST(goes_its_own_way) {
     sequence_make(SEQUENCE_SCENE, 3, 20, &recording);
-    cscd_context *context = new_context(NULL, 1);
-    cscd_mesh *mesh = mesh_of(context, &recording.shape);
+    cscd_context *context = context_of(1, NULL);
+    cscd_mesh *mesh = mesh_of_scene(context, &recording.shape);
     cscd_detector *first = detector_of(context, mesh), *clone = NULL, *other = NULL;
     free(step_frame(first, 0).items);
-    assert_int_equal(cscd_detector_clone(context, first, &clone), CSCD_OK);
-    assert_int_equal(cscd_detector_clone(context, first, &other), CSCD_OK);
+    expect_ok(cscd_detector_clone(context, first, &clone));
+    expect_ok(cscd_detector_clone(context, first, &other));
     cscd_object_rule rule = cscd_object_rule_default();
     rule.self = false;
-    assert_int_equal(cscd_detector_set_rules(clone, &rule, 1, NULL, 0), CSCD_OK);
-    assert_int_equal(cscd_detector_set_separation(other, 0.1, 0.0), CSCD_OK);
+    expect_ok(cscd_detector_set_rules(clone, &rule, 1, NULL, 0));
+    expect_ok(cscd_detector_set_separation(other, 0.1, 0.0));
     for (uint32_t f = 1; f < 10; f++) {
         step_list a = step_frame(first, f), b = step_frame(clone, f), c = step_frame(other, f);
         assert_int_equal(b.count, 0);
@@ -154,11 +138,11 @@ static void *step_all(void *data) {
 
 TEST(two_threads) {
     sequence_make(SEQUENCE_SCENE, 8, 20, &recording);
-    cscd_context *contexts[2] = {new_context(NULL, 1), new_context(NULL, 2)};
-    cscd_mesh *mesh = mesh_of(contexts[0], &recording.shape);
+    cscd_context *contexts[2] = {context_of(1, NULL), context_of(2, NULL)};
+    cscd_mesh *mesh = mesh_of_scene(contexts[0], &recording.shape);
     stepping both[2] = {{.detector = detector_of(contexts[0], mesh)}};
     free(step_frame(both[0].detector, 0).items);
-    assert_int_equal(cscd_detector_clone(contexts[1], both[0].detector, &both[1].detector), CSCD_OK);
+    expect_ok(cscd_detector_clone(contexts[1], both[0].detector, &both[1].detector));
     pthread_t threads[2];
     for (int i = 0; i < 2; i++) assert_int_equal(pthread_create(&threads[i], NULL, step_all, &both[i]), 0);
     for (int i = 0; i < 2; i++) assert_int_equal(pthread_join(threads[i], NULL), 0);
@@ -185,13 +169,13 @@ static bool clone_inside(void *user, cscd_contact_kind kind, uint32_t a, uint32_
 
 TEST(refused_calls) {
     sequence_make(SEQUENCE_GRID, 5, 20, &recording);
-    cscd_context *context = new_context(NULL, 1);
-    cloner c = {.other = new_context(NULL, 1)};
-    cscd_mesh *mesh = mesh_of(context, &recording.shape);
+    cscd_context *context = context_of(1, NULL);
+    cloner c = {.other = context_of(1, NULL)};
+    cscd_mesh *mesh = mesh_of_scene(context, &recording.shape);
     cscd_detector_options options = cscd_detector_defaults();
     options.ignore = clone_inside;
     options.ignore_user = &c;
-    assert_int_equal(cscd_detector_create(context, mesh, NULL, &options, &c.detector), CSCD_OK);
+    expect_ok(cscd_detector_create(context, mesh, NULL, &options, &c.detector));
     size_t contacts = 0;
     for (uint32_t f = 0; f < 19; f++) {
         step_list list = step_frame(c.detector, f);
@@ -223,8 +207,8 @@ TEST(knowledge_of_starts) {
     uint32_t seen[4] = {0};
     for (uint64_t seed = 0; seed < 30; seed++) {
         sequence_make(SEQUENCE_SCENE, seed, 20, &recording);
-        cscd_context *context = new_context(NULL, 1);
-        cscd_mesh *mesh = mesh_of(context, &recording.shape);
+        cscd_context *context = context_of(1, NULL);
+        cscd_mesh *mesh = mesh_of_scene(context, &recording.shape);
         cscd_detector *d = detector_of(context, mesh);
         for (uint32_t c = 0; c < cscd_mesh_component_count(mesh); c++) {
             cscd_start_knowledge k = cscd_detector_start_knowledge(d, c);
@@ -233,7 +217,7 @@ TEST(knowledge_of_starts) {
         }
         for (uint32_t f = 0; f < 19; f++) {
             cscd_intersections crossing;
-            assert_int_equal(check_packed(d, recording.frames[f], &crossing), CSCD_OK);
+            expect_ok(check_packed(d, recording.frames[f], &crossing));
             for (size_t i = 0; i < crossing.count; i++) {
                 uint32_t a = crossing.items[i].a, b = crossing.items[i].b;
                 if (cscd_mesh_triangle_component(mesh, a) != cscd_mesh_triangle_component(mesh, b)) continue;

@@ -42,8 +42,8 @@ typedef struct collection {
 
 static collection collection_begin(uint32_t threads, const cscd_detector_options *options) {
     collection c = {.rig = rig_create(&shape, threads, NULL)};
-    assert_int_equal(search_space_create(c.rig.mesh, &c.space), CSCD_OK);
-    assert_int_equal(exclusions_create(c.rig.mesh, options, &c.excluded), CSCD_OK);
+    expect_ok(search_space_create(c.rig.mesh, &c.space));
+    expect_ok(exclusions_create(c.rig.mesh, options, &c.excluded));
     return c;
 }
 
@@ -60,8 +60,7 @@ static cscd_contacts collect_contacts(collection *c) {
     fill_lanes(c->rig.context, &c->space);
     c->space.lanes[0].feature_pairs = 3;
     c->space.lanes[0].decided[ELEMENTARY_SIGNS] = 2;
-    assert_int_equal(contact_list_collect(&c->space, &c->excluded, &c->buffer, &c->counters, &found),
-                     CSCD_OK);
+    expect_ok(contact_list_collect(&c->space, &c->excluded, &c->buffer, &c->counters, &found));
     return found;
 }
 

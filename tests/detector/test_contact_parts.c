@@ -3,6 +3,7 @@
 #include "tests/support/intersections/body_rig.h"
 #include "tests/support/packed.h"
 #include "tests/support/random.h"
+#include "tests/support/refusal.h"
 #include "tests/support/test.h"
 
 #include <stdlib.h>
@@ -30,7 +31,7 @@ static void open_scene(counting_allocator *counter, uint32_t thread_count) {
 }
 
 static void step_scene(void) {
-    assert_int_equal(step_packed(rig.detector, rig.all.x0, rig.all.x1, &found), CSCD_OK);
+    expect_ok(step_packed(rig.detector, rig.all.x0, rig.all.x1, &found));
 }
 
 static void draw_labels(uint32_t count, uint64_t seed) {
@@ -38,7 +39,7 @@ static void draw_labels(uint32_t count, uint64_t seed) {
     part_count = count;
     for (uint32_t t = 0; t < rig.all.triangle_count; t++)
         labels[t] = random_integer(0, 19) == 0 ? UINT32_MAX : (uint32_t)random_integer(0, (int)count - 1);
-    assert_int_equal(cscd_detector_set_parts(rig.detector, labels, part_count), CSCD_OK);
+    expect_ok(cscd_detector_set_parts(rig.detector, labels, part_count));
 }
 
 /* ---- the brute force -------------------------------------------------------------------------------------- */
@@ -64,7 +65,7 @@ static bool is_between(const cscd_contact *c, uint32_t a, uint32_t b) {
 static size_t compare_with_brute_force(const cscd_contact *items, size_t count) {
     cscd_contact_part_pairs sums;
     size_t next = 0, all = 0;
-    assert_int_equal(cscd_detector_contact_parts(rig.detector, items, count, &sums), CSCD_OK);
+    expect_ok(cscd_detector_contact_parts(rig.detector, items, count, &sums));
     for (uint32_t i = 0; i <= part_count; i++) {
         for (uint32_t k = i; k <= part_count; k++) {
             cscd_contact_part_pair expected = {i == part_count ? UINT32_MAX : i,
@@ -96,7 +97,6 @@ TEST(objects_are_parts_by_default) {
     for (uint32_t t = 0; t < rig.all.triangle_count; t++) labels[t] = t >= rig.bodies[1].first_triangle;
     assert_int_equal(compare_with_brute_force(found.items, found.count), 2);
     assert_int_equal(compare_with_brute_force(NULL, 0), 0);
-    body_rig_free(&rig);
 }
 
 /* Any selection, in any order; the list of the step stays. */
@@ -115,7 +115,6 @@ TEST(parts_of_the_caller) {
         copy[1] = copy[0]; /* of several at one time the first counts */
         compare_with_brute_force(copy, 2);
         free(copy);
-        body_rig_free(&rig);
     }
     assert_true(pairs > 60);
 }
@@ -140,11 +139,11 @@ TEST(loose_objects_have_parts) {
     cscd_contact_part_pairs sums;
     memcpy(x1, x0, sizeof x0);
     for (int v = 3; v < 7; v++) x1[v * 3 + 2] -= 5.0; /* all but the triangle and the ground */
-    assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(context, objects, 4, &mesh), CSCD_OK);
-    assert_int_equal(cscd_detector_create(context, mesh, NULL, NULL, &detector), CSCD_OK);
-    assert_int_equal(step_packed(detector, x0, x1, &found), CSCD_OK);
-    assert_int_equal(cscd_detector_contact_parts(detector, found.items, found.count, &sums), CSCD_OK);
+    expect_ok(cscd_context_create(NULL, &context));
+    expect_ok(cscd_mesh_create(context, objects, 4, &mesh));
+    expect_ok(cscd_detector_create(context, mesh, NULL, NULL, &detector));
+    expect_ok(step_packed(detector, x0, x1, &found));
+    expect_ok(cscd_detector_contact_parts(detector, found.items, found.count, &sums));
     /* The wire's ends and one drop meet the triangle (the other drop passes it by), and all four the ground. */
     static const uint32_t expected[4][3] = {{0, 1, 2}, {0, 2, 1}, {1, 3, 2}, {2, 3, 2}};
     assert_int_equal(sums.count, 4);
@@ -154,8 +153,8 @@ TEST(loose_objects_have_parts) {
         assert_int_equal(sums.items[i].count, expected[i][2]);
     }
     const uint32_t label = 0;
-    assert_int_equal(cscd_detector_set_parts(detector, &label, 1), CSCD_OK);
-    assert_int_equal(cscd_detector_contact_parts(detector, found.items, found.count, &sums), CSCD_OK);
+    expect_ok(cscd_detector_set_parts(detector, &label, 1));
+    expect_ok(cscd_detector_contact_parts(detector, found.items, found.count, &sums));
     assert_int_equal(sums.count, 2);
     assert_true(sums.items[0].a == 0 && sums.items[0].b == UINT32_MAX && sums.items[0].count == 3);
     assert_true(sums.items[1].a == UINT32_MAX && sums.items[1].b == UINT32_MAX && sums.items[1].count == 4);
@@ -165,7 +164,7 @@ TEST(loose_objects_have_parts) {
         cscd_mesh_edge(mesh, e, ends);
         if (ends[0] == 3) edges.a = e; /* the wire */
     }
-    assert_int_equal(cscd_detector_contact_parts(detector, &edges, 1, &sums), CSCD_OK);
+    expect_ok(cscd_detector_contact_parts(detector, &edges, 1, &sums));
     assert_true(edges.a > 0 && sums.items[0].a == 0 && sums.items[0].b == UINT32_MAX);
     cscd_detector_destroy(detector);
     cscd_mesh_destroy(mesh);
@@ -199,8 +198,9 @@ TEST(what_is_refused) {
     };
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         const cscd_contact both[2] = {found.items[0], wrong[i]};
-        assert_int_equal(cscd_detector_contact_parts(rig.detector, both, 2, &sums), CSCD_INVALID_ARGUMENT);
-        assert_non_null(strstr(cscd_context_detail(rig.context), "contact 1 (kind "));
+        expect_invalid(rig.context, cscd_detector_contact_parts(rig.detector, both, 2, &sums),
+                       "contact 1 (kind ");
     }
-    body_rig_free(&rig);
 }
+
+AROUND_EACH(NULL, body_rigs_free)

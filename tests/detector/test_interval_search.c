@@ -23,12 +23,10 @@ static size_t search_by(const rig *r, search_kind *kind, result_buffer *buffer, 
     cscd_detector *d = r->detector;
     cscd_contacts found;
     interval_search search = interval_search_begin(&d->space, interval.x0, interval.x1, d->limit);
-    assert_int_equal(bvh_rebuild_move(&d->rebuild, &d->space.bvh, interval.x0, interval.x1,
-                                      uniform_growth(0.0), uniform_growth(0.0)),
-                     CSCD_OK);
-    assert_int_equal(kind(&search), CSCD_OK);
-    assert_int_equal(contact_list_collect(&d->space, &d->exclusions, buffer, &search.counters, &found),
-                     CSCD_OK);
+    expect_ok(bvh_rebuild_move(&d->rebuild, &d->space.bvh, interval.x0, interval.x1, uniform_growth(0.0),
+                               uniform_growth(0.0)));
+    expect_ok(kind(&search));
+    expect_ok(contact_list_collect(&d->space, &d->exclusions, buffer, &search.counters, &found));
     *counters = search.counters;
     return found.count;
 }

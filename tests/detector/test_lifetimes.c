@@ -57,8 +57,8 @@ static void family_create(family *f, uint32_t thread_count, int end) {
     *f = (family){.counter = counting_allocator_start()};
     for (int kind = 0; kind < end; kind++) {
         void **member = &f->members[kind];
-        assert_int_equal(member_create(f->members, kind, &f->counter, thread_count, member), CSCD_OK);
-        if (kind == LINE) assert_int_equal(line_begin_packed(*member, x0, x1, 0.5), CSCD_OK);
+        expect_ok(member_create(f->members, kind, &f->counter, thread_count, member));
+        if (kind == LINE) expect_ok(line_begin_packed(*member, x0, x1, 0.5));
     }
 }
 
@@ -80,19 +80,19 @@ static void member_use(void *const members[KINDS], int kind) {
         assert_int_equal(cscd_plan_region_count(member), 2);
         break;
     case DETECTOR:
-        assert_int_equal(step_packed(member, x0, x1, &contacts), CSCD_OK);
+        expect_ok(step_packed(member, x0, x1, &contacts));
         assert_int_equal(contacts.count, 1);
         break;
     case LINE:
-        assert_int_equal(line_max_step_packed(member, 1.0, reached, &step), CSCD_OK);
+        expect_ok(line_max_step_packed(member, 1.0, reached, &step));
         assert_true(step.limited);
         break;
     case PARTITION:
-        assert_int_equal(partition_renew_packed(member, x0, UINT32_MAX), CSCD_OK);
+        expect_ok(partition_renew_packed(member, x0, UINT32_MAX));
         assert_int_equal(cscd_partition_part_count(member), 2);
         break;
     default:
-        assert_int_equal(sensors_step_packed(member, x0, x1, &warnings), CSCD_OK);
+        expect_ok(sensors_step_packed(member, x0, x1, &warnings));
     }
 }
 

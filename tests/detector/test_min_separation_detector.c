@@ -3,6 +3,7 @@
 #include "cscd/cscd.h"
 #include "tests/support/oracle.h"
 #include "tests/support/packed.h"
+#include "tests/support/refusal.h"
 #include "tests/support/rig.h"
 #include "tests/support/scenes.h"
 #include "tests/support/solver/free_step_check.h"
@@ -168,10 +169,8 @@ static void expect_refused(const rig *r, double min_separation, double tolerance
     cscd_detector_options options = cscd_detector_defaults();
     options.min_separation = min_separation;
     options.tolerance = tolerance;
-    assert_int_equal(detector_create_here(r->mesh, NULL, &options, &detector), CSCD_INVALID_ARGUMENT);
+    expect_invalid(r->context, detector_create_here(r->mesh, NULL, &options, &detector), word);
     assert_null(detector);
-    if (strstr(cscd_context_detail(r->context), word) == NULL)
-        fail_msg("%s", cscd_context_detail(r->context));
 }
 
 TEST(unfit_lengths_are_refused) {
@@ -202,9 +201,9 @@ TEST(the_static_check_is_not_concerned) {
         cscd_detector_options options = options_within(0.2, CSCD_METHOD_NONE);
         rig plain = rig_create(&interval, 1, NULL), wide = rig_create(&interval, 1, &options);
         cscd_intersections expected, found;
-        assert_int_equal(check_packed(plain.detector, interval.x1, &expected), CSCD_OK);
+        expect_ok(check_packed(plain.detector, interval.x1, &expected));
         rig_step(&wide, &interval);
-        assert_int_equal(check_packed(wide.detector, interval.x1, &found), CSCD_OK);
+        expect_ok(check_packed(wide.detector, interval.x1, &found));
         assert_int_equal(found.count, expected.count);
         if (found.count > 0)
             assert_memory_equal(found.items, expected.items, found.count * sizeof *found.items);
@@ -222,7 +221,7 @@ TEST(separation_can_change) {
         cscd_detector_options options = options_within(0.0, CSCD_METHOD_SINGLE);
         rig changing = rig_create(&interval, 1, &options);
         for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
-            assert_int_equal(cscd_detector_set_separation(changing.detector, changes[i], 0.0), CSCD_OK);
+            expect_ok(cscd_detector_set_separation(changing.detector, changes[i], 0.0));
             assert_int_equal(cscd_detector_set_separation(changing.detector, -1.0, 0.0),
                              CSCD_INVALID_ARGUMENT);
             cscd_contacts found = rig_step(&changing, &interval);
@@ -249,12 +248,11 @@ TEST(lines_follow_what_they_can) {
         cscd_detector_options options = options_within(family % 2 == 0 ? 0.03 : 0.0, CSCD_METHOD_SINGLE);
         rig r = rig_create(&interval, 1, &options);
         cscd_line_search *line = NULL;
-        assert_int_equal(cscd_line_search_create(r.detector, &line), CSCD_OK);
-        assert_int_equal(line_begin_packed(line, interval.x0, interval.x1, family % 2 == 0 ? 1e-3 : 0.03),
-                         CSCD_OK);
+        expect_ok(cscd_line_search_create(r.detector, &line));
+        expect_ok(line_begin_packed(line, interval.x0, interval.x1, family % 2 == 0 ? 1e-3 : 0.03));
         for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
             options.min_separation = changes[i];
-            assert_int_equal(cscd_detector_set_separation(r.detector, changes[i], 0.0), CSCD_OK);
+            expect_ok(cscd_detector_set_separation(r.detector, changes[i], 0.0));
             free_step_prepare(interval.x0, interval.x1, 1.0, options.step_factor, &call);
             call.status = line_max_step_packed(line, 1.0, call.end, &call.step);
             assert_true((call.status == CSCD_INVALID_ARGUMENT) == (changes[i] > 0.03));
@@ -288,17 +286,17 @@ TEST(a_start_behind_a_wall_is_not_clean) {
         options.ignore = ignore_all;
         rig r = rig_create(&interval, 1, &options), plain = rig_create(&interval, 1, NULL);
         cscd_line_search *line = NULL;
-        assert_int_equal(check_packed(plain.detector, interval.x1, &crossing), CSCD_OK);
+        expect_ok(check_packed(plain.detector, interval.x1, &crossing));
         through += crossing.count > 0;
         bool embedded = crossing.count == 0;
-        assert_int_equal(cscd_line_search_create(r.detector, &line), CSCD_OK);
-        assert_int_equal(check_packed(r.detector, interval.x0, &crossing), CSCD_OK);
-        assert_int_equal(line_begin_packed(line, interval.x0, interval.x1, 1e-6), CSCD_OK);
-        assert_int_equal(cscd_detector_set_separation(r.detector, 1e-6, 0.0), CSCD_OK);
-        assert_int_equal(line_max_step_packed(line, 1.0, NULL, &step), CSCD_OK);
+        expect_ok(cscd_line_search_create(r.detector, &line));
+        expect_ok(check_packed(r.detector, interval.x0, &crossing));
+        expect_ok(line_begin_packed(line, interval.x0, interval.x1, 1e-6));
+        expect_ok(cscd_detector_set_separation(r.detector, 1e-6, 0.0));
+        expect_ok(line_max_step_packed(line, 1.0, NULL, &step));
         assert_false(step.limited);
-        assert_int_equal(cscd_detector_set_separation(r.detector, 0.0, 0.0), CSCD_OK);
-        assert_int_equal(step_packed(r.detector, interval.x1, interval.x1, &found), CSCD_OK);
+        expect_ok(cscd_detector_set_separation(r.detector, 0.0, 0.0));
+        expect_ok(step_packed(r.detector, interval.x1, interval.x1, &found));
         assert_true(embedded || !cscd_detector_guarantee(r.detector, 0).start_embedded);
         cscd_line_search_destroy(line);
         rig_destroy(&plain);

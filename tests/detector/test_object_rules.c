@@ -5,16 +5,15 @@
 #include "tests/support/methods.h"
 #include "tests/support/object_scene.h"
 #include "tests/support/packed.h"
+#include "tests/support/rig.h"
 #include "tests/support/test.h"
 #include "tests/support/waiting_oracle.h"
 
 #include <string.h>
 
-enum { SCENES = PACED(10, 4) };
+enum { SCENES = 4, MANY = 60, STEPS = 5 };
 
-enum { MANY = 60, STEPS = 5 };
-
-static void check_guarantees(const rules_rig *s, const random_rules *set, rules_tally *sum) {
+static void check_guarantees(const rig *s, const random_rules *set, rules_tally *sum) {
     for (uint32_t t = 0; t < objects_joined.triangle_count; t++) {
         uint32_t i = objects_of_vertices[objects_joined.triangles[(size_t)t * 3]];
         uint32_t component = cscd_mesh_triangle_component(s->mesh, t);
@@ -45,19 +44,19 @@ static left_out left_out_by(const random_rules *set) {
     return (left_out){.rules = {objects_of_vertices, SCENE_OBJECTS, given->distances}};
 }
 
-static void give_rules(const rules_rig *s, const random_rules *set, waiting_oracle *oracle) {
+static void give_rules(const rig *s, const random_rules *set, waiting_oracle *oracle) {
     const left_out now = left_out_by(set);
-    rules_rig_set(s, set);
+    rules_set(s->detector, set);
     waiting_oracle_change(oracle, &now);
 }
 
-static void compare_step(const rules_rig *s, const random_rules *set, waiting_oracle *oracle,
-                         oracle_list *truth, rules_tally *sum) {
+static void compare_step(const rig *s, const random_rules *set, waiting_oracle *oracle, oracle_list *truth,
+                         rules_tally *sum) {
     cscd_contacts found;
     waiting_oracle_see(oracle, objects_motion.x0, true);
     oracle_find_by_rules(&objects_motion, &oracle->now.what.rules, truth);
     waiting_oracle_filter(oracle, truth);
-    assert_int_equal(step_packed(s->detector, objects_motion.x0, objects_motion.x1, &found), CSCD_OK);
+    expect_ok(step_packed(s->detector, objects_motion.x0, objects_motion.x1, &found));
     rules_rig_compare(s, truth, &found, sum);
     assert_int_equal(found.waiting, waiting_oracle_features(oracle));
     check_guarantees(s, set, sum);
@@ -74,14 +73,14 @@ static void next_motion(random_stream *random, double *at) {
 }
 
 /* What a check has proven holds under other rules. */
-static void check_with_other_rules(const rules_rig *s, random_stream *random, const random_rules *now,
+static void check_with_other_rules(const rig *s, random_stream *random, const random_rules *now,
                                    waiting_oracle *oracle) {
     random_rules other = *now;
     cscd_intersections found;
     if (stream_below(random, 2) == 0) random_rules_make(random, stream_below(random, 3), &other);
     give_rules(s, &other, oracle);
     waiting_oracle_see(oracle, objects_motion.x0, true);
-    assert_int_equal(check_packed(s->detector, objects_motion.x0, &found), CSCD_OK);
+    expect_ok(check_packed(s->detector, objects_motion.x0, &found));
     assert_int_equal(found.waiting, waiting_oracle_triangles(oracle));
 }
 
@@ -93,7 +92,7 @@ static void run_sequence(uint64_t seed, cscd_detector_options options, uint32_t 
     object_scene_make(&random);
     for (int i = 0; i < SCENE_OBJECTS; i++) set.obstacles[i] = stream_below(&random, 4) == 0;
     random_rules_neutral(&set);
-    rules_rig s = rules_rig_create(&set, &options, threads);
+    rig s = rules_rig(&set, &options, threads);
     rules_count = 0;
     const left_out first = left_out_by(&set);
     waiting_oracle oracle = waiting_oracle_start(s.mesh, &objects_joined, &first);
@@ -109,7 +108,7 @@ static void run_sequence(uint64_t seed, cscd_detector_options options, uint32_t 
     }
     waiting_oracle_free(&oracle);
     oracle_free(&truth);
-    rules_rig_destroy(&s);
+    rig_destroy(&s);
 }
 
 static rules_tally run_method(cscd_method method, cscd_mode mode, int sequences, uint64_t seed) {
@@ -187,16 +186,12 @@ static void make_many_rules(random_stream *random, double *distances) {
 
 TEST(many_objects_with_a_rule_each) {
     cscd_object_desc descs[MANY];
-    rules_rig s;
     random_stream random = stream_start(1);
     oracle_list truth = {0};
     rules_tally sum = {0};
     size_t waiting = 0;
     make_many(&random, descs);
-    assert_int_equal(cscd_context_create(NULL, &s.context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(s.context, descs, MANY, &s.mesh), CSCD_OK);
-    assert_int_equal(detector_create_here(s.mesh, NULL, NULL, &s.detector), CSCD_OK);
-    s.plan = NULL;
+    rig s = rig_of_objects(context_of(0, NULL), descs, MANY, NULL, NULL);
     left_out now = {.rules = {objects_of_vertices, MANY, many_distances[1]}};
     waiting_oracle oracle = waiting_oracle_start(s.mesh, &objects_joined, &now);
     for (int step = 0; step < 6; step++) {
@@ -205,10 +200,10 @@ TEST(many_objects_with_a_rule_each) {
         make_many_rules(&random, many_distances[step % 2]);
         waiting_oracle_change(&oracle, &now);
         waiting_oracle_see(&oracle, objects_joined.x0, true);
-        assert_int_equal(cscd_detector_set_rules(s.detector, many_rules, MANY, NULL, 0), CSCD_OK);
+        expect_ok(cscd_detector_set_rules(s.detector, many_rules, MANY, NULL, 0));
         oracle_find_by_rules(&objects_joined, &now.rules, &truth);
         waiting_oracle_filter(&oracle, &truth);
-        assert_int_equal(step_packed(s.detector, objects_joined.x0, objects_joined.x1, &found), CSCD_OK);
+        expect_ok(step_packed(s.detector, objects_joined.x0, objects_joined.x1, &found));
         rules_rig_compare(&s, &truth, &found, &sum);
         assert_int_equal(found.waiting, waiting_oracle_features(&oracle));
         waiting += found.waiting;
@@ -216,7 +211,7 @@ TEST(many_objects_with_a_rule_each) {
     assert_true(sum.contacts > 100 && waiting > 10);
     waiting_oracle_free(&oracle);
     oracle_free(&truth);
-    rules_rig_destroy(&s);
+    rig_destroy(&s);
 }
 
 /* A check of an object with self = false proves nothing of it, so a later step must not believe that it is embedded. */
@@ -236,25 +231,20 @@ TEST(masked_objects_are_not_proven) {
             objects_joined.x1[k] += 0.3 * step;
         }
         options.method = CSCD_METHOD_SINGLE;
-        rules_rig s = {NULL, NULL, NULL, NULL};
-        const cscd_object_desc desc = cscd_object_of_triangles(
-            objects_joined.vertex_count, objects_joined.triangle_count, objects_joined.triangles);
-        assert_int_equal(cscd_context_create(NULL, &s.context), CSCD_OK);
-        assert_int_equal(cscd_mesh_create(s.context, &desc, 1, &s.mesh), CSCD_OK);
-        assert_int_equal(detector_create_here(s.mesh, NULL, &options, &s.detector), CSCD_OK);
+        rig s = rig_create(&objects_joined, 0, &options);
         rule.self = false;
-        assert_int_equal(cscd_detector_set_rules(s.detector, &rule, 1, NULL, 0), CSCD_OK);
-        assert_int_equal(check_packed(s.detector, objects_joined.x0, &listed), CSCD_OK);
+        expect_ok(cscd_detector_set_rules(s.detector, &rule, 1, NULL, 0));
+        expect_ok(check_packed(s.detector, objects_joined.x0, &listed));
         assert_int_equal(listed.count, 0);
         rule.self = true;
-        assert_int_equal(cscd_detector_set_rules(s.detector, &rule, 1, NULL, 0), CSCD_OK);
+        expect_ok(cscd_detector_set_rules(s.detector, &rule, 1, NULL, 0));
         oracle_find(&objects_joined, &truth);
-        assert_int_equal(step_packed(s.detector, objects_joined.x0, objects_joined.x1, &found), CSCD_OK);
+        expect_ok(step_packed(s.detector, objects_joined.x0, objects_joined.x1, &found));
         rules_rig_compare(&s, &truth, &found, &sum);
         crossing += !cscd_detector_guarantee(s.detector, 0).start_embedded;
         assert_int_equal(cscd_detector_counters(s.detector).static_checks, 1);
         oracle_free(&truth);
-        rules_rig_destroy(&s);
+        rig_destroy(&s);
     }
     assert_true(crossing > 0);
 }

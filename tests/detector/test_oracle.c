@@ -24,8 +24,8 @@ static cscd_detector *make_detector(cscd_context *context, const scene *s, cscd_
     cscd_detector_options options = cscd_detector_defaults();
     cscd_detector *detector = NULL;
     options.method = method;
-    assert_int_equal(cscd_mesh_create(context, &desc, 1, mesh), CSCD_OK);
-    assert_int_equal(detector_create_here(*mesh, NULL, &options, &detector), CSCD_OK);
+    expect_ok(cscd_mesh_create(context, &desc, 1, mesh));
+    expect_ok(detector_create_here(*mesh, NULL, &options, &detector));
     return detector;
 }
 
@@ -34,9 +34,9 @@ static void compare_with_oracle(const scene *s, const oracle_list *truth, cscd_m
     cscd_context *context = NULL;
     cscd_mesh *mesh = NULL;
     cscd_contacts found;
-    assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
+    expect_ok(cscd_context_create(NULL, &context));
     cscd_detector *detector = make_detector(context, s, method, &mesh);
-    assert_int_equal(step_packed(detector, s->x0, s->x1, &found), CSCD_OK);
+    expect_ok(step_packed(detector, s->x0, s->x1, &found));
     if (found.count != truth->count)
         print_error("%s, seed %u, method %s: %zu contacts, brute force has %zu\n", scene_family_name(family),
                     (unsigned)seed, cscd_method_name(method), found.count, truth->count);

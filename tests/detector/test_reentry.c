@@ -162,11 +162,11 @@ TEST(calls_from_callbacks_are_busy) {
             h.p = &p;
             h.calls = 0;
             h.at = 1 + (uint32_t)what % 3;
-            assert_int_equal(panels_step(&p, &found), CSCD_OK);
+            expect_ok(panels_step(&p, &found));
             assert_int_equal(found.count, CONTACTS);
             assert_int_equal(h.done, 1);
             assert_int_equal(h.wrong, 0);
-            assert_int_equal(panels_step(&p, &found), CSCD_OK);
+            expect_ok(panels_step(&p, &found));
             assert_int_equal(found.count, CONTACTS);
             panels_destroy(&p);
             assert_int_equal(h.counter.live, 0);
@@ -205,7 +205,7 @@ TEST(other_threads_are_refused) {
         pthread_join(thread, NULL);
         assert_int_equal(h.done, 1);
         cscd_contacts found;
-        assert_int_equal(panels_step(&p, &found), CSCD_OK);
+        expect_ok(panels_step(&p, &found));
         assert_int_equal(found.count, CONTACTS);
         panels_destroy(&p);
         assert_int_equal(h.counter.live, 0);
@@ -266,7 +266,7 @@ TEST(destroyed_objects_live_on) {
         h.p = &p;
         h.calls = 0;
         h.at = 2;
-        assert_int_equal(panels_step(&p, &found), CSCD_OK);
+        expect_ok(panels_step(&p, &found));
         assert_int_equal(found.count, CONTACTS);
         assert_int_equal(h.done, 1);
         assert_int_equal(h.counter.live, 0);
@@ -290,7 +290,7 @@ TEST(another_thread_destroys) {
     cscd_contacts found;
     h.p = &p;
     h.at = 1;
-    assert_int_equal(panels_step(&p, &found), CSCD_OK);
+    expect_ok(panels_step(&p, &found));
     assert_int_equal(found.count, CONTACTS);
     assert_int_equal(h.done, 1);
     assert_int_equal(h.wrong, 0);

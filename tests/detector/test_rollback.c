@@ -20,17 +20,14 @@ static bool comes_back(bool cancellable) {
     cscd_context_options options = cscd_context_defaults();
     if (cancellable) options.progress.report = go_on;
     cscd_context *context = NULL;
-    cscd_mesh *mesh = NULL;
     scene_make(SCENE_TWO_SPHERES, 1, &shape);
-    cscd_object_desc desc =
-        cscd_object_of_triangles(shape.vertex_count, shape.triangle_count, shape.triangles);
-    assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
+    expect_ok(cscd_context_create(&options, &context));
+    cscd_mesh *mesh = mesh_of_scene(context, &shape);
     start_states s;
     rollback r = {.triangles = NULL};
     bvh_rebuild trees = {.intervals_unmeasured = 7};
-    assert_int_equal(start_states_create(mesh, &s), CSCD_OK);
-    assert_int_equal(rollback_create(mesh, &r), CSCD_OK);
+    expect_ok(start_states_create(mesh, &s));
+    expect_ok(rollback_create(mesh, &r));
     memset(s.triangles, TRIANGLE_CLEAN, shape.triangle_count);
     s.of[1].waiting = 4;
     s.vouched = true;

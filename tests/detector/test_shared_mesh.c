@@ -2,7 +2,8 @@
  * and the last one to let go gives the memory back. */
 #include "cscd/cscd.h"
 #include "cscd/sensors.h"
-#include "tests/support/counting_allocator.h"
+#include "tests/support/refusal.h"
+#include "tests/support/rig.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"
 
@@ -14,31 +15,14 @@ enum { USERS = 4, STEPS = 4 };
 
 static scene s;
 
-static cscd_context *make_context(counting_allocator *counter, uint32_t thread_count) {
-    cscd_context *context = NULL;
-    cscd_context_options options = cscd_context_defaults();
-    *counter = counting_allocator_start();
-    options.allocator = counting_allocator_interface(counter);
-    options.thread_count = thread_count;
-    assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
-    return context;
-}
-
-static cscd_mesh *make_mesh(cscd_context *context) {
-    cscd_object_desc object = cscd_object_of_triangles(s.vertex_count, s.triangle_count, s.triangles);
-    cscd_mesh *mesh = NULL;
-    assert_int_equal(cscd_mesh_create(context, &object, 1, &mesh), CSCD_OK);
-    return mesh;
-}
-
 /* ---- whose memory, whose sentence ---------------------------------------------------------------------- */
 
 /* Objects allocate from their own context and fail into it; the mesh's context is left alone. */
 TEST(objects_work_in_their_own_context) {
-    counting_allocator of_home, of_guest;
+    counting_allocator of_home = counting_allocator_start(), of_guest = counting_allocator_start();
     scene_make(SCENE_TWO_SPHERES, 3, &s);
-    cscd_context *home = make_context(&of_home, 1), *guest = make_context(&of_guest, 2);
-    cscd_mesh *mesh = make_mesh(home);
+    cscd_context *home = context_of(1, &of_home), *guest = context_of(2, &of_guest);
+    cscd_mesh *mesh = mesh_of_scene(home, &s);
     const size_t home_calls = of_home.calls;
     const cscd_view *x0 = CSCD_DOUBLES(s.x0, s.vertex_count), *x1 = CSCD_DOUBLES(s.x1, s.vertex_count);
     const cscd_view *too_short = CSCD_DOUBLES(s.x0, s.vertex_count - 1);
@@ -51,24 +35,23 @@ TEST(objects_work_in_their_own_context) {
     cscd_sensors *sensors;
     cscd_contacts contacts;
     cscd_warnings warnings;
-    assert_int_equal(cscd_plan_create(guest, mesh, x0, &by_kmeans, &plan), CSCD_OK);
-    assert_int_equal(cscd_detector_create(guest, mesh, plan, NULL, &detector), CSCD_OK);
+    expect_ok(cscd_plan_create(guest, mesh, x0, &by_kmeans, &plan));
+    expect_ok(cscd_detector_create(guest, mesh, plan, NULL, &detector));
     assert_ptr_equal(cscd_detector_mesh(detector), mesh);
     assert_ptr_equal(cscd_mesh_context(cscd_detector_mesh(detector)), home);
-    assert_int_equal(cscd_line_search_create(detector, &search), CSCD_OK);
-    assert_int_equal(cscd_partition_create(guest, mesh, plan, x0, NULL, &partition), CSCD_OK);
-    assert_int_equal(cscd_sensors_create(guest, mesh, partition, NULL, &sensors), CSCD_OK);
-    assert_int_equal(cscd_detector_step(detector, x0, x1, &contacts), CSCD_OK);
-    assert_int_equal(cscd_line_search_begin(search, x0, x1, 0.1), CSCD_OK);
-    assert_int_equal(cscd_sensors_step(sensors, x0, x1, &warnings), CSCD_OK);
-    assert_int_equal(cscd_detector_step(detector, x0, too_short, &contacts), CSCD_INVALID_ARGUMENT);
-    assert_non_null(strstr(cscd_context_detail(guest), "x1"));
+    expect_ok(cscd_line_search_create(detector, &search));
+    expect_ok(cscd_partition_create(guest, mesh, plan, x0, NULL, &partition));
+    expect_ok(cscd_sensors_create(guest, mesh, partition, NULL, &sensors));
+    expect_ok(cscd_detector_step(detector, x0, x1, &contacts));
+    expect_ok(cscd_line_search_begin(search, x0, x1, 0.1));
+    expect_ok(cscd_sensors_step(sensors, x0, x1, &warnings));
+    expect_invalid(guest, cscd_detector_step(detector, x0, too_short, &contacts), "x1");
     assert_string_equal(cscd_context_detail(home), "");
     assert_int_equal(of_home.calls, home_calls);
 
     cscd_context_destroy(home);
     cscd_mesh_destroy(mesh);
-    assert_int_equal(cscd_detector_step(detector, x0, x1, &contacts), CSCD_OK);
+    expect_ok(cscd_detector_step(detector, x0, x1, &contacts));
     assert_true(of_home.live > 0);
     cscd_sensors_destroy(sensors);
     cscd_partition_destroy(partition);
@@ -155,13 +138,13 @@ static void compare_users(const mesh_user users[USERS]) {
 /* The creator of the mesh works in its own context while others use the mesh, and lets go of all that it has. */
 static size_t share_once(scene_family family) {
     mesh_user users[USERS];
-    counting_allocator counter;
+    counting_allocator counter = counting_allocator_start();
     pthread_barrier_t all_made;
     scene_make(family, 5, &s);
-    cscd_context *home = make_context(&counter, 2);
-    cscd_mesh *mesh = make_mesh(home);
+    cscd_context *home = context_of(2, &counter);
+    cscd_mesh *mesh = mesh_of_scene(home, &s);
     cscd_detector *detector = NULL;
-    assert_int_equal(cscd_detector_create(home, mesh, NULL, NULL, &detector), CSCD_OK);
+    expect_ok(cscd_detector_create(home, mesh, NULL, NULL, &detector));
     assert_int_equal(pthread_barrier_init(&all_made, NULL, USERS + 1), 0);
     for (int i = 0; i < USERS; i++) {
         users[i] = (mesh_user){.all_made = &all_made, .mesh = mesh, .thread_count = 1 + (uint32_t)i % 2};

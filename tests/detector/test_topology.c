@@ -3,6 +3,7 @@
 #include "tests/support/oracle.h"
 #include "tests/support/packed.h"
 #include "tests/support/random_stream.h"
+#include "tests/support/rig.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"
 
@@ -14,50 +15,18 @@ enum { COLUMNS = 10, ROWS = 8, CUT = 5, TIP = 6, TEARS = 6, REGIONS_MAX = 16 };
 
 static scene whole, torn; /* large; one test at a time */
 
-typedef struct objects {
-    cscd_mesh *mesh;
-    cscd_plan *plan;
-    cscd_detector *detector;
-} objects;
-
-static cscd_context *make_context(uint32_t thread_count) {
-    cscd_context *context = NULL;
-    cscd_context_options options = cscd_context_defaults();
-    options.thread_count = thread_count;
-    assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
-    return context;
-}
-
-static objects make_objects(cscd_context *context, const scene *s, const cscd_detector_options *options) {
-    objects o = {NULL, NULL, NULL};
-    const cscd_object_desc desc = cscd_object_of_triangles(s->vertex_count, s->triangle_count, s->triangles);
-    assert_int_equal(cscd_mesh_create(context, &desc, 1, &o.mesh), CSCD_OK);
-    assert_int_equal(detector_create_here(o.mesh, NULL, options, &o.detector), CSCD_OK);
-    return o;
-}
-
-static void destroy_objects(objects *o) {
-    cscd_detector_destroy(o->detector);
-    cscd_plan_destroy(o->plan);
-    cscd_mesh_destroy(o->mesh);
-}
-
-static cscd_contacts step_topology(const objects *o, const scene *s) {
-    cscd_contacts found = {.count = 0};
-    assert_int_equal(step_packed(o->detector, s->x0, s->x1, &found), CSCD_OK);
-    return found;
+/* A detector whose context lives on. */
+static rig make_objects(cscd_context *context, const scene *s, const cscd_detector_options *options) {
+    rig r = {.mesh = mesh_of_scene(context, s)};
+    expect_ok(detector_create_here(r.mesh, NULL, options, &r.detector));
+    return r;
 }
 
 /* Returns the number of contacts. */
 static size_t check_against_brute_force(const scene *s, cscd_contacts found) {
     oracle_list expected = {NULL, 0, 0};
     oracle_find(s, &expected);
-    assert_int_equal(found.count, expected.count);
-    for (size_t i = 0; i < found.count; i++) {
-        const cscd_contact *c = &found.items[i];
-        const oracle_contact *e = &expected.items[i];
-        assert_true(c->kind == e->kind && c->a == e->a && c->b == e->b && c->toi == e->toi);
-    }
+    oracle_expect(&expected, &found);
     oracle_free(&expected);
     return found.count;
 }
@@ -118,28 +87,28 @@ static void move_right(double dx, double dz) {
 static size_t tear_once(cscd_context *context, uint64_t seed) {
     uint32_t pairs[TIP][2];
     make_sheet(seed);
-    objects before = make_objects(context, &whole, NULL);
-    assert_int_equal(check_against_brute_force(&whole, step_topology(&before, &whole)), 0);
-    destroy_objects(&before);
+    rig before = make_objects(context, &whole, NULL);
+    assert_int_equal(check_against_brute_force(&whole, rig_step(&before, &whole)), 0);
+    rig_destroy(&before);
 
     tear_sheet(pairs);
-    objects after = make_objects(context, &torn, NULL);
+    rig after = make_objects(context, &torn, NULL);
     cscd_component c = cscd_mesh_component(after.mesh, 0);
     assert_true(cscd_mesh_component_count(after.mesh) == 1 && c.non_manifold_vertices == 0);
     assert_int_equal(c.open_edges, 2 * (COLUMNS + ROWS) + 2 * TIP);
     move_right(0.15, 0.2);
-    size_t parting = check_against_brute_force(&torn, step_topology(&after, &torn));
+    size_t parting = check_against_brute_force(&torn, rig_step(&after, &torn));
     assert_true(parting > 0); /* the sides touch where they are still in one place */
     memcpy(torn.x0, torn.x1, sizeof torn.x1);
     move_right(-0.7, -0.5);
-    size_t count = check_against_brute_force(&torn, step_topology(&after, &torn));
-    destroy_objects(&after);
+    size_t count = check_against_brute_force(&torn, rig_step(&after, &torn));
+    rig_destroy(&after);
     return count;
 }
 
 TEST(a_sheet_tears_while_the_context_lives) {
     for (uint32_t threads = 1; threads <= 2; threads++) {
-        cscd_context *context = make_context(threads);
+        cscd_context *context = context_of(threads, NULL);
         size_t at_rest = cscd_context_bytes(context), count = 0;
         for (uint64_t seed = 0; seed < TEARS; seed++) {
             count += tear_once(context, seed);
@@ -152,23 +121,23 @@ TEST(a_sheet_tears_while_the_context_lives) {
 
 TEST(seams_keep_the_lips_quiet_until_they_have_parted) {
     uint32_t pairs[TIP][2];
-    cscd_context *context = make_context(1);
+    cscd_context *context = context_of(1, NULL);
     make_sheet(1);
     tear_sheet(pairs);
     move_right(0.15, 0.2);
     cscd_detector_options options = cscd_detector_defaults();
-    objects bare = make_objects(context, &torn, &options);
-    assert_true(step_topology(&bare, &torn).count > 0);
+    rig bare = make_objects(context, &torn, &options);
+    assert_true(rig_step(&bare, &torn).count > 0);
     options.seams = pairs[0];
     options.seam_count = TIP;
-    objects sewn = make_objects(context, &torn, &options);
-    assert_int_equal(step_topology(&sewn, &torn).count, 0);
+    rig sewn = make_objects(context, &torn, &options);
+    assert_int_equal(rig_step(&sewn, &torn).count, 0);
 
     memcpy(torn.x0, torn.x1, sizeof torn.x1);
     move_right(-0.7, -0.5); /* from here on nothing is ignored: no two vertices are in one place any more */
-    assert_true(check_against_brute_force(&torn, step_topology(&bare, &torn)) > 0);
-    destroy_objects(&sewn);
-    destroy_objects(&bare);
+    assert_true(check_against_brute_force(&torn, rig_step(&bare, &torn)) > 0);
+    rig_destroy(&sewn);
+    rig_destroy(&bare);
     cscd_context_destroy(context);
 }
 
@@ -227,7 +196,7 @@ static cscd_plan *carry_over(const cscd_plan *old, const cscd_mesh *mesh, const 
     }
     const cscd_plan_parts parts = {CSCD_METHOD_KMEANS, count, regions, points, NULL, NULL};
     cscd_plan *plan = NULL;
-    assert_int_equal(plan_from_parts_packed(mesh, torn.x0, &parts, &plan), CSCD_OK);
+    expect_ok(plan_from_parts_packed(mesh, torn.x0, &parts, &plan));
     free(number);
     free(points);
     return plan;
@@ -255,30 +224,27 @@ static carried carry_once(cscd_context *context, uint64_t seed) {
     cscd_plan_options options = cscd_plan_defaults();
     options.method = CSCD_METHOD_KMEANS;
     make_bodies(seed);
-    objects old = make_objects(context, &whole, NULL);
+    rig old = make_objects(context, &whole, NULL);
     assert_int_equal(cscd_mesh_component_count(old.mesh), 2);
-    assert_int_equal(plan_create_packed(old.mesh, whole.x0, &options, &old.plan), CSCD_OK);
+    expect_ok(plan_create_packed(old.mesh, whole.x0, &options, &old.plan));
 
     remove_and_renumber(old.mesh, &random, origin);
-    objects plain = make_objects(context, &torn, NULL), planned = {NULL, NULL, NULL};
-    const cscd_object_desc desc =
-        cscd_object_of_triangles(torn.vertex_count, torn.triangle_count, torn.triangles);
-    assert_int_equal(cscd_mesh_create(context, &desc, 1, &planned.mesh), CSCD_OK);
+    rig plain = make_objects(context, &torn, NULL), planned = {.mesh = mesh_of_scene(context, &torn)};
     planned.plan = carry_over(old.plan, planned.mesh, origin);
-    assert_int_equal(detector_create_here(planned.mesh, planned.plan, NULL, &planned.detector), CSCD_OK);
-    cscd_contacts found = step_topology(&planned, &torn);
+    expect_ok(detector_create_here(planned.mesh, planned.plan, NULL, &planned.detector));
+    cscd_contacts found = rig_step(&planned, &torn);
     carried result = {check_against_brute_force(&torn, found), 0};
-    assert_same_contacts(found, step_topology(&plain, &torn));
+    assert_same_contacts(found, rig_step(&plain, &torn));
     cscd_counters n = cscd_detector_counters(planned.detector);
     result.oriented = n.plus + n.minus;
-    destroy_objects(&planned);
-    destroy_objects(&plain);
-    destroy_objects(&old);
+    rig_destroy(&planned);
+    rig_destroy(&plain);
+    rig_destroy(&old);
     return result;
 }
 
 TEST(regions_carried_over_change_no_contact) {
-    cscd_context *context = make_context(1);
+    cscd_context *context = context_of(1, NULL);
     size_t at_rest = cscd_context_bytes(context);
     carried sum = {0, 0};
     for (uint64_t seed = 0; seed < TEARS; seed++) {

@@ -34,7 +34,7 @@ static cscd_detector *create_detector(whole_set *w) {
     options.seam_reach = (double)INFINITY;
     options.rules = rules;
     options.rule_count = 2;
-    assert_int_equal(cscd_detector_create(w->context, w->mesh, w->plan, &options, &detector), CSCD_OK);
+    expect_ok(cscd_detector_create(w->context, w->mesh, w->plan, &options, &detector));
     return detector;
 }
 
@@ -47,16 +47,16 @@ static whole_set whole_set_create(void) {
     cscd_object_desc objects[2] = {cscd_object_of_triangles(vertices, triangles, shape.triangles),
                                    cscd_object_of_triangles(vertices, triangles, shape.triangles)};
     objects[1].obstacle = true;
-    assert_int_equal(cscd_context_create(NULL, &w.context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(w.context, objects, 2, &w.mesh), CSCD_OK);
+    expect_ok(cscd_context_create(NULL, &w.context));
+    expect_ok(cscd_mesh_create(w.context, objects, 2, &w.mesh));
     cscd_plan_options options = cscd_plan_defaults();
     options.method = CSCD_METHOD_SINGLE;
     const cscd_view x0 = cscd_view_doubles(shape.x0, shape.vertex_count);
     const cscd_view x1 = cscd_view_doubles(shape.x1, shape.vertex_count);
-    assert_int_equal(cscd_plan_create(w.context, w.mesh, &x0, &options, &w.plan), CSCD_OK);
-    assert_int_equal(cscd_partition_create(w.context, w.mesh, NULL, &x0, NULL, &w.partition), CSCD_OK);
+    expect_ok(cscd_plan_create(w.context, w.mesh, &x0, &options, &w.plan));
+    expect_ok(cscd_partition_create(w.context, w.mesh, NULL, &x0, NULL, &w.partition));
     w.detector = create_detector(&w);
-    assert_int_equal(cscd_detector_step(w.detector, &x0, &x1, &found), CSCD_OK);
+    expect_ok(cscd_detector_step(w.detector, &x0, &x1, &found));
     assert_null(mesh_validate(w.mesh));
     assert_null(plan_validate(w.plan));
     assert_null(partition_validate(w.partition));
@@ -176,7 +176,7 @@ TEST(faults_of_active_sets) {
     whole_set w = whole_set_create();
     cscd_detector *d = w.detector;
     const uint32_t vertices[2] = {3, 40};
-    assert_int_equal(cscd_detector_set_active(d, vertices, 2), CSCD_OK);
+    expect_ok(cscd_detector_set_active(d, vertices, 2));
     assert_null(detector_validate(d));
     bvh *f = &d->space.bvh;
     active_set *set = &d->space.active;
@@ -192,7 +192,7 @@ TEST(faults_of_active_sets) {
     PLANT(detector_validate, d, f->levels[0].inactive_lanes, NULL, "a level does not know its active blocks");
     PLANT(detector_validate, d, f->levels[1].inactive_lanes[0], 0xff,
           "a block has the wrong active children");
-    assert_int_equal(cscd_detector_set_active(d, NULL, 0), CSCD_OK);
+    expect_ok(cscd_detector_set_active(d, NULL, 0));
     assert_null(detector_validate(d));
     whole_set_destroy(&w);
 }

@@ -30,10 +30,10 @@ static void want_motion(equal_panels *p, random_stream *random, double speed, si
 static cscd_free_step go_there(equal_panels *p, bool by_line) {
     cscd_free_step step;
     if (by_line) {
-        assert_int_equal(line_begin_packed(p->line, p->x0, p->x1, 0.0), CSCD_OK);
-        assert_int_equal(line_max_step_packed(p->line, 1.0, p->reached, &step), CSCD_OK);
+        expect_ok(line_begin_packed(p->line, p->x0, p->x1, 0.0));
+        expect_ok(line_max_step_packed(p->line, 1.0, p->reached, &step));
     } else {
-        assert_int_equal(max_step_packed(p->detector, p->x0, p->x1, p->reached, &step), CSCD_OK);
+        expect_ok(max_step_packed(p->detector, p->x0, p->x1, p->reached, &step));
     }
     memcpy(p->x0, p->reached, sizeof p->x0);
     return step;
@@ -52,7 +52,7 @@ static void run_panels(double min_separation, uint32_t threads, bool by_line) {
     cscd_intersections crossing;
     size_t waited = 0, sewn = PANEL;
     double least = INFINITY;
-    panels_begin(&p, min_separation, threads, NULL);
+    panels_begin(&p, min_separation, threads);
     for (int i = 0; i < 5; i++) {
         want_motion(&p, &random, 0.05, sewn);
         cscd_free_step step = go_there(&p, by_line);
@@ -61,7 +61,7 @@ static void run_panels(double min_separation, uint32_t threads, bool by_line) {
     for (int i = 0; sewn > 0 || waited > 0; i++) { /* the seam opens, row by row */
         assert_true(i < 100);
         sewn = sewn > SIDE ? sewn - SIDE : 0;
-        assert_int_equal(cscd_detector_set_seams(p.detector, &p.seams[0][0], sewn), CSCD_OK);
+        expect_ok(cscd_detector_set_seams(p.detector, &p.seams[0][0], sewn));
         want_motion(&p, &random, 0.05, sewn);
         cscd_free_step step = go_there(&p, by_line);
         assert_true(step.waiting > 0 || sewn == 0);
@@ -74,7 +74,7 @@ static void run_panels(double min_separation, uint32_t threads, bool by_line) {
         cscd_free_step step = go_there(&p, by_line);
         assert_int_equal(step.waiting, 0);
         least = fmin(least, least_gap(&p));
-        assert_int_equal(check_packed(p.detector, p.x0, &crossing), CSCD_OK);
+        expect_ok(check_packed(p.detector, p.x0, &crossing));
         assert_int_equal(crossing.count, 0);
     }
     assert_true(least > 0.0 && least_gap(&p) < 0.1 + min_separation);
@@ -100,39 +100,38 @@ TEST(every_function_leaves_out_what_waits) {
     cscd_truncation cut;
     static double bounds[VERTICES];
     for (int first = 0; first < 5; first++) {
-        panels_begin(&p, 0.0, 1, NULL);
+        panels_begin(&p, 0.0, 1);
         panels_open(&p);
         for (int i = first; i < first + 5; i++) {
             size_t waiting = 0;
             switch (i % 5) {
             case 0:
-                assert_int_equal(step_packed(p.detector, p.x0, p.x0, &contacts), CSCD_OK);
+                expect_ok(step_packed(p.detector, p.x0, p.x0, &contacts));
                 assert_int_equal(contacts.count, 0);
                 waiting = contacts.waiting;
                 break;
             case 1:
-                assert_int_equal(find_near_packed(p.detector, p.x0, 0.01, &near), CSCD_OK);
+                expect_ok(find_near_packed(p.detector, p.x0, 0.01, &near));
                 assert_int_equal(near.count, 0);
                 waiting = near.waiting;
                 break;
             case 2:
-                assert_int_equal(displacement_bounds_packed(p.detector, p.x0, 0.01, bounds, &bounded),
-                                 CSCD_OK);
+                expect_ok(displacement_bounds_packed(p.detector, p.x0, 0.01, bounds, &bounded));
                 assert_int_equal(bounded.blocked_count, 0);
                 waiting = bounded.waiting;
                 break;
             case 3:
                 panels_part(&p, 0.004, p.x1);
-                assert_int_equal(truncate_packed(p.detector, p.x0, p.x1, 0.01, p.reached, &cut), CSCD_OK);
+                expect_ok(truncate_packed(p.detector, p.x0, p.x1, 0.01, p.reached, &cut));
                 assert_int_equal(cut.held_count, 0);
                 assert_true(cut.fraction == 1.0);
                 waiting = cut.waiting;
                 break;
             default:
-                assert_int_equal(check_packed(p.detector, p.x0, &crossing), CSCD_OK);
+                expect_ok(check_packed(p.detector, p.x0, &crossing));
                 assert_int_equal(crossing.count, 0);
                 assert_true(crossing.waiting > TRIANGLES);
-                assert_int_equal(step_packed(p.detector, p.x0, p.x0, &contacts), CSCD_OK);
+                expect_ok(step_packed(p.detector, p.x0, p.x0, &contacts));
                 waiting = contacts.waiting;
             }
             assert_int_equal(waiting, p.touching);
@@ -150,24 +149,24 @@ TEST(a_pair_waits_until_it_is_apart_where_a_motion_starts) {
     cscd_proximities near;
     cscd_intersections crossing;
     const double distance = 0.125;
-    panels_begin(&p, distance, 1, NULL);
+    panels_begin(&p, distance, 1);
     panels_part(&p, distance, apart);
     panels_open(&p);
-    assert_int_equal(step_packed(p.detector, p.x0, apart, &contacts), CSCD_OK);
+    expect_ok(step_packed(p.detector, p.x0, apart, &contacts));
     size_t all = contacts.waiting;
     panels_part(&p, 2.0, p.x1);
-    assert_int_equal(find_near_packed(p.detector, p.x1, 0.01, &near), CSCD_OK);
+    expect_ok(find_near_packed(p.detector, p.x1, 0.01, &near));
     assert_int_equal(near.waiting, all);
-    assert_int_equal(step_packed(p.detector, p.x0, p.x1, &contacts), CSCD_OK);
+    expect_ok(step_packed(p.detector, p.x0, p.x1, &contacts));
     assert_true(contacts.count == 0 && contacts.waiting == all);
-    assert_int_equal(step_packed(p.detector, apart, apart, &contacts), CSCD_OK);
+    expect_ok(step_packed(p.detector, apart, apart, &contacts));
     assert_true(contacts.waiting > 0 && contacts.waiting <= all);
     panels_part(&p, 1.5 * distance, apart);
-    assert_int_equal(step_packed(p.detector, apart, p.x1, &contacts), CSCD_OK);
+    expect_ok(step_packed(p.detector, apart, p.x1, &contacts));
     assert_true(contacts.waiting < all && contacts.count == 0);
-    assert_int_equal(check_packed(p.detector, p.x1, &crossing), CSCD_OK);
+    expect_ok(check_packed(p.detector, p.x1, &crossing));
     assert_true(crossing.waiting == 0);
-    assert_int_equal(step_packed(p.detector, p.x1, p.x0, &contacts), CSCD_OK);
+    expect_ok(step_packed(p.detector, p.x1, p.x0, &contacts));
     assert_true(contacts.waiting == 0 && contacts.count == all);
     panels_end(&p);
 }
@@ -176,16 +175,16 @@ TEST(a_pair_waits_until_it_is_apart_where_a_motion_starts) {
 TEST(what_is_left_out_anew_waits_no_more) {
     static equal_panels p;
     cscd_contacts contacts;
-    panels_begin(&p, 0.0, 1, NULL);
+    panels_begin(&p, 0.0, 1);
     panels_open(&p);
-    assert_int_equal(step_packed(p.detector, p.x0, p.x0, &contacts), CSCD_OK);
+    expect_ok(step_packed(p.detector, p.x0, p.x0, &contacts));
     assert_true(contacts.waiting > 0 && contacts.count == 0);
-    assert_int_equal(cscd_detector_set_seams(p.detector, &p.seams[0][0], PANEL), CSCD_OK);
-    assert_int_equal(step_packed(p.detector, p.x0, p.x0, &contacts), CSCD_OK);
+    expect_ok(cscd_detector_set_seams(p.detector, &p.seams[0][0], PANEL));
+    expect_ok(step_packed(p.detector, p.x0, p.x0, &contacts));
     assert_true(contacts.waiting == 0 && contacts.count == 0);
     panels_part(&p, 0.5, p.x1);
     panels_open(&p);
-    assert_int_equal(step_packed(p.detector, p.x1, p.x0, &contacts), CSCD_OK);
+    expect_ok(step_packed(p.detector, p.x1, p.x0, &contacts));
     assert_true(contacts.waiting == 0 && contacts.count == p.touching);
     panels_end(&p);
 }
@@ -202,19 +201,17 @@ TEST(rules_and_lists_uncover_too) {
         ignored[i][1] = TRIANGLES + i % TRIANGLES;
     }
     for (int by_rules = 0; by_rules < 2; by_rules++) {
-        panels_begin(&p, 0.0, 1, NULL);
+        panels_begin(&p, 0.0, 1);
         if (by_rules == 1)
-            assert_int_equal(cscd_detector_set_rules(p.detector, rules, 2, NULL, 0), CSCD_OK);
+            expect_ok(cscd_detector_set_rules(p.detector, rules, 2, NULL, 0));
         else
-            assert_int_equal(cscd_detector_set_ignored(p.detector, &ignored[0][0], TRIANGLES * TRIANGLES),
-                             CSCD_OK);
+            expect_ok(cscd_detector_set_ignored(p.detector, &ignored[0][0], TRIANGLES * TRIANGLES));
         panels_open(&p);
-        assert_int_equal(step_packed(p.detector, p.x0, p.x0, &contacts), CSCD_OK);
+        expect_ok(step_packed(p.detector, p.x0, p.x0, &contacts));
         assert_true(contacts.waiting == 0 && contacts.count == 0);
-        assert_int_equal(by_rules == 1 ? cscd_detector_set_rules(p.detector, NULL, 0, NULL, 0)
-                                       : cscd_detector_set_ignored(p.detector, NULL, 0),
-                         CSCD_OK);
-        assert_int_equal(step_packed(p.detector, p.x0, p.x0, &contacts), CSCD_OK);
+        expect_ok(by_rules == 1 ? cscd_detector_set_rules(p.detector, NULL, 0, NULL, 0)
+                                : cscd_detector_set_ignored(p.detector, NULL, 0));
+        expect_ok(step_packed(p.detector, p.x0, p.x0, &contacts));
         assert_true(contacts.waiting == p.touching && contacts.count == 0);
         panels_end(&p);
     }
@@ -236,12 +233,12 @@ TEST(what_a_function_uncovers_does_not_wait) {
     cscd_detector_options options = cscd_detector_defaults();
     options.ignore = ignore_all;
     options.ignore_user = &ignores;
-    panels_begin(&p, 0.0, 1, NULL);
-    assert_int_equal(detector_create_here(p.mesh, NULL, &options, &other), CSCD_OK);
-    assert_int_equal(step_packed(other, p.x0, p.x0, &contacts), CSCD_OK);
+    panels_begin(&p, 0.0, 1);
+    expect_ok(detector_create_here(p.mesh, NULL, &options, &other));
+    expect_ok(step_packed(other, p.x0, p.x0, &contacts));
     assert_true(contacts.count == 0);
     ignores = false;
-    assert_int_equal(step_packed(other, p.x0, p.x0, &contacts), CSCD_OK);
+    expect_ok(step_packed(other, p.x0, p.x0, &contacts));
     assert_true(contacts.waiting == 0 && contacts.count == p.touching);
     cscd_detector_destroy(other);
     panels_end(&p);

@@ -5,6 +5,7 @@
 #include "tests/support/methods.h"
 #include "tests/support/object_scene.h"
 #include "tests/support/packed.h"
+#include "tests/support/rig.h"
 #include "tests/support/test.h"
 #include "tests/support/waiting_oracle.h"
 
@@ -12,9 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SEQUENCES = PACED(3, 2) };
-
-enum { STEPS = 6, CHANGES_MAX = 3 * STEPS + 2 };
+enum { SEQUENCES = 2, STEPS = 6, CHANGES_MAX = 3 * STEPS + 2 };
 
 typedef enum distance_kind { TOUCHING, SEPARATED, THICK, DISTANCE_KINDS } distance_kind;
 
@@ -25,7 +24,7 @@ typedef struct waiting_tally {
 } waiting_tally;
 
 typedef struct waiting_run {
-    rules_rig s, all; /* all: leaves nothing out but pairs of obstacles, and never culls */
+    rig s, all; /* all: leaves nothing out but pairs of obstacles, and never culls */
     random_stream random;
     distance_kind kind;
     random_rules sets[CHANGES_MAX]; /* one after the other: what is former is still read */
@@ -57,7 +56,7 @@ static void change_rules(waiting_run *q) {
     else
         random_rules_make(&q->random, kind, &set);
     want_rules(q, &set);
-    rules_rig_set(&q->s, &set);
+    rules_set(q->s.detector, &set);
 }
 
 /* Two vertices of features that touch somewhere, or any two. */
@@ -76,8 +75,7 @@ static void change_seams(waiting_run *q) {
     q->wanted.seam_count =
         stream_below(&q->random, 3) == 0 ? 0 : stream_below(&q->random, LEFT_OUT_SEAMS_MAX);
     for (size_t i = 0; i < q->wanted.seam_count; i++) pick_vertices(q, q->wanted.seams[i]);
-    assert_int_equal(cscd_detector_set_seams(q->s.detector, &q->wanted.seams[0][0], q->wanted.seam_count),
-                     CSCD_OK);
+    expect_ok(cscd_detector_set_seams(q->s.detector, &q->wanted.seams[0][0], q->wanted.seam_count));
 }
 
 /* Triangles at two vertices. */
@@ -92,8 +90,7 @@ static void change_ignored(waiting_run *q) {
             q->wanted.ignored[i][k] = count > 0 ? star[stream_below(&q->random, count)] : 0;
         }
     }
-    assert_int_equal(
-        cscd_detector_set_ignored(q->s.detector, &q->wanted.ignored[0][0], q->wanted.ignored_count), CSCD_OK);
+    expect_ok(cscd_detector_set_ignored(q->s.detector, &q->wanted.ignored[0][0], q->wanted.ignored_count));
 }
 
 static void change_something(waiting_run *q) {
@@ -124,7 +121,7 @@ static void see_positions(waiting_run *q, const double *x, bool motion_starts) {
 static void compare_check(waiting_run *q) {
     cscd_intersections found;
     see_positions(q, objects_motion.x0, true);
-    assert_int_equal(check_packed(q->s.detector, objects_motion.x0, &found), CSCD_OK);
+    expect_ok(check_packed(q->s.detector, objects_motion.x0, &found));
     waiting_oracle_intersections(&q->oracle, objects_motion.x0, &q->truth);
     assert_int_equal(found.waiting, waiting_oracle_triangles(&q->oracle));
     assert_int_equal(found.count, q->truth.count);
@@ -140,7 +137,7 @@ static void compare_check(waiting_run *q) {
 static void compare_near(waiting_run *q, const double *x, const cscd_proximities *found) {
     cscd_proximities all;
     size_t next = 0;
-    assert_int_equal(find_near_packed(q->all.detector, x, 0.06, &all), CSCD_OK);
+    expect_ok(find_near_packed(q->all.detector, x, 0.06, &all));
     for (size_t i = 0; i < all.count; i++) {
         const cscd_proximity *t = &all.items[i];
         if (waiting_oracle_covers(&q->oracle, t->kind, t->a, t->b, x)) continue;
@@ -155,7 +152,7 @@ static void compare_near(waiting_run *q, const double *x, const cscd_proximities
 static void find_near(waiting_run *q, const double *x) {
     cscd_proximities found;
     see_positions(q, x, false);
-    assert_int_equal(find_near_packed(q->s.detector, x, 0.06, &found), CSCD_OK);
+    expect_ok(find_near_packed(q->s.detector, x, 0.06, &found));
     compare_near(q, x, &found);
 }
 
@@ -164,7 +161,7 @@ static void compare_step(waiting_run *q) {
     see_positions(q, objects_motion.x0, true);
     oracle_find_by_rules(&objects_motion, &q->oracle.now.what.rules, &q->truth);
     waiting_oracle_filter(&q->oracle, &q->truth);
-    assert_int_equal(step_packed(q->s.detector, objects_motion.x0, objects_motion.x1, &found), CSCD_OK);
+    expect_ok(step_packed(q->s.detector, objects_motion.x0, objects_motion.x1, &found));
     expect_one_number(q->s.detector, "objects at random");
     rules_rig_compare(&q->s, &q->truth, &found, &q->sum->steps);
     assert_int_equal(found.waiting, waiting_oracle_features(&q->oracle));
@@ -207,9 +204,9 @@ static void compare_line(waiting_run *q) {
     cscd_free_step step;
     cscd_proximities found;
     cscd_line_search *line;
-    assert_int_equal(cscd_line_search_create(q->s.detector, &line), CSCD_OK);
+    expect_ok(cscd_line_search_create(q->s.detector, &line));
     see_positions(q, objects_motion.x0, true);
-    assert_int_equal(line_begin_packed(line, objects_motion.x0, objects_motion.x1, 0.06), CSCD_OK);
+    expect_ok(line_begin_packed(line, objects_motion.x0, objects_motion.x1, 0.06));
     if (stream_below(&q->random, 2) == 0) {
         (stream_below(&q->random, 2) == 0 ? change_seams : change_ignored)(q);
         waiting_oracle_change(&q->oracle, &q->wanted);
@@ -217,8 +214,8 @@ static void compare_line(waiting_run *q) {
     }
     cscd_status status = line_max_step_packed(line, 1.0, reached, &step);
     check_free(q, status, &step, reached);
-    assert_int_equal(cscd_line_search_find_near(line, 1.0, 0.06, CSCD_NEAR_PAIRS, &found), CSCD_OK);
-    assert_int_equal(line_positions_packed(line, 1.0, reached), CSCD_OK);
+    expect_ok(cscd_line_search_find_near(line, 1.0, 0.06, CSCD_NEAR_PAIRS, &found));
+    expect_ok(line_positions_packed(line, 1.0, reached));
     compare_near(q, reached, &found);
     cscd_line_search_destroy(line);
     q->sum->lines++;
@@ -278,17 +275,17 @@ static void run_sequence(uint64_t seed, distance_kind kind, cscd_detector_option
     memset(set.obstacles, 0, sizeof set.obstacles);
     random_rules_neutral(&set);
     const cscd_detector_options defaults = cscd_detector_defaults();
-    q.all = rules_rig_create(&set, &defaults, 1);
+    q.all = rules_rig(&set, &defaults, 1);
     for (int i = 0; i < SCENE_OBJECTS; i++) set.obstacles[i] = stream_below(&q.random, 4) == 0;
     random_rules_neutral(&set);
     want_rules(&q, &set);
-    q.s = rules_rig_create(&set, &options, threads);
+    q.s = rules_rig(&set, &options, threads);
     q.oracle = waiting_oracle_start(q.s.mesh, &objects_joined, &q.wanted);
     run_calls(&q);
     waiting_oracle_free(&q.oracle);
     oracle_free(&q.truth);
-    rules_rig_destroy(&q.s);
-    rules_rig_destroy(&q.all);
+    rig_destroy(&q.s);
+    rig_destroy(&q.all);
 }
 
 static waiting_tally run_method(cscd_method method, cscd_mode mode, int sequences, uint64_t seed) {

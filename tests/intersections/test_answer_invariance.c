@@ -88,9 +88,7 @@ TEST(scales_change_no_bit) {
             expect_scaled(&p->depth, &q->depth, 1, scale);
             expect_scaled(p->direction, q->direction, 3, 1.0);
         }
-        body_rig_free(&other);
     }
-    body_rig_free(&rig);
 }
 
 TEST(places_change_nothing) {
@@ -115,8 +113,6 @@ TEST(places_change_nothing) {
             k < depths->vertex_count + depths->edge_count ? 0.0 : 0.01 * depths->items[k].bound + 2e-6;
         assert_true(fabs(depths->items[k].depth - other.found.depths->items[k].depth) < 1e-11 + room);
     }
-    body_rig_free(&rig);
-    body_rig_free(&other);
 }
 
 /* ---- numbering ------------------------------------------------------------------------------------------- */
@@ -217,8 +213,6 @@ TEST(numbers_mean_nothing) {
         const cscd_depth *q = find_depth(b->depths, new_vertex[p->vertex], places[p->body]);
         assert_true(fabs(p->depth - q->depth) < 1e-12);
     }
-    body_rig_free(&rig);
-    body_rig_free(&other);
 }
 
 /* ---- what the answers say ---------------------------------------------------------------------------------- */
@@ -252,7 +246,6 @@ TEST(curves_run_as_normals_say) {
         }
     }
     assert_true(compared > 500);
-    body_rig_free(&rig);
 }
 
 /* How often a body winds around a point, by solid angles (van Oosterom, Strackee 1983). */
@@ -303,7 +296,6 @@ TEST(numbers_are_solid_angles) {
         }
     }
     assert_true(wound > 50);
-    body_rig_free(&rig);
 }
 
 /* What a body shares with two bodies that are apart it shares with the object of both. */
@@ -325,8 +317,9 @@ TEST(volumes_add_up) {
             sums[joined] += rig.found.overlaps->items[i].volume;
             areas[joined] += rig.found.overlaps->items[i].area_a;
         }
-        body_rig_free(&rig);
     }
     assert_true(sums[0] > 0.1 && fabs(sums[0] - sums[1]) < 1e-13);
     assert_true(areas[0] > 0.1 && fabs(areas[0] - areas[1]) < 1e-12);
 }
+
+AROUND_EACH(NULL, body_rigs_free)

@@ -95,7 +95,7 @@ static cscd_detector *make_detector(const grid_scene *s, cscd_method method) {
         seams[2 * options.seam_count] = s->names[v];
         seams[2 * options.seam_count++ + 1] = v;
     }
-    assert_int_equal(cscd_detector_create(s->context, s->mesh, NULL, &options, &detector), CSCD_OK);
+    expect_ok(cscd_detector_create(s->context, s->mesh, NULL, &options, &detector));
     return detector;
 }
 
@@ -169,10 +169,9 @@ static void check_grid(grid_family family, uint64_t seed, change_totals *totals)
     cscd_curve_changes changes;
     const cscd_view x0 = *CSCD_DOUBLES(start.positions, start.vertex_count);
     const cscd_view x1 = *CSCD_DOUBLES(end.positions, end.vertex_count);
-    assert_int_equal(cscd_detector_step(detector, &x0, &x1, &contacts), CSCD_OK);
+    expect_ok(cscd_detector_step(detector, &x0, &x1, &contacts));
     cscd_contact *given = copy_contacts(&contacts, seed / 2 % 2 == 1);
-    assert_int_equal(cscd_detector_curve_changes(detector, &x0, &x1, given, contacts.count, &changes),
-                     CSCD_OK);
+    expect_ok(cscd_detector_curve_changes(detector, &x0, &x1, given, contacts.count, &changes));
     name_by_place(&start);
     name_by_place(&end);
     compare_with_oracle(&start, &end, seam_names, given, contacts.count, &changes, totals);

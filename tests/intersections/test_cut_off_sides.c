@@ -13,9 +13,8 @@ static void find_cut_offs(void) {
     cscd_intersection_options options = cscd_intersection_defaults();
     options.cut_offs = options.overlaps = true;
     body_rig_create(&rig, NULL, 1);
-    assert_int_equal(cscd_detector_find_intersections(
-                         rig.detector, CSCD_DOUBLES(rig.all.x0, rig.all.vertex_count), &options, &found),
-                     CSCD_OK);
+    expect_ok(cscd_detector_find_intersections(rig.detector, CSCD_DOUBLES(rig.all.x0, rig.all.vertex_count),
+                                               &options, &found));
     assert_non_null(found.cut_offs);
 }
 
@@ -231,10 +230,11 @@ TEST(sheets_in_themselves) {
             }
         }
         assert_int_equal(next, found.cut_offs->count);
-        body_rig_free(&rig);
     }
     print_message(
         "%zu traces divide their sheet, %zu do not; %zu of them with the other trace; %zu corners\n", divide,
         do_not, joined, named);
     assert_true(divide > 80 && do_not > 100 && joined > 5 && named > 400);
 }
+
+AROUND_EACH(NULL, body_rigs_free)

@@ -17,7 +17,7 @@ static cscd_status try_cut_offs(void) {
 
 static void find_cut_offs(void) {
     body_rig_create(&rig, NULL, 1);
-    assert_int_equal(try_cut_offs(), CSCD_OK);
+    expect_ok(try_cut_offs());
     assert_non_null(found.cut_offs);
 }
 
@@ -48,14 +48,12 @@ TEST(a_post_through_a_sheet) {
         body_rig_begin(&rig);
         body_rig_add_sheet(&rig, ORIGIN, X4, Y4, 7, 9, false);
         body_rig_end_body(&rig);
-        body_rig_add_box(&rig, corners[i], sizes[i]);
-        body_rig_end_body(&rig);
+        body_rig_box(&rig, corners[i], sizes[i]);
         find_cut_offs();
         double area = sizes[i][0] * sizes[i][1];
         assert_int_equal(found.cut_offs->count, 1);
         expect_cut_off(0, area, 16 - area);
         assert_int_equal(cut_off_of(0)->patch_count > 0, i == 0);
-        body_rig_free(&rig);
     }
 }
 
@@ -65,11 +63,9 @@ TEST(the_smaller_part_is_outside) {
     body_rig_begin(&rig);
     body_rig_add_sheet(&rig, ORIGIN, X4, Y4, 7, 9, false);
     body_rig_end_body(&rig);
-    body_rig_add_box(&rig, corner, size);
-    body_rig_end_body(&rig);
+    body_rig_box(&rig, corner, size);
     find_cut_offs();
     expect_cut_off(0, 0.5 * 4, 3.5 * 4);
-    body_rig_free(&rig);
 }
 
 /* From border to border on both sheets; then one of them ends within the other. */
@@ -89,7 +85,6 @@ TEST(sheets_cross) {
         } else {
             assert_int_equal(found.cut_offs->count, 0); /* each ends within the other */
         }
-        body_rig_free(&rig);
     }
 }
 
@@ -104,7 +99,6 @@ TEST(a_narrow_sheet_is_divided) {
     find_cut_offs();
     assert_int_equal(found.cut_offs->count, 1);
     expect_cut_off(1, 1.3, 2.7);
-    body_rig_free(&rig);
 }
 
 /* From the border of a sheet to its hole: one may still walk around the hole. */
@@ -120,7 +114,6 @@ TEST(a_cut_to_a_hole_divides_nothing) {
         find_cut_offs();
         assert_int_equal(found.curves->count, 1 + i); /* all the way, the second one from the hole on */
         assert_int_equal(found.cut_offs->count, 0);
-        body_rig_free(&rig);
     }
 }
 
@@ -153,16 +146,14 @@ TEST(traces_over_seams_divide_nothing) {
         options.seams = seams[0];
         options.seam_count = SLIT_LENGTH;
         body_rig_end_body(&rig);
-        body_rig_add_box(&rig, corner, size);
-        body_rig_end_body(&rig);
+        body_rig_box(&rig, corner, size);
         body_rig_create(&rig, &options, 1);
-        assert_int_equal(try_cut_offs(), CSCD_OK);
+        expect_ok(try_cut_offs());
         assert_int_equal(found.curves->count, 1);
         assert_true(found.curves->items[0].closed);
         bool over_seam = corner[1] < SLIT_ROW && corner[1] + size[1] > SLIT_ROW;
         assert_int_equal(found.cut_offs->count, !over_seam);
         if (!over_seam) expect_cut_off(0, size[0] * size[1], 36 - size[0] * size[1]);
-        body_rig_free(&rig);
     }
 }
 
@@ -188,7 +179,8 @@ TEST(balls_in_bent_sheets) {
             assert_true(c->area <= c->rest);
             divided++;
         }
-        body_rig_free(&rig);
     }
     assert_true(divided > 20);
 }
+
+AROUND_EACH(NULL, body_rigs_free)

@@ -3,52 +3,41 @@
 #include "tests/support/intersections/integer_scene.h"
 #include "tests/support/methods.h"
 #include "tests/support/packed.h"
+#include "tests/support/rig.h"
 #include "tests/support/test.h"
 
 #include <stdio.h>
 #include <string.h>
 
-enum { SCENES = PACED(150, 12) };
+enum { SCENES = 15 };
 
 static integer_scene s; /* large; one test at a time */
 static cscd_intersection_pair expected[PAIRS_MAX], before[PAIRS_MAX];
 
-typedef struct rigged {
-    cscd_context *context;
-    cscd_mesh *mesh;
-    cscd_detector *detector;
-} rigged;
-
-static rigged rig_up(uint32_t threads, cscd_method method) {
-    rigged r;
+static rig rig_up(uint32_t threads, cscd_method method) {
+    rig r = {NULL};
     cscd_context_options options = cscd_context_defaults();
     options.thread_count = threads;
-    assert_int_equal(cscd_context_create(&options, &r.context), CSCD_OK);
+    expect_ok(cscd_context_create(&options, &r.context));
     r.mesh = integer_scene_mesh(&s, r.context);
     r.detector = integer_scene_detector(&s, r.mesh, method);
     return r;
 }
 
-static void take_down(rigged *r) {
-    cscd_detector_destroy(r->detector);
-    cscd_mesh_destroy(r->mesh);
-    cscd_context_destroy(r->context);
-}
-
-static cscd_intersection_pairs find_pairs(const rigged *r, cscd_intersection_answer answer, uint64_t kinds,
+static cscd_intersection_pairs find_pairs(const rig *r, cscd_intersection_answer answer, uint64_t kinds,
                                           size_t stop_after) {
     cscd_intersection_options options = cscd_intersection_defaults();
     cscd_intersection_pairs found;
     options.answer = answer;
     options.kinds = kinds;
     options.stop_after = stop_after;
-    assert_int_equal(find_intersections_packed(r->detector, s.positions, &options, &found), CSCD_OK);
+    expect_ok(find_intersections_packed(r->detector, s.positions, &options, &found));
     return found;
 }
 
 /* ---- one answer ---------------------------------------------------------------------------------------- */
 
-static void expect_pair(const rigged *r, const cscd_intersection_pair *is,
+static void expect_pair(const rig *r, const cscd_intersection_pair *is,
                         const cscd_intersection_pair *wanted) {
     assert_int_equal(is->a, wanted->a);
     assert_int_equal(is->b, wanted->b);
@@ -72,7 +61,7 @@ static void expect_counts(const cscd_intersection_pairs *found, const cscd_inter
 }
 
 /* The list has exactly the expected pairs. */
-static void expect_list(const rigged *r, const cscd_intersection_pairs *found, size_t count) {
+static void expect_list(const rig *r, const cscd_intersection_pairs *found, size_t count) {
     expect_counts(found, expected, count);
     for (size_t i = 0; i < count; i++) expect_pair(r, &found->items[i], &expected[i]);
     assert_false(found->stopped);
@@ -80,7 +69,7 @@ static void expect_list(const rigged *r, const cscd_intersection_pairs *found, s
 }
 
 /* Sorted, and all of them expected. */
-static void expect_some_of(const rigged *r, const cscd_intersection_pairs *found, size_t count) {
+static void expect_some_of(const rig *r, const cscd_intersection_pairs *found, size_t count) {
     size_t next = 0;
     expect_counts(found, found->items, found->count);
     for (size_t i = 0; i < found->count; i++) {
@@ -95,10 +84,10 @@ static void expect_some_of(const rigged *r, const cscd_intersection_pairs *found
 /* ---- all answers for a set of kinds ---------------------------------------------------------------------- */
 
 /* The plain check has the same pairs but for duplicates. */
-static void compare_with_check(const rigged *r, size_t count) {
+static void compare_with_check(const rig *r, size_t count) {
     cscd_intersections plain;
     size_t next = 0;
-    assert_int_equal(check_packed(r->detector, s.positions, &plain), CSCD_OK);
+    expect_ok(check_packed(r->detector, s.positions, &plain));
     for (size_t i = 0; i < count; i++) {
         if (expected[i].kind == CSCD_INTERSECTION_DUPLICATE) continue;
         assert_true(next < plain.count);
@@ -112,8 +101,7 @@ static void compare_with_check(const rigged *r, size_t count) {
 }
 
 /* The first call of a size is kept in `before`; those of other thread counts must be the same. */
-static void compare_first_pairs(const rigged *r, uint64_t kinds, size_t stop_after, size_t count,
-                                bool first) {
+static void compare_first_pairs(const rig *r, uint64_t kinds, size_t stop_after, size_t count, bool first) {
     cscd_intersection_pairs found = find_pairs(r, CSCD_ANSWER_LIST, kinds, stop_after);
     assert_int_equal(found.count, stop_after < count ? stop_after : count);
     assert_int_equal(found.stopped, stop_after <= count);
@@ -125,7 +113,7 @@ static void compare_first_pairs(const rigged *r, uint64_t kinds, size_t stop_aft
     assert_null(counted.items);
 }
 
-static void compare_answers(const rigged *r, uint64_t kinds, size_t count) {
+static void compare_answers(const rig *r, uint64_t kinds, size_t count) {
     cscd_intersection_pairs found = find_pairs(r, CSCD_ANSWER_LIST, kinds, 0);
     expect_list(r, &found, count);
     found = find_pairs(r, CSCD_ANSWER_COUNT, kinds, 0);
@@ -148,22 +136,22 @@ static void compare_scene(uint64_t seed, size_t of_kind[]) {
     for (uint32_t i = 0; i < 7; i++) {
         uint32_t threads = 1 + (i + (uint32_t)seed) % 4;
         uint64_t some = 1 + (seed + i) % 31;
-        rigged r = rig_up(threads, method_or_none(methods[i]));
+        rig r = rig_up(threads, method_or_none(methods[i]));
         compare_answers(&r, UINT64_MAX, integer_scene_pairs(&s, UINT64_MAX, expected));
         compare_with_check(&r, all);
         compare_answers(&r, some, integer_scene_pairs(&s, some, expected));
-        take_down(&r);
+        rig_destroy(&r);
     }
     size_t sizes[] = {1, 2, 5, all / 2 + 1, all, all + 1};
     uint64_t kinds[] = {UINT64_MAX, 1 + seed % 31};
-    for (uint32_t i = 0; i < 12; i++) {
-        size_t count = integer_scene_pairs(&s, kinds[i % 2], expected);
-        for (uint32_t threads = 1; threads <= 4; threads++) {
-            rigged r = rig_up(threads, CSCD_METHOD_NONE);
-            if (sizes[i / 2] > 0) compare_first_pairs(&r, kinds[i % 2], sizes[i / 2], count, threads == 1);
-            take_down(&r);
-        }
+    rig rigs[4];
+    for (uint32_t i = 0; i < 4; i++) rigs[i] = rig_up(1 + i, CSCD_METHOD_NONE);
+    for (uint32_t i = 0; i < 48; i++) {
+        size_t count = integer_scene_pairs(&s, kinds[i / 4 % 2], expected), stop_after = sizes[i / 8];
+        if (stop_after > 0)
+            compare_first_pairs(&rigs[i % 4], kinds[i / 4 % 2], stop_after, count, i % 4 == 0);
     }
+    for (int i = 0; i < 4; i++) rig_destroy(&rigs[i]);
 }
 
 TEST(equals_the_oracle) {

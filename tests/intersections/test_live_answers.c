@@ -105,15 +105,15 @@ static cscd_mesh_change *change_objects(void) {
         objects[object].obstacle = !objects[object].obstacle;
     }
     if (!goes) desc = describe_object(objects[object]);
-    assert_int_equal(cscd_mesh_change_create(context, twins.mesh, &what, 1, &change), CSCD_OK);
+    expect_ok(cscd_mesh_change_create(context, twins.mesh, &what, 1, &change));
     return change;
 }
 
 static void change_meshes(void) {
     cscd_mesh_change *change = change_objects();
     cscd_detector *ours = twins.ours, *theirs = twins.theirs;
-    assert_int_equal(cscd_detector_change_mesh(ours, change), CSCD_OK);
-    assert_int_equal(cscd_detector_change_mesh(theirs, change), CSCD_OK);
+    expect_ok(cscd_detector_change_mesh(ours, change));
+    expect_ok(cscd_detector_change_mesh(theirs, change));
     active_twins_join(&twins, ours, theirs);
     cscd_mesh_change_destroy(last_change);
     last_change = change;
@@ -127,8 +127,7 @@ static void label_parts(cscd_detector *fresh, bool wanted) {
     for (uint32_t t = 0; t < count; t++)
         labels[t] = stream_below(&chance, 9) == 0 ? UINT32_MAX : stream_below(&chance, PARTS);
     for (int i = 0; i < 3; i++)
-        assert_int_equal(cscd_detector_set_parts(all[i], wanted ? labels : NULL, wanted ? PARTS : 0),
-                         CSCD_OK);
+        expect_ok(cscd_detector_set_parts(all[i], wanted ? labels : NULL, wanted ? PARTS : 0));
 }
 
 /* ---- answers ------------------------------------------------------------------------------------------- */
@@ -140,14 +139,14 @@ static cscd_detector *new_detector(bool leaves_out) {
         options.ignore = active_twins_ignore;
         options.ignore_user = &twins;
     }
-    assert_int_equal(detector_create_here(twins.mesh, NULL, &options, &made), CSCD_OK);
+    expect_ok(detector_create_here(twins.mesh, NULL, &options, &made));
     return made;
 }
 
 static void find_everything(cscd_detector *d, const double *x, cscd_intersection_pairs *out) {
     cscd_intersection_options options = cscd_intersection_defaults();
     options.overlaps = options.depths = options.cut_offs = options.parts = true;
-    assert_int_equal(find_intersections_packed(d, x, &options, out), CSCD_OK);
+    expect_ok(find_intersections_packed(d, x, &options, out));
 }
 
 /* Of pairs that only one of the two leaves out, only that one knows that a volume is not known. */
@@ -187,11 +186,10 @@ static void compare_changes(void) {
     active_twins_hold(&twins, places[0], places[1]);
     active_twins_step(&twins, places[0], places[1]);
     for (int i = 0; i < 2; i++) {
-        assert_int_equal(step_packed(both[i], places[0], places[1], &found), CSCD_OK);
-        assert_int_equal(cscd_detector_curve_changes(both[i], CSCD_DOUBLES(places[0], twins.vertex_count),
-                                                     CSCD_DOUBLES(places[1], twins.vertex_count), found.items,
-                                                     found.count, i == 0 ? &a : &b),
-                         CSCD_OK);
+        expect_ok(step_packed(both[i], places[0], places[1], &found));
+        expect_ok(cscd_detector_curve_changes(both[i], CSCD_DOUBLES(places[0], twins.vertex_count),
+                                              CSCD_DOUBLES(places[1], twins.vertex_count), found.items,
+                                              found.count, i == 0 ? &a : &b));
     }
     compare_items(a.items, a.count, b.items, b.count, sizeof *a.items);
     compare_items(a.causes, a.cause_count, b.causes, b.cause_count, sizeof *a.causes);
@@ -210,8 +208,8 @@ static void begin_life(uint64_t seed) {
         objects[i] = i < 2 ? (live_object){i == 0 ? 3 : 0, false} : draw_object();
         descs[i] = describe_object(objects[i]);
     }
-    assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(context, descs, object_count, &first_mesh), CSCD_OK);
+    expect_ok(cscd_context_create(&options, &context));
+    expect_ok(cscd_mesh_create(context, descs, object_count, &first_mesh));
     twins.mesh = first_mesh;
     last_change = NULL;
     twins.set = false;

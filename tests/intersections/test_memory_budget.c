@@ -50,16 +50,10 @@ static void find_references(void (*add)(body_rig *r)) {
         if (i > 1) options.overlaps = options.cut_offs = false;
         add(rigs[i]);
         body_rig_create(rigs[i], NULL, 1);
-        assert_int_equal(find_with(rigs[i], &options), CSCD_OK);
+        expect_ok(find_with(rigs[i], &options));
         assert_int_equal(rigs[i]->found.left_out, 0);
         assert_int_equal(rigs[i]->found.wanted_memory, 0);
     }
-}
-
-static void free_references(void) {
-    body_rig_free(&full);
-    body_rig_free(&without_depths);
-    body_rig_free(&pairs_alone);
 }
 
 /* ---- what is given ---------------------------------------------------------------------------------------- */
@@ -103,7 +97,7 @@ static size_t fixed_memory(const body_rig *r, uint32_t threads) {
 static void warm_up(body_rig *r) {
     cscd_intersection_options count = cscd_intersection_defaults();
     count.answer = CSCD_ANSWER_COUNT;
-    assert_int_equal(find_with(r, &count), CSCD_OK);
+    expect_ok(find_with(r, &count));
 }
 
 static uint64_t find_on_budget(void (*add)(body_rig *r), size_t most, uint32_t threads) {
@@ -134,7 +128,6 @@ static void try_budgets(void (*add)(body_rig *r), uint64_t expected_at_some) {
     }
     assert_int_equal(find_on_budget(add, WHOLE, 2), 0);
     assert_int_equal(seen & expected_at_some, expected_at_some);
-    free_references();
 }
 
 TEST(a_shuffled_frame_stays_on_its_budget) {
@@ -150,11 +143,10 @@ TEST(what_is_wanted_is_the_same_for_any_threads) {
         body_rig_create(rigs[i], NULL, i == 0 ? 1 : 4);
     }
     for (options.max_memory = 1 << 14; options.max_memory < 1 << 20;
-         options.max_memory += PACED(1, 8) << 10) {
+         options.max_memory += PACED(4, 8) << 10) {
         for (int i = 0; i < 2; i++) find_with(rigs[i], &options);
         assert_int_equal(rig.found.wanted_memory, full.found.wanted_memory);
     }
-    for (int i = 0; i < 2; i++) body_rig_free(rigs[i]);
 }
 
 TEST(a_soup_stays_on_its_budget) {
@@ -163,7 +155,7 @@ TEST(a_soup_stays_on_its_budget) {
 
 /* ---- pairs ------------------------------------------------------------------------------------------------ */
 
-enum { MANY_RINGS = PACED(25, 13), MANY_SEGMENTS = PACED(36, 18) };
+enum { MANY_RINGS = 13, MANY_SEGMENTS = 18 };
 
 TEST(pairs_take_64_bytes_each) {
     for (uint32_t threads = 1; threads <= 4; threads += 3) {
@@ -175,7 +167,7 @@ TEST(pairs_take_64_bytes_each) {
         body_rig_create(&rig, NULL, threads);
         warm_up(&rig);
         size_t taken = call_memory(&rig, &options, &status);
-        assert_int_equal(status, CSCD_OK);
+        expect_ok(status);
         print_message("  %zu pairs, %.1f bytes each\n", rig.found.count,
                       (double)taken / (double)rig.found.count);
         assert_true(rig.found.count > 20 * rig.all.triangle_count);
@@ -190,10 +182,10 @@ TEST(pairs_that_do_not_fit_are_counted) {
     cscd_intersection_options options = cscd_intersection_defaults();
     add_small_shuffled(&rig);
     body_rig_create(&rig, NULL, 2);
-    assert_int_equal(find_with(&rig, &options), CSCD_OK);
+    expect_ok(find_with(&rig, &options));
     const size_t count = rig.found.count, crossing = rig.found.crossing;
     options.max_memory = PAIR_SIZE * count;
-    assert_int_equal(find_with(&rig, &options), CSCD_OK);
+    expect_ok(find_with(&rig, &options));
     assert_int_equal(rig.found.left_out, 0);
     options.max_memory = PAIR_SIZE * count - 1;
     assert_int_equal(find_with(&rig, &options), CSCD_LIST_TOO_LONG);
@@ -212,17 +204,16 @@ TEST(pairs_that_do_not_fit_are_counted) {
     }
     options.stop_after = 0;
     options.max_memory = PAIR_SIZE * count;
-    assert_int_equal(find_with(&rig, &options), CSCD_OK);
+    expect_ok(find_with(&rig, &options));
     options.max_memory = 1; /* other answers keep no list */
     options.answer = CSCD_ANSWER_COUNT;
-    assert_int_equal(find_with(&rig, &options), CSCD_OK);
+    expect_ok(find_with(&rig, &options));
     assert_int_equal(rig.found.count, count);
     options.answer = CSCD_ANSWER_LIST;
-    assert_int_equal(cscd_detector_set_longest_list(rig.detector, 10), CSCD_OK);
+    expect_ok(cscd_detector_set_longest_list(rig.detector, 10));
     assert_int_equal(find_with(&rig, &options), CSCD_LIST_TOO_LONG);
     assert_non_null(strstr(cscd_context_detail(rig.context), "longest_list"));
     assert_int_equal(rig.found.left_out, 0);
-    body_rig_free(&rig);
 }
 
 /* ---- other calls ------------------------------------------------------------------------------------------ */
@@ -260,7 +251,6 @@ TEST(earlier_frames_change_nothing) {
                         (1 << 20) + 2 * PAIR_SIZE * rig.found.count + fixed_memory(&rig, 2));
     }
     body_rig_free(&rig);
-    free_references();
 }
 
 /* A step, and the answers for a frame in the right order, are those of a detector that has never seen the wrong one. */
@@ -283,15 +273,13 @@ TEST(a_step_afterwards_is_right) {
         for (uint32_t k = 0; k < r->all.vertex_count * 3; k++) moved[k] = good[k] * 0.75;
         const cscd_view *from = CSCD_DOUBLES(good, r->all.vertex_count),
                         *to = CSCD_DOUBLES(moved, r->all.vertex_count);
-        assert_int_equal(cscd_detector_step(r->detector, from, to, &contacts[i]), CSCD_OK);
+        expect_ok(cscd_detector_step(r->detector, from, to, &contacts[i]));
         options = all_answers(1 << 22);
-        assert_int_equal(find_with(r, &options), CSCD_OK);
+        expect_ok(find_with(r, &options));
         assert_int_equal(r->found.left_out, 0);
     }
     compare_answers(rig.mesh, &full.found, &rig.found);
     assert_int_equal(contacts[0].count, contacts[1].count);
-    body_rig_free(&rig);
-    body_rig_free(&full);
 }
 
 /* ---- events ----------------------------------------------------------------------------------------------- */
@@ -307,21 +295,21 @@ TEST(events_stay_on_their_budget) {
     for (uint32_t i = 0; i < rig.all.triangle_count; i++) labels[i] = i;
     rig.counter = &counter;
     body_rig_create(&rig, NULL, 1);
-    assert_int_equal(find_with(&rig, NULL), CSCD_OK);
+    expect_ok(find_with(&rig, NULL));
     for (size_t most = 1 << 12; most <= 1 << 26; most *= 2) {
         options.part_count = rig.all.triangle_count;
         options.labels = labels;
         options.max_memory = most;
-        assert_int_equal(cscd_event_tracker_create(rig.context, rig.mesh, &options, &tracker), CSCD_OK);
-        assert_int_equal(cscd_event_tracker_add_frame(tracker, 0, NULL), CSCD_OK);
+        expect_ok(cscd_event_tracker_create(rig.context, rig.mesh, &options, &tracker));
+        expect_ok(cscd_event_tracker_add_frame(tracker, 0, NULL));
         const size_t before = counter.bytes;
         counter.peak = before;
         cscd_status status = cscd_event_tracker_add_frame(tracker, 1, &rig.found);
         assert_true(counter.peak - before <= most + 64 * (size_t)rig.all.triangle_count);
         assert_int_equal(status, most < 1 << 26 && status != CSCD_OK ? CSCD_LIST_TOO_LONG : CSCD_OK);
         if (status != CSCD_OK) assert_non_null(strstr(cscd_context_detail(rig.context), "max_memory"));
-        assert_int_equal(cscd_event_tracker_add_frame(tracker, 2, NULL), CSCD_OK);
-        assert_int_equal(cscd_event_tracker_finish(tracker, &events), CSCD_OK);
+        expect_ok(cscd_event_tracker_add_frame(tracker, 2, NULL));
+        expect_ok(cscd_event_tracker_finish(tracker, &events));
         assert_int_equal(events.count, status == CSCD_OK ? rig.found.count : 0);
         if (most == 1 << 12) assert_int_equal(status, CSCD_LIST_TOO_LONG);
         cscd_event_tracker_destroy(tracker);
@@ -336,3 +324,5 @@ TEST(names_are_those_of_the_header) {
     assert_string_equal(cscd_left_out_name(CSCD_LEFT_OUT_PARTS), "parts");
     assert_string_equal(cscd_left_out_name((cscd_left_out)77), "unknown");
 }
+
+AROUND_EACH(NULL, body_rigs_free)

@@ -67,7 +67,6 @@ TEST(crossing_cubes_have_one_depth) {
             for (uint32_t i = 0; i < 2; i++)
                 assert_int_equal(body_rig_is_turned(&rig, i), (inverted >> i & 1) != 0);
             assert_int_equal(rig.found.patches->turned != NULL, inverted != 0);
-            body_rig_free(&rig);
         }
     }
 }
@@ -81,7 +80,6 @@ TEST(a_cube_within_another) {
             assert_int_equal(rig.found.depths->vertex_count, 8);
             for (size_t i = 0; i < 8; i++)
                 assert_true(fabs(rig.found.depths->items[i].depth / at.scale - 0.25) < 1e-12);
-            body_rig_free(&rig);
         }
     }
 }
@@ -99,7 +97,6 @@ TEST(as_given_it_encloses_nothing) {
     rig.orientation = CSCD_ORIENTATION_BY_OBJECT;
     body_rig_find(&rig);
     assert_true(body_rig_is_turned(&rig, 1));
-    body_rig_free(&rig);
 }
 
 /* A box on the floor of another one: where the depth is 0, the direction is that of the normal outwards. */
@@ -107,8 +104,7 @@ TEST(directions_are_outwards) {
     for (int inverted = 0; inverted < 4; inverted++) {
         body_rig_begin(&rig);
         const double low[3] = {-1, -1, -1}, size[3] = {4, 4, 1};
-        body_rig_add_box(&rig, low, size);
-        body_rig_end_body(&rig);
+        body_rig_box(&rig, low, size);
         add_cube(0, 0, 0, 1);
         body_rig_end_body(&rig);
         for (uint32_t i = 0; i < 2; i++) {
@@ -120,7 +116,6 @@ TEST(directions_are_outwards) {
             const cscd_depth *d = &rig.found.depths->items[i];
             assert_true(d->depth == 0.0 && d->direction[2] == (d->body == 0 ? 1.0 : -1.0));
         }
-        body_rig_free(&rig);
     }
 }
 
@@ -145,7 +140,6 @@ TEST(what_is_not_within_stands_alone) {
             assert_int_equal(body_rig_is_turned(&rig, i), (inverted >> i & 1) != 0);
         cscd_overlap own = body_rig_overlap(&rig, 0, 0);
         assert_true(fabs(own.volume - (1.0 + 0.25 * 0.25 * 2.0)) < 1e-12 && own.area_b == 0.0);
-        body_rig_free(&rig);
     }
 }
 
@@ -163,7 +157,6 @@ TEST(what_is_collapsed_is_as_given) {
         }
         body_rig_find(&rig);
         assert_true(body_rig_is_turned(&rig, 0) && !body_rig_is_turned(&rig, 1));
-        body_rig_free(&rig);
     }
 }
 
@@ -180,7 +173,6 @@ TEST(a_scale_that_goes_negative) {
         if (step != 0) assert_true(fabs(body_rig_overlap(&rig, 0, 1).volume - 0.25 * half) < 1e-12);
         if (step != 0) assert_true(fabs(greatest_depth(&rig) - fmin(half, 0.5)) < 1e-12);
     }
-    body_rig_free(&rig);
 }
 
 /* ---- rounding -------------------------------------------------------------------------------------------- */
@@ -216,6 +208,7 @@ TEST(the_sign_is_exact) {
         body_rig_create(&rig, NULL, 1);
         body_rig_find(&rig);
         assert_int_equal(body_rig_is_turned(&rig, 0), round % 2);
-        body_rig_free(&rig);
     }
 }
+
+AROUND_EACH(NULL, body_rigs_free)

@@ -19,8 +19,7 @@ static bool ignore_pair(void *user, cscd_contact_kind kind, uint32_t a, uint32_t
 
 static void add_cube(double x, double y, double z, double size) {
     const double low[3] = {x, y, z}, sizes[3] = {size, size, size};
-    body_rig_add_box(&rig, low, sizes);
-    body_rig_end_body(&rig);
+    body_rig_box(&rig, low, sizes);
 }
 
 /* Three cubes: the first one overlaps the other two, which are apart. With a hole the first one is open. */
@@ -57,7 +56,6 @@ TEST(a_whole_curve) {
     find_ignoring(&range);
     assert_int_equal(rig.found.curves->count, 1);
     expect_volumes(false);
-    body_rig_free(&rig);
 }
 
 /* Two bars across each other have no vertices in each other, so nothing but the curves tells that they overlap. */
@@ -66,14 +64,11 @@ TEST(nothing_else_is_buried) {
                         other[3] = {0.5, 5, 2};
     ignored_range range = {12, UINT32_MAX};
     body_rig_begin(&rig);
-    body_rig_add_box(&rig, low, size);
-    body_rig_end_body(&rig);
-    body_rig_add_box(&rig, across, other);
-    body_rig_end_body(&rig);
+    body_rig_box(&rig, low, size);
+    body_rig_box(&rig, across, other);
     find_ignoring(&range);
     assert_int_equal(rig.found.overlaps->count, 1);
     assert_true(isnan(body_rig_overlap(&rig, 0, 1).volume));
-    body_rig_free(&rig);
 }
 
 TEST(all_but_some_pieces) {
@@ -84,7 +79,6 @@ TEST(all_but_some_pieces) {
         find_ignoring(&range);
         for (size_t i = 0; i < rig.found.curves->count; i++) open += !rig.found.curves->items[i].closed;
         expect_volumes(false);
-        body_rig_free(&rig);
     }
     assert_true(open > 0);
 }
@@ -104,7 +98,6 @@ TEST(pairs_that_carry_nothing) {
     assert_true(ignored == 0 || cscd_detector_set_ignored(rig.detector, pairs[0], ignored) == CSCD_OK);
     body_rig_find(&rig);
     expect_volumes(true);
-    body_rig_free(&rig);
 }
 
 /* A curve with an open component bounds nothing. */
@@ -114,7 +107,6 @@ TEST(open_components_have_none) {
     find_ignoring(&range);
     assert_true(body_rig_overlap(&rig, 0, 1).volume == 0.0);
     assert_true(body_rig_overlap(&rig, 0, 2).volume == 0.0);
-    body_rig_free(&rig);
 }
 
 static bool has_closed_curve(void) {
@@ -142,7 +134,6 @@ TEST(seams_whose_vertices_are_apart) {
         assert_int_equal(known, has_closed_curve());
         expect_volumes(known);
         unknown += !known;
-        body_rig_free(&rig);
     }
     assert_true(unknown > 0 && unknown < 64);
 }
@@ -204,9 +195,10 @@ TEST(one_end_is_left_out) {
                 assert_int_equal(cscd_detector_set_active(rig.detector, seam, 2), CSCD_OK);
                 actives += ends_are_told(star);
             }
-            body_rig_free(&rig);
         }
     }
     print_message("  %zu seams and %zu active parts leave out the end of a curve\n", seams, actives);
     assert_true(seams > 0 && actives > 0);
 }
+
+AROUND_EACH(NULL, body_rigs_free)

@@ -19,11 +19,10 @@ TEST(objects_are_parts_by_default) {
     labelling_set(&labels, &rig);
     labelled_scene_find(&rig);
     labelling_compare(&labels, &rig);
-    assert_int_equal(cscd_detector_set_parts(rig.detector, NULL, 0), CSCD_OK);
+    expect_ok(cscd_detector_set_parts(rig.detector, NULL, 0));
     labelled_scene_find(&rig);
     labelling_of_objects(&labels, &rig);
     assert_int_equal(labelling_compare(&labels, &rig), 5);
-    body_rig_free(&rig);
 }
 
 TEST(parts_of_the_caller) {
@@ -35,7 +34,6 @@ TEST(parts_of_the_caller) {
         labelling_set(&labels, &rig);
         labelled_scene_find(&rig);
         pairs += labelling_compare(&labels, &rig);
-        body_rig_free(&rig);
     }
     print_message("  %zu pairs of parts\n", pairs);
     assert_true(pairs > 300);
@@ -55,7 +53,7 @@ TEST(components_and_regions) {
     labelling_set(&labels, &rig);
     labelled_scene_find(&rig);
     size_t of_components = labelling_compare(&labels, &rig);
-    assert_int_equal(plan_create_packed(rig.mesh, rig.all.x0, &options, &plan), CSCD_OK);
+    expect_ok(plan_create_packed(rig.mesh, rig.all.x0, &options, &plan));
     labels.count = cscd_plan_region_labels(plan, labels.items);
     assert_int_equal(labels.count, cscd_plan_region_count(plan));
     for (uint32_t t = 0; t < rig.all.triangle_count; t++)
@@ -72,7 +70,6 @@ TEST(components_and_regions) {
         curves += rig.found.parts->items[i].curves;
     }
     assert_true(fabs(sum - length) < 1e-12 * length && curves > rig.found.curves->count);
-    body_rig_free(&rig);
 }
 
 /* The numbers of the guide: the corner of a small box in a large one. */
@@ -80,8 +77,7 @@ TEST(two_boxes_by_hand) {
     static const double low[2][3] = {{0, 0, 0}, {1.5, 0.5, 1.75}}, sizes[2][3] = {{2, 2, 2}, {1, 1, 1}};
     body_rig_begin(&rig);
     for (int i = 0; i < 2; i++) {
-        body_rig_add_box(&rig, low[i], sizes[i]);
-        body_rig_end_body(&rig);
+        body_rig_box(&rig, low[i], sizes[i]);
     }
     body_rig_create(&rig, NULL, 1);
     labelled_scene_find(&rig);
@@ -95,7 +91,6 @@ TEST(two_boxes_by_hand) {
     assert_int_equal(pair->faces[0] + pair->faces[1], rig.found.parts->faces);
     assert_true(pair->faces[0] == 3 && pair->faces[1] == 8);
     assert_true(pair->shares[0] == (double)pair->faces[0] / 12.0);
-    body_rig_free(&rig);
 }
 
 /* ---- other questions --------------------------------------------------------------------------------------- */
@@ -111,21 +106,20 @@ TEST(sums_are_of_the_list) {
         if (i == 1) options.stop_after = 20;
         if (i == 2) options.kinds = cscd_intersection_set(CSCD_INTERSECTION_DUPLICATE);
         options.curves = i == 3;
-        assert_int_equal(labelled_scene_try(&rig, options), CSCD_OK);
+        expect_ok(labelled_scene_try(&rig, options));
         assert_true(rig.found.depths == NULL);
         size_t pairs = labelling_compare(&labels, &rig);
         assert_true(i == 2 ? pairs == 0 && rig.found.parts->share == 0.0 : pairs > 0);
         before += pairs;
     }
     cscd_intersection_options plain = cscd_intersection_defaults();
-    assert_int_equal(find_intersections_packed(rig.detector, rig.all.x0, &plain, &rig.found), CSCD_OK);
+    expect_ok(find_intersections_packed(rig.detector, rig.all.x0, &plain, &rig.found));
     assert_true(rig.found.parts == NULL && before > 0);
     for (int i = CSCD_ANSWER_COUNT; i <= CSCD_ANSWER_ANY; i++) {
         plain.answer = (cscd_intersection_answer)i;
         assert_int_equal(labelled_scene_try(&rig, plain), CSCD_INVALID_ARGUMENT);
         assert_string_equal(cscd_context_detail(rig.context), "parts need a list of pairs: answer LIST");
     }
-    body_rig_free(&rig);
 }
 
 TEST(masked_objects_are_in_no_pair) {
@@ -141,7 +135,6 @@ TEST(masked_objects_are_in_no_pair) {
     labelling_of_objects(&labels, &rig);
     assert_int_equal(labelling_compare(&labels, &rig), 3);
     for (size_t i = 0; i < 3; i++) assert_true(rig.found.parts->items[i].b < 2);
-    body_rig_free(&rig);
 }
 
 /* A body that is wholly inside another one intersects nothing, and has a depth. */
@@ -149,8 +142,7 @@ TEST(a_swallowed_body_is_listed) {
     static const double low[2][3] = {{0, 0, 0}, {1, 1, 1}}, sizes[2][3] = {{4, 4, 4}, {1, 1, 1.5}};
     body_rig_begin(&rig);
     for (int i = 0; i < 2; i++) {
-        body_rig_add_box(&rig, low[i], sizes[i]);
-        body_rig_end_body(&rig);
+        body_rig_box(&rig, low[i], sizes[i]);
     }
     body_rig_create(&rig, NULL, 1);
     labelled_scene_find(&rig);
@@ -159,5 +151,6 @@ TEST(a_swallowed_body_is_listed) {
     assert_int_equal(labelling_compare(&labels, &rig), 1);
     const cscd_part_pair *pair = &rig.found.parts->items[0]; /* deepest on an edge, at (2, 2, 2) */
     assert_true(pair->depth <= 2.0 && pair->bound >= 2.0 && pair->bound <= 1.01 * pair->depth);
-    body_rig_free(&rig);
 }
+
+AROUND_EACH(NULL, body_rigs_free)

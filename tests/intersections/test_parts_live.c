@@ -1,5 +1,6 @@
 /* Labels of parts in a detector that moves over to another mesh, is cloned, is given wrong labels, or has no memory. */
 #include "tests/support/intersections/labelling.h"
+#include "tests/support/refusal.h"
 #include "tests/support/test.h"
 
 #include <string.h>
@@ -26,7 +27,7 @@ static cscd_mesh_change *change_bodies(const body_rig *r, body_rig *to) {
                                            {.object = 1, .desc = &turned, .triangle_origins = origins},
                                            {.object = UINT32_MAX, .desc = &fresh}};
     cscd_mesh_change *change = NULL;
-    assert_int_equal(cscd_mesh_change_create(r->context, r->mesh, changes, 3, &change), CSCD_OK);
+    expect_ok(cscd_mesh_change_create(r->context, r->mesh, changes, 3, &change));
     to->all.vertex_count = 2 * ball->vertex_count + torus->vertex_count;
     to->all.triangle_count = cscd_mesh_triangle_count(cscd_mesh_change_mesh(change));
     memcpy(to->all.triangles, cscd_mesh_all_triangles(cscd_mesh_change_mesh(change)),
@@ -56,10 +57,10 @@ TEST(labels_move_to_another_mesh) {
     assert_int_equal(fresh, 1 + rig.bodies[1].triangle_count);
     other.detector = rig.detector;
     other.mesh = (cscd_mesh *)cscd_mesh_change_mesh(change);
-    assert_int_equal(cscd_detector_change_mesh(rig.detector, change), CSCD_OK);
+    expect_ok(cscd_detector_change_mesh(rig.detector, change));
     labelled_scene_find(&other);
     assert_true(labelling_compare(&labels, &other) > 10);
-    assert_int_equal(cscd_detector_set_parts(rig.detector, NULL, 0), CSCD_OK);
+    expect_ok(cscd_detector_set_parts(rig.detector, NULL, 0));
     labelled_scene_find(&other);
     for (uint32_t t = 0; t < count; t++) {
         uint32_t corners[3];
@@ -69,7 +70,6 @@ TEST(labels_move_to_another_mesh) {
     labels.count = 3;
     assert_true(labelling_compare(&labels, &other) >= 5);
     cscd_mesh_change_destroy(change);
-    body_rig_free(&rig);
 }
 
 /* A small ball comes, so that there are triangles with larger numbers than ever before. */
@@ -77,7 +77,6 @@ TEST(sums_follow_to_a_larger_mesh) {
     static const double centre[3] = {0.95, 0.25, 0.15};
     counting_allocator counter = counting_allocator_start();
     labelled_scene_open(&rig, NULL, 1);
-    body_rig_free(&rig);
     rig.counter = &counter;
     body_rig_create(&rig, NULL, 1);
     labelling_draw(&labels, &rig, 5, 8);
@@ -91,8 +90,8 @@ TEST(sums_follow_to_a_larger_mesh) {
         cscd_object_of_triangles(ball->vertex_count, ball->triangle_count, ball->triangles);
     const cscd_object_change come = {.object = UINT32_MAX, .desc = &desc};
     cscd_mesh_change *change = NULL;
-    assert_int_equal(cscd_mesh_change_create(rig.context, before, &come, 1, &change), CSCD_OK);
-    assert_int_equal(cscd_detector_change_mesh(rig.detector, change), CSCD_OK);
+    expect_ok(cscd_mesh_change_create(rig.context, before, &come, 1, &change));
+    expect_ok(cscd_detector_change_mesh(rig.detector, change));
     rig.mesh = (cscd_mesh *)cscd_mesh_change_mesh(change);
     for (uint32_t t = 0; t < ball->triangle_count; t++) labels.items[ball->first_triangle + t] = UINT32_MAX;
     labelled_scene_find(&rig);
@@ -109,8 +108,8 @@ TEST(clones_have_their_own_labels) {
     labelling_draw(&labels, &rig, 6, 4);
     labelling_set(&labels, &rig);
     first = rig.detector;
-    assert_int_equal(cscd_detector_clone(rig.context, first, &second), CSCD_OK);
-    assert_int_equal(cscd_detector_set_parts(first, NULL, 0), CSCD_OK);
+    expect_ok(cscd_detector_clone(rig.context, first, &second));
+    expect_ok(cscd_detector_set_parts(first, NULL, 0));
     rig.detector = second;
     labelled_scene_find(&rig);
     labelling_compare(&labels, &rig);
@@ -119,7 +118,6 @@ TEST(clones_have_their_own_labels) {
     labelled_scene_find(&rig);
     assert_int_equal(labelling_compare(&labels, &rig), 5);
     cscd_detector_destroy(second);
-    body_rig_free(&rig);
 }
 
 /* ---- calls ------------------------------------------------------------------------------------------------ */
@@ -134,11 +132,11 @@ TEST(what_is_refused) {
                         "triangle 17 has the label 3, but there are 3 parts: a label is below that, or "
                         "UINT32_MAX for none");
     assert_int_equal(cscd_detector_set_parts(rig.detector, labels.items, 0), CSCD_INVALID_ARGUMENT);
-    assert_int_equal(cscd_detector_set_parts(rig.detector, NULL, 3), CSCD_INVALID_ARGUMENT);
-    assert_non_null(strstr(cscd_context_detail(rig.context), "labels is NULL"));
+    expect_invalid(rig.context, cscd_detector_set_parts(rig.detector, NULL, 3), "labels is NULL");
     assert_int_equal(cscd_detector_set_parts(NULL, NULL, 0), CSCD_NULL_OBJECT);
     labelling_draw(&labels, &rig, 3, 5); /* those that it has still */
     labelled_scene_find(&rig);
     labelling_compare(&labels, &rig);
-    body_rig_free(&rig);
 }
+
+AROUND_EACH(NULL, body_rigs_free)

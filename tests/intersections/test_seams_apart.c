@@ -14,10 +14,8 @@ static const double INNER[3] = {1.25, 1.5, 1.125}, SIZES[3] = {2, 2, 2};
 static void add_cubes(body_rig *r) {
     static const double low[3] = {0, 0, 0};
     body_rig_begin(r);
-    body_rig_add_box(r, low, SIZES);
-    body_rig_end_body(r);
-    body_rig_add_box(r, INNER, SIZES);
-    body_rig_end_body(r);
+    body_rig_box(r, low, SIZES);
+    body_rig_box(r, INNER, SIZES);
 }
 
 static void create_with_seams(const uint32_t (*seams)[2], size_t count) {
@@ -51,8 +49,6 @@ static void expect_as_without(const uint32_t (*seams)[2], size_t count) {
     expect_cubes(&rig.found);
     assert_int_equal(rig.found.depths->count, other.found.depths->count);
     assert_int_equal(rig.found.patches->count, other.found.patches->count);
-    body_rig_free(&rig);
-    body_rig_free(&other);
 }
 
 TEST(a_seam_across_a_body) {
@@ -94,7 +90,6 @@ TEST(those_at_one_place_are_one) {
         assert_int_equal(at_vertex, round == 0);
         rig.all.x0[3 * 2 + 1] = -0.5; /* then they part, and the curve has two borders */
     }
-    body_rig_free(&rig);
 }
 
 /* A seam that makes a point of an edge leaves its two triangles without area, and their neighbours are neighbours of each
@@ -113,8 +108,6 @@ TEST(an_edge_that_is_a_point) {
     for (size_t i = 0; i < curves->count; i++) assert_true(curves->items[i].closed);
     double volume = body_rig_overlap(&rig, 0, 1).volume;
     assert_true(volume > 0.1 && fabs(volume - body_rig_overlap(&other, 0, 1).volume) <= 1e-12);
-    body_rig_free(&rig);
-    body_rig_free(&other);
 }
 
 /* Two triangles that are sewn together along x = 0, or three, and a blade through them. The pairs of the blade with all but
@@ -156,6 +149,7 @@ TEST(a_pair_is_left_out_at_a_seam) {
         assert_int_equal(curve->piece_count, 1);
         assert_true(curve->start == expected || curve->end == expected);
         assert_true(curve->start == CSCD_CURVE_END_BORDER || curve->end == CSCD_CURVE_END_BORDER);
-        body_rig_free(&rig);
     }
 }
+
+AROUND_EACH(NULL, body_rigs_free)

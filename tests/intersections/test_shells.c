@@ -31,7 +31,7 @@ static void make_nested(uint32_t shells, int inverted, bool parts, int axis) {
     uint32_t labels[4 * CUBE];
     for (uint32_t t = 0; t < 4 * CUBE; t++) labels[t] = t / CUBE;
     if (parts || inverted % 2 == 1) /* by object, parts do not matter */
-        assert_int_equal(cscd_detector_set_parts(rig.detector, labels, 4), CSCD_OK);
+        expect_ok(cscd_detector_set_parts(rig.detector, labels, 4));
     if (parts) rig.orientation = CSCD_ORIENTATION_BY_PART;
     body_rig_find(&rig);
 }
@@ -74,7 +74,6 @@ TEST(shells_keep_their_sense) {
             number += roles[i] == 'c' ? -1 : 1;
         }
         assert_int_equal(number_in_the_middle(shells), number);
-        body_rig_free(&rig);
     }
 }
 
@@ -104,7 +103,6 @@ TEST(cavities_belong_to_what_is_around_them) {
                 assert_int_equal(rig.found.patches->items[i].body, roles[depth] == 'c' ? outer : i);
             }
         }
-        body_rig_free(&rig);
     }
 }
 
@@ -120,7 +118,7 @@ TEST(bodies_go_by_parts) {
         rig.part_bodies = true;
         uint32_t labels[4 * CUBE], told[4 * CUBE];
         for (uint32_t t = 0; t < 4 * CUBE; t++) labels[t] = t < 3 * CUBE ? parts[n][t / CUBE] : UINT32_MAX;
-        assert_int_equal(cscd_detector_set_parts(rig.detector, labels, 3), CSCD_OK);
+        expect_ok(cscd_detector_set_parts(rig.detector, labels, 3));
         cscd_detector_body_labels(rig.detector, told);
         body_rig_find(&rig);
         for (uint32_t i = 0; i < 3; i++) {
@@ -128,7 +126,6 @@ TEST(bodies_go_by_parts) {
             assert_int_equal(rig.found.patches->items[i].body, bodies[n][i]);
             assert_int_equal(body_rig_is_turned(&rig, i), turned[n][i] == 't');
         }
-        body_rig_free(&rig);
     }
 }
 
@@ -157,7 +154,6 @@ TEST(cavities_may_touch_their_hull) {
             assert_int_equal(rig.found.patches->items[i].body, inner_first ? 1 : 0);
         for (size_t i = 0; i < rig.found.depths->count; i++)
             assert_true(rig.found.depths->items[i].depth == 0.0);
-        body_rig_free(&rig);
     }
 }
 
@@ -202,7 +198,6 @@ TEST(what_crosses_its_cavity_is_a_body) {
             const cscd_patch *patch = &rig.found.patches->items[i];
             assert_int_equal(patch->body, order[patch->component == order[2] ? 2 : 0]);
         }
-        body_rig_free(&rig);
     }
 }
 
@@ -224,7 +219,6 @@ TEST(cavities_of_two_bodies_may_cross) {
         const cscd_patch *patch = &rig.found.patches->items[i];
         assert_int_equal(patch->body, patch->component / 2 * 2);
     }
-    body_rig_free(&rig);
 }
 
 /* The first triangle of a cube becomes its last one. */
@@ -258,7 +252,6 @@ TEST(left_out_pairs_make_no_cavity) {
         body_rig_find(&rig);
         assert_int_equal(rig.found.count, 0);
         assert_true(!body_rig_is_turned(&rig, 0) && body_rig_is_turned(&rig, 1));
-        body_rig_free(&rig);
     }
 }
 
@@ -269,7 +262,6 @@ TEST(parts_are_bodies_of_their_own) {
             for (uint32_t i = 0; i < shells; i++)
                 assert_int_equal(body_rig_is_turned(&rig, i), (inverted >> i & 1) != 0);
             assert_int_equal(number_in_the_middle(shells), (int)shells);
-            body_rig_free(&rig);
         }
     }
 }
@@ -279,9 +271,10 @@ TEST(a_shell_of_a_skin_with_limbs) {
     make_nested(2, 2, true, 0);
     uint32_t labels[3 * CUBE];
     for (uint32_t t = 0; t < 3 * CUBE; t++) labels[t] = t < 5 ? 0 : t < 2 * CUBE ? 1 : 2;
-    assert_int_equal(cscd_detector_set_parts(rig.detector, labels, 3), CSCD_OK);
+    expect_ok(cscd_detector_set_parts(rig.detector, labels, 3));
     body_rig_find(&rig);
     assert_true(!body_rig_is_turned(&rig, 0) && !body_rig_is_turned(&rig, 1));
     assert_int_equal(number_in_the_middle(2), 0);
-    body_rig_free(&rig);
 }
+
+AROUND_EACH(NULL, body_rigs_free)

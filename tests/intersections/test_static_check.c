@@ -29,7 +29,7 @@ static uint32_t count_zero_area(const scene *shape) {
 static size_t compare_with_all_pairs(uint32_t thread_count) {
     rig r = rig_create(&s, thread_count, NULL);
     cscd_intersections found;
-    assert_int_equal(check_packed(r.detector, s.x0, &found), CSCD_OK);
+    expect_ok(check_packed(r.detector, s.x0, &found));
     size_t next = 0;
     collapsed_oracle(&s, s.x0, NULL, collapsed);
     for (uint32_t a = 0; a < s.triangle_count; a++) {

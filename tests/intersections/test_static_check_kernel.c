@@ -12,7 +12,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { BATCH_MAX = 700, BATCHES = PACED(600, 150) };
+enum { BATCH_MAX = 700, BATCHES = 120 };
 
 static int seed_random(void **state) {
     (void)state;

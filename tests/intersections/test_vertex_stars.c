@@ -83,8 +83,8 @@ static uint32_t check_scene(bool *first) {
     cscd_object_desc desc = cscd_object_of_triangles(s.vertex_count, s.triangle_count, s.triangles);
     assert_non_null(list);
     for (uint32_t t = 0; t < s.triangle_count; t++) list[t] = t;
-    assert_int_equal(cscd_mesh_create(contexts[0], &desc, 1, &mesh), CSCD_OK);
-    assert_int_equal(vertex_stars_create(mesh, &stars), CSCD_OK);
+    expect_ok(cscd_mesh_create(contexts[0], &desc, 1, &mesh));
+    expect_ok(vertex_stars_create(mesh, &stars));
     intersection_kernels_of(contexts[0])
         ->sign_normals((const uint32_t(*)[3])mesh->triangles, s.x0, list, s.triangle_count, stars.normals,
                        stars.rises);

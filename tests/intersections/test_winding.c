@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { GRIDS = PACED(20, 10) };
+enum { GRIDS = 8 };
 
 enum { OBJECTS_MAX = 4 };
 

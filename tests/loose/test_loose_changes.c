@@ -13,10 +13,6 @@ static loose_scene scene;
 static const loose_recipe everything = {
     .triangles = true, .wires = true, .points = true, .half_spaces = true, .motion = 0.5, .thickness = true};
 
-static void expect_ok(cscd_status status) {
-    if (status != CSCD_OK) fail_msg("%s", cscd_context_detail(scene.context));
-}
-
 static void expect_same(const cscd_contacts *a, const cscd_contacts *b) {
     assert_int_equal(a->count, b->count);
     if (a->count > 0) assert_memory_equal(a->items, b->items, a->count * sizeof *a->items);

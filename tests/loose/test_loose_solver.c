@@ -35,10 +35,6 @@ static void close_scene(cscd_detector *detector) {
     loose_scene_free(&scene);
 }
 
-static void expect_ok(cscd_status status) {
-    if (status != CSCD_OK) fail_msg("%s", cscd_context_detail(scene.context));
-}
-
 /* The scenes of which the start is free of touching: vertices that are in the way go up or down. */
 static bool lift_above_half_spaces(void) {
     for (size_t i = 0; i < pair_count; i++) {

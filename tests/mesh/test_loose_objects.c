@@ -2,6 +2,7 @@
 #include "cscd/cscd.h"
 #include "cscd/sensors.h"
 #include "src/mesh/mesh.h"
+#include "tests/support/rig.h"
 #include "tests/support/same_mesh.h"
 #include "tests/support/test.h"
 
@@ -70,7 +71,7 @@ static void check_features(const cscd_mesh *mesh) {
 TEST(mixed_objects) {
     cscd_object_desc descs[MIXED];
     counting_allocator counter = counting_allocator_start();
-    cscd_context *context = counted_context(&counter);
+    cscd_context *context = context_of(0, &counter);
     cscd_mesh *mesh = NULL;
     describe_mixed(descs);
     assert_int_equal(cscd_mesh_create(context, descs, MIXED, &mesh), CSCD_OK);
@@ -105,7 +106,7 @@ TEST(hashes_differ) {
     static const double other[3] = {0.0, 3.0, 4.0};
     counting_allocator counter = counting_allocator_start();
     uint64_t hashes[6];
-    cscd_context *context = counted_context(&counter);
+    cscd_context *context = context_of(0, &counter);
     cscd_object_desc descs[2] = {cscd_object_of_triangles(4, 4, tetrahedron), cscd_object_of_points(4)};
     hashes[0] = hash_of(context, descs, 2);
     descs[1] = cscd_object_of_wires(4, 2, wires);
@@ -146,7 +147,7 @@ static cscd_object_desc half_space_along(double x, double y, double z) {
 TEST(refused_descriptions) {
     static const uint32_t beyond[4] = {0, 1, 2, 4}, itself[4] = {0, 1, 2, 2};
     counting_allocator counter = counting_allocator_start();
-    cscd_context *context = counted_context(&counter);
+    cscd_context *context = context_of(0, &counter);
     check_refused(context, cscd_object_of_wires(4, 2, beyond), CSCD_INVALID_MESH, "wire 1 names vertex 4");
     check_refused(context, cscd_object_of_wires(4, 2, itself), CSCD_INVALID_MESH, "wire 1 (2 2)");
     check_refused(context, cscd_object_of_wires(4, 0, wires), CSCD_INVALID_MESH, "0 wires");
@@ -185,7 +186,7 @@ TEST(refused_descriptions) {
 /* Counts that no data stand behind do not take memory for seconds. */
 TEST(too_many) {
     counting_allocator counter = counting_allocator_start();
-    cscd_context *context = counted_context(&counter);
+    cscd_context *context = context_of(0, &counter);
     cscd_object_desc descs[2] = {cscd_object_of_points((1u << 26) - 1), cscd_object_of_points(2)};
     cscd_mesh *mesh = NULL;
     assert_int_equal(cscd_mesh_create(context, descs, 2, &mesh), CSCD_INVALID_MESH);
@@ -201,7 +202,7 @@ TEST(too_many) {
 TEST(plans_and_partitions) {
     static const double x[24] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 5, 5, 5, 6, 6, 6, 7, 7, 7, 8, 8, 8};
     counting_allocator counter = counting_allocator_start();
-    cscd_context *context = counted_context(&counter);
+    cscd_context *context = context_of(0, &counter);
     cscd_object_desc descs[2] = {cscd_object_of_triangles(4, 4, tetrahedron),
                                  cscd_object_of_wires(4, 4, wires)};
     cscd_plan_options options = cscd_plan_defaults();
@@ -236,7 +237,7 @@ TEST(plans_and_partitions) {
 TEST(changed_mesh) {
     cscd_object_desc descs[MIXED], now[MIXED];
     counting_allocator counter = counting_allocator_start();
-    cscd_context *context = counted_context(&counter);
+    cscd_context *context = context_of(0, &counter);
     cscd_mesh *mesh = NULL, *fresh = NULL;
     cscd_mesh_change *change = NULL;
     describe_mixed(descs);

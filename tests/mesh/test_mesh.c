@@ -1,6 +1,7 @@
 /* Meshes: edges, stars, components and what is wrong with them; bad input; memory. */
 #include "src/mesh/mesh.h"
 #include "tests/support/mesh_shapes.h"
+#include "tests/support/rig.h"
 #include "tests/support/same_mesh.h"
 #include "tests/support/test.h"
 
@@ -111,7 +112,7 @@ static void check_component(const cscd_mesh *mesh, uint32_t index, const expecte
 
 static void check_shape(const shape *s, uint32_t component_count, const expected_component *expected) {
     counting_allocator counter = counting_allocator_start();
-    cscd_context *context = counted_context(&counter);
+    cscd_context *context = context_of(0, &counter);
     cscd_mesh *mesh = NULL;
     assert_int_equal(create_mesh(context, s, &mesh), CSCD_OK);
     assert_int_equal(cscd_mesh_vertex_count(mesh), s->vertex_count);
@@ -174,7 +175,7 @@ TEST(two_components) {
     check_shape(&s, 2, expected);
 
     counting_allocator counter = counting_allocator_start();
-    cscd_context *context = counted_context(&counter);
+    cscd_context *context = context_of(0, &counter);
     cscd_mesh *mesh = NULL;
     memcpy(s.triangles[15], s.triangles[0],
            sizeof s.triangles[0]); /* the tetrahedron once more, at the end */
@@ -278,7 +279,7 @@ TEST(refused_descriptions) {
     static const uint32_t last[] = {0, 1, 2, 3, 2, UINT32_MAX};
     static const uint32_t repeats[3][6] = {{0, 1, 2, 3, 3, 1}, {0, 1, 2, 3, 1, 3}, {0, 1, 2, 1, 3, 3}};
     counting_allocator counter = counting_allocator_start();
-    cscd_context *context = counted_context(&counter);
+    cscd_context *context = context_of(0, &counter);
     check_refused(context, &(cscd_object_desc){.vertex_count = 4, .triangle_count = 2, .triangles = beyond},
                   CSCD_INVALID_MESH, "triangle 1 ");
     check_refused(context, &(cscd_object_desc){.vertex_count = 4, .triangle_count = 2, .triangles = beyond},

@@ -1,4 +1,5 @@
 /* Meshes that are made from others: bit for bit what would be made anew, with maps that say what became of what. */
+#include "tests/support/rig.h"
 #include "tests/support/same_mesh.h"
 #include "tests/support/test.h"
 
@@ -123,7 +124,7 @@ TEST(equal_new_meshes) {
     uint32_t untouched = 0, components = 0;
     for (int round = 0; round < 60; round++) {
         counting_allocator counter = counting_allocator_start();
-        cscd_context *context = counted_context(&counter);
+        cscd_context *context = context_of(0, &counter);
         changing_scene_make(&random, true, &changing);
         cscd_mesh *first = changing_scene_mesh(context, &changing);
         const cscd_mesh *old = first;
@@ -169,7 +170,7 @@ TEST(refused_changes) {
     static const uint32_t triangles[] = {0, 1, 2, 0, 2, 3}, bad[] = {0, 1, 2, 0, 2, 4};
     static const uint32_t far_origins[] = {0, 1, 4, 3};
     counting_allocator counter = counting_allocator_start();
-    cscd_context *context = counted_context(&counter);
+    cscd_context *context = context_of(0, &counter);
     cscd_object_desc desc = cscd_object_of_triangles(4, 2, triangles), wrong = desc, empty = desc;
     cscd_object_desc both[2] = {desc, desc};
     wrong.triangles = bad;
@@ -214,7 +215,7 @@ TEST(refused_changes) {
 TEST(no_change) {
     random_stream random = stream_start(2);
     counting_allocator counter = counting_allocator_start();
-    cscd_context *context = counted_context(&counter);
+    cscd_context *context = context_of(0, &counter);
     changing_scene_make(&random, true, &changing);
     cscd_mesh *old = changing_scene_mesh(context, &changing);
     cscd_mesh_change *made = NULL;

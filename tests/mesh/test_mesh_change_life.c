@@ -1,4 +1,5 @@
 /* Changes of meshes: orders of destruction, readers in other threads. */
+#include "tests/support/rig.h"
 #include "tests/support/same_mesh.h"
 #include "tests/support/test.h"
 
@@ -13,7 +14,7 @@ TEST(any_order_of_destruction) {
     random_stream random = stream_start(4);
     for (int order = 0; order < 6; order++) {
         counting_allocator counters[2] = {counting_allocator_start(), counting_allocator_start()};
-        cscd_context *contexts[2] = {counted_context(&counters[0]), counted_context(&counters[1])};
+        cscd_context *contexts[2] = {context_of(0, &counters[0]), context_of(0, &counters[1])};
         changing_scene_make(&random, false, &changing);
         cscd_mesh *old = changing_scene_mesh(contexts[0], &changing);
         changing_scene_change(&random, &changing, &change);
@@ -66,7 +67,7 @@ static void *read_mesh(void *data) {
 TEST(read_by_other_threads) {
     random_stream random = stream_start(5);
     counting_allocator counter = counting_allocator_start();
-    cscd_context *context = counted_context(&counter);
+    cscd_context *context = context_of(0, &counter);
     changing_scene_make(&random, true, &changing);
     cscd_mesh *first = changing_scene_mesh(context, &changing);
     cscd_mesh_change *changes[20];

@@ -1,5 +1,6 @@
 /* Orphan pairs of meshes that were made from others: those that a search of the whole mesh finds. */
 #include "runtime/narrow_phase/orphan_pairs.h"
+#include "tests/support/rig.h"
 #include "tests/support/same_mesh.h"
 #include "tests/support/test.h"
 
@@ -42,7 +43,7 @@ TEST(equal_those_of_the_whole_mesh) {
     for (uint64_t seed = 0; seed < 120; seed++) {
         random_stream random = stream_start(seed);
         counting_allocator counter = counting_allocator_start();
-        cscd_context *context = counted_context(&counter);
+        cscd_context *context = context_of(0, &counter);
         changing_scene_make(&random, true, &changing);
         cscd_mesh *first = changing_scene_mesh(context, &changing);
         cscd_mesh_change *last = NULL, *made = NULL;

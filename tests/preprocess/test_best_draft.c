@@ -48,10 +48,8 @@ static cscd_plan *plan_again(const bending *b, const cscd_compared_plan *found,
     options.k = found->k;
     options.frames = frames;
     options.frame_count = count;
-    assert_int_equal(cscd_plan_create(b->context, b->mesh,
-                                      CSCD_DOUBLES(b->shape.positions, b->shape.vertex_count), &options,
-                                      &plan),
-                     CSCD_OK);
+    expect_ok(cscd_plan_create(b->context, b->mesh, CSCD_DOUBLES(b->shape.positions, b->shape.vertex_count),
+                               &options, &plan));
     return plan;
 }
 
@@ -80,9 +78,9 @@ static double tested_in(const bending *b, const cscd_plan *plan, const double *f
     uint32_t count = 0;
     options.method = cscd_plan_method(plan);
     options.start = CSCD_START_VOUCHED;
-    assert_int_equal(cscd_detector_create(b->context, b->mesh, plan, &options, &detector), CSCD_OK);
+    expect_ok(cscd_detector_create(b->context, b->mesh, plan, &options, &detector));
     const cscd_view *x = CSCD_DOUBLES(frame, b->shape.vertex_count);
-    assert_int_equal(cscd_detector_step(detector, x, x, &contacts), CSCD_OK);
+    expect_ok(cscd_detector_step(detector, x, x, &contacts));
     for (uint32_t t = 0; t < b->shape.triangle_count; t++)
         count += borders[t] || cscd_detector_orientation(detector, t) != 1;
     cscd_detector_destroy(detector);
@@ -129,11 +127,10 @@ static double share_of_figure(bool turned, uint32_t left_out) {
     if (turned) turn_inside_out(&shape);
     const cscd_object_desc desc =
         cscd_object_of_triangles(shape.vertex_count, shape.triangle_count - left_out, shape.triangles);
-    assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
-    assert_int_equal(
-        cscd_plan_create(context, mesh, CSCD_DOUBLES(shape.positions, shape.vertex_count), &options, &plan),
-        CSCD_OK);
+    expect_ok(cscd_context_create(NULL, &context));
+    expect_ok(cscd_mesh_create(context, &desc, 1, &mesh));
+    expect_ok(
+        cscd_plan_create(context, mesh, CSCD_DOUBLES(shape.positions, shape.vertex_count), &options, &plan));
     const double share = cscd_plan_compared(plan, 1).tested_share;
     cscd_plan_destroy(plan);
     cscd_mesh_destroy(mesh);
@@ -157,10 +154,10 @@ TEST(goes_on_without_charge) {
     cscd_plan *plan = NULL;
     cscd_plan_options options = cscd_plan_defaults();
     const cscd_object_desc desc = cscd_object_of_triangles(6, 3, triangles);
-    assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
+    expect_ok(cscd_context_create(NULL, &context));
+    expect_ok(cscd_mesh_create(context, &desc, 1, &mesh));
     options.method = CSCD_METHOD_AUTO;
-    assert_int_equal(cscd_plan_create(context, mesh, CSCD_DOUBLES(corners, 6), &options, &plan), CSCD_OK);
+    expect_ok(cscd_plan_create(context, mesh, CSCD_DOUBLES(corners, 6), &options, &plan));
     assert_string_equal(cscd_context_detail(context), "");
     assert_int_equal(cscd_plan_compared(plan, 0).region_count, 0);
     assert_non_null(strstr(cscd_plan_compared(plan, 0).failure, "same centroid"));

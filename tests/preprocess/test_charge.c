@@ -7,12 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* How often shapes are split: to 5,120 and 3,072 triangles, or, where the build is slow, to 1,280 and 768. */
-#if defined(NDEBUG) && !defined(SLOW_MACHINE)
-enum { FINEST = 4 };
-#else
+/* How often shapes are split: to 1,280 and 768 triangles. */
 enum { FINEST = 3 };
-#endif
 
 static const double PI = 0x1.921fb54442d18p+1;
 
@@ -65,7 +61,7 @@ TEST(charge_of_sphere) {
         charge_rig_destroy(&r);
         conductor_free(&s);
     }
-    assert_true(spread_before < (FINEST == 3 ? 0.01 : 0.005));
+    assert_true(spread_before < 0.01);
 }
 
 /* 0.6606782 (the best values known agree in these digits). The density is infinite at the edges, so even
@@ -85,7 +81,7 @@ TEST(charge_of_cube) {
         before = even;
         conductor_free(&s);
     }
-    assert_near(crowded, exact, FINEST == 3 ? 1e-3 : 2e-4);
+    assert_near(crowded, exact, 1e-3);
 }
 
 /* Carlson's R_F by duplication: 1 / R_F(a^2, b^2, c^2) is the capacitance of an ellipsoid. */

@@ -21,11 +21,11 @@ static void describe_plan(cscd_method method, cscd_charge_solver solver, char te
     cscd_plan_options options = cscd_plan_defaults();
     cscd_object_desc desc =
         cscd_object_of_triangles(shape.vertex_count, shape.triangle_count, shape.triangles);
-    assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
+    expect_ok(cscd_context_create(NULL, &context));
+    expect_ok(cscd_mesh_create(context, &desc, 1, &mesh));
     options.method = method;
     options.charge_solver = solver;
-    assert_int_equal(plan_create_packed(mesh, shape.positions, &options, &plan), CSCD_OK);
+    expect_ok(plan_create_packed(mesh, shape.positions, &options, &plan));
     cscd_plan_info info = cscd_plan_describe(plan);
     snprintf(text, 128, "%s %s", info.charge_kernels != NULL ? info.charge_kernels : "-",
              info.better_kernels != NULL ? info.better_kernels : "-");

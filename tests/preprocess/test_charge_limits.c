@@ -31,11 +31,7 @@ static conductor odd_ellipsoid(int level) {
 /* ---- repeatability ---- */
 
 /* 1,280 triangles; in other configurations than release 320. */
-#if defined(NDEBUG) && !defined(SLOW_MACHINE)
-enum { FINE = 3 };
-#else
 enum { FINE = 2 };
-#endif
 
 /* The ranks by density rounded to 24 bits. */
 static uint32_t *rounded_ranks(const charge_rig *r, uint32_t count) {
@@ -239,8 +235,7 @@ TEST(takes_what_it_estimates) {
     size_t needed = charge_memory(r.mesh), held = cscd_context_bytes(r.context);
     assert_true(needed > 192 * 192 * 4 && needed < 192 * 192 * 4 + 192 * 1000);
     watcher.held = watcher.most = 0;
-    assert_int_equal(charge_solve(r.mesh, s.positions, &by_dense_system, r.density, r.capacitance, NULL),
-                     CSCD_OK);
+    expect_ok(charge_solve(r.mesh, s.positions, &by_dense_system, r.density, r.capacitance, NULL));
     const size_t lists =
         192 * (2 * sizeof(uint32_t) + 2 * sizeof(double)) + 8 * 128; /* with the blocks' headers */
     assert_true(watcher.most >= needed && watcher.most <= needed + lists);
@@ -256,8 +251,7 @@ TEST(takes_what_it_estimates) {
     assert_true(charge_rig_untouched(&r));
     assert_int_equal(cscd_context_bytes(r.context), held);
     watcher.refuse = false;
-    assert_int_equal(charge_solve(r.mesh, s.positions, &by_dense_system, r.density, r.capacitance, NULL),
-                     CSCD_OK);
+    expect_ok(charge_solve(r.mesh, s.positions, &by_dense_system, r.density, r.capacitance, NULL));
     assert_true(r.density[7] == density);
     charge_rig_destroy(&r);
     conductor_free(&s);
@@ -275,9 +269,8 @@ TEST(keeps_to_the_limit) {
              (double)needed / 0x1p30);
     assert_says(&r, words);
     assert_true(charge_rig_untouched(&r));
-    assert_int_equal(charge_solve(r.mesh, s.positions, &(charge_options){CSCD_CHARGE_DENSE, needed},
-                                  r.density, r.capacitance, NULL),
-                     CSCD_OK);
+    expect_ok(charge_solve(r.mesh, s.positions, &(charge_options){CSCD_CHARGE_DENSE, needed}, r.density,
+                           r.capacitance, NULL));
     charge_rig_destroy(&r);
     conductor_free(&s);
 }
@@ -323,8 +316,7 @@ TEST(bad_arguments) {
     assert_says(&r, "vertex 2");
     assert_true(charge_rig_untouched(&r) && report.timings.total_ms == -1.0);
     s.positions[7] = 1.0;
-    assert_int_equal(charge_solve(r.mesh, s.positions, &by_dense_system, r.density, r.capacitance, &report),
-                     CSCD_OK);
+    expect_ok(charge_solve(r.mesh, s.positions, &by_dense_system, r.density, r.capacitance, &report));
     const charge_timings timings = report.timings;
     assert_true(timings.assembly_ms >= 0.0 && timings.factor_ms >= 0.0 && timings.refine_ms >= 0.0);
     assert_true(timings.total_ms >= timings.assembly_ms + timings.factor_ms + timings.refine_ms);

@@ -65,7 +65,7 @@ TEST(regions_become_connected) {
         tiled_body *b = tiled_body_make(BODY_FIGURE, 1000);
         tile_labelling l;
         uint32_t region_pieces[REGIONS_MOST];
-        assert_int_equal(labelling_create(&b->g, &prices, &l), CSCD_OK);
+        expect_ok(labelling_create(&b->g, &prices, &l));
         for (int i = 0; i < 3; i++) labelling_add(&l, &(sight_point){.rest = {0.0, 0.0, 0.1 * i}}, 0);
         for (uint32_t t = 0; t < b->tile_count; t++) { /* stripes, so that each region has several pieces */
             const double *p = b->g.items[t].centroid;
@@ -109,7 +109,7 @@ static bool make_patched(const tiled_body *b, uint32_t count, patched *p) {
     const labelling_prices prices = {0.01, 0.01};
     const tile_graph *g = &b->g;
     uint32_t region_pieces[REGIONS_MOST];
-    assert_int_equal(labelling_create(g, &prices, &p->l), CSCD_OK);
+    expect_ok(labelling_create(g, &prices, &p->l));
     for (int i = 0; i < 3; i++) labelling_add(&p->l, &(sight_point){.rest = {0.0}}, 0);
     for (uint32_t t = 0; t < g->count; t++) {
         const uint32_t quarter = quarter_of(&g->items[t]);

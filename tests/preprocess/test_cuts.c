@@ -26,10 +26,10 @@ static void open_field(const shape *s) {
     cscd_object_desc desc = cscd_object_of_triangles(s->vertex_count, s->triangle_count, s->triangles[0]);
     memset(&f, 0, sizeof f);
     for (uint32_t t = 0; t < TRIANGLES_MAX; t++) f.areas[t] = 1.0;
-    assert_int_equal(cscd_context_create(NULL, &f.context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(f.context, &desc, 1, &f.mesh), CSCD_OK);
-    assert_int_equal(dual_graph_build(f.mesh, &f.graph), CSCD_OK);
-    assert_int_equal(growth_create(f.mesh, &f.graph, f.areas, &f.growth), CSCD_OK);
+    expect_ok(cscd_context_create(NULL, &f.context));
+    expect_ok(cscd_mesh_create(f.context, &desc, 1, &f.mesh));
+    expect_ok(dual_graph_build(f.mesh, &f.graph));
+    expect_ok(growth_create(f.mesh, &f.graph, f.areas, &f.growth));
 }
 
 static void close_field(void) {
@@ -150,7 +150,7 @@ static void cuts_of_all_parts(uint32_t *owners) {
     for (uint32_t i = 0; i < f.graph.link_count; i++) capacities[i] = 1;
     cutter c;
     uint32_t band[TRIANGLES_MAX], side[TRIANGLES_MAX], band_size = 0;
-    assert_int_equal(cutter_create(f.mesh, &f.graph, capacities, &c), CSCD_OK);
+    expect_ok(cutter_create(f.mesh, &f.graph, capacities, &c));
     for (uint32_t t = 0; t < f.mesh->triangle_count; t++) {
         owners[t] = f.growth.parts[t];
         if (owners[t] == 0) band[band_size++] = t;
@@ -233,7 +233,7 @@ TEST(shortest_of_all_cuts) {
         if (parts[t] == 0) places[t] = band_size, band[band_size++] = t;
     }
     cutter c;
-    assert_int_equal(cutter_create(f.mesh, &f.graph, capacities, &c), CSCD_OK);
+    expect_ok(cutter_create(f.mesh, &f.graph, capacities, &c));
     for (uint64_t seed = 0; seed < 12; seed++) {
         random_seed(seed);
         for (uint32_t i = 0; i < f.graph.link_count; i++)

@@ -23,8 +23,7 @@ static void divide_body(const body *b, uint32_t k, uint32_t seed, kmeans_divisio
     size_t bytes = cscd_context_bytes(mesh->context);
     memset(out, 0xff, sizeof *out);
     assert_true(b->triangle_count <= TRIANGLES_MAX && kmeans_capacity(mesh, k) <= REGIONS_MAX);
-    assert_int_equal(regions_kmeans(mesh, b->positions, k, seed, out->regions, &out->count, out->points),
-                     CSCD_OK);
+    expect_ok(regions_kmeans(mesh, b->positions, k, seed, out->regions, &out->count, out->points));
     assert_int_equal(cscd_context_bytes(mesh->context), bytes);
     assert_true(out->count <= kmeans_capacity(mesh, k));
     check_regions(mesh, out->regions, out->count);
@@ -170,13 +169,13 @@ TEST(lloyd_on_a_line) {
     for (uint32_t i = 0; i < 12; i++) positions[i * 3] = i < 5 ? i : i < 10 ? 100.0 + i : 1e9;
     for (uint32_t i = 0; i < 10; i++) points[i] = i;
     cscd_context *context = NULL;
-    assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
+    expect_ok(cscd_context_create(NULL, &context));
     for (uint64_t seed = 0; seed < 50; seed++) {
         double centroids[6];
         uint64_t counts[2];
         memset(clusters, 0xff, sizeof clusters);
         lloyd l = {context, positions, points, 10, 2, centroids, clusters, counts, scratch};
-        assert_int_equal(lloyd_run(&l, seed), CSCD_OK);
+        expect_ok(lloyd_run(&l, seed));
         uint32_t low = centroids[0] < centroids[3] ? 0 : 1;
         assert_true(centroids[low * 3] == 2.0 && centroids[3 - low * 3] == 107.0);
         for (uint32_t i = 0; i < 12; i++)

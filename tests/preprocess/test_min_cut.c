@@ -58,7 +58,7 @@ static uint32_t size_of(uint32_t set) {
 
 TEST(costs_the_least_and_keeps_the_fewest) {
     cscd_context *context;
-    assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
+    expect_ok(cscd_context_create(NULL, &context));
     const size_t bytes = cscd_context_bytes(context);
     random_seed(1);
     for (int round = 0; round < 3000; round++) {
@@ -67,7 +67,7 @@ TEST(costs_the_least_and_keeps_the_fewest) {
         uint32_t nodes[NODES_MOST], found = 0, fewest = NODES_MOST;
         int64_t least = INT64_MAX;
         min_cut cut;
-        assert_int_equal(min_cut_create(context, &graph, &cut), CSCD_OK);
+        expect_ok(min_cut_create(context, &graph, &cut));
         memcpy(cut.residuals, n.capacities, n.link_count * sizeof *n.capacities);
         memcpy(cut.supplies, n.supplies, n.node_count * sizeof *n.supplies);
         memcpy(cut.drains, n.drains, n.node_count * sizeof *n.drains);

@@ -13,9 +13,9 @@ static double unseen_in(const bending *b, const cscd_plan *plan, int frame) {
     cscd_contacts contacts;
     options.method = cscd_plan_method(plan);
     options.start = CSCD_START_VOUCHED;
-    assert_int_equal(cscd_detector_create(b->context, b->mesh, plan, &options, &detector), CSCD_OK);
+    expect_ok(cscd_detector_create(b->context, b->mesh, plan, &options, &detector));
     const cscd_view *x = CSCD_DOUBLES(b->frames[frame], b->shape.vertex_count);
-    assert_int_equal(cscd_detector_step(detector, x, x, &contacts), CSCD_OK);
+    expect_ok(cscd_detector_step(detector, x, x, &contacts));
     const double plus = (double)cscd_detector_counters(detector).plus;
     cscd_detector_destroy(detector);
     return 1.0 - plus / b->shape.triangle_count;

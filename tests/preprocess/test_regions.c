@@ -7,6 +7,7 @@
 #include "tests/support/preprocess/region_check.h"
 #include "tests/support/preprocess/visible_share.h"
 #include "tests/support/random.h"
+#include "tests/support/refusal.h"
 #include "tests/support/test.h"
 
 #include <math.h>
@@ -56,13 +57,13 @@ static int free_bodies(void **state) {
 
 static double centroids_share(const cscd_mesh *mesh, const double *positions, division *d) {
     assert_true(d->count <= REGIONS_MAX);
-    assert_int_equal(detector_points_from_regions(mesh, positions, d->regions, d->count, d->points), CSCD_OK);
+    expect_ok(detector_points_from_regions(mesh, positions, d->regions, d->count, d->points));
     return visible_share(mesh, positions, d->regions, d->points);
 }
 
 static double single_share(const cscd_mesh *mesh, const double *positions) {
     static division single;
-    assert_int_equal(regions_single(mesh, single.regions, &single.count), CSCD_OK);
+    expect_ok(regions_single(mesh, single.regions, &single.count));
     check_regions(mesh, single.regions, single.count);
     assert_int_equal(single.count, mesh->component_count);
     return centroids_share(mesh, positions, &single);
@@ -89,7 +90,7 @@ static void divide_with(const body *b, const double *density, const region_optio
     double *points = NULL;
     cscd_status status =
         regions_from_charge(mesh, b->positions, density, options, out->regions, &out->count, &points);
-    assert_int_equal(status, CSCD_OK);
+    expect_ok(status);
     assert_true(out->count <= REGIONS_MAX && (points == NULL) == (options != NULL && options->published));
     if (points != NULL) memcpy(out->points, points, out->count * sizeof(double[3]));
     out->share = points != NULL ? visible_share(mesh, b->positions, out->regions, points)
@@ -112,8 +113,7 @@ static void print_shares(const body *b, const char *name, const division *d) {
     double mean = 0.0, least = 1.0, most = 0.0;
     cscd_mesh *mesh = body_mesh(b, 1);
     for (uint32_t seed = 1; seed <= 5; seed++) {
-        assert_int_equal(
-            regions_kmeans(mesh, b->positions, d->count, seed, other.regions, &other.count, points), CSCD_OK);
+        expect_ok(regions_kmeans(mesh, b->positions, d->count, seed, other.regions, &other.count, points));
         double share = visible_share(mesh, b->positions, other.regions, points);
         mean += share / 5.0;
         least = fmin(least, share);
@@ -187,9 +187,8 @@ TEST(repeatable_regions) {
     double capacitance[1], *density = malloc(c->shape.triangle_count * sizeof *density);
     divide_body(&c->shape, c->density, &found);
     cscd_mesh *mesh = body_mesh(&c->shape, 1);
-    assert_int_equal(charge_solve(mesh, c->shape.positions, &(charge_options){CSCD_CHARGE_TREE, 0}, density,
-                                  capacitance, NULL),
-                     CSCD_OK);
+    expect_ok(charge_solve(mesh, c->shape.positions, &(charge_options){CSCD_CHARGE_TREE, 0}, density,
+                           capacitance, NULL));
     body_mesh_destroy(mesh);
     divide_body(&c->shape, density, &other);
     assert_same(&found, &other);
@@ -308,9 +307,7 @@ TEST(open_and_inside_out) {
     }
     cscd_mesh *mesh = body_mesh(&b, 1);
     double *points = NULL;
-    assert_int_equal(
-        regions_from_charge(mesh, b.positions, c->density, NULL, other.regions, &other.count, &points),
-        CSCD_OK);
+    expect_ok(regions_from_charge(mesh, b.positions, c->density, NULL, other.regions, &other.count, &points));
     assert_int_equal(other.count, 2);
     context_free(mesh->context, points);
     body_mesh_destroy(mesh);
@@ -376,10 +373,10 @@ TEST(refuses_bad_options) {
         region_options options = region_options_defaults();
         double *fields[] = {&options.threshold, &options.growing_share, &options.part_share, &options.gain};
         *fields[i / 4] = i / 4 == 3 && i % 4 == 0 ? -1.1 : bad[i % 4];
-        assert_int_equal(
+        expect_invalid(
+            mesh->context,
             regions_from_charge(mesh, c->shape.positions, c->density, &options, regions, &count, &points),
-            CSCD_INVALID_ARGUMENT);
-        assert_non_null(strstr(cscd_context_detail(mesh->context), "threshold"));
+            "threshold");
     }
     assert_true(count == 77 && regions[0] == 78 && points == NULL);
     body_mesh_destroy(mesh);

@@ -44,14 +44,14 @@ static moving_tiles make_moving(body_kind kind, bool turned) {
         surface.positions = m.frames[f];
         const tile_component c = tiles_component(&surface, b->list, b->shape.triangle_count);
         m.scales[f] = c.scale;
-        assert_int_equal(tiles_create(&surface, &c, b->tile_of, b->tile_count, &m.alone[f]), CSCD_OK);
+        expect_ok(tiles_create(&surface, &c, b->tile_of, b->tile_count, &m.alone[f]));
         assert_int_equal(m.alone[f].turned, turned);
     }
     tile_surface surface = b->surface;
     surface.frames = frames;
     surface.frame_count = FRAMES;
     b->component = tiles_component(&surface, b->list, b->shape.triangle_count);
-    assert_int_equal(tiles_create(&surface, &b->component, b->tile_of, b->tile_count, &m.all), CSCD_OK);
+    expect_ok(tiles_create(&surface, &b->component, b->tile_of, b->tile_count, &m.all));
     return m;
 }
 

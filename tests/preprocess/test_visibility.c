@@ -36,9 +36,9 @@ TEST(share_in_torus) {
         cscd_mesh *mesh = body_mesh(&b, 1);
         double point[3], share[1], angle = acos(-minor[i]);
         double expected = (angle + minor[i] * sin(angle)) / pi;
-        assert_int_equal(detector_points_from_regions(mesh, b.positions, no_regions, 1, point), CSCD_OK);
+        expect_ok(detector_points_from_regions(mesh, b.positions, no_regions, 1, point));
         for (int k = 0; k < 3; k++) assert_true(fabs(point[k]) < 1e-12);
-        assert_int_equal(visible_shares(mesh, b.positions, no_regions, 1, point, share), CSCD_OK);
+        expect_ok(visible_shares(mesh, b.positions, no_regions, 1, point, share));
         assert_true(fabs(share[0] - expected) < 0.02);
         assert_true(share[0] == visible_share(mesh, b.positions, no_regions, point));
         for (uint32_t t = 0; t < b.triangle_count; t++) { /* inside out: the inner side's share */
@@ -70,12 +70,12 @@ TEST(weighted_by_area) {
     body_add_triangle(&b, 4, 7, 6);
     cscd_mesh *mesh = body_mesh(&b, 1);
     double point[3], share[1];
-    assert_int_equal(detector_points_from_regions(mesh, b.positions, no_regions, 1, point), CSCD_OK);
+    expect_ok(detector_points_from_regions(mesh, b.positions, no_regions, 1, point));
     for (int k = 0; k < 3; k++) assert_true(fabs(point[k] - 0.5) < 1e-14);
-    assert_int_equal(visible_shares(mesh, b.positions, no_regions, 1, point, share), CSCD_OK);
+    expect_ok(visible_shares(mesh, b.positions, no_regions, 1, point, share));
     assert_true(share[0] == 1.0);
     const double above[3] = {0.5, 0.5, 1.5};
-    assert_int_equal(visible_shares(mesh, b.positions, no_regions, 1, above, share), CSCD_OK);
+    expect_ok(visible_shares(mesh, b.positions, no_regions, 1, above, share));
     assert_true(fabs(share[0] - 5.0 / 6.0) < 1e-14);
     body_mesh_destroy(mesh);
     body_free(&b);
@@ -92,18 +92,18 @@ TEST(regions_on_their_own) {
     cscd_mesh *mesh = body_mesh(&b, 1);
     const uint32_t regions[8] = {0, 0, 0, 0, 1, 1, 1, 1};
     double points[6], shares[2], large = sqrt(0.75) / (1.5 + sqrt(0.75));
-    assert_int_equal(detector_points_from_regions(mesh, b.positions, regions, 2, points), CSCD_OK);
+    expect_ok(detector_points_from_regions(mesh, b.positions, regions, 2, points));
     assert_true(points[0] > 0.0 && points[0] < 0.5 && fabs(points[3] - 9.0 - points[0]) < 1e-14);
     for (int k = 0; k < 3; k++) points[3 + k] = k == 0 ? 19.0 : 10.0; /* beyond the large face */
-    assert_int_equal(visible_shares(mesh, b.positions, regions, 2, points, shares), CSCD_OK);
+    expect_ok(visible_shares(mesh, b.positions, regions, 2, points, shares));
     assert_true(shares[0] == 1.0 && fabs(shares[1] - (1.0 - large)) < 1e-14);
     points[0] = points[1] = 0.25; /* in the plane of a face, which is seen edge-on */
     points[2] = 0.0;
     assert_int_equal(visible_shares(mesh, b.positions, regions, 2, points, shares), CSCD_OK);
     assert_true(fabs(shares[0] - (1.0 - 0.5 / (1.5 + sqrt(0.75)))) < 1e-14);
     for (uint32_t i = 0; i < 24; i++) b.positions[i] = i % 3 == 0 ? 4.0 : 5.0;
-    assert_int_equal(detector_points_from_regions(mesh, b.positions, regions, 2, points), CSCD_OK);
-    assert_int_equal(visible_shares(mesh, b.positions, regions, 2, points, shares), CSCD_OK);
+    expect_ok(detector_points_from_regions(mesh, b.positions, regions, 2, points));
+    expect_ok(visible_shares(mesh, b.positions, regions, 2, points, shares));
     assert_true(points[0] == 4.0 && points[4] == 5.0 && shares[0] == 0.0 && shares[1] == 0.0);
     assert_true(visible_share(mesh, b.positions, regions, points) == 0.0);
     body_mesh_destroy(mesh);

@@ -22,9 +22,9 @@ static size_t compare_share(const rig *r, const rig *reference, const candidates
     straight_motion m = {.mesh = r->mesh, .x0 = interval.x0, .x1 = interval.x1};
     motion_at(&m, share, end);
     interval_search search = interval_search_begin(&d->space, interval.x0, end, d->limit);
-    assert_int_equal(candidates_test(c, &search), CSCD_OK);
-    assert_int_equal(contact_list_collect(&d->space, &d->exclusions, buffer, &counters, &found), CSCD_OK);
-    assert_int_equal(step_packed(reference->detector, interval.x0, end, &expected), CSCD_OK);
+    expect_ok(candidates_test(c, &search));
+    expect_ok(contact_list_collect(&d->space, &d->exclusions, buffer, &counters, &found));
+    expect_ok(step_packed(reference->detector, interval.x0, end, &expected));
     assert_int_equal(found.count, expected.count);
     if (found.count > 0) assert_memory_equal(found.items, expected.items, found.count * sizeof *found.items);
     return found.count;
@@ -38,12 +38,12 @@ TEST(candidates_hold_every_contact) {
         scene_make((scene_family)family, 1, &interval);
         rig r = rig_create(&interval, 1 + (uint32_t)family % 3, NULL),
             reference = rig_create(&interval, 1, NULL);
-        assert_int_equal(candidates_collect(r.detector, interval.x0, interval.x1, 1e-6, 0.0, &c), CSCD_OK);
+        expect_ok(candidates_collect(r.detector, interval.x0, interval.x1, 1e-6, 0.0, &c));
         collected += count_of(&c);
         contacts += compare_share(&r, &reference, &c, 1.0, &buffer);
         contacts += compare_share(&r, &reference, &c, 0.4, &buffer);
         size_t near = count_of(&c);
-        assert_int_equal(candidates_collect(r.detector, interval.x0, interval.x1, 0.1, 0.0, &c), CSCD_OK);
+        expect_ok(candidates_collect(r.detector, interval.x0, interval.x1, 0.1, 0.0, &c));
         assert_true(count_of(&c) >= near);
         farther += count_of(&c);
         candidates_free(r.context, &c);

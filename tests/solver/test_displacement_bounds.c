@@ -23,13 +23,12 @@ static cscd_displacement_bounds find_bounds(const rig *r, double radius, cscd_sc
     cscd_displacement_bounds found;
     uint32_t count = interval.vertex_count;
     if (scalar == CSCD_SCALAR_DOUBLE) {
-        assert_int_equal(displacement_bounds_packed(r->detector, interval.x0, radius, out, &found), CSCD_OK);
+        expect_ok(displacement_bounds_packed(r->detector, interval.x0, radius, out, &found));
         return found;
     }
     for (size_t i = 0; i < (size_t)count * 3; i++) x0[i] = (float)interval.x0[i];
-    assert_int_equal(cscd_detector_displacement_bounds(r->detector, CSCD_FLOATS(x0, count), radius, scalar,
-                                                       floats, count * sizeof *floats, &found),
-                     CSCD_OK);
+    expect_ok(cscd_detector_displacement_bounds(r->detector, CSCD_FLOATS(x0, count), radius, scalar, floats,
+                                                count * sizeof *floats, &found));
     for (uint32_t v = 0; v < count; v++) out[v] = (double)floats[v];
     return found;
 }
@@ -137,8 +136,7 @@ static void check_bounds(const rig *r, double radius, double apart, cscd_scalar 
     size_t blocked = 0, limited = 0;
     double half = half_of(radius, scalar);
     cscd_proximities near;
-    assert_int_equal(find_near_packed(r->detector, interval.x0, (radius + apart) * (1.0 + 0x1p-16), &near),
-                     CSCD_OK);
+    expect_ok(find_near_packed(r->detector, interval.x0, (radius + apart) * (1.0 + 0x1p-16), &near));
     find_nearest(r, &near);
     memset(explained, 0, sizeof explained);
     for (size_t i = 0; i < near.count; i++)
@@ -250,10 +248,7 @@ TEST(obstacles_have_bounds_for_what_they_may_touch) {
                                        cscd_object_of_triangles(3, 1, triangle)};
         objects[0].obstacle = obstacles == 2;
         objects[1].obstacle = true;
-        rig r = {NULL, NULL, NULL};
-        assert_int_equal(cscd_context_create(NULL, &r.context), CSCD_OK);
-        assert_int_equal(cscd_mesh_create(r.context, objects, 2, &r.mesh), CSCD_OK);
-        assert_int_equal(detector_create_here(r.mesh, NULL, NULL, &r.detector), CSCD_OK);
+        rig r = rig_of_objects(context_of(0, NULL), objects, 2, NULL, NULL);
         find_bounds(&r, 1.0, CSCD_SCALAR_DOUBLE, bounds);
         for (int v = 0; v < 6; v++) assert_true(obstacles == 2 ? bounds[v] == 0.5 : bounds[v] < 0.125);
         rig_destroy(&r);
@@ -288,10 +283,10 @@ static size_t bounds_of_panels(const panel_scene *p, double radius, const double
     cscd_object_rule rules[2] = {cscd_object_rule_default(), cscd_object_rule_default()};
     cscd_displacement_bounds found;
     rules[1].thickness_class = matrix != NULL;
-    assert_int_equal(cscd_detector_set_separation(p->detector, 0.0, 0.0), CSCD_OK);
-    assert_int_equal(cscd_detector_set_rules(p->detector, rules, 2, matrix, matrix != NULL ? 2 : 0), CSCD_OK);
-    assert_int_equal(cscd_detector_set_separation(p->detector, separation, 0.0), CSCD_OK);
-    assert_int_equal(displacement_bounds_packed(p->detector, p->x0, radius, out, &found), CSCD_OK);
+    expect_ok(cscd_detector_set_separation(p->detector, 0.0, 0.0));
+    expect_ok(cscd_detector_set_rules(p->detector, rules, 2, matrix, matrix != NULL ? 2 : 0));
+    expect_ok(cscd_detector_set_separation(p->detector, separation, 0.0));
+    expect_ok(displacement_bounds_packed(p->detector, p->x0, radius, out, &found));
     for (size_t i = 0; matrix != NULL && i < found.blocked_count; i++) {
         const cscd_proximity *pair = &found.blocked[i];
         uint32_t a = cscd_mesh_vertex_object(p->mesh, pair->vertices[0]),

@@ -3,7 +3,7 @@
 #include "runtime/solver/max_step.h"
 #include "tests/support/packed.h"
 #include "tests/support/random_stream.h"
-#include "tests/support/rig.h"
+#include "tests/support/refusal.h"
 #include "tests/support/test.h"
 
 #include <float.h>
@@ -41,7 +41,7 @@ static cscd_mesh *make_mesh(cscd_context *context) {
                                    cscd_object_of_triangles(8, 12, cage)};
     objects[1].obstacle = true;
     cscd_mesh *mesh = NULL;
-    assert_int_equal(cscd_mesh_create(context, objects, 2, &mesh), CSCD_OK);
+    expect_ok(cscd_mesh_create(context, objects, 2, &mesh));
     return mesh;
 }
 
@@ -62,13 +62,13 @@ static void place_all(cage_march *c) {
 static void open_march(cage_march *c, double place, double distance, cscd_scalar scalar) {
     cscd_detector_options options = cscd_detector_defaults();
     *c = (cage_march){.place = place, .scalars = {scalar, scalar}};
-    assert_int_equal(cscd_context_create(NULL, &c->context), CSCD_OK);
+    expect_ok(cscd_context_create(NULL, &c->context));
     c->mesh = make_mesh(c->context);
     options.method = CSCD_METHOD_BRUTE;
-    assert_int_equal(detector_create_here(c->mesh, NULL, &options, &c->judge), CSCD_OK);
+    expect_ok(detector_create_here(c->mesh, NULL, &options, &c->judge));
     options.method = CSCD_METHOD_AUTO;
     options.min_separation = distance;
-    assert_int_equal(detector_create_here(c->mesh, NULL, &options, &c->detector), CSCD_OK);
+    expect_ok(detector_create_here(c->mesh, NULL, &options, &c->detector));
     place_all(c);
 }
 
@@ -113,14 +113,14 @@ static march_tally march_on(cage_march *c, int steps, uint64_t seed) {
         cscd_free_step step;
         straight_motion m = {c->mesh, c->x0, c->x1, c->scalars};
         aim_bodies(c, &random);
-        assert_int_equal(step_check_positions(c->detector, c->x0, c->x1), CSCD_OK);
-        assert_int_equal(max_step_find(c->detector, &m, &step), CSCD_OK);
+        expect_ok(step_check_positions(c->detector, c->x0, c->x1));
+        expect_ok(max_step_find(c->detector, &m, &step));
         const double *reached = c->detector->reached;
         check_stored(c, reached);
         assert_int_equal(step.moved, memcmp(reached, c->x0, sizeof c->x0) != 0);
         if (i % 16 == 0) {
             cscd_contacts found;
-            assert_int_equal(step_packed(c->judge, c->x0, reached, &found), CSCD_OK);
+            expect_ok(step_packed(c->judge, c->x0, reached, &found));
             assert_int_equal(found.count, 0);
         }
         sum.sum += step.fraction;
@@ -187,14 +187,14 @@ static void begin_line(const cage_march *c, cscd_line_search *line) {
     stored_views x0;
     view_stored(c, c->x0, &x0);
     const cscd_view x1 = cscd_view_doubles(c->x1, VERTICES);
-    assert_int_equal(cscd_line_search_begin(line, x0.views, &x1, 0.0), CSCD_OK);
+    expect_ok(cscd_line_search_begin(line, x0.views, &x1, 0.0));
 }
 
 static cscd_free_step go_on_line(const cage_march *c, cscd_line_search *line, double *reached) {
     stored_views end;
     cscd_free_step step;
     view_stored(c, c->x0, &end);
-    assert_int_equal(cscd_line_search_max_step(line, 1.0, end.mutable, &step), CSCD_OK);
+    expect_ok(cscd_line_search_max_step(line, 1.0, end.mutable, &step));
     read_stored(c, &end, reached);
     return step;
 }
@@ -207,10 +207,10 @@ static cscd_free_step step_on_line(cage_march *c, cscd_line_search *line, double
     cscd_free_step step = go_on_line(c, line, reached);
     check_stored(c, reached);
     view_stored(c, c->x0, &moment);
-    assert_int_equal(cscd_line_search_positions(line, step.fraction, moment.mutable), CSCD_OK);
+    expect_ok(cscd_line_search_positions(line, step.fraction, moment.mutable));
     read_stored(c, &moment, at);
     assert_memory_equal(reached, at, sizeof c->x0);
-    assert_int_equal(step_packed(c->judge, c->x0, reached, &found), CSCD_OK);
+    expect_ok(step_packed(c->judge, c->x0, reached, &found));
     assert_int_equal(found.count, 0);
     return step;
 }
@@ -227,7 +227,7 @@ TEST(rounding_reaches_beyond_the_line) {
     for (int v = CAGE + 4; v < VERTICES; v++) c.x0[3 * v + 2] = top + 0.4;
     memcpy(c.x1, c.x0, sizeof c.x1);
     for (int v = 0; v < CAGE; v++) c.x1[3 * v + 2] += 0.3;
-    assert_int_equal(cscd_line_search_create(c.detector, &line), CSCD_OK);
+    expect_ok(cscd_line_search_create(c.detector, &line));
     begin_line(&c, line);
     cscd_free_step step = go_on_line(&c, line, reached);
     assert_true(step.limited && step.fraction < 1.0);
@@ -247,7 +247,7 @@ TEST(lines_certify_floats) {
         double reached[VERTICES * 3], at[VERTICES * 3];
         uint32_t limited = 0;
         open_march(&c, places[i], 0.0, CSCD_SCALAR_FLOAT);
-        assert_int_equal(cscd_line_search_create(c.detector, &line), CSCD_OK);
+        expect_ok(cscd_line_search_create(c.detector, &line));
         for (int s = 0; s < STEPS; s++) {
             aim_bodies(&c, &random);
             limited += step_on_line(&c, line, reached, at).limited;
@@ -268,11 +268,10 @@ TEST(overflow_is_refused) {
     straight_motion m = {c.mesh, c.x0, c.x1, c.scalars};
     memcpy(c.x1, c.x0, sizeof c.x1);
     c.x1[7] = 2.0 * (double)FLT_MAX; /* a vertex of the bodies */
-    assert_int_equal(max_step_find(c.detector, &m, &step), CSCD_INVALID_ARGUMENT);
-    assert_non_null(
-        strstr(cscd_context_detail(c.context), "x1: vertex 2 has y = 6.80565e+38, which is infinite"));
+    expect_invalid(c.context, max_step_find(c.detector, &m, &step),
+                   "x1: vertex 2 has y = 6.80565e+38, which is infinite");
     c.scalars[0] = CSCD_SCALAR_DOUBLE;
-    assert_int_equal(max_step_find(c.detector, &m, &step), CSCD_OK);
+    expect_ok(max_step_find(c.detector, &m, &step));
     assert_true(step.limited && step.moved);
     close_march(&c);
 }

@@ -18,12 +18,11 @@ static rig rig_of_pair(double distance, cscd_simd simd) {
     cscd_context_options options = cscd_context_defaults();
     cscd_object_desc object = cscd_object_of_triangles(6, 2, triangles);
     cscd_detector_options detector_options = cscd_detector_defaults();
-    rig r = {NULL, NULL, NULL};
     options.simd = simd;
     detector_options.min_separation = distance;
-    assert_int_equal(cscd_context_create(&options, &r.context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(r.context, &object, 1, &r.mesh), CSCD_OK);
-    assert_int_equal(cscd_detector_create(r.context, r.mesh, NULL, &detector_options, &r.detector), CSCD_OK);
+    cscd_context *context = NULL;
+    expect_ok(cscd_context_create(&options, &context));
+    rig r = rig_of_objects(context, &object, 1, NULL, &detector_options);
     return r;
 }
 
@@ -35,7 +34,7 @@ static void lift_upper(double *x, double by) {
 static double go_on(const rig *r) {
     cscd_free_step step;
     double reached[18];
-    assert_int_equal(max_step_packed(r->detector, pair.x0, pair.x1, reached, &step), CSCD_OK);
+    expect_ok(max_step_packed(r->detector, pair.x0, pair.x1, reached, &step));
     memcpy(pair.x0, reached, sizeof reached);
     return step.fraction;
 }

@@ -41,10 +41,10 @@ TEST(free_motions_are_whole_steps) {
     cscd_free_step out;
     rig r = make_flight(&m);
     wall nowhere = {.at = INFINITY};
-    assert_int_equal(free_step_find(r.detector, &m, 1.0, test_wall, &nowhere, reached, &out), CSCD_OK);
+    expect_ok(free_step_find(r.detector, &m, 1.0, test_wall, &nowhere, reached, &out));
     assert_true(out.fraction == 1.0 && !out.limited && out.moved && nowhere.tests == 1);
     assert_memory_equal(reached, ends, shape.vertex_count * sizeof(double[3]));
-    assert_int_equal(free_step_find(r.detector, &m, 0.25, test_wall, &nowhere, reached, &out), CSCD_OK);
+    expect_ok(free_step_find(r.detector, &m, 0.25, test_wall, &nowhere, reached, &out));
     assert_true(out.fraction == 0.25 && fabs(reached[0] - shape.x0[0] - 0.25) < 1e-12);
     rig_destroy(&r);
 }
@@ -55,13 +55,13 @@ TEST(limited_steps_end_before_the_wall) {
     rig r = make_flight(&m);
     for (double share = 0.9; share > 1e-6; share *= 0.1) {
         wall w = {.at = shape.x0[0] + share};
-        assert_int_equal(free_step_find(r.detector, &m, 1.0, test_wall, &w, reached, &out), CSCD_OK);
+        expect_ok(free_step_find(r.detector, &m, 1.0, test_wall, &w, reached, &out));
         assert_true(out.limited && out.limit.a == 4 && out.limit.b == 9);
         assert_true(fabs(out.limit.toi - share) < 1e-12);
         assert_true(fabs(out.fraction - 0.8 * share) < 1e-12 && reached[0] < w.at && w.tests == 2);
         if (share > 0.4) continue;
         w.tests = 0; /* half of the motion at most, but times are still of the whole motion */
-        assert_int_equal(free_step_find(r.detector, &m, 0.5, test_wall, &w, reached, &out), CSCD_OK);
+        expect_ok(free_step_find(r.detector, &m, 0.5, test_wall, &w, reached, &out));
         assert_true(out.limited && fabs(out.limit.toi - share) < 1e-12);
         assert_true(fabs(out.fraction - 0.8 * share) < 1e-12 && reached[0] < w.at && w.tests == 2);
     }

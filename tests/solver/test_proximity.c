@@ -6,6 +6,7 @@
 #include "tests/support/methods.h"
 #include "tests/support/oracle.h"
 #include "tests/support/packed.h"
+#include "tests/support/refusal.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 
@@ -128,7 +129,7 @@ static long double check_proximity(const rig *r, const cscd_proximity *p, const 
 
 static cscd_proximities find_near(const rig *r, const double *x, double distance) {
     cscd_proximities found = {.count = 4711};
-    assert_int_equal(find_near_packed(r->detector, x, distance, &found), CSCD_OK);
+    expect_ok(find_near_packed(r->detector, x, distance, &found));
     return found;
 }
 
@@ -273,8 +274,8 @@ TEST(steps_do_not_notice) {
             rig plain = rig_of(&interval, of_steps[m], 1), asked = rig_of(&interval, of_steps[m], 1);
             for (int f = 0; f < 3; f++) {
                 cscd_contacts expected, found;
-                assert_int_equal(step_packed(plain.detector, frames[f], frames[f + 1], &expected), CSCD_OK);
-                assert_int_equal(step_packed(asked.detector, frames[f], frames[f + 1], &found), CSCD_OK);
+                expect_ok(step_packed(plain.detector, frames[f], frames[f + 1], &expected));
+                expect_ok(step_packed(asked.detector, frames[f], frames[f + 1], &found));
                 assert_int_equal(found.count, expected.count);
                 if (found.count > 0)
                     assert_memory_equal(found.items, expected.items, found.count * sizeof *found.items);
@@ -296,9 +297,7 @@ TEST(steps_do_not_notice) {
 
 static void expect_refused(const rig *r, const double *x, double distance, cscd_proximities *out,
                            const char *words) {
-    assert_int_equal(find_near_packed(r->detector, x, distance, out), CSCD_INVALID_ARGUMENT);
-    if (strstr(cscd_context_detail(r->context), words) == NULL)
-        fail_msg("\"%s\" in \"%s\"", words, cscd_context_detail(r->context));
+    expect_invalid(r->context, find_near_packed(r->detector, x, distance, out), words);
 }
 
 TEST(bad_arguments_are_named) {

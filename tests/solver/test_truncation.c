@@ -95,7 +95,7 @@ static void check_no_contact(const cscd_truncation *out) {
 /* A pair that was farther apart than the separation is so at the end; one that was not has come no nearer. */
 static void check_separation(const rig *r, double apart, double radius) {
     cscd_proximities near;
-    assert_int_equal(find_near_packed(r->detector, interval.x0, radius + apart, &near), CSCD_OK);
+    expect_ok(find_near_packed(r->detector, interval.x0, radius + apart, &near));
     for (size_t i = 0; i < near.count; i++) {
         const cscd_proximity *p = &near.items[i];
         cscd_stencil s = stencil_of(r, p);
@@ -188,10 +188,8 @@ TEST(planes_divide_near_pairs) {
         rig r = rig_apart(&interval, 0.01, CSCD_METHOD_NONE, 1);
         cscd_proximities near;
         division_planes planes;
-        assert_int_equal(near_pairs_find(r.detector, interval.x0, 0.25, &near), CSCD_OK);
-        assert_int_equal(
-            division_planes_find(r.detector, interval.x0, interval.x1, 0.125, &near, first, &planes),
-            CSCD_OK);
+        expect_ok(near_pairs_find(r.detector, interval.x0, 0.25, &near));
+        expect_ok(division_planes_find(r.detector, interval.x0, interval.x1, 0.125, &near, first, &planes));
         for (size_t i = 0; i < planes.count; i++) {
             if (planes.planes[i].room[0] < 0.0) continue;
             check_plane(&planes.planes[i], 0.01);
@@ -262,10 +260,7 @@ TEST(obstacles_come_first) {
         cscd_object_desc objects[2] = {cscd_object_of_triangles(3, 1, triangle),
                                        cscd_object_of_triangles(3, 1, triangle)};
         objects[obstacle].obstacle = true;
-        rig r = {NULL, NULL, NULL};
-        assert_int_equal(cscd_context_create(NULL, &r.context), CSCD_OK);
-        assert_int_equal(cscd_mesh_create(r.context, objects, 2, &r.mesh), CSCD_OK);
-        assert_int_equal(detector_create_here(r.mesh, NULL, NULL, &r.detector), CSCD_OK);
+        rig r = rig_of_objects(context_of(0, NULL), objects, 2, NULL, NULL);
         cscd_truncation out = truncate_scene(&r, &interval, 1.0, CSCD_SCALAR_DOUBLE, end);
         assert_true(out.obstacle_fraction == 1.0 && fabs(out.fraction - 0.25) < 1e-5);
         assert_int_equal(out.shortened, 3);

@@ -1,5 +1,6 @@
 /* Calls of cscd_detector_truncate: what they refuse, what the detector knows afterwards, and the same for everyone. */
 #include "tests/support/packed.h"
+#include "tests/support/refusal.h"
 #include "tests/support/solver/truncation_trial.h"
 #include "tests/support/test.h"
 
@@ -15,11 +16,6 @@ static void move_triangle(uint32_t which, double by) {
 
 /* ---- arguments ------------------------------------------------------------------------------------------- */
 
-static void expect_refused(const rig *r, cscd_status status, const char *words) {
-    assert_int_equal(status, CSCD_INVALID_ARGUMENT);
-    assert_non_null(strstr(cscd_context_detail(r->context), words));
-}
-
 TEST(wrong_arguments_are_refused) {
     float floats[18] = {0.0f};
     double short_array[17];
@@ -30,38 +26,41 @@ TEST(wrong_arguments_are_refused) {
     cscd_detector *d = r.detector;
     const cscd_view *x0 = CSCD_DOUBLES(interval.x0, 6), *x1 = CSCD_DOUBLES(interval.x1, 6);
     assert_int_equal(cscd_detector_truncate(NULL, x0, x1, 1.0, NULL, &out), CSCD_NULL_OBJECT);
-    expect_refused(&r, cscd_detector_truncate(d, x0, x1, 1.0, NULL, NULL), "out is NULL");
-    expect_refused(&r, cscd_detector_truncate(d, NULL, x1, 1.0, NULL, &out), "x0 is NULL");
-    expect_refused(&r, cscd_detector_truncate(d, x0, x1, 0.0, NULL, &out), "search_radius is 0");
-    expect_refused(&r, cscd_detector_truncate(d, x0, x1, NAN, NULL, &out), "search_radius is");
-    expect_refused(&r, cscd_detector_truncate(d, x0, x1, 0x1p300, NULL, &out), "search_radius is");
-    expect_refused(&r, cscd_detector_truncate(d, x0, x1, 1.0, CSCD_MUTABLE_FLOATS(floats, 6), &out),
+    expect_invalid(r.context, cscd_detector_truncate(d, x0, x1, 1.0, NULL, NULL), "out is NULL");
+    expect_invalid(r.context, cscd_detector_truncate(d, NULL, x1, 1.0, NULL, &out), "x0 is NULL");
+    expect_invalid(r.context, cscd_detector_truncate(d, x0, x1, 0.0, NULL, &out), "search_radius is 0");
+    expect_invalid(r.context, cscd_detector_truncate(d, x0, x1, NAN, NULL, &out), "search_radius is");
+    expect_invalid(r.context, cscd_detector_truncate(d, x0, x1, 0x1p300, NULL, &out), "search_radius is");
+    expect_invalid(r.context, cscd_detector_truncate(d, x0, x1, 1.0, CSCD_MUTABLE_FLOATS(floats, 6), &out),
                    "floats in reached");
-    expect_refused(&r, cscd_detector_truncate(d, x0, x1, 1.0, CSCD_MUTABLE_DOUBLES(short_array, 5), &out),
+    expect_invalid(r.context,
+                   cscd_detector_truncate(d, x0, x1, 1.0, CSCD_MUTABLE_DOUBLES(short_array, 5), &out),
                    "reached");
-    assert_int_equal(cscd_detector_truncate(d, x0, x1, 1.0, NULL, &out), CSCD_OK);
-    assert_int_equal(
-        cscd_detector_truncate(d, CSCD_FLOATS(floats, 6), x1, 1.0, CSCD_MUTABLE_FLOATS(floats, 6), &out),
-        CSCD_OK);
+    expect_ok(cscd_detector_truncate(d, x0, x1, 1.0, NULL, &out));
+    expect_ok(
+        cscd_detector_truncate(d, CSCD_FLOATS(floats, 6), x1, 1.0, CSCD_MUTABLE_FLOATS(floats, 6), &out));
     size_t size = 6 * sizeof *short_array;
     const cscd_scalar doubles = CSCD_SCALAR_DOUBLE;
     assert_int_equal(cscd_detector_displacement_bounds(NULL, x0, 1.0, doubles, short_array, size, &found),
                      CSCD_NULL_OBJECT);
-    expect_refused(&r, cscd_detector_displacement_bounds(d, x0, 1.0, doubles, NULL, size, &found),
+    expect_invalid(r.context, cscd_detector_displacement_bounds(d, x0, 1.0, doubles, NULL, size, &found),
                    "bounds is NULL");
-    expect_refused(&r, cscd_detector_displacement_bounds(d, x0, 1.0, doubles, short_array, size - 1, &found),
+    expect_invalid(r.context,
+                   cscd_detector_displacement_bounds(d, x0, 1.0, doubles, short_array, size - 1, &found),
                    "bounds has 47 bytes");
-    expect_refused(&r,
+    expect_invalid(r.context,
                    cscd_detector_displacement_bounds(d, x0, 1.0, (cscd_scalar)2, short_array, size, &found),
                    "scalar is 2");
-    expect_refused(
-        &r, cscd_detector_displacement_bounds(d, x0, 0x1p-200, CSCD_SCALAR_FLOAT, floats, size, &found),
+    expect_invalid(
+        r.context,
+        cscd_detector_displacement_bounds(d, x0, 0x1p-200, CSCD_SCALAR_FLOAT, floats, size, &found),
         "0 as a float");
-    expect_refused(&r, cscd_detector_displacement_bounds(d, x0, -1.0, doubles, short_array, size, &found),
+    expect_invalid(r.context,
+                   cscd_detector_displacement_bounds(d, x0, -1.0, doubles, short_array, size, &found),
                    "search_radius is -1");
     assert_int_equal(found.near_count, 4711);
     interval.x1[7] = NAN;
-    expect_refused(&r, cscd_detector_truncate(d, x0, x1, 1.0, NULL, &out), "x1");
+    expect_invalid(r.context, cscd_detector_truncate(d, x0, x1, 1.0, NULL, &out), "x1");
     rig_destroy(&r);
 }
 
@@ -73,10 +72,7 @@ TEST(objects_have_their_own_scalars) {
     scene_two_triangles(&interval, 0.1);
     cscd_object_desc objects[2] = {cscd_object_of_triangles(3, 1, triangle),
                                    cscd_object_of_triangles(3, 1, triangle)};
-    rig r = {NULL, NULL, NULL};
-    assert_int_equal(cscd_context_create(NULL, &r.context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(r.context, objects, 2, &r.mesh), CSCD_OK);
-    assert_int_equal(detector_create_here(r.mesh, NULL, NULL, &r.detector), CSCD_OK);
+    rig r = rig_of_objects(context_of(0, NULL), objects, 2, NULL, NULL);
     for (int i = 0; i < 9; i++) from[i] = (float)interval.x0[i];
     cscd_view x0[2] = {cscd_view_floats(from, 3), cscd_view_doubles(interval.x0 + 9, 3)};
     cscd_mutable_view ends[2] = {cscd_mutable_view_floats(to, 3), cscd_mutable_view_doubles(reached, 3)};
@@ -84,8 +80,7 @@ TEST(objects_have_their_own_scalars) {
     move_triangle(0, 0.31);
     move_triangle(1, -0.17);
     cscd_truncation out;
-    assert_int_equal(cscd_detector_truncate(r.detector, x0, CSCD_DOUBLES(interval.x1, 6), 1.0, ends, &out),
-                     CSCD_OK);
+    expect_ok(cscd_detector_truncate(r.detector, x0, CSCD_DOUBLES(interval.x1, 6), 1.0, ends, &out));
     assert_true(out.shortened == 6 && out.moved);
     for (int i = 2; i < 9; i += 3) {
         double gap = reached[i] - (double)to[i];
@@ -103,13 +98,13 @@ TEST(the_end_is_known) {
         scene_make(SCENE_BENT_CAPSULE, seed, &interval);
         rig r = rig_apart(&interval, 0.0, CSCD_METHOD_SINGLE, 1);
         cscd_contacts found;
-        assert_int_equal(step_packed(r.detector, interval.x0, interval.x0, &found), CSCD_OK);
+        expect_ok(step_packed(r.detector, interval.x0, interval.x0, &found));
         assert_int_equal(found.count, 0);
         for (int i = 0; i < 3; i++) {
             truncate_scene(&r, &interval, 0.1, CSCD_SCALAR_DOUBLE, end);
             memcpy(interval.x0, end, sizeof end);
         }
-        assert_int_equal(step_packed(r.detector, interval.x0, interval.x1, &found), CSCD_OK);
+        expect_ok(step_packed(r.detector, interval.x0, interval.x1, &found));
         assert_int_equal(cscd_detector_counters(r.detector).static_checks, 0);
         assert_int_equal(cscd_detector_counters(r.detector).clean, interval.triangle_count);
         rig fresh = rig_apart(&interval, 0.0, CSCD_METHOD_SINGLE, 1);
@@ -134,11 +129,11 @@ TEST(pairs_left_out_leave_nothing_known) {
     options.ignore = ignore_all;
     rig r = rig_create(&interval, 1, &options);
     cscd_contacts found;
-    assert_int_equal(step_packed(r.detector, interval.x0, interval.x0, &found), CSCD_OK);
+    expect_ok(step_packed(r.detector, interval.x0, interval.x0, &found));
     cscd_truncation out = truncate_scene(&r, &interval, 4.0, CSCD_SCALAR_DOUBLE, end);
     assert_int_equal(out.shortened, 0);
     memcpy(interval.x0, end, sizeof end);
-    assert_int_equal(step_packed(r.detector, interval.x0, interval.x0, &found), CSCD_OK);
+    expect_ok(step_packed(r.detector, interval.x0, interval.x0, &found));
     assert_true(cscd_detector_counters(r.detector).static_checks > 0);
     rig_destroy(&r);
 }

@@ -22,8 +22,8 @@ static panel_scene uncover_panels(double gap) {
     panel_scene p = panels_create(SIDE, NULL, &options);
     for (uint32_t v = 0; v < 2 * HALF; v++) p.x0[3 * v + 2] = v < HALF ? 0.0 : gap;
     memcpy(p.x1, p.x0, 2 * HALF * sizeof(double[3]));
-    assert_int_equal(max_step_packed(p.detector, p.x0, p.x1, NULL, &step), CSCD_OK);
-    assert_int_equal(cscd_detector_set_rules(p.detector, NULL, 0, NULL, 0), CSCD_OK);
+    expect_ok(max_step_packed(p.detector, p.x0, p.x1, NULL, &step));
+    expect_ok(cscd_detector_set_rules(p.detector, NULL, 0, NULL, 0));
     for (uint32_t v = HALF; v < 2 * HALF; v++) p.x1[3 * v + 2] -= 0.04;
     return p;
 }
@@ -37,7 +37,7 @@ TEST(steps_pass_through_nothing) {
     panel_scene p = uncover_panels(gap);
     for (int i = 0; i < 10; i++) {
         cscd_free_step step;
-        assert_int_equal(max_step_packed(p.detector, p.x0, p.x1, p.x0, &step), CSCD_OK);
+        expect_ok(max_step_packed(p.detector, p.x0, p.x1, p.x0, &step));
         assert_true(step.waiting > 0 && step.limited);
         for (uint32_t v = HALF; v < 2 * HALF; v++) p.x1[3 * v + 2] = p.x0[3 * v + 2] - 0.04;
         expect_apart(&p, gap);
@@ -49,11 +49,11 @@ TEST(line_searches_pass_through_nothing) {
     const double gap = 0.9 * distance;
     panel_scene p = uncover_panels(gap);
     cscd_line_search *line;
-    assert_int_equal(cscd_line_search_create(p.detector, &line), CSCD_OK);
+    expect_ok(cscd_line_search_create(p.detector, &line));
     for (int i = 0; i < 5; i++) {
         cscd_free_step step;
-        assert_int_equal(line_begin_packed(line, p.x0, p.x1, 0.0), CSCD_OK);
-        assert_int_equal(line_max_step_packed(line, 1.0, p.x0, &step), CSCD_OK);
+        expect_ok(line_begin_packed(line, p.x0, p.x1, 0.0));
+        expect_ok(line_max_step_packed(line, 1.0, p.x0, &step));
         assert_true(step.waiting > 0 && step.limited);
         for (uint32_t v = HALF; v < 2 * HALF; v++) p.x1[3 * v + 2] = p.x0[3 * v + 2] - 0.04;
         expect_apart(&p, gap);
@@ -67,7 +67,7 @@ TEST(truncation_passes_through_nothing) {
     panel_scene p = uncover_panels(gap);
     for (int i = 0; i < 5; i++) {
         cscd_truncation found;
-        assert_int_equal(truncate_packed(p.detector, p.x0, p.x1, 1.0, p.x0, &found), CSCD_OK);
+        expect_ok(truncate_packed(p.detector, p.x0, p.x1, 1.0, p.x0, &found));
         assert_true(found.waiting > 0);
         for (uint32_t v = HALF; v < 2 * HALF; v++) p.x1[3 * v + 2] = p.x0[3 * v + 2] - 0.04;
         expect_apart(&p, gap);
@@ -112,7 +112,7 @@ TEST(points_pass_through_nothing) {
 TEST(touching_pairs_are_left_out) {
     panel_scene p = uncover_panels(0.0);
     cscd_free_step step;
-    assert_int_equal(max_step_packed(p.detector, p.x0, p.x1, p.x0, &step), CSCD_OK);
+    expect_ok(max_step_packed(p.detector, p.x0, p.x1, p.x0, &step));
     assert_true(step.fraction == 1.0 && step.waiting > 0);
     panels_destroy(&p);
 }

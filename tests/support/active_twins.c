@@ -69,7 +69,7 @@ void active_twins_begin(active_twins *t, cscd_detector *ours, const cscd_detecto
     chosen.mode = CSCD_MODE_ALL;
     chosen.ignore = active_twins_ignore;
     chosen.ignore_user = t;
-    assert_int_equal(detector_create_here(cscd_detector_mesh(ours), NULL, &chosen, &theirs), CSCD_OK);
+    expect_ok(detector_create_here(cscd_detector_mesh(ours), NULL, &chosen, &theirs));
     t->set = false;
     active_twins_join(t, ours, theirs);
 }
@@ -105,7 +105,7 @@ void active_twins_tell(active_twins *t) {
         count += t->active[v];
     }
     if (count > 0) list[count++] = list[0];
-    assert_int_equal(cscd_detector_set_active(t->ours, t->set ? list : NULL, t->set ? count : 0), CSCD_OK);
+    expect_ok(cscd_detector_set_active(t->ours, t->set ? list : NULL, t->set ? count : 0));
 }
 
 void active_twins_hold(const active_twins *t, const double *x0, double *x1) {
@@ -121,14 +121,10 @@ static void expect_same(const void *a, const void *b, size_t a_count, size_t b_c
     if (a_count > 0) assert_memory_equal(a, b, a_count * size);
 }
 
-static void expect_ok(const cscd_detector *d, cscd_status status) {
-    if (status != CSCD_OK) fail_msg("status %d of detector %p", (int)status, (const void *)d);
-}
-
 void active_twins_step(active_twins *t, const double *x0, const double *x1) {
     cscd_contacts a, b;
-    expect_ok(t->ours, step_packed(t->ours, x0, x1, &a));
-    expect_ok(t->theirs, step_packed(t->theirs, x0, x1, &b));
+    expect_ok(step_packed(t->ours, x0, x1, &a));
+    expect_ok(step_packed(t->theirs, x0, x1, &b));
     expect_same(a.items, b.items, a.count, b.count, sizeof *a.items);
     assert_int_equal(a.waiting, b.waiting);
     t->contacts += a.count;
@@ -137,8 +133,8 @@ void active_twins_step(active_twins *t, const double *x0, const double *x1) {
 
 void active_twins_check(active_twins *t, const double *x) {
     cscd_intersections a, b;
-    expect_ok(t->ours, check_packed(t->ours, x, &a));
-    expect_ok(t->theirs, check_packed(t->theirs, x, &b));
+    expect_ok(check_packed(t->ours, x, &a));
+    expect_ok(check_packed(t->theirs, x, &b));
     expect_same(a.items, b.items, a.count, b.count, sizeof *a.items);
     assert_int_equal(a.zero_area_triangles, b.zero_area_triangles);
     assert_int_equal(a.first_zero_area, b.first_zero_area);
@@ -148,13 +144,13 @@ void active_twins_check(active_twins *t, const double *x) {
 
 void active_twins_near(active_twins *t, const double *x, double distance) {
     cscd_proximities a, b;
-    expect_ok(t->ours, find_near_packed(t->ours, x, distance, &a));
-    expect_ok(t->theirs, find_near_packed(t->theirs, x, distance, &b));
+    expect_ok(find_near_packed(t->ours, x, distance, &a));
+    expect_ok(find_near_packed(t->theirs, x, distance, &b));
     expect_same(a.items, b.items, a.count, b.count, sizeof *a.items);
     assert_int_equal(a.waiting, b.waiting);
     t->near += a.count;
-    expect_ok(t->ours, find_unique_packed(t->ours, x, distance, &a));
-    expect_ok(t->theirs, find_unique_packed(t->theirs, x, distance, &b));
+    expect_ok(find_unique_packed(t->ours, x, distance, &a));
+    expect_ok(find_unique_packed(t->theirs, x, distance, &b));
     expect_same(a.items, b.items, a.count, b.count, sizeof *a.items);
 }
 
@@ -182,8 +178,8 @@ void active_twins_max_step(active_twins *t, const double *x0, double *x1) {
 void active_twins_bounds(active_twins *t, const double *x0, double radius) {
     static double bounds[2][TWIN_VERTICES_MAX];
     cscd_displacement_bounds a, b;
-    expect_ok(t->ours, displacement_bounds_packed(t->ours, x0, radius, bounds[0], &a));
-    expect_ok(t->theirs, displacement_bounds_packed(t->theirs, x0, radius, bounds[1], &b));
+    expect_ok(displacement_bounds_packed(t->ours, x0, radius, bounds[0], &a));
+    expect_ok(displacement_bounds_packed(t->theirs, x0, radius, bounds[1], &b));
     assert_memory_equal(bounds[0], bounds[1], t->vertex_count * sizeof(double));
     expect_same(a.blocked, b.blocked, a.blocked_count, b.blocked_count, sizeof *a.blocked);
     assert_int_equal(a.near_count, b.near_count);
@@ -195,8 +191,8 @@ void active_twins_bounds(active_twins *t, const double *x0, double radius) {
 void active_twins_truncate(active_twins *t, const double *x0, double *x1, double radius) {
     static double ends[2][TWIN_VERTICES_MAX * 3];
     cscd_truncation a, b;
-    expect_ok(t->ours, truncate_packed(t->ours, x0, x1, radius, ends[0], &a));
-    expect_ok(t->theirs, truncate_packed(t->theirs, x0, x1, radius, ends[1], &b));
+    expect_ok(truncate_packed(t->ours, x0, x1, radius, ends[0], &a));
+    expect_ok(truncate_packed(t->theirs, x0, x1, radius, ends[1], &b));
     assert_memory_equal(ends[0], ends[1], t->vertex_count * sizeof(double[3]));
     expect_same(a.held, b.held, a.held_count, b.held_count, sizeof *a.held);
     assert_int_equal(a.near_count, b.near_count);
@@ -221,8 +217,7 @@ static void compare_on_lines(active_twins *t, cscd_line_search *lines[2], double
         cscd_near_form form = f % 2 == 0 ? CSCD_NEAR_PAIRS : CSCD_NEAR_UNIQUE;
         cscd_proximities near[2];
         for (int i = 0; i < 2; i++)
-            expect_ok(i == 0 ? t->ours : t->theirs,
-                      cscd_line_search_find_near(lines[i], 0.3 * f, reach, form, &near[i]));
+            expect_ok(cscd_line_search_find_near(lines[i], 0.3 * f, reach, form, &near[i]));
         expect_same(near[0].items, near[1].items, near[0].count, near[1].count, sizeof *near[0].items);
         t->near += near[0].count;
     }
@@ -232,8 +227,8 @@ void active_twins_line(active_twins *t, const double *x0, double *x1, double rea
     cscd_line_search *lines[2] = {NULL, NULL};
     for (int i = 0; i < 2; i++) {
         cscd_detector *d = i == 0 ? t->ours : t->theirs;
-        expect_ok(d, cscd_line_search_create(d, &lines[i]));
-        expect_ok(d, line_begin_packed(lines[i], x0, x1, reach));
+        expect_ok(cscd_line_search_create(d, &lines[i]));
+        expect_ok(line_begin_packed(lines[i], x0, x1, reach));
     }
     compare_on_lines(t, lines, reach, x0, x1);
     for (int i = 0; i < 2; i++) cscd_line_search_destroy(lines[i]);

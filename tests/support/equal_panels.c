@@ -9,24 +9,18 @@
 
 static uint32_t panel_triangles[TRIANGLES * 3];
 
-static bool go_on(void *user, const char *stage, double fraction) {
-    (void)stage;
-    (void)fraction;
-    return user == NULL || (*(int *)user)-- > 0;
-}
-
 /* By another detector, without seams. */
 static size_t count_touching(const equal_panels *p) {
     cscd_detector *other;
     cscd_contacts contacts;
-    assert_int_equal(detector_create_here(p->mesh, NULL, NULL, &other), CSCD_OK);
-    assert_int_equal(step_packed(other, p->x0, p->x0, &contacts), CSCD_OK);
+    expect_ok(detector_create_here(p->mesh, NULL, NULL, &other));
+    expect_ok(step_packed(other, p->x0, p->x0, &contacts));
     size_t count = contacts.count;
     cscd_detector_destroy(other);
     return count;
 }
 
-void panels_begin(equal_panels *p, double min_separation, uint32_t threads, int *asked) {
+void panels_begin(equal_panels *p, double min_separation, uint32_t threads) {
     uint32_t k = 0;
     for (uint32_t i = 0; i + 1 < SIDE; i++) {
         for (uint32_t j = 0; j + 1 < SIDE; j++) {
@@ -41,34 +35,29 @@ void panels_begin(equal_panels *p, double min_separation, uint32_t threads, int 
         p->seams[v][0] = v;
         p->seams[v][1] = PANEL + v;
     }
-    cscd_context_options context_options = cscd_context_defaults();
     p->counter = counting_allocator_start();
-    context_options.allocator = counting_allocator_interface(&p->counter);
-    context_options.thread_count = threads;
-    if (asked != NULL) context_options.progress = (cscd_progress){.report = go_on, .user = asked};
     cscd_detector_options options = cscd_detector_defaults();
     options.seams = &p->seams[0][0];
     options.seam_count = PANEL;
     options.min_separation = min_separation;
     const cscd_object_desc panel = cscd_object_of_triangles(PANEL, TRIANGLES, panel_triangles);
     const cscd_object_desc objects[] = {panel, panel};
-    assert_int_equal(cscd_context_create(&context_options, &p->context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(p->context, objects, 2, &p->mesh), CSCD_OK);
-    assert_int_equal(detector_create_here(p->mesh, NULL, &options, &p->detector), CSCD_OK);
-    assert_int_equal(cscd_line_search_create(p->detector, &p->line), CSCD_OK);
+    p->rig = rig_of_objects(context_of(threads, &p->counter), objects, 2, NULL, &options);
+    p->context = p->rig.context;
+    p->mesh = p->rig.mesh;
+    p->detector = p->rig.detector;
+    expect_ok(cscd_line_search_create(p->detector, &p->line));
     p->touching = count_touching(p);
 }
 
 void panels_end(equal_panels *p) {
     cscd_line_search_destroy(p->line);
-    cscd_detector_destroy(p->detector);
-    cscd_mesh_destroy(p->mesh);
-    cscd_context_destroy(p->context);
+    rig_destroy(&p->rig);
     assert_int_equal(p->counter.live, 0);
 }
 
 void panels_open(const equal_panels *p) {
-    assert_int_equal(cscd_detector_set_seams(p->detector, NULL, 0), CSCD_OK);
+    expect_ok(cscd_detector_set_seams(p->detector, NULL, 0));
 }
 
 void panels_part(const equal_panels *p, double gap, double *x) {

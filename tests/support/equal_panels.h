@@ -2,14 +2,15 @@
 #pragma once
 
 #include "cscd/cscd.h"
-#include "tests/support/counting_allocator.h"
+#include "tests/support/rig.h"
 
 enum { SIDE = 5, PANEL = SIDE * SIDE, VERTICES = 2 * PANEL, TRIANGLES = 2 * (SIDE - 1) * (SIDE - 1) };
 
 /* The vertices i and PANEL + i are sewn together. */
 typedef struct equal_panels {
     counting_allocator counter;
-    cscd_context *context;
+    rig rig;
+    cscd_context *context; /* these three are of the rig */
     cscd_mesh *mesh;
     cscd_detector *detector;
     cscd_line_search *line;
@@ -18,8 +19,8 @@ typedef struct equal_panels {
     size_t touching; /* pairs of features, without the seams */
 } equal_panels;
 
-/* asked: how often progress lets a call go on; NULL: nobody asks. Any failure fails the test. */
-void panels_begin(equal_panels *p, double min_separation, uint32_t threads, int *asked);
+/* Any failure fails the test. */
+void panels_begin(equal_panels *p, double min_separation, uint32_t threads);
 void panels_end(equal_panels *p);
 
 /* Takes all seams away. */

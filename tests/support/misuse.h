@@ -25,9 +25,9 @@ static cscd_detector *detector;
 static inline int set_up(void **state) {
     (void)state;
     for (int i = 0; i < COORDINATES; i++) x1[i] = x0[i] + (i >= 12 && i % 3 == 2 ? 1.5 : 0.0);
-    assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(context, OBJECT(VERTICES, 8, triangles), 1, &mesh), CSCD_OK);
-    assert_int_equal(cscd_detector_create(context, mesh, NULL, NULL, &detector), CSCD_OK);
+    expect_ok(cscd_context_create(NULL, &context));
+    expect_ok(cscd_mesh_create(context, OBJECT(VERTICES, 8, triangles), 1, &mesh));
+    expect_ok(cscd_detector_create(context, mesh, NULL, NULL, &detector));
     return 0;
 }
 
@@ -51,6 +51,6 @@ static inline void expect_failure(cscd_status status, cscd_status expected, cons
 
 /* The call has succeeded, and the sentence of an earlier failure is gone. */
 static inline void expect_success(cscd_status status) {
-    assert_int_equal(status, CSCD_OK);
+    expect_ok(status);
     assert_string_equal(cscd_context_detail(context), "");
 }

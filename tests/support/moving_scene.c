@@ -73,7 +73,7 @@ cscd_detector *moving_new_detector(const cscd_mesh *mesh, const cscd_plan *plan)
     options.ignored_count = moving.ignored_count;
     options.rules = moving.rules ? moving.object_rules : NULL;
     options.rule_count = moving.rules ? moving.shape.object_count : 0;
-    assert_int_equal(cscd_detector_create(moving.context, mesh, plan, &options, &made), CSCD_OK);
+    expect_ok(cscd_detector_create(moving.context, mesh, plan, &options, &made));
     return made;
 }
 
@@ -144,10 +144,9 @@ void moving_take_change(cscd_mesh_change *made) {
 void moving_change_scene(void) {
     cscd_mesh_change *made = NULL;
     changing_scene_change(&moving.random, &moving.shape, &moving_change);
-    assert_int_equal(cscd_mesh_change_create(moving.context, moving_mesh_now(), moving_change.list,
-                                             moving_change.count, &made),
-                     CSCD_OK);
-    assert_int_equal(cscd_detector_change_mesh(moving.detector, made), CSCD_OK);
+    expect_ok(cscd_mesh_change_create(moving.context, moving_mesh_now(), moving_change.list,
+                                      moving_change.count, &made));
+    expect_ok(cscd_detector_change_mesh(moving.detector, made));
     assert_ptr_equal(moving_mesh_now(), cscd_mesh_change_mesh(made));
     moving_take_change(made);
 }
@@ -155,7 +154,7 @@ void moving_change_scene(void) {
 /* A clone goes on in place of the detector, whatever that has come to. */
 void moving_replace_by_clone(void) {
     cscd_detector *clone = NULL;
-    assert_int_equal(cscd_detector_clone(moving.context, moving.detector, &clone), CSCD_OK);
+    expect_ok(cscd_detector_clone(moving.context, moving.detector, &clone));
     cscd_detector_destroy(moving.detector);
     moving.detector = clone;
 }
@@ -207,7 +206,7 @@ void moving_begin_scene(cscd_context *context, uint64_t seed, bool plain) {
         cscd_plan_options plan_options = cscd_plan_defaults();
         plan_options.method = CSCD_METHOD_KMEANS;
         plan_options.k = 12;
-        assert_int_equal(plan_create_packed(moving.first, moving_joined.x0, &plan_options, &plan), CSCD_OK);
+        expect_ok(plan_create_packed(moving.first, moving_joined.x0, &plan_options, &plan));
     }
     if (!plain) {
         moving.rules = stream_below(&moving.random, 3) == 0;

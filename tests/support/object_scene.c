@@ -2,7 +2,6 @@
 #include "tests/support/object_scene.h"
 
 #include "cscd/research.h"
-#include "tests/support/packed.h"
 #include "tests/support/test.h"
 
 #include <math.h>
@@ -113,8 +112,7 @@ void random_rules_make(random_stream *random, uint32_t kind, random_rules *set) 
 
 /* ---- a detector with rules ----------------------------------------------------------------------------- */
 
-rules_rig rules_rig_create(const random_rules *set, const cscd_detector_options *options, uint32_t threads) {
-    rules_rig s = {NULL, NULL, NULL, NULL};
+rig rules_rig(const random_rules *set, const cscd_detector_options *options, uint32_t threads) {
     cscd_object_desc descs[SCENE_OBJECTS];
     for (int i = 0; i < SCENE_OBJECTS; i++) {
         descs[i] = cscd_object_of_triangles(first_vertices[i + 1] - first_vertices[i],
@@ -122,31 +120,13 @@ rules_rig rules_rig_create(const random_rules *set, const cscd_detector_options 
                                             objects_triangles + (size_t)first_triangles[i] * 3);
         descs[i].obstacle = set->obstacles[i];
     }
-    cscd_context_options context_options = cscd_context_defaults();
-    context_options.thread_count = threads;
-    assert_int_equal(cscd_context_create(&context_options, &s.context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(s.context, descs, SCENE_OBJECTS, &s.mesh), CSCD_OK);
-    if (options->method == CSCD_METHOD_KMEANS) {
-        cscd_plan_options plan_options = cscd_plan_defaults();
-        plan_options.method = CSCD_METHOD_KMEANS;
-        assert_int_equal(plan_create_packed(s.mesh, objects_joined.x0, &plan_options, &s.plan), CSCD_OK);
-    }
-    assert_int_equal(detector_create_here(s.mesh, s.plan, options, &s.detector), CSCD_OK);
-    return s;
+    return rig_of_objects(context_of(threads, NULL), descs, SCENE_OBJECTS, objects_joined.x0, options);
 }
 
-void rules_rig_set(const rules_rig *s, const random_rules *set) {
-    assert_int_equal(cscd_detector_set_rules(s->detector, set->objects, SCENE_OBJECTS,
-                                             set->uses_matrix ? set->matrix : NULL,
-                                             set->uses_matrix ? RULE_CLASSES : 0),
-                     CSCD_OK);
-}
-
-void rules_rig_destroy(rules_rig *s) {
-    cscd_detector_destroy(s->detector);
-    cscd_plan_destroy(s->plan);
-    cscd_mesh_destroy(s->mesh);
-    cscd_context_destroy(s->context);
+void rules_set(cscd_detector *detector, const random_rules *set) {
+    expect_ok(cscd_detector_set_rules(detector, set->objects, SCENE_OBJECTS,
+                                      set->uses_matrix ? set->matrix : NULL,
+                                      set->uses_matrix ? RULE_CLASSES : 0));
 }
 
 /* The component that both features of a contact lie in, or UINT32_MAX. */
@@ -164,8 +144,7 @@ static bool same_contact(const oracle_contact *t, const cscd_contact *f) {
     return f->kind == t->kind && f->a == t->a && f->b == t->b && f->toi == t->toi;
 }
 
-void rules_rig_compare(const rules_rig *s, const oracle_list *truth, const cscd_contacts *found,
-                       rules_tally *sum) {
+void rules_rig_compare(const rig *s, const oracle_list *truth, const cscd_contacts *found, rules_tally *sum) {
     static double first[SCENE_OBJECTS * OBJECT_TRIANGLES_MAX];
     static bool found_first[SCENE_OBJECTS * OBJECT_TRIANGLES_MAX];
     uint32_t components = cscd_mesh_component_count(s->mesh);

@@ -4,6 +4,7 @@
 #include "cscd/cscd.h"
 #include "tests/support/oracle.h"
 #include "tests/support/random_stream.h"
+#include "tests/support/rig.h"
 #include "tests/support/scenes.h"
 
 enum { SCENE_OBJECTS = 4, RULE_CLASSES = 3, OBJECT_TRIANGLES_MAX = 300 };
@@ -32,17 +33,9 @@ void random_rules_neutral(random_rules *set);
 /* kind 0: masks alone, 1: thicknesses, 2: a matrix whose diagonal is often 0. The obstacles stay. */
 void random_rules_make(random_stream *random, uint32_t kind, random_rules *set);
 
-typedef struct rules_rig {
-    cscd_context *context;
-    cscd_mesh *mesh;
-    cscd_plan *plan;
-    cscd_detector *detector;
-} rules_rig;
-
 /* A detector for the objects, without rules yet; options: of the detector. Any failure fails the test. */
-rules_rig rules_rig_create(const random_rules *set, const cscd_detector_options *options, uint32_t threads);
-void rules_rig_set(const rules_rig *s, const random_rules *set);
-void rules_rig_destroy(rules_rig *s);
+rig rules_rig(const random_rules *set, const cscd_detector_options *options, uint32_t threads);
+void rules_set(cscd_detector *detector, const random_rules *set);
 
 /* How much was compared. */
 typedef struct rules_tally {
@@ -51,5 +44,4 @@ typedef struct rules_tally {
 
 /* Compares a step's contacts with those of the oracle. Of a component whose guarantee is EARLIEST, all but one of the first
  * contacts with itself may be missing. */
-void rules_rig_compare(const rules_rig *s, const oracle_list *truth, const cscd_contacts *found,
-                       rules_tally *sum);
+void rules_rig_compare(const rig *s, const oracle_list *truth, const cscd_contacts *found, rules_tally *sum);

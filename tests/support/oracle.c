@@ -41,137 +41,126 @@ static void add_contact(oracle_list *list, cscd_contact_kind kind, uint32_t a, u
     list->items[list->count++] = (oracle_contact){kind, a, b, toi};
 }
 
-static elementary_query load_query(const scene *s, const uint32_t vertices[4]) {
-    elementary_query query;
-    for (int i = 0; i < 4; i++) {
-        memcpy(query.x0[i], s->x0 + (size_t)vertices[i] * 3, sizeof query.x0[i]);
-        memcpy(query.x1[i], s->x1 + (size_t)vertices[i] * 3, sizeof query.x1[i]);
-    }
-    return query;
-}
+/* A vertex, a triangle or an edge, and the box of its whole motion: what is apart along an axis cannot touch. */
+typedef struct swept_feature {
+    uint32_t vertices[3];
+    int count;
+    double low[3], high[3];
+} swept_feature;
 
-/* Feature pairs of one kind that wait for their test. */
-typedef struct queued_pairs {
-    const scene *scene;
-    const separation *limit;   /* NULL for contacts */
-    const oracle_rules *rules; /* NULL: the limit is that of all pairs */
-    const bool *collapsed;     /* per vertex, at an end */
-    bool apart;                /* with rules: pairs with a distance; else those that must not touch */
-    cscd_contact_kind kind;
-    edge *edges;
-    uint32_t (*pairs)[2];
-    size_t count, capacity;
-} queued_pairs;
-
-static double pair_distance(const queued_pairs *w, uint32_t a, uint32_t b) {
-    const uint32_t *objects = w->rules->vertex_objects;
-    bool vf = w->kind == CSCD_CONTACT_VF;
-    uint32_t first = objects[vf ? a : w->edges[a].ends[0]];
-    uint32_t second = objects[vf ? w->scene->triangles[(size_t)b * 3] : w->edges[b].ends[0]];
-    return w->rules->distances[(size_t)first * w->rules->object_count + second];
-}
-
-/* Are both features of components that are collapsed at an end? */
-static bool is_collapsed(const queued_pairs *w, uint32_t a, uint32_t b) {
-    bool vf = w->kind == CSCD_CONTACT_VF;
-    return w->collapsed[vf ? a : w->edges[a].ends[0]] &&
-           w->collapsed[vf ? w->scene->triangles[(size_t)b * 3] : w->edges[b].ends[0]];
-}
-
-static void add_pair(queued_pairs *w, uint32_t a, uint32_t b) {
-    if (is_collapsed(w, a, b)) return;
-    if (w->rules != NULL) {
-        double distance = pair_distance(w, a, b);
-        if (distance < 0.0 || w->apart != (distance > 0.0)) return;
-    }
-    if (w->count == w->capacity) {
-        w->capacity = w->capacity * 2 + 1024;
-        w->pairs = realloc(w->pairs, w->capacity * sizeof *w->pairs);
-        if (w->pairs == NULL) abort();
-    }
-    w->pairs[w->count][0] = a;
-    w->pairs[w->count++][1] = b;
-}
-
-/* Finds contacts as a step does, through the feature queue. */
-static void find_contacts(const queued_pairs *w, oracle_list *out) {
-    size_t count;
-    const feature_source source = {w->scene->x0, w->scene->x1, (const uint32_t(*)[3])w->scene->triangles,
-                                   (const uint32_t(*)[2])w->edges};
-    const cscd_contact *contacts =
-        pair_test_source(&source, w->kind, (const uint32_t(*)[2])w->pairs, w->count, &count);
-    for (size_t i = 0; i < count; i++)
-        add_contact(out, w->kind, contacts[i].a, contacts[i].b, contacts[i].toi);
-}
-
-/* Are all points of one feature farther along an axis than all points of the other, throughout? */
-static bool far_apart(const elementary_query *query, cscd_contact_kind kind, double distance) {
-    int first = kind == CSCD_CONTACT_VF ? 1 : 2;
+static swept_feature sweep_feature(const scene *s, const uint32_t *vertices, int count) {
+    swept_feature f = {.count = count};
     for (int k = 0; k < 3; k++) {
-        double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-        for (int i = 0; i < 4; i++) {
-            double *l = &low[i >= first], *h = &high[i >= first];
-            *l = fmin(*l, fmin(query->x0[i][k], query->x1[i][k]));
-            *h = fmax(*h, fmax(query->x0[i][k], query->x1[i][k]));
+        f.low[k] = INFINITY;
+        f.high[k] = -INFINITY;
+        for (int i = 0; i < count; i++) {
+            double x0 = s->x0[(size_t)vertices[i] * 3 + (size_t)k],
+                   x1 = s->x1[(size_t)vertices[i] * 3 + (size_t)k];
+            f.vertices[i] = vertices[i];
+            f.low[k] = fmin(f.low[k], fmin(x0, x1));
+            f.high[k] = fmax(f.high[k], fmax(x0, x1));
         }
-        if (low[1] - high[0] > distance || low[0] - high[1] > distance) return true;
+    }
+    return f;
+}
+
+/* Is all of one feature farther along an axis than all of the other, throughout? Exact for distance 0. */
+static bool far_apart(const swept_feature *a, const swept_feature *b, double distance) {
+    for (int k = 0; k < 3; k++) {
+        if (b->low[k] - a->high[k] > distance || a->low[k] - b->high[k] > distance) return true;
     }
     return false;
 }
 
-static void find_within(const queued_pairs *w, oracle_list *out) {
-    for (size_t i = 0; i < w->count; i++) {
-        uint32_t a = w->pairs[i][0], b = w->pairs[i][1];
-        const uint32_t *corners = w->scene->triangles + (size_t)b * 3;
-        bool vf = w->kind == CSCD_CONTACT_VF, bounded;
+static bool share_vertex(const swept_feature *a, const swept_feature *b) {
+    for (int i = 0; i < a->count; i++) {
+        for (int j = 0; j < b->count; j++) {
+            if (a->vertices[i] == b->vertices[j]) return true;
+        }
+    }
+    return false;
+}
+
+typedef struct queued_list {
+    uint32_t (*pairs)[2];
+    size_t count, capacity;
+} queued_list;
+
+/* How all feature pairs are looked at, and those of one kind that wait for their test. */
+typedef struct queued_pairs {
+    const scene *scene;
+    const separation *limit;   /* NULL for contacts */
+    const oracle_rules *rules; /* NULL: the limit is that of all pairs */
+    double reach;              /* the largest distance of a pair */
+    const bool *collapsed;     /* per vertex, at an end */
+    cscd_contact_kind kind;
+    const swept_feature *first, *second;
+    queued_list touching, within; /* what must not touch, and what has a distance to keep */
+} queued_pairs;
+
+static double pair_distance(const queued_pairs *w, const swept_feature *a, const swept_feature *b) {
+    if (w->rules == NULL) return w->reach;
+    const uint32_t *objects = w->rules->vertex_objects;
+    return w->rules
+        ->distances[(size_t)objects[a->vertices[0]] * w->rules->object_count + objects[b->vertices[0]]];
+}
+
+static void add_pair(queued_pairs *w, uint32_t i, uint32_t j) {
+    const swept_feature *a = &w->first[i], *b = &w->second[j];
+    if (far_apart(a, b, w->reach) || share_vertex(a, b)) return;
+    if (w->collapsed[a->vertices[0]] && w->collapsed[b->vertices[0]]) return;
+    const double distance = pair_distance(w, a, b);
+    if (distance < 0.0 || far_apart(a, b, distance)) return;
+    queued_list *list = distance > 0.0 || w->limit != NULL ? &w->within : &w->touching;
+    if (list->count == list->capacity) {
+        list->capacity = list->capacity * 2 + 1024;
+        list->pairs = realloc(list->pairs, list->capacity * sizeof *list->pairs);
+        if (list->pairs == NULL) abort();
+    }
+    list->pairs[list->count][0] = i;
+    list->pairs[list->count++][1] = j;
+}
+
+static void load_feature(const scene *s, const swept_feature *f, double (*x0)[3], double (*x1)[3]) {
+    for (int i = 0; i < f->count; i++) {
+        memcpy(x0[i], s->x0 + (size_t)f->vertices[i] * 3, sizeof *x0);
+        memcpy(x1[i], s->x1 + (size_t)f->vertices[i] * 3, sizeof *x1);
+    }
+}
+
+static void test_within(queued_pairs *w, oracle_list *out) {
+    for (size_t i = 0; i < w->within.count; i++) {
+        const uint32_t *pair = w->within.pairs[i];
+        const swept_feature *a = &w->first[pair[0]], *b = &w->second[pair[1]];
+        elementary_query query;
         elementary_contact hit;
-        elementary_query query =
-            vf ? load_query(w->scene, (uint32_t[4]){a, corners[0], corners[1], corners[2]})
-               : load_query(w->scene, (uint32_t[4]){w->edges[a].ends[0], w->edges[a].ends[1],
-                                                    w->edges[b].ends[0], w->edges[b].ends[1]});
-        separation limit = w->limit != NULL ? *w->limit : (separation){.distance = pair_distance(w, a, b)};
-        if (w->limit == NULL) limit.tolerance = 1e-6 * limit.distance;
-        if (far_apart(&query, w->kind, limit.distance)) continue;
-        bool found = vf ? separation_vf(&query, &limit, &hit, &bounded)
-                        : separation_ee(&query, &limit, &hit, &bounded);
-        if (found) add_contact(out, w->kind, a, b, hit.toi);
+        bool bounded;
+        load_feature(w->scene, a, query.x0, query.x1);
+        load_feature(w->scene, b, query.x0 + a->count, query.x1 + a->count);
+        separation limit = {.distance = pair_distance(w, a, b)};
+        limit.tolerance = 1e-6 * limit.distance;
+        if (w->limit != NULL) limit = *w->limit;
+        if ((w->kind == CSCD_CONTACT_VF ? separation_vf : separation_ee)(&query, &limit, &hit, &bounded))
+            add_contact(out, w->kind, pair[0], pair[1], hit.toi);
     }
+    w->within.count = 0;
 }
 
-static void test_pairs(queued_pairs *w, oracle_list *out) {
-    if (w->limit == NULL && !w->apart)
-        find_contacts(w, out);
-    else
-        find_within(w, out);
-    free(w->pairs);
+/* As a step does, through the feature queue. */
+static void test_touching(queued_pairs *w, const edge *edges, oracle_list *out) {
+    size_t count;
+    const feature_source source = {w->scene->x0, w->scene->x1, (const uint32_t(*)[3])w->scene->triangles,
+                                   (const uint32_t(*)[2])edges};
+    const cscd_contact *contacts = pair_test_source(&source, w->kind, (const uint32_t(*)[2])w->touching.pairs,
+                                                    w->touching.count, &count);
+    for (size_t i = 0; i < count; i++)
+        add_contact(out, w->kind, contacts[i].a, contacts[i].b, contacts[i].toi);
+    w->touching.count = 0;
 }
 
-static void find_vf(queued_pairs pairs, oracle_list *out) {
-    const scene *s = pairs.scene;
-    bool used[SCENE_VERTICES_MAX] = {false};
-    pairs.kind = CSCD_CONTACT_VF;
-    for (uint32_t i = 0; i < s->triangle_count * 3; i++) used[s->triangles[i]] = true;
-    for (uint32_t v = 0; v < s->vertex_count; v++) {
-        for (uint32_t t = 0; used[v] && t < s->triangle_count; t++) {
-            const uint32_t *c = s->triangles + (size_t)t * 3;
-            if (c[0] != v && c[1] != v && c[2] != v) add_pair(&pairs, v, t);
-        }
-    }
-    test_pairs(&pairs, out);
-}
-
-static void find_ee(queued_pairs pairs, oracle_list *out) {
-    static edge edges[SCENE_TRIANGLES_MAX * 3];
-    uint32_t count = find_edges(pairs.scene, edges);
-    pairs.kind = CSCD_CONTACT_EE;
-    pairs.edges = edges;
-    for (uint32_t i = 0; i < count; i++) {
-        for (uint32_t j = i + 1; j < count; j++) {
-            const uint32_t *a = edges[i].ends, *b = edges[j].ends;
-            if (a[0] != b[0] && a[0] != b[1] && a[1] != b[0] && a[1] != b[1]) add_pair(&pairs, i, j);
-        }
-    }
-    test_pairs(&pairs, out);
+static void test_kind(queued_pairs *w, const edge *edges, oracle_list *out) {
+    if (w->touching.count > 0) test_touching(w, edges, out);
+    test_within(w, out);
 }
 
 static int compare_contacts(const void *left, const void *right) {
@@ -182,12 +171,34 @@ static int compare_contacts(const void *left, const void *right) {
     return l->b < r->b ? -1 : l->b > r->b;
 }
 
-static void find_both(queued_pairs pairs, oracle_list *out) {
-    static bool collapsed[SCENE_VERTICES_MAX];
-    collapsed_oracle_at_ends(pairs.scene, NULL, collapsed);
-    pairs.collapsed = collapsed;
-    find_vf(pairs, out);
-    find_ee(pairs, out);
+static void find_all(queued_pairs w, oracle_list *out) {
+    static edge edges[SCENE_TRIANGLES_MAX * 3]; /* large; one test at a time */
+    static swept_feature vertices[SCENE_VERTICES_MAX], faces[SCENE_TRIANGLES_MAX],
+        sides[SCENE_TRIANGLES_MAX * 3];
+    static bool collapsed[SCENE_VERTICES_MAX], used[SCENE_VERTICES_MAX];
+    const scene *s = w.scene;
+    const uint32_t edge_count = find_edges(s, edges);
+    memset(used, false, sizeof used);
+    for (uint32_t i = 0; i < s->triangle_count * 3; i++) used[s->triangles[i]] = true;
+    for (uint32_t v = 0; v < s->vertex_count; v++) vertices[v] = sweep_feature(s, &v, 1);
+    for (uint32_t t = 0; t < s->triangle_count; t++)
+        faces[t] = sweep_feature(s, s->triangles + (size_t)t * 3, 3);
+    for (uint32_t e = 0; e < edge_count; e++) sides[e] = sweep_feature(s, edges[e].ends, 2);
+    collapsed_oracle_at_ends(s, NULL, collapsed);
+    w.collapsed = collapsed;
+    w.kind = CSCD_CONTACT_VF;
+    w.first = vertices;
+    w.second = faces;
+    for (uint32_t v = 0; v < s->vertex_count; v++)
+        for (uint32_t t = 0; used[v] && t < s->triangle_count; t++) add_pair(&w, v, t);
+    test_kind(&w, edges, out);
+    w.kind = CSCD_CONTACT_EE;
+    w.first = w.second = sides;
+    for (uint32_t i = 0; i < edge_count; i++)
+        for (uint32_t j = i + 1; j < edge_count; j++) add_pair(&w, i, j);
+    test_kind(&w, edges, out);
+    free(w.touching.pairs);
+    free(w.within.pairs);
     if (out->count > 0) qsort(out->items, out->count, sizeof *out->items, compare_contacts);
 }
 
@@ -197,13 +208,15 @@ void oracle_find(const scene *s, oracle_list *out) {
 
 void oracle_find_within(const scene *s, const separation *limit, oracle_list *out) {
     out->count = 0;
-    find_both((queued_pairs){.scene = s, .limit = limit}, out);
+    find_all((queued_pairs){.scene = s, .limit = limit, .reach = limit != NULL ? limit->distance : 0.0}, out);
 }
 
 void oracle_find_by_rules(const scene *s, const oracle_rules *rules, oracle_list *out) {
     out->count = 0;
-    find_both((queued_pairs){.scene = s, .rules = rules}, out);
-    find_both((queued_pairs){.scene = s, .rules = rules, .apart = true}, out);
+    double reach = 0.0;
+    for (uint32_t i = 0; i < rules->object_count * rules->object_count; i++)
+        reach = fmax(reach, rules->distances[i]);
+    find_all((queued_pairs){.scene = s, .rules = rules, .reach = reach}, out);
 }
 
 void oracle_expect(const oracle_list *truth, const cscd_contacts *found) {

@@ -17,9 +17,9 @@ typedef struct oracle_list {
     size_t count, capacity;
 } oracle_list;
 
-/* Gives all VF and EE pairs without a common vertex, but those of two components that are collapsed at an end, to the feature queue, in random order and on every
- * instruction set, without volumes or stars. The list is sorted by (toi, kind, a, b). Edges are numbered as the
- * public API says, but by separate code. */
+/* Gives all VF and EE pairs without a common vertex whose motions have boxes that meet, but those of two components that are collapsed
+ * at an end, to the feature queue, in random order and on every instruction set, without trees or stars. The list is sorted by
+ * (toi, kind, a, b). Edges are numbered as the public API says, but by separate code. */
 void oracle_find(const scene *s, oracle_list *out);
 
 /* Finds the same with the test of minimum separation. */

@@ -16,7 +16,7 @@ static const cscd_mutable_view *mutable_view_of(const cscd_mesh *mesh, double *x
     return x != NULL ? view : NULL;
 }
 
-static cscd_context *context_of(const cscd_mesh *mesh) {
+static cscd_context *own_context(const cscd_mesh *mesh) {
     return mesh != NULL ? mesh->context : NULL;
 }
 
@@ -31,18 +31,18 @@ static const cscd_mesh *mesh_of_line(const cscd_line_search *line) {
 cscd_status plan_create_packed(const cscd_mesh *mesh, const double *positions,
                                const cscd_plan_options *options, cscd_plan **out) {
     cscd_view x;
-    return cscd_plan_create(context_of(mesh), mesh, view_of(mesh, positions, &x), options, out);
+    return cscd_plan_create(own_context(mesh), mesh, view_of(mesh, positions, &x), options, out);
 }
 
 cscd_status plan_from_parts_packed(const cscd_mesh *mesh, const double *positions,
                                    const cscd_plan_parts *parts, cscd_plan **out) {
     cscd_view x;
-    return cscd_plan_create_from_parts(context_of(mesh), mesh, view_of(mesh, positions, &x), parts, out);
+    return cscd_plan_create_from_parts(own_context(mesh), mesh, view_of(mesh, positions, &x), parts, out);
 }
 
 cscd_status detector_create_here(const cscd_mesh *mesh, const cscd_plan *plan,
                                  const cscd_detector_options *options, cscd_detector **out) {
-    return cscd_detector_create(context_of(mesh), mesh, plan, options, out);
+    return cscd_detector_create(own_context(mesh), mesh, plan, options, out);
 }
 
 cscd_status step_packed(cscd_detector *detector, const double *x0, const double *x1, cscd_contacts *out) {
@@ -130,7 +130,7 @@ cscd_status line_max_step_packed(cscd_line_search *line, double longest, double 
 cscd_status partition_create_packed(const cscd_mesh *mesh, const cscd_plan *plan, const double *positions,
                                     const cscd_partition_options *options, cscd_partition **out) {
     cscd_view x;
-    return cscd_partition_create(context_of(mesh), mesh, plan, view_of(mesh, positions, &x), options, out);
+    return cscd_partition_create(own_context(mesh), mesh, plan, view_of(mesh, positions, &x), options, out);
 }
 
 cscd_status partition_renew_packed(cscd_partition *partition, const double *positions, uint32_t part) {
@@ -141,7 +141,7 @@ cscd_status partition_renew_packed(cscd_partition *partition, const double *posi
 
 cscd_status sensors_create_here(const cscd_mesh *mesh, cscd_partition *partition,
                                 const cscd_sensor_options *options, cscd_sensors **out) {
-    return cscd_sensors_create(context_of(mesh), mesh, partition, options, out);
+    return cscd_sensors_create(own_context(mesh), mesh, partition, options, out);
 }
 
 cscd_status sensors_step_packed(cscd_sensors *sensors, const double *x0, const double *x1,

@@ -56,9 +56,9 @@ panel_scene panels_create(uint32_t side, const cscd_context_options *context_opt
     place_vertices(side, 0.0, 0.0, p.x1);
     place_vertices(side, 0.31, 2.0, p.x0 + (size_t)half * 3);
     place_vertices(side, 0.31, -1.0, p.x1 + (size_t)half * 3);
-    assert_int_equal(cscd_context_create(context_options, &p.context), CSCD_OK);
-    assert_int_equal(panels_create_mesh(&p, p.context, &p.mesh), CSCD_OK);
-    assert_int_equal(panels_create_detector(&p, options, &p.detector), CSCD_OK);
+    expect_ok(cscd_context_create(context_options, &p.context));
+    expect_ok(panels_create_mesh(&p, p.context, &p.mesh));
+    expect_ok(panels_create_detector(&p, options, &p.detector));
     return p;
 }
 

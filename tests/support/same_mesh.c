@@ -1,15 +1,7 @@
-/* Contexts, meshes of changing scenes, and whether two meshes are the same, bit for bit. */
+/* Meshes of changing scenes, and whether two meshes are the same, bit for bit. */
 #include "tests/support/same_mesh.h"
 
 #include "tests/support/test.h"
-
-cscd_context *counted_context(counting_allocator *counter) {
-    cscd_context_options options = cscd_context_defaults();
-    cscd_context *context = NULL;
-    options.allocator = counting_allocator_interface(counter);
-    assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
-    return context;
-}
 
 cscd_mesh *changing_scene_mesh(cscd_context *context, const changing_scene *s) {
     cscd_object_desc descs[CHANGING_OBJECTS_MAX];

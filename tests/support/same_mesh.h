@@ -1,12 +1,9 @@
-/* Contexts, meshes of changing scenes, and whether two meshes are the same, bit for bit. */
+/* Meshes of changing scenes, and whether two meshes are the same, bit for bit. */
 #pragma once
 
 #include "src/mesh/mesh.h"
 #include "tests/support/changing_mesh.h"
 #include "tests/support/counting_allocator.h"
-
-/* A context that allocates through the counter; any failure fails the test. */
-cscd_context *counted_context(counting_allocator *counter);
 
 cscd_mesh *changing_scene_mesh(cscd_context *context, const changing_scene *s);
 

@@ -21,6 +21,14 @@ extern "C" {
 #define PACED(usual, slow) (usual)
 #endif
 
+/* A call that must succeed: its status is CSCD_OK, which is 0. */
+#define expect_ok(...) expect_ok_at(__VA_ARGS__, #__VA_ARGS__, __FILE__, __LINE__)
+static inline void expect_ok_at(unsigned status, const char *call, const char *file, int line) {
+    if (status == 0) return;
+    print_error("status %u of %s\n", status, call);
+    _fail(file, line);
+}
+
 #ifdef TEST_FILE /* its name */
 #include "tests/support/room.h"
 

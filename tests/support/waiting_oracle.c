@@ -134,23 +134,38 @@ bool waiting_oracle_covers(const waiting_oracle *o, cscd_contact_kind kind, uint
     return is_listed(&o->pairs, kind, a, b) || leaves_out(o, &o->now, kind, a, b, x);
 }
 
-static bool boxes_meet(const uint32_t *s, const uint32_t *t, const double *x) {
+/* Per triangle the ends of its box, which spare most exact tests. */
+typedef struct triangle_box {
+    double low[3], high[3];
+} triangle_box;
+
+static void make_boxes(const scene *s, const double *x, triangle_box *boxes) {
+    for (uint32_t i = 0; i < s->triangle_count * 3; i++) {
+        for (size_t k = 0; k < 3; k++) {
+            const double at = x[s->triangles[i] * 3 + k];
+            double *low = &boxes[i / 3].low[k], *high = &boxes[i / 3].high[k];
+            *low = i % 3 == 0 || at < *low ? at : *low;
+            *high = i % 3 == 0 || at > *high ? at : *high;
+        }
+    }
+}
+
+static bool boxes_meet(const triangle_box *a, const triangle_box *b) {
     for (int k = 0; k < 3; k++) {
-        const double *p = x + k;
-        double low = fmin(p[s[0] * 3], fmin(p[s[1] * 3], p[s[2] * 3]));
-        double high = fmax(p[s[0] * 3], fmax(p[s[1] * 3], p[s[2] * 3]));
-        if (fmax(p[t[0] * 3], fmax(p[t[1] * 3], p[t[2] * 3])) < low) return false;
-        if (fmin(p[t[0] * 3], fmin(p[t[1] * 3], p[t[2] * 3])) > high) return false;
+        if (a->low[k] > b->high[k] || b->low[k] > a->high[k]) return false;
     }
     return true;
 }
 
 static void add_intersections(const waiting_oracle *o, const double *x, oracle_list *out) {
-    for (uint32_t a = 0; a < o->scene->triangle_count; a++) {
-        const uint32_t *s = o->scene->triangles + (size_t)a * 3;
-        for (uint32_t b = a + 1; b < o->scene->triangle_count; b++) {
-            const uint32_t *t = o->scene->triangles + (size_t)b * 3;
-            if (boxes_meet(s, t, x) && triangles_intersect(s, t, x)) add_pair(out, CSCD_CONTACT_TT, a, b);
+    static triangle_box boxes[SCENE_TRIANGLES_MAX];
+    const uint32_t *triangles = o->scene->triangles, count = o->scene->triangle_count;
+    make_boxes(o->scene, x, boxes);
+    for (uint32_t a = 0; a < count; a++) {
+        for (uint32_t b = a + 1; b < count; b++) {
+            if (boxes_meet(&boxes[a], &boxes[b]) &&
+                triangles_intersect(triangles + (size_t)a * 3, triangles + (size_t)b * 3, x))
+                add_pair(out, CSCD_CONTACT_TT, a, b);
         }
     }
 }

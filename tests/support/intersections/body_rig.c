@@ -1,10 +1,15 @@
 /* Some bodies, one object each, and what a detector finds where they intersect. */
 #include "tests/support/intersections/body_rig.h"
 
+#include "tests/support/rig.h"
 #include "tests/support/test.h"
 
 #include <math.h>
 #include <string.h>
+
+enum { RIGS_MAX = 8 };
+
+static body_rig *rigs[RIGS_MAX]; /* all that have created something */
 
 void body_rig_begin(body_rig *r) {
     scene_clear(&r->all);
@@ -40,6 +45,11 @@ void body_rig_add_box(body_rig *r, const double low[3], const double size[3]) {
         for (uint32_t k = 0; k < 6; k++) s->triangles[s->triangle_count * 3 + k] = first + corners[k];
         s->triangle_count += 2;
     }
+}
+
+void body_rig_box(body_rig *r, const double low[3], const double size[3]) {
+    body_rig_add_box(r, low, size);
+    body_rig_end_body(r);
 }
 
 void body_rig_add_snake(body_rig *r) {
@@ -91,15 +101,22 @@ void body_rig_turn(body_rig *r, uint32_t first, uint32_t count) {
 
 void body_rig_create(body_rig *r, const cscd_detector_options *options, uint32_t thread_count) {
     cscd_object_desc descs[BODIES_MAX];
-    cscd_context_options of_context = cscd_context_defaults();
-    of_context.thread_count = thread_count;
-    if (r->counter != NULL) of_context.allocator = counting_allocator_interface(r->counter);
     for (uint32_t i = 0; i < r->body_count; i++)
         descs[i] = cscd_object_of_triangles(r->bodies[i].vertex_count, r->bodies[i].triangle_count,
                                             r->bodies[i].triangles);
-    assert_int_equal(cscd_context_create(&of_context, &r->context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(r->context, descs, r->body_count, &r->mesh), CSCD_OK);
-    assert_int_equal(cscd_detector_create(r->context, r->mesh, NULL, options, &r->detector), CSCD_OK);
+    body_rig_free(r);
+    const rig made =
+        rig_of_objects(context_of(thread_count, r->counter), descs, r->body_count, NULL, options);
+    r->context = made.context;
+    r->mesh = made.mesh;
+    r->detector = made.detector;
+    for (size_t i = 0; i < RIGS_MAX; i++) {
+        if (rigs[i] == NULL || rigs[i] == r) {
+            rigs[i] = r;
+            return;
+        }
+    }
+    fail_msg("more than %d rigs", RIGS_MAX);
 }
 
 cscd_status body_rig_try(body_rig *r) {
@@ -112,7 +129,7 @@ cscd_status body_rig_try(body_rig *r) {
 }
 
 void body_rig_find(body_rig *r) {
-    assert_int_equal(body_rig_try(r), CSCD_OK);
+    expect_ok(body_rig_try(r));
 }
 
 void body_rig_find_all(body_rig *r) {
@@ -124,6 +141,15 @@ void body_rig_free(body_rig *r) {
     cscd_detector_destroy(r->detector);
     cscd_mesh_destroy(r->mesh);
     cscd_context_destroy(r->context);
+    r->detector = NULL;
+    r->mesh = NULL;
+    r->context = NULL;
+}
+
+int body_rigs_free(void **state) {
+    (void)state;
+    for (size_t i = 0; i < RIGS_MAX && rigs[i] != NULL; i++) body_rig_free(rigs[i]);
+    return 0;
 }
 
 cscd_overlap body_rig_overlap(const body_rig *r, uint32_t a, uint32_t b) {

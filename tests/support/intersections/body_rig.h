@@ -19,7 +19,7 @@ typedef struct body_rig {
     uint32_t body_count;
     cscd_orientation orientation;
     bool part_bodies;
-    counting_allocator *counter; /* of the context; NULL: the system's allocator */
+    counting_allocator *counter; /* of the context, for as long as it lives; NULL: the system's allocator */
     cscd_context *context;
     cscd_mesh *mesh;
     cscd_detector *detector;
@@ -34,6 +34,9 @@ void body_rig_end_body(body_rig *r);
 
 /* Adds an axis-aligned box to what will be a body. */
 void body_rig_add_box(body_rig *r, const double low[3], const double size[3]);
+
+/* A body that is such a box. */
+void body_rig_box(body_rig *r, const double low[3], const double size[3]);
 
 /* Adds a sheet, open and flat, of so many cells along two edges from a corner; with a hole, the cell in the middle is left
  * out. */
@@ -52,7 +55,10 @@ void body_rig_create(body_rig *r, const cscd_detector_options *options, uint32_t
 /* Finds everything. try: whatever the status is. */
 void body_rig_find(body_rig *r);
 cscd_status body_rig_try(body_rig *r);
+
+/* Frees what the rig has created; what it creates anew is freed before. The second is for after each test, and frees all rigs. */
 void body_rig_free(body_rig *r);
+int body_rigs_free(void **state);
 
 /* Creates a detector with the default options in a context of two threads, and finds everything. */
 void body_rig_find_all(body_rig *r);

@@ -37,7 +37,7 @@ cscd_intersection_pairs find_kinds_of(const scene *s, cscd_detector *detector,
                                       cscd_intersection_answer answer, size_t stop_after) {
     cscd_intersection_options options = intersection_options(answer, UINT64_MAX, stop_after);
     cscd_intersection_pairs found;
-    assert_int_equal(find_intersections_packed(detector, s->x0, &options, &found), CSCD_OK);
+    expect_ok(find_intersections_packed(detector, s->x0, &options, &found));
     return found;
 }
 

@@ -123,8 +123,8 @@ void grid_scene_make(grid_family family, uint64_t seed, grid_scene *out) {
     place_vertices(family, &random, out);
     for (uint32_t v = 0; v < out->vertex_count; v++) out->names[v] = v;
     if (family == GRID_SEWN) sew_sheets(out);
-    assert_int_equal(cscd_context_create(NULL, &out->context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(out->context, descs, out->object_count, &out->mesh), CSCD_OK);
+    expect_ok(cscd_context_create(NULL, &out->context));
+    expect_ok(cscd_mesh_create(out->context, descs, out->object_count, &out->mesh));
     out->surface = (named_surface){
         .mesh = out->mesh, .positions = out->positions, .names = family == GRID_SEWN ? out->names : NULL};
 }

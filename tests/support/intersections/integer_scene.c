@@ -129,7 +129,7 @@ cscd_mesh *integer_scene_mesh(const integer_scene *s, cscd_context *context) {
         objects[i] = cscd_object_of_triangles(PART_VERTICES, PART_TRIANGLES, s->own[i * PART_TRIANGLES]);
         objects[i].obstacle = s->obstacles[i];
     }
-    assert_int_equal(cscd_mesh_create(context, objects, SCENE_PARTS, &mesh), CSCD_OK);
+    expect_ok(cscd_mesh_create(context, objects, SCENE_PARTS, &mesh));
     return mesh;
 }
 
@@ -149,12 +149,11 @@ cscd_detector *integer_scene_detector(const integer_scene *s, const cscd_mesh *m
     if (method == CSCD_METHOD_KMEANS) {
         cscd_plan_options plan_options = cscd_plan_defaults();
         plan_options.method = CSCD_METHOD_KMEANS;
-        assert_int_equal(plan_create_packed(mesh, s->positions, &plan_options, &plan), CSCD_OK);
+        expect_ok(plan_create_packed(mesh, s->positions, &plan_options, &plan));
     }
-    assert_int_equal(detector_create_here(mesh, plan, &options, &detector), CSCD_OK);
+    expect_ok(detector_create_here(mesh, plan, &options, &detector));
     cscd_plan_destroy(plan);
-    if (s->active_count > 0)
-        assert_int_equal(cscd_detector_set_active(detector, s->active, s->active_count), CSCD_OK);
+    if (s->active_count > 0) expect_ok(cscd_detector_set_active(detector, s->active, s->active_count));
     return detector;
 }
 

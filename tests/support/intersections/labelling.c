@@ -30,7 +30,7 @@ void labelling_draw(labelling *l, const body_rig *r, uint32_t count, uint64_t se
 }
 
 void labelling_set(const labelling *l, const body_rig *r) {
-    assert_int_equal(cscd_detector_set_parts(r->detector, l->items, l->count), CSCD_OK);
+    expect_ok(cscd_detector_set_parts(r->detector, l->items, l->count));
 }
 
 /* ---- scenes ---------------------------------------------------------------------------------------------- */
@@ -56,7 +56,7 @@ cscd_status labelled_scene_try(body_rig *r, cscd_intersection_options options) {
 void labelled_scene_find(body_rig *r) {
     cscd_intersection_options options = cscd_intersection_defaults();
     options.depths = true;
-    assert_int_equal(labelled_scene_try(r, options), CSCD_OK);
+    expect_ok(labelled_scene_try(r, options));
 }
 
 /* ---- the brute force -------------------------------------------------------------------------------------- */

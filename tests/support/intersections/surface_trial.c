@@ -40,9 +40,8 @@ static void trace_scene(surface_trial *t, grid_family family, trial_spread sprea
     if (spread != SPREAD_NONE) spread_vertices(&traced->scene, spread, seed);
     traced->joiner = (curve_joiner){.context = traced->scene.context};
     size_t count = grid_scene_pairs(&traced->scene, traced->pairs);
-    assert_int_equal(
-        curve_joiner_run(&traced->joiner, &traced->scene.surface, traced->pairs, count, &traced->curves),
-        CSCD_OK);
+    expect_ok(
+        curve_joiner_run(&traced->joiner, &traced->scene.surface, traced->pairs, count, &traced->curves));
     surface_oracle_begin(&t->oracle, &traced->scene, spread == SPREAD_NONE ? 1.0 : 0x1p20);
     t->closed = grid_family_is_closed(family);
 }
@@ -237,10 +236,9 @@ static const char *compare_patches(surface_trial *t) {
     patch_finder finder;
     cscd_patches patches;
     mesh_trees_build(traced->scene.mesh, traced->scene.positions, BOX_AXES, &trees);
-    assert_int_equal(patch_finder_create(traced->scene.mesh, 1, &finder), CSCD_OK);
-    assert_int_equal(patch_finder_run(&finder, &traced->scene.surface, &trees, traced->joiner.found,
-                                      traced->joiner.piece_count, &patches),
-                     CSCD_OK);
+    expect_ok(patch_finder_create(traced->scene.mesh, 1, &finder));
+    expect_ok(patch_finder_run(&finder, &traced->scene.surface, &trees, traced->joiner.found,
+                               traced->joiner.piece_count, &patches));
     const char *problem = compare_corners(t, &trees, &patches);
     patch_finder_free(&finder);
     bvh_free(&trees);

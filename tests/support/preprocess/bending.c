@@ -51,10 +51,10 @@ bending bending_of(body_kind kind, uint32_t triangles, double angle, int threads
     if (kind == BODY_CAPSULE) stretch_body(&b.shape, 3.0);
     cscd_context_options options = cscd_context_defaults();
     options.thread_count = (uint32_t)threads;
-    assert_int_equal(cscd_context_create(&options, &b.context), CSCD_OK);
+    expect_ok(cscd_context_create(&options, &b.context));
     const cscd_object_desc desc =
         cscd_object_of_triangles(b.shape.vertex_count, b.shape.triangle_count, b.shape.triangles);
-    assert_int_equal(cscd_mesh_create(b.context, &desc, 1, &b.mesh), CSCD_OK);
+    expect_ok(cscd_mesh_create(b.context, &desc, 1, &b.mesh));
     for (int f = 0; f < BENDING_FRAMES; f++) {
         b.frames[f] = body_allocate((size_t)b.shape.vertex_count * 3, sizeof(double));
         bending_bend(&b.shape, angle * f / (BENDING_FRAMES - 1), b.frames[f]);

@@ -13,8 +13,8 @@ charge_rig charge_rig_create(const conductor *s, uint32_t thread_count, const cs
     cscd_object_desc desc = cscd_object_of_triangles(s->vertex_count, s->triangle_count, s->triangles);
     options.thread_count = thread_count;
     if (allocator != NULL) options.allocator = *allocator;
-    assert_int_equal(cscd_context_create(&options, &r.context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(r.context, &desc, 1, &r.mesh), CSCD_OK);
+    expect_ok(cscd_context_create(&options, &r.context));
+    expect_ok(cscd_mesh_create(r.context, &desc, 1, &r.mesh));
     uint32_t components = cscd_mesh_component_count(r.mesh);
     r.density = malloc(s->triangle_count * sizeof *r.density);
     r.capacitance = malloc(components * sizeof *r.capacitance);

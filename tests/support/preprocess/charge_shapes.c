@@ -50,8 +50,8 @@ static void split_triangles(conductor *s) {
     cscd_context *context = NULL;
     cscd_mesh *mesh = NULL;
     cscd_object_desc desc = cscd_object_of_triangles(s->vertex_count, s->triangle_count, s->triangles);
-    assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
+    expect_ok(cscd_context_create(NULL, &context));
+    expect_ok(cscd_mesh_create(context, &desc, 1, &mesh));
     conductor finer = new_conductor(s->vertex_count + cscd_mesh_edge_count(mesh), s->triangle_count * 4);
     memcpy(finer.positions, s->positions, s->vertex_count * 3 * sizeof *s->positions);
     for (uint32_t e = 0; e < cscd_mesh_edge_count(mesh); e++) {

@@ -105,7 +105,7 @@ void check_partition(const cscd_partition *partition) {
 cscd_partition *partition_of(const cscd_mesh *mesh, const cscd_plan *plan, const double *positions,
                              const cscd_partition_options *options) {
     cscd_partition *partition = NULL;
-    assert_int_equal(partition_create_packed(mesh, plan, positions, options, &partition), CSCD_OK);
+    expect_ok(partition_create_packed(mesh, plan, positions, options, &partition));
     check_partition(partition);
     return partition;
 }

@@ -10,7 +10,7 @@ void check_regions(const cscd_mesh *mesh, const uint32_t *regions, uint32_t regi
     uint32_t *list = malloc(n * sizeof *list), *pieces = malloc(n * sizeof *list);
     uint32_t *scratch = malloc(n * sizeof *list), *components = malloc(n * sizeof *list);
     dual_graph graph;
-    assert_int_equal(dual_graph_build(mesh, &graph), CSCD_OK);
+    expect_ok(dual_graph_build(mesh, &graph));
     for (uint32_t t = 0; t < n; t++) {
         list[t] = t;
         assert_true(regions[t] <= seen && regions[t] < region_count);
@@ -32,8 +32,8 @@ cscd_mesh *body_mesh(const body *b, uint32_t thread_count) {
     cscd_context_options options = cscd_context_defaults();
     options.thread_count = thread_count;
     cscd_object_desc desc = cscd_object_of_triangles(b->vertex_count, b->triangle_count, b->triangles);
-    assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
+    expect_ok(cscd_context_create(&options, &context));
+    expect_ok(cscd_mesh_create(context, &desc, 1, &mesh));
     return mesh;
 }
 

@@ -12,7 +12,7 @@ tiled_body *tiled_body_make(body_kind kind, uint32_t triangle_count) {
     b->shape = body_of(kind, triangle_count);
     b->mesh = body_mesh(&b->shape, 1);
     const uint32_t count = b->shape.triangle_count;
-    assert_int_equal(dual_graph_build(b->mesh, &b->graph), CSCD_OK);
+    expect_ok(dual_graph_build(b->mesh, &b->graph));
     b->weights = body_allocate(b->mesh->edge_count, sizeof *b->weights);
     for (uint32_t e = 0; e < b->mesh->edge_count; e++)
         b->weights[e] = surface_edge_length(b->mesh, b->shape.positions, e) * random_between(0.1, 1.0);
@@ -24,7 +24,7 @@ tiled_body *tiled_body_make(body_kind kind, uint32_t triangle_count) {
         .mesh = b->mesh, .positions = b->shape.positions, .weights = b->weights, .graph = &b->graph};
     b->component = tiles_component(&b->surface, b->list, count);
     b->tile_count = tiles_number(&b->surface, &b->component, b->tile_of, b->scratch);
-    assert_int_equal(tiles_create(&b->surface, &b->component, b->tile_of, b->tile_count, &b->g), CSCD_OK);
+    expect_ok(tiles_create(&b->surface, &b->component, b->tile_of, b->tile_count, &b->g));
     return b;
 }
 

@@ -11,7 +11,7 @@ static cscd_context *make_context(uint32_t threads, cscd_simd simd) {
     cscd_context *context;
     options.thread_count = threads;
     options.simd = simd;
-    assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
+    expect_ok(cscd_context_create(&options, &context));
     return context;
 }
 
@@ -24,10 +24,10 @@ treecode_rig treecode_rig_create(const conductor *s, uint32_t thread_count, cscd
     assert_true(list != NULL && r.memory != NULL);
     for (uint32_t t = 0; t < s->triangle_count; t++) list[t] = t;
     charge_system_lay_out(&r.system, s->triangle_count, r.memory);
-    assert_int_equal(charge_system_collect(&r.system, &surface, 0, list, s->triangle_count), CSCD_OK);
+    expect_ok(charge_system_collect(&r.system, &surface, 0, list, s->triangle_count));
     free(list);
-    assert_int_equal(treecode_create(r.context, &r.system, &r.t), CSCD_OK);
-    assert_int_equal(treecode_fill(&r.t), CSCD_OK);
+    expect_ok(treecode_create(r.context, &r.system, &r.t));
+    expect_ok(treecode_fill(&r.t));
     return r;
 }
 
@@ -47,7 +47,7 @@ double treecode_rig_residual(treecode_rig *r, const double *density) {
         charges[p->unknown] = density[p->triangle] / system->scale * system->sources[p->unknown].area;
     }
     for (uint32_t i = 0; i < system->count; i++) in_order[i] = charges[r->t.tree.sources[i].unknown];
-    assert_int_equal(treecode_evaluate(&r->t, in_order, potentials), CSCD_OK);
+    expect_ok(treecode_evaluate(&r->t, in_order, potentials));
     for (uint32_t i = 0; i < system->count; i++) squares += (potentials[i] - 1.0) * (potentials[i] - 1.0);
     free(charges);
     return sqrt(squares / system->count);

@@ -44,18 +44,18 @@ void free_step_positions(const rig *r, const double *x0, const double *x1, doubl
 
 static cscd_contacts contacts_between(const rig *reference, const double *x0, const double *x1) {
     cscd_contacts found;
-    assert_int_equal(step_packed(reference->detector, x0, x1, &found), CSCD_OK);
+    expect_ok(step_packed(reference->detector, x0, x1, &found));
     return found;
 }
 
 bool free_step_embedded(const rig *reference, const double *positions) {
     cscd_intersections found;
-    assert_int_equal(check_packed(reference->detector, positions, &found), CSCD_OK);
+    expect_ok(check_packed(reference->detector, positions, &found));
     return found.count == 0 && found.zero_area_triangles == 0;
 }
 
 static void set_distance(const rig *reference, double distance) {
-    assert_int_equal(cscd_detector_set_separation(reference->detector, distance, 0.0), CSCD_OK);
+    expect_ok(cscd_detector_set_separation(reference->detector, distance, 0.0));
 }
 
 static bool same_pair(const cscd_contact *c, cscd_contact_kind kind, uint32_t a, uint32_t b) {
@@ -115,7 +115,7 @@ typedef struct near_pairs {
 
 static near_pairs pairs_near(const rig *reference, const double *x, double distance) {
     cscd_proximities found;
-    assert_int_equal(find_near_packed(reference->detector, x, distance, &found), CSCD_OK);
+    expect_ok(find_near_packed(reference->detector, x, distance, &found));
     near_pairs copy = {malloc((found.count + 1) * sizeof *copy.items), found.count};
     assert_non_null(copy.items);
     if (found.count > 0) memcpy(copy.items, found.items, found.count * sizeof *copy.items);
@@ -177,7 +177,7 @@ static void check_floors(const rig *reference, const free_step_call *call, doubl
 
 static void check_free(const rig *reference, const free_step_call *call, double distance) {
     static double end[SCENE_VERTICES_MAX * 3];
-    assert_int_equal(call->status, CSCD_OK);
+    expect_ok(call->status);
     assert_true(call->step.fraction > 0.0 && call->step.fraction <= call->longest);
     assert_int_equal(call->step.limited, call->step.fraction < call->longest);
     free_step_positions(reference, call->x0, call->x1, call->step.fraction, end);
@@ -198,6 +198,6 @@ bool free_step_check(const rig *reference, const cscd_context *called, const fre
         check_refused(reference, called, call);
     else
         check_free(reference, call, distance);
-    assert_int_equal(cscd_detector_set_separation(reference->detector, distance, tolerance), CSCD_OK);
+    expect_ok(cscd_detector_set_separation(reference->detector, distance, tolerance));
     return !refused;
 }

@@ -15,14 +15,13 @@ rig near_rig(const scene *s, uint32_t threads) {
 }
 
 void set_rest(const rig *r, const double *rest) {
-    assert_int_equal(set_rest_packed(r->detector, rest), CSCD_OK);
+    expect_ok(set_rest_packed(r->detector, rest));
 }
 
 item_list find_items(const rig *r, const double *x, double distance, cscd_near_form form) {
     cscd_proximities found = {.count = 4711};
-    assert_int_equal(
-        (form == CSCD_NEAR_UNIQUE ? find_unique_packed : find_near_packed)(r->detector, x, distance, &found),
-        CSCD_OK);
+    expect_ok(
+        (form == CSCD_NEAR_UNIQUE ? find_unique_packed : find_near_packed)(r->detector, x, distance, &found));
     item_list list = {calloc(found.count + 1, sizeof *list.items), found.count};
     assert_non_null(list.items);
     if (found.count > 0) memcpy(list.items, found.items, found.count * sizeof *list.items);

@@ -36,14 +36,13 @@ cscd_truncation truncate_scene(const rig *r, const scene *s, double radius, cscd
     cscd_truncation out;
     uint32_t count = s->vertex_count;
     if (scalar == CSCD_SCALAR_DOUBLE) {
-        assert_int_equal(truncate_packed(r->detector, s->x0, s->x1, radius, end, &out), CSCD_OK);
+        expect_ok(truncate_packed(r->detector, s->x0, s->x1, radius, end, &out));
         return out;
     }
     narrow_positions(s, s->x0, x0);
     narrow_positions(s, s->x1, x1);
-    assert_int_equal(cscd_detector_truncate(r->detector, CSCD_FLOATS(x0, count), CSCD_FLOATS(x1, count),
-                                            radius, CSCD_MUTABLE_FLOATS(x1, count), &out),
-                     CSCD_OK);
+    expect_ok(cscd_detector_truncate(r->detector, CSCD_FLOATS(x0, count), CSCD_FLOATS(x1, count), radius,
+                                     CSCD_MUTABLE_FLOATS(x1, count), &out));
     for (size_t i = 0; i < (size_t)count * 3; i++) end[i] = (double)x1[i];
     return out;
 }
