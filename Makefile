@@ -123,10 +123,11 @@ SUPPORT_SOURCES := $(filter-out $(if $(WINDOWS),,tests/support/tool/tool_process
 HAS_BASELINES   := $(wildcard runtime/baselines/*.h)
 # The browser's tests look at pages, which no other configuration writes differently. Only a release is installed. Under sanitizers each
 # program of models/ runs (models/test_programs); how bodies and cloth move in them is looked at in a release.
+BROWSER_TESTS   := tests/report/test_report_browser.py tests/report/test_report_view.py
 NOT_HERE        := $(if $(filter 0,$(GSL)),tests/ccd/test_cubic_guess.c tests/ccd/test_root_finders.c) \
                    $(if $(filter %/release,$(BUILD)),,tests/install/test_charge_library.py tests/install/test_embedding.py \
                      tests/install/test_headers.py tests/install/test_header_versions.py) \
-                   $(if $(filter %/release,$(BUILD)),,tests/report/test_report_browser.py) \
+                   $(if $(filter %/release,$(BUILD)),,$(BROWSER_TESTS)) \
                    $(if $(filter release,$(CONFIG)),,tests/install/test_flags.py tests/install/test_install.py tests/install/test_places.py) \
                    $(if $(filter sanitize,$(CONFIG)),$(wildcard tests/models/test_cloth_*.c tests/models/test_recording*.c tests/models/test_soft_body*.c) \
                      tests/models/test_shapes.c tests/tool/test_large_recordings.py) \
@@ -215,7 +216,7 @@ SLOW_models        := cloth_drivers cloth_scenes ipc_scenes programs recording_p
 SLOW_narrow_phase  := exclusions feature_queue
 SLOW_preprocess    := best_draft connected_regions cover labelling motion partition partition_counts plan_failures rank_blocks regions stiffness
 SLOW_proofs        := creations intersections solver_calls steps told
-SLOW_report        := report_browser report_page
+SLOW_report        := report_browser report_view report_page
 SLOW_sensors       := exact_check sensor_recall sensor_scenes
 SLOW_solver        := float_march
 SLOW_tool          := large_recordings tool_shards tool_streaming tool_preprocess tool_render tool_stop tool_figure
@@ -224,7 +225,7 @@ TEST_ROOMS := $(call rooms_of,$(wildcard tests/*/test_*.c*))
 SLOW_TESTS := $(foreach room,$(call rooms_of,$(wildcard tests/*/test_*)),$(addprefix $(room)/test_,$(SLOW_$(room))))
 $(foreach test,$(SLOW_TESTS),$(if $(wildcard tests/$(test).*),,$(warning tests/$(test) is called slow, but there is none)))
 # They start first, and of these the longest, so that no processor waits for one of them at the end.
-LONGEST_TESTS := report/test_report_browser install/test_embedding preprocess/test_cover
+LONGEST_TESTS := report/test_report_browser report/test_report_view install/test_embedding preprocess/test_cover
 IN_ORDER := $(filter $(addprefix $(BUILD)/tests/,$(LONGEST_TESTS)),$(TESTS))
 IN_ORDER += $(filter-out $(IN_ORDER),$(TESTS))
 FAST_TESTS := $(filter-out $(addprefix $(BUILD)/tests/,$(SLOW_TESTS)),$(TESTS))
@@ -381,7 +382,7 @@ test-windows: packages windows-zip
 	+@ANSWERS=$(abspath $(ANSWERS)) NATIVE=$(abspath $(BUILD)) ARCHIVE=$(WINDOWS_ARCHIVE) $(ON_WINDOWS) test-windows-run
 
 test: packages
-	@$(if $(filter tests/report/test_report_browser.py,$(TEST_SOURCES)),.ci/packages browser)
+	@$(if $(filter $(BROWSER_TESTS),$(TEST_SOURCES)),.ci/packages browser)
 	@$(MAKE) --no-print-directory test-run
 
 # The inner loop: the tests that take less than a second each.
