@@ -1,23 +1,13 @@
-"""Names of users in the errors of glTF and GIFTI files: long ones are cut, and never within a character."""
+"""Names of users in the errors of glTF files: long ones are cut, and never within a character."""
 import json
 
 import pytest
 
-from support.tool.gifti import square_gifti
 from support.tool.gltf import FLOAT, Gltf
-from support.tool.read_back import expect_errors, write_file
+from support.tool.read_back import expect_errors, shown, whole, write_file
 from support.tool.running import run
 
 MESH = {"nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}]}
-
-
-def shown(most):
-    """What is shown of a name, which has a two-byte character across the byte where it is cut."""
-    return "x" * (most - 1)
-
-
-def whole(most):
-    return shown(most) + "\u00e9tail"
 
 
 def document(**members):
@@ -57,17 +47,6 @@ def test_names_of_animations_are_cut():
     write_file("mesh.glb", animated(*[{"name": whole(60)}] * 6))
     error = run("check mesh.glb --animation", whole(100), code=1).error
     assert error.endswith(f"holds no animation {shown(100)}, but: {f'{shown(60)}, ' * 4}...\n")
-
-
-def test_words_of_gifti_are_cut():
-    external = 'ASCII" Endian="LittleEndian" ExternalFileName="'
-    expect_errors([(square_gifti().replace(text, by, 1), f"{before}'{shown(most)}'{after}") for text, by, most, before, after in [
-        ("NIFTI_TYPE_FLOAT32", whole(40), 40, "DataType is ", ", expected NIFTI_TYPE_FLOAT32"),
-        ('Dim0="4" Dim1', f'Dim0="{whole(40)}" Dim1', 40, "Dim0 is ", ", expected 1 to"),
-        ('Dim1="3"', f'Dim1="{whole(40)}"', 40, "Dim1 is ", ", expected two dimensions"),
-        (external, f'ExternalFileBinary" Endian="LittleEndian" ExternalFileName="{whole(200)}', 200, "in another file, ",
-         "; save the surface"),
-    ]], name="lh.surf.gii")
 
 
 @pytest.mark.parametrize("name", ["\u00e9" * 350 + "y.obj", "x" + "\u00e9" * 350 + "yy.obj"])

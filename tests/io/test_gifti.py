@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from support.tool.gifti import ASCII, BASE64, HALVES, SQUARE, ZIPPED, square_gifti
-from support.tool.read_back import expect_errors, expect_mesh, frames_read
+from support.tool.read_back import expect_errors, expect_mesh, frames_read, shown, whole
 from support.tool.running import run
 
 NAME = "lh.surf.gii"
@@ -131,3 +131,15 @@ def test_plays_files_as_frames():
     for frame, encoding in enumerate((ASCII, BASE64, ZIPPED)):
         Path(f"f{frame}.surf.gii").write_text(square_gifti(encoding))
     assert "(3 checked)" in run("check f0.surf.gii f%d.surf.gii --no-depths").out
+
+
+def test_words_are_cut():
+    """Long ones are shown up to a whole character."""
+    external = 'ASCII" Endian="LittleEndian" ExternalFileName="'
+    expect_errors([(square_gifti().replace(text, by, 1), f"{before}'{shown(most)}'{after}") for text, by, most, before, after in [
+        ("NIFTI_TYPE_FLOAT32", whole(40), 40, "DataType is ", ", expected NIFTI_TYPE_FLOAT32"),
+        ('Dim0="4" Dim1', f'Dim0="{whole(40)}" Dim1', 40, "Dim0 is ", ", expected 1 to"),
+        ('Dim1="3"', f'Dim1="{whole(40)}"', 40, "Dim1 is ", ", expected two dimensions"),
+        (external, f'ExternalFileBinary" Endian="LittleEndian" ExternalFileName="{whole(200)}', 200, "in another file, ",
+         "; save the surface"),
+    ]], name=NAME)

@@ -70,3 +70,13 @@ def expect_parts(content, names, name, parts_by=None):
     (mesh,) = frames_read(content, name, options)
     known = mesh.named("part") if any(names) else {}
     assert [known.get(part) for part in mesh.faces("part")] == names
+
+
+def shown(most):
+    """What is shown of a name, which has a two-byte character across the byte where it is cut."""
+    return "x" * (most - 1)
+
+
+def whole(most):
+    """The name itself."""
+    return shown(most) + "\u00e9tail"
