@@ -196,30 +196,32 @@ CHARGE_SHARED := $(if $(filter 0,$(CHARGE)),,$(BUILD)/libcscd-charge.so.$(VERSIO
 TOOL    := $(BUILD)/cscd
 TESTS   := $(addprefix $(BUILD)/,$(basename $(TEST_SOURCES)))
 ROOMS   := $(sort $(foreach source,$(ROOM_SOURCES),$(BUILD)/$(dir $(source))room))
-# Tests of a second or more of processor time in the release: `make test` runs them, `make check` leaves them out.
+# Tests of 0.7 seconds or more of processor time in the release: `make test` runs them, `make check` leaves them out.
 # tests/run.sh ends with the slowest programs of a run and their seconds: programs that become slow are added here.
 SLOW_answers       := left_out
-SLOW_baselines     := contour iccd
-SLOW_bvh           := bvh_order traversal
-SLOW_ccd           := algebraic algebraic_oracle cubic cubic_guess elementary_degenerate elementary_exact elementary_oracle min_separation_random root_finders
+SLOW_baselines     := benchmarks contour iccd
+SLOW_bvh           := bvh_order bvh_slivers near_triangles traversal
+SLOW_ccd           := algebraic algebraic_oracle cubic cubic_guess elementary_degenerate elementary_exact elementary_oracle half_space min_separation_random root_finders separated_in_part
 SLOW_core          := float_environment host_loop left_calls exceptions parallel_for progress
 SLOW_cpp           := callbacks
 SLOW_culling       := choice culling local_culling verlet_list
-SLOW_detector      := list_cap object_rules reentry waiting_random
-SLOW_events        := event_tracker
-SLOW_install       := embedding header_versions install places
-SLOW_intersections := collapsed curves memory_budget
-SLOW_jobs          := list stopped_jobs
-SLOW_loose         := loose_steps
+SLOW_depths        := deepest_points work_budget
+SLOW_detector      := change_mesh lifetimes list_cap object_rules oracle reentry waiting_random
+SLOW_events        := event_tracker event_tracker_bodies
+SLOW_install       := charge_library embedding header_versions headers install places run_script
+SLOW_intersections := collapsed curve_changes curves find_intersections first_pairs live_answers memory_budget pair_kind static_check_kernel winding
+SLOW_io            := frame_series
+SLOW_jobs          := each job_processes list merge merge_files stopped_jobs
+SLOW_loose         := loose_solver loose_steps
 SLOW_mesh          := predicates triangle_intersection
 SLOW_models        := cloth_drivers cloth_scenes ipc_scenes programs recording_pawn recordings shape_regions shapes soft_body
-SLOW_narrow_phase  := exclusions feature_queue
+SLOW_narrow_phase  := exclusions feature_queue orphan_pairs
 SLOW_preprocess    := best_draft connected_regions cover labelling motion partition partition_counts plan_failures rank_blocks regions stiffness
 SLOW_proofs        := creations intersections solver_calls steps told
-SLOW_report        := report_browser report_view report_page
-SLOW_sensors       := exact_check sensor_recall sensor_scenes
-SLOW_solver        := float_march
-SLOW_tool          := large_recordings tool_shards tool_streaming tool_preprocess tool_render tool_stop tool_figure
+SLOW_report        := report_browser report_frames report_page report_view
+SLOW_sensors       := exact_check sensor_bounds sensor_recall sensor_scenes
+SLOW_solver        := float_march max_step
+SLOW_tool          := large_recordings tool tool_export tool_figure tool_outputs tool_preprocess tool_render tool_shards tool_stop tool_streaming
 rooms_of = $(sort $(notdir $(patsubst %/,%,$(dir $(1)))))
 TEST_ROOMS := $(call rooms_of,$(wildcard tests/*/test_*.c*))
 SLOW_TESTS := $(foreach room,$(call rooms_of,$(wildcard tests/*/test_*)),$(addprefix $(room)/test_,$(SLOW_$(room))))
@@ -385,7 +387,7 @@ test: packages
 	@$(if $(filter $(BROWSER_TESTS),$(TEST_SOURCES)),.ci/packages browser)
 	@$(MAKE) --no-print-directory test-run
 
-# The inner loop: the tests that take less than a second each.
+# The inner loop: the tests that take less than 0.7 seconds each.
 check: packages
 	@$(MAKE) --no-print-directory check-run
 
