@@ -36,14 +36,19 @@ static void tell_share(void *data, double share) {
     progress_stage(&e->t.context->progress, "charge: iteration", 0.4 + 0.6 * share, 1.0);
 }
 
-/* The one whose potential is farthest from 1. */
+uint32_t tree_solve_worst(const double *potentials, uint32_t count) {
+    uint32_t worst = 0;
+    for (uint32_t k = 1; k < count; k++)
+        if (fabs(potentials[k] - 1.0) > fabs(potentials[worst] - 1.0)) worst = k;
+    return worst;
+}
+
 static uint32_t worst_triangle(const tree_equations *e, const charge_system *system,
                                const double *potentials) {
-    uint32_t worst = 0, i = 0;
-    for (uint32_t k = 1; k < system->count; k++)
-        if (fabs(potentials[k] - 1.0) > fabs(potentials[worst] - 1.0)) worst = k;
-    while (system->points[i].unknown != e->t.tree.sources[worst].unknown) i++;
-    return system->points[i].triangle;
+    const uint32_t unknown = e->t.tree.sources[tree_solve_worst(potentials, system->count)].unknown;
+    const charge_point *point = system->points;
+    while (point->unknown != unknown) point++;
+    return point->triangle;
 }
 
 static cscd_status fail_singular(tree_equations *e, const charge_system *system, gmres_result result,

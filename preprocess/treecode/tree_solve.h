@@ -9,3 +9,6 @@
  * other. OUT_OF_MEMORY, also for more than the limit. */
 cscd_status tree_solve(cscd_context *context, charge_system *system, size_t memory_limit, double tolerance,
                        charge_timings *timings);
+
+/* Which potential is farthest from 1, the first of equals. */
+uint32_t tree_solve_worst(const double *potentials, uint32_t count);

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FINE = 3 };
+enum { FINE = NIGHTLY(3, 4) };
 
 static conductor bent_body(int level) {
     conductor s = conductor_sphere(level);
@@ -206,6 +206,14 @@ TEST(equations_without_numbers) {
     assert_int_equal(tree_solve(r.context, &r.system, SIZE_MAX, 1e-6, &timings), CSCD_INVALID_ARGUMENT);
     treecode_rig_destroy(&r);
     conductor_free(&s);
+}
+
+/* It may be too high or too low. */
+TEST(the_worst_potential_is_named) {
+    const double low[4] = {1.0, 1.5, 0.25, 1.25}, high[3] = {0.75, 1.0, 1.5}, equal[3] = {1.0, 0.5, 1.5};
+    assert_int_equal(tree_solve_worst(low, 4), 2);
+    assert_int_equal(tree_solve_worst(high, 3), 2);
+    assert_int_equal(tree_solve_worst(equal, 3), 1);
 }
 
 /* Sheets that lie almost on each other have no charges that can be told apart, and the sentence says so; the others are solved. */

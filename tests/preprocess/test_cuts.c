@@ -1,8 +1,11 @@
-/* Growth stops when the rest of the component falls apart, and only then; cuts through a band are shortest.
- */
+/* Growth stops when the rest of the component falls apart, and only then; cuts through a band are shortest; of those that show as
+ * much the cheapest is made. */
 #include "preprocess/regions/cut.h"
+#include "preprocess/regions/cut_selection.h"
 #include "preprocess/regions/grow.h"
+#include "src/mesh/surface.h"
 #include "tests/support/mesh_shapes.h"
+#include "tests/support/preprocess/region_check.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
 
@@ -266,4 +269,44 @@ TEST(pieces_by_label) {
     assert_int_equal(dual_graph_pieces(&f.graph, list, 60, labels, labels, scratch), 5);
     for (uint32_t t = 0; t < 60; t++) assert_int_equal(labels[t], expected[t / 10]);
     close_field();
+}
+
+static double height_of(const body *b, uint32_t triangle) {
+    double sum = 0.0;
+    for (uint32_t k = 0; k < 3; k++) sum += b->positions[(size_t)b->triangles[triangle * 3 + k] * 3 + 2];
+    return sum / 3.0;
+}
+
+/* A dumbbell is cut above or below the middle of its rod, whichever costs less, and once. */
+TEST(the_cheapest_of_cuts_that_show_as_much) {
+    enum { CUTS = 3, COUNT = 2000 };
+    static const double heights[CUTS] = {-0.3, 0.0, 0.3};
+    static const int64_t costs[CUTS][CUTS] = {{1, 2, 3}, {2, 1, 3}, {3, 2, 1}};
+    body b = body_of(BODY_DUMBBELL, COUNT);
+    cscd_mesh *mesh = body_mesh(&b, 1);
+    uint32_t triangles[CUTS * COUNT], regions[COUNT], used = 0;
+    size_t offsets[CUTS + 1] = {0};
+    double areas[COUNT];
+    dual_graph graph;
+    assert_int_equal(b.triangle_count, COUNT);
+    expect_ok(dual_graph_build(mesh, &graph));
+    for (uint32_t t = 0; t < b.triangle_count; t++) areas[t] = surface_area(mesh, b.positions, t);
+    for (int i = 0; i < CUTS; i++) {
+        for (uint32_t t = 0; t < b.triangle_count; t++)
+            if (height_of(&b, t) > heights[i]) triangles[used++] = t;
+        offsets[i + 1] = used;
+    }
+    for (int cheapest = 0; cheapest < CUTS; cheapest++) {
+        int64_t own[CUTS];
+        memcpy(own, costs[cheapest], sizeof own);
+        const cut_list cuts = {.count = CUTS, .offsets = offsets, .costs = own, .triangles = triangles};
+        expect_ok(select_cuts(mesh, &graph, b.positions, areas, &cuts, 0.05, 0.1, regions));
+        const uint32_t low = regions[0];
+        for (uint32_t t = 0; t < b.triangle_count; t++)
+            assert_int_equal(regions[t] == low, (height_of(&b, t) > heights[cheapest]) ==
+                                                    (height_of(&b, 0) > heights[cheapest]));
+    }
+    dual_graph_free(mesh, &graph);
+    body_mesh_destroy(mesh);
+    body_free(&b);
 }

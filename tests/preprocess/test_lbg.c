@@ -215,3 +215,12 @@ TEST(equally_near_codes) {
     assert_int_equal(check_run(6, 2, 0.0), 2);
     for (uint32_t i = 0; i < 6; i++) assert_int_equal(labels[i], i < 3 ? 0 : 1);
 }
+
+/* 22 and 33 cannot be told apart, because the square of their difference is 0, but 0 and either can. A code that has run empty is dropped. */
+TEST(squares_that_vanish) {
+    static const double line[6] = {22, 22, 0, 33, 33, 22};
+    scatter_vectors(6, 0);
+    for (uint32_t i = 0; i < 6; i++) vectors[i * D] = line[i] * 1e-163;
+    assert_int_equal(check_run(6, 6, 0.01), 2);
+    for (uint32_t i = 0; i < 6; i++) assert_int_equal(labels[i], line[i] == 0.0 ? labels[2] : 1 - labels[2]);
+}
