@@ -5,10 +5,16 @@
 
 #include <math.h>
 
+/* The nearest float. `volatile` is needed because gcc 12 drops neighbouring (double)(float) conversions when it joins them into vectors. */
+static inline double stored_as_float(double x) {
+    volatile float rounded = (float)x;
+    return (double)rounded;
+}
+
 /* The number of the scalar that is nearest to x. Positions below the least length become 0, as no position may be nearer
  * to it. */
 static inline double stored_coordinate(double x, cscd_scalar scalar) {
-    if (scalar == CSCD_SCALAR_FLOAT) return (double)(float)x;
+    if (scalar == CSCD_SCALAR_FLOAT) return stored_as_float(x);
     return fabs(x) < LENGTH_MIN ? 0.0 : x;
 }
 
