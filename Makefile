@@ -4,6 +4,7 @@
 # GSL=0 builds without GSL (GPL-3): with our own guesses of cubic roots, and the same results, bit for bit.
 # CHARGE=0 leaves out the dense solver of plans by charge, and with it LAPACKE and OpenBLAS; plans by charge are made all the same.
 # EXPAT=0 builds a tool that does not read GIFTI surfaces, as on a machine where pkg-config finds no expat; the library never needs it.
+# NIGHTLY=1 tests more random cases, in a folder of its own.
 # DYNAMIC=1 is for distributions: the tool and the Python package link libcscd.so and the libraries of the system in place of archives.
 # HOST=aarch64-linux-gnu builds by that cross compiler, in build/aarch64-linux-gnu, with the libraries in SYSROOT if that is set.
 # HOST=wasm32-emscripten builds the library for WebAssembly: see src/packaging/wasm/choices.mk.
@@ -31,10 +32,12 @@ WERROR  ?= 0
 GSL     ?= 1
 CHARGE  ?= 1
 DYNAMIC ?= 0
+NIGHTLY ?= 0
 BUILD_ROOT ?= build$(if $(HOST),/$(HOST))
+MORE_CASES := $(if $(filter 1,$(NIGHTLY)),-nightly)
 # A machine without expat builds in the same folder as one with it; only who leaves it out on purpose has another.
 WITHOUT_EXPAT := $(if $(filter 0,$(EXPAT)),-without-expat)
-BUILD   := $(BUILD_ROOT)/$(CONFIG)$(if $(WINDOWS)$(WASM),,$(if $(filter 0,$(GSL)),-without-gsl)$(if $(filter 0,$(CHARGE)),-without-charge)$(WITHOUT_EXPAT)$(if $(filter 1,$(DYNAMIC)),-dynamic))
+BUILD   := $(BUILD_ROOT)/$(CONFIG)$(if $(WINDOWS)$(WASM),,$(if $(filter 0,$(GSL)),-without-gsl)$(if $(filter 0,$(CHARGE)),-without-charge)$(WITHOUT_EXPAT)$(if $(filter 1,$(DYNAMIC)),-dynamic)$(MORE_CASES))
 # The flags of a package that pkg-config finds, else those given here.
 PKG_CONFIG := $(if $(HOST),PKG_CONFIG_SYSROOT_DIR='$(SYSROOT)' PKG_CONFIG_LIBDIR='$(SYSROOT)/usr/lib/$(HOST)/pkgconfig:$(SYSROOT)/usr/share/pkgconfig') pkg-config
 packaged = $(shell $(PKG_CONFIG) $(1) 2>/dev/null || echo $(2))
@@ -179,7 +182,7 @@ MAJOR   := $(firstword $(subst ., ,$(VERSION)))
 
 # Objects have a folder of their own: a program may have the name of the folder of its parts. Builds with GSL=0 and CHARGE=0
 # link others of the same objects.
-OBJECTS := $(BUILD_ROOT)/$(CONFIG)/objects
+OBJECTS := $(BUILD_ROOT)/$(CONFIG)$(MORE_CASES)/objects
 objects = $(patsubst %.c,$(OBJECTS)/%.o,$(1))
 KERNEL_OBJECTS := $(foreach level,$(LEVELS),$(patsubst %.c,$(OBJECTS)/%.$(level).o,$(KERNEL_SOURCES)))
 CORE_OBJECTS := $(call objects,$(CORE_SOURCES)) $(KERNEL_OBJECTS)
@@ -863,7 +866,7 @@ ifneq ($(filter sanitize tsan,$(CONFIG)),)
 $(addprefix $(OBJECTS)/,src/core/% src/mesh/% preprocess/% runtime/% models/%): CFLAGS_ALL += -O2
 endif
 # A machine on which tests repeat less, because programs take many times as long there: with sanitizers, or in an emulator.
-TEST_PACE := $(if $(filter sanitize tsan,$(CONFIG))$(HOST),-DSLOW_MACHINE)
+TEST_PACE := $(if $(filter sanitize tsan,$(CONFIG))$(HOST),-DSLOW_MACHINE)$(if $(filter 1,$(NIGHTLY)), -DNIGHTLY_TESTS)
 $(addprefix $(OBJECTS)/,tests/%): CFLAGS_ALL += $(TEST_PACE)
 
 $(OBJECTS)/%.o: %.c

@@ -187,7 +187,7 @@ static void run_sequence(uint64_t seed) {
 
 TEST(sequences_equal_the_whole) {
     clear_tally();
-    for (uint64_t seed = 0; seed < 30; seed++) run_sequence(seed);
+    for (uint64_t seed = 0; seed < NIGHTLY(30, 60); seed++) run_sequence(seed);
     print_tally("sequences");
     assert_true(twins.contacts > 1000 && twins.intersections > 100 && twins.near > 1000 && twins.limited > 2);
     assert_true(twins.blocked > 100 && twins.held > 100 && twins.left_out > 1000);
@@ -223,7 +223,7 @@ static void run_objects(uint64_t seed) {
 
 TEST(objects_equal_the_whole) {
     clear_tally();
-    for (uint64_t seed = 0; seed < 9; seed++) run_objects(seed);
+    for (uint64_t seed = 0; seed < NIGHTLY(9, 18); seed++) run_objects(seed);
     print_tally("objects");
     assert_true(twins.contacts > 1000 && twins.left_out > 1000);
 }
@@ -269,7 +269,7 @@ static void run_loose(uint64_t seed) {
 
 TEST(loose_objects_equal_the_whole) {
     clear_tally();
-    for (uint64_t seed = 0; seed < 30; seed++) run_loose(seed);
+    for (uint64_t seed = 0; seed < NIGHTLY(30, 60); seed++) run_loose(seed);
     print_tally("loose");
     assert_true(twins.contacts > 1000 && twins.near > 500 && twins.left_out > 1000);
 }

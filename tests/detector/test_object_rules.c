@@ -11,7 +11,7 @@
 
 #include <string.h>
 
-enum { SCENES = 4, MANY = 60, STEPS = 5 };
+enum { SCENES = NIGHTLY(4, 10), MANY = 60, STEPS = 5 };
 
 static void check_guarantees(const rig *s, const random_rules *set, rules_tally *sum) {
     for (uint32_t t = 0; t < objects_joined.triangle_count; t++) {

@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SEQUENCES = 2, STEPS = 6, CHANGES_MAX = 3 * STEPS + 2 };
+enum { SEQUENCES = NIGHTLY(2, 3), STEPS = 6, CHANGES_MAX = 3 * STEPS + 2 };
 
 typedef enum distance_kind { TOUCHING, SEPARATED, THICK, DISTANCE_KINDS } distance_kind;
 

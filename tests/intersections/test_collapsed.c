@@ -13,7 +13,7 @@
 
 #include <string.h>
 
-enum { SEQUENCES = 4 };
+enum { SEQUENCES = NIGHTLY(4, 10) };
 
 enum { PART_COUNT = 4, FRAME_COUNT = 6 };
 

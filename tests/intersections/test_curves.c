@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { COMPARED = 30, TRACED = 500 };
+enum { COMPARED = NIGHTLY(30, 100), TRACED = NIGHTLY(500, 4000) };
 
 static traced_scene traced; /* large; one test at a time */
 

@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { SCENES = 15 };
+enum { SCENES = NIGHTLY(15, 150) };
 
 static integer_scene s; /* large; one test at a time */
 static cscd_intersection_pair expected[PAIRS_MAX], before[PAIRS_MAX];

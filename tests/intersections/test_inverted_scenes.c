@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { ROUNDS = 15 };
+enum { ROUNDS = NIGHTLY(15, 60) };
 
 static body_rig rig, twin; /* large */
 

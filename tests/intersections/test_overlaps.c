@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { LINES = 60, ROUNDS = 3 };
+enum { LINES = NIGHTLY(60, 200), ROUNDS = NIGHTLY(3, 8) };
 
 static body_rig rig; /* large; one test at a time */
 

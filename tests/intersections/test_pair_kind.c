@@ -8,7 +8,7 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { ROUNDS = 20000 };
+enum { ROUNDS = NIGHTLY(20000, 130000) };
 
 enum { VERTEX_COUNT = 6, KIND_COUNT = CSCD_INTERSECTION_TOUCHING + 1 };
 

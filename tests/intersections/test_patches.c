@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-enum { SEEDS = 80 };
+enum { SEEDS = NIGHTLY(80, 400) };
 
 enum { LANES_USED = 3 };
 

@@ -12,7 +12,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { BATCH_MAX = 700, BATCHES = 120 };
+enum { BATCH_MAX = 700, BATCHES = NIGHTLY(120, 600) };
 
 static int seed_random(void **state) {
     (void)state;
@@ -185,7 +185,7 @@ TEST(crossing_pairs) {
         }
         print_message("  %s: %llu meet, %llu of them found\n", family_names[f], (unsigned long long)meeting,
                       (unsigned long long)found);
-        assert_true(meeting > 1000 && (f != NEAR || found * 10 > meeting * 6));
+        assert_true(meeting > 500 && (f != NEAR || found * 10 > meeting * 6));
     }
 }
 

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-enum { DETERMINANTS = 1000, NUMBERS = 10, SCENES = 10 };
+enum { DETERMINANTS = NIGHTLY(1000, 5000), NUMBERS = NIGHTLY(10, 40), SCENES = NIGHTLY(10, 60) };
 
 static leading_terms terms;
 static surface_trial trial; /* large, as the terms */

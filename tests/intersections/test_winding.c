@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { GRIDS = 8 };
+enum { GRIDS = NIGHTLY(8, 20) };
 
 enum { OBJECTS_MAX = 4 };
 

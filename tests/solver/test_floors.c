@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOST_STEPS = 1000 };
+enum { MOST_STEPS = NIGHTLY(1000, 10000) };
 
 enum { SIDE = 3, PANEL = SIDE * SIDE, VERTICES = 2 * PANEL, TRIANGLES = 4 * (SIDE - 1) * (SIDE - 1) };
 

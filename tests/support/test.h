@@ -21,6 +21,13 @@ extern "C" {
 #define PACED(usual, slow) (usual)
 #endif
 
+/* How many random cases there are: more in .ci/nightly, where there is time. */
+#ifdef NIGHTLY_TESTS
+#define NIGHTLY(usual, nightly) (nightly)
+#else
+#define NIGHTLY(usual, nightly) (usual)
+#endif
+
 /* A call that must succeed: its status is CSCD_OK, which is 0. */
 #define expect_ok(...) expect_ok_at(__VA_ARGS__, #__VA_ARGS__, __FILE__, __LINE__)
 static inline void expect_ok_at(unsigned status, const char *call, const char *file, int line) {
