@@ -94,9 +94,9 @@ class Tool:
 
     def __call__(self, *words: str, code: int = 0) -> str:
         """What a run prints that must end with this code."""
-        package = os.path.dirname(os.path.dirname(cscd.__file__))
-        done = subprocess.run([sys.executable, "-m", "cscd", *words], cwd=self.folder, text=True, stdout=subprocess.PIPE,
-                              stderr=subprocess.PIPE, env={**os.environ, "PYTHONPATH": package})
+        program = os.path.join(os.path.dirname(cscd.__file__), "__main__.py")  # `-m cscd` loads numpy each time
+        done = subprocess.run([sys.executable, "-I", program, *words], cwd=self.folder, text=True, stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE)
         assert done.returncode == code, f"{words}: {done.returncode}\n{done.stdout}{done.stderr}"
         return done.stdout
 
