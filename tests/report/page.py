@@ -94,7 +94,6 @@ class Page:
         self.path = os.path.abspath(path)
         self.resize(width, height, ratio)
         self.prefer(theme)
-        self.driver.get("about:blank")
         self.take_log("browser")
         self.take_log("performance")
         self.driver.get("file://" + self.path)
