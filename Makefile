@@ -37,7 +37,7 @@ BUILD_ROOT ?= build$(if $(HOST),/$(HOST))
 MORE_CASES := $(if $(filter 1,$(NIGHTLY)),-nightly)
 # A machine without expat builds in the same folder as one with it; only who leaves it out on purpose has another.
 WITHOUT_EXPAT := $(if $(filter 0,$(EXPAT)),-without-expat)
-BUILD   := $(BUILD_ROOT)/$(CONFIG)$(if $(WINDOWS)$(WASM),,$(if $(filter 0,$(GSL)),-without-gsl)$(if $(filter 0,$(CHARGE)),-without-charge)$(WITHOUT_EXPAT)$(if $(filter 1,$(DYNAMIC)),-dynamic)$(MORE_CASES))
+BUILD   := $(BUILD_ROOT)/$(CONFIG)$(if $(WINDOWS)$(WASM),,$(if $(filter 0,$(GSL)),-without-gsl)$(if $(filter 0,$(CHARGE)),-without-charge)$(WITHOUT_EXPAT)$(if $(filter 1,$(DYNAMIC)),-dynamic))$(MORE_CASES)
 # The flags of a package that pkg-config finds, else those given here.
 PKG_CONFIG := $(if $(HOST),PKG_CONFIG_SYSROOT_DIR='$(SYSROOT)' PKG_CONFIG_LIBDIR='$(SYSROOT)/usr/lib/$(HOST)/pkgconfig:$(SYSROOT)/usr/share/pkgconfig') pkg-config
 packaged = $(shell $(PKG_CONFIG) $(1) 2>/dev/null || echo $(2))
@@ -156,7 +156,7 @@ endif
 ROOM_SOURCES    := $(filter-out %.py,$(TEST_SOURCES))
 ONLY ?=
 ifneq ($(strip $(ONLY)),)
-TEST_SOURCES    := $(sort $(foreach word,$(patsubst test_%,%,$(ONLY)),$(filter $(TEST_SOURCES),$(if $(findstring :,$(word)),\
+TEST_SOURCES    := $(sort $(foreach word,$(patsubst test_%,%,$(subst :test_,:,$(ONLY))),$(filter $(TEST_SOURCES),$(if $(findstring :,$(word)),\
                      $(wildcard tests/$(subst :,/test_*,$(word))*.*),$(wildcard tests/*/test_*$(word)*.* tests/$(word)/test_*.*)))))
 endif
 FUZZ_SOURCES    := $(wildcard tests/fuzz/fuzz_*.c)
@@ -387,6 +387,7 @@ test-windows: packages windows-zip
 	+@ANSWERS=$(abspath $(ANSWERS)) NATIVE=$(abspath $(BUILD)) ARCHIVE=$(WINDOWS_ARCHIVE) $(ON_WINDOWS) test-windows-run
 
 test: packages
+	@$(if $(TEST_SOURCES),,$(error no test has a word of ONLY="$(ONLY)" in its name))
 	@$(if $(filter $(BROWSER_TESTS),$(TEST_SOURCES)),.ci/packages browser)
 	@$(MAKE) --no-print-directory test-run
 
@@ -630,7 +631,8 @@ help:
 	@echo 'make models    all shapes and recordings, in build/models'
 	@echo 'make gallery   redraw the pictures of README and docs'
 	@echo 'make check     build and run the tests that take less than a second each, for the inner loop'
-	@echo 'make test      build and run every test (CONFIG=sanitize: with sanitizers; ONLY="bvh line_search": of these rooms or names)'
+	@echo 'make test      build and run every test (CONFIG=sanitize: with sanitizers; ONLY="bvh line_search": of these rooms or names;'
+	@echo '               NIGHTLY=1: more random cases, in a folder of its own)'
 	@echo 'make test-without-baselines   build and test what is left when runtime/baselines is removed'
 	@echo 'make test-mutants   plant faults in copies of the sources, and show which test catches each (ROOM="src/io": its own)'
 	@echo 'make test-blender   frames of glTF files beside those that Blender evaluates, faces selected in it, the extension, and the steps of docs/from-your-program.md'

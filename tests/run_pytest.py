@@ -20,7 +20,7 @@ class Totals:
     """A plugin that chooses cases by their names, without `test_` and with or without parameters, and counts them."""
 
     def __init__(self, pattern):
-        self.pattern, self.passed, self.failed = pattern, 0, []
+        self.pattern, self.passed, self.failed = pattern.removeprefix("test_"), 0, []
 
     def pytest_collection_modifyitems(self, items):
         items[:] = [item for item in items if fnmatch.fnmatch(case_of(item.name), self.pattern)

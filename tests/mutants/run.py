@@ -75,7 +75,8 @@ class Run:
                     caught.append(f"{test}: {', '.join(cases)}")
                     if not self.matrix:
                         return caught, None
-        return caught, None if caught else "is caught by no test of " + (mutant.own_tests() or "no room: name one, as `caught room/test_name`")
+        return caught, None if caught else f"is caught by none of {len(likely) + len(others)} tests" + (
+            f", all of {mutant.own_tests()} among them" if mutant.own_tests() else ": name one, as `caught room/test_name`")
 
     def try_mutant(self, tree, mutant):
         """Plants it, tries it, and takes it out again. What has caught it must pass without it."""

@@ -3,6 +3,7 @@
 
 #include "tests/support/test.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -54,16 +55,28 @@ void room_add_main(const char *name, int (*run)(void)) {
     file_of(name)->run = run;
 }
 
+/* * stands for any characters, and ? for one. */
+static bool matches_pattern(const char *pattern, const char *text) {
+    if (*pattern == '*')
+        return matches_pattern(pattern + 1, text) || (*text != '\0' && matches_pattern(pattern, text + 1));
+    if (*pattern == '\0' || *text == '\0') return *pattern == *text;
+    return (*pattern == '?' || *pattern == *text) && matches_pattern(pattern + 1, text + 1);
+}
+
 int room_run_tests(const char *name) {
     const room_file *file = file_of(name);
     struct CMUnitTest *tests = calloc((size_t)file->test_count + 1, sizeof *tests);
     if (tests == NULL) return 1;
     size_t count = 0;
+    const char *chosen = argument_count > 1 ? arguments[1] : "*";
     for (const room_test *t = file->tests; t != NULL; t = t->next)
-        tests[count++] = (struct CMUnitTest){t->name, t->run, file->set_up[ROOM_EACH_TEST],
-                                             file->tear_down[ROOM_EACH_TEST], NULL};
-    int failed = _cmocka_run_group_tests(name, tests, count, file->set_up[ROOM_ALL_TESTS],
-                                         file->tear_down[ROOM_ALL_TESTS]);
+        if (matches_pattern(chosen, t->name))
+            tests[count++] = (struct CMUnitTest){t->name, t->run, file->set_up[ROOM_EACH_TEST],
+                                                 file->tear_down[ROOM_EACH_TEST], NULL};
+    if (count == 0) fprintf(stderr, "%s has no test that is called %s\n", name, chosen);
+    int failed = count == 0 ? 1
+                            : _cmocka_run_group_tests(name, tests, count, file->set_up[ROOM_ALL_TESTS],
+                                                      file->tear_down[ROOM_ALL_TESTS]);
     free(tests);
     return failed;
 }
@@ -101,6 +114,5 @@ int main(int argc, char **argv) {
     if (file == NULL) return tell_files(argc > 0 ? argv[0] : "room");
     argument_count = argc - own;
     arguments = argv + own;
-    if (argument_count > 1) cmocka_set_test_filter(arguments[1]);
     return file->run != NULL ? file->run() : room_run_tests(file->name);
 }

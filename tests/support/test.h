@@ -21,7 +21,7 @@ extern "C" {
 #define PACED(usual, slow) (usual)
 #endif
 
-/* How many random cases there are: more in .ci/nightly, where there is time. */
+/* How many random cases, steps or triangles there are: more with NIGHTLY=1, as in .ci/nightly. */
 #ifdef NIGHTLY_TESTS
 #define NIGHTLY(usual, nightly) (nightly)
 #else
