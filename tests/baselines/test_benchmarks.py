@@ -44,6 +44,7 @@ def files(own_folder):
 @pytest.fixture(name="program")
 def fixture_program(request, monkeypatch):
     """Puts a benchmark in the place of the tool."""
+    # In full, because tests/mutants/tree.py looks for these words.
     monkeypatch.setenv("CSCD_TOOL", os.environ[{"methods": "CSCD_METHODS", "volumes": "CSCD_VOLUMES"}[request.param]])
     monkeypatch.delenv("CSCD_DATA", raising=False)
     return request.param

@@ -227,7 +227,7 @@ TEST(every_call_notices) {
         const uint32_t runs = call_notices(call, HONEST, 0);
         noticed += runs > 0;
         for (int trick = DROP_LAST; trick <= REPEAT_ALL; trick++) {
-            for (uint32_t run = 0; run <= (trick == DROP_LAST ? runs : 0); run += PACED(1, 4))
+            for (uint32_t run = 0; run <= (trick == DROP_LAST ? runs : 0); run += run == 0 ? 1 : PACED(1, 4))
                 call_notices(call, trick, run);
         }
     }

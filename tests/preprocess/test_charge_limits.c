@@ -30,7 +30,7 @@ static conductor odd_ellipsoid(int level) {
 
 /* ---- repeatability ---- */
 
-/* 1,280 triangles; in other configurations than release 320. */
+/* 320 triangles, or 1,280. */
 enum { FINE = NIGHTLY(2, 3) };
 
 /* The ranks by density rounded to 24 bits. */

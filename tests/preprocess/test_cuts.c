@@ -277,7 +277,7 @@ static double height_of(const body *b, uint32_t triangle) {
     return sum / 3.0;
 }
 
-/* A dumbbell is cut above or below the middle of its rod, whichever costs less, and once. */
+/* A dumbbell is cut once: below, at or above the middle of its rod, where it costs least. */
 TEST(the_cheapest_of_cuts_that_show_as_much) {
     enum { CUTS = 3, COUNT = 2000 };
     static const double heights[CUTS] = {-0.3, 0.0, 0.3};

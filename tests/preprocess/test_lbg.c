@@ -216,7 +216,7 @@ TEST(equally_near_codes) {
     for (uint32_t i = 0; i < 6; i++) assert_int_equal(labels[i], i < 3 ? 0 : 1);
 }
 
-/* 22 and 33 cannot be told apart, because the square of their difference is 0, but 0 and either can. A code that has run empty is dropped. */
+/* 22 and 33 cannot be told apart, because the square of their difference is 0, but either from 0. A code that has run empty is dropped. */
 TEST(squares_that_vanish) {
     static const double line[6] = {22, 22, 0, 33, 33, 22};
     scatter_vectors(6, 0);

@@ -121,6 +121,7 @@ static double bytes_of(extreme_kind kind, uint32_t count) {
     return bytes;
 }
 
+/* Of one kind under sanitizers, which have nothing to say of it. */
 TEST(memory_grows_with_the_triangles) {
     for (int k = 0; k < PACED(KINDS, 1); k++) {
         const double few = bytes_of(kinds[k], 2 * SMALL), many = bytes_of(kinds[k], 8 * SMALL);
