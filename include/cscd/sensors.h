@@ -1,6 +1,6 @@
 /* Particle sensors: an early warning for scenes of many objects. Particles walk on the surfaces, those of
  * different objects attract each other, and where two come close, their objects may touch (Saenghaengtham,
- * Chulalongkorn University, 2006; numbers in brackets are sections and equations of this thesis). A
+ * Chulalongkorn University, 2005; numbers in brackets are sections and equations of this thesis). A
  * warning is a hint, and so is its absence: only a detector finds every contact. Part of cscd/cscd.h,
  * which says what holds for every function; docs/sensors.md says when sensors are worth using. Since 1.1. */
 #ifndef CSCD_SENSORS_API_H
@@ -102,7 +102,7 @@ typedef struct cscd_sensors cscd_sensors;
 
 /* Which particles there are, and what moves them. Later versions may add values. */
 typedef enum cscd_sensor_method {
-    CSCD_SENSORS_CELLS,  /* one particle in every cell (Saenghaengtham 2006), drawn to the nearest particle
+    CSCD_SENSORS_CELLS,  /* one particle in every cell (Saenghaengtham 2005), drawn to the nearest particle
                          * of another object; the thesis adds up the pulls of all */
     CSCD_SENSORS_RANDOM, /* a fixed number of particles on each object, from random vertices, which also
                          * push each other apart (Senin et al. 2003): to compare with. Watches whole
