@@ -22,6 +22,6 @@ static inline double stored_coordinate(double x, cscd_scalar scalar) {
 /* The largest number of the scalar that is not above x >= 0. */
 static inline double stored_below(double x, cscd_scalar scalar) {
     if (scalar != CSCD_SCALAR_FLOAT) return x;
-    float rounded = (float)x;
-    return (double)((double)rounded > x ? nextafterf(rounded, 0.0f) : rounded);
+    const double rounded = stored_as_float(x);
+    return rounded > x ? (double)nextafterf((float)rounded, 0.0f) : rounded;
 }
