@@ -8,7 +8,7 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { ROUND_COUNT = PACED(20000, 5000) };
+enum { ROUND_COUNT = PACED(NIGHTLY(12000, 20000), 5000) };
 
 static int seed_random(void **state) {
     (void)state;

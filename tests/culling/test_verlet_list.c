@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { INTERVALS = PACED(360, 200), ORACLE_EVERY = 24 };
+enum { INTERVALS = NIGHTLY(200, 360), ORACLE_EVERY = 24 };
 
 /* ---- detectors ------------------------------------------------------------------------------------------- */
 

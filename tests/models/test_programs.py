@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from support.tool.reading import read_json
-from support.tool.running import run
+from support.tool.running import SLOW_MACHINE, run
 
 SCENES = {
     "cloth": ["cloth-drape", "sleeve", "bag"],
@@ -205,7 +205,7 @@ def test_shapes_have_the_counts_of_the_help():
     said = program("shape", "--help")
     shapes = re.findall(r"^([a-z0-9-]+) +(\d+) +\d+   \S", said.stdout, re.MULTILINE)
     assert said.stderr == "" and len(shapes) == 18
-    for name, triangles in shapes:
+    for name, triangles in shapes[::3] if SLOW_MACHINE else shapes:
         is_shape(name, int(triangles))
 
 

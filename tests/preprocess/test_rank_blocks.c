@@ -8,8 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SMALL = PACED(1000, 400) };
-static const double growth_most = PACED(1.5, 2.3); /* of so few triangles hardly any are apart */
+enum { SMALL = NIGHTLY(400, 1000) };
+static const double growth_most = NIGHTLY(2.3, 1.5); /* of so few triangles hardly any are apart */
 
 static const extreme_kind kinds[] = {EXTREME_FAN,     EXTREME_CYLINDER, EXTREME_BIPYRAMID, EXTREME_COMB,
                                      EXTREME_NEEDLES, EXTREME_BOOK,     EXTREME_SPIRE};
