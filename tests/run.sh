@@ -22,23 +22,24 @@ passed=0
 failed=0
 failures=''
 
-# A program is called by its room and its name, and its log by its whole path.
-name_of() { echo "$1" | sed 's:.*/\([^/]*/[^/]*\)$:\1:'; }
-log_of() { echo "$logs/$(echo "$1" | tr / :)"; }
-
-# total WORD LOG: the N of cmocka's line `[  WORD  ] N test(s)`, empty when there is none.
-total() {
-    sed -n "s/^\[  $1  \] \(.*: \)\{0,1\}\([0-9][0-9]*\) test(s).*/\2/p" "$2" | tail -1
+# A program is called by its room and its name, and its log alike. There are hundreds, so the shell does what it can itself.
+name_of() { # name_of PROGRAM: sets name and log
+    folder=${1%/*}
+    name=${folder##*/}/${1##*/}
+    log=$logs/${folder##*/}:${1##*/}
 }
 
-# add_up PROGRAM: shows what it printed, and counts it.
+# add_up PROGRAM: shows what it printed, and counts the N of cmocka's last lines `[  PASSED  ] N test(s)` and `[  FAILED  ] N test(s)`.
 add_up() {
-    name=$(name_of "$1")
-    log=$(log_of "$1")
+    name_of "$1"
     cat "$log"
-    status=$(cat "$log.status")
-    good=$(total PASSED "$log")
-    bad=$(total FAILED "$log")
+    read -r status <"$log.status"
+    totals=$(awk '/^\[  (PASSED|FAILED)  \] (.*: )?[0-9]+ test\(s\)/ {
+            sub(/ test\(s\).*/, "")
+            total[$2] = $NF
+        }
+        END {print total["PASSED"] "/" total["FAILED"]}' "$log")
+    good=${totals%/*} bad=${totals#*/}
     if [ -z "$good$bad" ]; then
         echo "$name: ended with status $status and printed no totals"
         bad=1
@@ -55,16 +56,18 @@ add_up() {
 {
     printf '%s\n' "$@" | xargs -P "${JOBS:-$(nproc)}" -I PROGRAM sh -c '
     case $1 in /*) program=$1 ;; *) program=./$1 ;; esac
-    log=$2/$(echo "$1" | tr / :)
-    started=$(date +%s.%N)
+    folder=${1%/*}
+    log=$2/${folder##*/}:${1##*/}
+    read -r started _ </proc/uptime
     "$program" >"$log" 2>&1
     echo "$?" >"$log.part"
-    { echo "$started $(date +%s.%N)" && times; } >"$log.seconds"
+    read -r ended _ </proc/uptime
+    { echo "${folder##*/}/${1##*/} $started $ended" && times; } >"$log.seconds"
     mv "$log.part" "$log.status"' sh PROGRAM "$logs"
     : >"$logs/.all"
 } &
 for program in "$@"; do
-    log=$(log_of "$program")
+    name_of "$program"
     while [ ! -e "$log.status" ] && [ ! -e "$logs/.all" ]; do sleep 0.1; done
     [ -e "$log.status" ] || { echo unknown >"$log.status" && : >>"$log"; }
     add_up "$program"
@@ -81,13 +84,11 @@ elif ! python3 tests/io/check_recordings.py "$CSCD_DATA"; then
     failures="$failures check_recordings.py"
 fi
 
-# Behind the two moments, the second line of `times` is of the program and all that it started: user and system, as `0m1.23s 0m0.05s`.
+# Behind a program and its two moments, the second line of `times` is of it and all that it started: user and system, as `0m1.23s 0m0.05s`.
 echo 'slowest, in seconds of processor time, and seconds that passed:'
-for program in "$@"; do
-    seconds=$(log_of "$program").seconds
-    [ ! -s "$seconds" ] || awk -v name="$(name_of "$program")" -F '[ms ]+' \
-        'NR == 1 {passed = $2 - $1} NR == 3 {printf "%8.1f %8.1f  %s\n", 60 * ($1 + $3) + $2 + $4, passed, name}' "$seconds"
-done | sort -rn | head -"${SLOWEST:-20}"
+cat "$logs"/*.seconds 2>/dev/null | awk -F '[ms ]+' 'NR % 3 == 1 {split($0, moments, " ")}
+    NR % 3 == 0 {printf "%8.1f %8.1f  %s\n", 60 * ($1 + $3) + $2 + $4, moments[3] - moments[2], moments[1]}' |
+    sort -rn | head -"${SLOWEST:-20}"
 
 [ -z "$failures" ] || echo "failed:$failures"
 echo "$passed passed, $failed failed"
