@@ -55,7 +55,7 @@ void room_add_main(const char *name, int (*run)(void)) {
     file_of(name)->run = run;
 }
 
-/* * stands for any characters, and ? for one. */
+/* In a pattern, * stands for any characters and ? for one. */
 static bool matches_pattern(const char *pattern, const char *text) {
     if (*pattern == '*')
         return matches_pattern(pattern + 1, text) || (*text != '\0' && matches_pattern(pattern, text + 1));
