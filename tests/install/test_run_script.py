@@ -3,7 +3,7 @@ import re
 
 import pytest
 
-from support.install.built_tree import shell
+from support.install.built_tree import CC, shell
 
 GOOD = "echo '[  PASSED  ] 3 test(s).'"
 
@@ -33,6 +33,17 @@ def test_totals_are_added_up(run_script, body, code, says):
 def test_no_program_is_a_failure(tmp_path):
     assert "0 passed, 1 failed\n" in shell("tests/run.sh /no-such-program", code=1, BUILD=str(tmp_path), CSCD_DATA="")
     assert "nothing is tested" in shell("tests/run.sh", code=1, BUILD=str(tmp_path))
+
+
+def test_a_name_that_chooses_nothing_is_a_failure(tmp_path):
+    """Of cases of a file in C, or of files."""
+    (tmp_path / "test_a.c").write_text('#include "tests/support/test.h"\nTEST(first) {}\nTEST(second) {}\n')
+    flags = """-D_GNU_SOURCE -DTEST_FILE='"test_a"' -I."""
+    shell(f"{CC} {flags} -o {tmp_path}/test_a {tmp_path}/test_a.c tests/support/room.c -lcmocka")
+    for cases, passed in (("", 2), ("first", 1), ("'?e*d'", 1), ("'*s*'", 2)):
+        assert f"[  PASSED  ] {passed} test(s).\n" in shell(f"{tmp_path}/test_a {cases}")
+    assert shell(f"{tmp_path}/test_a 'third*'", code=1) == "test_a has no test that is called third*\n"
+    assert 'no test has a word of ONLY="no-such-word"' in shell("make test ONLY=no-such-word", code=2)
 
 
 def test_named_recordings_must_be_there(run_script, tmp_path):
