@@ -13,10 +13,11 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 static const cscd_plan_options default_options = {
-    .method = CSCD_METHOD_CHARGE, .k = 4, .seed = 1, .threshold = 0.1};
+    .method = CSCD_METHOD_CHARGE, .k = 4, .seed = 1, .threshold = 0.1, .growing = 1.0 / 400.0};
 
 void cscd_plan_defaults_sized(cscd_plan_options *out, size_t size) {
     struct_give_options(out, size, &default_options, sizeof default_options);
@@ -27,10 +28,33 @@ static bool makes_plans(cscd_method method) {
     return traits != NULL && traits->makes_plan;
 }
 
+/* Are all of these bits there, if one is that needs them? */
+static bool has_needed(uint64_t ours, uint64_t bit, uint64_t needed) {
+    return (ours & bit) == 0 || (ours & needed) == needed;
+}
+
+static cscd_status check_ours(cscd_context *context, const cscd_plan_options *options) {
+    const uint64_t all = CSCD_OURS_CHARGE | CSCD_OURS_RANKS | CSCD_OURS_CUTS | CSCD_OURS_POINTS;
+    const uint64_t ours = options->ours;
+    if ((ours & ~all) != 0 || (ours != 0 && options->method != CSCD_METHOD_PUBLISHED))
+        return context_fail(
+            context, CSCD_INVALID_ARGUMENT,
+            "ours is %llu with method %s, expected 0, or a sum of CSCD_OURS_ constants of plans "
+            "with method published",
+            (unsigned long long)ours, cscd_method_name(options->method));
+    if (has_needed(ours, CSCD_OURS_CUTS, CSCD_OURS_RANKS) &&
+        has_needed(ours, CSCD_OURS_POINTS, CSCD_OURS_CUTS))
+        return CSCD_OK;
+    return context_fail(context, CSCD_INVALID_ARGUMENT,
+                        "ours is %llu: CSCD_OURS_CUTS needs CSCD_OURS_RANKS, and CSCD_OURS_POINTS needs "
+                        "CSCD_OURS_CUTS",
+                        (unsigned long long)ours);
+}
+
 static cscd_status check_options(cscd_context *context, const cscd_plan_options *options) {
     if (options->method != CSCD_METHOD_AUTO && !makes_plans(options->method))
         return context_fail(context, CSCD_INVALID_ARGUMENT,
-                            "method %s makes no plan: use charge, kmeans, single or auto",
+                            "method %s makes no plan: use charge, kmeans, single, auto or published",
                             cscd_method_name(options->method));
     if (!(options->threshold > 0.0 && options->threshold < 1.0))
         return context_fail(context, CSCD_INVALID_ARGUMENT,
@@ -39,10 +63,10 @@ static cscd_status check_options(cscd_context *context, const cscd_plan_options 
     if (options->charge_solver > CSCD_CHARGE_COARSE)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "unknown solver %u of the charge",
                             options->charge_solver);
-    if (options->variant > CSCD_PLAN_VARIANT_PUBLISHED)
-        return context_fail(context, CSCD_INVALID_ARGUMENT, "unknown variant %llu of the plan",
-                            (unsigned long long)options->variant);
-    return CSCD_OK;
+    if (!(options->growing >= 0.0 && options->growing <= 1.0))
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "growing is %g, expected a share of the triangles from 0 to 1", options->growing);
+    return check_ours(context, options);
 }
 
 static cscd_status check_stiffness(const cscd_mesh *mesh, const double *stiffness) {
@@ -116,6 +140,10 @@ static cscd_status make_plan(const cscd_mesh *mesh, const double *positions, con
                              cscd_plan **out) {
     cscd_plan *plan = plan_allocate(mesh, parts->method, parts->region_count);
     if (plan == NULL) return context_out_of_memory(mesh->context);
+    if (parts->origin != NULL) {
+        snprintf(plan->origin, sizeof plan->origin, "%s", parts->origin);
+        plan->info.origin = plan->origin;
+    }
     cscd_status status = fill_plan(plan, mesh, positions, parts);
     if (status == CSCD_OK) status = context_progress_status(mesh->context);
     if (status != CSCD_OK) {
@@ -127,8 +155,33 @@ static cscd_status make_plan(const cscd_mesh *mesh, const double *positions, con
     return CSCD_OK;
 }
 
+/* How a draft was made: words that docs/formats.md explains. */
+static void write_origin(const plan_draft *d, char out[PLAN_ORIGIN_SIZE]) {
+    static const char *const solvers[] = {"tree", "dense", "coarse"};
+    const cscd_plan_options *o = &d->options;
+    const bool published = o->method == CSCD_METHOD_PUBLISHED;
+    int length = snprintf(out, PLAN_ORIGIN_SIZE, "method=%s", cscd_method_name(o->method));
+    char *rest = out + length;
+    const size_t room = PLAN_ORIGIN_SIZE - (size_t)length;
+    if (o->method == CSCD_METHOD_KMEANS)
+        snprintf(rest, room, " k=%u seed=%u version=%s", o->k, o->seed, cscd_version_string());
+    else if (!method_traits_of(o->method)->by_charge)
+        snprintf(rest, room, " version=%s", cscd_version_string());
+    else if (published)
+        snprintf(rest, room, " solver=%s threshold=%g growing=%g ours=%llu version=%s",
+                 solvers[plan_draft_solver(d)], o->threshold, o->growing, (unsigned long long)o->ours,
+                 cscd_version_string());
+    else
+        snprintf(rest, room, " solver=%s threshold=%g frames=%u stiffness=%d version=%s",
+                 solvers[plan_draft_solver(d)], o->threshold, d->frames->count, o->stiffness != NULL,
+                 cscd_version_string());
+}
+
 static cscd_status plan_from_draft(const plan_draft *d, const plan_candidates *candidates, cscd_plan **out) {
-    const cscd_plan_parts parts = {.method = d->options.method,
+    char origin[PLAN_ORIGIN_SIZE];
+    write_origin(d, origin);
+    const cscd_plan_parts parts = {.origin = origin,
+                                   .method = d->options.method,
                                    .region_count = d->region_count,
                                    .triangle_regions = d->regions,
                                    .detector_points = d->detector_points,
@@ -137,7 +190,8 @@ static cscd_status plan_from_draft(const plan_draft *d, const plan_candidates *c
     const cscd_status status = make_plan(d->mesh, d->positions, &parts, out);
     if (status != CSCD_OK) return status;
     (*out)->timings = d->timings;
-    (*out)->info = (cscd_plan_info){d->kernels.used, d->kernels.better};
+    (*out)->info.charge_kernels = d->kernels.used;
+    (*out)->info.better_kernels = d->kernels.better;
     (*out)->candidates = *candidates;
     return CSCD_OK;
 }
@@ -202,6 +256,13 @@ cscd_status cscd_plan_create(cscd_context *context, const cscd_mesh *mesh, const
 
 /* ---- from parts ------------------------------------------------------------------------------------ */
 
+/* Can it stand in one line of a file? */
+static bool is_line(const char *origin) {
+    size_t length = 0;
+    while (length < PLAN_ORIGIN_SIZE && origin[length] >= ' ' && origin[length] <= '~') length++;
+    return length < PLAN_ORIGIN_SIZE && origin[length] == '\0';
+}
+
 static cscd_status check_parts(const cscd_mesh *mesh, const cscd_plan_parts *parts, uint32_t *component_of) {
     cscd_context *context = mesh->context;
     if (!makes_plans(parts->method))
@@ -210,10 +271,15 @@ static cscd_status check_parts(const cscd_mesh *mesh, const cscd_plan_parts *par
     if (parts->triangle_regions == NULL || parts->detector_points == NULL)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "%s is NULL",
                             parts->triangle_regions == NULL ? "triangle_regions" : "detector_points");
-    bool charged = parts->method == CSCD_METHOD_CHARGE;
+    const bool charged = method_traits_of(parts->method)->by_charge;
     if ((parts->charges != NULL) != charged || (parts->capacitances != NULL) != charged)
+        return context_fail(
+            context, CSCD_INVALID_ARGUMENT,
+            "charges and capacitances belong to the methods charge and published, and to no other");
+    if (parts->origin != NULL && !is_line(parts->origin))
         return context_fail(context, CSCD_INVALID_ARGUMENT,
-                            "charges and capacitances belong to method charge, and to no other");
+                            "origin is longer than %d characters, or has others than printable ASCII",
+                            PLAN_ORIGIN_SIZE - 1);
     for (uint32_t t = 0; t < mesh->triangle_count; t++) {
         uint32_t region = parts->triangle_regions[t], component = mesh->triangle_components[t];
         if (region >= parts->region_count)

@@ -21,3 +21,6 @@ typedef struct plan_draft {
 cscd_status plan_draft_make(const cscd_mesh *mesh, const double *positions, const plan_frames *frames,
                             const cscd_plan_options *options, plan_draft *out);
 void plan_draft_free(plan_draft *d);
+
+/* How the charge is solved for, where the method needs it. */
+cscd_charge_solver plan_draft_solver(const plan_draft *d);

@@ -51,13 +51,13 @@ typedef enum cscd_charge_solver {
 typedef struct cscd_plan_options {
     uint32_t struct_size; /* set by cscd_plan_defaults */
     /* CHARGE by default, or KMEANS, or SINGLE; or AUTO: the one of these that leaves the least to a step, as
-     * cscd_plan_compared tells, and the plan is then of that method. */
+     * cscd_plan_compared tells, and the plan is then of that method; or PUBLISHED (cscd/research.h). */
     cscd_method method;
     uint32_t k;       /* KMEANS: how many regions all components have together, 4 by default */
     uint32_t seed;    /* KMEANS, AUTO: of the random starts, 1 by default */
-    double threshold; /* CHARGE, AUTO: the share of the triangles, those of least density, along which
-                       * cuts run; in (0,1), 0.1 by default */
-    uint64_t variant; /* 0 by default; cscd/research.h has others to compare with */
+    double threshold; /* CHARGE, AUTO, PUBLISHED: the share of the triangles, those of least density, along
+                       * which cuts run; in (0,1), 0.1 by default */
+    uint64_t ours;    /* PUBLISHED: what is done as CHARGE does it; see cscd/research.h. 0 by default */
     /* CHARGE, AUTO: bytes that the solution may take; 0, the default: what the system has. */
     uint64_t memory_limit;
     cscd_charge_solver charge_solver; /* CHARGE, AUTO: TREE by default */
@@ -70,6 +70,8 @@ typedef struct cscd_plan_options {
      * beyond a soft place is given a detector point of its own. NULL, the default: as stiff everywhere. INVALID_ARGUMENT names the
      * first triangle whose value is not positive and finite. */
     const double *stiffness;
+    /* PUBLISHED: clusters with more than this share of their component's triangles grow; in [0,1], 1/400 by default. */
+    double growing;
 } cscd_plan_options;
 
 /* The default options. */
@@ -102,12 +104,15 @@ typedef struct cscd_region {
 
 /* What a plan consists of, for programs that save and load plans themselves. */
 typedef struct cscd_plan_parts {
-    cscd_method method; /* CHARGE, KMEANS or SINGLE */
+    cscd_method method; /* CHARGE, KMEANS, SINGLE or PUBLISHED */
     uint32_t region_count;
     const uint32_t *triangle_regions; /* the region of each triangle */
     const double *detector_points;    /* region_count * 3 doubles */
-    const double *charges;            /* with CHARGE one for each triangle, else NULL */
-    const double *capacitances;       /* with CHARGE one for each component, else NULL */
+    const double *charges;            /* with CHARGE and PUBLISHED one for each triangle, else NULL */
+    const double *capacitances;       /* with these one for each component, else NULL */
+    const char
+        *origin; /* how it was made, as cscd_plan_describe says: a line of at most 255 characters of printable
+                         * ASCII; NULL: that is not known */
 } cscd_plan_parts;
 
 /* Creates a plan from the parts of an earlier one of the same mesh. positions: the mesh at rest.
@@ -116,7 +121,7 @@ typedef struct cscd_plan_parts {
  *
  *     const uint32_t regions[4] = {0, 0, 0, 0}; // of the triangles
  *     const double points[3] = {0.2, 0.2, 0.2};
- *     const cscd_plan_parts parts = {CSCD_METHOD_SINGLE, 1, regions, points, NULL, NULL};
+ *     const cscd_plan_parts parts = {CSCD_METHOD_SINGLE, 1, regions, points, NULL, NULL, NULL};
  *     cscd_plan *plan = NULL;
  *     if (cscd_plan_create_from_parts(context, tetrahedron, CSCD_DOUBLES(corners, 4), &parts, &plan) == CSCD_OK)
  *         printf("%.1f of the region is seen\n", cscd_plan_region(plan, 0).visible_share);
@@ -132,7 +137,7 @@ static inline cscd_status cscd_plan_create_from_parts(cscd_context *context, con
     return cscd_plan_create_from_parts_sized(context, mesh, positions, parts, sizeof *parts, out);
 }
 
-/* The method that made the regions: CHARGE, KMEANS or SINGLE. */
+/* The method that made the regions: CHARGE, KMEANS, SINGLE or PUBLISHED. */
 CSCD_API cscd_method cscd_plan_method(const cscd_plan *plan);
 
 /* The number of regions of all components together. */
@@ -150,10 +155,10 @@ static inline cscd_region cscd_plan_region(const cscd_plan *plan, uint32_t regio
 CSCD_API uint32_t cscd_plan_triangle_region(const cscd_plan *plan, uint32_t triangle);
 
 /* The charge density of a triangle, in Gaussian units, when its component is a conductor at potential 1; 0
- * without CHARGE. */
+ * where the method is not by charge. */
 CSCD_API double cscd_plan_triangle_charge(const cscd_plan *plan, uint32_t triangle);
 
-/* The capacitance of a component as a conductor, a length in Gaussian units; 0 without CHARGE. */
+/* The capacitance of a component as a conductor, a length in Gaussian units; 0 where the method is not by charge. */
 CSCD_API double cscd_plan_capacitance(const cscd_plan *plan, uint32_t component);
 
 /* Milliseconds that making a plan took. */
@@ -171,7 +176,7 @@ static inline cscd_preprocess_timings cscd_plan_timings(const cscd_plan *plan) {
     return timings;
 }
 
-/* How a plan was made. The names belong to OpenBLAS and the library, and live as long as these are loaded. */
+/* How a plan was made. The names of kernels belong to OpenBLAS and the library, and live as long as these are loaded. */
 typedef struct cscd_plan_info {
     const char
         *charge_kernels; /* the kernels with which OpenBLAS solved the charge system, by its own name, such
@@ -182,9 +187,12 @@ typedef struct cscd_plan_info {
                                  * not know it and took old ones, which take about three times as long. Set the
                                  * environment variable OPENBLAS_CORETYPE to this before the program starts. NULL:
                                  * the kernels will do, or are not known */
+    /* Method, solver, thresholds, frames and version, as words: "method=charge solver=tree threshold=0.1 frames=0
+     * stiffness=0 version=2.0.0". NULL: the plan is of parts that say nothing. Lives as long as the plan. */
+    const char *origin;
 } cscd_plan_info;
 
-/* Which kernels made the plan. */
+/* How the plan was made. */
 CSCD_API void cscd_plan_describe_sized(const cscd_plan *plan, cscd_plan_info *out, size_t size);
 static inline cscd_plan_info cscd_plan_describe(const cscd_plan *plan) {
     cscd_plan_info info;

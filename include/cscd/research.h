@@ -8,13 +8,17 @@
 
 /* Further values of cscd_method. The published ones lose contacts, so their lists promise nothing. */
 #define CSCD_METHOD_BRUTE          ((cscd_method)64) /* every pair of features is tested; quadratic in time */
-#define CSCD_METHOD_PUBLISHED      ((cscd_method)65) /* culling by orientation as published (Yeh 2012) */
+#define CSCD_METHOD_PUBLISHED      ((cscd_method)65) /* the whole pipeline as published (Yeh 2012) */
 #define CSCD_METHOD_ICCD           ((cscd_method)66) /* normal cones and contours (Tang et al. 2009), corrected */
 #define CSCD_METHOD_ICCD_PUBLISHED ((cscd_method)67) /* the same as published */
 
-/* A value of cscd_plan_options.variant. CHARGE: cuts by the published rules (Yeh 2012): densities are equalized with 256
- * bins, clusters of low density grow until they part a body, and detector points are centroids. */
-#define CSCD_PLAN_VARIANT_PUBLISHED 1u
+/* PUBLISHED makes plans as section 3 of the thesis says: charge by the dense system in doubles, densities equalized by 256 bins,
+ * clusters below the threshold that grow ring by ring, shrink, and cut along the shorter contour, detector points at the centroids.
+ * cscd_plan_options.ours, a sum of these, takes single steps from CHARGE instead. docs/theory/thesis.md has them all. */
+#define CSCD_OURS_CHARGE 1u /* the charge by charge_solver */
+#define CSCD_OURS_RANKS  2u /* densities become ranks */
+#define CSCD_OURS_CUTS   4u /* regions by what their points see; needs CSCD_OURS_RANKS */
+#define CSCD_OURS_POINTS 8u /* points where they see the most; needs CSCD_OURS_CUTS */
 
 #ifdef __cplusplus
 extern "C" {
@@ -30,7 +34,8 @@ typedef struct cscd_method_info {
     bool
         by_orientation; /* culls by orientation, so it takes a plan and gains from one; AUTO: where that pays */
     bool by_contours;   /* culls by normal cones and contours */
-    uint8_t reserved[2]; /* 0 */
+    bool by_charge;     /* its plans have the charge of each triangle */
+    uint8_t reserved[1]; /* 0 */
 } cscd_method_info;
 
 /* The number of methods, those of this header included. */

@@ -45,8 +45,6 @@ static void put_links(const link_list *links, dual_graph *graph) {
         graph->neighbours[forth] = l->b;
         graph->neighbours[back] = l->a;
         graph->edges[forth] = graph->edges[back] = l->edge;
-        graph->twins[forth] = back;
-        graph->twins[back] = forth;
     }
     for (uint32_t t = graph->triangle_count; t > 0; t--) offsets[t] = offsets[t - 1];
     offsets[0] = 0;
@@ -54,8 +52,8 @@ static void put_links(const link_list *links, dual_graph *graph) {
 
 static array_list list_arrays(dual_graph *graph) {
     return (array_list){{ARRAY(graph->offsets, (size_t)graph->triangle_count + 1),
-                         ARRAY(graph->neighbours, graph->link_count), ARRAY(graph->edges, graph->link_count),
-                         ARRAY(graph->twins, graph->link_count)}};
+                         ARRAY(graph->neighbours, graph->link_count),
+                         ARRAY(graph->edges, graph->link_count)}};
 }
 
 static cscd_status allocate_graph(const cscd_mesh *mesh, uint32_t link_count, dual_graph *graph) {

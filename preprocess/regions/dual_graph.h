@@ -12,7 +12,6 @@ typedef struct dual_graph {
     uint32_t triangle_count, link_count; /* each link counts twice, once from either end */
     uint32_t *offsets, *neighbours;
     uint32_t *edges; /* of the mesh; DUAL_NO_EDGE */
-    uint32_t *twins; /* the same link from its other end */
 } dual_graph;
 
 cscd_status dual_graph_build(const cscd_mesh *mesh, dual_graph *out);

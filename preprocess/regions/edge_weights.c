@@ -4,9 +4,9 @@
 #include "preprocess/regions/stiffness.h"
 #include "src/mesh/surface.h"
 
-/* An edge costs its length where the charge is high, and this share of it where the charge is lowest. As published the cost falls over
- * all ranks, else from three times the threshold on: cuts run along creases, and elsewhere they are short. */
-static const double published_crease = 0.15, usual_crease = 0.1, crease_ranks = 3.0;
+/* An edge costs its length where the charge is high, and this share of it where the charge is lowest. The cost falls from three times
+ * the threshold on: cuts run along creases, and elsewhere they are short. */
+static const double crease = 0.1, crease_ranks = 3.0;
 
 /* The mean of the ranks beside an edge. */
 static double rank_beside(const cscd_mesh *mesh, const double *ranks, uint32_t edge) {
@@ -18,8 +18,7 @@ static double rank_beside(const cscd_mesh *mesh, const double *ranks, uint32_t e
 
 void weigh_edges(const cscd_mesh *mesh, const double *positions, const double *equalized,
                  const double *stiffness_shares, const region_options *options, double *weights) {
-    const double crease = options->published ? published_crease : usual_crease;
-    const double high = options->published ? 1.0 : fmin(1.0, crease_ranks * options->threshold);
+    const double high = fmin(1.0, crease_ranks * options->threshold);
     for (uint32_t e = 0; e < mesh->edge_count; e++) {
         const double rank = fmin(1.0, rank_beside(mesh, equalized, e) / high);
         double share = 1.0 - (1.0 - crease) * (1.0 - rank);

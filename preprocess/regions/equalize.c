@@ -4,8 +4,6 @@
 
 #include <math.h>
 
-enum { BIN_COUNT = 256 };
-
 typedef struct ranked {
     uint32_t component, triangle;
     double density;
@@ -29,24 +27,7 @@ static void rank_exactly(const ranked *items, uint32_t count, double *equalized)
     for (uint32_t i = 0; i < count; i++) equalized[items[i].triangle] = (i + 1.0) / count;
 }
 
-/* Halves avoid an overflow of the range; equal densities all go to the first bin. */
-static uint32_t bin_of(double density, double low, double high) {
-    double range = 0.5 * high - 0.5 * low;
-    if (!(range > 0.0)) return 0;
-    uint32_t bin = (uint32_t)((0.5 * density - 0.5 * low) / range * BIN_COUNT);
-    return bin < BIN_COUNT ? bin : BIN_COUNT - 1;
-}
-
-static void rank_by_bins(const ranked *items, uint32_t count, double *equalized) {
-    uint32_t cumulative[BIN_COUNT] = {0};
-    double low = items[0].density, high = items[count - 1].density;
-    for (uint32_t i = 0; i < count; i++) cumulative[bin_of(items[i].density, low, high)]++;
-    for (uint32_t bin = 1; bin < BIN_COUNT; bin++) cumulative[bin] += cumulative[bin - 1];
-    for (uint32_t i = 0; i < count; i++)
-        equalized[items[i].triangle] = (double)cumulative[bin_of(items[i].density, low, high)] / count;
-}
-
-cscd_status equalize(const cscd_mesh *mesh, const double *density, bool published, double *equalized) {
+cscd_status equalize(const cscd_mesh *mesh, const double *density, double *equalized) {
     cscd_context *context = mesh->context;
     for (uint32_t t = 0; t < mesh->triangle_count; t++) {
         if (!isfinite(density[t]))
@@ -63,7 +44,7 @@ cscd_status equalize(const cscd_mesh *mesh, const double *density, bool publishe
     const ranked *first = items;
     for (uint32_t c = 0; c < mesh->component_count; c++) {
         uint32_t count = mesh->components[c].triangle_count;
-        (published ? rank_by_bins : rank_exactly)(first, count, equalized);
+        rank_exactly(first, count, equalized);
         first += count;
     }
     context_free_all(context, lists);

@@ -5,7 +5,5 @@
 
 /* equalized[t], in (0, 1]: the triangle's rank in its component, from 1, divided by the component's triangle
  * count. Densities are first rounded to 24 bits; then ties are broken by index. Any finite densities.
- * published: the seed's equation 3.18 instead, with 256 bins of equal width from the component's lowest
- * density to its highest; all triangles of a bin then have one value. INVALID_ARGUMENT names the triangle
- * whose density is not finite. */
-cscd_status equalize(const cscd_mesh *mesh, const double *density, bool published, double *equalized);
+ * INVALID_ARGUMENT names the triangle whose density is not finite. */
+cscd_status equalize(const cscd_mesh *mesh, const double *density, double *equalized);

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 import os
 import warnings
-from typing import Any, Callable, Dict, List, NamedTuple, Optional, Tuple, Union
+from typing import Any, Callable, Dict, Iterable, List, NamedTuple, Optional, Tuple, Union
 
 import numpy as np
 
@@ -19,6 +19,7 @@ __all__ = ["ComparedPlan", "Plan"]
 
 Array = Any
 _SOLVERS = {"tree": 0, "dense": 1, "coarse": 2}
+_STEPS = {"charge": 1, "ranks": 2, "cuts": 4, "points": 8}
 
 
 class ComparedPlan(NamedTuple):
@@ -45,13 +46,15 @@ def _compared(row: Any) -> ComparedPlan:
 class Plan:
     """The regions of a mesh and their detector points.
 
-    Made by ``Plan.charge``, ``Plan.kmeans``, ``Plan.read`` or ``Plan.from_parts``.
+    Made by ``Plan.charge``, ``Plan.kmeans``, ``Plan.auto``, ``Plan.published``, ``Plan.read`` or ``Plan.from_parts``.
 
     Attributes
     ----------
     mesh : Mesh
     method : str
-        "charge", "kmeans" or "single".
+        "charge", "kmeans", "single" or "published".
+    origin : str or None
+        Method, solver, thresholds, frames and version, as words; None: the plan is of parts that say nothing.
     region_count : int
     triangle_regions : (t,) int64
     detector_points : (r, 3) float64
@@ -120,6 +123,34 @@ class Plan:
         return cls._create(mesh, V, threads, progress, method=code_of("method", "kmeans"), k=k, seed=seed)
 
     @classmethod
+    def published(cls, mesh: Mesh, V: Any, *, threshold: float = 0.1, growing: float = 1 / 400, ours: Iterable[str] = (),
+                  threads: int = 0, progress: Optional[Callable[[str, float], Any]] = None) -> Plan:
+        """Cuts a mesh as published (Yeh 2012, chapter 3), to compare with: docs/theory/thesis.md.
+
+        Parameters
+        ----------
+        V : (n, 3)
+            The mesh at rest.
+        threshold : float
+            Triangles whose equalized density is below it form clusters; in (0, 1).
+        growing : float
+            Clusters with more than this share of their component's triangles grow; in [0, 1].
+        ours : iterable of str
+            Steps that are done as ``Plan.charge`` does them: "charge", "ranks", "cuts", "points".
+
+        Raises
+        ------
+        Error
+            ``ours`` has no "charge", and this installation is built without LAPACK, as wheels are.
+        """
+        words = list(ours)
+        for word in words:
+            if word not in _STEPS:
+                raise ValueError(f"ours: expected some of {', '.join(_STEPS)}; got {word!r}")
+        return cls._create(mesh, V, threads, progress, method=code_of("method", "published"), threshold=threshold,
+                           growing=growing, ours=sum(_STEPS[word] for word in set(words)))
+
+    @classmethod
     def auto(cls, mesh: Mesh, V: Any, *, stiffness: Any = None, frames: Any = None, threads: int = 0,
              progress: Optional[Callable[[str, float], Any]] = None) -> Plan:
         """The plan by charge, by one region for each component or by k-means that leaves the least to test, as predicted at
@@ -131,8 +162,9 @@ class Plan:
 
     @classmethod
     def from_parts(cls, mesh: Mesh, V: Any, triangle_regions: Any, detector_points: Any, *, method: str = "single",
-                   charges: Any = None, capacitances: Any = None) -> Plan:
-        """A plan from what another one, or another program, consists of."""
+                   charges: Any = None, capacitances: Any = None, origin: Optional[str] = None) -> Plan:
+        """A plan from what another one, or another program, consists of; origin: up to 255 characters of ASCII that say how
+        it was made."""
         parts = new_struct("plan_parts")
         arrays: Dict[str, Array] = {}
         for name, values in (("detector_points", detector_points), ("charges", charges), ("capacitances", capacitances)):
@@ -147,6 +179,8 @@ class Plan:
         parts["region_count"] = len(arrays["detector_points"])
         for name, array in arrays.items():
             parts[name] = address_of(array)
+        words = ctypes.create_string_buffer(origin.encode()) if origin is not None else None
+        parts["origin"] = ctypes.addressof(words) if words is not None else 0
         return cls._made(mesh, V, Host(), library.cscdpy_plan_create_from_parts, parts)
 
     @classmethod
@@ -230,7 +264,7 @@ class Plan:
         options = new_struct("plan_options")
         library.cscd_plan_defaults_sized(address_of(options), options.nbytes)
         for name, value in members.items():
-            if name == "threshold":
+            if name in ("threshold", "growing"):
                 options[name] = number_of(name, value)
             else:
                 options[name] = count_of(name, value, int(np.iinfo(structs["plan_options"][name]).max))
@@ -293,14 +327,14 @@ class Plan:
 
     @property
     def charges(self) -> Optional[Array]:
-        if self.method != "charge":
+        if self.method not in ("charge", "published"):
             return None
         return np.array([library.cscd_plan_triangle_charge(self.pointer, t) for t in range(self.mesh.triangle_count)])
 
     @property
     def capacitances(self) -> Optional[Array]:
         """(c,) float64: the capacitance of each component, a length in Gaussian units; None without charge."""
-        if self.method != "charge":
+        if self.method not in ("charge", "published"):
             return None
         return np.array([library.cscd_plan_capacitance(self.pointer, c) for c in range(self.mesh.component_count)])
 
@@ -317,15 +351,19 @@ class Plan:
     def charge_kernels(self) -> Optional[str]:
         """The kernels with which OpenBLAS solved the charge system, by its own name, such as "SkylakeX". None: the plan is
         not made in this process by ``Plan.charge`` with ``solver="dense"``, or the BLAS is another one."""
-        return self._kernels("charge_kernels")
+        return self._words("charge_kernels")
 
     @property
     def better_kernels(self) -> Optional[str]:
         """What ``OPENBLAS_CORETYPE`` should be set to before Python starts, because OpenBLAS did not know the processor and
         took old kernels, which take about three times as long. None: the kernels will do, or are not known."""
-        return self._kernels("better_kernels")
+        return self._words("better_kernels")
 
-    def _kernels(self, member: str) -> Optional[str]:
+    @property
+    def origin(self) -> Optional[str]:
+        return self._words("origin")
+
+    def _words(self, member: str) -> Optional[str]:
         found = new_struct("plan_info")
         library.cscd_plan_describe_sized(self.pointer, address_of(found), found.nbytes)
         name = ctypes.c_char_p(int(found[member][0])).value
@@ -336,11 +374,12 @@ class Plan:
 
     def __reduce__(self) -> Tuple[Callable[..., Any], Tuple[Any, ...]]:
         return _restore, (self.mesh, self.rest, self.triangle_regions, self.detector_points, self.method, self.charges,
-                          self.capacitances)
+                          self.capacitances, self.origin)
 
 
 def _restore(mesh: Mesh, rest: Array, *parts: Any) -> Plan:
     """What pickle calls."""
-    regions, points, method, charges, capacitances = parts
-    return Plan.from_parts(mesh, rest, regions, points, method=method, charges=charges, capacitances=capacitances)
+    regions, points, method, charges, capacitances, origin = parts
+    return Plan.from_parts(mesh, rest, regions, points, method=method, charges=charges, capacitances=capacitances,
+                           origin=origin)
 

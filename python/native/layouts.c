@@ -77,18 +77,20 @@ FIELDS(component, FIELD(cscd_component, closed_manifold), FIELD(cscd_component, 
        FIELD(cscd_component, euler_characteristic))
 FIELDS(plan_options, FIELD(cscd_plan_options, struct_size), FIELD(cscd_plan_options, method),
        FIELD(cscd_plan_options, k), FIELD(cscd_plan_options, seed), FIELD(cscd_plan_options, threshold),
-       FIELD(cscd_plan_options, variant), FIELD(cscd_plan_options, memory_limit),
+       FIELD(cscd_plan_options, ours), FIELD(cscd_plan_options, memory_limit),
        FIELD(cscd_plan_options, charge_solver), FIELD(cscd_plan_options, frame_count),
-       FIELD(cscd_plan_options, frames), FIELD(cscd_plan_options, stiffness))
+       FIELD(cscd_plan_options, frames), FIELD(cscd_plan_options, stiffness),
+       FIELD(cscd_plan_options, growing))
 FIELDS(plan_parts, FIELD(cscd_plan_parts, method), FIELD(cscd_plan_parts, region_count),
        FIELD(cscd_plan_parts, triangle_regions), FIELD(cscd_plan_parts, detector_points),
-       FIELD(cscd_plan_parts, charges), FIELD(cscd_plan_parts, capacitances))
+       FIELD(cscd_plan_parts, charges), FIELD(cscd_plan_parts, capacitances), FIELD(cscd_plan_parts, origin))
 FIELDS(region, FIELD(cscd_region, component), FIELD(cscd_region, triangle_count), FIELD(cscd_region, area),
        FIELD(cscd_region, visible_share), FIELD(cscd_region, detector_point))
 FIELDS(preprocess_timings, FIELD(cscd_preprocess_timings, assembly_ms),
        FIELD(cscd_preprocess_timings, solve_ms), FIELD(cscd_preprocess_timings, regions_ms),
        FIELD(cscd_preprocess_timings, total_ms))
-FIELDS(plan_info, FIELD(cscd_plan_info, charge_kernels), FIELD(cscd_plan_info, better_kernels))
+FIELDS(plan_info, FIELD(cscd_plan_info, charge_kernels), FIELD(cscd_plan_info, better_kernels),
+       FIELD(cscd_plan_info, origin))
 FIELDS(compared_plan, FIELD(cscd_compared_plan, method), FIELD(cscd_compared_plan, k),
        FIELD(cscd_compared_plan, region_count), FIELD(cscd_compared_plan, kept),
        FIELD(cscd_compared_plan, tested_share), FIELD(cscd_compared_plan, failure))

@@ -3,6 +3,7 @@
 #include "python/native/interpreter.h"
 
 #include "src/io/plan_file.h"
+#include "src/tool/common/methods.h"
 #include "src/tool/common/option_values.h"
 #include "src/tool/common/part_names.h"
 #include "src/tool/common/plan_colours.h"
@@ -183,7 +184,7 @@ PYTHON_API bool cscdpy_plan_read(const char *path, const cscd_mesh *mesh, cscd_p
 }
 
 static bool colour_plan(const cscd_plan *plan, const cscd_mesh *mesh, uint8_t *colours) {
-    if (cscd_plan_method(plan) == CSCD_METHOD_CHARGE) return plan_colour_charge(plan, mesh, colours);
+    if (method_facts_of(cscd_plan_method(plan)).by_charge) return plan_colour_charge(plan, mesh, colours);
     plan_colour_regions(plan, cscd_mesh_triangle_count(mesh), colours);
     return true;
 }

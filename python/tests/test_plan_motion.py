@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from typing import Any, List
 
 import numpy as np
@@ -71,3 +72,22 @@ def test_auto_keeps_one_of_what_it_compares() -> None:
     with pytest.raises(ValueError) as caught:
         cscd.Plan.auto("mesh", SCENE.x0)  # type: ignore[arg-type]
     assert "expected a Mesh" in str(caught.value)
+
+
+def test_steps_of_the_published_method() -> None:
+    mesh = cscd.Mesh(SCENE.F)
+    steps = ["charge", "ranks", "cuts", "points"]
+    plan = cscd.Plan.published(mesh, SCENE.x0, ours=steps)
+    usual = cscd.Plan.charge(mesh, SCENE.x0)
+    assert plan.method == "published" and np.array_equal(plan.triangle_regions, usual.triangle_regions)
+    assert np.array_equal(plan.detector_points, usual.detector_points)
+    assert plan.charges is not None and plan.capacitances is not None
+    assert plan.origin is not None and plan.origin.startswith(
+        "method=published solver=tree threshold=0.1 growing=0.0025 ours=15 version=")
+    again = pickle.loads(pickle.dumps(plan))
+    assert again.origin == plan.origin and np.array_equal(again.charges, plan.charges)
+    assert cscd.Plan.from_parts(mesh, SCENE.x0, plan.triangle_regions, plan.detector_points).origin is None
+    with pytest.raises(ValueError, match="ours: expected some of charge, ranks, cuts, points; got 'speed'"):
+        cscd.Plan.published(mesh, SCENE.x0, ours=["speed"])
+    with pytest.raises(ValueError, match="growing"):
+        cscd.Plan.published(mesh, SCENE.x0, growing=2.0, ours=steps)

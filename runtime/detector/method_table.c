@@ -46,6 +46,7 @@ bool cscd_method_describe_sized(cscd_method method, cscd_method_info *out, size_
                              .loses_contacts = found->loses_contacts,
                              .by_orientation = found->by_orientation,
                              .by_contours = found->by_contours,
+                             .by_charge = found->by_charge,
                              .available = method_stages_of(method)->rules != NULL};
     struct_give(out, size, &info, sizeof info);
     return true;

@@ -9,8 +9,10 @@ static const method_traits traits[] = {
     {CSCD_METHOD_BRUTE, .name = "brute"},
     {CSCD_METHOD_SINGLE, .name = "single", .makes_plan = true, .by_orientation = true},
     {CSCD_METHOD_KMEANS, .name = "kmeans", .makes_plan = true, .needs_plan = true, .by_orientation = true},
-    {CSCD_METHOD_CHARGE, .name = "charge", .makes_plan = true, .needs_plan = true, .by_orientation = true},
-    {CSCD_METHOD_PUBLISHED, .name = "published", .loses_contacts = true, .by_orientation = true},
+    {CSCD_METHOD_CHARGE, .name = "charge", .makes_plan = true, .by_charge = true, .needs_plan = true,
+     .by_orientation = true},
+    {CSCD_METHOD_PUBLISHED, .name = "published", .makes_plan = true, .by_charge = true,
+     .loses_contacts = true, .by_orientation = true},
     {CSCD_METHOD_ICCD, .name = "iccd", .by_contours = true},
     {CSCD_METHOD_ICCD_PUBLISHED, .name = "iccd-published", .loses_contacts = true, .by_contours = true},
 };

@@ -31,6 +31,8 @@ typedef struct plan_reader {
     ply_data data;
     const cscd_mesh *mesh;
     cscd_method method;
+    bool charged; /* plans by this method have charges */
+    char origin[256];
     uint64_t mesh_hash; /* as the file says */
     uint32_t region_count;
     double *positions, *points, *charges, *capacitances;
@@ -41,7 +43,16 @@ typedef struct plan_reader {
 
 /* ---- comments of the header ------------------------------------------------------------------------ */
 
-typedef enum comment_kind { COMMENT_PLAN, COMMENT_METHOD, COMMENT_MESH, COMMENT_COUNT } comment_kind;
+/* Every plan has the first three. */
+typedef enum comment_kind {
+    COMMENT_PLAN,
+    COMMENT_METHOD,
+    COMMENT_MESH,
+    COMMENT_ORIGIN,
+    COMMENT_COUNT
+} comment_kind;
+
+static const char *const comment_names[COMMENT_COUNT] = {"plan", "method", "mesh", "made"};
 
 static bool parse_hash(text_token token, uint64_t *out) {
     uint64_t hash = 0;
@@ -55,17 +66,32 @@ static bool parse_hash(text_token token, uint64_t *out) {
     return true;
 }
 
+/* Keeps the rest of the line, as much of it as there is room for. */
+static void keep_origin(plan_reader *p, text_token first) {
+    size_t length = 0; /* a 0 is behind the file's last byte */
+    while (length + 1 < sizeof p->origin && first.text[length] >= ' ' && first.text[length] <= '~') {
+        p->origin[length] = first.text[length];
+        length++;
+    }
+    p->origin[length] = '\0';
+}
+
 static bool read_comment(plan_reader *p, file_reader *reader, comment_kind kind) {
     text_token value;
     text_next_token(reader, &value);
     const char *expected = "1, the format of this version";
+    if (kind == COMMENT_ORIGIN) {
+        keep_origin(p, value);
+        return true;
+    }
     bool fits = false;
     if (kind == COMMENT_PLAN) fits = text_equals(value, "1");
     if (kind == COMMENT_METHOD) {
-        expected = "charge, kmeans or single";
+        expected = "charge, kmeans, single or published";
         cscd_method_info info;
         fits = cscd_method_from_name(text_show(value).text, &p->method) &&
                cscd_method_describe(p->method, &info) && info.makes_plan;
+        p->charged = fits && info.by_charge;
     } else if (kind == COMMENT_MESH) {
         expected = "the mesh's hash in 16 hexadecimal digits";
         fits = parse_hash(value, &p->mesh_hash);
@@ -75,19 +101,17 @@ static bool read_comment(plan_reader *p, file_reader *reader, comment_kind kind)
 
 /* Returns which "comment cscd NAME" the line begins with; COMMENT_COUNT: it is another line. */
 static comment_kind comment_of_line(file_reader *reader) {
-    static const char *const names[] = {"plan", "method", "mesh"};
     text_token token;
     int kind = 0;
     if (!text_next_token(reader, &token) || !text_equals(token, "comment") ||
         !text_next_token(reader, &token) || !text_equals(token, "cscd") || !text_next_token(reader, &token))
         return COMMENT_COUNT;
-    while (kind < COMMENT_COUNT && !text_equals(token, names[kind])) kind++;
+    while (kind < COMMENT_COUNT && !text_equals(token, comment_names[kind])) kind++;
     return (comment_kind)kind;
 }
 
 /* start: a reader at the file's first byte. The header is known to be well-formed. */
 static bool read_comments(plan_reader *p, file_reader start) {
-    static const char *const names[] = {"plan", "method", "mesh"};
     bool seen[COMMENT_COUNT] = {false};
     file_reader reader = start;
     size_t end = p->data.reader->at;
@@ -97,11 +121,11 @@ static bool read_comments(plan_reader *p, file_reader start) {
         if (!read_comment(p, &reader, kind)) return false;
         seen[kind] = true;
     }
-    for (int kind = 0; kind < COMMENT_COUNT; kind++) {
+    for (int kind = 0; kind < COMMENT_ORIGIN; kind++) {
         if (!seen[kind])
             return file_reader_fail(p->data.reader,
                                     "the header lacks 'comment cscd %s', expected a plan that cscd wrote",
-                                    names[kind]);
+                                    comment_names[kind]);
     }
     return true;
 }
@@ -128,7 +152,7 @@ static bool has_column(const plan_reader *p, const ply_element *element, column 
 }
 
 static bool check_columns(const plan_reader *p) {
-    int count = p->method == CSCD_METHOD_CHARGE ? COLUMN_COUNT : COLUMN_CHARGE;
+    int count = p->charged ? COLUMN_COUNT : COLUMN_CHARGE;
     for (int c = 0; c < count; c++) {
         size_t found;
         const ply_element *element = find_element(p, columns[c].element, &found);
@@ -162,7 +186,7 @@ static bool check_counts(plan_reader *p) {
                                 vertices, faces, mesh_vertices, triangles);
     if (regions < 1 || regions > faces)
         return file_reader_fail(reader, "%" PRId64 " regions, expected 1 to %" PRIu32, regions, triangles);
-    if (p->method == CSCD_METHOD_CHARGE && components != cscd_mesh_component_count(p->mesh))
+    if (p->charged && components != cscd_mesh_component_count(p->mesh))
         return file_reader_fail(reader, "%" PRId64 " components, expected the %" PRIu32 " of the mesh",
                                 components, cscd_mesh_component_count(p->mesh));
     p->region_count = (uint32_t)regions;
@@ -178,7 +202,7 @@ static bool allocate_lists(plan_reader *p) {
     p->points = io_realloc(NULL, p->region_count * sizeof(double[3]));
     p->regions = io_realloc(NULL, triangles * sizeof *p->regions);
     bool allocated = p->positions != NULL && p->points != NULL && p->regions != NULL;
-    if (p->method == CSCD_METHOD_CHARGE) {
+    if (p->charged) {
         p->charges = io_realloc(NULL, triangles * sizeof *p->charges);
         p->capacitances = io_realloc(NULL, cscd_mesh_component_count(p->mesh) * sizeof *p->capacitances);
         allocated = allocated && p->charges != NULL && p->capacitances != NULL;
@@ -309,7 +333,8 @@ static bool create_plan(const plan_reader *p, const cscd_context *context, cscd_
                              .triangle_regions = p->regions,
                              .detector_points = p->points,
                              .charges = p->charges,
-                             .capacitances = p->capacitances};
+                             .capacitances = p->capacitances,
+                             .origin = p->origin[0] != '\0' ? p->origin : NULL};
     if (cscd_plan_create_from_parts(cscd_mesh_context(p->mesh), p->mesh,
                                     CSCD_DOUBLES(p->positions, cscd_mesh_vertex_count(p->mesh)), &parts,
                                     out) == CSCD_OK)

@@ -32,6 +32,8 @@ static void write_header(FILE *file, const cscd_mesh *mesh, const cscd_plan *pla
             "comment cscd plan 1\ncomment cscd version %s\ncomment cscd method %s\n"
             "comment cscd mesh %016" PRIx64 "\n",
             cscd_version_string(), cscd_method_name(cscd_plan_method(plan)), cscd_mesh_hash(mesh));
+    const cscd_plan_info info = cscd_plan_describe(plan);
+    if (info.origin != NULL) fprintf(file, "comment cscd made %s\n", info.origin);
     fprintf(file, "element vertex %" PRIu32 "\nproperty double x\nproperty double y\nproperty double z\n",
             cscd_mesh_vertex_count(mesh));
     fprintf(file,

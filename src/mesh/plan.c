@@ -1,5 +1,6 @@
 /* The plan: what preprocessing hands to the runtime. */
 #include "src/mesh/plan.h"
+#include "src/core/methods.h"
 
 #include "src/core/struct_size.h"
 
@@ -38,7 +39,7 @@ uint64_t cscd_mesh_hash(const cscd_mesh *mesh) {
 }
 
 static array_list list_arrays(cscd_plan *plan) {
-    bool charged = plan->method == CSCD_METHOD_CHARGE;
+    const bool charged = method_traits_of(plan->method)->by_charge;
     return (array_list){{ARRAY(plan->triangle_regions, plan->triangle_count),
                          ARRAY(plan->triangle_weights, plan->triangle_count),
                          ARRAY(plan->regions, plan->region_count),

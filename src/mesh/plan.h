@@ -10,6 +10,8 @@ typedef struct plan_candidates {
     char charge_failure[512]; /* why there is no charge to compare; empty: there is */
 } plan_candidates;
 
+enum { PLAN_ORIGIN_SIZE = 256 };
+
 /* It says of its mesh what detectors need, and does not hold it; detectors copy what they need of the plan. */
 struct cscd_plan {
     reference_count references; /* the caller alone */
@@ -28,6 +30,7 @@ struct cscd_plan {
     double *charges, *capacitances; /* NULL without charge */
     cscd_preprocess_timings timings;
     cscd_plan_info info;
+    char origin[PLAN_ORIGIN_SIZE]; /* how it was made, if info says so */
     plan_candidates candidates;
 };
 

@@ -61,7 +61,10 @@ def test_iccd_finds_every_contact(options, lines):
     assert tables[0] == tables[1] and tables[0].count("\n") > lines
 
 
-def test_published_takes_any_plan():
+def test_published_makes_its_plan_or_takes_any():
+    """A plan of another method, which lies beside the model, is taken only if it is named."""
     run("preprocess spindle.obj --quiet --method kmeans:4")
     answer, _ = replay("--method published --frames 0:2")
+    assert "plan: published, 2 regions, made in memory" in answer.out and "left aside, it is of method kmeans" in answer.out
+    answer, _ = replay("--method published --frames 0:2 --plan spindle.plan.ply")
     assert "plan: kmeans, 4 regions, " in answer.out and "\npublished " in answer.out

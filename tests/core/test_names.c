@@ -70,8 +70,9 @@ TEST(methods_are_listed) {
         assert_int_equal(info.loses_contacts, strstr(info.name, "published") != NULL);
         assert_int_equal(info.by_contours, strstr(info.name, "iccd") != NULL);
         plan_makers += info.makes_plan;
+        assert_int_equal(info.by_charge, method == CSCD_METHOD_CHARGE || method == CSCD_METHOD_PUBLISHED);
     }
-    assert_int_equal(plan_makers, 3);
+    assert_int_equal(plan_makers, 4);
 }
 
 TEST(other_methods_are_refused) {

@@ -68,7 +68,7 @@ static cscd_plan *plan_from_below(const cscd_mesh *mesh) {
     static const double below[3] = {3, 3, -1000};
     uint32_t *regions = calloc(s.triangle_count, sizeof *regions);
     cscd_plan *plan = NULL;
-    const cscd_plan_parts parts = {CSCD_METHOD_SINGLE, 1, regions, below, NULL, NULL};
+    const cscd_plan_parts parts = {CSCD_METHOD_SINGLE, 1, regions, below, NULL, NULL, NULL};
     assert_int_equal(plan_from_parts_packed(mesh, s.x0, &parts, &plan), CSCD_OK);
     free(regions);
     return plan;

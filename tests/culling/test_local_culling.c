@@ -70,7 +70,7 @@ static cscd_plan *scatter_regions(const cscd_mesh *mesh, random_stream *random) 
         }
         regions[t] = *number - 1;
     }
-    cscd_plan_parts parts = {CSCD_METHOD_KMEANS, count, regions, points[0], NULL, NULL};
+    cscd_plan_parts parts = {CSCD_METHOD_KMEANS, count, regions, points[0], NULL, NULL, NULL};
     cscd_plan *plan = NULL;
     assert_int_equal(plan_from_parts_packed(mesh, q.shape.x0, &parts, &plan), CSCD_OK);
     return plan;

@@ -194,7 +194,7 @@ static cscd_plan *carry_over(const cscd_plan *old, const cscd_mesh *mesh, const 
         }
         regions[t] = *n - 1;
     }
-    const cscd_plan_parts parts = {CSCD_METHOD_KMEANS, count, regions, points, NULL, NULL};
+    const cscd_plan_parts parts = {CSCD_METHOD_KMEANS, count, regions, points, NULL, NULL, NULL};
     cscd_plan *plan = NULL;
     expect_ok(plan_from_parts_packed(mesh, torn.x0, &parts, &plan));
     free(number);

@@ -270,7 +270,7 @@ TEST(bad_headers_are_refused) {
         {HEAD "comment cscd plan 2\n" VERTEX FACE REGION REGIONS END, ":3: found '2'", "expected 1"},
         {HEAD "comment cscd plan\n" VERTEX FACE REGION REGIONS END, ":3: found ''", "expected 1"},
         {HEAD "comment cscd plan 1\ncomment cscd method none\n" VERTEX FACE END, ":4: found 'none'",
-         "charge, kmeans or single"},
+         "charge, kmeans, single or published"},
         {HEAD "comment cscd plan 1\ncomment cscd mesh 12g\n" VERTEX FACE END, ":4: found '12g'",
          "16 hexadecimal digits"},
         {HEAD "comment cscd plan 1\ncomment cscd method single\n" VERTEX FACE END,

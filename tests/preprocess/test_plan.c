@@ -76,27 +76,6 @@ TEST(every_method) {
     cscd_plan_destroy(NULL);
 }
 
-TEST(variants_differ) {
-    body torus = body_of(BODY_TORUS, body_nearest_count(BODY_TORUS, 800));
-    const cscd_object_desc desc =
-        cscd_object_of_triangles(torus.vertex_count, torus.triangle_count, torus.triangles);
-    cscd_plan_options options = cscd_plan_defaults();
-    cscd_mesh *own = NULL;
-    uint32_t regions[2];
-    assert_int_equal(cscd_mesh_create(context, &desc, 1, &own), CSCD_OK);
-    for (int i = 0; i < 2; i++) {
-        cscd_plan *plan = NULL;
-        if (i == 1) options.variant = CSCD_PLAN_VARIANT_PUBLISHED;
-        assert_int_equal(plan_create_packed(own, torus.positions, &options, &plan), CSCD_OK);
-        regions[i] = cscd_plan_region_count(plan);
-        cscd_plan_destroy(plan);
-    }
-    assert_true(regions[0] > 1 &&
-                regions[1] == 1); /* as published, a cut must divide, and no arc of a ring does */
-    cscd_mesh_destroy(own);
-    body_free(&torus);
-}
-
 /* ---- two components ---------------------------------------------------------------------------------- */
 
 /* A ball, and two triangles with one centroid, which have no charges, or none. What is an obstacle needs none. */
@@ -159,7 +138,8 @@ TEST(from_parts) {
     cscd_plan *plan = plan_by(CSCD_METHOD_KMEANS, 4), *again = NULL;
     uint32_t *regions = regions_of(plan);
     double *points = points_of(plan);
-    cscd_plan_parts parts = {CSCD_METHOD_KMEANS, cscd_plan_region_count(plan), regions, points, NULL, NULL};
+    cscd_plan_parts parts = {
+        CSCD_METHOD_KMEANS, cscd_plan_region_count(plan), regions, points, NULL, NULL, NULL};
     expect_ok(plan_from_parts_packed(mesh, shape.positions, &parts, &again));
     for (uint32_t r = 0; r < cscd_plan_region_count(plan); r++) {
         cscd_region a = cscd_plan_region(plan, r), b = cscd_plan_region(again, r);
@@ -171,6 +151,37 @@ TEST(from_parts) {
     cscd_plan_destroy(plan);
     free(regions);
     free(points);
+}
+
+/* How a plan was made is said in one line of a file. */
+TEST(origins_are_one_line) {
+    uint32_t *one = calloc(shape.triangle_count, sizeof *one);
+    const double point[3] = {0, 0, 0};
+    cscd_plan_parts parts = {CSCD_METHOD_SINGLE, 1, one, point, NULL, NULL, "by hand, 2 ~ 3"};
+    char longest[257];
+    cscd_plan *plan = NULL;
+    memset(longest, 'x', sizeof longest);
+    longest[256] = '\0';
+    expect_ok(plan_from_parts_packed(mesh, shape.positions, &parts, &plan));
+    assert_string_equal(cscd_plan_describe(plan).origin, parts.origin);
+    cscd_plan_destroy(plan);
+    const char *const bad[] = {"two\nlines", "caf\xc3\xa9", longest};
+    for (int i = 0; i < 3; i++) {
+        parts.origin = bad[i];
+        expect_invalid(context, plan_from_parts_packed(mesh, shape.positions, &parts, &plan), "origin");
+    }
+    longest[255] = '\0';
+    parts.origin = longest;
+    expect_ok(plan_from_parts_packed(mesh, shape.positions, &parts, &plan));
+    cscd_plan_destroy(plan);
+    parts.origin = NULL;
+    expect_ok(plan_from_parts_packed(mesh, shape.positions, &parts, &plan));
+    assert_null(cscd_plan_describe(plan).origin);
+    cscd_plan_destroy(plan);
+    plan = plan_by(CSCD_METHOD_KMEANS, 4);
+    assert_non_null(strstr(cscd_plan_describe(plan).origin, "method=kmeans k=4 seed=1 version="));
+    cscd_plan_destroy(plan);
+    free(one);
 }
 
 static void expect_refusal(const cscd_plan_parts *parts, const char *word) {
@@ -185,7 +196,7 @@ TEST(bad_parts) {
     uint32_t *regions = regions_of(plan);
     double *points = points_of(plan);
     const cscd_plan_parts good = {
-        CSCD_METHOD_KMEANS, cscd_plan_region_count(plan), regions, points, NULL, NULL};
+        CSCD_METHOD_KMEANS, cscd_plan_region_count(plan), regions, points, NULL, NULL, NULL};
     cscd_plan_parts parts = good;
     parts.method = CSCD_METHOD_BRUTE;
     expect_refusal(&parts, "brute");
@@ -225,7 +236,7 @@ TEST(regions_lie_in_one_component) {
     static const double points[9] = {0};
     double positions[27] = {0};
     const cscd_object_desc desc = cscd_object_of_triangles(9, 3, triangles);
-    cscd_plan_parts parts = {CSCD_METHOD_KMEANS, 2, wrong[0], points, NULL, NULL};
+    cscd_plan_parts parts = {CSCD_METHOD_KMEANS, 2, wrong[0], points, NULL, NULL, NULL};
     cscd_mesh *own = NULL;
     cscd_plan *plan = NULL;
     for (int i = 0; i < 27; i++) positions[i] = i / 3;

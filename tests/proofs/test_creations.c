@@ -1,4 +1,5 @@
 /* What every call promises (tests/support/proofs/proof.h), of those that make contexts, meshes, plans and detectors. */
+#include "cscd/research.h"
 #include "tests/support/changing_mesh.h"
 #include "tests/support/models/body_of.h"
 #include "tests/support/proofs/answers.h"
@@ -113,6 +114,7 @@ static cscd_status create_plan(proof *p) {
     options.stiffness = p->row->seed == 1 ? stiffness : NULL;
     cscd_view x;
     options.method = p->row->method;
+    options.ours = options.method == CSCD_METHOD_PUBLISHED ? CSCD_OURS_CHARGE : 0;
     return cscd_plan_create(p->context, p->mesh, at_moment(p, 0, &x), &options, &p->answer.plan);
 }
 
@@ -134,7 +136,7 @@ static void keep_plan(proof *p) {
 static cscd_status create_from_parts(proof *p) {
     static const uint32_t regions[SCENE_TRIANGLES_MAX];
     static const double point[3] = {0.1, 0.2, 0.3};
-    const cscd_plan_parts parts = {CSCD_METHOD_SINGLE, 1, regions, point, NULL, NULL};
+    const cscd_plan_parts parts = {CSCD_METHOD_SINGLE, 1, regions, point, NULL, NULL, NULL};
     cscd_view x;
     return cscd_plan_create_from_parts(p->context, p->mesh, at_moment(p, 0, &x), &parts, &p->answer.plan);
 }
@@ -197,6 +199,7 @@ static const proof_row rows[] = {
     {"plan_kmeans", {&plan_made}, open_dumbbell, .method = CSCD_METHOD_KMEANS, .one_thread = clusters},
     {"plan_charge", {&plan_made}, open_dumbbell, .method = CSCD_METHOD_CHARGE},
     {"plan_soft", {&plan_made}, open_dumbbell, .seed = 1, .method = CSCD_METHOD_CHARGE},
+    {"plan_published", {&plan_made}, open_dumbbell, .method = CSCD_METHOD_PUBLISHED},
     {"plan_parts", {&plan_joined}, open_dumbbell, .no_report = soon, .one_thread = soon},
 };
 

@@ -39,7 +39,7 @@ def test_tells_what_it_found():
     says("preprocess spindle.obj --method kmeans:4", ": 4 regions by method kmeans; their points see ")
     says("preprocess spindle.obj --method single -o other.ply", ": 1 region by method single; its point sees ")
     assert run("preprocess spindle.obj").out.startswith("spindle.obj: 1 region by method charge; its point sees ")
-    assert run("preprocess spindle.obj --quiet --threads 2 --published --threshold 0.2") == (0, "", "")
+    assert run("preprocess spindle.obj --quiet --threads 2 --method published --threshold 0.2 --growing 0.1") == (0, "", "")
     says("info spindle.plan.ply", "vertices    302\n")  # a plan is a mesh
 
 
@@ -67,10 +67,22 @@ def test_what_the_points_see_is_counted_by_area():
     assert lines[0] == f"torus.obj: 4 regions by method kmeans; their points see {seen:.1f} % of the area"
 
 
-def test_published_rules_make_another_plan(scene):
+def test_published_steps_one_by_one(scene):
+    """From the plan of the thesis to ours, and a file says how each was made."""
     scene.write_mesh("bent.obj", 11)
-    regions = [run(f"preprocess bent.obj {rules}").out.split("\n")[0] for rules in ("", "--published")]
-    assert regions[0] != regions[1]
+    regions, origins = [], []
+    for steps in ("", " --ours charge", " --ours charge,ranks", " --ours charge,ranks,cuts", " --ours charge,ranks,cuts,points"):
+        lines = run(f"preprocess bent.obj --method published{steps}").out.split("\n")
+        regions.append([lines[0], *(line for line in lines if line.count("%") == 2)])
+        origins.append(Path("bent.plan.ply").read_bytes().split(b"comment cscd made ")[1].split(b"\n")[0])
+    ours = run("preprocess bent.obj").out
+    assert regions[0] != regions[2] != regions[3] != regions[4]
+    assert regions[3][0].startswith("bent.obj: 3 regions") and len(regions[3]) == 4
+    assert all(line in ours for line in regions[4][1:]) and not all(line in ours for line in regions[3][1:])
+    assert origins[0].startswith(b"method=published solver=dense threshold=0.1 growing=0.0025 ours=0 version=")
+    assert origins[4].startswith(b"method=published solver=tree threshold=0.1 growing=0.0025 ours=15 version=")
+    assert b"comment cscd made method=charge solver=tree threshold=0.1 frames=0 stiffness=0 version=" in \
+        Path("bent.plan.ply").read_bytes()
 
 
 def test_seeds_choose_the_regions():
@@ -90,8 +102,9 @@ def test_names_the_plan_after_the_model(scene):
 
 
 @pytest.mark.parametrize("option, values", [
-    ("--method", ["none", "published", "kmeans:0", "kmeans:x", "kmeans:"]), ("--threshold", ["0", "1", "nan"]),
-    ("--seed", ["-1"]), ("--threads", ["300"]), ("--weld", ["0"]),
+    ("--method", ["none", "brute", "kmeans:0", "kmeans:x", "kmeans:"]), ("--threshold", ["0", "1", "nan"]),
+    ("--seed", ["-1"]), ("--growing", ["-0.1", "1.1"]), ("--ours", ["speed", "charge,"]), ("--threads", ["300"]),
+    ("--weld", ["0"]),
 ])
 def test_refuses_unfit_values(option, values):
     for value in values:
@@ -102,12 +115,14 @@ def test_refuses_unfit_values(option, values):
     ("", ["expected MODEL"]),
     ("spindle.obj spindle.pc2 -o spindle.pc2", ["-o", "spindle.pc2"]),
     ("spindle.obj --frames 0:3", ["--frames", "none are given"]),
-    ("spindle.obj spindle.pc2 --published", ["FRAMES count with"]),
+    ("spindle.obj spindle.pc2 --method published", ["FRAMES count with"]),
+    ("spindle.obj --method published --charge coarse", ["--ours has charge"]),
+    ("spindle.obj --growing 0.1", ["--growing counts with --method published; leave it out"]),
+    ("spindle.obj --ours ranks", ["--ours counts with --method published; leave it out"]),
     ("spindle.obj spindle.pc2 --method single", ["FRAMES count with"]),
-    ("spindle.obj --method single --threshold 0.2", ["--threshold counts with --method charge or auto; leave it out"]),
-    ("spindle.obj --method kmeans:4 --charge coarse", ["--charge counts with --method charge or auto; leave it out"]),
+    ("spindle.obj --method single --threshold 0.2", ["--threshold counts with --method charge, auto or published; leave"]),
+    ("spindle.obj --method kmeans:4 --charge coarse", ["--charge counts with --method charge or auto, or with --ours charge;"]),
     ("spindle.obj --seed 2", ["--seed counts with --method kmeans:K or auto; leave it out"]),
-    ("spindle.obj --method kmeans:4 --published", ["--published counts with"]),
     ("spindle.obj -o plan.obj", ["ends in .ply"]),
 ])
 def test_refuses_what_does_not_go_together(line, says):
@@ -261,7 +276,7 @@ def test_a_model_may_say_where_it_is_soft():
     says("preprocess even.ply", "stiffness: 3 to 3, from even.ply\n", ": 1 region by")
     says("preprocess bar.ply -o other.ply", "stiffness: 0.25 to 3, from bar.ply\n", ": 2 regions by method charge;",
          "component 0: 956 triangles")
-    assert "stiffness" not in run("preprocess bar.ply --published").out
+    assert "stiffness" not in run("preprocess bar.ply --method published").out
 
 
 def test_bad_stiffness_is_refused():

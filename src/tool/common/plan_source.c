@@ -32,9 +32,12 @@ static bool insists_on_plan(const plan_request *request) {
     return request->insists_on_plan || method_facts_of(request->method).insists_on_plan;
 }
 
-/* A method that makes no plans takes one of any method. */
+/* A method that makes no plans takes one of any method. So does a published one, but only if the caller names it: what is not
+ * wholly as published is asked for. */
 static bool method_fits(const plan_request *request, const cscd_plan *plan) {
-    return !method_facts_of(request->method).makes_plan || cscd_plan_method(plan) == request->method;
+    const method_facts facts = method_facts_of(request->method);
+    const bool takes_any = !facts.makes_plan || (facts.insists_on_plan && request->plan_path != NULL);
+    return takes_any || cscd_plan_method(plan) == request->method;
 }
 
 /* Takes the path over. */
@@ -175,7 +178,7 @@ bool plan_choose(const plan_request *request, const recording *r, plan_choice *o
         chosen = read_named(request, r, &choice, error);
     } else {
         bool any_plan = !facts.makes_plan;
-        if (any_plan || request->method == CSCD_METHOD_CHARGE) try_model_plan(request, r, &choice);
+        if (any_plan || facts.by_charge) try_model_plan(request, r, &choice);
         if (choice.plan == NULL)
             chosen = any_plan ? make_best(request, r, &choice, error)
                               : make_plan(request, request->method, r, &choice, error);

@@ -1,5 +1,6 @@
 /* What is said of each vertex and triangle of a frame, as arrays with names. */
 #include "src/tool/export/export_values.h"
+#include "src/tool/common/methods.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -49,7 +50,7 @@ static bool add_plan(const cscd_plan *plan, export_values *v) {
     uint32_t *region = add_array(&v->triangles, "region", EXPORT_UINT32);
     if (region == NULL) return false;
     cscd_plan_region_labels(plan, region);
-    if (cscd_plan_method(plan) != CSCD_METHOD_CHARGE) return true;
+    if (!method_facts_of(cscd_plan_method(plan)).by_charge) return true;
     double *charge = add_array(&v->triangles, "charge", EXPORT_FLOAT64);
     if (charge == NULL) return false;
     for (uint32_t t = 0; t < v->triangles.count; t++) charge[t] = cscd_plan_triangle_charge(plan, t);

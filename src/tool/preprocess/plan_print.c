@@ -1,5 +1,6 @@
 /* Prints what preprocessing has found. */
 #include "src/tool/preprocess/plan_print.h"
+#include "src/tool/common/methods.h"
 
 #include <stdio.h>
 
@@ -73,7 +74,7 @@ void plan_print(const char *model_path, const cscd_mesh *mesh, const cscd_plan *
     print_answer(model_path, plan);
     printf("%u vertices, %u triangles, %u component%s\n", cscd_mesh_vertex_count(mesh),
            cscd_mesh_triangle_count(mesh), components, components == 1 ? "" : "s");
-    if (cscd_plan_method(plan) == CSCD_METHOD_CHARGE) print_components(mesh, plan);
+    if (method_facts_of(cscd_plan_method(plan)).by_charge) print_components(mesh, plan);
     print_compared(plan);
     print_regions(plan);
     printf("seconds: assembly %.3f, solve %.3f, regions %.3f, total %.3f\n", t.assembly_ms * 1e-3,

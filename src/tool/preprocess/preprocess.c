@@ -26,7 +26,6 @@ typedef struct preprocess_options {
     recording_options source;
     frame_range frames;
     cscd_plan_options plan;
-    bool published;
     const char *output_path;
     report_request report;
     int argument_count; /* the command line, for the provenance */
@@ -43,6 +42,11 @@ static bool read_plan_method(const char *text, void *place) {
 static bool read_share(const char *text, void *place) {
     double *share = place;
     return parse_double(text, share) && *share > 0.0 && *share < 1.0;
+}
+
+static bool read_growing(const char *text, void *place) {
+    double *share = place;
+    return parse_double(text, share) && *share >= 0.0 && *share <= 1.0;
 }
 
 static bool read_charge_solver(const char *text, void *place) {
@@ -65,6 +69,7 @@ static const option_row rows[] = {
      "cut where little charge gathers on the mesh as a conductor (default)"},
     {"method", "kmeans:K", .help = "K regions by distance"},
     {"method", "single", .help = "one region per component"},
+    {"method", "published", .help = "as published (Yeh 2012), to compare with: docs/theory/thesis.md"},
     {"method", "auto",
      .help = "the one of these that leaves the least to test, as predicted at rest and in the FRAMES"},
     {"seed", "N", read_unsigned, offsetof(preprocess_options, plan.seed),
@@ -77,8 +82,10 @@ static const option_row rows[] = {
     {"charge", "dense",
      .help = "by a dense matrix, to compare: 4 bytes for each pair of triangles of a component, "
              "and time with the cube of their number"},
-    {"published", NULL, read_flag, offsetof(preprocess_options, published),
-     "with charge: cut by the published rules, where clusters of low charge grow until they part a body"},
+    {"growing", "X", read_growing, offsetof(preprocess_options, plan.growing),
+     "with published: clusters with more than this share of the triangles grow (default 0.0025)"},
+    {"ours", "STEP,...", read_ours_of_plans, offsetof(preprocess_options, plan.ours),
+     "with published: take these steps from charge instead: charge, ranks, cuts, points"},
     {"frames", "A:B[:STEP]", read_frames, offsetof(preprocess_options, frames),
      "of FRAMES, only those from A to B, both included (A: and :B are open ends)"},
     {"quiet", NULL, read_flag, offsetof(preprocess_options, quiet),
@@ -156,13 +163,17 @@ static bool explain_failure(const preprocess_options *o, const recording *r, csc
     return io_fail(error, "%s: %s", o->source.model_path, cscd_context_detail(r->context));
 }
 
+static bool solves_dense(const preprocess_options *o) {
+    if (o->plan.method == CSCD_METHOD_PUBLISHED && (o->plan.ours & CSCD_OURS_CHARGE) == 0) return true;
+    const bool charges = o->plan.method == CSCD_METHOD_AUTO || method_facts_of(o->plan.method).by_charge;
+    return charges && o->plan.charge_solver == CSCD_CHARGE_DENSE;
+}
+
 static bool make_plan(const preprocess_options *o, recording *r, const double *positions,
                       const motion_frames *motion, const recorded_stiffness *stiffness, io_error *error) {
     cscd_plan *plan = NULL;
     cscd_plan_options options = o->plan;
-    const bool charges = options.method == CSCD_METHOD_CHARGE || options.method == CSCD_METHOD_AUTO;
-    if (charges && options.charge_solver == CSCD_CHARGE_DENSE) blas_kernels_prepare(!o->quiet);
-    options.variant = o->published ? CSCD_PLAN_VARIANT_PUBLISHED : 0;
+    if (solves_dense(o)) blas_kernels_prepare(!o->quiet);
     options.frames = motion->items;
     options.frame_count = motion->count;
     options.stiffness = stiffness->of_triangle;
@@ -188,8 +199,7 @@ static bool read_positions(const preprocess_options *o, recording *r, double *po
 static bool make_stiff_plan(const preprocess_options *o, recording *r, const double *positions,
                             const motion_frames *motion, io_error *error) {
     recorded_stiffness stiffness = {0};
-    const bool counts =
-        !o->published && o->plan.method != CSCD_METHOD_KMEANS && o->plan.method != CSCD_METHOD_SINGLE;
+    const bool counts = o->plan.method == CSCD_METHOD_CHARGE || o->plan.method == CSCD_METHOD_AUTO;
     if (counts && !recorded_stiffness_read(r, &stiffness, error)) return false;
     const bool made = make_plan(o, r, positions, motion, &stiffness, error);
     recorded_stiffness_free(&stiffness);
@@ -230,30 +240,39 @@ static int run_preprocess(preprocess_options *o) {
 static int check_methods(const preprocess_options *o, const given_options *given) {
     static const struct {
         const char *name;
-        cscd_method method; /* beside AUTO */
-        const char *methods;
-    } bound[] = {{"seed", CSCD_METHOD_KMEANS, "kmeans:K"},
-                 {"threshold", CSCD_METHOD_CHARGE, "charge"},
-                 {"charge", CSCD_METHOD_CHARGE, "charge"},
-                 {"published", CSCD_METHOD_CHARGE, "charge"}};
-    for (size_t i = 0; i < sizeof bound / sizeof *bound; i++)
-        if (option_given(&table, given, bound[i].name) && o->plan.method != bound[i].method &&
-            o->plan.method != CSCD_METHOD_AUTO)
-            return fail_usage("preprocess", "--%s counts with --method %s or auto; leave it out",
-                              bound[i].name, bound[i].methods);
+        cscd_method methods[3];
+        const char *names;
+    } bound[] = {
+        {"seed", {CSCD_METHOD_KMEANS, CSCD_METHOD_AUTO, CSCD_METHOD_AUTO}, "kmeans:K or auto"},
+        {"threshold",
+         {CSCD_METHOD_CHARGE, CSCD_METHOD_AUTO, CSCD_METHOD_PUBLISHED},
+         "charge, auto or published"},
+        {"charge",
+         {CSCD_METHOD_CHARGE, CSCD_METHOD_AUTO, CSCD_METHOD_PUBLISHED},
+         "charge or auto, or with --ours charge"},
+        {"growing", {CSCD_METHOD_PUBLISHED, CSCD_METHOD_PUBLISHED, CSCD_METHOD_PUBLISHED}, "published"},
+        {"ours", {CSCD_METHOD_PUBLISHED, CSCD_METHOD_PUBLISHED, CSCD_METHOD_PUBLISHED}, "published"}};
+    for (size_t i = 0; i < sizeof bound / sizeof *bound; i++) {
+        bool counts = false;
+        for (int k = 0; k < 3; k++) counts |= bound[i].methods[k] == o->plan.method;
+        if (option_given(&table, given, bound[i].name) && !counts)
+            return fail_usage("preprocess", "--%s counts with --method %s; leave it out", bound[i].name,
+                              bound[i].names);
+    }
+    if (o->plan.method == CSCD_METHOD_PUBLISHED && (o->plan.ours & CSCD_OURS_CHARGE) == 0 &&
+        option_given(&table, given, "charge"))
+        return fail_usage("preprocess",
+                          "--method published solves the dense system, unless --ours has charge");
     return EXIT_RAN;
 }
 
-/* Frames count for plans by charge alone, and those of the published rules do without. */
+/* Frames count for plans by charge alone, and published ones do without. */
 static int check_frames(const preprocess_options *o, const given_options *given) {
-    const bool counts =
-        !o->published && (o->plan.method == CSCD_METHOD_CHARGE || o->plan.method == CSCD_METHOD_AUTO);
+    const bool counts = o->plan.method == CSCD_METHOD_CHARGE || o->plan.method == CSCD_METHOD_AUTO;
     if (given->input_count == 1 && option_given(&table, given, "frames"))
         return fail_usage("preprocess", "--frames chooses among FRAMES, and none are given");
     if (given->input_count > 1 && !counts)
-        return fail_usage(
-            "preprocess",
-            "FRAMES count with --method charge or auto, and without --published; leave them out");
+        return fail_usage("preprocess", "FRAMES count with --method charge or auto; leave them out");
     return EXIT_RAN;
 }
 

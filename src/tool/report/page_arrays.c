@@ -1,5 +1,6 @@
 /* The arrays of a page, by name: those collected, and those that follow from the mesh and the plan. */
 #include "src/tool/report/page_arrays.h"
+#include "src/tool/common/methods.h"
 
 #include "src/tool/common/plan_colours.h"
 #include "src/tool/report/collected.h"
@@ -90,7 +91,7 @@ static bool list_scenery(page_arrays *a, report *r) {
 
 static bool list_plan(page_arrays *a, const cscd_plan *plan, const cscd_mesh *mesh) {
     if (plan == NULL) return true;
-    return (cscd_plan_method(plan) != CSCD_METHOD_CHARGE || list_charges(a, plan, mesh)) &&
+    return (!method_facts_of(cscd_plan_method(plan)).by_charge || list_charges(a, plan, mesh)) &&
            list_regions(a, plan, mesh);
 }
 

@@ -1,4 +1,5 @@
 /* Writes a report: the template, what the page is told as JSON, and its arrays. */
+#include "src/tool/common/methods.h"
 #include "src/tool/report/collected.h"
 #include "src/tool/report/json_table.h"
 #include "src/tool/report/page_file.h"
@@ -67,7 +68,7 @@ static void write_plan(json *out, const report *r) {
     }
     json_end_array(out);
     json_begin_array(out, "capacitances");
-    if (cscd_plan_method(plan) == CSCD_METHOD_CHARGE)
+    if (method_facts_of(cscd_plan_method(plan)).by_charge)
         for (uint32_t c = 0; c < cscd_mesh_component_count(r->options.mesh); c++)
             json_number(out, NULL, cscd_plan_capacitance(plan, c));
     json_end_array(out);
