@@ -1,7 +1,6 @@
 # cscd: `make demo` and `make test` do all their own set-up; `make help` lists the rest.
 #
-#   CONFIG=release|debug|sanitize|fuzz|tsan|scalar   CC=gcc|clang   GSL=0   CHARGE=0   EXPAT=0   DYNAMIC=1   WERROR=1   HOST=...   `make -j` as usual
-# GSL=0 builds without GSL (GPL-3): with our own guesses of cubic roots, and the same results, bit for bit.
+#   CONFIG=release|debug|sanitize|fuzz|tsan|scalar   CC=gcc|clang   CHARGE=0   EXPAT=0   DYNAMIC=1   WERROR=1   HOST=...   `make -j` as usual
 # CHARGE=0 leaves out the dense solver of plans by charge, and with it LAPACKE and OpenBLAS; plans by charge are made all the same.
 # EXPAT=0 builds a tool that does not read GIFTI surfaces, as on a machine where pkg-config finds no expat; the library never needs it.
 # NIGHTLY=1 tests more random cases, in a folder of its own.
@@ -29,7 +28,6 @@ ifeq ($(origin CXX),default)
 CXX     := $(TOOLS)g++
 endif
 WERROR  ?= 0
-GSL     ?= 1
 CHARGE  ?= 1
 DYNAMIC ?= 0
 NIGHTLY ?= 0
@@ -37,7 +35,7 @@ BUILD_ROOT ?= build$(if $(HOST),/$(HOST))
 MORE_CASES := $(if $(filter 1,$(NIGHTLY)),-nightly)
 # A machine without expat builds in the same folder as one with it; only who leaves it out on purpose has another.
 WITHOUT_EXPAT := $(if $(filter 0,$(EXPAT)),-without-expat)
-BUILD   := $(BUILD_ROOT)/$(CONFIG)$(if $(WINDOWS)$(WASM),,$(if $(filter 0,$(GSL)),-without-gsl)$(if $(filter 0,$(CHARGE)),-without-charge)$(WITHOUT_EXPAT)$(if $(filter 1,$(DYNAMIC)),-dynamic))$(MORE_CASES)
+BUILD   := $(BUILD_ROOT)/$(CONFIG)$(if $(WINDOWS)$(WASM),,$(if $(filter 0,$(CHARGE)),-without-charge)$(WITHOUT_EXPAT)$(if $(filter 1,$(DYNAMIC)),-dynamic))$(MORE_CASES)
 # The flags of a package that pkg-config finds, else those given here.
 PKG_CONFIG := $(if $(HOST),PKG_CONFIG_SYSROOT_DIR='$(SYSROOT)' PKG_CONFIG_LIBDIR='$(SYSROOT)/usr/lib/$(HOST)/pkgconfig:$(SYSROOT)/usr/share/pkgconfig') pkg-config
 packaged = $(shell $(PKG_CONFIG) $(1) 2>/dev/null || echo $(2))
@@ -98,20 +96,19 @@ CFLAGS_ALL := -std=c11 -D_GNU_SOURCE $(OPTIMISE_$(CONFIG)) $(WARNINGS) -ffp-cont
 LINK_ALL   := $(OPTIMISE_$(CONFIG)) -pthread $(LDFLAGS)
 # libcscd.so and the tool open libcscd-charge.so when they need it; libcscd.a has it inside, unless CHARGE=0. (Where dlopen is
 # in libc, -ldl is an empty archive.)
-SHARED_LIBS := $(if $(filter 0,$(GSL)),,-lgsl) -lm -ldl
+SHARED_LIBS := -lm -ldl
 CHARGE_LIBS := -llapacke -lopenblas -lm
-STATIC_LIBS := $(if $(filter 0,$(GSL)),,-lgsl) $(if $(filter 0,$(CHARGE)),-lm -ldl,$(CHARGE_LIBS))
+STATIC_LIBS := $(if $(filter 0,$(CHARGE)),-lm -ldl,$(CHARGE_LIBS))
 EXPAT_LIBS  := $(if $(filter 0,$(EXPAT)),,$(call packaged,--libs expat,-lexpat))
 FILE_LIBS   := $(call packaged,--libs libpng zlib json-c,-lpng -lz -ljson-c) $(EXPAT_LIBS)
 TOOL_LIBS   := $(FILE_LIBS) $(SHARED_LIBS)
-TEST_LIBS   := -lcmocka -lflint-arb -lflint -lgmp $(TOOL_LIBS) $(CHARGE_LIBS)
+TEST_LIBS   := -lcmocka -lgsl -lflint-arb -lflint -lgmp $(TOOL_LIBS) $(CHARGE_LIBS)
 
 # A file that ends in _simd.c is compiled once per instruction set. The dense solver is a library of its own.
 # src/blas says which kernels OpenBLAS runs.
 CHARGE_SOURCES  := $(wildcard preprocess/dense/*.c src/blas/*.c)
 CORE_FILES      := $(wildcard src/core/*.c src/mesh/*.c preprocess/*.c preprocess/*/*.c runtime/*/*.c runtime/*/*/*.c)
-CORE_SOURCES    := $(filter-out %_simd.c runtime/ccd/cubic_guess_$(if $(filter 0,$(GSL)),gsl,own).c \
-                     preprocess/charge_library.c $(CHARGE_SOURCES),$(CORE_FILES))
+CORE_SOURCES    := $(filter-out %_simd.c preprocess/charge_library.c $(CHARGE_SOURCES),$(CORE_FILES))
 KERNEL_SOURCES  := $(filter %_simd.c,$(CORE_FILES))
 # What commands of the tool share, and the commands.
 WITHOUT_GIFTI   := src/io/gifti/no_gifti.c
@@ -127,8 +124,7 @@ HAS_BASELINES   := $(wildcard runtime/baselines/*.h)
 # The browser's tests look at pages, which no other configuration writes differently. Only a release is installed. Under sanitizers each
 # program of models/ runs (models/test_programs); how bodies and cloth move in them is looked at in a release.
 BROWSER_TESTS   := tests/report/test_report_browser.py tests/report/test_report_view.py
-NOT_HERE        := $(if $(filter 0,$(GSL)),tests/ccd/test_cubic_guess.c tests/ccd/test_root_finders.c) \
-                   $(if $(filter %/release,$(BUILD)),,tests/install/test_charge_library.py tests/install/test_embedding.py \
+NOT_HERE        := $(if $(filter %/release,$(BUILD)),,tests/install/test_charge_library.py tests/install/test_embedding.py \
                      tests/install/test_headers.py tests/install/test_header_versions.py) \
                    $(if $(filter %/release,$(BUILD)),,$(BROWSER_TESTS)) \
                    $(if $(filter release,$(CONFIG)),,tests/install/test_flags.py tests/install/test_install.py tests/install/test_places.py) \
@@ -180,8 +176,8 @@ say = $(if $(findstring s,$(firstword -$(MAKEFLAGS))),@:,@echo)
 VERSION := $(shell awk '/define CSCD_VERSION_/ {print $$3}' include/cscd/cscd.h | paste -sd .)
 MAJOR   := $(firstword $(subst ., ,$(VERSION)))
 
-# Objects have a folder of their own: a program may have the name of the folder of its parts. Builds with GSL=0 and CHARGE=0
-# link others of the same objects.
+# Objects have a folder of their own: a program may have the name of the folder of its parts. A build with CHARGE=0
+# links others of the same objects.
 OBJECTS := $(BUILD_ROOT)/$(CONFIG)$(MORE_CASES)/objects
 objects = $(patsubst %.c,$(OBJECTS)/%.o,$(1))
 KERNEL_OBJECTS := $(foreach level,$(LEVELS),$(patsubst %.c,$(OBJECTS)/%.$(level).o,$(KERNEL_SOURCES)))
@@ -204,7 +200,7 @@ ROOMS   := $(sort $(foreach source,$(ROOM_SOURCES),$(BUILD)/$(dir $(source))room
 SLOW_answers       := left_out
 SLOW_baselines     := benchmarks contour iccd
 SLOW_bvh           := bvh_order bvh_slivers near_triangles traversal
-SLOW_ccd           := algebraic algebraic_oracle cubic cubic_guess elementary_degenerate elementary_exact elementary_oracle half_space min_separation_random root_finders separated_in_part
+SLOW_ccd           := algebraic algebraic_oracle cubic elementary_degenerate elementary_exact elementary_oracle half_space min_separation_random root_finders separated_in_part
 SLOW_core          := float_environment host_loop left_calls exceptions parallel_for progress
 SLOW_cpp           := callbacks
 SLOW_culling       := choice culling local_culling verlet_list
@@ -242,9 +238,9 @@ BENCHMARKS := $(filter-out %/peers,$(patsubst benchmarks/%.c,$(BUILD)/benchmarks
 COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 
 # What installs packages; a build that leaves expat out on purpose does not ask for it.
-PACKAGES = GSL=$(GSL) CHARGE=$(CHARGE) EXPAT=$(if $(WITHOUT_EXPAT),0,1) .ci/packages
+PACKAGES = CHARGE=$(CHARGE) EXPAT=$(if $(WITHOUT_EXPAT),0,1) .ci/packages
 
-.PHONY: all python python-package wheel wheels test-wheels sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-charge bench-peers bench-instructions referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender blender-extension test-vtk windows windows-libraries windows-zip test-windows test-windows-run test-bridges test-farm test-mutants test-aarch64 test-s390x wasm test-wasm test-riscv64 deb test-deb test-builds cscd-mpi python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces fuzz-readers test-fuzz test-faults FORCE
+.PHONY: all python wheel wheels test-wheels sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-charge bench-peers bench-instructions referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender blender-extension test-vtk windows windows-libraries windows-zip test-windows test-windows-run test-bridges test-farm test-mutants test-aarch64 test-s390x wasm test-wasm test-riscv64 deb test-deb test-builds cscd-mpi python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces fuzz-readers test-fuzz test-faults FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -258,17 +254,14 @@ tool: $(TOOL)
 
 library: $(LIBRARY) $(SHARED) $(CHARGE_SHARED)
 
-# The Python package as it is imported: PYTHONPATH=build/python. It has no GSL in it, and the dense solver in the library beside it,
-# which CHARGE=0 leaves out.
-python:
-	@$(MAKE) --no-print-directory GSL=0 python-package
-
+# The Python package as it is imported: PYTHONPATH=build/python. It has the dense solver in the library beside it, which CHARGE=0 leaves
+# out.
 PYTHON_PACKAGE := $(BUILD_ROOT)/python/cscd
 PYTHON_SOURCES := $(wildcard python/cscd/*.py python/cscd/py.typed)
 NATIVE_LIBRARY := $(PYTHON_PACKAGE)/libcscd-python.$(if $(WINDOWS),dll,so)
 PACKED_CHARGE  := $(if $(filter-out 1,$(DYNAMIC)),$(if $(CHARGE_SHARED),$(PYTHON_PACKAGE)/libcscd-charge.so.$(MAJOR)))
 # What an older version, or a build with the dense solver, has left there goes.
-python-package: $(NATIVE_LIBRARY) $(CHARGE_SHARED)
+python: $(NATIVE_LIBRARY) $(CHARGE_SHARED)
 	@cp -p $(PYTHON_SOURCES) $(PYTHON_PACKAGE)
 	@$(if $(PACKED_CHARGE),cp -p $(CHARGE_SHARED) $(PACKED_CHARGE))
 	@rm -rf $(filter-out $(addprefix $(PYTHON_PACKAGE)/,$(notdir $(PYTHON_SOURCES))) $(PACKED_CHARGE) $<,$(wildcard $(PYTHON_PACKAGE)/*))
@@ -654,8 +647,7 @@ help:
 	@echo 'make test-builds   other compilers, flags, users and folders, and without each optional library; as root: some minutes'
 	@echo 'make test-threads   the tests that use threads, under the thread sanitizer'
 	@echo 'make           build the tool (./cscd), build/release/libcscd.a and libcscd.so; make library builds these alone'
-	@echo '               GSL=0: without GSL; CHARGE=0: without LAPACKE and OpenBLAS (--charge dense); EXPAT=0: a tool'
-	@echo '               without GIFTI surfaces'
+	@echo '               CHARGE=0: without LAPACKE and OpenBLAS (--charge dense); EXPAT=0: a tool without GIFTI surfaces'
 	@echo 'make python    the Python package, in build/python; make wheel: a wheel to give away, make sdist: its sources, in build/dist;'
 	@echo '               make test-python: its tests, types and archives (installs pytest, mypy, venv); PYTHON=python3'
 	@echo 'make wheels    the wheels of Linux (x86-64, aarch64) and Windows, in build/dist (installs cross compilers); make test-wheels:'

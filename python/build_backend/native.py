@@ -79,7 +79,7 @@ def stripped() -> str:
 @contextmanager
 def writable_tree(root: Path) -> Iterator[Path]:
     """The tree itself, or a copy of its sources where it cannot be written to."""
-    inside = ("", "release", "release/objects", "release-without-gsl", "python.lock")
+    inside = ("", "release", "release/objects", "python.lock")
     places = [root, *(root / "build" / name for name in inside)]
     if all(os.access(place, os.W_OK) for place in places if place.exists()):
         yield root

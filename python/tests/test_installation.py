@@ -83,7 +83,7 @@ def answers(binaries: Path, empty: Path) -> Dict[str, object]:
 def test_sources_are_installed_as_readme_says(clone: Clone) -> None:
     assert clone.said["charge"] == "True"
     # pip has built in the tree, and left nothing there but objects.
-    assert clone.left == ["python.lock", "release", "release-without-gsl"]
+    assert clone.left == ["python.lock", "release"]
 
 
 def test_wheel_is_installed_without_an_index(binaries: Path, tmp_path: Path, empty: Path) -> None:

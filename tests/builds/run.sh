@@ -128,19 +128,16 @@ try 'link-time optimisation' CFLAGS='-flto -O2' LDFLAGS=-flto
 
 traps=$folder/traps
 rm -rf "$traps"
-forbid "$traps/gsl" gsl/gsl_poly.h
 forbid "$traps/charge" lapacke.h cblas.h
 forbid "$traps/expat" expat.h
-cp -r "$traps/gsl" "$traps/all"
-cp -r "$traps/charge/." "$traps/expat/." "$traps/all"
-without='gsl gslcblas'
-try 'without GSL' GSL=0 CPPFLAGS="-I'$traps/gsl'"
+cp -r "$traps/charge" "$traps/all"
+cp -r "$traps/expat/." "$traps/all"
 without='lapacke openblas' charge=0
 try 'without LAPACKE and OpenBLAS' CHARGE=0 CPPFLAGS="-I'$traps/charge'"
 without=expat
 try 'without expat' EXPAT=0 CPPFLAGS="-I'$traps/expat'"
-without='gsl gslcblas lapacke openblas expat' charge=0
-try 'without all of these' GSL=0 CHARGE=0 EXPAT=0 CPPFLAGS="-I'$traps/all'"
+without='lapacke openblas expat' charge=0
+try 'without all of these' CHARGE=0 EXPAT=0 CPPFLAGS="-I'$traps/all'"
 try 'for distributions' DYNAMIC=1
 
 # Other arithmetic is refused with a sentence, before anything is compiled.

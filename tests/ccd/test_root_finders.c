@@ -1,41 +1,42 @@
-/* The guesses of roots decide how long an elementary test takes, and not one bit of its answer: GSL, our own guesses,
- * wrong ones and none at all give the same contacts, times included. */
-#define cubic_guess_roots guess_without_gsl
-#define negligible        negligible_without_gsl
-#include "runtime/ccd/cubic_guess_own.c"
-#undef cubic_guess_roots
-#undef negligible
-
-int guess_with_gsl(const double c[4], double roots[3]);
-#define cubic_guess_roots guess_with_gsl
-#define negligible        negligible_with_gsl
-#include "runtime/ccd/cubic_guess_gsl.c"
-#undef cubic_guess_roots
-#undef negligible
-
+/* The guesses of roots decide how long an elementary test takes, and not one bit of its answer: our own guesses, those of
+ * GSL, wrong ones and none at all give the same contacts, times included. */
 #include "tests/support/ccd/elementary_generator.h"
 #include "tests/support/ccd/queue_test.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 #include "tests/support/workload.h"
 
+#include <gsl/gsl_poly.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* ---- the root finders ---- */
 
+/* The linker puts the chosen one in the place of the library's (--wrap). */
+int __real_cubic_guess_roots(const double c[4], double roots[3]);
+int __wrap_cubic_guess_roots(const double c[4], double roots[3]);
+
+/* GSL wants a monic cubic: a leading coefficient that is next to nothing would only spoil the other roots. */
+static int guess_with_gsl(const double c[4], double roots[3]) {
+    const double size = fmax(fmax(fabs(c[0]), fabs(c[1])), fabs(c[2]));
+    if (fabs(c[3]) > 0x1p-40 * size)
+        return gsl_poly_solve_cubic(c[2] / c[3], c[1] / c[3], c[0] / c[3], &roots[0], &roots[1], &roots[2]);
+    return gsl_poly_solve_quadratic(c[2], c[1], c[0], &roots[0], &roots[1]);
+}
+
 /* Loses the first root, and is off by more than a cell at the others. */
 static int guess_badly(const double c[4], double roots[3]) {
     double all[3];
-    int count = guess_without_gsl(c, all);
+    int count = __real_cubic_guess_roots(c, all);
     for (int i = 1; i < count; i++) roots[i - 1] = all[i] + 1e-7;
     return count > 0 ? count - 1 : 0;
 }
 
 /* As far off as the polishing of roots can mend: what is left differs in the last bits. */
 static int guess_roughly(const double c[4], double roots[3]) {
-    int count = guess_without_gsl(c, roots);
+    int count = __real_cubic_guess_roots(c, roots);
     for (int i = 0; i < count; i++) roots[i] *= 1.0 + 1e-8;
     return count;
 }
@@ -52,18 +53,17 @@ typedef struct root_finder {
 } root_finder;
 
 static const root_finder finders[] = {
-    {"our own", guess_without_gsl}, {"GSL", guess_with_gsl},    {"roughly", guess_roughly},
-    {"badly", guess_badly},         {"nothing", guess_nothing},
+    {"our own", __real_cubic_guess_roots},
+    {"GSL", guess_with_gsl},
+    {"roughly", guess_roughly},
+    {"badly", guess_badly},
+    {"nothing", guess_nothing},
 };
 
 enum { FINDERS = sizeof finders / sizeof *finders, RIGHT_FINDERS = FINDERS - 2 };
 
 static const root_finder *finder; /* NULL: the library's */
 static uint64_t guessed;
-
-/* The linker puts it in the place of the library's (--wrap). */
-int __real_cubic_guess_roots(const double c[4], double roots[3]);
-int __wrap_cubic_guess_roots(const double c[4], double roots[3]);
 
 int __wrap_cubic_guess_roots(const double c[4], double roots[3]) {
     if (finder == NULL) return __real_cubic_guess_roots(c, roots);

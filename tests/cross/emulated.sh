@@ -16,7 +16,7 @@ choices=''
 case $architecture in
 arm64) host=aarch64-linux-gnu emulator=qemu-aarch64 ;;
 s390x) host=s390x-linux-gnu emulator=qemu-s390x ;;
-riscv64) host=riscv64-linux-gnu emulator=qemu-riscv64 choices='GSL=0 CHARGE=0 EXPAT=1' ;;
+riscv64) host=riscv64-linux-gnu emulator=qemu-riscv64 choices='CHARGE=0 EXPAT=1' ;;
 *)
     echo "emulated.sh: $architecture is none of arm64, s390x and riscv64" >&2
     exit 2
@@ -25,7 +25,7 @@ esac
 unset MAKEFLAGS
 case ${CC:-} in ccache*) cache='ccache ' ;; *) cache='' ;; esac
 if [ "$architecture" = riscv64 ]; then
-    build=build/$host/release-without-gsl-without-charge
+    build=build/$host/release-without-charge
     libraries=build/$host/libraries
     src/packaging/libraries.sh $host $libraries zlib libpng json-c expat
     sysroot=/usr/$host found=''

@@ -30,7 +30,7 @@ needs python3-cscd Depends "libcscd$major (>=" python3-numpy
 needs "libcscd$major" Multi-Arch same
 needs libcscd-dev Multi-Arch same
 
-# Linear algebra is suggested, and never installed without being asked for; GSL, which is under another licence, is in none.
+# Linear algebra is suggested, and never installed without being asked for; GSL is in none.
 for package in $expected; do
     asked=$(field "$package" Depends)$(field "$package" Recommends)
     case $asked in *lapack* | *blas*) complain "$package asks for linear algebra" ;; esac
@@ -39,7 +39,7 @@ done
 
 # A program's dependency comes from the symbols that it uses, of which each has the version that brought it.
 dpkg-deb -I "$folder/libcscd${major}"_*.deb symbols >"$folder/symbols.txt"
-exported=$(nm -D --defined-only "$folder"/cscd-*/build/release-without-gsl-dynamic/libcscd.so | awk '{print $NF}' | sed 's/@@/@/' | LC_ALL=C sort)
+exported=$(nm -D --defined-only "$folder"/cscd-*/build/release-dynamic/libcscd.so | awk '{print $NF}' | sed 's/@@/@/' | LC_ALL=C sort)
 listed=$(sed -n "s/^ \(.*@CSCD_[0-9.]*\) .*/\1/p" "$folder/symbols.txt" | LC_ALL=C sort)
 [ -n "$listed" ] || complain 'no symbol is listed'
 [ "$listed" = "$(echo "$exported" | sed "s/^\(CSCD_[0-9.]*\)\(@.*\)\{0,1\}$/\1@\1/")" ] || complain 'symbols that are exported and those that are listed differ'

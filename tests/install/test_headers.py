@@ -1,7 +1,7 @@
 """What the public headers promise and show, and what names them: the frozen API, their examples, the C++ interface, recipes."""
 import re
 
-from support.install.built_tree import BUILD, HAS_GSL, ROOT, functions_of, shell
+from support.install.built_tree import BUILD, ROOT, functions_of, shell
 
 # Functions that programs in C++ use as they are.
 PLAIN = """cscd_contact_kind_name cscd_curve_end_name cscd_intersection_kind_name cscd_left_out_name cscd_max_memory_default
@@ -27,7 +27,7 @@ def test_structs_can_grow():
 
 def test_examples_run(tmp_path):
     """The examples in the comments compile without warnings, run, and print what they say."""
-    libraries = f"{'-lgsl' * HAS_GSL} -llapacke -lopenblas -lm -pthread"
+    libraries = "-llapacke -lopenblas -lm -pthread"
     assert " 0 bad" in shell(f"python3 tests/install/header_examples.py '{tmp_path}' '{BUILD}/libcscd.a' {libraries}")
 
 

@@ -1,8 +1,7 @@
 # What a build for WebAssembly is made with: HOST=wasm32-emscripten, by Debian's emscripten, on the scalar level and without threads.
-# GSL and LAPACKE are not built for it.
+# LAPACKE is not built for it.
 WASM  := 1
 TOOLS := em
-GSL    := 0
 CHARGE := 0
 EXPAT  := 0
 ifeq ($(origin CC),default)

@@ -7,7 +7,6 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[3]
 BUILD = Path(os.environ["CSCD_TOOL"]).parent
-HAS_GSL = "-without-gsl" not in BUILD.name
 CC = os.environ.get("CC", "cc")
 _NUMBERS = dict(re.findall(r"define CSCD_VERSION_(\w+) +(\d+)", (ROOT / "include/cscd/cscd.h").read_text()))
 MAJOR, MINOR, PATCH = (int(_NUMBERS[part]) for part in ("MAJOR", "MINOR", "PATCH"))
@@ -28,8 +27,7 @@ def shell(line, *, code=0, cwd=ROOT, **variables):
 
 def make(target, place, *variables):
     """Runs make for the built tree; place: DESTDIR."""
-    config = BUILD.name.replace("-without-gsl", "")
-    built = (f"BUILD_ROOT={BUILD.parent}", f"CONFIG={config}", f"GSL={int(HAS_GSL)}")
+    built = (f"BUILD_ROOT={BUILD.parent}", f"CONFIG={BUILD.name}")
     shell(shlex.join(["make", "-s", target, *built, f"DESTDIR={place}", *variables]))
 
 

@@ -18,9 +18,9 @@ class CscdConan(ConanFile):
     topics = ("mesh", "self-intersection", "continuous-collision-detection")
     package_type = "library"
     settings = "os", "arch", "compiler", "build_type"
-    # The same two questions as CMakeLists.txt asks; the answers to the first have the same results.
-    options = {"shared": [True, False], "gsl": [True, False], "charge": [True, False]}
-    default_options = {"shared": False, "gsl": False, "charge": False}
+    # The same questions as CMakeLists.txt asks.
+    options = {"shared": [True, False], "charge": [True, False]}
+    default_options = {"shared": False, "charge": False}
 
     def export_sources(self):
         for pattern in SOURCES:
@@ -31,8 +31,6 @@ class CscdConan(ConanFile):
             raise ConanInvalidConfiguration("cscd is tested on Linux, on x86_64 and armv8")
 
     def requirements(self):
-        if self.options.gsl:
-            self.requires("gsl/2.7.1")
         if self.options.charge:
             self.requires("openblas/0.3.27", options={"build_lapack": True})
 
@@ -40,7 +38,6 @@ class CscdConan(ConanFile):
         CMakeDeps(self).generate()
         toolchain = CMakeToolchain(self)
         toolchain.cache_variables["BUILD_SHARED_LIBS"] = bool(self.options.shared)
-        toolchain.cache_variables["CSCD_GSL"] = bool(self.options.gsl)
         toolchain.cache_variables["CSCD_CHARGE"] = bool(self.options.charge)
         toolchain.cache_variables["CSCD_INSTALL"] = True
         toolchain.generate()

@@ -1,5 +1,5 @@
 #!/bin/sh
-# conda-build runs it in the source tree. Without GSL, which is under the GPL; the results are the same.
+# conda-build runs it in the source tree.
 set -eu
-make -j"${CPU_COUNT:-1}" GSL=0 CHARGE=1 EXPAT=1 DYNAMIC=1 tool library
-make GSL=0 CHARGE=1 EXPAT=1 DYNAMIC=1 PREFIX="$PREFIX" install
+make -j"${CPU_COUNT:-1}" CHARGE=1 EXPAT=1 DYNAMIC=1 tool library
+make CHARGE=1 EXPAT=1 DYNAMIC=1 PREFIX="$PREFIX" install

@@ -1,4 +1,4 @@
-/* Guesses a cubic's roots without GSL, by safeguarded Newton steps between the extrema. */
+/* Guesses a cubic's roots by safeguarded Newton steps between the extrema. */
 #include "runtime/ccd/cubic_guess.h"
 
 #include <math.h>
@@ -8,6 +8,10 @@ enum { STEPS_MAX = 100 };
 
 /* A leading coefficient as small as this has its root far outside. */
 static const double negligible = 0x1p-40;
+
+/* Roots are looked for a little beyond [0, 1], which is what callers ask for. A step of Newton's method leaves about the square of its
+ * length, so after one as short as this nothing is left. */
+static const double margin = 0x1p-10, converged = 0x1p-30;
 
 static double value_at(const double c[4], double t) {
     return c[0] + t * (c[1] + t * (c[2] + t * c[3]));
@@ -19,8 +23,8 @@ static double slope_at(const double c[4], double t) {
 
 /* Ascending roots of a t^2 + b t + c in the form that does not cancel. */
 static int quadratic_roots(double a, double b, double c, double roots[2]) {
-    if (fabs(a) <= negligible * fabs(b)) {
-        if (b == 0.0) return 0;
+    if (a == 0.0 && b == 0.0) return 0;
+    if (a == 0.0) {
         roots[0] = -c / b;
         return 1;
     }
@@ -33,10 +37,19 @@ static int quadratic_roots(double a, double b, double c, double roots[2]) {
     return 2;
 }
 
-/* The values at low and high have different signs. */
+/* The values at low and high have different signs. A root outside of [0, 1] is left where the search begins. */
 static double root_between(const double c[4], double low, double high) {
-    bool rising = value_at(c, high) > 0.0;
+    const bool rising = value_at(c, high) > 0.0;
+    const double sides[2] = {-margin, 1.0 + margin};
+    for (int i = 0; i < 2; i++) {
+        if (!(sides[i] > low && sides[i] < high)) continue;
+        if ((value_at(c, sides[i]) > 0.0) == rising)
+            high = sides[i];
+        else
+            low = sides[i];
+    }
     double t = 0.5 * (low + high);
+    if (high <= 0.0 || low >= 1.0) return t;
     for (int i = 0; i < STEPS_MAX; i++) {
         double value = value_at(c, t);
         if (value == 0.0) return t;
@@ -44,9 +57,10 @@ static double root_between(const double c[4], double low, double high) {
             high = t;
         else
             low = t;
-        double next = t - value / slope_at(c, t);
+        double step = value / slope_at(c, t), next = t - step;
+        if (fabs(step) < converged) return next;
         if (!(next > low && next < high)) next = 0.5 * (low + high);
-        if (next == t || next <= low || next >= high) return t;
+        if (next <= low || next >= high) return t;
         t = next;
     }
     return t;
