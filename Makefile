@@ -1,7 +1,7 @@
 # cscd: `make demo` and `make test` do all their own set-up; `make help` lists the rest.
 #
-#   CONFIG=release|debug|sanitize|fuzz|tsan|scalar   CC=gcc|clang   CHARGE=0   EXPAT=0   DYNAMIC=1   WERROR=1   HOST=...   `make -j` as usual
-# CHARGE=0 leaves out the dense solver of plans by charge, and with it LAPACKE and OpenBLAS; plans by charge are made all the same.
+#   CONFIG=release|debug|sanitize|fuzz|tsan|scalar   CC=gcc|clang   BASELINES=0   EXPAT=0   DYNAMIC=1   WERROR=1   HOST=...   `make -j` as usual
+# BASELINES=0 leaves out libcscd-baselines.so, what cscd is compared with and needs LAPACKE, OpenBLAS and GSL (GPL-3); nothing else changes.
 # EXPAT=0 builds a tool that does not read GIFTI surfaces, as on a machine where pkg-config finds no expat; the library never needs it.
 # NIGHTLY=1 tests more random cases, in a folder of its own.
 # DYNAMIC=1 is for distributions: the tool and the Python package link libcscd.so and the libraries of the system in place of archives.
@@ -28,14 +28,14 @@ ifeq ($(origin CXX),default)
 CXX     := $(TOOLS)g++
 endif
 WERROR  ?= 0
-CHARGE  ?= 1
+BASELINES ?= 1
 DYNAMIC ?= 0
 NIGHTLY ?= 0
 BUILD_ROOT ?= build$(if $(HOST),/$(HOST))
 MORE_CASES := $(if $(filter 1,$(NIGHTLY)),-nightly)
 # A machine without expat builds in the same folder as one with it; only who leaves it out on purpose has another.
 WITHOUT_EXPAT := $(if $(filter 0,$(EXPAT)),-without-expat)
-BUILD   := $(BUILD_ROOT)/$(CONFIG)$(if $(WINDOWS)$(WASM),,$(if $(filter 0,$(CHARGE)),-without-charge)$(WITHOUT_EXPAT)$(if $(filter 1,$(DYNAMIC)),-dynamic))$(MORE_CASES)
+BUILD   := $(BUILD_ROOT)/$(CONFIG)$(if $(WINDOWS)$(WASM),,$(WITHOUT_EXPAT)$(if $(filter 1,$(DYNAMIC)),-dynamic))$(MORE_CASES)
 # The flags of a package that pkg-config finds, else those given here.
 PKG_CONFIG := $(if $(HOST),PKG_CONFIG_SYSROOT_DIR='$(SYSROOT)' PKG_CONFIG_LIBDIR='$(SYSROOT)/usr/lib/$(HOST)/pkgconfig:$(SYSROOT)/usr/share/pkgconfig') pkg-config
 packaged = $(shell $(PKG_CONFIG) $(1) 2>/dev/null || echo $(2))
@@ -94,21 +94,18 @@ LEVEL_neon   := -DSIMD_LEVEL=3
 CFLAGS_ALL := -std=c11 -D_GNU_SOURCE $(OPTIMISE_$(CONFIG)) $(WARNINGS) -ffp-contract=off -fvisibility=hidden -fPIC -fexceptions \
               -Wno-psabi -pthread -MMD -MP -Iinclude -I. $(CORE_DEFINITIONS) $(CPPFLAGS) $(call allowed,$(CFLAGS))
 LINK_ALL   := $(OPTIMISE_$(CONFIG)) -pthread $(LDFLAGS)
-# libcscd.so and the tool open libcscd-charge.so when they need it; libcscd.a has it inside, unless CHARGE=0. (Where dlopen is
-# in libc, -ldl is an empty archive.)
-SHARED_LIBS := -lm -ldl
-CHARGE_LIBS := -llapacke -lopenblas -lm
-STATIC_LIBS := $(if $(filter 0,$(CHARGE)),-lm -ldl,$(CHARGE_LIBS))
+# libcscd opens libcscd-baselines.so when it needs it. (Where dlopen is in libc, -ldl is an empty archive.)
+CORE_LIBS     := -lm -ldl
+BASELINE_LIBS := -llapacke -lgsl -lopenblas -lm
 EXPAT_LIBS  := $(if $(filter 0,$(EXPAT)),,$(call packaged,--libs expat,-lexpat))
 FILE_LIBS   := $(call packaged,--libs libpng zlib json-c,-lpng -lz -ljson-c) $(EXPAT_LIBS)
-TOOL_LIBS   := $(FILE_LIBS) $(SHARED_LIBS)
-TEST_LIBS   := -lcmocka -lgsl -lflint-arb -lflint -lgmp $(TOOL_LIBS) $(CHARGE_LIBS)
+TOOL_LIBS   := $(FILE_LIBS) $(CORE_LIBS)
+TEST_LIBS   := -lcmocka -lflint-arb -lflint -lgmp $(TOOL_LIBS) $(BASELINE_LIBS)
 
-# A file that ends in _simd.c is compiled once per instruction set. The dense solver is a library of its own.
-# src/blas says which kernels OpenBLAS runs.
-CHARGE_SOURCES  := $(wildcard preprocess/dense/*.c src/blas/*.c)
+# A file that ends in _simd.c is compiled once per instruction set. libcscd-baselines.so has sources of its own.
+BASELINE_SOURCES := $(wildcard preprocess/baselines/dense/*.c runtime/baselines/gsl/*.c src/blas/*.c)
 CORE_FILES      := $(wildcard src/core/*.c src/mesh/*.c preprocess/*.c preprocess/*/*.c runtime/*/*.c runtime/*/*/*.c)
-CORE_SOURCES    := $(filter-out %_simd.c preprocess/charge_library.c $(CHARGE_SOURCES),$(CORE_FILES))
+CORE_SOURCES    := $(filter-out %_simd.c $(BASELINE_SOURCES),$(CORE_FILES))
 KERNEL_SOURCES  := $(filter %_simd.c,$(CORE_FILES))
 # What commands of the tool share, and the commands.
 WITHOUT_GIFTI   := src/io/gifti/no_gifti.c
@@ -124,7 +121,7 @@ HAS_BASELINES   := $(wildcard runtime/baselines/*.h)
 # The browser's tests look at pages, which no other configuration writes differently. Only a release is installed. Under sanitizers each
 # program of models/ runs (models/test_programs); how bodies and cloth move in them is looked at in a release.
 BROWSER_TESTS   := tests/report/test_report_browser.py tests/report/test_report_view.py
-NOT_HERE        := $(if $(filter %/release,$(BUILD)),,tests/install/test_charge_library.py tests/install/test_embedding.py \
+NOT_HERE        := $(if $(filter %/release,$(BUILD)),,tests/install/test_baseline_library.py tests/install/test_embedding.py \
                      tests/install/test_headers.py tests/install/test_header_versions.py) \
                    $(if $(filter %/release,$(BUILD)),,$(BROWSER_TESTS)) \
                    $(if $(filter release,$(CONFIG)),,tests/install/test_flags.py tests/install/test_install.py tests/install/test_places.py) \
@@ -163,7 +160,7 @@ CPP_MODEL_PARTS   := $(wildcard models/*/*.cpp)
 BENCHMARK_SOURCES := $(filter-out $(if $(HAS_BASELINES),,benchmarks/published_rules.c),$(wildcard benchmarks/*.c))
 BENCHMARK_PARTS   := $(filter-out %_simd.c,$(wildcard benchmarks/lib/*.c))
 PEER_SOURCES      := $(wildcard benchmarks/peers/*.c benchmarks/peers/*.cpp)
-SOURCES := $(CORE_SOURCES) $(CHARGE_SOURCES) $(KERNEL_SOURCES) $(COMMON_SOURCES) $(COMMAND_SOURCES) $(NATIVE_SOURCES) $(SUPPORT_SOURCES) $(ROOM_SOURCES) $(FUZZ_SOURCES) \
+SOURCES := $(CORE_SOURCES) $(BASELINE_SOURCES) $(KERNEL_SOURCES) $(COMMON_SOURCES) $(COMMAND_SOURCES) $(NATIVE_SOURCES) $(SUPPORT_SOURCES) $(ROOM_SOURCES) $(FUZZ_SOURCES) \
            $(MODEL_SOURCES) $(MODEL_PARTS) $(CPP_MODEL_SOURCES) $(CPP_MODEL_PARTS) $(BENCHMARK_SOURCES) $(BENCHMARK_PARTS) \
            $(PEER_SOURCES)
 
@@ -176,22 +173,18 @@ say = $(if $(findstring s,$(firstword -$(MAKEFLAGS))),@:,@echo)
 VERSION := $(shell awk '/define CSCD_VERSION_/ {print $$3}' include/cscd/cscd.h | paste -sd .)
 MAJOR   := $(firstword $(subst ., ,$(VERSION)))
 
-# Objects have a folder of their own: a program may have the name of the folder of its parts. A build with CHARGE=0
-# links others of the same objects.
+# Objects have a folder of their own: a program may have the name of the folder of its parts.
 OBJECTS := $(BUILD_ROOT)/$(CONFIG)$(MORE_CASES)/objects
 objects = $(patsubst %.c,$(OBJECTS)/%.o,$(1))
 KERNEL_OBJECTS := $(foreach level,$(LEVELS),$(patsubst %.c,$(OBJECTS)/%.$(level).o,$(KERNEL_SOURCES)))
 CORE_OBJECTS := $(call objects,$(CORE_SOURCES)) $(KERNEL_OBJECTS)
-CHARGE_OBJECTS := $(call objects,$(filter-out %/dense_export.c,$(CHARGE_SOURCES)))
-LINKED_OBJECTS := $(CORE_OBJECTS) $(OBJECTS)/preprocess/charge_library.linked.o $(CHARGE_OBJECTS)
-OPENED_OBJECTS := $(CORE_OBJECTS) $(OBJECTS)/preprocess/charge_library.opened.o
+# What tests of its parts link of libcscd-baselines.so.
+BASELINE_OBJECTS := $(call objects,$(filter-out %_export.c,$(BASELINE_SOURCES)))
 COMMON_OBJECTS := $(call objects,$(COMMON_SOURCES))
 IO_OBJECTS     := $(call objects,$(filter src/io/% src/windows/%,$(COMMON_SOURCES)))
 LIBRARY := $(BUILD)/libcscd.a
-# The library of the tool and of the programs of models/ in C, which is not installed.
-OPENING_LIBRARY := $(if $(WINDOWS)$(WASM),$(LIBRARY),$(BUILD)/libcscd-opening.a)
 SHARED  := $(BUILD)/$(if $(WINDOWS),libcscd-$(MAJOR).dll,libcscd.so.$(VERSION))
-CHARGE_SHARED := $(if $(filter 0,$(CHARGE)),,$(BUILD)/libcscd-charge.so.$(VERSION))
+BASELINES_SHARED := $(if $(filter 0,$(BASELINES)),,$(BUILD)/libcscd-baselines.so.$(VERSION))
 TOOL    := $(BUILD)/cscd
 TESTS   := $(addprefix $(BUILD)/,$(basename $(TEST_SOURCES)))
 ROOMS   := $(sort $(foreach source,$(ROOM_SOURCES),$(BUILD)/$(dir $(source))room))
@@ -207,7 +200,7 @@ SLOW_culling       := choice culling local_culling verlet_list
 SLOW_depths        := deepest_points work_budget
 SLOW_detector      := change_mesh lifetimes list_cap object_rules oracle reentry waiting_random
 SLOW_events        := event_tracker event_tracker_bodies
-SLOW_install       := charge_library embedding header_versions headers install places run_script
+SLOW_install       := baseline_library embedding header_versions headers install places run_script
 SLOW_intersections := collapsed curve_changes curves find_intersections first_pairs live_answers memory_budget pair_kind static_check_kernel winding
 SLOW_io            := frame_series point_caches
 SLOW_jobs          := each job_processes list merge merge_files stopped_jobs
@@ -238,7 +231,7 @@ BENCHMARKS := $(filter-out %/peers,$(patsubst benchmarks/%.c,$(BUILD)/benchmarks
 COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 
 # What installs packages; a build that leaves expat out on purpose does not ask for it.
-PACKAGES = CHARGE=$(CHARGE) EXPAT=$(if $(WITHOUT_EXPAT),0,1) .ci/packages
+PACKAGES = BASELINES=$(BASELINES) EXPAT=$(if $(WITHOUT_EXPAT),0,1) .ci/packages
 
 .PHONY: all python wheel wheels test-wheels sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-charge bench-peers bench-instructions referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender blender-extension test-vtk windows windows-libraries windows-zip test-windows test-windows-run test-bridges test-farm test-mutants test-aarch64 test-s390x wasm test-wasm test-riscv64 deb test-deb test-builds cscd-mpi python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces fuzz-readers test-fuzz test-faults FORCE
 .DELETE_ON_ERROR:
@@ -252,26 +245,25 @@ all:
 tool: $(TOOL)
 	@if [ "$(BUILD)" = build/release ]; then ln -sfn $(TOOL) cscd; fi
 
-library: $(LIBRARY) $(SHARED) $(CHARGE_SHARED)
+library: $(LIBRARY) $(SHARED) $(BASELINES_SHARED)
 
-# The Python package as it is imported: PYTHONPATH=build/python. It has the dense solver in the library beside it, which CHARGE=0 leaves
-# out.
+# The Python package as it is imported: PYTHONPATH=build/python. libcscd-baselines.so lies in it, unless BASELINES=0 leaves that out.
 PYTHON_PACKAGE := $(BUILD_ROOT)/python/cscd
 PYTHON_SOURCES := $(wildcard python/cscd/*.py python/cscd/py.typed)
 NATIVE_LIBRARY := $(PYTHON_PACKAGE)/libcscd-python.$(if $(WINDOWS),dll,so)
-PACKED_CHARGE  := $(if $(filter-out 1,$(DYNAMIC)),$(if $(CHARGE_SHARED),$(PYTHON_PACKAGE)/libcscd-charge.so.$(MAJOR)))
-# What an older version, or a build with the dense solver, has left there goes.
-python: $(NATIVE_LIBRARY) $(CHARGE_SHARED)
+PACKED_BASELINES := $(if $(filter-out 1,$(DYNAMIC)),$(if $(BASELINES_SHARED),$(PYTHON_PACKAGE)/libcscd-baselines.so.$(MAJOR)))
+# What an older version, or a build with that library, has left there goes.
+python: $(NATIVE_LIBRARY) $(BASELINES_SHARED)
 	@cp -p $(PYTHON_SOURCES) $(PYTHON_PACKAGE)
-	@$(if $(PACKED_CHARGE),cp -p $(CHARGE_SHARED) $(PACKED_CHARGE))
-	@rm -rf $(filter-out $(addprefix $(PYTHON_PACKAGE)/,$(notdir $(PYTHON_SOURCES))) $(PACKED_CHARGE) $<,$(wildcard $(PYTHON_PACKAGE)/*))
+	@$(if $(PACKED_BASELINES),cp -p $(BASELINES_SHARED) $(PACKED_BASELINES))
+	@rm -rf $(filter-out $(addprefix $(PYTHON_PACKAGE)/,$(notdir $(PYTHON_SOURCES))) $(PACKED_BASELINES) $<,$(wildcard $(PYTHON_PACKAGE)/*))
 
 # The interpreter that builds wheels and is tested: the first that has numpy.
 PYTHON ?= $(or $(shell for python in python3 /usr/bin/python3; do \
               $$python -c 'import numpy' 2>/dev/null && echo $$python && break; done),/usr/bin/python3)
 BACK_END = PYTHONPATH=python PYTHONDONTWRITEBYTECODE=1 CC='$(CC)' $(PYTHON) -m build_backend
 
-# The wheel to give away, without the dense solver, and the archive of the sources.
+# The wheel to give away, without libcscd-baselines.so, and the archive of the sources.
 wheel:
 	@$(BACK_END) wheel build/dist $(if $(HOST),$(HOST) '$(or $(WINDOWS_LIBRARIES),$(SYSROOT))')
 
@@ -305,7 +297,7 @@ INCLUDEDIR ?= $(PREFIX)/include
 MANDIR     ?= $(PREFIX)/share/man
 # One word of the shell, whatever is in it.
 quoted = '$(subst ','\'',$(1))'
-INSTALLER = BUILD=$(call quoted,$(BUILD)) VERSION='$(VERSION)' STATIC_LIBS='$(strip $(STATIC_LIBS)) -pthread' CHARGE='$(CHARGE)' \
+INSTALLER = BUILD=$(call quoted,$(BUILD)) VERSION='$(VERSION)' STATIC_LIBS='$(CORE_LIBS) -pthread' BASELINES='$(BASELINES)' \
             POINTER_SIZE='$(shell echo __SIZEOF_POINTER__ | $(CC) $(CFLAGS) -E -P -)' DESTDIR=$(call quoted,$(DESTDIR)) \
             BINDIR=$(call quoted,$(BINDIR)) LIBDIR=$(call quoted,$(LIBDIR)) INCLUDEDIR=$(call quoted,$(INCLUDEDIR)) \
             MANDIR=$(call quoted,$(MANDIR)) src/packaging/install.sh
@@ -647,7 +639,8 @@ help:
 	@echo 'make test-builds   other compilers, flags, users and folders, and without each optional library; as root: some minutes'
 	@echo 'make test-threads   the tests that use threads, under the thread sanitizer'
 	@echo 'make           build the tool (./cscd), build/release/libcscd.a and libcscd.so; make library builds these alone'
-	@echo '               CHARGE=0: without LAPACKE and OpenBLAS (--charge dense); EXPAT=0: a tool without GIFTI surfaces'
+	@echo '               BASELINES=0: without libcscd-baselines.so, for LAPACKE, OpenBLAS and GSL (--charge dense);'
+	@echo '               EXPAT=0: a tool without GIFTI surfaces'
 	@echo 'make python    the Python package, in build/python; make wheel: a wheel to give away, make sdist: its sources, in build/dist;'
 	@echo '               make test-python: its tests, types and archives (installs pytest, mypy, venv); PYTHON=python3'
 	@echo 'make wheels    the wheels of Linux (x86-64, aarch64) and Windows, in build/dist (installs cross compilers); make test-wheels:'
@@ -675,9 +668,7 @@ help:
 
 # A static library is one relocatable object in which everything but the public API is local.
 ifeq ($(WINDOWS)$(WASM),)
-$(LIBRARY): $(if $(filter 0,$(CHARGE)),$(OPENED_OBJECTS),$(LINKED_OBJECTS))
-$(OPENING_LIBRARY): $(OPENED_OBJECTS)
-$(LIBRARY) $(OPENING_LIBRARY):
+$(LIBRARY): $(CORE_OBJECTS)
 	@mkdir -p $(@D)
 	$(say) '  AR $@'
 	$(Q)$(TOOLS)ld -r -o $(@:.a=.o) $^
@@ -690,60 +681,66 @@ endif
 # come with the program.
 SHARED_FLAGS := -shared -Wl,--as-needed $(if $(findstring -fsanitize,$(OPTIMISE_$(CONFIG))),,-Wl,-z,defs)
 ifndef WINDOWS
-$(SHARED): $(OPENED_OBJECTS) $(BUILD)/cscd.map
+$(SHARED): $(CORE_OBJECTS) $(BUILD)/cscd.map
 	@mkdir -p $(@D)
 	$(say) '  LD $@'
 	$(Q)$(CC) $(LINK_ALL) $(SHARED_FLAGS) -Wl,-soname,libcscd.so.$(MAJOR) -Wl,--version-script,$(BUILD)/cscd.map \
-	    -o $@ $(OPENED_OBJECTS) $(SHARED_LIBS)
+	    -o $@ $(CORE_OBJECTS) $(CORE_LIBS)
 	@ln -sfn $(@F) $(BUILD)/libcscd.so.$(MAJOR)
 	@ln -sfn libcscd.so.$(MAJOR) $(BUILD)/libcscd.so
 endif
 
 # All of the tool but its program, and what Python calls. Its own functions are meant wherever it calls one of the library, whatever
 # else the process has loaded.
-NATIVE_OBJECTS := $(if $(filter 1,$(DYNAMIC)),,$(OPENED_OBJECTS)) $(COMMON_OBJECTS) $(call objects,$(filter-out src/tool/main.c,$(COMMAND_SOURCES)) $(NATIVE_SOURCES)) \
+NATIVE_OBJECTS := $(if $(filter 1,$(DYNAMIC)),,$(CORE_OBJECTS)) $(COMMON_OBJECTS) $(call objects,$(filter-out src/tool/main.c,$(COMMAND_SOURCES)) $(NATIVE_SOURCES)) \
                   $(if $(filter 1,$(DYNAMIC)),$(SHARED))
 NATIVE_FILE_LIBS = $(if $(filter 1,$(DYNAMIC)),$(FILE_LIBS),$(call packaged,--static --libs libpng zlib json-c,-lpng -lz -ljson-c -lm) $(EXPAT_LIBS))
 ifndef WINDOWS
 $(NATIVE_LIBRARY): $(NATIVE_OBJECTS) python/native/link.sh
 	@mkdir -p $(@D)
 	$(say) '  LD $@'
-	$(Q)LINK='$(CC) $(LINK_ALL) $(SHARED_FLAGS) -Wl,-Bsymbolic' FILE_LIBS='$(NATIVE_FILE_LIBS)' OTHER_LIBS='$(SHARED_LIBS)' \
+	$(Q)LINK='$(CC) $(LINK_ALL) $(SHARED_FLAGS) -Wl,-Bsymbolic' FILE_LIBS='$(NATIVE_FILE_LIBS)' OTHER_LIBS='$(CORE_LIBS)' \
 	    DYNAMIC='$(DYNAMIC)' OBJCOPY=$(TOOLS)objcopy python/native/link.sh $@ $(NATIVE_OBJECTS)
 endif
 
-# The charge library exports one function, and needs two more files of the core.
-CHARGE_LIBRARY_OBJECTS := $(call objects,$(CHARGE_SOURCES) preprocess/charge/potential.c src/core/timer.c)
-$(BUILD)/libcscd-charge.so.$(VERSION): $(CHARGE_LIBRARY_OBJECTS)
+# It exports a function for each of its parts, and needs two more files of libcscd.
+BASELINE_LIBRARY_OBJECTS := $(call objects,$(BASELINE_SOURCES) preprocess/charge/potential.c src/core/timer.c)
+$(BUILD)/libcscd-baselines.so.$(VERSION): $(BASELINE_LIBRARY_OBJECTS)
 	@mkdir -p $(@D)
 	$(say) '  LD $@'
-	$(Q)$(CC) $(LINK_ALL) $(SHARED_FLAGS) -Wl,-soname,libcscd-charge.so.$(MAJOR) -o $@ $^ $(CHARGE_LIBS)
-	@ln -sfn $(@F) $(BUILD)/libcscd-charge.so.$(MAJOR)
+	$(Q)$(CC) $(LINK_ALL) $(SHARED_FLAGS) -Wl,-soname,libcscd-baselines.so.$(MAJOR) -o $@ $^ $(BASELINE_LIBS)
+	@ln -sfn $(@F) $(BUILD)/libcscd-baselines.so.$(MAJOR)
+
+# The tool finds it beside itself here, and in the prefix where it is installed. Programs below the build folder find it by their paths
+# for libraries; of the two kinds it is the older one, because sanitizers open libraries in the place of a program.
+ifndef WINDOWS
+FINDS_BASELINES := -Wl,--disable-new-dtags,-rpath,'$$ORIGIN/..:$$ORIGIN/../..'
+endif
+$(TOOL) $(C_MODELS) $(CPP_MODELS) $(BENCHMARKS) $(ROOMS): | $(BASELINES_SHARED)
 
 $(BUILD)/cscd.map: src/packaging/cscd.map.in include/cscd/cscd.h
 	@mkdir -p $(@D)
 	@sed 's/@MAJOR@/$(MAJOR)/g' $< > $@
 
-# The tool uses the public API alone, so it links the library and not its objects. It opens the charge library, which stands
-# beside it here, and in the prefix where it is installed.
-$(TOOL): $(call objects,$(COMMAND_SOURCES)) $(COMMON_OBJECTS) $(if $(filter 1,$(DYNAMIC)),$(SHARED),$(OPENING_LIBRARY)) | $(CHARGE_SHARED)
+# The tool uses the public API alone, so it links the library and not its objects.
+$(TOOL): $(call objects,$(COMMAND_SOURCES)) $(COMMON_OBJECTS) $(if $(filter 1,$(DYNAMIC)),$(SHARED),$(LIBRARY))
 	@mkdir -p $(@D)
 	$(say) '  LD $@'
 	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(if $(filter 1,$(DYNAMIC)),$(FILE_LIBS) -lm,$(TOOL_LIBS))
 
 # models/*.c are programs, and models/*/ has their parts; they use the public API alone, too.
 MODEL_PART_OBJECTS := $(call objects,$(MODEL_PARTS))
-$(C_MODELS): $(BUILD)/models/%: $(OBJECTS)/models/%.o $(MODEL_PART_OBJECTS) $(IO_OBJECTS) $(OPENING_LIBRARY)
+$(C_MODELS): $(BUILD)/models/%: $(OBJECTS)/models/%.o $(MODEL_PART_OBJECTS) $(IO_OBJECTS) $(LIBRARY)
 	@mkdir -p $(@D)
 	$(say) '  LD $@'
-	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
+	$(Q)$(CC) $(LINK_ALL) $(FINDS_BASELINES) -o $@ $^ $(TOOL_LIBS)
 
 # Programs in C++ have parts in C++ alone.
 $(CPP_MODELS): $(BUILD)/models/%: $(OBJECTS)/models/%.o $(patsubst %.cpp,$(OBJECTS)/%.o,$(CPP_MODEL_PARTS)) \
                $(filter $(OBJECTS)/src/windows/%,$(IO_OBJECTS)) $(LIBRARY)
 	@mkdir -p $(@D)
 	$(say) '  LD $@'
-	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(STATIC_LIBS) -lstdc++ -lm
+	$(Q)$(CC) $(LINK_ALL) $(FINDS_BASELINES) -o $@ $^ $(CORE_LIBS) -lstdc++ -lm
 
 # Benchmarks may use internals, as tests do: benchmarks/*.c are programs, and benchmarks/lib has what they share.
 MACHINE_LEVELS := $(foreach level,$(LEVELS),$(OBJECTS)/benchmarks/lib/machine_kernels_simd.$(level).o)
@@ -762,14 +759,14 @@ $(OBJECTS)/benchmarks/peers/cgal_peer.o: OPTIMISE_$(CONFIG) += -DNDEBUG -froundi
 $(BENCHMARKS) $(BUILD)/benchmarks/peers: $(BUILD)/benchmarks/%: $(OBJECTS)/benchmarks/%.o $(BUILD)/benchmarks/lib.a $(BUILD)/inside.a
 	@mkdir -p $(@D)
 	$(say) '  LD $@'
-	$(Q)$(CC) $(LINK_ALL) -Wl,--as-needed -o $@ $(filter %.o,$^) $(filter %.a,$^) $(TOOL_LIBS) $(CHARGE_LIBS) -lgmp $(PEER_LIBS)
+	$(Q)$(CC) $(LINK_ALL) $(FINDS_BASELINES) -Wl,--as-needed -o $@ $(filter %.o,$^) $(filter %.a,$^) $(TOOL_LIBS) -lgmp $(PEER_LIBS)
 
 # Tests use internals: they link the objects and libraries that they need and no others. The linker gold, where it is, takes half
 # of the time. LDFLAGS with another linker come after it, and win. What tests put in the place of the product's is wrapped.
 TEST_LINKER := $(if $(HOST),,$(shell $(CC) -fuse-ld=gold -Wl,--version >/dev/null 2>&1 && echo -fuse-ld=gold))
 TEST_PARTS  := $(OBJECTS)/tests/support/room.o $(OBJECTS)/tests/support/io_allocations.o $(BUILD)/tests/support.a $(BUILD)/inside.a
 WRAPPED     := -Wl,--wrap=io_realloc
-LINK_TEST    = $(Q)$(CC) $(TEST_LINKER) $(LINK_ALL) -Wl,--as-needed $(WRAPPED) -o $@ $(filter %.o,$^) $(filter %.a,$^) $(TEST_LIBS)
+LINK_TEST    = $(Q)$(CC) $(TEST_LINKER) $(LINK_ALL) $(FINDS_BASELINES) -Wl,--as-needed $(WRAPPED) -o $@ $(filter %.o,$^) $(filter %.a,$^) $(TEST_LIBS)
 $(ROOMS): $(TEST_PARTS)
 	@mkdir -p $(@D)
 	$(say) '  LD $@'
@@ -795,7 +792,7 @@ test_file = $(if $(filter test_%,$(notdir $(1))),-DTEST_FILE='"$(basename $(notd
 $(BUILD)/tests/%: $(OBJECTS)/tests/%.o $(BUILD)/tests/support.a $(BUILD)/inside.a
 	@mkdir -p $(@D)
 	$(say) '  LD $@'
-	$(Q)$(CC) $(TEST_LINKER) $(LINK_ALL) -Wl,--as-needed -o $@ $(filter %.o,$^) $(filter %.a,$^) $(TEST_LIBS)
+	$(Q)$(CC) $(TEST_LINKER) $(LINK_ALL) $(FINDS_BASELINES) -Wl,--as-needed -o $@ $(filter %.o,$^) $(filter %.a,$^) $(TEST_LIBS)
 
 # Brute force for the tests of the Python package, which load it.
 PYTHON_ORACLE := $(BUILD)/tests/python/oracle.so
@@ -819,9 +816,6 @@ $(BUILD)/tests/fuzz/fuzz_readers $(BUILD)/tests/fuzz/coverage_target: $(READING_
 $(BUILD)/tests/fuzz/coverage_target: TEST_LINKER :=
 $(BUILD)/tests/fuzz/coverage_target: LINK_ALL += -fsanitize=fuzzer
 
-# A test of the tool's memory must be smaller than the tool: like that, it opens the charge library where it is needed.
-$(BUILD)/tests/tool/room: $(OBJECTS)/preprocess/charge_library.opened.o
-
 # A host in C++, which throws; and tests in C++.
 $(BUILD)/tests/core/room: $(OBJECTS)/tests/core/throwing_host.o
 $(BUILD)/tests/core/room $(BUILD)/tests/cpp/room: TEST_LIBS += -lstdc++
@@ -836,13 +830,13 @@ $(BUILD)/tests/support.a: $(call objects,$(SUPPORT_SOURCES) benchmarks/lib/pair_
 	$(Q)$(TOOLS)ar rcs $@ $^
 
 # A program on the public functions alone, for two machines.
-$(BUILD)/tests/wasm/contacts: $(OBJECTS)/tests/wasm/contacts.o $(OPENING_LIBRARY)
+$(BUILD)/tests/wasm/contacts: $(OBJECTS)/tests/wasm/contacts.o $(LIBRARY)
 	@mkdir -p $(@D)
 	$(say) '  LD $@'
-	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(SHARED_LIBS)
+	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(CORE_LIBS)
 
-# q: objects of different folders may have the same name.
-$(BUILD)/inside.a: $(LINKED_OBJECTS) $(COMMON_OBJECTS) $(MODEL_PART_OBJECTS)
+# q: objects of different folders may have the same name. Windows and WebAssembly, which have no libcscd-baselines, have one for tests.
+$(BUILD)/inside.a: $(filter-out $(if $(WINDOWS)$(WASM),%/src/core/baseline_library.o),$(CORE_OBJECTS)) $(BASELINE_OBJECTS) $(COMMON_OBJECTS) $(MODEL_PART_OBJECTS)
 	@mkdir -p $(@D)
 	@rm -f $@
 	$(Q)$(TOOLS)ar qcs $@ $^
@@ -876,15 +870,9 @@ $(OBJECTS)/%.o: %.cpp
 # Without errno in square roots and without traps in comparisons; otherwise its loops are not vectorised.
 $(OBJECTS)/preprocess/charge/potential.o: CFLAGS_ALL += -fno-math-errno -fno-trapping-math
 
-# One file, compiled twice. Some systems have the libraries of a prefix in a folder for their machine.
+# Some systems have the libraries of a prefix in a folder for their machine.
 MULTIARCH := $(shell $(CC) -print-multiarch 2>/dev/null)
-CHARGE_LIBRARY_FORMS := $(foreach form,linked opened,$(OBJECTS)/preprocess/charge_library.$(form).o)
-$(OBJECTS)/preprocess/charge_library.linked.o: CFLAGS_ALL += -DCHARGE_LINKED
-$(OBJECTS)/preprocess/charge_library.opened.o: CFLAGS_ALL += $(if $(MULTIARCH),-DCHARGE_MULTIARCH='"$(MULTIARCH)"')
-$(CHARGE_LIBRARY_FORMS): preprocess/charge_library.c
-	@mkdir -p $(@D)
-	$(say) '  CC $< ($(@F))'
-	$(Q)$(CC) $(CFLAGS_ALL) -c -o $@ $<
+$(OBJECTS)/src/core/baseline_library.o: CFLAGS_ALL += $(if $(MULTIARCH),-DLIBRARY_FOLDER='"$(MULTIARCH)"')
 
 # This object contains the pages of the reports.
 $(OBJECTS)/src/tool/report/template.o: src/tool/report/template.html src/tool/report/jobs.html
@@ -905,4 +893,4 @@ include src/packaging/wasm/rules.mk
 endif
 
 -include $(addprefix $(OBJECTS)/,$(addsuffix .d,$(basename $(SOURCES)))) $(KERNEL_OBJECTS:.o=.d) \
-         $(CHARGE_LIBRARY_FORMS:.o=.d) $(MACHINE_LEVELS:.o=.d) $(VOLUME_LEVELS:.o=.d) $(TEST_LEVELS:.o=.d) $(OBJECTS)/tests/blender/print_frames.d $(OBJECTS)/tests/python/oracle.d
+         $(MACHINE_LEVELS:.o=.d) $(VOLUME_LEVELS:.o=.d) $(TEST_LEVELS:.o=.d) $(OBJECTS)/tests/blender/print_frames.d $(OBJECTS)/tests/python/oracle.d

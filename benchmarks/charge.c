@@ -3,6 +3,7 @@
 #include "benchmarks/lib/charge_trial.h"
 #include "benchmarks/lib/row_file.h"
 #include "models/shapes/catalogue.h"
+#include "src/tool/common/blas_kernels.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -106,7 +107,8 @@ int main(int argument_count, char **arguments) {
         fputs(help, stderr);
         return 2;
     }
-    charge_restart_with_kernels(arguments);
+    blas_kernels_own_process();
+    blas_kernels_prepare(false);
     const bool good = run_all(&r, argument_count, arguments, &error);
     if (!good) fprintf(stderr, "charge: %s\n", error.text);
     return good ? 0 : 1;

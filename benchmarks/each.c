@@ -337,8 +337,6 @@ int main(int argument_count, char **arguments) {
     static const uint32_t sizes[] = {5, 5000};
     static const bench_program program = {"each", help, sizes, 2, 2, run_sizes};
     io_error error;
-    /* It starts threads in every program that may make plans; nothing here uses them, but their waiting would count. */
-    setenv("OPENBLAS_NUM_THREADS", "1", 1);
     if (argument_count > 2 && strcmp(arguments[1], "--here") == 0)
         return check_here(arguments + 2, &error) ? 0 : 1;
     return bench_main(&program, argument_count, arguments);

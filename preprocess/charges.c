@@ -1,7 +1,8 @@
-/* The charges of a mesh, component by component: by a dense system in the charge library, or by a treecode. */
+/* The charges of a mesh, component by component: by a dense system, which is in libcscd-baselines, or by a treecode. */
 #include "preprocess/charges.h"
 
 #include "preprocess/treecode/tree_solve.h"
+#include "src/core/baseline_library.h"
 #include "src/core/system.h"
 #include "src/core/timer.h"
 #include "src/mesh/positions.h"
@@ -90,6 +91,15 @@ static cscd_status solve_dense(charge_work *w) {
     return w->dense->solve(&host, &w->system, &w->report.timings);
 }
 
+static cscd_status find_dense(cscd_context *context, const dense_functions **out) {
+    const void *functions;
+    cscd_status status = baseline_library_find(
+        context, DENSE_ENTRY, DENSE_INTERFACE,
+        "charge: the dense solver (the tree, which is the default, does without)", &functions);
+    *out = functions;
+    return status;
+}
+
 static size_t dense_memory(const charge_work *w) {
     charge_system system;
     const uint32_t largest = largest_component(w->mesh);
@@ -176,7 +186,7 @@ cscd_status charge_solve(const cscd_mesh *mesh, const double *positions, const c
     if (density == NULL || capacitance == NULL)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "charge: density or capacitance is NULL");
     cscd_status status = positions_check(context, positions, mesh->vertex_count, "charge");
-    if (status == CSCD_OK && w.solver == CSCD_CHARGE_DENSE) status = charge_library_find(context, &w.dense);
+    if (status == CSCD_OK && w.solver == CSCD_CHARGE_DENSE) status = find_dense(context, &w.dense);
     if (status == CSCD_OK) status = solve_mesh(&w);
     if (status == CSCD_OK) {
         memcpy(density, w.density, mesh->triangle_count * sizeof *density);
@@ -191,5 +201,5 @@ cscd_status charge_solve(const cscd_mesh *mesh, const double *positions, const c
 
 size_t charge_memory(const cscd_mesh *mesh) {
     charge_work w = {.mesh = mesh};
-    return charge_library_find(mesh->context, &w.dense) == CSCD_OK ? dense_memory(&w) : SIZE_MAX;
+    return find_dense(mesh->context, &w.dense) == CSCD_OK ? dense_memory(&w) : SIZE_MAX;
 }

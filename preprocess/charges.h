@@ -1,7 +1,7 @@
 /* The charge density of a conductor in the shape of the mesh: collocation at triangle centroids. */
 #pragma once
 
-#include "preprocess/dense/dense_interface.h"
+#include "preprocess/baselines/dense/dense_interface.h"
 #include "src/mesh/mesh.h"
 
 /* What a solution took, and by what. */
@@ -17,7 +17,7 @@ typedef struct charge_options {
 
 /* Bytes that the dense solution takes at its peak through the context's allocator; the largest component's matrix,
  * 4 bytes per pair of its triangles, is nearly all of it. SIZE_MAX when they cannot be counted, or when there is
- * no charge library. External for the tests of memory limits. */
+ * no libcscd-baselines. External for the tests of memory limits. */
 size_t charge_memory(const cscd_mesh *mesh);
 
 /* Each component is a conductor of its own, alone in space, at potential 1, in Gaussian units:
@@ -29,11 +29,7 @@ size_t charge_memory(const cscd_mesh *mesh);
  * OUT_OF_MEMORY: it takes more than what the system has available (the sentence gives both), or an
  * allocation failed. INVALID_ARGUMENT: positions; two triangles with one centroid, or so near to each other
  * that their charges cannot be told apart. CANCELLED: the context's progress function said so.
- * SYSTEM_ERROR: DENSE, and there is no charge library. The same
+ * SYSTEM_ERROR: DENSE, and there is no libcscd-baselines. The same
  * inputs give the same bits, for any thread count and whoever runs the tasks. */
 cscd_status charge_solve(const cscd_mesh *mesh, const double *positions, const charge_options *options,
                          double *density, double *capacitance, charge_report *report);
-
-/* Writes the functions of the charge library, which is linked or opened (charge_library.c). Without
- * it, fails with SYSTEM_ERROR and a sentence that says how to get it. */
-cscd_status charge_library_find(cscd_context *context, const dense_functions **out);

@@ -4,7 +4,6 @@
 #include "preprocess/charges.h"
 #include "src/core/context.h"
 #include "src/core/timer.h"
-#include "src/tool/common/blas_kernels.h"
 
 #include <errno.h>
 #include <malloc.h>
@@ -157,12 +156,4 @@ bool charge_trial_run(const body *b, const charge_request *request, charge_trial
 
 const char *charge_solver_name(cscd_charge_solver solver) {
     return solver == CSCD_CHARGE_DENSE ? "dense" : solver == CSCD_CHARGE_COARSE ? "coarse" : "tree";
-}
-
-void charge_restart_with_kernels(char **arguments) {
-    static const char variable[] = "OPENBLAS_CORETYPE";
-    const bool chosen = getenv(variable) != NULL;
-    blas_kernels_own_process();
-    blas_kernels_prepare(false);
-    if (!chosen && getenv(variable) != NULL) execv("/proc/self/exe", arguments);
 }

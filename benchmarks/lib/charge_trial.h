@@ -26,6 +26,3 @@ bool charge_trial_run(const body *b, const charge_request *request, charge_trial
 
 /* "tree", "coarse", "dense", as the tool calls them. */
 const char *charge_solver_name(cscd_charge_solver solver);
-
-/* OpenBLAS is linked and has chosen its kernels before main: where it chose those of an old processor, the program starts again. */
-void charge_restart_with_kernels(char **arguments);

@@ -26,11 +26,11 @@ typedef enum cscd_status {
     CSCD_INVALID_ARGUMENT, /* NULL, out of range, not finite, or options that no _defaults() function made */
     CSCD_INVALID_MESH,     /* no triangle, too many, an index beyond vertex_count, a triangle with a vertex
                             * twice */
-    CSCD_SYSTEM_ERROR,     /* the system refused a thread, or has no libcscd-charge.so: CSCD_CHARGE_DENSE */
-    CSCD_CANCELLED,     /* the callback in cscd_progress returned false, or cscd_context_cancel was called */
-    CSCD_IN_CONTACT,    /* no step is free of contact, because the start is not: cscd_detector_max_step */
-    CSCD_BUSY,          /* another call with this context is running: see the rules of callbacks */
-    CSCD_BROKEN,        /* a callback has left a call with this context by an exception or longjmp */
+    CSCD_SYSTEM_ERROR, /* the system refused a thread, or there is no libcscd-baselines.so: CSCD_CHARGE_DENSE */
+    CSCD_CANCELLED,    /* the callback in cscd_progress returned false, or cscd_context_cancel was called */
+    CSCD_IN_CONTACT,   /* no step is free of contact, because the start is not: cscd_detector_max_step */
+    CSCD_BUSY,         /* another call with this context is running: see the rules of callbacks */
+    CSCD_BROKEN,       /* a callback has left a call with this context by an exception or longjmp */
     CSCD_NULL_OBJECT,   /* an object that the call needs is NULL. There may be no context then that could
                             * hold a sentence, so cscd_context_detail is what it was before */
     CSCD_LIST_TOO_LONG, /* there is more to list than longest_list allows (cscd_detector_options), or max_memory

@@ -84,7 +84,7 @@ static inline cscd_plan_options cscd_plan_defaults(void) {
 
 /* Cuts a mesh into regions. positions: the mesh at rest. options may be NULL. Obstacles are left whole.
  * OUT_OF_MEMORY: where CHARGE is solved, the sentence gives the amount. SYSTEM_ERROR: CSCD_CHARGE_DENSE alone is in
- * libcscd-charge.so, which libcscd.so opens beside itself or where the system looks (libcscd.a has it inside), and there is
+ * libcscd-baselines.so, which the library opens beside itself, beside the program or where the system looks, and there is
  * none, or one of another version. CANCELLED: see cscd_progress. INVALID_MESH: it has no triangles; wires, points and
  * half-spaces beside them do not matter. */
 CSCD_API cscd_status cscd_plan_create(cscd_context *context, const cscd_mesh *mesh,

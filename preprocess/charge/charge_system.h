@@ -16,7 +16,7 @@ typedef struct charge_point {
 
 /* Unknown k is the charge on a triangle, or on all triangles that coincide with it. Lengths are scaled by a
  * power of two so that the component's extent lies in [1/2, 1), about its box's middle. This is a part of what libcscd and
- * libcscd-charge know of each other (preprocess/dense/dense_interface.h). */
+ * libcscd-baselines know of each other (preprocess/baselines/dense/dense_interface.h). */
 typedef struct charge_system {
     uint32_t component, count; /* the number of unknowns */
     uint32_t point_count;      /* the number of triangles with an area */

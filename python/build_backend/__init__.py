@@ -3,9 +3,9 @@
 Needs the standard library alone. pip calls these functions in the root of the source tree. `python -m build_backend`
 with this folder's parent on PYTHONPATH makes the same files without pip.
 
-Each hook takes `config_settings`, of which it knows one: charge=0 leaves out the dense solver of plans by charge,
-charge=1 insists on it, and without the setting it is built where LAPACKE and OpenBLAS are:
-`pip install . --config-settings charge=0`.
+Each hook takes `config_settings`, of which it knows one: baselines=0 leaves out libcscd-baselines.so, which has the dense solver
+of plans by charge, baselines=1 insists on it, and without the setting it is built where LAPACKE, OpenBLAS and GSL are:
+`pip install . --config-settings baselines=0`.
 """
 from __future__ import annotations
 
@@ -55,14 +55,14 @@ def build_wheel(
     fails.
     """
     try:
-        return build_wheel_for(Target(), wheel_directory, native.charge_setting(config_settings))
+        return build_wheel_for(Target(), wheel_directory, native.baselines_setting(config_settings))
     except Failure as failure:
         raise SystemExit(f"cscd: {failure}") from None
 
 
-def build_wheel_for(target: Target, wheel_directory: str, charge: Optional[bool]) -> str:
+def build_wheel_for(target: Target, wheel_directory: str, baselines: Optional[bool]) -> str:
     """The same for any platform, but a failure is raised."""
-    with native.built_package(ROOT, charge, target) as package:
+    with native.built_package(ROOT, baselines, target) as package:
         return wheel.write_wheel(Project.read(ROOT), package, wheel_directory, target)
 
 
@@ -75,7 +75,7 @@ def build_editable(
     """
     try:
         project = Project.read(ROOT)
-        native.build_in_place(ROOT, native.charge_setting(config_settings))
+        native.build_in_place(ROOT, native.baselines_setting(config_settings))
         return wheel.write_editable(project, ROOT / "build" / "python", wheel_directory)
     except Failure as failure:
         raise SystemExit(f"cscd: {failure}") from None

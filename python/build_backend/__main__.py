@@ -1,7 +1,7 @@
 """Makes the archives without pip: `PYTHONPATH=python python3 -m build_backend wheel FOLDER [HOST LIBRARIES]`, or `sdist FOLDER`.
 
-The wheel is the one to give away: it has no dense solver. This ends with status 1 if its library needs one that a bare system
-lacks. With HOST, such as aarch64-linux-gnu, it is for that platform; CC names the cross compiler, and LIBRARIES the folder
+The wheel is the one to give away: it has no libcscd-baselines.so. This ends with status 1 if its library needs one that a bare
+system lacks. With HOST, such as aarch64-linux-gnu, it is for that platform; CC names the cross compiler, and LIBRARIES the folder
 with the libraries of that platform.
 """
 from __future__ import annotations

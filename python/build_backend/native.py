@@ -24,25 +24,24 @@ from .target import Target
 NOT_FOR_MAKE = {"BUILD", "BUILD_ROOT", "GNUMAKEFLAGS", "MAKEFLAGS", "MAKELEVEL", "MAKEOVERRIDES", "MFLAGS", "ONLY"}
 
 
-def charge_setting(settings: Optional[Dict[str, object]]) -> Optional[bool]:
-    """What `--config-settings charge=` says: True, False, or None where it says nothing."""
+def baselines_setting(settings: Optional[Dict[str, object]]) -> Optional[bool]:
+    """What `--config-settings baselines=` says: True, False, or None where it says nothing."""
     for key in settings or {}:
-        if key != "charge":
-            raise Failure(f"the only --config-settings is charge=0 or charge=1, and not {key}")
-    value = str((settings or {}).get("charge", ""))
+        if key != "baselines":
+            raise Failure(f"the only --config-settings is baselines=0 or baselines=1, and not {key}")
+    value = str((settings or {}).get("baselines", ""))
     if value not in ("", "0", "1"):
-        raise Failure(f"--config-settings charge={value} is neither charge=0 nor charge=1")
+        raise Failure(f"--config-settings baselines={value} is neither baselines=0 nor baselines=1")
     return None if value == "" else value == "1"
 
 
 @contextmanager
-def built_package(root: Path, charge: Optional[bool], target: Target = Target()) -> Iterator[Path]:
+def built_package(root: Path, baselines: Optional[bool], target: Target = Target()) -> Iterator[Path]:
     """Builds the package of the tree `root` into a folder `cscd` that is there until the block ends.
 
-    `charge` says whether the dense solver of plans by charge is part of it; None means where its libraries are
-    installed.
+    `baselines` says whether libcscd-baselines.so is part of it; None means where its libraries are installed.
     """
-    parts = requirements.check(charge, target=target)
+    parts = requirements.check(baselines, target=target)
     with writable_tree(root) as tree, alone(tree) as lock:
         for rest in (tree / "build").glob("package.*"):
             shutil.rmtree(rest)  # of a build that was killed: no other one holds the lock
@@ -51,13 +50,13 @@ def built_package(root: Path, charge: Optional[bool], target: Target = Target())
             # Relative, because make takes no names with spaces in them.
             settings = [f"PYTHON_PACKAGE={package.relative_to(tree)}", f"LDFLAGS={stripped()}", *target.settings]
             run_make(tree, commit_of(root), parts, lock, *settings)
-            check_package(package, parts.charge, target.library)
+            check_package(package, parts.baselines, target.library)
             yield package
 
 
-def build_in_place(root: Path, charge: Optional[bool]) -> None:
+def build_in_place(root: Path, baselines: Optional[bool]) -> None:
     """Builds the package of the tree `root` as `make python` does, in build/python."""
-    parts = requirements.check(charge)
+    parts = requirements.check(baselines)
     with alone(root) as lock:
         run_make(root, commit_of(root), parts, lock)
 
@@ -103,7 +102,7 @@ def commit_of(root: Path) -> str:
 def run_make(tree: Path, commit: str, parts: requirements.Parts, lock: int, *settings: str) -> None:
     """Runs make for the package; what it prints goes to the caller's standard output."""
     command = ["make", f"-j{len(os.sched_getaffinity(0))}", "--no-print-directory", "python"]
-    command += ["CONFIG=release", "WERROR=0", f"CHARGE={int(parts.charge)}", f"EXPAT={int(parts.expat)}"]
+    command += ["CONFIG=release", "WERROR=0", f"BASELINES={int(parts.baselines)}", f"EXPAT={int(parts.expat)}"]
     command += [f"COMMIT={commit}", *settings]
     # make holds the lock, too: if this process is killed, the next build waits for the end of its make.
     status = subprocess.run(command, cwd=tree, env=environment(), pass_fds=[lock]).returncode
@@ -118,11 +117,11 @@ def environment() -> Dict[str, str]:
     return {name: value for name, value in os.environ.items() if name not in NOT_FOR_MAKE}
 
 
-def check_package(package: Path, with_charge: bool, library: str) -> None:
+def check_package(package: Path, with_baselines: bool, library: str) -> None:
     """Fails unless what the package cannot do without is there."""
     needed: List[str] = ["__init__.py", "__main__.py", "py.typed", library]
-    if with_charge:
-        needed.append("libcscd-charge.so.*")
+    if with_baselines:
+        needed.append("libcscd-baselines.so.*")
     missing = [name for name in needed if not list(package.glob(name))]
     if missing:
         raise Failure(f"make has left out {' and '.join(missing)}")

@@ -13,9 +13,9 @@ from .target import Target
 
 
 class Parts(NamedTuple):
-    """What the build can do without: the dense solver of plans by charge, and the reader of GIFTI surfaces."""
+    """What the build can do without: libcscd-baselines.so, and the reader of GIFTI surfaces."""
 
-    charge: bool
+    baselines: bool
     expat: bool
 
 
@@ -35,9 +35,10 @@ LIBRARIES = [
 ]
 # The build goes on without these.
 EXPAT = Need("expat", "expat.h", "-lexpat", "libexpat1-dev")
-CHARGE = [
+BASELINES = [
     Need("LAPACKE", "lapacke.h", "-llapacke", "liblapacke-dev"),
     Need("OpenBLAS", "cblas.h", "-lopenblas", "libopenblas-dev"),
+    Need("GSL", "gsl/gsl_poly.h", "-lgsl", "libgsl-dev"),
 ]
 
 
@@ -56,26 +57,27 @@ def is_there(need: Need, target: Target = Target()) -> bool:
         return subprocess.run(command, input=program.encode(), capture_output=True).returncode == 0
 
 
-def check(charge: Optional[bool], whole: bool = False, target: Target = Target()) -> Parts:
+def check(baselines: Optional[bool], whole: bool = False, target: Target = Target()) -> Parts:
     """Fails with a sentence when something is missing, and returns what else can be built.
 
-    `charge` is what the caller asks for: True, False, or None for "where it can be built"; `whole` asks for everything
+    `baselines` is what the caller asks for: True, False, or None for "where it can be built"; `whole` asks for everything
     else.
     """
     tools = [tool for tool in ("make", compiler()[0]) if shutil.which(tool) is None]
     if tools:
         fail(tools, ["build-essential"])
-    wanted = LIBRARIES + (CHARGE if charge else []) + ([EXPAT] if whole else [])
+    wanted = LIBRARIES + (BASELINES if baselines else []) + ([EXPAT] if whole else [])
     missing = [need for need in wanted if not is_there(need, target)]
     if missing:
         fail([f"{need.what} ({need.header})" for need in missing], [need.package for need in missing])
-    parts = Parts(all(is_there(need, target) for need in CHARGE) if charge is None else charge, is_there(EXPAT, target))
+    has_baselines = all(is_there(need, target) for need in BASELINES) if baselines is None else baselines
+    parts = Parts(has_baselines, is_there(EXPAT, target))
     if not parts.expat:
         print("cscd: without expat (expat.h), so GIFTI surfaces are not read; Debian's package is libexpat1-dev",
               flush=True)
-    if not parts.charge and charge is None:
-        print("cscd: without LAPACKE and OpenBLAS, so Plan.charge has no dense solver; Debian's packages are liblapacke-dev "
-              "and libopenblas-dev", flush=True)
+    if not parts.baselines and baselines is None:
+        print("cscd: without LAPACKE, OpenBLAS and GSL, so Plan.charge has no dense solver; Debian's packages are "
+              "liblapacke-dev, libopenblas-dev and libgsl-dev", flush=True)
     return parts
 
 

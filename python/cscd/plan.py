@@ -101,7 +101,7 @@ class Plan:
         Raises
         ------
         Error
-            ``solver`` is "dense", and this installation is built without LAPACK, as wheels are; the text says how to get it.
+            ``solver`` is "dense", and libcscd-baselines.so is missing, which wheels do not have; the text says how to get it.
         """
         if not isinstance(solver, str) or solver not in _SOLVERS:
             raise ValueError(f"solver: expected one of {', '.join(_SOLVERS)}; got {solver!r}")
@@ -271,11 +271,11 @@ class Plan:
         try:
             return cls._made(mesh, V, Host(threads, progress=progress), library.cscdpy_plan_create, options)
         except Error as problem:
-            if "libcscd-charge" not in str(problem):
+            if "libcscd-baselines" not in str(problem):
                 raise
-            raise Error(f"{problem}\nThis installation of cscd was built without LAPACK, as wheels are. Take solver=\"tree\", "
-                        "or install it from its sources on a machine with LAPACKE and OpenBLAS (Debian: liblapacke-dev, "
-                        "libopenblas-dev), by `pip install .` there") from None
+            raise Error(f"{problem}\nWheels of cscd do not have libcscd-baselines.so. Take solver=\"tree\", "
+                        "or install it from its sources on a machine with LAPACKE, OpenBLAS and GSL (Debian: "
+                        "liblapacke-dev, libopenblas-dev, libgsl-dev), by `pip install .` there") from None
 
     @classmethod
     def _made(cls, mesh: Mesh, V: Any, host: Host, create: Any, options: Array) -> Plan:

@@ -51,11 +51,11 @@ if sys.version_info >= (3, 11):
 
 
 def test_settings_are_checked() -> None:
-    assert native.charge_setting(None) is None and native.charge_setting({"charge": "1"}) is True
-    assert native.charge_setting({"charge": "0"}) is False
-    for wrong in ({"charge": "yes"}, {"other": "1"}):
-        with pytest.raises(project.Failure, match="charge=0"):
-            native.charge_setting(wrong)
+    assert native.baselines_setting(None) is None and native.baselines_setting({"baselines": "1"}) is True
+    assert native.baselines_setting({"baselines": "0"}) is False
+    for wrong in ({"baselines": "yes"}, {"other": "1"}):
+        with pytest.raises(project.Failure, match="baselines=0"):
+            native.baselines_setting(wrong)
 
 
 def test_archive_of_sources_is_what_git_tracks() -> None:
@@ -116,13 +116,13 @@ def test_missing_headers_are_named(tmp_path: Path) -> None:
     assert " libpng-dev libjson-c-dev\n" in said and "Traceback" not in said and "fatal error" not in said
 
 
-def test_charge_is_built_where_its_libraries_are(
+def test_baselines_are_built_where_their_libraries_are(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert native.requirements.check(None).charge
+    assert native.requirements.check(None).baselines
     monkeypatch.setenv("CC", compiler_without(tmp_path, "lapacke.h"))
-    assert not native.requirements.check(None).charge
-    assert "without LAPACKE and OpenBLAS" in capsys.readouterr().out
+    assert not native.requirements.check(None).baselines
+    assert "without LAPACKE, OpenBLAS and GSL" in capsys.readouterr().out
     with pytest.raises(project.Failure, match=r"needs LAPACKE \(lapacke.h\), not found"):
         native.requirements.check(True)
 

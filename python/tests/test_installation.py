@@ -90,7 +90,7 @@ def test_wheel_is_installed_without_an_index(binaries: Path, tmp_path: Path, emp
     made = rig.make_archive("wheel", rig.ROOT, tmp_path).splitlines()[-1]
     rig.run(str(binaries / "pip"), "install", "--no-index", made, cwd=empty)
     read = answers(binaries, empty)
-    assert "libcscd-charge.so.2" in str(read["charge"]) and "install it from its sources" in str(read["charge"])
+    assert "libcscd-baselines.so.2" in str(read["charge"]) and "install it from its sources" in str(read["charge"])
     assert read["foreign"] == []
     # The tool, by both of its names.
     version = f"cscd {read['version']} ("
@@ -107,9 +107,9 @@ def test_archive_of_sources_is_installed(binaries: Path, tmp_path: Path, empty: 
         archive.extractall(tmp_path)
     tree = tmp_path / made.name[: -len(".tar.gz")]
     rig.copy_objects(tree)
-    said = rig.run(str(binaries / "pip"), "install", "-v", "--config-settings", "charge=0", ".", cwd=tree)
-    assert "CHARGE" not in said and "Successfully installed cscd" in said
-    assert "libcscd-charge.so.2" in str(answers(binaries, empty)["charge"])
+    said = rig.run(str(binaries / "pip"), "install", "-v", "--config-settings", "baselines=0", ".", cwd=tree)
+    assert "BASELINES" not in said and "Successfully installed cscd" in said
+    assert "libcscd-baselines.so.2" in str(answers(binaries, empty)["charge"])
 
 
 def test_what_is_missing_stands_in_what_pip_prints(binaries: Path, clone: Clone, tmp_path: Path, empty: Path) -> None:

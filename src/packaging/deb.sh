@@ -38,7 +38,7 @@ for name in control rules changelog "libcscd$major.symbols"; do
 done
 
 # What the caller's make or environment says of another build does not belong here.
-unset MAKEFLAGS MAKELEVEL MAKEOVERRIDES MFLAGS CC CXX CFLAGS CPPFLAGS LDFLAGS CONFIG CHARGE EXPAT BUILD BUILD_ROOT
+unset MAKEFLAGS MAKELEVEL MAKEOVERRIDES MFLAGS CC CXX CFLAGS CPPFLAGS LDFLAGS CONFIG BASELINES EXPAT BUILD BUILD_ROOT
 export DEB_BUILD_OPTIONS="${DEB_BUILD_OPTIONS:-parallel=$(nproc)}"
 (cd "$tree" && dpkg-buildpackage -b -us -uc) >"$folder/build.log" 2>&1 || {
     tail -40 "$folder/build.log" >&2

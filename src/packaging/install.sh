@@ -4,7 +4,7 @@
 set -eu
 cd "$(dirname "$0")/../.."
 : "${BUILD:?}" "${VERSION:?}" "${STATIC_LIBS:?}" "${POINTER_SIZE:?}"
-: "${CHARGE:?}" "${BINDIR:?}" "${LIBDIR:?}" "${INCLUDEDIR:?}" "${MANDIR:?}"
+: "${BASELINES:?}" "${BINDIR:?}" "${LIBDIR:?}" "${INCLUDEDIR:?}" "${MANDIR:?}"
 plain() { realpath -ms -- "$1"; } # plain PATH: absolute, and one of the ways to write it
 DESTDIR=${DESTDIR:+$(plain "$DESTDIR")}
 [ "$DESTDIR" != / ] || DESTDIR=''
@@ -38,9 +38,9 @@ each_file() {
     "$1" 644 "$BUILD/libcscd.so.$VERSION" "$LIBDIR/libcscd.so.$VERSION"
     "$1" link "libcscd.so.$VERSION" "$LIBDIR/libcscd.so.$major"
     "$1" link "libcscd.so.$major" "$LIBDIR/libcscd.so"
-    if [ "$CHARGE" != 0 ]; then
-        "$1" 644 "$BUILD/libcscd-charge.so.$VERSION" "$LIBDIR/libcscd-charge.so.$VERSION"
-        "$1" link "libcscd-charge.so.$VERSION" "$LIBDIR/libcscd-charge.so.$major"
+    if [ "$BASELINES" != 0 ]; then
+        "$1" 644 "$BUILD/libcscd-baselines.so.$VERSION" "$LIBDIR/libcscd-baselines.so.$VERSION"
+        "$1" link "libcscd-baselines.so.$VERSION" "$LIBDIR/libcscd-baselines.so.$major"
     fi
     "$1" template "$templates/cscd.pc.in" "$pc_folder/cscd.pc"
     "$1" template "$templates/cscdConfig.cmake.in" "$cmake_folder/cscdConfig.cmake"

@@ -1,7 +1,7 @@
 # What a build for Windows is made with: HOST=x86_64-w64-mingw32, by the compiler of Debian's gcc-mingw-w64-x86-64-posix. Threads are
-# those of winpthreads. LAPACKE is not built for Windows; the rest comes from src/packaging/libraries.sh.
+# those of winpthreads. LAPACKE and GSL are not built for Windows; the rest comes from src/packaging/libraries.sh.
 WINDOWS := 1
-CHARGE  := 0
+BASELINES := 0
 EXPAT   := 1
 ifeq ($(origin CC),default)
 CC      := $(HOST)-gcc-posix

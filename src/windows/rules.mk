@@ -1,17 +1,17 @@
 # What a build for Windows makes otherwise.
 
 # The DLL, its import library, and the list of its functions, of which other compilers make an import library of their own.
-$(SHARED): $(OPENED_OBJECTS) include/cscd/cscd.h
+$(SHARED): $(CORE_OBJECTS) include/cscd/cscd.h
 	@mkdir -p $(@D)
 	$(say) '  LD $@'
-	@{ echo EXPORTS; $(TOOLS)nm -g --defined-only $(OPENED_OBJECTS) | awk '$$2 == "T" && $$3 ~ /^cscd_/ {print "    " $$3}' | sort -u; } \
+	@{ echo EXPORTS; $(TOOLS)nm -g --defined-only $(CORE_OBJECTS) | awk '$$2 == "T" && $$3 ~ /^cscd_/ {print "    " $$3}' | sort -u; } \
 	    >$(BUILD)/libcscd-$(MAJOR).def
-	$(Q)$(CC) $(OPTIMISE_$(CONFIG)) -shared -static -pthread -Wl,--out-implib,$(BUILD)/libcscd.dll.a -o $@ $(OPENED_OBJECTS) \
+	$(Q)$(CC) $(OPTIMISE_$(CONFIG)) -shared -static -pthread -Wl,--out-implib,$(BUILD)/libcscd.dll.a -o $@ $(CORE_OBJECTS) \
 	    $(BUILD)/libcscd-$(MAJOR).def $(LDFLAGS)
 
 # Objects of Windows have no hidden names, so what is not of the public API gets a prefix that no program has, with the pointers by
 # which other objects reach it.
-$(LIBRARY): $(OPENED_OBJECTS)
+$(LIBRARY): $(CORE_OBJECTS)
 	@mkdir -p $(@D)
 	$(say) '  AR $@'
 	@rm -f $@

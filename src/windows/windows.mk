@@ -11,14 +11,12 @@ CXXFLAGS   += $(WINDOWS_FLAGS)
 # Programs need no DLL but those of Windows. gcc would add .exe to a name; -o of the linker has the last word.
 LINK_ALL = $(OPTIMISE_$(CONFIG)) -pthread -static -municode -Wl,-o,$@ $(LDFLAGS)
 
-SHARED_LIBS :=
-STATIC_LIBS :=
-CHARGE_LIBS :=
+CORE_LIBS   :=
 EXPAT_LIBS  := -lexpat
 TOOL_LIBS   := -L$(WINDOWS_LIBRARIES)/lib -lpng -lz -ljson-c -lexpat -lm
 TEST_LIBS   := -L$(WINDOWS_LIBRARIES)/lib -lcmocka-static $(TOOL_LIBS)
 # Tests alone have a dense solver, one of their own, to compare the tree with.
-CHARGE_SOURCES := $(filter-out src/blas/% %/dense_solve.c %/dense_export.c,$(CHARGE_SOURCES)) tests/windows/dense_solve.c
+BASELINE_SOURCES := preprocess/baselines/dense/dense_system.c $(addprefix tests/windows/,dense_solve.c dense_library.c)
 
 # Without a library for Windows: GMP, FLINT and Arb. Without a meaning there: what Unix alone has. tests/windows/left_out.txt says
 # why each program is missing, and which tests of others are known to fail.

@@ -57,17 +57,17 @@ calls() {
         ) >"$tree/printed.txt" || return 1
         grep -q "^from parts: charge 0x1p+0\$" "$tree/printed.txt" && grep -q '^by a tree: charge 0x1' "$tree/printed.txt" || return 1
         case $(head -1 "$tree/printed.txt") in
-        'solved: charge 0x1.'*) [ "$charge" = 1 ] ;;
-        *) [ "$charge" = 0 ] ;;
+        'solved: charge 0x1.'*) [ "$baselines" = 1 ] ;;
+        *) [ "$baselines" = 0 ] ;;
         esac || { cat "$tree/printed.txt" && return 1; }
     done
 }
 
-# Neither tool nor libraries need the libraries that are named in $without.
+# Neither tool nor library need what is for libcscd-baselines alone, nor the libraries that are named in $without.
 needs_not() {
     needed=$(for file in "$1"/stage/bin/cscd "$1"/stage/lib/libcscd.so; do readelf -d "$file"; done | grep NEEDED)
     case $needed in *'[libc.so'*) ;; *) echo 'what the build needs is unknown' && return 1 ;; esac
-    for library in $without; do
+    for library in gsl gslcblas lapacke openblas $without; do
         case $needed in *"[lib$library."*) echo "the build needs $library" && return 1 ;; esac
     done
 }
@@ -83,7 +83,7 @@ build_tree() { # build_tree TREE VARIABLE...: builds and installs, by the user t
     (cd "$tree" && $as_user make -s "$jobs" tool library "$@" && $as_user make -s install PREFIX="$tree/stage" "$@")
 }
 
-# try NAME VARIABLE...: by the settings $user, $jobs, $compiler, $without and $charge, which are the usual ones after it.
+# try NAME VARIABLE...: by the settings $user, $jobs, $compiler, $without and $baselines, which are the usual ones after it.
 try() {
     name=$1
     shift
@@ -102,7 +102,7 @@ try() {
     usual
 }
 usual() {
-    user=root jobs=-j$(nproc) compiler=gcc without='' charge=1
+    user=root jobs=-j$(nproc) compiler=gcc without='' baselines=1
     extra() { :; }
 }
 usual
@@ -128,16 +128,16 @@ try 'link-time optimisation' CFLAGS='-flto -O2' LDFLAGS=-flto
 
 traps=$folder/traps
 rm -rf "$traps"
-forbid "$traps/charge" lapacke.h cblas.h
+forbid "$traps/baselines" lapacke.h cblas.h gsl/gsl_poly.h
 forbid "$traps/expat" expat.h
-cp -r "$traps/charge" "$traps/all"
+cp -r "$traps/baselines" "$traps/all"
 cp -r "$traps/expat/." "$traps/all"
-without='lapacke openblas' charge=0
-try 'without LAPACKE and OpenBLAS' CHARGE=0 CPPFLAGS="-I'$traps/charge'"
+baselines=0
+try 'without libcscd-baselines' BASELINES=0 CPPFLAGS="-I'$traps/baselines'"
 without=expat
 try 'without expat' EXPAT=0 CPPFLAGS="-I'$traps/expat'"
-without='lapacke openblas expat' charge=0
-try 'without all of these' CHARGE=0 EXPAT=0 CPPFLAGS="-I'$traps/all'"
+without=expat baselines=0
+try 'without both' BASELINES=0 EXPAT=0 CPPFLAGS="-I'$traps/all'"
 try 'for distributions' DYNAMIC=1
 
 # Other arithmetic is refused with a sentence, before anything is compiled.

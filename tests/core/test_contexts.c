@@ -6,9 +6,6 @@
 #include <pthread.h>
 #include <stdlib.h>
 
-__attribute__((weak)) void openblas_set_num_threads(int count);
-__attribute__((weak)) int openblas_get_num_threads(void);
-
 enum { HOSTS = PACED(3, 3), ROUNDS = PACED(2, 1) };
 
 /* One thread of the host, and what it does with its context. */
@@ -80,22 +77,14 @@ TEST(steps_and_checks) {
     free(shapes);
 }
 
-/* OpenBLAS has one thread count for the whole process, which the library must leave as the host set it. */
 TEST(plans_by_charge) {
     sequence *shapes;
     worker *workers = make_workers(&shapes);
-    bool counts = openblas_set_num_threads != NULL && openblas_get_num_threads != NULL;
-    int threads = counts ? openblas_get_num_threads() : 0;
     for (int i = 0; i < HOSTS; i++) {
         workload_tube(&shapes[i], 28 + 2 * i, 16, 1);
         workers[i].work.plan = workers[i].work.options.method = CSCD_METHOD_CHARGE;
     }
-    for (int count = 1; count <= 2; count++) {
-        if (counts) openblas_set_num_threads(count);
-        compare_with_alone(workers);
-        if (counts) assert_int_equal(openblas_get_num_threads(), count);
-    }
-    if (counts) openblas_set_num_threads(threads);
+    compare_with_alone(workers);
     free(workers);
     free(shapes);
 }

@@ -16,7 +16,7 @@ choices=''
 case $architecture in
 arm64) host=aarch64-linux-gnu emulator=qemu-aarch64 ;;
 s390x) host=s390x-linux-gnu emulator=qemu-s390x ;;
-riscv64) host=riscv64-linux-gnu emulator=qemu-riscv64 choices='CHARGE=0 EXPAT=1' ;;
+riscv64) host=riscv64-linux-gnu emulator=qemu-riscv64 choices='BASELINES=0 EXPAT=1' ;;
 *)
     echo "emulated.sh: $architecture is none of arm64, s390x and riscv64" >&2
     exit 2
@@ -24,14 +24,13 @@ riscv64) host=riscv64-linux-gnu emulator=qemu-riscv64 choices='CHARGE=0 EXPAT=1'
 esac
 unset MAKEFLAGS
 case ${CC:-} in ccache*) cache='ccache ' ;; *) cache='' ;; esac
+build=build/$host/release
 if [ "$architecture" = riscv64 ]; then
-    build=build/$host/release-without-charge
     libraries=build/$host/libraries
     src/packaging/libraries.sh $host $libraries zlib libpng json-c expat
     sysroot=/usr/$host found=''
     choices="$choices CPPFLAGS=-I$libraries/include LDFLAGS=-L$libraries/lib"
 else
-    build=build/$host/release
     sysroot=$PWD/build/sysroot/$architecture found=" --sysroot=$PWD/build/sysroot/$architecture"
     src/packaging/sysroot.sh "$architecture" "$sysroot" libc6-dev libstdc++-12-dev libpng-dev zlib1g-dev libjson-c-dev libexpat1-dev \
         libgsl-dev liblapacke-dev libopenblas-dev libcmocka-dev libflint-dev libflint-arb-dev libgmp-dev

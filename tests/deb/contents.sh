@@ -26,7 +26,7 @@ has() { # has PACKAGE FILE...
     shift
     for file; do [ -e "$place/$package/usr/$file" ] || [ -L "$place/$package/usr/$file" ] || complain "$package lacks $file"; done
 }
-has "libcscd$major" "lib/$triplet/libcscd.so.$major" "lib/$triplet/libcscd.so.$version" "lib/$triplet/cscd/libcscd-charge.so.$major"
+has "libcscd$major" "lib/$triplet/libcscd.so.$major" "lib/$triplet/libcscd.so.$version" "lib/$triplet/cscd/libcscd-baselines.so.$major"
 has libcscd-dev "lib/$triplet/libcscd.so" "lib/$triplet/libcscd.a" "lib/$triplet/pkgconfig/cscd.pc" \
     "lib/$triplet/cmake/cscd/cscdConfig.cmake" include/cscd/cscd.hpp share/man/man3/cscd.3.gz
 has cscd bin/cscd share/man/man1/cscd.1.gz

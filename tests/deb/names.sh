@@ -23,14 +23,14 @@ needs() {
     done
 }
 needs "libcscd$major" Depends 'libc6 (>='
-needs "libcscd$major" Suggests liblapacke libopenblas0
+needs "libcscd$major" Suggests libgsl liblapacke libopenblas0
 needs libcscd-dev Depends "libcscd$major (= "
 needs cscd Depends "libcscd$major (>=" libpng16 zlib1g libjson-c5 libexpat1
 needs python3-cscd Depends "libcscd$major (>=" python3-numpy
 needs "libcscd$major" Multi-Arch same
 needs libcscd-dev Multi-Arch same
 
-# Linear algebra is suggested, and never installed without being asked for; GSL is in none.
+# Linear algebra and GSL, which is under another licence, are suggested, and never installed without being asked for.
 for package in $expected; do
     asked=$(field "$package" Depends)$(field "$package" Recommends)
     case $asked in *lapack* | *blas*) complain "$package asks for linear algebra" ;; esac

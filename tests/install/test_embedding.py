@@ -36,7 +36,7 @@ def test_a_static_library(static):
 
 
 def test_a_shared_library(folder):
-    """The library that charge needs is beside it, and it needs the C library alone."""
+    """It needs the C library alone; what needs more is in libcscd-baselines.so, beside it."""
     build(folder / "shared", f"-DCSCD_SOURCES='{ROOT}'", "-DBUILD_SHARED_LIBS=ON")
     assert needed_by(folder / "shared/cscd/libcscd.so") == ["libc", "libm"]
 

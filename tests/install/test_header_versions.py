@@ -47,6 +47,6 @@ def test_todays_caller_on_later_library(tmp_path, later):
     for name in ("src", "preprocess", "runtime", "Makefile"):
         (later / name).symlink_to(ROOT / name)
     compiler = "ccache gcc" if shutil.which("ccache") else "gcc"
-    shell(f"make -s -j2 -C '{later}' library CC='{compiler}' CONFIG=debug CHARGE=0 OPTIMISE_debug='-O0 -DNDEBUG' "
+    shell(f"make -s -j2 -C '{later}' library CC='{compiler}' CONFIG=debug BASELINES=0 OPTIMISE_debug='-O0 -DNDEBUG' "
           "LEVELS=scalar CORE_DEFINITIONS= WARNINGS=-w CFLAGS=\"'-D_Static_assert(holds,text)='\"")
-    asks_for_all(tmp_path, "include", later / "build/debug-without-charge")
+    asks_for_all(tmp_path, "include", later / "build/debug")

@@ -34,7 +34,7 @@ def pkg_config(prefix, options):
 
 def test_files_are_where_they_belong(prefix):
     headers = [f"include/cscd/{path.name}" for path in (ROOT / "include/cscd").iterdir() if path.suffix in (".h", ".hpp")]
-    libraries = [f"lib/{name}.so.{version}" for name in ("libcscd", "libcscd-charge") for version in (MAJOR, VERSION)]
+    libraries = [f"lib/{name}.so.{version}" for name in ("libcscd", "libcscd-baselines") for version in (MAJOR, VERSION)]
     assert files_in(prefix) == sorted([
         "bin/cscd", *headers, "lib/cmake/cscd/cscdConfig.cmake", "lib/cmake/cscd/cscdConfigVersion.cmake", *libraries,
         "lib/libcscd.a", "lib/libcscd.so", "lib/pkgconfig/cscd.pc", "share/man/man1/cscd.1", "share/man/man3/cscd.3"])

@@ -10,7 +10,7 @@ COPIED = ("Makefile", ".ci/packages", "include", "src", "preprocess", "runtime",
 # A compiler that remembers gives what make test has compiled. Others optimise a little, without symbols: the quickest to build and run.
 REMEMBERS = "ccache" in os.environ.get("CC", "")
 NOT_PASSED_ON = ("MAKEFLAGS", "MFLAGS", "MAKELEVEL", "MAKEOVERRIDES", "ONLY", "ROOM", "SAMPLE", "CONFIG", "BUILD", "CSCD_DATA",
-                 "NIGHTLY", "CHARGE", "EXPAT", "DYNAMIC", "HOST", "BUILD_ROOT")
+                 "NIGHTLY", "BASELINES", "EXPAT", "DYNAMIC", "HOST", "BUILD_ROOT")
 # A test that takes longer than so many seconds with a fault hangs.
 PATIENCE = 100.0
 BUILD = "build/release"

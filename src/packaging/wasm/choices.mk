@@ -1,8 +1,8 @@
 # What a build for WebAssembly is made with: HOST=wasm32-emscripten, by Debian's emscripten, on the scalar level and without threads.
-# LAPACKE is not built for it.
+# LAPACKE and GSL are not built for it.
 WASM  := 1
 TOOLS := em
-CHARGE := 0
+BASELINES := 0
 EXPAT  := 0
 ifeq ($(origin CC),default)
 CC     := emcc

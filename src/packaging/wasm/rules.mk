@@ -1,7 +1,7 @@
 # What a build for WebAssembly makes otherwise.
 
 # Its linker makes no relocatable object with local names, so the archive has the objects, whose own names are hidden.
-$(LIBRARY): $(OPENED_OBJECTS)
+$(LIBRARY): $(CORE_OBJECTS)
 	@mkdir -p $(@D)
 	$(say) '  AR $@'
 	@rm -f $@

@@ -4,14 +4,13 @@ CFLAGS_ALL := $(filter-out -g -pthread -fPIC -fexceptions,$(CFLAGS_ALL))
 CFLAGS_ALL += -isystem $(WASM_LIBRARIES)/include -D_UINTPTR_T
 # Modules of tests grow to the 4 GiB that a 32-bit size can name.
 LINK_ALL   := -O1 -sINITIAL_MEMORY=64MB -sALLOW_MEMORY_GROWTH=1 -sMAXIMUM_MEMORY=4GB -sTOTAL_STACK=5MB -sEXIT_RUNTIME=1 -sNODERAWFS=1 $(LDFLAGS)
-SHARED_LIBS :=
-STATIC_LIBS := -lm
+CORE_LIBS  := -lm
 
 # The tests of the rooms of core, mesh, preprocessing and runtime. Readers and writers of files are not built, and the dense
 # solver is that of the tests on Windows; files of pytest run the tool, which is not built. tests/wasm/left_out.txt says why a program is missing.
 TEST_LIBS       := -L$(WASM_LIBRARIES)/lib -lcmocka-static
 TEST_ROOMS_HERE := core mesh ccd bvh culling narrow_phase loose intersections events baselines detector solver sensors preprocess proofs
-CHARGE_SOURCES  := $(filter-out src/blas/% %/dense_solve.c %/dense_export.c,$(CHARGE_SOURCES)) tests/windows/dense_solve.c
+BASELINE_SOURCES := preprocess/baselines/dense/dense_system.c $(addprefix tests/windows/,dense_solve.c dense_library.c)
 COMMON_SOURCES  := src/io/io_error.c
 SUPPORT_SOURCES := $(filter-out tests/support/ccd/algebraic_%.c tests/support/ccd/oracle_comparison.c tests/support/solver/exact_distance.c \
                      $(foreach room,install io models report tool,tests/support/$(room)/%),$(SUPPORT_SOURCES)) \

@@ -11,7 +11,7 @@ CC = os.environ.get("CC", "cc")
 _NUMBERS = dict(re.findall(r"define CSCD_VERSION_(\w+) +(\d+)", (ROOT / "include/cscd/cscd.h").read_text()))
 MAJOR, MINOR, PATCH = (int(_NUMBERS[part]) for part in ("MAJOR", "MINOR", "PATCH"))
 VERSION = f"{MAJOR}.{MINOR}.{PATCH}"
-CHARGE_LIBRARY = f"libcscd-charge.so.{MAJOR}"
+BASELINE_LIBRARY = f"libcscd-baselines.so.{MAJOR}"
 # What make tells its children is not meant for the make of a test.
 _OF_MAKE = ("MAKEFLAGS", "MFLAGS", "MAKELEVEL", "MAKEOVERRIDES")
 

@@ -19,8 +19,8 @@ class CscdConan(ConanFile):
     package_type = "library"
     settings = "os", "arch", "compiler", "build_type"
     # The same questions as CMakeLists.txt asks.
-    options = {"shared": [True, False], "charge": [True, False]}
-    default_options = {"shared": False, "charge": False}
+    options = {"shared": [True, False], "baselines": [True, False]}
+    default_options = {"shared": False, "baselines": False}
 
     def export_sources(self):
         for pattern in SOURCES:
@@ -31,14 +31,15 @@ class CscdConan(ConanFile):
             raise ConanInvalidConfiguration("cscd is tested on Linux, on x86_64 and armv8")
 
     def requirements(self):
-        if self.options.charge:
+        if self.options.baselines:
+            self.requires("gsl/2.7.1")
             self.requires("openblas/0.3.27", options={"build_lapack": True})
 
     def generate(self):
         CMakeDeps(self).generate()
         toolchain = CMakeToolchain(self)
         toolchain.cache_variables["BUILD_SHARED_LIBS"] = bool(self.options.shared)
-        toolchain.cache_variables["CSCD_CHARGE"] = bool(self.options.charge)
+        toolchain.cache_variables["CSCD_BASELINES"] = bool(self.options.baselines)
         toolchain.cache_variables["CSCD_INSTALL"] = True
         toolchain.generate()
 

@@ -6,7 +6,7 @@
  * but the size, so the factors are the same whoever runs the tasks. The next panel's task factors it at once:
  * nobody else touches it, and the others need not wait for it. Between two rounds the solve can be
  * cancelled. */
-#include "preprocess/dense/dense_solve.h"
+#include "preprocess/baselines/dense/dense_solve.h"
 
 #include <lapacke.h>
 #include <pthread.h>
@@ -19,8 +19,8 @@ _Static_assert(sizeof(lapack_int) == sizeof(int32_t), "LAPACKE with 64-bit integ
 /* Measured (docs/theory/charge.md): narrower panels make the products thin, wider ones leave few tasks. */
 enum { PANEL_WIDTH = 256 };
 
-/* BLAS by its Fortran names. GSL's own library has its C names (cblas_sgemm), and where GSL is loaded before OpenBLAS,
- * which libcscd-charge.so brings, those would be found: right, but some seven times slower. */
+/* BLAS by its Fortran names. GSL's own library has its C names (cblas_sgemm), and where that comes before OpenBLAS, those
+ * would be found: right, but some seven times slower. */
 void sgemm_(const char *transposes_a, const char *transposes_b, const lapack_int *m, const lapack_int *n,
             const lapack_int *k, const float *alpha, const float *a, const lapack_int *lda, const float *b,
             const lapack_int *ldb, const float *beta, float *c, const lapack_int *ldc);

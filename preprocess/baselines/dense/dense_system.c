@@ -1,6 +1,6 @@
 /* The dense solution for the charges of one component: matrix, factors, refinement. */
-#include "preprocess/dense/dense_interface.h"
-#include "preprocess/dense/dense_solve.h"
+#include "preprocess/baselines/dense/dense_interface.h"
+#include "preprocess/baselines/dense/dense_solve.h"
 #include "src/blas/blas_choice.h"
 #include "src/core/timer.h"
 

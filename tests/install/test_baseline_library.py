@@ -1,34 +1,36 @@
-"""The shared library opens libcscd-charge.so, beside itself or where the system looks, for charge by a dense matrix.
+"""The library opens libcscd-baselines.so, beside itself or where the system looks, for charge by a dense matrix.
 
-So does the tool, beside itself or in its prefix. Without it, or with a wrong one, that call fails with a sentence and everything
-else works, also where OpenBLAS would hang.
+So does a program with the static library inside, and the tool, beside itself or in its prefix. Without it, or with a wrong one,
+that call fails with a sentence and everything else works, also where OpenBLAS would hang.
 """
 import os
 import shutil
 
 import pytest
 
-from support.install.built_tree import BUILD, CC, CHARGE_LIBRARY, MAJOR, shell
+from support.install.built_tree import BASELINE_LIBRARY, BUILD, CC, MAJOR, needed_by, shell
 
 COMPILE = f"{CC} -std=c99 -Wall -Wextra -Werror -Iinclude tests/install/charge_client.c"
 
 
 @pytest.fixture(scope="module")
 def clients(tmp_path_factory):
-    """Both clients, of which `linked` has the charge library inside; and a folder for the library alone."""
-    folder = tmp_path_factory.mktemp("charge")
+    """A client of the shared library, which is alone in the folder lib, and one with the static library inside."""
+    folder = tmp_path_factory.mktemp("baselines")
     (folder / "lib").mkdir()
     library = shutil.copy(BUILD / f"libcscd.so.{MAJOR}", folder / "lib")
     # This way to its own libraries does not count when a library opens another one.
     shell(f"{COMPILE} '{library}' -Wl,--enable-new-dtags,-rpath,'{folder}/lib' -o '{folder}/opens'")
-    shell(f"{COMPILE} '{BUILD}/libcscd.a' -llapacke -lopenblas -lm -pthread -o '{folder}/linked'")
+    shell(f"{COMPILE} '{BUILD}/libcscd.a' -lm -ldl -pthread -o '{folder}/linked'")
     return folder
 
 
 @pytest.fixture
 def linked(clients):
-    """What it prints that has the charge library inside."""
+    """What the static library prints with that library beside the program."""
+    shutil.copy(BUILD / BASELINE_LIBRARY, clients)
     printed = shell(f"'{clients}/linked'")
+    (clients / BASELINE_LIBRARY).unlink()
     assert "solved: charge 0x1." in printed
     return printed
 
@@ -52,50 +54,56 @@ def opened(clients, folders=""):
 def test_is_looked_for_beside_the_library(clients, lib, linked, place):
     """Or as distributions lay it out; the library has its own name there, and is loaded by a link."""
     (lib / place).mkdir(exist_ok=True)
-    shutil.copy(BUILD / CHARGE_LIBRARY, lib / place)
+    shutil.copy(BUILD / BASELINE_LIBRARY, lib / place)
     assert opened(clients) == linked
 
 
 def test_is_looked_for_where_the_system_looks(clients, lib, linked, tmp_path):
-    shutil.copy(BUILD / CHARGE_LIBRARY, tmp_path)
+    shutil.copy(BUILD / BASELINE_LIBRARY, tmp_path)
     assert opened(clients, tmp_path) == linked
 
 
-def refuses(clients, linked, words):
+def refuses(clients, linked, words, client="opens"):
     """Dense solutions fail with a sentence that has these words; all else is as it was."""
-    printed = opened(clients)
-    assert printed.startswith("solved: the system refused") and words in printed and CHARGE_LIBRARY in printed
+    printed = shell(f"'{clients}/{client}'", LD_LIBRARY_PATH="")
+    assert printed.startswith("solved: the system refused") and words in printed and BASELINE_LIBRARY in printed
     assert printed.split("from parts")[1] == linked.split("from parts")[1]
 
 
-def test_is_missing(clients, lib, linked):
-    refuses(clients, linked, "a build with CHARGE=1 makes it")
+@pytest.mark.parametrize("client", ["opens", "linked"])
+def test_is_missing(clients, lib, linked, client):
+    refuses(clients, linked, "a build with BASELINES=1, which is the default, makes it", client)
+
+
+def test_libraries_need_the_c_library_alone(clients):
+    for binary in (BUILD / "libcscd.so", clients / "linked"):
+        assert set(needed_by(binary)) <= {"libc", "libm"}
 
 
 def test_is_damaged(clients, lib, linked):
-    (lib / CHARGE_LIBRARY).write_text("text\n")
-    refuses(clients, linked, "/lib/libcscd-charge.so")
+    (lib / BASELINE_LIBRARY).write_text("text\n")
+    refuses(clients, linked, "/lib/libcscd-baselines.so")
 
 
 @pytest.mark.parametrize("source", [
-    'const void *cscd_charge_functions(unsigned i) {return i == 1000 ? "" : 0;}', "int unrelated;",
+    'const void *cscd_baseline_dense(unsigned i) {return i == 1000 ? "" : 0;}', "int unrelated;",
 ])
 def test_is_of_another_version(clients, lib, linked, source):
     """Another interface, or a library that is none."""
-    shell(f"echo '{source}' | {CC} -xc -shared -fPIC - -o '{lib}/{CHARGE_LIBRARY}'")
+    shell(f"echo '{source}' | {CC} -xc -shared -fPIC - -o '{lib}/{BASELINE_LIBRARY}'")
     refuses(clients, linked, "are of different versions")
 
 
 def test_is_opened_when_it_is_needed(clients, lib):
     """A program that makes no plan by charge loads no linear algebra."""
-    shutil.copy(BUILD / CHARGE_LIBRARY, lib)
+    shutil.copy(BUILD / BASELINE_LIBRARY, lib)
     needed = shell(f"ldd '{clients}/opens'", LD_LIBRARY_PATH=str(lib))
     assert "lapack" not in needed and "openblas" not in needed
 
 
 def test_takes_no_blas_of_others():
-    """GSL, which a program may link, has its own cblas_sgemm, which would be found first."""
-    assert "cblas_" not in shell(f"nm -D --undefined-only '{BUILD}/{CHARGE_LIBRARY}'")
+    """GSL, which a program may have loaded, has its own cblas_sgemm, which would be found first."""
+    assert "cblas_" not in shell(f"nm -D --undefined-only '{BUILD}/{BASELINE_LIBRARY}'")
 
 
 @pytest.mark.parametrize("mebibytes, threads, sentence", [
@@ -107,7 +115,7 @@ def test_a_host_needs_little_memory(clients, lib, mebibytes, threads, sentence):
 
     Or where it would hang as it computes.
     """
-    shutil.copy(BUILD / CHARGE_LIBRARY, lib)
+    shutil.copy(BUILD / BASELINE_LIBRARY, lib)
     printed = shell(f"ulimit -v {mebibytes * 1024}; timeout 20 '{clients}/opens'", OPENBLAS_NUM_THREADS=str(threads))
     assert sentence in printed and "from parts" in printed
 
@@ -134,8 +142,8 @@ def test_the_tool_looks_in_its_prefix(tmp_path, libraries):
         line = f"{call} preprocess ../../model.obj -o ../../plan.ply --charge dense"
         return shell(line, code=code, cwd=tmp_path / "prefix/bin", PATH=f".:{os.environ['PATH']}")
 
-    assert CHARGE_LIBRARY in make_plan("cscd", 1)
-    shutil.copy(BUILD / CHARGE_LIBRARY, tmp_path / "prefix" / libraries)
+    assert BASELINE_LIBRARY in make_plan("cscd", 1)
+    shutil.copy(BUILD / BASELINE_LIBRARY, tmp_path / "prefix" / libraries)
     (tmp_path / "link").symlink_to("prefix/bin/cscd")
     for call in ("./cscd", "cscd", "../../link", "bash -c 'exec -a other ./cscd \"$@\"' -"):
         assert "\nwritten: " in "\n" + make_plan(call), call
@@ -145,7 +153,7 @@ def test_the_tool_looks_in_its_prefix(tmp_path, libraries):
 def test_the_tool_needs_little_memory(tmp_path, mebibytes):
     """OpenBLAS hangs in so little memory when it is loaded, and when a thread computes in it."""
     lay_out_prefix(tmp_path, "lib")
-    shutil.copy(BUILD / CHARGE_LIBRARY, tmp_path / "prefix/lib")
+    shutil.copy(BUILD / BASELINE_LIBRARY, tmp_path / "prefix/lib")
     limited = f"ulimit -v {mebibytes * 1024}; timeout 20 prefix/bin/cscd"
     shell(f"{limited} info model.obj", cwd=tmp_path)
     assert "MiB of address space" in shell(f"{limited} preprocess model.obj -o plan.ply --charge dense", code=1, cwd=tmp_path)

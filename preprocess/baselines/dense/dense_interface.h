@@ -1,10 +1,11 @@
-/* What libcscd and libcscd-charge, which has LAPACK, know of each other: one function, which is looked up by its name, and what it
- * returns. They may come from different builds, so nothing else is shared but charge_system, and DENSE_INTERFACE counts the changes of
- * these files. */
+/* The dense solution, which is in libcscd-baselines because it needs LAPACK. libcscd asks for it by this name and number
+ * (src/core/baseline_library.h), and knows nothing of it but what stands here, and charge_system: DENSE_INTERFACE counts the changes of
+ * both files. */
 #pragma once
 
 #include "preprocess/charge/charge_system.h"
 
+#define DENSE_ENTRY     "cscd_baseline_dense"
 #define DENSE_INTERFACE 4u
 
 /* What the library asks of its caller, each with `context`. run, stage and go_on are parallel_run and the functions of progress.h, and
@@ -35,10 +36,4 @@ typedef struct dense_functions {
 } dense_functions;
 
 /* Returns the functions of an interface, or NULL for one that this library does not know. */
-typedef const dense_functions *dense_entry(uint32_t interface);
-
-/* The name under which libcscd-charge exports it. */
-#define DENSE_ENTRY_NAME "cscd_charge_functions"
-
-/* The same function inside; a program that links the library statically calls it at once. */
-dense_entry dense_functions_of;
+const dense_functions *dense_functions_of(uint32_t interface);

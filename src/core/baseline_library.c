@@ -1,24 +1,17 @@
-/* Where the charge library is, which has the dense solution. Compiled twice: with CHARGE_LINKED it is linked, in libcscd.a
- * and in tests; without, it is opened at the first call that needs it, by libcscd.so, by the tool, and by builds with
- * CHARGE=0. OpenBLAS starts threads as soon as it is loaded, which takes tens of milliseconds, and hangs where a limit
- * (`ulimit -v`) leaves them no memory. Windows and WebAssembly have none. */
-#include "preprocess/charges.h"
+/* Opens libcscd-baselines at the first call that needs it, and not before: OpenBLAS, which it brings, starts threads as soon as it is
+ * loaded, which takes tens of milliseconds, and hangs where a limit (`ulimit -v`) leaves them no memory. Windows and WebAssembly have
+ * no such library. */
+#include "src/core/baseline_library.h"
 
-#ifdef CHARGE_LINKED
+#if defined(_WIN32) || defined(__EMSCRIPTEN__)
 
-cscd_status charge_library_find(cscd_context *context, const dense_functions **out) {
-    (void)context;
-    *out = dense_functions_of(DENSE_INTERFACE);
-    return CSCD_OK;
-}
-
-#elif defined(_WIN32) || defined(__EMSCRIPTEN__)
-
-cscd_status charge_library_find(cscd_context *context, const dense_functions **out) {
+cscd_status baseline_library_find(cscd_context *context, const char *entry_name, uint32_t interface,
+                                  const char *what, const void **out) {
+    (void)entry_name;
+    (void)interface;
     *out = NULL;
     return context_fail(context, CSCD_SYSTEM_ERROR,
-                        "charge, dense: it is not built for Windows and WebAssembly; take the tree, which is "
-                        "the default and there on every system");
+                        "%s needs libcscd-baselines, which is not built for Windows and WebAssembly", what);
 }
 
 #else
@@ -34,7 +27,7 @@ cscd_status charge_library_find(cscd_context *context, const dense_functions **o
 
 #define TEXT_OF_VALUE(x) #x
 #define TEXT_OF(x)       TEXT_OF_VALUE(x)
-#define LIBRARY_NAME     "libcscd-charge.so." TEXT_OF(CSCD_VERSION_MAJOR)
+#define LIBRARY_NAME     "libcscd-baselines.so." TEXT_OF(CSCD_VERSION_MAJOR)
 
 enum { PATH_SIZE = 4096 };
 
@@ -60,8 +53,8 @@ static char *own_path(const char *name) {
 static bool stands_in_prefix(const char *file, char path[PATH_SIZE]) {
     const char *slash = strrchr(file, '/');
     if (slash == NULL || slash - file < 4 || strncmp(slash - 4, "/bin", 4) != 0) return false;
-#ifdef CHARGE_MULTIARCH
-    if (stands_by(file, "../lib/" CHARGE_MULTIARCH "/", path)) return true;
+#ifdef LIBRARY_FOLDER
+    if (stands_by(file, "../lib/" LIBRARY_FOLDER "/", path)) return true;
 #endif
     return stands_by(file, "../lib/", path) || stands_by(file, "../lib64/", path);
 }
@@ -105,7 +98,7 @@ static bool has_room(size_t mebibytes) {
 
 /* RTLD_NODELETE: it stays when it is closed, so nothing has to be remembered here, and the threads of its BLAS never
  * lose their code. RTLD_LOCAL: its BLAS does not become that of the program. */
-static cscd_status open_library(cscd_context *context, void **out) {
+static cscd_status open_library(cscd_context *context, const char *what, void **out) {
     const int flags = RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE;
     char path[PATH_SIZE];
     const char *name = find_library(path) ? path : LIBRARY_NAME;
@@ -115,30 +108,35 @@ static cscd_status open_library(cscd_context *context, void **out) {
     if (!has_room(needed))
         return context_fail(
             context, CSCD_OUT_OF_MEMORY,
-            "charge, dense: OpenBLAS, with %zu threads, takes %zu MiB of address space, and a limit "
+            "%s needs " LIBRARY_NAME
+            ", whose OpenBLAS, with %zu threads, takes %zu MiB of address space, and a limit "
             "(ulimit -v) leaves less; raise it, or set OPENBLAS_NUM_THREADS=1 before the program starts",
-            threads, needed);
+            what, threads, needed);
     *out = dlopen(name, flags);
     if (*out != NULL) return CSCD_OK;
     return context_fail(
         context, CSCD_SYSTEM_ERROR,
-        "charge, dense: it needs " LIBRARY_NAME
-        " beside libcscd.so (a build with CHARGE=1 makes it; the tree, which is the default, needs none): %s",
-        dlerror());
+        "%s needs " LIBRARY_NAME
+        ", looked for beside libcscd.so or the program and where the system looks (a build with "
+        "BASELINES=1, which is the default, makes it): %s",
+        what, dlerror());
 }
 
-cscd_status charge_library_find(cscd_context *context, const dense_functions **out) {
+cscd_status baseline_library_find(cscd_context *context, const char *entry_name, uint32_t interface,
+                                  const char *what, const void **out) {
     void *library;
-    cscd_status status = open_library(context, &library);
+    *out = NULL;
+    cscd_status status = open_library(context, what, &library);
     if (status != CSCD_OK) return status;
-    dense_entry *entry;
-    void *symbol = dlsym(library, DENSE_ENTRY_NAME);
+    baseline_entry *entry;
+    void *symbol = dlsym(library, entry_name);
     memcpy(&entry, &symbol, sizeof entry);
-    *out = entry != NULL ? entry(DENSE_INTERFACE) : NULL;
+    if (entry != NULL) *out = entry(interface);
     dlclose(library);
     if (*out != NULL) return CSCD_OK;
-    return context_fail(context, CSCD_SYSTEM_ERROR,
-                        LIBRARY_NAME " and libcscd are of different versions: install both of one build");
+    return context_fail(
+        context, CSCD_SYSTEM_ERROR,
+        "%s: " LIBRARY_NAME " and libcscd are of different versions; install both of one build", what);
 }
 
 #endif

@@ -2,7 +2,7 @@
  * threads. */
 #pragma once
 
-#include "preprocess/dense/dense_interface.h"
+#include "preprocess/baselines/dense/dense_interface.h"
 
 /* matrix: count x count, column after column, replaced by its factors; pivots: count. *zero_pivot becomes 0,
  * or k when the k-th pivot (from 1) is exactly 0. CANCELLED, OUT_OF_MEMORY: neither means anything. OUT_OF_MEMORY: the

@@ -1,0 +1,9 @@
+/* What libcscd-baselines exports of the dense solution. */
+#include "preprocess/baselines/dense/dense_interface.h"
+#include "src/core/baseline_library.h"
+
+CSCD_API baseline_entry cscd_baseline_dense;
+
+const void *cscd_baseline_dense(uint32_t interface) {
+    return dense_functions_of(interface);
+}
