@@ -18,7 +18,7 @@ int main(void) {
     const cscd_object_desc object = cscd_object_of_triangles(4, 4, triangles);
     const uint32_t regions[4] = {0, 0, 0, 0};
     const double point[3] = {0.5, 0.5, 0.5}, charges[4] = {1, 2, 3, 4}, capacitance = 5;
-    const cscd_plan_parts parts = {CSCD_METHOD_CHARGE, 1, regions, point, charges, &capacitance};
+    const cscd_plan_parts parts = {CSCD_METHOD_CHARGE, 1, regions, point, charges, &capacitance, NULL};
     cscd_plan_options options = cscd_plan_defaults();
     cscd_context *context = NULL;
     cscd_mesh *mesh = NULL;
