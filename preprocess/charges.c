@@ -136,10 +136,10 @@ static cscd_status solve_component(charge_work *w, uint32_t component) {
     return status;
 }
 
-/* Work is estimated in ns on one thread: of a dense system an entry takes some 10 in the matrix and in three residuals, and a
- * multiplication of the factors a hundredth of that; of a tree a triangle takes some 100,000. */
+/* Work is estimated in ns on one thread: of a dense system an entry takes some 10, and a multiplication of the factors a
+ * fiftieth of one; of a tree a triangle takes some 100,000. */
 static double work_of(const charge_work *w, double count) {
-    return w->dense != NULL ? 40.0 * count * count + count * count * count / 300.0 : 1e5 * count;
+    return w->dense != NULL ? 10.0 * count * count + count * count * count / 150.0 : 1e5 * count;
 }
 
 static cscd_status solve_components(charge_work *w) {

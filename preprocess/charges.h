@@ -16,7 +16,7 @@ typedef struct charge_options {
 } charge_options;
 
 /* Bytes that the dense solution takes at its peak through the context's allocator; the largest component's matrix,
- * 4 bytes per pair of its triangles, is nearly all of it. SIZE_MAX when they cannot be counted, or when there is
+ * 8 bytes per pair of its triangles, is nearly all of it. SIZE_MAX when they cannot be counted, or when there is
  * no libcscd-baselines. External for the tests of memory limits. */
 size_t charge_memory(const cscd_mesh *mesh);
 

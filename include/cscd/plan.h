@@ -40,7 +40,7 @@ typedef enum cscd_charge_solver {
                          * and thin, as in fans, and time grow about as the number of triangles; densities are off by some 1e-4 of
                          * their mean (root of the mean square), single ones
                          * by some 1e-3. The same bits on every processor */
-    CSCD_CHARGE_DENSE, /* a dense matrix, by LAPACK: 4 bytes for each pair of triangles of the largest component, and
+    CSCD_CHARGE_DENSE, /* a dense matrix, by LAPACK: 8 bytes for each pair of triangles of the largest component, and
                          * time with the cube of their number; densities exact. To compare with */
     CSCD_CHARGE_COARSE, /* as TREE with half the iterations: densities are off by some percent of their mean (root of the
                          * mean square), single ones by more */

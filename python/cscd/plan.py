@@ -83,7 +83,7 @@ class Plan:
             The share of the triangles, those of least density, along which cuts run; in (0, 1).
         solver : str
             "tree": iterations of a treecode, densities within 1e-3. "coarse": half the iterations, within some percent.
-            "dense": exactly, by LAPACK, with 4 bytes for each pair of triangles and time with the cube of their number.
+            "dense": exactly, by LAPACK, with 8 bytes for each pair of triangles and time with the cube of their number.
         memory_limit : int
             Bytes that the solution may take; 0: what the system has.
         stiffness : (t,) float64, optional

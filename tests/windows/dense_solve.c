@@ -15,19 +15,19 @@ const char *blas_choice_better(void) {
     return NULL;
 }
 
-static void swap_rows(float *matrix, uint32_t count, uint32_t a, uint32_t b) {
+static void swap_rows(double *matrix, uint32_t count, uint32_t a, uint32_t b) {
     for (uint32_t column = 0; a != b && column < count; column++) {
-        float *of_column = matrix + (size_t)column * count;
-        const float kept = of_column[a];
+        double *of_column = matrix + (size_t)column * count;
+        const double kept = of_column[a];
         of_column[a] = of_column[b];
         of_column[b] = kept;
     }
 }
 
-static uint32_t find_pivot(const float *column, uint32_t begin, uint32_t count) {
+static uint32_t find_pivot(const double *column, uint32_t begin, uint32_t count) {
     uint32_t best = begin;
     for (uint32_t row = begin + 1; row < count; row++)
-        if (fabsf(column[row]) > fabsf(column[best])) best = row;
+        if (fabs(column[row]) > fabs(column[best])) best = row;
     return best;
 }
 
@@ -35,32 +35,29 @@ static uint32_t find_pivot(const float *column, uint32_t begin, uint32_t count) 
 enum { PANEL = 32 };
 
 /* Takes column k, which is done, out of another one. */
-static void subtract_column(const float *matrix, uint32_t count, uint32_t k, float *other) {
-    const float *column = matrix + (size_t)k * count;
-    const float factor = other[k];
-    if (column[k] == 0.0f) return;
+static void subtract_column(const double *matrix, uint32_t count, uint32_t k, double *other) {
+    const double *column = matrix + (size_t)k * count;
+    const double factor = other[k];
+    if (column[k] == 0.0) return;
     for (uint32_t row = k + 1; row < count; row++) other[row] -= column[row] * factor;
 }
 
 /* Its pivot, and what is below it. */
-static void finish_column(float *matrix, uint32_t count, uint32_t k, int32_t *pivots, uint32_t *zero_pivot) {
-    float *column = matrix + (size_t)k * count;
+static void finish_column(double *matrix, uint32_t count, uint32_t k, int32_t *pivots) {
+    double *column = matrix + (size_t)k * count;
     const uint32_t pivot = find_pivot(column, k, count);
     pivots[k] = (int32_t)pivot;
     swap_rows(matrix, count, k, pivot);
-    if (column[k] == 0.0f && *zero_pivot == 0) *zero_pivot = k + 1;
-    if (column[k] == 0.0f) return;
+    if (column[k] == 0.0) return;
     for (uint32_t row = k + 1; row < count; row++) column[row] /= column[k];
 }
 
-cscd_status dense_factor(const dense_host *host, float *matrix, uint32_t count, int32_t *pivots,
-                         uint32_t *zero_pivot) {
-    *zero_pivot = 0;
+cscd_status dense_factor(const dense_host *host, double *matrix, uint32_t count, int32_t *pivots) {
     for (uint32_t begin = 0; begin < count; begin += PANEL) {
         const uint32_t end = count - begin < PANEL ? count : begin + PANEL;
         for (uint32_t k = begin; k < end; k++) {
             if (!host->go_on(host->context, (double)k / count)) return host->progress(host->context);
-            finish_column(matrix, count, k, pivots, zero_pivot);
+            finish_column(matrix, count, k, pivots);
             for (uint32_t j = k + 1; j < end; j++)
                 subtract_column(matrix, count, k, matrix + (size_t)j * count);
         }
@@ -71,9 +68,9 @@ cscd_status dense_factor(const dense_host *host, float *matrix, uint32_t count, 
     return host->progress(host->context);
 }
 
-void dense_substitute(const float *factors, uint32_t count, const int32_t *pivots, float *vector) {
+void dense_substitute(const double *factors, uint32_t count, const int32_t *pivots, double *vector) {
     for (uint32_t k = 0; k < count; k++) {
-        const float kept = vector[k];
+        const double kept = vector[k];
         vector[k] = vector[pivots[k]];
         vector[pivots[k]] = kept;
     }

@@ -1,4 +1,4 @@
-/* Dense linear systems in single precision: LU with partial pivoting, by LAPACK and BLAS.
+/* Dense linear systems in double precision: LU with partial pivoting, by LAPACK and BLAS.
  *
  * The matrix is factored from left to right, panel by panel. When a panel is factored, every column to its
  * right is brought up to date: rows swapped, solved with the panel's triangle, and less the product of the
@@ -19,14 +19,14 @@ _Static_assert(sizeof(lapack_int) == sizeof(int32_t), "LAPACKE with 64-bit integ
 /* Measured (docs/theory/charge.md): narrower panels make the products thin, wider ones leave few tasks. */
 enum { PANEL_WIDTH = 256 };
 
-/* BLAS by its Fortran names. GSL's own library has its C names (cblas_sgemm), and where that comes before OpenBLAS, those
+/* BLAS by its Fortran names. GSL's own library has its C names (cblas_dgemm), and where that comes before OpenBLAS, those
  * would be found: right, but some seven times slower. */
-void sgemm_(const char *transposes_a, const char *transposes_b, const lapack_int *m, const lapack_int *n,
-            const lapack_int *k, const float *alpha, const float *a, const lapack_int *lda, const float *b,
-            const lapack_int *ldb, const float *beta, float *c, const lapack_int *ldc);
-void strsm_(const char *side, const char *triangle, const char *transposes, const char *diagonal,
-            const lapack_int *m, const lapack_int *n, const float *alpha, const float *a,
-            const lapack_int *lda, float *b, const lapack_int *ldb);
+void dgemm_(const char *transposes_a, const char *transposes_b, const lapack_int *m, const lapack_int *n,
+            const lapack_int *k, const double *alpha, const double *a, const lapack_int *lda, const double *b,
+            const lapack_int *ldb, const double *beta, double *c, const lapack_int *ldc);
+void dtrsm_(const char *side, const char *triangle, const char *transposes, const char *diagonal,
+            const lapack_int *m, const lapack_int *n, const double *alpha, const double *a,
+            const lapack_int *lda, double *b, const lapack_int *ldb);
 
 /* ---- OpenBLAS's threads and buffers ------------------------------------------------------------------- */
 
@@ -84,9 +84,9 @@ static void end_single_thread(size_t lanes) {
 
 typedef struct factoring {
     const dense_host *host;
-    float *matrix;
+    double *matrix;
     lapack_int *pivots; /* from 1, and until all are done, from the panel's first row on */
-    uint32_t count, zero_pivot;
+    uint32_t count;
     uint32_t begin, end; /* columns of the panel that is factored last */
     double done;         /* of the whole work */
 } factoring;
@@ -95,22 +95,20 @@ static uint32_t smaller_count(uint32_t a, uint32_t b) {
     return a < b ? a : b;
 }
 
-static float *entry_at(const factoring *f, uint32_t row, uint32_t column) {
+static double *entry_at(const factoring *f, uint32_t row, uint32_t column) {
     return f->matrix + (size_t)column * f->count + row;
 }
 
 /* Factors the rows from `begin` on of columns begin to end - 1. The plain forms of LAPACKE would search the
  * whole matrix for NaN first, the _work forms do not. */
 static void factor_panel(factoring *f, uint32_t begin, uint32_t end) {
-    lapack_int info =
-        LAPACKE_sgetrf_work(LAPACK_COL_MAJOR, (lapack_int)(f->count - begin), (lapack_int)(end - begin),
-                            entry_at(f, begin, begin), (lapack_int)f->count, f->pivots + begin);
-    if (info > 0 && f->zero_pivot == 0) f->zero_pivot = begin + (uint32_t)info;
+    LAPACKE_dgetrf_work(LAPACK_COL_MAJOR, (lapack_int)(f->count - begin), (lapack_int)(end - begin),
+                        entry_at(f, begin, begin), (lapack_int)f->count, f->pivots + begin);
 }
 
 /* Swaps rows as the panel [begin, end) does, in columns first to last - 1. */
 static void swap_rows(const factoring *f, uint32_t begin, uint32_t end, uint32_t first, uint32_t last) {
-    LAPACKE_slaswp_work(LAPACK_COL_MAJOR, (lapack_int)(last - first), entry_at(f, begin, first),
+    LAPACKE_dlaswp_work(LAPACK_COL_MAJOR, (lapack_int)(last - first), entry_at(f, begin, first),
                         (lapack_int)f->count, 1, (lapack_int)(end - begin), f->pivots + begin, 1);
 }
 
@@ -120,12 +118,12 @@ static void update_columns(const factoring *f, uint32_t first, uint32_t last) {
     lapack_int n = (lapack_int)f->count, width = (lapack_int)(end - begin);
     lapack_int columns = (lapack_int)(last - first);
     swap_rows(f, begin, end, first, last);
-    const float one = 1.0f, minus_one = -1.0f;
+    const double one = 1.0, minus_one = -1.0;
     lapack_int below = n - (lapack_int)end;
-    strsm_("L", "L", "N", "U", &width, &columns, &one, entry_at(f, begin, begin), &n,
+    dtrsm_("L", "L", "N", "U", &width, &columns, &one, entry_at(f, begin, begin), &n,
            entry_at(f, begin, first), &n);
     if (below == 0) return;
-    sgemm_("N", "N", &below, &columns, &width, &minus_one, entry_at(f, end, begin), &n,
+    dgemm_("N", "N", &below, &columns, &width, &minus_one, entry_at(f, end, begin), &n,
            entry_at(f, begin, first), &n, &one, entry_at(f, end, first), &n);
 }
 
@@ -185,20 +183,18 @@ static cscd_status fail_without_room(const dense_host *host, uint32_t lanes) {
     return CSCD_OUT_OF_MEMORY;
 }
 
-cscd_status dense_factor(const dense_host *host, float *matrix, uint32_t count, int32_t *pivots,
-                         uint32_t *zero_pivot) {
+cscd_status dense_factor(const dense_host *host, double *matrix, uint32_t count, int32_t *pivots) {
     factoring f = {.host = host, .matrix = matrix, .pivots = pivots, .count = count};
     uint32_t lanes = smaller_count(host->threads, panels_of(count));
     if (!begin_single_thread(lanes)) return fail_without_room(host, lanes);
     cscd_status status = factor_panels(&f);
     end_single_thread(lanes);
-    *zero_pivot = f.zero_pivot;
     return status;
 }
 
-void dense_substitute(const float *factors, uint32_t count, const int32_t *pivots, float *vector) {
+void dense_substitute(const double *factors, uint32_t count, const int32_t *pivots, double *vector) {
     lapack_int n = (lapack_int)count;
     begin_single_thread(0); /* there is a buffer since the factors were made */
-    LAPACKE_sgetrs_work(LAPACK_COL_MAJOR, 'N', n, 1, factors, n, pivots, vector, n);
+    LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, 'N', n, 1, factors, n, pivots, vector, n);
     end_single_thread(0);
 }

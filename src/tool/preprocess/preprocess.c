@@ -80,7 +80,7 @@ static const option_row rows[] = {
      "with charge: solve for it by iterations of a treecode, with about 2 kB a triangle (default)"},
     {"charge", "coarse", .help = "the same with half the iterations, to some percent"},
     {"charge", "dense",
-     .help = "by a dense matrix, to compare: 4 bytes for each pair of triangles of a component, "
+     .help = "by a dense matrix, to compare: 8 bytes for each pair of triangles of a component, "
              "and time with the cube of their number"},
     {"growing", "X", read_growing, offsetof(preprocess_options, plan.growing),
      "with published: clusters with more than this share of the triangles grow (default 0.0025)"},
