@@ -117,7 +117,7 @@ COMMAND_SOURCES := $(wildcard src/tool/*.c $(patsubst %,src/tool/%/*.c,check pre
 NATIVE_SOURCES  := $(wildcard python/native/*.c)
 SUPPORT_SOURCES := $(filter-out $(if $(WINDOWS),,tests/support/tool/tool_process.c),$(wildcard tests/support/*.c tests/support/*/*.c))
 # `rm -r runtime/baselines`, and its lines in runtime/detector/method_table.c: what needs them is not built then.
-HAS_BASELINES   := $(wildcard runtime/baselines/*.h)
+HAS_BASELINES   := $(wildcard runtime/baselines/*/*.h)
 # The browser's tests look at pages, which no other configuration writes differently. Only a release is installed. Under sanitizers each
 # program of models/ runs (models/test_programs); how bodies and cloth move in them is looked at in a release.
 BROWSER_TESTS   := tests/report/test_report_browser.py tests/report/test_report_view.py
@@ -745,8 +745,7 @@ $(CPP_MODELS): $(BUILD)/models/%: $(OBJECTS)/models/%.o $(patsubst %.cpp,$(OBJEC
 # Benchmarks may use internals, as tests do: benchmarks/*.c are programs, and benchmarks/lib has what they share.
 MACHINE_LEVELS := $(foreach level,$(LEVELS),$(OBJECTS)/benchmarks/lib/machine_kernels_simd.$(level).o)
 $(MACHINE_LEVELS): CFLAGS_ALL += -fno-tree-vectorize -fno-tree-slp-vectorize
-VOLUME_LEVELS := $(foreach level,$(LEVELS),$(OBJECTS)/benchmarks/lib/volume_kernels_simd.$(level).o)
-$(BUILD)/benchmarks/lib.a: $(call objects,$(BENCHMARK_PARTS)) $(MACHINE_LEVELS) $(VOLUME_LEVELS)
+$(BUILD)/benchmarks/lib.a: $(call objects,$(BENCHMARK_PARTS)) $(MACHINE_LEVELS)
 	@mkdir -p $(@D)
 	@rm -f $@
 	$(Q)$(TOOLS)ar rcs $@ $^

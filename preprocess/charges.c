@@ -1,13 +1,16 @@
-/* The charges of a mesh, component by component: by a dense system, which is in libcscd-baselines, or by a treecode. */
+/* The charges of a mesh, component by component: by a treecode, or by a solver to compare with. */
 #include "preprocess/charges.h"
 
 #include "preprocess/treecode/tree_solve.h"
-#include "src/core/baseline_library.h"
 #include "src/core/system.h"
 #include "src/core/timer.h"
 #include "src/mesh/positions.h"
 
 #include <string.h>
+
+/* baselines: begin */
+#include "preprocess/baselines/dense_charges.h"
+/* baselines: end */
 
 /* The charge's share of cscd_plan_create, by estimate, for each solver; the regions take the rest. */
 static const double parts_of_call[] = {
@@ -17,7 +20,7 @@ typedef struct charge_work {
     const cscd_mesh *mesh;
     cscd_context *context;
     const double *positions;
-    const dense_functions *dense; /* NULL: it is not asked for */
+    charge_solution other; /* without solve: the tree solves */
     cscd_charge_solver solver;
     size_t memory_limit;
     uint32_t *triangles; /* sorted by component */
@@ -27,6 +30,16 @@ typedef struct charge_work {
     void *system_memory;
     charge_report report;
 } charge_work;
+
+static cscd_status find_dense(cscd_context *context, charge_solution *out) {
+    *out = (charge_solution){.solve = NULL};
+    /* baselines: begin */
+    if (context != NULL) return dense_charges_find(context, out);
+    /* baselines: end */
+    return context_fail(
+        context, CSCD_INVALID_ARGUMENT,
+        "the dense solver is a baseline, and this library was built without preprocess/baselines");
+}
 
 static array_list list_arrays(charge_work *w) {
     const size_t components = w->mesh->component_count;
@@ -50,66 +63,19 @@ static uint32_t largest_component(const cscd_mesh *mesh) {
     return largest;
 }
 
-/* ---- the dense solution ---------------------------------------------------------------------------------- */
+/* ---- memory ------------------------------------------------------------------------------------------------ */
 
-static void *allocate_block(void *context, size_t size) {
-    void *block = context_allocate(context, size, 1);
-    if (block == NULL) context_out_of_memory(context);
-    return block;
-}
-
-static void release_block(void *context, void *block) {
-    context_free(context, block);
-}
-
-static void run_tasks(void *context, uint32_t task_count, parallel_task *task, void *data) {
-    parallel_run(((cscd_context *)context)->threads, task_count, task, data);
-}
-
-static void enter_stage(void *context, const char *name, double begin, double end) {
-    progress_stage(&((cscd_context *)context)->progress, name, begin, end);
-}
-
-static bool go_on(void *context, double share) {
-    return progress_go_on(&((cscd_context *)context)->progress, share);
-}
-
-static cscd_status progress_status(void *context) {
-    return context_progress_status(context);
-}
-
-static void explain_failure(void *context, cscd_status status, const char *sentence) {
-    context_fail(context, status, "%s", sentence);
-}
-
-static cscd_status solve_dense(charge_work *w) {
-    cscd_context *context = w->context;
-    const dense_host host = {context,         allocate_block,  release_block,
-                             run_tasks,       enter_stage,     go_on,
-                             progress_status, explain_failure, parallel_thread_count(context->threads)};
-    w->report.kernels = w->dense->kernels();
-    return w->dense->solve(&host, &w->system, &w->report.timings);
-}
-
-static cscd_status find_dense(cscd_context *context, const dense_functions **out) {
-    const void *functions;
-    cscd_status status = baseline_library_find(
-        context, DENSE_ENTRY, DENSE_INTERFACE,
-        "charge: the dense solver (the tree, which is the default, does without)", &functions);
-    *out = functions;
-    return status;
-}
-
-static size_t dense_memory(const charge_work *w) {
+static size_t memory_of_other(const charge_work *w) {
     charge_system system;
     const uint32_t largest = largest_component(w->mesh);
-    const size_t common = charge_system_lay_out(&system, largest, NULL), matrix = w->dense->memory(largest);
+    const size_t common = charge_system_lay_out(&system, largest, NULL),
+                 matrix = w->other.memory(w->other.functions, largest);
     return matrix < SIZE_MAX - common ? common + matrix : SIZE_MAX;
 }
 
 static cscd_status check_memory(const charge_work *w) {
     const double gibibyte = 0x1p30;
-    const size_t needed = w->dense != NULL ? dense_memory(w) : 0;
+    const size_t needed = w->other.solve != NULL ? memory_of_other(w) : 0;
     if (needed <= w->memory_limit) return CSCD_OK;
     return context_fail(w->context, CSCD_OUT_OF_MEMORY,
                         "charge: a component of %u triangles takes %.4g GiB of memory, and %.4g GiB are "
@@ -129,17 +95,17 @@ static cscd_status solve_component(charge_work *w, uint32_t component) {
     uint32_t begin = w->offsets[component], count = w->offsets[component + 1] - begin;
     cscd_status status = charge_system_collect(&w->system, &surface, component, w->triangles + begin, count);
     if (status == CSCD_OK)
-        status = w->dense != NULL ? solve_dense(w)
-                                  : tree_solve(w->context, &w->system, w->memory_limit,
-                                               tolerance_of(w->solver), &w->report.timings);
+        status = w->other.solve != NULL
+                     ? w->other.solve(w->other.functions, w->context, &w->system, &w->report.timings)
+                     : tree_solve(w->context, &w->system, w->memory_limit, tolerance_of(w->solver),
+                                  &w->report.timings);
     if (status == CSCD_OK) charge_system_store(&w->system, w->density, &w->capacitance[component]);
     return status;
 }
 
-/* Work is estimated in ns on one thread: of a dense system an entry takes some 10, and a multiplication of the factors a
- * fiftieth of one; of a tree a triangle takes some 100,000. */
+/* In ns on one thread, by estimate: of a tree a triangle takes some 100,000. */
 static double work_of(const charge_work *w, double count) {
-    return w->dense != NULL ? 10.0 * count * count + count * count * count / 150.0 : 1e5 * count;
+    return w->other.solve != NULL ? w->other.work(count) : 1e5 * count;
 }
 
 static cscd_status solve_components(charge_work *w) {
@@ -186,7 +152,8 @@ cscd_status charge_solve(const cscd_mesh *mesh, const double *positions, const c
     if (density == NULL || capacitance == NULL)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "charge: density or capacitance is NULL");
     cscd_status status = positions_check(context, positions, mesh->vertex_count, "charge");
-    if (status == CSCD_OK && w.solver == CSCD_CHARGE_DENSE) status = find_dense(context, &w.dense);
+    if (status == CSCD_OK && w.solver == CSCD_CHARGE_DENSE) status = find_dense(context, &w.other);
+    if (status == CSCD_OK && w.other.solve != NULL) w.report.kernels = w.other.kernels(w.other.functions);
     if (status == CSCD_OK) status = solve_mesh(&w);
     if (status == CSCD_OK) {
         memcpy(density, w.density, mesh->triangle_count * sizeof *density);
@@ -201,5 +168,5 @@ cscd_status charge_solve(const cscd_mesh *mesh, const double *positions, const c
 
 size_t charge_memory(const cscd_mesh *mesh) {
     charge_work w = {.mesh = mesh};
-    return find_dense(mesh->context, &w.dense) == CSCD_OK ? dense_memory(&w) : SIZE_MAX;
+    return find_dense(mesh->context, &w.other) == CSCD_OK ? memory_of_other(&w) : SIZE_MAX;
 }

@@ -1,7 +1,7 @@
 /* The charge density of a conductor in the shape of the mesh: collocation at triangle centroids. */
 #pragma once
 
-#include "preprocess/baselines/dense/dense_interface.h"
+#include "preprocess/charge/charge_solution.h"
 #include "src/mesh/mesh.h"
 
 /* What a solution took, and by what. */

@@ -2,7 +2,6 @@
 #include "preprocess/plan_draft.h"
 
 #include "cscd/research.h"
-#include "preprocess/regions/equalize.h"
 #include "preprocess/regions/kmeans.h"
 #include "preprocess/regions/regions.h"
 #include "preprocess/regions/visibility.h"
@@ -11,6 +10,7 @@
 
 /* baselines: begin */
 #include "preprocess/baselines/published_cuts.h"
+#include "preprocess/regions/equalize.h"
 /* baselines: end */
 
 /* Of the method PUBLISHED: is this step, a CSCD_OURS_ bit, done as published? */
@@ -89,8 +89,13 @@ static cscd_status find_regions(plan_draft *d) {
     /* baselines: end */
     case CSCD_METHOD_KMEANS:
         return find_kmeans_regions(d);
-    default:
+    case CSCD_METHOD_SINGLE:
         return regions_single(d->mesh, d->regions, &d->region_count);
+    default:
+        return context_fail(
+            d->mesh->context, CSCD_INVALID_ARGUMENT,
+            "method %s is a baseline, and this library was built without preprocess/baselines",
+            cscd_method_name(d->options.method));
     }
 }
 

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Removes runtime/baselines, and the lines of the method table that are marked as its own, from a copy of the sources.
+# Removes runtime/baselines and preprocess/baselines, and the lines elsewhere that are marked as theirs, from a copy of the sources.
 # Builds library and tool from what is left and runs the tests that use methods; `make test-without-baselines` calls it.
 set -eu
 cd "$(dirname "$0")/.."
@@ -11,11 +11,13 @@ mkdir -p "$copy"
 git ls-files -co --exclude-standard Makefile include src preprocess runtime models benchmarks tests |
     tar -cf - --ignore-failed-read -T - | tar -xf - -C "$copy"
 cd "$copy"
-table=runtime/detector/method_table.c
-[ -d runtime/baselines ] && [ "$(grep -c 'baselines: begin' "$table")" = "$(grep -c 'baselines: end' "$table")" ] &&
-    grep -q 'baselines: begin' "$table" || { echo "$0: there is nothing to remove" >&2; exit 1; }
-rm -r runtime/baselines
-sed -i '/baselines: begin/,/baselines: end/d' "$table"
+marked='runtime/detector/method_table.c preprocess/plan_draft.c preprocess/charges.c'
+for file in $marked; do
+    [ "$(grep -c 'baselines: begin' $file)" = "$(grep -c 'baselines: end' $file)" ] && grep -q 'baselines: begin' $file ||
+        { echo "$0: $file has nothing to remove" >&2; exit 1; }
+    sed -i '/baselines: begin/,/baselines: end/d' $file
+done
+rm -r runtime/baselines preprocess/baselines
 
 # A compiler that remembers gives what make test has compiled. Others optimise a little, without symbols: the quickest to build and run.
 case ${CC:-} in

@@ -23,6 +23,7 @@ typedef struct entrant {
     cscd_mode mode;
     uint32_t k, seed; /* of k-means; repeat i has the seed seed + i */
     cscd_volume volume;
+    uint64_t ours; /* of the published methods */
 } entrant;
 
 /* Sums over intervals. */
@@ -32,6 +33,7 @@ typedef struct score {
     double pcp, tests, contacts;
     double lost;          /* per run: contacts of method none that are not reported */
     double earliest_lost; /* per run: intervals and components whose first contact is not reported in time */
+    double invented;      /* per run: contacts that method none does not report; of published methods alone */
 } score;
 
 enum { CLASS_PROVEN, CLASS_OTHER, CLASS_COUNT };
@@ -45,7 +47,7 @@ typedef struct contest_result {
 } contest_result;
 
 /* Replays `repeats` times. Returns false when a call failed or the contacts of an interval break the
- * guarantee that the method gave for it; *error says which. Published methods may lose anything; none may
+ * guarantee that the method gave for it; *error says which. Published methods may lose and invent anything; no other may
  * add or alter a contact. */
 bool contest_run(const truth *t, const entrant *e, uint32_t repeats, contest_result *out, io_error *error);
 

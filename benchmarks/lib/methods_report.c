@@ -89,6 +89,7 @@ void methods_report_write(const methods_report *r, json *out, uint32_t thread_co
         json_number(out, "contacts", s.contacts);
         json_number(out, "earliest_lost", s.earliest_lost);
         json_number(out, "lost", s.lost);
+        json_number(out, "invented", s.invented);
         json_end_object(out);
     }
 }

@@ -50,11 +50,12 @@ static bool make_tree(volume_trial *t) {
     const uint32_t *regions = culls ? d->culling.triangle_regions : mesh->triangle_components;
     uint32_t count = culls ? d->culling.region_count : mesh->component_count;
     t->keeps_adjacent = calloc(count > 0 ? count : 1, sizeof *t->keeps_adjacent);
-    bool good = t->keeps_adjacent != NULL &&
-                volume_tree_build(mesh, recording_data_frame(t->recording, 0), regions, &t->tree) &&
-                volume_search_open(&t->tree, &t->search);
+    bool good =
+        t->keeps_adjacent != NULL &&
+        volume_tree_build(mesh, recording_data_frame(t->recording, 0), regions, count, &t->tree) == CSCD_OK &&
+        volume_search_open(&t->tree, &t->search) == CSCD_OK;
     for (int kind = 0; good && kind < VOLUME_KINDS; kind++)
-        good = volume_search_open(&t->tree, &t->earlier[kind]);
+        good = volume_search_open(&t->tree, &t->earlier[kind]) == CSCD_OK;
     return good;
 }
 
@@ -263,7 +264,7 @@ bool volume_trial_run(const recording_data *r, cscd_method method, cscd_simd sim
     t->result.method = method;
     bool good = make_detector(t, simd) || explain_trial(t, cscd_context_detail(r->context), error);
     good = good && (make_tree(t) || explain_trial(t, "out of memory", error));
-    t->kernels = KERNELS_OF(r->context, volume_kernels);
+    t->kernels = volume_kernels_of(r->context);
     for (uint32_t i = 0; good && i + 1 < r->frame_count; i++)
         good = run_interval(t, i, i % stride == 0, error);
     divide_result(&t->result);

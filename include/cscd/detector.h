@@ -147,8 +147,7 @@ typedef struct cscd_detector_options {
      * along x, y or z, motion included: that is the limit that rounding sets. */
     double min_separation, tolerance;
 
-    /* cscd_detector_max_step goes at most this share of the way to the contact that limits it. In (0,1),
-     * 0.8 by default. */
+    /* cscd_detector_max_step goes at most this share of the way to its limiting contact; in (0,1), 0.8 by default. */
     double step_factor;
 
     /* Who is looked at with whom: one rule for each object of the mesh, or none. */
@@ -160,9 +159,8 @@ typedef struct cscd_detector_options {
     const double *thickness_matrix;
     uint32_t rule_count, thickness_class_count;
 
-    /* A pair that starts nearer than min_separation d has a floor in cscd_detector_max_step and line searches,
-     * below which it never comes: one of d, s d, s^2 d, ... with s = floor_ratio. In (0,0.999], 0.9 by
-     * default. */
+    /* A pair that starts nearer than min_separation d has a floor in cscd_detector_max_step and line searches, below
+     * which it never comes: one of d, s d, s^2 d, ... with s = floor_ratio. In (0,0.999], 0.9 by default. */
     double floor_ratio;
 
     /* A length: how far apart the two vertices of a seam may be in the first positions that the detector is
@@ -183,6 +181,8 @@ typedef struct cscd_detector_options {
 
     cscd_coherence coherence; /* AUTO by default */
     uint32_t reserved;        /* 0 */
+    uint64_t
+        ours; /* the published methods: what is done as CHARGE does it; see cscd/research.h. 0 by default */
 } cscd_detector_options;
 
 /* The default options. */

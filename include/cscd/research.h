@@ -20,6 +20,19 @@
 #define CSCD_OURS_CUTS   4u /* regions by what their points see; needs CSCD_OURS_RANKS */
 #define CSCD_OURS_POINTS 8u /* points where they see the most; needs CSCD_OURS_CUTS */
 
+/* PUBLISHED and ICCD_PUBLISHED run as chapters 4 and 5.1 say, on one thread: binary trees of 14-DOPs with one triangle a leaf, a start
+ * that is assumed to be free, detector points that stay, features that are tested by the first triangle of their one-ring list, no test
+ * of adjacent triangles, and elementary tests by the roots of the cubic in plain doubles, from libcscd-baselines (without it,
+ * cscd_detector_create fails with SYSTEM_ERROR, unless CSCD_OURS_TESTS is set). PUBLISHED takes any plan. With a distance to keep they
+ * search as NONE. cscd_detector_options.ours, a sum of these, takes single steps from CHARGE instead. */
+#define CSCD_OURS_MOTION 16u /* detector points move with their regions */
+#define CSCD_OURS_STARTS 32u /* the start is proven, and what is not clean is not culled */
+#define CSCD_OURS_REPRESENTATIVES                                                                            \
+    64u                           /* features are tested by the first pair of triangles that is looked at */
+#define CSCD_OURS_NEIGHBOURS 128u /* adjacent triangles are tested */
+#define CSCD_OURS_TESTS      256u /* elementary tests are exact */
+#define CSCD_OURS_BOXES      512u /* boxes in place of 14-DOPs */
+
 #ifdef __cplusplus
 extern "C" {
 #endif

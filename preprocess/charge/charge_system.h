@@ -28,6 +28,11 @@ typedef struct charge_system {
     double *charges;           /* at potential 1 in scaled lengths */
 } charge_system;
 
+/* Names of kernels of OpenBLAS, in static storage; see src/blas/blas_choice.h. */
+typedef struct charge_kernels {
+    const char *used, *better; /* NULL: unknown; used will do */
+} charge_kernels;
+
 /* Where the time of a solution went, summed over the components. */
 typedef struct charge_timings {
     double assembly_ms; /* the matrix, or the tree with all that is prepared in it */

@@ -7,14 +7,15 @@ import operator
 import os
 import threading
 import weakref
-from typing import Any, Callable, NoReturn, Optional, Set
+from typing import Any, Callable, Dict, Iterable, NoReturn, Optional, Set
 
 import numpy as np
 
 from ._library import library
 from .errors import Cancelled, Error, ListTooLong
 
-__all__ = ["Handle", "Host", "Keeper", "code_of", "new_handle", "processor_count", "raise_status", "thread_count_of"]
+__all__ = ["DETECTOR_STEPS", "Handle", "Host", "Keeper", "PLAN_STEPS", "code_of", "new_handle", "ours_of",
+           "processor_count", "raise_status", "thread_count_of"]
 
 _OUT_OF_MEMORY, _INVALID_ARGUMENT, _INVALID_MESH, _SYSTEM_ERROR, _CANCELLED, IN_CONTACT, _BUSY = 1, 2, 3, 4, 5, 6, 7
 _LIST_TOO_LONG = 10
@@ -53,6 +54,20 @@ def raise_status(status: int, sentence: str) -> NoReturn:
     if status == _LIST_TOO_LONG:
         raise ListTooLong(text)
     raise Error(text)
+
+
+# Steps of the published method that may be done as charge does them: the CSCD_OURS_ constants of cscd/research.h.
+PLAN_STEPS = {"charge": 1, "ranks": 2, "cuts": 4, "points": 8}
+DETECTOR_STEPS = {"motion": 16, "starts": 32, "representatives": 64, "neighbours": 128, "tests": 256, "boxes": 512}
+
+
+def ours_of(words: Iterable[str], steps: Dict[str, int]) -> int:
+    """The sum of the steps with these names."""
+    names = {words} if isinstance(words, str) else set(words)
+    for name in names:
+        if name not in steps:
+            raise ValueError(f"ours: expected some of {', '.join(steps)}; got {name!r}")
+    return sum(steps[name] for name in names)
 
 
 def code_of(what: str, name: Any) -> int:

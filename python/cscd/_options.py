@@ -8,7 +8,7 @@ from typing import Any, Dict, List, Optional
 import numpy as np
 
 from ._arrays import as_floats, as_indices, count_of, number_of
-from ._host import Handle, Host, code_of
+from ._host import DETECTOR_STEPS, Handle, Host, code_of, ours_of
 from ._library import address_of, library, new_struct, structs
 from .mesh import Mesh
 
@@ -38,6 +38,7 @@ class DetectorOptions:
         if inputs["coherence"] not in _COHERENCES:
             raise ValueError(f"coherence: expected one of {', '.join(_COHERENCES)}; got {inputs['coherence']!r}")
         self._struct["coherence"] = _COHERENCES[inputs["coherence"]]
+        self._struct["ours"] = ours_of(inputs["ours"], DETECTOR_STEPS)
         for name in ("min_separation", "tolerance", "step_factor", "floor_ratio", "seam_reach", "longest_list"):
             self._set_number(name, inputs[name])
         self._set_pairs("seams", "seam_count", inputs["seams"], mesh.vertex_count, "vertices")

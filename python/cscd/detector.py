@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import copy
-from typing import Any, Callable, Dict, List, Optional, Tuple
+from typing import Any, Callable, Dict, Iterable, List, Optional, Tuple
 
 import numpy as np
 
@@ -35,7 +35,7 @@ class Detector(LiveSettings):
     plan : Plan, optional
         Makes steps faster; contacts stay the same.
     method : str
-        "auto", "none", "single", "kmeans" or "charge" (docs/tuning.md).
+        "auto", "none", "single", "kmeans" or "charge" (docs/tuning.md), or one to compare with.
     mode : str
         "all": every contact; "earliest": of each component with itself, the first ones only.
     start : str
@@ -67,6 +67,9 @@ class Detector(LiveSettings):
         take more are left out like what does not fit ``max_memory``. 0: 2**28, which take some ten seconds.
     coherence : str
         "auto": steps in which little moves test a list of pairs; "off": each looks at the whole mesh.
+    ours : iterable of str
+        With the methods "published" and "iccd-published", which lose contacts and are there to compare with: steps that are
+        done as "charge" does them, some of motion, starts, representatives, neighbours, tests, boxes (docs/theory/thesis.md).
     threads : int
         0: one per processor.
     progress : function (stage, fraction), optional
@@ -90,8 +93,9 @@ class Detector(LiveSettings):
                  step_factor: float = 0.8, floor_ratio: float = 0.9, seams: Any = None, ignored: Any = None,
                  ignore: Optional[Callable[[str, int, int], bool]] = None, rules: Any = None,
                  thickness_matrix: Any = None, seam_reach: float = 0.0, longest_list: int = 0,
-                 max_memory: int = 0, max_work: int = 0, coherence: str = "auto", threads: int = 1, simd: str = "auto",
-                 progress: Optional[Callable[[str, float], Any]] = None, _left_out: Optional[Handle] = None) -> None:
+                 max_memory: int = 0, max_work: int = 0, coherence: str = "auto", ours: Iterable[str] = (),
+                 threads: int = 1, simd: str = "auto", progress: Optional[Callable[[str, float], Any]] = None,
+                 _left_out: Optional[Handle] = None) -> None:
         self._left_out = _left_out  # of a replay; it outlives the detector
         self.mesh: Mesh = mesh if isinstance(mesh, Mesh) else Mesh(as_faces("mesh", mesh))
         self._inputs = dict(plan=plan, method=method, mode=mode, start=start, volume=volume,
@@ -99,7 +103,7 @@ class Detector(LiveSettings):
                             floor_ratio=floor_ratio, seams=seams, ignored=ignored, rules=rules,
                             thickness_matrix=thickness_matrix, seam_reach=seam_reach, longest_list=longest_list,
                             max_memory=count_of("max_memory", max_memory), max_work=count_of("max_work", max_work),
-                            coherence=coherence, threads=threads, simd=simd)
+                            coherence=coherence, ours=tuple(ours), threads=threads, simd=simd)
         if plan is not None and not isinstance(plan, Plan):
             raise ValueError(f"plan: expected a Plan, got {type(plan).__name__}")
         pointer = self.mesh.pointer

@@ -10,7 +10,7 @@ from typing import Any, Callable, Dict, Iterable, List, NamedTuple, Optional, Tu
 import numpy as np
 
 from ._arrays import as_floats, as_indices, as_positions, check_magnitudes, count_of, number_of, views_of
-from ._host import Handle, Host, code_of, new_handle
+from ._host import PLAN_STEPS, Handle, Host, code_of, new_handle, ours_of
 from ._library import address_of, items_of, library, new_struct, structs
 from .errors import Error
 from .mesh import Mesh, read_surface
@@ -19,7 +19,6 @@ __all__ = ["ComparedPlan", "Plan"]
 
 Array = Any
 _SOLVERS = {"tree": 0, "dense": 1, "coarse": 2}
-_STEPS = {"charge": 1, "ranks": 2, "cuts": 4, "points": 8}
 
 
 class ComparedPlan(NamedTuple):
@@ -143,12 +142,8 @@ class Plan:
         Error
             ``ours`` has no "charge", and this installation is built without LAPACK, as wheels are.
         """
-        words = list(ours)
-        for word in words:
-            if word not in _STEPS:
-                raise ValueError(f"ours: expected some of {', '.join(_STEPS)}; got {word!r}")
         return cls._create(mesh, V, threads, progress, method=code_of("method", "published"), threshold=threshold,
-                           growing=growing, ours=sum(_STEPS[word] for word in set(words)))
+                           growing=growing, ours=ours_of(ours, PLAN_STEPS))
 
     @classmethod
     def auto(cls, mesh: Mesh, V: Any, *, stiffness: Any = None, frames: Any = None, threads: int = 0,

@@ -107,7 +107,8 @@ FIELDS(detector_options, FIELD(cscd_detector_options, struct_size), FIELD(cscd_d
        FIELD(cscd_detector_options, rules), FIELD(cscd_detector_options, thickness_matrix),
        FIELD(cscd_detector_options, rule_count), FIELD(cscd_detector_options, thickness_class_count),
        FIELD(cscd_detector_options, floor_ratio), FIELD(cscd_detector_options, seam_reach),
-       FIELD(cscd_detector_options, longest_list), FIELD(cscd_detector_options, coherence))
+       FIELD(cscd_detector_options, longest_list), FIELD(cscd_detector_options, coherence),
+       FIELD(cscd_detector_options, ours))
 FIELDS(contact, FIELD(cscd_contact, kind), FIELD(cscd_contact, a), FIELD(cscd_contact, b),
        FIELD(cscd_contact, bounded), FIELD(cscd_contact, vertices), FIELD(cscd_contact, toi),
        FIELD(cscd_contact, u), FIELD(cscd_contact, v), FIELD(cscd_contact, point),

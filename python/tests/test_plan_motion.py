@@ -91,3 +91,16 @@ def test_steps_of_the_published_method() -> None:
         cscd.Plan.published(mesh, SCENE.x0, ours=["speed"])
     with pytest.raises(ValueError, match="growing"):
         cscd.Plan.published(mesh, SCENE.x0, growing=2.0, ours=steps)
+
+
+def test_the_published_search() -> None:
+    """With exact tests it finds a part of all contacts; and with all steps ours as many as there are, or nearly."""
+    every = ["motion", "starts", "representatives", "neighbours", "tests", "boxes"]
+    found = [cscd.Detector(SCENE.F, method=method, ours=ours).step(SCENE.x0, SCENE.x1)
+             for method, ours in (("none", []), ("published", ["tests"]), ("iccd-published", ["tests"]), ("published", every))]
+    listed = [{(c.kind, c.a, c.b) for c in contacts} for contacts in found]
+    assert all(part <= listed[0] for part in listed)
+    with pytest.raises(ValueError, match="ours: expected some of motion, starts"):
+        cscd.Detector(SCENE.F, method="published", ours=["speed"])
+    with pytest.raises(ValueError, match="ours is 256, but with method none"):
+        cscd.Detector(SCENE.F, method="none", ours=["tests"])

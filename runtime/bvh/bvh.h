@@ -237,7 +237,6 @@ typedef struct orientation_query {
     const bool *culled;                  /* per component: only triangles of these are oriented */
     const bool *clean;                   /* per triangle: all others are ZERO; NULL: all are clean */
     const double (*detector_offsets)[3]; /* per region: from the weighted mean to the detector point */
-    bool still;                          /* detector points stay where they are at the start */
 
     /* After a refit to a moment: orientations last while vertices and detector points stay near their places in the frames
      * of their trees, the latter exactly there. NULL: they are those of the interval. */

@@ -15,9 +15,6 @@ static void place_detector(const bvh *f, bvh_tree *tree, const orientation_query
         for (int k = 0; k < 3; k++) {
             double offset = view->detector_offsets[tree->region][k];
             tree->detector[e][k] = (float)(tree->weighted[e][k] + offset * f->scale);
-            if (view->still && e == 1)
-                tree->detector[1][k] = (float)((double)tree->detector[0][k] +
-                                               (tree->origin[0][k] - tree->origin[1][k]) * f->scale);
         }
     }
 }
@@ -26,9 +23,8 @@ void bvh_detector_points(const bvh *f, const orientation_query *view, double (*p
     for (uint32_t i = 0; i < f->tree_count; i++) {
         const bvh_tree *tree = &f->trees[i];
         for (int e = 0; e < 2; e++) {
-            int end = view->still ? 0 : e;
             for (int k = 0; k < 3; k++)
-                points[tree->region][e][k] = tree->origin[end][k] + tree->weighted[end][k] / f->scale +
+                points[tree->region][e][k] = tree->origin[e][k] + tree->weighted[e][k] / f->scale +
                                              view->detector_offsets[tree->region][k];
         }
     }

@@ -33,15 +33,6 @@ void culling_destroy(culling *c) {
     *c = (culling){0};
 }
 
-void culling_join_components(culling *c) {
-    uint32_t count = c->mesh->triangle_count, obstacles = 0;
-    for (uint32_t t = 0; t < count; t++)
-        obstacles += c->triangle_regions[t] = triangle_of_obstacle(c->mesh, t);
-    bool both = obstacles > 0 && obstacles < count;
-    if (!both) memset(c->triangle_regions, 0, count * sizeof *c->triangle_regions);
-    c->region_count = both ? 2 : 1;
-}
-
 void culling_clear(culling *c) {
     memset(c->facing, ORIENTATION_ZERO, c->mesh->triangle_count);
     memset(c->orientations, ORIENTATION_ZERO, c->mesh->triangle_count);

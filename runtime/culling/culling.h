@@ -26,9 +26,6 @@ array_list culling_arrays(culling *c);
 cscd_status culling_create(const cscd_mesh *mesh, const cscd_plan *plan, culling *out);
 void culling_destroy(culling *c);
 
-/* Makes one region of all components, and another one of all obstacles; triangles keep their weights. */
-void culling_join_components(culling *c);
-
 /* Takes the orientations over from facing, which has been filled in, and counts them. */
 void culling_begin(culling *c);
 

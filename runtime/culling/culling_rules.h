@@ -3,17 +3,11 @@
 
 #include "runtime/bvh/bvh.h"
 
-/* With none of these rules every pair is tested, and by_orientation alone loses no contact. Each of the others comes
- * from the literature and may lose contacts. */
+/* With none of these rules every pair is tested, and by_orientation alone loses no contact. */
 typedef struct culling_rules {
     bool by_orientation; /* pairs of triangles of one region are culled by their orientation */
     bool where_it_pays;  /* ... in the components and intervals in which culling pays (culling_choice.h) */
-    bool assumes_clean;  /* every triangle counts as clean at the start; nothing is proven */
-    bool embedded_only;  /* a component is culled only if all its triangles are clean */
-    bool still_points;   /* detector points stay where they are at the start */
-    bool fixed_representatives; /* the first triangle at a feature tests it, whatever the orientations */
-    bool skips_adjacent;        /* triangles that share a vertex are not tested, and orphan pairs neither */
-    bool joins_components;      /* all components form one region, and all obstacles another */
+    bool assumes_clean; /* as published: every triangle counts as clean at the start, and nothing is proven */
 } culling_rules;
 
 /* A stage between refit and orientation: it hides pairs of triangles in the BVH that, by its own test, do not touch in

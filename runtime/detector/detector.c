@@ -67,6 +67,11 @@ static cscd_status choose_method(const cscd_mesh *mesh, const cscd_plan *plan,
         return context_fail(context, CSCD_INVALID_ARGUMENT,
                             "method %s is a baseline, and this library was built without runtime/baselines",
                             cscd_method_name(method));
+    if ((options->ours & ~method_stages_of(method)->ours) != 0)
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "ours is %llu, but with method %s it may have bits of %llu only",
+                            (unsigned long long)options->ours, cscd_method_name(method),
+                            (unsigned long long)method_stages_of(method)->ours);
     if (method_traits_of(method)->needs_plan && (plan == NULL || plan->method != method))
         return context_fail(context, CSCD_INVALID_ARGUMENT, "method %s wants a plan of that method%s%s",
                             cscd_method_name(method), plan != NULL ? ", not " : "",
@@ -93,10 +98,20 @@ void detector_choose_regions(cscd_detector *d) {
     };
 }
 
-cscd_status detector_create_hider(cscd_detector *d) {
-    if (d->stages->hider == NULL) return CSCD_OK;
-    d->hider_state = d->stages->hider->create(d->context);
-    return d->hider_state != NULL ? CSCD_OK : CSCD_OUT_OF_MEMORY;
+cscd_status detector_create_baseline(cscd_detector *d) {
+    const method_stages *stages = d->stages;
+    if (stages->search != NULL)
+        return stages->search->create(d->context, d->options.ours, &d->baseline_state);
+    if (stages->hider == NULL) return CSCD_OK;
+    d->baseline_state = stages->hider->create(d->context);
+    return d->baseline_state != NULL ? CSCD_OK : context_out_of_memory(d->context);
+}
+
+static void destroy_baseline(cscd_detector *d) {
+    const method_stages *stages = d->stages;
+    if (d->baseline_state == NULL) return;
+    (stages->search != NULL ? stages->search->destroy : stages->hider->destroy)(d->context,
+                                                                                d->baseline_state);
 }
 
 static cscd_status create_parts(cscd_detector *d, const cscd_plan *plan) {
@@ -104,12 +119,10 @@ static cscd_status create_parts(cscd_detector *d, const cscd_plan *plan) {
         d->options.method == CSCD_METHOD_SINGLE && plan != NULL && plan->method != d->options.method;
     cscd_status status = search_space_create(d->mesh, &d->space);
     if (status == CSCD_OK) status = culling_create(d->mesh, own_regions ? NULL : plan, &d->culling);
-    if (status == CSCD_OK && d->rules.joins_components) culling_join_components(&d->culling);
     if (status == CSCD_OK) detector_choose_regions(d);
     if (status == CSCD_OK) status = start_states_create(d->mesh, &d->starts);
     d->starts.adapts = d->rules.where_it_pays;
     if (status == CSCD_OK) status = static_check_create(d->mesh, d->space.traversal.lane_count, &d->check);
-    if (status == CSCD_OK) status = detector_create_hider(d);
     if (status == CSCD_OK) status = rollback_create(d->mesh, &d->before);
     if (status == CSCD_OK) status = collapsed_create(d->mesh, &d->collapsed);
     if (status == CSCD_OK && !context_allocate_all(d->context, detector_arrays(d)))
@@ -119,7 +132,7 @@ static cscd_status create_parts(cscd_detector *d, const cscd_plan *plan) {
 
 void detector_free(cscd_detector *d) {
     cscd_context *context = d->context;
-    if (d->hider_state != NULL) d->stages->hider->destroy(context, d->hider_state);
+    destroy_baseline(d);
     if (d->culling.mesh != NULL) culling_destroy(&d->culling);
     if (d->starts.mesh != NULL) start_states_destroy(&d->starts);
     static_check_destroy(&d->check);
@@ -212,10 +225,12 @@ static cscd_status create_detector(cscd_context *context, const cscd_mesh *mesh,
     d->traits = method_traits_of(chosen.method);
     d->stages = method_stages_of(chosen.method);
     d->rules = *d->stages->rules;
+    if ((chosen.ours & CSCD_OURS_STARTS) != 0) d->rules.assumes_clean = false;
     d->limit = separation_limit(chosen.min_separation, chosen.tolerance);
     cscd_status status = exclusions_create(d->mesh, &chosen, &d->exclusions);
     d->exclusions.waiting = &d->waiting.pairs;
     if (status == CSCD_OK && create_parts(d, plan) != CSCD_OK) status = context_out_of_memory(context);
+    if (status == CSCD_OK) status = detector_create_baseline(d);
     const given_rules given = {chosen.rules, chosen.rule_count, chosen.thickness_matrix,
                                chosen.thickness_class_count};
     if (status == CSCD_OK) status = detector_set_rules(d, &given);

@@ -49,7 +49,7 @@ struct cscd_detector {
     collapsed_components collapsed; /* at the moment of the last check, or at an end of the last interval */
     bool
         leaves_collapsed; /* the current interval does not look at pairs of two components that are collapsed */
-    void *hider_state;    /* of stages->hider */
+    void *baseline_state; /* of stages->hider or stages->search */
     rollback before;      /* the current call */
 
     struct {           /* of lists, where the options have one */
@@ -130,8 +130,8 @@ array_list detector_arrays(cscd_detector *d);
 /* Says which regions the trees are of. */
 void detector_choose_regions(cscd_detector *d);
 
-/* Creates the state of the method's own hider, if there is one. */
-cscd_status detector_create_hider(cscd_detector *d);
+/* Creates the state of the method's own hider or search, if there is one. A failure has its sentence. */
+cscd_status detector_create_baseline(cscd_detector *d);
 
 /* Frees the detector and all that it has, without letting go of its mesh and context. */
 void detector_free(cscd_detector *d);
@@ -156,16 +156,20 @@ static inline bool detector_masks(const cscd_detector *d, uint32_t component) {
     return !d->pair_rules.sets[d->pair_rules.component_objects[component]].self;
 }
 
-/* With a minimum separation no pair is culled; nor, in a component, with a distance from itself. */
-static inline bool detector_culls(const cscd_detector *d) {
-    return d->rules.by_orientation && d->limit.distance == 0.0 && !d->all_never_culled;
+/* A search of its own knows touching only. */
+static inline bool detector_searches_alone(const cscd_detector *d) {
+    return d->stages->search != NULL && d->limit.distance == 0.0 && d->pair_rules.greatest == 0.0;
 }
 
-/* A hider knows touching only. Where it has joined components, it hides pairs of different objects, too. */
+/* With a minimum separation no pair is culled; nor, in a component, with a distance from itself. */
+static inline bool detector_culls(const cscd_detector *d) {
+    const bool knows_how = d->stages->search == NULL || detector_searches_alone(d);
+    return d->rules.by_orientation && knows_how && d->limit.distance == 0.0 && !d->all_never_culled;
+}
+
+/* So does a hider, of pairs within a component. */
 static inline bool detector_hides_pairs(const cscd_detector *d) {
-    const pair_rules *rules = &d->pair_rules;
-    double distance = d->rules.joins_components ? rules->greatest : rules->greatest_to_itself;
-    return d->stages->hider != NULL && d->limit.distance == 0.0 && distance == 0.0;
+    return d->stages->hider != NULL && d->limit.distance == 0.0 && d->pair_rules.greatest_to_itself == 0.0;
 }
 
 /* How far the volumes of a step are widened. */

@@ -42,16 +42,9 @@ static cscd_status move_regions(const detector_move *m) {
     return status;
 }
 
-/* Regions of several components, which a baseline has, are made anew, and so are their trees. */
 static cscd_status move_culling(const detector_move *m) {
     cscd_detector *d = m->to;
-    cscd_status status = CSCD_OK;
-    if (d->rules.joins_components) {
-        status = culling_create(d->mesh, NULL, &d->culling);
-        if (status == CSCD_OK) culling_join_components(&d->culling);
-    } else {
-        status = move_regions(m);
-    }
+    const cscd_status status = move_regions(m);
     if (status != CSCD_OK) return status;
     bvh kept = d->rebuild.kept;
     detector_choose_regions(d);
@@ -131,7 +124,7 @@ static cscd_status move_parts(const detector_move *m) {
     if (status == CSCD_OK) status = move_culling(m);
     if (status == CSCD_OK) status = start_states_move(&from->starts, d->mesh, m->change, &d->starts);
     if (status == CSCD_OK) status = static_check_create(d->mesh, d->space.traversal.lane_count, &d->check);
-    if (status == CSCD_OK) status = detector_create_hider(d);
+    if (status == CSCD_OK) status = detector_create_baseline(d);
     if (status == CSCD_OK) status = rollback_create(d->mesh, &d->before);
     if (status == CSCD_OK) status = collapsed_create(d->mesh, &d->collapsed);
     if (status == CSCD_OK) status = edge_rest_move(d->context, &from->rest, m->change, &d->rest);
@@ -177,7 +170,7 @@ static void exchange_parts(cscd_detector *a, cscd_detector *b) {
     EXCHANGE(starts);
     EXCHANGE(check);
     EXCHANGE(collapsed);
-    EXCHANGE(hider_state);
+    EXCHANGE(baseline_state);
     EXCHANGE(before);
     EXCHANGE(cap);
     EXCHANGE(culled);

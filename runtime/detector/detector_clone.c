@@ -92,7 +92,7 @@ static cscd_status clone_parts(const cscd_detector *from, cscd_detector *d) {
     if (status == CSCD_OK) status = clone_trees(&from->rebuild, d);
     if (status == CSCD_OK) status = clone_starts(&from->starts, mesh, &d->starts);
     if (status == CSCD_OK) status = static_check_create(mesh, d->space.traversal.lane_count, &d->check);
-    if (status == CSCD_OK) status = detector_create_hider(d);
+    if (status == CSCD_OK) status = detector_create_baseline(d);
     if (status == CSCD_OK) status = rollback_create(mesh, &d->before);
     if (status == CSCD_OK) status = clone_collapsed(&from->collapsed, mesh, &d->collapsed);
     if (status == CSCD_OK) status = pair_rules_copy(&from->pair_rules, mesh, &d->pair_rules);

@@ -18,9 +18,8 @@ cscd_guarantee guarantee_of(const cscd_detector *d, uint32_t component) {
     if (detector_masks(d, component)) return (cscd_guarantee){false, false, CSCD_REASON_MASK};
     if (d->leaves_collapsed && d->collapsed.marks[component])
         return (cscd_guarantee){false, embedded, CSCD_REASON_COLLAPSED};
-    bool hides = detector_hides_pairs(d), by_method = detector_culls(d) || hides;
-    if (by_method && d->traits->loses_contacts)
-        return (cscd_guarantee){false, embedded, CSCD_REASON_PUBLISHED};
+    const bool by_method = detector_culls(d) || detector_hides_pairs(d);
+    if (detector_searches_alone(d)) return (cscd_guarantee){false, embedded, CSCD_REASON_PUBLISHED};
     if (d->lists_earliest && d->earliest[component] < INFINITY)
         return (cscd_guarantee){false, embedded, CSCD_REASON_EARLIEST};
     if (!by_method) return (cscd_guarantee){true, embedded, CSCD_REASON_METHOD};

@@ -216,15 +216,22 @@ static void test_all_loose_elements(void *data, uint32_t index) {
     if (!lane->suspended) narrow_phase_finish(&search->interval, lane);
 }
 
-cscd_status interval_search_by_brute_force(interval_search *search) {
+cscd_status interval_search_all_loose(interval_search *search) {
     search_space *space = search->space;
     double since = timer_now_ms();
-    progress_stage(&space->context->progress, "brute force", 0.0, 1.0);
-    interval_search_run(search, space->traversal.lane_count, test_share_of_pairs, search);
     if (mesh_has_loose_objects(space->mesh))
         interval_search_run(search, space->traversal.lane_count, test_all_loose_elements, search);
     interval_search_half_spaces(search);
     timer_lap(&since, &search->timings.contact_ms);
     cscd_status status = search_space_status(space);
     return status == CSCD_OK ? context_progress_status(space->context) : status;
+}
+
+cscd_status interval_search_by_brute_force(interval_search *search) {
+    search_space *space = search->space;
+    double since = timer_now_ms();
+    progress_stage(&space->context->progress, "brute force", 0.0, 1.0);
+    interval_search_run(search, space->traversal.lane_count, test_share_of_pairs, search);
+    timer_lap(&since, &search->timings.contact_ms);
+    return interval_search_all_loose(search);
 }

@@ -37,5 +37,8 @@ void interval_search_half_spaces(interval_search *search);
 /* Skips the pairs of adjacent triangles of all components, or of none. */
 void interval_search_skip_adjacent(interval_search *search, bool everywhere);
 
+/* Tests the pairs of loose features without trees. */
+cscd_status interval_search_all_loose(interval_search *search);
+
 /* Tests every pair of features, without the trees. */
 cscd_status interval_search_by_brute_force(interval_search *search);

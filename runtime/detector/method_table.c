@@ -7,11 +7,14 @@
 
 /* baselines: begin */
 #include "runtime/baselines/iccd/iccd.h"
-#include "runtime/baselines/published.h"
+#include "runtime/baselines/published/published_search.h"
 /* baselines: end */
 
 static const culling_rules tests_every_pair = {.by_orientation = false};
 static const culling_rules culls_by_orientation = {.by_orientation = true};
+/* baselines: begin */
+static const culling_rules assumes_clean = {.by_orientation = true, .assumes_clean = true};
+/* baselines: end */
 static const culling_rules culls_where_it_pays = {.by_orientation = true, .where_it_pays = true};
 
 static const method_stages stages[] = {
@@ -22,9 +25,12 @@ static const method_stages stages[] = {
     {CSCD_METHOD_KMEANS, .rules = &culls_by_orientation},
     {CSCD_METHOD_CHARGE, .rules = &culls_by_orientation},
     /* baselines: begin */
-    {CSCD_METHOD_PUBLISHED, .rules = &published_culling},
+    {CSCD_METHOD_PUBLISHED, .rules = &assumes_clean, .search = &detector_based_search,
+     .ours = CSCD_OURS_MOTION | CSCD_OURS_STARTS | CSCD_OURS_REPRESENTATIVES | CSCD_OURS_NEIGHBOURS |
+             CSCD_OURS_TESTS | CSCD_OURS_BOXES},
     {CSCD_METHOD_ICCD, .rules = &tests_every_pair, .hider = &iccd_hider},
-    {CSCD_METHOD_ICCD_PUBLISHED, .rules = &iccd_published_culling, .hider = &iccd_published_hider},
+    {CSCD_METHOD_ICCD_PUBLISHED, .rules = &tests_every_pair, .search = &iccd_search,
+     .ours = CSCD_OURS_NEIGHBOURS | CSCD_OURS_TESTS | CSCD_OURS_BOXES},
     /* baselines: end */
 };
 

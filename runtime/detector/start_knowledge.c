@@ -1,5 +1,6 @@
-/* What is known of the positions seen last, of the public API. */
-#include "runtime/detector/detector.h"
+/* What is known of starts: of the positions seen last, of the public API, and what a step hands on to the next. */
+#include "runtime/detector/adaptive.h"
+#include "runtime/detector/step.h"
 #include "src/core/struct_size.h"
 
 _Static_assert((int)TRIANGLE_UNKNOWN == (int)CSCD_START_STATE_UNKNOWN &&
@@ -23,4 +24,22 @@ void cscd_detector_start_knowledge_sized(const cscd_detector *detector, uint32_t
 
 cscd_start_state cscd_detector_start_state(const cscd_detector *detector, uint32_t triangle) {
     return (cscd_start_state)detector->starts.triangles[triangle];
+}
+
+void step_take(cscd_detector *d, const double *end) {
+    if (!detector_culls(d)) {
+        start_states_forget(&d->starts); /* contacts have tainted nothing */
+        return;
+    }
+    for (uint32_t c = 0; c < d->mesh->component_count; c++) {
+        const cscd_guarantee *g = &d->guarantees[c];
+        d->incomplete[c] = !g->complete && g->reason != CSCD_REASON_OBSTACLE;
+    }
+    if (!d->verlet.serving) adaptive_learn(d);
+    start_states_end(&d->starts, end, d->incomplete);
+    verlet_list_take(d);
+}
+
+void step_withdraw(cscd_detector *d) {
+    if (detector_culls(d)) start_states_restore(&d->starts);
 }

@@ -3,6 +3,7 @@
 
 #include "runtime/culling/tainting.h"
 #include "runtime/detector/adaptive.h"
+#include "runtime/detector/alone_search.h"
 #include "runtime/detector/contact_list.h"
 #include "runtime/detector/earliest_contacts.h"
 #include "runtime/detector/guarantee.h"
@@ -118,7 +119,7 @@ static cscd_status hide_pairs(step_work *work) {
     if (!detector_hides_pairs(d)) return CSCD_OK;
     const swept_interval *interval = &work->search.interval;
     double since = timer_now_ms();
-    cscd_status status = d->stages->hider->hide(d->hider_state, &d->space.bvh, interval->x0, interval->x1,
+    cscd_status status = d->stages->hider->hide(d->baseline_state, &d->space.bvh, interval->x0, interval->x1,
                                                 &work->search.counters);
     timer_lap(&since, &work->search.timings.contour_ms);
     return status;
@@ -126,8 +127,7 @@ static cscd_status hide_pairs(step_work *work) {
 
 static bool is_culled(const cscd_detector *d, uint32_t component, uint32_t clean, uint32_t triangle_count) {
     if (!detector_culls(d) || d->never_culled[component]) return false;
-    if (d->rules.assumes_clean) return true;
-    if (d->rules.embedded_only) return clean == triangle_count;
+    if (d->rules.assumes_clean) return d->mesh->components[component].closed_manifold;
     if (d->rules.where_it_pays && !d->starts.of[component].chosen) return false;
     return start_states_pay(&d->starts, clean, triangle_count);
 }
@@ -147,7 +147,7 @@ static cscd_status choose_culled(step_work *work) {
         uint32_t clean = component->closed_manifold ? d->starts.of[c].clean : 0;
         bool embedded = clean == component->triangle_count;
         d->culled[c] = is_culled(d, c, clean, component->triangle_count);
-        d->closes[c] = d->culled[c] && !d->traits->loses_contacts;
+        d->closes[c] = d->culled[c] && d->stages->search == NULL;
         work->any_culled |= d->culled[c];
         work->any_not_culled |= !d->culled[c];
         work->all_clean &= !d->culled[c] || embedded;
@@ -158,11 +158,9 @@ static cscd_status choose_culled(step_work *work) {
 
 static orientation_query orientation_query_of(const step_work *work) {
     const cscd_detector *d = work->detector;
-    bool all = work->all_clean || d->rules.assumes_clean;
     return (orientation_query){.culled = d->culled,
-                               .clean = all ? NULL : start_states_clean(&d->starts),
-                               .detector_offsets = (const double(*)[3])d->culling.detector_offsets,
-                               .still = d->rules.still_points};
+                               .clean = work->all_clean ? NULL : start_states_clean(&d->starts),
+                               .detector_offsets = (const double(*)[3])d->culling.detector_offsets};
 }
 
 static cscd_status orient_triangles(step_work *work) {
@@ -176,7 +174,7 @@ static cscd_status orient_triangles(step_work *work) {
     timer_lap(&since, &work->search.timings.orientation_ms);
     work->search.counters.plus = d->culling.plus;
     work->search.counters.minus = d->culling.minus;
-    work->search.interval.culling = d->rules.fixed_representatives ? NULL : &d->culling;
+    work->search.interval.culling = &d->culling;
     work->search.interval.culled = d->culled;
     return CSCD_OK;
 }
@@ -189,9 +187,8 @@ static cscd_status traverse_pairs(step_work *work) {
         detector_leave_collapsed(d, d->leaves_collapsed ? COLLAPSED_PAIRS_LEFT : COLLAPSED_FOUND);
     if (status != CSCD_OK) return status;
     bool all_culled = work->any_culled && !work->any_not_culled;
-    bool loses_contacts = d->traits->loses_contacts && (work->any_culled || detector_hides_pairs(d));
-    if (!all_culled && !loses_contacts) return interval_search_everything(&work->search);
-    interval_search_skip_adjacent(&work->search, d->rules.skips_adjacent);
+    if (!all_culled) return interval_search_everything(&work->search);
+    interval_search_skip_adjacent(&work->search, false);
     return interval_search_traverse(&work->search, TRAVERSAL_KEPT);
 }
 
@@ -223,7 +220,7 @@ static uint32_t taint_by_contacts(const step_work *work) {
  * the contacts that are to be listed (docs/theory/culling.md). */
 static cscd_status close_contacts(step_work *work) {
     cscd_detector *d = work->detector;
-    if (!work->any_culled || d->traits->loses_contacts) return CSCD_OK;
+    if (!work->any_culled) return CSCD_OK;
     work->search.interval.closing_pass = true;
     for (;;) {
         double since = timer_now_ms();
@@ -275,6 +272,24 @@ static step_stage *const stages_by_trees[] = {
     collect_contacts,       /* one sorted list */
     NULL};
 
+/* The trees of a step are moved for the proof of the start alone. */
+static cscd_status refit_for_proof(step_work *work) {
+    return work->unproven > 0 ? refit_trees(work) : CSCD_OK;
+}
+
+static cscd_status search_alone(step_work *work) {
+    return search_interval_alone(work->detector, &work->search, work->all_clean);
+}
+
+static cscd_status test_loose_without_trees(step_work *work) {
+    return interval_search_all_loose(&work->search);
+}
+
+/* search_alone: trees and tests of the method's own */
+static step_stage *const stages_alone[] = {
+    prove_starts, refit_for_proof,          prove_remaining_starts, choose_culled,
+    search_alone, test_loose_without_trees, collect_contacts,       NULL};
+
 static step_stage *const stages_by_brute_force[] = {search_every_feature_pair, collect_contacts, NULL};
 
 static cscd_status run_stages(step_stage *const *stages, step_work *work) {
@@ -301,7 +316,10 @@ cscd_status step_find(cscd_detector *d, const double *x0, const double *x1, cscd
     work.search.timings.update_ms = d->verlet.spent_ms;
     begin_interval(&work);
     if (!rehearsal) list_cap_begin(d, &work.search, d->lists_earliest ? CAP_KEEPS_EARLIEST : CAP_TAINTS_ALL);
-    status = run_stages(d->stages->brute_force ? stages_by_brute_force : stages_by_trees, &work);
+    status = run_stages(d->stages->brute_force       ? stages_by_brute_force
+                        : detector_searches_alone(d) ? stages_alone
+                                                     : stages_by_trees,
+                        &work);
     d->space.traversal.collapsed = COLLAPSED_FOUND;
     work.contacts.collapsed = d->leaves_collapsed ? d->collapsed.count : 0;
     if (status == CSCD_LIST_TOO_LONG) out->contacts = work.contacts;
@@ -315,24 +333,6 @@ cscd_status step_find(cscd_detector *d, const double *x0, const double *x1, cscd
 }
 
 /* ---- from one interval to the next ----------------------------------------------------------------- */
-
-void step_take(cscd_detector *d, const double *end) {
-    if (!detector_culls(d)) {
-        start_states_forget(&d->starts); /* contacts have tainted nothing */
-        return;
-    }
-    for (uint32_t c = 0; c < d->mesh->component_count; c++) {
-        const cscd_guarantee *g = &d->guarantees[c];
-        d->incomplete[c] = !g->complete && g->reason != CSCD_REASON_OBSTACLE;
-    }
-    if (!d->verlet.serving) adaptive_learn(d);
-    start_states_end(&d->starts, end, d->incomplete);
-    verlet_list_take(d);
-}
-
-void step_withdraw(cscd_detector *d) {
-    if (detector_culls(d)) start_states_restore(&d->starts);
-}
 
 /* The positions that were seen last were checked at that time. From here on the states are those of the start;
  * without culling they matter only if a static check has left some. */

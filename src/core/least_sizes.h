@@ -8,7 +8,7 @@
 #define LEAST_SIZE(type)             LEAST_##type
 
 #define LEAST_cscd_context_options      STRUCT_THROUGH(cscd_context_options, reason_size)
-#define LEAST_cscd_detector_options     STRUCT_THROUGH(cscd_detector_options, reserved)
+#define LEAST_cscd_detector_options     STRUCT_THROUGH(cscd_detector_options, ours)
 #define LEAST_cscd_event_options        STRUCT_THROUGH(cscd_event_options, max_memory)
 #define LEAST_cscd_intersection_options STRUCT_THROUGH(cscd_intersection_options, max_work)
 #define LEAST_cscd_intersection_pairs   STRUCT_THROUGH(cscd_intersection_pairs, wanted_work)

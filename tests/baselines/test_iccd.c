@@ -1,6 +1,7 @@
 /* Method iccd finds the contacts of method none, bit for bit, on random intervals and with all options; as
  * published it loses some. */
 #include "cscd/research.h"
+#include "tests/support/methods.h"
 #include "tests/support/packed.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
@@ -23,6 +24,7 @@ typedef struct iccd_outcome {
 static iccd_outcome run_method(cscd_detector_options options, cscd_method method, uint32_t threads) {
     iccd_outcome out;
     options.method = method;
+    options.ours = ours_of_method(method);
     out.objects = rig_create(&interval, threads, &options);
     out.contacts = rig_step(&out.objects, &interval);
     out.counters = cscd_detector_counters(out.objects.detector);

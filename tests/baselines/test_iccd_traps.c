@@ -1,6 +1,7 @@
 /* Method iccd in cases that are easily wrong: each scene breaks one condition of the theorem in
  * docs/theory/iccd.md, and has contacts that a test without that condition would lose. */
 #include "cscd/research.h"
+#include "tests/support/methods.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 
@@ -44,6 +45,7 @@ static trap_outcome run_method(cscd_method method) {
     trap_outcome out;
     cscd_detector_options options = cscd_detector_defaults();
     options.method = method;
+    options.ours = ours_of_method(method);
     out.objects = rig_create(&s, 1, &options);
     out.contacts = rig_step(&out.objects, &s);
     out.counters = cscd_detector_counters(out.objects.detector);

@@ -33,7 +33,9 @@ static patch_subject subject_create(cscd_object_desc desc, const double *positio
     assert_true(f.regions != NULL && f.weights != NULL);
     bvh_regions regions = {f.regions, f.weights, 1};
     assert_int_equal(bvh_build(f.mesh, regions, positions, BOX_AXES, &f.bvh), CSCD_OK);
-    assert_int_equal(patches_create(f.mesh, &f.bvh, &f.patches), CSCD_OK);
+    patch_tree tree;
+    assert_int_equal(patch_tree_build(&f.bvh, &tree), CSCD_OK);
+    assert_int_equal(patches_create(f.mesh, &tree, &f.patches), CSCD_OK);
     return f;
 }
 

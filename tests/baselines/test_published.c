@@ -1,7 +1,6 @@
 /* The published culling loses first contacts, which the detector's own rules do not (test_culling.c),
  * reports that it may, and culls nothing with a minimum separation. */
 #include "cscd/research.h"
-#include "runtime/baselines/published.h"
 #include "tests/support/culling/first_contacts.h"
 #include "tests/support/methods.h"
 #include "tests/support/packed.h"
@@ -18,6 +17,7 @@ static scene interval; /* large; one test at a time */
 static rig step_by(cscd_method method, double min_separation, cscd_contacts *found) {
     cscd_detector_options options = cscd_detector_defaults();
     options.method = method;
+    options.ours = ours_of_method(method);
     options.min_separation = min_separation;
     rig r = rig_create(&interval, 1, &options);
     *found = rig_step(&r, &interval);
@@ -51,20 +51,6 @@ TEST(first_contacts_are_lost) {
     }
     print_message("  %u of %u first contacts lost\n", lost, with_contact);
     assert_true(lost > 0);
-}
-
-/* Each bit of a set turns on a rule of its own, and all of them are those of the method. */
-TEST(sets_of_rules) {
-    for (int set = 0; set < 16; set++) {
-        const culling_rules rules = published_rules(set);
-        assert_int_equal(rules.assumes_clean, (set & PUBLISHED_UNPROVEN) != 0);
-        assert_int_equal(rules.still_points, (set & PUBLISHED_STILL) != 0);
-        assert_int_equal(rules.fixed_representatives, (set & PUBLISHED_REPRESENTATIVES) != 0);
-        assert_int_equal(rules.skips_adjacent, (set & PUBLISHED_ADJACENT) != 0);
-    }
-    const culling_rules all = published_rules(PUBLISHED_UNPROVEN | PUBLISHED_STILL |
-                                              PUBLISHED_REPRESENTATIVES | PUBLISHED_ADJACENT);
-    assert_memory_equal(&all, &published_culling, sizeof all);
 }
 
 /* When nothing is culled every contact is found, and the guarantee says so. */

@@ -5,7 +5,7 @@ import pytest
 
 from support.tool.reading import read_json
 from support.tool.recordings import spindle
-from support.tool.running import run
+from support.tool.running import run, usage_error
 
 
 @pytest.fixture(autouse=True)
@@ -68,3 +68,17 @@ def test_published_makes_its_plan_or_takes_any():
     assert "plan: published, 2 regions, made in memory" in answer.out and "left aside, it is of method kmeans" in answer.out
     answer, _ = replay("--method published --frames 0:2 --plan spindle.plan.ply")
     assert "plan: kmeans, 4 regions, " in answer.out and "\npublished " in answer.out
+
+
+def test_published_steps_one_by_one():
+    """Exact tests find no contact that there is not, and each step shows in what is counted."""
+    def pairs(options):
+        return replay(f"--frames 0:4 --method {options}")[1]["summary"]["pcp"]["mean"]
+
+    all_boxes, dops = pairs("published --ours boxes,tests"), pairs("published --ours tests")
+    assert all_boxes >= dops > 0
+    assert pairs("iccd-published --ours tests,neighbours") >= pairs("iccd-published --ours tests")
+    usage_error("replay spindle.obj spindle.pc2 --method charge --ours tests", "--ours counts with --method published")
+    usage_error("replay spindle.obj spindle.pc2 --method published --ours speed", "--ours", "speed")
+    _, written = replay("--frames 0:2 --method published --ours charge,tests")
+    assert written["summary"]["plan"]["made"].startswith("method=published solver=tree threshold=0.1 growing=0.0025 ours=1 ")

@@ -142,28 +142,3 @@ TEST(other_methods_have_no_regions) {
     assert_int_equal(cscd_detector_region_count(r.detector), 0);
     rig_destroy(&r);
 }
-
-/* Whole scenes are one region, but obstacles, which are not culled, do not move its point. */
-TEST(joined_components_are_apart_from_obstacles) {
-    const uint32_t corners[3] = {0, 1, 2};
-    for (uint32_t mask = 0; mask < 8; mask++) {
-        cscd_object_desc objects[3];
-        cscd_context *context = NULL;
-        cscd_mesh *mesh = NULL;
-        culling c;
-        const bool both = mask != 0 && mask != 7;
-        for (uint32_t i = 0; i < 3; i++) {
-            objects[i] = cscd_object_of_triangles(3, 1, corners);
-            objects[i].obstacle = (mask >> i & 1) != 0;
-        }
-        assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
-        assert_int_equal(cscd_mesh_create(context, objects, 3, &mesh), CSCD_OK);
-        assert_int_equal(culling_create(mesh, NULL, &c), CSCD_OK);
-        culling_join_components(&c);
-        assert_int_equal(c.region_count, both ? 2 : 1);
-        for (uint32_t t = 0; t < 3; t++) assert_int_equal(c.triangle_regions[t], both ? mask >> t & 1 : 0);
-        culling_destroy(&c);
-        cscd_mesh_destroy(mesh);
-        cscd_context_destroy(context);
-    }
-}

@@ -45,19 +45,6 @@ TEST(a_box_sunk_into_a_slab) {
     assert_true(rig.found.depths->items[rig.found.depths->patches[0].deepest].depth == 0.125);
 }
 
-/* Under the published ICCD both are in one tree, and so is the surface that the corners lie on themselves. */
-TEST(bodies_of_one_tree) {
-    cscd_detector_options options = cscd_detector_defaults();
-    options.method = method_or_none(CSCD_METHOD_ICCD_PUBLISHED);
-    body_rig_begin(&rig);
-    add_box(0, 0, -2, 10, 10, 2);
-    add_box(3, 4, -0.125, 1, 1, 1);
-    body_rig_create(&rig, &options, 1);
-    body_rig_find(&rig);
-    assert_int_equal(rig.found.depths->vertex_count, 4);
-    for (size_t i = 0; i < 4; i++) assert_true(rig.found.depths->items[i].depth == 0.125);
-}
-
 /* A corner that is as near to both triangles of a face names the first, whichever the trees show first. */
 TEST(the_first_of_equals_is_named) {
     for (int turned = 0; turned < 2; turned++) { /* the numbers of the face's triangles are exchanged */

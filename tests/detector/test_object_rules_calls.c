@@ -65,6 +65,7 @@ TEST(moments_leave_out_what_is_masked) {
         random_rules_neutral(&neutral);
         rig all = rules_rig(&neutral, &options, 1);
         options.method = methods[seed % 4];
+        options.ours = ours_of_method(options.method);
         options.rules = set.objects;
         options.rule_count = SCENE_OBJECTS;
         for (uint32_t kind = 0; kind < 3; kind++) {

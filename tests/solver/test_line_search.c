@@ -33,6 +33,7 @@ typedef struct step_search {
 static step_search search_create(cscd_method method, double min_separation, uint32_t threads) {
     step_search s = {.options = cscd_detector_defaults()};
     s.options.method = method_or_none(method);
+    s.options.ours = ours_of_method(s.options.method);
     s.options.min_separation = min_separation;
     s.r = rig_create(&interval, threads, &s.options);
     expect_ok(cscd_line_search_create(s.r.detector, &s.line));
@@ -130,6 +131,7 @@ static size_t check_moments(const step_search *s, double reach, uint64_t seed) {
     cscd_detector_options options = s->options;
     rig other = rig_create(&interval, 1, &options);
     options.method = CSCD_METHOD_BRUTE;
+    options.ours = 0;
     rig brute = rig_create(&interval, 1, &options);
     random_stream random = stream_start(seed);
     size_t pairs = 0;

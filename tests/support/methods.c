@@ -18,6 +18,11 @@ static bool is_baseline(cscd_method method) {
            method == CSCD_METHOD_ICCD_PUBLISHED;
 }
 
+uint64_t ours_of_method(cscd_method method) {
+    const bool published = method == CSCD_METHOD_PUBLISHED || method == CSCD_METHOD_ICCD_PUBLISHED;
+    return published ? CSCD_OURS_TESTS : 0;
+}
+
 cscd_method method_or_none(cscd_method method) {
     static const double corners[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
     static const uint32_t triangles[12] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
@@ -33,6 +38,7 @@ cscd_method method_or_none(cscd_method method) {
     assert_int_equal(cscd_context_create(&context_options, &context), CSCD_OK);
     assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
     plan_options.method = options.method = method;
+    options.ours = has_baselines ? ours_of_method(method) : 0;
     if (method == CSCD_METHOD_KMEANS || method == CSCD_METHOD_CHARGE)
         assert_int_equal(plan_create_packed(mesh, corners, &plan_options, &plan), CSCD_OK);
     cscd_status status = detector_create_here(mesh, plan, &options, &detector);

@@ -50,7 +50,7 @@ def test_a_full_disk_leaves_the_good_plan():
     assert Path("sheet.plan.ply").read_bytes() == good and sorted(os.listdir()) == before
 
 
-def test_a_full_disk_keeps_the_contacts_of_whole_intervals():
+def test_a_full_disk_keeps_the_contacts_of_own_intervals():
     """Hours of contacts are not lost because the disk has no room for the last of them."""
     tetrahedra(8).write_cache("often.pc2", 60)
     run("replay pair.obj often.pc2 --csv whole.csv --quiet")

@@ -22,11 +22,6 @@ typedef struct dense_host {
     uint32_t threads; /* so many tasks run at a time, at most */
 } dense_host;
 
-/* Names of kernels of OpenBLAS, in static storage; see src/blas/blas_choice.h. */
-typedef struct charge_kernels {
-    const char *used, *better; /* NULL: unknown; used will do */
-} charge_kernels;
-
 typedef struct dense_functions {
     /* The bytes that a solution takes; SIZE_MAX: too many. */
     size_t (*memory)(uint32_t count);

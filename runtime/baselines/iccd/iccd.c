@@ -3,8 +3,6 @@
 
 #include "runtime/baselines/iccd/patch.h"
 
-const culling_rules iccd_published_culling = {.skips_adjacent = true, .joins_components = true};
-
 static void *create_patches(cscd_context *context) {
     return context_allocate(context, 1, sizeof(patches));
 }
@@ -17,30 +15,24 @@ static void destroy_patches(cscd_context *context, void *state) {
 /* Patches belong to one BVH. When decayed trees have been replaced by another BVH, that one has no room for hidden
  * pairs yet. */
 static cscd_status follow_bvh(patches *p, bvh *f) {
+    patch_tree tree;
     if (p->tree.node_count > 0 && bvh_can_hide(f)) return CSCD_OK;
     patches_free(f->mesh->context, p);
-    return patches_create(f->mesh, f, p);
+    if (!bvh_allow_hiding(f)) return CSCD_OUT_OF_MEMORY;
+    const cscd_status status = patch_tree_build(f, &tree);
+    return status == CSCD_OK ? patches_create(f->mesh, &tree, p) : status;
 }
 
-static cscd_status hide_pairs(patches *p, bvh *f, const double *x0, const double *x1, bool published,
+static cscd_status hide_pairs(void *state, bvh *f, const double *x0, const double *x1,
                               cscd_counters *counters) {
+    patches *p = state;
     cscd_status status = follow_bvh(p, f);
     if (status != CSCD_OK) return status;
-    patches_seal(p, f->mesh, f, x0, x1, published);
+    patches_seal(p, f->mesh, x0, x1, false);
+    patch_tree_hide(&p->tree, p->passed, f);
     counters->contours = p->contours;
     counters->sealed = p->sealed;
     return CSCD_OK;
 }
 
-static cscd_status hide_corrected(void *state, bvh *f, const double *x0, const double *x1,
-                                  cscd_counters *counters) {
-    return hide_pairs(state, f, x0, x1, false, counters);
-}
-
-static cscd_status hide_as_published(void *state, bvh *f, const double *x0, const double *x1,
-                                     cscd_counters *counters) {
-    return hide_pairs(state, f, x0, x1, true, counters);
-}
-
-const pair_hider iccd_hider = {create_patches, destroy_patches, hide_corrected};
-const pair_hider iccd_published_hider = {create_patches, destroy_patches, hide_as_published};
+const pair_hider iccd_hider = {create_patches, destroy_patches, hide_pairs};

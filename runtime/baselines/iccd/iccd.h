@@ -3,9 +3,5 @@
 
 #include "runtime/culling/culling_rules.h"
 
-extern const pair_hider
-    iccd_hider; /* corrected: no contact is lost, whatever the start (docs/theory/iccd.md) */
-extern const pair_hider iccd_published_hider;
-
-/* As published, any set of triangles is a patch, and adjacent triangles never touch. */
-extern const culling_rules iccd_published_culling;
+/* Corrected: no contact is lost, whatever the start (docs/theory/iccd.md). */
+extern const pair_hider iccd_hider;

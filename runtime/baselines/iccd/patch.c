@@ -166,10 +166,10 @@ static void sort_by_height(patches *p) {
     const patch_tree *tree = &p->tree;
     uint32_t *begins = p->height_begins;
     for (uint32_t i = 0; i < tree->node_count; i++) begins[tree->nodes[i].height + 1]++;
-    for (int h = 0; h < PATCH_HEIGHTS; h++) begins[h + 1] += begins[h];
+    for (uint32_t h = 0; h < p->height_count; h++) begins[h + 1] += begins[h];
     for (uint32_t i = tree->node_count; i-- > 0;) p->by_height[--begins[tree->nodes[i].height + 1]] = i;
-    memmove(begins, begins + 1, PATCH_HEIGHTS * sizeof *begins);
-    begins[PATCH_HEIGHTS] = tree->node_count;
+    memmove(begins, begins + 1, p->height_count * sizeof *begins);
+    begins[p->height_count] = tree->node_count;
 }
 
 static bool fill_patches(patches *p, const cscd_mesh *mesh, const patch_tree *tree, contour_lists *l,
@@ -207,8 +207,9 @@ static array_list list_arrays(patches *p) {
     size_t count = p->tree.node_count;
     return (array_list){{ARRAY(p->contour_offsets, count + 1), ARRAY(p->inherited, count),
                          ARRAY(p->disks, count), ARRAY(p->cones, count), ARRAY(p->by_height, count),
-                         ARRAY(p->stack, count), ARRAY(p->parent_tested, count), ARRAY(p->passed, count),
-                         ARRAY(p->tested, count), ARRAY(p->reached, count), ARRAY(p->small_roots, count),
+                         ARRAY(p->height_begins, (size_t)p->height_count + 2), ARRAY(p->stack, count),
+                         ARRAY(p->parent_tested, count), ARRAY(p->passed, count), ARRAY(p->tested, count),
+                         ARRAY(p->reached, count), ARRAY(p->small_roots, count),
                          ARRAY(p->small_ends, count)}};
 }
 
@@ -216,13 +217,14 @@ static array_list list_scratch(contour_lists *l, size_t node_count) {
     return (array_list){{ARRAY(l->begins, node_count), ARRAY(l->sizes, node_count)}};
 }
 
-cscd_status patches_create(const cscd_mesh *mesh, bvh *f, patches *out) {
+cscd_status patches_create(const cscd_mesh *mesh, const patch_tree *tree, patches *out) {
     cscd_context *context = mesh->context;
-    patches p = {0};
+    patches p = {.tree = *tree};
+    for (uint32_t i = 0; i < tree->node_count; i++)
+        if (tree->nodes[i].height >= p.height_count) p.height_count = tree->nodes[i].height + 1;
     contour_lists lists = {.context = context};
     vertex_visit *visits = context_allocate(context, mesh->vertex_count, sizeof *visits);
-    bool made = visits != NULL && bvh_allow_hiding(f) && patch_tree_build(f, &p.tree) == CSCD_OK &&
-                context_allocate_all(context, list_arrays(&p)) &&
+    bool made = visits != NULL && context_allocate_all(context, list_arrays(&p)) &&
                 context_allocate_all(context, list_scratch(&lists, p.tree.node_count)) &&
                 fill_patches(&p, mesh, &p.tree, &lists, visits);
     context_free(context, visits);
@@ -295,7 +297,7 @@ static void merge_some_cones(void *data, uint32_t index) {
 }
 
 static void merge_cones(const sealing *s) {
-    for (uint32_t h = 0; h < PATCH_HEIGHTS; h++) {
+    for (uint32_t h = 0; h < s->p->height_count; h++) {
         cone_work work = {s, h};
         uint32_t count = s->p->height_begins[h + 1] - s->p->height_begins[h];
         parallel_run(s->mesh->context->threads, (count + CONES_PER_TASK - 1) / CONES_PER_TASK,
@@ -381,8 +383,7 @@ static void decide_all(sealing *s) {
     parallel_run(threads, lanes, decide_small, s);
 }
 
-void patches_seal(patches *p, const cscd_mesh *mesh, bvh *f, const double *x0, const double *x1,
-                  bool published) {
+void patches_seal(patches *p, const cscd_mesh *mesh, const double *x0, const double *x1, bool published) {
     sealing s = {.p = p, .mesh = mesh, .x0 = x0, .x1 = x1, .published = published};
     size_t size = p->tree.node_count * sizeof *p->passed;
     merge_cones(&s);
@@ -396,5 +397,4 @@ void patches_seal(patches *p, const cscd_mesh *mesh, bvh *f, const double *x0, c
         p->contours += p->tested[i];
         p->sealed += p->passed[i];
     }
-    patch_tree_hide(&p->tree, p->passed, f);
 }

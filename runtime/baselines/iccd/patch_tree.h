@@ -7,9 +7,10 @@
  * parent, so children come after parents. A node of height h covers the slots from a multiple of 2^h, counted
  * in its tree, to the next. */
 typedef struct patch_node {
-    uint32_t right;    /* index of the right child; 0 marks a leaf */
-    uint32_t triangle; /* of a leaf */
-    uint32_t tree, first_slot, height;
+    uint32_t right;            /* index of the right child; 0 marks a leaf */
+    uint32_t triangle;         /* of a leaf */
+    uint32_t tree, first_slot; /* in a BVH; 0 in other trees */
+    uint32_t height;
 } patch_node;
 
 typedef struct patch_tree {

@@ -26,34 +26,51 @@ typedef struct step_word {
     uint64_t bit;
 } step_word;
 
-static const step_word of_plans[] = {{"charge", CSCD_OURS_CHARGE},
-                                     {"ranks", CSCD_OURS_RANKS},
-                                     {"cuts", CSCD_OURS_CUTS},
-                                     {"points", CSCD_OURS_POINTS}};
+/* Those of plans come first. */
+static const step_word steps[] = {{"charge", CSCD_OURS_CHARGE},
+                                  {"ranks", CSCD_OURS_RANKS},
+                                  {"cuts", CSCD_OURS_CUTS},
+                                  {"points", CSCD_OURS_POINTS},
+                                  {"motion", CSCD_OURS_MOTION},
+                                  {"starts", CSCD_OURS_STARTS},
+                                  {"representatives", CSCD_OURS_REPRESENTATIVES},
+                                  {"neighbours", CSCD_OURS_NEIGHBOURS},
+                                  {"tests", CSCD_OURS_TESTS},
+                                  {"boxes", CSCD_OURS_BOXES}};
 
-enum { PLAN_WORDS = sizeof of_plans / sizeof *of_plans };
+enum { ALL_STEPS = sizeof steps / sizeof *steps, PLAN_STEPS = 4 };
 
-static bool find_word(const char *text, size_t length, uint64_t *set) {
-    for (int i = 0; i < PLAN_WORDS; i++) {
-        if (strlen(of_plans[i].word) != length || memcmp(of_plans[i].word, text, length) != 0) continue;
-        *set |= of_plans[i].bit;
+uint64_t ours_of_plans(uint64_t ours) {
+    uint64_t all = 0;
+    for (int i = 0; i < PLAN_STEPS; i++) all |= steps[i].bit;
+    return ours & all;
+}
+
+static bool find_step(const char *text, size_t length, int count, uint64_t *set) {
+    for (int i = 0; i < count; i++) {
+        if (strlen(steps[i].word) != length || memcmp(steps[i].word, text, length) != 0) continue;
+        *set |= steps[i].bit;
         return true;
     }
     return false;
 }
 
-bool read_ours_of_plans(const char *text, void *place) {
+static bool read_steps(const char *text, int count, uint64_t *out) {
     uint64_t set = 0;
     for (;;) {
         const size_t length = strcspn(text, ",");
-        if (!find_word(text, length, &set)) return false;
+        if (!find_step(text, length, count, &set)) return false;
         if (text[length] == '\0') break;
         text += length + 1;
     }
-    *(uint64_t *)place = set;
+    *out = set;
     return true;
 }
 
+bool read_ours_of_plans(const char *text, void *place) {
+    return read_steps(text, PLAN_STEPS, place);
+}
+
 bool read_ours(const char *text, void *place) {
-    return read_ours_of_plans(text, place);
+    return read_steps(text, ALL_STEPS, place);
 }

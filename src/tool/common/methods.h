@@ -20,3 +20,6 @@ method_facts method_facts_of(cscd_method method);
  * of the CSCD_OURS_ constants of plans, or of all. */
 bool read_ours_of_plans(const char *text, void *place);
 bool read_ours(const char *text, void *place);
+
+/* Those of plans alone. */
+uint64_t ours_of_plans(uint64_t ours);

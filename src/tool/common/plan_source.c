@@ -105,6 +105,7 @@ static bool make_plan(const plan_request *request, cscd_method method, const rec
     cscd_plan_options options = cscd_plan_defaults();
     options.method = method;
     if (request->k > 0) options.k = request->k;
+    options.ours = request->ours;
     recorded_stiffness stiffness = {0};
     if ((method == CSCD_METHOD_CHARGE || method == CSCD_METHOD_AUTO) &&
         !recorded_stiffness_read(r, &stiffness, error))

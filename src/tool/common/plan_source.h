@@ -16,6 +16,7 @@ typedef struct plan_request {
     const char *plan_path; /* NULL: the model's own, if there is one that fits */
     cscd_method method;    /* AUTO: whatever is best */
     uint32_t k;            /* with KMEANS; 0: the default */
+    uint64_t ours;         /* with PUBLISHED: of a plan that is made */
     double min_separation;
     bool insists_on_plan; /* AUTO: makes a plan even where nothing can be culled */
 } plan_request;

@@ -31,6 +31,7 @@ static bool prepare_plan(replay *r, io_error *error) {
                             .plan_path = o->plan_path,
                             .method = o->method,
                             .k = o->k,
+                            .ours = ours_of_plans(o->ours),
                             .min_separation = o->min_separation};
     terminal_progress_begin(&r->progress, o->quiet);
     terminal_progress_say(&r->progress, "preprocessing");

@@ -1,6 +1,7 @@
 /* The detector of a replay: steps, checks, and a new one for each chunk. */
 #include "src/tool/replay/replay_detector.h"
 
+#include "src/tool/common/methods.h"
 #include "src/tool/replay/half_turns.h"
 
 #include <stdlib.h>
@@ -15,6 +16,7 @@ static bool create_detector(replay_detector *d, io_error *error) {
     options.method = d->method;
     options.mode = o->mode;
     options.start = o->start;
+    options.ours = o->ours & ~ours_of_plans(o->ours);
     options.volume = o->volume;
     options.min_separation = o->min_separation;
     options.coherence = CSCD_COHERENCE_OFF; /* counters say what each interval costs by itself */

@@ -5,6 +5,7 @@
 #include "src/io/contact_file.h"
 #include "src/io/gltf.h"
 #include "src/tool/common/command.h"
+#include "src/tool/common/methods.h"
 #include "src/tool/common/option_values.h"
 #include "src/tool/common/output_path.h"
 #include "src/tool/common/shared_options.h"
@@ -75,6 +76,9 @@ static const option_row rows[] = {
     {"method", "iccd",
      .help = "leave out pairs by normal cones and contours (Tang et al. 2009): to compare with"},
     {"method", "published|iccd-published", .help = "as published, which loses contacts: for comparison only"},
+    {"ours", "STEP,...", read_ours, offsetof(replay_options, ours),
+     "with these: take steps from charge instead: motion, starts, representatives, neighbours, tests, boxes, and of the "
+     "plan charge, ranks, cuts, points"},
     {"mode", "all|earliest", read_mode, offsetof(replay_options, mode),
      "what is promised (default all: every contact; earliest: of each component with itself, the first ones only)"},
     {"start", "prove", read_start, offsetof(replay_options, start),
@@ -171,6 +175,8 @@ static int check_options(const replay_options *o, size_t input_count) {
                           o->contacts_path);
     if (o->plan_path != NULL && (o->method == CSCD_METHOD_NONE || o->method == CSCD_METHOD_BRUTE))
         return fail_usage("replay", "--plan is of no use with --method %s", cscd_method_name(o->method));
+    if (o->ours != 0 && !method_facts_of(o->method).loses_contacts)
+        return fail_usage("replay", "--ours counts with --method published or iccd-published; leave it out");
     if (o->no_check && export_request_any(&o->exports))
         return fail_usage("replay",
                           "--vtk, --ply and --select tell what intersects, which --no-check leaves out");

@@ -11,7 +11,8 @@
 typedef struct replay_options {
     recording_options source;
     cscd_method method;
-    uint32_t k; /* of method KMEANS; 0: not given */
+    uint32_t k;    /* of method KMEANS; 0: not given */
+    uint64_t ours; /* of the published methods */
     cscd_mode mode;
     cscd_start start;
     cscd_volume volume;

@@ -223,6 +223,11 @@ static void write_plan(json *out, const plan_choice *plan, bool times) {
         json_string(out, "path", plan->path);
     else
         json_null(out, "path");
+    const char *origin = plan->plan != NULL ? cscd_plan_describe(plan->plan).origin : NULL;
+    if (origin != NULL)
+        json_string(out, "made", origin);
+    else
+        json_null(out, "made");
     if (times) json_number(out, "made_ms", plan->made_ms);
     json_end_object(out);
 }

@@ -1,6 +1,7 @@
 /* Random meshes on small integers, and all their pairs by the oracle. */
 #include "tests/support/intersections/integer_scene.h"
 
+#include "tests/support/methods.h"
 #include "tests/support/packed.h"
 #include "tests/support/test.h"
 
@@ -138,6 +139,7 @@ cscd_detector *integer_scene_detector(const integer_scene *s, const cscd_mesh *m
     cscd_plan *plan = NULL;
     cscd_detector *detector = NULL;
     options.method = method;
+    options.ours = ours_of_method(method);
     options.seams = s->seam_count > 0 ? s->seams[0] : NULL;
     options.seam_count = s->seam_count;
     options.seam_reach = INFINITY;

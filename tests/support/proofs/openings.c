@@ -1,6 +1,7 @@
 /* How rows of proofs find what their calls need. */
 #include "tests/support/proofs/openings.h"
 
+#include "cscd/research.h"
 #include "tests/support/methods.h"
 #include "tests/support/test.h"
 #include "tests/support/workload.h"
@@ -74,6 +75,8 @@ void open_mesh(proof *p) {
 void open_detector_with(proof *p, cscd_detector_options options) {
     if (p->mesh == NULL) open_mesh(p);
     options.method = method_or_none(p->row->method);
+    options.ours = ours_of_method(options.method);
+    if (options.method == CSCD_METHOD_PUBLISHED) options.ours |= CSCD_OURS_STARTS; /* its proof shares work */
     proof_need(p, cscd_detector_create(p->context, p->mesh, p->plan, &options, &p->detector));
 }
 

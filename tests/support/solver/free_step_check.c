@@ -28,6 +28,7 @@ void free_step_prepare(const double *x0, const double *x1, double longest, doubl
 rig free_step_reference(const scene *s, const cscd_detector_options *options) {
     cscd_detector_options brute = *options;
     brute.method = CSCD_METHOD_BRUTE;
+    brute.ours = 0;
     return rig_create(s, 1, &brute);
 }
 

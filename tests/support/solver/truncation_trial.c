@@ -11,6 +11,7 @@ rig rig_apart(const scene *s, double apart, cscd_method method, uint32_t threads
     cscd_detector_options options = cscd_detector_defaults();
     options.min_separation = apart;
     options.method = method_or_none(method);
+    options.ours = ours_of_method(options.method);
     return rig_create(s, threads, &options);
 }
 

@@ -10,7 +10,7 @@
  *     26-DOP   x y z, 4 of the cube, 1 of faces   -(the same)    5 of the faces, . . .   -(the same)
  *
  * So a volume around two is a minimum, and two are apart where a sum of opposite lanes is above 0. */
-#include "benchmarks/lib/volume_tree.h"
+#include "runtime/baselines/trees/volume_tree.h"
 #include "runtime/bvh/bvh.h"
 #include "src/core/simd.h"
 
@@ -239,9 +239,9 @@ static inline void add_pair(const volume_tree *t, volume_search *s, const volume
     s->pairs[s->count++][1] = a->triangle < b->triangle ? b->triangle : a->triangle;
 }
 
-/* Can no triangle of a be the first to touch one of b? */
+/* Can no triangle of a be the first to touch one of b? Only where they are of one region, and neither have both signs nor zero. */
 static inline bool are_culled(const volume_node *a, const volume_node *b) {
-    return a->region == b->region && a->region != UINT32_MAX && (a->facing | b->facing) != ORIENTATION_ZERO;
+    return a->region == b->region && (a->flags | b->flags) != ORIENTATION_ZERO;
 }
 
 /* Compares two nodes; puts them on the stack where something is to be compared below. */
@@ -264,16 +264,13 @@ static __attribute__((always_inline)) inline void compare_nodes(const volume_tre
     s->stack[(*stacked)++][1] = b;
 }
 
-static __attribute__((always_inline)) inline void search_tree(const volume_tree *t, volume_search *s,
-                                                              volume_kind kind) {
-    size_t stacked = 1;
-    s->count = s->tests = s->adjacent = 0;
-    s->stack[0][0] = s->stack[0][1] = 0;
+static __attribute__((always_inline)) inline void search_below(const volume_tree *t, volume_search *s,
+                                                               size_t stacked, volume_kind kind) {
     while (stacked > 0) {
         uint32_t a = s->stack[--stacked][0], b = s->stack[stacked][1];
         const volume_node *first = &t->nodes[a], *second = &t->nodes[b];
         if (a == b) {
-            if (first->second == 0 || are_culled(first, first)) continue;
+            if (first->second == 0 || first->sealed || are_culled(first, first)) continue;
             s->stack[stacked][0] = s->stack[stacked][1] = first->second;
             stacked++;
             s->stack[stacked][0] = s->stack[stacked][1] = a + 1;
@@ -290,23 +287,39 @@ static __attribute__((always_inline)) inline void search_tree(const volume_tree 
     }
 }
 
+/* Each tree with itself, then with those behind it. */
+static __attribute__((always_inline)) inline void search_trees(const volume_tree *t, volume_search *s,
+                                                               volume_kind kind) {
+    s->count = s->tests = s->adjacent = 0;
+    s->out_of_memory = false;
+    for (uint32_t r = 0; r < t->root_count; r++) {
+        s->stack[0][0] = s->stack[0][1] = t->roots[r];
+        search_below(t, s, 1, kind);
+        for (uint32_t other = r + 1; other < t->root_count; other++) {
+            size_t stacked = 0;
+            compare_nodes(t, s, t->roots[r], t->roots[other], &stacked, kind);
+            search_below(t, s, stacked, kind);
+        }
+    }
+}
+
 void SIMD_NAME(search_volumes)(const volume_tree *t, volume_kind kind, volume_search *s);
 void SIMD_NAME(search_volumes)(const volume_tree *t, volume_kind kind, volume_search *s) {
     switch (kind) {
     case VOLUME_BOX:
-        search_tree(t, s, VOLUME_BOX);
+        search_trees(t, s, VOLUME_BOX);
         break;
     case VOLUME_KDOP14:
-        search_tree(t, s, VOLUME_KDOP14);
+        search_trees(t, s, VOLUME_KDOP14);
         break;
     case VOLUME_KDOP18:
-        search_tree(t, s, VOLUME_KDOP18);
+        search_trees(t, s, VOLUME_KDOP18);
         break;
     case VOLUME_KDOP26:
-        search_tree(t, s, VOLUME_KDOP26);
+        search_trees(t, s, VOLUME_KDOP26);
         break;
     default:
-        search_tree(t, s, VOLUME_SPHERE);
+        search_trees(t, s, VOLUME_SPHERE);
     }
 }
 

@@ -1,9 +1,9 @@
-/* A binary tree over the triangles of a mesh, whose leaves are single triangles, and volumes of five kinds for its
- * nodes. Only the volumes differ: they all share the nodes and the order of the search. */
+/* Binary trees over the triangles of each region, whose leaves are single triangles (Yeh 2012, section 4.2), and volumes of five kinds
+ * for their nodes. Only the volumes differ: they all share the nodes and the order of the search. */
 #pragma once
 
-#include "cscd/cscd.h"
 #include "src/core/kernels.h"
+#include "src/mesh/mesh.h"
 
 /* The k-DOPs from the box on: each has the directions of the box; those of 26 are the ones of 14 and of 18. */
 typedef enum volume_kind {
@@ -30,24 +30,28 @@ static inline size_t volume_floats(volume_kind kind) {
 typedef struct volume_node {
     uint32_t second;   /* the second child; 0: it is a leaf */
     uint32_t triangle; /* of a leaf */
-    uint32_t region;   /* of all its triangles; UINT32_MAX: of several */
-    uint8_t facing;    /* the orientations of all its triangles, joined by or */
+    uint32_t region;   /* of all its triangles */
+    uint8_t flags;     /* the orientations of all its triangles, joined by or: both bits for zero (4.5) */
+    bool sealed;       /* no pair of its triangles is looked for */
 } volume_node;
 
+/* A tree for each region, one behind the other. */
 typedef struct volume_tree {
-    uint32_t vertex_count, triangle_count, node_count, depth;
+    cscd_context *context;
+    uint32_t vertex_count, triangle_count, root_count, node_count, depth;
     const uint32_t (*triangles)[3];
     volume_node *nodes;
+    uint32_t *roots; /* per region */
     float (*records)
         [LANES]; /* per vertex: x y z 0 at the start, x y z 0 at the end, beside the frame's origin */
     float *vertex_volumes; /* of k-DOPs, of what a vertex covers in the interval */
     float *volumes;        /* of nodes */
 } volume_tree;
 
-/* As in the thesis, from the top: the range of the triangles' centres is halved along its longest axis, until each leaf
- * has one triangle. Regions are parted first, so that no tree of a region has triangles of another one. False: no memory. */
-bool volume_tree_build(const cscd_mesh *mesh, const double *positions, const uint32_t *regions,
-                       volume_tree *out);
+/* From the top: the bounding 14-DOP of the triangles is halved in the middle of its longest axis, and triangles go to the half that
+ * their centroid is in, until each leaf has one. Each region has a triangle. On failure *out holds nothing. */
+cscd_status volume_tree_build(const cscd_mesh *mesh, const double *positions, const uint32_t *regions,
+                              uint32_t region_count, volume_tree *out);
 void volume_tree_free(volume_tree *t);
 
 /* Takes over orientations of triangles, by which the search leaves out pairs as in culling; NULL: none are left out. */
@@ -55,6 +59,7 @@ void volume_tree_orient(volume_tree *t, const uint8_t *orientations);
 
 /* What a search finds, in an order that is the same for all kinds but for what they leave out. */
 typedef struct volume_search {
+    cscd_context *context;
     uint32_t (*pairs)[2]; /* triangles whose volumes overlap, the smaller number first */
     size_t count, capacity;
     const bool *
@@ -64,18 +69,22 @@ typedef struct volume_search {
     bool out_of_memory;
 } volume_search;
 
-/* False: no memory. */
-bool volume_search_open(const volume_tree *t, volume_search *out);
+/* On failure *out holds nothing. */
+cscd_status volume_search_open(const volume_tree *t, volume_search *out);
 void volume_search_close(volume_search *s);
 
 /* Makes room for more pairs. Called by kernels. */
 void volume_search_grow(volume_search *s);
 
 typedef struct volume_kernels {
-    /* Moves records and volumes to the interval, from the leaves to the root. */
+    /* Moves records and volumes to the interval, from the leaves to the roots. */
     void (*refit)(volume_tree *t, volume_kind kind, const double *x0, const double *x1);
-    /* Compares the tree with itself. */
+    /* Compares each tree with itself and with the others. */
     void (*search)(const volume_tree *t, volume_kind kind, volume_search *s);
 } volume_kernels;
 
 DECLARE_KERNELS(volume_kernels);
+
+static inline const volume_kernels *volume_kernels_of(const cscd_context *context) {
+    return KERNELS_OF(context, volume_kernels);
+}
