@@ -61,19 +61,18 @@ static f64x8 dot_f64x8(const f64x8 a[3], const f64x8 b[3]) {
     return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
 }
 
-/* Adds a x b to sum, and |a| |b| to size: a component of the sum is off by less than 2^-50 of this. */
-static void add_cross(const f64x8 a[3], const f64x8 b[3], f64x8 sum[3], f64x8 *size) {
+/* Adds a x b to sum: a component of it is off by less than 2^-50 of |a| |b|. */
+static void add_cross(const f64x8 a[3], const f64x8 b[3], f64x8 sum[3]) {
     for (int k = 0; k < 3; k++) sum[k] += a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
-    *size += f64x8_sqrt(dot_f64x8(a, a) * dot_f64x8(b, b));
 }
 
-/* Computes the directions of vectors that are off by 2^-48 size at most. Returns the lanes in which that turns them by
- * less than 4e-7, and in which their squares stay in the range of doubles. */
-static uint32_t directions_of(const f64x8 normal[3], f64x8 size, f32x8 out[3]) {
-    f64x8 length = f64x8_sqrt(dot_f64x8(normal, normal));
-    for (int k = 0; k < 3; k++) out[k] = f32x8_from(normal[k] / length);
-    return f64x8_below(f64x8_all(1e-8) * size, length) & f64x8_below(f64x8_all(1e-150), length) &
-           f64x8_below(length, f64x8_all(1e150));
+/* Computes the directions of vectors that are off by 2^-48 size at most. squared_size: of size, or more. Returns the lanes in
+ * which that turns them by less than 4e-7, and in which their squares stay in the range of doubles. */
+static uint32_t directions_of(const f64x8 normal[3], f64x8 squared_size, f32x8 out[3]) {
+    const f64x8 squared = dot_f64x8(normal, normal), inverse = f64x8_all(1.0) / f64x8_sqrt(squared);
+    for (int k = 0; k < 3; k++) out[k] = f32x8_from(normal[k] * inverse);
+    return f64x8_below(f64x8_all(1e-16) * squared_size, squared) & f64x8_below(f64x8_all(1e-300), squared) &
+           f64x8_below(squared, f64x8_all(1e300));
 }
 
 /* The normals at the start, at the end, and the Bernstein vector between them. */
@@ -82,11 +81,14 @@ static uint32_t load_directions(const uint32_t (*triangles)[3], const uint32_t w
     edges_x8 start = load_edges(triangles, which, x0), end = load_edges(triangles, which, x1);
     f64x8 normals[3][3], sizes[3];
     for (int i = 0; i < 9; i++) normals[i / 3][i % 3] = f64x8_all(0.0);
-    for (int i = 0; i < 3; i++) sizes[i] = f64x8_all(0.0);
-    add_cross(start.first, start.second, normals[0], &sizes[0]);
-    add_cross(end.first, end.second, normals[1], &sizes[1]);
-    add_cross(start.first, end.second, normals[2], &sizes[2]);
-    add_cross(end.first, start.second, normals[2], &sizes[2]);
+    add_cross(start.first, start.second, normals[0]);
+    add_cross(end.first, end.second, normals[1]);
+    add_cross(start.first, end.second, normals[2]);
+    add_cross(end.first, start.second, normals[2]);
+    const f64x8 first[2] = {dot_f64x8(start.first, start.first), dot_f64x8(end.first, end.first)};
+    const f64x8 second[2] = {dot_f64x8(start.second, start.second), dot_f64x8(end.second, end.second)};
+    for (int i = 0; i < 2; i++) sizes[i] = first[i] * second[i];
+    sizes[2] = f64x8_all(2.0) * (first[0] * second[1] + first[1] * second[0]); /* at least (a + b)^2 */
     uint32_t good = ALL_LANES;
     for (int i = 0; i < count; i++) good &= directions_of((const f64x8 *)normals[i], sizes[i], out[i]);
     return good;
