@@ -61,7 +61,9 @@ static bool enter_all(methods_report *r, bool every_k, uint32_t repeats, io_erro
                                           CSCD_METHOD_CHARGE};
     uint32_t n = r->regions, from = every_k ? (n > 3 ? n - 2 : 1) : n, to = every_k ? n + 2 : n;
     bool good = true;
-    for (int i = 0; good && i < 4; i++) good = enter_method(r, methods[i], CSCD_MODE_ALL, repeats, error);
+    for (int i = 0; good && i < 4; i++)
+        good = enter_method(r, methods[i], CSCD_MODE_ALL, repeats, error) &&
+               (i != 1 || enter_method(r, CSCD_METHOD_CONES, CSCD_MODE_ALL, repeats, error));
     for (uint32_t k = from; good && k <= to; k++) good = enter_kmeans(r, k, CSCD_MODE_ALL, error);
     for (int i = 2; good && i < 4; i++)
         good = enter_method(r, methods[i], CSCD_MODE_EARLIEST, repeats, error);

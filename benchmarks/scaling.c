@@ -6,7 +6,7 @@
 
 #include <stdlib.h>
 
-enum { ROWS_MAX = SIZES_MAX * 8, CHARGE_TRIANGLES_MAX = 6000, COMPARED_SIZE = 20000 };
+enum { ROWS_MAX = SIZES_MAX * 10, CHARGE_TRIANGLES_MAX = 6000, COMPARED_SIZE = 20000 };
 
 static const char help[] =
     "usage: scaling [options]\n"
@@ -164,11 +164,11 @@ static bool run_size(const bench_options *o, uint32_t size, table *t, json *out,
     deforming_body b;
     terminal_progress_say(shown, "making a body");
     if (!deforming_body_make(o->kind, size, DEFORM_WAVE, o->shuffled, &b, error)) return false;
-    const cscd_method methods[] = {CSCD_METHOD_NONE, CSCD_METHOD_ICCD, CSCD_METHOD_SINGLE,
+    const cscd_method methods[] = {CSCD_METHOD_NONE, CSCD_METHOD_ICCD, CSCD_METHOD_CONES, CSCD_METHOD_SINGLE,
                                    size <= CHARGE_TRIANGLES_MAX ? CSCD_METHOD_CHARGE : CSCD_METHOD_KMEANS};
     uint32_t intervals = bench_intervals(o, b.triangle_count);
     bool good = true;
-    for (uint32_t i = 0; good && i < 8; i++) {
+    for (uint32_t i = 0; good && i < 10; i++) {
         char text[96];
         scaling_row *r = &t->rows[t->count];
         subject_options options = {methods[i / 2], i % 2 == 0 ? CSCD_MODE_ALL : CSCD_MODE_EARLIEST,

@@ -291,7 +291,7 @@ typedef enum cscd_reason {
     CSCD_REASON_CLEAN,     /* complete: the start is embedded, and there is no contact */
     CSCD_REASON_FINISHED,  /* complete: the start is embedded, there are contacts, and mode ALL found all */
     CSCD_REASON_PUBLISHED, /* contacts may be missing: the method is PUBLISHED or ICCD_PUBLISHED */
-    CSCD_REASON_CONTOUR,   /* complete: method ICCD, which needs no embedded start */
+    CSCD_REASON_CONTOUR,   /* complete: method ICCD or CONES, which need no embedded start */
     CSCD_REASON_EARLIEST,  /* later contacts are left out, because the mode is EARLIEST */
     CSCD_REASON_OBSTACLE,  /* an obstacle: its contacts with itself are not looked for */
     CSCD_REASON_MASK,      /* its object's rule has self = false: contacts with itself are not looked for */
@@ -340,7 +340,7 @@ CSCD_API void cscd_detector_region_point(const cscd_detector *detector, uint32_t
 typedef struct cscd_timings {
     double update_ms;      /* moving the trees to the new positions */
     double orientation_ms; /* moving the detector points, and finding the triangles that face them */
-    double contour_ms;     /* ICCD only: normal cones and contour tests */
+    double contour_ms;     /* ICCD and CONES only: normal cones and contour tests */
     double traversal_ms;   /* finding the triangle pairs whose volumes overlap */
     double contact_ms;     /* from triangle pairs to contacts: representatives, elementary tests, sorting */
     double total_ms;       /* the whole step, checks of the input included */
@@ -355,7 +355,7 @@ typedef struct cscd_counters {
     uint64_t rebuilds;         /* 1 if the trees had become loose and were built again, else 0 */
     uint64_t passes;           /* further traversals, for pairs that contacts have uncovered */
     uint64_t plus, minus;      /* triangles that are S+, and S-: see cscd_detector_orientation */
-    uint64_t contours, sealed; /* ICCD: contour tests; and patches that passed theirs, whose pairs were
+    uint64_t contours, sealed; /* ICCD, CONES: contour tests; and patches that passed theirs, whose pairs were
                                 * left out */
     uint64_t boxes_tested;     /* pairs of bounding volumes that the traversal compared */
     uint64_t pcp;              /* potentially colliding pairs: triangle pairs whose volumes overlap */

@@ -11,6 +11,8 @@
 #define CSCD_METHOD_PUBLISHED      ((cscd_method)65) /* the whole pipeline as published (Yeh 2012) */
 #define CSCD_METHOD_ICCD           ((cscd_method)66) /* normal cones and contours (Tang et al. 2009), corrected */
 #define CSCD_METHOD_ICCD_PUBLISHED ((cscd_method)67) /* the same as published */
+#define CSCD_METHOD_CONES                                                                                    \
+    ((cscd_method)68) /* normal cones and star-shaped contours (Wang et al. 2017), proven */
 
 /* PUBLISHED makes plans as section 3 of the thesis says: charge by the dense system in doubles, densities equalized by 256 bins,
  * clusters below the threshold that grow ring by ring, shrink, and cut along the shorter contour, detector points at the centroids.

@@ -6,7 +6,7 @@
 #include "src/core/struct_size.h"
 
 /* baselines: begin */
-#include "runtime/baselines/iccd/iccd.h"
+#include "runtime/baselines/iccd/patch_hiders.h"
 #include "runtime/baselines/published/published_search.h"
 /* baselines: end */
 
@@ -31,6 +31,7 @@ static const method_stages stages[] = {
     {CSCD_METHOD_ICCD, .rules = &tests_every_pair, .hider = &iccd_hider},
     {CSCD_METHOD_ICCD_PUBLISHED, .rules = &tests_every_pair, .search = &iccd_search,
      .ours = CSCD_OURS_NEIGHBOURS | CSCD_OURS_TESTS | CSCD_OURS_BOXES},
+    {CSCD_METHOD_CONES, .rules = &tests_every_pair, .hider = &cones_hider},
     /* baselines: end */
 };
 

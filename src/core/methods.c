@@ -15,6 +15,7 @@ static const method_traits traits[] = {
      .loses_contacts = true, .by_orientation = true},
     {CSCD_METHOD_ICCD, .name = "iccd", .by_contours = true},
     {CSCD_METHOD_ICCD_PUBLISHED, .name = "iccd-published", .loses_contacts = true, .by_contours = true},
+    {CSCD_METHOD_CONES, .name = "cones", .by_contours = true},
 };
 
 enum { METHOD_COUNT = sizeof traits / sizeof *traits };

@@ -1,7 +1,7 @@
 /* The contour test: a contour that it calls simple is simple at every sampled moment, by a reference in
  * long double, and plain motions of plain polygons pass at any place and scale. */
 #include "runtime/baselines/iccd/contour.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/baselines/moving_polygon.h"
 #include "tests/support/test.h"
 
 #include <math.h>
@@ -9,40 +9,7 @@
 
 enum { POLYGONS = PACED(12000, 2000) };
 
-enum { CORNERS_MAX = 40, MOMENTS = 128 };
-
 #define PI 3.14159265358979323846
-
-typedef struct polygon {
-    uint32_t count;
-    double x0[CORNERS_MAX * 3], x1[CORNERS_MAX * 3];
-    double frame[3][3]; /* the directions to the right and up, and the axis of projection */
-    float axis[3];
-} polygon;
-
-/* Chooses any direction; the axis itself has single precision. */
-static void choose_axis(polygon *p, random_stream *random) {
-    double length = 0.0, a[3];
-    for (int k = 0; k < 3; k++) {
-        a[k] = stream_between(random, -1.0, 1.0);
-        length += a[k] * a[k];
-    }
-    for (int k = 0; k < 3; k++) p->frame[2][k] = p->axis[k] = (float)(a[k] / sqrt(length));
-    double *r = p->frame[0], *u = p->frame[1], *n = p->frame[2];
-    r[0] = fabs(n[0]) > 0.5 ? -n[1] : 0.0;
-    r[1] = fabs(n[0]) > 0.5 ? n[0] : -n[2];
-    r[2] = fabs(n[0]) > 0.5 ? 0.0 : n[1];
-    length = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
-    for (int k = 0; k < 3; k++) r[k] /= length;
-    for (int k = 0; k < 3; k++) u[k] = n[(k + 1) % 3] * r[(k + 2) % 3] - n[(k + 2) % 3] * r[(k + 1) % 3];
-}
-
-/* Places one vertex at one end, given its coordinates in the plane and its height along the axis. */
-static void place_vertex(const polygon *p, double *x, uint32_t corner, double right, double up,
-                         double height) {
-    for (int k = 0; k < 3; k++)
-        x[corner * 3 + (uint32_t)k] = right * p->frame[0][k] + up * p->frame[1][k] + height * p->frame[2][k];
-}
 
 static bool stays_simple(const polygon *p, uint32_t skipped, bool published) {
     uint32_t edges[CORNERS_MAX][2], numbers[CORNERS_MAX];
@@ -55,63 +22,15 @@ static bool stays_simple(const polygon *p, uint32_t skipped, bool published) {
         numbers[i] = i;
     }
     const cscd_mesh mesh = {.vertex_count = p->count, .edge_count = p->count, .edges = edges};
-    const contour_query query = {&mesh, numbers, p->count, p->x0, p->x1, p->axis, skipped, published};
+    const contour_query query = {.mesh = &mesh,
+                                 .edges = numbers,
+                                 .edge_count = p->count,
+                                 .x0 = p->x0,
+                                 .x1 = p->x1,
+                                 .axis = p->axis,
+                                 .skipped = skipped,
+                                 .published = published};
     return contour_stays_simple(&query, projected, keys);
-}
-
-/* ---- the reference --------------------------------------------------------------------------------- */
-
-typedef struct point {
-    long double right, up;
-} point;
-
-static void points_at(const polygon *p, long double t, point out[CORNERS_MAX]) {
-    for (uint32_t i = 0; i < p->count; i++) {
-        out[i] = (point){0.0L, 0.0L};
-        for (uint32_t k = 0; k < 3; k++) {
-            long double x = (1.0L - t) * (long double)p->x0[i * 3 + k] + t * (long double)p->x1[i * 3 + k];
-            out[i].right += (x - (long double)p->x0[k]) * (long double)p->frame[0][k];
-            out[i].up += (x - (long double)p->x0[k]) * (long double)p->frame[1][k];
-        }
-    }
-}
-
-static long double side_of_line(point a, point b, point c) {
-    return (b.right - a.right) * (c.up - a.up) - (b.up - a.up) * (c.right - a.right);
-}
-
-static long double position_along(point a, point b, point c) {
-    return (b.right - a.right) * (c.right - a.right) + (b.up - a.up) * (c.up - a.up);
-}
-
-static bool lies_on(point c, point a, point b) {
-    return side_of_line(a, b, c) == 0.0L && position_along(c, a, b) <= 0.0L;
-}
-
-static bool segments_meet(point a, point b, point c, point d) {
-    if (lies_on(a, c, d) || lies_on(b, c, d) || lies_on(c, a, b) || lies_on(d, a, b)) return true;
-    return side_of_line(a, b, c) * side_of_line(a, b, d) < 0.0L &&
-           side_of_line(c, d, a) * side_of_line(c, d, b) < 0.0L;
-}
-
-static bool is_simple(const point *p, uint32_t n) {
-    for (uint32_t i = 0; i < n; i++) {
-        point a = p[i], b = p[(i + 1) % n], c = p[(i + 2) % n];
-        if (side_of_line(b, a, c) == 0.0L && position_along(b, a, c) >= 0.0L) return false;
-        for (uint32_t j = i + 2; j < n; j++) {
-            if ((j + 1) % n != i && segments_meet(a, b, p[j], p[(j + 1) % n])) return false;
-        }
-    }
-    return true;
-}
-
-static bool sampled_simple(const polygon *p) {
-    point points[CORNERS_MAX];
-    for (int i = 0; i <= MOMENTS; i++) {
-        points_at(p, (long double)i / MOMENTS, points);
-        if (!is_simple(points, p->count)) return false;
-    }
-    return true;
 }
 
 /* ---- random motions -------------------------------------------------------------------------------- */
@@ -128,7 +47,7 @@ static double random_height(random_stream *random) {
 
 static polygon random_polygon(random_stream *random, motion kind) {
     polygon p = {.count = 4 + stream_below(random, 13)};
-    choose_axis(&p, random);
+    polygon_choose_axis(&p, random);
     double turn = kind == MOTION_TURN ? stream_between(random, -PI, PI) : 0.0;
     double change = stream_between(random, 0.0, 0.5);
     for (uint32_t i = 0; i < p.count; i++) {
@@ -149,8 +68,8 @@ static polygon random_polygon(random_stream *random, motion kind) {
             x1 = x + change * stream_between(random, -1.0, 1.0);
             y1 = y + change * stream_between(random, -1.0, 1.0);
         }
-        place_vertex(&p, p.x0, i, x, y, random_height(random));
-        place_vertex(&p, p.x1, i, x1, y1, random_height(random));
+        polygon_place(&p, p.x0, i, x, y, random_height(random));
+        polygon_place(&p, p.x1, i, x1, y1, random_height(random));
     }
     return p;
 }
@@ -163,9 +82,9 @@ static polygon grid_polygon(random_stream *random) {
     for (uint32_t i = 0; i < p.count; i++) {
         uint32_t x = stream_below(random, 5), y = stream_below(random, 5);
         bool moves = stream_below(random, 3) == 0;
-        place_vertex(&p, p.x0, i, x, y, 0.0);
-        place_vertex(&p, p.x1, i, moves ? stream_below(random, 5) : x, moves ? stream_below(random, 5) : y,
-                     0.0);
+        polygon_place(&p, p.x0, i, x, y, 0.0);
+        polygon_place(&p, p.x1, i, moves ? stream_below(random, 5) : x, moves ? stream_below(random, 5) : y,
+                      0.0);
     }
     return p;
 }
@@ -177,7 +96,7 @@ TEST(simple_is_simple_throughout) {
         random_stream random = stream_start((uint64_t)kind);
         for (int i = 0; i < POLYGONS / MOTION_COUNT; i++) {
             polygon p = kind == MOTION_GRID ? grid_polygon(&random) : random_polygon(&random, (motion)kind);
-            bool says = stays_simple(&p, 0, false), is = sampled_simple(&p);
+            bool says = stays_simple(&p, 0, false), is = polygon_stays_simple(&p);
             if (says && !is) fail_msg("%s %d: said to stay simple, and is not", names[kind], i);
             simple += is;
             said += says;
@@ -198,7 +117,7 @@ TEST(plain_motions_pass) {
     random_stream random = stream_start(77);
     for (int i = 0; i < 1000; i++) {
         polygon p = {.count = 4 + stream_below(&random, CORNERS_MAX - 4)};
-        choose_axis(&p, &random);
+        polygon_choose_axis(&p, &random);
         bool star = i % 2 == 0;
         double turn = stream_between(&random, -0.5, 0.5), scale = scales[i % 5];
         double far = i % 3 == 0 ? 1e6 : 0.0, move[3], start[3];
@@ -207,8 +126,8 @@ TEST(plain_motions_pass) {
         for (uint32_t j = 0; j < p.count; j++) {
             double angle = 2.0 * PI * j / p.count, r = star && j % 2 == 0 ? 2.0 : 1.0,
                    z = random_height(&random);
-            place_vertex(&p, p.x0, j, r * cos(angle), r * sin(angle), z);
-            place_vertex(&p, p.x1, j, r * cos(angle + turn), r * sin(angle + turn), z);
+            polygon_place(&p, p.x0, j, r * cos(angle), r * sin(angle), z);
+            polygon_place(&p, p.x1, j, r * cos(angle + turn), r * sin(angle + turn), z);
             for (uint32_t k = 0; k < 3; k++) {
                 p.x0[j * 3 + k] = scale * (p.x0[j * 3 + k] + start[k]);
                 p.x1[j * 3 + k] = scale * (p.x1[j * 3 + k] + start[k] + move[k]);
@@ -226,10 +145,10 @@ TEST(rounding_parts_no_corner_from_its_edge) {
     random_stream random = stream_start(78);
     for (int i = 0; i < 1000; i++) {
         polygon p = {.count = 5};
-        choose_axis(&p, &random);
+        polygon_choose_axis(&p, &random);
         for (uint32_t j = 0; j < p.count; j++) {
-            place_vertex(&p, p.x0, j, corners[j][0], corners[j][1], random_height(&random));
-            place_vertex(&p, p.x1, j, corners[j][0] + 1.0, corners[j][1], random_height(&random));
+            polygon_place(&p, p.x0, j, corners[j][0], corners[j][1], random_height(&random));
+            polygon_place(&p, p.x1, j, corners[j][0] + 1.0, corners[j][1], random_height(&random));
         }
         double *const ends[2] = {p.x0, p.x1};
         for (int end = 0; end < 2; end++) {
@@ -243,15 +162,6 @@ TEST(rounding_parts_no_corner_from_its_edge) {
 }
 
 /* ---- the conditions one by one --------------------------------------------------------------------- */
-
-static polygon polygon_at_rest(const double (*corners)[2], uint32_t count) {
-    polygon p = {.count = count,
-                 .frame = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}},
-                 .axis = {0.0f, 0.0f, 1.0f}};
-    for (uint32_t i = 0; i < count; i++) place_vertex(&p, p.x0, i, corners[i][0], corners[i][1], 0.0);
-    memcpy(p.x1, p.x0, sizeof p.x1);
-    return p;
-}
 
 TEST(degenerate_contours_fail) {
     static const double crossed[4][2] = {{0, 0}, {2, 2}, {2, 0}, {0, 2}};
@@ -276,13 +186,13 @@ TEST(degenerate_contours_fail) {
     p = polygon_at_rest(one_point, 4);
     assert_false(stays_simple(&p, 0, false));
     p = polygon_at_rest(square, 4); /* touches itself at the very end, or just before */
-    place_vertex(&p, p.x1, 2, 1.0, 0.0, 0.0);
+    polygon_place(&p, p.x1, 2, 1.0, 0.0, 0.0);
     assert_false(stays_simple(&p, 0, false));
-    place_vertex(&p, p.x1, 2, 0.0, 0.0, 0.0);
+    polygon_place(&p, p.x1, 2, 0.0, 0.0, 0.0);
     assert_false(stays_simple(&p, 0, false));
-    place_vertex(&p, p.x1, 2, 1.0, 1e-9, 0.0);
+    polygon_place(&p, p.x1, 2, 1.0, 1e-9, 0.0);
     assert_true(stays_simple(&p, 0, false));
     p = polygon_at_rest(square, 4); /* all vertices pass one point in between */
-    for (uint32_t i = 0; i < 4; i++) place_vertex(&p, p.x1, i, -square[i][0], -square[i][1], 0.0);
+    for (uint32_t i = 0; i < 4; i++) polygon_place(&p, p.x1, i, -square[i][0], -square[i][1], 0.0);
     assert_false(stays_simple(&p, 0, false));
 }

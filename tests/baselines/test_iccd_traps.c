@@ -1,5 +1,5 @@
-/* Method iccd in cases that are easily wrong: each scene breaks one condition of the theorem in
- * docs/theory/iccd.md, and has contacts that a test without that condition would lose. */
+/* Methods iccd and cones in cases that are easily wrong: each scene breaks one condition of the theorems in
+ * docs/theory/iccd.md and cones.md, and has contacts that a test without that condition would lose. */
 #include "cscd/research.h"
 #include "tests/support/methods.h"
 #include "tests/support/rig.h"
@@ -52,27 +52,29 @@ static trap_outcome run_method(cscd_method method) {
     return out;
 }
 
-/* Method iccd must find all contacts; as published it loses some of them, or all. */
+/* Methods iccd and cones must find all contacts; as published, iccd loses some of them, or all. */
 typedef enum loss { LOSES_SOME, LOSES_ALL } loss;
 
 static cscd_counters expect_complete(loss lost) {
     trap_outcome none = run_method(CSCD_METHOD_NONE), brute = run_method(CSCD_METHOD_BRUTE),
-                 iccd = run_method(CSCD_METHOD_ICCD);
+                 iccd = run_method(CSCD_METHOD_ICCD), cones = run_method(CSCD_METHOD_CONES);
     trap_outcome published = run_method(CSCD_METHOD_ICCD_PUBLISHED);
     size_t count = none.contacts.count;
     assert_true(count > 0);
     assert_int_equal(brute.contacts.count, count);
     assert_int_equal(iccd.contacts.count, count);
+    assert_int_equal(cones.contacts.count, count);
     assert_memory_equal(brute.contacts.items, none.contacts.items, count * sizeof(cscd_contact));
     assert_memory_equal(iccd.contacts.items, none.contacts.items, count * sizeof(cscd_contact));
-    print_message("  %zu contacts, as published %zu; sealed %llu, as published %llu\n", count,
+    assert_memory_equal(cones.contacts.items, none.contacts.items, count * sizeof(cscd_contact));
+    print_message("  %zu contacts, as published %zu; sealed %llu, by cones %llu, as published %llu\n", count,
                   published.contacts.count, (unsigned long long)iccd.counters.sealed,
-                  (unsigned long long)published.counters.sealed);
+                  (unsigned long long)cones.counters.sealed, (unsigned long long)published.counters.sealed);
     if (lost == LOSES_ALL) assert_int_equal(published.contacts.count, 0);
     if (lost == LOSES_SOME) assert_true(published.contacts.count < count);
     cscd_counters counters = iccd.counters;
-    trap_outcome *all[4] = {&none, &brute, &iccd, &published};
-    for (int i = 0; i < 4; i++) rig_destroy(&all[i]->objects);
+    trap_outcome *all[5] = {&none, &brute, &iccd, &cones, &published};
+    for (int i = 0; i < 5; i++) rig_destroy(&all[i]->objects);
     return counters;
 }
 

@@ -1,6 +1,7 @@
 /* The patches of all nodes of trees, compared with a reference that counts and walks: their contours,
- * which edges the parent has too, and which patches are disks. */
+ * which edges the parent has too, which patches are disks, and how the loops of these run. */
 #include "runtime/baselines/iccd/patch.h"
+#include "runtime/baselines/iccd/star.h"
 #include "tests/support/bvh/bvh_rig.h"
 #include "tests/support/mesh_shapes.h"
 #include "tests/support/models/body_of.h"
@@ -14,15 +15,21 @@ enum { SCENES_PER_FAMILY = PACED(20, 3), BODY_TRIANGLES = PACED(3000, 600) };
 
 static scene s; /* large; one test at a time */
 
-/* A mesh, its tree of one region, and the tree's patches. */
+/* A mesh, its tree of one region, and the tree's patches, with edges and with loops. */
 typedef struct patch_subject {
     cscd_context *context;
     cscd_mesh *mesh;
     uint32_t *regions;
     double *weights;
     bvh bvh;
-    patches patches;
+    patches patches, looped;
 } patch_subject;
+
+static void add_patches(const patch_subject *f, const contour_test *test, patches *out) {
+    patch_tree tree;
+    assert_int_equal(patch_tree_build(&f->bvh, &tree), CSCD_OK);
+    assert_int_equal(patches_create(f->mesh, &tree, test, out), CSCD_OK);
+}
 
 static patch_subject subject_create(cscd_object_desc desc, const double *positions) {
     patch_subject f = {0};
@@ -33,14 +40,14 @@ static patch_subject subject_create(cscd_object_desc desc, const double *positio
     assert_true(f.regions != NULL && f.weights != NULL);
     bvh_regions regions = {f.regions, f.weights, 1};
     assert_int_equal(bvh_build(f.mesh, regions, positions, BOX_AXES, &f.bvh), CSCD_OK);
-    patch_tree tree;
-    assert_int_equal(patch_tree_build(&f.bvh, &tree), CSCD_OK);
-    assert_int_equal(patches_create(f.mesh, &tree, &f.patches), CSCD_OK);
+    add_patches(&f, &sweep_test, &f.patches);
+    add_patches(&f, &star_test, &f.looped);
     return f;
 }
 
 static void subject_destroy(patch_subject *f) {
     patches_free(f->context, &f->patches);
+    patches_free(f->context, &f->looped);
     bvh_free(&f->bvh);
     free(f->weights);
     free(f->regions);
@@ -161,6 +168,27 @@ static void check_contour(const patches *p, const reference_patches *r, uint32_t
     }
 }
 
+static bool runs_along(const reference_patches *r, uint32_t from, uint32_t to) {
+    for (uint32_t i = 0; i < r->triangle_count; i++) {
+        const uint32_t *t = r->mesh->triangles[r->triangles[i]];
+        for (int k = 0; k < 3; k++) {
+            if (t[k] == from && t[(k + 1) % 3] == to)
+                return r->edge_counts[r->mesh->triangle_edges[r->triangles[i]][k]] == 1;
+        }
+    }
+    return false;
+}
+
+/* Checks that the loop of a disk goes along each edge of one triangle once, as that triangle does. */
+static void check_loop(const patches *p, const reference_patches *r, uint32_t node) {
+    const uint32_t *loop = p->loops + p->contour_offsets[node];
+    const size_t size = p->contour_offsets[node + 1] - p->contour_offsets[node];
+    for (size_t i = 0; i < size; i++) {
+        assert_true(runs_along(r, loop[i], loop[(i + 1) % size]));
+        assert_false(list_contains(loop, i, loop[i]));
+    }
+}
+
 typedef struct patch_tally {
     uint32_t nodes, disks;
 } patch_tally;
@@ -175,7 +203,9 @@ static void check_node(const patch_subject *f, reference_patches *r, uint32_t no
     check_contour(p, r, node, parent);
     bool disk = euler == 1 && size > 0 && is_clean(f->mesh, r->triangles[0]) && is_connected(r) &&
                 is_one_loop(f->mesh, p->contour_edges + begin, (uint32_t)size);
-    assert_true(p->disks[node] == disk);
+    assert_true(p->disks[node] == disk && f->looped.disks[node] == disk);
+    assert_int_equal(f->looped.contour_offsets[node + 1] - f->looped.contour_offsets[node], size);
+    if (disk) check_loop(&f->looped, r, node);
     for (uint32_t i = 0; i < r->triangle_count; i++) {
         for (int k = 0; k < 3; k++) {
             r->vertex_seen[f->mesh->triangles[r->triangles[i]][k]] = 0;

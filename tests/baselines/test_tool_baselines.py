@@ -28,14 +28,15 @@ def test_published_is_marked_as_such():
     assert root["summary"]["method"] == "published"
 
 
-def test_iccd_has_a_column_for_contours():
-    """It has contours instead of orientations, promises all contacts, and needs neither a proven start nor a plan."""
-    answer, root = replay("--method iccd")
+@pytest.mark.parametrize("method", ["iccd", "cones"])
+def test_contours_have_a_column(method):
+    """Contours stand in the place of orientations; they promise all contacts, and need neither a proven start nor a plan."""
+    answer, root = replay(f"--method {method}")
     _, none = replay("--method none")
-    assert "\niccd " in answer.out and " contour " in answer.out and "plan: none" in answer.out
+    assert f"\n{method} " in answer.out and " contour " in answer.out and "plan: none" in answer.out
     assert "may be missing" not in answer.out and answer.out.count(" X ") == 4  # for orientation and proof, in both rows
     total = root["summary"]
-    assert (total["method"], total["static_checks"], total["intervals_complete"]) == ("iccd", 0, 15)
+    assert (total["method"], total["static_checks"], total["intervals_complete"]) == (method, 0, 15)
     assert total["contour_ms"]["mean"] > 0
     for interval, plain in zip(root["intervals"], none["intervals"]):
         (guarantee,) = interval["guarantee"]
@@ -53,12 +54,12 @@ def test_iccd_as_published_is_marked_as_such():
 
 
 @pytest.mark.parametrize("options, lines", [("--threads 2", 10), ("--mode earliest", 1)])
-def test_iccd_finds_every_contact(options, lines):
+def test_contours_lose_no_contact(options, lines):
     tables = []
-    for method in ("none", "iccd"):
+    for method in ("none", "iccd", "cones"):
         run(f"replay spindle.obj spindle.pc2 --quiet --contacts out.csv --method {method} {options}")
         tables.append(Path("out.csv").read_text())
-    assert tables[0] == tables[1] and tables[0].count("\n") > lines
+    assert tables[0] == tables[1] == tables[2] and tables[0].count("\n") > lines
 
 
 def test_published_makes_its_plan_or_takes_any():

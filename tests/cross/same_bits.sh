@@ -85,6 +85,7 @@ for scene in $scenes; do
     [ "$4" != quick ] || continue
     compare "$scene as one region" "$model" "$frames" --method single --volume kdop14
     compare "$scene by normal cones" "$model" "$frames" --method iccd
+    compare "$scene by stars" "$model" "$frames" --method cones
     compare "$scene within a distance" "$model" "$frames" --method single --min-separation 0.001
 done
 if [ "$4" != quick ] && [ -n "${CSCD_DATA:-}" ]; then

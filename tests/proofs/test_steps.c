@@ -66,6 +66,7 @@ static const proof_row rows[] = {
     {"step_none", STEPS, open_detector, .family = SCENE_TWO_SPHERES, .method = CSCD_METHOD_NONE},
     {"step_brute", STEPS, open_detector, .family = SCENE_TWO_SPHERES, .method = CSCD_METHOD_BRUTE},
     {"step_iccd", STEPS, open_detector, .family = SCENE_TWO_SPHERES, .method = CSCD_METHOD_ICCD},
+    {"step_cones", STEPS, open_detector, .family = SCENE_TWO_SPHERES, .method = CSCD_METHOD_CONES},
     {"step_published", STEPS, open_detector, .family = SCENE_TWO_SPHERES, .method = CSCD_METHOD_PUBLISHED},
     {"step_iccd_published", STEPS, open_detector, .family = SCENE_SOUP, .seed = 11,
      .method = CSCD_METHOD_ICCD_PUBLISHED},

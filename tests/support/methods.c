@@ -1,4 +1,4 @@
-/* The methods that this build has: without runtime/baselines there are no ICCD, ICCD_PUBLISHED and PUBLISHED. */
+/* The methods that this build has: without runtime/baselines there are no CONES, ICCD, ICCD_PUBLISHED and PUBLISHED. */
 #include "tests/support/methods.h"
 #include "tests/support/packed.h"
 
@@ -15,7 +15,7 @@ static const bool has_baselines = false;
 
 static bool is_baseline(cscd_method method) {
     return method == CSCD_METHOD_PUBLISHED || method == CSCD_METHOD_ICCD ||
-           method == CSCD_METHOD_ICCD_PUBLISHED;
+           method == CSCD_METHOD_ICCD_PUBLISHED || method == CSCD_METHOD_CONES;
 }
 
 uint64_t ours_of_method(cscd_method method) {

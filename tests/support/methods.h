@@ -1,4 +1,4 @@
-/* The methods that this build has: without runtime/baselines there are no ICCD, ICCD_PUBLISHED and PUBLISHED. */
+/* The methods that this build has: without runtime/baselines there are no CONES, ICCD, ICCD_PUBLISHED and PUBLISHED. */
 #pragma once
 
 #include "cscd/cscd.h"

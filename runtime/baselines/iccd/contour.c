@@ -2,60 +2,16 @@
  * vertex-edge tests), or when they cross from the start. */
 #include "runtime/baselines/iccd/contour.h"
 
-#include "src/core/floating.h"
-#include "src/core/vec3.h"
+#include "runtime/baselines/iccd/contour_plane.h"
 
-#include <float.h>
 #include <math.h>
 
 enum { DEPTH_MAX = 8 };
-
-/* The plane across the axis, and how far computed coordinates may be from those of the exact projection. Its
- * origin moves with a vertex, because a motion that all vertices share does not bring them together. */
-typedef struct plane {
-    double origin[2][3], right[3], up[3];
-    double error;
-} plane;
 
 /* Bernstein coefficients of a quadratic in time. */
 typedef struct quadratic {
     double b[3];
 } quadratic;
-
-/* right and up are perpendicular to the axis up to rounding: the exact projection, along right x up, is along
- * an axis that is off by 1e-14 or so, which normal_cone_limit allows for. */
-static plane make_plane(const float axis[3], const double *start, const double *end) {
-    plane p = {.error = 0.0};
-    double direction[3], helper[3] = {0.0, 0.0, 0.0}, least = INFINITY, length = 0.0;
-    int smallest = 0;
-    for (int k = 0; k < 3; k++) {
-        direction[k] = (double)axis[k];
-        p.origin[0][k] = start[k];
-        p.origin[1][k] = end[k];
-        if (fabs(direction[k]) < least) {
-            least = fabs(direction[k]);
-            smallest = k;
-        }
-    }
-    helper[smallest] = 1.0;
-    vec3_cross(direction, helper, p.right);
-    for (int k = 0; k < 3; k++) length += p.right[k] * p.right[k];
-    for (int k = 0; k < 3; k++) p.right[k] /= sqrt(length);
-    vec3_cross(direction, p.right, p.up);
-    return p;
-}
-
-/* A projected coordinate is a sum of three products of differences, so it is off by less than 8 u times their sum. */
-static void project_vertex(plane *p, const double *x, int time, double out[2]) {
-    double size = 0.0, from[3];
-    for (int k = 0; k < 3; k++) {
-        from[k] = x[k] - p->origin[time][k];
-        size += fabs(from[k]);
-    }
-    out[0] = p->right[0] * from[0] + p->right[1] * from[1] + p->right[2] * from[2];
-    out[1] = p->up[0] * from[0] + p->up[1] * from[1] + p->up[2] * from[2];
-    p->error = max_of(p->error, 8.0 * DBL_EPSILON * size);
-}
 
 static void set_box(contour_edge *e, double error) {
     for (int k = 0; k < 2; k++) {
@@ -78,10 +34,6 @@ static void sort_keys(contour_key *keys, uint32_t count) {
     }
 }
 
-static double cross_planar(const double a[2], const double b[2]) {
-    return a[0] * b[1] - a[1] * b[0];
-}
-
 static double dot_planar(const double a[2], const double b[2]) {
     return a[0] * b[0] + a[1] * b[1];
 }
@@ -97,13 +49,6 @@ static quadratic product_of(double a[2][2], double b[2][2], double (*of)(const d
 
 static double largest_coordinate(double a[2][2]) {
     return max_of(max_of(fabs(a[0][0]), fabs(a[0][1])), max_of(fabs(a[1][0]), fabs(a[1][1])));
-}
-
-/* The error of a coefficient of a product of two such differences. With eps the error of a coordinate, each
- * factor is off by 2 eps (and by rounding, 2^-52 of it, which is less), so each of two terms by 4 eps L + 4
- * eps^2; halving the interval up to eight times adds 16 u L^2, which is less than 4 eps L. */
-static double product_error(const plane *p, double length) {
-    return 24.0 * p->error * length + 16.0 * p->error * p->error;
 }
 
 static bool all_above(const quadratic *q, double bound) {
@@ -147,9 +92,9 @@ static bool vertex_stays_off(const plane *p, double vertex[2][2], contour_edge *
     subtract_motions(edge->b, edge->a, along);
     subtract_motions(vertex, edge->a, from_a);
     subtract_motions(vertex, edge->b, from_b);
-    double error = product_error(
+    double error = plane_product_error(
         p, max_of(largest_coordinate(along), max_of(largest_coordinate(from_a), largest_coordinate(from_b))));
-    quadratic area = product_of(along, from_a, cross_planar);
+    quadratic area = product_of(along, from_a, plane_cross);
     *start = area.b[0] > error ? 1 : area.b[0] < -error ? -1 : 0;
     return is_excluded(area, product_of(from_a, from_b, dot_planar), error);
 }
@@ -182,14 +127,14 @@ bool contour_stays_simple(const contour_query *query, contour_edge *edges, conto
     uint32_t count = query->edge_count;
     if (count == 0) return true;
     size_t first = (size_t)mesh->edges[query->edges[0]][0] * 3;
-    plane p = make_plane(query->axis, query->x0 + first, query->x1 + first);
+    plane p = plane_across(query->axis, query->x0 + first, query->x1 + first);
     for (uint32_t i = 0; i < count; i++) {
         const uint32_t *v = mesh->edges[query->edges[i]];
         contour_edge *e = &edges[i];
-        project_vertex(&p, query->x0 + (size_t)v[0] * 3, 0, e->a[0]);
-        project_vertex(&p, query->x1 + (size_t)v[0] * 3, 1, e->a[1]);
-        project_vertex(&p, query->x0 + (size_t)v[1] * 3, 0, e->b[0]);
-        project_vertex(&p, query->x1 + (size_t)v[1] * 3, 1, e->b[1]);
+        plane_project(&p, query->x0 + (size_t)v[0] * 3, 0, e->a[0]);
+        plane_project(&p, query->x1 + (size_t)v[0] * 3, 1, e->a[1]);
+        plane_project(&p, query->x0 + (size_t)v[1] * 3, 0, e->b[0]);
+        plane_project(&p, query->x1 + (size_t)v[1] * 3, 1, e->b[1]);
         e->vertices[0] = v[0];
         e->vertices[1] = v[1];
     }
@@ -210,3 +155,13 @@ bool contour_stays_simple(const contour_query *query, contour_edge *edges, conto
     }
     return true;
 }
+
+static bool sweep_passes(const contour_query *query, void *scratch) {
+    contour_edge *edges = scratch;
+    return contour_stays_simple(query, edges, (contour_key *)(edges + query->edge_count));
+}
+
+const contour_test sweep_test = {
+    .scratch_size = sizeof(contour_edge) + sizeof(contour_key),
+    .passes = sweep_passes,
+};

@@ -19,13 +19,24 @@ typedef struct contour_key {
 /* A contour and its motion. */
 typedef struct contour_query {
     const cscd_mesh *mesh;
-    const uint32_t *edges; /* of the mesh */
+    const uint32_t *edges; /* of the mesh; or NULL */
+    const uint32_t *loop;  /* or its vertices in order, with the surface on their left */
     uint32_t edge_count;
     const double *x0, *x1;
     const float *axis; /* along which the contour is projected, of about unit length */
     uint32_t skipped;  /* pairs among the first `skipped` edges count as tested already */
     bool published;    /* only motions are tested, not the start */
 } contour_query;
+
+/* A way to test contours that are one loop. */
+typedef struct contour_test {
+    bool by_loops;       /* it takes the vertices in order, else the edges */
+    size_t scratch_size; /* bytes per edge */
+    bool (*passes)(const contour_query *query, void *scratch);
+} contour_test;
+
+/* That of ICCD: contour_stays_simple. */
+extern const contour_test sweep_test;
 
 /* Certified for edges that form one loop: true only if no two of them touch in the projection at any moment of the
  * interval, except neighbours at their common vertices. For a loop of three edges it tests nothing, because such a

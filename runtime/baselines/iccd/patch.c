@@ -1,13 +1,7 @@
-/* Patches of the tree's nodes: makes their contours once, and tests cones and contours in every interval. */
+/* Patches of the tree's nodes: their contours, and which of them are disks. They are made once. */
 #include "runtime/baselines/iccd/patch.h"
 
-#include <math.h>
-#include <stdatomic.h>
 #include <string.h>
-
-/* One thread tests a whole subtree of at most 2^SMALL_HEIGHT triangles; nodes above are tested level
- * by level. */
-enum { SMALL_HEIGHT = 6, CONES_PER_TASK = 512 };
 
 /* Lists of edge numbers, one per node, while they are made: the last node's first. */
 typedef struct contour_lists {
@@ -115,6 +109,27 @@ static bool is_disk(const cscd_mesh *mesh, const uint32_t *contour, uint32_t siz
     return length == size;
 }
 
+/* Writes the vertices of a disk's loop in order: the patch is on their left, seen from where its triangles are counter-clockwise.
+ * visits: as is_disk has left them. */
+static void write_loop(const cscd_mesh *mesh, uint32_t edge, uint32_t size, const patch_node *first,
+                       const patch_node *end, const vertex_visit *visits, uint32_t *out) {
+    uint32_t before = 0, at = 0;
+    for (const patch_node *n = first; n < end; n++) {
+        for (int k = 0; patch_is_leaf(n) && k < 3; k++) {
+            if (mesh->triangle_edges[n->triangle][k] != edge) continue;
+            before = mesh->triangles[n->triangle][k];
+            at = mesh->triangles[n->triangle][(k + 1) % 3];
+        }
+    }
+    for (uint32_t i = 0; i < size; i++) {
+        const uint32_t *neighbours = visits[at].neighbours;
+        uint32_t next = neighbours[0] == before ? neighbours[1] : neighbours[0];
+        out[i] = before;
+        before = at;
+        at = next;
+    }
+}
+
 /* Only patches of oriented manifolds are disks. Within one component a patch of one loop has no closed part
  * beside it. */
 static void find_disks(patches *p, const cscd_mesh *mesh, const patch_tree *tree, const contour_lists *l,
@@ -128,8 +143,12 @@ static void find_disks(patches *p, const cscd_mesh *mesh, const patch_tree *tree
         const cscd_component *c = &mesh->components[mesh->triangle_components[leaf->triangle]];
         bool oriented =
             c->non_manifold_edges == 0 && c->non_manifold_vertices == 0 && c->inconsistent_edges == 0;
-        p->disks[i] = oriented && is_disk(mesh, l->edges + l->begins[i], l->sizes[i], n,
-                                          tree->nodes + ends[i], visits, p->tree.node_count - i);
+        const uint32_t *contour = l->edges + l->begins[i];
+        p->disks[i] = oriented && is_disk(mesh, contour, l->sizes[i], n, tree->nodes + ends[i], visits,
+                                          p->tree.node_count - i);
+        if (p->disks[i] && p->loops != NULL)
+            write_loop(mesh, contour[0], l->sizes[i], n, tree->nodes + ends[i], visits,
+                       p->loops + p->contour_offsets[i]);
     }
 }
 
@@ -146,6 +165,16 @@ static void place_contour(patches *p, const contour_lists *l, uint32_t node, uin
             if (common == (pass == 0)) out[count++] = own[i];
         }
         if (pass == 0) p->inherited[node] = count;
+    }
+}
+
+static void place_contours(patches *p, const contour_lists *l) {
+    const patch_tree *tree = &p->tree;
+    for (uint32_t i = 0; i < tree->root_count; i++) place_contour(p, l, tree->roots[i], UINT32_MAX);
+    for (uint32_t i = 0; i < tree->node_count; i++) {
+        if (patch_is_leaf(&tree->nodes[i])) continue;
+        place_contour(p, l, i + 1, i);
+        place_contour(p, l, tree->nodes[i].right, i);
     }
 }
 
@@ -180,23 +209,18 @@ static bool fill_patches(patches *p, const cscd_mesh *mesh, const patch_tree *tr
         if (!list_contour(l, mesh, tree, i)) return false;
         if (l->sizes[i] > longest) longest = l->sizes[i];
     }
-    p->contour_edges = context_allocate(l->context, l->count + 1, sizeof *p->contour_edges);
+    uint32_t *contours = context_allocate(l->context, l->count + 1, sizeof *contours);
+    *(p->test->by_loops ? &p->loops : &p->contour_edges) = contours;
     p->longest = (size_t)longest + 1;
     size_t lanes = parallel_thread_count(l->context->threads);
-    p->scratch = context_allocate(l->context, lanes * p->longest, sizeof *p->scratch);
-    p->keys = context_allocate(l->context, lanes * p->longest, sizeof *p->keys);
-    if (p->contour_edges == NULL || p->scratch == NULL || p->keys == NULL) return false;
+    p->scratch = context_allocate(l->context, lanes * p->longest, p->test->scratch_size);
+    if (contours == NULL || p->scratch == NULL) return false;
     for (uint32_t i = 0; i < p->tree.node_count; i++) {
         p->contour_offsets[i] = total;
         total += l->sizes[i];
     }
     p->contour_offsets[p->tree.node_count] = total;
-    for (uint32_t i = 0; i < tree->root_count; i++) place_contour(p, l, tree->roots[i], UINT32_MAX);
-    for (uint32_t i = 0; i < p->tree.node_count; i++) {
-        if (patch_is_leaf(&tree->nodes[i])) continue;
-        place_contour(p, l, i + 1, i);
-        place_contour(p, l, tree->nodes[i].right, i);
-    }
+    if (p->contour_edges != NULL) place_contours(p, l);
     find_disks(p, mesh, tree, l, visits);
     find_small(p, p->stack);
     sort_by_height(p);
@@ -217,9 +241,10 @@ static array_list list_scratch(contour_lists *l, size_t node_count) {
     return (array_list){{ARRAY(l->begins, node_count), ARRAY(l->sizes, node_count)}};
 }
 
-cscd_status patches_create(const cscd_mesh *mesh, const patch_tree *tree, patches *out) {
+cscd_status patches_create(const cscd_mesh *mesh, const patch_tree *tree, const contour_test *test,
+                           patches *out) {
     cscd_context *context = mesh->context;
-    patches p = {.tree = *tree};
+    patches p = {.tree = *tree, .test = test};
     for (uint32_t i = 0; i < tree->node_count; i++)
         if (tree->nodes[i].height >= p.height_count) p.height_count = tree->nodes[i].height + 1;
     contour_lists lists = {.context = context};
@@ -241,160 +266,8 @@ cscd_status patches_create(const cscd_mesh *mesh, const patch_tree *tree, patche
 void patches_free(cscd_context *context, patches *p) {
     context_free_all(context, list_arrays(p));
     context_free(context, p->contour_edges);
+    context_free(context, p->loops);
     context_free(context, p->scratch);
-    context_free(context, p->keys);
     patch_tree_free(context, &p->tree);
     *p = (patches){0};
-}
-
-/* ---- one interval ---------------------------------------------------------------------------------- */
-
-/* Nodes are decided from the roots down, each by itself once its parent has not passed. So threads take the large
- * nodes wave by wave, each wave the children of the one before, and then the small subtrees, in any order. */
-typedef struct sealing {
-    patches *p;
-    const cscd_mesh *mesh;
-    const double *x0, *x1;
-    bool published;
-    uint32_t wave_end; /* in p->stack */
-    atomic_uint next;
-} sealing;
-
-/* Nodes of one height do not depend on each other. */
-typedef struct cone_work {
-    const sealing *sealing;
-    uint32_t height;
-} cone_work;
-
-/* Sets the cones of up to eight nodes of one height. */
-static void set_cones(const sealing *s, const uint32_t *nodes, uint32_t count, bool leaves) {
-    const float pi = 3.14159265f, limit = s->published ? pi : normal_cone_limit;
-    const normal_cone_kernels *kernels = normal_cone_kernels_of(s->mesh->context);
-    const patch_node *all = s->p->tree.nodes;
-    uint32_t first[LANES], second[LANES];
-    normal_cone cones[LANES];
-    for (uint32_t i = 0; i < LANES; i++) {
-        uint32_t node = nodes[i < count ? i : count - 1];
-        first[i] = leaves ? all[node].triangle : node + 1;
-        second[i] = all[node].right;
-    }
-    if (leaves)
-        kernels->of_triangles((const uint32_t(*)[3])s->mesh->triangles, first, s->x0, s->x1, s->published,
-                              cones);
-    else
-        kernels->of_unions(s->p->cones, first, second, limit, cones);
-    for (uint32_t i = 0; i < count; i++) s->p->cones[nodes[i]] = cones[i];
-}
-
-static void merge_some_cones(void *data, uint32_t index) {
-    const cone_work *work = data;
-    const patches *p = work->sealing->p;
-    uint32_t begin = p->height_begins[work->height] + index * CONES_PER_TASK;
-    uint32_t end = p->height_begins[work->height + 1];
-    if (end - begin > CONES_PER_TASK) end = begin + CONES_PER_TASK;
-    for (uint32_t i = begin; i < end; i += LANES)
-        set_cones(work->sealing, p->by_height + i, end - i < LANES ? end - i : LANES, work->height == 0);
-}
-
-static void merge_cones(const sealing *s) {
-    for (uint32_t h = 0; h < s->p->height_count; h++) {
-        cone_work work = {s, h};
-        uint32_t count = s->p->height_begins[h + 1] - s->p->height_begins[h];
-        parallel_run(s->mesh->context->threads, (count + CONES_PER_TASK - 1) / CONES_PER_TASK,
-                     merge_some_cones, &work);
-    }
-}
-
-static bool passes_test(const sealing *s, uint32_t node, uint32_t lane) {
-    const patches *p = s->p;
-    size_t first = p->contour_offsets[node];
-    const contour_query query = {.mesh = s->mesh,
-                                 .edges = p->contour_edges + first,
-                                 .edge_count = (uint32_t)(p->contour_offsets[node + 1] - first),
-                                 .x0 = s->x0,
-                                 .x1 = s->x1,
-                                 .axis = p->cones[node].axis,
-                                 .skipped = s->published && p->parent_tested[node] ? p->inherited[node] : 0,
-                                 .published = s->published};
-    return contour_stays_simple(&query, p->scratch + lane * p->longest, p->keys + lane * p->longest);
-}
-
-/* Returns true if the children are to be decided, too. */
-static bool decide_node(const sealing *s, uint32_t node, uint32_t lane) {
-    patches *p = s->p;
-    const patch_node *n = &p->tree.nodes[node];
-    if (patch_is_leaf(n)) return false;
-    bool tested = p->cones[node].angle < INFINITY && (s->published || p->disks[node]);
-    p->tested[node] = tested;
-    p->passed[node] = tested && passes_test(s, node, lane);
-    if (p->passed[node]) return false;
-    p->parent_tested[node + 1] = p->parent_tested[n->right] = tested;
-    p->reached[node + 1] = p->reached[n->right] = true;
-    return true;
-}
-
-static void decide_wave(void *data, uint32_t lane) {
-    sealing *s = data;
-    patches *p = s->p;
-    for (;;) {
-        uint32_t at = atomic_fetch_add(&s->next, 1);
-        if (at >= s->wave_end) return;
-        decide_node(s, p->stack[at], lane);
-    }
-}
-
-static void decide_small(void *data, uint32_t lane) {
-    sealing *s = data;
-    patches *p = s->p;
-    for (;;) {
-        uint32_t at = atomic_fetch_add(&s->next, 1);
-        if (at >= p->small_count) return;
-        for (uint32_t i = p->small_roots[at]; i < p->small_ends[at]; i++) {
-            if (p->reached[i]) decide_node(s, i, lane);
-        }
-    }
-}
-
-/* In the stack, the large nodes of a wave follow those of the wave before. */
-static void append_large(patches *p, uint32_t node, uint32_t *end) {
-    if (p->tree.nodes[node].height > SMALL_HEIGHT) p->stack[(*end)++] = node;
-}
-
-static void decide_all(sealing *s) {
-    patches *p = s->p;
-    parallel *threads = s->mesh->context->threads;
-    uint32_t lanes = parallel_thread_count(threads), begin = 0, end = 0;
-    for (uint32_t i = 0; i < p->tree.root_count; i++) {
-        p->reached[p->tree.roots[i]] = true;
-        append_large(p, p->tree.roots[i], &end);
-    }
-    while (begin < end) {
-        s->wave_end = end;
-        atomic_store(&s->next, begin);
-        parallel_run(threads, end - begin < lanes ? end - begin : lanes, decide_wave, s);
-        for (uint32_t last = end; begin < last; begin++) {
-            uint32_t node = p->stack[begin];
-            if (p->passed[node]) continue;
-            append_large(p, node + 1, &end);
-            append_large(p, p->tree.nodes[node].right, &end);
-        }
-    }
-    atomic_store(&s->next, 0);
-    parallel_run(threads, lanes, decide_small, s);
-}
-
-void patches_seal(patches *p, const cscd_mesh *mesh, const double *x0, const double *x1, bool published) {
-    sealing s = {.p = p, .mesh = mesh, .x0 = x0, .x1 = x1, .published = published};
-    size_t size = p->tree.node_count * sizeof *p->passed;
-    merge_cones(&s);
-    memset(p->parent_tested, 0, size);
-    memset(p->passed, 0, size);
-    memset(p->tested, 0, size);
-    memset(p->reached, 0, size);
-    decide_all(&s);
-    p->contours = p->sealed = 0;
-    for (uint32_t i = 0; i < p->tree.node_count; i++) {
-        p->contours += p->tested[i];
-        p->sealed += p->passed[i];
-    }
 }

@@ -65,7 +65,7 @@ static cscd_status make_patches(published_search *s, const cscd_mesh *mesh) {
         }
         tree.nodes[i] = (patch_node){.right = n->second, .triangle = n->triangle, .height = height};
     }
-    return patches_create(mesh, &tree, &s->patches);
+    return patches_create(mesh, &tree, &sweep_test, &s->patches);
 }
 
 static cscd_status build_trees(published_search *s, const own_interval *interval) {

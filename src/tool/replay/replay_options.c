@@ -75,6 +75,8 @@ static const option_row rows[] = {
     {"method", "none|brute", .help = "leave out none; test all pairs of features, slow"},
     {"method", "iccd",
      .help = "leave out pairs by normal cones and contours (Tang et al. 2009): to compare with"},
+    {"method", "cones",
+     .help = "leave out pairs by normal cones and star-shaped contours (Wang et al. 2017): to compare with"},
     {"method", "published|iccd-published", .help = "as published, which loses contacts: for comparison only"},
     {"ours", "STEP,...", read_ours, offsetof(replay_options, ours),
      "with these: take steps from charge instead: motion, starts, representatives, neighbours, tests, boxes, and of the "

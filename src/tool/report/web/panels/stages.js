@@ -16,7 +16,7 @@ export const OTHER = { key: 'other', label: 'other', colour: '#8a94a0' };
 
 /** Does the method have the stage? The tool's table has an X where it does not. */
 export function hasStage(method, key) {
-  const contours = method === 'iccd' || method === 'iccd-published';
+  const contours = method === 'iccd' || method === 'iccd-published' || method === 'cones';
   const oriented = method !== 'none' && method !== 'brute' && !contours;
   if (key === 'contour') return contours;
   return key === 'orientation' || key === 'proof' ? oriented : true;
