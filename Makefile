@@ -157,7 +157,7 @@ MODEL_SOURCES   := $(wildcard models/*.c)
 MODEL_PARTS     := $(wildcard models/*/*.c)
 CPP_MODEL_SOURCES := $(wildcard models/*.cpp)
 CPP_MODEL_PARTS   := $(wildcard models/*/*.cpp)
-BENCHMARK_SOURCES := $(filter-out $(if $(HAS_BASELINES),,benchmarks/published_rules.c),$(wildcard benchmarks/*.c))
+BENCHMARK_SOURCES := $(filter-out $(if $(HAS_BASELINES),,benchmarks/thesis.c benchmarks/thesis_figures.c benchmarks/volumes.c),$(wildcard benchmarks/*.c))
 BENCHMARK_PARTS   := $(filter-out %_simd.c,$(wildcard benchmarks/lib/*.c))
 PEER_SOURCES      := $(wildcard benchmarks/peers/*.c benchmarks/peers/*.cpp)
 SOURCES := $(CORE_SOURCES) $(BASELINE_SOURCES) $(KERNEL_SOURCES) $(COMMON_SOURCES) $(COMMAND_SOURCES) $(NATIVE_SOURCES) $(SUPPORT_SOURCES) $(ROOM_SOURCES) $(FUZZ_SOURCES) \
@@ -233,7 +233,7 @@ COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 # What installs packages; a build that leaves expat out on purpose does not ask for it.
 PACKAGES = BASELINES=$(BASELINES) EXPAT=$(if $(WITHOUT_EXPAT),0,1) .ci/packages
 
-.PHONY: all python wheel wheels test-wheels sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-charge bench-peers bench-instructions referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender blender-extension test-vtk windows windows-libraries windows-zip test-windows test-windows-run test-bridges test-farm test-mutants test-aarch64 test-s390x wasm test-wasm test-riscv64 deb test-deb test-builds cscd-mpi python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces fuzz-readers test-fuzz test-faults FORCE
+.PHONY: all python wheel wheels test-wheels sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench reproduce bench-charge bench-peers bench-instructions referee bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender blender-extension test-vtk windows windows-libraries windows-zip test-windows test-windows-run test-bridges test-farm test-mutants test-aarch64 test-s390x wasm test-wasm test-riscv64 deb test-deb test-builds cscd-mpi python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces fuzz-readers test-fuzz test-faults FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -539,11 +539,13 @@ benchmarks: packages
 # All methods on all recordings; this takes some minutes. BENCH: options of benchmarks/methods, such as --quick.
 BENCH ?= --json build/bench.json
 bench: packages
-	@$(MAKE) --no-print-directory $(BUILD)/benchmarks/methods $(BUILD)/benchmarks/experiments \
-	    $(BUILD)/benchmarks/published_rules
+	@$(MAKE) --no-print-directory $(BUILD)/benchmarks/methods
 	@$(BUILD)/benchmarks/methods $(BENCH)
-	@$(BUILD)/benchmarks/experiments
-	@$(BUILD)/benchmarks/published_rules
+
+# The tables and figures of both theses, with their numbers beside ours: docs/theory/thesis.md.
+reproduce: packages
+	@$(MAKE) --no-print-directory tool $(addprefix $(BUILD)/benchmarks/,thesis thesis_figures volumes experiments sensors)
+	@benchmarks/reproduce.sh $(BUILD)
 
 # The cost of a step by size, scene and machine, on one thread except for the rows on threads; some minutes.
 PERFORMANCE_PROGRAMS := machine scaling threads motion cloth topology callers loose
@@ -648,7 +650,8 @@ help:
 	@echo 'make install   [PREFIX=/usr/local] [DESTDIR=] tool, library, man pages; make install-library; make uninstall'
 	@echo 'make reference   the functions of the library as HTML, in build/reference (installs doxygen)'
 	@echo 'make freeze-api   write down what the public headers promise, when functions or members were added'
-	@echo 'make bench     all methods on all recordings, as in the thesis (BENCH=--quick: 30 s); make bench-plot draws its charts'
+	@echo 'make bench     all methods on all recordings (BENCH=--quick: 30 s); make bench-plot draws its charts'
+	@echo 'make reproduce   the tables and figures of both theses, with their numbers beside ours: eight minutes'
 	@echo 'make bench-charge   errors, times and memory of charges (CHARGE_BENCH=--quick: 20 s); make bench-plot draws its charts'
 	@echo 'make performance   machine limits, cost per triangle by size, threads, bulk motion, cloth, new meshes (PERFORMANCE=--quick)'
 	@echo 'make benchmarks   build all programs that print tables: docs/measurements.md'

@@ -208,8 +208,7 @@ int main(int argument_count, char **arguments) {
         return 2;
     }
     for (int i = 0; i < 3; i++) {
-        if (recording_data_open("build/models", names[i], "build/models", 1, &recordings[i], &error))
-            continue;
+        if (recording_data_open("build/models", names[i], 1, &recordings[i], &error)) continue;
         fprintf(stderr, "experiments: %s\n", error.text);
         return 1;
     }

@@ -257,7 +257,7 @@ static double mean_edge(const cscd_mesh *mesh, const double *x) {
 
 static bool run_recording(const char *name, const bench_options *o, json *out, io_error *error) {
     recording_data r;
-    if (!recording_data_open(models, name, models, o->thread_count, &r, error)) return false;
+    if (!recording_data_open(models, name, o->thread_count, &r, error)) return false;
     frames f = {.name = name, .mesh = r.mesh, .plan = r.charge};
     f.first_timed = 1;
     f.interval_count = 1 + (o->interval_count > 0 ? o->interval_count : o->quick ? 4 : INTERVALS);

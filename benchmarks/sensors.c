@@ -160,7 +160,7 @@ static bool for_scenes(const char *folder, const char *const *names, size_t coun
                        bool (*run)(const recording_data *, io_error *), io_error *error) {
     for (size_t i = 0; i < count; i++) {
         recording_data r;
-        if (!recording_data_open(folder, names[i], folder, 1, &r, error)) return false;
+        if (!recording_data_open(folder, names[i], 1, &r, error)) return false;
         bool good = run(&r, error);
         recording_data_close(&r);
         if (!good) return false;

@@ -21,7 +21,7 @@ static const char help[] =
     "  --quick          pawn-drop, dumbbell-stairs and figure-balls, every tenth interval\n"
     "  --json OUT.json  all rows, and where they come from\n"
     "  --simd LEVEL     auto (default), scalar, avx2, avx512, neon\n"
-    "  --cache FOLDER   recordings and plans (default build/models)\n"
+    "  --cache FOLDER   recordings (default build/models)\n"
     "  --data FOLDER    more recordings, NAME.obj with NAME.pc2 (default: sequences/ in\n"
     "                   CSCD_DATA, if that is set; then also the cloth of frames/)\n";
 

@@ -24,7 +24,7 @@ static void print_row(const contest_result *r, const score *s, const score *none
     printf("  %-16s", r->entrant.name);
     for (int i = 0; i < TIMING_STAGES; i++) print_stage(timing_ms(&s->ms, &timing_rows[i]));
     printf(" %8.0f %8.0f %8.1f %6.1f %6.1f %7.3f %6.3f-%-6.3f", s->pcp, s->tests, s->contacts,
-           s->earliest_lost, s->lost, s->ms.total_ms, r->least_ms, r->most_ms);
+           s->losses.earliest_lost, s->losses.lost, s->ms.total_ms, r->least_ms, r->most_ms);
     print_ratio(none, s);
     print_ratio(iccd, s);
     putchar('\n');
@@ -87,9 +87,9 @@ void methods_report_write(const methods_report *r, json *out, uint32_t thread_co
         json_number(out, "pcp", s.pcp);
         json_number(out, "tests", s.tests);
         json_number(out, "contacts", s.contacts);
-        json_number(out, "earliest_lost", s.earliest_lost);
-        json_number(out, "lost", s.lost);
-        json_number(out, "invented", s.invented);
+        json_number(out, "earliest_lost", s.losses.earliest_lost);
+        json_number(out, "lost", s.losses.lost);
+        json_number(out, "invented", s.losses.invented);
         json_end_object(out);
     }
 }

@@ -109,8 +109,7 @@ bool recording_program_open(const replay_choices *o, const char *scene, recordin
         return recording_data_open_frames(scene, paths[0], paths[1], o->thread_count, out, error);
     if (!own && o->data == NULL)
         return io_fail(error, "%s: neither --data nor CSCD_DATA names a folder with this recording", scene);
-    if (!recording_data_open(own ? o->cache : o->data, scene, o->cache, o->thread_count, out, error))
-        return false;
+    if (!recording_data_open(own ? o->cache : o->data, scene, o->thread_count, out, error)) return false;
     if (out->made_ms > 1000.0)
         printf("\n%s: recording and plan made in %.1f s\n", scene, out->made_ms * 1e-3);
     return true;

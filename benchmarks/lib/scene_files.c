@@ -1,10 +1,9 @@
-/* Recordings that benchmarks replay: all frames in memory, and a plan by charge from its cache. */
+/* Recordings that benchmarks replay: all frames in memory, and a plan by charge, which is made anew. */
 #include "benchmarks/lib/scene_files.h"
 
 #include "models/softbody/recorder.h"
 #include "src/core/timer.h"
 #include "src/io/animation.h"
-#include "src/io/plan_file.h"
 #include "src/io/point_cache_write.h"
 
 #include <stdio.h>
@@ -79,28 +78,15 @@ static bool any_closed(const cscd_mesh *mesh) {
     return false;
 }
 
-static bool make_plan(recording_data *r, const char *folder, const char *cache, io_error *error) {
-    char paths[2][PATH_LENGTH];
-    snprintf(paths[0], PATH_LENGTH, "%s/%s.plan.ply", folder, r->name);
-    snprintf(paths[1], PATH_LENGTH, "%s/%s.plan.ply", cache, r->name);
-    for (int i = 0; i < 2; i++) {
-        if (access(paths[i], F_OK) == 0)
-            return plan_file_read(paths[i], r->context, r->mesh, &r->charge, error);
-    }
+static bool make_plan(recording_data *r, io_error *error) {
     if (!any_closed(r->mesh)) return true;
-    if (cscd_plan_create(r->context, r->mesh,
-                         CSCD_DOUBLES(r->model.positions, cscd_mesh_vertex_count(r->mesh)), NULL,
-                         &r->charge) != CSCD_OK)
-        return io_fail(error, "%s: %s", r->name, cscd_context_detail(r->context));
-    uint8_t *colours = calloc(r->model.triangle_count, 3);
-    bool written =
-        colours != NULL && plan_file_write(paths[1], r->mesh, r->model.positions, r->charge, colours, error);
-    free(colours);
-    return written;
+    const cscd_view *rest = CSCD_DOUBLES(r->model.positions, cscd_mesh_vertex_count(r->mesh));
+    return cscd_plan_create(r->context, r->mesh, rest, NULL, &r->charge) == CSCD_OK ||
+           io_fail(error, "%s: %s", r->name, cscd_context_detail(r->context));
 }
 
-bool recording_data_open(const char *folder, const char *name, const char *cache, uint32_t thread_count,
-                         recording_data *out, io_error *error) {
+bool recording_data_open(const char *folder, const char *name, uint32_t thread_count, recording_data *out,
+                         io_error *error) {
     recording_data r = {.frame_count = 0};
     char model[PATH_LENGTH], frames[PATH_LENGTH];
     double since = timer_now_ms(), ignored = 0.0;
@@ -112,7 +98,7 @@ bool recording_data_open(const char *folder, const char *name, const char *cache
     good = good && mesh_file_read(model, &r.model, error) && read_frames(&r, frames, error);
     good = good && make_mesh(&r, model, thread_count, error);
     timer_lap(&since, &ignored);
-    good = good && make_plan(&r, folder, cache, error);
+    good = good && make_plan(&r, error);
     timer_lap(&since, &r.made_ms);
     if (good)
         *out = r;

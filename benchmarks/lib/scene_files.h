@@ -1,4 +1,4 @@
-/* Recordings that benchmarks replay: all frames in memory, and a plan by charge from its cache. */
+/* Recordings that benchmarks replay: all frames in memory, and a plan by charge, which is made anew. */
 #pragma once
 
 #include "cscd/cscd.h"
@@ -16,11 +16,9 @@ typedef struct recording_data {
     double made_ms;    /* time spent making what was missing: recording, plan */
 } recording_data;
 
-/* Reads folder/name.obj and .pc2, which are recorded first when they are missing and name is a scene of
- * models/softbody; reads the plan from folder/name.plan.ply or cache/name.plan.ply, or makes it and writes
- * it to the cache. */
-bool recording_data_open(const char *folder, const char *name, const char *cache, uint32_t thread_count,
-                         recording_data *out, io_error *error);
+/* Reads folder/name.obj and .pc2, which are recorded first when they are missing and name is a scene of models/softbody. */
+bool recording_data_open(const char *folder, const char *name, uint32_t thread_count, recording_data *out,
+                         io_error *error);
 
 /* Two frames as mesh files, one interval; closed components or not, it has no plan. */
 bool recording_data_open_frames(const char *name, const char *start, const char *end, uint32_t thread_count,

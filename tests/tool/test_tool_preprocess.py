@@ -202,6 +202,19 @@ def test_takes_the_plan_that_it_is_given(scene):
     fails(f"{replay} mesh.ply", "lacks 'comment cscd plan'")
 
 
+def test_a_plan_of_another_version_is_told():
+    """It is taken, since contacts are the same with any plan, but not in silence."""
+    run("preprocess spindle.obj --quiet")
+    mine = Path("spindle.plan.ply").read_bytes()
+    line = mine[mine.index(b"comment cscd made"):mine.index(b"\nelement")]
+    said = "from spindle.plan.ply (made by cscd 9.8.7; cscd preprocess makes it anew)\n"
+    for other, remark in ((line[:line.index(b"version=")] + b"version=9.8.7", said),
+                          (b"comment", "(it does not say which version of cscd made it; cscd preprocess makes it anew)\n"),
+                          (line, "from spindle.plan.ply\n")):
+        Path("spindle.plan.ply").write_bytes(mine.replace(line, other))
+        assert remark in run("replay spindle.obj spindle.pc2").out
+
+
 def test_refuses_the_plan_of_another_mesh():
     """A plan that does not fit is ignored, with a reason, when it lies beside the model; it is an error when it is named."""
     torus(20, 10).write_mesh("torus.obj")

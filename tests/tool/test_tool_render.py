@@ -68,6 +68,8 @@ def test_draws_a_plan():
     region, charge = (render(f"--colour {colour} --size 320x240", "flight.obj") for colour in ("region", "charge"))
     assert region.count((86, 180, 233)) > 5 and region.count((230, 159, 0)) > 5
     assert charge.count((68, 1, 84)) > 5 and charge.count((253, 231, 37)) > 5
+    density = render("--colour density --size 320x240", "flight.obj")
+    assert density != charge and density.count((253, 231, 37)) > 5 and density.count((68, 1, 84)) > 5
     run("preprocess flight.obj --method single -o two.ply --quiet")
     assert render("--colour region --plan two.ply --size 320x240", "flight.obj") != region  # the caption names another method
     run("render flight.obj flight.pc2 --frame 5 --colour region -o picture.png")

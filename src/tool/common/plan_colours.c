@@ -4,6 +4,7 @@
 #include "src/io/growable.h"
 #include "src/tool/picture/colour.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 typedef struct charged_triangle {
@@ -47,6 +48,28 @@ bool plan_colour_charge(const cscd_plan *plan, const cscd_mesh *mesh, uint8_t *c
     for (uint32_t t = 0; t < cscd_mesh_triangle_count(mesh); t++)
         picture_colour_map(ranks[t], colours + (size_t)t * 3);
     free(ranks);
+    return true;
+}
+
+bool plan_colour_density(const cscd_plan *plan, const cscd_mesh *mesh, uint8_t *colours) {
+    const uint32_t components = cscd_mesh_component_count(mesh), count = cscd_mesh_triangle_count(mesh);
+    double(*ends)[2] = io_realloc(NULL, (size_t)components * sizeof *ends);
+    if (ends == NULL) return false;
+    for (uint32_t c = 0; c < components; c++) {
+        ends[c][0] = INFINITY;
+        ends[c][1] = -INFINITY;
+    }
+    for (uint32_t t = 0; t < count; t++) {
+        double *end = ends[cscd_mesh_triangle_component(mesh, t)];
+        end[0] = fmin(end[0], cscd_plan_triangle_charge(plan, t));
+        end[1] = fmax(end[1], cscd_plan_triangle_charge(plan, t));
+    }
+    for (uint32_t t = 0; t < count; t++) {
+        const double *end = ends[cscd_mesh_triangle_component(mesh, t)];
+        const double share = (cscd_plan_triangle_charge(plan, t) - end[0]) / (end[1] - end[0]);
+        picture_colour_map(end[1] > end[0] ? share : 0.0, colours + (size_t)t * 3);
+    }
+    free(ends);
     return true;
 }
 

@@ -12,5 +12,8 @@ double *charge_ranks(const cscd_plan *plan, const cscd_mesh *mesh);
  * False when out of memory. */
 bool plan_colour_charge(const cscd_plan *plan, const cscd_mesh *mesh, uint8_t *colours);
 
+/* The same by the density itself, from the least to the most of the component. */
+bool plan_colour_density(const cscd_plan *plan, const cscd_mesh *mesh, uint8_t *colours);
+
 /* Red, green, blue per triangle: the colour of its region. */
 void plan_colour_regions(const cscd_plan *plan, uint32_t triangle_count, uint8_t *colours);

@@ -40,12 +40,32 @@ static bool method_fits(const plan_request *request, const cscd_plan *plan) {
     return takes_any || cscd_plan_method(plan) == request->method;
 }
 
+static void add_remark(plan_choice *choice, const char *text) {
+    if (choice->remark[0] == '\0') snprintf(choice->remark, sizeof choice->remark, "%s", text);
+}
+
+/* A plan of another version is good, but perhaps not what this version would make. */
+static void remark_version(plan_choice *choice, const cscd_plan *plan) {
+    const char *origin = cscd_plan_describe(plan).origin,
+               *version = origin != NULL ? strstr(origin, "version=") : NULL;
+    char text[160];
+    if (version != NULL && strcmp(version + strlen("version="), cscd_version_string()) == 0) return;
+    if (version == NULL)
+        add_remark(choice, "it does not say which version of cscd made it; cscd preprocess makes it anew");
+    else {
+        snprintf(text, sizeof text, "made by cscd %.40s; cscd preprocess makes it anew",
+                 version + strlen("version="));
+        add_remark(choice, text);
+    }
+}
+
 /* Takes the path over. */
 static void choose_plan(plan_choice *choice, const plan_request *request, cscd_plan *plan, char *path) {
     choice->plan = plan;
     choice->method =
         method_facts_of(request->method).insists_on_plan ? request->method : cscd_plan_method(plan);
     choice->source = path != NULL ? PLAN_FROM_FILE : PLAN_FROM_MEMORY;
+    if (path != NULL) remark_version(choice, plan);
     choice->path = path;
 }
 
@@ -86,10 +106,6 @@ static void try_model_plan(const plan_request *request, const recording *r, plan
         }
     }
     free(path);
-}
-
-static void add_remark(plan_choice *choice, const char *text) {
-    if (choice->remark[0] == '\0') snprintf(choice->remark, sizeof choice->remark, "%s", text);
 }
 
 /* Method auto goes on without the charge where that fails. */

@@ -1,4 +1,4 @@
-/* Paints a picture with a plan, its charge by rank or its regions, and says in a legend what the colours mean. */
+/* Paints a picture with a plan, its charge or its regions, and says in a legend what the colours mean. */
 #include "src/tool/render/plan_picture.h"
 
 #include "src/tool/common/plan_colours.h"
@@ -42,16 +42,19 @@ static void legend_of_regions(contact_picture *picture, plan_legend *legend, con
 }
 
 bool plan_picture_paint(contact_picture *picture, plan_legend *legend, const recording *r,
-                        const cscd_plan *plan, bool by_charge, io_error *error) {
+                        const cscd_plan *plan, colouring by, io_error *error) {
     uint32_t count = cscd_mesh_triangle_count(r->mesh), regions = cscd_plan_region_count(plan);
     bool frame_shown = recording_moves(r);
     size_t used = frame_shown ? strlen(picture->caption) : 0;
     const char *colon = frame_shown ? ": " : "";
     picture->scene.legend = legend->lines;
-    if (by_charge) {
-        snprintf(picture->caption + used, sizeof picture->caption - used, "%scharge by rank", colon);
+    if (by != COLOUR_REGION) {
+        const bool ranks = by == COLOUR_CHARGE;
+        snprintf(picture->caption + used, sizeof picture->caption - used, "%scharge%s", colon,
+                 ranks ? " by rank" : " density");
         legend_of_charge(picture, legend);
-        return plan_colour_charge(plan, r->mesh, picture->colours) || io_fail(error, "out of memory");
+        return (ranks ? plan_colour_charge : plan_colour_density)(plan, r->mesh, picture->colours) ||
+               io_fail(error, "out of memory");
     }
     snprintf(picture->caption + used, sizeof picture->caption - used, "%s%u region%s, %s", colon, regions,
              regions == 1 ? "" : "s", cscd_method_name(cscd_plan_method(plan)));

@@ -1,7 +1,8 @@
-/* Paints a picture with a plan, its charge by rank or its regions, and says in a legend what the colours mean. */
+/* Paints a picture with a plan, its charge or its regions, and says in a legend what the colours mean. */
 #pragma once
 
 #include "src/tool/render/contact_picture.h"
+#include "src/tool/render/render_options.h"
 
 enum { PLAN_LEGEND_REGIONS = 10, PLAN_LEGEND_LINES = PLAN_LEGEND_REGIONS + 2 };
 
@@ -10,9 +11,9 @@ typedef struct plan_legend {
     char texts[PLAN_LEGEND_LINES][40];
 } plan_legend;
 
-/* Colours a loaded picture and writes its caption and legend, which must live until the picture is drawn. */
+/* Colours a loaded picture by CHARGE, DENSITY or REGION, and writes its caption and legend, which must live until the picture is drawn. */
 bool plan_picture_paint(contact_picture *picture, plan_legend *legend, const recording *r,
-                        const cscd_plan *plan, bool by_charge, io_error *error);
+                        const cscd_plan *plan, colouring by, io_error *error);
 
 /* Adds a dot at each detector point, for the mesh at rest. Call it after plan_picture_paint. */
 bool plan_picture_mark(contact_picture *picture, plan_legend *legend, const cscd_plan *plan, io_error *error);

@@ -13,7 +13,8 @@
  * without FRAMES. */
 static bool paint_plan(const render_options *o, const recording *r, contact_picture *picture,
                        plan_legend *legend, io_error *error) {
-    bool by_charge = o->colouring == COLOUR_CHARGE, at_rest = !recording_moves(r);
+    const bool by_charge = o->colouring == COLOUR_CHARGE || o->colouring == COLOUR_DENSITY,
+               at_rest = !recording_moves(r);
     if (!by_charge && o->colouring != COLOUR_REGION) return true;
     plan_request request = {.model_path = recording_options_path(&o->source),
                             .plan_path = o->plan_path,
@@ -21,7 +22,7 @@ static bool paint_plan(const render_options *o, const recording *r, contact_pict
                             .insists_on_plan = true};
     plan_choice choice;
     if (!plan_choose(&request, r, &choice, error)) return false;
-    bool painted = plan_picture_paint(picture, legend, r, choice.plan, by_charge, error) &&
+    bool painted = plan_picture_paint(picture, legend, r, choice.plan, o->colouring, error) &&
                    (by_charge || !at_rest || plan_picture_mark(picture, legend, choice.plan, error));
     plan_choice_free(&choice);
     return painted;

@@ -8,7 +8,8 @@
 
 static bool read_colour(const char *text, void *place) {
     int colour;
-    if (!parse_choice(text, (const char *const[]){"plain", "contacts", "charge", "region"}, 4, &colour))
+    if (!parse_choice(text, (const char *const[]){"plain", "contacts", "charge", "density", "region"}, 5,
+                      &colour))
         return false;
     *(colouring *)place = (colouring)colour;
     return true;
@@ -36,6 +37,7 @@ static const option_row rows[] = {
          "the contacts of the interval from frame K to K + 1 on the surface at its start: the triangles that "
          "contain a feature in contact, and a dot at each contact"},
     {"colour", "charge", .help = "charge density by rank, dark the least"},
+    {"colour", "density", .help = "charge density from the least to the most of each component"},
     {"colour", "region", .help = "the regions of the plan; of a mesh at rest a dot at each detector point"},
     {"plan", "PLAN.ply", read_text, offsetof(render_options, plan_path),
      "which plan (default as for replay: MODEL.plan.ply, or made on the way)"},

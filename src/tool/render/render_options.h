@@ -6,7 +6,13 @@
 #include "src/tool/common/up_axis.h"
 #include "src/tool/picture/scene.h"
 
-typedef enum colouring { COLOUR_PLAIN, COLOUR_CONTACTS, COLOUR_CHARGE, COLOUR_REGION } colouring;
+typedef enum colouring {
+    COLOUR_PLAIN,
+    COLOUR_CONTACTS,
+    COLOUR_CHARGE,
+    COLOUR_DENSITY,
+    COLOUR_REGION
+} colouring;
 
 typedef struct render_options {
     recording_options source;
