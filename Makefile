@@ -651,7 +651,7 @@ help:
 	@echo 'make reference   the functions of the library as HTML, in build/reference (installs doxygen)'
 	@echo 'make freeze-api   write down what the public headers promise, when functions or members were added'
 	@echo 'make bench     all methods on all recordings (BENCH=--quick: 30 s); make bench-plot draws its charts'
-	@echo 'make reproduce   the tables and figures of both theses, with their numbers beside ours: eight minutes'
+	@echo 'make reproduce   the tables and figures of both theses, with their numbers beside ours: five minutes'
 	@echo 'make bench-charge   errors, times and memory of charges (CHARGE_BENCH=--quick: 20 s); make bench-plot draws its charts'
 	@echo 'make performance   machine limits, cost per triangle by size, threads, bulk motion, cloth, new meshes (PERFORMANCE=--quick)'
 	@echo 'make benchmarks   build all programs that print tables: docs/measurements.md'

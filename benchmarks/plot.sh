@@ -15,7 +15,7 @@ draw_methods() {
 python3 - "$json" "$work" <<'PYTHON'
 import json, sys
 rows = json.load(open(sys.argv[1]))["rows"]
-methods = ["none", "iccd", "single", "charge", "charge+"]
+methods = ["none", "iccd", "cones", "single", "charge", "charge+"]
 stages = ["bvh_ms", "orient_ms", "cnc_ms", "traverse_ms", "contact_ms", "proof_ms"]
 own = ["pawn-drop", "pawn-drop-free", "dumbbell-stairs", "dumbbell-stairs-free", "figure-balls", "figure-balls-free"]
 scenes = [s for s in own if any(r["scene"] == s for r in rows)]
@@ -35,7 +35,7 @@ with open(sys.argv[2] + "/pairs.dat", "w") as out:
         out.write(f'"{scene}" ' + " ".join(f"{v:.3f}" for v in values) + "\n")
 with open(sys.argv[2] + "/labels.gp", "w") as out:
     for i, scene in enumerate(scenes):
-        out.write(f'set label "{scene}" at {6 * i + 2}, graph 0.97 center\n')
+        out.write(f'set label "{scene}" at {7 * i + 2.5}, graph 0.97 center\n')
 PYTHON
 
 gnuplot <<GNUPLOT
@@ -70,9 +70,9 @@ set style histogram clustered gap 1
 set boxwidth 0.9
 set ylabel "potentially colliding pairs per triangle"
 set logscale y
-set yrange [0.05:20]
+set yrange [0.02:20]
 set xtics norotate
-plot for [i=2:6] "$work/pairs.dat" using i:xtic(1) title columnheader(i)
+plot for [i=2:7] "$work/pairs.dat" using i:xtic(1) title columnheader(i)
 GNUPLOT
 echo "$images/bench-stages.png, $images/bench-pairs.png"
 }

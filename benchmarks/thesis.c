@@ -36,7 +36,7 @@ static score mean_of(const thesis_table *t, uint32_t i) {
     return score_mean(t->results[i].classes, CLASS_COUNT);
 }
 
-/* ---- tables 5.2 to 5.4, figure 6.4 --------------------------------------------------------------------- */
+/* ---- figures 5.2 to 5.4 and 6.4 --------------------------------------------------------------------- */
 
 static void print_stage(double ms, const char *format) {
     if (ms > 0.0)

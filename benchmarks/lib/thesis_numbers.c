@@ -1,4 +1,4 @@
-/* Measurements of the thesis: tables 5.2 to 5.4, and figure 6.4. */
+/* Measurements of the thesis: figures 5.2 to 5.4 and 6.4. */
 #include "benchmarks/lib/thesis_numbers.h"
 
 #include <stddef.h>
@@ -6,7 +6,7 @@
 
 static const thesis_experiment experiments[] = {
     {"pawn-drop",
-     "Pawn, 5,130 triangles (table 5.2)",
+     "Pawn, 5,130 triangles (figure 5.2)",
      3,
      {{0, 3.0, 0.9, -1, 1.1, 1.8, 2281, 8.3, 8.3, 8.3},
       {1, 3.0, 0.8, -1, 1.5, 1.5, 1925, 8.4, 8.3, 8.4},
@@ -16,7 +16,7 @@ static const thesis_experiment experiments[] = {
       {5, 3.0, 0.8, -1, 1.6, 1.7, 1956, 8.6, 8.4, 9.1},
       {-1, 3.1, -1, 7.3, 3.2, 2.7, 3089, 17.1, 17.1, 17.1}}},
     {"dumbbell-stairs",
-     "Dumbbell, 1,710 triangles (table 5.3)",
+     "Dumbbell, 1,710 triangles (figure 5.3)",
      2,
      {{0, 1.0, 0.3, -1, 0.2, 0.3, 339, 2.3, 2.3, 2.3},
       {1, 1.1, 0.3, -1, 0.1, 0.1, 132, 2.3, 2.1, 2.4},
@@ -25,7 +25,7 @@ static const thesis_experiment experiments[] = {
       {4, 1.1, 0.3, -1, 0.5, 0.5, 427, 2.9, 2.7, 3.3},
       {-1, 0.9, -1, 2.3, 0.5, 0.5, 473, 4.5, 4.5, 4.5}}},
     {"figure-balls",
-     "Luigi, 4,014 triangles (table 5.4)",
+     "Luigi, 4,014 triangles (figure 5.4)",
      5,
      {{0, 2.3, 0.6, -1, 0.9, 0.7, 766, 5.9, 5.9, 5.9},
       {3, 2.3, 0.6, -1, 1.0, 0.8, 800, 6.0, 5.8, 6.0},

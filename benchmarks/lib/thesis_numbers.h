@@ -1,4 +1,4 @@
-/* Measurements of the thesis: tables 5.2 to 5.4, and figure 6.4. */
+/* Measurements of the thesis: figures 5.2 to 5.4 and 6.4. */
 #pragma once
 
 /* Milliseconds, as means per frame; a negative stage is not part of the method. The range of the total
