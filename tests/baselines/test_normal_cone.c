@@ -49,6 +49,28 @@ static normal_cone union_of(const normal_cone *a, const normal_cone *b) {
     return cone;
 }
 
+/* One cone of up to eight triangles, which stand in the lanes again and again. */
+static normal_cone cone_of_all(const moving_triangle *all, uint32_t count) {
+    uint32_t triangles[LANES][3], which[LANES];
+    double x0[LANES * 9], x1[LANES * 9];
+    normal_cone cone = {{0.0f, 0.0f, 0.0f}, 0.0f};
+    for (uint32_t i = 0; i < LANES; i++) {
+        which[i] = i % count;
+        for (uint32_t k = 0; k < 3; k++) triangles[i][k] = 3 * i + k;
+        if (i >= count) continue;
+        memcpy(x0 + 9 * i, all[i].x0, sizeof all[i].x0);
+        memcpy(x1 + 9 * i, all[i].x1, sizeof all[i].x1);
+    }
+    for (int level = 0; level < LEVEL_COUNT; level++) {
+        normal_cone other;
+        if (contexts[level] == NULL) continue;
+        normal_cone_kernels_of(contexts[level])
+            ->of_eight((const uint32_t(*)[3])triangles, which, x0, x1, level > 0 ? &other : &cone);
+        if (level > 0) assert_memory_equal(&other, &cone, sizeof cone);
+    }
+    return cone;
+}
+
 /* ---- the reference ------------------------------------------------------------------------------------- */
 
 /* Computes the normal up to a factor. */
@@ -142,10 +164,10 @@ TEST(published_cones_lose_normals) {
     assert_true(lost > 200);
 }
 
-/* Unites the cones of eight triangles in a tree, as the nodes of the hierarchy do. */
+/* Unites the cones of eight triangles in a tree, as the nodes of the hierarchy do, and makes one of all. */
 TEST(unions_hold_all_normals) {
-    uint32_t exist = 0;
-    long double most = -10.0L;
+    uint32_t exist = 0, exist_of_all = 0;
+    long double most = -10.0L, most_of_all = -10.0L;
     random_stream random = stream_start(3);
     for (int i = 0; i < TRIANGLES / 8; i++) {
         moving_triangle first = random_triangle(&random, 0.2), all[8];
@@ -162,12 +184,19 @@ TEST(unions_hold_all_normals) {
         for (int step = 1; step < 8; step *= 2) {
             for (int j = 0; j < 8; j += 2 * step) cones[j] = union_of(&cones[j], &cones[j + step]);
         }
+        const normal_cone of_all = cone_of_all(all, 8);
+        if (normal_cone_exists(&of_all)) {
+            exist_of_all++;
+            for (int j = 0; j < 8; j++) most_of_all = fmaxl(most_of_all, excess_angle(&of_all, &all[j]));
+        }
         if (!normal_cone_exists(&cones[0])) continue;
         exist++;
         for (int j = 0; j < 8; j++) most = fmaxl(most, excess_angle(&cones[0], &all[j]));
     }
-    print_message("  %u unions of %d; the nearest normal is %.1Le inside\n", exist, TRIANGLES / 8, -most);
+    print_message("  %u unions of %d; the nearest normal is %.1Le inside; %u of all, %.1Le\n", exist,
+                  TRIANGLES / 8, -most, exist_of_all, -most_of_all);
     assert_true(4 * exist > TRIANGLES / 8 && most < 0.0L);
+    assert_true(exist_of_all >= exist && most_of_all < 0.0L);
 }
 
 /* Makes a triangle at rest whose normal has an angle to z in a direction. */
@@ -189,14 +218,17 @@ TEST(opposite_normals_have_no_cone) {
         double direction = stream_between(&random, 0.0, 6.3);
         moving_triangle m[2] = {tilted_triangle(angle, direction), tilted_triangle(-angle, direction)};
         normal_cone a = cone_of(&m[0]), b = cone_of(&m[1]);
-        normal_cone both = union_of(&a, &b);
-        assert_true(angle > 1.569 || normal_cone_exists(&both));
-        if (!normal_cone_exists(&both)) continue;
-        exist++;
-        assert_true(angle < (double)normal_cone_limit);
-        for (int j = 0; j < 2; j++) assert_true(excess_angle(&both, &m[j]) < 0.0L);
+        const normal_cone both[2] = {union_of(&a, &b), cone_of_all(m, 2)};
+        for (int way = 0; way < 2; way++) {
+            assert_true(angle > 1.569 || normal_cone_exists(&both[way]));
+            if (!normal_cone_exists(&both[way])) continue;
+            exist++;
+            assert_true(way == 1 ||
+                        angle < (double)normal_cone_limit); /* that of all may look the other way */
+            for (int j = 0; j < 2; j++) assert_true(excess_angle(&both[way], &m[j]) < 0.0L);
+        }
     }
-    assert_true(2 * exist > TRIANGLES);
+    assert_true(exist > TRIANGLES);
 }
 
 TEST(scales_change_no_cone) {
@@ -239,6 +271,15 @@ TEST(without_area_there_is_no_cone) {
         assert_false(normal_cone_exists(&cone));
         cone = union_of(&up, &cone);
         assert_false(normal_cone_exists(&cone));
+        moving_triangle among[8];
+        for (int j = 0; j < 8; j++) {
+            memcpy(among[j].x0, j == 5 ? ends[i][0] : flat, sizeof flat);
+            memcpy(among[j].x1, j == 5 ? ends[i][1] : flat, sizeof flat);
+        }
+        cone = cone_of_all(among, 8);
+        assert_false(normal_cone_exists(&cone));
+        cone = cone_of_all(among, 5);
+        assert_true(normal_cone_exists(&cone) && cone.angle < 1e-5f);
     }
     normal_cone quarter = cone_between(flat, steep, false);
     assert_true(normal_cone_exists(&quarter) && quarter.angle > 0.785398f && quarter.angle < 0.792f);

@@ -15,23 +15,18 @@ enum { SCENES_PER_FAMILY = PACED(20, 3), BODY_TRIANGLES = PACED(3000, 600) };
 
 static scene s; /* large; one test at a time */
 
-/* A mesh, its tree of one region, and the tree's patches, with edges and with loops. */
+/* A mesh, its tree of one region, and the patches of one kind of test. */
 typedef struct patch_subject {
     cscd_context *context;
     cscd_mesh *mesh;
     uint32_t *regions;
     double *weights;
     bvh bvh;
-    patches patches, looped;
+    patches patches;
 } patch_subject;
 
-static void add_patches(const patch_subject *f, const contour_test *test, patches *out) {
-    patch_tree tree;
-    assert_int_equal(patch_tree_build(&f->bvh, &tree), CSCD_OK);
-    assert_int_equal(patches_create(f->mesh, &tree, test, out), CSCD_OK);
-}
-
-static patch_subject subject_create(cscd_object_desc desc, const double *positions) {
+static patch_subject subject_create(cscd_object_desc desc, const double *positions,
+                                    const contour_test *test) {
     patch_subject f = {0};
     assert_int_equal(cscd_context_create(NULL, &f.context), CSCD_OK);
     assert_int_equal(cscd_mesh_create(f.context, &desc, 1, &f.mesh), CSCD_OK);
@@ -40,14 +35,14 @@ static patch_subject subject_create(cscd_object_desc desc, const double *positio
     assert_true(f.regions != NULL && f.weights != NULL);
     bvh_regions regions = {f.regions, f.weights, 1};
     assert_int_equal(bvh_build(f.mesh, regions, positions, BOX_AXES, &f.bvh), CSCD_OK);
-    add_patches(&f, &sweep_test, &f.patches);
-    add_patches(&f, &star_test, &f.looped);
+    patch_tree tree;
+    assert_int_equal(patch_tree_build(&f.bvh, test->leaf_height, &tree), CSCD_OK);
+    assert_int_equal(patches_create(f.mesh, &tree, test, &f.patches), CSCD_OK);
     return f;
 }
 
 static void subject_destroy(patch_subject *f) {
     patches_free(f->context, &f->patches);
-    patches_free(f->context, &f->looped);
     bvh_free(&f->bvh);
     free(f->weights);
     free(f->regions);
@@ -62,7 +57,7 @@ static void subject_destroy(patch_subject *f) {
 typedef struct reference_patches {
     const cscd_mesh *mesh;
     uint32_t *triangles, triangle_count;
-    uint32_t *edge_counts, *roots, *vertex_seen;
+    uint32_t *edge_counts, *roots, *vertex_seen, *outline;
 } reference_patches;
 
 static uint32_t root_of(uint32_t *roots, uint32_t v) {
@@ -70,14 +65,19 @@ static uint32_t root_of(uint32_t *roots, uint32_t v) {
     return v;
 }
 
+/* The triangles of the leaves below a node, which are those that it says. */
 static void collect_reference(const patch_tree *tree, uint32_t node, reference_patches *r) {
     const patch_node *n = &tree->nodes[node];
+    const uint32_t before = r->triangle_count;
     if (patch_is_leaf(n)) {
-        r->triangles[r->triangle_count++] = n->triangle;
+        for (uint32_t i = 0; i < n->count; i++)
+            r->triangles[r->triangle_count++] = tree->triangles[n->first + i];
         return;
     }
     collect_reference(tree, node + 1, r);
     collect_reference(tree, n->right, r);
+    assert_int_equal(r->triangle_count - before, n->count);
+    assert_memory_equal(r->triangles + before, tree->triangles + n->first, n->count * sizeof *r->triangles);
 }
 
 /* Counts vertices, edges and faces; returns V - E + F. */
@@ -156,14 +156,8 @@ static void check_contour(const patches *p, const reference_patches *r, uint32_t
         above = p->contour_edges + p->contour_offsets[parent];
         above_size = p->contour_offsets[parent + 1] - p->contour_offsets[parent];
     }
-    for (uint32_t i = 0; i < r->triangle_count; i++) {
-        for (int k = 0; k < 3; k++) {
-            uint32_t edge = r->mesh->triangle_edges[r->triangles[i]][k];
-            assert_true(list_contains(own, size, edge) == (r->edge_counts[edge] % 2 == 1));
-        }
-    }
     for (size_t i = 0; i < size; i++) {
-        assert_true(r->edge_counts[own[i]] > 0 && !list_contains(own, i, own[i]));
+        assert_true(r->edge_counts[own[i]] % 2 == 1 && !list_contains(own, i, own[i]));
         assert_true(list_contains(above, above_size, own[i]) == (i < p->inherited[node]));
     }
 }
@@ -189,6 +183,17 @@ static void check_loop(const patches *p, const reference_patches *r, uint32_t no
     }
 }
 
+/* Lists the edges with an odd number of triangles; returns how many there are. */
+static uint32_t list_outline(reference_patches *r) {
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < 3 * r->triangle_count; i++) {
+        uint32_t edge = r->mesh->triangle_edges[r->triangles[i / 3]][i % 3];
+        if (r->edge_counts[edge] % 2 == 1 && !list_contains(r->outline, count, edge))
+            r->outline[count++] = edge;
+    }
+    return count;
+}
+
 typedef struct patch_tally {
     uint32_t nodes, disks;
 } patch_tally;
@@ -196,16 +201,17 @@ typedef struct patch_tally {
 static void check_node(const patch_subject *f, reference_patches *r, uint32_t node, uint32_t parent,
                        patch_tally *sum) {
     const patches *p = &f->patches;
-    size_t begin = p->contour_offsets[node], size = p->contour_offsets[node + 1] - begin;
+    size_t size = p->contour_offsets[node + 1] - p->contour_offsets[node];
     r->triangle_count = 0;
     collect_reference(&f->patches.tree, node, r);
     int64_t euler = euler_characteristic(r);
-    check_contour(p, r, node, parent);
-    bool disk = euler == 1 && size > 0 && is_clean(f->mesh, r->triangles[0]) && is_connected(r) &&
-                is_one_loop(f->mesh, p->contour_edges + begin, (uint32_t)size);
-    assert_true(p->disks[node] == disk && f->looped.disks[node] == disk);
-    assert_int_equal(f->looped.contour_offsets[node + 1] - f->looped.contour_offsets[node], size);
-    if (disk) check_loop(&f->looped, r, node);
+    if (p->contour_edges != NULL) check_contour(p, r, node, parent);
+    const uint32_t outlined = list_outline(r);
+    bool disk = euler == 1 && outlined > 0 && is_clean(f->mesh, r->triangles[0]) && is_connected(r) &&
+                is_one_loop(f->mesh, r->outline, outlined);
+    assert_true(p->disks[node] == disk);
+    assert_int_equal(size, outlined);
+    if (p->loops != NULL && p->disks[node]) check_loop(p, r, node);
     for (uint32_t i = 0; i < r->triangle_count; i++) {
         for (int k = 0; k < 3; k++) {
             r->vertex_seen[f->mesh->triangles[r->triangles[i]][k]] = 0;
@@ -213,20 +219,21 @@ static void check_node(const patch_subject *f, reference_patches *r, uint32_t no
         }
     }
     sum->nodes++;
-    sum->disks += disk;
+    sum->disks += p->disks[node];
 }
 
-static patch_tally check_mesh(cscd_object_desc desc, const double *positions) {
+static patch_tally check_patches(cscd_object_desc desc, const double *positions, const contour_test *test) {
     patch_tally sum = {0};
-    patch_subject f = subject_create(desc, positions);
+    patch_subject f = subject_create(desc, positions, test);
     reference_patches r = {.mesh = f.mesh};
     uint32_t *parents = calloc(f.patches.tree.node_count, sizeof *parents);
     r.triangles = calloc(desc.triangle_count, sizeof *r.triangles);
     r.edge_counts = calloc(f.mesh->edge_count, sizeof *r.edge_counts);
     r.roots = calloc(desc.vertex_count, sizeof *r.roots);
+    r.outline = calloc((size_t)desc.triangle_count * 3, sizeof *r.outline);
     r.vertex_seen = calloc(desc.vertex_count, sizeof *r.vertex_seen);
     assert_true(parents != NULL && r.triangles != NULL && r.edge_counts != NULL && r.roots != NULL &&
-                r.vertex_seen != NULL);
+                r.vertex_seen != NULL && r.outline != NULL);
     parents[0] = UINT32_MAX;
     for (uint32_t i = 0; i < f.patches.tree.node_count; i++) {
         if (!patch_is_leaf(&f.patches.tree.nodes[i]))
@@ -237,9 +244,16 @@ static patch_tally check_mesh(cscd_object_desc desc, const double *positions) {
     free(r.triangles);
     free(r.edge_counts);
     free(r.roots);
+    free(r.outline);
     free(r.vertex_seen);
     subject_destroy(&f);
     return sum;
+}
+
+/* Returns what is found with a triangle a leaf. */
+static patch_tally check_mesh(cscd_object_desc desc, const double *positions) {
+    check_patches(desc, positions, &star_test);
+    return check_patches(desc, positions, &sweep_test);
 }
 
 TEST(disks_of_scenes) {
@@ -306,7 +320,8 @@ TEST(patches_of_any_shape) {
 static bool root_is_disk(const shape *given) {
     double positions[3 * 400] = {0};
     patch_subject f = subject_create(
-        cscd_object_of_triangles(given->vertex_count, given->triangle_count, given->triangles[0]), positions);
+        cscd_object_of_triangles(given->vertex_count, given->triangle_count, given->triangles[0]), positions,
+        &sweep_test);
     bool disk = f.patches.disks[0];
     subject_destroy(&f);
     return disk;
@@ -356,7 +371,7 @@ TEST(patches_are_hidden_in_their_tree) {
     bvh *f = &r.bvh;
     assert_int_equal(f->tree_count, 2);
     assert_true(bvh_allow_hiding(f));
-    assert_int_equal(patch_tree_build(f, &tree), CSCD_OK);
+    assert_int_equal(patch_tree_build(f, 0, &tree), CSCD_OK);
     bool *sealed = calloc(tree.node_count, sizeof *sealed);
     assert_non_null(sealed);
     for (uint32_t i = 0; i < tree.node_count; i++) {

@@ -30,8 +30,9 @@ typedef struct contour_query {
 
 /* A way to test contours that are one loop. */
 typedef struct contour_test {
-    bool by_loops;       /* it takes the vertices in order, else the edges */
-    size_t scratch_size; /* bytes per edge */
+    bool by_loops;        /* it takes the vertices in order, else the edges */
+    uint32_t leaf_height; /* of the trees whose nodes it tests: see patch_tree_build */
+    size_t scratch_size;  /* bytes per edge */
     bool (*passes)(const contour_query *query, void *scratch);
 } contour_test;
 

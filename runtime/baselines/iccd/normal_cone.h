@@ -25,6 +25,10 @@ typedef struct normal_cone_kernels {
     void (*of_triangles)(const uint32_t (*triangles)[3], const uint32_t which[LANES], const double *x0,
                          const double *x1, bool published, normal_cone out[LANES]);
 
+    /* A cone of all eight, as of_triangles with published = false. */
+    void (*of_eight)(const uint32_t (*triangles)[3], const uint32_t which[LANES], const double *x0,
+                     const double *x1, normal_cone *out);
+
     /* The cones that each hold two of those given (thesis, equations 5.1 and 5.2); there is none where it would be wider
      * than the limit. */
     void (*of_unions)(const normal_cone *cones, const uint32_t a[LANES], const uint32_t b[LANES], float limit,

@@ -94,24 +94,52 @@ static uint32_t load_directions(const uint32_t (*triangles)[3], const uint32_t w
     return good;
 }
 
+/* The largest of the angles between the axis and directions. Lanes in which one is more than a right angle leave *exist. */
+static f32x8 widest_angle(const f32x8 axis[3], f32x8 (*directions)[3], int count, uint32_t *exist) {
+    f32x8 angle = f32x8_all(slack);
+    for (int i = 0; i < count; i++) {
+        uint32_t wide;
+        angle =
+            f32x8_max(angles_between(axis, (const f32x8 *)directions[i], &wide) + f32x8_all(slack), angle);
+        *exist &= ~wide;
+    }
+    return angle;
+}
+
 static void cones_of_triangles(const uint32_t (*triangles)[3], const uint32_t which[LANES], const double *x0,
                                const double *x1, bool published, normal_cone out[LANES]) {
     int count = published ? 2 : 3;
-    f32x8 directions[3][3], axis[3], angle = f32x8_all(slack);
+    f32x8 directions[3][3], axis[3];
     uint32_t exist = load_directions(triangles, which, x0, x1, count, directions);
     for (int k = 0; k < 3; k++) {
         axis[k] = directions[0][k];
         for (int i = 1; i < count; i++) axis[k] += directions[i][k];
     }
     exist &= normalize_sums(axis);
-    for (int i = 0; i < count; i++) {
-        uint32_t wide;
-        angle =
-            f32x8_max(angles_between(axis, (const f32x8 *)directions[i], &wide) + f32x8_all(slack), angle);
-        exist &= ~wide;
-    }
+    const f32x8 angle = widest_angle(axis, directions, count, &exist);
     if (!published) exist &= f32x8_below(angle, f32x8_all(normal_cone_limit));
     store_cones(axis, angle, exist, out);
+}
+
+/* The axis is the mean direction of the vectors of all eight. */
+static void cone_of_eight(const uint32_t (*triangles)[3], const uint32_t which[LANES], const double *x0,
+                          const double *x1, normal_cone *out) {
+    f32x8 directions[3][3], axis[3];
+    uint32_t exist = load_directions(triangles, which, x0, x1, 3, directions);
+    for (int k = 0; k < 3; k++) {
+        const f32x8 lanes = directions[0][k] + directions[1][k] + directions[2][k];
+        float sum = 0.0f;
+        for (int lane = 0; lane < LANES; lane++) sum += lanes[lane];
+        axis[k] = f32x8_all(sum);
+    }
+    exist &= normalize_sums(axis);
+    const f32x8 angle = widest_angle(axis, directions, 3, &exist);
+    exist &= f32x8_below(angle, f32x8_all(normal_cone_limit));
+    *out = (normal_cone){{0.0f, 0.0f, 0.0f}, INFINITY};
+    if (exist != ALL_LANES) return;
+    for (int k = 0; k < 3; k++) out->axis[k] = axis[k][0];
+    out->angle = angle[0];
+    for (int lane = 1; lane < LANES; lane++) out->angle = out->angle < angle[lane] ? angle[lane] : out->angle;
 }
 
 /* ---- unions ------------------------------------------------------------------------------------------------ */
@@ -140,4 +168,5 @@ static void cones_of_unions(const normal_cone *cones, const uint32_t a[LANES], c
     store_cones(axis, angle, exist, out);
 }
 
-const normal_cone_kernels SIMD_NAME(normal_cone_kernels) = {cones_of_triangles, cones_of_unions};
+const normal_cone_kernels SIMD_NAME(normal_cone_kernels) = {cones_of_triangles, cone_of_eight,
+                                                            cones_of_unions};

@@ -22,13 +22,23 @@ static bool reserve_edges(contour_lists *l, size_t more) {
     return true;
 }
 
-static void sort_three(uint32_t e[3]) {
-    for (int i = 0; i < 3; i++) {
-        int a = i == 1 ? 1 : 0, b = a + 1;
-        uint32_t low = e[a] < e[b] ? e[a] : e[b], high = e[a] < e[b] ? e[b] : e[a];
-        e[a] = low;
-        e[b] = high;
+/* Sorts the edges of a few triangles, and leaves out those that two of them have. */
+static uint32_t contour_of_leaf(const cscd_mesh *mesh, const uint32_t *triangles, uint32_t count,
+                                uint32_t *out) {
+    uint32_t size = 0;
+    for (uint32_t i = 0; i < 3 * count; i++) {
+        uint32_t edge = mesh->triangle_edges[triangles[i / 3]][i % 3], at = size;
+        while (at > 0 && out[at - 1] > edge) at--;
+        if (at > 0 && out[at - 1] == edge) {
+            memmove(out + at - 1, out + at, (size - at) * sizeof *out);
+            size--;
+            continue;
+        }
+        memmove(out + at + 1, out + at, (size - at) * sizeof *out);
+        out[at] = edge;
+        size++;
     }
+    return size;
 }
 
 /* Merges two ascending lists and leaves out what is in both. So the contours of two patches become the contour of the
@@ -52,10 +62,8 @@ static uint32_t difference_of(const uint32_t *a, uint32_t a_count, const uint32_
 static bool list_contour(contour_lists *l, const cscd_mesh *mesh, const patch_tree *tree, uint32_t node) {
     const patch_node *n = &tree->nodes[node];
     if (patch_is_leaf(n)) {
-        if (!reserve_edges(l, 3)) return false;
-        memcpy(l->edges + l->count, mesh->triangle_edges[n->triangle], 3 * sizeof(uint32_t));
-        sort_three(l->edges + l->count);
-        l->sizes[node] = 3;
+        if (!reserve_edges(l, (size_t)n->count * 3)) return false;
+        l->sizes[node] = contour_of_leaf(mesh, tree->triangles + n->first, n->count, l->edges + l->count);
     } else {
         uint32_t left = node + 1, right = n->right;
         if (!reserve_edges(l, (size_t)l->sizes[left] + l->sizes[right])) return false;
@@ -73,16 +81,14 @@ typedef struct vertex_visit {
 } vertex_visit;
 
 /* Is a patch of one oriented manifold component a disk? It is if one loop runs through all edges of its contour and
- * its Euler characteristic is that of a disk. Leaves are the patch's triangles. */
-static bool is_disk(const cscd_mesh *mesh, const uint32_t *contour, uint32_t size, const patch_node *first,
-                    const patch_node *end, vertex_visit *visits, uint32_t stamp) {
-    uint32_t vertices = 0, triangles = 0, component = UINT32_MAX;
-    for (const patch_node *n = first; n < end; n++) {
-        if (!patch_is_leaf(n)) continue;
-        if (triangles++ == 0) component = mesh->triangle_components[n->triangle];
-        if (mesh->triangle_components[n->triangle] != component) return false;
+ * its Euler characteristic is that of a disk. */
+static bool is_disk(const cscd_mesh *mesh, const uint32_t *contour, uint32_t size, const uint32_t *patch,
+                    uint32_t triangles, vertex_visit *visits, uint32_t stamp) {
+    uint32_t vertices = 0;
+    for (uint32_t t = 0; t < triangles; t++) {
+        if (mesh->triangle_components[patch[t]] != mesh->triangle_components[patch[0]]) return false;
         for (int i = 0; i < 3; i++) {
-            vertex_visit *v = &visits[mesh->triangles[n->triangle][i]];
+            vertex_visit *v = &visits[mesh->triangles[patch[t]][i]];
             if (v->seen == stamp) continue;
             *v = (vertex_visit){.seen = stamp};
             vertices++;
@@ -109,17 +115,16 @@ static bool is_disk(const cscd_mesh *mesh, const uint32_t *contour, uint32_t siz
     return length == size;
 }
 
-/* Writes the vertices of a disk's loop in order: the patch is on their left, seen from where its triangles are counter-clockwise.
- * visits: as is_disk has left them. */
-static void write_loop(const cscd_mesh *mesh, uint32_t edge, uint32_t size, const patch_node *first,
-                       const patch_node *end, const vertex_visit *visits, uint32_t *out) {
+/* Writes the vertices of a disk's loop in order: the patch is on their left, seen from where its triangles are
+ * counter-clockwise. visits: as is_disk has left them. */
+static void write_loop(const cscd_mesh *mesh, uint32_t edge, uint32_t size, const uint32_t *patch,
+                       uint32_t triangles, const vertex_visit *visits, uint32_t *out) {
     uint32_t before = 0, at = 0;
-    for (const patch_node *n = first; n < end; n++) {
-        for (int k = 0; patch_is_leaf(n) && k < 3; k++) {
-            if (mesh->triangle_edges[n->triangle][k] != edge) continue;
-            before = mesh->triangles[n->triangle][k];
-            at = mesh->triangles[n->triangle][(k + 1) % 3];
-        }
+    for (uint32_t i = 0; i < 3 * triangles; i++) {
+        uint32_t t = patch[i / 3], k = i % 3;
+        if (mesh->triangle_edges[t][k] != edge) continue;
+        before = mesh->triangles[t][k];
+        at = mesh->triangles[t][(k + 1) % 3];
     }
     for (uint32_t i = 0; i < size; i++) {
         const uint32_t *neighbours = visits[at].neighbours;
@@ -134,20 +139,16 @@ static void write_loop(const cscd_mesh *mesh, uint32_t edge, uint32_t size, cons
  * beside it. */
 static void find_disks(patches *p, const cscd_mesh *mesh, const patch_tree *tree, const contour_lists *l,
                        vertex_visit *visits) {
-    uint32_t *ends = p->stack; /* one past the last node of each subtree */
     for (uint32_t i = p->tree.node_count; i-- > 0;) {
         const patch_node *n = &tree->nodes[i];
-        ends[i] = patch_is_leaf(n) ? i + 1 : ends[n->right];
-        const patch_node *leaf = n;
-        while (!patch_is_leaf(leaf)) leaf++;
-        const cscd_component *c = &mesh->components[mesh->triangle_components[leaf->triangle]];
+        const uint32_t *patch = tree->triangles + n->first, *contour = l->edges + l->begins[i];
+        const cscd_component *c = &mesh->components[mesh->triangle_components[patch[0]]];
         bool oriented =
             c->non_manifold_edges == 0 && c->non_manifold_vertices == 0 && c->inconsistent_edges == 0;
-        const uint32_t *contour = l->edges + l->begins[i];
-        p->disks[i] = oriented && is_disk(mesh, contour, l->sizes[i], n, tree->nodes + ends[i], visits,
-                                          p->tree.node_count - i);
+        p->disks[i] =
+            oriented && is_disk(mesh, contour, l->sizes[i], patch, n->count, visits, p->tree.node_count - i);
         if (p->disks[i] && p->loops != NULL)
-            write_loop(mesh, contour[0], l->sizes[i], n, tree->nodes + ends[i], visits,
+            write_loop(mesh, contour[0], l->sizes[i], patch, n->count, visits,
                        p->loops + p->contour_offsets[i]);
     }
 }
@@ -179,7 +180,12 @@ static void place_contours(patches *p, const contour_lists *l) {
 }
 
 /* Lists the largest subtrees that one thread works on at a time. */
-static void find_small(patches *p, const uint32_t *ends) {
+static void find_small(patches *p) {
+    uint32_t *ends = p->stack; /* one past the last node of each subtree */
+    for (uint32_t i = p->tree.node_count; i-- > 0;) {
+        const patch_node *n = &p->tree.nodes[i];
+        ends[i] = patch_is_leaf(n) ? i + 1 : ends[n->right];
+    }
     for (uint32_t i = 0; i < p->tree.node_count;) {
         if (p->tree.nodes[i].height > SMALL_HEIGHT) {
             i++;
@@ -191,12 +197,17 @@ static void find_small(patches *p, const uint32_t *ends) {
     }
 }
 
+/* Leaves count as the lowest, whatever their height. */
+static uint32_t rank_of(const patch_node *n) {
+    return patch_is_leaf(n) ? 0 : n->height;
+}
+
 static void sort_by_height(patches *p) {
     const patch_tree *tree = &p->tree;
     uint32_t *begins = p->height_begins;
-    for (uint32_t i = 0; i < tree->node_count; i++) begins[tree->nodes[i].height + 1]++;
+    for (uint32_t i = 0; i < tree->node_count; i++) begins[rank_of(&tree->nodes[i]) + 1]++;
     for (uint32_t h = 0; h < p->height_count; h++) begins[h + 1] += begins[h];
-    for (uint32_t i = tree->node_count; i-- > 0;) p->by_height[--begins[tree->nodes[i].height + 1]] = i;
+    for (uint32_t i = tree->node_count; i-- > 0;) p->by_height[--begins[rank_of(&tree->nodes[i]) + 1]] = i;
     memmove(begins, begins + 1, p->height_count * sizeof *begins);
     begins[p->height_count] = tree->node_count;
 }
@@ -222,7 +233,7 @@ static bool fill_patches(patches *p, const cscd_mesh *mesh, const patch_tree *tr
     p->contour_offsets[p->tree.node_count] = total;
     if (p->contour_edges != NULL) place_contours(p, l);
     find_disks(p, mesh, tree, l, visits);
-    find_small(p, p->stack);
+    find_small(p);
     sort_by_height(p);
     return true;
 }

@@ -18,8 +18,9 @@ typedef struct patches {
     uint32_t *inherited; /* per node: how many edges its parent's contour has, too */
     bool *disks;         /* per node: connected, oriented, and its contour is one loop */
     normal_cone *cones;
-    uint32_t *by_height;                   /* nodes, those of height 0 first */
-    uint32_t *height_begins, height_count; /* where those of each height begin there, and the end */
+    uint32_t *by_height; /* nodes, leaves first */
+    uint32_t *height_begins,
+        height_count; /* where those of each height begin there (leaves: 0), and the end */
     const contour_test *test;
     void *scratch;                /* of the test, for `longest` edges for each thread */
     size_t longest;               /* the most edges of a contour */

@@ -21,7 +21,7 @@ static cscd_status follow_bvh(patches *p, bvh *f, const contour_test *test) {
     if (p->tree.node_count > 0 && bvh_can_hide(f)) return CSCD_OK;
     patches_free(f->mesh->context, p);
     if (!bvh_allow_hiding(f)) return CSCD_OUT_OF_MEMORY;
-    const cscd_status status = patch_tree_build(f, &tree);
+    const cscd_status status = patch_tree_build(f, test->leaf_height, &tree);
     return status == CSCD_OK ? patches_create(f->mesh, &tree, test, p) : status;
 }
 

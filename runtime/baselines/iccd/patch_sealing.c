@@ -24,17 +24,17 @@ typedef struct cone_work {
     uint32_t height;
 } cone_work;
 
-/* Sets the cones of up to eight nodes of one height. */
+/* Sets the cones of up to eight nodes of one height. Leaves have one triangle each. */
 static void set_cones(const sealing *s, const uint32_t *nodes, uint32_t count, bool leaves) {
     const float pi = 3.14159265f, limit = s->published ? pi : normal_cone_limit;
     const normal_cone_kernels *kernels = normal_cone_kernels_of(s->mesh->context);
-    const patch_node *all = s->p->tree.nodes;
+    const patch_tree *tree = &s->p->tree;
     uint32_t first[LANES], second[LANES];
     normal_cone cones[LANES];
     for (uint32_t i = 0; i < LANES; i++) {
         uint32_t node = nodes[i < count ? i : count - 1];
-        first[i] = leaves ? all[node].triangle : node + 1;
-        second[i] = all[node].right;
+        first[i] = leaves ? tree->triangles[tree->nodes[node].first] : node + 1;
+        second[i] = tree->nodes[node].right;
     }
     if (leaves)
         kernels->of_triangles((const uint32_t(*)[3])s->mesh->triangles, first, s->x0, s->x1, s->published,
@@ -44,12 +44,26 @@ static void set_cones(const sealing *s, const uint32_t *nodes, uint32_t count, b
     for (uint32_t i = 0; i < count; i++) s->p->cones[nodes[i]] = cones[i];
 }
 
+/* Sets the cone of a leaf of up to eight triangles. */
+static void set_leaf_cone(const sealing *s, uint32_t node) {
+    const patch_tree *tree = &s->p->tree;
+    const patch_node *n = &tree->nodes[node];
+    uint32_t which[LANES];
+    for (uint32_t i = 0; i < LANES; i++) which[i] = tree->triangles[n->first + (i < n->count ? i : 0)];
+    normal_cone_kernels_of(s->mesh->context)
+        ->of_eight((const uint32_t(*)[3])s->mesh->triangles, which, s->x0, s->x1, &s->p->cones[node]);
+}
+
 static void merge_some_cones(void *data, uint32_t index) {
     const cone_work *work = data;
     const patches *p = work->sealing->p;
     uint32_t begin = p->height_begins[work->height] + index * CONES_PER_TASK;
     uint32_t end = p->height_begins[work->height + 1];
     if (end - begin > CONES_PER_TASK) end = begin + CONES_PER_TASK;
+    if (work->height == 0 && p->test->leaf_height > 0) {
+        for (uint32_t i = begin; i < end; i++) set_leaf_cone(work->sealing, p->by_height[i]);
+        return;
+    }
     for (uint32_t i = begin; i < end; i += LANES)
         set_cones(work->sealing, p->by_height + i, end - i < LANES ? end - i : LANES, work->height == 0);
 }
@@ -82,11 +96,11 @@ static bool passes_test(const sealing *s, uint32_t node, uint32_t lane) {
 static bool decide_node(const sealing *s, uint32_t node, uint32_t lane) {
     patches *p = s->p;
     const patch_node *n = &p->tree.nodes[node];
-    if (patch_is_leaf(n)) return false;
+    if (n->count == 1) return false;
     bool tested = p->cones[node].angle < INFINITY && (s->published || p->disks[node]);
     p->tested[node] = tested;
     p->passed[node] = tested && passes_test(s, node, lane);
-    if (p->passed[node]) return false;
+    if (p->passed[node] || patch_is_leaf(n)) return false;
     p->parent_tested[node + 1] = p->parent_tested[n->right] = tested;
     p->reached[node + 1] = p->reached[n->right] = true;
     return true;

@@ -1,5 +1,7 @@
-/* The BVH's order of triangles, halved and halved again: the binary trees whose nodes ICCD tests. */
+/* The BVH's order of triangles, halved and halved again: the binary trees whose nodes are tested. */
 #include "runtime/baselines/iccd/patch_tree.h"
+
+#include <string.h>
 
 enum { LEAF_HEIGHT = 3, HEIGHT_PER_LEVEL = 3, DEPTH_MAX = 64 };
 
@@ -14,9 +16,16 @@ static uint32_t triangles_of(const bvh *f, const bvh_tree *p) {
     return (p->leaf_count - 1) * LANES + (uint32_t)__builtin_popcount(f->leaf_flags[last].used);
 }
 
-static void add_tree(const bvh *f, uint32_t index, patch_tree *tree) {
+/* Trees follow each other. */
+static uint32_t triangles_before(const patch_tree *tree) {
+    if (tree->root_count == 0) return 0;
+    const patch_node *last = &tree->nodes[tree->roots[tree->root_count - 1]];
+    return last->first + last->count;
+}
+
+static void add_tree(const bvh *f, uint32_t index, uint32_t leaf_height, patch_tree *tree) {
     const bvh_tree *p = &f->trees[index];
-    uint32_t count = triangles_of(f, p), depth = 0, height = 0;
+    uint32_t count = triangles_of(f, p), before = triangles_before(tree), depth = 0, height = 0;
     pending_node stack[DEPTH_MAX];
     while ((uint64_t)1 << height < count) height++;
     tree->roots[tree->root_count++] = tree->node_count;
@@ -24,12 +33,14 @@ static void add_tree(const bvh *f, uint32_t index, patch_tree *tree) {
     while (depth > 0) {
         pending_node at = stack[--depth];
         while (at.height > 0 && at.first + (1u << (at.height - 1)) >= count) at.height--;
-        uint32_t node = tree->node_count++;
+        uint32_t first = before + at.first, node = tree->node_count++;
+        uint32_t size = count - at.first < 1u << at.height ? count - at.first : 1u << at.height;
         if (at.parent != UINT32_MAX) tree->nodes[at.parent].right = node;
-        tree->nodes[node] = (patch_node){.tree = index, .first_slot = at.first, .height = at.height};
-        if (at.height == 0) {
+        tree->nodes[node] = (patch_node){
+            .first = first, .count = size, .tree = index, .first_slot = at.first, .height = at.height};
+        if (at.height <= leaf_height) {
             const bvh_leaf *l = &f->leaves[p->first_leaf + at.first / LANES];
-            tree->nodes[node].triangle = l->triangles[at.first % LANES];
+            memcpy(tree->triangles + first, l->triangles + at.first % LANES, size * sizeof *l->triangles);
             continue;
         }
         uint32_t half = 1u << (at.height - 1);
@@ -38,22 +49,26 @@ static void add_tree(const bvh *f, uint32_t index, patch_tree *tree) {
     }
 }
 
-cscd_status patch_tree_build(const bvh *f, patch_tree *out) {
+cscd_status patch_tree_build(const bvh *f, uint32_t leaf_height, patch_tree *out) {
     cscd_context *context = f->mesh->context;
     patch_tree tree = {0};
-    tree.nodes = context_allocate(context, (size_t)f->mesh->triangle_count * 2, sizeof *tree.nodes);
+    size_t leaves = leaf_height == 0 ? f->mesh->triangle_count : 0;
+    for (uint32_t i = 0; i < f->tree_count && leaf_height > 0; i++) leaves += f->trees[i].leaf_count;
+    tree.nodes = context_allocate(context, leaves * 2, sizeof *tree.nodes);
+    tree.triangles = context_allocate(context, f->mesh->triangle_count, sizeof *tree.triangles);
     tree.roots = context_allocate(context, f->tree_count, sizeof *tree.roots);
-    if (tree.nodes == NULL || tree.roots == NULL) {
+    if (tree.nodes == NULL || tree.triangles == NULL || tree.roots == NULL) {
         patch_tree_free(context, &tree);
         return CSCD_OUT_OF_MEMORY;
     }
-    for (uint32_t i = 0; i < f->tree_count; i++) add_tree(f, i, &tree);
+    for (uint32_t i = 0; i < f->tree_count; i++) add_tree(f, i, leaf_height, &tree);
     *out = tree;
     return CSCD_OK;
 }
 
 void patch_tree_free(cscd_context *context, patch_tree *tree) {
     context_free(context, tree->nodes);
+    context_free(context, tree->triangles);
     context_free(context, tree->roots);
     *tree = (patch_tree){0};
 }

@@ -1,4 +1,4 @@
-/* The BVH's order of triangles, halved and halved again: the binary trees whose nodes ICCD tests. */
+/* The BVH's order of triangles, halved and halved again: the binary trees whose nodes are tested. */
 #pragma once
 
 #include "runtime/bvh/bvh.h"
@@ -8,7 +8,7 @@
  * in its tree, to the next. */
 typedef struct patch_node {
     uint32_t right;            /* index of the right child; 0 marks a leaf */
-    uint32_t triangle;         /* of a leaf */
+    uint32_t first, count;     /* its triangles: triangles[first .. first + count) of the tree */
     uint32_t tree, first_slot; /* in a BVH; 0 in other trees */
     uint32_t height;
 } patch_node;
@@ -16,12 +16,14 @@ typedef struct patch_node {
 typedef struct patch_tree {
     patch_node *nodes;
     uint32_t node_count;
-    uint32_t *roots; /* per tree of the BVH */
+    uint32_t *triangles; /* in the order of leaves */
+    uint32_t *roots;     /* per tree of the BVH */
     uint32_t root_count;
 } patch_tree;
 
-/* *out is untouched unless CSCD_OK. */
-cscd_status patch_tree_build(const bvh *f, patch_tree *out);
+/* Nodes of this height or less are leaves: 0 (one triangle each), or 3 (those of a leaf of the BVH). *out is untouched unless
+ * CSCD_OK. */
+cscd_status patch_tree_build(const bvh *f, uint32_t leaf_height, patch_tree *out);
 void patch_tree_free(cscd_context *context, patch_tree *tree);
 
 static inline bool patch_is_leaf(const patch_node *node) {

@@ -155,6 +155,7 @@ static bool star_passes(const contour_query *query, void *scratch) {
 
 const contour_test star_test = {
     .by_loops = true,
+    .leaf_height = 3,
     .scratch_size = sizeof(star_vertex),
     .passes = star_passes,
 };

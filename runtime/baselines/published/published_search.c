@@ -50,20 +50,25 @@ static cscd_status make_patches(published_search *s, const cscd_mesh *mesh) {
     const volume_tree *t = &s->tree;
     patch_tree tree = {.node_count = t->node_count, .root_count = t->root_count};
     tree.nodes = context_allocate(s->context, t->node_count, sizeof *tree.nodes);
+    tree.triangles = context_allocate(s->context, mesh->triangle_count, sizeof *tree.triangles);
     tree.roots = context_allocate(s->context, t->root_count, sizeof *tree.roots);
-    if (tree.nodes == NULL || tree.roots == NULL) {
+    if (tree.nodes == NULL || tree.triangles == NULL || tree.roots == NULL) {
         patch_tree_free(s->context, &tree);
         return CSCD_OUT_OF_MEMORY;
     }
     memcpy(tree.roots, t->roots, t->root_count * sizeof *tree.roots);
     for (uint32_t i = t->node_count; i-- > 0;) {
         const volume_node *n = &t->nodes[i];
-        uint32_t height = 0;
-        if (n->second != 0) {
-            const uint32_t first = tree.nodes[i + 1].height, second = tree.nodes[n->second].height;
-            height = 1 + (first > second ? first : second);
-        }
-        tree.nodes[i] = (patch_node){.right = n->second, .triangle = n->triangle, .height = height};
+        patch_node *out = &tree.nodes[i];
+        *out = (patch_node){.right = n->second, .count = 1};
+        if (n->second == 0) continue;
+        const patch_node *first = &tree.nodes[i + 1], *second = &tree.nodes[n->second];
+        out->height = 1 + (first->height > second->height ? first->height : second->height);
+        out->count = first->count + second->count;
+    }
+    for (uint32_t i = 0, leaves = 0; i < t->node_count; i++) {
+        tree.nodes[i].first = leaves;
+        if (patch_is_leaf(&tree.nodes[i])) tree.triangles[leaves++] = t->nodes[i].triangle;
     }
     return patches_create(mesh, &tree, &sweep_test, &s->patches);
 }
