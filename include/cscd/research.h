@@ -6,7 +6,8 @@
 
 #include <cscd/detector.h>
 
-/* Further values of cscd_method. The published ones lose contacts, so their lists promise nothing. */
+/* Further values of cscd_method. The published ones lose contacts and report some that do not exist, so their lists promise
+ * nothing. */
 #define CSCD_METHOD_BRUTE          ((cscd_method)64) /* every pair of features is tested; quadratic in time */
 #define CSCD_METHOD_PUBLISHED      ((cscd_method)65) /* the whole pipeline as published (Yeh 2012) */
 #define CSCD_METHOD_ICCD           ((cscd_method)66) /* normal cones and contours (Tang et al. 2009), corrected */

@@ -69,9 +69,10 @@ static cscd_status choose_method(const cscd_mesh *mesh, const cscd_plan *plan,
                             cscd_method_name(method));
     if ((options->ours & ~method_stages_of(method)->ours) != 0)
         return context_fail(context, CSCD_INVALID_ARGUMENT,
-                            "ours is %llu, but with method %s it may have bits of %llu only",
-                            (unsigned long long)options->ours, cscd_method_name(method),
-                            (unsigned long long)method_stages_of(method)->ours);
+                            "ours has steps that a detector of method %s does not take: 0x%llx; CSCD_OURS_ "
+                            "in cscd/research.h says which it takes",
+                            cscd_method_name(method),
+                            (unsigned long long)(options->ours & ~method_stages_of(method)->ours));
     if (method_traits_of(method)->needs_plan && (plan == NULL || plan->method != method))
         return context_fail(context, CSCD_INVALID_ARGUMENT, "method %s wants a plan of that method%s%s",
                             cscd_method_name(method), plan != NULL ? ", not " : "",

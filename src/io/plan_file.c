@@ -73,6 +73,7 @@ static void keep_origin(plan_reader *p, text_token first) {
         p->origin[length] = first.text[length];
         length++;
     }
+    while (length > 0 && p->origin[length - 1] == ' ') length--;
     p->origin[length] = '\0';
 }
 

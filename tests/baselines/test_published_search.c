@@ -167,7 +167,7 @@ TEST(steps_belong_to_methods) {
         options.method = refused[i].method;
         options.ours = refused[i].ours;
         expect_invalid(r.context, cscd_detector_create(r.context, r.mesh, NULL, &options, &detector),
-                       "ours is ");
+                       "ours has steps");
         rig_destroy(&r);
     }
 }

@@ -69,6 +69,9 @@ def test_published_makes_its_plan_or_takes_any():
     assert "plan: published, 2 regions, made in memory" in answer.out and "left aside, it is of method kmeans" in answer.out
     answer, _ = replay("--method published --frames 0:2 --plan spindle.plan.ply")
     assert "plan: kmeans, 4 regions, " in answer.out and "\npublished " in answer.out
+    run("preprocess spindle.obj --quiet --method published")
+    answer, _ = replay("--method published --frames 0:2 --ours charge")
+    assert "plan: published, 2 regions, made in memory" in answer.out and "left aside, since --ours says how to make one" in answer.out
 
 
 def test_published_steps_one_by_one():
@@ -81,5 +84,10 @@ def test_published_steps_one_by_one():
     assert pairs("iccd-published --ours tests,neighbours") >= pairs("iccd-published --ours tests")
     usage_error("replay spindle.obj spindle.pc2 --method charge --ours tests", "--ours counts with --method published")
     usage_error("replay spindle.obj spindle.pc2 --method published --ours speed", "--ours", "speed")
+    usage_error("replay spindle.obj spindle.pc2 --method iccd-published --ours tests,motion", "--ours motion counts with --method published")
+    usage_error("replay spindle.obj spindle.pc2 --method published --ours cuts", "give --ours ranks,cuts")
+    usage_error("preprocess spindle.obj --method published --ours ranks,points", "give --ours ranks,cuts,points")
+    usage_error("replay spindle.obj spindle.pc2 --method published --plan p.ply --ours charge,tests", "leave out either")
+    usage_error("replay spindle.obj spindle.pc2 --method cones --plan p.ply", "--plan is of no use with --method cones")
     _, written = replay("--frames 0:2 --method published --ours charge,tests")
     assert written["summary"]["plan"]["made"].startswith("method=published solver=tree threshold=0.1 growing=0.0025 ours=1 ")

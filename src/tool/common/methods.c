@@ -67,6 +67,29 @@ static bool read_steps(const char *text, int count, uint64_t *out) {
     return true;
 }
 
+/* The first of these steps that is not among the allowed ones; NULL: there is none. */
+static const char *word_beyond(uint64_t ours, uint64_t allowed) {
+    for (int i = 0; i < ALL_STEPS; i++)
+        if ((ours & ~allowed & steps[i].bit) != 0) return steps[i].word;
+    return NULL;
+}
+
+bool ours_agrees(cscd_method method, uint64_t ours, io_error *error) {
+    const uint64_t of_iccd = CSCD_OURS_NEIGHBOURS | CSCD_OURS_TESTS | CSCD_OURS_BOXES;
+    if (ours == 0) return true;
+    if (!method_facts_of(method).loses_contacts)
+        return io_fail(error, "--ours counts with --method published or iccd-published; leave it out");
+    const char *beyond = word_beyond(ours, method == CSCD_METHOD_PUBLISHED ? UINT64_MAX : of_iccd);
+    if (beyond != NULL)
+        return io_fail(error, "--ours %s counts with --method published; with %s: neighbours, tests, boxes",
+                       beyond, cscd_method_name(method));
+    if ((ours & CSCD_OURS_CUTS) != 0 && (ours & CSCD_OURS_RANKS) == 0)
+        return io_fail(error, "--ours cuts needs ranks; give --ours ranks,cuts");
+    if ((ours & CSCD_OURS_POINTS) != 0 && (ours & CSCD_OURS_CUTS) == 0)
+        return io_fail(error, "--ours points needs cuts; give --ours ranks,cuts,points");
+    return true;
+}
+
 bool read_ours_of_plans(const char *text, void *place) {
     return read_steps(text, PLAN_STEPS, place);
 }

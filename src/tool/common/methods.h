@@ -1,6 +1,8 @@
 /* What the commands need to know of each method, from what the library says about it. */
 #pragma once
 
+#include "src/io/io_error.h"
+
 #include <cscd/cscd.h>
 
 typedef struct method_facts {
@@ -23,3 +25,6 @@ bool read_ours(const char *text, void *place);
 
 /* Those of plans alone. */
 uint64_t ours_of_plans(uint64_t ours);
+
+/* Do these steps count with this method, and with each other? The error names the word that does not. */
+bool ours_agrees(cscd_method method, uint64_t ours, io_error *error);

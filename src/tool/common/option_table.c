@@ -151,7 +151,7 @@ static bool give_value(const all_rows *all, size_t i, const char *value, void *o
     given->rows[i] = true;
     given->values[i] = provenance_hash(given->values[i], text, strlen(text) + 1);
     return row->read(value, (char *)options + row->place) ||
-           io_fail(error, "--%s cannot be '%s'", row->name, text);
+           io_fail(error, "--%s cannot be '%s'; see --help", row->name, text);
 }
 
 bool option_table_read(const option_table *table, int argument_count, char **arguments, void *options,

@@ -49,12 +49,16 @@ static void remark_version(plan_choice *choice, const cscd_plan *plan) {
     const char *origin = cscd_plan_describe(plan).origin,
                *version = origin != NULL ? strstr(origin, "version=") : NULL;
     char text[160];
-    if (version != NULL && strcmp(version + strlen("version="), cscd_version_string()) == 0) return;
+    if (version != NULL) version += strlen("version=");
+    const size_t length = version != NULL ? strcspn(version, " ") : 0;
+    if (version != NULL && length == strlen(cscd_version_string()) &&
+        memcmp(version, cscd_version_string(), length) == 0)
+        return;
     if (version == NULL)
         add_remark(choice, "it does not say which version of cscd made it; cscd preprocess makes it anew");
     else {
-        snprintf(text, sizeof text, "made by cscd %.40s; cscd preprocess makes it anew",
-                 version + strlen("version="));
+        snprintf(text, sizeof text, "made by cscd %.*s; cscd preprocess makes it anew",
+                 (int)(length < 40 ? length : 40), version);
         add_remark(choice, text);
     }
 }
@@ -96,9 +100,13 @@ static void try_model_plan(const plan_request *request, const recording *r, plan
     if (path != NULL && access(path, F_OK) == 0) {
         if (!plan_file_read(path, r->context, r->mesh, &plan, &error)) {
             snprintf(choice->remark, sizeof choice->remark, "%.*s: left aside", TEXT_CUT(error.text, 560));
-        } else if (method_fits(request, plan)) {
+        } else if (method_fits(request, plan) && request->ours == 0) {
             choose_plan(choice, request, plan, path);
             return;
+        } else if (method_fits(request, plan)) {
+            snprintf(choice->remark, sizeof choice->remark,
+                     "%.*s: left aside, since --ours says how to make one", TEXT_CUT(path, 500));
+            cscd_plan_destroy(plan);
         } else {
             snprintf(choice->remark, sizeof choice->remark, "%.*s: left aside, it is of method %s",
                      TEXT_CUT(path, 500), cscd_method_name(cscd_plan_method(plan)));

@@ -259,6 +259,8 @@ static int check_methods(const preprocess_options *o, const given_options *given
             return fail_usage("preprocess", "--%s counts with --method %s; leave it out", bound[i].name,
                               bound[i].names);
     }
+    io_error error;
+    if (!ours_agrees(o->plan.method, o->plan.ours, &error)) return fail_usage("preprocess", "%s", error.text);
     if (o->plan.method == CSCD_METHOD_PUBLISHED && (o->plan.ours & CSCD_OURS_CHARGE) == 0 &&
         option_given(&table, given, "charge"))
         return fail_usage("preprocess",

@@ -175,10 +175,14 @@ static int check_options(const replay_options *o, size_t input_count) {
     if (o->contacts_path != NULL && !contact_file_names_format(o->contacts_path))
         return fail_usage("replay", "--contacts '%s': expected a name that ends in .csv or .jsonl, or -",
                           o->contacts_path);
-    if (o->plan_path != NULL && (o->method == CSCD_METHOD_NONE || o->method == CSCD_METHOD_BRUTE))
+    if (o->plan_path != NULL && o->method != CSCD_METHOD_AUTO && !method_facts_of(o->method).by_regions)
         return fail_usage("replay", "--plan is of no use with --method %s", cscd_method_name(o->method));
-    if (o->ours != 0 && !method_facts_of(o->method).loses_contacts)
-        return fail_usage("replay", "--ours counts with --method published or iccd-published; leave it out");
+    io_error error;
+    if (!ours_agrees(o->method, o->ours, &error)) return fail_usage("replay", "%s", error.text);
+    if (o->plan_path != NULL && ours_of_plans(o->ours) != 0)
+        return fail_usage("replay",
+                          "--ours charge, ranks, cuts and points say how a plan is made, and --plan "
+                          "brings one; leave out either");
     if (o->no_check && export_request_any(&o->exports))
         return fail_usage("replay",
                           "--vtk, --ply and --select tell what intersects, which --no-check leaves out");
@@ -187,7 +191,6 @@ static int check_options(const replay_options *o, size_t input_count) {
                         fail->kind == FAIL_ON_TOUCHING))
         return fail_usage("replay",
                           "the rules that fail a run ask what intersects, which --no-check leaves out");
-    io_error error;
     if (!o->no_check && !answer_options_agree(&o->answers, &error))
         return fail_usage("replay", "%s", error.text);
     if (o->frames.step != 1)
