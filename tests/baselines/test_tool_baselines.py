@@ -71,7 +71,8 @@ def test_published_makes_its_plan_or_takes_any():
     assert "plan: kmeans, 4 regions, " in answer.out and "\npublished " in answer.out
     run("preprocess spindle.obj --quiet --method published")
     answer, _ = replay("--method published --frames 0:2 --ours charge")
-    assert "plan: published, 2 regions, made in memory" in answer.out and "left aside, since --ours says how to make one" in answer.out
+    assert "plan: published, 2 regions, made in memory" in answer.out
+    assert "left aside, since --ours says how to make one" in answer.out
 
 
 def test_published_steps_one_by_one():
@@ -84,7 +85,7 @@ def test_published_steps_one_by_one():
     assert pairs("iccd-published --ours tests,neighbours") >= pairs("iccd-published --ours tests")
     usage_error("replay spindle.obj spindle.pc2 --method charge --ours tests", "--ours counts with --method published")
     usage_error("replay spindle.obj spindle.pc2 --method published --ours speed", "--ours", "speed")
-    usage_error("replay spindle.obj spindle.pc2 --method iccd-published --ours tests,motion", "--ours motion counts with --method published")
+    usage_error("replay spindle.obj spindle.pc2 --method iccd-published --ours tests,motion", "--ours motion counts with")
     usage_error("replay spindle.obj spindle.pc2 --method published --ours cuts", "give --ours ranks,cuts")
     usage_error("preprocess spindle.obj --method published --ours ranks,points", "give --ours ranks,cuts,points")
     usage_error("replay spindle.obj spindle.pc2 --method published --plan p.ply --ours charge,tests", "leave out either")
