@@ -102,6 +102,7 @@ def playing_moves_and_pausing_stops(context):
     expect(page.has("button", "Pause") and not page.has("button", "Play"), "while it plays the button is called Pause")
     page.wait(lambda: page.frame() > 3, "the time does not pass")
     page.click("button", "Pause")
+    page.wait(lambda: not page.state("playing"), "it does not pause")
     stopped = page.frame()
     page.settle()
     expect_equal(page.frame(), stopped, "time of a stopped recording")
