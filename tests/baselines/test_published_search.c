@@ -84,7 +84,7 @@ TEST(our_steps_lose_no_first_contact) {
             rig_destroy(&ours.objects);
         }
     }
-    assert_true(with_contact > 20);
+    assert_true(with_contact > PACED(20, 1));
 }
 
 /* Each step has its own effect: neighbours add pairs, proofs are made, 14-DOPs leave fewer pairs than boxes. */
