@@ -544,6 +544,7 @@ bench: packages
 
 # The tables and figures of both theses, with their numbers beside ours: docs/theory/thesis.md.
 reproduce: packages
+	@.ci/packages reproduce
 	@$(MAKE) --no-print-directory tool $(addprefix $(BUILD)/benchmarks/,thesis thesis_figures volumes experiments sensors)
 	@benchmarks/reproduce.sh $(BUILD)
 

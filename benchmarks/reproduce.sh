@@ -42,16 +42,31 @@ draw_plan() {
     by=region
     case $name in *density) by=density ;; esac
     if [ "$mesh" = torus ]; then set -- "$plan"; else set -- "build/models/$mesh.obj" "build/models/$mesh.pc2" --frame 0; fi
-    ./cscd render "$@" --plan "$plan" --colour "$by" --size 480x480 --up z --view 30,5 -o "$out/$name.png" >/dev/null
+    ./cscd render "$@" --plan "$plan" --colour "$by" --size 480x480 --no-text --up z --view 30,5 -o "$out/$name.png" >/dev/null
+}
+
+# Figure 3.4 of three meshes as one picture, a row for each: docs/images/thesis-cuts.png.
+join_steps() {
+    for mesh in pawn-drop dumbbell-stairs figure-balls; do
+        for picture in "$out/$mesh"-3.4[a-f]-*.png; do
+            pngtopnm "$picture" | pamscale -xsize 240 -ysize 240 >"${picture%.png}.ppm"
+        done
+        pnmcat -leftright "$out/$mesh"-3.4[a-f]-*.ppm >"$out/$mesh.ppm"
+    done
+    pnmcat -topbottom "$out/pawn-drop.ppm" "$out/dumbbell-stairs.ppm" "$out/figure-balls.ppm" | pnmtopng >"$out/figure-3.4.png"
+    rm "$out"/*.ppm
 }
 
 figures() {
     "$build/benchmarks/thesis_figures" "$out"
     for plan in "$out"/*.plan.ply; do draw_plan "$plan"; done
     for mesh in pawn-drop dumbbell-stairs figure-balls; do
+        ./cscd render "build/models/$mesh.obj" "build/models/$mesh.pc2" --frame 0 --size 480x480 --no-text --up z --view 30,5 \
+            -o "$out/$mesh-3.4a-model.png" >/dev/null
         ./cscd render "build/models/$mesh.obj" "build/models/$mesh.pc2" --frames 0:145:29 --columns 6 --up z \
             --colour contacts -o "$out/$mesh-5.5-frames.png" >/dev/null
     done
+    join_steps
 }
 
 step 'figures 5.2 to 5.4 and 6.4, thresholds, rules (thesis)' tables

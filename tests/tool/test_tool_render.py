@@ -76,6 +76,16 @@ def test_draws_a_plan():
     fails("render flight.obj --colour charge --plan two.ply -o picture.png", "two.ply", "of method single, expected charge")
 
 
+@pytest.mark.parametrize("model", ["flight.obj", "flight.obj flight.pc2 --frames 0:1"])
+def test_text_can_be_left_out(model):
+    usual, bare = (render(f"--colour region --size {WIDTH}x{HEIGHT} {text}", model) for text in ("", "--no-text"))
+    ink = [
+        any(max(row[4 * x : 4 * x + 3]) < 60 for row in picture.rows[1:LABEL_HEIGHT] for x in range(1, LABEL_WIDTH))
+        for picture in (usual, bare)
+    ]
+    assert ink == [True, False] and coloured(bare) > 100
+
+
 def test_refuses_frames_that_are_not_there():
     fails("render flight.obj flight.pc2 -o picture.png --frame 8", "--frame 8", "frames 0 to 7")
     fails("render flight.obj flight.pc2 -o picture.png --frame 7 --colour contacts", "--frame 7", "next")

@@ -116,7 +116,7 @@ void picture_caption_size(uint32_t width, uint32_t height, double enlarged, cons
 
 void picture_draw_caption(picture_image *image, double enlarged, const char *caption,
                           const picture_legend *legend, size_t count) {
-    if (caption == NULL && count == 0) return;
+    if ((caption == NULL && count == 0) || enlarged == 0.0) return;
     double scale = text_scale(image->width, image->height, enlarged), line = scale * 12.0;
     double left = scale * 8.0, top = scale * 8.0, size[2];
     picture_caption_size(image->width, image->height, enlarged, caption, legend, count, size);

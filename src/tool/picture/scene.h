@@ -37,7 +37,7 @@ typedef struct picture_options {
     bool focus;       /* frame the box below instead of all vertices: to zoom, or to keep still over frames */
     double focus_min[3], focus_max[3];
     const picture_camera *camera; /* this one instead of a framing of its own, or NULL */
-    double text_scale;            /* of caption and legend, 1: as usual */
+    double text_scale;            /* of caption and legend, 1: as usual, 0: without them */
     double square; /* side of the faint squares on level scenery, which show motion and scale; 0: none */
 } picture_options;
 

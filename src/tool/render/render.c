@@ -42,6 +42,7 @@ static bool draw_frame(const render_options *o, recording *r, contact_picture *p
         (beside != NULL && !scenery_read(beside, frame, error)) || !paint_plan(o, r, picture, &legend, error))
         return false;
     picture_options options = o->picture;
+    if (o->no_text) options.text_scale = 0.0;
     if (o->zoom) contact_picture_focus(picture, &options);
     return picture_render(&picture->scene, &options, o->output_path, error);
 }

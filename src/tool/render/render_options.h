@@ -24,7 +24,7 @@ typedef struct render_options {
     uint32_t columns; /* 0: not given */
     bool follow;
     colouring colouring;
-    bool zoom;
+    bool zoom, no_text;
     picture_options picture;
     up_axis up;
     ignore_options ignored;

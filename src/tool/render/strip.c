@@ -98,7 +98,7 @@ static bool draw_tile(strip *s, uint32_t tile, io_error *error) {
     find_middle(s, middle);
     for (int k = 0; k < 3; k++) camera.eye[k] += middle[k];
     options.camera = &camera;
-    options.text_scale = label_scale;
+    options.text_scale = s->options->no_text ? 0.0 : label_scale;
     picture_image image;
     bool drawn = picture_render_image(&s->picture->scene, &options, &image, error);
     s->picture->scene.legend_count = 0; /* its lines end here */
