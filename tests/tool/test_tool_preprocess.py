@@ -210,9 +210,10 @@ def test_a_plan_of_another_version_is_told():
     said = "from spindle.plan.ply (made by cscd 9.8.7; cscd preprocess makes it anew)\n"
     for other, remark in ((line[:line.index(b"version=")] + b"version=9.8.7", said),
                           (b"comment", "(it does not say which version of cscd made it; cscd preprocess makes it anew)\n"),
-                          (line, "from spindle.plan.ply\n")):
+                          (line + b"  ", "from spindle.plan.ply\n")):
         Path("spindle.plan.ply").write_bytes(mine.replace(line, other))
-        assert remark in run("replay spindle.obj spindle.pc2").out
+        assert remark in run("replay spindle.obj spindle.pc2 --json said.json").out
+    assert read_json("said.json")["summary"]["plan"]["made"] == line.decode().removeprefix("comment cscd made ")
 
 
 def test_refuses_the_plan_of_another_mesh():
