@@ -34,10 +34,11 @@
  *               they check nothing
  *   defaults    options come from the matching _defaults() function and are then changed; {0} is refused. A NULL
  *               options pointer means the defaults. Members of other structs that you do not need are 0
- *   versions    structs that may grow are as large as your header says, whatever library is loaded: functions
- *               that end in _sized take that size, and the functions without this ending pass it on. Bindings
- *               call the _sized ones. Enumerations that may grow end in _MAX_ENUM; give a switch a default.
- *               The name of a value that the library does not know is "unknown". docs/abi.md has all rules
+ *   versions    options and other structs that you fill are as large as your header says, whatever library is
+ *               loaded: functions that end in _sized take that size, and the functions without this ending
+ *               pass it on. Bindings call the _sized ones. Results never grow. Enumerations that may grow end in
+ *               _MAX_ENUM; give a switch a default. The name of a value that the library does not know is
+ *               "unknown". docs/abi.md has all rules
  *   complete    a list is whole, or the call fails
  *   repeatable  one build and the same inputs give the same results in the same order, bit for bit, for any
  *               number of threads and on every instruction set

@@ -56,15 +56,9 @@ typedef struct cscd_curve_changes {
  *     if (status == CSCD_OK)
  *         printf("%d points come at %d contacts\n", (int)changes.count, (int)contacts.count);
  */
-CSCD_API cscd_status cscd_detector_curve_changes_sized(cscd_detector *detector, const cscd_view *x0,
-                                                       const cscd_view *x1, const cscd_contact *contacts,
-                                                       size_t contact_count, cscd_curve_changes *out,
-                                                       size_t size);
-static inline cscd_status cscd_detector_curve_changes(cscd_detector *detector, const cscd_view *x0,
-                                                      const cscd_view *x1, const cscd_contact *contacts,
-                                                      size_t contact_count, cscd_curve_changes *out) {
-    return cscd_detector_curve_changes_sized(detector, x0, x1, contacts, contact_count, out, sizeof *out);
-}
+CSCD_API cscd_status cscd_detector_curve_changes(cscd_detector *detector, const cscd_view *x0,
+                                                 const cscd_view *x1, const cscd_contact *contacts,
+                                                 size_t contact_count, cscd_curve_changes *out);
 
 #ifdef __cplusplus
 }

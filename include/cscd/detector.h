@@ -243,12 +243,8 @@ typedef struct cscd_contacts {
  * builds the trees, so it is slower. Later calls allocate memory only when a list has to grow or has 2^18
  * contacts or more, when a long deformation has made the trees so loose that they are built again, or in the
  * first interval without culling. CANCELLED: see cscd_progress. */
-CSCD_API cscd_status cscd_detector_step_sized(cscd_detector *detector, const cscd_view *x0,
-                                              const cscd_view *x1, cscd_contacts *out, size_t size);
-static inline cscd_status cscd_detector_step(cscd_detector *detector, const cscd_view *x0,
-                                             const cscd_view *x1, cscd_contacts *out) {
-    return cscd_detector_step_sized(detector, x0, x1, out, sizeof *out);
-}
+CSCD_API cscd_status cscd_detector_step(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
+                                        cscd_contacts *out);
 
 /* Two triangles a < b that intersect or touch at one moment: a vertex or an edge of one and the face of
  * the other, or edges of both, have a point in common. Features that share a vertex do not count, but
@@ -271,12 +267,8 @@ typedef struct cscd_intersections {
 /* The static check: lists exactly the triangle pairs that intersect or touch at the given positions
  * (docs/theory/static-check.md); of wires, points and half-spaces it says nothing. A step that starts there need not check
  * them again. CANCELLED: see cscd_progress. Of the timings only check_ms changes; counters stay those of the last step. */
-CSCD_API cscd_status cscd_detector_check_sized(cscd_detector *detector, const cscd_view *positions,
-                                               cscd_intersections *out, size_t size);
-static inline cscd_status cscd_detector_check(cscd_detector *detector, const cscd_view *positions,
-                                              cscd_intersections *out) {
-    return cscd_detector_check_sized(detector, positions, out, sizeof *out);
-}
+CSCD_API cscd_status cscd_detector_check(cscd_detector *detector, const cscd_view *positions,
+                                         cscd_intersections *out);
 
 /* Why the contacts of a component with itself are complete, or why some may be missing. Later versions
  * may add values. */
@@ -313,13 +305,7 @@ typedef struct cscd_guarantee {
 
 /* The guarantee of the last step for a component; without meaning before the first step. Contacts between
  * two components are complete in every step. */
-CSCD_API void cscd_detector_guarantee_sized(const cscd_detector *detector, uint32_t component,
-                                            cscd_guarantee *out, size_t size);
-static inline cscd_guarantee cscd_detector_guarantee(const cscd_detector *detector, uint32_t component) {
-    cscd_guarantee found;
-    cscd_detector_guarantee_sized(detector, component, &found, sizeof found);
-    return found;
-}
+CSCD_API cscd_guarantee cscd_detector_guarantee(const cscd_detector *detector, uint32_t component);
 
 /* How a triangle faced the detector point of its region during the whole last step: 1, away from it (S+);
  * -1, towards it (S-); 0, neither, or the triangle was not clean at the start, or the step was answered from a
@@ -346,6 +332,7 @@ typedef struct cscd_timings {
     double total_ms;       /* the whole step, checks of the input included */
     double proof_ms;       /* the static check of the start within the step, a part of the total */
     double check_ms;       /* the last cscd_detector_check, not a part of the total */
+    double reserved[4];    /* 0 */
 } cscd_timings;
 
 /* What the last step did, in numbers: exact, and the same for any number of threads. */
@@ -375,23 +362,14 @@ typedef struct cscd_counters {
     uint64_t coherent;         /* 1: the interval was answered from a list of pairs (cscd_coherence). Then
                                 * boxes_tested and pcp are 0, and S+ and S- are those that last as long as
                                 * the list; else 0 */
+    uint64_t reserved[6];      /* 0 */
 } cscd_counters;
 
 /* The timings of the last step, and of the last check. */
-CSCD_API void cscd_detector_timings_sized(const cscd_detector *detector, cscd_timings *out, size_t size);
-static inline cscd_timings cscd_detector_timings(const cscd_detector *detector) {
-    cscd_timings found;
-    cscd_detector_timings_sized(detector, &found, sizeof found);
-    return found;
-}
+CSCD_API cscd_timings cscd_detector_timings(const cscd_detector *detector);
 
 /* The counters of the last step. */
-CSCD_API void cscd_detector_counters_sized(const cscd_detector *detector, cscd_counters *out, size_t size);
-static inline cscd_counters cscd_detector_counters(const cscd_detector *detector) {
-    cscd_counters found;
-    cscd_detector_counters_sized(detector, &found, sizeof found);
-    return found;
-}
+CSCD_API cscd_counters cscd_detector_counters(const cscd_detector *detector);
 
 #ifdef __cplusplus
 }

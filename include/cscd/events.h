@@ -87,12 +87,8 @@ CSCD_API cscd_status cscd_event_tracker_add_contacts(cscd_event_tracker *tracker
  * are 0. INVALID_ARGUMENT: the number is not larger, *found has no list, or it is not of this mesh. LIST_TOO_LONG:
  * what was found would take more than max_memory; the frame is added as one in which nothing was looked for, without
  * the contacts that waited for it. */
-CSCD_API cscd_status cscd_event_tracker_add_frame_sized(cscd_event_tracker *tracker, uint64_t frame,
-                                                        const cscd_intersection_pairs *found, size_t size);
-static inline cscd_status cscd_event_tracker_add_frame(cscd_event_tracker *tracker, uint64_t frame,
-                                                       const cscd_intersection_pairs *found) {
-    return cscd_event_tracker_add_frame_sized(tracker, frame, found, sizeof *found);
-}
+CSCD_API cscd_status cscd_event_tracker_add_frame(cscd_event_tracker *tracker, uint64_t frame,
+                                                  const cscd_intersection_pairs *found);
 
 /* ---- what comes out ------------------------------------------------------------------------------------- */
 
@@ -137,11 +133,7 @@ typedef struct cscd_events {
 } cscd_events;
 
 /* Gives out the events that have ended since the last call. What is never taken comes with cscd_event_tracker_finish. */
-CSCD_API cscd_status cscd_event_tracker_take_sized(cscd_event_tracker *tracker, cscd_events *out,
-                                                   size_t size);
-static inline cscd_status cscd_event_tracker_take(cscd_event_tracker *tracker, cscd_events *out) {
-    return cscd_event_tracker_take_sized(tracker, out, sizeof *out);
-}
+CSCD_API cscd_status cscd_event_tracker_take(cscd_event_tracker *tracker, cscd_events *out);
 
 /* The recording has ended: gives out all events that are left, those that may go on included. The tracker then has no
  * frames, and may follow another recording of the mesh. INVALID_ARGUMENT: contacts wait for the frame that ends their
@@ -162,11 +154,7 @@ static inline cscd_status cscd_event_tracker_take(cscd_event_tracker *tracker, c
  *                (int)events.items[i].last_frame);
  *     cscd_event_tracker_destroy(tracker);
  */
-CSCD_API cscd_status cscd_event_tracker_finish_sized(cscd_event_tracker *tracker, cscd_events *out,
-                                                     size_t size);
-static inline cscd_status cscd_event_tracker_finish(cscd_event_tracker *tracker, cscd_events *out) {
-    return cscd_event_tracker_finish_sized(tracker, out, sizeof *out);
-}
+CSCD_API cscd_status cscd_event_tracker_finish(cscd_event_tracker *tracker, cscd_events *out);
 
 /* ---- chunks --------------------------------------------------------------------------------------------- */
 

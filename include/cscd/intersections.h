@@ -196,16 +196,9 @@ typedef struct cscd_intersection_pairs {
  *     cscd_status status = cscd_detector_find_intersections(detector, CSCD_DOUBLES(x0, n), &options, &found);
  *     printf("%d crossing, %d coplanar\n", (int)found.crossing, (int)found.coplanar);
  */
-CSCD_API cscd_status cscd_detector_find_intersections_sized(cscd_detector *detector,
-                                                            const cscd_view *positions,
-                                                            const cscd_intersection_options *options,
-                                                            cscd_intersection_pairs *out, size_t size);
-static inline cscd_status cscd_detector_find_intersections(cscd_detector *detector,
-                                                           const cscd_view *positions,
-                                                           const cscd_intersection_options *options,
-                                                           cscd_intersection_pairs *out) {
-    return cscd_detector_find_intersections_sized(detector, positions, options, out, sizeof *out);
-}
+CSCD_API cscd_status cscd_detector_find_intersections(cscd_detector *detector, const cscd_view *positions,
+                                                      const cscd_intersection_options *options,
+                                                      cscd_intersection_pairs *out);
 
 /* Was the component collapsed in the last check, or at an end of the last step? A component is *collapsed* at positions
  * at which every triangle of it has all corners on one line, exactly: an object that is hidden by a scale of 0, or one

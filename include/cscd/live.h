@@ -152,14 +152,8 @@ typedef struct cscd_start_knowledge {
     uint32_t clean, free, crossing, unknown;
 } cscd_start_knowledge;
 
-CSCD_API void cscd_detector_start_knowledge_sized(const cscd_detector *detector, uint32_t component,
-                                                  cscd_start_knowledge *out, size_t size);
-static inline cscd_start_knowledge cscd_detector_start_knowledge(const cscd_detector *detector,
-                                                                 uint32_t component) {
-    cscd_start_knowledge found;
-    cscd_detector_start_knowledge_sized(detector, component, &found, sizeof found);
-    return found;
-}
+CSCD_API cscd_start_knowledge cscd_detector_start_knowledge(const cscd_detector *detector,
+                                                            uint32_t component);
 
 #ifdef __cplusplus
 }

@@ -117,12 +117,7 @@ typedef struct cscd_object {
 CSCD_API uint32_t cscd_mesh_object_count(const cscd_mesh *mesh);
 
 /* An object, by its place among those given to cscd_mesh_create. */
-CSCD_API void cscd_mesh_object_sized(const cscd_mesh *mesh, uint32_t object, cscd_object *out, size_t size);
-static inline cscd_object cscd_mesh_object(const cscd_mesh *mesh, uint32_t object) {
-    cscd_object found;
-    cscd_mesh_object_sized(mesh, object, &found, sizeof found);
-    return found;
-}
+CSCD_API cscd_object cscd_mesh_object(const cscd_mesh *mesh, uint32_t object);
 
 /* The object that a vertex belongs to. */
 CSCD_API uint32_t cscd_mesh_vertex_object(const cscd_mesh *mesh, uint32_t vertex);
@@ -180,13 +175,7 @@ typedef struct cscd_component {
 CSCD_API uint32_t cscd_mesh_component_count(const cscd_mesh *mesh);
 
 /* A component, its counts and its defects. */
-CSCD_API void cscd_mesh_component_sized(const cscd_mesh *mesh, uint32_t component, cscd_component *out,
-                                        size_t size);
-static inline cscd_component cscd_mesh_component(const cscd_mesh *mesh, uint32_t component) {
-    cscd_component found;
-    cscd_mesh_component_sized(mesh, component, &found, sizeof found);
-    return found;
-}
+CSCD_API cscd_component cscd_mesh_component(const cscd_mesh *mesh, uint32_t component);
 
 /* The component that a triangle belongs to. */
 CSCD_API uint32_t cscd_mesh_triangle_component(const cscd_mesh *mesh, uint32_t triangle);

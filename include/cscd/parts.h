@@ -124,13 +124,8 @@ typedef struct cscd_contact_part_pairs {
  *                (unsigned)sums.items[i].b, (int)sums.items[i].count);
  *     cscd_detector_set_parts(detector, NULL, 0);
  */
-CSCD_API cscd_status cscd_detector_contact_parts_sized(cscd_detector *detector, const cscd_contact *contacts,
-                                                       size_t contact_count, cscd_contact_part_pairs *out,
-                                                       size_t size);
-static inline cscd_status cscd_detector_contact_parts(cscd_detector *detector, const cscd_contact *contacts,
-                                                      size_t contact_count, cscd_contact_part_pairs *out) {
-    return cscd_detector_contact_parts_sized(detector, contacts, contact_count, out, sizeof *out);
-}
+CSCD_API cscd_status cscd_detector_contact_parts(cscd_detector *detector, const cscd_contact *contacts,
+                                                 size_t contact_count, cscd_contact_part_pairs *out);
 
 #ifdef __cplusplus
 }

@@ -144,12 +144,7 @@ CSCD_API cscd_method cscd_plan_method(const cscd_plan *plan);
 CSCD_API uint32_t cscd_plan_region_count(const cscd_plan *plan);
 
 /* A region. */
-CSCD_API void cscd_plan_region_sized(const cscd_plan *plan, uint32_t region, cscd_region *out, size_t size);
-static inline cscd_region cscd_plan_region(const cscd_plan *plan, uint32_t region) {
-    cscd_region found;
-    cscd_plan_region_sized(plan, region, &found, sizeof found);
-    return found;
-}
+CSCD_API cscd_region cscd_plan_region(const cscd_plan *plan, uint32_t region);
 
 /* The region that a triangle belongs to. */
 CSCD_API uint32_t cscd_plan_triangle_region(const cscd_plan *plan, uint32_t triangle);
@@ -169,12 +164,7 @@ typedef struct cscd_preprocess_timings {
 } cscd_preprocess_timings;
 
 /* How long each stage of cscd_plan_create took. */
-CSCD_API void cscd_plan_timings_sized(const cscd_plan *plan, cscd_preprocess_timings *out, size_t size);
-static inline cscd_preprocess_timings cscd_plan_timings(const cscd_plan *plan) {
-    cscd_preprocess_timings timings;
-    cscd_plan_timings_sized(plan, &timings, sizeof timings);
-    return timings;
-}
+CSCD_API cscd_preprocess_timings cscd_plan_timings(const cscd_plan *plan);
 
 /* How a plan was made. The names of kernels belong to OpenBLAS and the library, and live as long as these are loaded. */
 typedef struct cscd_plan_info {
@@ -193,12 +183,7 @@ typedef struct cscd_plan_info {
 } cscd_plan_info;
 
 /* How the plan was made. */
-CSCD_API void cscd_plan_describe_sized(const cscd_plan *plan, cscd_plan_info *out, size_t size);
-static inline cscd_plan_info cscd_plan_describe(const cscd_plan *plan) {
-    cscd_plan_info info;
-    cscd_plan_describe_sized(plan, &info, sizeof info);
-    return info;
-}
+CSCD_API cscd_plan_info cscd_plan_describe(const cscd_plan *plan);
 
 /* What CSCD_METHOD_AUTO has compared. */
 typedef struct cscd_compared_plan {
@@ -218,13 +203,7 @@ typedef struct cscd_compared_plan {
 
 /* The plans that were compared, in the order in which they were tried; none where the method was not AUTO. */
 CSCD_API uint32_t cscd_plan_compared_count(const cscd_plan *plan);
-CSCD_API void cscd_plan_compared_sized(const cscd_plan *plan, uint32_t place, cscd_compared_plan *out,
-                                       size_t size);
-static inline cscd_compared_plan cscd_plan_compared(const cscd_plan *plan, uint32_t place) {
-    cscd_compared_plan found;
-    cscd_plan_compared_sized(plan, place, &found, sizeof found);
-    return found;
-}
+CSCD_API cscd_compared_plan cscd_plan_compared(const cscd_plan *plan, uint32_t place);
 
 #ifdef __cplusplus
 }

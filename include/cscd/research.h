@@ -61,10 +61,7 @@ CSCD_API uint32_t cscd_method_count(void);
 CSCD_API cscd_method cscd_method_at(uint32_t place);
 
 /* Facts about a method; false if there is no such method, and then *out is left untouched. */
-CSCD_API bool cscd_method_describe_sized(cscd_method method, cscd_method_info *out, size_t size);
-static inline bool cscd_method_describe(cscd_method method, cscd_method_info *out) {
-    return cscd_method_describe_sized(method, out, sizeof *out);
-}
+CSCD_API bool cscd_method_describe(cscd_method method, cscd_method_info *out);
 
 #ifdef __cplusplus
 }

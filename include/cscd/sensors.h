@@ -77,13 +77,7 @@ CSCD_API uint32_t cscd_partition_object_count(const cscd_partition *partition);
 CSCD_API uint32_t cscd_partition_part_count(const cscd_partition *partition);
 
 /* A part. */
-CSCD_API void cscd_partition_part_sized(const cscd_partition *partition, uint32_t part, cscd_part *out,
-                                        size_t size);
-static inline cscd_part cscd_partition_part(const cscd_partition *partition, uint32_t part) {
-    cscd_part found;
-    cscd_partition_part_sized(partition, part, &found, sizeof found);
-    return found;
-}
+CSCD_API cscd_part cscd_partition_part(const cscd_partition *partition, uint32_t part);
 
 /* The number of cells of all parts together. */
 CSCD_API uint32_t cscd_partition_cell_count(const cscd_partition *partition);
@@ -177,12 +171,8 @@ typedef struct cscd_warnings {
 
 /* Lets the particles walk, from where the last step has left them, at the start and then at the end of an
  * interval, and lists the parts that may touch. x0, x1: positions at these moments. */
-CSCD_API cscd_status cscd_sensors_step_sized(cscd_sensors *sensors, const cscd_view *x0, const cscd_view *x1,
-                                             cscd_warnings *out, size_t size);
-static inline cscd_status cscd_sensors_step(cscd_sensors *sensors, const cscd_view *x0, const cscd_view *x1,
-                                            cscd_warnings *out) {
-    return cscd_sensors_step_sized(sensors, x0, x1, out, sizeof *out);
-}
+CSCD_API cscd_status cscd_sensors_step(cscd_sensors *sensors, const cscd_view *x0, const cscd_view *x1,
+                                       cscd_warnings *out);
 
 /* Whether, and why, a part should have new cells (cscd_partition_renew). Ask after a step. */
 CSCD_API cscd_renewal cscd_sensors_renewal(const cscd_sensors *sensors, uint32_t part);
@@ -217,21 +207,10 @@ typedef struct cscd_sensor_counters {
 } cscd_sensor_counters;
 
 /* The timings of the last step. */
-CSCD_API void cscd_sensors_timings_sized(const cscd_sensors *sensors, cscd_sensor_timings *out, size_t size);
-static inline cscd_sensor_timings cscd_sensors_timings(const cscd_sensors *sensors) {
-    cscd_sensor_timings found;
-    cscd_sensors_timings_sized(sensors, &found, sizeof found);
-    return found;
-}
+CSCD_API cscd_sensor_timings cscd_sensors_timings(const cscd_sensors *sensors);
 
 /* The counters of the last step. */
-CSCD_API void cscd_sensors_counters_sized(const cscd_sensors *sensors, cscd_sensor_counters *out,
-                                          size_t size);
-static inline cscd_sensor_counters cscd_sensors_counters(const cscd_sensors *sensors) {
-    cscd_sensor_counters found;
-    cscd_sensors_counters_sized(sensors, &found, sizeof found);
-    return found;
-}
+CSCD_API cscd_sensor_counters cscd_sensors_counters(const cscd_sensors *sensors);
 
 #ifdef __cplusplus
 }

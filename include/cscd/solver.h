@@ -94,14 +94,8 @@ typedef struct cscd_proximities {
  * coarser, than 2^-42 of the pair's extent beyond it. Seams and pairs to leave out count as in the options;
  * min_separation has no part in it. Items beyond `distance` need not count all of their pairs. CANCELLED: see
  * cscd_progress. Timings, counters and guarantees stay those of the last step. */
-CSCD_API cscd_status cscd_detector_find_near_sized(cscd_detector *detector, const cscd_view *positions,
-                                                   double distance, cscd_near_form form,
-                                                   cscd_proximities *out, size_t size);
-static inline cscd_status cscd_detector_find_near(cscd_detector *detector, const cscd_view *positions,
-                                                  double distance, cscd_near_form form,
-                                                  cscd_proximities *out) {
-    return cscd_detector_find_near_sized(detector, positions, distance, form, out, sizeof *out);
-}
+CSCD_API cscd_status cscd_detector_find_near(cscd_detector *detector, const cscd_view *positions,
+                                             double distance, cscd_near_form form, cscd_proximities *out);
 
 /* Takes from `rest`, positions of the mesh at rest, the lengths by which proximities of two edges get their
  * threshold, in lists of the detector and of its line searches from the next call on. NULL forgets them.
@@ -171,14 +165,8 @@ typedef struct cscd_free_step {
  *     if (status == CSCD_OK && !step.moved) // the caller takes the approach of step.limit out of the motion
  *         printf("no way\n");
  */
-CSCD_API cscd_status cscd_detector_max_step_sized(cscd_detector *detector, const cscd_view *x0,
-                                                  const cscd_view *x1, const cscd_mutable_view *reached,
-                                                  cscd_free_step *out, size_t size);
-static inline cscd_status cscd_detector_max_step(cscd_detector *detector, const cscd_view *x0,
-                                                 const cscd_view *x1, const cscd_mutable_view *reached,
-                                                 cscd_free_step *out) {
-    return cscd_detector_max_step_sized(detector, x0, x1, reached, out, sizeof *out);
-}
+CSCD_API cscd_status cscd_detector_max_step(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
+                                            const cscd_mutable_view *reached, cscd_free_step *out);
 
 /* ---- how far vertices may go on any path ---------------------------------------------------------------- */
 
@@ -226,17 +214,9 @@ typedef struct cscd_displacement_bounds {
  *     }
  *     free(bounds);
  */
-CSCD_API cscd_status cscd_detector_displacement_bounds_sized(cscd_detector *detector, const cscd_view *x0,
-                                                             double search_radius, cscd_scalar scalar,
-                                                             void *bounds, size_t size,
-                                                             cscd_displacement_bounds *out, size_t out_size);
-static inline cscd_status cscd_detector_displacement_bounds(cscd_detector *detector, const cscd_view *x0,
-                                                            double search_radius, cscd_scalar scalar,
-                                                            void *bounds, size_t size,
-                                                            cscd_displacement_bounds *out) {
-    return cscd_detector_displacement_bounds_sized(detector, x0, search_radius, scalar, bounds, size, out,
-                                                   sizeof *out);
-}
+CSCD_API cscd_status cscd_detector_displacement_bounds(cscd_detector *detector, const cscd_view *x0,
+                                                       double search_radius, cscd_scalar scalar, void *bounds,
+                                                       size_t size, cscd_displacement_bounds *out);
 
 /* What cscd_detector_truncate did. The list lives as that of cscd_displacement_bounds. */
 typedef struct cscd_truncation {
@@ -275,15 +255,9 @@ typedef struct cscd_truncation {
  *         if (cut.shortened == 0 || !cut.moved) break; // all is done, or nothing has a way on
  *     }
  */
-CSCD_API cscd_status cscd_detector_truncate_sized(cscd_detector *detector, const cscd_view *x0,
-                                                  const cscd_view *x1, double search_radius,
-                                                  const cscd_mutable_view *reached, cscd_truncation *out,
-                                                  size_t size);
-static inline cscd_status cscd_detector_truncate(cscd_detector *detector, const cscd_view *x0,
-                                                 const cscd_view *x1, double search_radius,
-                                                 const cscd_mutable_view *reached, cscd_truncation *out) {
-    return cscd_detector_truncate_sized(detector, x0, x1, search_radius, reached, out, sizeof *out);
-}
+CSCD_API cscd_status cscd_detector_truncate(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
+                                            double search_radius, const cscd_mutable_view *reached,
+                                            cscd_truncation *out);
 
 /* ---- a line search ----------------------------------------------------------------------------------- */
 
@@ -334,24 +308,13 @@ CSCD_API cscd_status cscd_line_search_positions(cscd_line_search *search, double
 
 /* Does what cscd_detector_max_step does, for the motion of the line and no farther than `longest` in
  * (0,1]. reached may be NULL. */
-CSCD_API cscd_status cscd_line_search_max_step_sized(cscd_line_search *search, double longest,
-                                                     const cscd_mutable_view *reached, cscd_free_step *out,
-                                                     size_t size);
-static inline cscd_status cscd_line_search_max_step(cscd_line_search *search, double longest,
-                                                    const cscd_mutable_view *reached, cscd_free_step *out) {
-    return cscd_line_search_max_step_sized(search, longest, reached, out, sizeof *out);
-}
+CSCD_API cscd_status cscd_line_search_max_step(cscd_line_search *search, double longest,
+                                               const cscd_mutable_view *reached, cscd_free_step *out);
 
 /* Does what cscd_detector_find_near does, at the positions that cscd_line_search_positions gives for `fraction`.
  * distance: above 0, and at most the reach of the line. */
-CSCD_API cscd_status cscd_line_search_find_near_sized(cscd_line_search *search, double fraction,
-                                                      double distance, cscd_near_form form,
-                                                      cscd_proximities *out, size_t size);
-static inline cscd_status cscd_line_search_find_near(cscd_line_search *search, double fraction,
-                                                     double distance, cscd_near_form form,
-                                                     cscd_proximities *out) {
-    return cscd_line_search_find_near_sized(search, fraction, distance, form, out, sizeof *out);
-}
+CSCD_API cscd_status cscd_line_search_find_near(cscd_line_search *search, double fraction, double distance,
+                                                cscd_near_form form, cscd_proximities *out);
 
 #ifdef __cplusplus
 }

@@ -291,7 +291,7 @@ class Detector(LiveSettings):
         """What the last step promises for the contacts of a component with itself: complete, start_embedded, reason."""
         if not 0 <= component < self.mesh.component_count:
             raise IndexError(f"component {component}: the mesh has {self.mesh.component_count}")
-        found = self._read("guarantee", library.cscd_detector_guarantee_sized, component)
+        found = self._read("guarantee", library.cscdpy_detector_guarantee, component)
         found["reason"] = library.cscd_reason_text(found["reason"]).decode()
         return found
 
@@ -304,12 +304,12 @@ class Detector(LiveSettings):
     @property
     def timings(self) -> Dict[str, float]:
         """Milliseconds of each stage of the last step, by the members of ``cscd_timings``."""
-        return self._read("timings", library.cscd_detector_timings_sized)
+        return self._read("timings", library.cscdpy_detector_timings)
 
     @property
     def counters(self) -> Dict[str, int]:
         """What the last step did, by the members of ``cscd_counters``: the same for any number of threads."""
-        return self._read("counters", library.cscd_detector_counters_sized)
+        return self._read("counters", library.cscdpy_detector_counters)
 
     @property
     def live_bytes(self) -> int:
@@ -363,7 +363,7 @@ class Detector(LiveSettings):
     def _read(self, name: str, function: Any, *arguments: Any) -> Dict[str, Any]:
         found = new_struct(name)
         with self._host.lock:
-            function(self._detector, *arguments, address_of(found), found.nbytes)
+            function(self._detector, *arguments, address_of(found))
         return {member: found[member][0].item() for member in structs[name].names}
 
     def __repr__(self) -> str:

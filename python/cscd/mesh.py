@@ -284,7 +284,7 @@ class Mesh:
         if not 0 <= index < self.component_count:
             raise IndexError(f"component {index}: the mesh has {self.component_count}")
         found = new_struct("component")
-        library.cscd_mesh_component_sized(self.pointer, index, address_of(found), found.nbytes)
+        library.cscdpy_mesh_component(self.pointer, index, address_of(found))
         return dict(zip(structs["component"].names, items_of(found, "component")[0].item()))
 
     @property

@@ -313,7 +313,7 @@ class Plan:
         found = new_struct("region", self.region_count)
         size = structs["region"].itemsize
         for i in range(len(found)):
-            library.cscd_plan_region_sized(self.pointer, i, address_of(found) + i * size, size)
+            library.cscdpy_plan_region(self.pointer, i, address_of(found) + i * size)
         return items_of(found, "region").view(np.recarray)
 
     @property
@@ -339,7 +339,7 @@ class Plan:
         found = new_struct("compared_plan", int(library.cscd_plan_compared_count(self.pointer)))
         size = structs["compared_plan"].itemsize
         for i in range(len(found)):
-            library.cscd_plan_compared_sized(self.pointer, i, address_of(found) + i * size, size)
+            library.cscdpy_plan_compared(self.pointer, i, address_of(found) + i * size)
         return [_compared(row) for row in found]
 
     @property
@@ -360,7 +360,7 @@ class Plan:
 
     def _words(self, member: str) -> Optional[str]:
         found = new_struct("plan_info")
-        library.cscd_plan_describe_sized(self.pointer, address_of(found), found.nbytes)
+        library.cscdpy_plan_describe(self.pointer, address_of(found))
         name = ctypes.c_char_p(int(found[member][0])).value
         return name.decode() if name is not None else None
 

@@ -86,6 +86,27 @@ CALL_OF(line_search_find_near,
          cscd_proximities *out),
         cscd_line_search_find_near(search, fraction, distance, (cscd_near_form)form, out))
 
+/* ---- structs that the library returns: how each is passed is left to the compiler ------------------------- */
+
+#define RESULT_OF(name, arguments, call)                                                                     \
+    PYTHON_API void cscdpy_##name arguments {                                                                \
+        *out = call;                                                                                         \
+    }
+
+RESULT_OF(mesh_component, (const cscd_mesh *mesh, uint32_t component, cscd_component *out),
+          cscd_mesh_component(mesh, component))
+RESULT_OF(plan_describe, (const cscd_plan *plan, cscd_plan_info *out), cscd_plan_describe(plan))
+RESULT_OF(plan_compared, (const cscd_plan *plan, uint32_t place, cscd_compared_plan *out),
+          cscd_plan_compared(plan, place))
+RESULT_OF(plan_region, (const cscd_plan *plan, uint32_t region, cscd_region *out),
+          cscd_plan_region(plan, region))
+RESULT_OF(detector_guarantee, (const cscd_detector *detector, uint32_t component, cscd_guarantee *out),
+          cscd_detector_guarantee(detector, component))
+RESULT_OF(detector_timings, (const cscd_detector *detector, cscd_timings *out),
+          cscd_detector_timings(detector))
+RESULT_OF(detector_counters, (const cscd_detector *detector, cscd_counters *out),
+          cscd_detector_counters(detector))
+
 /* ---- single pairs, and events --------------------------------------------------------------------------- */
 
 CALL_OF(pairs_step,

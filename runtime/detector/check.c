@@ -4,7 +4,6 @@
 #include "runtime/detector/list_cap.h"
 #include "runtime/detector/waiting.h"
 #include "src/core/sort.h"
-#include "src/core/struct_size.h"
 #include "src/core/timer.h"
 #include "src/mesh/positions.h"
 #include "src/mesh/views.h"
@@ -108,8 +107,7 @@ cscd_status detector_ask_moment(cscd_detector *d, const double *positions, const
     return CSCD_OK;
 }
 
-static cscd_status check_views(cscd_detector *detector, const cscd_view *positions, cscd_intersections *out,
-                               size_t size) {
+static cscd_status check_views(cscd_detector *detector, const cscd_view *positions, cscd_intersections *out) {
     cscd_context *context = detector->context;
     if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_check: out is NULL");
     const double *x = NULL;
@@ -118,14 +116,14 @@ static cscd_status check_views(cscd_detector *detector, const cscd_view *positio
     cscd_status status =
         views_read(context, detector->mesh, positions, "positions", &detector->unpacked[0], &x);
     if (status == CSCD_OK) status = detector_ask_moment(detector, x, &question);
-    if (status == CSCD_OK || status == CSCD_LIST_TOO_LONG) struct_give(out, size, &found, sizeof found);
+    if (status == CSCD_OK || status == CSCD_LIST_TOO_LONG) *out = found;
     return status;
 }
 
-cscd_status cscd_detector_check_sized(cscd_detector *detector, const cscd_view *positions,
-                                      cscd_intersections *out, size_t size) {
+cscd_status cscd_detector_check(cscd_detector *detector, const cscd_view *positions,
+                                cscd_intersections *out) {
     if (detector == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!object_enter(detector, &entry)) return entry.status;
-    return context_leave(&entry, check_views(detector, positions, out, size));
+    return context_leave(&entry, check_views(detector, positions, out));
 }

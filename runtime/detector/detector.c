@@ -362,17 +362,16 @@ cscd_status detector_fail_call(cscd_detector *d, cscd_status status) {
     return status == CSCD_LIST_TOO_LONG ? status : context_explain(d->context, status);
 }
 
-void cscd_detector_timings_sized(const cscd_detector *detector, cscd_timings *out, size_t size) {
-    struct_give(out, size, &detector->timings, sizeof detector->timings);
+cscd_timings cscd_detector_timings(const cscd_detector *detector) {
+    return detector->timings;
 }
 
-void cscd_detector_counters_sized(const cscd_detector *detector, cscd_counters *out, size_t size) {
-    struct_give(out, size, &detector->counters, sizeof detector->counters);
+cscd_counters cscd_detector_counters(const cscd_detector *detector) {
+    return detector->counters;
 }
 
-void cscd_detector_guarantee_sized(const cscd_detector *detector, uint32_t component, cscd_guarantee *out,
-                                   size_t size) {
-    struct_give(out, size, &detector->guarantees[component], sizeof *detector->guarantees);
+cscd_guarantee cscd_detector_guarantee(const cscd_detector *detector, uint32_t component) {
+    return detector->guarantees[component];
 }
 
 const cscd_mesh *cscd_detector_mesh(const cscd_detector *detector) {

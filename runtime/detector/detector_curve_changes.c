@@ -1,6 +1,5 @@
 /* Changes of curves, of the public API: which contacts let a curve's points come and go. */
 #include "runtime/detector/detector.h"
-#include "src/core/struct_size.h"
 #include "src/mesh/given_contacts.h"
 #include "src/mesh/positions.h"
 #include "src/mesh/views.h"
@@ -18,8 +17,7 @@ static cscd_status read_ends(cscd_detector *d, const cscd_view *x0, const cscd_v
 }
 
 static cscd_status find_changes(cscd_detector *d, const cscd_view *x0, const cscd_view *x1,
-                                const cscd_contact *contacts, size_t contact_count, cscd_curve_changes *out,
-                                size_t size) {
+                                const cscd_contact *contacts, size_t contact_count, cscd_curve_changes *out) {
     if (out == NULL)
         return context_fail(d->context, CSCD_INVALID_ARGUMENT, "cscd_detector_curve_changes: out is NULL");
     const double *ends[2];
@@ -31,15 +29,15 @@ static cscd_status find_changes(cscd_detector *d, const cscd_view *x0, const csc
     d->changes.context = d->context;
     status =
         change_finder_run(&d->changes, d->mesh, ends, d->exclusions.names, contacts, contact_count, &found);
-    if (status == CSCD_OK) struct_give(out, size, &found, sizeof found);
+    if (status == CSCD_OK) *out = found;
     return context_explain(d->context, status);
 }
 
-cscd_status cscd_detector_curve_changes_sized(cscd_detector *detector, const cscd_view *x0,
-                                              const cscd_view *x1, const cscd_contact *contacts,
-                                              size_t contact_count, cscd_curve_changes *out, size_t size) {
+cscd_status cscd_detector_curve_changes(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
+                                        const cscd_contact *contacts, size_t contact_count,
+                                        cscd_curve_changes *out) {
     if (detector == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!object_enter(detector, &entry)) return entry.status;
-    return context_leave(&entry, find_changes(detector, x0, x1, contacts, contact_count, out, size));
+    return context_leave(&entry, find_changes(detector, x0, x1, contacts, contact_count, out));
 }

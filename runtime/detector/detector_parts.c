@@ -1,7 +1,6 @@
 /* The parts of a live detector, and contacts summed up by pair of parts. */
 #include "runtime/detector/detector.h"
 #include "src/core/sort.h"
-#include "src/core/struct_size.h"
 #include "src/mesh/given_contacts.h"
 
 /* ---- labels ---------------------------------------------------------------------------------------------- */
@@ -77,7 +76,7 @@ static size_t sum_contacts(const contact_part_key *keys, size_t count, const csc
 }
 
 static cscd_status contact_parts(cscd_detector *d, const cscd_contact *contacts, size_t count,
-                                 cscd_contact_part_pairs *out, size_t size) {
+                                 cscd_contact_part_pairs *out) {
     if (out == NULL)
         return context_fail(d->context, CSCD_INVALID_ARGUMENT, "cscd_detector_contact_parts: out is NULL");
     cscd_status status =
@@ -94,15 +93,14 @@ static cscd_status contact_parts(cscd_detector *d, const cscd_contact *contacts,
     }
     sort_by_number(keys, buffer->spare_keys, count, sizeof *keys);
     const cscd_contact_part_pairs sums = {buffer->items, sum_contacts(keys, count, contacts, buffer->items)};
-    struct_give(out, size, &sums, sizeof sums);
+    *out = sums;
     return CSCD_OK;
 }
 
-cscd_status cscd_detector_contact_parts_sized(cscd_detector *detector, const cscd_contact *contacts,
-                                              size_t contact_count, cscd_contact_part_pairs *out,
-                                              size_t size) {
+cscd_status cscd_detector_contact_parts(cscd_detector *detector, const cscd_contact *contacts,
+                                        size_t contact_count, cscd_contact_part_pairs *out) {
     if (detector == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!object_enter(detector, &entry)) return entry.status;
-    return context_leave(&entry, contact_parts(detector, contacts, contact_count, out, size));
+    return context_leave(&entry, contact_parts(detector, contacts, contact_count, out));
 }

@@ -363,8 +363,7 @@ static cscd_status find_kinds(cscd_detector *d, const double *positions, void *d
 }
 
 static cscd_status find_in_views(cscd_detector *d, const cscd_view *positions,
-                                 const cscd_intersection_options *options, cscd_intersection_pairs *out,
-                                 size_t size) {
+                                 const cscd_intersection_options *options, cscd_intersection_pairs *out) {
     cscd_context *context = d->context;
     if (out == NULL)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_find_intersections: out is NULL");
@@ -376,15 +375,15 @@ static cscd_status find_in_views(cscd_detector *d, const cscd_view *positions,
     if (d->memory_most == 0) look_at_memory(d);
     const moment_question asked = {find_kinds, &question, !stops_early(d, &question.options)};
     if (status == CSCD_OK) status = detector_ask_moment(d, x, &asked);
-    if (status == CSCD_OK || status == CSCD_LIST_TOO_LONG) struct_give(out, size, &found, sizeof found);
+    if (status == CSCD_OK || status == CSCD_LIST_TOO_LONG) *out = found;
     return status;
 }
 
-cscd_status cscd_detector_find_intersections_sized(cscd_detector *detector, const cscd_view *positions,
-                                                   const cscd_intersection_options *options,
-                                                   cscd_intersection_pairs *out, size_t size) {
+cscd_status cscd_detector_find_intersections(cscd_detector *detector, const cscd_view *positions,
+                                             const cscd_intersection_options *options,
+                                             cscd_intersection_pairs *out) {
     if (detector == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!object_enter(detector, &entry)) return entry.status;
-    return context_leave(&entry, find_in_views(detector, positions, options, out, size));
+    return context_leave(&entry, find_in_views(detector, positions, options, out));
 }

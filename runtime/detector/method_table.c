@@ -3,7 +3,6 @@
 #include "runtime/detector/method_table.h"
 
 #include "src/core/methods.h"
-#include "src/core/struct_size.h"
 
 /* baselines: begin */
 #include "runtime/baselines/iccd/patch_hiders.h"
@@ -44,7 +43,7 @@ const method_stages *method_stages_of(cscd_method method) {
     return &absent;
 }
 
-bool cscd_method_describe_sized(cscd_method method, cscd_method_info *out, size_t size) {
+bool cscd_method_describe(cscd_method method, cscd_method_info *out) {
     const method_traits *found = method_traits_of(method);
     if (found == NULL) return false;
     cscd_method_info info = {.name = found->name,
@@ -55,6 +54,6 @@ bool cscd_method_describe_sized(cscd_method method, cscd_method_info *out, size_
                              .by_contours = found->by_contours,
                              .by_charge = found->by_charge,
                              .available = method_stages_of(method)->rules != NULL};
-    struct_give(out, size, &info, sizeof info);
+    *out = info;
     return true;
 }

@@ -1,7 +1,6 @@
 /* What is known of starts: of the positions seen last, of the public API, and what a step hands on to the next. */
 #include "runtime/detector/adaptive.h"
 #include "runtime/detector/step.h"
-#include "src/core/struct_size.h"
 
 _Static_assert((int)TRIANGLE_UNKNOWN == (int)CSCD_START_STATE_UNKNOWN &&
                    (int)TRIANGLE_CROSSING == (int)CSCD_START_STATE_CROSSING &&
@@ -9,8 +8,7 @@ _Static_assert((int)TRIANGLE_UNKNOWN == (int)CSCD_START_STATE_UNKNOWN &&
                    (int)TRIANGLE_CLEAN == (int)CSCD_START_STATE_CLEAN,
                "states have the numbers of the public API");
 
-void cscd_detector_start_knowledge_sized(const cscd_detector *detector, uint32_t component,
-                                         cscd_start_knowledge *out, size_t size) {
+cscd_start_knowledge cscd_detector_start_knowledge(const cscd_detector *detector, uint32_t component) {
     const cscd_mesh *mesh = detector->mesh;
     uint32_t counts[4] = {0};
     for (uint32_t t = 0; t < mesh->triangle_count; t++)
@@ -19,7 +17,7 @@ void cscd_detector_start_knowledge_sized(const cscd_detector *detector, uint32_t
                                         .free = counts[TRIANGLE_FREE],
                                         .crossing = counts[TRIANGLE_CROSSING],
                                         .unknown = counts[TRIANGLE_UNKNOWN]};
-    struct_give(out, size, &found, sizeof found);
+    return found;
 }
 
 cscd_start_state cscd_detector_start_state(const cscd_detector *detector, uint32_t triangle) {

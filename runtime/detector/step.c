@@ -10,7 +10,6 @@
 #include "runtime/detector/interval_search.h"
 #include "runtime/detector/list_cap.h"
 #include "runtime/detector/waiting.h"
-#include "src/core/struct_size.h"
 #include "src/core/timer.h"
 #include "src/mesh/positions.h"
 #include "src/mesh/views.h"
@@ -375,7 +374,7 @@ static cscd_status step_between(cscd_detector *d, const double *x0, const double
 }
 
 static cscd_status step_views(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
-                              cscd_contacts *out, size_t size) {
+                              cscd_contacts *out) {
     cscd_context *context = detector->context;
     if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_step: out is NULL");
     const double *from = NULL, *to = NULL;
@@ -384,14 +383,14 @@ static cscd_status step_views(cscd_detector *detector, const cscd_view *x0, cons
     if (status == CSCD_OK)
         status = views_read(context, detector->mesh, x1, "x1", &detector->unpacked[1], &to);
     if (status == CSCD_OK) status = step_between(detector, from, to, &found);
-    if (status == CSCD_OK || status == CSCD_LIST_TOO_LONG) struct_give(out, size, &found, sizeof found);
+    if (status == CSCD_OK || status == CSCD_LIST_TOO_LONG) *out = found;
     return status;
 }
 
-cscd_status cscd_detector_step_sized(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
-                                     cscd_contacts *out, size_t size) {
+cscd_status cscd_detector_step(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
+                               cscd_contacts *out) {
     if (detector == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!object_enter(detector, &entry)) return entry.status;
-    return context_leave(&entry, step_views(detector, x0, x1, out, size));
+    return context_leave(&entry, step_views(detector, x0, x1, out));
 }

@@ -180,17 +180,13 @@ cscd_status cscd_event_tracker_add_contacts(cscd_event_tracker *tracker, const c
     return context_leave(&entry, add_contacts(tracker, contacts, contact_count));
 }
 
-static cscd_status take_found(cscd_event_tracker *t, uint64_t frame, const cscd_intersection_pairs *found,
-                              size_t size, cscd_intersection_pairs *out) {
+static cscd_status check_frame(cscd_event_tracker *t, uint64_t frame, const cscd_intersection_pairs *found) {
     const event_history *h = &t->history;
     if (h->frame_count > 0 && frame <= h->last_frame)
         return context_fail(t->context, CSCD_INVALID_ARGUMENT,
                             "frame %llu does not come after frame %llu; frames go in by ascending numbers",
                             (unsigned long long)frame, (unsigned long long)h->last_frame);
-    if (found == NULL) return CSCD_OK;
-    cscd_status status = struct_take(t->context, out, sizeof *out, LEAST_SIZE(cscd_intersection_pairs), found,
-                                     size, "cscd_intersection_pairs");
-    return status == CSCD_OK ? frame_input_check(&t->mesh, out) : status;
+    return found != NULL ? frame_input_check(&t->mesh, found) : CSCD_OK;
 }
 
 static cscd_status append_frame(cscd_event_tracker *t, const frame_input *input) {
@@ -222,24 +218,22 @@ static cscd_status append_nothing(cscd_event_tracker *t, const frame_input *inpu
         pairs, contacts, t->max_memory, wanted);
 }
 
-static cscd_status add_frame(cscd_event_tracker *t, uint64_t frame, const cscd_intersection_pairs *found,
-                             size_t size) {
-    cscd_intersection_pairs taken = {.items = NULL};
-    cscd_status status = take_found(t, frame, found, size, &taken);
+static cscd_status add_frame(cscd_event_tracker *t, uint64_t frame, const cscd_intersection_pairs *found) {
+    cscd_status status = check_frame(t, frame, found);
     if (status != CSCD_OK) return status;
     memory_budget budget = {.most = t->max_memory};
-    const frame_input input = {found != NULL ? &taken : NULL, t->contacts, t->contact_count, frame, &budget};
+    const frame_input input = {found, t->contacts, t->contact_count, frame, &budget};
     status = append_frame(t, &input);
     if (status != CSCD_OUT_OF_MEMORY || !budget.exceeded) return context_explain(t->context, status);
     return append_nothing(t, &input, budget.wanted);
 }
 
-cscd_status cscd_event_tracker_add_frame_sized(cscd_event_tracker *tracker, uint64_t frame,
-                                               const cscd_intersection_pairs *found, size_t size) {
+cscd_status cscd_event_tracker_add_frame(cscd_event_tracker *tracker, uint64_t frame,
+                                         const cscd_intersection_pairs *found) {
     if (tracker == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!object_enter(tracker, &entry)) return entry.status;
-    return context_leave(&entry, add_frame(tracker, frame, found, size));
+    return context_leave(&entry, add_frame(tracker, frame, found));
 }
 
 /* ---- events that have ended ----------------------------------------------------------------------------- */
@@ -260,20 +254,20 @@ static cscd_events give_closed(cscd_event_tracker *t) {
     return events;
 }
 
-static cscd_status take_events(cscd_event_tracker *t, cscd_events *out, size_t size) {
+static cscd_status take_events(cscd_event_tracker *t, cscd_events *out) {
     if (out == NULL)
         return context_fail(t->context, CSCD_INVALID_ARGUMENT, "cscd_event_tracker_take: out is NULL");
     if (!reserve_given(t, t->history.closed_count)) return context_out_of_memory(t->context);
     const cscd_events events = give_closed(t);
-    struct_give(out, size, &events, sizeof events);
+    *out = events;
     return CSCD_OK;
 }
 
-cscd_status cscd_event_tracker_take_sized(cscd_event_tracker *tracker, cscd_events *out, size_t size) {
+cscd_status cscd_event_tracker_take(cscd_event_tracker *tracker, cscd_events *out) {
     if (tracker == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!object_enter(tracker, &entry)) return entry.status;
-    return context_leave(&entry, take_events(tracker, out, size));
+    return context_leave(&entry, take_events(tracker, out));
 }
 
 static cscd_status check_no_contacts(const cscd_event_tracker *t, const char *who) {
@@ -283,7 +277,7 @@ static cscd_status check_no_contacts(const cscd_event_tracker *t, const char *wh
                         t->contact_count);
 }
 
-static cscd_status finish_events(cscd_event_tracker *t, cscd_events *out, size_t size) {
+static cscd_status finish_events(cscd_event_tracker *t, cscd_events *out) {
     event_history *h = &t->history;
     if (out == NULL)
         return context_fail(t->context, CSCD_INVALID_ARGUMENT, "cscd_event_tracker_finish: out is NULL");
@@ -295,15 +289,15 @@ static cscd_status finish_events(cscd_event_tracker *t, cscd_events *out, size_t
     event_history_close(h);
     const cscd_events events = give_closed(t);
     event_history_clear(h);
-    struct_give(out, size, &events, sizeof events);
+    *out = events;
     return CSCD_OK;
 }
 
-cscd_status cscd_event_tracker_finish_sized(cscd_event_tracker *tracker, cscd_events *out, size_t size) {
+cscd_status cscd_event_tracker_finish(cscd_event_tracker *tracker, cscd_events *out) {
     if (tracker == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!object_enter(tracker, &entry)) return entry.status;
-    return context_leave(&entry, finish_events(tracker, out, size));
+    return context_leave(&entry, finish_events(tracker, out));
 }
 
 /* ---- chunks --------------------------------------------------------------------------------------------- */

@@ -290,7 +290,7 @@ static cscd_status step_between(cscd_sensors *s, const double *x0, const double 
 }
 
 static cscd_status step_views(cscd_sensors *sensors, const cscd_view *x0, const cscd_view *x1,
-                              cscd_warnings *out, size_t size) {
+                              cscd_warnings *out) {
     cscd_context *context = sensors->context;
     if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_sensors_step: out is NULL");
     const double *from = NULL, *to = NULL;
@@ -298,16 +298,16 @@ static cscd_status step_views(cscd_sensors *sensors, const cscd_view *x0, const 
     cscd_status status = views_read(context, sensors->mesh, x0, "x0", &sensors->unpacked[0], &from);
     if (status == CSCD_OK) status = views_read(context, sensors->mesh, x1, "x1", &sensors->unpacked[1], &to);
     if (status == CSCD_OK) status = step_between(sensors, from, to, &found);
-    if (status == CSCD_OK) struct_give(out, size, &found, sizeof found);
+    if (status == CSCD_OK) *out = found;
     return status;
 }
 
-cscd_status cscd_sensors_step_sized(cscd_sensors *sensors, const cscd_view *x0, const cscd_view *x1,
-                                    cscd_warnings *out, size_t size) {
+cscd_status cscd_sensors_step(cscd_sensors *sensors, const cscd_view *x0, const cscd_view *x1,
+                              cscd_warnings *out) {
     if (sensors == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!object_enter(sensors, &entry)) return entry.status;
-    return context_leave(&entry, step_views(sensors, x0, x1, out, size));
+    return context_leave(&entry, step_views(sensors, x0, x1, out));
 }
 
 /* ---- results of the last step ------------------------------------------------------------------------- */
@@ -341,10 +341,10 @@ uint32_t cscd_sensors_particle(const cscd_sensors *sensors, uint32_t particle) {
     return sensors->particles.vertices[particle];
 }
 
-void cscd_sensors_timings_sized(const cscd_sensors *sensors, cscd_sensor_timings *out, size_t size) {
-    struct_give(out, size, &sensors->timings, sizeof sensors->timings);
+cscd_sensor_timings cscd_sensors_timings(const cscd_sensors *sensors) {
+    return sensors->timings;
 }
 
-void cscd_sensors_counters_sized(const cscd_sensors *sensors, cscd_sensor_counters *out, size_t size) {
-    struct_give(out, size, &sensors->counters, sizeof sensors->counters);
+cscd_sensor_counters cscd_sensors_counters(const cscd_sensors *sensors) {
+    return sensors->counters;
 }

@@ -4,7 +4,6 @@
 #include "runtime/detector/waiting.h"
 #include "runtime/solver/stored_scalar.h"
 #include "src/core/floating.h"
-#include "src/core/struct_size.h"
 #include "src/mesh/positions.h"
 #include "src/mesh/views.h"
 
@@ -140,7 +139,7 @@ static cscd_status find_bounds_at(cscd_detector *d, const double *x0, double sea
 
 static cscd_status find_bounds_of_views(cscd_detector *detector, const cscd_view *x0, double search_radius,
                                         cscd_scalar scalar, void *bounds, size_t size,
-                                        cscd_displacement_bounds *out, size_t out_size) {
+                                        cscd_displacement_bounds *out) {
     cscd_context *context = detector->context;
     if (out == NULL)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_displacement_bounds: out is NULL");
@@ -150,17 +149,16 @@ static cscd_status find_bounds_of_views(cscd_detector *detector, const cscd_view
     if (status == CSCD_OK) status = check_array(detector, search_radius, scalar, bounds, size);
     if (status == CSCD_OK) status = views_read(context, detector->mesh, x0, "x0", &detector->unpacked[0], &x);
     if (status == CSCD_OK) status = find_bounds_at(detector, x, search_radius, scalar, bounds, &found);
-    if (status == CSCD_OK || status == CSCD_LIST_TOO_LONG) struct_give(out, out_size, &found, sizeof found);
+    if (status == CSCD_OK || status == CSCD_LIST_TOO_LONG) *out = found;
     return status;
 }
 
-cscd_status cscd_detector_displacement_bounds_sized(cscd_detector *detector, const cscd_view *x0,
-                                                    double search_radius, cscd_scalar scalar, void *bounds,
-                                                    size_t size, cscd_displacement_bounds *out,
-                                                    size_t out_size) {
+cscd_status cscd_detector_displacement_bounds(cscd_detector *detector, const cscd_view *x0,
+                                              double search_radius, cscd_scalar scalar, void *bounds,
+                                              size_t size, cscd_displacement_bounds *out) {
     if (detector == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!object_enter(detector, &entry)) return entry.status;
-    return context_leave(
-        &entry, find_bounds_of_views(detector, x0, search_radius, scalar, bounds, size, out, out_size));
+    return context_leave(&entry,
+                         find_bounds_of_views(detector, x0, search_radius, scalar, bounds, size, out));
 }

@@ -5,7 +5,6 @@
 #include "runtime/solver/free_step.h"
 #include "runtime/solver/proximity.h"
 #include "src/core/check.h"
-#include "src/core/struct_size.h"
 #include "src/core/vec3.h"
 #include "src/mesh/positions.h"
 #include "src/mesh/views.h"
@@ -273,7 +272,7 @@ cscd_status cscd_line_search_positions(cscd_line_search *line, double fraction,
 }
 
 static cscd_status find_near_on_line(cscd_line_search *line, double fraction, double distance,
-                                     cscd_near_form form, cscd_proximities *out, size_t size) {
+                                     cscd_near_form form, cscd_proximities *out) {
     cscd_detector *d = line->detector;
     cscd_status status = check_fraction(line, fraction, "cscd_line_search_find_near");
     if (status == CSCD_OK) status = check_rules(line, "cscd_line_search_find_near");
@@ -295,19 +294,19 @@ static cscd_status find_near_on_line(cscd_line_search *line, double fraction, do
     interval_search search = proximity_search(d, line->reached, distance);
     if (status == CSCD_OK) status = candidates_test(&line->candidates, &search);
     if (status == CSCD_OK) status = proximity_collect(d, line->reached, form, &found);
-    if (status == CSCD_LIST_TOO_LONG) struct_give(out, size, &found, sizeof found);
+    if (status == CSCD_LIST_TOO_LONG) *out = found;
     if (status == CSCD_OK) status = context_progress_status(d->context);
     if (status != CSCD_OK) return detector_fail_call(d, status);
-    struct_give(out, size, &found, sizeof found);
+    *out = found;
     return CSCD_OK;
 }
 
-cscd_status cscd_line_search_find_near_sized(cscd_line_search *line, double fraction, double distance,
-                                             cscd_near_form form, cscd_proximities *out, size_t size) {
+cscd_status cscd_line_search_find_near(cscd_line_search *line, double fraction, double distance,
+                                       cscd_near_form form, cscd_proximities *out) {
     if (line == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!object_enter(line, &entry)) return entry.status;
-    return context_leave(&entry, find_near_on_line(line, fraction, distance, form, out, size));
+    return context_leave(&entry, find_near_on_line(line, fraction, distance, form, out));
 }
 
 /* ---- steps --------------------------------------------------------------------------------------------- */
@@ -351,7 +350,7 @@ static cscd_status check_covered(const cscd_line_search *line) {
 }
 
 static cscd_status max_step_on_line(cscd_line_search *line, double longest, const cscd_mutable_view *reached,
-                                    cscd_free_step *out, size_t size) {
+                                    cscd_free_step *out) {
     cscd_detector *d = line->detector;
     cscd_status status = check_begun(line, "cscd_line_search_max_step");
     if (status == CSCD_OK) status = check_rules(line, "cscd_line_search_max_step");
@@ -372,20 +371,19 @@ static cscd_status max_step_on_line(cscd_line_search *line, double longest, cons
     if (status == CSCD_OK) status = waiting_only_touching(d, line->x0);
     if (status == CSCD_OK)
         status = free_step_find(d, &m, longest, test_candidates_on_motion, line, line->reached, &step);
-    if (status == CSCD_IN_CONTACT) struct_give(out, size, &step, sizeof step);
+    if (status == CSCD_IN_CONTACT) *out = step;
     if (status == CSCD_OK) status = context_progress_status(d->context);
     if (status != CSCD_OK) return detector_fail_call(d, status);
     carry_states_over(line);
     views_write(d->mesh, reached, line->reached);
-    struct_give(out, size, &step, sizeof step);
+    *out = step;
     return CSCD_OK;
 }
 
-cscd_status cscd_line_search_max_step_sized(cscd_line_search *line, double longest,
-                                            const cscd_mutable_view *reached, cscd_free_step *out,
-                                            size_t size) {
+cscd_status cscd_line_search_max_step(cscd_line_search *line, double longest,
+                                      const cscd_mutable_view *reached, cscd_free_step *out) {
     if (line == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!object_enter(line, &entry)) return entry.status;
-    return context_leave(&entry, max_step_on_line(line, longest, reached, out, size));
+    return context_leave(&entry, max_step_on_line(line, longest, reached, out));
 }

@@ -3,7 +3,6 @@
 
 #include "runtime/detector/step.h"
 #include "runtime/detector/waiting.h"
-#include "src/core/struct_size.h"
 #include "src/core/timer.h"
 #include "src/mesh/views.h"
 
@@ -51,7 +50,7 @@ static void add_counters(cscd_counters *sum, const cscd_counters *more) {
     sum->coherent += more->coherent;
 }
 
-_Static_assert(sizeof(cscd_counters) == 21 * sizeof(uint64_t), "add_counters adds every counter");
+_Static_assert(offsetof(cscd_counters, reserved) == 21 * sizeof(uint64_t), "add_counters adds every counter");
 
 /* Withdraws the previous try first, because the vertices did not go to its end. */
 static cscd_status try_motion(void *of, const double *from, const double *to, cscd_contacts *out) {
@@ -121,7 +120,7 @@ static cscd_status max_step_between(cscd_detector *d, const double *x0, const do
 }
 
 static cscd_status max_step_of_views(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
-                                     const cscd_mutable_view *reached, cscd_free_step *out, size_t size) {
+                                     const cscd_mutable_view *reached, cscd_free_step *out) {
     cscd_context *context = detector->context;
     const cscd_mesh *mesh = detector->mesh;
     if (out == NULL)
@@ -136,14 +135,14 @@ static cscd_status max_step_of_views(cscd_detector *detector, const cscd_view *x
     if (status == CSCD_OK && reached != NULL) views_mutable_scalars(mesh, reached, detector->reached_scalars);
     if (status == CSCD_OK) status = max_step_between(detector, from, to, &step);
     if (status == CSCD_OK) views_write(mesh, reached, detector->reached);
-    if (status == CSCD_OK || status == CSCD_IN_CONTACT) struct_give(out, size, &step, sizeof step);
+    if (status == CSCD_OK || status == CSCD_IN_CONTACT) *out = step;
     return status;
 }
 
-cscd_status cscd_detector_max_step_sized(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
-                                         const cscd_mutable_view *reached, cscd_free_step *out, size_t size) {
+cscd_status cscd_detector_max_step(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
+                                   const cscd_mutable_view *reached, cscd_free_step *out) {
     if (detector == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!object_enter(detector, &entry)) return entry.status;
-    return context_leave(&entry, max_step_of_views(detector, x0, x1, reached, out, size));
+    return context_leave(&entry, max_step_of_views(detector, x0, x1, reached, out));
 }

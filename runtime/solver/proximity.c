@@ -7,7 +7,6 @@
 #include "runtime/solver/unique_pairs.h"
 #include "src/core/check.h"
 #include "src/core/sort.h"
-#include "src/core/struct_size.h"
 #include "src/mesh/positions.h"
 #include "src/mesh/views.h"
 
@@ -118,7 +117,7 @@ static cscd_status find_near_at(cscd_detector *d, const double *positions, doubl
 }
 
 static cscd_status find_near_views(cscd_detector *detector, const cscd_view *positions, double distance,
-                                   cscd_near_form form, cscd_proximities *out, size_t size) {
+                                   cscd_near_form form, cscd_proximities *out) {
     cscd_context *context = detector->context;
     if (out == NULL)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_find_near: out is NULL");
@@ -129,17 +128,16 @@ static cscd_status find_near_views(cscd_detector *detector, const cscd_view *pos
     if (status == CSCD_OK)
         status = views_read(context, detector->mesh, positions, "positions", &detector->unpacked[0], &x);
     if (status == CSCD_OK) status = find_near_at(detector, x, distance, form, &found);
-    if (status == CSCD_OK || status == CSCD_LIST_TOO_LONG) struct_give(out, size, &found, sizeof found);
+    if (status == CSCD_OK || status == CSCD_LIST_TOO_LONG) *out = found;
     return status;
 }
 
-cscd_status cscd_detector_find_near_sized(cscd_detector *detector, const cscd_view *positions,
-                                          double distance, cscd_near_form form, cscd_proximities *out,
-                                          size_t size) {
+cscd_status cscd_detector_find_near(cscd_detector *detector, const cscd_view *positions, double distance,
+                                    cscd_near_form form, cscd_proximities *out) {
     if (detector == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!object_enter(detector, &entry)) return entry.status;
-    return context_leave(&entry, find_near_views(detector, positions, distance, form, out, size));
+    return context_leave(&entry, find_near_views(detector, positions, distance, form, out));
 }
 
 static cscd_status take_rest(cscd_detector *d, const cscd_view *rest) {

@@ -7,7 +7,6 @@
 #include "runtime/detector/waiting.h"
 #include "runtime/solver/division_planes.h"
 #include "runtime/solver/stored_scalar.h"
-#include "src/core/struct_size.h"
 #include "src/core/vec3.h"
 #include "src/mesh/views.h"
 
@@ -272,7 +271,7 @@ static cscd_status truncate_between(cscd_detector *d, const wanted_motion *motio
 
 static cscd_status truncate_views(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
                                   double search_radius, const cscd_mutable_view *reached,
-                                  cscd_truncation *out, size_t size) {
+                                  cscd_truncation *out) {
     cscd_context *context = detector->context;
     const cscd_mesh *mesh = detector->mesh;
     if (out == NULL)
@@ -286,15 +285,15 @@ static cscd_status truncate_views(cscd_detector *detector, const cscd_view *x0, 
     if (status == CSCD_OK) status = choose_scalars(detector, x0, reached, &motion.scalars);
     if (status == CSCD_OK) status = truncate_between(detector, &motion, search_radius, &found);
     if (status == CSCD_OK) views_write(mesh, reached, detector->reached);
-    if (status == CSCD_OK || status == CSCD_LIST_TOO_LONG) struct_give(out, size, &found, sizeof found);
+    if (status == CSCD_OK || status == CSCD_LIST_TOO_LONG) *out = found;
     return status;
 }
 
-cscd_status cscd_detector_truncate_sized(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
-                                         double search_radius, const cscd_mutable_view *reached,
-                                         cscd_truncation *out, size_t size) {
+cscd_status cscd_detector_truncate(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
+                                   double search_radius, const cscd_mutable_view *reached,
+                                   cscd_truncation *out) {
     if (detector == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!object_enter(detector, &entry)) return entry.status;
-    return context_leave(&entry, truncate_views(detector, x0, x1, search_radius, reached, out, size));
+    return context_leave(&entry, truncate_views(detector, x0, x1, search_radius, reached, out));
 }

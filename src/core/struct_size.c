@@ -1,4 +1,4 @@
-/* Structs of the public API that may grow are as large as the caller's header says, which may be older or newer
+/* Options and other structs that callers fill are as large as the caller's header says, which may be older or newer
  * than the library. */
 #include "src/core/struct_size.h"
 
@@ -8,15 +8,11 @@ static size_t smaller_of(size_t a, size_t b) {
     return a < b ? a : b;
 }
 
-void struct_give(void *out, size_t out_size, const void *from, size_t size) {
-    size_t known = smaller_of(out_size, size);
+void struct_give_options(void *out, size_t out_size, const void *from, size_t size) {
+    const uint32_t own_size = (uint32_t)out_size;
+    const size_t known = smaller_of(out_size, size);
     memcpy(out, from, known);
     memset((char *)out + known, 0, out_size - known);
-}
-
-void struct_give_options(void *out, size_t out_size, const void *from, size_t size) {
-    uint32_t own_size = (uint32_t)out_size;
-    struct_give(out, out_size, from, size);
     memcpy(out, &own_size, sizeof own_size);
 }
 

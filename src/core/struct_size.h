@@ -1,14 +1,12 @@
-/* Structs of the public API that may grow are as large as the caller's header says, which may be older or newer
+/* Options and other structs that callers fill are as large as the caller's header says, which may be older or newer
  * than the library. */
 #pragma once
 
 #include "src/core/context.h"
 #include "src/core/least_sizes.h"
 
-/* Copies as much of `from` as the caller's struct holds, and zeroes what the library does not know. */
-void struct_give(void *out, size_t out_size, const void *from, size_t size);
-
-/* Writes default options to a caller's struct: the same, and its first member, a uint32_t, becomes its size. */
+/* Writes as much of the default options as the caller's struct holds, and 0 to members that the library does not know. The first
+ * member, a uint32_t, becomes the caller's size. */
 void struct_give_options(void *out, size_t out_size, const void *from, size_t size);
 
 /* Overwrites the beginning of `into`, which holds the defaults, with the caller's struct. least_size: the struct's

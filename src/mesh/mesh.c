@@ -337,9 +337,9 @@ uint32_t cscd_mesh_component_count(const cscd_mesh *mesh) {
     return mesh->component_count;
 }
 
-void cscd_mesh_component_sized(const cscd_mesh *mesh, uint32_t component, cscd_component *out, size_t size) {
+cscd_component cscd_mesh_component(const cscd_mesh *mesh, uint32_t component) {
     assert(component < mesh->component_count);
-    struct_give(out, size, &mesh->components[component], sizeof *mesh->components);
+    return mesh->components[component];
 }
 
 uint32_t cscd_mesh_triangle_component(const cscd_mesh *mesh, uint32_t triangle) {
@@ -351,9 +351,9 @@ uint32_t cscd_mesh_object_count(const cscd_mesh *mesh) {
     return mesh->object_count;
 }
 
-void cscd_mesh_object_sized(const cscd_mesh *mesh, uint32_t object, cscd_object *out, size_t size) {
+cscd_object cscd_mesh_object(const cscd_mesh *mesh, uint32_t object) {
     assert(object < mesh->object_count);
-    struct_give(out, size, &mesh->objects[object], sizeof *mesh->objects);
+    return mesh->objects[object];
 }
 
 uint32_t cscd_mesh_vertex_object(const cscd_mesh *mesh, uint32_t vertex) {

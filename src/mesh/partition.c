@@ -2,8 +2,6 @@
  * it. */
 #include "src/mesh/partition.h"
 
-#include "src/core/struct_size.h"
-
 #include <assert.h>
 
 static array_list list_arrays(cscd_partition *p) {
@@ -97,9 +95,9 @@ uint32_t cscd_partition_part_count(const cscd_partition *partition) {
     return partition->part_count;
 }
 
-void cscd_partition_part_sized(const cscd_partition *partition, uint32_t part, cscd_part *out, size_t size) {
+cscd_part cscd_partition_part(const cscd_partition *partition, uint32_t part) {
     assert(part < partition->part_count);
-    struct_give(out, size, &partition->parts[part], sizeof(cscd_part));
+    return partition->parts[part];
 }
 
 uint32_t cscd_partition_cell_count(const cscd_partition *partition) {

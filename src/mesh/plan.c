@@ -2,8 +2,6 @@
 #include "src/mesh/plan.h"
 #include "src/core/methods.h"
 
-#include "src/core/struct_size.h"
-
 #include <assert.h>
 #include <string.h>
 
@@ -102,9 +100,9 @@ uint32_t cscd_plan_region_count(const cscd_plan *plan) {
     return plan->region_count;
 }
 
-void cscd_plan_region_sized(const cscd_plan *plan, uint32_t region, cscd_region *out, size_t size) {
+cscd_region cscd_plan_region(const cscd_plan *plan, uint32_t region) {
     assert(region < plan->region_count);
-    struct_give(out, size, &plan->regions[region], sizeof *plan->regions);
+    return plan->regions[region];
 }
 
 uint32_t cscd_plan_triangle_region(const cscd_plan *plan, uint32_t triangle) {
@@ -122,21 +120,21 @@ double cscd_plan_capacitance(const cscd_plan *plan, uint32_t component) {
     return plan->capacitances != NULL ? plan->capacitances[component] : 0.0;
 }
 
-void cscd_plan_timings_sized(const cscd_plan *plan, cscd_preprocess_timings *out, size_t size) {
-    struct_give(out, size, &plan->timings, sizeof plan->timings);
+cscd_preprocess_timings cscd_plan_timings(const cscd_plan *plan) {
+    return plan->timings;
 }
 
-void cscd_plan_describe_sized(const cscd_plan *plan, cscd_plan_info *out, size_t size) {
-    struct_give(out, size, &plan->info, sizeof plan->info);
+cscd_plan_info cscd_plan_describe(const cscd_plan *plan) {
+    return plan->info;
 }
 
 uint32_t cscd_plan_compared_count(const cscd_plan *plan) {
     return plan->candidates.count;
 }
 
-void cscd_plan_compared_sized(const cscd_plan *plan, uint32_t place, cscd_compared_plan *out, size_t size) {
+cscd_compared_plan cscd_plan_compared(const cscd_plan *plan, uint32_t place) {
     assert(place < plan->candidates.count);
     cscd_compared_plan found = plan->candidates.items[place];
     if (found.region_count == 0) found.failure = plan->candidates.charge_failure;
-    struct_give(out, size, &found, sizeof found);
+    return found;
 }

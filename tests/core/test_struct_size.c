@@ -1,4 +1,4 @@
-/* Structs that may grow, between a caller and a library of different ages. */
+/* Structs that callers fill, between a caller and a library of different ages. */
 #include "src/core/context.h"
 #include "src/core/struct_size.h"
 #include "tests/support/test.h"
@@ -16,15 +16,6 @@ static void fill_bytes(void) {
 }
 
 /* A newer caller gets zeros for what the library does not know, an older one no more than it has room for. */
-TEST(what_is_given_fits_the_caller) {
-    for (size_t size = 0; size <= LARGEST; size++) {
-        fill_bytes();
-        struct_give(other, size, known, KNOWN);
-        for (size_t i = 0; i < sizeof other; i++)
-            assert_int_equal(other[i], i >= size ? 0xee : i < KNOWN ? known[i] : 0);
-    }
-}
-
 TEST(options_begin_with_the_size_of_the_caller) {
     for (size_t size = sizeof(uint32_t); size <= LARGEST; size++) {
         uint32_t own;

@@ -62,11 +62,9 @@ class Api:
         for header in HEADERS:
             self.read(header)
         inputs = ' '.join(parameters for _, name, parameters in self.functions if name.endswith('_sized'))
-        # A struct grows if the library is told its size: by a parameter or by its first member.
-        self.taken = [name for name, members in self.structs.items()
-                      if members[0][1] == 'struct_size' or re.search(rf'const {name} \*\w+, size_t \w*size\b', inputs)]
-        self.growing = [name for name in self.structs
-                        if name in self.taken or re.search(rf'(?<!const ){name} \*', inputs)]
+        # A struct grows if callers fill it and the library is told its size: by a parameter or by its first member.
+        self.growing = [name for name, members in self.structs.items()
+                        if members[0][1] == 'struct_size' or re.search(rf'const {name} \*\w+, size_t \w*size\b', inputs)]
 
     def read(self, header):
         code, macros = read_code(header)
@@ -171,7 +169,7 @@ def write_frozen(api):
 
 
 def write_least(api):
-    """The last members of the structs that callers fill, as of the version in which each struct was first released."""
+    """The last members of the structs that grow, as of the version in which each struct was first released."""
     last = {}
     if is_released():
         with open(LEAST, encoding='utf-8') as file:
@@ -183,8 +181,8 @@ def write_least(api):
                    '#pragma once\n\n#include <stddef.h>\n\n'
                    '#define STRUCT_THROUGH(type, member) (offsetof(type, member) + sizeof(((type *)0)->member))\n'
                    '#define LEAST_SIZE(type)             LEAST_##type\n\n')
-        width = max(len(name) for name in api.taken)
-        for name in api.taken:
+        width = max(len(name) for name in api.growing)
+        for name in api.growing:
             member = last.get(name, api.structs[name][-1][1])
             file.write(f'#define LEAST_{name.ljust(width)} STRUCT_THROUGH({name}, {member})\n')
 

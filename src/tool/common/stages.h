@@ -22,7 +22,7 @@ typedef struct timing_row {
 } timing_row;
 
 /* All members of cscd_timings: the stages of a step, the check, the total. */
-enum { TIMING_COUNT = sizeof(cscd_timings) / sizeof(double), TIMING_STAGES = TIMING_COUNT - 2 };
+enum { TIMING_COUNT = offsetof(cscd_timings, reserved) / sizeof(double), TIMING_STAGES = TIMING_COUNT - 2 };
 extern const timing_row timing_rows[]; /* TIMING_COUNT of them */
 
 double timing_ms(const cscd_timings *timings, const timing_row *row);
