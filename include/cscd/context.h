@@ -61,6 +61,9 @@ typedef struct cscd_context cscd_context;
  *             environment of the thread that runs them back
  *   failing   A callback that cannot go on calls cscd_context_cancel() and returns: the call that it was called
  *             from then fails, and may be repeated. cscd/cscd.hpp and bindings do so when a callback throws
+ *   forking   After fork(), the child has a copy of every object, and its calls run on the thread that makes them,
+ *             with the same results: threads of the library stay in the parent. A context in which a call was
+ *             running at that moment stays busy in the child. A host's own parallel_for is the host's affair
  *   leaving   A callback should return. If it leaves the library by a C++ exception or longjmp, the context is
  *             broken: every call fails with CSCD_BROKEN, cscd_context_detail names the callback, and the objects can
  *             only be destroyed, which frees everything. After an exception all threads see this. A longjmp is

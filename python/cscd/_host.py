@@ -27,7 +27,7 @@ _hosts: Set[weakref.ref[Host]] = set()
 
 
 def _look_after_fork() -> None:
-    """In a child: threads, and calls that run in them, have stayed in the process that forked."""
+    """In a child: calls that run in other threads have stayed in the process that forked."""
     for reference in list(_hosts):
         host = reference()
         if host is not None:
@@ -159,13 +159,10 @@ class Host:
         _hosts.add(weakref.ref(self, _hosts.discard))
 
     def after_fork(self) -> None:
-        """In a child. What had threads, or was in the middle of a call, is of no use there, and is never destroyed."""
+        """In a child. What was in the middle of a call is of no use there, and is never destroyed."""
         self.lock._at_fork_reinit()
-        if self.threads > 1:
-            self.lost = f"this object has {self.threads} threads, which stayed in the process that forked"
-        elif library.cscdpy_host_is_busy(self.handle):
+        if library.cscdpy_host_is_busy(self.handle):
             self.lost = "this object was in the middle of a call when the process forked"
-        if self.lost:
             library.cscdpy_host_lose(self.handle)
 
     def check(self) -> None:

@@ -16,7 +16,7 @@ typedef struct host {
     double looked_ms; /* when signals were looked for last */
     size_t users;     /* one for who created it, and one for each keeper of an object of its context */
     bool raised;      /* an exception is set */
-    bool lost; /* by a fork: its threads, or the call that was running. Nothing in it is destroyed any more */
+    bool lost;        /* by a fork, in the middle of a call. Nothing in it is destroyed any more */
 } host;
 
 /* Between these the lock is not ours. False: a call is running in the host, and a callback of it has made another one. */

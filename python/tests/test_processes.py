@@ -172,23 +172,19 @@ def in_child(work: Any) -> Any:
 
 
 def test_fork_with_threads() -> None:
-    """Threads stay behind: a detector with threads says so, can be let go of, and another one works."""
+    """Threads stay behind: a detector with threads goes on without them, can be let go of, and another one works."""
     scene = oracle.make_grid_soup(3)
     kept = [cscd.Detector(cscd.Mesh(scene.F, len(scene.x0)), threads=3)]
     wanted = kept[0].check(scene.x0)
 
     def work() -> Any:
-        try:
-            kept[0].check(scene.x0)
-        except cscd.Error as problem:
-            sentence = str(problem)
+        alone = kept[0].check(scene.x0)
         mesh = kept[0].mesh
         line = pickle.loads(pickle.dumps(kept[0]))
         kept.clear()
         gc.collect()
-        return sentence, cscd.Detector(mesh, threads=2).check(scene.x0), line.check(scene.x0)
+        return alone, cscd.Detector(mesh, threads=2).check(scene.x0), line.check(scene.x0)
 
-    sentence, found, again = in_child(work)
-    assert "3 threads, which stayed in the process that forked" in sentence and "spawn" in sentence
-    assert np.array_equal(found, wanted) and np.array_equal(again, wanted)
+    for found in in_child(work):
+        assert np.array_equal(found, wanted)
     assert np.array_equal(kept[0].check(scene.x0), wanted)

@@ -42,6 +42,7 @@ struct parallel {
     uint32_t thread_count; /* the caller included */
     host_loop host;        /* run NULL: the crew's own threads */
     uint32_t started;      /* helpers that were really started */
+    uint64_t process;      /* that has them */
     helper *helpers;
     double patience_ms; /* 0: there are fewer processors than threads */
 
@@ -246,6 +247,7 @@ cscd_status parallel_create(host_memory *m, uint32_t thread_count, cscd_parallel
     if (threads == NULL) return CSCD_OUT_OF_MEMORY;
     threads->thread_count = thread_count;
     threads->host = host_loop_of(m, host);
+    threads->process = system_process();
     threads->patience_ms = thread_count <= system_processors_for_us() ? patience_ms : 0.0;
     pthread_mutex_init(&threads->lock, NULL);
     pthread_cond_init(&threads->work_ready, NULL);
@@ -264,8 +266,13 @@ cscd_status parallel_create(host_memory *m, uint32_t thread_count, cscd_parallel
     return CSCD_OK;
 }
 
-void parallel_destroy(host_memory *m, parallel *threads) {
-    if (threads == NULL) return;
+/* In a child that fork made there are no helpers, only what they have left: a lock that one of them held, and conditions that
+ * they still wait for, neither of which may be touched. The caller then does all work by itself. */
+static bool has_crew(const parallel *threads) {
+    return threads->process == system_process();
+}
+
+static void dismiss_crew(parallel *threads) {
     atomic_store(&threads->quit, true);
     call_sleepers(threads);
     pthread_cond_broadcast(&threads->resumed);
@@ -274,6 +281,11 @@ void parallel_destroy(host_memory *m, parallel *threads) {
     pthread_cond_destroy(&threads->work_done);
     pthread_cond_destroy(&threads->work_ready);
     pthread_mutex_destroy(&threads->lock);
+}
+
+void parallel_destroy(host_memory *m, parallel *threads) {
+    if (threads == NULL) return;
+    if (has_crew(threads)) dismiss_crew(threads);
     host_loop_free(&threads->host);
     memory_free(m, threads->helpers);
     memory_free(m, threads->ranges);
@@ -286,6 +298,7 @@ uint32_t parallel_thread_count(const parallel *threads) {
 
 void parallel_begin_call(parallel *threads) {
     if (threads->host.host.run != NULL) host_loop_begin_call(&threads->host);
+    if (threads->started > 0 && !has_crew(threads)) threads->started = 0;
 }
 
 loop_faults parallel_faults(const parallel *threads) {

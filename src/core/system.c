@@ -47,6 +47,10 @@ bool system_has_threads(void) {
     return true;
 }
 
+uint64_t system_process(void) {
+    return 0;
+}
+
 bool system_thread_stack(uintptr_t *lowest, size_t *size) {
     ULONG_PTR low = 0, high = 0;
     GetCurrentThreadStackLimits(&low, &high);
@@ -160,6 +164,10 @@ bool system_has_threads(void) {
 #else
     return true;
 #endif
+}
+
+uint64_t system_process(void) {
+    return (uint64_t)getpid();
 }
 
 #if defined(__APPLE__)
