@@ -248,7 +248,7 @@ static cscd_status create_plan(cscd_context *context, const cscd_mesh *mesh, con
 
 cscd_status cscd_plan_create(cscd_context *context, const cscd_mesh *mesh, const cscd_view *positions,
                              const cscd_plan_options *options, cscd_plan **out) {
-    if (context == NULL || mesh == NULL) return CSCD_NULL_OBJECT;
+    if (context == NULL || mesh == NULL) return context_lacks(context, "cscd_plan_create", "mesh");
     context_entry entry;
     if (!context_enter(context, &entry)) return entry.status;
     return context_leave(&entry, create_plan(context, mesh, positions, options, out));
@@ -339,7 +339,7 @@ static cscd_status create_from_parts(cscd_context *context, const cscd_mesh *mes
 cscd_status cscd_plan_create_from_parts_sized(cscd_context *context, const cscd_mesh *mesh,
                                               const cscd_view *positions, const cscd_plan_parts *parts,
                                               size_t parts_size, cscd_plan **out) {
-    if (context == NULL || mesh == NULL) return CSCD_NULL_OBJECT;
+    if (context == NULL || mesh == NULL) return context_lacks(context, "cscd_plan_create_from_parts", "mesh");
     context_entry entry;
     if (!context_enter(context, &entry)) return entry.status;
     return context_leave(&entry, create_from_parts(context, mesh, positions, parts, parts_size, out));

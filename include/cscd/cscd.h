@@ -26,8 +26,8 @@
  *               the rules of callbacks
  *   errors      functions that can fail return cscd_status; *out is written only with CSCD_OK. Afterwards
  *               cscd_context_detail() gives a sentence: what is wrong, where, and what to do; "" after a call
- *               that succeeded. A function that needs an object and is given NULL returns CSCD_NULL_OBJECT, and
- *               the sentence stays what it was. All may return CSCD_INVALID_ARGUMENT and CSCD_OUT_OF_MEMORY;
+ *               that succeeded. A function that needs an object and is given NULL returns CSCD_NULL_OBJECT; the
+ *               sentence says which, unless it is the object whose context would keep it. All may return CSCD_INVALID_ARGUMENT and CSCD_OUT_OF_MEMORY;
  *               other statuses are named at the function. Objects stay valid after any failure, and the call may
  *               be repeated
  *   unchecked   functions that do not return cscd_status are given a valid object and indices below its counts;

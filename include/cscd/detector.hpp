@@ -7,6 +7,10 @@
 #include <cscd/mesh_change.hpp>
 #include <cscd/plan.hpp>
 
+/* Some hosts, as the Unreal Engine, have a macro of this name. */
+#pragma push_macro("check")
+#undef check
+
 namespace cscd {
 
 /* ---- options --------------------------------------------------------------------------------- */
@@ -346,5 +350,7 @@ class detector : public detail::owner<cscd_detector, cscd_detector_destroy> {
 };
 
 } // namespace cscd
+
+#pragma pop_macro("check")
 
 #endif

@@ -47,7 +47,7 @@ CSCD_API const char *cscd_intersection_kind_name(cscd_intersection_kind kind);
 
 /* A set that has one kind. Sets are joined by |. */
 static inline uint64_t cscd_intersection_set(cscd_intersection_kind kind) {
-    return (uint64_t)1 << kind;
+    return UINT64_C(1) << kind;
 }
 
 /* What is asked. Later versions may add values. */

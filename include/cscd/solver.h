@@ -70,8 +70,8 @@ typedef struct cscd_proximity {
  * cscd_detector_set_rest every threshold is 0, and no pair has a mollifier. An example, for either form:
  *
  *     double energy = 0.0;
- *     for (size_t i = 0; i < near.count; i++) {
- *         const cscd_proximity *p = &near.items[i];
+ *     for (size_t i = 0; i < proximities.count; i++) {
+ *         const cscd_proximity *p = &proximities.items[i];
  *         energy += p->count * mollifier(p->vertices, p->threshold) * barrier(p->distance);
  *     } // its gradient has count * mollifier * barrier'(distance) * weights[k] * normal at vertices[k]
  */
@@ -279,8 +279,8 @@ typedef struct cscd_line_search cscd_line_search;
  *     for (double f = 1.0; status == CSCD_OK && f > 1e-6; f = 0.5 * step.fraction) {
  *         status = cscd_line_search_max_step(search, f, CSCD_MUTABLE_DOUBLES(reached, n), &step);
  *         if (status == CSCD_OK) // `reached` is certified as it is stored: rounding may take a shorter step elsewhere
- *             status = cscd_line_search_find_near(search, step.fraction, 0.3, CSCD_NEAR_UNIQUE, &near);
- *         if (status == CSCD_OK && energy_at(reached, &near) < energy_before) break;
+ *             status = cscd_line_search_find_near(search, step.fraction, 0.3, CSCD_NEAR_UNIQUE, &proximities);
+ *         if (status == CSCD_OK && energy_at(reached, &proximities) < energy_before) break;
  *     }
  *     cscd_line_search_destroy(search);
  */

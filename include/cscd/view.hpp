@@ -128,10 +128,44 @@ using view_type = std::conditional_t<std::is_const_v<Element>, cscd_view, mutabl
 
 } // namespace detail
 
+namespace detail {
+
+/* A temporary that only refers to elements, as a span does, may go before its view; one that holds them may not. */
+template <class T> constexpr bool holds_elements = !std::is_trivially_destructible_v<T>;
+template <class T, std::size_t N> constexpr bool holds_elements<std::array<T, N>> = true;
+template <class T, std::size_t N> constexpr bool holds_elements<T[N]> = true;
+
+template <class Container> constexpr void expect_lasting() {
+    static_assert(
+        std::is_lvalue_reference_v<Container> ||
+            !holds_elements<std::remove_cv_t<std::remove_reference_t<Container>>>,
+        "view_of: the container is a temporary, which is gone before its view is used: give it a name");
+}
+
+/* Says why no view can be made of a container. */
+template <class Container> constexpr void expect_positions() {
+    static_assert(!is_matrix<std::remove_cv_t<std::remove_reference_t<Container>>>,
+                  "cscd does not guess how a matrix lies: say view_of_columns, or give a span of its data");
+    static_assert(
+        is_matrix<std::remove_cv_t<std::remove_reference_t<Container>>> || holds_positions<Container>,
+        "cscd does not know points of this type: specialize cscd::scalar_of for it, or name the member that is "
+        "a point, by view_of(structs, &type::member)");
+}
+
+template <class Container>
+constexpr bool is_other_container =
+    !std::is_void_v<element_of<Container>> && !holds_positions<Container> &&
+    !std::is_same_v<std::remove_cv_t<element_of<Container>>, cscd_view> &&
+    !std::is_base_of_v<cscd_mutable_view, std::remove_cv_t<element_of<Container>>>;
+
+} // namespace detail
+
 /* A view of a container of points, or of packed floats or doubles x, y, z; one that can be written to, if the
  * container can. */
-template <class Container, class = std::enable_if_t<detail::holds_positions<Container>>>
+template <class Container, class = std::enable_if_t<!std::is_void_v<detail::element_of<Container>>>>
 auto view_of(Container &&container) {
+    detail::expect_lasting<Container>();
+    detail::expect_positions<Container>();
     using element = detail::element_of<Container>;
     detail::view_type<element> view{};
     view.data = std::data(container);
@@ -148,6 +182,7 @@ auto view_of(Container &&container) {
 /* A view of a member of the structs in a container: view_of(particles, &particle::position). */
 template <class Container, class Struct, class Point, class = std::enable_if_t<detail::is_point<Point>()>>
 auto view_of(Container &&structs, Point Struct::*member) {
+    detail::expect_lasting<Container>();
     using element = detail::element_of<Container>;
     using point = std::conditional_t<std::is_const_v<element>, const Point, Point>;
     detail::view_type<element> view{};
@@ -166,6 +201,7 @@ auto view_of(Container &&structs, Point Struct::*member) {
  * other is given as a span of its data.) */
 template <class Container, class = std::enable_if_t<detail::is_scalar<detail::element_of<Container>>>>
 auto view_of_columns(Container &&matrix) {
+    detail::expect_lasting<Container>();
     using element = detail::element_of<Container>;
     detail::view_type<element> view{};
     view.data = std::data(matrix);
@@ -230,6 +266,9 @@ class positions : public detail::views<cscd_view> {
     positions(const Container &container) : views(span<const cscd_view>(container)) {
     }
     template <class Container, std::enable_if_t<detail::holds_positions<const Container>, int> = 0>
+    positions(const Container &container) : views(view_of(container)) {
+    }
+    template <class Container, std::enable_if_t<detail::is_other_container<const Container>, long> = 0>
     positions(const Container &container) : views(view_of(container)) {
     }
 };

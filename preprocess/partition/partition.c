@@ -159,7 +159,7 @@ static cscd_status create_partition(cscd_context *context, const cscd_mesh *mesh
 cscd_status cscd_partition_create(cscd_context *context, const cscd_mesh *mesh, const cscd_plan *plan,
                                   const cscd_view *positions, const cscd_partition_options *options,
                                   cscd_partition **out) {
-    if (context == NULL || mesh == NULL) return CSCD_NULL_OBJECT;
+    if (context == NULL || mesh == NULL) return context_lacks(context, "cscd_partition_create", "mesh");
     context_entry entry;
     if (!context_enter(context, &entry)) return entry.status;
     return context_leave(&entry, create_partition(context, mesh, plan, positions, options, out));

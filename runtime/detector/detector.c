@@ -261,7 +261,7 @@ static cscd_status take_options(cscd_context *context, const cscd_mesh *mesh, co
 
 cscd_status cscd_detector_create(cscd_context *context, const cscd_mesh *mesh, const cscd_plan *plan,
                                  const cscd_detector_options *options, cscd_detector **out) {
-    if (context == NULL || mesh == NULL) return CSCD_NULL_OBJECT;
+    if (context == NULL || mesh == NULL) return context_lacks(context, "cscd_detector_create", "mesh");
     context_entry entry;
     if (!context_enter(context, &entry)) return entry.status;
     return context_leave(&entry, take_options(context, mesh, plan, options, out));

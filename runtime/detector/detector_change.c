@@ -228,7 +228,8 @@ static cscd_status change_mesh(cscd_detector *d, const cscd_mesh_change *change)
 }
 
 cscd_status cscd_detector_change_mesh(cscd_detector *detector, const cscd_mesh_change *change) {
-    if (detector == NULL || change == NULL) return CSCD_NULL_OBJECT;
+    if (detector == NULL) return CSCD_NULL_OBJECT;
+    if (change == NULL) return context_lacks(detector->context, "cscd_detector_change_mesh", "change");
     context_entry entry;
     if (!object_enter(detector, &entry)) return entry.status;
     return context_leave(&entry, change_mesh(detector, change));

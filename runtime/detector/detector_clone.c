@@ -132,7 +132,7 @@ static cscd_status clone_from(cscd_context *context, const cscd_detector *from, 
 }
 
 cscd_status cscd_detector_clone(cscd_context *context, const cscd_detector *detector, cscd_detector **out) {
-    if (context == NULL || detector == NULL) return CSCD_NULL_OBJECT;
+    if (context == NULL || detector == NULL) return context_lacks(context, "cscd_detector_clone", "detector");
     context_entry entry;
     if (!context_enter(context, &entry)) return entry.status;
     return context_leave(&entry, clone_from(context, detector, out));

@@ -134,7 +134,7 @@ static cscd_status create_tracker(cscd_context *context, const cscd_mesh *mesh,
 
 cscd_status cscd_event_tracker_create(cscd_context *context, const cscd_mesh *mesh,
                                       const cscd_event_options *options, cscd_event_tracker **out) {
-    if (context == NULL || mesh == NULL) return CSCD_NULL_OBJECT;
+    if (context == NULL || mesh == NULL) return context_lacks(context, "cscd_event_tracker_create", "mesh");
     context_entry entry;
     if (!context_enter(context, &entry)) return entry.status;
     return context_leave(&entry, create_tracker(context, mesh, options, out));
@@ -333,7 +333,8 @@ static cscd_status merge_chunks(cscd_event_tracker *t, const cscd_event_tracker 
 }
 
 cscd_status cscd_event_tracker_merge(cscd_event_tracker *tracker, const cscd_event_tracker *next) {
-    if (tracker == NULL || next == NULL) return CSCD_NULL_OBJECT;
+    if (tracker == NULL) return CSCD_NULL_OBJECT;
+    if (next == NULL) return context_lacks(tracker->context, "cscd_event_tracker_merge", "next");
     context_entry entry;
     if (!object_enter(tracker, &entry)) return entry.status;
     return context_leave(&entry, merge_chunks(tracker, next));

@@ -158,7 +158,8 @@ static cscd_status create_sensors(cscd_context *context, const cscd_mesh *mesh, 
 
 cscd_status cscd_sensors_create(cscd_context *context, const cscd_mesh *mesh, cscd_partition *partition,
                                 const cscd_sensor_options *options, cscd_sensors **out) {
-    if (context == NULL || mesh == NULL || partition == NULL) return CSCD_NULL_OBJECT;
+    if (context == NULL || mesh == NULL || partition == NULL)
+        return context_lacks(context, "cscd_sensors_create", mesh == NULL ? "mesh" : "partition");
     context_entry entry;
     if (!context_enter(context, &entry)) return entry.status;
     return context_leave(&entry, create_sensors(context, mesh, partition, options, out));

@@ -198,6 +198,13 @@ cscd_status context_loop_status(cscd_context *context) {
         (unsigned long long)f.tasks, f.left_out, f.repeated, f.unfinished);
 }
 
+cscd_status context_lacks(cscd_context *context, const char *function, const char *object) {
+    context_entry entry;
+    if (context == NULL) return CSCD_NULL_OBJECT;
+    if (!context_enter(context, &entry)) return entry.status;
+    return context_leave(&entry, context_fail(context, CSCD_NULL_OBJECT, "%s: %s is NULL", function, object));
+}
+
 cscd_status context_progress_status(cscd_context *context) {
     const progress *p = &context->progress;
     if (entry_broken(&context->entry)) return CSCD_BROKEN;
@@ -205,10 +212,11 @@ cscd_status context_progress_status(cscd_context *context) {
     if (!p->by_report)
         return context_fail(context, CSCD_CANCELLED,
                             "cancelled by cscd_context_cancel; the call may be repeated");
-    return context_fail(context, CSCD_CANCELLED,
-                        "cancelled by the progress function, about %.0f %% through, in the stage \"%s\"; "
-                        "the call may be repeated",
-                        100.0 * p->reported, p->stage);
+    const bool named = p->stage[0] != '\0';
+    return context_fail(
+        context, CSCD_CANCELLED,
+        "cancelled by the progress function, about %.0f %% through%s%s%s; the call may be repeated",
+        100.0 * p->reported, named ? ", in the stage \"" : "", p->stage, named ? "\"" : "");
 }
 
 cscd_status context_explain(cscd_context *context, cscd_status status) {

@@ -96,6 +96,10 @@ bool context_renew_all(cscd_context *context, array_list list, size_t *capacity,
 cscd_status context_fail(cscd_context *context, cscd_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+/* Fails a call of the API that needs an object and was given NULL, before it has entered the context. context: NULL if there is
+ * none that could keep the sentence. */
+cscd_status context_lacks(cscd_context *context, const char *function, const char *object);
+
 /* Sets the sentence of a failed allocation, and returns CSCD_OUT_OF_MEMORY. */
 cscd_status context_out_of_memory(cscd_context *context);
 

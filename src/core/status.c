@@ -31,7 +31,7 @@ const char *cscd_status_string(cscd_status status) {
     case CSCD_BROKEN:
         return "broken: a callback has left a call with this context by an exception or longjmp";
     case CSCD_NULL_OBJECT:
-        return "an object that the call needs is NULL; the context keeps its older sentence";
+        return "an object that the call needs is NULL";
     case CSCD_LIST_TOO_LONG:
         return "the list is longer than the caller allows";
     default:

@@ -280,7 +280,7 @@ static cscd_status change_by_list(cscd_context *context, const cscd_mesh *old,
 cscd_status cscd_mesh_change_create_sized(cscd_context *context, const cscd_mesh *old,
                                           const cscd_object_change *changes, size_t change_size,
                                           size_t object_size, uint32_t change_count, cscd_mesh_change **out) {
-    if (context == NULL || old == NULL) return CSCD_NULL_OBJECT;
+    if (context == NULL || old == NULL) return context_lacks(context, "cscd_mesh_change_create", "old");
     context_entry entry;
     if (!context_enter(context, &entry)) return entry.status;
     return context_leave(&entry, change_by_list(context, mesh_of_creator(old), changes, change_size,

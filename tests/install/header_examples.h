@@ -24,7 +24,7 @@ static double velocities[3 * VERTICES], impulses[10000];
 static const double corners[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
 static float now[3 * VERTICES], wanted[3 * VERTICES];
 static cscd_contacts contacts;
-static cscd_proximities near;
+static cscd_proximities proximities;
 static const double energy_before = 1e9;
 
 /* A host in another language. */
@@ -96,7 +96,8 @@ static void set_up(void) {
     expect_success(cscd_mesh_create(context, sheets, 2, &mesh));
     expect_success(cscd_mesh_create(context, &body, 1, &tetrahedron));
     expect_success(cscd_detector_create(context, mesh, NULL, NULL, &detector));
-    expect_success(cscd_detector_find_near(detector, CSCD_DOUBLES(x0, n), 0.9, CSCD_NEAR_UNIQUE, &near));
+    expect_success(
+        cscd_detector_find_near(detector, CSCD_DOUBLES(x0, n), 0.9, CSCD_NEAR_UNIQUE, &proximities));
     expect_success(cscd_detector_step(detector, CSCD_DOUBLES(x0, n), CSCD_DOUBLES(x1, n), &contacts));
 }
 

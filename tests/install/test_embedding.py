@@ -1,6 +1,7 @@
 """Projects that build the library by CMake's add_subdirectory, static and shared, and that find what such a build installed.
 
-Objects are compiled without optimisation, which is quicker.
+The host takes warnings for errors that are no faults of ours, and is careless of rounding. Objects are compiled without
+optimisation, which is quicker.
 """
 import re
 import shutil
@@ -15,10 +16,13 @@ def folder(tmp_path_factory):
     return tmp_path_factory.mktemp("embedding")
 
 
+HOST_FLAGS = "-O0 -Wall -Wextra -Wpedantic -Wconversion -Werror -ffast-math"
+
+
 def build(project, *options):
     """Configures and builds the project, and runs its program. A compiler cache spares most of the second build."""
     launcher = shutil.which("ccache") or ""
-    shell(f"cmake -S tests/install/embedding -B '{project}' -DCMAKE_BUILD_TYPE=None -DCMAKE_C_FLAGS=-O0 "
+    shell(f"cmake -S tests/install/embedding -B '{project}' -DCMAKE_BUILD_TYPE=None -DCMAKE_C_FLAGS='{HOST_FLAGS}' "
           f"-DCMAKE_C_COMPILER_LAUNCHER='{launcher}' {' '.join(options)} && cmake --build '{project}' -j2")
     assert shell(f"'{project}/client'") == f"cscd {VERSION}\nvf 4 0 at t = 0.667\n"
 

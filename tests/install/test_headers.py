@@ -1,5 +1,8 @@
 """What the public headers promise and show, and what names them: the frozen API, their examples, the C++ interface, recipes."""
 import re
+import subprocess
+
+import pytest
 
 from support.install.built_tree import BUILD, ROOT, functions_of, shell
 
@@ -36,6 +39,45 @@ def test_every_function_has_a_wrapper():
     called = set(re.findall(r"\w+", "\n".join(line for line in text.splitlines() if not line.startswith(" *"))))
     apart = {*functions_of("research.h"), *functions_of("sensors.h")}
     assert sorted(set(functions_of()) - apart - called) == PLAIN.split()
+
+
+def compile_in_cpp(code, *flags):
+    """What the compiler says of a program in C++, "" if it takes it."""
+    command = ["g++", "-std=c++17", "-fsyntax-only", f"-I{ROOT / 'include'}", *flags, "-x", "c++", "-"]
+    return subprocess.run(command, input=code, text=True, capture_output=True, check=False).stderr
+
+
+def test_macros_and_warnings_of_a_host():
+    """A host may have a macro `check`, as the Unreal Engine has, and take every warning for an error."""
+    code = """
+        #define check(expression) ((void)(expression))
+        #include <cscd/cscd.hpp>
+        #include <cscd/research.h>
+        #include <cscd/sensors.hpp>
+        int main() { check(cscd_intersection_set(CSCD_INTERSECTION_CROSSING)); }"""
+    warnings = "-Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow -Wold-style-cast -Wcast-qual -Werror"
+    assert compile_in_cpp(code, *warnings.split()) == ""
+
+
+@pytest.mark.parametrize(
+    "code, says",
+    [
+        ("auto view = cscd::view_of(std::vector<double>(9));", "the container is a temporary"),
+        ("auto view = cscd::view_of_columns(std::vector<double>(9));", "the container is a temporary"),
+        ("std::vector<odd> points; auto view = cscd::view_of(points);", "specialize cscd::scalar_of"),
+        ("std::vector<odd> points; cscd::positions given(points);", "specialize cscd::scalar_of"),
+        ("std::vector<int> numbers; cscd::positions given(numbers);", "specialize cscd::scalar_of"),
+        ("matrix rows; cscd::positions given(rows);", "say view_of_columns"),
+    ],
+)
+def test_mistakes_do_not_compile(code, says):
+    """The compiler says what is wrong with a view of what is gone, or of points that nobody knows."""
+    known = """
+        #include <cscd/cscd.hpp>
+        struct odd { int weight; double place[3]; };
+        struct matrix { enum { IsRowMajor = 0 }; const float *data() const; std::size_t size() const; };"""
+    assert says in compile_in_cpp(f"{known}\nint main() {{ {code} }}")
+    assert compile_in_cpp(f"{known}\nint main() {{ std::vector<double> x(9); cscd::view_of(cscd::span<double>(x)); }}") == ""
 
 
 def test_recipes_fit_the_tree():
