@@ -45,7 +45,7 @@ draw_plan() {
     ./cscd render "$@" --plan "$plan" --colour "$by" --size 480x480 --no-text --up z --view 30,5 -o "$out/$name.png" >/dev/null
 }
 
-# Figure 3.4 of three meshes as one picture, a row for each: docs/images/thesis-cuts.png.
+# Figure 3.4 of three meshes as one picture, a row for each; docs/images/thesis-cuts.png is a copy of it.
 join_steps() {
     for mesh in pawn-drop dumbbell-stairs figure-balls; do
         for picture in "$out/$mesh"-3.4[a-f]-*.png; do

@@ -63,7 +63,9 @@ typedef struct cscd_context cscd_context;
  *             from then fails, and may be repeated. cscd/cscd.hpp and bindings do so when a callback throws
  *   forking   After fork(), the child has a copy of every object, and its calls run on the thread that makes them,
  *             with the same results: threads of the library stay in the parent. A context in which a call was
- *             running at that moment stays busy in the child. A host's own parallel_for is the host's affair
+ *             running at that moment stays busy in the child, where destroying its objects does nothing. A child
+ *             that a callback has forked must not return from it, and no thread may be making a plan with
+ *             CSCD_CHARGE_DENSE at that moment. A host's own parallel_for is the host's affair
  *   leaving   A callback should return. If it leaves the library by a C++ exception or longjmp, the context is
  *             broken: every call fails with CSCD_BROKEN, cscd_context_detail names the callback, and the objects can
  *             only be destroyed, which frees everything. After an exception all threads see this. A longjmp is

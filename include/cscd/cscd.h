@@ -22,8 +22,8 @@
  *   results     lists that a function gives out belong to the object that was asked; each says how long they live
  *   threads     one call at a time works in a context: another one fails with CSCD_BUSY, as calls from callbacks do.
  *               Separate contexts are independent. A mesh never changes: objects of any contexts use it on any
- *               threads at the same time, and its functions may be called from any thread. cscd/context.h has
- *               the rules of callbacks
+ *               threads at the same time, and its functions may be called from any thread. A thread that calls
+ *               needs 256 KiB of stack. cscd/context.h has the rules of callbacks and of fork
  *   errors      functions that can fail return cscd_status; *out is written only with CSCD_OK. Afterwards
  *               cscd_context_detail() gives a sentence: what is wrong, where, and what to do; "" after a call
  *               that succeeded. A function that needs an object and is given NULL returns CSCD_NULL_OBJECT; the
@@ -34,9 +34,9 @@
  *               they check nothing
  *   defaults    options come from the matching _defaults() function and are then changed; {0} is refused. A NULL
  *               options pointer means the defaults. Members of other structs that you do not need are 0
- *   versions    options and other structs that you fill are as large as your header says, whatever library is
- *               loaded: functions that end in _sized take that size, and the functions without this ending
- *               pass it on. Bindings call the _sized ones. Results never grow. Enumerations that may grow end in
+ *   versions    options, cscd_object_desc, cscd_object_change and cscd_plan_parts are as large as your header says,
+ *               whatever library is loaded: functions that end in _sized take that size, and their inline twins
+ *               pass it on. Bindings call the _sized ones. No other struct grows. Enumerations that may grow end in
  *               _MAX_ENUM; give a switch a default. The name of a value that the library does not know is
  *               "unknown". docs/abi.md has all rules
  *   complete    a list is whole, or the call fails

@@ -161,6 +161,7 @@ typedef struct cscd_preprocess_timings {
     double assembly_ms, solve_ms; /* CHARGE: of its equations */
     double regions_ms;            /* cuts or k-means, detector points, visible shares */
     double total_ms;
+    double reserved[4]; /* 0 */
 } cscd_preprocess_timings;
 
 /* How long each stage of cscd_plan_create took. */

@@ -190,11 +190,12 @@ CSCD_API uint32_t cscd_sensors_particle(const cscd_sensors *sensors, uint32_t pa
 
 /* Milliseconds of the last step. */
 typedef struct cscd_sensor_timings {
-    double walk_ms;    /* particles walk */
-    double verdict_ms; /* distances between particles, and the certificates of cscd_sensors_apart */
-    double exact_ms;   /* elementary tests of warnings */
-    double renewal_ms; /* looking for parts that should have new cells */
-    double total_ms;   /* the whole step */
+    double walk_ms;     /* particles walk */
+    double verdict_ms;  /* distances between particles, and the certificates of cscd_sensors_apart */
+    double exact_ms;    /* elementary tests of warnings */
+    double renewal_ms;  /* looking for parts that should have new cells */
+    double total_ms;    /* the whole step */
+    double reserved[4]; /* 0 */
 } cscd_sensor_timings;
 
 /* What the last step did, in numbers. */
@@ -204,6 +205,7 @@ typedef struct cscd_sensor_counters {
     uint64_t vertices;       /* vertices at which forces were computed */
     uint64_t particle_pairs; /* pairs of particles within R_eff, in all rounds */
     uint64_t tests;          /* elementary tests of the exact check */
+    uint64_t reserved[4];    /* 0 */
 } cscd_sensor_counters;
 
 /* The timings of the last step. */

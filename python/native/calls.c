@@ -1,5 +1,5 @@
-/* The calls of the library that may take long, each in its host: without Python's lock. All other functions Python calls
- * as cscd/cscd.h has them. Structs have the sizes of this build, whose layouts.c tells Python of them. */
+/* The calls of the library that may take long, each in its host: without Python's lock; and those that return a struct. All other
+ * functions Python calls as cscd/cscd.h has them. Structs have the sizes of this build, whose layouts.c tells Python of them. */
 #include "cscd/cscd.h"
 
 #include "python/native/exports.h"

@@ -178,6 +178,10 @@ static void free_claimed(cscd_context *context, reference_count *object) {
 void context_free_object(cscd_context *context, reference_count *object) {
     context_entry entry;
     reference_count *half_made = object;
+    /* In a child that fork made a call that was inside never ends, and another thread may have held the lock of the list. */
+    if (parallel_is_of_parent(context->threads) && !entry_broken(&context->entry) &&
+        atomic_load(&context->entry.mark) != 0)
+        return;
     atomic_compare_exchange_strong(&context->entry.half_made, &half_made, NULL);
     live_objects_remove(&context->live, object);
     for (;;) {

@@ -42,7 +42,7 @@ struct parallel {
     uint32_t thread_count; /* the caller included */
     host_loop host;        /* run NULL: the crew's own threads */
     uint32_t started;      /* helpers that were really started */
-    uint64_t process;      /* that has them */
+    uint32_t forks;        /* of the process that has them: system_forks */
     helper *helpers;
     double patience_ms; /* 0: there are fewer processors than threads */
 
@@ -247,7 +247,7 @@ cscd_status parallel_create(host_memory *m, uint32_t thread_count, cscd_parallel
     if (threads == NULL) return CSCD_OUT_OF_MEMORY;
     threads->thread_count = thread_count;
     threads->host = host_loop_of(m, host);
-    threads->process = system_process();
+    threads->forks = system_forks();
     threads->patience_ms = thread_count <= system_processors_for_us() ? patience_ms : 0.0;
     pthread_mutex_init(&threads->lock, NULL);
     pthread_cond_init(&threads->work_ready, NULL);
@@ -269,7 +269,11 @@ cscd_status parallel_create(host_memory *m, uint32_t thread_count, cscd_parallel
 /* In a child that fork made there are no helpers, only what they have left: a lock that one of them held, and conditions that
  * they still wait for, neither of which may be touched. The caller then does all work by itself. */
 static bool has_crew(const parallel *threads) {
-    return threads->process == system_process();
+    return threads->forks == system_forks();
+}
+
+bool parallel_is_of_parent(const parallel *threads) {
+    return threads != NULL && !has_crew(threads);
 }
 
 static void dismiss_crew(parallel *threads) {

@@ -15,6 +15,9 @@ typedef struct parallel parallel;
 cscd_status parallel_create(host_memory *m, uint32_t thread_count, cscd_parallel_for host, parallel **out);
 void parallel_destroy(host_memory *m, parallel *threads);
 
+/* Is this a child that fork made after the crew was started? threads may be NULL. */
+bool parallel_is_of_parent(const parallel *threads);
+
 /* The number of threads, the caller included: work that keeps data per lane has as many lanes. */
 uint32_t parallel_thread_count(const parallel *threads);
 

@@ -47,7 +47,7 @@ bool system_has_threads(void) {
     return true;
 }
 
-uint64_t system_process(void) {
+uint32_t system_forks(void) {
     return 0;
 }
 
@@ -63,6 +63,7 @@ bool system_thread_stack(uintptr_t *lowest, size_t *size) {
 
 #include <pthread.h>
 #include <sched.h>
+#include <stdatomic.h>
 #include <unistd.h>
 #ifdef __FreeBSD__
 #include <pthread_np.h>
@@ -166,8 +167,21 @@ bool system_has_threads(void) {
 #endif
 }
 
-uint64_t system_process(void) {
-    return (uint64_t)getpid();
+/* A process number would not do: a child in a namespace of its own may have that of its parent. */
+static atomic_uint forks;
+
+static void count_fork(void) {
+    atomic_fetch_add(&forks, 1);
+}
+
+static void watch_forks(void) {
+    pthread_atfork(NULL, NULL, count_fork);
+}
+
+uint32_t system_forks(void) {
+    static pthread_once_t once = PTHREAD_ONCE_INIT;
+    pthread_once(&once, watch_forks);
+    return atomic_load_explicit(&forks, memory_order_relaxed);
 }
 
 #if defined(__APPLE__)

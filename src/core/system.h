@@ -27,8 +27,8 @@ uint32_t system_processors_for_us(void);
 /* False where a program has but one thread, as a build for WebAssembly without -pthread. */
 bool system_has_threads(void);
 
-/* The number of this process, which differs in a child that fork made; 0 where there is no fork. */
-uint64_t system_process(void);
+/* How many forks lie between this process and the one that first asked: another number in every child. 0 where there is no fork. */
+uint32_t system_forks(void);
 
 /* The stack that the system has given the calling thread: size bytes from *lowest on. False: it is not known. */
 bool system_thread_stack(uintptr_t *lowest, size_t *size);

@@ -2,6 +2,8 @@
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 
+#include <pthread.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
@@ -42,4 +44,51 @@ TEST(children_work_alone) {
         free(wanted);
         rig_destroy(&r);
     }
+}
+
+/* ---- in the midst of calls ----------------------------------------------------------------------------- */
+
+typedef struct busy_rig {
+    rig r;
+    scene s;
+    atomic_bool ends;
+} busy_rig;
+
+static void *step_on(void *data) {
+    busy_rig *b = data;
+    while (!atomic_load(&b->ends)) {
+        cscd_contacts found;
+        cscd_detector_step(b->r.detector, CSCD_DOUBLES(b->s.x0, b->s.vertex_count),
+                           CSCD_DOUBLES(b->s.x1, b->s.vertex_count), &found);
+    }
+    return NULL;
+}
+
+/* In the child: what may be busy is given back, and a new rig with threads works. */
+static int work_anew(busy_rig *b) {
+    alarm(SECONDS);
+    rig_destroy(&b->r);
+    rig fresh = rig_create(&b->s, 2, NULL);
+    const bool found = rig_step(&fresh, &b->s).count > 0;
+    rig_destroy(&fresh);
+    return found ? 0 : 1;
+}
+
+TEST(children_let_go_of_what_is_busy) {
+    static busy_rig b;
+    pthread_t thread;
+    scene_make(SCENE_SOUP, 1, &b.s);
+    b.r = rig_create(&b.s, 2, NULL);
+    assert_int_equal(pthread_create(&thread, NULL, step_on, &b), 0);
+    for (int i = 0; i < PACED(REPEATS, 4); i++) {
+        wait_a_little(i);
+        const pid_t child = fork();
+        if (child == 0) _exit(work_anew(&b));
+        int outcome = 1;
+        assert_int_equal(waitpid(child, &outcome, 0), child);
+        assert_int_equal(outcome, 0);
+    }
+    atomic_store(&b.ends, true);
+    pthread_join(thread, NULL);
+    rig_destroy(&b.r);
 }

@@ -51,7 +51,7 @@ static const option_row rows[] = {
      "which axis points up (default: y of OBJ and glTF, else z)"},
     {"wire", NULL, read_flag, offsetof(render_options, picture.wire), "draw the triangles' edges"},
     {"no-text", NULL, read_flag, offsetof(render_options, no_text),
-     "draw the body alone, without lines of text in the corner"},
+     "leave out the lines of text in the corner"},
 };
 
 static const option_table table = {

@@ -39,8 +39,8 @@ typedef struct sense_counter_row {
 
 /* All members of the structs; the total is the last of the timings. */
 enum {
-    SENSE_TIMINGS = sizeof(cscd_sensor_timings) / sizeof(double),
-    SENSE_COUNTERS = sizeof(cscd_sensor_counters) / sizeof(uint64_t)
+    SENSE_TIMINGS = offsetof(cscd_sensor_timings, reserved) / sizeof(double),
+    SENSE_COUNTERS = offsetof(cscd_sensor_counters, reserved) / sizeof(uint64_t)
 };
 extern const sense_timing_row sense_timing_rows[];   /* SENSE_TIMINGS of them */
 extern const sense_counter_row sense_counter_rows[]; /* SENSE_COUNTERS of them */

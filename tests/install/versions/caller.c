@@ -4,7 +4,7 @@
 
 enum { VERTEX_COUNT = 8, OBJECT_COUNT = 2, OWN_VERTICES = 4, OWN_TRIANGLES = 4 };
 
-/* Two tetrahedra; the second flies into the first. */
+/* Two tetrahedra. */
 static const uint32_t triangles[OWN_TRIANGLES * 3] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
 static const double start[VERTEX_COUNT * 3] = {0, 0, 0,  4, 0, 0,  0, 4, 0,  0, 0, 4,
                                                1, 1, -1, 2, 1, -2, 1, 2, -2, 1, 1, -3};
