@@ -418,7 +418,7 @@ $(BUILD)/cscd-mpi: $(MPI_SOURCES) $(wildcard src/mpi/*.h)
 	$(say) '  LD $@'
 	$(Q)OMPI_CC='$(CC)' $(MPICC) -std=c11 -D_GNU_SOURCE $(OPTIMISE_$(CONFIG)) $(WARNINGS) -I. $(CFLAGS) $(MPI_SOURCES) $(LDFLAGS) -o $@
 
-# Shards that the engines of docs/engines.md start, and whose node dies; nothing else needs these. As root, for the daemons.
+# Shards that the engines of docs/artist/engines.md start, and whose node dies; nothing else needs these. As root, for the daemons.
 test-farm:
 	@.ci/packages farm
 	@$(MAKE) --no-print-directory tool cscd-mpi
@@ -563,7 +563,7 @@ bench-peers:
 	@$(MAKE) --no-print-directory $(BUILD)/benchmarks/peers
 	@$(BUILD)/benchmarks/peers $(PEERS)
 
-# Our pairs of triangles beside those of CGAL, tetgen and MeshLab, which nothing else needs: docs/referee.md. REFEREE: options of
+# Our pairs of triangles beside those of CGAL, tetgen and MeshLab, which nothing else needs: docs/about/referee.md. REFEREE: options of
 # benchmarks/referee/compare.py, such as --quick.
 referee:
 	@$(PACKAGES) referee
@@ -588,7 +588,7 @@ bench-charge: packages
 	@$(MAKE) --no-print-directory $(BUILD)/benchmarks/charge
 	@$(BUILD)/benchmarks/charge $(CHARGE_BENCH)
 
-# The charts of docs/measurements.md, from the last make bench and make bench-charge.
+# The charts of docs/about/measurements.md, from the last make bench and make bench-charge.
 bench-plot:
 	@.ci/packages plots
 	@for kind in methods charge; do \
@@ -623,12 +623,12 @@ help:
 	@echo '               NIGHTLY=1: more random cases, in a folder of its own)'
 	@echo 'make test-without-baselines   build and test what is left when runtime/baselines is removed'
 	@echo 'make test-mutants   plant faults in copies of the sources, and show which test catches each (ROOM="src/io": its own)'
-	@echo 'make test-blender   frames of glTF files beside those that Blender evaluates, faces selected in it, the extension, and the steps of docs/from-your-program.md'
+	@echo 'make test-blender   frames of glTF files beside those that Blender evaluates, faces selected in it, the extension, and the steps of docs/artist/from-your-program.md'
 	@echo '               (installs blender); PAGE=--write puts what the steps print into the page, and draws its pictures'
 	@echo 'make blender-extension   the extension of Blender, with the Python package in it, in build/blender'
 	@echo 'make test-vtk   what --vtk writes, read by VTK and compared with the other outputs (installs python3-vtk9)'
-	@echo 'make cscd-mpi       build/release/cscd-mpi, for docs/engines.md: needs MPI, as Debian has it in libopenmpi-dev'
-	@echo 'make test-farm      shards that the engines of docs/engines.md start, and whose node dies (installs these)'
+	@echo 'make cscd-mpi       build/release/cscd-mpi, for docs/artist/engines.md: needs MPI, as Debian has it in libopenmpi-dev'
+	@echo 'make test-farm      shards that the engines of docs/artist/engines.md start, and whose node dies (installs these)'
 	@echo 'make windows   the tool and the library for Windows, in build/x86_64-w64-mingw32 (installs mingw-w64); make windows-zip: to give'
 	@echo '               away, in build/dist; make test-windows: the tests under wine (installs wine64)'
 	@echo 'make test-bridges   the blocks of docs/python/bridges.md, with meshio, VTK and torch (installs these)'
@@ -655,7 +655,7 @@ help:
 	@echo 'make reproduce   the tables and figures of both theses, with their numbers beside ours: five minutes'
 	@echo 'make bench-charge   errors, times and memory of charges (CHARGE_BENCH=--quick: 20 s); make bench-plot draws its charts'
 	@echo 'make performance   machine limits, cost per triangle by size, threads, bulk motion, cloth, new meshes (PERFORMANCE=--quick)'
-	@echo 'make benchmarks   build all programs that print tables: docs/measurements.md'
+	@echo 'make benchmarks   build all programs that print tables: docs/about/measurements.md'
 	@echo 'make bench-peers   steps beside Embree'"'"'s broad phase, checks beside CGAL'"'"'s (installs these; PEERS="--quick", or FIRST SECOND of frames)'
 	@echo 'make bench-instructions   instructions by kernel on x86-64 and aarch64, counted under qemu-user (installs it, and a cross compiler)'
 	@echo 'make referee   pairs of triangles beside those of CGAL, tetgen and MeshLab (installs these; REFEREE=--quick)'

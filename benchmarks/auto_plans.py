@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Plans by method auto beside one region for each component: prints a table for docs/measurements.md. Linux.
+"""Plans by method auto beside one region for each component: prints a table for docs/about/measurements.md. Linux.
 
 Usage: python3 benchmarks/auto_plans.py [--rounds N] CSCD MODEL.obj...
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Prints the tables of docs/measurements.md, section Charge, from the JSON of benchmarks/charge.
+"""Prints the tables of docs/about/measurements.md, section Charge, from the JSON of benchmarks/charge.
 
 usage: charge_tables.py BENCH.json
 """

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""How fast a replay reads from a cold disk, beside dd: prints a table for docs/measurements.md. Linux, as root.
+"""How fast a replay reads from a cold disk, beside dd: prints a table for docs/about/measurements.md. Linux, as root.
 
 Usage: python3 benchmarks/cold_disk.py [CSCD]
 

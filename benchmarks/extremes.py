@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What the tool does with very large inputs: prints a table for docs/measurements.md. Linux.
+"""What the tool does with very large inputs: prints a table for docs/about/measurements.md. Linux.
 
 Usage: python3 benchmarks/extremes.py [CSCD [ROW...]]
 

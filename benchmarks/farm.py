@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What a list of jobs costs on one machine, and what that makes of a farm: prints tables for docs/measurements.md.
+"""What a list of jobs costs on one machine, and what that makes of a farm: prints tables for docs/about/measurements.md.
 
 Usage: python3 benchmarks/farm.py [CSCD]
 

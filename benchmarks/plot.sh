@@ -1,5 +1,5 @@
 #!/bin/sh
-# Draws the charts of docs/measurements.md from the JSON of benchmarks/methods or benchmarks/charge.
+# Draws the charts of docs/about/measurements.md from the JSON of benchmarks/methods or benchmarks/charge.
 # usage: plot.sh methods|charge BENCH.json IMAGES
 set -eu
 kind=$1

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Draws the pictures of README and docs/models.md; `make gallery` calls it. usage: gallery.sh MODELS IMAGES
+# Draws the pictures of README and docs/about/models.md; `make gallery` calls it. usage: gallery.sh MODELS IMAGES
 set -eu
 : "${BUILD:?BUILD must name the build folder}"
 models=$1

@@ -10,7 +10,7 @@ static const char options_help[] =
     "  --sizes N,N,...  triangles\n"
     "  --quick          small sizes, fewer intervals\n"
     "  --intervals N    measured intervals of each size (default: from 15, small, to 5, large)\n"
-    "  --body NAME      pawn (default), dumbbell, figure, ... as in docs/models.md\n"
+    "  --body NAME      pawn (default), dumbbell, figure, ... as in docs/about/models.md\n"
     "  --shuffled       vertices and triangles in random order; default: the model's\n"
     "  --threads N      default 1\n"
     "  --simd LEVEL     auto (default), scalar, avx2, avx512, neon\n"

@@ -9,7 +9,7 @@ The same files go to all programs. A pair that one of them lists and we do not, 
 --data: with cloth_ball92.ply and so on (default: frames/ in CSCD_DATA, if that is set); --repeats: runs of a program on a
 large mesh, of which the one with the least processor time counts (default 3); --limit: seconds of a run at most (default
 300); --quick: no mesh of a million.
-Prints the tables of docs/referee.md.
+Prints the tables of docs/about/referee.md.
 """
 
 import argparse

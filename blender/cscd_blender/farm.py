@@ -75,7 +75,7 @@ def _event_object(event: FoundEvent) -> Dict[str, Any]:
 
 
 def describe(findings: Findings) -> Dict[str, Any]:
-    """The findings as JSON has them; docs/blender.md names the members."""
+    """The findings as JSON has them; docs/artist/blender.md names the members."""
     checked = findings.checked
     faces = [{target.name: [] for target in checked.targets} for _ in findings.frames]
     for places, found in zip(faces, findings.frames.values()):

@@ -38,7 +38,7 @@
  *               whatever library is loaded: functions that end in _sized take that size, and their inline twins
  *               pass it on. Bindings call the _sized ones. No other struct grows. Enumerations that may grow end in
  *               _MAX_ENUM; give a switch a default. The name of a value that the library does not know is
- *               "unknown". docs/abi.md has all rules
+ *               "unknown". docs/solver/abi.md has all rules
  *   complete    a list is whole, or the call fails
  *   repeatable  one build and the same inputs give the same results in the same order, bit for bit, for any
  *               number of threads and on every instruction set
@@ -62,7 +62,7 @@
  *
  * cscd/research.h (methods to compare with) and cscd/sensors.h (particle sensors) are not included here.
  *
- * docs/guarantees.md has the promises and their reasons, docs/tutorials/ complete programs, cscd/cscd.hpp the library in C++17.
+ * docs/solver has the promises (guarantees.md) and complete programs; cscd/cscd.hpp is the library in C++17.
  */
 #ifndef CSCD_H
 #define CSCD_H

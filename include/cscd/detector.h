@@ -5,7 +5,7 @@
  * A step looks for pairs of triangles that may touch, leaves out by orientation those that certainly do
  * not (culling), and decides each remaining pair of features by an elementary test, whose verdict is that
  * of exact arithmetic on the given doubles. Culling needs a start that is embedded: the mesh neither
- * intersects nor touches itself there. docs/guarantees.md has all promises; docs/theory/culling.md (Yeh
+ * intersects nor touches itself there. docs/solver/guarantees.md has all promises; docs/theory/culling.md (Yeh
  * 2012) and docs/theory/elementary.md say why they hold. */
 #ifndef CSCD_DETECTOR_API_H
 #define CSCD_DETECTOR_API_H
@@ -47,7 +47,7 @@ typedef enum cscd_start {
     CSCD_START_MAX_ENUM = 0x7fffffff
 } cscd_start;
 
-/* The bounding volumes of the trees. They differ in time only; boxes are mostly faster (docs/tuning.md). Later
+/* The bounding volumes of the trees. They differ in time only; boxes are mostly faster (docs/solver/tuning.md). Later
  * versions may add values. */
 typedef enum cscd_volume {
     CSCD_VOLUME_BOX,    /* three axes */
@@ -64,7 +64,7 @@ CSCD_API bool cscd_volume_from_name(const char *name, cscd_volume *out);
  * are not, nor are the components that AUTO culls. Later versions may add values. */
 typedef enum cscd_coherence {
     CSCD_COHERENCE_AUTO, /* in a closed mesh where nothing touches and little moves, the pairs that may come together
-                          * are listed once, and tested alone for as long as vertices stay near (docs/tuning.md) */
+                          * are listed once, and tested alone for as long as vertices stay near (docs/solver/tuning.md) */
     CSCD_COHERENCE_OFF, /* every step looks at the whole mesh */
     CSCD_COHERENCE_MAX_ENUM = 0x7fffffff
 } cscd_coherence;

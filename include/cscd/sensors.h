@@ -2,7 +2,7 @@
  * different objects attract each other, and where two come close, their objects may touch (Saenghaengtham,
  * Chulalongkorn University, 2005; numbers in brackets are sections and equations of this thesis). A
  * warning is a hint, and so is its absence: only a detector finds every contact. Part of cscd/cscd.h,
- * which says what holds for every function; docs/sensors.md says when sensors are worth using. Since 1.1. */
+ * which says what holds for every function; docs/theory/sensors.md says when sensors are worth using. Since 1.1. */
 #ifndef CSCD_SENSORS_API_H
 #define CSCD_SENSORS_API_H
 

@@ -1,6 +1,6 @@
 /* What solvers ask beside contacts: which features are close at one moment, how far a step may go without
  * contact, and both again many times along one line. Part of cscd/cscd.h, which says what holds for every
- * function. docs/tutorials/line-search.md has a complete program. */
+ * function. docs/solver/line-search.md has a complete program. */
 #ifndef CSCD_SOLVER_API_H
 #define CSCD_SOLVER_API_H
 

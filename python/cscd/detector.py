@@ -35,7 +35,7 @@ class Detector(LiveSettings):
     plan : Plan, optional
         Makes steps faster; contacts stay the same.
     method : str
-        "auto", "none", "single", "kmeans" or "charge" (docs/tuning.md), or one to compare with.
+        "auto", "none", "single", "kmeans" or "charge" (docs/solver/tuning.md), or one to compare with.
     mode : str
         "all": every contact; "earliest": of each component with itself, the first ones only.
     start : str
@@ -127,7 +127,7 @@ class Detector(LiveSettings):
     def step(self, x0: Any, x1: Any) -> Contacts:
         """Finds the contacts while every vertex moves in a straight line from ``x0`` to ``x1``, both (n, 3).
 
-        Every verdict is that of exact arithmetic on the given numbers (docs/guarantees.md).
+        Every verdict is that of exact arithmetic on the given numbers (docs/solver/guarantees.md).
         """
         start, kept0 = self._views("x0", x0)
         end, kept1 = self._views("x1", x1)

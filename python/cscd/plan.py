@@ -207,7 +207,7 @@ class Plan:
         return plan
 
     def write(self, path: Union[str, os.PathLike[str]]) -> None:
-        """Writes the plan as a PLY file that any viewer shows (docs/formats.md); an older file is replaced at once."""
+        """Writes the plan as a PLY file that any viewer shows (docs/artist/formats.md); an older file is replaced at once."""
         error = ctypes.create_string_buffer(1024)
         if not library.cscdpy_plan_write(os.fsencode(path), self.mesh.pointer, address_of(self.rest), self.pointer,
                                          ctypes.addressof(error)):

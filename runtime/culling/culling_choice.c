@@ -9,7 +9,7 @@
 #include "runtime/culling/culling_choice.h"
 
 /* Prices in nanoseconds, on one core with AVX-512; only their ratios matter. Fitted to `cscd replay --no-check --json` by
- * `none` and `single` on the recordings of docs/measurements.md and to `scaling`. */
+ * `none` and `single` on the recordings of docs/about/measurements.md and to `scaling`. */
 static const double price_of_pairs = 55.0; /* all pairs of a triangle with its component, without culling */
 static const double price_of_orientation = 14.0; /* with culling: orienting a triangle, and the traversal */
 static const double price_of_kept = 70.0;        /* a pair of triangles that culling keeps */

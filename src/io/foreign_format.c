@@ -10,10 +10,10 @@ enum { STARTS_MOST = 2, ENDINGS_MOST = 4 };
 
 #define SCENE_ADVICE                                                                                         \
     ", which is not read: export the mesh as OBJ, and its frames as an OBJ sequence, a PC2 or MDD point "    \
-    "cache or animated glTF (.glb); see docs/formats.md"
-#define MESH_ADVICE ", which is not read: convert it to OBJ, PLY, OFF or STL; see docs/formats.md"
+    "cache or animated glTF (.glb); see docs/artist/formats.md"
+#define MESH_ADVICE ", which is not read: convert it to OBJ, PLY, OFF or STL; see docs/artist/formats.md"
 #define SURFACE_ADVICE                                                                                       \
-    ", which is not read: mris_convert makes a GIFTI surface (.gii) of it; see docs/formats.md"
+    ", which is not read: mris_convert makes a GIFTI surface (.gii) of it; see docs/artist/formats.md"
 
 typedef struct foreign_format {
     const char *advice;

@@ -1,4 +1,4 @@
-"""Shows what docs/from-your-program.md says of shape keys: Blender stops them at the ends of their range, its exporter does not.
+"""Shows what docs/artist/from-your-program.md says of shape keys: Blender stops them at the ends of their range, its exporter does not.
 
 Run by `blender --background --factory-startup --python-exit-code 1 --python clamp.py -- FOLDER`.
 """

@@ -1,4 +1,4 @@
-"""The scene of docs/from-your-program.md: a doll whose forearm passes through its trunk, with eyes and a skirt.
+"""The scene of docs/artist/from-your-program.md: a doll whose forearm passes through its trunk, with eyes and a skirt.
 
 Run by `blender --background --factory-startup --python doll.py -- FILE.blend`. The skin has a vertex group for each bone, the eyes
 sit in the head and turn, and a shape key swings the skirt, which is an open surface.

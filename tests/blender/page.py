@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs the steps of docs/from-your-program.md: page.py TOOL BLEND FOLDER [--write].
+"""Runs the steps of docs/artist/from-your-program.md: page.py TOOL BLEND FOLDER [--write].
 
 Blocks of the chapter on Blender are run one after the other in FOLDER: Python in Blender with the scene BLEND, `sh` with the tool
 as `cscd`. A block of text behind one holds what it prints, line by line: all that the tool prints to its standard output; of
@@ -12,7 +12,7 @@ import shutil
 import subprocess
 import sys
 
-PAGE = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'docs', 'from-your-program.md')
+PAGE = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'docs', 'artist', 'from-your-program.md')
 SECONDS = re.compile(r'[0-9.]+ s$', re.MULTILINE)  # differ from run to run
 BLOCK = re.compile(r'^```(python|sh|text)\n(.*?)^```$', re.MULTILINE | re.DOTALL)
 

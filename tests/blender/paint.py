@@ -1,4 +1,4 @@
-"""Draws docs/images/doll-faces.png: paints the faces that docs/from-your-program.md has selected, and looks at them with Cycles.
+"""Draws docs/images/doll-faces.png: paints the faces that docs/artist/from-your-program.md has selected, and looks at them with Cycles.
 
 Runs behind a step of the page, in the same Blender: page.py puts both together.
 """

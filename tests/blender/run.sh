@@ -1,7 +1,7 @@
 #!/bin/sh
 # Builds rigs in Blender, exports them as glTF, and compares their frames as the tool reads them with the vertices that Blender
 # evaluates; selects there what the tool has found in a scene of its own, compares the extension with the tool, checks meshes whose
-# polygons a fan would fill wrongly, and runs the steps of docs/from-your-program.md. BUILD is the build folder, PYTHON_PACKAGE the
+# polygons a fan would fill wrongly, and runs the steps of docs/artist/from-your-program.md. BUILD is the build folder, PYTHON_PACKAGE the
 # folder of the Python package, PAGE the option --write of page.py, or nothing. Ends non-zero when something differs.
 set -eu
 cd "$(dirname "$0")"

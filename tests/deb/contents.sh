@@ -31,7 +31,7 @@ has libcscd-dev "lib/$triplet/libcscd.so" "lib/$triplet/libcscd.a" "lib/$triplet
     "lib/$triplet/cmake/cscd/cscdConfig.cmake" include/cscd/cscd.hpp share/man/man3/cscd.3.gz
 has cscd bin/cscd share/man/man1/cscd.1.gz
 has python3-cscd lib/python3/dist-packages/cscd/libcscd-python.so "lib/python3/dist-packages/cscd-$version.dist-info/METADATA"
-has cscd-doc share/doc/cscd-doc/html/index.html share/doc/cscd-doc/README.md share/doc/cscd-doc/docs/guide.md \
+has cscd-doc share/doc/cscd-doc/html/index.html share/doc/cscd-doc/README.md share/doc/cscd-doc/docs/artist/guide.md \
     share/doc/cscd-doc/docs/images/doll.png share/doc-base
 for header in include/cscd/*.h include/cscd/*.hpp; do has libcscd-dev "$header"; done
 for module in python/cscd/*.py; do has python3-cscd "lib/python3/dist-packages/cscd/${module##*/}"; done

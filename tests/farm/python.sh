@@ -1,5 +1,5 @@
 #!/bin/sh
-# The Python programs of docs/engines.md, as they stand there, on meshes of which some cross, some are buried, and one cannot be read: their
+# The Python programs of docs/artist/engines.md, as they stand there, on meshes of which some cross, some are buried, and one cannot be read: their
 # rows are what the tool says of the same files. Ray's is only compiled. PYTHONPATH names the module.
 set -eu
 cd "$(dirname "$0")"

@@ -27,7 +27,7 @@ def test_chooses_the_format(name, content):
     ("a.off", OBJ, ["1: ", "found 'v'", "the number of vertices"]),
     ("a.obj", "", ["the file is empty", "expected an OBJ, PLY, OFF, STL, glTF or GIFTI mesh"]),
     ("a.ply", "", ["the file is empty", "expected an OBJ, PLY, OFF, STL, glTF or GIFTI mesh"]),
-    *((name, content, ["which is not read: export the mesh as OBJ", "docs/formats.md"]) for name, content in [
+    *((name, content, ["which is not read: export the mesh as OBJ", "docs/artist/formats.md"]) for name, content in [
         ("a.abc", "?"), ("a", b"Ogawa\xff"), ("a.usd", "?"), ("a.USDA", "?"), ("a.usdc", "?"), ("a.usdz", "PK"), ("a.fbx", "?"),
         ("a.txt", "#usda 1.0\n"), ("a", "Kaydara FBX Binary  \0"), ("a.blend", "?"), ("a", "BLENDER-v304"), ("a.x3d", "<X3D/>"),
         ("a.dae", "<COLLADA/>"), ("a.hipnc", "?"), ("a.ztl", "?"), ("a.zprj", "?"), ("a.c4d", "?")]),

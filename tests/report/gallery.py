@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws the pictures of docs/guide.md.
+"""Draws the pictures of docs/artist/guide.md.
 
 usage: gallery.py REPORT.html PLAN.html COMPARISON.html IMAGES
 """

@@ -36,8 +36,8 @@ def files_of(build, libraries, scratch):
         yield f'include/cscd/{header.name}', header
     for name in ('LICENSE', 'README.md', 'CHANGELOG.md'):
         yield name, pathlib.Path(name)
-    for page in sorted(pathlib.Path('docs').glob('*.md')):
-        yield f'docs/{page.name}', page
+    for page in sorted(pathlib.Path('docs').glob('*/*.md')):
+        yield page.as_posix(), page
     for name, place in LICENCES.items():
         yield f'licences/{name}.txt', pathlib.Path(place.format(libraries=libraries))
 

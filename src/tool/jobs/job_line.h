@@ -26,7 +26,7 @@ typedef struct job_line {
     void *memory;  /* of these texts */
 } job_line;
 
-/* Reads a line, as docs/formats.md has it. The error says what is wrong, and not where. On false *out holds nothing to free. */
+/* Reads a line, as docs/artist/formats.md has it. The error says what is wrong, and not where. On false *out holds nothing to free. */
 bool job_line_read(const char *text, size_t length, job_line *out, io_error *error);
 
 void job_line_free(job_line *line); /* a zeroed one is fine */

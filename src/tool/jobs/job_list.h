@@ -1,4 +1,4 @@
-/* A list of jobs: a file of JSON Lines (docs/formats.md), or the names of meshes, each a job. */
+/* A list of jobs: a file of JSON Lines (docs/artist/formats.md), or the names of meshes, each a job. */
 #pragma once
 
 #include "src/tool/jobs/job_line.h"

@@ -1,4 +1,4 @@
-/* The members that every line of results has, whatever the command: docs/formats.md. */
+/* The members that every line of results has, whatever the command: docs/artist/formats.md. */
 #pragma once
 
 #include "src/io/io_error.h"

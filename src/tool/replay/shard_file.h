@@ -1,4 +1,4 @@
-/* The file of a shard of a recording: who it is, then a record for each of its intervals, in order. docs/formats.md has it. */
+/* The file of a shard of a recording: who it is, then a record for each of its intervals, in order. docs/artist/formats.md has it. */
 #pragma once
 
 #include "src/io/io_error.h"

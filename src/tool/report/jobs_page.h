@@ -29,7 +29,7 @@ typedef struct jobs_page_options {
     const char *path; /* of the page: links to others are relative to its folder */
     const char *title, *generator;
     const char *const
-        *outcomes;       /* their names, up to a NULL; the page has words for those of docs/formats.md */
+        *outcomes; /* their names, up to a NULL; the page has words for those of docs/artist/formats.md */
     const char *missing; /* the jobs that are not done, in words; "": none */
     uint64_t list;       /* the hash of the list */
 } jobs_page_options;
