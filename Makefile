@@ -6,8 +6,8 @@
 # NIGHTLY=1 tests more random cases, in a folder of its own.
 # DYNAMIC=1 is for distributions: the tool and the Python package link libcscd.so and the libraries of the system in place of archives.
 # HOST=aarch64-linux-gnu builds by that cross compiler, in build/aarch64-linux-gnu, with the libraries in SYSROOT if that is set.
-# HOST=wasm32-emscripten builds the library for WebAssembly: see src/packaging/wasm/choices.mk.
-# HOST=x86_64-w64-mingw32 builds for Windows, in build/x86_64-w64-mingw32: see src/windows/windows.mk.
+# HOST=wasm32-emscripten builds the library for WebAssembly: see packaging/wasm/choices.mk.
+# HOST=x86_64-w64-mingw32 builds for Windows, in build/x86_64-w64-mingw32: see tool/windows/windows.mk.
 # One build folder per configuration; the release tool is also linked as ./cscd.
 
 CONFIG  ?= release
@@ -16,10 +16,10 @@ HOST    :=
 SYSROOT ?=
 TOOLS   := $(if $(HOST),$(HOST)-)
 ifneq ($(findstring mingw,$(HOST)),)
-include src/windows/choices.mk
+include tool/windows/choices.mk
 endif
 ifneq ($(findstring wasm,$(HOST)),)
-include src/packaging/wasm/choices.mk
+include packaging/wasm/choices.mk
 endif
 ifeq ($(origin CC),default)
 CC      := $(TOOLS)gcc
@@ -108,12 +108,12 @@ CORE_FILES      := $(wildcard src/core/*.c src/mesh/*.c preprocess/*.c preproces
 CORE_SOURCES    := $(filter-out %_simd.c $(BASELINE_SOURCES),$(CORE_FILES))
 KERNEL_SOURCES  := $(filter %_simd.c,$(CORE_FILES))
 # What commands of the tool share, and the commands.
-WITHOUT_GIFTI   := src/io/gifti/no_gifti.c
-OTHER_PROCESSES := $(foreach file,jobs/job_processes common/blas_kernels,src/tool/$(file)$(if $(WINDOWS),,_windows).c)
-COMMON_SOURCES  := $(filter-out $(OTHER_PROCESSES) $(if $(filter 0,$(EXPAT)),$(filter-out $(WITHOUT_GIFTI),$(wildcard src/io/gifti/*.c)),$(WITHOUT_GIFTI)), \
-                     $(wildcard src/io/*.c src/io/*/*.c src/tool/picture/*.c src/tool/common/*.c src/tool/answers/*.c \
-                     src/tool/jobs/*.c src/tool/export/*.c src/tool/report/*.c))
-COMMAND_SOURCES := $(wildcard src/tool/*.c $(patsubst %,src/tool/%/*.c,check preprocess replay render sense))
+WITHOUT_GIFTI   := tool/io/gifti/no_gifti.c
+OTHER_PROCESSES := $(foreach file,jobs/job_processes common/blas_kernels,tool/$(file)$(if $(WINDOWS),,_windows).c)
+COMMON_SOURCES  := $(filter-out $(OTHER_PROCESSES) $(if $(filter 0,$(EXPAT)),$(filter-out $(WITHOUT_GIFTI),$(wildcard tool/io/gifti/*.c)),$(WITHOUT_GIFTI)), \
+                     $(wildcard tool/io/*.c tool/io/*/*.c tool/picture/*.c tool/common/*.c tool/answers/*.c \
+                     tool/jobs/*.c tool/export/*.c tool/report/*.c))
+COMMAND_SOURCES := $(wildcard tool/*.c $(patsubst %,tool/%/*.c,check preprocess replay render sense))
 NATIVE_SOURCES  := $(wildcard python/native/*.c)
 SUPPORT_SOURCES := $(filter-out $(if $(WINDOWS),,tests/support/tool/tool_process.c),$(wildcard tests/support/*.c tests/support/*/*.c))
 # `rm -r runtime/baselines`, and its lines in runtime/detector/method_table.c: what needs them is not built then.
@@ -131,10 +131,10 @@ NOT_HERE        := $(if $(filter %/release,$(BUILD)),,tests/install/test_baselin
                    $(if $(HAS_BASELINES),,$(wildcard tests/baselines/*))
 TEST_SOURCES    := $(filter-out $(NOT_HERE),$(wildcard tests/*/test_*.c tests/*/test_*.cpp tests/*/test_*.py))
 ifneq ($(findstring mingw,$(HOST)),)
-include src/windows/windows.mk
+include tool/windows/windows.mk
 endif
 ifdef WASM
-include src/packaging/wasm/wasm.mk
+include packaging/wasm/wasm.mk
 endif
 # The thread sanitizer sees the tests that use threads, and no others are built for it.
 THREAD_TESTS := bvh/test_traversal core/test_threads core/test_progress core/test_parallel_for core/test_contexts core/test_host_loop \
@@ -181,7 +181,7 @@ CORE_OBJECTS := $(call objects,$(CORE_SOURCES)) $(KERNEL_OBJECTS)
 # What tests of its parts link of libcscd-baselines.so.
 BASELINE_OBJECTS := $(call objects,$(filter-out %_export.c,$(BASELINE_SOURCES)))
 COMMON_OBJECTS := $(call objects,$(COMMON_SOURCES))
-IO_OBJECTS     := $(call objects,$(filter src/io/% src/windows/%,$(COMMON_SOURCES)))
+IO_OBJECTS     := $(call objects,$(filter tool/io/% tool/windows/%,$(COMMON_SOURCES)))
 LIBRARY := $(BUILD)/libcscd.a
 SHARED  := $(BUILD)/$(if $(WINDOWS),libcscd-$(MAJOR).dll,libcscd.so.$(VERSION))
 BASELINES_SHARED := $(if $(filter 0,$(BASELINES)),,$(BUILD)/libcscd-baselines.so.$(VERSION))
@@ -270,7 +270,7 @@ wheel:
 # The wheels of all platforms, by the cross compilers and the libraries of Debian; and their tests, in emulators.
 wheels: wheel windows-libraries
 	@.ci/packages aarch64
-	@src/packaging/sysroot.sh arm64 $(ARM64_SYSROOT) libc6-dev libpng-dev zlib1g-dev libjson-c-dev libexpat1-dev
+	@packaging/sysroot.sh arm64 $(ARM64_SYSROOT) libc6-dev libpng-dev zlib1g-dev libjson-c-dev libexpat1-dev
 	@$(MAKE) --no-print-directory wheel HOST=aarch64-linux-gnu SYSROOT=$(abspath $(ARM64_SYSROOT)) \
 	    CC='$(CACHE)aarch64-linux-gnu-gcc --sysroot=$(abspath $(ARM64_SYSROOT))'
 	@$(ON_WINDOWS) wheel
@@ -300,7 +300,7 @@ quoted = '$(subst ','\'',$(1))'
 INSTALLER = BUILD=$(call quoted,$(BUILD)) VERSION='$(VERSION)' STATIC_LIBS='$(CORE_LIBS) -pthread' BASELINES='$(BASELINES)' \
             POINTER_SIZE='$(shell echo __SIZEOF_POINTER__ | $(CC) $(CFLAGS) -E -P -)' DESTDIR=$(call quoted,$(DESTDIR)) \
             BINDIR=$(call quoted,$(BINDIR)) LIBDIR=$(call quoted,$(LIBDIR)) INCLUDEDIR=$(call quoted,$(INCLUDEDIR)) \
-            MANDIR=$(call quoted,$(MANDIR)) src/packaging/install.sh
+            MANDIR=$(call quoted,$(MANDIR)) packaging/install.sh
 install: $(TOOL) library
 	@$(INSTALLER) install
 
@@ -353,7 +353,7 @@ ON_WINDOWS = $(MAKE) --no-print-directory HOST=x86_64-w64-mingw32 CC='$(CACHE)x8
              CXX='$(CACHE)x86_64-w64-mingw32-g++-posix'
 windows-libraries:
 	@.ci/packages windows
-	@src/packaging/libraries.sh x86_64-w64-mingw32 build/windows/libraries libpng json-c expat cmocka
+	@packaging/libraries.sh x86_64-w64-mingw32 build/windows/libraries libpng json-c expat cmocka
 
 windows: windows-libraries
 	+@$(ON_WINDOWS) tool library
@@ -361,7 +361,7 @@ windows: windows-libraries
 WINDOWS_ARCHIVE := build/dist/cscd-$(VERSION)-windows-x86_64.zip
 windows-zip: windows
 	@mkdir -p build/dist
-	@src/packaging/windows/pack.py build/x86_64-w64-mingw32/release build/windows/libraries $(VERSION) $(WINDOWS_ARCHIVE)
+	@packaging/windows/pack.py build/x86_64-w64-mingw32/release build/windows/libraries $(VERSION) $(WINDOWS_ARCHIVE)
 
 # The tests under wine. What needs FLINT and Arb is asked from answers that Linux has written, and plans are compared with its own.
 ANSWERS := build/windows/answers
@@ -411,9 +411,9 @@ test-vtk:
 
 # The shards of a list on the ranks of MPI; nothing else needs MPI. With another compiler wrapper: MPICC=...
 MPICC ?= mpicc
-MPI_SOURCES := $(wildcard src/mpi/*.c)
+MPI_SOURCES := $(wildcard tool/mpi/*.c)
 cscd-mpi: $(BUILD)/cscd-mpi
-$(BUILD)/cscd-mpi: $(MPI_SOURCES) $(wildcard src/mpi/*.h)
+$(BUILD)/cscd-mpi: $(MPI_SOURCES) $(wildcard tool/mpi/*.h)
 	@mkdir -p $(@D)
 	$(say) '  LD $@'
 	$(Q)OMPI_CC='$(CC)' $(MPICC) -std=c11 -D_GNU_SOURCE $(OPTIMISE_$(CONFIG)) $(WARNINGS) -I. $(CFLAGS) $(MPI_SOURCES) $(LDFLAGS) -o $@
@@ -445,7 +445,7 @@ wasm:
 
 test-wasm: wasm
 	@$(MAKE) --no-print-directory $(BUILD)/tests/wasm/contacts
-	@src/packaging/libraries.sh wasm32-emscripten build/wasm32-emscripten/libraries cmocka
+	@packaging/libraries.sh wasm32-emscripten build/wasm32-emscripten/libraries cmocka
 	@$(MAKE) --no-print-directory HOST=wasm32-emscripten CC=emcc NATIVE=$(BUILD)/tests/wasm/contacts test-wasm-run
 
 # Big-endian: the tests of what reads files, and of the detector.
@@ -461,7 +461,7 @@ test-riscv64:
 # Debian's packages of the last commit, in build/deb; test-deb builds them twice, installs them, tests them and purges them.
 deb:
 	@.ci/packages deb
-	@src/packaging/deb.sh build/deb
+	@packaging/deb.sh build/deb
 
 test-deb:
 	@.ci/packages deb
@@ -603,8 +603,8 @@ bench-plot:
 # Bundles the page of the reports from its sources. The result is committed, so only those who change it need node.
 template:
 	@command -v node >/dev/null && command -v npm >/dev/null || { \
-	    echo 'make template needs node and npm (Debian: nodejs, npm), to bundle src/tool/report/web' >&2; exit 1; }
-	@cd src/tool/report/web && npm ci --no-audit --no-fund && node build.mjs
+	    echo 'make template needs node and npm (Debian: nodejs, npm), to bundle tool/report/web' >&2; exit 1; }
+	@cd tool/report/web && npm ci --no-audit --no-fund && node build.mjs
 
 lint: packages
 	@.ci/lint
@@ -626,7 +626,7 @@ help:
 	@echo 'make test      build and run every test (CONFIG=sanitize: with sanitizers; ONLY="bvh line_search": of these rooms or names;'
 	@echo '               NIGHTLY=1: more random cases, in a folder of its own)'
 	@echo 'make test-without-baselines   build and test what is left when runtime/baselines is removed'
-	@echo 'make test-mutants   plant faults in copies of the sources, and show which test catches each (ROOM="src/io": its own)'
+	@echo 'make test-mutants   plant faults in copies of the sources, and show which test catches each (ROOM="tool/io": its own)'
 	@echo 'make test-blender   frames of glTF files beside those that Blender evaluates, faces selected in it, the extension, and the steps of docs/artist/from-your-program.md'
 	@echo '               (installs blender); PAGE=--write puts what the steps print into the page, and draws its pictures'
 	@echo 'make blender-extension   the extension of Blender, with the Python package in it, in build/blender'
@@ -670,7 +670,7 @@ help:
 	@echo '               KEEP=1 keeps those that reach new code in tests/fuzz/corpus'
 	@echo 'make test-fuzz   the kept files, damaged files of every format, and the two above, [SECONDS=60] for each kind, [SEED=1]'
 	@echo 'make test-faults   every command when memory, disk or an input ends early, [SHARE=1] of the places, from [SEED=1] on'
-	@echo 'make template  bundle the page of the reports, after changes in src/tool/report/web (needs node and npm)'
+	@echo 'make template  bundle the page of the reports, after changes in tool/report/web (needs node and npm)'
 	@echo 'make lint      format, file sizes, rooms, names, exported symbols'
 	@echo 'make examples  compile and run the examples of README and docs'
 	@echo 'make format    clang-format all sources; make clean removes build/'
@@ -701,7 +701,7 @@ endif
 
 # All of the tool but its program, and what Python calls. Its own functions are meant wherever it calls one of the library, whatever
 # else the process has loaded.
-NATIVE_OBJECTS := $(if $(filter 1,$(DYNAMIC)),,$(CORE_OBJECTS)) $(COMMON_OBJECTS) $(call objects,$(filter-out src/tool/main.c,$(COMMAND_SOURCES)) $(NATIVE_SOURCES)) \
+NATIVE_OBJECTS := $(if $(filter 1,$(DYNAMIC)),,$(CORE_OBJECTS)) $(COMMON_OBJECTS) $(call objects,$(filter-out tool/main.c,$(COMMAND_SOURCES)) $(NATIVE_SOURCES)) \
                   $(if $(filter 1,$(DYNAMIC)),$(SHARED))
 NATIVE_FILE_LIBS = $(if $(filter 1,$(DYNAMIC)),$(FILE_LIBS),$(call packaged,--static --libs libpng zlib json-c,-lpng -lz -ljson-c -lm) $(EXPAT_LIBS))
 ifndef WINDOWS
@@ -727,7 +727,7 @@ FINDS_BASELINES := -Wl,--disable-new-dtags,-rpath,'$$ORIGIN/..:$$ORIGIN/../..'
 endif
 $(TOOL) $(C_MODELS) $(CPP_MODELS) $(BENCHMARKS) $(ROOMS): | $(BASELINES_SHARED)
 
-$(BUILD)/cscd.map: src/packaging/cscd.map.in include/cscd/cscd.h
+$(BUILD)/cscd.map: packaging/cscd.map.in include/cscd/cscd.h
 	@mkdir -p $(@D)
 	@sed 's/@MAJOR@/$(MAJOR)/g' $< > $@
 
@@ -746,7 +746,7 @@ $(C_MODELS): $(BUILD)/models/%: $(OBJECTS)/models/%.o $(MODEL_PART_OBJECTS) $(IO
 
 # Programs in C++ have parts in C++ alone.
 $(CPP_MODELS): $(BUILD)/models/%: $(OBJECTS)/models/%.o $(patsubst %.cpp,$(OBJECTS)/%.o,$(CPP_MODEL_PARTS)) \
-               $(filter $(OBJECTS)/src/windows/%,$(IO_OBJECTS)) $(LIBRARY)
+               $(filter $(OBJECTS)/tool/windows/%,$(IO_OBJECTS)) $(LIBRARY)
 	@mkdir -p $(@D)
 	$(say) '  LD $@'
 	$(Q)$(CC) $(LINK_ALL) $(FINDS_BASELINES) -o $@ $^ $(CORE_LIBS) -lstdc++ -lm
@@ -818,7 +818,7 @@ $(BUILD)/tests/core/room: $(TEST_LEVELS)
 $(OBJECTS)/tests/support/methods.o: CFLAGS_ALL += $(if $(HAS_BASELINES),-DWITH_BASELINES)
 
 # Readers that one command has for itself, and what damaged files and those of libFuzzer go through.
-READING_OBJECTS := $(call objects,$(addprefix tests/fuzz/,readings.c reading_memory.c tracker_reading.c) src/tool/summary_file.c)
+READING_OBJECTS := $(call objects,$(addprefix tests/fuzz/,readings.c reading_memory.c tracker_reading.c) tool/summary_file.c)
 $(BUILD)/tests/fuzz/fuzz_readers $(BUILD)/tests/fuzz/coverage_target: $(READING_OBJECTS)
 # gold warns of hundreds of the sanitizer's own symbols.
 $(BUILD)/tests/fuzz/coverage_target: TEST_LINKER :=
@@ -883,21 +883,21 @@ MULTIARCH := $(shell $(CC) -print-multiarch 2>/dev/null)
 $(OBJECTS)/src/core/baseline_library.o: CFLAGS_ALL += $(if $(MULTIARCH),-DLIBRARY_FOLDER='"$(MULTIARCH)"')
 
 # This object contains the pages of the reports.
-$(OBJECTS)/src/tool/report/template.o: src/tool/report/template.html src/tool/report/jobs.html
+$(OBJECTS)/tool/report/template.o: tool/report/template.html tool/report/jobs.html
 
 # Only this file is compiled again when the commit changes.
-$(OBJECTS)/src/tool/common/provenance.o: CFLAGS_ALL += -DCSCD_COMMIT='"$(COMMIT)"' -DCSCD_FLAGS='"$(OPTIMISE_$(CONFIG))"'
-$(OBJECTS)/src/tool/common/provenance.o: $(BUILD)/commit
+$(OBJECTS)/tool/common/provenance.o: CFLAGS_ALL += -DCSCD_COMMIT='"$(COMMIT)"' -DCSCD_FLAGS='"$(OPTIMISE_$(CONFIG))"'
+$(OBJECTS)/tool/common/provenance.o: $(BUILD)/commit
 $(BUILD)/commit: FORCE
 	@mkdir -p $(@D)
 	@echo $(COMMIT) | cmp -s - $@ || echo $(COMMIT) > $@
 FORCE:
 
 ifdef WINDOWS
-include src/windows/rules.mk
+include tool/windows/rules.mk
 endif
 ifdef WASM
-include src/packaging/wasm/rules.mk
+include packaging/wasm/rules.mk
 endif
 
 -include $(addprefix $(OBJECTS)/,$(addsuffix .d,$(basename $(SOURCES)))) $(KERNEL_OBJECTS:.o=.d) \

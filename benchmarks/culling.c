@@ -2,8 +2,8 @@
  * start. */
 #include "cscd/cscd.h"
 #include "cscd/research.h"
-#include "src/io/animation.h"
-#include "src/io/mesh_file.h"
+#include "tool/io/animation.h"
+#include "tool/io/mesh_file.h"
 
 #include <stdio.h>
 #include <stdlib.h>

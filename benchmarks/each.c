@@ -2,8 +2,8 @@
 #include "benchmarks/lib/options.h"
 #include "cscd/cscd.h"
 #include "src/core/timer.h"
-#include "src/io/mesh_file.h"
-#include "src/io/point_cache_write.h"
+#include "tool/io/mesh_file.h"
+#include "tool/io/point_cache_write.h"
 
 #include <errno.h>
 #include <fcntl.h>

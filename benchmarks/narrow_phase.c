@@ -3,7 +3,7 @@
 #include "runtime/bvh/bvh_rebuild.h"
 #include "runtime/detector/detector.h"
 #include "runtime/narrow_phase/feature_queue.h"
-#include "src/io/mesh_file.h"
+#include "tool/io/mesh_file.h"
 
 #include <stdio.h>
 #include <stdlib.h>

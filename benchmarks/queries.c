@@ -2,7 +2,7 @@
 #include "benchmarks/lib/pair_batches.h"
 #include "benchmarks/lib/query_file.h"
 #include "src/core/timer.h"
-#include "src/io/json.h"
+#include "tool/io/json.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -2,8 +2,8 @@
  * benchmarks/referee/compare.py runs it and the others. */
 #include "benchmarks/lib/crossing_scenes.h"
 #include "cscd/cscd.h"
-#include "src/io/json.h"
-#include "src/io/mesh_file.h"
+#include "tool/io/json.h"
+#include "tool/io/mesh_file.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -4,7 +4,7 @@
 #include "cscd/research.h"
 #include "models/shapes/catalogue.h"
 #include "preprocess/baselines/published_cuts.h"
-#include "src/io/plan_file.h"
+#include "tool/io/plan_file.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -15,8 +15,8 @@
  * share a point half way between the centres, at d = a / 2, as soon as theta - 2 k delta(a / 2) = 2 pi.
  * Nothing else touches: the inside of the bend keeps the radius L / theta - 1 > 1.6. The mesh is inscribed,
  * which delays its contact by less than 0.2 frames. */
-#include "src/io/mesh_file.h"
-#include "src/io/point_cache_write.h"
+#include "tool/io/mesh_file.h"
+#include "tool/io/point_cache_write.h"
 
 #include <math.h>
 #include <stdio.h>

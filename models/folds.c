@@ -1,7 +1,7 @@
 /* A folded surface, as of a cortex, whose ridges swell into each other. */
 #include "models/folds/folds.h"
-#include "src/io/mesh_file.h"
-#include "src/io/point_cache_write.h"
+#include "tool/io/mesh_file.h"
+#include "tool/io/point_cache_write.h"
 
 #include <stdio.h>
 #include <string.h>

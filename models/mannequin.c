@@ -1,7 +1,7 @@
 /* A skinned figure whose arms go through its trunk, in each of the forms in which animations come. */
 #include "models/mannequin/mannequin.h"
 #include "models/mannequin/skinned_file.h"
-#include "src/io/point_cache_write.h"
+#include "tool/io/point_cache_write.h"
 
 #include <errno.h>
 #include <stdbool.h>

@@ -1,6 +1,6 @@
 /* Writes one of the bodies as a mesh file: shape NAME [--triangles N] OUT.obj */
 #include "models/shapes/catalogue.h"
-#include "src/io/mesh_file.h"
+#include "tool/io/mesh_file.h"
 
 #include <errno.h>
 #include <stdio.h>

@@ -38,7 +38,7 @@ class Program:
     @staticmethod
     def relative(path):
         """The path in the repository; None for files of others."""
-        found = path and re.search(r"(?:^|/)((?:src|runtime|preprocess)/.*)$", os.path.normpath(path))
+        found = path and re.search(r"(?:^|/)((?:src|runtime|preprocess|tool)/.*)$", os.path.normpath(path))
         return found[1] if found else None
 
     def file_at(self, offset):

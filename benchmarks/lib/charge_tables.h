@@ -2,7 +2,7 @@
 #pragma once
 
 #include "benchmarks/lib/charge_trial.h"
-#include "src/io/json.h"
+#include "tool/io/json.h"
 
 typedef struct charge_limits {
     uint32_t most, dense_most; /* triangles, and those that are solved by a dense matrix */

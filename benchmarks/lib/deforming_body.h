@@ -2,7 +2,7 @@
 #pragma once
 
 #include "models/shapes/catalogue.h"
-#include "src/io/mesh_file.h"
+#include "tool/io/mesh_file.h"
 
 typedef enum deformation {
     DEFORM_WAVE, /* bends, waves and stretches; never touches itself: see deforming_body.c */

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "benchmarks/lib/contest.h"
-#include "src/io/json.h"
+#include "tool/io/json.h"
 
 enum { RESULTS_MAX = 32 };
 

@@ -3,8 +3,8 @@
 
 #include "cscd/cscd.h"
 #include "models/shapes/catalogue.h"
-#include "src/io/json.h"
-#include "src/tool/common/terminal.h"
+#include "tool/common/terminal.h"
+#include "tool/io/json.h"
 
 enum { SIZES_MAX = 16, INTERVALS_MAX = 60 };
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "runtime/ccd/elementary.h"
-#include "src/io/io_error.h"
+#include "tool/io/io_error.h"
 
 #include <stddef.h>
 

@@ -3,7 +3,7 @@
 
 #include "benchmarks/lib/scene_files.h"
 #include "cscd/cscd.h"
-#include "src/io/json.h"
+#include "tool/io/json.h"
 
 enum { RECORDINGS_MAX = 64 };
 

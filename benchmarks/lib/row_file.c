@@ -1,6 +1,6 @@
 /* The JSON file of a benchmark: an object with its rows and where they come from. */
 #include "benchmarks/lib/row_file.h"
-#include "src/tool/common/provenance.h"
+#include "tool/common/provenance.h"
 
 #include <errno.h>
 #include <string.h>

@@ -1,8 +1,8 @@
 /* The JSON file of a benchmark: an object with its rows and where they come from. */
 #pragma once
 
-#include "src/io/io_error.h"
-#include "src/io/json.h"
+#include "tool/io/io_error.h"
+#include "tool/io/json.h"
 
 /* Begins the object. Without a path there is no file: out->file is NULL then, and nothing may be written. */
 bool row_file_open(const char *path, json *out, io_error *error);

@@ -3,8 +3,8 @@
 
 #include "models/softbody/recorder.h"
 #include "src/core/timer.h"
-#include "src/io/animation.h"
-#include "src/io/point_cache_write.h"
+#include "tool/io/animation.h"
+#include "tool/io/point_cache_write.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "cscd/cscd.h"
-#include "src/io/io_error.h"
-#include "src/io/mesh_file.h"
+#include "tool/io/io_error.h"
+#include "tool/io/mesh_file.h"
 
 typedef struct recording_data {
     char name[64];

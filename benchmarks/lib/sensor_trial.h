@@ -2,7 +2,7 @@
 #pragma once
 
 #include "benchmarks/lib/scene_files.h"
-#include "src/tool/common/object_pairs.h"
+#include "tool/common/object_pairs.h"
 
 /* Sorts the values. */
 double sensor_median(double *values, uint32_t count);

@@ -2,8 +2,8 @@
 #include "benchmarks/peers/peer_scenes.h"
 
 #include "benchmarks/lib/deforming_body.h"
-#include "src/io/animation.h"
-#include "src/io/mesh_file.h"
+#include "tool/io/animation.h"
+#include "tool/io/mesh_file.h"
 
 #include <math.h>
 #include <stdio.h>

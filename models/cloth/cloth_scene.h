@@ -2,7 +2,7 @@
 #pragma once
 
 #include "models/cloth/fabric.h"
-#include "src/io/io_error.h"
+#include "tool/io/io_error.h"
 
 typedef enum cloth_cut { CLOTH_SHEET, CLOTH_TUBE, CLOTH_BAG } cloth_cut;
 

@@ -1,7 +1,7 @@
 /* The files of a recording, side by side in one folder: a model, its frames, and the same of its scenery. */
 #include "models/common/recording_files.h"
 
-#include "src/io/mesh_file.h"
+#include "tool/io/mesh_file.h"
 
 #include <stdio.h>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "models/shapes/body.h"
-#include "src/io/point_cache_write.h"
+#include "tool/io/point_cache_write.h"
 
 /* Writes FOLDER/NAMEending; an empty folder is the current one. */
 bool recording_write_model(const char *folder, const char *name, const char *ending, const body *b,

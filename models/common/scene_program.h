@@ -2,7 +2,7 @@
  * status. */
 #pragma once
 
-#include "src/io/io_error.h"
+#include "tool/io/io_error.h"
 
 #include <stdint.h>
 

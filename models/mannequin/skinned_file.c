@@ -1,7 +1,7 @@
 /* A binary glTF 2.0 file: a chunk of JSON, and one of arrays. Numbers are little-endian, as those of the processor. */
 #include "models/mannequin/skinned_file.h"
 
-#include "src/io/json.h"
+#include "tool/io/json.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "models/mannequin/mannequin.h"
-#include "src/io/io_error.h"
+#include "tool/io/io_error.h"
 
 #include <stdbool.h>
 

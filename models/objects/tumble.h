@@ -3,7 +3,7 @@
 
 #include "models/shapes/body.h"
 #include "models/softbody/simulation.h"
-#include "src/io/io_error.h"
+#include "tool/io/io_error.h"
 
 enum { TUMBLE_BODIES = 8, TUMBLE_FRAMES = 150 };
 

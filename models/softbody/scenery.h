@@ -3,7 +3,7 @@
 
 #include "models/shapes/body.h"
 #include "models/softbody/obstacles.h"
-#include "src/io/io_error.h"
+#include "tool/io/io_error.h"
 
 /* Makes ground and stairs, then the balls in their order at their present places; body_free releases it. */
 bool scenery_make(const obstacles *o, body *out, io_error *error);

@@ -1,8 +1,8 @@
 /* What a replay of Python leaves out, by parts and at rest, and which depths and events are left then: as the tool does. */
 #include "python/native/exports.h"
 
-#include "src/tool/answers/consequences.h"
-#include "src/tool/answers/shown_depths.h"
+#include "tool/answers/consequences.h"
+#include "tool/answers/shown_depths.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* Cuts faces that Python has into triangles, by the way that faces of files go. */
 #include "python/native/exports.h"
 
-#include "src/io/mesh_builder.h"
+#include "tool/io/mesh_builder.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -2,13 +2,13 @@
 #include "python/native/exports.h"
 #include "python/native/interpreter.h"
 
-#include "src/io/plan_file.h"
-#include "src/tool/common/methods.h"
-#include "src/tool/common/option_values.h"
-#include "src/tool/common/part_names.h"
-#include "src/tool/common/plan_colours.h"
-#include "src/tool/tool.h"
-#include "src/windows/console.h"
+#include "tool/common/methods.h"
+#include "tool/common/option_values.h"
+#include "tool/common/part_names.h"
+#include "tool/common/plan_colours.h"
+#include "tool/io/plan_file.h"
+#include "tool/tool.h"
+#include "tool/windows/console.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* Events that only follow from others are left out. */
-#include "src/tool/answers/consequences.h"
 #include "tests/support/test.h"
+#include "tool/answers/consequences.h"
 
 #include <string.h>
 

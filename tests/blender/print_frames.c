@@ -1,8 +1,8 @@
 /* Prints all frames of a glTF file as the tool reads them: FILE FPS [ANIMATION]. First a line with the numbers of vertices,
  * parts and frames; then the name of each part; then the part of each vertex; then a line for each frame: its number, and its
  * coordinates with 17 digits. */
-#include "src/io/animation.h"
-#include "src/io/mesh_file.h"
+#include "tool/io/animation.h"
+#include "tool/io/mesh_file.h"
 
 #include <inttypes.h>
 #include <stdio.h>

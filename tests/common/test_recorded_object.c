@@ -1,6 +1,6 @@
 /* The hash of a model, by which results of another one are refused. */
-#include "src/tool/common/recorded_object.h"
 #include "tests/support/test.h"
+#include "tool/common/recorded_object.h"
 
 #include <string.h>
 

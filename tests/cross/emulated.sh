@@ -27,12 +27,12 @@ case ${CC:-} in ccache*) cache='ccache ' ;; *) cache='' ;; esac
 build=build/$host/release
 if [ "$architecture" = riscv64 ]; then
     libraries=build/$host/libraries
-    src/packaging/libraries.sh $host $libraries zlib libpng json-c expat
+    packaging/libraries.sh $host $libraries zlib libpng json-c expat
     sysroot=/usr/$host found=''
     choices="$choices CPPFLAGS=-I$libraries/include LDFLAGS=-L$libraries/lib"
 else
     sysroot=$PWD/build/sysroot/$architecture found=" --sysroot=$PWD/build/sysroot/$architecture"
-    src/packaging/sysroot.sh "$architecture" "$sysroot" libc6-dev libstdc++-12-dev libpng-dev zlib1g-dev libjson-c-dev libexpat1-dev \
+    packaging/sysroot.sh "$architecture" "$sysroot" libc6-dev libstdc++-12-dev libpng-dev zlib1g-dev libjson-c-dev libexpat1-dev \
         libgsl-dev liblapacke-dev libopenblas-dev libcmocka-dev libflint-dev libflint-arb-dev libgmp-dev
 fi
 

@@ -50,7 +50,7 @@ scripts=$(find "$place/cscd-doc" -name '*.js')
 documents=$place/cscd-doc/usr/share/doc/cscd-doc
 find "$documents" -name '*.md' | while read -r page; do
     grep -oE '\]\([^)#: ]+[#)]' "$page" | sed -e 's/^](//' -e 's/.$//' | grep '[./]' | while read -r link; do
-        case $link in *include/* | *CONTRIBUTING* | *LICENSE | *CHANGELOG* | *licences* | *src/* | *tests/* | *models/* | *benchmarks/*) continue ;; esac
+        case $link in *include/* | *CONTRIBUTING* | *LICENSE | *CHANGELOG* | *licences* | *src/* | *tool/* | *tests/* | *models/* | *benchmarks/*) continue ;; esac
         [ -e "${page%/*}/$link" ] || echo "${page#"$documents"/}: $link"
     done
 done >"$folder/links.txt"

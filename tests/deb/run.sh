@@ -56,8 +56,8 @@ folder=$(cd "$folder" && pwd)
 one=$folder/one another=$folder/another/one/of/these
 
 # The second build has another folder, time zone, language, mask of new files, and number of processes.
-build_again() { (umask 027 && TZ=Pacific/Apia LC_ALL=C.UTF-8 DEB_BUILD_OPTIONS=parallel=3 src/packaging/deb.sh "$another"); }
-check 'the packages are built' src/packaging/deb.sh "$one"
+build_again() { (umask 027 && TZ=Pacific/Apia LC_ALL=C.UTF-8 DEB_BUILD_OPTIONS=parallel=3 packaging/deb.sh "$another"); }
+check 'the packages are built' packaging/deb.sh "$one"
 [ "$failed" = 0 ] || {
     echo "$passed passed, $failed failed"
     exit 1

@@ -2,9 +2,9 @@
  * usage: fuzz_readers SECONDS SEED FILE... for files of ours with random damage, whose endings say what they are (readings.c): a plan or
  * frames belong to the mesh beside them that ends in .obj. fuzz_readers --replay FOLDER... for all files of folders that are called as
  * their formats. The file that is read when the program dies is left where the first line says. */
-#include "src/io/path_name.h"
 #include "tests/fuzz/readings.h"
 #include "tests/support/io/byte_damage.h"
+#include "tool/io/path_name.h"
 
 #include <dirent.h>
 #include <stdio.h>

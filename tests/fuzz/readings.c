@@ -1,17 +1,17 @@
 /* The reader of each format, and what must hold of what it makes of a file. */
 #include "tests/fuzz/readings.h"
 
-#include "src/io/animation.h"
-#include "src/io/path_name.h"
-#include "src/io/plan_file.h"
-#include "src/tool/jobs/job_junit.h"
-#include "src/tool/jobs/job_list.h"
-#include "src/tool/jobs/job_merge.h"
-#include "src/tool/jobs/job_results.h"
-#include "src/tool/jobs/job_row.h"
-#include "src/tool/summary_file.h"
 #include "tests/fuzz/reading_memory.h"
 #include "tests/fuzz/tracker_reading.h"
+#include "tool/io/animation.h"
+#include "tool/io/path_name.h"
+#include "tool/io/plan_file.h"
+#include "tool/jobs/job_junit.h"
+#include "tool/jobs/job_list.h"
+#include "tool/jobs/job_merge.h"
+#include "tool/jobs/job_results.h"
+#include "tool/jobs/job_row.h"
+#include "tool/summary_file.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,8 +1,8 @@
 /* What reads files of strangers: each format with its reader, and what must hold whatever a file says. */
 #pragma once
 
-#include "src/io/mesh_file.h"
 #include "tests/support/temp_file.h"
+#include "tool/io/mesh_file.h"
 
 #include <stdbool.h>
 #include <stddef.h>

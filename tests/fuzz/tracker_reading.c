@@ -1,7 +1,7 @@
 /* Loads saved states of event trackers, and lets the trackers do all that they can do afterwards. */
 #include "tests/fuzz/tracker_reading.h"
 
-#include "src/io/file_reader.h"
+#include "tool/io/file_reader.h"
 
 #include <cscd/cscd.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* Reads the saved state of an event tracker. */
 #pragma once
 
-#include "src/io/io_error.h"
+#include "tool/io/io_error.h"
 
 #include <stdbool.h>
 

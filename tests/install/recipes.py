@@ -1,4 +1,4 @@
-"""Compares the recipes of package managers in src/packaging with the tree: versions, licences, options, and every path.
+"""Compares the recipes of package managers in packaging with the tree: versions, licences, options, and every path.
 
 None of these package managers is asked: their files are parsed, vcpkg's by CMake with functions that print their arguments.
 Ends with 1 and a line for each difference. Run it in the root of the tree.
@@ -14,7 +14,7 @@ import tempfile
 
 import yaml
 
-RECIPES = "src/packaging/recipes"
+RECIPES = "packaging/recipes"
 complaints = []
 
 
@@ -102,7 +102,7 @@ def check_conan(version, licence, options):
         expect_path("conanfile.py", pattern)
     # What CMakeLists.txt names is among the sources.
     listed = tuple(pattern.replace("*", "") for pattern in values["SOURCES"])
-    for name in re.findall(r"\b(?:src|preprocess|runtime|include)/[\w/.]*", read("CMakeLists.txt")):
+    for name in re.findall(r"\b(?:src|preprocess|runtime|include|packaging)/[\w/.]*", read("CMakeLists.txt")):
         expect(f"conanfile.py, {name} is copied", name.startswith(listed), True)
 
 
@@ -119,7 +119,7 @@ def check_conda(version, licence):
     expect_path("meta.yaml, license_file", os.path.join(root, recipe["about"]["license_file"]))
     for path in re.findall(r"\$PREFIX/(include/\S+)", text):
         expect_path("meta.yaml, test", path)
-    installed = read("src/packaging/install.sh") + "lib/pkgconfig/cscd.pc"
+    installed = read("packaging/install.sh") + "lib/pkgconfig/cscd.pc"
     for path in re.findall(r"\$PREFIX/(lib/\S+)", text):
         expect(f"meta.yaml, {path} is installed", os.path.basename(path) in installed, True)
     check_make("build.sh", read(f"{folder}/build.sh"))

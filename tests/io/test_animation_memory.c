@@ -1,10 +1,10 @@
 /* The memory of animations: every allocation fails once, and the peak does not grow with the number of
  * frames. */
-#include "src/io/growable.h"
-#include "src/io/point_cache_write.h"
 #include "tests/support/io/frame_fixture.h"
 #include "tests/support/io_allocations.h"
 #include "tests/support/test.h"
+#include "tool/io/growable.h"
+#include "tool/io/point_cache_write.h"
 
 #include <stdbool.h>
 #include <stdio.h>

@@ -1,11 +1,11 @@
 /* glTF files when memory fails, and when they are damaged; the frames of an animation take no memory of their own. */
-#include "src/io/animation.h"
-#include "src/io/growable.h"
 #include "tests/support/io/file_damage.h"
 #include "tests/support/io/gltf_fixture.h"
 #include "tests/support/io_allocations.h"
 #include "tests/support/temp_file.h"
 #include "tests/support/test.h"
+#include "tool/io/animation.h"
+#include "tool/io/growable.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* The writer of JSON: what it makes of texts that are no UTF-8, of numbers that are none, and where its commas go. */
-#include "src/io/json.h"
 #include "tests/support/test.h"
+#include "tool/io/json.h"
 
 #include <math.h>
 #include <stdio.h>

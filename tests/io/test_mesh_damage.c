@@ -1,8 +1,8 @@
 /* Mesh files in text and binary: numbers to the last bit that meshes in use do not have, the stiffness of faces, failed allocations,
  * and damage to every byte. */
-#include "src/io/text_encoding.h"
 #include "tests/support/io/mesh_check.h"
 #include "tests/support/test.h"
+#include "tool/io/text_encoding.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,10 +1,10 @@
 /* Mesh files: devices, pipes, long paths, counts up to the limits, garbage, and writing OBJ. */
-#include "src/io/growable.h"
-#include "src/io/mesh_builder.h"
-#include "src/io/text.h"
 #include "tests/support/io/mesh_check.h"
 #include "tests/support/temp_file.h"
 #include "tests/support/test.h"
+#include "tool/io/growable.h"
+#include "tool/io/mesh_builder.h"
+#include "tool/io/text.h"
 
 #include <signal.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* Output files: an older file stays until the new one is whole, links stay links, devices and pipes are written to. */
-#include "src/io/output_file.h"
+#include "tool/io/output_file.h"
 
 #include "tests/support/temp_file.h"
 #include "tests/support/test.h"

@@ -1,12 +1,12 @@
 /* Plan files: what is written comes back bit for bit; other meshes and damaged files are refused. */
-#include "src/io/growable.h"
-#include "src/io/mesh_file.h"
-#include "src/io/plan_file.h"
 #include "tests/support/io_allocations.h"
 #include "tests/support/own_folder.h"
 #include "tests/support/packed.h"
 #include "tests/support/test.h"
 #include "tests/support/tool/tool_fixture.h"
+#include "tool/io/growable.h"
+#include "tool/io/mesh_file.h"
+#include "tool/io/plan_file.h"
 
 #include <stdio.h>
 #include <stdlib.h>

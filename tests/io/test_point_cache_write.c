@@ -1,8 +1,8 @@
 /* The point cache writer: the exact bytes, and no file left behind by a failure. */
-#include "src/io/point_cache_write.h"
 #include "tests/support/io/frame_fixture.h"
 #include "tests/support/own_folder.h"
 #include "tests/support/test.h"
+#include "tool/io/point_cache_write.h"
 
 #include <float.h>
 #include <math.h>

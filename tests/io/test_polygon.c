@@ -1,9 +1,9 @@
 /* Polygons are cut into triangles that fill them: random ones by area, orientation and winding against an oracle in whole
  * numbers, and those on which fans fail. */
-#include "src/io/polygon.h"
-#include "src/io/polygon/ear_clipping.h"
 #include "tests/support/io/flat_polygon.h"
 #include "tests/support/test.h"
+#include "tool/io/polygon.h"
+#include "tool/io/polygon/ear_clipping.h"
 
 #include <math.h>
 #include <stdbool.h>

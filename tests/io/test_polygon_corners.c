@@ -1,10 +1,10 @@
 /* Polygons at the limits of what their plane shows: nearly collinear corners, windings, faces that are not flat. */
-#include "src/io/polygon.h"
-#include "src/io/polygon/corner_tree.h"
-#include "src/io/polygon/orientation.h"
 #include "tests/support/io/flat_polygon.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/test.h"
+#include "tool/io/polygon.h"
+#include "tool/io/polygon/corner_tree.h"
+#include "tool/io/polygon/orientation.h"
 
 #include <math.h>
 #include <stdbool.h>

@@ -1,8 +1,8 @@
 /* Lists of jobs: what their lines may say, and which shard has which job. */
-#include "src/tool/jobs/job_shards.h"
 #include "tests/support/own_folder.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/test.h"
+#include "tool/jobs/job_shards.h"
 
 #include <stdio.h>
 #include <stdlib.h>

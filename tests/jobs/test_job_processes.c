@@ -1,8 +1,8 @@
 /* Jobs in processes: each is taken or fails once, whatever happens to the process of one of them. */
-#include "src/tool/jobs/job_processes.h"
+#include "tool/jobs/job_processes.h"
 
-#include "src/tool/common/terminal.h"
 #include "tests/support/test.h"
+#include "tool/common/terminal.h"
 
 #include <poll.h>
 #include <signal.h>

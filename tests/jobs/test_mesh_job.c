@@ -1,8 +1,8 @@
 /* A mesh among many: an interrupt during its search. */
-#include "src/tool/common/terminal.h"
-#include "src/tool/jobs/mesh_job.h"
 #include "tests/support/own_folder.h"
 #include "tests/support/test.h"
+#include "tool/common/terminal.h"
+#include "tool/jobs/mesh_job.h"
 
 #include <signal.h>
 #include <stdbool.h>

@@ -7,7 +7,7 @@ the tests that have caught it before, as its list says, then with all of its roo
 that no longer applies, one that does not compile and one that no test catches have failed. Tests may hang on a mutant: that
 counts as caught, like a wrong result.
 
-ROOM="runtime/ccd src/io" takes those of rooms, ONLY="word word" those with one of the words in their names, SAMPLE=HASH (as
+ROOM="runtime/ccd tool/io" takes those of rooms, ONLY="word word" those with one of the words in their names, SAMPLE=HASH (as
 hexadecimal digits, such as a commit's) a few of them, the same for the same hash. MATRIX=1 goes on after the first test, so that
 all tests of the room that catch a mutant are listed. KEEP=1 writes what caught them into the lists. RESUME=1 leaves out those that
 were caught in an earlier run, and whose files are the same. The last line is `N passed, M failed`. With the argument --applies

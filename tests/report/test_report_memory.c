@@ -1,13 +1,13 @@
 /* A report, and what it keeps of answers, events and long summaries, survives every failed allocation: it says so, nothing leaks, and
  * nothing of the tries that failed is in the page of the one that did not. */
-#include "src/tool/report/json_table.h"
-#include "src/tool/report/report.h"
-#include "src/tool/report/template.h"
 #include "tests/support/io_allocations.h"
 #include "tests/support/own_folder.h"
 #include "tests/support/packed.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
+#include "tool/report/json_table.h"
+#include "tool/report/report.h"
+#include "tool/report/template.h"
 
 #include <math.h>
 #include <stdio.h>

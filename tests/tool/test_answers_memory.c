@@ -1,10 +1,10 @@
 /* Parts, rules and answers survive every failed allocation: they say so, and nothing leaks. And contacts without a frame are kept. */
-#include "src/io/growable.h"
-#include "src/tool/answers/answers.h"
-#include "src/tool/answers/consequences.h"
 #include "tests/support/io_allocations.h"
 #include "tests/support/test.h"
 #include "tests/support/tool/tool_fixture.h"
+#include "tool/answers/answers.h"
+#include "tool/answers/consequences.h"
+#include "tool/io/growable.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* The renderer: known pixels, hidden surfaces, markers, and PNG files that read back or leave nothing. */
-#include "src/tool/picture/colour.h"
-#include "src/tool/picture/scene.h"
 #include "tests/support/test.h"
+#include "tool/picture/colour.h"
+#include "tool/picture/scene.h"
 
 #include <math.h>
 #include <png.h>

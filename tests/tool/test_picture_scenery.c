@@ -1,8 +1,8 @@
 /* The parts of strips and scenery: sheets of tiles, cameras for many frames, shadows, squares, the second
  * mesh. */
-#include "src/tool/picture/scene.h"
-#include "src/tool/picture/sheet.h"
 #include "tests/support/test.h"
+#include "tool/picture/scene.h"
+#include "tool/picture/sheet.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -51,7 +51,7 @@ count "$folder/contents"
 # ---- aarch64, by its own Python
 
 sysroot=$PWD/build/sysroot/arm64-python
-src/packaging/sysroot.sh arm64 "$sysroot" libc6-dev libstdc++-12-dev libpng-dev zlib1g-dev libjson-c-dev libexpat1-dev \
+packaging/sysroot.sh arm64 "$sysroot" libc6-dev libstdc++-12-dev libpng-dev zlib1g-dev libjson-c-dev libexpat1-dev \
     libgsl-dev liblapacke-dev libopenblas-dev libcmocka-dev libflint-dev libflint-arb-dev libgmp-dev python3 python3-numpy \
     python3-pytest || exit 1
 build=build/aarch64-linux-gnu/release

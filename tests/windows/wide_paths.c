@@ -1,7 +1,7 @@
 /* The paths that the functions of Windows get. Wine takes those of any length, and Windows 260 characters where the prefix is missing. */
-#include "src/windows/wide.h"
 #include "tests/support/temp_file.h"
 #include "tests/support/test.h"
+#include "tool/windows/wide.h"
 
 #include <errno.h>
 #include <stdio.h>

@@ -1,9 +1,9 @@
 /* Mesh files with random damage, read as meshes and as animations. */
 #include "tests/support/io/file_damage.h"
-#include "src/io/animation.h"
 #include "tests/support/io/byte_damage.h"
 #include "tests/support/temp_file.h"
 #include "tests/support/test.h"
+#include "tool/io/animation.h"
 
 #include <math.h>
 #include <stdlib.h>

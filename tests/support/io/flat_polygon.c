@@ -1,8 +1,8 @@
 /* The oracle counts in whole numbers: areas, edges, and how often points lie in triangles. */
 #include "tests/support/io/flat_polygon.h"
 
-#include "src/io/polygon.h"
 #include "tests/support/test.h"
+#include "tool/io/polygon.h"
 
 #include <string.h>
 

@@ -1,9 +1,9 @@
 /* Recorded animations for tests: point caches built byte by byte, mesh files, and checks of what is read. */
 #pragma once
 
-#include "src/io/animation.h"
-#include "src/io/io_error.h"
 #include "tests/support/temp_file.h"
+#include "tool/io/animation.h"
+#include "tool/io/io_error.h"
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,7 +1,7 @@
 /* Reads bytes as a mesh file and checks the mesh, whatever happens to the file or to memory; used inside cmocka tests. */
 #pragma once
 
-#include "src/io/mesh_file.h"
+#include "tool/io/mesh_file.h"
 
 #include <stdbool.h>
 #include <stddef.h>

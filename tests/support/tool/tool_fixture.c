@@ -1,8 +1,8 @@
 /* Recordings that the tests of the tool replay: meshes with frames, and the files that hold them. */
 #include "tests/support/tool/tool_fixture.h"
 
-#include "src/io/mesh_file.h"
-#include "src/io/point_cache_write.h"
+#include "tool/io/mesh_file.h"
+#include "tool/io/point_cache_write.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,8 +1,0 @@
-/* Where the mesh readers get memory: a file of its own, so that a test that has a failing io_realloc links without it. */
-#include "src/io/growable.h"
-
-#include <stdlib.h>
-
-void *io_realloc(void *memory, size_t size) {
-    return realloc(memory, size);
-}

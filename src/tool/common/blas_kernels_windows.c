@@ -1,9 +1,0 @@
-/* A build for Windows has no OpenBLAS, so there is nothing to see to before a plan is made. */
-#include "src/tool/common/blas_kernels.h"
-
-void blas_kernels_own_process(void) {
-}
-
-void blas_kernels_prepare(bool warns) {
-    (void)warns;
-}

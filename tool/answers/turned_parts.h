@@ -1,0 +1,32 @@
+/* What was inside out, and taken as turned around, in the frames that were looked at. */
+#pragma once
+
+#include "tool/common/part_names.h"
+#include "tool/io/json.h"
+
+/* In so many frames, from the first to the last one, by their indices. */
+typedef struct turned_frames {
+    uint32_t count, first, last;
+} turned_frames;
+
+typedef struct turned_parts {
+    const recording *recording;
+    const part_names *names;
+    turned_frames *components; /* of each component */
+    uint32_t *parts;           /* of each component: that of its first triangle */
+    turned_frames any;         /* frames in which some component was */
+    uint32_t frame_count;      /* that were looked at */
+} turned_parts;
+
+/* False: out of memory, and *out holds nothing. names outlive it. */
+bool turned_parts_open(const recording *r, const part_names *names, turned_parts *out);
+void turned_parts_close(turned_parts *t); /* a zeroed struct is fine */
+
+/* Adds a frame, of which the library says per component what was turned; NULL: nothing. */
+void turned_parts_add(turned_parts *t, uint32_t frame, const bool *turned);
+
+/* A note for people, if there was something: "part wheel is inside out; it was taken as turned around". */
+void turned_parts_tell(const turned_parts *t);
+
+/* The member "inside_out": an item for each component that ever was. */
+void turned_parts_write(const turned_parts *t, json *out);

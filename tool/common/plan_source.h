@@ -1,0 +1,44 @@
+/* Finds a plan: in a file, or by making it in memory, or none; and chooses the method that the detector
+ * then uses. */
+#pragma once
+
+#include "tool/common/recording.h"
+
+/* A plan of method auto takes as long as 100 to 500 intervals of a replay of the same triangles. It is made without being asked for where
+ * that is a tenth of all intervals of the recording, and for few triangles, where it is a fraction of a second. */
+enum { PLAN_PRICE_INTERVALS = 400, PLAN_FEW_TRIANGLES = 6000 };
+
+/* pawn.obj -> pawn.plan.ply, in the same folder; to be freed, NULL when out of memory. */
+char *plan_path_of_model(const char *model_path);
+
+typedef struct plan_request {
+    const char *model_path;
+    const char *plan_path; /* NULL: the model's own, if there is one that fits */
+    cscd_method method;    /* AUTO: whatever is best */
+    uint32_t k;            /* with KMEANS; 0: the default */
+    uint64_t ours;         /* with PUBLISHED: of a plan that is made */
+    double min_separation;
+    bool insists_on_plan; /* AUTO: makes a plan even where nothing can be culled */
+} plan_request;
+
+typedef enum plan_source { PLAN_FROM_NONE, PLAN_FROM_FILE, PLAN_FROM_MEMORY } plan_source;
+
+/* "none", "file", "memory". */
+const char *plan_source_name(plan_source source);
+
+typedef struct plan_choice {
+    cscd_plan *plan;      /* NULL: none */
+    cscd_method method;   /* for the detector */
+    cscd_method steps_by; /* the same, or AUTO: culled by it where that pays */
+    plan_source source;
+    char *path;       /* of the file */
+    double made_ms;   /* in memory */
+    char remark[600]; /* a sentence for people: why no better plan was taken; "" if there is nothing to say */
+} plan_choice;
+
+/* On false *out holds nothing. */
+bool plan_choose(const plan_request *request, const recording *r, plan_choice *out, io_error *error);
+void plan_choice_free(plan_choice *choice);
+
+/* "charge, 4 regions, from pawn.plan.ply", and the remark. */
+void plan_choice_print(const plan_choice *choice);

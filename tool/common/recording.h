@@ -1,0 +1,119 @@
+/* A recording: one object or several, each with its model file and its frames, as one mesh and an array of positions
+ * for each frame. */
+#pragma once
+
+#include "cscd/cscd.h"
+#include "tool/common/option_table.h"
+#include "tool/common/recorded_object.h"
+#include "tool/io/contact_file.h"
+
+enum { RECORDING_OBJECTS_MAX = 64 };
+
+/* NAME=PATH of the command line. The name lives as long as the options. */
+typedef struct named_path {
+    char name[64];
+    const char *path;
+    bool obstacle; /* of an object */
+} named_path;
+
+typedef struct named_paths {
+    named_path items[RECORDING_OBJECTS_MAX];
+    uint32_t count;
+} named_paths;
+
+/* A number that may not be given. */
+typedef struct frame_number {
+    bool given;
+    int32_t value;
+} frame_number;
+
+typedef struct recording_options {
+    const char *model_path;         /* NULL: there are only objects by name */
+    const char *const *frame_paths; /* none: the model is the only frame */
+    size_t frame_path_count;
+    named_paths objects, frames_of; /* further objects; frames of these or of the model */
+    animation_options frames;       /* how frames are read; the model's path is filled in for each object */
+    frame_number first_frame;       /* what the first frame is called; not given: what its file says */
+    bool plays_models; /* models that hold an animation are played, unless they have other frames */
+    bool rest;         /* but these are not */
+    weld_choice weld;
+    mesh_parts_by parts_by; /* what the parts of all models are */
+    double wait_seconds;    /* for files that cannot be read yet; 0: none */
+    uint32_t thread_count;  /* 0: one per processor, for small meshes one */
+    cscd_simd simd;
+    cscd_progress progress; /* of the context; NULL: none */
+    cscd_context
+        *context; /* to be shared with other recordings, which goes on living; NULL: one of its own */
+} recording_options;
+
+/* MODEL and FRAMES: the first input and the others, if there are any. */
+void recording_options_take(recording_options *options, const given_options *given);
+
+/* What a sentence calls the recording: the first model's path. */
+const char *recording_options_path(const recording_options *options);
+
+typedef struct recording {
+    cscd_context *context;
+    bool shares_context;
+    cscd_mesh *mesh; /* of welded vertices and triangles, object by object */
+    recorded_object *objects;
+    char *model_name; /* of the object without a name of its own: its file's, without folder and ending */
+    uint32_t object_count;
+    uint32_t frame_count;
+    mesh_parts_by parts_by; /* that of the options */
+    double fps;             /* that of the options; 0: not given */
+    double wait_seconds;
+    int32_t *frame_numbers;            /* frame_count, ascending: what the artist calls each frame */
+    uint32_t (*edge_file_vertices)[2]; /* per edge of mesh; NULL when nothing is welded */
+} recording;
+
+/* The options are used as long as the recording is open. On false *out holds nothing to close. */
+bool recording_open(const recording_options *options, recording *out, io_error *error);
+void recording_close(recording *r);
+
+/* Reads a frame, by its index from 0. positions: cscd_mesh_vertex_count(mesh) * 3. The error names the frame, and vertices
+ * as the file numbers them. */
+bool recording_read(recording *r, uint32_t frame, double *positions, io_error *error);
+
+/* Says that a frame is read soon, as animation_expect. */
+void recording_expect(recording *r, uint32_t frame);
+
+/* Copies the positions of the model files themselves, unchecked; positions as above. */
+void recording_rest(const recording *r, double *positions);
+
+/* The hashes of the files' positions of the frame read last, per object; and adds those of a frame to the objects' hashes. */
+void recording_hash_frame(const recording *r, uint64_t hashes[RECORDING_OBJECTS_MAX + 1]);
+void recording_add_hashes(recording *r, const uint64_t hashes[RECORDING_OBJECTS_MAX + 1]);
+
+/* Frames a second: as --fps says, or 24 where a glTF file was sampled; 0: nobody knows. */
+double recording_fps(const recording *r);
+
+/* Does any object have frames? */
+bool recording_moves(const recording *r);
+
+/* A contact, with the vertices that the model files number. */
+contact_record recording_contact(const recording *r, uint32_t frame, const cscd_contact *contact);
+
+/* The object of a vertex or triangle of the mesh. */
+uint32_t recording_object_of_vertex(const recording *r, uint32_t vertex);
+uint32_t recording_object_of_triangle(const recording *r, uint32_t triangle);
+
+/* The object of that name; UINT32_MAX: there is none. */
+uint32_t recording_find_object(const recording *r, const char *name);
+
+/* The model file's own number of a vertex or triangle of the mesh. */
+uint32_t recording_file_vertex(const recording *r, uint32_t vertex);
+uint32_t recording_file_triangle(const recording *r, uint32_t triangle);
+
+/* The face of the model file that a triangle of the mesh is cut from, counted from 0. */
+uint32_t recording_file_face(const recording *r, uint32_t triangle);
+
+/* The number of the edge between two vertices of the mesh, which must have it. */
+uint32_t recording_find_edge(const cscd_mesh *mesh, uint32_t a, uint32_t b);
+
+/* Does the model of an object hold an animation that is not played, although it has no other frames? */
+bool recording_object_rests(const recorded_object *object);
+
+/* Warns on stderr about triangles that welding has dropped, and about open, non-manifold and
+ * inconsistently oriented components. */
+void recording_warn(recording *r);

@@ -1,0 +1,179 @@
+/* Frames as .vtp files of VTK, surfaces and curves, with a .pvd over time of each, as ParaView opens them. */
+#include "tool/export/vtk_output.h"
+
+#include "tool/export/export_names.h"
+#include "tool/export/vtk_curves.h"
+#include "tool/export/vtp_file.h"
+#include "tool/io/output_file.h"
+#include "tool/io/path_name.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool no_memory(io_error *error) {
+    return io_fail(error, "out of memory for the files of --vtk");
+}
+
+void vtk_output_free(vtk_output *v) {
+    free(v->stem);
+    free(v->corners);
+    free(v->ends);
+    growable_free(&v->part_texts);
+    growable_free(&v->object_texts);
+    growable_free(&v->frames);
+    *v = (vtk_output){0};
+}
+
+/* A text and its NUL. */
+static bool append_text(growable *texts, const char *text) {
+    const size_t size = strlen(text) + 1;
+    if (!growable_reserve(texts, texts->count + size)) return false;
+    memcpy((char *)texts->data + texts->count, text, size);
+    texts->count += size;
+    return true;
+}
+
+static bool collect_names(vtk_output *v, const part_names *parts) {
+    v->part_count = parts->count;
+    for (uint32_t i = 0; i < parts->count; i++)
+        if (!append_text(&v->part_texts, parts->names[i])) return false;
+    for (uint32_t i = 0; i < v->recording->object_count; i++)
+        if (!append_text(&v->object_texts, v->recording->objects[i].source.name)) return false;
+    return true;
+}
+
+static bool collect_triangles(vtk_output *v) {
+    const size_t count = v->values->triangles.count;
+    const uint32_t *corners = cscd_mesh_all_triangles(v->recording->mesh);
+    v->corners = malloc((3 * count + 1) * sizeof *v->corners);
+    v->ends = malloc((count + 1) * sizeof *v->ends);
+    if (v->corners == NULL || v->ends == NULL) return false;
+    for (size_t i = 0; i < 3 * count; i++) v->corners[i] = corners[i];
+    for (size_t i = 0; i < count; i++) v->ends[i] = 3 * ((int64_t)i + 1);
+    return true;
+}
+
+bool vtk_output_open(const char *path, vtk_choice choice, const recording *r, const part_names *parts,
+                     const export_values *values, vtk_output *out, io_error *error) {
+    vtk_output v = {.choice = choice,
+                    .recording = r,
+                    .values = values,
+                    .part_texts = growable_of(1),
+                    .object_texts = growable_of(1),
+                    .frames = growable_of(sizeof(int32_t))};
+    v.stem = export_names_stem(path, ".pvd");
+    if (v.stem == NULL || !collect_names(&v, parts) || !collect_triangles(&v)) {
+        vtk_output_free(&v);
+        return no_memory(error);
+    }
+    *out = v;
+    return true;
+}
+
+static double time_of(const vtk_output *v, int32_t number) {
+    return v->choice.fps > 0.0 ? number / v->choice.fps : number;
+}
+
+static void add_table(vtp_file *file, vtp_section section, const export_table *table) {
+    static const vtp_type types[] = {VTP_UINT8, VTP_INT32, VTP_UINT32, VTP_FLOAT64};
+    for (size_t i = 0; i < table->array_count; i++) {
+        const export_array *a = &table->arrays[i];
+        vtp_add(file, section, a->name, types[a->type], table->count, 1, a->values);
+    }
+}
+
+/* The number and the time, which ParaView reads from TimeValue, and the names that part and object number. */
+static void add_field(const vtk_output *v, vtp_file *file, const int32_t *number, const double *time) {
+    vtp_add(file, VTP_FIELD, "frame", VTP_INT32, 1, 1, number);
+    vtp_add(file, VTP_FIELD, "TimeValue", VTP_FLOAT64, 1, 1, time);
+    vtp_add_texts(file, "part_names", v->part_count, v->part_texts.data, v->part_texts.count);
+    vtp_add_texts(file, "object_names", v->recording->object_count, v->object_texts.data,
+                  v->object_texts.count);
+}
+
+static bool write_numbered(const vtk_output *v, const vtp_file *file, const char *kind, int32_t number,
+                           io_error *error) {
+    char *stem = export_names_join(v->stem, kind);
+    char *path = stem != NULL ? export_names_frame(stem, number, ".vtp") : NULL;
+    const bool written = path != NULL ? vtp_write(file, path, error) : no_memory(error);
+    free(path);
+    free(stem);
+    return written;
+}
+
+static bool write_surface(const vtk_output *v, int32_t number, const double *positions, io_error *error) {
+    const double time = time_of(v, number);
+    const uint64_t points = v->values->vertices.count, count = v->values->triangles.count;
+    vtp_file file = {.point_count = points, .poly_count = count};
+    add_field(v, &file, &number, &time);
+    add_table(&file, VTP_POINT_DATA, &v->values->vertices);
+    add_table(&file, VTP_CELL_DATA, &v->values->triangles);
+    vtp_add(&file, VTP_POINTS, "Points", VTP_FLOAT64, points, 3, positions);
+    vtp_add(&file, VTP_POLYS, "connectivity", VTP_INT64, 3 * count, 1, v->corners);
+    vtp_add(&file, VTP_POLYS, "offsets", VTP_INT64, count, 1, v->ends);
+    return write_numbered(v, &file, "", number, error);
+}
+
+static bool write_curves(const vtk_output *v, int32_t number, const cscd_curves *curves, io_error *error) {
+    const double time = time_of(v, number);
+    vtk_curves lines;
+    if (!vtk_curves_collect(curves, &lines)) return no_memory(error);
+    vtp_file file = {.point_count = lines.point_count, .line_count = lines.count};
+    add_field(v, &file, &number, &time);
+    vtk_curves_add(&lines, &file);
+    const bool written = write_numbered(v, &file, "_curves", number, error);
+    vtk_curves_free(&lines);
+    return written;
+}
+
+bool vtk_output_add_frame(vtk_output *v, int32_t number, const double *positions, const cscd_curves *curves,
+                          io_error *error) {
+    if (!write_surface(v, number, positions, error) ||
+        (v->choice.curves && !write_curves(v, number, curves, error)))
+        return false;
+    int32_t *written = growable_push(&v->frames);
+    if (written == NULL) return no_memory(error);
+    *written = number;
+    return true;
+}
+
+static void write_escaped(FILE *out, const char *text) {
+    for (; *text != '\0'; text++) {
+        if (strchr("&<>\"'", *text) != NULL)
+            fprintf(out, "&#%d;", *text);
+        else
+            fputc(*text, out);
+    }
+}
+
+/* Names of files stand without their folder, so that all may be moved together. */
+static void write_collection(FILE *out, const vtk_output *v, const char *stem) {
+    fprintf(out, "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n");
+    for (size_t i = 0; i < v->frames.count; i++) {
+        const int32_t number = ((const int32_t *)v->frames.data)[i];
+        fprintf(out, "<DataSet timestep=\"%.17g\" group=\"\" part=\"0\" file=\"", time_of(v, number));
+        write_escaped(out, path_file_name(stem));
+        fprintf(out, "_%04" PRId32 ".vtp\"/>\n", number);
+    }
+    fprintf(out, "</Collection>\n</VTKFile>\n");
+}
+
+static bool finish_kind(const vtk_output *v, const char *kind, io_error *error) {
+    char *stem = export_names_join(v->stem, kind);
+    char *path = stem != NULL ? export_names_join(stem, ".pvd") : NULL;
+    output_file out;
+    bool written = path != NULL || no_memory(error);
+    if (written && !output_file_open(path, &out)) written = io_fail_write(error, path);
+    if (written) {
+        write_collection(out.file, v, stem);
+        written = output_file_close(&out, OUTPUT_WHOLE) || io_fail_write(error, path);
+    }
+    free(path);
+    free(stem);
+    return written;
+}
+
+bool vtk_output_finish(vtk_output *v, io_error *error) {
+    return finish_kind(v, "", error) && (!v->choice.curves || finish_kind(v, "_curves", error));
+}

@@ -1,0 +1,39 @@
+/* Point caches: all frames of an animation in one PC2 or MDD file. */
+#pragma once
+
+#include "tool/io/io_error.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* PC2: 32 bytes, little endian: "POINTCACHE2" with its NUL, int32 version (1), int32 points, float32 start,
+ * float32 rate, int32 samples; then for each sample x,y,z float32 of every point.
+ * MDD: big endian: int32 frames, int32 points, float32 time of every frame; then for each frame x,y,z float32
+ * of every point. Frames are taken in the file's order. A PC2 header says what they are called: the first is number start,
+ * and the others follow in steps of rate, if both are whole numbers and rate is at least 1. MDD's times, in seconds, are
+ * not used. */
+#define POINT_CACHE_PC2_MAGIC "POINTCACHE2"
+enum {
+    POINT_CACHE_PC2_MAGIC_SIZE = sizeof POINT_CACHE_PC2_MAGIC,
+    POINT_CACHE_PC2_HEADER_SIZE = 32,
+    POINT_CACHE_MDD_HEADER_SIZE = 8,
+    POINT_CACHE_VERTEX_SIZE = 12
+};
+
+typedef struct point_cache point_cache;
+
+/* Whether path is to be read as a point cache: it begins like a PC2 file, or ends in .pc2 or .mdd. */
+bool point_cache_recognise(const char *path);
+
+/* Checks the header and the file's size against it; vertex_count is at least 1. On false *out is
+ * untouched. */
+bool point_cache_open(const char *path, uint32_t vertex_count, point_cache **out, io_error *error);
+void point_cache_close(point_cache *cache);
+
+uint32_t point_cache_frame_count(const point_cache *cache);
+
+/* What the header calls a frame; its index where it does not say so. */
+int32_t point_cache_frame_number(const point_cache *cache, uint32_t frame);
+
+/* frame is below the count; positions takes vertex_count * 3 and is undefined on false. */
+bool point_cache_read(point_cache *cache, uint32_t frame, double *positions, io_error *error);

@@ -1,0 +1,56 @@
+/* A picture of a triangle mesh with markers and a caption, as a PNG file. */
+#pragma once
+
+#include "tool/picture/overlay.h"
+#include "tool/picture/shade.h"
+
+typedef struct picture_mesh {
+    uint32_t vertex_count, triangle_count;
+    const double *positions;
+    const uint32_t *triangles;
+} picture_mesh;
+
+/* All arrays stay the caller's. Coordinates must be finite. Scenery is drawn where it is in view, its
+ * triangles from either side, and never decides on the camera. */
+typedef struct picture_scene {
+    uint32_t vertex_count, triangle_count;
+    const double *positions;         /* x, y, z per vertex */
+    const uint32_t *triangles;       /* 3 per triangle, counter-clockwise from outside */
+    const uint8_t *triangle_colours; /* RGB per triangle, or NULL */
+    const uint8_t *vertex_colours;   /* RGB per vertex, or NULL; triangle_colours go first */
+    const picture_mesh *scenery;     /* ground, stairs, a ball beside it; or NULL */
+    const picture_marker *markers;   /* may be NULL when marker_count is 0 */
+    size_t marker_count;
+    const char *caption;          /* one line in the upper left corner, or NULL */
+    const picture_legend *legend; /* lines below it; may be NULL when legend_count is 0 */
+    size_t legend_count;
+} picture_scene;
+
+typedef struct picture_options {
+    uint32_t width, height;    /* pixels */
+    double azimuth, elevation; /* degrees, see picture_camera_frame */
+    bool y_up;                 /* else z is up */
+    picture_shading shading;
+    bool wire;        /* thin dark lines along the edges of triangles that are large enough */
+    bool transparent; /* background, else white */
+    uint32_t samples; /* a pixel is samples x samples samples, 1 to PICTURE_SAMPLES_MAX */
+    bool focus;       /* frame the box below instead of all vertices: to zoom, or to keep still over frames */
+    double focus_min[3], focus_max[3];
+    const picture_camera *camera; /* this one instead of a framing of its own, or NULL */
+    double text_scale;            /* of caption and legend, 1: as usual, 0: without them */
+    double square; /* side of the faint squares on level scenery, which show motion and scale; 0: none */
+} picture_options;
+
+/* 1280 x 960, from the right and above, z up, smooth, no wires, on white, 3 x 3 samples, all in view. */
+picture_options picture_options_defaults(void);
+
+/* The camera that a rendering with these arguments uses. */
+void picture_scene_camera(const picture_scene *scene, const picture_options *options, picture_camera *out);
+
+/* Renders into a new image, which the caller frees. On false *out is untouched. */
+bool picture_render_image(const picture_scene *scene, const picture_options *options, picture_image *out,
+                          io_error *error);
+
+/* Renders into a file. On false *error says why and no file is left. */
+bool picture_render(const picture_scene *scene, const picture_options *options, const char *png_path,
+                    io_error *error);

@@ -1,0 +1,33 @@
+/* The soft shadow that a body casts straight down. */
+#pragma once
+
+#include "tool/io/io_error.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum { PICTURE_SHADOW_TAPS = 160 };
+
+/* A point of the disc around a shaded point in which the body is looked for; lengths in cells. */
+typedef struct picture_shadow_tap {
+    double offset[2], radius, area;
+} picture_shadow_tap;
+
+/* The body's least and greatest height over each cell of a level grid, as shares of its extent. */
+typedef struct picture_shadow {
+    uint32_t columns, rows;
+    int across, along, up; /* axes */
+    double origin[3];      /* of cell (0, 0), and the height 0 */
+    double cell, extent;   /* of a cell, and the greatest of the body */
+    float *low, *high;     /* low > high where there is no body */
+    picture_shadow_tap taps[PICTURE_SHADOW_TAPS];
+} picture_shadow;
+
+/* On false *out is untouched. A body without extent casts no shadow. */
+bool picture_shadow_create(const double *positions, uint32_t vertex_count, const uint32_t *triangles,
+                           uint32_t triangle_count, bool y_up, picture_shadow *out, io_error *error);
+void picture_shadow_free(picture_shadow *shadow);
+
+/* How much light from above the body takes from a level surface at the point, 0 to 1: sharp and dark where
+ * they are near, wider and fainter the farther the body is above. */
+double picture_shadow_at(const picture_shadow *shadow, const double point[3]);

@@ -1,0 +1,143 @@
+/* The arrays of a page, by name: those collected, and those that follow from the mesh and the plan. */
+#include "tool/report/page_arrays.h"
+#include "tool/common/methods.h"
+
+#include "tool/common/plan_colours.h"
+#include "tool/report/collected.h"
+
+#include <assert.h>
+#include <stdlib.h>
+
+static void put_array(page_arrays *a, const char *name, const char *type, packed_array *values, bool owned) {
+    assert(a->count < PAGE_ARRAYS_MAX);
+    page_array *array = &a->items[a->count++];
+    *array = (page_array){.type = type, .values = values, .owned = owned};
+    snprintf(array->name, sizeof array->name, "%s", name);
+}
+
+/* Lists an array of the report; with values NULL the page has none. */
+static bool list_array(page_arrays *a, const char *name, const char *type, packed_array *values) {
+    if (values == NULL) return true;
+    put_array(a, name, type, values, false);
+    return packed_array_finish(values);
+}
+
+packed_array *page_arrays_add(page_arrays *a, const char *name, const char *type) {
+    packed_array *values = packed_array_create();
+    if (values == NULL) return NULL;
+    put_array(a, name, type, values, true);
+    return values;
+}
+
+size_t page_arrays_room(const page_arrays *a) {
+    return PAGE_ARRAYS_MAX - a->count;
+}
+
+static bool list_u32(page_arrays *a, const char *name, const uint32_t *values, size_t count) {
+    packed_array *packed = page_arrays_add(a, name, "u32");
+    return packed != NULL && packed_array_add_u32(packed, values, count) && packed_array_finish(packed);
+}
+
+static bool list_triangles(page_arrays *a, const cscd_mesh *mesh) {
+    packed_array *packed = page_arrays_add(a, "triangles", "u32");
+    bool added = packed != NULL;
+    for (uint32_t t = 0; t < cscd_mesh_triangle_count(mesh) && added; t++) {
+        uint32_t corners[3];
+        cscd_mesh_triangle(mesh, t, corners);
+        added = packed_array_add_u32(packed, corners, 3);
+    }
+    return added && packed_array_finish(packed);
+}
+
+static bool list_components(page_arrays *a, const cscd_mesh *mesh) {
+    packed_array *packed = page_arrays_add(a, "component", "u32");
+    bool added = packed != NULL;
+    for (uint32_t t = 0; t < cscd_mesh_triangle_count(mesh) && added; t++) {
+        uint32_t component = cscd_mesh_triangle_component(mesh, t);
+        added = packed_array_add_u32(packed, &component, 1);
+    }
+    return added && packed_array_finish(packed);
+}
+
+static bool list_charges(page_arrays *a, const cscd_plan *plan, const cscd_mesh *mesh) {
+    double *ranks = charge_ranks(plan, mesh);
+    packed_array *charges = page_arrays_add(a, "charge", "f32"),
+                 *equalized = page_arrays_add(a, "equalized", "f32");
+    bool added = ranks != NULL && charges != NULL && equalized != NULL;
+    for (uint32_t t = 0; t < cscd_mesh_triangle_count(mesh) && added; t++) {
+        float charge = (float)cscd_plan_triangle_charge(plan, t), rank = (float)ranks[t];
+        added = packed_array_add_f32(charges, &charge, 1) && packed_array_add_f32(equalized, &rank, 1);
+    }
+    free(ranks);
+    return added && packed_array_finish(charges) && packed_array_finish(equalized);
+}
+
+static bool list_regions(page_arrays *a, const cscd_plan *plan, const cscd_mesh *mesh) {
+    packed_array *packed = page_arrays_add(a, "region", "u32");
+    bool added = packed != NULL;
+    for (uint32_t t = 0; t < cscd_mesh_triangle_count(mesh) && added; t++) {
+        uint32_t region = cscd_plan_triangle_region(plan, t);
+        added = packed_array_add_u32(packed, &region, 1);
+    }
+    return added && packed_array_finish(packed);
+}
+
+static bool list_scenery(page_arrays *a, report *r) {
+    const report_scenery *scenery = &r->options.scenery;
+    return scenery->triangles == NULL ||
+           (list_u32(a, "scenery_triangles", scenery->triangles, (size_t)scenery->triangle_count * 3) &&
+            list_array(a, "scenery_frames", "u8", r->scenery.bytes));
+}
+
+static bool list_plan(page_arrays *a, const cscd_plan *plan, const cscd_mesh *mesh) {
+    if (plan == NULL) return true;
+    return (!method_facts_of(cscd_plan_method(plan)).by_charge || list_charges(a, plan, mesh)) &&
+           list_regions(a, plan, mesh);
+}
+
+static bool list_contacts(page_arrays *a, report *r) {
+    const contact_arrays *c = &r->contacts;
+    return c->heat == NULL ||
+           (list_u32(a, "heat", c->heat, cscd_mesh_triangle_count(r->options.mesh)) &&
+            list_array(a, "contact_interval", "u32", c->interval) &&
+            list_array(a, "contact_kind", "u8", c->kind) &&
+            list_array(a, "contact_vertices", "u32", c->vertices) &&
+            list_array(a, "contact_file_vertices", "u32", c->file_vertices) &&
+            list_array(a, "contact_toi", "f64", c->toi) && list_array(a, "contact_point", "f64", c->point));
+}
+
+static bool list_answers(page_arrays *a, report *r) {
+    const answer_arrays *found = &r->answers;
+    if (found->frames_checked == 0) return true;
+    return list_array(a, "answer_frame", "u32", found->frame) &&
+           list_array(a, "answer_counts", "u32", found->counts) &&
+           list_array(a, "answer_triangle", "u32", found->triangle) &&
+           list_array(a, "answer_kind", "u8", found->kind) &&
+           list_array(a, "curve_vertices", "u32", found->point_vertices) &&
+           list_array(a, "curve_share", "f32", found->point_share) &&
+           list_array(a, "curve_begins", "u8", found->point_begins) &&
+           list_array(a, "depth_vertex", "u32", found->depth_vertex) &&
+           list_array(a, "depth", "f32", found->depth);
+}
+
+bool page_arrays_list(report *r, page_arrays *out) {
+    const cscd_mesh *mesh = r->options.mesh;
+    *out = (page_arrays){.count = 0};
+    if (mesh == NULL) return true;
+    return list_triangles(out, mesh) && list_array(out, "frames", "u8", r->frames.bytes) &&
+           list_scenery(out, r) && list_components(out, mesh) && list_plan(out, r->options.plan, mesh) &&
+           list_array(out, "orientation", "u8", r->orientations.orientations) &&
+           list_array(out, "detector_points", "f64", r->orientations.points) && list_contacts(out, r) &&
+           list_answers(out, r);
+}
+
+void page_arrays_free(page_arrays *arrays) {
+    for (size_t i = 0; i < arrays->count; i++)
+        if (arrays->items[i].owned) packed_array_destroy(arrays->items[i].values);
+    arrays->count = 0;
+}
+
+size_t page_array_count(const page_array *array) {
+    size_t bits = strtoul(array->type + 1, NULL, 10);
+    return packed_array_size(array->values) * 8 / bits;
+}

@@ -1,0 +1,94 @@
+/* A report: one HTML page that shows a replay, a plan, or replays side by side, and needs no network. */
+#pragma once
+
+#include "cscd/cscd.h"
+#include "tool/io/io_error.h"
+#include "tool/report/orientation_row.h"
+
+typedef enum report_kind { REPORT_REPLAY, REPORT_PREPROCESS, REPORT_COMPARE } report_kind;
+
+enum {
+    REPORT_POSITIONS_MAX = 4000000,      /* of vertices, over all frames kept, the scenery's included */
+    REPORT_INTERVAL_CONTACTS_MAX = 4000, /* kept of one interval: the earliest */
+    REPORT_CONTACTS_MAX = 100000,        /* all contacts that are kept; each interval has room for its
+                                          * share at least */
+    REPORT_ANSWER_TRIANGLES_MAX =
+        400000, /* intersecting, over all frames; each has room for its share at least */
+    REPORT_ANSWER_POINTS_MAX = 200000, /* the same, of curves */
+    REPORT_ANSWER_DEPTHS_MAX = 200000, /* and of vertices with a depth */
+    REPORT_EVENTS_MAX = 2000,          /* the worst are kept */
+    REPORT_PART_NAME_SIZE = 160,
+    REPORT_MARKS_MAX = 16 * 1024 * 1024, /* bytes of orientations, and of detector points: else left out */
+};
+
+/* A surface that is only drawn. */
+typedef struct report_scenery {
+    uint32_t vertex_count, triangle_count;
+    const uint32_t *triangles; /* NULL: there is none */
+    bool moves;                /* has positions of its own for every frame */
+} report_scenery;
+
+/* Options of a report. Everything that they point to outlives the report. */
+typedef struct report_options {
+    report_kind kind;
+    const char *title, *generator;
+    const cscd_mesh *mesh;        /* NULL for REPORT_COMPARE, which shows no surface */
+    const cscd_plan *plan;        /* NULL: none */
+    const int32_t *frame_numbers; /* what frames are called, by index; NULL: their indices */
+    uint32_t first, last;    /* the frames to come; what is kept follows from them; of a preprocess 0, 0 */
+    bool oriented;           /* the detector's method has detector points and orientations */
+    int up_axis;             /* of the picture: 1: y, 2: z; 0 stands for z */
+    double fps;              /* frames a second; 0: nobody knows */
+    const char *length_unit; /* "mm": of the files' coordinates; NULL: nobody knows */
+    report_scenery scenery;
+
+    /* The vertices of a contact as the model file numbers them. VF: the vertex, the face's three; EE: those
+     * of a, those of b. NULL: the file has the mesh's own numbers. */
+    void (*file_vertices)(void *user, const cscd_contact *contact, uint32_t vertices[4]);
+    void *file_vertices_user;
+} report_options;
+
+typedef struct report report;
+
+/* Call in this order: _create, _begin, _add_interval for every interval, the scenery, _write. Without a
+ * mesh, leave out _begin and the two after it. After a failure only _destroy may follow: a report is
+ * whole, or there is none. */
+bool report_create(const report_options *options, report **out, io_error *error);
+void report_destroy(report *r);
+
+/* The positions of the first frame. */
+bool report_begin(report *r, const double *positions, io_error *error);
+
+/* The next interval: how its triangles faced their detector points (NULL where the options say that there are no
+ * orientations), its contacts, and the positions of the frame at its end. The report ends with the last frame that it was
+ * given here, be it earlier than expected. */
+bool report_add_interval(report *r, const orientation_row *orientations, const cscd_contacts *contacts,
+                         const double *end, io_error *error);
+
+/* What intersects in a frame: pairs and, if they were asked for, curves and depths of vertices. Frames come in their
+ * order, those that were not checked are left out. */
+bool report_add_answers(report *r, uint32_t frame, const cscd_intersection_pairs *found, io_error *error);
+
+/* What a part is called, in the buffer or elsewhere; UINT32_MAX stands for what is in no part. */
+typedef const char *(*report_part_name)(void *user, uint32_t part, char buffer[REPORT_PART_NAME_SIZE]);
+
+/* The events, by the indices of frames; they are copied. name must live as long as the report. Once. */
+bool report_set_events(report *r, const cscd_event *events, size_t count, report_part_name name, void *user,
+                       io_error *error);
+
+/* The frames that are kept, ascending, the first and the last among them: final after the last interval. */
+uint32_t report_frame_count(const report *r);
+uint32_t report_frame(const report *r, uint32_t index);
+
+/* The scenery's positions: once if it stands still, else for each frame kept, in their order. */
+bool report_add_scenery(report *r, const double *positions, io_error *error);
+
+/* The text that `--json` wrote; any `<` in it is escaped here. */
+typedef struct report_summary {
+    const char *name, *text;
+} report_summary;
+
+/* Puts the page at path in one go: until it is complete, and if that fails, an older file stays as it is. A
+ * pipe or a device is written to directly. preprocess: a JSON object as text, or NULL. Once. */
+bool report_write(report *r, const char *path, const report_summary *summaries, size_t summary_count,
+                  const char *preprocess, io_error *error);

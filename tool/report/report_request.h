@@ -1,0 +1,20 @@
+/* The options of a command about the report that it writes. */
+#pragma once
+
+#include "tool/common/up_axis.h"
+#include "tool/io/io_error.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+typedef struct report_request {
+    const char *path;                               /* NULL: no report */
+    const char *scenery_path, *scenery_frames_path; /* NULL: none */
+    const char *title;                              /* NULL: the model's file */
+    up_axis up;
+} report_request;
+
+/* False, with the reason, if the options contradict each other, or if the report would be written over one
+ * of the others (NULLs among them are skipped). */
+bool report_request_is_safe(const report_request *r, const char *const *others, size_t other_count,
+                            io_error *error);

@@ -1,0 +1,215 @@
+/* Writes a report: the template, what the page is told as JSON, and its arrays. */
+#include "tool/common/methods.h"
+#include "tool/report/collected.h"
+#include "tool/report/json_table.h"
+#include "tool/report/page_file.h"
+
+#include <stdlib.h>
+
+/* ---- what the page is told --------------------------------------------------------------------------- */
+
+static int64_t frame_number_of(const report *r, uint32_t frame) {
+    if (r->options.frame_numbers == NULL) return frame;
+    return r->options.frame_numbers[frame];
+}
+
+static void write_frames(json *out, const report *r, bool all) {
+    json_begin_array(out, "frames");
+    for (uint32_t i = 0; i < (all ? report_frame_count(r) : 1); i++)
+        json_signed(out, NULL, frame_number_of(r, report_frame(r, i)));
+    json_end_array(out);
+}
+
+/* What all frames are called, also those that are not kept. */
+static void write_numbers(json *out, const report *r) {
+    json_begin_array(out, "numbers");
+    for (uint32_t frame = r->options.first; frame <= r->last; frame++)
+        json_signed(out, NULL, frame_number_of(r, frame));
+    json_end_array(out);
+}
+
+static void write_scenery(json *out, const report *r) {
+    const report_scenery *scenery = &r->options.scenery;
+    if (scenery->triangles == NULL) {
+        json_null(out, "scenery");
+        return;
+    }
+    json_begin_object(out, "scenery");
+    json_integer(out, "vertices", scenery->vertex_count);
+    json_integer(out, "triangles", scenery->triangle_count);
+    write_frames(out, r, scenery->moves);
+    json_end_object(out);
+}
+
+static void write_region(json *out, const cscd_region *region, double unit) {
+    json_begin_object(out, NULL);
+    json_integer(out, "component", region->component);
+    json_integer(out, "triangles", region->triangle_count);
+    json_number(out, "area", region->area);
+    json_number(out, "visible_share", region->visible_share);
+    json_begin_array(out, "detector_point");
+    for (int k = 0; k < 3; k++) json_number(out, NULL, region->detector_point[k] / unit);
+    json_end_array(out);
+    json_end_object(out);
+}
+
+static void write_plan(json *out, const report *r) {
+    const cscd_plan *plan = r->options.plan;
+    if (plan == NULL) {
+        json_null(out, "plan");
+        return;
+    }
+    json_begin_object(out, "plan");
+    json_string(out, "method", cscd_method_name(cscd_plan_method(plan)));
+    json_begin_array(out, "regions");
+    for (uint32_t i = 0; i < cscd_plan_region_count(plan); i++) {
+        cscd_region region = cscd_plan_region(plan, i);
+        write_region(out, &region, r->unit);
+    }
+    json_end_array(out);
+    json_begin_array(out, "capacitances");
+    if (method_facts_of(cscd_plan_method(plan)).by_charge)
+        for (uint32_t c = 0; c < cscd_mesh_component_count(r->options.mesh); c++)
+            json_number(out, NULL, cscd_plan_capacitance(plan, c));
+    json_end_array(out);
+    json_end_object(out);
+}
+
+static void write_contacts(json *out, const report *r) {
+    if (r->contacts.heat == NULL) {
+        json_null(out, "contacts");
+        return;
+    }
+    json_begin_object(out, "contacts");
+    json_integer(out, "found", r->contacts.found);
+    json_integer(out, "kept", r->contacts.kept);
+    json_integer(out, "interval_limit", REPORT_INTERVAL_CONTACTS_MAX);
+    json_integer(out, "limit", REPORT_CONTACTS_MAX);
+    json_end_object(out);
+}
+
+static void write_answers(json *out, const report *r) {
+    const answer_arrays *a = &r->answers;
+    if (a->frames_checked == 0) {
+        json_null(out, "answers");
+        return;
+    }
+    json_begin_object(out, "answers");
+    json_integer(out, "frames_checked", a->frames_checked);
+    json_integer(out, "triangles_found", a->found.triangles);
+    json_integer(out, "triangles_kept", a->kept.triangles);
+    json_integer(out, "points_found", a->found.points);
+    json_integer(out, "points_kept", a->kept.points);
+    json_integer(out, "depths_found", a->found.depths);
+    json_integer(out, "depths_kept", a->kept.depths);
+    event_list_write(&r->events, r->options.frame_numbers, 1.0 / r->unit, out);
+    json_end_object(out);
+}
+
+static void write_scene(json *out, const report *r, const page_arrays *arrays) {
+    const cscd_mesh *mesh = r->options.mesh;
+    if (mesh == NULL) {
+        json_null(out, "scene");
+        return;
+    }
+    json_begin_object(out, "scene");
+    json_integer(out, "vertices", cscd_mesh_vertex_count(mesh));
+    json_integer(out, "triangles", cscd_mesh_triangle_count(mesh));
+    json_integer(out, "components", cscd_mesh_component_count(mesh));
+    json_number(out, "unit", r->unit);
+    json_string(out, "up", r->options.up_axis == 1 ? "y" : "z");
+    if (r->options.fps > 0.0)
+        json_number(out, "fps", r->options.fps);
+    else
+        json_null(out, "fps");
+    if (r->options.length_unit != NULL)
+        json_string(out, "length_unit", r->options.length_unit);
+    else
+        json_null(out, "length_unit");
+    json_signed(out, "first", frame_number_of(r, r->options.first));
+    json_signed(out, "last", frame_number_of(r, r->last));
+    write_numbers(out, r);
+    write_frames(out, r, true);
+    json_number(out, "max_error", r->frames.max_error);
+    json_number(out, "relative_error", r->frames.relative_error);
+    write_scenery(out, r);
+    write_plan(out, r);
+    write_contacts(out, r);
+    write_answers(out, r);
+    page_file_list(out, arrays);
+    json_end_object(out);
+}
+
+/* Writes the document that goes with the arrays; summaries and a preprocess are JSON already. */
+typedef struct attached {
+    const report_summary *summaries;
+    size_t summary_count;
+    const char *preprocess;
+} attached;
+
+/* Long tables of theirs become arrays of the page. False: out of memory. */
+static bool write_summaries(json *out, const attached *with, page_arrays *arrays) {
+    bool made = true;
+    json_begin_array(out, "summaries");
+    for (size_t i = 0; i < with->summary_count && made; i++) {
+        char prefix[32], *moved = NULL;
+        snprintf(prefix, sizeof prefix, "summary-%zu", i);
+        made = json_table_move(with->summaries[i].text, prefix, arrays, &moved);
+        json_begin_object(out, NULL);
+        json_string(out, "name", with->summaries[i].name);
+        json_verbatim(out, "summary", moved != NULL ? moved : with->summaries[i].text);
+        json_end_object(out);
+        free(moved);
+    }
+    json_end_array(out);
+    return made;
+}
+
+static bool write_json(FILE *file, const report *r, page_arrays *arrays, const attached *with) {
+    static const char *const kinds[] = {"replay", "preprocess", "compare"};
+    json out = {.file = file};
+    json_begin_object(&out, NULL);
+    json_integer(&out, "format", 1);
+    json_string(&out, "kind", kinds[r->options.kind]);
+    json_string(&out, "title", r->options.title);
+    json_string(&out, "generator", r->options.generator);
+    write_scene(&out, r, arrays);
+    const bool made = write_summaries(&out, with, arrays);
+    if (with->preprocess != NULL)
+        json_verbatim(&out, "preprocess", with->preprocess);
+    else
+        json_null(&out, "preprocess");
+    json_end_object(&out);
+    return made;
+}
+
+/* The text, to be freed; NULL: out of memory. */
+static char *make_json(const report *r, page_arrays *arrays, const attached *with) {
+    char *text = NULL;
+    size_t size;
+    FILE *memory = open_memstream(&text, &size);
+    if (memory == NULL) return NULL;
+    bool whole = write_json(memory, r, arrays, with) && !ferror(memory);
+    whole = fclose(memory) == 0 && whole;
+    if (whole) return text;
+    free(text);
+    return NULL;
+}
+
+/* ---- the file ---------------------------------------------------------------------------------------- */
+
+bool report_write(report *r, const char *path, const report_summary *summaries, size_t summary_count,
+                  const char *preprocess, io_error *error) {
+    report_template page;
+    if (!report_template_load(TEMPLATE_REPORT, &page, error)) return false;
+    page_arrays arrays = {.count = 0};
+    const attached with = {summaries, summary_count, preprocess};
+    char *text = NULL;
+    bool made = (r->options.mesh == NULL || report_keep_last(r)) && page_arrays_list(r, &arrays) &&
+                (text = make_json(r, &arrays, &with)) != NULL;
+    bool written = made ? page_file_write(path, &page, text, &arrays, error)
+                        : io_fail(error, "%s: out of memory for the report", path);
+    free(text);
+    page_arrays_free(&arrays);
+    return written;
+}
