@@ -2,8 +2,7 @@
  * vector instructions that the processor has. */
 #pragma once
 
-#include "runtime/narrow_phase/contact_lane.h"
-#include "runtime/narrow_phase/swept_interval.h"
+#include "runtime/narrow_phase/narrow_phase.h"
 #include "src/core/processor.h"
 
 enum { PAIR_BATCH_LEVELS = SIMD_LAST, PAIR_BATCH_MAX = FEATURE_LIST_CAPACITY - 1 };

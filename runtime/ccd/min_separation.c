@@ -3,7 +3,34 @@
 
 #include "runtime/ccd/feature_moment.h"
 #include "runtime/ccd/kdop_directions.h"
+#include "src/core/check.h"
+#include "src/core/context.h"
 #include "src/core/vec3.h"
+
+/* ---- limits ------------------------------------------------------------------------------------------- */
+
+cscd_status separation_check(cscd_context *context, double min_separation, double tolerance) {
+    if (!is_length(min_separation))
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "min_separation is %g, expected 0 or a length from 2^-300 to 2^300",
+                            min_separation);
+    if (!(tolerance >= 0.0 && tolerance <= 1.0))
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "tolerance is %g, expected a share in (0,1] of min_separation, or 0 for 1e-6",
+                            tolerance);
+    return CSCD_OK;
+}
+
+separation separation_limit(double distance, double tolerance) {
+    return (separation){distance, (tolerance > 0.0 ? tolerance : 1e-6) * distance};
+}
+
+separation proximity_limit(double distance) {
+    const double relative_tolerance = 0x1p-21; /* half of what is promised: the distance is rounded, too */
+    return (separation){distance, relative_tolerance * distance};
+}
+
+/* ---- conservative advancement ---------------------------------------------------------------------- */
 
 /* The features are farther apart than the computed distance by at most this. The computed distance is that of
  * two of their points. In units of 2^-53, each coordinate of the offset between these is off by at most
@@ -18,8 +45,6 @@
 
 /* At a distance below this, the direction from one point to the other is only rounding. */
 static const double too_near = 0x1p-46;
-
-/* ---- conservative advancement ---------------------------------------------------------------------- */
 
 /* If the planes that rounding suggests prove no more than this share of what is left, all planes are tried. */
 static const double too_short = 0x1p-6;

@@ -3,7 +3,7 @@
 
 #include "runtime/detector/detector.h"
 #include "runtime/loose/loose_pairs.h"
-#include "runtime/narrow_phase/swept_box.h"
+#include "runtime/narrow_phase/narrow_phase.h"
 
 #include <string.h>
 

@@ -3,7 +3,7 @@
 
 #include "runtime/detector/result_buffer.h"
 #include "runtime/detector/search_space.h"
-#include "runtime/narrow_phase/exclusions.h"
+#include "runtime/narrow_phase/narrow_phase.h"
 
 /* A contact in a lane, and a number to sort it by. */
 typedef struct contact_key {

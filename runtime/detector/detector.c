@@ -5,7 +5,7 @@
 #include "runtime/detector/detector_validate.h"
 #include "runtime/detector/list_cap.h"
 #include "runtime/detector/surface_answers.h"
-#include "runtime/narrow_phase/limits.h"
+#include "runtime/narrow_phase/narrow_phase.h"
 #include "src/core/check.h"
 #include "src/core/methods.h"
 #include "src/core/struct_size.h"

@@ -14,9 +14,7 @@
 #include "runtime/intersections/curve_changes.h"
 #include "runtime/intersections/part_sums.h"
 #include "runtime/intersections/static_check.h"
-#include "runtime/narrow_phase/exclusions.h"
 #include "runtime/narrow_phase/narrow_phase.h"
-#include "runtime/narrow_phase/waiting_pairs.h"
 #include "src/core/methods.h"
 #include "src/mesh/collapsed.h"
 

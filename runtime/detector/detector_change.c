@@ -4,7 +4,7 @@
 #include "runtime/detector/detector.h"
 #include "runtime/detector/detector_rules.h"
 #include "runtime/detector/list_cap.h"
-#include "runtime/narrow_phase/waiting_move.h"
+#include "runtime/narrow_phase/narrow_phase.h"
 
 /* All that depends on the mesh is made anew in a detector beside, and exchanged when nothing can fail any more. */
 typedef struct detector_move {

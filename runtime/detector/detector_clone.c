@@ -2,7 +2,7 @@
 #include "runtime/bvh/bvh_move.h"
 #include "runtime/detector/detector.h"
 #include "runtime/detector/list_cap.h"
-#include "runtime/narrow_phase/waiting_move.h"
+#include "runtime/narrow_phase/narrow_phase.h"
 
 #include <string.h>
 

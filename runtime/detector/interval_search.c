@@ -2,7 +2,7 @@
 #include "runtime/detector/interval_search.h"
 
 #include "runtime/loose/loose_search.h"
-#include "runtime/narrow_phase/brute_force.h"
+#include "runtime/narrow_phase/narrow_phase.h"
 #include "src/core/timer.h"
 
 interval_search interval_search_begin(search_space *space, const double *x0, const double *x1,

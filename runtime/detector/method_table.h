@@ -3,7 +3,7 @@
 
 #include "cscd/research.h"
 #include "runtime/culling/culling_rules.h"
-#include "runtime/narrow_phase/own_search.h"
+#include "runtime/narrow_phase/narrow_phase.h"
 
 typedef struct method_stages {
     cscd_method method;

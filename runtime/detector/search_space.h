@@ -4,11 +4,7 @@
 
 #include "runtime/bvh/traversal.h"
 #include "runtime/loose/loose_elements.h"
-#include "runtime/narrow_phase/active_set.h"
-#include "runtime/narrow_phase/contact_lane.h"
-#include "runtime/narrow_phase/orphan_pairs.h"
-#include "runtime/narrow_phase/pair_rules.h"
-#include "runtime/narrow_phase/representatives.h"
+#include "runtime/narrow_phase/narrow_phase.h"
 
 typedef struct search_space {
     cscd_context *context;

@@ -1,8 +1,7 @@
 /* Wires and points, ordered in space anew for each interval, and the boxes around them. */
 #pragma once
 
-#include "runtime/narrow_phase/swept_box.h"
-#include "runtime/narrow_phase/swept_interval.h"
+#include "runtime/narrow_phase/narrow_phase.h"
 
 /* A wire or a point. */
 typedef struct loose_element {

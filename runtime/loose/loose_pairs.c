@@ -3,7 +3,6 @@
 
 #include "runtime/ccd/kdop_directions.h"
 #include "runtime/narrow_phase/narrow_phase.h"
-#include "runtime/narrow_phase/representatives.h"
 
 static bool parted_by_directions(const swept_interval *interval, cscd_contact_kind kind, uint32_t a,
                                  uint32_t b) {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "runtime/loose/loose_elements.h"
-#include "runtime/narrow_phase/contact_lane.h"
+#include "runtime/narrow_phase/narrow_phase.h"
 
 /* A face and the ends of an element that this tests, and the triangle's own edges and a wire. The objects are looked at
  * with each other. */

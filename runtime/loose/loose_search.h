@@ -3,7 +3,7 @@
 #pragma once
 
 #include "runtime/loose/loose_elements.h"
-#include "runtime/narrow_phase/contact_lane.h"
+#include "runtime/narrow_phase/narrow_phase.h"
 
 /* A search of the interval, whose trees have been refitted to it, and whose elements have been moved. */
 typedef struct loose_search {

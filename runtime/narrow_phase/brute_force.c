@@ -1,7 +1,5 @@
 /* Every pair of features of triangles that share no vertex: the reference that the other methods must equal. */
-#include "runtime/narrow_phase/brute_force.h"
-
-#include "runtime/narrow_phase/swept_box.h"
+#include "runtime/narrow_phase/narrow_phase.h"
 
 /* Is a component looked at with all others, and with itself? */
 static bool meets_all(const swept_interval *interval, uint32_t component) {

@@ -2,7 +2,6 @@
 #include "runtime/narrow_phase/feature_queue.h"
 
 #include "runtime/ccd/separation_floor.h"
-#include "runtime/narrow_phase/still_pair.h"
 
 #include <assert.h>
 

@@ -7,3 +7,8 @@
 /* Decides all pairs of a kind that wait in the lane's queue, adds contacts and counts to the lane, and leaves
  * that queue empty. */
 void feature_queue_decide(const swept_interval *interval, cscd_contact_kind kind, contact_lane *lane);
+
+/* Returns whether no point of the pair moves. If so, decides it as elementary_after_signs does, with the same contact, but
+ * sooner. */
+bool still_pair_decide(const elementary_query *query, cscd_contact_kind kind, elementary_verdict *verdict,
+                       elementary_contact *contact);

@@ -4,7 +4,6 @@
 #include "runtime/ccd/kdop_directions.h"
 #include "runtime/narrow_phase/feature_queue.h"
 #include "runtime/narrow_phase/narrow_phase_kernels.h"
-#include "runtime/narrow_phase/representatives.h"
 
 enum { PAIRS_AT_ONCE = 256 };
 

@@ -3,7 +3,6 @@
 
 #include "runtime/bvh/traversal.h"
 #include "runtime/narrow_phase/representatives.h"
-#include "runtime/narrow_phase/swept_interval.h"
 #include "src/core/kernels.h"
 
 /* Sets of pairs of features of two triangles a and b: bit i is vertex i of a against the face b,

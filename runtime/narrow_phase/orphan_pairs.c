@@ -1,5 +1,5 @@
 /* Pairs of features that only triangles with a common vertex contain. */
-#include "runtime/narrow_phase/orphan_pairs.h"
+#include "runtime/narrow_phase/narrow_phase.h"
 
 #include <stdatomic.h>
 #include <string.h>
@@ -22,7 +22,7 @@ typedef struct orphan_search {
     bool out_of_memory;
     uint8_t *features;        /* per triangle, as orphan_search_features says; or NULL */
     uint32_t (*opposites)[2]; /* per edge: the corners opposite it; or NULL */
-    bool *even;               /* per edge: orphan_edges.c finds its pairs with others of these; or NULL */
+    bool *even;               /* per edge: orphan_edges_of finds its pairs with others of these; or NULL */
 
     /* In a mesh that was made from another one: pairs of features that are what they were are known. */
     const cscd_mesh_change *change; /* NULL: nothing is known */

@@ -1,14 +1,31 @@
 /* Picks the one triangle pair that tests a feature pair, so that no feature pair is tested twice. */
 #pragma once
 
-#include "runtime/narrow_phase/ring_marks.h"
 #include "runtime/narrow_phase/swept_interval.h"
+#include "src/mesh/mesh_change.h"
+
+/* ---- a quick proof that two triangles are not near each other on the surface ------------------------- */
+
+/* The ring of a triangle is all triangles that share a vertex with it, itself among them. The vertices of an object are cut
+ * into small connected patches, and a mark has a bit for each patch that a vertex of the triangle's ring is in, by the
+ * number of the patch modulo 58 (a Bloom filter). Where two marks have no such bit in common, no triangle of the one ring
+ * shares a vertex with any of the other. The six lowest bits are free for the caller, and stay as they are. */
+enum { RING_MARK_FIRST_BIT = 6 };
+
+static inline bool rings_may_touch(uint64_t mark_a, uint64_t mark_b) {
+    return (mark_a & mark_b) >> RING_MARK_FIRST_BIT != 0;
+}
+
+/* Adds the bits of the rings to the marks of an object's triangles. */
+cscd_status ring_marks_add(const cscd_mesh *mesh, const object_range *range, uint64_t *marks);
+
+/* ---- representatives ---------------------------------------------------------------------------------- */
 
 /* A feature's representative is the first triangle of its star (Tang et al. 2009). The pair of the
  * representatives tests a pair of features, unless the two are adjacent and such pairs are skipped. */
 typedef struct representatives {
     uint64_t *
-        marks; /* per triangle: bit i says that it represents its vertex i, bit 3 + i its edge i; see ring_marks.h */
+        marks; /* per triangle: bit i says that it represents its vertex i, bit 3 + i its edge i; see ring_marks_add */
     uint32_t (*others)[2]; /* per vertex: the other vertices of its representative */
     uint32_t *opposite;    /* per edge: the vertex of its representative that is not the edge's */
 } representatives;

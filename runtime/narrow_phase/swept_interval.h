@@ -6,10 +6,11 @@
 #include "runtime/ccd/elementary.h"
 #include "runtime/ccd/min_separation.h"
 #include "runtime/culling/culling.h"
-#include "runtime/narrow_phase/active_set.h"
-#include "runtime/narrow_phase/limits.h"
-#include "runtime/narrow_phase/pair_rules.h"
+#include "runtime/narrow_phase/pair_filter.h"
 #include "src/mesh/mesh.h"
+
+#include <math.h>
+#include <string.h>
 
 struct representatives;
 
@@ -121,6 +122,52 @@ static inline bool pair_is_active(const swept_interval *interval, cscd_contact_k
     return kind == CSCD_CONTACT_VF ? s->triangles[b] : s->vertices[mesh->objects[b].first_vertex];
 }
 
+/* ---- positions ---------------------------------------------------------------------------------------- */
+
+static inline void load_point(const swept_interval *interval, uint32_t vertex, elementary_query *query,
+                              int i) {
+    memcpy(query->x0[i], interval->x0 + (size_t)vertex * 3, sizeof query->x0[i]);
+    memcpy(query->x1[i], interval->x1 + (size_t)vertex * 3, sizeof query->x1[i]);
+}
+
 /* The points of vertex a and triangle b, or of the edges a and b. */
-void swept_interval_load(const swept_interval *interval, cscd_contact_kind kind, uint32_t a, uint32_t b,
-                         elementary_query *query);
+static inline void swept_interval_load(const swept_interval *interval, cscd_contact_kind kind, uint32_t a,
+                                       uint32_t b, elementary_query *query) {
+    const cscd_mesh *mesh = interval->mesh;
+    if (kind == CSCD_CONTACT_VF) {
+        load_point(interval, a, query, 0);
+        for (int i = 0; i < 3; i++) load_point(interval, mesh->triangles[b][i], query, 1 + i);
+    } else {
+        for (int i = 0; i < 4; i++) load_point(interval, mesh->edges[i < 2 ? a : b][i % 2], query, i);
+    }
+}
+
+/* An axis-aligned box of moving features, in double. */
+typedef struct swept_box {
+    double low[3], high[3];
+} swept_box;
+
+static inline void swept_box_add(const swept_interval *interval, uint32_t vertex, swept_box *box) {
+    for (int k = 0; k < 3; k++) {
+        double start = interval->x0[(size_t)vertex * 3 + (size_t)k];
+        double end = interval->x1[(size_t)vertex * 3 + (size_t)k];
+        double low = start < end ? start : end, high = start < end ? end : start;
+        box->low[k] = low < box->low[k] ? low : box->low[k];
+        box->high[k] = high > box->high[k] ? high : box->high[k];
+    }
+}
+
+static inline swept_box swept_box_of(const swept_interval *interval, const uint32_t *vertices, int count) {
+    swept_box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    for (int i = 0; i < count; i++) swept_box_add(interval, vertices[i], &box);
+    return box;
+}
+
+/* Rounding is monotone, so a gap of no more than the distance is never found to be more: nothing needs to be
+ * rounded outward here. */
+static inline bool swept_boxes_within(const swept_box *a, const swept_box *b, double distance) {
+    for (int k = 0; k < 3; k++) {
+        if (b->low[k] - a->high[k] > distance || a->low[k] - b->high[k] > distance) return false;
+    }
+    return true;
+}

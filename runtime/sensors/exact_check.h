@@ -3,7 +3,6 @@
 #pragma once
 
 #include "runtime/narrow_phase/narrow_phase.h"
-#include "runtime/narrow_phase/swept_box.h"
 #include "src/mesh/partition.h"
 
 /* A feature to sweep over, sorted by the low side of its box. */

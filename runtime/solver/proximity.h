@@ -3,7 +3,7 @@
 
 #include "runtime/detector/detector.h"
 #include "runtime/detector/interval_search.h"
-#include "runtime/narrow_phase/limits.h"
+#include "runtime/narrow_phase/narrow_phase.h"
 
 /* Returns INVALID_ARGUMENT, with a sentence, unless this is a distance that can be asked for. */
 cscd_status proximity_check_distance(cscd_context *context, double distance);

@@ -1,5 +1,5 @@
 /* Marks that have nothing in common are of triangles whose rings share no vertex. */
-#include "runtime/narrow_phase/ring_marks.h"
+#include "runtime/narrow_phase/narrow_phase.h"
 #include "src/mesh/mesh.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"

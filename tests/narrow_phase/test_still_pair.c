@@ -2,7 +2,7 @@
  * cut. */
 #include "cscd/cscd.h"
 #include "runtime/ccd/exact/exact_test.h"
-#include "runtime/narrow_phase/still_pair.h"
+#include "runtime/narrow_phase/feature_queue.h"
 #include "tests/support/ccd/elementary_generator.h"
 #include "tests/support/ccd/queue_test.h"
 #include "tests/support/collapsed_oracle.h"

@@ -1,7 +1,7 @@
 /* From pairs of triangles to pairs of features, each of which is tested once (Yeh 2012, section 4.6; Tang et al. 2009). */
 #pragma once
 
-#include "runtime/narrow_phase/own_search.h"
+#include "runtime/narrow_phase/narrow_phase.h"
 
 /* Tests a pair of features of two triangles; a and b as in cscd_contact. */
 typedef void feature_test(void *data, cscd_contact_kind kind, uint32_t a, uint32_t b);

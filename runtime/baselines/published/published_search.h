@@ -2,6 +2,6 @@
  * thesis has it (section 5.1), on the same trees and tests. */
 #pragma once
 
-#include "runtime/narrow_phase/own_search.h"
+#include "runtime/narrow_phase/narrow_phase.h"
 
 extern const own_search detector_based_search, iccd_search;

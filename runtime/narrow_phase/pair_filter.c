@@ -1,12 +1,12 @@
-/* Which objects are looked at with which, and how far apart they have to stay: the rules of the caller. */
-#include "runtime/narrow_phase/pair_rules.h"
+/* Which pairs are looked at: by the rules of their objects, and by which vertices are active. */
+#include "runtime/narrow_phase/pair_filter.h"
 
 #include "src/core/check.h"
 
 #include <math.h>
 #include <string.h>
 
-/* ---- what the caller says --------------------------------------------------------------------------- */
+/* ---- rules: what the caller says --------------------------------------------------------------------------- */
 
 static cscd_status check_matrix(cscd_context *context, const given_rules *given) {
     uint32_t count = given->class_count;
@@ -76,9 +76,9 @@ static cscd_status check_rules(const cscd_mesh *mesh, const given_rules *given) 
     return status;
 }
 
-/* ---- what follows ------------------------------------------------------------------------------------ */
+/* ---- rules: what follows ------------------------------------------------------------------------------------ */
 
-static array_list list_arrays(const cscd_mesh *mesh, pair_rules *r) {
+static array_list list_rules(const cscd_mesh *mesh, pair_rules *r) {
     size_t objects = r->object_count, classes = r->class_count;
     return (array_list){
         {ARRAY(r->sets, objects), ARRAY(r->given, objects), ARRAY(r->reaches, objects),
@@ -135,7 +135,7 @@ cscd_status pair_rules_create(const cscd_mesh *mesh, const given_rules *given, p
     cscd_status status = check_rules(mesh, given);
     if (status != CSCD_OK) return status;
     pair_rules r = {.object_count = mesh->object_count, .class_count = given->class_count};
-    if (!context_allocate_all(mesh->context, list_arrays(mesh, &r)))
+    if (!context_allocate_all(mesh->context, list_rules(mesh, &r)))
         return context_out_of_memory(mesh->context);
     if (r.matrix != NULL)
         memcpy(r.matrix, given->matrix, (size_t)r.class_count * r.class_count * sizeof *r.matrix);
@@ -147,7 +147,7 @@ cscd_status pair_rules_create(const cscd_mesh *mesh, const given_rules *given, p
 
 cscd_status pair_rules_copy(const pair_rules *r, const cscd_mesh *mesh, pair_rules *out) {
     pair_rules copy = *r;
-    if (!context_copy_all(mesh->context, list_arrays(mesh, &copy))) return CSCD_OUT_OF_MEMORY;
+    if (!context_copy_all(mesh->context, list_rules(mesh, &copy))) return CSCD_OUT_OF_MEMORY;
     *out = copy;
     return CSCD_OK;
 }
@@ -161,6 +161,70 @@ object_set *pair_rules_copy_sets(const cscd_mesh *mesh, const pair_rules *rules)
 }
 
 void pair_rules_free(const cscd_mesh *mesh, pair_rules *r) {
-    context_free_all(mesh->context, list_arrays(mesh, r));
+    context_free_all(mesh->context, list_rules(mesh, r));
     *r = (pair_rules){.object_count = 0};
+}
+
+/* ---- active vertices ----------------------------------------------------------------------------------- */
+
+static array_list list_marks(const cscd_mesh *mesh, active_set *s) {
+    return (array_list){{ARRAY(s->vertices, mesh->vertex_count), ARRAY(s->triangles, mesh->triangle_count)}};
+}
+
+cscd_status active_set_reserve(const cscd_mesh *mesh, active_set *s) {
+    active_set fresh;
+    if (s->vertices != NULL) return CSCD_OK;
+    if (!context_allocate_all(mesh->context, list_marks(mesh, &fresh))) return CSCD_OUT_OF_MEMORY;
+    *s = fresh;
+    return CSCD_OK;
+}
+
+static void fill_triangles(const cscd_mesh *mesh, active_set *s) {
+    for (uint32_t t = 0; t < mesh->triangle_count; t++)
+        s->triangles[t] = active_corners(s, mesh->triangles[t]) != 0;
+}
+
+void active_set_fill(const cscd_mesh *mesh, const uint32_t *vertices, size_t count, active_set *s) {
+    memset(s->vertices, false, mesh->vertex_count * sizeof *s->vertices);
+    for (size_t i = 0; i < count; i++) s->vertices[vertices[i]] = true;
+    fill_triangles(mesh, s);
+}
+
+cscd_status active_set_copy(const active_set *s, const cscd_mesh *mesh, active_set *out) {
+    active_set copy = *s;
+    if (!context_copy_all(mesh->context, list_marks(mesh, &copy))) return CSCD_OUT_OF_MEMORY;
+    *out = copy;
+    return CSCD_OK;
+}
+
+cscd_status active_set_move(const active_set *s, const cscd_mesh *mesh, const cscd_mesh_change *change,
+                            active_set *out) {
+    active_set moved = {.vertices = NULL};
+    if (s->vertices != NULL) {
+        cscd_status status = active_set_reserve(mesh, &moved);
+        if (status != CSCD_OK) return status;
+        mesh_change_make_whole(change, &change->vertices);
+        for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+            uint32_t origin = change->vertices.to_old[v];
+            moved.vertices[v] = origin == UINT32_MAX || s->vertices[origin];
+        }
+        fill_triangles(mesh, &moved);
+    }
+    *out = moved;
+    return CSCD_OK;
+}
+
+void active_set_free(cscd_context *context, active_set *s) {
+    context_free(context, s->vertices);
+    context_free(context, s->triangles);
+    *s = (active_set){.vertices = NULL};
+}
+
+const char *active_set_validate(const active_set *s, const cscd_mesh *mesh) {
+    if ((s->vertices != NULL) != (s->triangles != NULL)) return "an active set has no triangles";
+    for (uint32_t t = 0; s->vertices != NULL && t < mesh->triangle_count; t++) {
+        if (s->triangles[t] != (active_corners(s, mesh->triangles[t]) != 0))
+            return "a triangle is not as active as its vertices";
+    }
+    return NULL;
 }
