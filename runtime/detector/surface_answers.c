@@ -12,10 +12,10 @@ void surface_answers_free(cscd_context *context, surface_answers *a) {
     if (a == NULL) return;
     same_solids_free(&a->same_solids);
     depth_finder_free(&a->depth_finder);
-    overlap_finder_free(&a->overlap_finder);
-    cut_off_finder_free(&a->cut_off_finder);
+    overlap_finder_destroy(a->overlap_finder);
+    cut_off_finder_destroy(a->cut_off_finder);
     patch_finder_free(&a->patch_finder);
-    orientation_finder_free(&a->orientations);
+    orientation_finder_destroy(a->orientations);
     placed_names_free(&a->names);
     left_out_pairs_free(&a->left_out);
     curve_joiner_free(&a->joiner);
@@ -37,14 +37,13 @@ static surface_answers *make_answers(cscd_detector *d) {
     surface_answers *a = context_allocate(context, 1, sizeof *a);
     if (a == NULL) return NULL;
     a->names.context = a->left_out.context = a->joiner.context = context;
-    a->cut_off_finder =
-        (cut_off_finder){.context = context, .links = {.context = context}, .sides = {.context = context}};
-    a->overlap_finder =
-        (overlap_finder){.context = context, .cuts = {.context = context}, .gaps = {.context = context}};
     a->same_solids.context = context;
     a->depth_finder.context = a->depth_finder.outer.context = a->depth_finder.outer.cuts.context =
         a->depth_finder.deepest.context = context;
-    if (!orientation_finder_create(d->mesh, &a->orientations)) {
+    a->orientations = orientation_finder_create(d->mesh);
+    a->overlap_finder = overlap_finder_create(context);
+    a->cut_off_finder = cut_off_finder_create(context);
+    if (a->orientations == NULL || a->overlap_finder == NULL || a->cut_off_finder == NULL) {
         surface_answers_free(context, a);
         return NULL;
     }
@@ -153,7 +152,7 @@ static cscd_status find_patches(const answer_search *s) {
         .pairs = s->found->items,
         .pair_count = s->found->count};
     if ((s->options->part_bodies || !shells.as_given) &&
-        !orientation_finder_run(&a->orientations, s->surface, &d->space.bvh, &shells))
+        !orientation_finder_run(a->orientations, s->surface, &d->space.bvh, &shells))
         return CSCD_OUT_OF_MEMORY;
     cscd_status status = patch_finder_run(&a->patch_finder, s->cuts->surface, &d->space.bvh, a->joiner.found,
                                           a->joiner.piece_count, &a->patches);
@@ -164,10 +163,10 @@ static cscd_status find_patches(const answer_search *s) {
 static cscd_status find_overlaps(const answer_search *s) {
     surface_answers *a = s->detector->answers;
     const size_t before = s->budget->taken;
-    cscd_status status = overlap_finder_run(&a->overlap_finder, s->cuts, &a->left_out, &a->overlaps);
+    cscd_status status = overlap_finder_run(a->overlap_finder, s->cuts, &a->left_out, &a->overlaps);
     if (status == CSCD_OK) s->found->overlaps = &a->overlaps;
     if (!did_not_fit(s, status, before)) return status;
-    overlap_finder_free(&a->overlap_finder);
+    overlap_finder_clear(a->overlap_finder);
     surface_answers_leave_out(s->budget, CSCD_LEFT_OUT_OVERLAPS, s->found);
     return CSCD_OK;
 }
@@ -175,10 +174,10 @@ static cscd_status find_overlaps(const answer_search *s) {
 static cscd_status find_cut_offs(const answer_search *s) {
     surface_answers *a = s->detector->answers;
     const size_t before = s->budget->taken;
-    cscd_status status = cut_off_finder_run(&a->cut_off_finder, s->cuts, &a->cut_offs);
+    cscd_status status = cut_off_finder_run(a->cut_off_finder, s->cuts, &a->cut_offs);
     if (status == CSCD_OK) s->found->cut_offs = &a->cut_offs;
     if (!did_not_fit(s, status, before)) return status;
-    cut_off_finder_free(&a->cut_off_finder);
+    cut_off_finder_clear(a->cut_off_finder);
     surface_answers_leave_out(s->budget, CSCD_LEFT_OUT_CUT_OFFS, s->found);
     return CSCD_OK;
 }
@@ -187,7 +186,7 @@ static cscd_status find_cut_offs(const answer_search *s) {
 static cscd_status find_same_solids(const answer_search *s) {
     surface_answers *a = s->detector->answers;
     return same_solids_find(&a->same_solids, s->cuts, s->found->items, s->found->count, &a->depths,
-                            &a->overlap_finder, &a->left_out);
+                            a->overlap_finder, &a->left_out);
 }
 
 static cscd_status find_depths(const answer_search *s) {
@@ -202,7 +201,7 @@ static cscd_status find_depths(const answer_search *s) {
     if (did_not_fit(s, status, before)) {
         depth_finder_free(&a->depth_finder);
         same_solids_free(&a->same_solids);
-        overlap_finder_free(&a->overlap_finder);
+        overlap_finder_clear(a->overlap_finder);
         surface_answers_leave_out(s->budget, CSCD_LEFT_OUT_DEPTHS, s->found);
         return CSCD_OK;
     }

@@ -17,10 +17,10 @@ typedef struct surface_answers {
     left_out_pairs left_out;
     placed_names names;
     curve_joiner joiner;
-    orientation_finder orientations;
+    orientation_finder *orientations;
     patch_finder patch_finder;
-    overlap_finder overlap_finder;
-    cut_off_finder cut_off_finder;
+    overlap_finder *overlap_finder;
+    cut_off_finder *cut_off_finder;
     depth_finder depth_finder;
     same_solids same_solids;
     cscd_curves curves;

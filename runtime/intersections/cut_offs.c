@@ -1,10 +1,38 @@
 /* What traces of curves cut off of open surfaces: docs/theory/curves.md, Lemma 11. */
 #include "runtime/intersections/cut_offs.h"
 
+#include "runtime/intersections/trace_sides.h"
 #include "src/core/sort.h"
 #include "src/mesh/surface.h"
 
 #include <string.h>
+
+/* A piece of a trace, by its triangle. */
+typedef struct trace_piece {
+    uint64_t triangle;
+    uint64_t piece; /* in the list of all pieces of curves */
+} trace_piece;
+
+struct cut_off_finder {
+    cscd_context *context;
+    trace_links links;
+    trace_sides sides;
+    /* Per patch the area of its triangles. Of a triangle that curves cut, the patch of the first corner has all. */
+    double *patch_areas;
+    size_t patch_capacity;
+    double *component_areas;
+    size_t component_capacity;
+    cscd_cut_off *items;
+    size_t curve_capacity;
+    trace_piece *pieces, *spare_pieces; /* of one trace */
+    cut_line *lines;
+    cut_border *borders, *spare_borders;
+    size_t piece_capacity;
+    cut_memory memory;
+    uint64_t *sorted, *spare_sorted; /* patches of one side */
+    uint32_t *listed;
+    size_t listed_count, listed_capacity, item_count;
+};
 
 /* ---- memory -------------------------------------------------------------------------------------------- */
 
@@ -26,8 +54,17 @@ static array_list list_of_pieces(cut_off_finder *f, size_t count) {
                          ARRAY(f->borders, 2 * count), ARRAY(f->spare_borders, 2 * count)}};
 }
 
-void cut_off_finder_free(cut_off_finder *f) {
-    if (f->context == NULL) return;
+static cut_off_finder empty_finder(cscd_context *context) {
+    return (cut_off_finder){.context = context, .links = {.context = context}, .sides = {.context = context}};
+}
+
+cut_off_finder *cut_off_finder_create(cscd_context *context) {
+    cut_off_finder *f = context_allocate(context, 1, sizeof *f);
+    if (f != NULL) *f = empty_finder(context);
+    return f;
+}
+
+void cut_off_finder_clear(cut_off_finder *f) {
     context_free_all(f->context, list_of_patches(f, 0));
     context_free_all(f->context, list_of_components(f, 0));
     context_free_all(f->context, list_of_curves(f, 0));
@@ -36,8 +73,13 @@ void cut_off_finder_free(cut_off_finder *f) {
     cut_memory_free(f->context, &f->memory);
     trace_links_free(&f->links);
     trace_sides_free(&f->sides);
-    *f = (cut_off_finder){
-        .context = f->context, .links = {.context = f->context}, .sides = {.context = f->context}};
+    *f = empty_finder(f->context);
+}
+
+void cut_off_finder_destroy(cut_off_finder *f) {
+    if (f == NULL) return;
+    cut_off_finder_clear(f);
+    context_free(f->context, f);
 }
 
 static bool reserve_list(cut_off_finder *f, memory_budget *budget,

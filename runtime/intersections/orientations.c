@@ -9,6 +9,34 @@
 
 #include <string.h>
 
+/* Two components, or a component and a part, as a number: the first is in the upper half. */
+typedef struct component_keys {
+    uint64_t *items, *spare;
+    size_t count, capacity;
+} component_keys;
+
+/* The memory of all calls. Arrays without a remark are per component. */
+struct orientation_finder {
+    const cscd_mesh *mesh;
+    volume_estimate *volumes;
+    int8_t *signs;         /* of the volume; 0 of open components, and where a closed one encloses nothing */
+    bool *turned;          /* the component is taken as turned around */
+    uint32_t *objects;     /* of the component */
+    uint32_t *samples;     /* a triangle whose corners have different names; UINT32_MAX: none */
+    uint32_t *around;      /* the component that it lies in, the innermost one; itself: in none */
+    component_box *boxes;  /* where there are several */
+    uint8_t *roles;        /* body or cavity */
+    surface_bodies bodies; /* of the surface, with cavities joined with what is around them */
+    winding_tally tally;   /* of components */
+    uint8_t *orientations; /* per object: which signs its components have */
+    uint32_t *triangles, *offsets; /* those of each component, made when first needed */
+    uint32_t *holders;             /* made with them: room for those that one lies in */
+    bool *touching;                /* per triangle: it is in a pair with another component */
+    component_keys
+        crossings; /* pairs of components of mixed objects that pass through each other, both ways round */
+    component_keys parts; /* of components of mixed objects */
+};
+
 /* ---- memory -------------------------------------------------------------------------------------------- */
 
 static array_list list_arrays(orientation_finder *o) {
@@ -33,23 +61,27 @@ static array_list list_of_keys(component_keys *k, size_t count) {
     return (array_list){{ARRAY(k->items, count), ARRAY(k->spare, count)}};
 }
 
-bool orientation_finder_create(const cscd_mesh *mesh, orientation_finder *out) {
-    orientation_finder o = {.mesh = mesh};
-    if (!context_allocate_all(mesh->context, list_arrays(&o))) return false;
+orientation_finder *orientation_finder_create(const cscd_mesh *mesh) {
+    orientation_finder *o = context_allocate(mesh->context, 1, sizeof *o);
+    if (o == NULL) return NULL;
+    o->mesh = mesh;
+    if (!context_allocate_all(mesh->context, list_arrays(o))) {
+        context_free(mesh->context, o);
+        return NULL;
+    }
     for (uint32_t t = 0; t < mesh->triangle_count; t++)
-        o.objects[mesh->triangle_components[t]] = cscd_mesh_vertex_object(mesh, mesh->triangles[t][0]);
-    *out = o;
-    return true;
+        o->objects[mesh->triangle_components[t]] = cscd_mesh_vertex_object(mesh, mesh->triangles[t][0]);
+    return o;
 }
 
-void orientation_finder_free(orientation_finder *o) {
-    if (o->mesh == NULL) return;
+void orientation_finder_destroy(orientation_finder *o) {
+    if (o == NULL) return;
     cscd_context *context = o->mesh->context;
     context_free_all(context, list_arrays(o));
     context_free_all(context, list_by_component(o));
     context_free_all(context, list_of_keys(&o->crossings, 0));
     context_free_all(context, list_of_keys(&o->parts, 0));
-    *o = (orientation_finder){.mesh = NULL};
+    context_free(context, o);
 }
 
 /* ---- signs --------------------------------------------------------------------------------------------- */

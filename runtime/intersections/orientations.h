@@ -7,37 +7,14 @@
 
 #include <cscd/intersections.h>
 
-/* Two components, or a component and a part, as a number: the first is in the upper half. */
-typedef struct component_keys {
-    uint64_t *items, *spare;
-    size_t count, capacity;
-} component_keys;
+/* The memory of all calls. */
+typedef struct orientation_finder orientation_finder;
 
-/* The memory of all calls. Arrays without a remark are per component. */
-typedef struct orientation_finder {
-    const cscd_mesh *mesh;
-    volume_estimate *volumes;
-    int8_t *signs;         /* of the volume; 0 of open components, and where a closed one encloses nothing */
-    bool *turned;          /* the component is taken as turned around */
-    uint32_t *objects;     /* of the component */
-    uint32_t *samples;     /* a triangle whose corners have different names; UINT32_MAX: none */
-    uint32_t *around;      /* the component that it lies in, the innermost one; itself: in none */
-    component_box *boxes;  /* where there are several */
-    uint8_t *roles;        /* body or cavity */
-    surface_bodies bodies; /* of the surface, with cavities joined with what is around them */
-    winding_tally tally;   /* of components */
-    uint8_t *orientations; /* per object: which signs its components have */
-    uint32_t *triangles, *offsets; /* those of each component, made when first needed */
-    uint32_t *holders;             /* made with them: room for those that one lies in */
-    bool *touching;                /* per triangle: it is in a pair with another component */
-    component_keys
-        crossings; /* pairs of components of mixed objects that pass through each other, both ways round */
-    component_keys parts; /* of components of mixed objects */
-} orientation_finder;
+/* NULL: no memory. */
+orientation_finder *orientation_finder_create(const cscd_mesh *mesh);
 
-/* False: no memory, and *out holds nothing. */
-bool orientation_finder_create(const cscd_mesh *mesh, orientation_finder *out);
-void orientation_finder_free(orientation_finder *o);
+/* NULL is allowed. */
+void orientation_finder_destroy(orientation_finder *o);
 
 typedef struct orientation_request {
     const uint32_t

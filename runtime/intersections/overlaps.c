@@ -7,6 +7,44 @@
 
 #include <string.h>
 
+/* A share of the overlap of two bodies; key: a in the upper half, b in the lower one. */
+typedef struct overlap_share {
+    uint64_t key;
+    double area_a, area_b;
+    double bounding;  /* an area that bounds what both contain, as often as it does; of a patch how often */
+    const double *at; /* a point of it, or of its plane and the overlap */
+    uint32_t triangle, patch; /* patch: all its whole triangles, else UINT32_MAX */
+} overlap_share;
+
+/* Of the whole triangles of a patch. */
+typedef struct patch_sum {
+    double area;
+    double normal[3]; /* as long as the area, and of closed components only, as the flux */
+    double flux;      /* three times the volume that is behind them as seen from the patch's example */
+} patch_sum;
+
+/* What is measured of one body in a triangle. */
+typedef struct cut_share {
+    double buried;    /* its number is 1 or more */
+    double inverted;  /* its number is below 0 */
+    double bounding;  /* that of the triangle's own body is 0, times how often this one contains it */
+    const double *at; /* a point of the triangle, near what is buried */
+} cut_share;
+
+struct overlap_finder {
+    cscd_context *context;
+    overlap_share *shares, *spare_shares;
+    size_t share_count, share_capacity;
+    patch_sum *patch_sums;
+    size_t patch_capacity;
+    cut_share *slot_shares;
+    size_t slot_capacity;
+    triangle_cuts cuts;
+    overlap_gaps gaps;
+    cscd_overlap *overlaps;
+    size_t overlap_capacity;
+};
+
 /* ---- memory -------------------------------------------------------------------------------------------- */
 
 static array_list list_of_shares(overlap_finder *o, size_t count) {
@@ -25,8 +63,17 @@ static array_list list_of_overlaps(overlap_finder *o, size_t count) {
     return (array_list){{ARRAY(o->overlaps, count), ARRAY(o->spare_shares, count)}};
 }
 
-void overlap_finder_free(overlap_finder *o) {
-    if (o->context == NULL) return;
+static overlap_finder empty_finder(cscd_context *context) {
+    return (overlap_finder){.context = context, .cuts = {.context = context}, .gaps = {.context = context}};
+}
+
+overlap_finder *overlap_finder_create(cscd_context *context) {
+    overlap_finder *o = context_allocate(context, 1, sizeof *o);
+    if (o != NULL) *o = empty_finder(context);
+    return o;
+}
+
+void overlap_finder_clear(overlap_finder *o) {
     cscd_context *context = o->context;
     context_free_all(context, list_of_shares(o, 0));
     context_free_all(context, list_of_patches(o, 0));
@@ -34,7 +81,13 @@ void overlap_finder_free(overlap_finder *o) {
     context_free_all(context, list_of_overlaps(o, 0));
     triangle_cuts_free(&o->cuts);
     overlap_gaps_free(&o->gaps);
-    *o = (overlap_finder){.context = context, .cuts = {.context = context}, .gaps = {.context = context}};
+    *o = empty_finder(context);
+}
+
+void overlap_finder_destroy(overlap_finder *o) {
+    if (o == NULL) return;
+    overlap_finder_clear(o);
+    context_free(o->context, o);
 }
 
 /* Makes room for so many items; what was there is lost. */
