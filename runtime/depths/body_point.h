@@ -2,7 +2,7 @@
 #pragma once
 
 #include "runtime/bvh/bvh_query.h"
-#include "runtime/intersections/curve_piece.h"
+#include "runtime/intersections/intersections.h"
 
 /* Does the point lie on a triangle of the body's closed components? The bounds of the trees are those of the surface's
  * positions. */

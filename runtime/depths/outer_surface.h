@@ -2,7 +2,7 @@
 #pragma once
 
 #include "runtime/bvh/bvh_query.h"
-#include "runtime/intersections/triangle_cuts.h"
+#include "runtime/intersections/intersections.h"
 
 /* A convex part of a triangle, scaled. */
 typedef struct outer_part {

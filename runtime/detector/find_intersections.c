@@ -4,7 +4,7 @@
 #include "runtime/detector/check.h"
 #include "runtime/detector/list_cap.h"
 #include "runtime/detector/surface_answers.h"
-#include "runtime/intersections/first_pairs.h"
+#include "runtime/intersections/intersections.h"
 #include "src/core/sort.h"
 #include "src/core/struct_size.h"
 #include "src/mesh/views.h"

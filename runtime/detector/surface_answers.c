@@ -1,7 +1,7 @@
 /* What is asked about intersecting surfaces beside their pairs of triangles: curves, patches, overlaps, depths. */
 #include "runtime/detector/surface_answers.h"
 
-#include "runtime/intersections/touching_curves.h"
+#include "runtime/intersections/intersections.h"
 
 const char *cscd_curve_end_name(cscd_curve_end end) {
     static const char *const names[] = {"none", "vertex", "border", "junction", "left out"};

@@ -3,11 +3,7 @@
 
 #include "runtime/depths/depths.h"
 #include "runtime/detector/detector.h"
-#include "runtime/intersections/cut_offs.h"
-#include "runtime/intersections/orientations.h"
-#include "runtime/intersections/overlaps.h"
-#include "runtime/intersections/placed_names.h"
-#include "runtime/intersections/same_solids.h"
+#include "runtime/intersections/intersections.h"
 
 #include <cscd/intersections.h>
 

@@ -1,6 +1,6 @@
 /* The points of intersection curves that come or go in an interval, found at its contacts: docs/theory/curves.md,
  * Lemma 10. */
-#include "runtime/intersections/curve_changes.h"
+#include "runtime/intersections/named_surface.h"
 
 #include "src/core/context.h"
 #include "src/core/sort.h"

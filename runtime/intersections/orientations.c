@@ -1,11 +1,12 @@
-/* Which closed components are inside out at one moment: docs/theory/orientation.md. The signs of volumes tell it, but for
- * objects that have both signs. Of these, rays find which components lie in which. */
-#include "runtime/intersections/orientations.h"
+/* Which closed components are inside out at one moment: docs/theory/orientation.md. The signs of volumes tell it, except for
+ * objects that have both signs. There rays find which components lie in which. */
+#include "runtime/intersections/named_surface.h"
 
 #include "src/core/context.h"
 #include "src/core/floating.h"
 #include "src/core/sort.h"
 #include "src/mesh/surface.h"
+#include "src/mesh/volume_sign.h"
 
 #include <string.h>
 
@@ -82,6 +83,31 @@ void orientation_finder_destroy(orientation_finder *o) {
     context_free_all(context, list_of_keys(&o->crossings, 0));
     context_free_all(context, list_of_keys(&o->parts, 0));
     context_free(context, o);
+}
+
+/* ---- boxes --------------------------------------------------------------------------------------------- */
+
+static component_box empty_component_box(void) {
+    const double most = (double)INFINITY;
+    return (component_box){{most, most, most}, {-most, -most, -most}};
+}
+
+static void find_component_boxes(const cscd_mesh *mesh, const double *positions, component_box *boxes) {
+    for (uint32_t c = 0; c < mesh->component_count; c++) boxes[c] = empty_component_box();
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+        component_box *box = &boxes[mesh->triangle_components[t]];
+        for (uint32_t i = 0; i < 3; i++) {
+            const double *x = surface_corner(mesh, positions, t, i);
+            for (int k = 0; k < 3; k++) {
+                box->low[k] = min_of(box->low[k], x[k]);
+                box->high[k] = max_of(box->high[k], x[k]);
+            }
+        }
+    }
+}
+
+static bool box_has_box(const component_box *box, const component_box *inner) {
+    return component_box_has_point(box, inner->low) && component_box_has_point(box, inner->high);
 }
 
 /* ---- signs --------------------------------------------------------------------------------------------- */
@@ -244,7 +270,7 @@ static bool are_of_one_size(const orientation_finder *o, uint32_t a, uint32_t b)
  * nobody looks at, because their pairs are left out. */
 static bool size_holds(const orientation_finder *o, uint32_t outer, uint32_t inner) {
     return is_larger(o, outer, inner) && !are_of_one_size(o, outer, inner) &&
-           component_box_has_box(&o->boxes[outer], &o->boxes[inner]);
+           box_has_box(&o->boxes[outer], &o->boxes[inner]);
 }
 
 /* Is a nearer to the component in the file than b? What comes before it is nearer than what comes after it. */
@@ -351,7 +377,7 @@ bool orientation_finder_run(orientation_finder *o, named_surface *s, const bvh *
     const orientation_work work = {o, s, f, request->labels};
     own_bodies(o, s, request->by_component);
     if (o->mesh->component_count > 1) {
-        component_boxes_find(o->mesh, s->positions, o->boxes);
+        find_component_boxes(o->mesh, s->positions, o->boxes);
         s->boxes = o->boxes;
     }
     if (!find_signs(&work)) return false;

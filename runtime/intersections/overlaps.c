@@ -1,11 +1,122 @@
 /* The areas and volumes that bodies bury of each other, by the patches and by the triangles that curves cut:
- * docs/theory/curves.md, lemma 7. */
-#include "runtime/intersections/overlaps.h"
+ * docs/theory/curves.md, lemma 7; and which bodies are two copies of one solid. */
+#include "runtime/intersections/named_surface.h"
 
 #include "src/core/sort.h"
 #include "src/mesh/surface.h"
 
+#include <math.h>
 #include <string.h>
+
+/* ---- gaps ---------------------------------------------------------------------------------------------- */
+
+void left_out_pairs_free(left_out_pairs *p) {
+    if (p->context == NULL) return;
+    context_free(p->context, p->pairs);
+    *p = (left_out_pairs){.context = p->context};
+}
+
+void left_out_pairs_add(left_out_pairs *p, uint32_t a, uint32_t b) {
+    if (p->count == p->capacity) {
+        size_t larger = p->capacity == 0 ? 64 : 2 * p->capacity;
+        uint64_t *grown = context_grow(p->context, p->pairs, p->count, larger, sizeof *grown);
+        if (grown == NULL) {
+            p->out_of_memory = true;
+            return;
+        }
+        p->pairs = grown;
+        p->capacity = larger;
+    }
+    p->pairs[p->count++] = (uint64_t)a << 32 | b;
+}
+
+/* Which overlaps have no volume, because a curve that bounds them is left out, wholly or in part: by the pairs of triangles
+ * that are left out although they carry a piece, and by curves that end where one is missing. */
+typedef struct overlap_gaps {
+    cscd_context *context;
+    uint64_t *bodies, *spare; /* pairs, the smaller one in the upper half, ascending */
+    size_t count, capacity;
+} overlap_gaps;
+
+static array_list list_of_gaps(overlap_gaps *g, size_t count) {
+    return (array_list){{ARRAY(g->bodies, count), ARRAY(g->spare, count)}};
+}
+
+static void free_gaps(overlap_gaps *g) {
+    if (g->context == NULL) return;
+    context_free_all(g->context, list_of_gaps(g, 0));
+    *g = (overlap_gaps){.context = g->context};
+}
+
+static uint64_t key_of_bodies(uint32_t a, uint32_t b) {
+    return a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
+}
+
+static bool is_closed(const cscd_mesh *mesh, uint32_t triangle) {
+    return mesh->components[mesh->triangle_components[triangle]].closed_manifold;
+}
+
+static void add_left_out(overlap_gaps *g, const named_surface *s, const left_out_pairs *left_out) {
+    const cscd_mesh *mesh = s->mesh;
+    for (size_t i = 0; i < left_out->count; i++) {
+        uint32_t a = (uint32_t)(left_out->pairs[i] >> 32), b = (uint32_t)left_out->pairs[i];
+        curve_piece piece;
+        if (!is_closed(mesh, a) || !is_closed(mesh, b) || !curve_piece_of_pair(s, a, b, &piece)) continue;
+        g->bodies[g->count++] = key_of_bodies(surface_body(s, a), surface_body(s, b));
+    }
+}
+
+static uint32_t body_of_component(const named_surface *s, const cscd_curve *c, int k) {
+    return s->bodies != NULL && s->bodies->components != NULL ? s->bodies->components[c->components[k]]
+                                                              : c->objects[k];
+}
+
+static void add_open_curves(overlap_gaps *g, const named_surface *s, const curve_joiner *j) {
+    const cscd_mesh *mesh = s->mesh;
+    for (size_t i = 0; i < j->curve_count; i++) {
+        const cscd_curve *c = &j->curves[i];
+        if (c->start != CSCD_CURVE_END_LEFT_OUT && c->end != CSCD_CURVE_END_LEFT_OUT) continue;
+        if (mesh->components[c->components[0]].closed_manifold &&
+            mesh->components[c->components[1]].closed_manifold)
+            g->bodies[g->count++] = key_of_bodies(body_of_component(s, c, 0), body_of_component(s, c, 1));
+    }
+}
+
+/* Finds the pairs of bodies of which a piece of a curve between closed components is left out. False: no memory. */
+static bool find_gaps(overlap_gaps *g, const surface_cuts *found, const left_out_pairs *left_out) {
+    size_t most = left_out->count + found->curves->curve_count;
+    if (!memory_budget_take(found->budget, left_out->count,
+                            MEMORY_WHILE_DOUBLING * sizeof *left_out->pairs) ||
+        !memory_budget_take_all(found->budget, list_of_gaps(g, room_with_spare(most))))
+        return false;
+    if (!context_renew_all(g->context, list_of_gaps(g, room_with_spare(most)), &g->capacity, most))
+        return false;
+    g->count = 0;
+    add_left_out(g, found->surface, left_out);
+    add_open_curves(g, found->surface, found->curves);
+    sort_by_number(g->bodies, g->spare, g->count, sizeof *g->bodies);
+    return true;
+}
+
+static bool have_key(const overlap_gaps *g, uint64_t key) {
+    size_t low = 0, high = g->count;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (g->bodies[middle] < key)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < g->count && g->bodies[low] == key;
+}
+
+/* Whether a curve is left out of the two bodies a <= b, or of one of them with itself. */
+static bool have_gap(const overlap_gaps *g, uint32_t a, uint32_t b) {
+    return have_key(g, key_of_bodies(a, b)) || have_key(g, key_of_bodies(a, a)) ||
+           have_key(g, key_of_bodies(b, b));
+}
+
+/* ---- overlaps ------------------------------------------------------------------------------------------ */
 
 /* A share of the overlap of two bodies; key: a in the upper half, b in the lower one. */
 typedef struct overlap_share {
@@ -45,8 +156,6 @@ struct overlap_finder {
     size_t overlap_capacity;
 };
 
-/* ---- memory -------------------------------------------------------------------------------------------- */
-
 static array_list list_of_shares(overlap_finder *o, size_t count) {
     return (array_list){{ARRAY(o->shares, count)}};
 }
@@ -80,7 +189,7 @@ void overlap_finder_clear(overlap_finder *o) {
     context_free_all(context, list_of_slots(o, 0));
     context_free_all(context, list_of_overlaps(o, 0));
     triangle_cuts_free(&o->cuts);
-    overlap_gaps_free(&o->gaps);
+    free_gaps(&o->gaps);
     *o = empty_finder(context);
 }
 
@@ -327,7 +436,7 @@ static cscd_overlap sum_shares(const overlap_work *work, const overlap_share *sh
         sum.area_b += shares[i].area_b;
         sum.volume += flux_from(work, &shares[i], origin) / 3.0;
     }
-    if (overlap_gaps_have(&work->finder->gaps, sum.a, sum.b)) sum.volume = (double)NAN;
+    if (have_gap(&work->finder->gaps, sum.a, sum.b)) sum.volume = (double)NAN;
     return sum;
 }
 
@@ -352,7 +461,7 @@ cscd_status overlap_finder_run(overlap_finder *o, const surface_cuts *found, con
     if (!memory_budget_take_all(found->budget, list_of_patches(o, room_with_spare(p->patch_count))))
         return CSCD_OUT_OF_MEMORY;
     if (!reserve_list(o, list_of_patches, &o->patch_capacity, p->patch_count)) return CSCD_OUT_OF_MEMORY;
-    if (!overlap_gaps_find(&o->gaps, found, left_out)) return CSCD_OUT_OF_MEMORY;
+    if (!find_gaps(&o->gaps, found, left_out)) return CSCD_OUT_OF_MEMORY;
     add_whole_triangles(&work);
     for (size_t i = 0; i < p->patch_count && !work.out_of_memory; i++) add_patch(&work, (uint32_t)i);
     add_gaps(&work);
@@ -360,5 +469,95 @@ cscd_status overlap_finder_run(overlap_finder *o, const surface_cuts *found, con
     if (!reserve_list(o, list_of_overlaps, &o->overlap_capacity, o->share_count)) return CSCD_OUT_OF_MEMORY;
     sort_items(o->shares, o->spare_shares, o->share_count, sizeof *o->shares, compare_shares);
     *out = (cscd_overlaps){o->overlaps, join_shares(&work)};
+    return CSCD_OK;
+}
+
+/* ---- two copies of one solid --------------------------------------------------------------------------- */
+
+void same_solids_free(same_solids *s) {
+    if (s->context == NULL) return;
+    context_free(s->context, s->pairs);
+    context_free(s->context, s->spare);
+    *s = (same_solids){.context = s->context};
+}
+
+static size_t find_solids(const same_solids *s, uint64_t key) {
+    size_t low = 0, high = s->count;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (s->pairs[middle] < key)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+bool same_solids_have(const same_solids *s, uint32_t a, uint32_t b) {
+    const size_t at = find_solids(s, key_of_bodies(a, b));
+    return at < s->count && s->pairs[at] == key_of_bodies(a, b);
+}
+
+/* Bodies that share area. */
+static bool list_candidates(same_solids *s, const named_surface *surface, memory_budget *budget,
+                            const cscd_intersection_pair *pairs, size_t count) {
+    size_t coplanar = 0, kept = 0;
+    s->count = 0;
+    for (size_t i = 0; i < count; i++) coplanar += pairs[i].kind == CSCD_INTERSECTION_COPLANAR;
+    if (coplanar == 0) return true;
+    const size_t room = room_with_spare(coplanar);
+    const array_list list = {{ARRAY(s->pairs, room), ARRAY(s->spare, room)}};
+    if (!memory_budget_take_all(budget, list)) return false;
+    if (!context_renew_all(s->context, list, &s->capacity, coplanar)) return false;
+    for (size_t i = 0; i < count; i++) {
+        if (pairs[i].kind != CSCD_INTERSECTION_COPLANAR) continue;
+        const uint32_t a = surface_body(surface, pairs[i].a), b = surface_body(surface, pairs[i].b);
+        if (a != b) s->pairs[s->count++] = key_of_bodies(a, b);
+    }
+    sort_by_number(s->pairs, s->spare, s->count, sizeof *s->pairs);
+    for (size_t i = 0; i < s->count; i++)
+        if (i == 0 || s->pairs[i] != s->pairs[i - 1]) s->pairs[kept++] = s->pairs[i];
+    s->count = kept;
+    return true;
+}
+
+/* Marks those of which something is within the other, and leaves them out. */
+static void leave_out_deep(same_solids *s, const named_surface *surface, const cscd_depths *depths) {
+    size_t kept = 0;
+    for (size_t i = 0; i < s->count; i++) s->spare[i] = 0;
+    for (size_t i = 0; i < depths->count; i++) {
+        const cscd_depth *at = &depths->items[i];
+        const uint64_t key = key_of_bodies(surface_body(surface, at->face), at->body);
+        const size_t place = at->depth > 0.0 ? find_solids(s, key) : s->count;
+        if (place < s->count && s->pairs[place] == key) s->spare[place] = 1;
+    }
+    for (size_t i = 0; i < s->count; i++)
+        if (s->spare[i] == 0) s->pairs[kept++] = s->pairs[i];
+    s->count = kept;
+}
+
+/* What bodies share that only lie beside each other is a volume by rounding. */
+static bool shares_volume(const cscd_overlap *o) {
+    return o->volume > 0x1p-40 * pow(o->area_a + o->area_b, 1.5);
+}
+
+cscd_status same_solids_find(same_solids *s, const surface_cuts *found, const cscd_intersection_pair *pairs,
+                             size_t pair_count, const cscd_depths *depths, overlap_finder *overlaps,
+                             const left_out_pairs *left_out) {
+    cscd_overlaps shared;
+    size_t kept = 0;
+    s->bodies = found->surface->bodies;
+    if (!list_candidates(s, found->surface, found->budget, pairs, pair_count)) return CSCD_OUT_OF_MEMORY;
+    leave_out_deep(s, found->surface, depths);
+    if (s->count == 0) return CSCD_OK;
+    cscd_status status = overlap_finder_run(overlaps, found, left_out, &shared);
+    if (status != CSCD_OK) return status;
+    for (size_t i = 0; i < shared.count; i++) {
+        const cscd_overlap *o = &shared.items[i];
+        if (o->a != o->b && same_solids_have(s, o->a, o->b) && shares_volume(o))
+            s->spare[kept++] = key_of_bodies(o->a, o->b);
+    }
+    for (size_t i = 0; i < kept; i++) s->pairs[i] = s->spare[i];
+    s->count = kept;
     return CSCD_OK;
 }

@@ -1,6 +1,6 @@
 /* How two triangles intersect: crossing, in one plane, or touching only. An open triangle is one without its edges;
  * docs/theory/static-check.md proves the lemmas that are cited. */
-#include "runtime/intersections/pair_kind.h"
+#include "runtime/intersections/static_check.h"
 
 #include "src/mesh/mesh.h"
 #include "src/mesh/predicates.h"

@@ -1,5 +1,5 @@
 /* What intersections, curves and depths say of each pair of parts. */
-#include "runtime/intersections/part_sums.h"
+#include "runtime/intersections/named_surface.h"
 
 #include "src/core/sort.h"
 #include "src/core/vec3.h"

@@ -1,5 +1,5 @@
 /* The patches into which intersection curves cut a surface, and how often bodies wind around them. */
-#include "runtime/intersections/patches.h"
+#include "runtime/intersections/named_surface.h"
 
 #include "src/core/context.h"
 #include "src/core/disjoint_sets.h"

@@ -1,13 +1,77 @@
-/* Finds all pairs of triangles that intersect at one moment, by exact predicates. */
+/* Finds the pairs of triangles that intersect at one moment, all of them or the first ones, by exact predicates. */
 #include "runtime/intersections/static_check.h"
 
-#include "runtime/intersections/intersection_kernels.h"
-#include "runtime/intersections/pair_kind.h"
 #include "src/mesh/predicates.h"
 #include "src/mesh/triangle_intersection.h"
 
 #include <assert.h>
+#include <stdatomic.h>
 #include <string.h>
+
+/* ---- lanes --------------------------------------------------------------------------------------------- */
+
+/* A lane grows by half: with the room that it leaves meanwhile, 27.5 bytes for each pair that it has. */
+enum { ROOM_LEAST = 256, EVEN_ROOM_MOST = 1 << 16 };
+
+static bool grow_items(cscd_context *context, intersection_lane *lane, size_t capacity) {
+    found_pair *grown = context_grow(context, lane->items, lane->count, capacity, sizeof *lane->items);
+    if (grown == NULL) return false;
+    lane->items = grown;
+    lane->capacity = capacity;
+    return true;
+}
+
+static bool make_room(cscd_context *context, intersection_lane *lane) {
+    return grow_items(context, lane, lane->capacity == 0 ? ROOM_LEAST : lane->capacity + lane->capacity / 2);
+}
+
+static bool make_room_for_notes(cscd_context *context, intersection_lane *lane) {
+    pair_note *grown = context_grow(context, lane->notes, lane->count, lane->capacity, sizeof *lane->notes);
+    if (grown == NULL) return false;
+    lane->notes = grown;
+    lane->note_capacity = lane->capacity;
+    return true;
+}
+
+/* Adds a pair of triangles in any order. No memory: out_of_memory is set. */
+static void add_pair(cscd_context *context, intersection_lane *lane, triangle_pair t) {
+    if (lane->count == lane->capacity && !make_room(context, lane))
+        lane->out_of_memory = true;
+    else
+        lane->items[lane->count++] = (found_pair){t.a < t.b ? t.a : t.b, t.a < t.b ? t.b : t.a};
+}
+
+static void add_noted_pair(cscd_context *context, intersection_lane *lane, triangle_pair t, pair_note note) {
+    bool room = lane->count < lane->capacity || make_room(context, lane);
+    if (room && lane->note_capacity < lane->capacity) room = make_room_for_notes(context, lane);
+    if (room) lane->notes[lane->count] = note;
+    if (room)
+        add_pair(context, lane, t);
+    else
+        lane->out_of_memory = true;
+}
+
+/* Which lane finds what depends on when threads come for work, so that a lane might need more room in any call. Once a call
+ * has found its pairs, each lane has room for all of them, unless they are very many. False: no memory. */
+static bool even_out_lanes(cscd_context *context, intersection_lane *lanes, uint32_t count, bool notes) {
+    size_t total = 0;
+    for (uint32_t i = 0; i < count; i++) total += lanes[i].count;
+    const size_t room = total <= EVEN_ROOM_MOST ? ROOM_LEAST + total + total / 4 : 0;
+    for (uint32_t i = 0; i < count && total > 0; i++) {
+        intersection_lane *lane = &lanes[i];
+        if (lane->capacity < room && !grow_items(context, lane, room)) return false;
+        if (notes && lane->note_capacity < lane->capacity && !make_room_for_notes(context, lane))
+            return false;
+    }
+    return true;
+}
+
+static void free_lane(cscd_context *context, intersection_lane *lane) {
+    context_free(context, lane->items);
+    context_free(context, lane->notes);
+}
+
+/* ---- memory -------------------------------------------------------------------------------------------- */
 
 static array_list list_arrays(static_check *c) {
     return (array_list){{ARRAY(c->unproven, c->mesh->triangle_count),
@@ -28,13 +92,24 @@ cscd_status static_check_create(const cscd_mesh *mesh, uint32_t lane_count, stat
 void static_check_destroy(static_check *c) {
     if (c->mesh == NULL) return;
     cscd_context *context = c->mesh->context;
-    for (uint32_t i = 0; i < c->lane_count; i++) intersection_lane_free(context, &c->lanes[i]);
+    for (uint32_t i = 0; i < c->lane_count; i++) free_lane(context, &c->lanes[i]);
     context_free_all(context, list_arrays(c));
     vertex_stars_destroy(&c->stars);
     *c = (static_check){0};
 }
 
-/* ---- one check ------------------------------------------------------------------------------------------ */
+/* ---- one batch ------------------------------------------------------------------------------------------ */
+
+/* Data that the threads of a check share. */
+typedef struct check_work {
+    static_check *check;
+    traversal *traversal;
+    const bvh *bvh;
+    const double *positions;
+    bool own_component_only; /* pairs of triangles of two components do not count */
+    bool by_stars;           /* pairs that share a vertex come from the stars, and not from the traversal */
+    const uint32_t *names;   /* where kinds are asked for; NULL: each vertex has its own */
+} check_work;
 
 static const uint32_t (*triangles_of(const check_work *work))[3] {
     return (const uint32_t(*)[3])work->check->mesh->triangles;
@@ -51,7 +126,7 @@ static void test_kind(const check_work *work, intersection_lane *lane, triangle_
     if (!pair_kind_find(a, b, work->names, work->positions, &found)) return;
     const pair_note note = {(uint8_t)found.kind, (uint8_t)found.shared,
                             found.kind == CSCD_INTERSECTION_DUPLICATE && same_triangle(a, b)};
-    intersection_lane_add_noted(work->check->mesh->context, lane, t, note);
+    add_noted_pair(work->check->mesh->context, lane, t, note);
 }
 
 static bool pair_counts(const check_work *work, uint32_t a, uint32_t b) {
@@ -80,14 +155,14 @@ static void add_crossing(const check_work *work, intersection_lane *lane, triang
     cscd_context *context = work->check->mesh->context;
     const uint8_t *normals = work->check->stars.normals;
     if (!work->check->kinds) {
-        intersection_lane_add(context, lane, t);
+        add_pair(context, lane, t);
     } else if (normals[t.a] == 0 || normals[t.b] == 0) {
         test_kind(work, lane, t);
     } else {
         const uint32_t(*triangles)[3] = triangles_of(work);
         uint32_t shared = pair_kind_count_shared(triangles[t.a], triangles[t.b], work->names);
         const pair_note note = {CSCD_INTERSECTION_CROSSING, (uint8_t)shared, false};
-        intersection_lane_add_noted(context, lane, t, note);
+        add_noted_pair(context, lane, t, note);
     }
 }
 
@@ -96,7 +171,7 @@ static void test_pair(const check_work *work, intersection_lane *lane, triangle_
     if (work->check->kinds)
         test_kind(work, lane, t);
     else if (triangles_intersect(triangles[t.a], triangles[t.b], work->positions))
-        intersection_lane_add(work->check->mesh->context, lane, t);
+        add_pair(work->check->mesh->context, lane, t);
 }
 
 enum { PAIRS_AT_ONCE = 1024 };
@@ -117,13 +192,14 @@ static void test_pairs(const check_work *work, uint32_t index) {
     }
 }
 
-void static_check_test_batch(const check_work *work, uint32_t index) {
+/* Adds the pairs of a batch that intersect to the lane of the same number. */
+static void find_pairs_of_batch(const check_work *work, uint32_t index) {
     name_triangles(work, &work->traversal->lanes[index]);
     test_pairs(work, index);
 }
 
 static void test_batch(void *data, uint32_t index) {
-    static_check_test_batch(data, index);
+    find_pairs_of_batch(data, index);
 }
 
 /* ---- pairs that share a vertex -------------------------------------------------------------------------- */
@@ -262,7 +338,8 @@ static void spill_pairs(static_check *c) {
     for (uint32_t i = 0; c->spill == NULL && i < c->lane_count; i++) c->lanes[i].count = 0;
 }
 
-void static_check_begin(check_work *work) {
+/* Empties the lanes, and looks for triangles without area. */
+static void begin_check(check_work *work) {
     parallel_run(work->check->mesh->context->threads, work->check->lane_count, count_zero_area, work);
 }
 
@@ -280,6 +357,7 @@ static cscd_status end_round(static_check *check) {
     spill_pairs(check);
     return CSCD_OK;
 }
+
 /* Lanes whose batches are not full find nothing in the next round; in the last one nobody finds anything. */
 static cscd_status compare_adjacent(check_work *work) {
     static_check *check = work->check;
@@ -312,7 +390,7 @@ static cscd_status compare_found(check_work *work) {
 static cscd_status compare_triangles(check_work *work, bvh *f, traversal_pass pass) {
     static_check *check = work->check;
     assert(check->lane_count == work->traversal->lane_count);
-    static_check_begin(work);
+    begin_check(work);
     if (check->mesh->triangle_count == 0) return CSCD_OK;
     if (work->by_stars)
         bvh_skip_all_adjacent(f);
@@ -322,7 +400,7 @@ static cscd_status compare_triangles(check_work *work, bvh *f, traversal_pass pa
     cscd_status status = work->by_stars ? compare_adjacent(work) : CSCD_OK;
     if (status == CSCD_OK) status = compare_found(work);
     if (status != CSCD_OK) return status;
-    if (!intersection_lanes_even_out(check->mesh->context, check->lanes, check->lane_count, check->kinds))
+    if (!even_out_lanes(check->mesh->context, check->lanes, check->lane_count, check->kinds))
         return CSCD_OUT_OF_MEMORY;
     return context_progress_status(
         check->mesh->context); /* before the caller believes that nothing more was found */
@@ -364,6 +442,150 @@ cscd_status static_check_kinds(static_check *c, traversal *t, bvh *f, const doub
     check_work work = {.check = c, .traversal = t, .bvh = f, .positions = positions, .names = names};
     c->kinds = true;
     cscd_status status = compare_all(&work, f);
+    c->kinds = false;
+    return status;
+}
+
+/* ---- the first pairs ----------------------------------------------------------------------------------- */
+
+/* Tasks are done in rounds, larger and larger ones; after each round the pairs are counted in the order of the tasks. A task
+ * that alone has enough pairs makes all later ones needless. */
+
+/* The pairs of a task: a range of the list of a lane. */
+typedef struct task_pairs {
+    uint32_t lane;
+    size_t begin, count;
+} task_pairs;
+
+typedef struct pair_hunt {
+    check_work work;
+    const pair_quest *quest;
+    atomic_uint next; /* task of the round */
+    uint32_t end;     /* of the round */
+    atomic_uint last; /* the last task that is needed */
+    task_pairs tasks[TRAVERSAL_TASKS_MAX];
+} pair_hunt;
+
+/* Removes the pairs from first on that do not count. */
+static void keep_counting(const pair_hunt *hunt, intersection_lane *lane, size_t first) {
+    size_t kept = first;
+    for (size_t i = first; i < lane->count; i++) {
+        intersection_lane_move(lane, i, kept);
+        kept += hunt->quest->counts(hunt->quest->data, lane->items[i], lane->notes[i]);
+    }
+    lane->count = kept;
+}
+
+static void lower_last(pair_hunt *hunt, uint32_t task) {
+    uint32_t last = atomic_load(&hunt->last);
+    while (task < last && !atomic_compare_exchange_weak(&hunt->last, &last, task)) {
+    }
+}
+
+/* Nothing that is found later can take pairs of this task away, unless they are asked for once more. */
+static bool task_is_enough(const pair_hunt *hunt, size_t count) {
+    return hunt->quest->stays == NULL && count >= hunt->quest->enough;
+}
+
+static void search_task(pair_hunt *hunt, uint32_t index, uint32_t task) {
+    traversal *t = hunt->work.traversal;
+    intersection_lane *lane = &hunt->work.check->lanes[index];
+    size_t begin = lane->count;
+    bool enough = false;
+    traversal_begin_task(t, index, task);
+    while (!enough && task <= atomic_load(&hunt->last) && !lane->out_of_memory &&
+           traversal_fill_from_task(t, index)) {
+        size_t before = lane->count;
+        find_pairs_of_batch(&hunt->work, index);
+        keep_counting(hunt, lane, before);
+        enough = task_is_enough(hunt, lane->count - begin);
+    }
+    hunt->tasks[task] = (task_pairs){index, begin, lane->count - begin};
+    if (enough) lower_last(hunt, hunt->quest->any ? 0 : task);
+}
+
+/* A lane does one task after the other. */
+static void search_tasks(void *data, uint32_t index) {
+    pair_hunt *hunt = data;
+    progress *p = &hunt->work.check->mesh->context->progress;
+    for (;;) {
+        uint32_t task = atomic_fetch_add(&hunt->next, 1);
+        if (task >= hunt->end || task > atomic_load(&hunt->last)) return;
+        if (!progress_go_on(p, (double)task / hunt->work.traversal->share_count)) return;
+        search_task(hunt, index, task);
+    }
+}
+
+static cscd_status run_round(pair_hunt *hunt, uint32_t begin, uint32_t end) {
+    static_check *c = hunt->work.check;
+    cscd_context *context = c->mesh->context;
+    for (uint32_t task = begin; task < end; task++) hunt->tasks[task] = (task_pairs){.count = 0};
+    atomic_store(&hunt->next, begin);
+    hunt->end = end;
+    parallel_run(context->threads, c->lane_count, search_tasks, hunt);
+    for (uint32_t i = 0; i < c->lane_count; i++) {
+        if (c->lanes[i].out_of_memory) return CSCD_OUT_OF_MEMORY;
+    }
+    cscd_status status = traversal_status(hunt->work.traversal);
+    return status == CSCD_OK ? context_progress_status(context) : status;
+}
+
+/* Removes the pairs of a task that do not stay, and those beyond the number that is still wanted. */
+static void settle_task(pair_hunt *hunt, task_pairs *task, size_t wanted) {
+    intersection_lane *lane = &hunt->work.check->lanes[task->lane];
+    const pair_quest *quest = hunt->quest;
+    size_t kept = 0;
+    for (size_t i = 0; i < task->count && kept < wanted; i++) {
+        if (quest->stays != NULL && !quest->stays(quest->data, lane->items[task->begin + i])) continue;
+        intersection_lane_move(lane, task->begin + i, task->begin + kept++);
+    }
+    task->count = kept;
+}
+
+/* Moves the pairs of the tasks together. A lane has done its tasks in ascending order. */
+static void close_gaps(pair_hunt *hunt, uint32_t task_count) {
+    static_check *c = hunt->work.check;
+    for (uint32_t i = 0; i < c->lane_count; i++) c->lanes[i].count = 0;
+    for (uint32_t i = 0; i < task_count; i++) {
+        const task_pairs *task = &hunt->tasks[i];
+        intersection_lane *lane = &c->lanes[task->lane];
+        for (size_t j = 0; j < task->count; j++) intersection_lane_move(lane, task->begin + j, lane->count++);
+    }
+    for (uint32_t i = 0; i < c->lane_count; i++) c->lanes[i].settled = c->lanes[i].count;
+}
+
+/* With one lane, no task is begun that is not needed. */
+static cscd_status run_rounds(pair_hunt *hunt) {
+    uint32_t lanes = hunt->work.check->lane_count, all = hunt->work.traversal->share_count;
+    uint32_t size = lanes, end = 0;
+    size_t found = 0;
+    while (end < all && found < hunt->quest->enough) {
+        uint32_t begin = end;
+        end = all - begin < size ? all : begin + size;
+        cscd_status status = run_round(hunt, begin, end);
+        if (status != CSCD_OK) return status;
+        for (uint32_t i = begin; i < end; i++) {
+            settle_task(hunt, &hunt->tasks[i], hunt->quest->enough - found);
+            found += hunt->tasks[i].count;
+        }
+        if (lanes > 1) size *= 2;
+    }
+    close_gaps(hunt, end);
+    return CSCD_OK;
+}
+
+cscd_status first_pairs_find(static_check *c, traversal *t, bvh *f, const double *positions,
+                             const uint32_t *names, const pair_quest *quest) {
+    pair_hunt hunt = {.quest = quest};
+    hunt.work = (check_work){.check = c, .traversal = t, .bvh = f, .positions = positions, .names = names};
+    atomic_store(&hunt.last, UINT32_MAX);
+    memset(c->unproven, true, c->mesh->triangle_count * sizeof *c->unproven);
+    begin_check(&hunt.work);
+    if (c->mesh->triangle_count == 0) return CSCD_OK;
+    bvh_skip_adjacent(f, NULL);
+    cscd_status status = traversal_begin_tasks(t, f, TRAVERSAL_KEPT);
+    c->kinds = true;
+    if (status == CSCD_OK) status = run_rounds(&hunt);
     c->kinds = false;
     return status;
 }

@@ -1,68 +1,68 @@
-/* Finds all pairs of triangles that intersect at one moment, by exact predicates. */
+/* What the static check is made of: kernels that reject most pairs, the exact test of one pair, and the stars of vertices. */
 #pragma once
 
-#include "runtime/bvh/traversal.h"
-#include "runtime/intersections/intersection_lane.h"
-#include "runtime/intersections/vertex_stars.h"
+#include "runtime/intersections/intersections.h"
+#include "src/core/kernels.h"
 
-/* The outcome of the last check, and the memory of all checks. */
-typedef struct static_check {
-    const cscd_mesh *mesh;
-    bool *unproven; /* per triangle: is it compared with the others? */
-    bool *crossing; /* per unproven triangle: it intersects another one of its component, or has no area */
-    intersection_lane
-        *lanes; /* one per lane of the traversal; their pairs include those that the caller ignores */
-    uint32_t lane_count;
-    vertex_stars stars;
-    bool kinds; /* the check asks for them: lanes have notes, and duplicates */
+/* ---- kernels ------------------------------------------------------------------------------------------- */
 
-    /* With a limit, lanes that have so many pairs beside settled ones are asked to be emptied, on the calling thread, after the triangles of
-     * these pairs have been marked as crossing. SIZE_MAX: none has a limit. */
-    size_t limit;
-    void (*spill)(void *data); /* NULL: the pairs are dropped */
-    void *spill_data;
+/* What sign_normals says of a triangle: bit 2k of normals is set if its normal is certainly above zero along axis k, bit
+ * 2k + 1 if certainly below. Bit i of rises is set if corner i + 1 lies strictly below corner i along z, and corner i + 2
+ * does not; bit 3 + i says the same of y. */
+enum { NORMAL_SIGNS_X = 3, NORMAL_SIGNS_Y = 12, NORMAL_SIGNS_Z = 48, RISES_ALONG_Y = 3 };
 
-    /* The rules for objects, and the object of each component. They are read where trees mix objects; elsewhere the
-     * traversal has left out what they say. NULL: there are none. */
-    const object_set *objects;
-    const uint32_t *component_objects;
+typedef struct intersection_kernels {
+    /* Removes from a list of pairs of different triangles, in place and without keeping their order, those that
+     * certainly do not intersect (see src/mesh/triangle_intersection.h) at positions that positions_check has
+     * accepted. Pairs that share three vertices do not; they are kept only on demand. Pairs in which an edge certainly
+     * passes through the inside of the other face move to crossing, which has room for all. Returns how many are left.
+     * All orders are the same on every level. */
+    uint32_t (*reject_disjoint)(const uint32_t (*triangles)[3], const double *positions, triangle_pair *pairs,
+                                uint32_t count, bool keep_duplicates, triangle_pair *crossing,
+                                uint32_t *crossing_count);
 
-    /* The components without a surface at the moment, whose triangles intersect nothing, set by the caller together with
-     * those of the traversal. NULL: all are compared. */
-    const bool *collapsed;
-} static_check;
+    /* Writes for each triangle of a list which signs its normal certainly has, and where its corners rise. A triangle whose
+     * normal certainly has a sign has an area. */
+    void (*sign_normals)(const uint32_t (*triangles)[3], const double *positions, const uint32_t *list,
+                         uint32_t count, uint8_t *normals, uint8_t *rises);
+} intersection_kernels;
+
+DECLARE_KERNELS(intersection_kernels);
+
+static inline const intersection_kernels *intersection_kernels_of(const cscd_context *context) {
+    return KERNELS_OF(context, intersection_kernels);
+}
+
+/* ---- one pair ------------------------------------------------------------------------------------------ */
+
+typedef struct pair_kind {
+    cscd_intersection_kind kind;
+    uint32_t shared; /* corners of the one whose names the other has */
+} pair_kind;
+
+/* a and b: the vertices of two different triangles; names: per vertex, vertices of one name count as one, NULL: each is
+ * its own; positions: packed. False: they do not intersect in the sense of triangles_intersect, which knows no names,
+ * and do not have the same three vertices and an area. *out is written only if they do. The answer is exact. */
+bool pair_kind_find(const uint32_t a[3], const uint32_t b[3], const uint32_t *names, const double *positions,
+                    pair_kind *out);
+
+/* Counts the corners of the one that have a name of the other: what pair_kind_find writes. */
+uint32_t pair_kind_count_shared(const uint32_t a[3], const uint32_t b[3], const uint32_t *names);
+
+/* ---- stars of vertices --------------------------------------------------------------------------------- */
 
 /* On failure *out holds nothing. */
-cscd_status static_check_create(const cscd_mesh *mesh, uint32_t lane_count, static_check *out);
-void static_check_destroy(static_check *c);
+cscd_status vertex_stars_create(const cscd_mesh *mesh, vertex_stars *out);
+void vertex_stars_destroy(vertex_stars *s);
 
-/* Compares the triangles that are marked as unproven with one another, each with those of its own component. The
- * volumes of the trees must contain the triangles at positions, so they belong to that moment or to an interval that
- * contains it. CANCELLED, here and below: not all pairs have been compared. */
-cscd_status static_check_unproven(static_check *c, traversal *t, bvh *f, const double *positions);
+/* Sets clear for the vertices begin to end - 1, once normals and rises are those of the moment. */
+void vertex_stars_mark_clear(vertex_stars *s, uint32_t begin, uint32_t end);
 
-/* Compares all triangles whose objects are looked at with one another, and marks all triangles as unproven. */
-cscd_status static_check_all(static_check *c, traversal *t, bvh *f, const double *positions);
+static inline star_cursor star_cursor_over(uint32_t begin, uint32_t end) {
+    return (star_cursor){begin, end, 0, 1};
+}
 
-/* The same, with the kind of each pair, and with duplicates, which mark nothing. names: see pair_kind.h. */
-cscd_status static_check_kinds(static_check *c, traversal *t, bvh *f, const double *positions,
-                               const uint32_t *names);
-
-/* ---- in pieces, for other searches --------------------------------------------------------------------- */
-
-/* Data that the threads of a check share. */
-typedef struct check_work {
-    static_check *check;
-    traversal *traversal;
-    const bvh *bvh;
-    const double *positions;
-    bool own_component_only; /* pairs of triangles of two components do not count */
-    bool by_stars;           /* pairs that share a vertex come from the stars, and not from the traversal */
-    const uint32_t *names;   /* where kinds are asked for; NULL: each vertex has its own */
-} check_work;
-
-/* Empties the lanes, and looks for triangles without area. */
-void static_check_begin(check_work *work);
-
-/* Adds the pairs of a batch that intersect to the lane of the same number. */
-void static_check_test_batch(const check_work *work, uint32_t lane);
+/* Moves on to the next pair of triangles that share a vertex, unless this vertex is clear. Each pair comes once: at the
+ * least of its shared vertices. Where very many triangles share all of these, the traversal finds the pair
+ * (bvh_skip_all_adjacent). False: there is none left. */
+bool vertex_stars_next_pair(const vertex_stars *s, star_cursor *cursor, uint32_t pair[2]);

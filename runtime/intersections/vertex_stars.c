@@ -1,5 +1,5 @@
 /* Pairs of triangles that share a vertex. Most stars are seen as a whole not to intersect themselves. */
-#include "runtime/intersections/vertex_stars.h"
+#include "runtime/intersections/static_check.h"
 
 #include <string.h>
 

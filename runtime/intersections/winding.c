@@ -1,6 +1,8 @@
 /* How often the surfaces of bodies wind around a point of the mesh: the triangles that a ray along z passes through,
  * counted with signs. docs/theory/curves.md, lemma 5. */
-#include "runtime/intersections/winding.h"
+#include "runtime/intersections/named_surface.h"
+
+#include "runtime/bvh/bvh_query.h"
 
 #include <math.h>
 

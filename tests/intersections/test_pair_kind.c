@@ -1,6 +1,6 @@
 /* The kind of a pair against the intersection of the two triangles as a set, in rational numbers, on many pairs of
  * small integers, where everything degenerates. */
-#include "runtime/intersections/pair_kind.h"
+#include "runtime/intersections/static_check.h"
 #include "tests/support/intersections/kind_oracle.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"

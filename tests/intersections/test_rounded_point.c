@@ -2,7 +2,7 @@
 #include "tests/support/random_stream.h"
 #include "tests/support/test.h"
 
-#include "runtime/intersections/rounded_point.h"
+#include "runtime/intersections/named_surface.h"
 #include "src/mesh/mesh.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 /* The kernels of the static check, compared with exact predicates: pairs that they reject never intersect,
  * and the signs of normals are right. All levels that this machine has find the same, and few pairs that are left
  * are disjoint. */
-#include "runtime/intersections/intersection_kernels.h"
+#include "runtime/intersections/static_check.h"
 #include "src/mesh/predicates.h"
 #include "src/mesh/triangle_intersection.h"
 #include "tests/support/levels.h"

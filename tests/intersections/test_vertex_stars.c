@@ -1,6 +1,6 @@
 /* Stars that are called clear do not intersect themselves, whatever mesh they are in; smooth ones are called clear; and the
  * others give all their pairs, each of them once. */
-#include "runtime/intersections/intersection_kernels.h"
+#include "runtime/intersections/static_check.h"
 #include "src/mesh/triangle_intersection.h"
 #include "tests/support/levels.h"
 #include "tests/support/random.h"

@@ -2,7 +2,7 @@
  * and proximities by oracle.c, kinds of intersections of each pair of triangles by themselves. There is one scene at a time,
  * and one list. A scene that does not fit is refused; whatever else fails ends the process. */
 #include "tests/support/oracle.h"
-#include "runtime/intersections/pair_kind.h"
+#include "runtime/intersections/static_check.h"
 #include "tests/support/intersections/kind_oracle.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 /* Meshes that cross, and short calls for intersections by kind. */
 #include "tests/support/intersections/crossing_scene.h"
 
-#include "runtime/intersections/pair_kind.h"
+#include "runtime/intersections/static_check.h"
 #include "tests/support/packed.h"
 #include "tests/support/test.h"
 

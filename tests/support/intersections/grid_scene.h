@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cscd/intersections.h"
-#include "runtime/intersections/curve_piece.h"
+#include "runtime/intersections/named_surface.h"
 #include "tests/support/intersections/epsilon_polynomial.h"
 #include "tests/support/mesh_shapes.h"
 #include "tests/support/random_stream.h"

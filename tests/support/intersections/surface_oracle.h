@@ -2,7 +2,7 @@
  * the mesh's edges, and no geometry. */
 #pragma once
 
-#include "runtime/intersections/winding.h"
+#include "runtime/intersections/named_surface.h"
 #include "tests/support/intersections/grid_scene.h"
 #include "tests/support/intersections/leading_terms.h"
 

@@ -2,7 +2,7 @@
  * oracle does. */
 #pragma once
 
-#include "runtime/intersections/patches.h"
+#include "runtime/intersections/intersections.h"
 #include "tests/support/intersections/surface_oracle.h"
 #include "tests/support/intersections/traced_scene.h"
 

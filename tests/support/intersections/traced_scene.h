@@ -1,7 +1,7 @@
 /* A small scene with its intersection curves. */
 #pragma once
 
-#include "runtime/intersections/curves.h"
+#include "runtime/intersections/intersections.h"
 #include "tests/support/intersections/grid_scene.h"
 
 enum { TRACED_PAIRS_MAX = 32 * 32 };

@@ -2,7 +2,7 @@
  * epsilon. */
 #pragma once
 
-#include "runtime/intersections/winding.h"
+#include "runtime/intersections/named_surface.h"
 #include "tests/support/intersections/grid_scene.h"
 
 /* So many vertices leave powers of epsilon for the point. */

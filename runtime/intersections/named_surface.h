@@ -1,0 +1,95 @@
+/* What the files of this room share about a surface at one moment: pieces of curves, winding numbers, and cut triangles. */
+#pragma once
+
+#include "runtime/intersections/intersections.h"
+#include "src/mesh/symbolic.h"
+
+static inline symbolic_point surface_point(const named_surface *s, uint32_t vertex) {
+    return (symbolic_point){s->positions + (size_t)vertex * 3, surface_name(s, vertex)};
+}
+
+/* ---- pieces of curves ---------------------------------------------------------------------------------- */
+
+/* Finds the piece of two different triangles, if there is one: docs/theory/curves.md. */
+bool curve_piece_of_pair(const named_surface *s, uint32_t a, uint32_t b, curve_piece *out);
+
+/* Whether an event that is not at a vertex happens, and is an end of pieces. */
+bool surface_event_happens(const named_surface *s, surface_event event);
+
+/* Where an edge passes through a triangle, in the limit of a symbolic perturbation that goes to 0. */
+typedef struct event_point {
+    double s;    /* the point is (1-s) e0 + s e1 on the edge (e0, e1) */
+    double u, v; /* and (1-u-v) p0 + u p1 + v p2 on the triangle */
+    double x[3];
+} event_point;
+
+/* The event happens. Each number is rounded once, to nearest, from its exact value. An end at a vertex has the parameters 0. */
+void event_point_find(const named_surface *s, surface_event event, event_point *out);
+
+/* The same, by integers alone. */
+void event_point_find_exactly(const named_surface *s, surface_event event, event_point *out);
+
+/* The same without integers, where rounding is certain. p: the edge's points, then the triangle's, of an event that happens.
+ * False: a determinant may be 0, or a result lies too near to the middle between two doubles; nothing is known then. */
+bool rounded_point_find(const double *const p[5], event_point *out);
+
+/* ---- winding numbers ----------------------------------------------------------------------------------- */
+
+static inline bool component_box_has_point(const component_box *box, const double x[3]) {
+    for (int k = 0; k < 3; k++) {
+        if (x[k] < box->low[k] || x[k] > box->high[k]) return false;
+    }
+    return true;
+}
+
+/* A point infinitely near to a corner of a triangle: from the corner along one of its edges, then, infinitely less, into the
+ * triangle and, infinitely less, off it to its outer side: that of its normal, unless its component is turned around. */
+typedef struct corner_side {
+    uint32_t triangle;
+    uint8_t corner; /* 0 to 2 */
+    bool next;      /* the edge leads to the next corner, else to the one before */
+} corner_side;
+
+void winding_tally_clear(winding_tally *tally);
+
+/* Whether the triangle has two corners of one name. Then nothing is to its sides. */
+bool winding_is_collapsed(const named_surface *s, uint32_t triangle);
+
+/* Adds the winding numbers of all bodies at the point, none at a collapsed triangle: of a body the sum over its closed manifold
+ * components. A body winds once around what its surfaces, with normals outwards, enclose. Those of components that are turned
+ * around count as turned. The bounds of the trees are those of the surface's positions. Theory: docs/theory/curves.md, lemma 5. */
+void winding_find(const named_surface *s, const bvh *f, corner_side at, winding_tally *tally);
+
+/* The same of each component, in a tally that has room for all components. */
+void winding_find_by_component(const named_surface *s, const bvh *f, corner_side at, winding_tally *tally);
+
+/* ---- patches ------------------------------------------------------------------------------------------- */
+
+/* The node that an edge has at its vertex: the same number for what no curve parts. */
+uint32_t patch_node(const patch_finder *p, uint32_t edge, uint32_t vertex);
+
+/* Whether two bodies, or a body and itself, are looked at with each other. Their objects say. */
+bool patch_bodies_look(const patch_finder *p, uint32_t a, uint32_t b);
+
+/* ---- copies of solids ---------------------------------------------------------------------------------- */
+
+/* Whether two bodies are copies of one solid. */
+bool same_solids_have(const same_solids *s, uint32_t a, uint32_t b);
+
+/* ---- cut triangles ------------------------------------------------------------------------------------- */
+
+/* A call begins, with room for so many lines and slots in each of its triangles. False: that does not fit the budget. */
+bool cut_memory_begin(cut_memory *m, memory_budget *budget, size_t lines, size_t slots);
+
+/* Makes room; false: no memory. */
+bool cut_memory_reserve(cscd_context *context, cut_memory *m, size_t lines, size_t slots);
+void cut_memory_free(cscd_context *context, cut_memory *m);
+
+/* Sets the projection of a triangle with this normal, and its corners. exchanged: x for y. */
+void loaded_cut_project(const named_surface *s, const double normal[3], bool exchanged, loaded_cut *out);
+
+/* A point in that projection. */
+void loaded_cut_point(const loaded_cut *cut, const double x[3], double out[2]);
+
+/* Sorts the borders as cut_triangle asks; spare has room for as many. */
+void loaded_cut_sort_borders(loaded_cut *cut, cut_border *spare);
