@@ -1,5 +1,5 @@
 /* How near particles have to come for a warning, mu, and how far they feel each other, R_eff. Both are
- * derived in docs/theory/sensor-reach.md, whose lemmas are cited below. */
+ * derived in docs/theory/sensors.md, whose lemmas are cited below. */
 #include "runtime/sensors/reach.h"
 
 #include "src/core/check.h"
