@@ -1,5 +1,5 @@
 /* The deepest point of a triangle, or of what is buried of it: docs/theory/curves.md, Lemma 9. */
-#include "runtime/depths/deepest_cell.h"
+#include "runtime/depths/deepest_points.h"
 
 #include "src/core/vec3.h"
 
@@ -40,7 +40,7 @@ static void measure_between(depth_search *s, uint32_t number, const deep_point *
     measure_point(s, number, (const uint32_t[2]){a->nearest.triangle, b->nearest.triangle}, p);
 }
 
-/* ---- bounds ---------------------------------------------------------------------------------------------- */
+/* ---- bounds -------------------------------------------------------------------------------------------- */
 
 /* How far the corners of a cell are from the parts of the surface that were found near some three points: [corner][part]. */
 typedef struct reach_table {
@@ -167,7 +167,7 @@ static void bound_part(const depth_search *s, cell_part *c) {
     c->above = min_of(c->above, bound_locally(s, &cell, &reach, parts, LOCAL_LEVELS));
 }
 
-/* ---- dividing -------------------------------------------------------------------------------------------- */
+/* ---- dividing ------------------------------------------------------------------------------------------ */
 
 /* Parts take the place of the cell, and that of up to two behind it. Halves the longest side. */
 static int halve_part(depth_search *s, cell_part *c) {
@@ -312,7 +312,7 @@ static void finish_part(depth_search *s, const cell_part *whole) {
     }
 }
 
-/* ---- the queue ------------------------------------------------------------------------------------------- */
+/* ---- the queue ----------------------------------------------------------------------------------------- */
 
 static void add_part(depth_search *s, depth_queue *queue, const cell_part *part) {
     if (!goes_on(s, part)) return;

@@ -1,14 +1,78 @@
 /* How deep what is buried lies below the outer surfaces of bodies. */
 #include "runtime/depths/depths.h"
 
-#include "runtime/depths/body_point.h"
-#include "runtime/depths/deepest_on_edge.h"
+#include "runtime/depths/deepest_points.h"
+#include "runtime/depths/outer_surface.h"
+#include "src/core/floating.h"
 #include "src/core/sort.h"
 #include "src/mesh/surface.h"
 
+#include <math.h>
 #include <string.h>
 
 _Static_assert(sizeof(depth_question) <= sizeof(cscd_depth), "questions are sorted in the room of depths");
+
+/* ---- the deepest point of a part of an edge ------------------------------------------------------------ */
+
+/* A place on an edge; distance: scaled. */
+typedef struct edge_place {
+    double s, x[3], distance;
+    outer_point nearest;
+} edge_place;
+
+/* The part of an edge that a body contains. */
+typedef struct edge_search {
+    const outer_surface *outer;
+    const surface_cuts *found;
+    const bvh *bvh;
+    uint32_t body;
+    const double *ends[2];
+    double s[2];             /* where on the edge it begins, and ends */
+    double length;           /* of the edge; scaled */
+    const outer_point *near; /* the last answer, or NULL */
+} edge_search;
+
+/* deepest: at places that are no deeper than this, scaled, the depth may be less than what is set; -1: it is none of those. */
+static edge_place place_at(const edge_search *e, double s, const outer_point *near, double deepest) {
+    edge_place at = {.s = s};
+    for (int k = 0; k < 3; k++) at.x[k] = e->ends[0][k] + s * (e->ends[1][k] - e->ends[0][k]);
+    at.nearest = outer_surface_search(e->outer, e->found, e->bvh, e->body, at.x, near, deepest);
+    at.distance = sqrt(at.nearest.squared);
+    return at;
+}
+
+/* No point in between is deeper. The depth changes by no more than the way; and it is no more than the distance from one
+ * convex part, which is largest at an end. */
+static double bound_between(const edge_search *e, const edge_place *a, const edge_place *b) {
+    double by_way = 0.5 * (a->distance + b->distance + (b->s - a->s) * e->length);
+    const outer_surface *outer = e->outer;
+    double by_first = max_of(a->distance, outer_part_reach(outer, b->x, &a->nearest.part));
+    double by_last = max_of(b->distance, outer_part_reach(outer, a->x, &b->nearest.part));
+    return min_of(by_way, min_of(by_first, by_last));
+}
+
+enum { HALVINGS_MAX = 64 };
+
+/* Halves what may be deeper by more than a millionth of the edge. */
+static edge_place search_edge(const edge_search *e) {
+    edge_place ends[HALVINGS_MAX + 1], at = place_at(e, e->s[0], e->near, -1.0), deepest = at;
+    int count = 0;
+    ends[count++] = place_at(e, e->s[1], &at.nearest, deepest.distance);
+    if (ends[0].distance > deepest.distance) deepest = ends[0];
+    while (count > 0) { /* from at to the last one of ends */
+        edge_place *end = &ends[count - 1];
+        bool halve = count < HALVINGS_MAX && bound_between(e, &at, end) > deepest.distance + 1e-6 * e->length;
+        if (!halve) {
+            at = *end;
+            count--;
+            continue;
+        }
+        ends[count] = place_at(e, at.s + 0.5 * (end->s - at.s), &at.nearest, deepest.distance);
+        if (ends[count].distance > deepest.distance) deepest = ends[count];
+        count++;
+    }
+    return deepest;
+}
 
 /* ---- memory -------------------------------------------------------------------------------------------- */
 
@@ -16,15 +80,32 @@ static array_list list_of_depths(depth_finder *d, size_t count) {
     return (array_list){{ARRAY(d->depths, count)}};
 }
 
-void depth_finder_free(depth_finder *d) {
-    if (d->context == NULL) return;
+static depth_finder empty_finder(cscd_context *context) {
+    return (depth_finder){.context = context,
+                          .outer = {.context = context, .cuts = {.context = context}},
+                          .deepest = {.context = context}};
+}
+
+depth_finder *depth_finder_create(cscd_context *context) {
+    depth_finder *d = context_allocate(context, 1, sizeof *d);
+    if (d != NULL) *d = empty_finder(context);
+    return d;
+}
+
+void depth_finder_clear(depth_finder *d) {
     cscd_context *context = d->context;
     outer_surface_free(&d->outer);
     deepest_finder_free(&d->deepest);
     context_free_all(context, list_of_depths(d, 0));
     context_free(context, d->questions);
     context_free(context, d->patches);
-    *d = (depth_finder){.context = context, .outer = d->outer, .deepest = d->deepest};
+    *d = empty_finder(context);
+}
+
+void depth_finder_destroy(depth_finder *d) {
+    if (d == NULL) return;
+    depth_finder_clear(d);
+    context_free(d->context, d);
 }
 
 /* ---- questions ----------------------------------------------------------------------------------------- */
@@ -220,7 +301,7 @@ static outer_point answer_edge(const depth_work *work, const depth_question *q, 
                            {q->s[0], q->s[1]},
                            surface_edge_length(s->mesh, s->positions, q->edge) * outer->scale,
                            near};
-    const edge_place deepest = edge_search_run(&e);
+    const edge_place deepest = search_edge(&e);
     out->s = deepest.s;
     memcpy(out->x, deepest.x, sizeof out->x);
     set_answer(work, &deepest.nearest, out);

@@ -1,30 +1,21 @@
-/* How deep what is buried lies below the outer surfaces of bodies. */
+/* How deep what is buried lies below the outer surfaces of bodies, at one moment: docs/theory/curves.md, Lemmas 8 and 9. */
 #pragma once
 
-#include "runtime/depths/deepest_points.h"
+#include "runtime/intersections/intersections.h"
 
-/* A vertex that a body contains, or the part of an edge from s[0] to s[1]. */
-typedef struct depth_question {
-    uint32_t vertex, edge, face, patch, body;
-    double s[2];
-} depth_question;
+/* Finds depths, and keeps the memory of all calls. */
+typedef struct depth_finder depth_finder;
 
-/* The memory of all calls; begins with the context, also of outer, its cuts and the deepest, and nothing else set. */
-typedef struct depth_finder {
-    cscd_context *context;
-    outer_surface outer;
-    deepest_finder deepest;
-    depth_question *questions;
-    size_t question_count, question_capacity;
-    cscd_depth *depths;
-    size_t depth_capacity;
-    cscd_patch_depth *patches;
-    size_t patch_capacity;
-} depth_finder;
+/* NULL: no memory. */
+depth_finder *depth_finder_create(cscd_context *context);
 
-void depth_finder_free(depth_finder *d);
+/* NULL is allowed. */
+void depth_finder_destroy(depth_finder *d);
 
-/* What depths are asked of, beside the cuts. */
+/* Gives back what it keeps from one call to the next. */
+void depth_finder_clear(depth_finder *d);
+
+/* What a call needs to know, beside the cuts. */
 typedef struct depth_request {
     const bvh *bvh; /* its bounds are those of the surface's positions */
     const part_labels *labels;

@@ -11,7 +11,7 @@ const char *cscd_curve_end_name(cscd_curve_end end) {
 void surface_answers_free(cscd_context *context, surface_answers *a) {
     if (a == NULL) return;
     same_solids_free(&a->same_solids);
-    depth_finder_free(&a->depth_finder);
+    depth_finder_destroy(a->depth_finder);
     overlap_finder_destroy(a->overlap_finder);
     cut_off_finder_destroy(a->cut_off_finder);
     patch_finder_free(&a->patch_finder);
@@ -38,12 +38,12 @@ static surface_answers *make_answers(cscd_detector *d) {
     if (a == NULL) return NULL;
     a->names.context = a->left_out.context = a->joiner.context = context;
     a->same_solids.context = context;
-    a->depth_finder.context = a->depth_finder.outer.context = a->depth_finder.outer.cuts.context =
-        a->depth_finder.deepest.context = context;
     a->orientations = orientation_finder_create(d->mesh);
     a->overlap_finder = overlap_finder_create(context);
     a->cut_off_finder = cut_off_finder_create(context);
-    if (a->orientations == NULL || a->overlap_finder == NULL || a->cut_off_finder == NULL) {
+    a->depth_finder = depth_finder_create(context);
+    if (a->depth_finder == NULL || a->orientations == NULL || a->overlap_finder == NULL ||
+        a->cut_off_finder == NULL) {
         surface_answers_free(context, a);
         return NULL;
     }
@@ -196,10 +196,10 @@ static cscd_status find_depths(const answer_search *s) {
     progress_stage(&d->context->progress, "depths", 0.9, 1.0);
     const depth_request request = {&d->space.bvh, &d->parts, s->found->items, s->found->count,
                                    s->options->depth_limit};
-    cscd_status status = depth_finder_run(&a->depth_finder, s->cuts, &request, &a->depths);
+    cscd_status status = depth_finder_run(a->depth_finder, s->cuts, &request, &a->depths);
     if (status == CSCD_OK) status = find_same_solids(s);
     if (did_not_fit(s, status, before)) {
-        depth_finder_free(&a->depth_finder);
+        depth_finder_clear(a->depth_finder);
         same_solids_free(&a->same_solids);
         overlap_finder_clear(a->overlap_finder);
         surface_answers_leave_out(s->budget, CSCD_LEFT_OUT_DEPTHS, s->found);

@@ -17,7 +17,7 @@ typedef struct surface_answers {
     patch_finder patch_finder;
     overlap_finder *overlap_finder;
     cut_off_finder *cut_off_finder;
-    depth_finder depth_finder;
+    depth_finder *depth_finder;
     same_solids same_solids;
     cscd_curves curves;
     cscd_patches patches;

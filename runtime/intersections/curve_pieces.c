@@ -113,7 +113,7 @@ bool curve_piece_of_pair(const named_surface *s, uint32_t a, uint32_t b, curve_p
     return shared == 1 && piece_at_vertex(s, &of_a, at_a, &of_b, at_b, out);
 }
 
-/* ---- one event ------------------------------------------------------------------------------------------- */
+/* ---- one event ----------------------------------------------------------------------------------------- */
 
 /* Does the edge have a triangle whose corners are different vertices? Others have no pieces. */
 static bool edge_has_sheet(const named_surface *s, uint32_t edge) {

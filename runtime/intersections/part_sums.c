@@ -19,7 +19,7 @@ typedef struct summing {
     key_range pairs, pieces, depths;
 } summing;
 
-/* ---- memory ---------------------------------------------------------------------------------------------- */
+/* ---- memory -------------------------------------------------------------------------------------------- */
 
 void part_sums_free(cscd_context *context, part_summer *s) {
     context_free(context, s->keys);
@@ -48,7 +48,7 @@ static cscd_status reserve_items(summing *w, size_t count) {
     return context_renew_all(w->mesh->context, list, &s->item_capacity, count) ? CSCD_OK : CSCD_OUT_OF_MEMORY;
 }
 
-/* ---- keys ------------------------------------------------------------------------------------------------ */
+/* ---- keys ---------------------------------------------------------------------------------------------- */
 
 static uint64_t key_of_triangles(const summing *w, uint32_t a, uint32_t b) {
     return key_of_parts(part_of_triangle(w->labels, w->mesh, a), part_of_triangle(w->labels, w->mesh, b));
@@ -103,7 +103,7 @@ static cscd_status list_keys(summing *w) {
     return CSCD_OK;
 }
 
-/* ---- the sums of one pair of parts ----------------------------------------------------------------------- */
+/* ---- the sums of one pair of parts --------------------------------------------------------------------- */
 
 /* Cuts the keys of a pair of parts off. */
 static key_range take_keys(key_range *keys, uint64_t parts) {
@@ -189,7 +189,7 @@ static void find_deepest(const summing *w, key_range keys, cscd_part_pair *out) 
     }
 }
 
-/* ---- all pairs of parts ---------------------------------------------------------------------------------- */
+/* ---- all pairs of parts -------------------------------------------------------------------------------- */
 
 static bool least_parts(const summing *w, uint64_t *parts) {
     const key_range *ranges[3] = {&w->pairs, &w->pieces, &w->depths};

@@ -98,7 +98,7 @@ void static_check_destroy(static_check *c) {
     *c = (static_check){0};
 }
 
-/* ---- one batch ------------------------------------------------------------------------------------------ */
+/* ---- one batch ----------------------------------------------------------------------------------------- */
 
 /* Data that the threads of a check share. */
 typedef struct check_work {
@@ -202,7 +202,7 @@ static void test_batch(void *data, uint32_t index) {
     find_pairs_of_batch(data, index);
 }
 
-/* ---- pairs that share a vertex -------------------------------------------------------------------------- */
+/* ---- pairs that share a vertex ------------------------------------------------------------------------- */
 
 /* Is a component looked at with itself? The traversal asks the same of trees. */
 static bool component_counts(const check_work *work, uint32_t component) {
@@ -266,7 +266,7 @@ static void mark_clear_stars(void *data, uint32_t index) {
     }
 }
 
-/* ---- triangles without area ----------------------------------------------------------------------------- */
+/* ---- triangles without area ---------------------------------------------------------------------------- */
 
 static bool has_no_area(const check_work *work, uint32_t triangle) {
     const double *corners[3];
@@ -315,7 +315,7 @@ static void count_zero_area(void *data, uint32_t index) {
         mark_zero_area(work, lane, t, end - t < AREA_BATCH ? end : t + AREA_BATCH);
 }
 
-/* ---- all of it ------------------------------------------------------------------------------------------ */
+/* ---- all of it ----------------------------------------------------------------------------------------- */
 
 static void mark_crossing(static_check *c) {
     const uint32_t *components = c->mesh->triangle_components;

@@ -9,7 +9,7 @@
 
 #include "src/core/simd_wide.h"
 
-/* ---- signs ------------------------------------------------------------------------------------------- */
+/* ---- signs --------------------------------------------------------------------------------------------- */
 
 typedef f64w vector_x8[3];
 
@@ -77,7 +77,7 @@ static inline uint32_t mixed_signs(sign_x8 a, sign_x8 b, sign_x8 c) {
     return (a.plus | b.plus | c.plus) & (a.minus | b.minus | c.minus);
 }
 
-/* ---- two shared vertices, and one -------------------------------------------------------------------- */
+/* ---- two shared vertices, and one ---------------------------------------------------------------------- */
 
 /* Lemmas 5 and 7. corners: those of the one triangle, then those of the other, the apex that is not shared first. */
 static inline uint32_t sharing_edge_undecided(const vector_x8 corners[6]) {
@@ -160,7 +160,7 @@ static inline uint32_t sharing_vertex_undecided_by_projection(const vector_x8 co
     return ALL_WIDTH & ~apart;
 }
 
-/* ---- no shared vertex -------------------------------------------------------------------------------- */
+/* ---- no shared vertex ---------------------------------------------------------------------------------- */
 
 static inline f64w least_of(f64w a, f64w b, f64w c) {
     return f64w_min(f64w_min(a, b), c);
@@ -424,7 +424,7 @@ static uint32_t reject_disjoint(const uint32_t (*triangles)[3], const double *po
     return kept;
 }
 
-/* ---- single triangles -------------------------------------------------------------------------------- */
+/* ---- single triangles ---------------------------------------------------------------------------------- */
 
 /* Writes eight masks of lanes, the first one to bit 0 of every lane's byte. */
 static inline void bytes_of_masks(const uint32_t masks[8], uint8_t bytes[8]) {

@@ -15,7 +15,7 @@ static const uint32_t *star_of(const cscd_mesh *mesh, uint32_t vertex, uint32_t 
     return mesh->vertex_stars + begin;
 }
 
-/* ---- closed stars --------------------------------------------------------------------------------------- */
+/* ---- closed stars -------------------------------------------------------------------------------------- */
 
 /* A wire is no edge of a triangle. */
 static bool parts_two_triangles(const cscd_mesh *mesh, uint32_t edge) {
@@ -49,7 +49,7 @@ void vertex_stars_destroy(vertex_stars *s) {
     *s = (vertex_stars){0};
 }
 
-/* ---- clear stars ---------------------------------------------------------------------------------------- */
+/* ---- clear stars --------------------------------------------------------------------------------------- */
 
 static uint32_t corner_of(const uint32_t triangle[3], uint32_t vertex) {
     return triangle[0] == vertex ? 0 : triangle[1] == vertex ? 1 : 2;
@@ -71,7 +71,7 @@ void vertex_stars_mark_clear(vertex_stars *s, uint32_t begin, uint32_t end) {
     for (uint32_t v = begin; v < end; v++) s->clear[v] = s->closed[v] && star_is_clear(s, v);
 }
 
-/* ---- pairs ---------------------------------------------------------------------------------------------- */
+/* ---- pairs --------------------------------------------------------------------------------------------- */
 
 static bool comes_from(const vertex_stars *s, uint32_t vertex, const uint32_t a[3], const uint32_t b[3]) {
     for (int i = 0; i < 3; i++) {

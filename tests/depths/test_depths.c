@@ -1,6 +1,6 @@
 /* Depths: by hand where one sees them, else no less and no more than the distance from a body's outer surface. */
 #include "cscd/research.h"
-#include "runtime/depths/body_point.h"
+#include "runtime/depths/outer_surface.h"
 #include "runtime/detector/detector.h"
 #include "src/core/vec3.h"
 #include "tests/support/intersections/body_measures.h"
