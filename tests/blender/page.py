@@ -12,7 +12,8 @@ import shutil
 import subprocess
 import sys
 
-PAGE = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'docs', 'artist', 'from-your-program.md')
+DOCS = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'docs')
+PAGE = os.path.join(DOCS, 'artist', 'from-your-program.md')
 SECONDS = re.compile(r'[0-9.]+ s$', re.MULTILINE)  # differ from run to run
 BLOCK = re.compile(r'^```(python|sh|text)\n(.*?)^```$', re.MULTILINE | re.DOTALL)
 
@@ -52,7 +53,7 @@ def shown_lines(expected, printed, language):
 
 
 def draw_pictures(chapter, tool, scene, folder):
-    images = os.path.join(os.path.dirname(PAGE), 'images')
+    images = os.path.join(DOCS, 'images')
     run_shell(f'cscd render doll_*.obj --frames 1:19:6 --columns 4 --size 300x400 --up y --view 20,8 -o {images}/doll.png',
               tool, folder)
     paint = open(os.path.join(os.path.dirname(os.path.abspath(__file__)), 'paint.py')).read()
@@ -66,7 +67,7 @@ def main():
     chapter = page[page.index('\n## Blender\n'):page.index('\n## Maya\n')]
     steps, complaints, last, written = 0, [], None, chapter
     if not os.path.exists(os.path.join(folder, 'docs')):
-        os.symlink(os.path.abspath(os.path.dirname(PAGE)), os.path.join(folder, 'docs'))
+        os.symlink(os.path.abspath(DOCS), os.path.join(folder, 'docs'))
     for block in BLOCK.finditer(chapter):
         language, text = block.groups()
         if language != 'text':

@@ -3,7 +3,7 @@
 # rows are what the tool says of the same files. Ray's is only compiled. PYTHONPATH names the module.
 set -eu
 cd "$(dirname "$0")"
-page=$(realpath ../../docs/engines.md)
+page=$(realpath ../../docs/artist/engines.md)
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 . ./jobs.sh
