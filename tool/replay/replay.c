@@ -7,6 +7,7 @@
 #include "tool/replay/replay_chunks.h"
 #include "tool/replay/replay_print.h"
 #include "tool/replay/replay_shard.h"
+#include "tool/replay/replay_sink.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -75,29 +76,10 @@ static bool outputs_open(const replay_options *o, io_error *error) {
            output_path_opens(o->report.path, error);
 }
 
-static bool open_contacts(replay *r, io_error *error) {
-    contact_columns columns = {.bounded = r->options->min_separation > 0.0};
-    if (r->recording.object_count > 1) {
-        for (uint32_t i = 0; i < r->recording.object_count; i++)
-            r->object_names[i] = r->recording.objects[i].source.name;
-        columns.object_names = r->object_names;
-    }
-    return contact_file_open(r->options->contacts_path, columns, &r->contacts, error);
-}
-
 /* From here on a signal may not end the process by itself, or what is half written would lie about. */
 static bool open_outputs(replay *r, io_error *error) {
-    const replay_options *o = r->options;
     interrupt_catch();
-    if (!exports_open(&o->exports, &r->recording, &r->ignored.parts, r->plan.plan, &r->exports, error) ||
-        (o->contacts_path != NULL && !open_contacts(r, error)))
-        return false;
-    return replay_report_open(&r->report, &o->report, recording_options_path(&o->source), &r->recording,
-                              r->plan.plan, replay_detector_is_oriented(&r->source.detector), r->first,
-                              r->last, &r->unit, error) &&
-           answer_outputs_open(&o->answers, &r->files, error) &&
-           summary_open(o->json_path, o->report.path != NULL, !o->reproducible, r->recording.mesh,
-                        &r->summary, error);
+    return sinks_open(r, error);
 }
 
 /* Opens everything that can fail before the work begins. */
@@ -121,7 +103,8 @@ static void warn_of_zero_area(const replay *r, uint32_t frame, const cscd_inters
 static bool take_frame(replay *r, uint32_t frame, frame_check *check, frame_state *state, io_error *error) {
     *state = FRAME_UNCHECKED;
     recording_add_hashes(&r->recording, check->hashes);
-    if (!check->checked) return answers_skip_frame(&r->answers, frame, error);
+    if (!check->checked)
+        return answers_skip_frame(&r->answers, frame, error) && sinks_add_frame(r, frame, NULL, error);
     io_error reason;
     cscd_intersection_pairs found = check->found;
     if (!answers_add_found(&r->answers, frame, &found, check->ms, &reason))
@@ -135,9 +118,8 @@ static bool take_frame(replay *r, uint32_t frame, frame_check *check, frame_stat
         r->totals.frames_checked++;
         r->totals.frames_crossing += found.crossing > 0;
         r->totals.frames_touching += meets && found.crossing == 0;
-        replay_report_add_found(&r->report, frame, &found);
     }
-    return exports_add_frame(&r->exports, frame, r->source.x0, &found, error);
+    return sinks_add_frame(r, frame, &found, error);
 }
 
 static interval_state state_of(const replay *r, size_t contact_count) {
@@ -166,15 +148,6 @@ static void alarm_contradiction(replay *r, const interval_result *result) {
         result->frame);
 }
 
-static bool write_contacts(replay *r, uint32_t frame, const cscd_contacts *contacts, io_error *error) {
-    if (r->contacts == NULL) return true;
-    for (size_t i = 0; i < contacts->count; i++) {
-        contact_record record = recording_contact(&r->recording, frame, &contacts->items[i]);
-        if (!contact_file_write(r->contacts, &record, error)) return false;
-    }
-    return contact_file_flush(r->contacts, error);
-}
-
 /* An interval, and the frame at its end. */
 static bool run_interval(replay *r, uint32_t k, io_error *error) {
     interval_step step;
@@ -189,11 +162,9 @@ static bool run_interval(replay *r, uint32_t k, io_error *error) {
                               .guarantees = step.guarantees,
                               .timings = step.timings,
                               .counters = step.counters};
-    replay_report_add(&r->report, step.orientations, contacts, r->source.x1);
-    exports_add_contacts(&r->exports, contacts);
     frame_check check;
     if (step.unlisted > 0) answers_leave_out_contacts(&r->answers, k, step.unlisted);
-    if (!write_contacts(r, k, contacts, error) || !answers_add_contacts(&r->answers, contacts, error) ||
+    if (!sinks_add_interval(r, k, &step, error) || !answers_add_contacts(&r->answers, contacts, error) ||
         !replay_source_check(&r->source, k, &check, error) ||
         !take_frame(r, k + 1, &check, &r->end_state, error))
         return false;
@@ -203,7 +174,7 @@ static bool run_interval(replay *r, uint32_t k, io_error *error) {
     alarm_contradiction(r, &result);
     if (result.contact_count > 0 && !frame_list_add(&r->contact_frames, k))
         return io_fail(error, "out of memory");
-    return summary_add_interval(r->summary, &result, error);
+    return sinks_end_interval(r, &result, error);
 }
 
 static bool run_intervals(replay *r, io_error *error) {
@@ -214,7 +185,6 @@ static bool run_intervals(replay *r, io_error *error) {
     const bool begun = replay_source_begin(&r->source, r->first, &check, error);
     r->progress.may_stop = false;
     if (!begun) return false;
-    replay_report_begin(&r->report, r->source.x0);
     if (!take_frame(r, r->first, &check, &r->start_state, error)) return false;
     for (uint32_t k = r->first; k < r->last && !interrupted(); k++) {
         terminal_progress_update(&r->progress, k - r->first, r->last - r->first, "replay");
@@ -224,50 +194,12 @@ static bool run_intervals(replay *r, io_error *error) {
     return true;
 }
 
-/* Writes the report of the intervals that were replayed; without any there is no report. */
-static bool write_report(replay *r, const char *summary, io_error *error) {
-    if (r->options->report.path == NULL || r->totals.intervals == 0) return true;
-    terminal_progress_begin(&r->progress, r->options->quiet);
-    terminal_progress_say(&r->progress, "writing the report");
-    bool written = replay_report_write(&r->report, r->options->no_check ? NULL : &r->answers, summary, error);
-    terminal_progress_end(&r->progress);
-    return written;
-}
-
-static bool close_summary(replay *r, char **text, io_error *error) {
-    const replay_options *o = r->options;
-    summary_ending ending = {.totals = &r->totals,
-                             .recording = &r->recording,
-                             .plan = &r->plan,
-                             .answers = &r->answers,
-                             .unit = &r->unit,
-                             .mode = cscd_mode_name(o->mode),
-                             .volume = o->volume,
-                             .min_separation = o->min_separation,
-                             .reproducible = o->reproducible,
-                             .argument_count = o->argument_count,
-                             .arguments = o->arguments};
-    bool written = summary_close(r->summary, &ending, text, error);
-    r->summary = NULL;
-    return written;
-}
-
 /* Writes what was found, be it of all intervals or not. Without a frame nothing was. */
 static bool close_outputs(replay *r, const char *stopped_by, io_error *error) {
-    const char *suite = recording_options_path(&r->options->source);
-    bool written = contact_file_close(r->contacts, error);
-    r->contacts = NULL;
-    if (r->summary == NULL) return answer_outputs_close(&r->files, NULL, &r->rules, suite, NULL) && written;
+    if (!r->sinks_are_open) return sinks_close(r, NULL);
     if (stopped_by != NULL) answers_leave_unfinished(&r->answers, "%s", stopped_by);
-    written = answers_finish(&r->answers, written ? error : NULL) && written;
-    char *text = NULL;
-    written = close_summary(r, &text, written ? error : NULL) && written;
-    written =
-        answer_outputs_close(&r->files, &r->answers, &r->rules, suite, written ? error : NULL) && written;
-    written = exports_close(&r->exports, written ? error : NULL) && written;
-    written = write_report(r, text, written ? error : NULL) && written;
-    free(text);
-    return written;
+    const bool finished = answers_finish(&r->answers, error);
+    return sinks_close(r, finished ? error : NULL) && finished;
 }
 
 static void tell_interrupt(const replay *r) {
@@ -287,8 +219,6 @@ static void tell_interrupt(const replay *r) {
 }
 
 static void end_replay(replay *r) {
-    replay_report_close(&r->report);
-    exports_close(&r->exports, NULL);
     replay_source_close(&r->source);
     shard_series_close(&r->resumed);
     answers_close(&r->answers);
@@ -296,6 +226,7 @@ static void end_replay(replay *r) {
     ignore_pairs_free(&r->ignored);
     if (r->recording.mesh != NULL) recording_close(&r->recording);
     frame_list_free(&r->contact_frames);
+    free(r->summary_text);
 }
 
 /* Says so when no report was written: an older page may lie at its path. */

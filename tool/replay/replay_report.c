@@ -1,9 +1,21 @@
-/* The report of a replay. */
-#include "tool/replay/replay_report.h"
-
+/* The report of a replay. An error in it ends the report and not the replay, and is printed at the end. */
+#include "tool/common/provenance.h"
+#include "tool/common/scenery.h"
 #include "tool/io/path_name.h"
+#include "tool/replay/replay_sink.h"
+#include "tool/report/report.h"
 
+#include <stdlib.h>
 #include <string.h>
+
+typedef struct replay_report {
+    replay *replay;
+    const report_request *request;
+    report *report;  /* NULL: it has failed */
+    scenery scenery; /* zeroed: none */
+    char generator[PROVENANCE_GENERATOR_SIZE];
+    io_error failure; /* "" while all is well */
+} replay_report;
 
 /* The vertices as the contact list names them. */
 static void file_vertices(void *user, const cscd_contact *contact, uint32_t vertices[4]) {
@@ -15,35 +27,55 @@ static void file_vertices(void *user, const cscd_contact *contact, uint32_t vert
 
 static bool open_scenery(replay_report *r, io_error *error) {
     const report_request *request = r->request;
-    return request->scenery_path == NULL || scenery_open(request->scenery_path, request->scenery_frames_path,
-                                                         r->recording->frame_count, &r->scenery, error);
+    return request->scenery_path == NULL ||
+           scenery_open(request->scenery_path, request->scenery_frames_path, r->replay->recording.frame_count,
+                        &r->scenery, error);
 }
 
-bool replay_report_open(replay_report *out, const report_request *request, const char *model_path,
-                        recording *r, const cscd_plan *plan, bool oriented, uint32_t first, uint32_t last,
-                        const length_unit *unit, io_error *error) {
-    *out = (replay_report){.request = request, .model_path = model_path, .recording = r};
-    if (request->path == NULL) return true;
-    if (!open_scenery(out, error)) return false;
-    provenance_generator(out->generator);
-    report_options options = {.kind = REPORT_REPLAY,
-                              .title = request->title != NULL ? request->title : path_file_name(model_path),
-                              .fps = recording_fps(r),
-                              .length_unit = unit->name,
-                              .generator = out->generator,
-                              .mesh = r->mesh,
-                              .plan = plan,
-                              .frame_numbers = r->frame_numbers,
-                              .first = first,
-                              .last = last,
-                              .oriented = oriented,
-                              .up_axis = (int)up_axis_choose(request->up, model_path),
-                              .scenery = {out->scenery.mesh.vertex_count, out->scenery.mesh.triangle_count,
-                                          out->scenery.mesh.triangles, out->scenery.frame_count > 1},
-                              .file_vertices =
-                                  r->edge_file_vertices != NULL || r->object_count > 1 ? file_vertices : NULL,
-                              .file_vertices_user = r};
-    return report_create(&options, &out->report, error);
+static bool create_report(replay_report *r, io_error *error) {
+    replay *of = r->replay;
+    recording *source = &of->recording;
+    const char *model_path = recording_options_path(&of->options->source);
+    provenance_generator(r->generator);
+    report_options options = {
+        .kind = REPORT_REPLAY,
+        .title = r->request->title != NULL ? r->request->title : path_file_name(model_path),
+        .fps = recording_fps(source),
+        .length_unit = of->unit.name,
+        .generator = r->generator,
+        .mesh = source->mesh,
+        .plan = of->plan.plan,
+        .frame_numbers = source->frame_numbers,
+        .first = of->first,
+        .last = of->last,
+        .oriented = replay_detector_is_oriented(&of->source.detector),
+        .up_axis = (int)up_axis_choose(r->request->up, model_path),
+        .scenery = {r->scenery.mesh.vertex_count, r->scenery.mesh.triangle_count, r->scenery.mesh.triangles,
+                    r->scenery.frame_count > 1},
+        .file_vertices =
+            source->edge_file_vertices != NULL || source->object_count > 1 ? file_vertices : NULL,
+        .file_vertices_user = source};
+    return report_create(&options, &r->report, error);
+}
+
+static void free_report(replay_report *r) {
+    report_destroy(r->report);
+    scenery_close(&r->scenery);
+    free(r);
+}
+
+static bool open_report(replay *of, void **state, io_error *error) {
+    if (of->options->report.path == NULL) return true;
+    replay_report *r = calloc(1, sizeof *r);
+    if (r == NULL) return io_fail(error, "out of memory");
+    r->replay = of;
+    r->request = &of->options->report;
+    if (!open_scenery(r, error) || !create_report(r, error)) {
+        free_report(r);
+        return false;
+    }
+    *state = r;
+    return true;
 }
 
 /* A report that has failed is given up at once, to free its memory. */
@@ -53,18 +85,25 @@ static void keep_or_give_up(replay_report *r, bool added) {
     r->report = NULL;
 }
 
-void replay_report_begin(replay_report *r, const double *positions) {
-    if (r->report != NULL) keep_or_give_up(r, report_begin(r->report, positions, &r->failure));
-}
-
-void replay_report_add(replay_report *r, const orientation_row *orientations, const cscd_contacts *contacts,
-                       const double *end) {
+static bool add_interval(void *state, uint32_t k, const interval_step *step, io_error *error) {
+    replay_report *r = state;
+    (void)k, (void)error;
     if (r->report != NULL)
-        keep_or_give_up(r, report_add_interval(r->report, orientations, contacts, end, &r->failure));
+        keep_or_give_up(r, report_add_interval(r->report, step->orientations, &step->contacts,
+                                               r->replay->source.x1, &r->failure));
+    return true;
 }
 
-void replay_report_add_found(replay_report *r, uint32_t frame, const cscd_intersection_pairs *found) {
-    if (r->report != NULL) keep_or_give_up(r, report_add_answers(r->report, frame, found, &r->failure));
+static bool add_frame(void *state, uint32_t frame, const cscd_intersection_pairs *found, io_error *error) {
+    replay_report *r = state;
+    (void)error;
+    const answers *a = &r->replay->answers;
+    const bool checked = frame_answer_checked(answers_frames(a) + answers_frame_count(a) - 1);
+    if (r->report != NULL && frame == r->replay->first)
+        keep_or_give_up(r, report_begin(r->report, r->replay->source.x0, &r->failure));
+    if (r->report != NULL && found != NULL && checked)
+        keep_or_give_up(r, report_add_answers(r->report, frame, found, &r->failure));
+    return true;
 }
 
 static bool add_scenery(replay_report *r, io_error *error) {
@@ -83,25 +122,40 @@ static const char *name_part(void *user, uint32_t part, char buffer[REPORT_PART_
     return part_names_at(user, part);
 }
 
-static bool set_events(replay_report *r, const answers *found, io_error *error) {
-    return found == NULL || report_set_events(r->report, found->events, found->event_count, name_part,
-                                              (void *)found->parts, error);
+/* A page of frames that nobody has checked shows no events. */
+static bool set_events(replay_report *r, io_error *error) {
+    const answers *found = &r->replay->answers;
+    return r->replay->options->no_check || report_set_events(r->report, found->events, found->event_count,
+                                                             name_part, (void *)found->parts, error);
 }
 
-bool replay_report_write(replay_report *r, const answers *found, const char *summary, io_error *error) {
+static bool write_report(replay_report *r, io_error *error) {
+    const char *text = r->replay->summary_text;
     if (r->failure.text[0] != '\0') return io_fail(error, "no report was written: %s", r->failure.text);
     if (r->report == NULL) return true;
-    if (summary == NULL) return io_fail(error, "no report was written: out of memory for the summary");
-    report_summary text = {path_file_name(r->model_path), summary};
+    if (text == NULL) return io_fail(error, "no report was written: out of memory for the summary");
+    report_summary summary = {path_file_name(recording_options_path(&r->replay->options->source)), text};
     io_error reason;
-    if (set_events(r, found, &reason) && add_scenery(r, &reason) &&
-        report_write(r->report, r->request->path, &text, 1, NULL, &reason))
+    if (set_events(r, &reason) && add_scenery(r, &reason) &&
+        report_write(r->report, r->request->path, &summary, 1, NULL, &reason))
         return true;
     return io_fail(error, "no report was written: %s", reason.text);
 }
 
-void replay_report_close(replay_report *r) {
-    report_destroy(r->report);
-    scenery_close(&r->scenery);
-    r->report = NULL;
+/* Without any interval there is no report. */
+static bool close_report(void *state, bool whole, io_error *error) {
+    replay_report *r = state;
+    terminal_progress *progress = &r->replay->progress;
+    bool written = true;
+    if (whole && r->replay->totals.intervals > 0) {
+        terminal_progress_begin(progress, r->replay->options->quiet);
+        terminal_progress_say(progress, "writing the report");
+        written = write_report(r, error);
+        terminal_progress_end(progress);
+    }
+    free_report(r);
+    return written;
 }
+
+const replay_sink report_sink = {
+    .open = open_report, .add_interval = add_interval, .add_frame = add_frame, .close = close_report};

@@ -5,14 +5,15 @@
 #include "tool/common/ignore_pairs.h"
 #include "tool/common/plan_source.h"
 #include "tool/common/terminal.h"
-#include "tool/export/exports.h"
 #include "tool/replay/replay_options.h"
-#include "tool/replay/replay_report.h"
 #include "tool/replay/replay_source.h"
-#include "tool/replay/summary.h"
+#include "tool/replay/table.h"
 
 /* What is known of a frame. */
 typedef enum frame_state { FRAME_UNCHECKED, FRAME_EMBEDDED, FRAME_CROSSING } frame_state;
+
+/* The number of outputs that replay_sink.c lists. */
+enum { REPLAY_SINKS = 5 };
 
 /* A replay under way. */
 typedef struct replay {
@@ -30,16 +31,13 @@ typedef struct replay {
     shard_series resumed;             /* what it had already */
     shard_series *merged;             /* all shards, to be brought together; NULL: this is something else */
     frame_state start_state, end_state;
-    contact_file *contacts; /* NULL when not asked for */
-    const char *object_names[RECORDING_OBJECTS_MAX + 1];
-    summary_writer *summary;
-    replay_report report;
     replay_totals totals;
     length_unit unit;
     fail_rules rules;
     answers answers;
-    answer_outputs files;
-    exports exports;
+    void *sinks[REPLAY_SINKS]; /* the states of the outputs; NULL: not asked for */
+    bool sinks_are_open;
+    char *summary_text; /* of --json, for the report; NULL until it is whole */
     frame_list contact_frames;
     terminal_progress progress;
 } replay;

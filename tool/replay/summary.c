@@ -1,13 +1,14 @@
 /* The JSON summary of a replay, written interval by interval. */
-#include "tool/replay/summary.h"
-
+#include "tool/answers/answer_files.h"
 #include "tool/common/provenance.h"
 #include "tool/io/output_file.h"
+#include "tool/replay/replay_sink.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-struct summary_writer {
+typedef struct summary_writer {
+    replay *replay;
     output_file file; /* its file is NULL when nothing is written */
     char *path;
     FILE *memory; /* everything is written here first: text, size bytes of it */
@@ -18,7 +19,7 @@ struct summary_writer {
     size_t forwarded; /* bytes of it that the file has */
     const cscd_mesh *mesh;
     json out;
-};
+} summary_writer;
 
 static bool write_failed(const summary_writer *w, io_error *error) {
     return io_fail_write(error, w->path);
@@ -36,25 +37,26 @@ static bool open_file(summary_writer *w, const char *path, io_error *error) {
     return (w->path != NULL && output_file_open(path, &w->file)) || io_fail_write(error, path);
 }
 
-bool summary_open(const char *path, bool keep_text, bool times, const cscd_mesh *mesh, summary_writer **out,
-                  io_error *error) {
+static bool open_summary(replay *r, void **state, io_error *error) {
+    const replay_options *o = r->options;
     summary_writer *w = calloc(1, sizeof *w);
     if (w != NULL) w->memory = open_memstream(&w->text, &w->size);
     if (w == NULL || w->memory == NULL) {
         free(w);
         return io_fail(error, "out of memory");
     }
-    if (path != NULL && !open_file(w, path, error)) {
+    if (o->json_path != NULL && !open_file(w, o->json_path, error)) {
         free_summary(w);
         return false;
     }
-    w->mesh = mesh;
-    w->keeps_text = keep_text;
-    w->times = times;
+    w->replay = r;
+    w->mesh = r->recording.mesh;
+    w->keeps_text = o->report.path != NULL;
+    w->times = !o->reproducible;
     w->out.file = w->memory;
     json_begin_object(&w->out, NULL);
     json_begin_array(&w->out, "intervals");
-    *out = w;
+    *state = w;
     return true;
 }
 
@@ -145,7 +147,8 @@ static void write_counters(json *out, const cscd_counters *counters, bool of_con
     }
 }
 
-bool summary_add_interval(summary_writer *w, const interval_result *result, io_error *error) {
+static bool add_interval(void *state, const interval_result *result, io_error *error) {
+    summary_writer *w = state;
     json *out = &w->out;
     json_break_line(out);
     json_begin_object(out, NULL);
@@ -232,20 +235,21 @@ static void write_plan(json *out, const plan_choice *plan, bool times) {
     json_end_object(out);
 }
 
-static void write_summary(summary_writer *w, const summary_ending *e) {
-    const replay_totals *t = e->totals;
+static void write_summary(summary_writer *w, const replay *r) {
+    const replay_totals *t = &r->totals;
+    const replay_options *o = r->options;
     json *out = &w->out;
     json_break_line(out);
     json_begin_object(out, "summary");
-    const char *unfinished = answers_unfinished(e->answers);
+    const char *unfinished = answers_unfinished(&r->answers);
     json_boolean(out, "complete", unfinished == NULL);
     if (unfinished != NULL) json_string(out, "stopped_by", unfinished);
-    json_string(out, "method", cscd_method_name(e->plan->method));
-    json_string(out, "mode", e->mode);
-    json_string(out, "volume", cscd_volume_name(e->volume));
-    if (!e->reproducible) json_string(out, "simd", cscd_simd_name(cscd_context_simd(e->recording->context)));
-    json_number(out, "min_separation", e->min_separation);
-    write_plan(out, e->plan, w->times);
+    json_string(out, "method", cscd_method_name(r->plan.method));
+    json_string(out, "mode", cscd_mode_name(o->mode));
+    json_string(out, "volume", cscd_volume_name(o->volume));
+    if (!o->reproducible) json_string(out, "simd", cscd_simd_name(cscd_context_simd(r->recording.context)));
+    json_number(out, "min_separation", o->min_separation);
+    write_plan(out, &r->plan, w->times);
     json_integer(out, "vertices", cscd_mesh_vertex_count(w->mesh));
     json_integer(out, "triangles", cscd_mesh_triangle_count(w->mesh));
     json_integer(out, "components", cscd_mesh_component_count(w->mesh));
@@ -267,15 +271,13 @@ static void write_summary(summary_writer *w, const summary_ending *e) {
     json_end_object(out);
 }
 
-static void write_provenance(summary_writer *w, const summary_ending *e) {
-    const recording *r = e->recording;
-    json *out = &w->out;
+static void write_provenance(json *out, const replay_options *o, const recording *r) {
     json_break_line(out);
     json_begin_object(out, "provenance");
-    if (e->reproducible)
+    if (o->reproducible)
         provenance_write_build(out);
     else
-        provenance_write(out, e->argument_count, e->arguments, cscd_context_thread_count(r->context));
+        provenance_write(out, o->argument_count, o->arguments, cscd_context_thread_count(r->context));
     json_begin_array(out, "inputs");
     for (uint32_t i = 0; i < r->object_count; i++) {
         const recorded_object *object = &r->objects[i];
@@ -292,30 +294,40 @@ static void write_provenance(summary_writer *w, const summary_ending *e) {
     json_end_object(out);
 }
 
-/* The file, if there is one, is closed in any case. */
-static bool close_file(summary_writer *w, io_error *error) {
-    return w->file.file == NULL || output_file_close(&w->file, OUTPUT_WHOLE) || write_failed(w, error);
-}
-
-bool summary_close(summary_writer *w, const summary_ending *ending, char **text, io_error *error) {
+/* Writes the frames, the events, the summary and the provenance. */
+static bool write_ending(summary_writer *w, io_error *error) {
+    const replay *r = w->replay;
     json_end_array(&w->out);
     json_break_line(&w->out);
-    write_frames(&w->out, ending->answers);
+    write_frames(&w->out, &r->answers);
     json_break_line(&w->out);
-    answers_write_json(ending->answers, ending->unit, &w->out);
-    write_summary(w, ending);
-    write_provenance(w, ending);
+    answers_write_json(&r->answers, &r->unit, &w->out);
+    write_summary(w, r);
+    write_provenance(&w->out, r->options, &r->recording);
     json_end_object(&w->out);
     fputc('\n', w->memory);
-    bool forwarded = forward_text(w, error);
-    bool closed = close_file(w, forwarded ? error : NULL);
-    bool whole = w->keeps_text && !ferror(w->memory);
+    return forward_text(w, error);
+}
+
+/* The report gets the whole text, also when the file could not be written; NULL if there was no memory for it. */
+static void hand_on_text(summary_writer *w) {
+    bool whole = !ferror(w->memory);
     whole = fclose(w->memory) == 0 && whole;
     w->memory = NULL;
-    if (text != NULL) {
-        *text = whole ? w->text : NULL;
-        if (whole) w->text = NULL;
-    }
-    free_summary(w);
-    return forwarded && closed;
+    if (!whole || !w->keeps_text) return;
+    w->replay->summary_text = w->text;
+    w->text = NULL;
 }
+
+static bool close_summary(void *state, bool whole, io_error *error) {
+    summary_writer *w = state;
+    bool written = !whole || write_ending(w, error);
+    if (w->file.file != NULL && !output_file_close(&w->file, whole ? OUTPUT_WHOLE : OUTPUT_ABANDONED) &&
+        whole)
+        written = write_failed(w, written ? error : NULL);
+    if (whole) hand_on_text(w);
+    free_summary(w);
+    return written;
+}
+
+const replay_sink summary_sink = {.open = open_summary, .end_interval = add_interval, .close = close_summary};
