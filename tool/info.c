@@ -16,7 +16,7 @@ typedef struct info_options {
 } info_options;
 
 static const option_row rows[] = {
-    {"json", "OUT.json", read_text, offsetof(info_options, json_path),
+    {"json", "OUT.json", read_output_path, offsetof(info_options, json_path),
      "write all of it, all components and repairs of the file; - is the standard output, and the text for people then "
      "goes to the standard error"},
     {"weld", "exact|none|EPS", read_weld, offsetof(info_options, source.weld),
@@ -287,9 +287,7 @@ int command_info(int argument_count, char **arguments) {
     int code;
     if (!option_table_read(&table, argument_count, arguments, &options, &given, &code)) return code;
     if (given.input_count != 1) return fail_usage("info", "expected one MODEL");
-    if (!output_path_is_safe(options.json_path, given.inputs, 1, &error) ||
-        !output_path_fits(options.json_path, ".json", &error))
-        return fail_usage("info", "--json %s", error.text);
+    if (!output_paths_are_safe(&table, &options, &given, &error)) return fail_usage("info", "%s", error.text);
     recording_options_take(&options.source, &given);
     recording r;
     mesh_facts facts = {.pairs = 0};

@@ -20,17 +20,17 @@ typedef struct merge_options {
 } merge_options;
 
 static const option_row rows[] = {
-    {"o", "OUT.jsonl", read_text, offsetof(merge_options, output_path),
+    {"o", "OUT.jsonl", read_output_path, offsetof(merge_options, output_path),
      "the lines of all jobs in the order of the list; - is the standard output. Without it they are only proven to be "
      "there"},
-    {"output", "OUT.jsonl", read_text, offsetof(merge_options, output_path), NULL},
-    {"junit", "OUT.xml", read_text, offsetof(merge_options, junit_path),
+    {"output", "OUT.jsonl", read_output_path, offsetof(merge_options, output_path), NULL},
+    {"junit", "OUT.xml", read_output_path, offsetof(merge_options, junit_path),
      "write a JUnit file for continuous integration, with a test case for each job; one fails by the rules of its run"},
-    {"contacts", "OUT.csv|OUT.jsonl", read_text, offsetof(merge_options, contacts_path),
+    {"contacts", "OUT.csv|OUT.jsonl", read_output_path, offsetof(merge_options, contacts_path),
      "of a recording: what cscd replay writes by the same option"},
-    {"json", "OUT.json", read_text, offsetof(merge_options, json_path), "the same"},
-    {"events", "OUT.csv|OUT.json", read_text, offsetof(merge_options, events_path), "the same"},
-    {"report", "OUT.html", read_text, offsetof(merge_options, report_path), "the same"},
+    {"json", "OUT.json", read_output_path, offsetof(merge_options, json_path), "the same"},
+    {"events", "OUT.csv|OUT.json", read_output_path, offsetof(merge_options, events_path), "the same"},
+    {"report", "OUT.html", read_output_path, offsetof(merge_options, report_path), "the same"},
     {"title", "TEXT", read_text, offsetof(merge_options, title), "of the report"},
     {"reproducible", NULL, read_flag, offsetof(merge_options, reproducible),
      "of a recording: leave times, dates, the machine and the command line out of --json and --report"},
@@ -118,10 +118,6 @@ static int merge_recording(const merge_options *o, const given_options *given, i
     const merged_output outputs[] = {{"contacts", o->contacts_path}, {"json", o->json_path},
                                      {"events", o->events_path},     {"junit", o->junit_path},
                                      {"report", o->report_path},     {"title", o->title}};
-    io_error error;
-    for (size_t i = 0; i < sizeof outputs / sizeof *outputs; i++)
-        if (!output_path_differs(outputs[i].value, given->inputs, given->input_count, &error))
-            return fail_usage("merge", "--%s %s", outputs[i].option, error.text);
     if (o->output_path != NULL)
         return fail_usage("merge", "-o is for the results of a list; a recording has --contacts, --json, "
                                    "--events, --junit and --report");
@@ -168,13 +164,7 @@ int command_merge(int argument_count, char **arguments) {
     if (!option_table_read(&table, argument_count, arguments, &o, &given, &code)) return code;
     if (given.input_count == 0)
         return fail_usage("merge", "no results given: what --results of check or replay wrote");
-    if (!output_path_is_safe(o.output_path, given.inputs, given.input_count, &error) ||
-        !output_path_fits(o.output_path, ".jsonl", &error))
-        return fail_usage("merge", "-o %s", error.text);
-    if (!output_path_is_safe(o.junit_path, given.inputs, given.input_count, &error) ||
-        !output_path_differs(o.junit_path, (const char *const[]){o.output_path}, 1, &error) ||
-        !output_path_fits(o.junit_path, ".xml", &error))
-        return fail_usage("merge", "--junit %s", error.text);
+    if (!output_paths_are_safe(&table, &o, &given, &error)) return fail_usage("merge", "%s", error.text);
     if (is_shard_of_recording(given.inputs[0])) return merge_recording(&o, &given, argument_count, arguments);
     return merge_list(&o, &given);
 }

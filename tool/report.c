@@ -23,11 +23,11 @@ typedef struct report_command {
 } report_command;
 
 static const option_row rows[] = {
-    {"o", "OUT.html", read_text, offsetof(report_command, output_path), "the page"},
-    {"output", "OUT.html", read_text, offsetof(report_command, output_path), NULL},
+    {"o", "OUT.html", read_output_path, offsetof(report_command, output_path), "the page"},
+    {"output", "OUT.html", read_output_path, offsetof(report_command, output_path), NULL},
     {"title", "TEXT", read_text, offsetof(report_command, title),
      "of the page (default: Comparison, or Jobs)"},
-    {"junit", "OUT.xml", read_text, offsetof(report_command, junit_path),
+    {"junit", "OUT.xml", read_output_path, offsetof(report_command, junit_path),
      "of results: write a JUnit file for continuous integration, with a test case for each job; one that is not done is an error"},
     {"quiet", NULL, read_flag, offsetof(report_command, quiet), "nothing on the standard output"},
 };
@@ -111,20 +111,14 @@ static int check_kind(const report_command *c, bool *of_jobs) {
     return EXIT_RAN;
 }
 
-static int check_command(const report_command *c) {
+static int check_command(const report_command *c, const given_options *given) {
     io_error error;
     if (c->count == 0)
         return fail_usage(
             "report",
             "no summary given, and no results: what --json of replay wrote, or --results of check or replay");
     if (c->output_path == NULL) return fail_usage("report", "no -o OUT.html given");
-    if (!output_path_is_safe(c->output_path, c->paths, c->count, &error) ||
-        !output_path_fits(c->output_path, ".html", &error))
-        return fail_usage("report", "-o %s", error.text);
-    if (!output_path_is_safe(c->junit_path, c->paths, c->count, &error) ||
-        !output_path_differs(c->junit_path, (const char *const[]){c->output_path}, 1, &error) ||
-        !output_path_fits(c->junit_path, ".xml", &error))
-        return fail_usage("report", "--junit %s", error.text);
+    if (!output_paths_are_safe(&table, c, given, &error)) return fail_usage("report", "%s", error.text);
     return EXIT_RAN;
 }
 
@@ -153,7 +147,7 @@ int command_report(int argument_count, char **arguments) {
     if (!option_table_read(&table, argument_count, arguments, &c, &given, &code)) return code;
     c.paths = given.inputs;
     c.count = given.input_count;
-    code = check_command(&c);
+    code = check_command(&c, &given);
     if (code == EXIT_RAN) code = check_kind(&c, &of_jobs);
     if (code != EXIT_RAN) return code;
     return of_jobs ? report_jobs(&c) : report_summaries(&c);

@@ -177,7 +177,7 @@ def test_long_names_are_cut_between_characters():
     ("check named.obj --json - --csv -", ["--csv", "standard output twice"]),
     ("replay named.obj flight.pc2 --contacts out.csv --events out.csv", ["--events", "would overwrite"]),
     ("check named.obj --json - --junit -", ["--junit", "standard output twice"]),
-    ("check named.obj --events - --junit -", ["--events", "standard output twice"]),
+    ("check named.obj --events - --junit -", ["--junit", "standard output twice"]),
 ])
 def test_outputs_are_not_inputs_nor_each_other(line, says):
     usage_error(line, *says)

@@ -28,9 +28,9 @@ static bool read_orientation(const char *text, void *place) {
 }
 
 static const option_row rows[] = {
-    {"events", "OUT.csv", read_text, offsetof(answer_options, events_path),
+    {"events", "OUT.csv", read_output_path, offsetof(answer_options, events_path),
      "write the events as a table: which parts, since when, how deep, where; - is the standard output"},
-    {"junit", "OUT.xml", read_text, offsetof(answer_options, junit_path),
+    {"junit", "OUT.xml", read_output_path, offsetof(answer_options, junit_path),
      "write a JUnit file for continuous integration: a test case for each frame"},
     {"fail-depth", "LENGTH", read_fail_depth, offsetof(answer_options, fail.depth),
      "exit with 3 when something is deeper than that: 2mm, or 0.002 in the files' unit"},
@@ -53,23 +53,6 @@ static const option_row rows[] = {
 };
 
 const option_list answer_rows = {"Answers:", rows, sizeof rows / sizeof *rows};
-
-static bool is_safe(const char *option, const char *path, const char *ending, const char *const *inputs,
-                    size_t input_count, const char *const *outputs, size_t output_count, io_error *error) {
-    io_error reason;
-    return (output_path_is_safe(path, inputs, input_count, &reason) &&
-            output_path_differs(path, outputs, output_count, &reason) &&
-            output_path_fits(path, ending, &reason)) ||
-           io_fail(error, "%s %s", option, reason.text);
-}
-
-bool answer_options_are_safe(const answer_options *o, const char *const *inputs, size_t input_count,
-                             const char *const *outputs, size_t output_count, io_error *error) {
-    const char *own[] = {o->junit_path};
-    return is_safe("--events", o->events_path, ".csv", inputs, input_count, outputs, output_count, error) &&
-           is_safe("--events", o->events_path, ".csv", inputs, input_count, own, 1, error) &&
-           is_safe("--junit", o->junit_path, ".xml", inputs, input_count, outputs, output_count, error);
-}
 
 bool answer_options_agree(const answer_options *o, io_error *error) {
     if (!o->no_depths) return true;

@@ -18,11 +18,6 @@ typedef struct answer_options {
 /* Their rows, but --fail-on, of which each command has kinds of its own. Places count from answer_options. */
 extern const option_list answer_rows;
 
-/* False, with the reason, if one of the outputs would be written over an input or another output (NULLs among them are
- * skipped), or has another format's ending. */
-bool answer_options_are_safe(const answer_options *o, const char *const *inputs, size_t input_count,
-                             const char *const *outputs, size_t output_count, io_error *error);
-
 /* A rule passes nothing that the run does not look at: false if one would, and the error says which. */
 bool answer_options_agree(const answer_options *o, io_error *error);
 

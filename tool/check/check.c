@@ -21,10 +21,10 @@ static bool fail_on_touching(const char *text, void *place) {
 }
 
 static const option_row rows[] = {
-    {"json", "OUT.json", read_text, offsetof(check_options, json_path),
+    {"json", "OUT.json", read_output_path, offsetof(check_options, json_path),
      "write the pairs of every frame (triangles and faces as in MODEL, from 0) and the events; - is the standard "
      "output, and the text for people then goes to the standard error"},
-    {"csv", "OUT.csv", read_text, offsetof(check_options, csv_path),
+    {"csv", "OUT.csv", read_output_path, offsetof(check_options, csv_path),
      "write the pairs as a table; - as above"},
     {"each", NULL, read_flag, offsetof(check_options, each),
      "the inputs are different meshes, and each is checked alone: a line for each of them, and with --json a line of "
@@ -41,7 +41,7 @@ static const option_row rows[] = {
      "no progress, no warnings, nothing on the standard output"},
 };
 
-static const option_table table = {
+const option_table check_table = {
     "check",
     "MODEL [FRAMES...] [options]\n       cscd check --each MODEL... [options]\n       cscd check --list JOBS.jsonl [options]",
     "Finds where triangles cross or touch at each frame, and says which parts do, from when to when, and how deep. "
@@ -63,39 +63,15 @@ static const option_table table = {
         {"check body.obj body.pc2 --ignore-rest=parts --fail-on crossing",
          "Fail, as a test does, when parts cross that are apart in the first frame, as an eye and its lid are not."}}};
 
-/* Outputs are not inputs, and not each other. */
-static int check_outputs(const check_options *o, const given_options *given) {
-    const char *inputs[] = {o->ignored.path, o->ignored.parts_path};
-    const char *outputs[] = {o->json_path, o->csv_path};
-    io_error error;
-    if (!output_path_is_safe(o->json_path, given->inputs, given->input_count, &error) ||
-        !output_path_is_safe(o->json_path, inputs, 2, &error) ||
-        !output_path_fits(o->json_path, ".json", &error))
-        return fail_usage("check", "--json %s", error.text);
-    if (!output_path_is_safe(o->csv_path, given->inputs, given->input_count, &error) ||
-        !output_path_is_safe(o->csv_path, inputs, 2, &error) ||
-        !output_path_differs(o->csv_path, outputs, 1, &error) ||
-        !output_path_fits(o->csv_path, ".csv", &error))
-        return fail_usage("check", "--csv %s", error.text);
-    if (!answer_options_are_safe(&o->answers, given->inputs, given->input_count, outputs, 2, &error) ||
-        !answer_options_are_safe(&o->answers, inputs, 2, NULL, 0, &error))
-        return fail_usage("check", "%s", error.text);
-    const char *tables[] = {o->answers.events_path, o->answers.junit_path};
-    if (!export_request_fits(&o->exports, given->inputs, given->input_count, &error) ||
-        !export_request_fits(&o->exports, inputs, 2, &error) ||
-        !export_request_fits(&o->exports, outputs, 2, &error) ||
-        !export_request_fits(&o->exports, tables, 2, &error))
-        return fail_usage("check", "%s", error.text);
-    return EXIT_RAN;
-}
-
 /* Runs the command with options whose inputs are those given. */
 static int run_recording(check_options *options, const given_options *given, const char *name,
                          job_output *job) {
     if (given->input_count < 1 && options->source.objects.count == 0)
         return fail_usage("check", "no MODEL given");
-    const int code = check_outputs(options, given);
-    if (code != EXIT_RAN) return code;
+    io_error error;
+    if (!export_request_fits(&options->exports, &error) ||
+        !output_paths_are_safe(&check_table, options, given, &error))
+        return fail_usage("check", "%s", error.text);
     recording_options_take(&options->source, given);
     options->exports.no_depths = options->answers.no_depths;
     return check_run_on(options, name, job);
@@ -112,7 +88,7 @@ static int run_listed(void *options, given_options *given, const char *name, csc
 }
 
 static int run_list(const check_options *options, const given_options *given) {
-    const list_command command = {.table = &table,
+    const list_command command = {.table = &check_table,
                                   .options = options,
                                   .options_size = sizeof *options,
                                   .given = given,
@@ -132,7 +108,7 @@ static int refuse_beside_each(const check_options *o, const given_options *given
                                       "resume",     "job-timeout", "reproducible", "parts-by",
                                       "orientation"};
     io_error error;
-    const char *foreign = option_given_beside(&table, given, own, sizeof own / sizeof *own);
+    const char *foreign = option_given_beside(&check_table, given, own, sizeof own / sizeof *own);
     if (foreign != NULL)
         return fail_usage("check", "--each checks each mesh alone, and --%s says nothing about that",
                           foreign);
@@ -163,7 +139,7 @@ static int run_each(const check_options *o, const given_options *given) {
     if (code != EXIT_RAN) return code;
     if (!job_list_of_names(given->inputs, given->input_count, &list, &error))
         return fail_jobs("%s", error.text);
-    jobs_request request = list_options_request(&o->list, &list, &table, given);
+    jobs_request request = list_options_request(&o->list, &list, &check_table, given);
     request.lines_path = o->json_path;
     request.thread_count = o->source.thread_count;
     request.quiet = o->quiet;
@@ -176,12 +152,12 @@ int command_check(int argument_count, char **arguments) {
     check_options options = {.frames = frame_range_all()};
     given_options given;
     int code;
-    if (!option_table_read(&table, argument_count, arguments, &options, &given, &code)) return code;
+    if (!option_table_read(&check_table, argument_count, arguments, &options, &given, &code)) return code;
     io_error error;
     if (!answer_options_agree(&options.answers, &error)) return fail_usage("check", "%s", error.text);
     if (options.list.path != NULL) return run_list(&options, &given);
     if (options.each) return run_each(&options, &given);
-    const char *lone = list_option_without_list(&table, &given);
+    const char *lone = list_option_without_list(&check_table, &given);
     if (lone != NULL) return fail_usage("check", "--%s is for --list or --each", lone);
     return run_recording(&options, &given, NULL, NULL);
 }

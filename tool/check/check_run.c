@@ -5,6 +5,7 @@
 #include "tool/answers/answer_words.h"
 #include "tool/check/check_output.h"
 #include "tool/common/command.h"
+#include "tool/common/output_path.h"
 #include "tool/common/terminal.h"
 #include "tool/jobs/recording_answer.h"
 
@@ -123,9 +124,8 @@ static void tell_interrupt(const check_run *c) {
     const check_options *o = c->options;
     const uint32_t done = (uint32_t)frames_done(c);
     const int32_t *numbers = c->recording.frame_numbers;
-    const char *const paths[] = {o->json_path,          o->csv_path,         o->answers.events_path,
-                                 o->answers.junit_path, o->exports.vtk_path, o->exports.ply_path,
-                                 o->exports.select_path};
+    const char *paths[OPTION_ROWS_MAX];
+    const size_t path_count = output_paths_of(&check_table, o, paths);
     interrupt_tell(
         &(interrupt_kept){.done = done,
                           .whole = frame_choice_count(&c->frames),
@@ -133,7 +133,7 @@ static void tell_interrupt(const check_run *c) {
                           .first = numbers[c->frames.first],
                           .last = numbers[c->frames.first + (done > 0 ? done - 1 : 0) * c->frames.step],
                           .paths = paths,
-                          .path_count = sizeof paths / sizeof *paths});
+                          .path_count = path_count});
 }
 
 static int end_check(check_run *c, bool ran, const io_error *error) {

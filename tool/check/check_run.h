@@ -18,6 +18,8 @@ typedef struct check_options {
     bool each, reproducible, quiet;
 } check_options;
 
+extern const option_table check_table;
+
 /* Runs the command on a recording, whose inputs the options have. name, job: of a job among many, which gets the answer; NULL: what is
  * found is printed. Returns the exit code. */
 int check_run_on(const check_options *options, const char *name, job_output *job);

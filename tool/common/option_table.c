@@ -16,7 +16,7 @@ enum {
     LABEL_SIZE = 100
 };
 
-static bool is_letter(const option_row *row) {
+bool option_is_letter(const option_row *row) {
     return row->name[1] == '\0';
 }
 
@@ -26,19 +26,25 @@ typedef struct all_rows {
     size_t count;
 } all_rows;
 
-static void append_rows(all_rows *all, const option_row *rows, size_t count, size_t place) {
-    assert(all->count + count <= OPTION_ROWS_MAX);
+static size_t append_rows(const option_row *rows, size_t count, size_t place, option_row *all, size_t used) {
+    assert(used + count <= OPTION_ROWS_MAX);
     for (size_t i = 0; i < count; i++) {
-        all->rows[all->count] = rows[i];
-        all->rows[all->count++].place += place;
+        all[used] = rows[i];
+        all[used++].place += place;
     }
+    return used;
+}
+
+size_t option_table_rows(const option_table *table, option_row rows[OPTION_ROWS_MAX]) {
+    size_t used = append_rows(table->rows, table->count, 0, rows, 0);
+    for (size_t i = 0; i < OPTION_LISTS_MAX && table->shared[i].list != NULL; i++)
+        used = append_rows(table->shared[i].list->rows, table->shared[i].list->count, table->shared[i].place,
+                           rows, used);
+    return used;
 }
 
 static void collect_rows(const option_table *table, all_rows *all) {
-    all->count = 0;
-    append_rows(all, table->rows, table->count, 0);
-    for (size_t i = 0; i < OPTION_LISTS_MAX && table->shared[i].list != NULL; i++)
-        append_rows(all, table->shared[i].list->rows, table->shared[i].list->count, table->shared[i].place);
+    all->count = option_table_rows(table, all->rows);
 }
 
 /* ---- help -------------------------------------------------------------------------------------------- */
@@ -64,7 +70,7 @@ static void print_wrapped(const char *text, int column, int used) {
 /* "  --name VALUE  ", and its length. */
 static int write_label(const option_row *row, char label[LABEL_SIZE]) {
     const char *value = row->value != NULL ? row->value : "";
-    return snprintf(label, LABEL_SIZE, "  %s%s%s%s  ", is_letter(row) ? "-" : "--", row->name,
+    return snprintf(label, LABEL_SIZE, "  %s%s%s%s  ", option_is_letter(row) ? "-" : "--", row->name,
                     value[0] != '\0' && value[0] != '[' ? " " : "", value);
 }
 
@@ -127,7 +133,7 @@ static void fill_tables(const all_rows *table, getopt_tables *out) {
                                                : required_argument;
         if (row->read == NULL) continue;
         out->names[names++] = (struct option){row->name, has_value, NULL, LONG_OPTION + (int)i};
-        if (!is_letter(row)) continue;
+        if (!option_is_letter(row)) continue;
         out->letters[letters++] = row->name[0];
         if (row->value != NULL) out->letters[letters++] = ':';
     }
@@ -139,7 +145,7 @@ static void fill_tables(const all_rows *table, getopt_tables *out) {
 static size_t row_of(const all_rows *table, int id) {
     if (id >= LONG_OPTION) return (size_t)(id - LONG_OPTION);
     size_t i = 0;
-    while (!is_letter(&table->rows[i]) || table->rows[i].name[0] != id) i++;
+    while (!option_is_letter(&table->rows[i]) || table->rows[i].name[0] != id) i++;
     return i;
 }
 

@@ -73,6 +73,13 @@ bool option_table_set(const option_table *table, const char *name, const char *v
 
 bool option_table_has(const option_table *table, const char *name);
 
+/* Collects all rows of a table, shared ones behind its own, with their places in the command's struct of options. Returns the
+ * number. */
+size_t option_table_rows(const option_table *table, option_row rows[OPTION_ROWS_MAX]);
+
+/* Is the option a single letter, which has one dash? */
+bool option_is_letter(const option_row *row);
+
 /* Was the option of that name given? The table must have it. */
 bool option_given(const option_table *table, const given_options *given, const char *name);
 

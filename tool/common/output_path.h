@@ -1,10 +1,27 @@
 /* Keeps a command from writing over what it reads. */
 #pragma once
 
-#include "tool/io/io_error.h"
+#include "tool/common/option_table.h"
 
-#include <stdbool.h>
-#include <stddef.h>
+/* Readers of paths (const char *), by which the functions below know what a row of a table of options is: a file or folder that the
+ * command reads, or one that it looks after by itself; a file that it writes, with an ending of those that the row's value has; the
+ * beginning of the names of several files that it writes. */
+bool read_input_path(const char *text, void *place);
+bool read_output_path(const char *text, void *place);
+bool read_output_stem(const char *text, void *place);
+
+bool option_is_output(const option_row *row);
+
+/* Outputs are not inputs, and not each other, are not named like meshes, and have the ending of their format. False, with the reason and
+ * the option. */
+bool output_paths_are_safe(const option_table *table, const void *options, const given_options *given,
+                           io_error *error);
+
+/* Can all files of a command be opened for writing? See output_path_opens. */
+bool output_paths_open(const option_table *table, const void *options, io_error *error);
+
+/* Collects the paths of all outputs, NULLs among them, in the order of the table. Returns the number. */
+size_t output_paths_of(const option_table *table, const void *options, const char *paths[OPTION_ROWS_MAX]);
 
 /* False, with the reason, when `path` is one of the files in others. Links are followed, and NULLs among
  * the others are skipped. path may be NULL. */

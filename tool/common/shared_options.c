@@ -3,6 +3,7 @@
 
 #include "tool/common/ignore_pairs.h"
 #include "tool/common/option_values.h"
+#include "tool/common/output_path.h"
 #include "tool/common/recording.h"
 
 static const option_row of_objects[] = {
@@ -39,7 +40,7 @@ static const option_row of_frames[] = {
 };
 
 static const option_row of_pairs[] = {
-    {"parts", "TABLE.csv", read_text, offsetof(ignore_options, parts_path),
+    {"parts", "TABLE.csv", read_input_path, offsetof(ignore_options, parts_path),
      "which part each triangle, face or vertex is in (default: the parts that the files name, else "
      "components)"},
     {"only", "A[,B]", read_part_pairs, offsetof(ignore_options, only),
@@ -49,7 +50,7 @@ static const option_row of_pairs[] = {
     {"ignore-rest", "[=parts]", read_rest, 0,
      "leave out triangle pairs that intersect or touch in the first frame; =parts: all pairs of parts that do, "
      "as of an eye in its socket"},
-    {"ignore", "LIST", read_text, offsetof(ignore_options, path),
+    {"ignore", "LIST", read_input_path, offsetof(ignore_options, path),
      "leave out the pairs of a file: lines 'A B' (triangles) or 'components A B'"},
 };
 

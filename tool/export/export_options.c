@@ -9,12 +9,12 @@
 #include <strings.h>
 
 static const option_row rows[] = {
-    {"vtk", "OUT", read_text, offsetof(export_request, vtk_path),
+    {"vtk", "OUT", read_output_stem, offsetof(export_request, vtk_path),
      "write OUT.pvd and OUT_FRAME.vtp for ParaView: parts, pairs by kind, what is buried, depths, regions; and the "
      "curves, OUT_curves.pvd"},
-    {"ply", "OUT", read_text, offsetof(export_request, ply_path),
+    {"ply", "OUT", read_output_stem, offsetof(export_request, ply_path),
      "write the same of vertices and faces as properties of OUT_FRAME.ply"},
-    {"select", "OUT.json", read_text, offsetof(export_request, select_path),
+    {"select", "OUT.json", read_output_path, offsetof(export_request, select_path),
      "write the vertices and polygons that cross, by frame and part, as MODEL numbers them from 0: to be selected "
      "in a modelling program; - is the standard output"},
 };
@@ -26,8 +26,7 @@ bool export_request_any(const export_request *request) {
 }
 
 /* Paths of several files, whose frames are named by them. */
-static bool series_fits(const char *option, const char *path, const char *ending, const char *const *others,
-                        size_t other_count, io_error *error) {
+static bool stem_fits(const char *option, const char *path, const char *ending, io_error *error) {
     if (path == NULL) return true;
     io_error reason;
     if (output_file_is_standard(path))
@@ -36,18 +35,10 @@ static bool series_fits(const char *option, const char *path, const char *ending
     if (mesh_ending > 0 && strcasecmp(path + strlen(path) - mesh_ending, ending) != 0)
         return io_fail(error, "%s '%s' would be no %s file; choose a name that ends in %s, or in nothing",
                        option, path, path + strlen(path) - mesh_ending + 1, ending);
-    return (output_path_fits(path, ending, &reason) &&
-            output_path_differs(path, others, other_count, &reason)) ||
-           io_fail(error, "%s %s", option, reason.text);
+    return output_path_fits(path, ending, &reason) || io_fail(error, "%s %s", option, reason.text);
 }
 
-bool export_request_fits(const export_request *request, const char *const *others, size_t other_count,
-                         io_error *error) {
-    io_error reason;
-    if (!series_fits("--vtk", request->vtk_path, ".pvd", others, other_count, error) ||
-        !series_fits("--ply", request->ply_path, ".ply", others, other_count, error))
-        return false;
-    return (output_path_fits(request->select_path, ".json", &reason) &&
-            output_path_is_safe(request->select_path, others, other_count, &reason)) ||
-           io_fail(error, "--select %s", reason.text);
+bool export_request_fits(const export_request *request, io_error *error) {
+    return stem_fits("--vtk", request->vtk_path, ".pvd", error) &&
+           stem_fits("--ply", request->ply_path, ".ply", error);
 }

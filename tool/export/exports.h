@@ -14,10 +14,8 @@ typedef struct export_request {
 extern const option_list export_rows;
 
 /* Files of both kinds have the frame's number in their names: out, out.pvd and out.ply all stand for out_0017. False, with
- * the reason, if a path has the ending of another format, is the standard output where there are several files, or is one
- * of the others, which are the inputs and other outputs of the command. */
-bool export_request_fits(const export_request *request, const char *const *others, size_t other_count,
-                         io_error *error);
+ * the reason, if a path has the ending of another format or is the standard output. */
+bool export_request_fits(const export_request *request, io_error *error);
 
 /* Was anything asked for? */
 bool export_request_any(const export_request *request);

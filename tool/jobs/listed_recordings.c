@@ -20,10 +20,11 @@ static bool name_among(const char *name, const char *const *names) {
 static const char *const of_run[] = {"list", "shard",   "results", "resume", "job-timeout",
                                      "each", "threads", "quiet",   NULL};
 
-static bool option_fits_job(const job_option *option, io_error *error) {
+static bool option_fits_job(const list_command *c, const job_option *option, io_error *error) {
     if (name_among(option->name, of_run))
         return io_fail(error, "--%s is for the whole list; give it on the command line", option->name);
-    if (option->value != NULL && strcmp(option->value, "-") == 0 && option_is_output(option->name))
+    if (option->value != NULL && strcmp(option->value, "-") == 0 &&
+        option_name_is_output(c->table, option->name))
         return io_fail(error, "--%s: a job among many has no standard output; name a file", option->name);
     return true;
 }
@@ -32,7 +33,7 @@ static bool take_options(const list_command *c, const job_line *line, void *opti
                          io_error *error) {
     for (size_t i = 0; i < line->option_count; i++) {
         const job_option *option = &line->options[i];
-        if (!option_fits_job(option, error) ||
+        if (!option_fits_job(c, option, error) ||
             !option_table_set(c->table, option->name, option->value, options, given, error))
             return false;
     }
@@ -95,7 +96,8 @@ static bool check_line(const list_command *c, const job_list *list, uint32_t job
     memcpy(check->options, c->options, c->options_size);
     if (!job_list_line(list, job, &line, &reason)) return job_list_fail(list, job, reason.text, error);
     bool good = take_options(c, &line, check->options, &given, &reason);
-    if (good && !output_names_add(&check->names, &line, job)) good = io_fail(&reason, "out of memory");
+    if (good && !output_names_add(&check->names, c->table, &line, job))
+        good = io_fail(&reason, "out of memory");
     job_line_free(&line);
     return good || job_list_fail(list, job, reason.text, error);
 }
@@ -132,13 +134,15 @@ static bool check_lines(const list_command *c, const job_list *list, io_error *e
 
 static int refuse_options(const list_command *c) {
     io_error error;
-    for (const char *const *name = output_options; *name != NULL; name++)
-        if (option_table_has(c->table, *name) && option_given(c->table, c->given, *name))
+    option_row rows[OPTION_ROWS_MAX];
+    const size_t count = option_table_rows(c->table, rows);
+    for (size_t i = 0; i < count; i++)
+        if (c->given->rows[i] && option_is_output(&rows[i]))
             return fail_usage(
                 c->table->command,
                 "--%s names one file, and each job of a list needs its own: write {\"outputs\": {\"%s\": ...}} "
                 "in the list",
-                *name, *name);
+                rows[i].name, rows[i].name);
     if (c->given->input_count > 0)
         return fail_usage(c->table->command, "--list: '%s' is no input; the list has the models",
                           c->given->inputs[0]);

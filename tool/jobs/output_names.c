@@ -6,18 +6,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const output_options[] = {"json",  "csv", "contacts", "report", "events",
-                                      "junit", "vtk", "ply",      "select", NULL};
-
 typedef struct output_name {
     char *path;
     uint32_t job;
 } output_name;
 
-bool option_is_output(const char *option) {
-    const char *const *name = output_options;
-    while (*name != NULL && strcmp(*name, option) != 0) name++;
-    return *name != NULL;
+bool option_name_is_output(const option_table *table, const char *name) {
+    option_row rows[OPTION_ROWS_MAX];
+    const size_t count = option_table_rows(table, rows);
+    for (size_t i = 0; i < count; i++)
+        if (option_is_output(&rows[i]) && strcmp(rows[i].name, name) == 0) return true;
+    return false;
 }
 
 output_names output_names_begin(void) {
@@ -60,10 +59,10 @@ bool output_names_add_of_run(output_names *names, const char *path) {
     return path == NULL || add_name(names, path, NAME_OF_RUN);
 }
 
-bool output_names_add(output_names *names, const job_line *line, uint32_t job) {
+bool output_names_add(output_names *names, const option_table *table, const job_line *line, uint32_t job) {
     for (size_t i = 0; i < line->option_count; i++) {
         const job_option *option = &line->options[i];
-        if (option->value == NULL || !option_is_output(option->name)) continue;
+        if (option->value == NULL || !option_name_is_output(table, option->name)) continue;
         if (!add_name(names, option->value, job)) return false;
     }
     return true;

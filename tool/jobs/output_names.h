@@ -1,12 +1,12 @@
 /* The files that a list and its jobs have: no two jobs may write the same one, and none the list or its results. */
 #pragma once
 
+#include "tool/common/output_path.h"
 #include "tool/io/growable.h"
 #include "tool/jobs/job_line.h"
 
-/* Files that a command writes, by the names of its options; ends with NULL. */
-extern const char *const output_options[];
-bool option_is_output(const char *option);
+/* Does the option of that name say which file the command writes? */
+bool option_name_is_output(const option_table *table, const char *name);
 
 typedef struct output_names {
     growable names; /* of output_name */
@@ -21,7 +21,7 @@ void output_names_free(output_names *names);
 bool output_names_add_of_run(output_names *names, const char *path);
 
 /* Adds what a job writes. False if memory is short. */
-bool output_names_add(output_names *names, const job_line *line, uint32_t job);
+bool output_names_add(output_names *names, const option_table *table, const job_line *line, uint32_t job);
 
 /* Finds a file that two jobs write, or a job (`first`) and the run (`second` is NAME_OF_RUN); false: there is none. */
 bool output_names_collide(output_names *names, const char **path, uint32_t *first, uint32_t *second);

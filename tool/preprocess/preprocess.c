@@ -58,10 +58,10 @@ static bool read_charge_solver(const char *text, void *place) {
 }
 
 static const option_row rows[] = {
-    {"o", "PLAN.ply", read_text, offsetof(preprocess_options, output_path),
+    {"o", "PLAN.ply", read_input_path, offsetof(preprocess_options, output_path),
      "default: MODEL with .plan.ply for its ending, where replay looks for it"},
-    {"output", "PLAN.ply", read_text, offsetof(preprocess_options, output_path), NULL},
-    {"report", "OUT.html", read_text, offsetof(preprocess_options, report.path),
+    {"output", "PLAN.ply", read_input_path, offsetof(preprocess_options, output_path), NULL},
+    {"report", "OUT.html", read_output_path, offsetof(preprocess_options, report.path),
      "also write a page that shows charge, regions and detector points in any browser"},
     {"up", "y|z", read_up, offsetof(preprocess_options, report.up),
      "of the report: which axis points up (default: y of OBJ and glTF, else z)"},
@@ -289,9 +289,7 @@ static int check_output(const preprocess_options *o, const given_options *given)
         return fail_usage("preprocess", "-o %s", error.text);
     if (stat(path, &status) == 0 && S_ISREG(status.st_mode) && status.st_size > 0 && !plan_file_is_plan(path))
         return fail_usage("preprocess", "-o '%s' exists and is no plan; choose another name", path);
-    const char *others[] = {o->source.model_path, path};
-    if (!report_request_is_safe(&o->report, others, 2, &error))
-        return fail_usage("preprocess", "%s", error.text);
+    if (!output_paths_are_safe(&table, o, given, &error)) return fail_usage("preprocess", "%s", error.text);
     return EXIT_RAN;
 }
 

@@ -16,8 +16,8 @@ static bool read_colour(const char *text, void *place) {
 }
 
 static const option_row rows[] = {
-    {"o", "OUT.png", read_text, offsetof(render_options, output_path), NULL},
-    {"output", "OUT.png", read_text, offsetof(render_options, output_path), NULL},
+    {"o", "OUT.png", read_output_path, offsetof(render_options, output_path), NULL},
+    {"output", "OUT.png", read_output_path, offsetof(render_options, output_path), NULL},
     {"frame", "K", read_frame_number, offsetof(render_options, frame), "one frame (default: the first)"},
     {"frames", "A:B[:STEP]", read_frames, offsetof(render_options, frames),
      "a strip: the frames A to B, both included, or every STEP-th of them (A: and :B are open ends), each as "
@@ -26,9 +26,9 @@ static const option_row rows[] = {
      "tiles in a row (default: as many as there are rows, or one more)"},
     {"follow", NULL, read_flag, offsetof(render_options, follow),
      "move the camera with the body, which stays in the middle of its tile"},
-    {"scenery", "MODEL", read_text, offsetof(render_options, scenery_path),
+    {"scenery", "MODEL", read_input_path, offsetof(render_options, scenery_path),
      "another mesh beside the body (ground, stairs, a ball): only drawn, where it is in view, and never tested"},
-    {"scenery-frames", "FRAMES", read_text, offsetof(render_options, scenery_frames_path),
+    {"scenery-frames", "FRAMES", read_input_path, offsetof(render_options, scenery_frames_path),
      "how it moves: a point cache or a pattern, of as many frames, or of one"},
     {"colour", "plain", read_colour, offsetof(render_options, colouring), "one colour (default)"},
     {"color", "plain", read_colour, offsetof(render_options, colouring), NULL},
@@ -39,7 +39,7 @@ static const option_row rows[] = {
     {"colour", "charge", .help = "charge density by rank, dark the least"},
     {"colour", "density", .help = "charge density from the least to the most of each component"},
     {"colour", "region", .help = "the regions of the plan; of a mesh at rest a dot at each detector point"},
-    {"plan", "PLAN.ply", read_text, offsetof(render_options, plan_path),
+    {"plan", "PLAN.ply", read_input_path, offsetof(render_options, plan_path),
      "which plan (default as for replay: MODEL.plan.ply, or made on the way)"},
     {"size", "WxH", read_picture_size, offsetof(render_options, picture),
      "pixels (default 1280x960), of one tile of a strip (default 400x300)"},
@@ -86,19 +86,10 @@ static int check_options(const render_options *o, const given_options *given) {
     return EXIT_RAN;
 }
 
-static int check_paths(const render_options *o, const char *const *inputs, size_t input_count) {
-    const char *others[] = {o->plan_path, o->scenery_path, o->scenery_frames_path};
-    io_error error;
-    if (!output_path_is_safe(o->output_path, inputs, input_count, &error) ||
-        !output_path_differs(o->output_path, others, 3, &error) ||
-        !output_path_fits(o->output_path, ".png", &error))
-        return fail_usage("render", "-o %s", error.text);
-    return EXIT_RAN;
-}
-
 bool render_options_parse(int argument_count, char **arguments, render_options *out, int *code) {
     render_options o = {.picture = picture_options_defaults()};
     given_options given;
+    io_error error;
     if (!option_table_read(&table, argument_count, arguments, &o, &given, code)) return false;
     o.strip = option_given(&table, &given, "frames");
     if (given.input_count < 1 && o.source.objects.count == 0)
@@ -106,7 +97,8 @@ bool render_options_parse(int argument_count, char **arguments, render_options *
     else if (o.output_path == NULL)
         *code = fail_usage("render", "no -o OUT.png given");
     if (*code == EXIT_RAN) *code = check_options(&o, &given);
-    if (*code == EXIT_RAN) *code = check_paths(&o, given.inputs, given.input_count);
+    if (*code == EXIT_RAN && !output_paths_are_safe(&table, &o, &given, &error))
+        *code = fail_usage("render", "%s", error.text);
     if (*code != EXIT_RAN) return false;
     if (o.strip && !option_given(&table, &given, "size")) {
         o.picture.width = 400;

@@ -70,12 +70,6 @@ static bool prepare_source(replay *r, io_error *error) {
     return replay_source_open(&r->source, error);
 }
 
-/* Checks the outputs before anything takes time and before any file is truncated. */
-static bool outputs_open(const replay_options *o, io_error *error) {
-    return output_path_opens(o->contacts_path, error) && output_path_opens(o->json_path, error) &&
-           output_path_opens(o->report.path, error);
-}
-
 /* From here on a signal may not end the process by itself, or what is half written would lie about. */
 static bool open_outputs(replay *r, io_error *error) {
     interrupt_catch();
@@ -89,8 +83,8 @@ static bool begin_replay(replay *r, io_error *error) {
     r->inputs.progress = (cscd_progress){terminal_progress_within, &r->progress};
     return recording_open(&r->inputs, &r->recording, error) && choose_frames(r, error) &&
            ignore_pairs_prepare(&r->options->ignored, &r->recording, &r->ignored, error) &&
-           outputs_open(r->options, error) && prepare_plan(r, error) && prepare_answers(r, error) &&
-           prepare_source(r, error) && open_outputs(r, error);
+           output_paths_open(&replay_table, r->options, error) && prepare_plan(r, error) &&
+           prepare_answers(r, error) && prepare_source(r, error) && open_outputs(r, error);
 }
 
 static void warn_of_zero_area(const replay *r, uint32_t frame, const cscd_intersection_pairs *found) {
@@ -204,18 +198,18 @@ static bool close_outputs(replay *r, const char *stopped_by, io_error *error) {
 
 static void tell_interrupt(const replay *r) {
     const replay_options *o = r->options;
-    const char *page = r->totals.intervals > 0 ? o->report.path : NULL;
-    const char *const paths[] = {
-        o->contacts_path,    o->json_path,        o->answers.events_path, o->answers.junit_path,
-        o->exports.vtk_path, o->exports.ply_path, o->exports.select_path, page,
-        o->list.results_path};
+    const char *paths[OPTION_ROWS_MAX + 1];
+    size_t count = output_paths_of(&replay_table, o, paths);
+    for (size_t i = 0; i < count; i++)
+        if (paths[i] == o->report.path && r->totals.intervals == 0) paths[i] = NULL; /* there is none */
+    paths[count++] = o->list.results_path;
     interrupt_tell(&(interrupt_kept){.done = r->totals.intervals,
                                      .whole = r->last - r->first,
                                      .what = "intervals",
                                      .first = r->recording.frame_numbers[r->first],
                                      .last = r->recording.frame_numbers[r->first + r->totals.intervals],
                                      .paths = paths,
-                                     .path_count = sizeof paths / sizeof *paths});
+                                     .path_count = count});
 }
 
 static void end_replay(replay *r) {

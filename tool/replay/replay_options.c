@@ -48,26 +48,26 @@ static bool fail_on_contact(const char *text, void *place) {
 }
 
 static const option_row rows[] = {
-    {"contacts", "OUT.csv|OUT.jsonl", read_text, offsetof(replay_options, contacts_path),
+    {"contacts", "OUT.csv|OUT.jsonl", read_output_path, offsetof(replay_options, contacts_path),
      "write each contact: frame, kind, time of impact, vertices, point, normal; - is the standard output"},
-    {"csv", "OUT.csv", read_text, offsetof(replay_options, contacts_path),
+    {"csv", "OUT.csv", read_output_path, offsetof(replay_options, contacts_path),
      "another name of --contacts; --csv - writes them to the standard output"},
-    {"json", "OUT.json", read_text, offsetof(replay_options, json_path),
+    {"json", "OUT.json", read_output_path, offsetof(replay_options, json_path),
      "write a summary: every interval, every frame, events, timings, provenance; - is the standard output, and the text "
      "for people then goes to the standard error"},
-    {"report", "OUT.html", read_text, offsetof(replay_options, report.path),
+    {"report", "OUT.html", read_output_path, offsetof(replay_options, report.path),
      "write a page that shows all of it in any browser: the motion, contacts, charge, regions, timings"},
     {"title", "TEXT", read_text, offsetof(replay_options, report.title),
      "of the report (default: the model's file)"},
-    {"scenery", "MODEL", read_text, offsetof(replay_options, report.scenery_path),
+    {"scenery", "MODEL", read_input_path, offsetof(replay_options, report.scenery_path),
      "of the report: another mesh (ground, stairs, a ball), drawn and never tested"},
-    {"scenery-frames", "FRAMES", read_text, offsetof(replay_options, report.scenery_frames_path),
+    {"scenery-frames", "FRAMES", read_input_path, offsetof(replay_options, report.scenery_frames_path),
      "how it moves: a point cache or a pattern, of as many frames, or of one"},
     {"up", "y|z", read_up, offsetof(replay_options, report.up),
      "of the report: which axis points up (default: y of OBJ and glTF, else z)"},
     {"frames", "A:B", read_frames, offsetof(replay_options, frames),
      "only from frame A to frame B, both included (A: and :B are open ends)"},
-    {"plan", "PLAN.ply", read_text, offsetof(replay_options, plan_path),
+    {"plan", "PLAN.ply", read_input_path, offsetof(replay_options, plan_path),
      "the regions that cscd preprocess found (default: MODEL.plan.ply if it fits, else made on the way: as by preprocess "
      "--method auto where that takes a tenth of the intervals at most or the triangles are few, else single)"},
     {"method", "charge|kmeans:K|single", read_method, 0,
@@ -130,35 +130,6 @@ const option_table replay_table = {
         {"replay body.obj 'f_%04d.obj' --weld exact --ignore-rest --fail-on contact",
          "Fail, as a test does, when a body with split seams touches itself where it does not in the first frame."}}};
 
-/* Outputs are not inputs, and not each other. */
-static int check_outputs(const replay_options *o, const char *const *inputs, size_t input_count) {
-    const char *others[] = {o->plan_path, o->ignored.path, o->contacts_path, o->json_path};
-    io_error error;
-    if (!output_path_is_safe(o->contacts_path, inputs, input_count, &error) ||
-        !output_path_is_safe(o->contacts_path, others, 2, &error))
-        return fail_usage("replay", "--contacts %s", error.text);
-    if (!output_path_is_safe(o->json_path, inputs, input_count, &error) ||
-        !output_path_is_safe(o->json_path, others, 3, &error))
-        return fail_usage("replay", "--json %s", error.text);
-    if (!report_request_is_safe(&o->report, inputs, input_count, &error) ||
-        !report_request_is_safe(&o->report, others, 4, &error))
-        return fail_usage("replay", "%s", error.text);
-    if (!output_path_fits(o->json_path, ".json", &error))
-        return fail_usage("replay", "--json %s", error.text);
-    const char *files[] = {o->plan_path, o->ignored.path, o->ignored.parts_path};
-    const char *outputs[] = {o->contacts_path, o->json_path, o->report.path};
-    if (!answer_options_are_safe(&o->answers, inputs, input_count, outputs, 3, &error) ||
-        !answer_options_are_safe(&o->answers, files, 3, NULL, 0, &error))
-        return fail_usage("replay", "%s", error.text);
-    const char *tables[] = {o->answers.events_path, o->answers.junit_path};
-    if (!export_request_fits(&o->exports, inputs, input_count, &error) ||
-        !export_request_fits(&o->exports, files, 3, &error) ||
-        !export_request_fits(&o->exports, outputs, 3, &error) ||
-        !export_request_fits(&o->exports, tables, 2, &error))
-        return fail_usage("replay", "%s", error.text);
-    return EXIT_RAN;
-}
-
 /* Without FRAMES the files of objects may hold an animation. */
 static bool objects_may_move(const replay_options *o) {
     const named_paths *objects = &o->source.objects;
@@ -183,6 +154,8 @@ static int check_options(const replay_options *o, size_t input_count) {
         return fail_usage("replay",
                           "--ours charge, ranks, cuts and points say how a plan is made, and --plan "
                           "brings one; leave out either");
+    if (!report_request_agrees(&o->report, &error) || !export_request_fits(&o->exports, &error))
+        return fail_usage("replay", "%s", error.text);
     if (o->no_check && export_request_any(&o->exports))
         return fail_usage("replay",
                           "--vtk, --ply and --select tell what intersects, which --no-check leaves out");
@@ -201,12 +174,21 @@ static int check_options(const replay_options *o, size_t input_count) {
     return EXIT_RAN;
 }
 
+/* The first option that was given and says what is written, or what a report shows; NULL: there is none. */
+static const char *option_of_outputs(const given_options *given) {
+    static const char *const of_reports[] = {"title", "scenery", "scenery-frames", "up"};
+    option_row all[OPTION_ROWS_MAX];
+    const size_t count = option_table_rows(&replay_table, all);
+    for (size_t i = 0; i < count; i++)
+        if (given->rows[i] && option_is_output(&all[i])) return all[i].name;
+    for (size_t i = 0; i < sizeof of_reports / sizeof *of_reports; i++)
+        if (option_given(&replay_table, given, of_reports[i])) return of_reports[i];
+    return NULL;
+}
+
 /* A shard of one recording, or all of it as one. What it finds is in its results, and written by merge. */
 static int check_shard(replay_options *o, const given_options *given, const char *const *inputs,
                        size_t input_count) {
-    static const char *const alone[] = {
-        "contacts", "csv",   "json", "report", "title",  "scenery", "scenery-frames",
-        "events",   "junit", "vtk",  "ply",    "select", "up"};
     const list_options *list = &o->list;
     io_error error;
     if (option_given(&replay_table, given, "job-timeout"))
@@ -216,11 +198,11 @@ static int check_shard(replay_options *o, const given_options *given, const char
                           list->shard.count > 0 ? "shard" : "resume");
     if (list->results_path == NULL) return EXIT_RAN;
     if (list->resume == RESUME_FAILED) return fail_usage("replay", "--resume=failed is for --list");
-    for (size_t i = 0; i < sizeof alone / sizeof *alone; i++)
-        if (option_given(&replay_table, given, alone[i]))
-            return fail_usage(
-                "replay", "--%s: with --results it is written by cscd merge, from the files of all shards",
-                alone[i]);
+    const char *merged = option_of_outputs(given);
+    if (merged != NULL)
+        return fail_usage("replay",
+                          "--%s: with --results it is written by cscd merge, from the files of all shards",
+                          merged);
     const char *files[] = {o->plan_path, o->ignored.path, o->ignored.parts_path};
     if (!output_path_is_safe(list->results_path, inputs, input_count, &error) ||
         !output_path_is_safe(list->results_path, files, 3, &error))
@@ -255,10 +237,12 @@ int replay_options_finish(replay_options *o, given_options *given) {
         given->inputs = both;
         given->input_count = 2;
     }
+    io_error error;
     int code = check_options(o, given->input_count);
     if (code == EXIT_RAN && o->list.path == NULL)
         code = check_shard(o, given, given->inputs, given->input_count);
-    if (code == EXIT_RAN) code = check_outputs(o, given->inputs, given->input_count);
+    if (code == EXIT_RAN && !output_paths_are_safe(&replay_table, o, given, &error))
+        code = fail_usage("replay", "%s", error.text);
     recording_options_take(&o->source, given);
     o->exports.no_depths = o->answers.no_depths;
     o->exports.contacts = true;

@@ -14,7 +14,5 @@ typedef struct report_request {
     up_axis up;
 } report_request;
 
-/* False, with the reason, if the options contradict each other, or if the report would be written over one
- * of the others (NULLs among them are skipped). */
-bool report_request_is_safe(const report_request *r, const char *const *others, size_t other_count,
-                            io_error *error);
+/* False, with the reason, if the options contradict each other. */
+bool report_request_agrees(const report_request *r, io_error *error);

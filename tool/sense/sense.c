@@ -97,12 +97,6 @@ static bool prepare_detector(sense *s, io_error *error) {
            api_failed(s, error);
 }
 
-/* Checks the outputs before anything takes time and before any file is truncated. */
-static bool outputs_open(const sense_options *o, io_error *error) {
-    return output_path_opens(o->csv_path, error) && output_path_opens(o->json_path, error) &&
-           output_path_opens(o->picture_path, error);
-}
-
 /* From here on a signal may not end the process by itself, or what is half written would lie about. */
 static bool open_files(sense *s, io_error *error) {
     interrupt_catch();
@@ -111,8 +105,8 @@ static bool open_files(sense *s, io_error *error) {
 
 static bool begin_sense(sense *s, io_error *error) {
     return recording_open(&s->options->source, &s->recording, error) && choose_frames(s, error) &&
-           outputs_open(s->options, error) && prepare_plan(s, error) && prepare_sensors(s, error) &&
-           prepare_detector(s, error) && open_files(s, error);
+           output_paths_open(&sense_table, s->options, error) && prepare_plan(s, error) &&
+           prepare_sensors(s, error) && prepare_detector(s, error) && open_files(s, error);
 }
 
 static bool read_frame(sense *s, uint32_t frame, double *positions, io_error *error) {

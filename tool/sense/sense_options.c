@@ -14,13 +14,6 @@ static bool read_sensor_method(const char *text, void *place) {
     return *method == CSCD_SENSORS_RANDOM || strcmp(text, "cells") == 0;
 }
 
-static bool read_plan(const char *text, void *place) {
-    sense_options *o = place;
-    o->no_plan = strcmp(text, "none") == 0;
-    o->plan_path = o->no_plan ? NULL : text;
-    return true;
-}
-
 static bool read_no_exact(const char *text, void *place) {
     (void)text;
     *(bool *)place = false;
@@ -44,17 +37,17 @@ static const option_row rows[] = {
     {"particles", "N", read_positive, offsetof(sense_options, sensors.particles),
      "with random: on each object (default 5)"},
     {"seed", "N", read_unsigned, offsetof(sense_options, sensors.seed), "with random: default 1"},
-    {"plan", "PLAN.ply|none", read_plan, 0,
+    {"plan", "PLAN.ply|none", read_input_path, offsetof(sense_options, plan_path),
      "whose regions are the parts of concave objects (default as for replay); none: every component is one part"},
     {"within", NULL, read_flag, offsetof(sense_options, partition.within),
      "with cells: parts of one object are watched for each other, too"},
     {"no-exact", NULL, read_no_exact, offsetof(sense_options, sensors.exact),
      "warnings are not checked by elementary tests"},
-    {"csv", "OUT.csv", read_text, offsetof(sense_options, csv_path),
+    {"csv", "OUT.csv", read_output_path, offsetof(sense_options, csv_path),
      "write each warning: frame, parts, objects, vertices, distance, contact; - is the standard output"},
-    {"json", "OUT.json", read_text, offsetof(sense_options, json_path),
+    {"json", "OUT.json", read_output_path, offsetof(sense_options, json_path),
      "write a summary: every interval, counts, timings, provenance; - is the standard output"},
-    {"picture", "OUT.png", read_text, offsetof(sense_options, picture_path),
+    {"picture", "OUT.png", read_output_path, offsetof(sense_options, picture_path),
      "draw cells, particles and where they have been"},
     {"frame", "K", read_frame_number, offsetof(sense_options, frame), "of the picture (default: the last)"},
     {"size", "WxH", read_picture_size, offsetof(sense_options, picture),
@@ -68,7 +61,7 @@ static const option_row rows[] = {
     {"quiet", NULL, read_flag, offsetof(sense_options, quiet), "no progress, no warnings, no table"},
 };
 
-static const option_table table = {
+const option_table sense_table = {
     "sense",
     "MODEL FRAMES... [options]",
     "Watches every pair of objects (components of MODEL) with particles that walk on their surfaces, and warns "
@@ -90,14 +83,14 @@ static int check_options(const sense_options *o, const given_options *given) {
     const cscd_sensor_options *s = &o->sensors;
     bool random = s->method == CSCD_SENSORS_RANDOM;
     for (int i = 0; i < 4; i++)
-        if (o->picture_path == NULL && option_given(&table, given, of_picture[i]))
+        if (o->picture_path == NULL && option_given(&sense_table, given, of_picture[i]))
             return fail_usage("sense", "--%s is of a picture; say which with --picture OUT.png",
                               of_picture[i]);
     for (int i = 0; i < 2; i++)
-        if (!random && option_given(&table, given, of_random[i]))
+        if (!random && option_given(&sense_table, given, of_random[i]))
             return fail_usage("sense", "--%s is of --method random; cells has one particle in each cell",
                               of_random[i]);
-    if (random && option_given(&table, given, "cells"))
+    if (random && option_given(&sense_table, given, "cells"))
         return fail_usage("sense", "--cells is of --method cells; random takes --particles");
     if (random && o->partition.within)
         return fail_usage("sense", "--within is of --method cells; random watches whole objects");
@@ -112,21 +105,6 @@ static int check_options(const sense_options *o, const given_options *given) {
     return EXIT_RAN;
 }
 
-/* Outputs are not inputs, and not each other. */
-static int check_paths(const sense_options *o, const char *const *inputs, size_t input_count) {
-    const char *others[] = {o->plan_path, o->csv_path, o->json_path};
-    const char *const outputs[] = {o->csv_path, o->json_path, o->picture_path};
-    static const char *const names[] = {"csv", "json", "picture"}, *const endings[] = {".csv", ".json",
-                                                                                       ".png"};
-    io_error error;
-    for (size_t i = 0; i < 3; i++)
-        if (!output_path_is_safe(outputs[i], inputs, input_count, &error) ||
-            !output_path_is_safe(outputs[i], others, i + 1, &error) ||
-            !output_path_fits(outputs[i], endings[i], &error))
-            return fail_usage("sense", "--%s %s", names[i], error.text);
-    return EXIT_RAN;
-}
-
 bool sense_options_parse(int argument_count, char **arguments, sense_options *out, int *code) {
     sense_options o = {.frames = frame_range_all(),
                        .partition = cscd_partition_defaults(),
@@ -135,11 +113,15 @@ bool sense_options_parse(int argument_count, char **arguments, sense_options *ou
                        .argument_count = argument_count,
                        .arguments = arguments};
     given_options given;
-    if (!option_table_read(&table, argument_count, arguments, &o, &given, code)) return false;
+    io_error error;
+    if (!option_table_read(&sense_table, argument_count, arguments, &o, &given, code)) return false;
     if (given.input_count < 2)
         *code = fail_usage("sense", given.input_count < 1 ? "no MODEL given" : "no FRAMES given");
     if (*code == EXIT_RAN) *code = check_options(&o, &given);
-    if (*code == EXIT_RAN) *code = check_paths(&o, given.inputs, given.input_count);
+    o.no_plan = o.plan_path != NULL && strcmp(o.plan_path, "none") == 0;
+    if (o.no_plan) o.plan_path = NULL;
+    if (*code == EXIT_RAN && !output_paths_are_safe(&sense_table, &o, &given, &error))
+        *code = fail_usage("sense", "%s", error.text);
     if (*code != EXIT_RAN) return false;
     recording_options_take(&o.source, &given);
     o.picture.y_up = up_axis_choose(o.up, recording_options_path(&o.source)) == UP_Y;

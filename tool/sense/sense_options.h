@@ -23,5 +23,7 @@ typedef struct sense_options {
     char **arguments;
 } sense_options;
 
+extern const option_table sense_table;
+
 /* False: *code is the exit code to end with (0 after --help). */
 bool sense_options_parse(int argument_count, char **arguments, sense_options *out, int *code);
