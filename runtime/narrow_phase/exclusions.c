@@ -4,7 +4,6 @@
 #include "src/core/disjoint_sets.h"
 #include "src/core/sort.h"
 #include "src/mesh/surface.h"
-#include "src/mesh/triangle_intersection.h"
 
 #include <string.h>
 
@@ -196,7 +195,7 @@ cscd_status exclusions_with_ignored(const exclusions *now, const uint32_t *ignor
     return give_exclusions(status, &e, out);
 }
 
-static bool is_listed(const exclusions *e, uint64_t key) {
+static bool has_key(const exclusions *e, uint64_t key) {
     size_t low = 0, high = e->ignored_count;
     while (low < high) {
         size_t middle = low + (high - low) / 2;
@@ -208,13 +207,17 @@ static bool is_listed(const exclusions *e, uint64_t key) {
     return low < e->ignored_count && e->ignored[low] == key;
 }
 
+bool exclusions_have(const exclusions *e, uint32_t a, uint32_t b) {
+    return e->ignored_count > 0 && has_key(e, key_of(a, b));
+}
+
 static uint32_t name_of(const exclusions *e, uint32_t vertex) {
     return e->names != NULL ? e->names[vertex] : vertex;
 }
 
 bool exclusions_uncover(const exclusions *before, const exclusions *now) {
     for (size_t i = 0; i < before->ignored_count; i++) {
-        if (!is_listed(now, before->ignored[i])) return true;
+        if (!has_key(now, before->ignored[i])) return true;
     }
     for (uint32_t v = 0; before->names != NULL && v < before->mesh->vertex_count; v++) {
         if (name_of(now, v) != name_of(now, before->names[v])) return true;
@@ -227,99 +230,6 @@ void exclusions_free(cscd_context *context, exclusions *e) {
     context_free(context, e->names);
     seam_list_free(context, &e->seams);
     *e = (exclusions){.mesh = NULL};
-}
-
-/* ---- pairs of triangles -------------------------------------------------------------------------------- */
-
-static bool host_ignores(const exclusions *e, cscd_contact_kind kind, uint32_t a, uint32_t b) {
-    if (e->ignore == NULL) return false;
-    HOST_CALL(call, &e->mesh->context->entry, HOST_IGNORE);
-    bool ignored = e->ignore(e->ignore_user, kind, a, b);
-    host_call_end(&call);
-    return ignored;
-}
-
-static bool is_waiting(const exclusions *e, cscd_contact_kind kind, uint32_t a, uint32_t b) {
-    if (e->waiting == NULL || e->waiting->count == 0) return false;
-    const named_pair *pair = named_pair_set_find(e->waiting, kind, a, b);
-    return pair != NULL && (!e->marked_wait || pair->marked != 0);
-}
-
-bool exclusions_cover_duplicate(const exclusions *e, uint32_t a, uint32_t b) {
-    if (is_waiting(e, CSCD_CONTACT_TT, a, b)) return true;
-    if (e->ignored_count > 0 && is_listed(e, key_of(a, b))) return true;
-    return host_ignores(e, CSCD_CONTACT_TT, a, b);
-}
-
-bool exclusions_host_ignores(const exclusions *e, uint32_t a, uint32_t b) {
-    return host_ignores(e, CSCD_CONTACT_TT, a, b);
-}
-
-bool exclusions_cover_triangles(const exclusions *e, uint32_t a, uint32_t b, const double *positions) {
-    if (exclusions_cover_duplicate(e, a, b)) return true;
-    if (e->names == NULL) return false;
-    const uint32_t *corners_a = e->mesh->triangles[a], *corners_b = e->mesh->triangles[b];
-    return !triangles_intersect_by_names(corners_a, corners_b, e->names, positions);
-}
-
-/* ---- pairs of features --------------------------------------------------------------------------------- */
-
-typedef struct triangle_list {
-    const uint32_t *items;
-    uint32_t count;
-} triangle_list;
-
-static triangle_list vertex_star(const cscd_mesh *mesh, uint32_t vertex) {
-    uint32_t begin = mesh->vertex_star_offsets[vertex];
-    return (triangle_list){mesh->vertex_stars + begin, mesh->vertex_star_offsets[vertex + 1] - begin};
-}
-
-static triangle_list edge_star(const cscd_mesh *mesh, uint32_t edge) {
-    return (triangle_list){mesh->edge_stars + mesh->edge_star_offsets[edge], edge_star_size(mesh, edge)};
-}
-
-static bool any_pair_listed(const exclusions *e, triangle_list a, triangle_list b) {
-    for (uint32_t i = 0; i < a.count; i++) {
-        for (uint32_t j = 0; j < b.count; j++) {
-            if (a.items[i] != b.items[j] && is_listed(e, key_of(a.items[i], b.items[j]))) return true;
-        }
-    }
-    return false;
-}
-
-static bool features_listed(const exclusions *e, cscd_contact_kind kind, uint32_t a, uint32_t b) {
-    if (e->ignored_count == 0 || (kind != CSCD_CONTACT_VF && kind != CSCD_CONTACT_EE)) return false;
-    if (kind == CSCD_CONTACT_VF) return any_pair_listed(e, vertex_star(e->mesh, a), (triangle_list){&b, 1});
-    return any_pair_listed(e, edge_star(e->mesh, a), edge_star(e->mesh, b));
-}
-
-static bool share_name(const uint32_t *names, const uint32_t *a, int a_count, const uint32_t *b,
-                       int b_count) {
-    for (int i = 0; i < a_count; i++) {
-        for (int j = 0; j < b_count; j++) {
-            if (names[a[i]] == names[b[j]]) return true;
-        }
-    }
-    return false;
-}
-
-/* Do two features have vertices of one seam? A half-space has its point. */
-static bool in_one_seam(const exclusions *e, cscd_contact_kind kind, uint32_t a, uint32_t b) {
-    const cscd_mesh *mesh = e->mesh;
-    bool edge_a = kind == CSCD_CONTACT_EE || kind == CSCD_CONTACT_EV;
-    const uint32_t *of_a = edge_a ? mesh->edges[a] : &a;
-    const uint32_t *of_b = kind == CSCD_CONTACT_VF   ? mesh->triangles[b]
-                           : kind == CSCD_CONTACT_EE ? mesh->edges[b]
-                           : kind == CSCD_CONTACT_VH ? &mesh->objects[b].first_vertex
-                                                     : &b;
-    int count_b = kind == CSCD_CONTACT_VF ? 3 : kind == CSCD_CONTACT_EE ? 2 : 1;
-    return share_name(e->names, of_a, edge_a ? 2 : 1, of_b, count_b);
-}
-
-bool exclusions_cover_features(const exclusions *e, cscd_contact_kind kind, uint32_t a, uint32_t b) {
-    if (is_waiting(e, kind, a, b)) return true;
-    if (e->names != NULL && in_one_seam(e, kind, a, b)) return true;
-    return features_listed(e, kind, a, b) || host_ignores(e, kind, a, b);
 }
 
 /* ---- seams of another mesh --------------------------------------------------------------------------------------------- */

@@ -1,7 +1,7 @@
 /* Pairs that are left out: by the caller, with a callback, a list, and seams; or until they have once been apart. */
 #pragma once
 
-#include "runtime/narrow_phase/pair_filter.h"
+#include "runtime/bvh/object_set.h"
 #include "src/core/context.h"
 #include "src/mesh/mesh_heirs.h"
 
@@ -91,18 +91,8 @@ static inline bool exclusions_any(const exclusions *e) {
            (e->waiting != NULL && e->waiting->count > 0);
 }
 
-/* Is this contact, or proximity, of two features without a common vertex to be left out? */
-bool exclusions_cover_features(const exclusions *e, cscd_contact_kind kind, uint32_t a, uint32_t b);
-
-/* Is this intersection of triangles a < b to be left out? Seams exclude it when every two of their features
- * that intersect have a vertex of one seam in common. */
-bool exclusions_cover_triangles(const exclusions *e, uint32_t a, uint32_t b, const double *positions);
-
-/* The same of a duplicate: triangles of three shared vertices, which seams do not exclude. */
-bool exclusions_cover_duplicate(const exclusions *e, uint32_t a, uint32_t b);
-
-/* Does the caller's function leave these triangles out? */
-bool exclusions_host_ignores(const exclusions *e, uint32_t a, uint32_t b);
+/* Is this pair of triangles among those that the caller lists? */
+bool exclusions_have(const exclusions *e, uint32_t a, uint32_t b);
 
 /* A seam joins what has become of its vertices: of vertices that came apart, the first. A pair of ignored triangles
  * becomes all pairs of triangles that came from the two. Pairs do not wait. OUT_OF_MEMORY without a sentence: *out is untouched. */
@@ -162,7 +152,7 @@ void waiting_pairs_settled(const cscd_mesh *mesh, waiting_pairs *w);
 typedef struct left_out_before {
     const cscd_mesh *mesh;
     const exclusions *exclusions;
-    const pair_rules *rules;
+    const struct pair_rules *rules;
 } left_out_before;
 
 /* A pair that waits becomes all pairs that came from its two features. Neighbours that the change has parted, because

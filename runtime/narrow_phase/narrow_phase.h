@@ -2,7 +2,6 @@
 #pragma once
 
 #include "runtime/narrow_phase/contact_lane.h"
-#include "runtime/narrow_phase/exclusions.h"
 #include "runtime/narrow_phase/representatives.h"
 #include "runtime/narrow_phase/swept_interval.h"
 

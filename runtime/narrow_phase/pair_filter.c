@@ -2,6 +2,7 @@
 #include "runtime/narrow_phase/pair_filter.h"
 
 #include "src/core/check.h"
+#include "src/mesh/triangle_intersection.h"
 
 #include <math.h>
 #include <string.h>
@@ -227,4 +228,97 @@ const char *active_set_validate(const active_set *s, const cscd_mesh *mesh) {
             return "a triangle is not as active as its vertices";
     }
     return NULL;
+}
+
+/* ---- what was found: pairs of triangles -------------------------------------------------------------------------------- */
+
+static bool host_ignores(const exclusions *e, cscd_contact_kind kind, uint32_t a, uint32_t b) {
+    if (e->ignore == NULL) return false;
+    HOST_CALL(call, &e->mesh->context->entry, HOST_IGNORE);
+    bool ignored = e->ignore(e->ignore_user, kind, a, b);
+    host_call_end(&call);
+    return ignored;
+}
+
+static bool is_waiting(const exclusions *e, cscd_contact_kind kind, uint32_t a, uint32_t b) {
+    if (e->waiting == NULL || e->waiting->count == 0) return false;
+    const named_pair *pair = named_pair_set_find(e->waiting, kind, a, b);
+    return pair != NULL && (!e->marked_wait || pair->marked != 0);
+}
+
+bool exclusions_cover_duplicate(const exclusions *e, uint32_t a, uint32_t b) {
+    if (is_waiting(e, CSCD_CONTACT_TT, a, b)) return true;
+    if (exclusions_have(e, a, b)) return true;
+    return host_ignores(e, CSCD_CONTACT_TT, a, b);
+}
+
+bool exclusions_host_ignores(const exclusions *e, uint32_t a, uint32_t b) {
+    return host_ignores(e, CSCD_CONTACT_TT, a, b);
+}
+
+bool exclusions_cover_triangles(const exclusions *e, uint32_t a, uint32_t b, const double *positions) {
+    if (exclusions_cover_duplicate(e, a, b)) return true;
+    if (e->names == NULL) return false;
+    const uint32_t *corners_a = e->mesh->triangles[a], *corners_b = e->mesh->triangles[b];
+    return !triangles_intersect_by_names(corners_a, corners_b, e->names, positions);
+}
+
+/* ---- what was found: pairs of features --------------------------------------------------------------------------------- */
+
+typedef struct triangle_list {
+    const uint32_t *items;
+    uint32_t count;
+} triangle_list;
+
+static triangle_list vertex_star(const cscd_mesh *mesh, uint32_t vertex) {
+    uint32_t begin = mesh->vertex_star_offsets[vertex];
+    return (triangle_list){mesh->vertex_stars + begin, mesh->vertex_star_offsets[vertex + 1] - begin};
+}
+
+static triangle_list edge_star(const cscd_mesh *mesh, uint32_t edge) {
+    return (triangle_list){mesh->edge_stars + mesh->edge_star_offsets[edge], edge_star_size(mesh, edge)};
+}
+
+static bool any_pair_listed(const exclusions *e, triangle_list a, triangle_list b) {
+    for (uint32_t i = 0; i < a.count; i++) {
+        for (uint32_t j = 0; j < b.count; j++) {
+            if (a.items[i] != b.items[j] && exclusions_have(e, a.items[i], b.items[j])) return true;
+        }
+    }
+    return false;
+}
+
+static bool features_listed(const exclusions *e, cscd_contact_kind kind, uint32_t a, uint32_t b) {
+    if (e->ignored_count == 0 || (kind != CSCD_CONTACT_VF && kind != CSCD_CONTACT_EE)) return false;
+    if (kind == CSCD_CONTACT_VF) return any_pair_listed(e, vertex_star(e->mesh, a), (triangle_list){&b, 1});
+    return any_pair_listed(e, edge_star(e->mesh, a), edge_star(e->mesh, b));
+}
+
+static bool share_name(const uint32_t *names, const uint32_t *a, int a_count, const uint32_t *b,
+                       int b_count) {
+    for (int i = 0; i < a_count; i++) {
+        for (int j = 0; j < b_count; j++) {
+            if (names[a[i]] == names[b[j]]) return true;
+        }
+    }
+    return false;
+}
+
+/* Do two features have vertices of one seam? A half-space has its point. */
+static bool in_one_seam(const exclusions *e, cscd_contact_kind kind, uint32_t a, uint32_t b) {
+    const cscd_mesh *mesh = e->mesh;
+    bool edge_a = kind == CSCD_CONTACT_EE || kind == CSCD_CONTACT_EV;
+    const uint32_t *of_a = edge_a ? mesh->edges[a] : &a;
+    const uint32_t *of_b = kind == CSCD_CONTACT_VF   ? mesh->triangles[b]
+                           : kind == CSCD_CONTACT_EE ? mesh->edges[b]
+                           : kind == CSCD_CONTACT_VH ? &mesh->objects[b].first_vertex
+                                                     : &b;
+    int count_b = kind == CSCD_CONTACT_VF ? 3 : kind == CSCD_CONTACT_EE ? 2 : 1;
+    return share_name(e->names, of_a, edge_a ? 2 : 1, of_b, count_b);
+}
+
+bool exclusions_cover_features(const exclusions *e, cscd_contact_kind kind, uint32_t a, uint32_t b) {
+    if (is_waiting(e, kind, a, b)) return true;
+    if (e->names != NULL && in_one_seam(e, kind, a, b)) return true;
+    return features_listed(e, kind, a, b) || host_ignores(e, kind, a, b);
 }

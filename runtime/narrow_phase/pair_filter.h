@@ -1,8 +1,8 @@
 /* Which pairs are looked at: by the rules of their objects, and by which vertices are active. */
 #pragma once
 
-#include "runtime/bvh/object_set.h"
 #include "runtime/ccd/min_separation.h"
+#include "runtime/narrow_phase/exclusions.h"
 #include "src/mesh/mesh_change.h"
 
 /* ---- rules --------------------------------------------------------------------------------------------- */
@@ -91,3 +91,18 @@ static inline uint32_t active_corners(const active_set *s, const uint32_t corner
     return (uint32_t)s->vertices[corners[0]] | (uint32_t)s->vertices[corners[1]] << 1 |
            (uint32_t)s->vertices[corners[2]] << 2;
 }
+
+/* ---- what was found ----------------------------------------------------------------------------------- */
+
+/* Is this contact, or proximity, of two features without a common vertex to be left out? */
+bool exclusions_cover_features(const exclusions *e, cscd_contact_kind kind, uint32_t a, uint32_t b);
+
+/* Is this intersection of triangles a < b to be left out? Seams exclude it when every two of their features
+ * that intersect have a vertex of one seam in common. */
+bool exclusions_cover_triangles(const exclusions *e, uint32_t a, uint32_t b, const double *positions);
+
+/* The same of a duplicate: triangles of three shared vertices, which seams do not exclude. */
+bool exclusions_cover_duplicate(const exclusions *e, uint32_t a, uint32_t b);
+
+/* Does the caller's function leave these triangles out? */
+bool exclusions_host_ignores(const exclusions *e, uint32_t a, uint32_t b);

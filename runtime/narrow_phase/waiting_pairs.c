@@ -1,5 +1,6 @@
 /* Pairs that a change has uncovered while they touched: they are left out until they have once been apart. */
 #include "runtime/narrow_phase/exclusions.h"
+#include "runtime/narrow_phase/pair_filter.h"
 #include "src/core/sort.h"
 
 #include <assert.h>
