@@ -153,6 +153,7 @@ static void follow_step(volume_trial *t, const double *x0, const double *x1) {
                                    .representatives = &d->space.representatives,
                                    .culling = any ? &d->culling : NULL,
                                    .culled = d->culled,
+                                   .filter = {.mesh = mesh},
                                    .limit = d->limit};
     for (uint32_t i = 0; any && i < mesh->triangle_count; i++)
         t->keeps_adjacent[d->culling.triangle_regions[i]] = d->culled[mesh->triangle_components[i]];

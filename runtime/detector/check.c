@@ -8,10 +8,6 @@
 #include "src/mesh/positions.h"
 #include "src/mesh/views.h"
 
-static bool is_excluded(const exclusions *e, found_pair pair, const double *positions) {
-    return exclusions_any(e) && exclusions_cover_triangles(e, pair.a, pair.b, positions);
-}
-
 /* Joins the lists of all lanes, without the pairs that the caller ignores, and sorts them. */
 static cscd_status collect_intersections(cscd_detector *d, const double *positions, cscd_intersections *out) {
     const static_check *check = &d->check;
@@ -27,7 +23,8 @@ static cscd_status collect_intersections(cscd_detector *d, const double *positio
         const intersection_lane *lane = &check->lanes[i];
         for (size_t j = 0; j < lane->count; j++) {
             found_pair pair = lane->items[j];
-            if (j < lane->settled || !is_excluded(&d->exclusions, pair, positions))
+            if (j < lane->settled ||
+                !exclusions_cover(&d->exclusions, CSCD_CONTACT_TT, pair.a, pair.b, positions))
                 pairs[kept++] = (uint64_t)pair.a << 32 | pair.b;
         }
         result.zero_area_triangles += lane->zero_area_triangles;

@@ -37,7 +37,7 @@ static bool is_too_long(const search_space *s, size_t count) {
 }
 
 static bool is_excluded(const exclusions *e, const cscd_contact *contact) {
-    return exclusions_any(e) && exclusions_cover_features(e, contact->kind, contact->a, contact->b);
+    return exclusions_cover(e, contact->kind, contact->a, contact->b, NULL);
 }
 
 cscd_status contact_list_gather(search_space *s, const exclusions *e, size_t item_size, result_buffer *buffer,

@@ -117,7 +117,7 @@ static bool is_wanted(const kind_search *s, pair_note note) {
 static bool is_left_out(const kind_search *s, const exclusions *e, found_pair pair, pair_note note) {
     if (!exclusions_any(e)) return false;
     if (note.kind == CSCD_INTERSECTION_DUPLICATE) return exclusions_cover_duplicate(e, pair.a, pair.b);
-    return exclusions_cover_triangles(e, pair.a, pair.b, s->positions);
+    return exclusions_cover(e, CSCD_CONTACT_TT, pair.a, pair.b, s->positions);
 }
 
 static size_t count_found(const kind_search *s) {

@@ -10,15 +10,17 @@ interval_search interval_search_begin(search_space *space, const double *x0, con
     for (uint32_t i = 0; i < space->traversal.lane_count; i++) contact_lane_reset(&space->lanes[i]);
     space->longest = 0;
     space->counted = 0;
-    return (interval_search){.space = space,
-                             .interval = {.mesh = space->mesh,
-                                          .x0 = x0,
-                                          .x1 = x1,
-                                          .bvh = &space->bvh,
-                                          .representatives = &space->representatives,
-                                          .rules = space->rules,
-                                          .active = space->active.vertices != NULL ? &space->active : NULL,
-                                          .limit = limit}};
+    return (interval_search){
+        .space = space,
+        .interval = {.mesh = space->mesh,
+                     .x0 = x0,
+                     .x1 = x1,
+                     .bvh = &space->bvh,
+                     .representatives = &space->representatives,
+                     .filter = {.mesh = space->mesh,
+                                .rules = space->rules,
+                                .active = space->active.vertices != NULL ? &space->active : NULL},
+                     .limit = limit}};
 }
 
 static bool any_suspended(const search_space *s) {

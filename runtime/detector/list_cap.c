@@ -37,11 +37,11 @@ size_t list_cap_lane(const cscd_detector *d) {
 /* Drops what is left out, then says that the rest is in the list. */
 static void settle_lane(cscd_detector *d, contact_lane *lane) {
     const exclusions *e = &d->exclusions;
-    bool left_out_alone = d->cap.taint == CAP_TAINTS_LEFT_OUT, any = exclusions_any(e);
+    bool left_out_alone = d->cap.taint == CAP_TAINTS_LEFT_OUT;
     size_t kept = lane->settled;
     for (size_t i = lane->settled; i < lane->count; i++) {
         const cscd_contact *c = contact_lane_at(lane, i);
-        bool left_out = any && exclusions_cover_features(e, c->kind, c->a, c->b);
+        bool left_out = exclusions_cover(e, c->kind, c->a, c->b, NULL);
         if (left_out || !left_out_alone) tainting_mark(d->mesh, c, d->cap.tainted, d->touched);
         if (!left_out) *contact_lane_at(lane, kept++) = *c;
     }
@@ -104,7 +104,7 @@ static size_t settle_pairs(const cscd_detector *d, intersection_lane *lane) {
     size_t kept = lane->settled;
     for (size_t i = lane->settled; i < lane->count; i++) {
         found_pair pair = lane->items[i];
-        if (!exclusions_any(e) || !exclusions_cover_triangles(e, pair.a, pair.b, d->cap.positions))
+        if (!exclusions_cover(e, CSCD_CONTACT_TT, pair.a, pair.b, d->cap.positions))
             lane->items[kept++] = pair;
     }
     return lane->settled = lane->count = kept;

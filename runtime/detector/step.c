@@ -311,7 +311,7 @@ cscd_status step_find(cscd_detector *d, const double *x0, const double *x1, cscd
                       .mode = mode,
                       .rehearsal = rehearsal,
                       .all_clean = true};
-    if (d->leaves_collapsed) work.search.interval.collapsed = d->collapsed.marks;
+    if (d->leaves_collapsed) work.search.interval.filter.collapsed = d->collapsed.marks;
     work.search.timings.update_ms = d->verlet.spent_ms;
     begin_interval(&work);
     if (!rehearsal) list_cap_begin(d, &work.search, d->lists_earliest ? CAP_KEEPS_EARLIEST : CAP_TAINTS_ALL);

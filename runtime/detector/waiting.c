@@ -21,7 +21,7 @@ typedef struct settling {
 /* Pairs wait whether their vertices are active or not. */
 static settling settle_at(cscd_detector *d, const double *x, named_pair_set *set) {
     settling s = {d, x, detector_search_begin(d, x, x), exclusions_listed(&d->exclusions), set, false};
-    s.search.interval.active = NULL;
+    s.search.interval.filter.active = NULL;
     return s;
 }
 
@@ -34,9 +34,8 @@ static bool is_left_out(const settling *s, const named_pair *pair) {
     cscd_contact_kind kind = (cscd_contact_kind)pair->kind;
     uint32_t objects[2];
     mesh_objects_of_pair(s->detector->mesh, kind, pair->a, pair->b, objects);
-    if (!objects_look(&s->search.interval, objects[0], objects[1])) return true;
-    if (kind == CSCD_CONTACT_TT) return exclusions_cover_triangles(&s->others, pair->a, pair->b, s->x);
-    return exclusions_cover_features(&s->others, kind, pair->a, pair->b);
+    return !pair_filter_admits_objects(&s->search.interval.filter, objects[0], objects[1]) ||
+           exclusions_cover(&s->others, kind, pair->a, pair->b, s->x);
 }
 
 /* Points have no exact test against wires and each other: those whose floor is 0 count as touching. */
@@ -143,10 +142,9 @@ static cscd_status take_torn(cscd_detector *d, const double *x) {
 /* Should this pair, which touches, wait from now on? */
 static bool should_wait(const settling *s, cscd_contact_kind kind, uint32_t a, uint32_t b) {
     const cscd_detector *d = s->detector;
-    bool covered = kind == CSCD_CONTACT_TT ? exclusions_cover_triangles(&s->others, a, b, s->x)
-                                           : exclusions_cover_features(&s->others, kind, a, b);
-    return !covered && (named_pair_set_has(&d->waiting.pairs, kind, a, b) ||
-                        waiting_pairs_uncovered(d->mesh, &d->waiting, kind, a, b, s->x));
+    return !exclusions_cover(&s->others, kind, a, b, s->x) &&
+           (named_pair_set_has(&d->waiting.pairs, kind, a, b) ||
+            waiting_pairs_uncovered(d->mesh, &d->waiting, kind, a, b, s->x));
 }
 
 static cscd_status add_features(settling *s) {

@@ -68,11 +68,12 @@ static bool takes_part(const cscd_mesh *mesh, const cscd_object *object, uint32_
 static void test_object(const swept_interval *interval, uint32_t object, uint32_t half_space, uint32_t begin,
                         uint32_t end, contact_lane *lane) {
     const cscd_mesh *mesh = interval->mesh;
-    if (mesh->objects[object].kind == CSCD_OBJECT_HALF_SPACE || !objects_look(interval, object, half_space))
+    if (mesh->objects[object].kind == CSCD_OBJECT_HALF_SPACE ||
+        !pair_filter_admits_objects(&interval->filter, object, half_space))
         return;
     for (uint32_t v = begin; v < end && !lane->out_of_memory; v++) {
         if (takes_part(mesh, &mesh->objects[object], v) &&
-            pair_is_active(interval, CSCD_CONTACT_VH, v, half_space))
+            pair_filter_admits_features(&interval->filter, CSCD_CONTACT_VH, v, half_space))
             half_spaces_test_vertex(interval, v, half_space, lane);
     }
 }

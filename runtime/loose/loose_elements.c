@@ -172,9 +172,10 @@ static void enclose_element(const element_motion *m, uint32_t place) {
             box->high[k] = fmax(box->high[k], fmax(start, end) + slack);
         }
     }
-    if (interval->rules != NULL) e->levels[0].sets[place] = interval->rules->sets[element->object];
-    if (interval->active != NULL)
-        e->levels[0].active[place] = edge_is_active(interval->active, interval->mesh, element->edge);
+    if (interval->filter.rules != NULL)
+        e->levels[0].sets[place] = interval->filter.rules->sets[element->object];
+    if (interval->filter.active != NULL)
+        e->levels[0].active[place] = edge_is_active(interval->filter.active, interval->mesh, element->edge);
 }
 
 static void enclose_share(void *data, uint32_t index) {
@@ -197,9 +198,9 @@ static void enclose_node(const loose_level *below, uint32_t node, const swept_in
     }
     level->boxes[node] = box;
     level->active[node] = false;
-    for (uint32_t i = 0; interval->active != NULL && i < count; i++)
+    for (uint32_t i = 0; interval->filter.active != NULL && i < count; i++)
         level->active[node] |= below->active[begin + i];
-    if (interval->rules == NULL) return;
+    if (interval->filter.rules == NULL) return;
     level->sets[node] = below->sets[begin];
     for (uint32_t i = 1; i < count; i++)
         level->sets[node] = object_sets_join(&level->sets[node], &below->sets[begin + i]);

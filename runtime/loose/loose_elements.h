@@ -48,7 +48,7 @@ void loose_elements_move(loose_elements *e, const swept_interval *interval);
 /* Half of the distance within which the boxes of an object are compared. The halves of two objects together are no less
  * than what their pairs have to keep. */
 static inline double loose_reach(const swept_interval *interval, uint32_t object) {
-    double own = interval->thick ? interval->rules->reaches[object] : 0.0;
+    double own = interval->thick ? interval->filter.rules->reaches[object] : 0.0;
     double distance = own > interval->limit.distance ? own : interval->limit.distance;
     return 0.5 * (distance + interval->beyond) * (1.0 + 0x1p-40);
 }

@@ -12,14 +12,14 @@ static bool parted_by_directions(const swept_interval *interval, cscd_contact_ki
 }
 
 static void test_end(const swept_interval *interval, uint32_t vertex, uint32_t triangle, contact_lane *lane) {
-    if (!pair_is_active(interval, CSCD_CONTACT_VF, vertex, triangle)) return;
+    if (!pair_filter_admits_features(&interval->filter, CSCD_CONTACT_VF, vertex, triangle)) return;
     if (parted_by_directions(interval, CSCD_CONTACT_VF, vertex, triangle)) return;
     lane->feature_pairs++;
     narrow_phase_test_vf(interval, vertex, triangle, lane);
 }
 
 static void test_edges(const swept_interval *interval, uint32_t a, uint32_t b, contact_lane *lane) {
-    if (!pair_is_active(interval, CSCD_CONTACT_EE, a, b)) return;
+    if (!pair_filter_admits_features(&interval->filter, CSCD_CONTACT_EE, a, b)) return;
     if (parted_by_directions(interval, CSCD_CONTACT_EE, a < b ? a : b, a < b ? b : a)) return;
     lane->feature_pairs++;
     narrow_phase_test_ee(interval, a, b, lane);
@@ -42,7 +42,7 @@ void loose_pairs_with_triangle(const swept_interval *interval, const loose_eleme
 void loose_pairs_of_elements(const swept_interval *interval, const loose_element *a, const loose_element *b,
                              contact_lane *lane) {
     const cscd_mesh *mesh = interval->mesh;
-    if (!objects_look(interval, a->object, b->object)) return;
+    if (!pair_filter_admits_objects(&interval->filter, a->object, b->object)) return;
     if (edges_share_vertex(mesh->edges[a->edge], mesh->edges[b->edge])) return;
     if (loose_edges_meet(interval, a->edge, b->edge)) test_edges(interval, a->edge, b->edge, lane);
 }

@@ -85,8 +85,8 @@ static bool triangle_parted(const tree_walk *w, const bvh_leaf *leaf, int lane) 
 static bool triangle_looks(const tree_walk *w, uint32_t triangle) {
     const cscd_mesh *mesh = w->interval->mesh;
     if (w->tree->object != OBJECT_SEVERAL) return true;
-    return objects_look(w->interval, w->element->object,
-                        cscd_mesh_vertex_object(mesh, mesh->triangles[triangle][0]));
+    return pair_filter_admits_objects(&w->interval->filter, w->element->object,
+                                      cscd_mesh_vertex_object(mesh, mesh->triangles[triangle][0]));
 }
 
 static void test_leaf(const tree_walk *w, uint32_t index) {
@@ -131,14 +131,16 @@ static void walk_tree(tree_walk *w) {
 static void test_tree(tree_walk *w, uint32_t tree) {
     w->tree = &w->interval->bvh->trees[tree];
     bool several = w->tree->object == OBJECT_SEVERAL;
-    if (several || objects_look(w->interval, w->element->object, w->tree->object)) walk_tree(w);
+    if (several || pair_filter_admits_objects(&w->interval->filter, w->element->object, w->tree->object))
+        walk_tree(w);
 }
 
 /* Above the trees bounds are in the frame of the first one; if it is the only one, there are none. */
 static void test_trees(const swept_interval *interval, const loose_element *element, contact_lane *lane) {
     const bvh *f = interval->bvh;
     tree_walk w = {.interval = interval, .element = element, .lane = lane};
-    w.inactive = interval->active != NULL && !edge_is_active(interval->active, interval->mesh, element->edge);
+    w.inactive = interval->filter.active != NULL &&
+                 !edge_is_active(interval->filter.active, interval->mesh, element->edge);
     if (f->tree_count <= 1) {
         if (f->tree_count == 1) test_tree(&w, 0);
         return;
@@ -175,8 +177,8 @@ static const loose_element *element_at(const loose_elements *e, uint32_t place) 
 static bool node_counts(const loose_search *s, uint32_t place, int level, uint32_t node) {
     const loose_level *own = &s->elements->levels[0], *at = &s->elements->levels[level];
     if (!boxes_overlap(&own->boxes[place], &at->boxes[node])) return false;
-    if (s->interval->active != NULL && !own->active[place] && !at->active[node]) return false;
-    return s->interval->rules == NULL || object_sets_may_meet(&own->sets[place], &at->sets[node]);
+    if (s->interval->filter.active != NULL && !own->active[place] && !at->active[node]) return false;
+    return s->interval->filter.rules == NULL || object_sets_may_meet(&own->sets[place], &at->sets[node]);
 }
 
 /* Compares an element with all that come after it in the tree. */

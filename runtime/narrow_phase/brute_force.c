@@ -1,29 +1,17 @@
 /* Every pair of features of triangles that share no vertex: the reference that the other methods must equal. */
 #include "runtime/narrow_phase/narrow_phase.h"
 
-/* Is a component looked at with all others, and with itself? */
-static bool meets_all(const swept_interval *interval, uint32_t component) {
-    return interval->rules == NULL && !component_is_obstacle(interval->mesh, component) &&
-           !components_collapsed(interval, component, component);
-}
-
-/* Rules know obstacles, too. */
-static bool may_meet(const swept_interval *interval, uint32_t a, uint32_t b) {
-    if (components_collapsed(interval, a, b)) return false;
-    if (interval->rules != NULL) return components_look(interval, a, b);
-    return !component_is_obstacle(interval->mesh, a) || !component_is_obstacle(interval->mesh, b);
-}
-
 static void test_face(const swept_interval *interval, uint32_t triangle, contact_lane *lane) {
     const cscd_mesh *mesh = interval->mesh;
     const uint32_t *corners = mesh->triangles[triangle];
     swept_box face = swept_box_of(interval, corners, 3);
     uint32_t component = mesh->triangle_components[triangle];
-    bool all = meets_all(interval, component);
+    bool all = pair_filter_admits_all(&interval->filter, component);
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
         if (triangle_contains(corners, v) || vertex_has_no_triangle(mesh, v)) continue;
-        if (!all && !may_meet(interval, component, vertex_component(mesh, v))) continue;
-        if (!pair_is_active(interval, CSCD_CONTACT_VF, v, triangle)) continue;
+        if (!all && !pair_filter_admits_components(&interval->filter, component, vertex_component(mesh, v)))
+            continue;
+        if (!pair_filter_admits_features(&interval->filter, CSCD_CONTACT_VF, v, triangle)) continue;
         lane->feature_pairs++;
         swept_box vertex = swept_box_of(interval, &v, 1);
         if (swept_boxes_within(&face, &vertex, pair_reach(interval, CSCD_CONTACT_VF, v, triangle)))
@@ -37,12 +25,13 @@ static void test_edge(const swept_interval *interval, uint32_t a, contact_lane *
     if (edge_is_loose(mesh, a)) return;
     swept_box box_a = swept_box_of(interval, ends_a, 2);
     uint32_t component = edge_component(mesh, a);
-    bool all = meets_all(interval, component);
+    bool all = pair_filter_admits_all(&interval->filter, component);
     for (uint32_t b = a + 1; b < mesh->edge_count; b++) {
         const uint32_t *ends_b = mesh->edges[b];
         if (edges_share_vertex(ends_a, ends_b) || edge_is_loose(mesh, b)) continue;
-        if (!all && !may_meet(interval, component, edge_component(mesh, b))) continue;
-        if (!pair_is_active(interval, CSCD_CONTACT_EE, a, b)) continue;
+        if (!all && !pair_filter_admits_components(&interval->filter, component, edge_component(mesh, b)))
+            continue;
+        if (!pair_filter_admits_features(&interval->filter, CSCD_CONTACT_EE, a, b)) continue;
         lane->feature_pairs++;
         swept_box box_b = swept_box_of(interval, ends_b, 2);
         if (swept_boxes_within(&box_a, &box_b, pair_reach(interval, CSCD_CONTACT_EE, a, b)))

@@ -58,23 +58,6 @@ static void queue_features(const swept_interval *interval, triangle_pair pair, u
     }
 }
 
-/* Of the pairs of features of two triangles, those with an active one. */
-static uint32_t active_features(const swept_interval *interval, triangle_pair pair) {
-    const uint32_t(*triangles)[3] = (const uint32_t(*)[3])interval->mesh->triangles;
-    uint32_t a = active_corners(interval->active, triangles[pair.a]);
-    uint32_t b = active_corners(interval->active, triangles[pair.b]);
-    uint32_t edges_a = a | a >> 1 | (a & 1) << 2, edges_b = b | b >> 1 | (b & 1) << 2, edges = 0;
-    for (int i = 0; i < 3; i++) edges |= ((edges_a >> i & 1) != 0 ? 7u : edges_b) << 3 * i;
-    return (b != 0 ? 7u : a) | (a != 0 ? 7u : b) << FEATURE_VERTEX_B | edges << FEATURE_EDGES;
-}
-
-/* Asks what the traversal leaves to us where a tree holds several components or objects. */
-static bool triangles_look(const swept_interval *interval, triangle_pair pair) {
-    const uint32_t *components = interval->mesh->triangle_components;
-    uint32_t a = components[pair.a], b = components[pair.b];
-    return components_look(interval, a, b) && !components_collapsed(interval, a, b);
-}
-
 /* Pairs of triangles, by slots and by numbers, and the pairs of their features that they may have to test. */
 typedef struct chosen_pairs {
     triangle_pair slots[PAIRS_AT_ONCE], pairs[PAIRS_AT_ONCE];
@@ -82,17 +65,19 @@ typedef struct chosen_pairs {
     uint32_t count;
 } chosen_pairs;
 
-/* Most pairs are far from each other on the surface: whatever they represent is theirs. The others are `open`. */
+/* Most pairs are far from each other on the surface: whatever they represent is theirs. The others are `open`. Where a tree
+ * holds several components or objects, the traversal leaves to us whether triangles are looked at. */
 static void choose_pairs(const swept_interval *interval, const triangle_pair *slots, uint32_t count,
                          chosen_pairs *settled, chosen_pairs *open) {
     const bvh *f = interval->bvh;
-    bool trees_mix = (interval->rules != NULL && f->trees_mix_objects) || interval->collapsed != NULL;
+    const pair_filter *filter = &interval->filter;
+    bool trees_mix = (filter->rules != NULL && f->trees_mix_objects) || filter->collapsed != NULL;
     settled->count = open->count = 0;
     for (uint32_t i = 0; i < count; i++) {
         triangle_pair pair = {bvh_triangle(f, slots[i].a), bvh_triangle(f, slots[i].b)};
         pair_selection selection = representatives_select_early(interval, pair);
         chosen_pairs *to = selection.settled ? settled : open;
-        if (trees_mix && !triangles_look(interval, pair)) continue;
+        if (trees_mix && !pair_filter_admits_triangles(filter, pair.a, pair.b)) continue;
         to->slots[to->count] = slots[i];
         to->pairs[to->count] = pair;
         to->features[to->count] = selection.features;
@@ -106,10 +91,10 @@ static void filter_features(const swept_interval *interval, bool settled, chosen
     narrow_phase_kernels_of(interval->mesh->context)
         ->feature_filter(interval, chosen->slots, chosen->count, settled, chosen->features);
     for (uint32_t i = 0; i < chosen->count; i++) {
+        triangle_pair pair = chosen->pairs[i];
         uint16_t features = chosen->features[i];
-        if (interval->active != NULL && features != 0)
-            features &= (uint16_t)active_features(interval, chosen->pairs[i]);
-        chosen->pairs[kept] = chosen->pairs[i];
+        if (features != 0) features &= (uint16_t)pair_filter_features(&interval->filter, pair.a, pair.b);
+        chosen->pairs[kept] = pair;
         chosen->features[kept] = features;
         kept += features != 0;
     }
@@ -163,12 +148,11 @@ static bool parted_by_directions(const swept_interval *interval, cscd_contact_ki
  * themselves. */
 static bool left_to_others(const swept_interval *interval, uint32_t component) {
     return (interval->culling != NULL && interval->culled[component]) ||
-           !components_look(interval, component, component) ||
-           components_collapsed(interval, component, component);
+           !pair_filter_admits_components(&interval->filter, component, component);
 }
 
 static void test_orphan_vf(const swept_interval *interval, const uint32_t pair[2], contact_lane *lane) {
-    if (!pair_is_active(interval, CSCD_CONTACT_VF, pair[0], pair[1])) return;
+    if (!pair_filter_admits_features(&interval->filter, CSCD_CONTACT_VF, pair[0], pair[1])) return;
     if (left_to_others(interval, interval->mesh->triangle_components[pair[1]])) return;
     if (parted_by_directions(interval, CSCD_CONTACT_VF, pair[0], pair[1])) return;
     lane->feature_pairs++;
@@ -176,7 +160,7 @@ static void test_orphan_vf(const swept_interval *interval, const uint32_t pair[2
 }
 
 static void test_orphan_ee(const swept_interval *interval, const uint32_t pair[2], contact_lane *lane) {
-    if (!pair_is_active(interval, CSCD_CONTACT_EE, pair[0], pair[1])) return;
+    if (!pair_filter_admits_features(&interval->filter, CSCD_CONTACT_EE, pair[0], pair[1])) return;
     if (left_to_others(interval, edge_component(interval->mesh, pair[0]))) return;
     if (parted_by_directions(interval, CSCD_CONTACT_EE, pair[0], pair[1])) return;
     lane->feature_pairs++;

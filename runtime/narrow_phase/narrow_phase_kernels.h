@@ -5,11 +5,6 @@
 #include "runtime/narrow_phase/representatives.h"
 #include "src/core/kernels.h"
 
-/* Sets of pairs of features of two triangles a and b: bit i is vertex i of a against the face b,
- * FEATURE_VERTEX_B + i vertex i of b against the face a, FEATURE_EDGES + 3 i + j edge i of a against edge j
- * of b. */
-enum { FEATURE_VERTEX_B = 3, FEATURE_EDGES = 6, FEATURE_ALL = (1 << 15) - 1 };
-
 /* Keeps, of the given pairs of features of two triangles, in slots, those that may touch, or come within their distance, by
  * their volumes, and that share no vertex. apart: the caller knows that the triangles share none. */
 typedef void feature_filter_kernel(const swept_interval *interval, const triangle_pair *pairs, uint32_t count,

@@ -236,7 +236,7 @@ static double tree_distance(const swept_interval *interval, const bvh_tree *p, c
     double distance = interval->limit.distance;
     if (interval->thick) {
         bool several = p->object == OBJECT_SEVERAL || q->object == OBJECT_SEVERAL;
-        distance = several ? __builtin_fmax(distance, interval->rules->greatest)
+        distance = several ? __builtin_fmax(distance, interval->filter.rules->greatest)
                            : object_separation(interval, p->object, q->object).distance;
     }
     return distance + interval->beyond;

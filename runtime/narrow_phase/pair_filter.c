@@ -1,4 +1,4 @@
-/* Which pairs are looked at: by the rules of their objects, and by which vertices are active. */
+/* Which pairs are looked at: the rules of their objects, the active vertices, and whether what was found is left out. */
 #include "runtime/narrow_phase/pair_filter.h"
 
 #include "src/core/check.h"
@@ -256,7 +256,7 @@ bool exclusions_host_ignores(const exclusions *e, uint32_t a, uint32_t b) {
     return host_ignores(e, CSCD_CONTACT_TT, a, b);
 }
 
-bool exclusions_cover_triangles(const exclusions *e, uint32_t a, uint32_t b, const double *positions) {
+static bool covers_triangles(const exclusions *e, uint32_t a, uint32_t b, const double *positions) {
     if (exclusions_cover_duplicate(e, a, b)) return true;
     if (e->names == NULL) return false;
     const uint32_t *corners_a = e->mesh->triangles[a], *corners_b = e->mesh->triangles[b];
@@ -317,8 +317,14 @@ static bool in_one_seam(const exclusions *e, cscd_contact_kind kind, uint32_t a,
     return share_name(e->names, of_a, edge_a ? 2 : 1, of_b, count_b);
 }
 
-bool exclusions_cover_features(const exclusions *e, cscd_contact_kind kind, uint32_t a, uint32_t b) {
+static bool covers_features(const exclusions *e, cscd_contact_kind kind, uint32_t a, uint32_t b) {
     if (is_waiting(e, kind, a, b)) return true;
     if (e->names != NULL && in_one_seam(e, kind, a, b)) return true;
     return features_listed(e, kind, a, b) || host_ignores(e, kind, a, b);
+}
+
+bool exclusions_cover(const exclusions *e, cscd_contact_kind kind, uint32_t a, uint32_t b,
+                      const double *positions) {
+    if (!exclusions_any(e)) return false;
+    return kind == CSCD_CONTACT_TT ? covers_triangles(e, a, b, positions) : covers_features(e, kind, a, b);
 }

@@ -1,4 +1,10 @@
-/* Which pairs are looked at: by the rules of their objects, and by which vertices are active. */
+/* Which pairs are looked at. A search asks one question on each level, from the trees down to what it has found:
+ * trees and leaves  object_sets_may_meet, which the traversal asks for eight sets of objects at once;
+ * objects           pair_filter_admits_objects, and pair_filter_admits_components;
+ * triangles         pair_filter_admits_triangles, where a tree holds several components;
+ * their features    pair_filter_features;
+ * two features      pair_filter_admits_features;
+ * what was found    exclusions_cover. */
 #pragma once
 
 #include "runtime/ccd/min_separation.h"
@@ -45,11 +51,6 @@ void pair_rules_free(const cscd_mesh *mesh, pair_rules *rules);
 /* A copy of the sets alone; of default rules, if there are none. NULL: no memory. */
 object_set *pair_rules_copy_sets(const cscd_mesh *mesh, const pair_rules *rules);
 
-/* Is object a looked at with object b? They may be one object. */
-static inline bool pair_rules_look_at(const pair_rules *rules, uint32_t a, uint32_t b) {
-    return object_sets_may_meet(&rules->sets[a], &rules->sets[b]);
-}
-
 /* How far these objects have to stay apart; 0: they must not touch. */
 static inline double pair_rules_distance(const pair_rules *rules, uint32_t a, uint32_t b) {
     if (rules->matrix == NULL) return rules->halves[a] + rules->halves[b];
@@ -92,16 +93,75 @@ static inline uint32_t active_corners(const active_set *s, const uint32_t corner
            (uint32_t)s->vertices[corners[2]] << 2;
 }
 
-/* ---- what was found ----------------------------------------------------------------------------------- */
+/* ---- the filter ----------------------------------------------------------------------------------------- */
 
-/* Is this contact, or proximity, of two features without a common vertex to be left out? */
-bool exclusions_cover_features(const exclusions *e, cscd_contact_kind kind, uint32_t a, uint32_t b);
+/* What decides, in one interval, whether a pair is looked at. */
+typedef struct pair_filter {
+    const cscd_mesh *mesh;
+    const pair_rules *rules;  /* NULL: all objects are looked at, but obstacles with obstacles */
+    const active_set *active; /* NULL: all vertices are active */
+    const bool *collapsed; /* per component: it is not looked at with others of these; NULL: there are none */
+} pair_filter;
 
-/* Is this intersection of triangles a < b to be left out? Seams exclude it when every two of their features
- * that intersect have a vertex of one seam in common. */
-bool exclusions_cover_triangles(const exclusions *e, uint32_t a, uint32_t b, const double *positions);
+/* Are two objects, of triangles or not, or an object and itself, looked at with each other? */
+static inline bool pair_filter_admits_objects(const pair_filter *f, uint32_t a, uint32_t b) {
+    const cscd_object *objects = f->mesh->objects;
+    if (f->rules == NULL) return !objects[a].obstacle || !objects[b].obstacle;
+    return object_sets_may_meet(&f->rules->sets[a], &f->rules->sets[b]);
+}
 
-/* The same of a duplicate: triangles of three shared vertices, which seams do not exclude. */
+/* The same of two components, or of one and itself. */
+static inline bool pair_filter_admits_components(const pair_filter *f, uint32_t a, uint32_t b) {
+    if (f->collapsed != NULL && f->collapsed[a] && f->collapsed[b]) return false;
+    if (f->rules == NULL) return !component_is_obstacle(f->mesh, a) || !component_is_obstacle(f->mesh, b);
+    const uint32_t *objects = f->rules->component_objects;
+    return object_sets_may_meet(&f->rules->sets[objects[a]], &f->rules->sets[objects[b]]);
+}
+
+/* Is it known without the other component that this one is looked at with every component, and with itself? */
+static inline bool pair_filter_admits_all(const pair_filter *f, uint32_t component) {
+    return f->rules == NULL && pair_filter_admits_components(f, component, component);
+}
+
+static inline bool pair_filter_admits_triangles(const pair_filter *f, uint32_t a, uint32_t b) {
+    const uint32_t *components = f->mesh->triangle_components;
+    return pair_filter_admits_components(f, components[a], components[b]);
+}
+
+/* Sets of pairs of features of two triangles a and b: bit i is vertex i of a against the face b,
+ * FEATURE_VERTEX_B + i vertex i of b against the face a, FEATURE_EDGES + 3 i + j edge i of a against edge j
+ * of b. */
+enum { FEATURE_VERTEX_B = 3, FEATURE_EDGES = 6, FEATURE_ALL = (1 << 15) - 1 };
+
+/* Those pairs of features of two triangles of which a feature is active. */
+static inline uint32_t pair_filter_features(const pair_filter *f, uint32_t triangle_a, uint32_t triangle_b) {
+    if (f->active == NULL) return FEATURE_ALL;
+    uint32_t a = active_corners(f->active, f->mesh->triangles[triangle_a]);
+    uint32_t b = active_corners(f->active, f->mesh->triangles[triangle_b]);
+    uint32_t edges_a = a | a >> 1 | (a & 1) << 2, edges_b = b | b >> 1 | (b & 1) << 2, edges = 0;
+    for (int i = 0; i < 3; i++) edges |= ((edges_a >> i & 1) != 0 ? 7u : edges_b) << 3 * i;
+    return (b != 0 ? 7u : a) | (a != 0 ? 7u : b) << FEATURE_VERTEX_B | edges << FEATURE_EDGES;
+}
+
+/* Is one of two features, as in cscd_contact, active? Points may be named as edges. */
+static inline bool pair_filter_admits_features(const pair_filter *f, cscd_contact_kind kind, uint32_t a,
+                                               uint32_t b) {
+    const active_set *s = f->active;
+    if (s == NULL) return true;
+    if (kind == CSCD_CONTACT_EE) return edge_is_active(s, f->mesh, a) || edge_is_active(s, f->mesh, b);
+    if (s->vertices[a]) return true;
+    return kind == CSCD_CONTACT_VF ? s->triangles[b] : s->vertices[f->mesh->objects[b].first_vertex];
+}
+
+/* ---- what was found ------------------------------------------------------------------------------------- */
+
+/* Is what was found left out? It is a contact, or a proximity, of two features without a common vertex, or, of kind TT, an
+ * intersection of triangles a < b at these positions. Seams leave out an intersection if every two features of the
+ * triangles that intersect have a vertex of one seam in common. */
+bool exclusions_cover(const exclusions *e, cscd_contact_kind kind, uint32_t a, uint32_t b,
+                      const double *positions);
+
+/* The same of a duplicate: triangles of three shared vertices, which seams do not leave out. */
 bool exclusions_cover_duplicate(const exclusions *e, uint32_t a, uint32_t b);
 
 /* Does the caller's function leave these triangles out? */

@@ -20,21 +20,18 @@ typedef struct swept_interval {
     const double *x0, *x1;
     const bvh *bvh; /* triangle pairs are given by its slots */
     const struct representatives *representatives;
-    const culling *culling;  /* NULL: nothing is culled, and representatives test all pairs of features */
-    const bool *culled;      /* with culling: the components whose flags say which triangle pair tests */
-    bool skip_adjacent;      /* elsewhere, pairs of adjacent triangles are not reached: other pairs test their
+    const culling *culling; /* NULL: nothing is culled, and representatives test all pairs of features */
+    const bool *culled;     /* with culling: the components whose flags say which triangle pair tests */
+    bool skip_adjacent;     /* elsewhere, pairs of adjacent triangles are not reached: other pairs test their
                              * features, and orphan pairs are tested apart */
-    bool closing_pass;       /* with culling: the pairs that are reached are those that were culled before */
-    const pair_rules *rules; /* NULL: all objects are looked at */
-    const active_set *active; /* NULL: all vertices are */
-    const bool
-        *collapsed;   /* per component: pairs of two features of such components do not count; NULL: all do */
-    separation limit; /* of every pair; distance 0: a contact is touching */
-    bool thick;       /* a pair's distance is that of the rules, where this is the greater one */
-    double tolerance; /* of these distances, as a share of them; 0: the default */
-    double beyond;    /* volumes are compared within so much more than the pairs' distances */
-    double floor_ratio; /* above 0: pairs that start nearer than they should have a floor instead */
-    bool collecting;    /* pairs of features become the lanes' candidates instead of being tested */
+    bool closing_pass;      /* with culling: the pairs that are reached are those that were culled before */
+    pair_filter filter;     /* which pairs are looked at */
+    separation limit;       /* of every pair; distance 0: a contact is touching */
+    bool thick;             /* a pair's distance is that of the rules, where this is the greater one */
+    double tolerance;       /* of these distances, as a share of them; 0: the default */
+    double beyond;          /* volumes are compared within so much more than the pairs' distances */
+    double floor_ratio;     /* above 0: pairs that start nearer than they should have a floor instead */
+    bool collecting;        /* pairs of features become the lanes' candidates instead of being tested */
 } swept_interval;
 
 /* What the kernels read of an interval. */
@@ -51,42 +48,23 @@ static inline uint32_t edge_component(const cscd_mesh *mesh, uint32_t edge) {
     return mesh->triangle_components[mesh->edge_stars[mesh->edge_star_offsets[edge]]];
 }
 
-/* Are the objects of two components, or one component and itself, looked at with each other? */
-static inline bool components_look(const swept_interval *interval, uint32_t a, uint32_t b) {
-    if (interval->rules == NULL) return true;
-    const uint32_t *objects = interval->rules->component_objects;
-    return pair_rules_look_at(interval->rules, objects[a], objects[b]);
-}
-
-/* Are two components, or one and itself, left out because they are collapsed at an end? */
-static inline bool components_collapsed(const swept_interval *interval, uint32_t a, uint32_t b) {
-    return interval->collapsed != NULL && interval->collapsed[a] && interval->collapsed[b];
-}
-
-/* The same for two objects that need not be of triangles. */
-static inline bool objects_look(const swept_interval *interval, uint32_t a, uint32_t b) {
-    const cscd_object *objects = interval->mesh->objects;
-    if (interval->rules == NULL) return !objects[a].obstacle || !objects[b].obstacle;
-    return pair_rules_look_at(interval->rules, a, b);
-}
-
 /* With rules, the object of a vertex, and that of an edge or a point behind the edges. */
 static inline uint32_t object_of_vertex(const swept_interval *interval, uint32_t vertex) {
     const cscd_mesh *mesh = interval->mesh;
     if (vertex_has_no_triangle(mesh, vertex)) return cscd_mesh_vertex_object(mesh, vertex);
-    return interval->rules->component_objects[vertex_component(mesh, vertex)];
+    return interval->filter.rules->component_objects[vertex_component(mesh, vertex)];
 }
 
 static inline uint32_t object_of_edge(const swept_interval *interval, uint32_t edge) {
     const cscd_mesh *mesh = interval->mesh;
     if (edge_is_loose(mesh, edge)) return cscd_mesh_vertex_object(mesh, mesh->edges[edge][0]);
-    return interval->rules->component_objects[edge_component(mesh, edge)];
+    return interval->filter.rules->component_objects[edge_component(mesh, edge)];
 }
 
 /* How far two objects have to stay apart, and how exactly. */
 static inline separation object_separation(const swept_interval *interval, uint32_t a, uint32_t b) {
     if (!interval->thick) return interval->limit;
-    double distance = pair_rules_distance(interval->rules, a, b);
+    double distance = pair_rules_distance(interval->filter.rules, a, b);
     if (distance < interval->limit.distance) distance = interval->limit.distance;
     return separation_limit(distance, interval->tolerance);
 }
@@ -95,7 +73,7 @@ static inline separation object_separation(const swept_interval *interval, uint3
 static inline separation pair_separation(const swept_interval *interval, cscd_contact_kind kind, uint32_t a,
                                          uint32_t b) {
     if (!interval->thick) return interval->limit;
-    const uint32_t *objects = interval->rules->component_objects;
+    const uint32_t *objects = interval->filter.rules->component_objects;
     if (kind == CSCD_CONTACT_VF)
         return object_separation(interval, object_of_vertex(interval, a),
                                  objects[interval->mesh->triangle_components[b]]);
@@ -109,17 +87,6 @@ static inline separation pair_separation(const swept_interval *interval, cscd_co
 static inline double pair_reach(const swept_interval *interval, cscd_contact_kind kind, uint32_t a,
                                 uint32_t b) {
     return pair_separation(interval, kind, a, b).distance + interval->beyond;
-}
-
-/* Is one of two features active, as in cscd_contact? Points may be named as edges. */
-static inline bool pair_is_active(const swept_interval *interval, cscd_contact_kind kind, uint32_t a,
-                                  uint32_t b) {
-    const active_set *s = interval->active;
-    const cscd_mesh *mesh = interval->mesh;
-    if (s == NULL) return true;
-    if (kind == CSCD_CONTACT_EE) return edge_is_active(s, mesh, a) || edge_is_active(s, mesh, b);
-    if (s->vertices[a]) return true;
-    return kind == CSCD_CONTACT_VF ? s->triangles[b] : s->vertices[mesh->objects[b].first_vertex];
 }
 
 /* ---- positions ---------------------------------------------------------------------------------------- */

@@ -166,8 +166,7 @@ bool waiting_pairs_uncovered(const cscd_mesh *mesh, const waiting_pairs *w, cscd
     for (const former_exclusions *f = w->former; f != NULL; f = f->next) {
         if (f->sets != NULL) {
             if (objects_left_out(f->sets, objects)) return true;
-        } else if (kind == CSCD_CONTACT_TT ? exclusions_cover_triangles(&f->exclusions, a, b, positions)
-                                           : exclusions_cover_features(&f->exclusions, kind, a, b)) {
+        } else if (exclusions_cover(&f->exclusions, kind, a, b, positions)) {
             return true;
         }
     }

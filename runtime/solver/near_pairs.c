@@ -17,8 +17,10 @@ static double greatest_separation(const cscd_detector *d) {
 }
 
 double near_pair_separation(const cscd_detector *d, const cscd_proximity *pair) {
-    const swept_interval rules = {
-        .mesh = d->mesh, .rules = &d->pair_rules, .limit = d->limit, .thick = detector_thick(d)};
+    const swept_interval rules = {.mesh = d->mesh,
+                                  .filter = {d->mesh, &d->pair_rules, NULL, NULL},
+                                  .limit = d->limit,
+                                  .thick = detector_thick(d)};
     return pair_separation(&rules, pair->kind, pair->a, pair->b).distance;
 }
 

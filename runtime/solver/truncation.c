@@ -181,8 +181,7 @@ static void taint_left_out(cscd_detector *d) {
     for (uint32_t i = 0; exclusions_any(&d->exclusions) && i < s->traversal.lane_count; i++) {
         for (size_t j = 0; j < s->lanes[i].count; j++) {
             const cscd_contact *near = contact_lane_at(&s->lanes[i], j);
-            if (exclusions_cover_features(&d->exclusions, near->kind, near->a, near->b))
-                tainting_look(&t, near);
+            if (exclusions_cover(&d->exclusions, near->kind, near->a, near->b, NULL)) tainting_look(&t, near);
         }
     }
     list_cap_taint(d, &t);

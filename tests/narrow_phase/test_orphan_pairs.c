@@ -303,7 +303,7 @@ TEST(suspended_lanes_leave_none_out) {
         cscd_object_of_triangles(s.vertex_count, s.triangle_count, &s.triangles[0][0]);
     assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
     assert_int_equal(orphan_pairs_create(mesh, &pairs, &too_many), CSCD_OK);
-    const swept_interval interval = {.mesh = mesh, .x0 = at_rest, .x1 = at_rest};
+    const swept_interval interval = {.mesh = mesh, .x0 = at_rest, .x1 = at_rest, .filter = {.mesh = mesh}};
     for (uint32_t i = 0; i < SHARES; i++) {
         contact_lane_reset(&lane);
         for (lane.limit = 0; i + lane.cursor * SHARES < pairs.vf_count + pairs.ee_count;)

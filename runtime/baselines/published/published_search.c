@@ -155,7 +155,7 @@ typedef struct feature_testing {
 
 static void test_features(void *data, cscd_contact_kind kind, uint32_t a, uint32_t b) {
     const feature_testing *now = data;
-    if (!pair_is_active(now->interval, kind, a, b)) return;
+    if (!pair_filter_admits_features(&now->interval->filter, kind, a, b)) return;
     now->lane->feature_pairs++;
     if (now->search->roots == NULL) {
         (kind == CSCD_CONTACT_VF ? narrow_phase_test_vf : narrow_phase_test_ee)(now->interval, a, b,
@@ -170,15 +170,6 @@ static void test_features(void *data, cscd_contact_kind kind, uint32_t a, uint32
         contact_lane_add(now->search->context, now->lane, kind, a, b, &contact, false);
 }
 
-/* Are two triangles looked at with each other, whatever the method? */
-static bool may_meet(const swept_interval *interval, uint32_t a, uint32_t b) {
-    const uint32_t first = interval->mesh->triangle_components[a],
-                   second = interval->mesh->triangle_components[b];
-    if (components_collapsed(interval, first, second)) return false;
-    if (interval->rules != NULL) return components_look(interval, first, second);
-    return !component_is_obstacle(interval->mesh, first) || !component_is_obstacle(interval->mesh, second);
-}
-
 enum { PAIRS_BETWEEN_LOOKS = 256 };
 
 static void test_pairs(void *state, const own_interval *interval, contact_lane *lane) {
@@ -190,7 +181,7 @@ static void test_pairs(void *state, const own_interval *interval, contact_lane *
             !progress_go_on(&s->context->progress, (double)lane->cursor / (double)s->pairs.count))
             return;
         const uint32_t *pair = s->pairs.pairs[lane->cursor++];
-        if (may_meet(interval->swept, pair[0], pair[1]))
+        if (pair_filter_admits_triangles(&interval->swept->filter, pair[0], pair[1]))
             feature_assignment_test(interval, pair[0], pair[1], test_features, &testing);
         if (lane->cursor % PAIRS_BETWEEN_LOOKS == 0 && contact_lane_suspend(lane, lane->cursor)) return;
     }
