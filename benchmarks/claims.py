@@ -14,10 +14,9 @@ ROOT = Path(__file__).resolve().parent.parent
 RESULTS = ROOT / 'benchmarks' / 'results'
 PAGE = ROOT / 'docs' / 'about' / 'measurements.md'
 SECTIONS = (
-    'demo', 'methods', 'kmeans', 'culling-choice', 'small-steps', 'size', 'threads', 'bulk-motion', 'first-steps', 'topology',
-    'intersections', 'proximity', 'solvers', 'cloth', 'peers', 'elementary', 'structured-motions', 'volumes', 'charge', 'cuts',
-    'auto-plans', 'stiffness', 'many-meshes', 'farm', 'cold-disk', 'extremes', 'extreme-shapes', 'polygons', 'reports',
-    'python-calls', 'aarch64')
+    'demo', 'methods', 'culling-choice', 'small-steps', 'size', 'threads', 'bulk-motion', 'topology', 'intersections', 'proximity',
+    'solvers', 'cloth', 'peers', 'elementary', 'volumes', 'charge', 'cuts', 'auto-plans', 'stiffness', 'many-meshes', 'farm', 'cold-disk',
+    'extremes', 'extreme-shapes', 'reports', 'python-calls')
 OPENING = """# Measurements
 
 This page is made by `make claims` from the tables in [benchmarks/results](../../benchmarks/results/), which have every row, the
