@@ -1,5 +1,5 @@
 /* The charges of a mesh, component by component: by a treecode, or by a solver to compare with. */
-#include "preprocess/charges.h"
+#include "preprocess/preprocess.h"
 
 #include "preprocess/treecode/tree_solve.h"
 #include "src/core/system.h"

@@ -2,8 +2,8 @@
 #include "src/mesh/plan.h"
 
 #include "cscd/research.h"
-#include "preprocess/best_draft.h"
-#include "preprocess/regions/visibility.h"
+#include "preprocess/preprocess.h"
+#include "preprocess/regions/regions.h"
 #include "src/core/methods.h"
 #include "src/core/struct_size.h"
 #include "src/core/timer.h"

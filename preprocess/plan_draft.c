@@ -1,17 +1,53 @@
-/* The steps of preprocessing. */
-#include "preprocess/plan_draft.h"
+/* The steps of preprocessing: reads the frames of a motion, makes drafts by one method, and compares those of several. */
+#include "preprocess/preprocess.h"
 
-#include "cscd/research.h"
-#include "preprocess/regions/kmeans.h"
-#include "preprocess/regions/regions.h"
-#include "preprocess/regions/visibility.h"
 #include "src/core/methods.h"
 #include "src/core/timer.h"
+#include "src/mesh/positions.h"
+#include "src/mesh/views.h"
+
+#include <cscd/research.h>
+
+#include <stdio.h>
 
 /* baselines: begin */
 #include "preprocess/baselines/published_cuts.h"
-#include "preprocess/regions/equalize.h"
 /* baselines: end */
+
+/* ---- frames -------------------------------------------------------------------------------------------- */
+
+static cscd_status read_frame(cscd_context *context, const cscd_mesh *mesh, const cscd_plan_options *options,
+                              uint32_t number, plan_frames *out) {
+    char name[32];
+    snprintf(name, sizeof name, "frames[%u]", number);
+    if (options->frames[number] == NULL)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "%s is NULL", name);
+    const uint32_t i = out->count++;
+    const cscd_status status =
+        views_read(context, mesh, options->frames[number], name, &out->buffers[i], &out->items[i]);
+    return status == CSCD_OK ? positions_check(context, out->items[i], mesh->vertex_count, name) : status;
+}
+
+cscd_status plan_frames_read(cscd_context *context, const cscd_mesh *mesh, const cscd_plan_options *options,
+                             plan_frames *out) {
+    const uint32_t given = options->frame_count, wanted = given < FRAMES_MOST ? given : FRAMES_MOST;
+    cscd_status status = CSCD_OK;
+    *out = (plan_frames){0};
+    if (given > 0 && options->frames == NULL)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "frame_count is %u, but frames is NULL", given);
+    for (uint32_t i = 0; i < wanted && status == CSCD_OK; i++) {
+        const uint32_t number = wanted == given ? i : (uint32_t)((uint64_t)i * (given - 1) / (wanted - 1));
+        status = read_frame(context, mesh, options, number, out);
+    }
+    return status;
+}
+
+void plan_frames_free(cscd_context *context, plan_frames *frames) {
+    for (uint32_t i = 0; i < frames->count; i++) context_free(context, frames->buffers[i]);
+    *frames = (plan_frames){0};
+}
+
+/* ---- one method ---------------------------------------------------------------------------------------- */
 
 /* Of the method PUBLISHED: is this step, a CSCD_OURS_ bit, done as published? */
 static bool as_published(const plan_draft *d, uint64_t step) {
@@ -132,4 +168,97 @@ void plan_draft_free(plan_draft *d) {
     context_free(context, d->charges);
     context_free(context, d->capacitances);
     *d = (plan_draft){0};
+}
+
+/* ---- the best of several methods ----------------------------------------------------------------------- */
+
+/* Another draft is better if it leaves less than this share of what the best so far leaves: charge is the first, and where two are as
+ * good the plan has charges to show. */
+static const double clearly_less = 0.98;
+
+/* K-means regions for each component; where these are more in all than KMEANS_MOST they take longer than the charge. */
+static const uint32_t kmeans_counts[] = {4, 8, 16};
+enum { KMEANS_MOST = 1024 };
+
+static uint32_t count_bodies(const cscd_mesh *mesh) {
+    uint32_t count = 0;
+    for (uint32_t c = 0; c < mesh->component_count; c++) count += !component_is_obstacle(mesh, c);
+    return count;
+}
+
+static void add_timings(const cscd_preprocess_timings *from, cscd_preprocess_timings *to) {
+    to->assembly_ms += from->assembly_ms;
+    to->solve_ms += from->solve_ms;
+    to->regions_ms += from->regions_ms;
+    to->total_ms += from->total_ms;
+}
+
+/* The kernels and times of what has been compared go with the draft that is kept; true: that is d. */
+static bool keep_better(plan_draft *d, plan_draft *best, double share, double *least) {
+    const bool better = best->mesh == NULL || share < clearly_less * *least;
+    plan_draft *kept = better ? d : best, *other = better ? best : d;
+    add_timings(&other->timings, &kept->timings);
+    if (kept->kernels.used == NULL) kept->kernels = other->kernels;
+    plan_draft_free(other);
+    if (!better) return false;
+    *best = *d;
+    *least = share;
+    return true;
+}
+
+static cscd_status find_tested_share(const plan_draft *d, double *out) {
+    const judged_regions regions = {.mesh = d->mesh,
+                                    .positions = d->positions,
+                                    .frames = d->frames->items,
+                                    .frame_count = d->frames->count,
+                                    .stiffness = d->options.stiffness,
+                                    .of_triangle = d->regions,
+                                    .region_count = d->region_count,
+                                    .points = (const double(*)[3])d->detector_points};
+    return regions_tested_share(&regions, out);
+}
+
+/* Tries one method; of the failures only those of the charge leave something to compare. */
+static cscd_status try_method(const plan_draft *given, plan_candidates *candidates, plan_draft *best,
+                              double *least) {
+    cscd_context *context = given->mesh->context;
+    cscd_compared_plan candidate = {.method = given->options.method};
+    plan_draft d;
+    cscd_status status = plan_draft_make(given->mesh, given->positions, given->frames, &given->options, &d);
+    if (candidate.method == CSCD_METHOD_KMEANS) candidate.k = given->options.k;
+    if (status == CSCD_OK) status = find_tested_share(&d, &candidate.tested_share);
+    if (status == CSCD_OK) {
+        candidate.region_count = d.region_count;
+        candidate.kept = keep_better(&d, best, candidate.tested_share, least);
+        for (uint32_t i = 0; i < candidates->count && candidate.kept; i++) candidates->items[i].kept = false;
+        candidates->items[candidates->count++] = candidate;
+        return CSCD_OK;
+    }
+    plan_draft_free(&d);
+    if (candidate.method != CSCD_METHOD_CHARGE || status == CSCD_CANCELLED) return status;
+    snprintf(candidates->charge_failure, sizeof candidates->charge_failure, "%s", context->detail);
+    context->detail[0] = '\0'; /* the call goes on, and may succeed */
+    candidates->items[candidates->count++] = candidate;
+    return CSCD_OK;
+}
+
+cscd_status best_draft_make(const cscd_mesh *mesh, const double *positions, const plan_frames *frames,
+                            const cscd_plan_options *options, plan_candidates *candidates, plan_draft *out) {
+    plan_draft given = {.mesh = mesh, .positions = positions, .frames = frames, .options = *options};
+    const uint32_t bodies = count_bodies(mesh);
+    double least = 0.0;
+    *out = (plan_draft){0};
+    *candidates = (plan_candidates){0};
+    given.options.method = CSCD_METHOD_CHARGE;
+    cscd_status status = try_method(&given, candidates, out, &least);
+    given.options.method = CSCD_METHOD_SINGLE;
+    if (status == CSCD_OK) status = try_method(&given, candidates, out, &least);
+    given.options.method = CSCD_METHOD_KMEANS;
+    for (size_t i = 0; i < sizeof kmeans_counts / sizeof *kmeans_counts && status == CSCD_OK; i++) {
+        const uint64_t k = (uint64_t)kmeans_counts[i] * bodies;
+        if (bodies == 0 || k > mesh->triangle_count || k > KMEANS_MOST) break;
+        given.options.k = (uint32_t)k;
+        status = try_method(&given, candidates, out, &least);
+    }
+    return status;
 }

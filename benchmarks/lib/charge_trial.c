@@ -1,7 +1,7 @@
 /* A solution for charges in a process of its own, so that its peak of memory is known and memory that others left does not matter. */
 #include "benchmarks/lib/charge_trial.h"
 
-#include "preprocess/charges.h"
+#include "preprocess/preprocess.h"
 #include "src/core/context.h"
 #include "src/core/timer.h"
 

@@ -1,8 +1,8 @@
 /* Divides parts into cells: connected groups of near vertices with similar normals. */
 #pragma once
 
+#include "preprocess/partition/connect.h"
 #include "preprocess/partition/lbg.h"
-#include "preprocess/regions/connect.h"
 #include "src/mesh/partition.h"
 
 /* Makes cells and keeps them until they are all written to the partition, so that it is never half

@@ -1,5 +1,6 @@
 /* The mesh's dual graph: triangles, joined across their common edges. */
-#include "preprocess/regions/dual_graph.h"
+#include "preprocess/regions/tiles.h"
+
 #include "src/core/disjoint_sets.h"
 
 typedef struct link {

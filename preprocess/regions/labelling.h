@@ -1,9 +1,8 @@
-/* Which region each tile of a component belongs to: of all labellings one of low cost, by expansion moves (Boykov, Veksler, Zabih
+/* The regions of one body: labellings of its tiles, of all of them one of low cost, by expansion moves (Boykov, Veksler, Zabih
  * 2001). */
 #pragma once
 
-#include "preprocess/regions/min_cut.h"
-#include "preprocess/regions/soft_paths.h"
+#include "preprocess/regions/tiles.h"
 
 enum { REGIONS_MOST = 64 };
 
@@ -13,7 +12,8 @@ typedef struct labelling_prices {
     double region, border;
 } labelling_prices;
 
-/* The regions, each with its point, and with its seat: the tile from which ways through soft material begin. Times count changes: of the region's tiles, of its point, and when it was last looked at. */
+/* The regions, each with its point, and with its seat: the tile from which ways through soft material begin. Times count changes: of
+ * the region's tiles, of its point, and when it was last looked at. */
 typedef struct labelled_regions {
     uint32_t count;
     sight_point points[REGIONS_MOST];
@@ -78,3 +78,26 @@ void labelling_join(tile_labelling *l, uint32_t a, uint32_t b);
 
 /* Each tile of the region goes to the point among the others that sees it best, and the last region takes its number. */
 void labelling_leave_out(tile_labelling *l, uint32_t region);
+
+/* ---- bodies -------------------------------------------------------------------------------------------- */
+
+/* Regions so far: of each triangle, and their detector points. */
+typedef struct body_regions {
+    uint32_t *of_triangle; /* room for each triangle of the mesh */
+    uint32_t count, capacity;
+    double (*points)[3];
+} body_regions;
+
+/* Room for each triangle of the mesh. */
+typedef struct body_room {
+    uint32_t *tile_of, *scratch;
+    bool *marked;
+} body_room;
+
+/* Adds the regions of a component, whose triangles are listed, ascending. Each of them is connected. */
+cscd_status body_regions_add(body_regions *regions, const tile_surface *surface, const uint32_t *list,
+                             uint32_t count, const body_room *room);
+
+/* Adds a component as one region. */
+cscd_status body_regions_add_whole(body_regions *regions, const tile_surface *surface, const uint32_t *list,
+                                   uint32_t count);

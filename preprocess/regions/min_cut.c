@@ -1,5 +1,5 @@
 /* A minimum cut of a graph whose nodes have supplies and drains, by maximum flow. */
-#include "preprocess/regions/min_cut.h"
+#include "preprocess/regions/tiles.h"
 
 enum { NO_LEVEL = UINT32_MAX };
 

@@ -1,12 +1,88 @@
 /* Finds the regions of a mesh from its charge, or takes its components. */
-#include "preprocess/regions/regions.h"
-#include "preprocess/regions/body_regions.h"
-#include "preprocess/regions/edge_weights.h"
-#include "preprocess/regions/equalize.h"
-#include "preprocess/regions/stiffness.h"
+#include "preprocess/regions/labelling.h"
+
+#include "src/core/sort.h"
 #include "src/mesh/surface.h"
 
+#include <math.h>
 #include <string.h>
+
+/* ---- ranks of charge ----------------------------------------------------------------------------------- */
+
+typedef struct ranked {
+    uint32_t component, triangle;
+    double density;
+} ranked;
+
+/* Independent of the range, unlike a conversion to float. */
+static double round_to_24_bits(double value) {
+    int exponent;
+    double mantissa = frexp(value, &exponent);
+    return ldexp(nearbyint(ldexp(mantissa, 24)), exponent - 24);
+}
+
+/* The sort is stable and the items come by triangle, so ties stay in that order. */
+static int compare_ranked(const void *a, const void *b) {
+    const ranked *x = a, *y = b;
+    if (x->component != y->component) return x->component < y->component ? -1 : 1;
+    return (x->density > y->density) - (x->density < y->density);
+}
+
+static void rank_exactly(const ranked *items, uint32_t count, double *equalized) {
+    for (uint32_t i = 0; i < count; i++) equalized[items[i].triangle] = (i + 1.0) / count;
+}
+
+cscd_status equalize(const cscd_mesh *mesh, const double *density, double *equalized) {
+    cscd_context *context = mesh->context;
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+        if (!isfinite(density[t]))
+            return context_fail(context, CSCD_INVALID_ARGUMENT,
+                                "the charge density of triangle %u is %g; densities must be finite", t,
+                                density[t]);
+    }
+    ranked *items, *scratch;
+    array_list lists = {{ARRAY(items, mesh->triangle_count), ARRAY(scratch, mesh->triangle_count)}};
+    if (!context_allocate_all(context, lists)) return context_out_of_memory(context);
+    for (uint32_t t = 0; t < mesh->triangle_count; t++)
+        items[t] = (ranked){mesh->triangle_components[t], t, round_to_24_bits(density[t])};
+    sort_items(items, scratch, mesh->triangle_count, sizeof *items, compare_ranked);
+    const ranked *first = items;
+    for (uint32_t c = 0; c < mesh->component_count; c++) {
+        uint32_t count = mesh->components[c].triangle_count;
+        rank_exactly(first, count, equalized);
+        first += count;
+    }
+    context_free_all(context, lists);
+    return CSCD_OK;
+}
+
+/* ---- weights of edges ---------------------------------------------------------------------------------- */
+
+/* An edge costs its length where the charge is high, and this share of it where the charge is lowest. The cost falls from three times
+ * the threshold on: cuts run along creases, and elsewhere they are short. */
+static const double crease = 0.1, crease_ranks = 3.0;
+
+/* The mean of the ranks beside an edge. */
+static double rank_beside(const cscd_mesh *mesh, const double *ranks, uint32_t edge) {
+    double sum = 0.0;
+    for (uint32_t i = mesh->edge_star_offsets[edge]; i < mesh->edge_star_offsets[edge + 1]; i++)
+        sum += ranks[mesh->edge_stars[i]] / edge_star_size(mesh, edge);
+    return sum;
+}
+
+void weigh_edges(const cscd_mesh *mesh, const double *positions, const double *equalized,
+                 const double *stiffness_shares, const region_options *options, double *weights) {
+    const double high = fmin(1.0, crease_ranks * options->threshold);
+    for (uint32_t e = 0; e < mesh->edge_count; e++) {
+        const double rank = fmin(1.0, rank_beside(mesh, equalized, e) / high);
+        double share = 1.0 - (1.0 - crease) * (1.0 - rank);
+        if (stiffness_shares != NULL)
+            share = fmin(share, fmax(crease, stiffness_beside(mesh, stiffness_shares, e)));
+        weights[e] = surface_edge_length(mesh, positions, e) * share;
+    }
+}
+
+/* ---- regions ------------------------------------------------------------------------------------------- */
 
 region_options region_options_defaults(void) {
     return (region_options){.threshold = 0.1};

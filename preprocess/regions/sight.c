@@ -1,5 +1,5 @@
 /* Finds the points that see the most of sets of tiles. */
-#include "preprocess/regions/sight.h"
+#include "preprocess/regions/tiles.h"
 
 #include "src/core/vec3.h"
 

@@ -21,7 +21,7 @@ static array_list list_links(tile_graph *g) {
                          ARRAY(g->twins, g->flow.link_count), ARRAY(g->weights, g->flow.link_count)}};
 }
 
-/* ---- scaled triangles ------------------------------------------------------------------------------------ */
+/* ---- scaled triangles ---------------------------------------------------------------------------------- */
 
 /* A component's positions in one frame, or at rest. */
 typedef struct tile_frame {
@@ -89,7 +89,7 @@ tile_component tiles_component(const tile_surface *surface, const uint32_t *list
     return c;
 }
 
-/* ---- numbers of tiles ------------------------------------------------------------------------------------ */
+/* ---- numbers of tiles ---------------------------------------------------------------------------------- */
 
 static uint32_t cell_along(double coordinate, double side) {
     return (uint32_t)((coordinate + 0.5) / side);
@@ -127,7 +127,7 @@ uint32_t tiles_halve(const tile_surface *surface, tile_component *component, con
     return dual_graph_pieces(surface->graph, component->list, component->count, tile_of, tile_of, scratch);
 }
 
-/* ---- the tiles ------------------------------------------------------------------------------------------- */
+/* ---- the tiles ----------------------------------------------------------------------------------------- */
 
 static void add_triangle(const tile_surface *s, const tile_component *c, const tile_frame *frame, uint32_t t,
                          tile *to) {
@@ -200,7 +200,7 @@ static cscd_status fill_stiffness(const tile_surface *s, const tile_component *c
     return CSCD_OK;
 }
 
-/* ---- links ----------------------------------------------------------------------------------------------- */
+/* ---- links --------------------------------------------------------------------------------------------- */
 
 typedef struct tile_link {
     uint32_t a, b; /* a < b */

@@ -1,7 +1,6 @@
 /* Bodies that no loop alone parts, and those that no crease marks: as many regions as are needed, each of which its point sees. */
-#include "preprocess/charges.h"
+#include "preprocess/preprocess.h"
 #include "preprocess/regions/regions.h"
-#include "preprocess/regions/visibility.h"
 #include "tests/support/preprocess/region_check.h"
 #include "tests/support/preprocess/visible_share.h"
 #include "tests/support/test.h"

@@ -1,5 +1,5 @@
 /* Equalized densities are ranks, by component. */
-#include "preprocess/regions/equalize.h"
+#include "preprocess/regions/regions.h"
 #include "tests/support/mesh_shapes.h"
 #include "tests/support/random.h"
 #include "tests/support/refusal.h"

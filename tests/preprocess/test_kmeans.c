@@ -1,7 +1,5 @@
 /* K-means regions: centroids of the vertices, triangles by fewest edges; the same for the same seed. */
-#include "preprocess/regions/kmeans.h"
-#include "preprocess/regions/lloyd.h"
-#include "preprocess/regions/visibility.h"
+#include "preprocess/regions/regions.h"
 #include "tests/support/preprocess/region_check.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"

@@ -1,5 +1,5 @@
 /* Minimum cuts of small random graphs, beside all cuts. */
-#include "preprocess/regions/min_cut.h"
+#include "preprocess/regions/tiles.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
 

@@ -1,8 +1,6 @@
 /* Bodies are cut where one would expect it, and detector points see more after it. */
-#include "preprocess/charges.h"
-#include "preprocess/regions/kmeans.h"
+#include "preprocess/preprocess.h"
 #include "preprocess/regions/regions.h"
-#include "preprocess/regions/visibility.h"
 #include "src/mesh/surface.h"
 #include "tests/support/preprocess/region_check.h"
 #include "tests/support/preprocess/visible_share.h"

@@ -1,7 +1,5 @@
 /* Plans of bodies that are soft in places: borders run there, and what lies beyond has a point of its own. */
-#include "preprocess/regions/edge_weights.h"
-#include "preprocess/regions/soft_ways.h"
-#include "preprocess/regions/stiffness.h"
+#include "preprocess/regions/tiles.h"
 #include "src/mesh/surface.h"
 #include "tests/support/preprocess/region_check.h"
 #include "tests/support/test.h"

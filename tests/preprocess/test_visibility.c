@@ -1,5 +1,5 @@
 /* Detector points are centroids of the surface; the visible share is what faces them from inside. */
-#include "preprocess/regions/visibility.h"
+#include "preprocess/regions/regions.h"
 #include "tests/support/preprocess/region_check.h"
 #include "tests/support/preprocess/visible_share.h"
 #include "tests/support/test.h"

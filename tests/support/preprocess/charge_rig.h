@@ -1,7 +1,7 @@
 /* A context, a mesh and room for the charges of a surface. */
 #pragma once
 
-#include "preprocess/charges.h"
+#include "preprocess/preprocess.h"
 #include "tests/support/preprocess/charge_shapes.h"
 
 typedef struct charge_rig {

@@ -1,6 +1,6 @@
 /* Asserts the invariants of every division into regions. */
 #include "tests/support/preprocess/region_check.h"
-#include "preprocess/regions/dual_graph.h"
+#include "preprocess/regions/tiles.h"
 #include "tests/support/test.h"
 
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* The share of a mesh's area that its detector points see, for tests of regions. */
 #pragma once
 
-#include "preprocess/regions/visibility.h"
+#include "preprocess/regions/tiles.h"
 #include "src/mesh/surface.h"
 
 /* `points` has one detector point per region. */

@@ -1,6 +1,9 @@
-/* Places detector points, and finds how much of its region each of them sees from inside. */
-#include "preprocess/regions/visibility.h"
+/* Detector points: places them, finds what they see, and moves them with their regions, as a detector does. */
+#include "preprocess/regions/tiles.h"
+
 #include "src/mesh/surface.h"
+
+#include <string.h>
 
 /* Sums over a region, with equal weights beside the areas. */
 typedef struct region_sums {
@@ -61,4 +64,27 @@ cscd_status visible_shares(const cscd_mesh *mesh, const double *positions, const
     for (uint32_t r = 0; r < region_count; r++) shares[r] = areas[r] > 0.0 ? shares[r] / areas[r] : 0.0;
     context_free(mesh->context, areas);
     return CSCD_OK;
+}
+
+/* ---- points that move ---------------------------------------------------------------------------------- */
+
+static void add_way(const region_scene *s, const double *frame, uint32_t t, region_way *way) {
+    const double area = surface_area(s->mesh, s->positions, t);
+    for (uint32_t corner = 0; corner < 3; corner++) {
+        const double *before = surface_corner(s->mesh, s->positions, t, corner),
+                     *after = surface_corner(s->mesh, frame, t, corner);
+        for (int k = 0; k < 3; k++) way->way[k] += area * (after[k] - before[k]) / 3.0;
+    }
+    way->area += area;
+}
+
+void region_points_move(const region_scene *scene, const double *frame, region_way *ways, double (*out)[3]) {
+    memset(ways, 0, scene->region_count * sizeof *ways);
+    for (uint32_t i = 0; i < scene->count; i++) {
+        const uint32_t t = region_scene_triangle(scene, i);
+        add_way(scene, frame, t, &ways[scene->of_triangle[t] - scene->first]);
+    }
+    for (uint32_t r = 0; r < scene->region_count; r++)
+        for (int k = 0; k < 3; k++)
+            out[r][k] = scene->points[r][k] + ways[r].way[k] / (ways[r].area > 0.0 ? ways[r].area : 1.0);
 }

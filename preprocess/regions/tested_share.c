@@ -1,17 +1,13 @@
 /* Counts the triangles that culling leaves. */
-#include "preprocess/tested_share.h"
+#include "preprocess/regions/tiles.h"
 
-#include "preprocess/regions/region_motion.h"
-#include "preprocess/regions/sight.h"
-#include "preprocess/regions/soft_ways.h"
-#include "preprocess/regions/visibility.h"
 #include "src/mesh/surface.h"
 
 #include <math.h>
 #include <string.h>
 
 typedef struct share_work {
-    const plan_draft *d;
+    const judged_regions *regions;
     region_scene scene;
     bool *at_border;     /* of vertices */
     uint32_t *region_of; /* of vertices: one of those around */
@@ -23,27 +19,28 @@ typedef struct share_work {
 } share_work;
 
 static array_list list_arrays(share_work *w) {
-    const cscd_mesh *mesh = w->d->mesh;
+    const cscd_mesh *mesh = w->regions->mesh;
     const size_t triangles = mesh->triangle_count, vertices = mesh->vertex_count,
-                 regions = w->d->region_count;
+                 regions = w->regions->region_count;
     return (array_list){{ARRAY(w->at_border, vertices), ARRAY(w->region_of, vertices),
                          ARRAY(w->blindness, triangles), ARRAY(w->ways, triangles), ARRAY(w->signs, regions),
                          ARRAY(w->moves, regions), ARRAY(w->points, regions)}};
 }
 
 static void mark_borders(share_work *w) {
-    const cscd_mesh *mesh = w->d->mesh;
+    const cscd_mesh *mesh = w->regions->mesh;
     for (uint32_t t = 0; t < mesh->triangle_count; t++)
-        for (int i = 0; i < 3; i++) w->region_of[mesh->triangles[t][i]] = w->d->regions[t];
+        for (int i = 0; i < 3; i++) w->region_of[mesh->triangles[t][i]] = w->regions->of_triangle[t];
     for (uint32_t t = 0; t < mesh->triangle_count; t++)
         for (int i = 0; i < 3; i++)
-            w->at_border[mesh->triangles[t][i]] |= w->region_of[mesh->triangles[t][i]] != w->d->regions[t];
+            w->at_border[mesh->triangles[t][i]] |=
+                w->region_of[mesh->triangles[t][i]] != w->regions->of_triangle[t];
 }
 
 static void find_signs(share_work *w) {
-    for (uint32_t t = 0; t < w->d->mesh->triangle_count; t++) {
-        const uint32_t r = w->d->regions[t];
-        w->signs[r] += orientation_value(w->d->mesh, w->d->positions, t, w->scene.points[r]);
+    for (uint32_t t = 0; t < w->regions->mesh->triangle_count; t++) {
+        const uint32_t r = w->regions->of_triangle[t];
+        w->signs[r] += orientation_value(w->regions->mesh, w->regions->positions, t, w->scene.points[r]);
     }
 }
 
@@ -64,45 +61,46 @@ static double triangle_blindness(const cscd_mesh *mesh, const double *positions,
 }
 
 static void add_frame(share_work *w, const double *positions, const double (*points)[3]) {
-    for (uint32_t t = 0; t < w->d->mesh->triangle_count; t++) {
-        const uint32_t r = w->d->regions[t];
-        w->blindness[t] += (float)triangle_blindness(w->d->mesh, positions, t, points[r], w->signs[r] < 0.0);
+    for (uint32_t t = 0; t < w->regions->mesh->triangle_count; t++) {
+        const uint32_t r = w->regions->of_triangle[t];
+        w->blindness[t] +=
+            (float)triangle_blindness(w->regions->mesh, positions, t, points[r], w->signs[r] < 0.0);
     }
 }
 
 static double sum_share(const share_work *w) {
-    const cscd_mesh *mesh = w->d->mesh;
+    const cscd_mesh *mesh = w->regions->mesh;
     double tested = 0.0, all = 0.0;
     for (uint32_t t = 0; t < mesh->triangle_count; t++) {
         if (triangle_of_obstacle(mesh, t)) continue;
         bool whole = !mesh->components[mesh->triangle_components[t]].closed_manifold;
         for (int i = 0; i < 3; i++) whole |= w->at_border[mesh->triangles[t][i]];
-        tested += whole ? 1.0 : fmax((double)w->blindness[t] / (1.0 + w->d->frames->count), w->ways[t]);
+        tested += whole ? 1.0 : fmax((double)w->blindness[t] / (1.0 + w->regions->frame_count), w->ways[t]);
         all += 1.0;
     }
     return all > 0.0 ? tested / all : 0.0;
 }
 
-cscd_status find_tested_share(const plan_draft *d, double *out) {
-    cscd_context *context = d->mesh->context;
-    share_work w = {.d = d,
-                    .scene = {.mesh = d->mesh,
-                              .positions = d->positions,
-                              .count = d->mesh->triangle_count,
-                              .of_triangle = d->regions,
-                              .region_count = d->region_count,
-                              .points = (const double(*)[3])d->detector_points}};
+cscd_status regions_tested_share(const judged_regions *regions, double *out) {
+    cscd_context *context = regions->mesh->context;
+    share_work w = {.regions = regions,
+                    .scene = {.mesh = regions->mesh,
+                              .positions = regions->positions,
+                              .count = regions->mesh->triangle_count,
+                              .of_triangle = regions->of_triangle,
+                              .region_count = regions->region_count,
+                              .points = regions->points}};
     if (!context_allocate_all(context, list_arrays(&w))) return context_out_of_memory(context);
     mark_borders(&w);
     find_signs(&w);
-    add_frame(&w, d->positions, w.scene.points);
-    for (uint32_t f = 0; f < d->frames->count && progress_go_on(&context->progress, 1.0); f++) {
-        region_points_move(&w.scene, d->frames->items[f], w.moves, w.points);
-        add_frame(&w, d->frames->items[f], (const double(*)[3])w.points);
+    add_frame(&w, regions->positions, w.scene.points);
+    for (uint32_t f = 0; f < regions->frame_count && progress_go_on(&context->progress, 1.0); f++) {
+        region_points_move(&w.scene, regions->frames[f], w.moves, w.points);
+        add_frame(&w, regions->frames[f], (const double(*)[3])w.points);
     }
     cscd_status status = context_progress_status(context);
-    if (status == CSCD_OK && d->options.stiffness != NULL)
-        status = soft_ways_find(&w.scene, d->options.stiffness, w.ways);
+    if (status == CSCD_OK && regions->stiffness != NULL)
+        status = soft_ways_find(&w.scene, regions->stiffness, w.ways);
     *out = sum_share(&w);
     context_free_all(context, list_arrays(&w));
     return status;

@@ -1,5 +1,5 @@
 /* Makes the labels of vertices connected along edges. */
-#include "preprocess/regions/connect.h"
+#include "preprocess/partition/connect.h"
 
 enum { NONE = UINT32_MAX };
 
