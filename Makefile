@@ -201,7 +201,7 @@ SLOW_depths        := deepest_points work_budget
 SLOW_detector      := change_mesh lifetimes list_cap object_rules oracle reentry waiting_random
 SLOW_events        := event_tracker event_tracker_bodies
 SLOW_install       := baseline_library embedding header_versions headers install places run_script
-SLOW_intersections := collapsed curve_changes curves find_intersections first_pairs live_answers memory_budget pair_kind static_check_kernel winding
+SLOW_intersections := collapsed curves find_intersections first_pairs live_answers memory_budget pair_kind static_check_kernel winding
 SLOW_io            := frame_series point_caches
 SLOW_jobs          := each job_processes list merge merge_files stopped_jobs
 SLOW_loose         := loose_solver loose_steps
@@ -818,7 +818,7 @@ $(BUILD)/tests/core/room: $(TEST_LEVELS)
 $(OBJECTS)/tests/support/methods.o: CFLAGS_ALL += $(if $(HAS_BASELINES),-DWITH_BASELINES)
 
 # Readers that one command has for itself, and what damaged files and those of libFuzzer go through.
-READING_OBJECTS := $(call objects,$(addprefix tests/fuzz/,readings.c reading_memory.c tracker_reading.c) tool/summary_file.c)
+READING_OBJECTS := $(call objects,$(addprefix tests/fuzz/,readings.c reading_memory.c) tool/summary_file.c)
 $(BUILD)/tests/fuzz/fuzz_readers $(BUILD)/tests/fuzz/coverage_target: $(READING_OBJECTS)
 # gold warns of hundreds of the sanitizer's own symbols.
 $(BUILD)/tests/fuzz/coverage_target: TEST_LINKER :=

@@ -1,5 +1,5 @@
 /* What answers about intersections cost beside the plain check: kinds, curves, patches, overlaps, depths, what is
- * cut off, changes of curves, events. */
+ * cut off, events. */
 #include "benchmarks/lib/crossing_scenes.h"
 #include "benchmarks/lib/deforming_body.h"
 #include "benchmarks/lib/options.h"
@@ -20,9 +20,8 @@ static const char help[] =
     "cloth. Milliseconds of processor time of all threads, in which a crowded machine shows less; each the least of\n"
     "some rounds, in which all take turns; trees and buffers are there. x: of all, beside the check. grown: how\n"
     "often these rounds have allocated.\n"
-    "The second table: with patches and what is cut off; a frame of a\n"
-    "cscd_event_tracker that is given all answers; and of an interval in which cloth goes to its other frame and\n"
-    "bodies swell by a thousandth of their size, cscd_detector_step, and cscd_detector_curve_changes for its contacts.\n"
+    "The second table: with patches and what is cut off; and a frame of a cscd_event_tracker that is given all\n"
+    "answers.\n"
     "--intervals: the rounds (default 7, with --quick 3). --sizes, --body and --shuffled mean nothing here.\n"
     "\n";
 
@@ -46,7 +45,7 @@ typedef struct moment {
     const char *name;
     const cscd_object_desc *objects;
     uint32_t object_count, vertex_count, triangle_count;
-    const double *positions, *next; /* next: where an interval from the positions ends */
+    const double *positions;
 } moment;
 
 typedef struct answer_times {
@@ -54,8 +53,7 @@ typedef struct answer_times {
     cscd_intersection_pairs found; /* of all */
     size_t buried;                 /* vertices */
     size_t grown;
-    double tracker_ms, step_ms, changes_ms;
-    size_t contacts, changes;
+    double tracker_ms;
 } answer_times;
 
 /* A row of the second table, which is printed behind the first one. */
@@ -130,38 +128,24 @@ static cscd_status run_rounds(cscd_detector *d, const moment *m, uint32_t rounds
     return status;
 }
 
-/* One round of what comes behind the answers: a frame for the tracker, and an interval. */
+/* One round of what comes behind the answers: a frame for the tracker. */
 static cscd_status run_later_round(cscd_detector *d, const moment *m, cscd_event_tracker *tracker,
                                    uint64_t frame, answer_times *out) {
-    const cscd_view from = cscd_view_doubles(m->positions, m->vertex_count),
-                    to = cscd_view_doubles(m->next, m->vertex_count);
     cscd_events events;
-    cscd_contacts contacts;
-    cscd_curve_changes changes;
-    double ms, since;
+    double ms;
     cscd_status status = ask_question(d, m, ASK_ALL, &ms, &out->found);
     if (status == CSCD_OK) out->buried = count_buried(out->found.depths);
-    since = processor_ms();
+    const double since = processor_ms();
     if (status == CSCD_OK) status = cscd_event_tracker_add_frame(tracker, frame, &out->found);
     if (status == CSCD_OK) status = cscd_event_tracker_take(tracker, &events);
     out->tracker_ms = fmin(out->tracker_ms, processor_ms() - since);
-    since = processor_ms();
-    if (status == CSCD_OK) status = cscd_detector_step(d, &from, &to, &contacts);
-    out->step_ms = fmin(out->step_ms, processor_ms() - since);
-    since = processor_ms();
-    if (status == CSCD_OK)
-        status = cscd_detector_curve_changes(d, &from, &to, contacts.items, contacts.count, &changes);
-    out->changes_ms = fmin(out->changes_ms, processor_ms() - since);
-    if (status != CSCD_OK) return status;
-    out->contacts = contacts.count;
-    out->changes = changes.count;
-    return ask_question(d, m, ASK_ALL, &ms, &out->found);
+    return status;
 }
 
 static cscd_status run_later_rounds(cscd_detector *d, const moment *m, cscd_event_tracker *tracker,
                                     uint32_t rounds, answer_times *out) {
     cscd_status status = CSCD_OK;
-    out->tracker_ms = out->step_ms = out->changes_ms = HUGE_VAL;
+    out->tracker_ms = HUGE_VAL;
     for (uint32_t i = 0; status == CSCD_OK && i <= rounds; i++)
         status = run_later_round(d, m, tracker, i, out);
     return status;
@@ -187,14 +171,12 @@ static void print_row(const moment *m, const answer_times *t) {
 }
 
 static void print_later_rows(const row_list *rows) {
-    printf("\n  %-13s %8s %8s %8s %8s %8s %8s %8s %8s\n", "scene", "triangles", "check", "cut_offs",
-           "tracker", "contacts", "changes", "step", "changes");
+    printf("\n  %-13s %8s %8s %8s %8s\n", "scene", "triangles", "check", "cut_offs", "tracker");
     for (size_t i = 0; i < rows->count; i++) {
         const later_row *row = &rows->items[i];
         const answer_times *t = &row->times;
-        printf("  %-13s %8u %8.2f %8.2f %8.2f %8zu %8zu %8.2f %8.2f\n", row->name, row->triangle_count,
-               t->ms[ASK_CHECK], t->ms[ASK_CUT_OFFS], t->tracker_ms, t->contacts, t->changes, t->step_ms,
-               t->changes_ms);
+        printf("  %-13s %8u %8.2f %8.2f %8.2f\n", row->name, row->triangle_count, t->ms[ASK_CHECK],
+               t->ms[ASK_CUT_OFFS], t->tracker_ms);
     }
 }
 
@@ -214,11 +196,7 @@ static void write_row(json *out, const moment *m, const answer_times *t) {
     json_begin_object(out, "ms");
     for (int q = 0; q < QUESTION_COUNT; q++) json_number(out, question_names[q], t->ms[q]);
     json_number(out, "tracker", t->tracker_ms);
-    json_number(out, "step", t->step_ms);
-    json_number(out, "changes", t->changes_ms);
     json_end_object(out);
-    json_integer(out, "contacts", t->contacts);
-    json_integer(out, "changes", t->changes);
     json_integer(out, "grown", t->grown);
     json_end_object(out);
 }
@@ -266,31 +244,6 @@ static bool measure_moment(const moment *m, const bench_options *o, row_list *ro
 
 /* ---- the program --------------------------------------------------------------------------------------- */
 
-/* Moves the vertices of a body along the sum of the normals around them, by a thousandth of its largest extent. */
-static void swell_body(const body *b, double *positions) {
-    double *normals = body_allocate(b->vertex_count, sizeof(double[3])), extent = 0.0;
-    memset(normals, 0, b->vertex_count * sizeof(double[3]));
-    for (uint32_t i = 0; i < b->triangle_count; i++) {
-        const uint32_t *t = b->triangles + 3 * (size_t)i;
-        const double *p = b->positions + 3 * (size_t)t[0], *q = b->positions + 3 * (size_t)t[1],
-                     *r = b->positions + 3 * (size_t)t[2];
-        for (int k = 0; k < 3; k++) {
-            int x = (k + 1) % 3, y = (k + 2) % 3;
-            double normal = (q[x] - p[x]) * (r[y] - p[y]) - (q[y] - p[y]) * (r[x] - p[x]);
-            for (int corner = 0; corner < 3; corner++) normals[3 * (size_t)t[corner] + (size_t)k] += normal;
-        }
-    }
-    for (uint32_t v = 0; v < 3 * b->vertex_count; v++)
-        extent = fmax(extent, fabs(b->positions[v] - b->positions[v % 3]));
-    for (uint32_t v = 0; v < b->vertex_count; v++) {
-        const double *n = normals + 3 * (size_t)v;
-        double norm = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-        for (int k = 0; k < 3 && norm > 0.0; k++)
-            positions[3 * (size_t)v + (size_t)k] += 1e-3 * extent * n[k] / norm;
-    }
-    free(normals);
-}
-
 static bool measure_scene(crossing_kind kind, uint32_t triangle_count, const bench_options *o, row_list *rows,
                           json *out, io_error *error) {
     crossing_scene s;
@@ -304,17 +257,12 @@ static bool measure_scene(crossing_kind kind, uint32_t triangle_count, const ben
         m.triangle_count += b->triangle_count;
     }
     double *positions = body_allocate(m.vertex_count, sizeof(double[3]));
-    double *swollen = body_allocate(m.vertex_count, sizeof(double[3]));
     for (uint32_t i = 0, first = 0; i < s.object_count; first += s.objects[i++].vertex_count) {
         const body *b = &s.objects[i];
         memcpy(positions + (size_t)first * 3, b->positions, b->vertex_count * sizeof(double[3]));
-        memcpy(swollen + (size_t)first * 3, b->positions, b->vertex_count * sizeof(double[3]));
-        swell_body(b, swollen + (size_t)first * 3);
     }
     m.positions = positions;
-    m.next = swollen;
     bool good = measure_moment(&m, o, rows, out, error);
-    free(swollen);
     free(positions);
     crossing_scene_free(&s);
     return good;
@@ -325,11 +273,10 @@ static bool measure_cloth(const bench_options *o, row_list *rows, json *out, io_
     if (!bench_has_data(o, "cloth_ball")) return true;
     if (!deforming_body_read(o->data, "cloth_ball", 92, &b, error)) return false;
     cscd_object_desc desc = cscd_object_of_triangles(b.vertex_count, b.triangle_count, b.triangles);
-    moment m = {"cloth_ball 92", &desc, 1, b.vertex_count, b.triangle_count, b.rest, b.last};
+    moment m = {"cloth_ball 92", &desc, 1, b.vertex_count, b.triangle_count, b.last};
     bool good = measure_moment(&m, o, rows, out, error);
     m.name = "cloth_ball 93";
     m.positions = b.last;
-    m.next = b.rest;
     good = good && measure_moment(&m, o, rows, out, error);
     deforming_body_free(&b);
     return good;

@@ -68,7 +68,6 @@
 #define CSCD_H
 
 #include <cscd/context.h>
-#include <cscd/curve_changes.h>
 #include <cscd/detector.h>
 #include <cscd/events.h>
 #include <cscd/intersections.h>

@@ -201,14 +201,6 @@ class detector : public detail::owner<cscd_detector, cscd_detector_destroy> {
             return cscd_detector_contact_parts(get(), items.data(), items.size(), out);
         });
     }
-    /* Points of curves that come or go from x0 to x1 at contacts of a list. */
-    curve_changes find_curve_changes(const positions &x0, const positions &x1,
-                                     span<const cscd_contact> items) {
-        const cscd_view *from = covering(x0), *to = covering(x1);
-        return find<curve_changes>([&](curve_changes *out) {
-            return cscd_detector_curve_changes(get(), from, to, items.data(), items.size(), out);
-        });
-    }
     proximities find_near(const positions &x, double distance, cscd_near_form form = CSCD_NEAR_UNIQUE) {
         const cscd_view *at = covering(x);
         return find<proximities>(
@@ -269,13 +261,6 @@ class detector : public detail::owner<cscd_detector, cscd_detector_destroy> {
     }
 
     /* ---- what is known of the start of the next one */
-
-    cscd_start_state start_state(std::uint32_t triangle) const noexcept {
-        return cscd_detector_start_state(get(), triangle);
-    }
-    cscd_start_knowledge start_knowledge(std::uint32_t component) const noexcept {
-        return cscd_detector_start_knowledge(get(), component);
-    }
 
   private:
     friend class line_search;

@@ -15,9 +15,7 @@
  * rings if they are the same, within 1 if they share a vertex, and within k if between a vertex of one and a vertex of the
  * other lie at most k - 1 edges of the mesh. Vertices that seams unite are one.
  *
- * So events that meet are one from their beginnings on, and one that splits stays one while its pieces last. Nothing
- * depends on when a thing became known: chunks of a recording may be tracked apart and merged, in any order, and give
- * the same events, bit for bit. Where depths are asked for, what is buried joins the curves around it, and a body that
+ * So events that meet are one from their beginnings on, and one that splits stays one while its pieces last. Where depths are asked for, what is buried joins the curves around it, and a body that
  * is wholly inside another one stays an event.
  *
  * A tracker needs memory for what is open and for events that nobody has taken yet, not for the recording. It holds one
@@ -47,11 +45,6 @@ typedef struct cscd_event_options {
     /* Pairs of vertices that count as one, as for a detector; none by default. */
     const uint32_t *seams;
     size_t seam_count;
-
-    /* This is a later chunk of a recording: another tracker has the frames before, and this one is to be merged into it.
-     * What may go on from there is given out only then, or by cscd_event_tracker_finish. false by default. */
-    bool later_chunk;
-    uint8_t reserved[7];
 
     /* The most bytes that one frame may take, 0, the default: a quarter of the memory that is free when the tracker is made. See
      * cscd_event_tracker_add_frame. */
@@ -155,27 +148,6 @@ CSCD_API cscd_status cscd_event_tracker_take(cscd_event_tracker *tracker, cscd_e
  *     cscd_event_tracker_destroy(tracker);
  */
 CSCD_API cscd_status cscd_event_tracker_finish(cscd_event_tracker *tracker, cscd_events *out);
-
-/* ---- chunks --------------------------------------------------------------------------------------------- */
-
-/* Adds all that `next` has, a tracker of the frames that follow, made with later_chunk and else with the same options,
- * for the same mesh, in the same context. Contacts of the interval between the two go to `next`, before its first frame.
- * next stays as it is; what was taken from it before is not given out again. INVALID_ARGUMENT: they do not fit together, or
- * contacts wait for a frame. Merging trackers in any order, and grouped in any way, gives the same as one tracker of
- * all frames. */
-CSCD_API cscd_status cscd_event_tracker_merge(cscd_event_tracker *tracker, const cscd_event_tracker *next);
-
-/* Writes all that the tracker has as bytes, the same on every machine, for a file or another process; nothing is taken
- * from it. They belong to the tracker and live until its next call. Trackers with the same frames have the same bytes,
- * however they were merged, unless events were taken. INVALID_ARGUMENT: contacts wait for a frame. */
-CSCD_API cscd_status cscd_event_tracker_save(cscd_event_tracker *tracker, const uint8_t **bytes,
-                                             size_t *byte_count);
-
-/* Replaces what the tracker has by what was saved from another one of the same mesh and options. Contacts that wait are
- * gone. INVALID_ARGUMENT: the bytes are not whole, or are of another mesh or other options; the tracker then stays as
- * it was. */
-CSCD_API cscd_status cscd_event_tracker_load(cscd_event_tracker *tracker, const uint8_t *bytes,
-                                             size_t byte_count);
 
 #ifdef __cplusplus
 }

@@ -64,19 +64,6 @@ class event_tracker : public detail::owner<cscd_event_tracker, cscd_event_tracke
     }
 
     /* A later chunk of the recording. */
-    void merge(const event_tracker &next) {
-        call([&] { return cscd_event_tracker_merge(get(), next.get()); });
-    }
-    span<const std::uint8_t> save() {
-        const std::uint8_t *bytes = nullptr;
-        std::size_t count = 0;
-        call([&] { return cscd_event_tracker_save(get(), &bytes, &count); });
-        return {bytes, count};
-    }
-    void load(span<const std::uint8_t> bytes) {
-        call([&] { return cscd_event_tracker_load(get(), bytes.data(), bytes.size()); });
-    }
-
   private:
     template <class Call> void call(Call &&made) {
         detail::make_call(state_, made);

@@ -3,11 +3,11 @@
 #define CSCD_LISTS_HPP
 
 #include <cscd/context.hpp>
-#include <cscd/curve_changes.h>
 #include <cscd/intersections.h>
 #include <cscd/solver.h>
 #include <cscd/view.hpp>
 
+#include <algorithm>
 #include <vector>
 
 namespace cscd {
@@ -45,7 +45,6 @@ using intersections = list<cscd_intersections>;
 using intersection_pairs = list<cscd_intersection_pairs>;
 using proximities = list<cscd_proximities>;
 using contact_part_pairs = list<cscd_contact_part_pairs>;
-using curve_changes = list<cscd_curve_changes>;
 
 /* What cscd_detector_find_intersections finds beside pairs, where the options ask for it; else empty. */
 inline span<const cscd_curve> curves(const cscd_intersection_pairs &found) noexcept {
@@ -89,17 +88,6 @@ inline span<const cscd_part_pair> parts(const cscd_intersection_pairs &found) no
     return {found.parts->items, found.parts->count};
 }
 
-/* The contacts at which a point of a curve comes or goes, as places in the given list; and the changes of a contact. */
-inline span<const std::size_t> causes(const cscd_curve_changes &changes,
-                                      const cscd_curve_change &change) noexcept {
-    return {changes.causes + change.first_cause, change.cause_count};
-}
-inline span<const std::size_t> changes_of_contact(const cscd_curve_changes &changes,
-                                                  std::size_t contact) noexcept {
-    const std::size_t first = changes.contact_first[contact];
-    return {changes.of_contacts + first, changes.contact_first[contact + 1] - first};
-}
-
 /* The lists beside bounds and truncations. */
 inline span<const cscd_proximity> blocked_pairs(const cscd_displacement_bounds &bounds) noexcept {
     return {bounds.blocked, bounds.blocked_count};
@@ -117,12 +105,18 @@ struct stencils {
 };
 inline stencils stencils_of(span<const cscd_contact> items) {
     stencils all{std::vector<std::uint32_t>(4 * items.size()), std::vector<double>(4 * items.size())};
-    cscd_contact_stencils(items.data(), items.size(), all.vertices.data(), all.weights.data());
+    for (std::size_t i = 0; i < items.size(); i++) {
+        std::copy_n(items[i].vertices, 4, &all.vertices[4 * i]);
+        cscd_stencil_weights(items[i].kind, items[i].u, items[i].v, &all.weights[4 * i]);
+    }
     return all;
 }
 inline stencils stencils_of(span<const cscd_proximity> items) {
     stencils all{std::vector<std::uint32_t>(4 * items.size()), std::vector<double>(4 * items.size())};
-    cscd_proximity_stencils(items.data(), items.size(), all.vertices.data(), all.weights.data());
+    for (std::size_t i = 0; i < items.size(); i++) {
+        std::copy_n(items[i].vertices, 4, &all.vertices[4 * i]);
+        std::copy_n(items[i].weights, 4, &all.weights[4 * i]);
+    }
     return all;
 }
 

@@ -132,29 +132,6 @@ CSCD_API cscd_status cscd_detector_change_mesh(cscd_detector *detector, const cs
 CSCD_API cscd_status cscd_detector_clone(cscd_context *context, const cscd_detector *detector,
                                          cscd_detector **out);
 
-/* ---- what is known of the start ---------------------------------------------------------------------------- */
-
-/* What is known of a triangle at the positions that a detector saw last: the end of the last step, or what was checked
- * last. See cscd_start: only clean triangles are culled. Without culling nothing is known. */
-typedef enum cscd_start_state {
-    CSCD_START_STATE_UNKNOWN,
-    CSCD_START_STATE_CROSSING, /* it intersects or touches its component, or has no area */
-    CSCD_START_STATE_FREE,     /* it does not, but may not be on the outer side of its component */
-    CSCD_START_STATE_CLEAN,    /* it is free and on the outer side */
-    CSCD_START_STATE_MAX_ENUM = 0x7fffffff
-} cscd_start_state;
-
-/* The state of a triangle. */
-CSCD_API cscd_start_state cscd_detector_start_state(const cscd_detector *detector, uint32_t triangle);
-
-/* How many triangles of a component are in which state. */
-typedef struct cscd_start_knowledge {
-    uint32_t clean, free, crossing, unknown;
-} cscd_start_knowledge;
-
-CSCD_API cscd_start_knowledge cscd_detector_start_knowledge(const cscd_detector *detector,
-                                                            uint32_t component);
-
 #ifdef __cplusplus
 }
 #endif

@@ -54,12 +54,6 @@ typedef struct cscd_method_info {
     uint8_t reserved[1]; /* 0 */
 } cscd_method_info;
 
-/* The number of methods, those of this header included. */
-CSCD_API uint32_t cscd_method_count(void);
-
-/* The method at this place, from 0 to cscd_method_count() - 1. */
-CSCD_API cscd_method cscd_method_at(uint32_t place);
-
 /* Facts about a method; false if there is no such method, and then *out is left untouched. */
 CSCD_API bool cscd_method_describe(cscd_method method, cscd_method_info *out);
 

@@ -26,7 +26,31 @@ typedef struct cscd_stencil {
     double weights[4];
 } cscd_stencil;
 
-/* The stencil of a contact or a proximity with this kind, a, b, u and v. */
+/* Writes the four weights of a pair with this kind, u and v. */
+static inline void cscd_stencil_weights(cscd_contact_kind kind, double u, double v, double weights[4]) {
+    const bool vf = kind == CSCD_CONTACT_VF, vh = kind == CSCD_CONTACT_VH;
+    const bool vertex_a = vf || vh || kind == CSCD_CONTACT_VV;
+    const bool vertex_b = vh || kind == CSCD_CONTACT_VV || kind == CSCD_CONTACT_EV;
+    weights[0] = vertex_a ? 1.0 : 1.0 - u;
+    weights[1] = vf ? u + v - 1.0 : vertex_a ? -1.0 : u;
+    weights[2] = vf ? -u : vertex_a ? 0.0 : vertex_b ? -1.0 : v - 1.0;
+    weights[3] = vertex_b ? 0.0 : -v;
+}
+
+/* The stencil of a contact or a proximity with this kind, a, b, u and v. Contacts have its vertices already, and
+ * proximities its vertices and weights. An example, in which each contact stops the approach of its points:
+ *
+ *     for (size_t i = 0; i < contacts.count; i++) {
+ *         const cscd_contact *c = &contacts.items[i];
+ *         double weights[4], approach = 0.0; // of a to b, along the normal
+ *         cscd_stencil_weights(c->kind, c->u, c->v, weights);
+ *         for (int k = 0; k < 4; k++) {
+ *             for (int axis = 0; axis < 3; axis++)
+ *                 approach -= weights[k] * velocities[3 * c->vertices[k] + axis] * c->normal[axis];
+ *         }
+ *         if (approach > 0.0) impulses[i] = approach;
+ *     }
+ */
 CSCD_API cscd_stencil cscd_mesh_stencil(const cscd_mesh *mesh, cscd_contact_kind kind, uint32_t a, uint32_t b,
                                         double u, double v);
 
@@ -102,29 +126,6 @@ CSCD_API cscd_status cscd_detector_find_near(cscd_detector *detector, const cscd
  * INVALID_ARGUMENT also where an edge is shorter than 2^-250, but not 0, or longer than 2^250, because of
  * the fourth power. */
 CSCD_API cscd_status cscd_detector_set_rest(cscd_detector *detector, const cscd_view *rest);
-
-/* The stencils of a whole list in one call: count * 4 vertices and as many weights, of which either array may
- * be NULL. An example, in which each contact stops the approach of its points, as it may be done for a list of
- * 100,000 by vector instructions:
- *
- *     uint32_t *vertices = malloc(contacts.count * 4 * sizeof *vertices);
- *     double *weights = malloc(contacts.count * 4 * sizeof *weights);
- *     cscd_contact_stencils(contacts.items, contacts.count, vertices, weights);
- *     for (size_t i = 0; i < contacts.count; i++) {
- *         double approach = 0.0; // of a to b, along the normal
- *         for (size_t k = 4 * i; k < 4 * i + 4; k++) {
- *             for (int c = 0; c < 3; c++)
- *                 approach -= weights[k] * velocities[3 * vertices[k] + c] * contacts.items[i].normal[c];
- *         }
- *         if (approach > 0.0) impulses[i] = approach;
- *     }
- *     free(vertices);
- *     free(weights);
- */
-CSCD_API void cscd_contact_stencils(const cscd_contact *items, size_t count, uint32_t *vertices,
-                                    double *weights);
-CSCD_API void cscd_proximity_stencils(const cscd_proximity *items, size_t count, uint32_t *vertices,
-                                      double *weights);
 
 /* ---- a step that is free of contact ------------------------------------------------------------------ */
 
@@ -288,9 +289,6 @@ CSCD_API cscd_status cscd_line_search_create(cscd_detector *detector, cscd_line_
 
 /* Frees the line search. */
 CSCD_API void cscd_line_search_destroy(cscd_line_search *search);
-
-/* The detector that the line search was created for. */
-CSCD_API const cscd_detector *cscd_line_search_detector(const cscd_line_search *search);
 
 /* Collects the candidates of the motion from x0 to x1, which are copied, in place of those before. reach:
  * the largest distance that cscd_line_search_find_near will be asked for, or 0. CANCELLED: see cscd_progress. */

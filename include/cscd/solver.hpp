@@ -10,12 +10,13 @@ namespace cscd {
 /* One motion that is asked about many times. It keeps its detector. */
 class line_search : public detail::owner<cscd_line_search, cscd_line_search_destroy> {
   public:
-    explicit line_search(const detector &of) : owner(of.state_), ignore_(of.ignore_) {
+    explicit line_search(const detector &of)
+        : owner(of.state_), ignore_(of.ignore_), mesh_(cscd_detector_mesh(of.get())) {
         create([&](cscd_line_search **out) { return cscd_line_search_create(of.get(), out); });
     }
 
     mesh_ref mesh() const noexcept {
-        return mesh_ref(cscd_detector_mesh(cscd_line_search_detector(get())));
+        return mesh_ref(mesh_);
     }
     void begin(const cscd::positions &x0, const cscd::positions &x1, double reach = 0.0) {
         const cscd_view *from = x0.covering(object_count()), *to = x1.covering(object_count());
@@ -51,6 +52,7 @@ class line_search : public detail::owner<cscd_line_search, cscd_line_search_dest
     }
 
     std::shared_ptr<const ignore_function> ignore_;
+    const cscd_mesh *mesh_;
 };
 
 } // namespace cscd

@@ -139,8 +139,6 @@ _PUBLIC: Dict[str, Tuple[Any, List[Any]]] = {
     "cscd_detector_set_bodies": (_status, [_p, _p, _u32]),
     "cscd_detector_set_parts": (_status, [_p, _p, _u32]),
     "cscd_intersection_defaults_sized": (None, [_p, _size]),
-    "cscd_contact_stencils": (None, [_p, _size, _p, _p]),
-    "cscd_proximity_stencils": (None, [_p, _size, _p, _p]),
     "cscd_line_search_create": (_status, [_p, POINTER(c_void_p)]),
     "cscd_line_search_destroy": (None, [_p]),
     "cscd_line_search_candidate_count": (_size, [_p]),

@@ -63,7 +63,7 @@ class Contacts(Records):
 
     @property
     def weights(self) -> Any:
-        return _weights(self, library.cscd_contact_stencils)
+        return _weights(self)
 
 
 class Proximities(Records):
@@ -154,12 +154,16 @@ class Events(Records):
         return np.lexsort([-events[name] for name in ("contacts", "pairs", "length", "depth")] + [rank])
 
 
-def _weights(found: Records, function: Any) -> Any:
-    """The weights of a list of contacts, which are computed from u and v."""
-    packed = np.ascontiguousarray(found, structs["contact"])
-    weights = np.empty((packed.size, 4))
-    function(address_of(packed), packed.size, None, address_of(weights))
-    return weights.reshape(*found.shape, 4)
+def _weights(found: Any) -> Any:
+    """The weights of contacts, which follow from kind, u and v (cscd_stencil_weights)."""
+    u, v, kind = found.u, found.v, found.kind
+    vf, _, _, vv, ev, vh = (kind == code for code in range(6))
+    a_is_vertex, b_is_vertex = vf | vv | vh, vv | ev | vh
+    columns = (np.where(a_is_vertex, 1.0, 1.0 - u),
+               np.where(vf, u + v - 1.0, np.where(a_is_vertex, -1.0, u)),
+               np.where(vf, -u, np.where(a_is_vertex, 0.0, np.where(b_is_vertex, -1.0, v - 1.0))),
+               np.where(b_is_vertex, 0.0, -v))
+    return np.stack(columns, axis=-1)
 
 
 def copy_records(found: Any, name: str) -> Any:

@@ -132,8 +132,6 @@ FIELDS(counters, FIELD(cscd_counters, static_checks), FIELD(cscd_counters, clean
        FIELD(cscd_counters, by_roots), FIELD(cscd_counters, by_exact), FIELD(cscd_counters, vf),
        FIELD(cscd_counters, ee), FIELD(cscd_counters, bounded), FIELD(cscd_counters, loose),
        FIELD(cscd_counters, coherent))
-FIELDS(start_knowledge, FIELD(cscd_start_knowledge, clean), FIELD(cscd_start_knowledge, free),
-       FIELD(cscd_start_knowledge, crossing), FIELD(cscd_start_knowledge, unknown))
 FIELDS(intersection_options, FIELD(cscd_intersection_options, struct_size),
        FIELD(cscd_intersection_options, answer), FIELD(cscd_intersection_options, stop_after),
        FIELD(cscd_intersection_options, kinds), FIELD(cscd_intersection_options, curves),
@@ -230,8 +228,7 @@ FIELDS(pair_distance, FIELD(cscd_pair_distance, distance), FIELD(cscd_pair_dista
 FIELDS(event_options, FIELD(cscd_event_options, struct_size), FIELD(cscd_event_options, rings),
        FIELD(cscd_event_options, gap), FIELD(cscd_event_options, part_count),
        FIELD(cscd_event_options, labels), FIELD(cscd_event_options, seams),
-       FIELD(cscd_event_options, seam_count), FIELD(cscd_event_options, later_chunk),
-       FIELD(cscd_event_options, max_memory))
+       FIELD(cscd_event_options, seam_count), FIELD(cscd_event_options, max_memory))
 FIELDS(event, FIELD(cscd_event, a), FIELD(cscd_event, b), FIELD(cscd_event, first_frame),
        FIELD(cscd_event, last_frame), FIELD(cscd_event, worst_frame), FIELD(cscd_event, kinds),
        FIELD(cscd_event, pairs), FIELD(cscd_event, depths), FIELD(cscd_event, contacts),
@@ -259,7 +256,6 @@ static const struct_layout layouts[] = {LAYOUT(view),
                                         LAYOUT(guarantee),
                                         LAYOUT(timings),
                                         LAYOUT(counters),
-                                        LAYOUT(start_knowledge),
                                         LAYOUT(intersection_options),
                                         LAYOUT(intersection_pair),
                                         LAYOUT(intersection_pairs),

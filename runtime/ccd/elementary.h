@@ -17,6 +17,12 @@ static inline int points_of_first(cscd_contact_kind kind) {
     return kind == CSCD_CONTACT_VF ? 1 : 2;
 }
 
+/* The points of a stencil are those of a vertex and a face, or of two edges, one point of which it may have several
+ * times. */
+static inline cscd_contact_kind stencil_points(cscd_contact_kind kind) {
+    return kind == CSCD_CONTACT_EE || kind == CSCD_CONTACT_EV ? CSCD_CONTACT_EE : CSCD_CONTACT_VF;
+}
+
 /* The first touch. u, v, point and normal as in cscd_contact. */
 typedef struct elementary_contact {
     double toi, u, v;

@@ -155,7 +155,6 @@ void detector_free(cscd_detector *d) {
     part_labels_free(context, &d->grouping);
     part_sums_free(context, &d->part_sums);
     result_buffer_free(context, &d->contact_parts);
-    change_finder_free(&d->changes);
     edge_rest_free(context, &d->rest);
     context_free_all(context, detector_arrays(d));
     context_free(context, d->unpacked[0]);

@@ -84,7 +84,6 @@ struct cscd_detector {
     part_summer part_sums;
     cscd_part_pairs part_pairs; /* what these have found last */
     result_buffer contact_parts;
-    change_finder changes;
     edge_rest rest;      /* see cscd_detector_set_rest */
     double *unpacked[2]; /* x0 and x1 of views that are not packed doubles; NULL before the first */
     double *reached;     /* the positions that cscd_detector_max_step tries; NULL before its first call */

@@ -186,7 +186,6 @@ static void exchange_parts(cscd_detector *a, cscd_detector *b) {
     EXCHANGE(parts);
     EXCHANGE(grouping);
     EXCHANGE(part_sums);
-    EXCHANGE(changes);
     EXCHANGE(rest);
     EXCHANGE(unpacked[0]);
     EXCHANGE(unpacked[1]);

@@ -1,4 +1,4 @@
-/* The events of a row of frames, and how two rows that follow each other become one. */
+/* The events of all frames so far, and how those of the next frame join them. */
 #include "runtime/events/event_history.h"
 
 #include <assert.h>
@@ -41,9 +41,8 @@ bool event_history_reserve(cscd_context *context, event_history *h, size_t event
 }
 
 void event_history_clear(event_history *h) {
-    h->frame_count = h->first_frame = h->last_frame = 0;
+    h->frame_count = h->last_frame = 0;
     h->event_count = h->open_count = h->closed_count = 0;
-    stamp_table_clear(&h->first);
     stamp_table_clear(&h->last);
 }
 
@@ -51,20 +50,25 @@ void event_history_free(cscd_context *context, event_history *h) {
     context_free(context, h->events);
     context_free(context, h->parents);
     context_free(context, h->closed);
-    stamp_table_free(context, &h->first);
     stamp_table_free(context, &h->last);
-    *h = (event_history){.gap = h->gap, .keeps_first = h->keeps_first};
+    *h = (event_history){.gap = h->gap};
 }
 
 /* ---- events that are no longer needed ------------------------------------------------------------------- */
 
-uint32_t event_root(event_history *h, uint32_t event) {
+/* The event that has all of this one. It shortens the paths that it follows, so many calls take little time. */
+static uint32_t event_root(event_history *h, uint32_t event) {
     uint32_t *parents = h->parents;
     while (parents[event] != event) {
         parents[event] = parents[parents[event]];
         event = parents[event];
     }
     return event;
+}
+
+/* Whether a frame, counted from the first one, may be joined to the next frame. */
+static bool frame_is_last(const event_history *h, uint64_t frame) {
+    return frame + h->gap + 1 >= h->frame_count;
 }
 
 /* Takes stamps out that are too old, and makes the events that have it all their owners. */
@@ -77,8 +81,6 @@ static void renew_stamps(event_history *h) {
         *kept++ = s;
     }
     if (h->last.count > 0) stamp_table_shrink(&h->last, (size_t)(kept - h->last.stamps));
-    for (size_t i = 0; i < h->first.count; i++)
-        h->first.stamps[i].owner = event_root(h, h->first.stamps[i].owner);
 }
 
 /* Moves the events that are their own parents together, in their order; parents say where to, meanwhile. */
@@ -91,8 +93,6 @@ static void compact_events(event_history *h) {
         h->parents[e] = count++;
     }
     for (size_t i = 0; i < h->last.count; i++) h->last.stamps[i].owner = h->parents[h->last.stamps[i].owner];
-    for (size_t i = 0; i < h->first.count; i++)
-        h->first.stamps[i].owner = h->parents[h->first.stamps[i].owner];
     for (uint32_t e = 0; e < count; e++) h->parents[e] = e;
     h->event_count = count;
 }
@@ -112,35 +112,23 @@ void event_history_close(event_history *h) {
 
 static void close_old_events(event_history *h) {
     for (uint32_t e = 0; e < h->event_count; e++) {
-        const tracked_event *event = &h->events[e];
-        if (h->parents[e] == e && !frame_is_last(h, event->last) && !frame_is_first(h, event->first))
-            close_event(h, e);
+        if (h->parents[e] == e && !frame_is_last(h, h->events[e].last)) close_event(h, e);
     }
 }
 
-/* ---- two rows ------------------------------------------------------------------------------------------- */
+/* ---- the next frame ------------------------------------------------------------------------------------- */
 
-static void shift_event(tracked_event *event, uint64_t frames) {
-    event->first += frames;
-    event->last += frames;
-    event->worst.index += frames;
-}
-
-static void add_events(event_history *h, const event_history *next) {
-    uint32_t offset = (uint32_t)h->event_count;
+static void add_events(event_history *h, const frame_row *next) {
     for (size_t i = 0; i < next->event_count; i++) {
-        uint32_t parent = next->parents[i];
-        h->events[offset + i] = next->events[i];
-        shift_event(&h->events[offset + i], h->frame_count);
-        h->parents[offset + i] = parent != NO_EVENT ? offset + parent : NO_EVENT;
+        tracked_event *event = &h->events[h->event_count];
+        *event = next->events[i];
+        event->first += h->frame_count;
+        event->last += h->frame_count;
+        event->worst.index += h->frame_count;
+        h->parents[h->event_count] = (uint32_t)h->event_count;
+        h->event_count++;
     }
-    h->event_count += next->event_count;
-    h->open_count += next->open_count;
-    for (size_t i = 0; i < next->closed_count; i++) {
-        tracked_event *closed = &h->closed[h->closed_count++];
-        *closed = next->closed[i];
-        shift_event(closed, h->frame_count);
-    }
+    h->open_count += next->event_count;
 }
 
 /* The events of both stamps are one if the frames are near enough to each other. */
@@ -153,14 +141,14 @@ static void join_stamps(event_history *h, const stamp *before, const stamp *afte
     h->open_count--;
 }
 
-static stamp moved_stamp(const stamp *s, uint64_t frames, size_t events) {
-    return (stamp){s->parts, s->frame + frames, s->element, s->owner + (uint32_t)events};
+/* A stamp of the next frame, as the history counts; `events` were there before it. */
+static stamp moved_stamp(const event_history *h, const stamp *s, size_t events) {
+    return (stamp){s->parts, s->frame + h->frame_count, s->element, s->owner + (uint32_t)events};
 }
 
-/* Joins what the next row has first to what this one has last. */
-static void join_rows(event_history *h, const mesh_rings *rings, const event_history *next, size_t offset) {
-    for (size_t i = 0; i < next->first.count; i++) {
-        const stamp s = moved_stamp(&next->first.stamps[i], h->frame_count, offset);
+static void join_frame(event_history *h, const mesh_rings *rings, const stamp_table *stamps, size_t events) {
+    for (size_t i = 0; i < stamps->count; i++) {
+        const stamp s = moved_stamp(h, &stamps->stamps[i], events);
         join_stamps(h, stamp_table_find(&h->last, s.parts, s.element), &s);
         for (size_t n = rings->odd ? rings->offsets[s.element] : 0;
              rings->odd && n < rings->offsets[s.element + 1]; n++)
@@ -168,46 +156,34 @@ static void join_rows(event_history *h, const mesh_rings *rings, const event_his
     }
 }
 
-static void add_stamps(event_history *h, const event_history *next, size_t offset) {
-    for (size_t i = 0; i < next->last.count; i++) {
-        const stamp *s = &next->last.stamps[i];
-        if (!frame_is_last(next, s->frame)) continue;
-        const stamp moved = moved_stamp(s, h->frame_count, offset);
-        stamp *known = stamp_table_find(&h->last, s->parts, s->element);
+static void add_stamps(event_history *h, const stamp_table *stamps, size_t events) {
+    for (size_t i = 0; i < stamps->count; i++) {
+        const stamp moved = moved_stamp(h, &stamps->stamps[i], events);
+        stamp *known = stamp_table_find(&h->last, moved.parts, moved.element);
         if (known != NULL)
             *known = moved;
         else
             stamp_table_add(&h->last, moved);
     }
-    for (size_t i = 0; i < next->first.count && h->keeps_first; i++) {
-        const stamp moved = moved_stamp(&next->first.stamps[i], h->frame_count, offset);
-        if (moved.frame > h->gap || stamp_table_find(&h->first, moved.parts, moved.element) != NULL) continue;
-        stamp_table_add(&h->first, moved);
-    }
 }
 
-static bool make_room(cscd_context *context, event_history *h, const event_history *next) {
+static bool make_room(cscd_context *context, event_history *h, const frame_row *next) {
     if (h->event_count > 2 * h->open_count + h->last.count / 16 + 16 ||
-        next->last.count > h->last.capacity - h->last.count)
+        next->stamps.count > h->last.capacity - h->last.count)
         compact_events(h);
-    size_t events = h->event_count + next->event_count;
-    bool early = h->keeps_first && h->frame_count <= h->gap;
-    return event_history_reserve(context, h, next->event_count, events + next->closed_count) &&
-           stamp_table_reserve(context, &h->last, next->last.count) &&
-           (!early || stamp_table_reserve(context, &h->first, next->first.count));
+    return event_history_reserve(context, h, next->event_count, h->event_count + next->event_count) &&
+           stamp_table_reserve(context, &h->last, next->stamps.count);
 }
 
 cscd_status event_history_append(cscd_context *context, event_history *h, const mesh_rings *rings,
-                                 const event_history *next) {
-    if (next->frame_count == 0) return CSCD_OK;
+                                 const frame_row *next) {
     if (!make_room(context, h, next)) return CSCD_OUT_OF_MEMORY;
-    size_t offset = h->event_count;
+    const size_t events = h->event_count;
     add_events(h, next);
-    join_rows(h, rings, next, offset);
-    add_stamps(h, next, offset);
-    if (h->frame_count == 0) h->first_frame = next->first_frame;
-    h->last_frame = next->last_frame;
-    h->frame_count += next->frame_count;
+    join_frame(h, rings, &next->stamps, events);
+    add_stamps(h, &next->stamps, events);
+    h->last_frame = next->frame;
+    h->frame_count++;
     close_old_events(h);
     return CSCD_OK;
 }

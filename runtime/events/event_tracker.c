@@ -1,4 +1,4 @@
-/* The tracker of the public API: options, frames, events that have ended, chunks. */
+/* The tracker of the public API: options, frames, and events that have ended. */
 #include "runtime/events/event_tracker.h"
 
 #include "src/core/sort.h"
@@ -38,23 +38,6 @@ static cscd_status check_options(const cscd_mesh *mesh, const cscd_event_options
     return status;
 }
 
-static uint64_t hash_number(uint64_t hash, uint64_t number) {
-    for (int shift = 0; shift < 64; shift += 8) hash = (hash ^ (number >> shift & 0xff)) * 0x100000001b3u;
-    return hash;
-}
-
-/* Trackers fit together if their frames are joined by the same rules. Seams count by what they unite. */
-static uint64_t hash_options(const cscd_event_tracker *t, uint64_t mesh_hash) {
-    const cscd_mesh *mesh = &t->mesh;
-    uint64_t hash = hash_number(hash_number(mesh_hash, t->rings_wanted), t->history.gap);
-    for (uint32_t v = 0; v < mesh->vertex_count && !t->rings.same; v++)
-        hash = hash_number(hash, t->rings.names[v]);
-    if (t->parts.triangles == NULL) return hash;
-    hash = hash_number(hash, t->parts.part_count);
-    for (uint32_t i = 0; i < mesh->triangle_count; i++) hash = hash_number(hash, t->parts.triangles[i]);
-    return hash;
-}
-
 /* ---- creation ------------------------------------------------------------------------------------------- */
 
 static void free_memory(cscd_event_tracker *t) {
@@ -66,7 +49,6 @@ static void free_memory(cscd_event_tracker *t) {
     context_free(context, t->contacts);
     context_free(context, t->given);
     context_free(context, t->spare_closed);
-    context_free(context, t->bytes);
     context_free(context, t);
 }
 
@@ -93,14 +75,11 @@ static const char *validate_listed(const reference_count *object) {
 }
 
 static cscd_status create_parts(cscd_event_tracker *t, const cscd_event_options *options) {
-    t->rings_wanted = options->rings;
     t->history.gap = options->gap;
-    t->history.keeps_first = options->later_chunk;
     cscd_status status = part_labels_set(&t->mesh, options->labels, options->part_count, &t->parts);
-    if (status == CSCD_OK)
-        status = mesh_rings_create(&t->mesh, options->rings, options->seams, options->seam_count, &t->rings);
-    if (status == CSCD_OK) t->options_hash = hash_options(t, cscd_mesh_hash(&t->mesh));
-    return status;
+    return status == CSCD_OK
+               ? mesh_rings_create(&t->mesh, options->rings, options->seams, options->seam_count, &t->rings)
+               : status;
 }
 
 static cscd_status create_tracker(cscd_context *context, const cscd_mesh *mesh,
@@ -190,7 +169,7 @@ static cscd_status check_frame(cscd_event_tracker *t, uint64_t frame, const cscd
 }
 
 static cscd_status append_frame(cscd_event_tracker *t, const frame_input *input) {
-    event_history row;
+    frame_row row;
     cscd_status status = frame_groups_find(&t->groups, &t->mesh, &t->parts, &t->rings, input, &row);
     if (status == CSCD_OK) status = event_history_append(t->context, &t->history, &t->rings, &row);
     if (status == CSCD_OK) t->contact_count = 0;
@@ -270,19 +249,15 @@ cscd_status cscd_event_tracker_take(cscd_event_tracker *tracker, cscd_events *ou
     return context_leave(&entry, take_events(tracker, out));
 }
 
-static cscd_status check_no_contacts(const cscd_event_tracker *t, const char *who) {
-    if (t->contact_count == 0) return CSCD_OK;
-    return context_fail(t->context, CSCD_INVALID_ARGUMENT,
-                        "%s: %zu contacts wait for the frame that ends their interval; add it first", who,
-                        t->contact_count);
-}
-
 static cscd_status finish_events(cscd_event_tracker *t, cscd_events *out) {
     event_history *h = &t->history;
     if (out == NULL)
         return context_fail(t->context, CSCD_INVALID_ARGUMENT, "cscd_event_tracker_finish: out is NULL");
-    cscd_status status = check_no_contacts(t, "cscd_event_tracker_finish");
-    if (status != CSCD_OK) return status;
+    if (t->contact_count > 0)
+        return context_fail(t->context, CSCD_INVALID_ARGUMENT,
+                            "cscd_event_tracker_finish: %zu contacts wait for the frame that ends their "
+                            "interval; add it first",
+                            t->contact_count);
     if (!event_history_reserve(t->context, h, 0, h->open_count) ||
         !reserve_given(t, h->closed_count + h->open_count))
         return context_out_of_memory(t->context);
@@ -298,83 +273,4 @@ cscd_status cscd_event_tracker_finish(cscd_event_tracker *tracker, cscd_events *
     context_entry entry;
     if (!object_enter(tracker, &entry)) return entry.status;
     return context_leave(&entry, finish_events(tracker, out));
-}
-
-/* ---- chunks --------------------------------------------------------------------------------------------- */
-
-static cscd_status check_chunks(const cscd_event_tracker *t, const cscd_event_tracker *next) {
-    const event_history *h = &t->history, *n = &next->history;
-    cscd_context *context = t->context;
-    if (next->context != context || next == t)
-        return context_fail(context, CSCD_INVALID_ARGUMENT,
-                            next == t ? "a tracker cannot be merged with itself"
-                                      : "the trackers are of two contexts; save the one and load it in the "
-                                        "context of the other");
-    if (next->options_hash != t->options_hash)
-        return context_fail(context, CSCD_INVALID_ARGUMENT,
-                            "the trackers have different meshes, rings, gaps, labels or seams");
-    if (!n->keeps_first)
-        return context_fail(context, CSCD_INVALID_ARGUMENT,
-                            "the second tracker was made without later_chunk, so what may go on from the "
-                            "first one is not known");
-    if (h->frame_count > 0 && n->frame_count > 0 && n->first_frame <= h->last_frame)
-        return context_fail(context, CSCD_INVALID_ARGUMENT,
-                            "the second tracker begins with frame %llu, which does not come after frame "
-                            "%llu, the last one of the first",
-                            (unsigned long long)n->first_frame, (unsigned long long)h->last_frame);
-    cscd_status status = check_no_contacts(t, "cscd_event_tracker_merge");
-    return status == CSCD_OK ? check_no_contacts(next, "cscd_event_tracker_merge") : status;
-}
-
-static cscd_status merge_chunks(cscd_event_tracker *t, const cscd_event_tracker *next) {
-    cscd_status status = check_chunks(t, next);
-    if (status == CSCD_OK) status = event_history_append(t->context, &t->history, &t->rings, &next->history);
-    return context_explain(t->context, status);
-}
-
-cscd_status cscd_event_tracker_merge(cscd_event_tracker *tracker, const cscd_event_tracker *next) {
-    if (tracker == NULL) return CSCD_NULL_OBJECT;
-    if (next == NULL) return context_lacks(tracker->context, "cscd_event_tracker_merge", "next");
-    context_entry entry;
-    if (!object_enter(tracker, &entry)) return entry.status;
-    return context_leave(&entry, merge_chunks(tracker, next));
-}
-
-static cscd_status save_state(cscd_event_tracker *t, const uint8_t **bytes, size_t *byte_count) {
-    if (bytes == NULL || byte_count == NULL)
-        return context_fail(t->context, CSCD_INVALID_ARGUMENT, "cscd_event_tracker_save: %s is NULL",
-                            bytes == NULL ? "bytes" : "byte_count");
-    cscd_status status = check_no_contacts(t, "cscd_event_tracker_save");
-    size_t count = 0;
-    if (status == CSCD_OK) status = event_state_write(t, &count);
-    if (status != CSCD_OK) return context_explain(t->context, status);
-    *bytes = t->bytes;
-    *byte_count = count;
-    return CSCD_OK;
-}
-
-cscd_status cscd_event_tracker_save(cscd_event_tracker *tracker, const uint8_t **bytes, size_t *byte_count) {
-    if (tracker == NULL) return CSCD_NULL_OBJECT;
-    context_entry entry;
-    if (!object_enter(tracker, &entry)) return entry.status;
-    return context_leave(&entry, save_state(tracker, bytes, byte_count));
-}
-
-static cscd_status load_state(cscd_event_tracker *t, const uint8_t *bytes, size_t byte_count) {
-    if (bytes == NULL)
-        return context_fail(t->context, CSCD_INVALID_ARGUMENT, "cscd_event_tracker_load: bytes is NULL");
-    event_history loaded;
-    cscd_status status = event_state_read(t, bytes, byte_count, &loaded);
-    if (status != CSCD_OK) return context_explain(t->context, status);
-    event_history_free(t->context, &t->history);
-    t->history = loaded;
-    t->contact_count = 0;
-    return CSCD_OK;
-}
-
-cscd_status cscd_event_tracker_load(cscd_event_tracker *tracker, const uint8_t *bytes, size_t byte_count) {
-    if (tracker == NULL) return CSCD_NULL_OBJECT;
-    context_entry entry;
-    if (!object_enter(tracker, &entry)) return entry.status;
-    return context_leave(&entry, load_state(tracker, bytes, byte_count));
 }

@@ -1,4 +1,4 @@
-/* One frame: what was found in it, joined to groups, as a row of one frame. */
+/* One frame: what was found in it, joined to groups. */
 #include "runtime/events/frame_groups.h"
 
 #include <math.h>
@@ -17,8 +17,7 @@ typedef struct frame_grouping {
 
 static array_list list_group_arrays(frame_groups *g) {
     size_t room = room_with_spare(g->group_count);
-    return (array_list){
-        {ARRAY(g->groups, room), ARRAY(g->parents, room), ARRAY(g->times, room), ARRAY(g->ranks, room)}};
+    return (array_list){{ARRAY(g->groups, room), ARRAY(g->times, room), ARRAY(g->ranks, room)}};
 }
 
 void frame_groups_free(cscd_context *context, frame_groups *g) {
@@ -213,7 +212,6 @@ static void begin_group(const frame_grouping *w, size_t group, const group_thing
                         .last_frame = frame,
                         .origin = UINT64_MAX,
                         .worst = {.frame = frame, .triangle = UINT32_MAX, .x = {NAN, NAN, NAN}}};
-    g->parents[group] = (uint32_t)group;
     g->times[group] = INFINITY;
     g->ranks[group] = PLACE_OF_PAIR;
 }
@@ -363,7 +361,7 @@ static cscd_status begin_frame(frame_grouping *w) {
 }
 
 cscd_status frame_groups_find(frame_groups *g, const cscd_mesh *mesh, const part_labels *parts,
-                              const mesh_rings *rings, const frame_input *input, event_history *out) {
+                              const mesh_rings *rings, const frame_input *input, frame_row *out) {
     frame_grouping w = {g, mesh->context, mesh, parts, rings, input, false};
     cscd_status status = begin_frame(&w);
     if (status != CSCD_OK) return status;
@@ -377,14 +375,6 @@ cscd_status frame_groups_find(frame_groups *g, const cscd_mesh *mesh, const part
     status = w.no_memory ? CSCD_OUT_OF_MEMORY : number_groups(&w);
     if (status != CSCD_OK) return status;
     sum_things(&w);
-    *out = (event_history){.frame_count = 1,
-                           .first_frame = input->frame,
-                           .last_frame = input->frame,
-                           .events = g->groups,
-                           .parents = g->parents,
-                           .event_count = g->group_count,
-                           .open_count = g->group_count,
-                           .first = g->stamps,
-                           .last = g->stamps};
+    *out = (frame_row){input->frame, g->groups, g->group_count, g->stamps};
     return CSCD_OK;
 }

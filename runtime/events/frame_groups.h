@@ -1,4 +1,4 @@
-/* One frame: what was found in it, joined to groups, as a row of one frame. */
+/* One frame: what was found in it, joined to groups. */
 #pragma once
 
 #include "runtime/events/event_history.h"
@@ -46,16 +46,15 @@ typedef struct frame_groups {
         stamped_places; /* per triangle: where it is among those that were stamped, if it is; else anything */
     stamp_table stamps; /* owners are things, and groups at last */
     tracked_event *groups;
-    uint32_t *parents;
     double *times; /* of the earliest contact of a group */
     place_rank *ranks;
     size_t group_count, group_capacity;
 } frame_groups;
 
-/* Joins all that a frame has; *out is a row of one frame in the memory of g. Without memory, OUT_OF_MEMORY has no
+/* Joins all that a frame has; *out is in the memory of g. Without memory, OUT_OF_MEMORY has no
  * sentence; so ends what does not fit the budget, too. */
 cscd_status frame_groups_find(frame_groups *g, const cscd_mesh *mesh, const part_labels *parts,
-                              const mesh_rings *rings, const frame_input *input, event_history *out);
+                              const mesh_rings *rings, const frame_input *input, frame_row *out);
 void frame_groups_free(cscd_context *context, frame_groups *g);
 
 /* INVALID_ARGUMENT names what is not of the mesh. */

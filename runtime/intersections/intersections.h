@@ -11,7 +11,6 @@
 #include "src/mesh/bodies.h"
 #include "src/mesh/part_labels.h"
 
-#include <cscd/curve_changes.h>
 #include <cscd/cut_offs.h>
 #include <cscd/depths.h>
 #include <cscd/intersections.h>
@@ -238,39 +237,6 @@ cscd_status curve_joiner_run(curve_joiner *j, const named_surface *s, const cscd
 /* Marks the curves of the last call along which surfaces only touch. pairs: those of that call. */
 void touching_curves_mark(curve_joiner *j, const named_surface *s, const cscd_intersection_pair *pairs,
                           const cscd_patches *patches, const cscd_depths *depths);
-
-/* ---- changes of curves --------------------------------------------------------------------------------- */
-
-/* A number to sort by, and what belongs to it. */
-typedef struct change_key {
-    uint64_t number, value;
-} change_key;
-
-/* The memory of all searches; begins with the context and zeros. */
-typedef struct change_finder {
-    cscd_context *context;
-    placed_names names[2]; /* at the ends of the interval */
-
-    /* Per contact, and one more. */
-    change_key *order, *spare_order; /* contacts by toi */
-    size_t *rank_first;              /* where the causes of the contacts in that order begin */
-    size_t *contact_first, *next;
-    size_t contact_capacity;
-
-    /* Per cause. */
-    change_key *keys, *spare_keys;
-    cscd_curve_change *items;
-    size_t *causes, *of_contacts;
-    size_t cause_capacity;
-} change_finder;
-
-void change_finder_free(change_finder *f);
-
-/* Finds the points of curves that come or go between two moments. names: per vertex the smallest one of its seam, or NULL.
- * The contacts' features are in range. */
-cscd_status change_finder_run(change_finder *f, const cscd_mesh *mesh, const double *const ends[2],
-                              const uint32_t *names, const cscd_contact *contacts, size_t contact_count,
-                              cscd_curve_changes *out);
 
 /* ---- orientations -------------------------------------------------------------------------------------- */
 

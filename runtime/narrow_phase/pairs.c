@@ -6,8 +6,9 @@
 #include "runtime/narrow_phase/narrow_phase.h"
 #include "src/core/check.h"
 #include "src/mesh/positions.h"
-#include "src/mesh/stencil.h"
 #include "src/mesh/views.h"
+
+#include <cscd/solver.h>
 
 #include <assert.h>
 #include <math.h>
@@ -80,7 +81,7 @@ static void point_pairs_test(cscd_context *context, const point_pairs *pairs, se
 static double point_pair_distance(cscd_contact_kind kind, const double (*x)[3], double u, double v) {
     const double *points[4] = {x[0], x[1], x[2], x[3]};
     double weights[4], apart[3];
-    stencil_weights(kind, u, v, weights);
+    cscd_stencil_weights(kind, u, v, weights);
     connection_between(points, weights, points_of_first(kind), apart);
     return connection_length(apart);
 }

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "runtime/solver/near_pairs.h"
-#include "src/mesh/stencil.h"
 
 /* Ends a list of limits. */
 #define DIVISION_NONE SIZE_MAX

@@ -202,10 +202,6 @@ static cscd_status check_begun(const cscd_line_search *line, const char *functio
                         "%s: the line has no motion; call cscd_line_search_begin first", function);
 }
 
-const cscd_detector *cscd_line_search_detector(const cscd_line_search *line) {
-    return line->detector;
-}
-
 size_t cscd_line_search_candidate_count(const cscd_line_search *line) {
     const candidate_list *lists = line->candidates.lists;
     bool current = line->mesh_revision == line->detector->mesh_revision;

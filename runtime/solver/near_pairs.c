@@ -5,7 +5,6 @@
 #include "runtime/ccd/pair_plane.h"
 #include "src/core/check.h"
 #include "src/core/floating.h"
-#include "src/mesh/stencil.h"
 
 #include <string.h>
 

@@ -4,7 +4,6 @@
 #include "runtime/ccd/connection.h"
 #include "runtime/ccd/elementary.h"
 #include "src/core/vec3.h"
-#include "src/mesh/stencil.h"
 
 #include <string.h>
 

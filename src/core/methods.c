@@ -40,11 +40,3 @@ bool cscd_method_from_name(const char *name, cscd_method *out) {
     }
     return false;
 }
-
-uint32_t cscd_method_count(void) {
-    return METHOD_COUNT;
-}
-
-cscd_method cscd_method_at(uint32_t place) {
-    return traits[place].method;
-}

@@ -2,7 +2,6 @@
 #include "src/mesh/mesh.h"
 
 #include "src/core/struct_size.h"
-#include "src/mesh/stencil.h"
 
 #include <assert.h>
 #include <stdio.h>
@@ -373,7 +372,7 @@ cscd_stencil mesh_stencil(const cscd_mesh *mesh, cscd_contact_kind kind, uint32_
                           double v) {
     cscd_stencil s = {.weights = {0.0}};
     mesh_vertices_of_pair(mesh, kind, a, b, s.vertices);
-    stencil_weights(kind, u, v, s.weights);
+    cscd_stencil_weights(kind, u, v, s.weights);
     return s;
 }
 

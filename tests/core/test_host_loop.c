@@ -177,18 +177,7 @@ TEST(faults_fail_the_call) {
 
 /* ---- every call ---------------------------------------------------------------------------------------- */
 
-enum { CALLS = 6 };
-
-/* The curves of a step's contacts: its last loops come after all that looks whether the call may go on. */
-static cscd_status list_curve_changes(const panel_scene *p) {
-    cscd_contacts contacts;
-    cscd_curve_changes changes;
-    cscd_status status = panels_step(p, &contacts);
-    if (status != CSCD_OK) return status;
-    return cscd_detector_curve_changes(p->detector, CSCD_DOUBLES(p->x0, p->vertex_count),
-                                       CSCD_DOUBLES(p->x1, p->vertex_count), contacts.items, contacts.count,
-                                       &changes);
-}
+enum { CALLS = 5 };
 
 static cscd_status make_call(const panel_scene *p, int call) {
     cscd_contacts contacts;
@@ -200,8 +189,7 @@ static cscd_status make_call(const panel_scene *p, int call) {
                          : call == 1 ? panels_check(p, &intersections)
                          : call == 2 ? panels_near(p, &proximities)
                          : call == 3 ? panels_max_step(p, &step)
-                         : call == 4 ? panels_plan(p, CSCD_METHOD_SINGLE, &plan)
-                                     : list_curve_changes(p);
+                                     : panels_plan(p, CSCD_METHOD_SINGLE, &plan);
     cscd_plan_destroy(plan);
     return status;
 }

@@ -233,11 +233,7 @@ TEST(objects_that_are_null) {
     expect_null_object(cscd_event_tracker_add_frame(NULL, 0, NULL));
     expect_null_object(cscd_event_tracker_take(NULL, NULL));
     expect_null_object(cscd_event_tracker_finish(NULL, NULL));
-    expect_null_object(cscd_event_tracker_merge(NULL, NULL));
-    expect_null_object(cscd_event_tracker_save(NULL, NULL, NULL));
-    expect_null_object(cscd_event_tracker_load(NULL, NULL, 0));
     expect_null_object(cscd_detector_contact_parts(NULL, NULL, 0, NULL));
-    expect_null_object(cscd_detector_curve_changes(NULL, AT_START, AT_END, NULL, 0, NULL));
     expect_null_object(cscd_detector_set_rules(NULL, NULL, 0, NULL, 0));
     expect_null_object(
         cscd_detector_displacement_bounds(NULL, AT_START, 1.0, CSCD_SCALAR_DOUBLE, NULL, 0, &bounds));

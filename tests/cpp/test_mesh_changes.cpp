@@ -97,16 +97,4 @@ TEST(detectors_move) {
     assert_int_equal(clone.step(x0, x1).size(), count);
 }
 
-TEST(starts_are_known) {
-    const cscd::context context;
-    const cscd::mesh mesh(context, {cscd::object_of_triangles(8, body_triangles)});
-    cscd::detector detector(context, mesh, cscd::plan(context, mesh, body_positions));
-    assert_int_equal(detector.start_state(0), CSCD_START_STATE_UNKNOWN);
-    detector.check(body_positions);
-    assert_int_equal(detector.start_state(0), CSCD_START_STATE_CLEAN);
-    const cscd_start_knowledge known = detector.start_knowledge(1);
-    assert_int_equal(known.clean, 4);
-    assert_int_equal(known.unknown, 0);
-}
-
 } // namespace

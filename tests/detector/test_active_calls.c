@@ -6,6 +6,7 @@
 #include "tests/support/packed.h"
 #include "tests/support/refusal.h"
 #include "tests/support/rig.h"
+#include "tests/support/start_states.h"
 #include "tests/support/test.h"
 
 #include <math.h>
@@ -232,15 +233,15 @@ TEST(checks_leave_open_what_they_do_not_compare) {
         set_vertices(r.detector, vertices, count);
         expect_ok(check_packed(r.detector, s.x0, &found));
         for (uint32_t t = 0; t < s.triangle_count; t++) {
-            cscd_start_state is = cscd_detector_start_state(r.detector, t);
+            triangle_state is = start_state_of(r.detector, t);
             bool active = triangle_is_active(vertices, count, t), crosses = in_a_pair(&found, t);
-            if (crosses) assert_int_equal(is, CSCD_START_STATE_CROSSING);
-            if (!active && !crosses) assert_int_equal(is, CSCD_START_STATE_UNKNOWN);
-            if (active && !crosses) assert_true(is >= CSCD_START_STATE_FREE);
-            open += is == CSCD_START_STATE_UNKNOWN;
-            crossing += is == CSCD_START_STATE_CROSSING;
-            known += is >= CSCD_START_STATE_FREE;
-            missed += is == CSCD_START_STATE_UNKNOWN && in_a_pair(&all, t);
+            if (crosses) assert_int_equal(is, TRIANGLE_CROSSING);
+            if (!active && !crosses) assert_int_equal(is, TRIANGLE_UNKNOWN);
+            if (active && !crosses) assert_true(is >= TRIANGLE_FREE);
+            open += is == TRIANGLE_UNKNOWN;
+            crossing += is == TRIANGLE_CROSSING;
+            known += is >= TRIANGLE_FREE;
+            missed += is == TRIANGLE_UNKNOWN && in_a_pair(&all, t);
         }
         assert_int_equal(step_packed(r.detector, s.x0, s.x0, &contacts), CSCD_OK);
         assert_int_equal(cscd_detector_guarantee(r.detector, 0).reason, CSCD_REASON_CROSSING);
@@ -274,11 +275,10 @@ TEST(vouching_ends_in_another_mesh) {
     const uint32_t count = choose_ball(0, 0.45, vertices);
     set_vertices(r.detector, vertices, count);
     for (uint32_t t = 0; t < s.triangle_count; t++)
-        assert_int_equal(cscd_detector_start_state(r.detector, t), CSCD_START_STATE_CLEAN);
+        assert_int_equal(start_state_of(r.detector, t), TRIANGLE_CLEAN);
     assert_int_equal(check_packed(r.detector, s.x0, &found), CSCD_OK);
     for (uint32_t t = 0; t < s.triangle_count; t++)
-        assert_true(triangle_is_active(vertices, count, t) ||
-                    cscd_detector_start_state(r.detector, t) < CSCD_START_STATE_CLEAN);
+        assert_true(triangle_is_active(vertices, count, t) || start_state_of(r.detector, t) < TRIANGLE_CLEAN);
     cscd_mesh_change_destroy(change);
     rig_destroy(&r);
 }
@@ -303,8 +303,7 @@ TEST(proofs_look_at_everything) {
         assert_int_equal(cscd_detector_counters(part.detector).clean,
                          cscd_detector_counters(whole.detector).clean);
         for (uint32_t t = 0; t < s.triangle_count; t++)
-            assert_int_equal(cscd_detector_start_state(part.detector, t),
-                             cscd_detector_start_state(whole.detector, t));
+            assert_int_equal(start_state_of(part.detector, t), start_state_of(whole.detector, t));
         rig_destroy(&part);
         rig_destroy(&whole);
     }

@@ -3,6 +3,7 @@
 #include "tests/support/rig.h"
 #include "tests/support/scenes.h"
 #include "tests/support/sequences.h"
+#include "tests/support/start_states.h"
 #include "tests/support/test.h"
 
 #include <pthread.h>
@@ -69,7 +70,7 @@ TEST(goes_on_as_the_first) {
         expect_ok(cscd_detector_clone(contexts[seed % 2], first, &clone));
         assert_ptr_equal(cscd_detector_mesh(clone), mesh);
         for (uint32_t t = 0; t < recording.shape.triangle_count; t++)
-            assert_int_equal(cscd_detector_start_state(clone, t), cscd_detector_start_state(first, t));
+            assert_int_equal(start_state_of(clone, t), start_state_of(first, t));
         for (uint32_t f = begin; f < 19; f++) {
             step_list a = step_frame(first, f), b = step_frame(clone, f);
             clean += a.counters.clean > 0;
@@ -197,10 +198,6 @@ TEST(refused_calls) {
 
 /* ---- what is known --------------------------------------------------------------------------------------- */
 
-static uint32_t knowledge_sum(cscd_start_knowledge k) {
-    return k.clean + k.free + k.crossing + k.unknown;
-}
-
 /* Before the first call nothing is known; after a check of intersecting triangles these are crossing, and far from
  * them there are clean ones; after a step that touches, some are unknown. */
 TEST(knowledge_of_starts) {
@@ -211,9 +208,8 @@ TEST(knowledge_of_starts) {
         cscd_mesh *mesh = mesh_of_scene(context, &recording.shape);
         cscd_detector *d = detector_of(context, mesh);
         for (uint32_t c = 0; c < cscd_mesh_component_count(mesh); c++) {
-            cscd_start_knowledge k = cscd_detector_start_knowledge(d, c);
-            assert_int_equal(k.unknown, cscd_mesh_component(mesh, c).triangle_count);
-            assert_int_equal(knowledge_sum(k), k.unknown);
+            assert_int_equal(start_states_in(d, c, TRIANGLE_UNKNOWN),
+                             cscd_mesh_component(mesh, c).triangle_count);
         }
         for (uint32_t f = 0; f < 19; f++) {
             cscd_intersections crossing;
@@ -221,26 +217,15 @@ TEST(knowledge_of_starts) {
             for (size_t i = 0; i < crossing.count; i++) {
                 uint32_t a = crossing.items[i].a, b = crossing.items[i].b;
                 if (cscd_mesh_triangle_component(mesh, a) != cscd_mesh_triangle_component(mesh, b)) continue;
-                assert_int_equal(cscd_detector_start_state(d, a), CSCD_START_STATE_CROSSING);
-                assert_int_equal(cscd_detector_start_state(d, b), CSCD_START_STATE_CROSSING);
+                assert_int_equal(start_state_of(d, a), TRIANGLE_CROSSING);
+                assert_int_equal(start_state_of(d, b), TRIANGLE_CROSSING);
             }
             free(step_frame(d, f).items);
-            for (uint32_t c = 0; c < cscd_mesh_component_count(mesh); c++) {
-                cscd_start_knowledge k = cscd_detector_start_knowledge(d, c);
-                uint32_t counts[4] = {0};
-                for (uint32_t t = 0; t < cscd_mesh_triangle_count(mesh); t++)
-                    counts[cscd_detector_start_state(d, t)] += cscd_mesh_triangle_component(mesh, t) == c;
-                assert_true(counts[CSCD_START_STATE_CLEAN] == k.clean &&
-                            counts[CSCD_START_STATE_FREE] == k.free);
-                assert_true(counts[CSCD_START_STATE_CROSSING] == k.crossing &&
-                            counts[CSCD_START_STATE_UNKNOWN] == k.unknown);
-                for (int i = 0; i < 4; i++) seen[i] += counts[i];
-            }
+            for (uint32_t t = 0; t < cscd_mesh_triangle_count(mesh); t++) seen[start_state_of(d, t)]++;
         }
         cscd_detector_destroy(d);
         cscd_mesh_destroy(mesh);
         cscd_context_destroy(context);
     }
-    assert_true(seen[CSCD_START_STATE_CLEAN] > 1000 && seen[CSCD_START_STATE_UNKNOWN] > 100 &&
-                seen[CSCD_START_STATE_FREE] > 0);
+    assert_true(seen[TRIANGLE_CLEAN] > 1000 && seen[TRIANGLE_UNKNOWN] > 100 && seen[TRIANGLE_FREE] > 0);
 }

@@ -7,6 +7,7 @@
 #include "tests/support/panels.h"
 #include "tests/support/refusal.h"
 #include "tests/support/rig.h"
+#include "tests/support/start_states.h"
 #include "tests/support/test.h"
 
 #include <math.h>
@@ -181,9 +182,9 @@ TEST(nothing_is_known_of_what_is_masked) {
     rig r = rig_create(&spheres, 1, &options);
     const uint32_t triangles = cscd_mesh_component(r.mesh, 0).triangle_count;
     expect_ok(check_packed(r.detector, spheres.x0, &found));
-    assert_int_equal(cscd_detector_start_knowledge(r.detector, 0).clean, triangles);
+    assert_int_equal(start_states_in(r.detector, 0, TRIANGLE_CLEAN), triangles);
     rule.self = false;
     expect_ok(cscd_detector_set_rules(r.detector, &rule, 1, NULL, 0));
-    assert_int_equal(cscd_detector_start_knowledge(r.detector, 0).unknown, triangles);
+    assert_int_equal(start_states_in(r.detector, 0, TRIANGLE_UNKNOWN), triangles);
     rig_destroy(&r);
 }

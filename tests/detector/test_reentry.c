@@ -85,7 +85,7 @@ static panel_scene make_panels(returning_host *h, uint32_t thread_count) {
 
 /* ---- calls from callbacks ------------------------------------------------------------------------------ */
 
-enum { CALLS = 19 };
+enum { CALLS = 18 };
 
 static cscd_status call_again(const panel_scene *p, int what) {
     static union {
@@ -94,7 +94,6 @@ static cscd_status call_again(const panel_scene *p, int what) {
         cscd_intersections intersections;
         cscd_intersection_pairs pairs;
         cscd_contact_part_pairs sums;
-        cscd_curve_changes changes;
         cscd_free_step step;
         cscd_displacement_bounds bounds;
         cscd_truncation truncation;
@@ -134,9 +133,6 @@ static cscd_status call_again(const panel_scene *p, int what) {
     case 15:
         return cscd_detector_contact_parts(p->detector, NULL, 0, &found.sums);
     case 16:
-        return cscd_detector_curve_changes(p->detector, CSCD_DOUBLES(p->x0, p->vertex_count),
-                                           CSCD_DOUBLES(p->x1, p->vertex_count), NULL, 0, &found.changes);
-    case 17:
         return cscd_detector_set_bodies(p->detector, NULL, 0);
     default:
         return cscd_partition_create(p->context, p->mesh, NULL, CSCD_DOUBLES(p->x0, p->vertex_count), NULL,

@@ -1,5 +1,5 @@
-/* Events of random recordings are those of comparing everything with everything, whether the recording goes in at once,
- * is cut into chunks that are merged in any order, or is saved and loaded on the way. */
+/* Events of random recordings are those of comparing everything with everything, whether they are taken at the end or on
+ * the way. */
 #include "tests/support/events/recorded_frames.h"
 #include "tests/support/events/recording_oracle.h"
 #include "tests/support/random.h"
@@ -47,7 +47,7 @@ TEST(events_are_those_of_the_oracle) {
         recorded_frames r;
         random_seed(seed);
         recorded_frames_create(&r, NULL, (uint32_t)random_integer(0, 12));
-        cscd_event_tracker *tracker = recorded_tracker(&r, random_integer(0, 1) == 0);
+        cscd_event_tracker *tracker = recorded_tracker(&r);
         for (int again = 0; again < 2; again++) {
             recorded_frames_add(&r, tracker, 0, r.frame_count);
             expect_oracle(&r, tracker);
@@ -79,7 +79,7 @@ TEST(what_is_taken_is_everything) {
         recorded_frames r;
         random_seed(seed);
         recorded_frames_create(&r, NULL, 12);
-        cscd_event_tracker *tracker = recorded_tracker(&r, false);
+        cscd_event_tracker *tracker = recorded_tracker(&r);
         cscd_event *taken = calloc(1000, sizeof *taken);
         size_t taken_count = 0, count;
         cscd_events events;
@@ -103,101 +103,6 @@ TEST(what_is_taken_is_everything) {
         free(expected);
         free(taken);
         cscd_event_tracker_destroy(tracker);
-        recorded_frames_free(&r);
-    }
-}
-
-/* ---- chunks --------------------------------------------------------------------------------------------- */
-
-static cscd_event_tracker *saved_and_loaded(const recorded_frames *r, cscd_event_tracker *tracker,
-                                            bool later) {
-    const uint8_t *bytes, *again;
-    size_t size, size_again;
-    cscd_event_tracker *loaded = recorded_tracker(r, later);
-    assert_int_equal(cscd_event_tracker_save(tracker, &bytes, &size), CSCD_OK);
-    assert_int_equal(cscd_event_tracker_load(loaded, bytes, size), CSCD_OK);
-    assert_int_equal(cscd_event_tracker_save(loaded, &again, &size_again), CSCD_OK);
-    assert_int_equal(size, size_again);
-    assert_memory_equal(bytes, again, size);
-    cscd_event_tracker_destroy(tracker);
-    return loaded;
-}
-
-/* A tree of random shape. */
-static cscd_event_tracker *track_chunk(const recorded_frames *r, uint32_t begin, uint32_t end, bool later) {
-    cscd_event_tracker *tracker;
-    if (end - begin < 2 || random_integer(0, 3) == 0) {
-        tracker = recorded_tracker(r, later);
-        recorded_frames_add(r, tracker, begin, end);
-    } else {
-        uint32_t middle = (uint32_t)random_integer((int)begin, (int)end);
-        tracker = track_chunk(r, begin, middle, later);
-        cscd_event_tracker *next = track_chunk(r, middle, end, true);
-        if (random_integer(0, 1) == 0) {
-            /* The other way to the same: the second chunk grows further after the merge of its first half. */
-            assert_int_equal(cscd_event_tracker_merge(tracker, next), CSCD_OK);
-        } else {
-            cscd_event_tracker *copy = saved_and_loaded(r, next, true);
-            assert_int_equal(cscd_event_tracker_merge(tracker, copy), CSCD_OK);
-            next = copy;
-        }
-        cscd_event_tracker_destroy(next);
-    }
-    return random_integer(0, 3) == 0 ? saved_and_loaded(r, tracker, later) : tracker;
-}
-
-static void expect_same_bytes(cscd_event_tracker *a, cscd_event_tracker *b) {
-    const uint8_t *bytes_a, *bytes_b;
-    size_t size_a, size_b;
-    assert_int_equal(cscd_event_tracker_save(a, &bytes_a, &size_a), CSCD_OK);
-    assert_int_equal(cscd_event_tracker_save(b, &bytes_b, &size_b), CSCD_OK);
-    assert_int_equal(size_a, size_b);
-    assert_memory_equal(bytes_a, bytes_b, size_a);
-}
-
-TEST(chunks_give_the_same) {
-    for (uint64_t seed = 0; seed < RECORDINGS; seed++) {
-        recorded_frames r;
-        random_seed(seed);
-        recorded_frames_create(&r, NULL, (uint32_t)random_integer(1, 14));
-        bool later = random_integer(0, 1) == 0;
-        cscd_event_tracker *whole = recorded_tracker(&r, later);
-        recorded_frames_add(&r, whole, 0, r.frame_count);
-        for (int i = 0; i < 3; i++) {
-            cscd_event_tracker *merged = track_chunk(&r, 0, r.frame_count, later);
-            expect_same_bytes(whole, merged);
-            expect_oracle(&r, merged);
-            cscd_event_tracker_destroy(merged);
-        }
-        expect_oracle(&r, whole);
-        cscd_event_tracker_destroy(whole);
-        recorded_frames_free(&r);
-    }
-}
-
-/* All 2^(n-1) ways to cut, merged from the left. */
-TEST(every_way_to_cut) {
-    enum { FRAMES = 7 };
-    for (uint64_t seed = 0; seed < RECORDINGS / 20; seed++) {
-        recorded_frames r;
-        random_seed(seed + 5000);
-        recorded_frames_create(&r, NULL, FRAMES);
-        cscd_event_tracker *whole = recorded_tracker(&r, false);
-        recorded_frames_add(&r, whole, 0, FRAMES);
-        for (unsigned cuts = 0; cuts < 1u << (FRAMES - 1); cuts++) {
-            cscd_event_tracker *merged = recorded_tracker(&r, false);
-            for (uint32_t begin = 0, end = 1; end <= FRAMES; end++) {
-                if (end < FRAMES && (cuts >> (end - 1) & 1) == 0) continue;
-                cscd_event_tracker *next = recorded_tracker(&r, true);
-                recorded_frames_add(&r, next, begin, end);
-                assert_int_equal(cscd_event_tracker_merge(merged, next), CSCD_OK);
-                cscd_event_tracker_destroy(next);
-                begin = end;
-            }
-            expect_same_bytes(whole, merged);
-            cscd_event_tracker_destroy(merged);
-        }
-        cscd_event_tracker_destroy(whole);
         recorded_frames_free(&r);
     }
 }

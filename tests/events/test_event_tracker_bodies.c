@@ -115,7 +115,7 @@ TEST(bodies_that_move) {
         random_seed(seed);
         create_flight(&r, &f);
         record_flight(&r, &f);
-        cscd_event_tracker *tracker = recorded_tracker(&r, false);
+        cscd_event_tracker *tracker = recorded_tracker(&r);
         recorded_frames_add(&r, tracker, 0, r.frame_count);
         cscd_events found;
         size_t count;

@@ -1,4 +1,5 @@
 /* Trackers with mistakes, failing allocations and long recordings. */
+#include "runtime/events/mesh_rings.h"
 #include "tests/support/counting_allocator.h"
 #include "tests/support/events/recording_oracle.h"
 #include "tests/support/random.h"
@@ -44,7 +45,7 @@ TEST(options_that_cannot_be) {
 
 static void expect_refused_frame(const recorded_frames *r, const cscd_intersection_pairs *found,
                                  const char *words) {
-    cscd_event_tracker *tracker = recorded_tracker(r, false);
+    cscd_event_tracker *tracker = recorded_tracker(r);
     expect_refused(r, cscd_event_tracker_add_frame(tracker, 0, found), words);
     assert_int_equal(cscd_event_tracker_add_frame(tracker, 0, NULL), CSCD_OK);
     cscd_event_tracker_destroy(tracker);
@@ -94,77 +95,39 @@ TEST(calls_out_of_order) {
     recorded_frames r;
     random_seed(3);
     recorded_frames_create(&r, NULL, 0);
-    cscd_event_tracker *first = recorded_tracker(&r, false), *second = recorded_tracker(&r, true);
+    cscd_event_tracker *tracker = recorded_tracker(&r);
     cscd_events events;
     const cscd_contact contact = {.kind = CSCD_CONTACT_EE, .a = 0, .b = 9}, bad = {.kind = CSCD_CONTACT_TT};
-    const uint8_t *bytes = NULL;
-    size_t size = 0;
-    expect_refused(&r, cscd_event_tracker_add_contacts(first, &bad, 1), "contact 0");
-    expect_refused(&r, cscd_event_tracker_add_contacts(first, NULL, 1), "contacts is NULL");
-    assert_int_equal(cscd_event_tracker_add_contacts(first, NULL, 0), CSCD_OK);
-    assert_int_equal(cscd_event_tracker_add_contacts(first, &contact, 1), CSCD_OK);
-    expect_refused(&r, cscd_event_tracker_finish(first, &events), "1 contacts wait");
-    expect_refused(&r, cscd_event_tracker_save(first, &bytes, &size), "1 contacts wait");
-    expect_refused(&r, cscd_event_tracker_merge(first, second), "1 contacts wait");
-    expect_refused(&r, cscd_event_tracker_take(first, NULL), "out is NULL");
-    expect_refused(&r, cscd_event_tracker_finish(first, NULL), "out is NULL");
-    expect_refused(&r, cscd_event_tracker_save(first, NULL, &size), "bytes is NULL");
-    expect_refused(&r, cscd_event_tracker_load(first, NULL, 0), "bytes is NULL");
-    assert_int_equal(cscd_event_tracker_add_frame(first, 5, NULL), CSCD_OK);
-    expect_refused(&r, cscd_event_tracker_add_frame(first, 5, NULL), "does not come after frame 5");
-    assert_int_equal(cscd_event_tracker_add_frame(second, 5, NULL), CSCD_OK);
-    expect_refused(&r, cscd_event_tracker_merge(first, second), "begins with frame 5");
-    expect_refused(&r, cscd_event_tracker_merge(first, first), "with itself");
-    expect_refused(&r, cscd_event_tracker_merge(second, first), "without later_chunk");
-    cscd_event_options other = r.options;
-    other.rings++;
-    other.later_chunk = true;
-    cscd_event_tracker *stranger = NULL;
-    assert_int_equal(cscd_event_tracker_create(r.context, r.mesh, &other, &stranger), CSCD_OK);
-    expect_refused(&r, cscd_event_tracker_merge(first, stranger), "different meshes");
-    assert_int_equal(cscd_event_tracker_save(stranger, &bytes, &size), CSCD_OK);
-    expect_refused(&r, cscd_event_tracker_load(second, bytes, size), "of another mesh");
-    assert_int_equal(cscd_event_tracker_finish(first, &events), CSCD_OK);
+    expect_refused(&r, cscd_event_tracker_add_contacts(tracker, &bad, 1), "contact 0");
+    expect_refused(&r, cscd_event_tracker_add_contacts(tracker, NULL, 1), "contacts is NULL");
+    assert_int_equal(cscd_event_tracker_add_contacts(tracker, NULL, 0), CSCD_OK);
+    assert_int_equal(cscd_event_tracker_add_contacts(tracker, &contact, 1), CSCD_OK);
+    expect_refused(&r, cscd_event_tracker_finish(tracker, &events), "1 contacts wait");
+    expect_refused(&r, cscd_event_tracker_take(tracker, NULL), "out is NULL");
+    expect_refused(&r, cscd_event_tracker_finish(tracker, NULL), "out is NULL");
+    assert_int_equal(cscd_event_tracker_add_frame(tracker, 5, NULL), CSCD_OK);
+    expect_refused(&r, cscd_event_tracker_add_frame(tracker, 5, NULL), "does not come after frame 5");
+    assert_int_equal(cscd_event_tracker_finish(tracker, &events), CSCD_OK);
     assert_int_equal(events.count, 1);
     assert_int_equal(events.items[0].first_frame, 5);
-    cscd_event_tracker_destroy(stranger);
-    cscd_event_tracker_destroy(second);
-    cscd_event_tracker_destroy(first);
+    cscd_event_tracker_destroy(tracker);
     recorded_frames_free(&r);
 }
 
-/* Each of these rules joins frames in another way, so trackers that have different ones do not fit together. */
-TEST(trackers_of_other_rules) {
+/* In a chain of seams all vertices have the name of the least one, whatever the order of the seams. */
+TEST(chains_of_seams) {
+    static const uint32_t orders[6][6] = {{0, 1, 1, 2, 2, 3}, {0, 1, 2, 3, 1, 2}, {1, 2, 0, 1, 2, 3},
+                                          {1, 2, 2, 3, 0, 1}, {2, 3, 0, 1, 1, 2}, {2, 3, 1, 2, 0, 1}};
     recorded_frames r;
     random_seed(4);
     recorded_frames_create(&r, NULL, 0);
-    static uint32_t labels[2][64];
-    static const uint32_t seam[2] = {0, 3};
-    cscd_event_tracker *trackers[6];
-    assert_true(cscd_mesh_triangle_count(r.mesh) <= 64);
-    labels[1][40] = 1;
     for (int i = 0; i < 6; i++) {
-        cscd_event_options options = cscd_event_defaults();
-        options.later_chunk = true;
-        options.gap = i == 1;
-        options.rings = i == 2 ? 1 : 2;
-        options.labels = i == 3 ? labels[0] : i == 4 ? labels[1] : NULL;
-        options.part_count = i == 3 || i == 4 ? 2 : 0;
-        options.seams = seam;
-        options.seam_count = i == 5;
-        assert_int_equal(cscd_event_tracker_create(r.context, r.mesh, &options, &trackers[i]), CSCD_OK);
+        mesh_rings rings;
+        assert_int_equal(mesh_rings_create(r.mesh, 2, orders[i], 3, &rings), CSCD_OK);
+        for (uint32_t v = 0; v < 4; v++) assert_int_equal(rings.names[v], 0);
+        assert_int_equal(rings.names[4], 4);
+        mesh_rings_free(r.context, &rings);
     }
-    for (int i = 0; i < 36; i++) {
-        const uint8_t *bytes;
-        size_t size;
-        cscd_event_tracker *to = trackers[i / 6], *from = trackers[i % 6];
-        if (to == from) continue;
-        expect_refused(&r, cscd_event_tracker_merge(to, from),
-                       "different meshes, rings, gaps, labels or seams");
-        assert_int_equal(cscd_event_tracker_save(from, &bytes, &size), CSCD_OK);
-        expect_refused(&r, cscd_event_tracker_load(to, bytes, size), "of other rings, gaps, labels or seams");
-    }
-    for (int i = 0; i < 6; i++) cscd_event_tracker_destroy(trackers[i]);
     recorded_frames_free(&r);
 }
 
@@ -225,7 +188,7 @@ TEST(long_recordings) {
         recorded_frames r;
         random_seed(seed);
         recorded_frames_create(&r, &allocator, FRAMES);
-        cscd_event_tracker *tracker = recorded_tracker(&r, seed % 2 == 0);
+        cscd_event_tracker *tracker = recorded_tracker(&r);
         size_t calls = 0, events_taken = 0;
         for (uint64_t time = 0; time < TIMES; time++) {
             if (time == TIMES / 2) calls = counter.calls;

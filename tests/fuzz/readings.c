@@ -2,7 +2,6 @@
 #include "tests/fuzz/readings.h"
 
 #include "tests/fuzz/reading_memory.h"
-#include "tests/fuzz/tracker_reading.h"
 #include "tool/io/animation.h"
 #include "tool/io/path_name.h"
 #include "tool/io/plan_file.h"
@@ -147,11 +146,6 @@ static bool read_results(const char *path, const mesh_file *model, io_error *err
     return job_results_close(&results, error);
 }
 
-static bool read_tracker(const char *path, const mesh_file *model, io_error *error) {
-    (void)model;
-    return tracker_reading(path, error);
-}
-
 /* The first that has the ending of a file reads it. Zipped data of GIFTI may unpack to a thousand times their size, and a mesh takes a
  * few times more. */
 static const reading readings[] = {{"plan", ".plan.ply", read_plan, true, 100},
@@ -166,8 +160,7 @@ static const reading readings[] = {{"plan", ".plan.ply", read_plan, true, 100},
                                    {"mdd", ".mdd", read_frames, true, 100},
                                    {"summary", ".summary.json", read_summary, false, 100},
                                    {"jobs", ".jobs.jsonl", read_jobs, false, 100},
-                                   {"results", ".results.jsonl", read_results, false, 100},
-                                   {"tracker", ".tracker", read_tracker, false, 100}};
+                                   {"results", ".results.jsonl", read_results, false, 100}};
 
 enum { READINGS = sizeof readings / sizeof *readings };
 

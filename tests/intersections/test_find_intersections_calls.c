@@ -5,6 +5,7 @@
 #include "tests/support/intersections/crossing_scene.h"
 #include "tests/support/packed.h"
 #include "tests/support/rig.h"
+#include "tests/support/start_states.h"
 #include "tests/support/test.h"
 
 #include <math.h>
@@ -47,8 +48,7 @@ TEST(caps_bound_lists) {
 
 static void expect_same_knowledge(const rig *a, const rig *b) {
     for (uint32_t t = 0; t < s.triangle_count; t++)
-        assert_int_equal(cscd_detector_start_state(a->detector, t),
-                         cscd_detector_start_state(b->detector, t));
+        assert_int_equal(start_state_of(a->detector, t), start_state_of(b->detector, t));
 }
 
 /* A whole search tells a later step as much as a check; one that may stop early tells nothing. */
@@ -67,7 +67,7 @@ TEST(states_are_known_afterwards) {
         expect_ok(check_packed(checked.detector, s.x0, &plain));
         expect_ok(find_intersections_packed(asked.detector, s.x0, &all, &found));
         expect_same_knowledge(&checked, &asked);
-        assert_int_equal(cscd_detector_start_state(asked.detector, 0) == CSCD_START_STATE_UNKNOWN, false);
+        assert_int_equal(start_state_of(asked.detector, 0) == TRIANGLE_UNKNOWN, false);
         rig_destroy(&checked);
         rig_destroy(&asked);
     }
@@ -123,7 +123,7 @@ TEST(duplicates_mark_nothing) {
     expect_ok(check_packed(checked.detector, s.x0, &plain));
     assert_int_equal(plain.count, 0);
     expect_trio(asked.detector, 0, 1, 0);
-    assert_true(cscd_detector_start_state(asked.detector, 1) != CSCD_START_STATE_CROSSING);
+    assert_true(start_state_of(asked.detector, 1) != TRIANGLE_CROSSING);
     expect_same_knowledge(&checked, &asked);
     rig_destroy(&checked);
     rig_destroy(&asked);

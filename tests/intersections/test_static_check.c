@@ -8,6 +8,7 @@
 #include "tests/support/packed.h"
 #include "tests/support/rig.h"
 #include "tests/support/scenes.h"
+#include "tests/support/start_states.h"
 #include "tests/support/test.h"
 
 #include <string.h>
@@ -104,8 +105,8 @@ TEST(triangles_without_area_are_not_clean) {
     cscd_intersections found;
     assert_int_equal(check_packed(r.detector, s.x0, &found), CSCD_OK);
     assert_true(found.count == 0 && found.zero_area_triangles == 1 && found.first_zero_area == 1);
-    assert_int_equal(cscd_detector_start_state(r.detector, 1), CSCD_START_STATE_CROSSING);
-    assert_true(cscd_detector_start_state(r.detector, 0) > CSCD_START_STATE_CROSSING);
+    assert_int_equal(start_state_of(r.detector, 1), TRIANGLE_CROSSING);
+    assert_true(start_state_of(r.detector, 0) > TRIANGLE_CROSSING);
     rig_destroy(&r);
 }
 

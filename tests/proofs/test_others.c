@@ -10,12 +10,10 @@
 
 /* ---- event trackers ------------------------------------------------------------------------------------- */
 
-/* A recording, whose first frames go to one tracker and whose last ones to another, which is saved and loaded. */
+/* A recording, whose frames go to a tracker one by one. */
 typedef struct proof_recording {
     recorded_frames frames;
     uint32_t next;
-    uint8_t *saved;
-    size_t saved_size;
 } proof_recording;
 
 static void open_recording(proof *p) {
@@ -29,74 +27,32 @@ static void open_recording(proof *p) {
 static void close_recording(proof *p) {
     proof_recording *r = p->own;
     recorded_frames_free(&r->frames);
-    free(r->saved);
     free(r);
 }
 
-static cscd_status create_tracker(proof *p, bool later) {
+static cscd_status create_tracker(proof *p) {
     const proof_recording *r = p->own;
-    cscd_event_options options = r->frames.options;
-    options.later_chunk = later;
-    return cscd_event_tracker_create(p->context, r->frames.mesh, &options, &p->answer.tracker);
+    return cscd_event_tracker_create(p->context, r->frames.mesh, &r->frames.options, &p->answer.tracker);
 }
 
-static cscd_status create_first(proof *p) {
-    return create_tracker(p, false);
-}
-
-static void keep_first(proof *p) {
+static void keep_tracker(proof *p) {
     p->tracker = p->answer.tracker;
-}
-
-static cscd_status create_later(proof *p) {
-    return create_tracker(p, true);
-}
-
-static void keep_later(proof *p) {
-    p->later = p->answer.tracker;
-}
-
-static cscd_event_tracker *tracker_now(const proof *p) {
-    return ((const proof_recording *)p->own)->next < 2 ? p->tracker : p->later;
 }
 
 static cscd_status add_contacts(proof *p) {
     const proof_recording *r = p->own;
     const recorded_frame *f = &r->frames.frames[r->next];
-    return cscd_event_tracker_add_contacts(tracker_now(p), f->contacts, f->contact_count);
+    return cscd_event_tracker_add_contacts(p->tracker, f->contacts, f->contact_count);
 }
 
 static cscd_status add_frame(proof *p) {
     const proof_recording *r = p->own;
     const recorded_frame *f = &r->frames.frames[r->next];
-    return cscd_event_tracker_add_frame(tracker_now(p), f->number, f->looked ? &f->found : NULL);
+    return cscd_event_tracker_add_frame(p->tracker, f->number, f->looked ? &f->found : NULL);
 }
 
 static void go_on(proof *p) {
     ((proof_recording *)p->own)->next++;
-}
-
-static cscd_status save_later(proof *p) {
-    return cscd_event_tracker_save(p->later, &p->answer.bytes.items, &p->answer.bytes.count);
-}
-
-static void keep_bytes(proof *p) {
-    proof_recording *r = p->own;
-    proof_add_items(p, p->answer.bytes.items, p->answer.bytes.count, 1);
-    r->saved_size = p->answer.bytes.count;
-    free(r->saved);
-    r->saved = malloc(r->saved_size);
-    assert_non_null(r->saved);
-    memcpy(r->saved, p->answer.bytes.items, r->saved_size);
-}
-
-static cscd_status load_later(proof *p) {
-    const proof_recording *r = p->own;
-    return cscd_event_tracker_load(p->later, r->saved, r->saved_size);
-}
-
-static cscd_status merge_later(proof *p) {
-    return cscd_event_tracker_merge(p->tracker, p->later);
 }
 
 static cscd_status take_events(proof *p) {
@@ -112,13 +68,9 @@ static void read_events(proof *p) {
     proof_add(p, &p->answer.events.open, sizeof p->answer.events.open);
 }
 
-static const proof_call first_made = {"event_tracker_create", PROOF_CREATES, create_first, keep_first};
-static const proof_call later_made = {"event_tracker_create", PROOF_CREATES, create_later, keep_later};
+static const proof_call tracker_made = {"event_tracker_create", PROOF_CREATES, create_tracker, keep_tracker};
 static const proof_call contacts = {"event_tracker_add_contacts", PROOF_CHANGES, add_contacts, NULL};
 static const proof_call frame = {"event_tracker_add_frame", PROOF_BEGINS, add_frame, go_on};
-static const proof_call saved = {"event_tracker_save", PROOF_BEGINS, save_later, keep_bytes};
-static const proof_call loaded = {"event_tracker_load", PROOF_CHANGES, load_later, NULL};
-static const proof_call merged = {"event_tracker_merge", PROOF_CHANGES, merge_later, NULL};
 static const proof_call taken = {"event_tracker_take", PROOF_CHANGES, take_events, read_events};
 static const proof_call finished = {"event_tracker_finish", PROOF_CHANGES, finish_events, read_events};
 
@@ -274,18 +226,18 @@ static const char rounded[] = "floats are made doubles, which nothing keeps";
 static const char tracked[] = "a frame has few things, which one thread adds";
 static const char walking[] = "particles are few, and walk one after the other";
 
-#define CHUNKS                                                                                               \
+#define FRAMES                                                                                               \
     {                                                                                                        \
-        &first_made, &later_made, &contacts, &frame, &contacts, &frame, &contacts, &frame, &contacts,        \
-            &frame, &saved, &loaded, &merged, &taken, &finished                                              \
+        &tracker_made, &contacts, &frame, &contacts, &frame, &taken, &contacts, &frame, &contacts, &frame,   \
+            &finished                                                                                        \
     }
 #define SENSORS                                                                                              \
     { &partition_made, &sensors_made, &first_sensed, &part_renewed, &second_sensed }
 
 static const proof_row rows[] = {
-    {"events", CHUNKS, open_recording, close_recording, .seed = 1, .no_report = tracked,
+    {"events", FRAMES, open_recording, close_recording, .seed = 1, .no_report = tracked,
      .one_thread = tracked},
-    {"events_seams", CHUNKS, open_recording, close_recording, .seed = 4, .no_report = tracked,
+    {"events_seams", FRAMES, open_recording, close_recording, .seed = 4, .no_report = tracked,
      .one_thread = tracked},
     {"pairs",
      {&pair_step, &pair_near},

@@ -77,23 +77,8 @@ static void read_sums(proof *p) {
                     sizeof *p->answer.part_pairs.items);
 }
 
-static cscd_status find_changes(proof *p) {
-    const kept_contacts *kept = p->own;
-    cscd_view x0, x1;
-    return cscd_detector_curve_changes(p->detector, at_moment(p, 1, &x0), at_moment(p, 2, &x1), kept->items,
-                                       kept->count, &p->answer.changes);
-}
-
-static void read_changes(proof *p) {
-    const cscd_curve_changes *c = &p->answer.changes;
-    proof_add_items(p, c->items, c->count, sizeof *c->items);
-    proof_add_items(p, c->causes, c->cause_count, sizeof *c->causes);
-    proof_add_items(p, c->of_contacts, c->cause_count, sizeof *c->of_contacts);
-}
-
 static const proof_call kept_step = {"detector_step", PROOF_BEGINS, step_and_keep, keep_contacts};
 static const proof_call sums = {"detector_contact_parts", PROOF_ASKS, sum_contacts, read_sums};
-static const proof_call changes = {"detector_curve_changes", PROOF_ASKS, find_changes, read_changes};
 
 /* ---- who is looked at with whom ------------------------------------------------------------------------- */
 
@@ -271,7 +256,7 @@ static const proof_call cloned = {"detector_clone", PROOF_CREATES, clone_detecto
 
 static const proof_row rows[] = {
     {"parts", {&parts, &bodies, &parts_found, &cloned, &parts_found}, open_detector, SPHERES},
-    {"parts_of_contacts", {&kept_step, &parts, &sums, &changes}, open_keeping, free_contacts, SPHERES},
+    {"parts_of_contacts", {&kept_step, &parts, &sums}, open_keeping, free_contacts, SPHERES},
     {"rules", {&step_first, &apart, &step_second, &thick, &step_third}, open_detector, SPHERES},
     {"seams", {&step_first, &seams, &step_second, &step_third}, open_torn, SPHERES},
     {"waiting", {&opened, &parted, &joined, &step_third}, open_sewn, SPHERES},

@@ -24,8 +24,15 @@ static const cscd_mesh *mesh_of(const cscd_detector *detector) {
     return detector != NULL ? cscd_detector_mesh(detector) : NULL;
 }
 
-static const cscd_mesh *mesh_of_line(const cscd_line_search *line) {
-    return line != NULL ? mesh_of(cscd_line_search_detector(line)) : NULL;
+/* A line search does not tell its mesh: its views claim memory without end. */
+static const cscd_view *line_view_of(const double *x, cscd_view *view) {
+    *view = cscd_view_doubles(x, UINT32_MAX);
+    return x != NULL ? view : NULL;
+}
+
+static const cscd_mutable_view *mutable_line_view_of(double *x, cscd_mutable_view *view) {
+    *view = cscd_mutable_view_doubles(x, UINT32_MAX);
+    return x != NULL ? view : NULL;
 }
 
 cscd_status plan_create_packed(const cscd_mesh *mesh, const double *positions,
@@ -111,20 +118,19 @@ cscd_status truncate_packed(cscd_detector *detector, const double *x0, const dou
 }
 
 cscd_status line_begin_packed(cscd_line_search *line, const double *x0, const double *x1, double reach) {
-    const cscd_mesh *mesh = mesh_of_line(line);
     cscd_view from, to;
-    return cscd_line_search_begin(line, view_of(mesh, x0, &from), view_of(mesh, x1, &to), reach);
+    return cscd_line_search_begin(line, line_view_of(x0, &from), line_view_of(x1, &to), reach);
 }
 
 cscd_status line_positions_packed(cscd_line_search *line, double fraction, double *positions) {
     cscd_mutable_view x;
-    return cscd_line_search_positions(line, fraction, mutable_view_of(mesh_of_line(line), positions, &x));
+    return cscd_line_search_positions(line, fraction, mutable_line_view_of(positions, &x));
 }
 
 cscd_status line_max_step_packed(cscd_line_search *line, double longest, double *reached,
                                  cscd_free_step *out) {
     cscd_mutable_view end;
-    return cscd_line_search_max_step(line, longest, mutable_view_of(mesh_of_line(line), reached, &end), out);
+    return cscd_line_search_max_step(line, longest, mutable_line_view_of(reached, &end), out);
 }
 
 cscd_status partition_create_packed(const cscd_mesh *mesh, const cscd_plan *plan, const double *positions,

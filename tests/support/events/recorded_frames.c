@@ -248,10 +248,9 @@ void recorded_frames_free(recorded_frames *r) {
     cscd_context_destroy(r->context);
 }
 
-cscd_event_tracker *recorded_tracker(const recorded_frames *r, bool later_chunk) {
+cscd_event_tracker *recorded_tracker(const recorded_frames *r) {
     cscd_event_tracker *tracker = NULL;
     cscd_event_options options = r->options;
-    options.later_chunk = later_chunk;
     assert_int_equal(cscd_event_tracker_create(r->context, r->mesh, &options, &tracker), CSCD_OK);
     return tracker;
 }

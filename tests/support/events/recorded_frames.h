@@ -36,5 +36,5 @@ void recorded_frames_copy(recorded_frame *to, const cscd_intersection_pairs *fou
 void recorded_frames_free(recorded_frames *r);
 
 /* A tracker with the recording's options, and frames that go into it. */
-cscd_event_tracker *recorded_tracker(const recorded_frames *r, bool later_chunk);
+cscd_event_tracker *recorded_tracker(const recorded_frames *r);
 void recorded_frames_add(const recorded_frames *r, cscd_event_tracker *tracker, uint32_t begin, uint32_t end);

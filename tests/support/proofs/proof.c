@@ -4,6 +4,7 @@
 #include "src/core/context.h"
 #include "src/mesh/mesh.h"
 #include "tests/support/proofs/world.h"
+#include "tests/support/start_states.h"
 #include "tests/support/test.h"
 
 #include <stdio.h>
@@ -92,8 +93,10 @@ static void read_detector(proof *p) {
     cscd_counters counters = cscd_detector_counters(p->detector);
     const cscd_mesh *mesh = cscd_detector_mesh(p->detector);
     for (uint32_t c = 0; c < cscd_mesh_component_count(mesh); c++) {
-        cscd_start_knowledge known = cscd_detector_start_knowledge(p->detector, c);
-        add_bytes(&p->digests[p->at_call].counters, &known, sizeof known);
+        for (int state = TRIANGLE_UNKNOWN; state <= TRIANGLE_CLEAN; state++) {
+            const uint32_t known = start_states_in(p->detector, c, (triangle_state)state);
+            add_bytes(&p->digests[p->at_call].counters, &known, sizeof known);
+        }
     }
     counters.rebuilds = 0;
     add_bytes(&p->digests[p->at_call].counters, &counters, sizeof counters);

@@ -88,7 +88,6 @@ typedef struct proof {
         cscd_free_step step;
         cscd_displacement_bounds bounds;
         cscd_truncation truncation;
-        cscd_curve_changes changes;
         cscd_contact_part_pairs part_pairs;
         cscd_events events;
         cscd_warnings warnings;
