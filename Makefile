@@ -89,9 +89,8 @@ LEVEL_avx512 := -DSIMD_LEVEL=2 -mavx512f -mavx512vl -mavx512dq -mavx512bw
 LEVEL_neon   := -DSIMD_LEVEL=3
 
 # -ffp-contract=off: error bounds are derived for separate multiplications and additions. -fPIC: both libraries are
-# made of the same objects, which run no slower for it. -fexceptions: a callback of the host may throw a C++ exception
-# through the library, whose frames then unwind on every machine and run the cleanups of src/core/entry.h.
-CFLAGS_ALL := -std=c11 -D_GNU_SOURCE $(OPTIMISE_$(CONFIG)) $(WARNINGS) -ffp-contract=off -fvisibility=hidden -fPIC -fexceptions \
+# made of the same objects, which run no slower for it.
+CFLAGS_ALL := -std=c11 -D_GNU_SOURCE $(OPTIMISE_$(CONFIG)) $(WARNINGS) -ffp-contract=off -fvisibility=hidden -fPIC \
               -Wno-psabi -pthread -MMD -MP -Iinclude -I. $(CORE_DEFINITIONS) $(CPPFLAGS) $(call allowed,$(CFLAGS))
 LINK_ALL   := $(OPTIMISE_$(CONFIG)) -pthread $(LDFLAGS)
 # libcscd opens libcscd-baselines.so when it needs it. (Where dlopen is in libc, -ldl is an empty archive.)
@@ -138,7 +137,7 @@ include packaging/wasm/wasm.mk
 endif
 # The thread sanitizer sees the tests that use threads, and no others are built for it.
 THREAD_TESTS := bvh/test_traversal core/test_threads core/test_progress core/test_parallel_for core/test_contexts core/test_host_loop \
-                core/test_exceptions detector/test_reentry detector/test_lifetimes detector/test_shared_mesh detector/test_clone_threads \
+                detector/test_reentry detector/test_lifetimes detector/test_shared_mesh detector/test_clone_threads \
                 intersections/test_first_pairs intersections/test_surface_answers cpp/test_callbacks \
                 proofs/test_steps proofs/test_solver_calls proofs/test_told proofs/test_intersections proofs/test_creations
 ifeq ($(CONFIG),tsan)
@@ -194,7 +193,7 @@ SLOW_answers       := left_out
 SLOW_baselines     := benchmarks contour iccd
 SLOW_bvh           := bvh_order bvh_slivers near_triangles traversal
 SLOW_ccd           := algebraic algebraic_oracle cubic elementary_degenerate elementary_exact elementary_oracle half_space min_separation_random root_finders separated_in_part
-SLOW_core          := float_environment host_loop left_calls exceptions parallel_for progress
+SLOW_core          := float_environment host_loop parallel_for progress
 SLOW_cpp           := callbacks
 SLOW_culling       := choice culling local_culling verlet_list
 SLOW_depths        := deepest_points work_budget
@@ -824,9 +823,7 @@ $(BUILD)/tests/fuzz/fuzz_readers $(BUILD)/tests/fuzz/coverage_target: $(READING_
 $(BUILD)/tests/fuzz/coverage_target: TEST_LINKER :=
 $(BUILD)/tests/fuzz/coverage_target: LINK_ALL += -fsanitize=fuzzer
 
-# A host in C++, which throws; and tests in C++.
-$(BUILD)/tests/core/room: $(OBJECTS)/tests/core/throwing_host.o
-$(BUILD)/tests/core/room $(BUILD)/tests/cpp/room: TEST_LIBS += -lstdc++
+$(BUILD)/tests/cpp/room: TEST_LIBS += -lstdc++
 ifneq ($(filter tests/ccd/test_root_finders.c,$(ROOM_SOURCES)),)
 $(BUILD)/tests/ccd/room: WRAPPED += -Wl,--wrap=cubic_guess_roots
 endif

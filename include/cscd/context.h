@@ -30,7 +30,6 @@ typedef enum cscd_status {
     CSCD_CANCELLED,    /* the callback in cscd_progress returned false, or cscd_context_cancel was called */
     CSCD_IN_CONTACT,   /* no step is free of contact, because the start is not: cscd_detector_max_step */
     CSCD_BUSY,         /* another call with this context is running: see the rules of callbacks */
-    CSCD_BROKEN,       /* a callback has left a call with this context by an exception or longjmp */
     CSCD_NULL_OBJECT,   /* an object that the call needs is NULL. There may be no context then that could
                             * hold a sentence, so cscd_context_detail is what it was before */
     CSCD_LIST_TOO_LONG, /* there is more to list than longest_list allows (cscd_detector_options), or max_memory
@@ -59,21 +58,14 @@ typedef struct cscd_context cscd_context;
  *             the caller's floating-point environment is. Every call gives the caller's back, flags included, and
  *             callbacks run in it; so do allocator calls on threads of the library. Tasks of parallel_for give the
  *             environment of the thread that runs them back
- *   failing   A callback that cannot go on calls cscd_context_cancel() and returns: the call that it was called
- *             from then fails, and may be repeated. cscd/cscd.hpp and bindings do so when a callback throws
+ *   failing   A callback must return: it throws no C++ exception, and does not call longjmp. One that cannot go on
+ *             calls cscd_context_cancel() and returns: the call that it was called from then fails, and may be
+ *             repeated. cscd/cscd.hpp and bindings do so when a callback throws
  *   forking   After fork(), the child has a copy of every object, and its calls run on the thread that makes them,
  *             with the same results: threads of the library stay in the parent. A context in which a call was
  *             running at that moment stays busy in the child, where destroying its objects does nothing. A child
  *             that a callback has forked must not return from it, and no thread may be making a plan with
- *             CSCD_CHARGE_DENSE at that moment. A host's own parallel_for is the host's affair
- *   leaving   A callback should return. If it leaves the library by a C++ exception or longjmp, the context is
- *             broken: every call fails with CSCD_BROKEN, cscd_context_detail names the callback, and the objects can
- *             only be destroyed, which frees everything. After an exception all threads see this. A longjmp is
- *             noticed by the next call of the same thread that comes from no deeper on its stack than the
- *             callback; until then, and on fibers, calls fail with CSCD_BUSY, and destroyed objects stay. release
- *             must always return; so must the allocator on threads of the library, as nobody could catch there, and
- *             in cscd_context_create, which would lose what it has allocated. OpenBLAS may be left with one
- *             thread if CSCD_CHARGE_DENSE is left */
+ *             CSCD_CHARGE_DENSE at that moment. A host's own parallel_for is the host's affair */
 
 /* The host's allocator. Set both functions, or neither for aligned_alloc and free. allocate returns NULL
  * when it fails; alignment is a power of two. release is given the size that was asked for. They are never
@@ -107,8 +99,7 @@ CSCD_API bool cscd_simd_from_name(const char *name, cscd_simd *out);
  * all of these calls have returned. Tasks never wait for each other, so calling them one after the other
  * is correct. A call whose tasks were left out, repeated, or still running when run returned fails with
  * INVALID_ARGUMENT and their numbers; it may be repeated. While a thread waits in run, the pool may give it
- * work that calls cscd with objects of other contexts. An exception that a task passes on from a callback
- * may be thrown by run when all tasks have ended. */
+ * work that calls cscd with objects of other contexts. Tasks throw nothing. */
 typedef struct cscd_parallel_for {
     void (*run)(void *user, uint32_t task_count, void (*task)(void *data, uint32_t index), void *data);
     void *user;

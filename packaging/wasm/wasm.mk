@@ -1,5 +1,5 @@
 # Flags and sources of a build for WebAssembly; included before the Makefile makes lists of objects.
-CFLAGS_ALL := $(filter-out -g -pthread -fPIC -fexceptions,$(CFLAGS_ALL))
+CFLAGS_ALL := $(filter-out -g -pthread -fPIC,$(CFLAGS_ALL))
 # cmocka.h defines uintptr_t where this macro does not tell it that there is one.
 CFLAGS_ALL += -isystem $(WASM_LIBRARIES)/include -D_UINTPTR_T
 # Modules of tests grow to the 4 GiB that a 32-bit size can name.

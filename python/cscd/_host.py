@@ -18,7 +18,7 @@ __all__ = ["DETECTOR_STEPS", "Handle", "Host", "Keeper", "PLAN_STEPS", "code_of"
            "processor_count", "raise_status", "thread_count_of"]
 
 _OUT_OF_MEMORY, _INVALID_ARGUMENT, _INVALID_MESH, _SYSTEM_ERROR, _CANCELLED, IN_CONTACT, _BUSY = 1, 2, 3, 4, 5, 6, 7
-_LIST_TOO_LONG = 10
+_LIST_TOO_LONG = 9
 _MOST_THREADS = 256
 
 #: All hosts of this process, of which a child gets copies. No WeakSet: what that does when one goes is written in Python,

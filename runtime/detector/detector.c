@@ -172,7 +172,7 @@ static void free_detector(reference_count *references) {
     cscd_detector *d = (cscd_detector *)references;
     cscd_context *context = d->context;
     cscd_mesh mesh = *d->seen;
-    if (!context_broken(context)) detector_free(d);
+    detector_free(d);
     mesh_release(&mesh);
     context_release(context);
 }

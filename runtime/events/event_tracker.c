@@ -56,7 +56,7 @@ static void free_tracker(reference_count *references) {
     cscd_event_tracker *t = (cscd_event_tracker *)references;
     cscd_context *context = t->context;
     cscd_mesh mesh = t->mesh;
-    if (!context_broken(context)) free_memory(t);
+    free_memory(t);
     mesh_release(&mesh);
     context_release(context);
 }

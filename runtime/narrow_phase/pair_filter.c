@@ -234,7 +234,7 @@ const char *active_set_validate(const active_set *s, const cscd_mesh *mesh) {
 
 static bool host_ignores(const exclusions *e, cscd_contact_kind kind, uint32_t a, uint32_t b) {
     if (e->ignore == NULL) return false;
-    HOST_CALL(call, &e->mesh->context->entry, HOST_IGNORE);
+    host_call call = host_call_begin(&e->mesh->context->entry);
     bool ignored = e->ignore(e->ignore_user, kind, a, b);
     host_call_end(&call);
     return ignored;

@@ -106,7 +106,7 @@ static void free_sensors(reference_count *references) {
     cscd_sensors *s = (cscd_sensors *)references;
     cscd_context *context = s->context;
     cscd_partition *partition = s->partition;
-    if (!context_broken(context)) free_memory(s);
+    free_memory(s);
     partition_release(partition);
     context_release(context);
 }

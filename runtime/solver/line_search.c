@@ -45,11 +45,9 @@ static void free_line(reference_count *references) {
     cscd_line_search *line = (cscd_line_search *)references;
     cscd_detector *detector = line->detector;
     cscd_context *context = detector->context;
-    if (!context_broken(context)) {
-        candidates_free(context, &line->candidates);
-        context_free_all(context, list_arrays(line));
-        context_free(context, line);
-    }
+    candidates_free(context, &line->candidates);
+    context_free_all(context, list_arrays(line));
+    context_free(context, line);
     detector_release(detector);
     context_release(context);
 }

@@ -62,7 +62,6 @@ static cscd_status create_parts(cscd_context *context, const cscd_context_option
     context->memory.bytes = sizeof *context;
     cscd_status status =
         parallel_create(&context->memory, options->thread_count, options->parallel_for, &context->threads);
-    context->entry.threads = context->threads;
     if (status == CSCD_OK) return CSCD_OK;
     live_objects_end(&context->live);
     memory_end(&context->memory);
@@ -128,7 +127,6 @@ void cscd_context_destroy(cscd_context *context) {
 void context_add_object(cscd_context *context, reference_count *object, void (*free)(reference_count *)) {
     reference_begin(object, free);
     context_hold(context);
-    atomic_store(&context->entry.half_made, object);
 }
 
 void context_list_object(cscd_context *context, reference_count *object,
@@ -145,8 +143,7 @@ void context_destroy_object(cscd_context *context, reference_count *object) {
 }
 
 const char *cscd_context_detail(const cscd_context *context) {
-    if (context == NULL) return "";
-    return entry_broken(&context->entry) ? context->entry.broken_by : context->detail;
+    return context != NULL ? context->detail : "";
 }
 
 void cscd_context_cancel(cscd_context *context) {
@@ -207,7 +204,6 @@ cscd_status context_lacks(cscd_context *context, const char *function, const cha
 
 cscd_status context_progress_status(cscd_context *context) {
     const progress *p = &context->progress;
-    if (entry_broken(&context->entry)) return CSCD_BROKEN;
     if (!progress_cancelled(p)) return context_loop_status(context);
     if (!p->by_report)
         return context_fail(context, CSCD_CANCELLED,

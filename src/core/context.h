@@ -26,8 +26,7 @@ void context_hold(cscd_context *context);
 void context_release(cscd_context *context);
 
 /* Begins the references of a new object, which holds the context. free lets go of it last, because the memory of the
- * context goes with it, and before that of all that the object holds by now. If the context is broken it does no more;
- * else it also frees the memory. */
+ * context goes with it, and before that of all that the object holds by now. */
 void context_add_object(cscd_context *context, reference_count *object,
                         void (*free)(reference_count *object));
 
@@ -38,10 +37,6 @@ void context_list_object(cscd_context *context, reference_count *object,
 /* One who holds the object lets go; or its owner does, in its _destroy function. */
 void context_drop_object(cscd_context *context, reference_count *object);
 void context_destroy_object(cscd_context *context, reference_count *object);
-
-static inline bool context_broken(const cscd_context *context) {
-    return entry_broken(&context->entry);
-}
 
 /* These pass on to the functions of memory.h. */
 
@@ -104,7 +99,7 @@ cscd_status context_lacks(cscd_context *context, const char *function, const cha
 cscd_status context_out_of_memory(cscd_context *context);
 
 /* Returns CSCD_OK, or with its sentence CSCD_CANCELLED, or INVALID_ARGUMENT if the host's loop has not run every task
- * once, or CSCD_BROKEN. Results of tasks count only after this has returned CSCD_OK. */
+ * once. Results of tasks count only after this has returned CSCD_OK. */
 cscd_status context_progress_status(cscd_context *context);
 
 /* Returns CSCD_OK, or INVALID_ARGUMENT if the host's loop has not run every task once in this call. */

@@ -5,7 +5,7 @@
 #include <string.h>
 
 /* New memory says that no task waits. */
-enum { TASK_DONE, TASK_WAITING, TASK_RUNNING, TASK_LEFT };
+enum { TASK_DONE, TASK_WAITING, TASK_RUNNING };
 
 host_loop host_loop_of(host_memory *memory, cscd_parallel_for host) {
     return (host_loop){.host = host, .memory = memory};
@@ -60,24 +60,12 @@ static bool reserve_marks(host_loop *loop, uint32_t task_count) {
 
 /* ---- one task ------------------------------------------------------------------------------------------ */
 
-/* On the host's thread, which has a floating-point environment of its own. */
-typedef struct running_task {
-    atomic_uchar *mark;
-    float_environment before;
-    unsigned char end;
-} running_task;
-
-/* An exception of the allocator may end a task, too: then the task has been left. */
-static void end_task(running_task *task) {
-    float_environment_set(task->before);
-    atomic_store(task->mark, task->end);
-}
-
+/* On a thread of the host, which has a floating-point environment of its own. */
 static void run_marked_task(host_loop *loop, uint32_t index) {
-    __attribute__((cleanup(end_task)))
-    running_task task = {mark_of(loop, index), float_environment_begin(), TASK_LEFT};
+    float_environment before = float_environment_begin();
     loop->task(loop->data, index);
-    task.end = TASK_DONE;
+    float_environment_set(before);
+    atomic_store(mark_of(loop, index), TASK_DONE);
 }
 
 /* A thread of the host that was late for an earlier loop may come at any time, even between two of these lines. It finds
@@ -127,7 +115,7 @@ void host_loop_run(host_loop *loop, uint32_t task_count, parallel_task *task, vo
         return;
     }
     offer_loop(loop, task_count, task, data);
-    HOST_CALL(call, loop->memory->entry, HOST_PARALLEL_FOR);
+    host_call call = host_call_begin(loop->memory->entry);
     loop->host.run(loop->host.user, task_count, run_host_task, loop);
     host_call_end(&call);
     finish_tasks(loop, task_count);

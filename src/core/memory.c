@@ -7,10 +7,9 @@
 #include <string.h>
 
 /* Precedes each block and fills one alignment unit, so that the block itself is aligned. */
-struct memory_block {
+typedef struct memory_block {
     size_t size; /* of the whole, header included */
-    memory_block *before, *after;
-};
+} memory_block;
 
 _Static_assert(sizeof(memory_block) <= MEMORY_ALIGNMENT, "a header fills one alignment unit");
 
@@ -40,34 +39,11 @@ cscd_allocator memory_system_allocator(void) {
 bool memory_begin(host_memory *m, cscd_allocator allocator, entry_state *entry) {
     m->allocator = allocator;
     m->entry = entry;
-    m->taken = false;
-    m->blocks = NULL;
     atomic_init(&m->bytes, 0);
-    if (pthread_mutex_init(&m->lock, NULL) != 0) return false;
-    if (pthread_cond_init(&m->turn, NULL) == 0) return true;
-    pthread_mutex_destroy(&m->lock);
-    return false;
+    return pthread_mutex_init(&m->lock, NULL) == 0;
 }
 
-/* ---- one thread at a time ------------------------------------------------------------------------------ */
-
-static host_memory *begin_turn(host_memory *m) {
-    pthread_mutex_lock(&m->lock);
-    while (m->taken) pthread_cond_wait(&m->turn, &m->lock);
-    m->taken = true;
-    pthread_mutex_unlock(&m->lock);
-    return m;
-}
-
-static void end_turn(host_memory **m) {
-    pthread_mutex_lock(&(*m)->lock);
-    (*m)->taken = false;
-    pthread_cond_signal(&(*m)->turn);
-    pthread_mutex_unlock(&(*m)->lock);
-}
-
-/* The turn ends with the block of code in which this stands, in whatever way that is left. */
-#define TURN(name, m) __attribute__((cleanup(end_turn))) host_memory *name = begin_turn(m)
+/* ---- blocks -------------------------------------------------------------------------------------------- */
 
 /* What is reserved holds nonsense in debug builds, so that who reads it too early is noticed. */
 enum { AS_IT_WAS = -1 };
@@ -77,43 +53,32 @@ enum { RESERVED = AS_IT_WAS };
 enum { RESERVED = 0xcd };
 #endif
 
-/* ---- blocks -------------------------------------------------------------------------------------------- */
-
-static void link_block(host_memory *m, memory_block *block, size_t size) {
-    *block = (memory_block){.size = size, .after = m->blocks};
-    if (m->blocks != NULL) m->blocks->before = block;
-    m->blocks = block;
-    m->bytes += size;
-}
-
-static void unlink_block(host_memory *m, memory_block *block) {
-    assert(block->size <= m->bytes);
-    m->bytes -= block->size;
-    *(block->before != NULL ? &block->before->after : &m->blocks) = block->after;
-    if (block->after != NULL) block->after->before = block->before;
-}
-
-/* Our own allocator returns, and cares for no environment. */
+/* Our own allocator cares for no environment. */
 static entry_state *state_for_host(const host_memory *m) {
     return m->allocator.allocate != system_allocate ? m->entry : NULL;
 }
 
-/* The threads of the context stand still before it is this thread's turn, because they may wait for theirs. */
 static memory_block *take_block(host_memory *m, size_t size) {
-    HOST_CALL(call, state_for_host(m), HOST_ALLOCATOR);
-    TURN(turn, m);
+    pthread_mutex_lock(&m->lock);
+    host_call call = host_call_begin(state_for_host(m));
     memory_block *block = m->allocator.allocate(m->allocator.user, size, MEMORY_ALIGNMENT);
     host_call_end(&call);
-    if (block != NULL) link_block(turn, block, size);
+    if (block != NULL) {
+        block->size = size;
+        m->bytes += size;
+    }
+    pthread_mutex_unlock(&m->lock);
     return block;
 }
 
 static void give_back(host_memory *m, memory_block *block) {
-    HOST_CALL(call, state_for_host(m), HOST_ALLOCATOR);
-    TURN(turn, m);
-    unlink_block(turn, block);
+    pthread_mutex_lock(&m->lock);
+    assert(block->size <= m->bytes);
+    m->bytes -= block->size;
+    host_call call = host_call_begin(state_for_host(m));
     m->allocator.release(m->allocator.user, block, block->size);
     host_call_end(&call);
+    pthread_mutex_unlock(&m->lock);
 }
 
 static void *allocate_filled(host_memory *m, size_t count, size_t size, int byte) {
@@ -134,15 +99,10 @@ void *memory_reserve(host_memory *m, size_t count, size_t size) {
 }
 
 void memory_free(host_memory *m, void *block) {
-    if (block != NULL && !entry_broken(m->entry))
-        give_back(m, (memory_block *)((char *)block - MEMORY_ALIGNMENT));
+    if (block != NULL) give_back(m, (memory_block *)((char *)block - MEMORY_ALIGNMENT));
 }
 
 void memory_end(host_memory *m) {
-    assert(m->blocks == NULL || entry_broken(m->entry));
-    m->taken = false;
-    while (m->blocks != NULL) give_back(m, m->blocks);
-    pthread_cond_destroy(&m->turn);
     pthread_mutex_destroy(&m->lock);
 }
 

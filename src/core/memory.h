@@ -8,17 +8,11 @@
 
 enum { MEMORY_ALIGNMENT = 64 };
 
-typedef struct memory_block memory_block;
-
-/* One thread at a time is in the host's allocator, but no lock is held meanwhile: an allocator may throw. */
 typedef struct host_memory {
     cscd_allocator allocator;
-    entry_state *entry; /* of the context */
-    pthread_mutex_t lock;
-    pthread_cond_t turn;
-    bool taken;           /* a thread is in the allocator */
-    memory_block *blocks; /* in use, linked, so that what a broken context has lost can be given back */
-    atomic_size_t bytes;  /* in use, headers included; changed in turn, read by any thread */
+    entry_state *entry;   /* of the context */
+    pthread_mutex_t lock; /* of the allocator, which one thread at a time is in */
+    atomic_size_t bytes;  /* in use, headers included; changed under the lock, read by any thread */
 } host_memory;
 
 /* The allocator for a host that has none of its own. */
@@ -27,7 +21,7 @@ cscd_allocator memory_system_allocator(void);
 /* Returns false when the system refuses a lock. */
 bool memory_begin(host_memory *m, cscd_allocator allocator, entry_state *entry);
 
-/* Gives back what is still in use. That is nothing, unless the context is broken. */
+/* By now nothing is in use. */
 void memory_end(host_memory *m);
 
 /* Zeroed memory for count elements of size bytes, 64-byte aligned; NULL when count * size overflows or the
@@ -42,8 +36,7 @@ void *memory_reserve(host_memory *m, size_t count, size_t size);
  * when NULL is returned, still valid. */
 void *memory_grow(host_memory *m, void *block, size_t old_count, size_t new_count, size_t size);
 
-/* NULL does nothing, and in a broken context nothing is freed before memory_end: what the call that was left has freed
- * already is not known. */
+/* NULL does nothing. */
 void memory_free(host_memory *m, void *block);
 
 /* ---- the arrays of a structure ------------------------------------------------------------------------- */

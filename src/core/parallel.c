@@ -9,7 +9,6 @@
 #include <assert.h>
 #include <pthread.h>
 #include <sched.h>
-#include <setjmp.h>
 #include <stdatomic.h>
 
 /* A waiting thread looks for work this often before it yields the processor, and for this long before it
@@ -35,7 +34,6 @@ typedef struct helper {
     struct parallel *threads;
     pthread_t thread;
     uint32_t index; /* the caller is 0 */
-    jmp_buf way_out;
 } helper;
 
 struct parallel {
@@ -46,12 +44,8 @@ struct parallel {
     helper *helpers;
     double patience_ms; /* 0: there are fewer processors than threads */
 
-    atomic_bool pause;   /* helpers rest: they go on with no task */
-    atomic_uint resting; /* helpers inside that do */
-    bool paused_open;    /* the gate was open before the pause */
-
     pthread_mutex_t lock;
-    pthread_cond_t work_ready, work_done, resumed;
+    pthread_cond_t work_ready, work_done;
     uint64_t calls;       /* how often sleepers were woken; under the lock */
     atomic_uint sleepers; /* helpers that wait for a call; changed under the lock */
     atomic_bool quit;
@@ -68,7 +62,6 @@ static void run_tasks(parallel *threads, uint32_t self) {
     for (uint32_t i = 0; i < threads->thread_count; i++) {
         task_range *range = &threads->ranges[(self + i) % threads->thread_count];
         while (atomic_load(&range->next) < range->end) {
-            parallel_rest(threads);
             uint32_t task = atomic_fetch_add(&range->next, 1);
             if (task < range->end) threads->task(threads->data, task);
         }
@@ -150,9 +143,11 @@ static void call_sleepers(parallel *threads) {
     pthread_mutex_unlock(&threads->lock);
 }
 
-static void help_until_quit(const helper *self) {
+static void *helper_main(void *argument) {
+    const helper *self = argument;
     parallel *threads = self->threads;
     uint32_t seen = 0;
+    float_environment_begin();
     while (!atomic_load(&threads->quit)) {
         if (enter_soon(threads, &seen)) {
             run_tasks(threads, self->index);
@@ -161,68 +156,7 @@ static void help_until_quit(const helper *self) {
             sleep_until_called(threads, seen);
         }
     }
-}
-
-static void *helper_main(void *argument) {
-    helper *self = argument;
-    float_environment_begin();
-    if (setjmp(self->way_out) == 0) help_until_quit(self);
     return NULL;
-}
-
-/* ---- pauses ------------------------------------------------------------------------------------------ */
-
-static bool all_rest(parallel *threads) {
-    return (atomic_load(&threads->gate) & GATE_INSIDE) == atomic_load(&threads->resting);
-}
-
-void parallel_pause(parallel *threads) {
-    if (threads == NULL || (atomic_load(&threads->gate) & (GATE_OPEN | GATE_INSIDE)) == 0) return;
-    threads->paused_open = (atomic_fetch_and(&threads->gate, ~GATE_OPEN) & GATE_OPEN) != 0;
-    atomic_store(&threads->pause, true);
-    while (!all_rest(threads)) {
-        for (int i = 0; i < LOOKS_AT_ONCE && !all_rest(threads); i++) pause_briefly();
-        sched_yield();
-    }
-}
-
-void parallel_resume(parallel *threads) {
-    if (threads == NULL || !atomic_load(&threads->pause)) return;
-    pthread_mutex_lock(&threads->lock);
-    atomic_store(&threads->pause, false);
-    pthread_cond_broadcast(&threads->resumed);
-    pthread_mutex_unlock(&threads->lock);
-    if (!threads->paused_open) return;
-    atomic_fetch_or(&threads->gate, GATE_OPEN);
-    if (atomic_load(&threads->sleepers) > 0) call_sleepers(threads);
-}
-
-/* Leaves the task in its midst, for good: what it works on may be gone. */
-static void leave_task(parallel *threads) {
-    pthread_t self = pthread_self();
-    for (uint32_t i = 0; i < threads->started; i++) {
-        if (pthread_equal(threads->helpers[i].thread, self)) longjmp(threads->helpers[i].way_out, 1);
-    }
-}
-
-static void sleep_until_resumed(parallel *threads) {
-    double begin = timer_now_ms();
-    while (atomic_load(&threads->pause) && timer_now_ms() - begin < threads->patience_ms) pause_briefly();
-    pthread_mutex_lock(&threads->lock);
-    while (atomic_load(&threads->pause) && !atomic_load(&threads->quit))
-        pthread_cond_wait(&threads->resumed, &threads->lock);
-    pthread_mutex_unlock(&threads->lock);
-}
-
-/* Whoever does not rest any more looks once again: the caller may have counted it in for the next pause. */
-void parallel_rest(parallel *threads) {
-    if (threads == NULL || !atomic_load_explicit(&threads->pause, memory_order_relaxed)) return;
-    do {
-        atomic_fetch_add(&threads->resting, 1);
-        sleep_until_resumed(threads);
-        if (atomic_load(&threads->quit)) leave_task(threads);
-        atomic_fetch_sub(&threads->resting, 1);
-    } while (atomic_load(&threads->pause));
 }
 
 /* ---- the crew ---------------------------------------------------------------------------------------- */
@@ -252,7 +186,6 @@ cscd_status parallel_create(host_memory *m, uint32_t thread_count, cscd_parallel
     pthread_mutex_init(&threads->lock, NULL);
     pthread_cond_init(&threads->work_ready, NULL);
     pthread_cond_init(&threads->work_done, NULL);
-    pthread_cond_init(&threads->resumed, NULL);
     threads->helpers = memory_allocate(m, thread_count, sizeof *threads->helpers);
     threads->ranges = memory_allocate(m, thread_count, sizeof *threads->ranges);
     bool allocated = threads->helpers != NULL && threads->ranges != NULL;
@@ -279,9 +212,7 @@ bool parallel_is_of_parent(const parallel *threads) {
 static void dismiss_crew(parallel *threads) {
     atomic_store(&threads->quit, true);
     call_sleepers(threads);
-    pthread_cond_broadcast(&threads->resumed);
     for (uint32_t i = 0; i < threads->started; i++) pthread_join(threads->helpers[i].thread, NULL);
-    pthread_cond_destroy(&threads->resumed);
     pthread_cond_destroy(&threads->work_done);
     pthread_cond_destroy(&threads->work_ready);
     pthread_mutex_destroy(&threads->lock);

@@ -29,18 +29,6 @@ void parallel_run(parallel *threads, uint32_t task_count, parallel_task *task, v
 void parallel_begin_call(parallel *threads);
 loop_faults parallel_faults(const parallel *threads);
 
-/* ---- pauses -------------------------------------------------------------------------------------------- */
-
-/* While the caller of parallel_run runs code of the host from within a task, nobody else works on a task: that code
- * may leave the library for good, and take what the tasks work on with it. parallel_pause returns when all other
- * threads rest; they go on after parallel_resume. If that does not come, parallel_destroy ends them where they rest.
- * Threads of the host are the host's affair. Both do nothing if nobody works. */
-void parallel_pause(parallel *threads);
-void parallel_resume(parallel *threads);
-
-/* Called now and then in a long task: rests if there is a pause. The thread holds no lock then. */
-void parallel_rest(parallel *threads);
-
 /* Where the share of a lane begins when count things are divided among share_count lanes; that of lane share_count is count. The
  * product would not fit into a size of 32 bits. */
 static inline size_t parallel_share(size_t count, uint32_t lane, uint32_t share_count) {

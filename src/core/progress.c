@@ -1,7 +1,6 @@
 /* How far a call has come, and whether the host wants it to end. */
 #include "src/core/progress.h"
 
-#include "src/core/parallel.h"
 #include "src/core/timer.h"
 
 #include <assert.h>
@@ -70,14 +69,13 @@ static void advance_report(progress *p, double share) {
 }
 
 static bool ask_host(progress *p) {
-    HOST_CALL(call, p->entry, HOST_PROGRESS);
+    host_call call = host_call_begin(p->entry);
     bool go_on = p->host.report(p->host.user, p->stage, p->reported);
     host_call_end(&call);
     return go_on;
 }
 
 bool progress_go_on(progress *p, double share) {
-    parallel_rest(p->entry->threads);
     if (progress_cancelled(p)) return false;
     if (!progress_wanted(p)) return true;
     if (!pthread_equal(p->caller, pthread_self())) return true;

@@ -28,8 +28,6 @@ const char *cscd_status_string(cscd_status status) {
         return "in contact at the start";
     case CSCD_BUSY:
         return "busy: a call with this context is running, perhaps the one that this callback belongs to";
-    case CSCD_BROKEN:
-        return "broken: a callback has left a call with this context by an exception or longjmp";
     case CSCD_NULL_OBJECT:
         return "an object that the call needs is NULL";
     case CSCD_LIST_TOO_LONG:

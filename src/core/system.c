@@ -51,26 +51,14 @@ uint32_t system_forks(void) {
     return 0;
 }
 
-bool system_thread_stack(uintptr_t *lowest, size_t *size) {
-    ULONG_PTR low = 0, high = 0;
-    GetCurrentThreadStackLimits(&low, &high);
-    *lowest = (uintptr_t)low;
-    *size = (size_t)(high - low);
-    return high > low;
-}
-
 #else
 
 #include <pthread.h>
 #include <sched.h>
 #include <stdatomic.h>
 #include <unistd.h>
-#ifdef __FreeBSD__
-#include <pthread_np.h>
-#endif
 #ifdef __EMSCRIPTEN__
 #include <emscripten/heap.h>
-#include <emscripten/stack.h>
 #endif
 #ifdef __linux__
 #include <inttypes.h>
@@ -184,52 +172,4 @@ uint32_t system_forks(void) {
     return atomic_load_explicit(&forks, memory_order_relaxed);
 }
 
-#if defined(__APPLE__)
-
-bool system_thread_stack(uintptr_t *lowest, size_t *size) {
-    *size = pthread_get_stacksize_np(pthread_self());
-    *lowest = (uintptr_t)pthread_get_stackaddr_np(pthread_self()) - *size;
-    return *size > 0;
-}
-
-#elif defined(__EMSCRIPTEN__)
-
-/* In a fiber it is the stack of that fiber. */
-bool system_thread_stack(uintptr_t *lowest, size_t *size) {
-    *lowest = emscripten_stack_get_end();
-    *size = emscripten_stack_get_base() - *lowest;
-    return *size > 0;
-}
-
-#elif defined(__linux__) || defined(__FreeBSD__)
-
-static bool read_attributes(pthread_attr_t *attributes) {
-#ifdef __FreeBSD__
-    return pthread_attr_get_np(pthread_self(), attributes) == 0;
-#else
-    return pthread_getattr_np(pthread_self(), attributes) == 0;
-#endif
-}
-
-bool system_thread_stack(uintptr_t *lowest, size_t *size) {
-    pthread_attr_t attributes;
-    void *low = NULL;
-#ifdef __FreeBSD__
-    if (pthread_attr_init(&attributes) != 0) return false;
-#endif
-    if (!read_attributes(&attributes)) return false;
-    const bool known = pthread_attr_getstack(&attributes, &low, size) == 0;
-    pthread_attr_destroy(&attributes);
-    *lowest = (uintptr_t)low;
-    return known;
-}
-
-#else
-
-bool system_thread_stack(uintptr_t *lowest, size_t *size) {
-    (void)lowest, (void)size;
-    return false;
-}
-
-#endif
 #endif

@@ -29,6 +29,3 @@ bool system_has_threads(void);
 
 /* How many forks lie between this process and the one that first asked: another number in every child. 0 where there is no fork. */
 uint32_t system_forks(void);
-
-/* The stack that the system has given the calling thread: size bytes from *lowest on. False: it is not known. */
-bool system_thread_stack(uintptr_t *lowest, size_t *size);

@@ -259,10 +259,8 @@ static array_list mesh_arrays(cscd_mesh *mesh) {
 static void free_mesh(reference_count *references) {
     shared_mesh *shared = (shared_mesh *)references;
     cscd_context *context = shared->mesh.context;
-    if (!context_broken(context)) {
-        context_free_all(context, mesh_arrays(&shared->mesh));
-        context_free(context, shared);
-    }
+    context_free_all(context, mesh_arrays(&shared->mesh));
+    context_free(context, shared);
     context_release(context);
 }
 

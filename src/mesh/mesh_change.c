@@ -201,10 +201,8 @@ static void free_change(reference_count *references) {
     cscd_context *context = change->context;
     const cscd_mesh *old = change->old_mesh, *mesh = change->mesh;
     pthread_mutex_destroy(&change->lock);
-    if (!context_broken(context)) {
-        context_free_all(context, map_arrays(change));
-        context_free(context, change);
-    }
+    context_free_all(context, map_arrays(change));
+    context_free(context, change);
     mesh_release(mesh);
     mesh_release(old);
     context_release(context);

@@ -19,10 +19,8 @@ static void free_partition(reference_count *references) {
     cscd_partition *partition = (cscd_partition *)references;
     cscd_context *context = partition->context;
     cscd_mesh mesh = partition->seen;
-    if (!context_broken(context)) {
-        context_free_all(context, list_arrays(partition));
-        context_free(context, partition);
-    }
+    context_free_all(context, list_arrays(partition));
+    context_free(context, partition);
     mesh_release(&mesh);
     context_release(context);
 }

@@ -49,10 +49,8 @@ static array_list list_arrays(cscd_plan *plan) {
 static void free_plan(reference_count *references) {
     cscd_plan *plan = (cscd_plan *)references;
     cscd_context *context = plan->context;
-    if (!context_broken(context)) {
-        context_free_all(context, list_arrays(plan));
-        context_free(context, plan);
-    }
+    context_free_all(context, list_arrays(plan));
+    context_free(context, plan);
     context_release(context);
 }
 

@@ -2,6 +2,7 @@
  * host's, and every call gives it back. */
 #include "src/core/context.h"
 #include "tests/support/counting_allocator.h"
+#include "tests/support/host_callback.h"
 #include "tests/support/panels.h"
 #include "tests/support/test.h"
 #include "tests/support/workload.h"

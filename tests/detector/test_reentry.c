@@ -3,6 +3,7 @@
 #include "cscd/sensors.h"
 #include "src/core/context.h"
 #include "tests/support/counting_allocator.h"
+#include "tests/support/host_callback.h"
 #include "tests/support/packed.h"
 #include "tests/support/panels.h"
 #include "tests/support/test.h"
@@ -18,14 +19,15 @@ typedef struct returning_host {
     counting_allocator counter;
     host_callback from;
     void (*inside)(struct returning_host *h);
-    uint32_t calls, at; /* it does so in this call of the callback, counted from 1; 0: never */
+    atomic_uint calls; /* of that callback so far */
+    uint32_t at;       /* it does so in this call of the callback, counted from 1; 0: never */
     int what;
     uint32_t done, wrong;
     sem_t came, go_on;
 } returning_host;
 
 static void notice_call(returning_host *h, host_callback callback) {
-    if (callback == h->from && ++h->calls == h->at) h->inside(h);
+    if (callback == h->from && atomic_fetch_add(&h->calls, 1) + 1 == h->at) h->inside(h);
 }
 
 static bool ignore_none(void *user, cscd_contact_kind kind, uint32_t a, uint32_t b) {
