@@ -232,7 +232,7 @@ COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 # What installs packages; a build that leaves expat out on purpose does not ask for it.
 PACKAGES = BASELINES=$(BASELINES) EXPAT=$(if $(WITHOUT_EXPAT),0,1) .ci/packages
 
-.PHONY: all python wheel wheels test-wheels sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench reproduce bench-charge bench-peers bench-instructions referee bench-plot claims performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender blender-extension test-vtk windows windows-libraries windows-zip test-windows test-windows-run test-bridges test-farm test-mutants test-aarch64 test-s390x wasm test-wasm test-riscv64 deb test-deb test-builds cscd-mpi python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces fuzz-readers test-fuzz test-faults FORCE
+.PHONY: all python wheel wheels test-wheels sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench reproduce bench-charge bench-peers bench-instructions referee bench-plot claims manual performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender blender-extension test-vtk windows windows-libraries windows-zip test-windows test-windows-run test-bridges test-farm test-mutants test-aarch64 test-s390x wasm test-wasm test-riscv64 deb test-deb test-builds cscd-mpi python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces fuzz-readers test-fuzz test-faults FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -587,6 +587,10 @@ bench-charge: packages
 	@$(MAKE) --no-print-directory $(BUILD)/benchmarks/charge
 	@$(BUILD)/benchmarks/charge $(CHARGE_BENCH)
 
+# The page cscd(1), from what the tool says of its options.
+manual: tool
+	@python3 packaging/manual.py $(BUILD)/cscd
+
 # The page of what we claim, docs/about/measurements.md, from the tables in benchmarks/results.
 claims:
 	@python3 benchmarks/claims.py
@@ -656,6 +660,7 @@ help:
 	@echo 'make freeze-api   write down what the public headers promise, when functions or members were added'
 	@echo 'make bench     all methods on all recordings (BENCH=--quick: 30 s); make bench-plot draws its charts'
 	@echo 'make reproduce   the tables and figures of both theses, with their numbers beside ours: five minutes'
+	@echo 'make manual    docs/man/cscd.1, from what --help says'
 	@echo 'make claims    docs/about/measurements.md, from the tables in benchmarks/results'
 	@echo 'make bench-charge   errors, times and memory of charges (CHARGE_BENCH=--quick: 20 s); make bench-plot draws its charts'
 	@echo 'make performance   machine limits, cost per triangle by size, threads, bulk motion, cloth, new meshes (PERFORMANCE=--quick)'

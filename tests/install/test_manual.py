@@ -47,7 +47,10 @@ def test_commands_are_those_of_the_tool():
 @pytest.mark.parametrize("command", COMMANDS)
 def test_options_are_those_of_the_tool(command):
     """With their arguments, as --help lists them: two spaces end an option."""
-    part, text = part_of(PAGE, f"cscd {command}"), help_of(command)
+    text = help_of(command)
+    titles = re.findall("^([A-Z].*):$", text, re.MULTILINE)
+    synopsis = re.findall(f"^cscd {command} .*$", PAGE.split(".SH DESCRIPTION")[0], re.MULTILINE)
+    part = "\n".join([*synopsis, *(part_of(PAGE, title) for title in (f"cscd {command}", *titles))])
     assert options_in(part) == options_in(text) != []
     for option in re.findall("^  (-.*)", text, re.MULTILINE):
         assert option.split("  ")[0] in part.splitlines()
