@@ -3,7 +3,7 @@
 #include "benchmarks/lib/scene_files.h"
 #include "cscd/research.h"
 #include "models/shapes/catalogue.h"
-#include "preprocess/baselines/published_cuts.h"
+#include "preprocess/baselines/baselines.h"
 #include "tool/io/plan_file.h"
 
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* The charges of a mesh, component by component: by a treecode, or by a solver to compare with. */
 #include "preprocess/preprocess.h"
 
-#include "preprocess/treecode/tree_solve.h"
+#include "preprocess/treecode/treecode.h"
 #include "src/core/system.h"
 #include "src/core/timer.h"
 #include "src/mesh/positions.h"
@@ -9,7 +9,7 @@
 #include <string.h>
 
 /* baselines: begin */
-#include "preprocess/baselines/dense_charges.h"
+#include "preprocess/baselines/baselines.h"
 /* baselines: end */
 
 /* The charge's share of cscd_plan_create, by estimate, for each solver; the regions take the rest. */

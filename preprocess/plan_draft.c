@@ -11,7 +11,7 @@
 #include <stdio.h>
 
 /* baselines: begin */
-#include "preprocess/baselines/published_cuts.h"
+#include "preprocess/baselines/baselines.h"
 /* baselines: end */
 
 /* ---- frames -------------------------------------------------------------------------------------------- */

@@ -1,7 +1,7 @@
 /* The steps of preprocessing: frames of a motion, the charge, and drafts of a plan. */
 #pragma once
 
-#include "preprocess/charge/charge_solution.h"
+#include "preprocess/charge/charge.h"
 #include "preprocess/regions/regions.h"
 #include "src/mesh/plan.h"
 

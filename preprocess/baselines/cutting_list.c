@@ -1,5 +1,5 @@
 /* The cuttingList of the thesis (Yeh 2012, section 3.3), its contours, and how it grows and shrinks. */
-#include "preprocess/baselines/cutting_list.h"
+#include "preprocess/baselines/published_cuts.h"
 
 static array_list list_arrays(cutting_list *c) {
     const size_t n = c->mesh->triangle_count;
@@ -159,22 +159,22 @@ bool cutting_list_grow(cutting_list *c) {
 static uint32_t only_contour(const cutting_list *c, uint32_t triangle) {
     uint32_t found = NO_CONTOUR;
     for (int k = 0; k < 3; k++) {
-        const uint32_t contour = c->side_contours[triangle][k];
-        if (contour == NO_CONTOUR) continue;
-        if (found != NO_CONTOUR && contour != found) return NO_CONTOUR;
-        found = contour;
+        const uint32_t number = c->side_contours[triangle][k];
+        if (number == NO_CONTOUR) continue;
+        if (found != NO_CONTOUR && number != found) return NO_CONTOUR;
+        found = number;
     }
     return found;
 }
 
 /* Takes a triangle away; its contour goes along its other sides now. Queues the neighbours that it reaches. */
-static uint32_t shrink_triangle(cutting_list *c, uint32_t triangle, uint32_t contour, uint32_t end) {
+static uint32_t shrink_triangle(cutting_list *c, uint32_t triangle, uint32_t number, uint32_t end) {
     const cscd_mesh *mesh = c->mesh;
     c->listed[triangle] = false;
     for (uint32_t k = 0; k < 3; k++) {
         const uint32_t next = triangle_beyond(mesh, triangle, k);
         if (!c->listed[next]) continue;
-        c->side_contours[next][side_of_edge(mesh, next, mesh->triangle_edges[triangle][k])] = contour;
+        c->side_contours[next][side_of_edge(mesh, next, mesh->triangle_edges[triangle][k])] = number;
         if (c->seen[next]) continue;
         c->seen[next] = true;
         c->ring[end++] = next;
@@ -195,8 +195,8 @@ void cutting_list_shrink(cutting_list *c) {
         c->ring[end++] = t;
     }
     for (uint32_t i = 0; i < end; i++) {
-        const uint32_t contour = only_contour(c, c->ring[i]);
-        if (contour != NO_CONTOUR) end = shrink_triangle(c, c->ring[i], contour, end);
+        const uint32_t number = only_contour(c, c->ring[i]);
+        if (number != NO_CONTOUR) end = shrink_triangle(c, c->ring[i], number, end);
     }
     for (uint32_t i = 0; i < c->count; i++) {
         const uint32_t t = c->triangles[i];

@@ -1,7 +1,7 @@
 /* The equations of the charge by a dense system, which libcscd-baselines solves: what it asks of us, and we of it. */
-#include "preprocess/baselines/dense_charges.h"
+#include "preprocess/baselines/baselines.h"
 
-#include "preprocess/baselines/dense/dense_interface.h"
+#include "preprocess/baselines/dense/dense.h"
 #include "src/core/baseline_library.h"
 
 static void *allocate_block(void *context, size_t size) {

@@ -1,5 +1,5 @@
 /* Sets up the system of equations for the charges of one component: its unknowns and its arrays. */
-#include "preprocess/charge/charge_system.h"
+#include "preprocess/charge/charge.h"
 
 #include "src/core/sort.h"
 

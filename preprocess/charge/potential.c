@@ -8,7 +8,7 @@
  * The six arcs of eq. 3.17 add up to the solid angle Omega, which one arc gives (van Oosterom and Strackee
  * 1983). This file's loops are straight-line code for the vectoriser; it is compiled without errno and
  * traps. */
-#include "preprocess/charge/potential.h"
+#include "preprocess/charge/charge.h"
 
 #include "src/core/vec3.h"
 

@@ -1,8 +1,121 @@
 /* Divides parts into cells: connected groups of near vertices with similar normals. */
-#include "preprocess/partition/cells.h"
+#include "preprocess/partition/partition.h"
+
 #include "src/mesh/surface.h"
 
 #include <string.h>
+
+/* ---- connected labels ---------------------------------------------------------------------------------- */
+
+enum { NO_LABEL = UINT32_MAX };
+
+/* Finds pieces breadth first; the vertices of a piece are consecutive in the queue. */
+static uint32_t find_pieces(const connect_work *work, const uint32_t *vertices, uint32_t count) {
+    uint32_t piece_count = 0, end = 0;
+    for (uint32_t i = 0; i < count; i++) work->pieces[vertices[i]] = NO_LABEL;
+    for (uint32_t i = 0; i < count; i++) {
+        if (work->pieces[vertices[i]] != NO_LABEL) continue;
+        uint32_t next = end, label = work->labels[vertices[i]];
+        work->piece_offsets[piece_count] = end;
+        work->piece_labels[piece_count] = label;
+        work->pieces[vertices[i]] = piece_count;
+        for (work->queue[end++] = vertices[i]; next < end; next++) {
+            uint32_t v = work->queue[next];
+            for (uint32_t j = work->offsets[v]; j < work->offsets[v + 1]; j++) {
+                uint32_t neighbour = work->neighbours[j];
+                if (work->pieces[neighbour] != NO_LABEL || work->labels[neighbour] != label) continue;
+                work->pieces[neighbour] = piece_count;
+                work->queue[end++] = neighbour;
+            }
+        }
+        piece_count++;
+    }
+    work->piece_offsets[piece_count] = end;
+    return piece_count;
+}
+
+static uint32_t piece_size(const connect_work *work, uint32_t piece) {
+    return work->piece_offsets[piece + 1] - work->piece_offsets[piece];
+}
+
+static void settle_largest(const connect_work *work, uint32_t piece_count, uint32_t label_count) {
+    for (uint32_t label = 0; label < label_count; label++) work->best[label] = NO_LABEL;
+    for (uint32_t p = 0; p < piece_count; p++) {
+        uint32_t *best = &work->best[work->piece_labels[p]];
+        if (*best == NO_LABEL || piece_size(work, p) > piece_size(work, *best)) *best = p;
+    }
+    for (uint32_t p = 0; p < piece_count; p++) work->settled[p] = work->best[work->piece_labels[p]] == p;
+}
+
+/* Returns the label with most edges to this piece among the settled pieces beside it; NO_LABEL without any. */
+static uint32_t most_common(const connect_work *work, uint32_t piece) {
+    uint32_t most = NO_LABEL, *edges = work->best, begin = work->piece_offsets[piece];
+    for (uint32_t i = begin; i < work->piece_offsets[piece + 1]; i++) {
+        uint32_t v = work->queue[i];
+        for (uint32_t j = work->offsets[v]; j < work->offsets[v + 1]; j++) {
+            uint32_t other = work->pieces[work->neighbours[j]];
+            if (other == piece || !work->settled[other]) continue;
+            uint32_t label = work->piece_labels[other];
+            edges[label]++;
+            if (most == NO_LABEL || edges[label] > edges[most] ||
+                (edges[label] == edges[most] && label < most))
+                most = label;
+        }
+    }
+    for (uint32_t i = begin; i < work->piece_offsets[piece + 1]; i++) {
+        uint32_t v = work->queue[i];
+        for (uint32_t j = work->offsets[v]; j < work->offsets[v + 1]; j++)
+            edges[work->piece_labels[work->pieces[work->neighbours[j]]]] = 0;
+    }
+    return most;
+}
+
+static bool join_neighbours(const connect_work *work, uint32_t piece_count) {
+    bool joined = false;
+    for (uint32_t p = 0; p < piece_count; p++) {
+        if (work->settled[p]) continue;
+        uint32_t label = most_common(work, p);
+        if (label == NO_LABEL) continue;
+        work->piece_labels[p] = label;
+        work->settled[p] = joined = true;
+    }
+    return joined;
+}
+
+/* Settles all pieces, and returns how many labels there are afterwards. */
+static uint32_t settle_all(const connect_work *work, uint32_t piece_count, uint32_t label_count) {
+    uint32_t p = 0;
+    for (;;) {
+        while (join_neighbours(work, piece_count)) {
+        }
+        while (p < piece_count && work->settled[p]) p++;
+        if (p == piece_count) return label_count;
+        work->best[label_count] = 0;
+        work->piece_labels[p] = label_count++;
+        work->settled[p] = true;
+    }
+}
+
+/* vertices: all of a part, ascending; labels are below label_count. A label keeps its largest connected piece
+ * (ties: the first). Another piece joins the neighbouring label with most edges to it (ties: the smaller),
+ * and gets a label of its own if it reaches no piece with a label. Then labels are numbered again from
+ * 0, by their first vertices; returns how many there are. */
+static uint32_t connect_labels(const connect_work *work, const uint32_t *vertices, uint32_t count,
+                               uint32_t label_count) {
+    uint32_t piece_count = find_pieces(work, vertices, count), numbered = 0;
+    settle_largest(work, piece_count, label_count);
+    for (uint32_t label = 0; label < label_count; label++) work->best[label] = 0;
+    label_count = settle_all(work, piece_count, label_count);
+    for (uint32_t label = 0; label < label_count; label++) work->best[label] = NO_LABEL;
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t *number = &work->best[work->piece_labels[work->pieces[vertices[i]]]];
+        if (*number == NO_LABEL) *number = numbered++;
+        work->labels[vertices[i]] = *number;
+    }
+    return numbered;
+}
+
+/* ---- cells --------------------------------------------------------------------------------------------- */
 
 /* Lists the edges between vertices of equal labels, in both directions, ascending from each vertex. Vertices
  * with the label PARTITION_NONE have no edge. offsets has vertex_count + 1 elements, neighbours 2 *
@@ -30,7 +143,7 @@ static void list_neighbours(const cscd_mesh *mesh, const uint32_t *labels, uint3
     }
 }
 
-/* ---- memory ------------------------------------------------------------------------------------------ */
+/* ---- memory -------------------------------------------------------------------------------------------- */
 
 static array_list list_arrays(cell_maker *maker) {
     const cscd_mesh *mesh = maker->partition->mesh;
@@ -76,7 +189,7 @@ cscd_status cell_maker_create(cscd_partition *partition, const double *positions
     return CSCD_OK;
 }
 
-/* ---- vectors ----------------------------------------------------------------------------------------- */
+/* ---- vectors ------------------------------------------------------------------------------------------- */
 
 /* The normal of the triangles around a vertex, weighted by their areas; its length is 1, or 0. */
 static void vertex_normal(const cscd_mesh *mesh, const double *positions, uint32_t vertex, double out[3]) {
@@ -120,7 +233,7 @@ static void fill_vectors(const cell_maker *maker, const uint32_t *vertices, uint
     }
 }
 
-/* ---- cells ------------------------------------------------------------------------------------------- */
+/* ---- cells --------------------------------------------------------------------------------------------- */
 
 void make_cells(cell_maker *maker, uint32_t part) {
     const cscd_partition *partition = maker->partition;

@@ -1,5 +1,5 @@
 /* Vector quantization by splitting (Linde, Buzo and Gray 1980): groups of near vectors and their means. */
-#include "preprocess/partition/lbg.h"
+#include "preprocess/partition/partition.h"
 
 #include <math.h>
 #include <string.h>
@@ -26,7 +26,7 @@ static void report_codes(const lbg *l, uint32_t code_count) {
     if (l->observe != NULL) l->observe(l->user, code_count, lbg_distortion(l, code_count));
 }
 
-/* ---- means ------------------------------------------------------------------------------------------- */
+/* ---- means --------------------------------------------------------------------------------------------- */
 
 /* Sums differences to the first vector, so that the mean of equal vectors is that vector. */
 static void add_to_sum(const lbg *l, uint32_t i) {
@@ -69,7 +69,7 @@ void lbg_find_codes(const lbg *l, uint32_t code_count) {
     find_means(l, code_count);
 }
 
-/* ---- the nearest code -------------------------------------------------------------------------------- */
+/* ---- the nearest code ---------------------------------------------------------------------------------- */
 
 /* Sorts vectors by codes, ascending in each; the vectors of code c end at codes[c].end. */
 static void sort_by_code(const lbg *l, uint32_t code_count) {
@@ -131,7 +131,7 @@ static bool assign_vectors(const lbg *l, uint32_t code_count) {
     return any;
 }
 
-/* ---- splitting --------------------------------------------------------------------------------------- */
+/* ---- splitting ----------------------------------------------------------------------------------------- */
 
 static void scale_to_trace_one(double a[D][D]) {
     double trace = 0.0;
@@ -225,7 +225,7 @@ static bool fill_code(const lbg *l, uint32_t empty, uint32_t code_count) {
     }
 }
 
-/* ---- the whole --------------------------------------------------------------------------------------- */
+/* ---- the whole ----------------------------------------------------------------------------------------- */
 
 static void fill_empty(const lbg *l, uint32_t code_count) {
     for (uint32_t c = 0; c < code_count; c++) {

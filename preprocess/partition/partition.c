@@ -1,11 +1,151 @@
 /* The partition of the public API: divides parts into cells, each for one particle of the sensors. */
-#include "preprocess/partition/cells.h"
-#include "preprocess/partition/convexity.h"
-#include "preprocess/partition/parts.h"
-#include "preprocess/partition/spheres.h"
+#include "preprocess/partition/partition.h"
+
 #include "src/core/struct_size.h"
 #include "src/mesh/positions.h"
+#include "src/mesh/surface.h"
 #include "src/mesh/views.h"
+
+#include <string.h>
+
+/* ---- parts --------------------------------------------------------------------------------------------- */
+
+/* In a scene of one object, its components are the objects of the partition. */
+static bool objects_are_components(const cscd_mesh *mesh) {
+    return mesh->object_count == 1;
+}
+
+static void find_objects(cscd_partition *partition) {
+    const cscd_mesh *mesh = partition->mesh;
+    for (uint32_t object = 0; object < partition->object_count; object++)
+        partition->object_obstacles[object] = objects_are_components(mesh)
+                                                  ? component_is_obstacle(mesh, object)
+                                                  : mesh->objects[object].obstacle;
+}
+
+static void give_triangles(cscd_partition *partition, const cscd_plan *plan) {
+    const cscd_mesh *mesh = partition->mesh;
+    const uint32_t *parts = plan != NULL ? plan->triangle_regions : mesh->triangle_components;
+    memcpy(partition->triangle_parts, parts, mesh->triangle_count * sizeof *parts);
+    uint32_t object = 0;
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+        while (t >= mesh->objects[object].first_triangle + mesh->objects[object].triangle_count) object++;
+        partition->parts[parts[t]].object =
+            objects_are_components(mesh) ? mesh->triangle_components[t] : object;
+    }
+}
+
+/* Returns the part of most triangles around a vertex. counts holds a zero per part, and does so again
+ * afterwards. */
+static uint32_t part_with_most(const cscd_partition *partition, uint32_t vertex, uint32_t *counts) {
+    const cscd_mesh *mesh = partition->mesh;
+    uint32_t begin = mesh->vertex_star_offsets[vertex], end = mesh->vertex_star_offsets[vertex + 1];
+    uint32_t best = PARTITION_NONE;
+    for (uint32_t i = begin; i < end; i++) counts[partition->triangle_parts[mesh->vertex_stars[i]]]++;
+    for (uint32_t i = begin; i < end; i++) {
+        uint32_t part = partition->triangle_parts[mesh->vertex_stars[i]];
+        if (best == PARTITION_NONE || counts[part] > counts[best] ||
+            (counts[part] == counts[best] && part < best))
+            best = part;
+    }
+    for (uint32_t i = begin; i < end; i++) counts[partition->triangle_parts[mesh->vertex_stars[i]]] = 0;
+    return best;
+}
+
+static void give_vertices(cscd_partition *partition, uint32_t *counts) {
+    uint32_t vertex_count = partition->mesh->vertex_count, *ends = partition->part_vertex_offsets + 1;
+    for (uint32_t v = 0; v < vertex_count; v++)
+        partition->vertex_parts[v] = part_with_most(partition, v, counts);
+    for (uint32_t v = 0; v < vertex_count; v++) {
+        if (partition->vertex_parts[v] != PARTITION_NONE) counts[partition->vertex_parts[v]]++;
+    }
+    for (uint32_t p = 0, begin = 0; p < partition->part_count; begin += counts[p++]) ends[p] = begin;
+    for (uint32_t v = 0; v < vertex_count; v++) {
+        uint32_t part = partition->vertex_parts[v];
+        if (part != PARTITION_NONE) partition->part_vertices[ends[part]++] = v;
+    }
+}
+
+/* Returns a partition without cells, or NULL when out of memory. plan is NULL or a plan of the mesh. A vertex
+ * belongs to the part with most of its triangles, and of equal ones to that with the smaller number. */
+static cscd_partition *partition_of_parts(const cscd_mesh *mesh, const cscd_plan *plan) {
+    uint32_t object_count = objects_are_components(mesh) ? mesh->component_count : mesh->object_count;
+    uint32_t part_count = plan != NULL ? plan->region_count : mesh->component_count;
+    uint32_t *counts = context_allocate(mesh->context, part_count, sizeof *counts);
+    if (counts == NULL) return NULL;
+    cscd_partition *partition = partition_allocate(mesh, object_count, part_count);
+    if (partition != NULL) {
+        find_objects(partition);
+        give_triangles(partition, plan);
+        give_vertices(partition, counts);
+    }
+    context_free(mesh->context, counts);
+    return partition;
+}
+
+/* ---- convex components --------------------------------------------------------------------------------- */
+
+static const double concave_tolerance = 1e-6;
+
+/* The largest distance of a vertex from the first one of its component. */
+typedef struct extent {
+    const double *first;
+    double size;
+} extent;
+
+static void find_extents(const cscd_mesh *mesh, const double *positions, extent *extents) {
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+        extent *e = &extents[mesh->triangle_components[t]];
+        if (e->first == NULL) e->first = surface_corner(mesh, positions, t, 0);
+        for (uint32_t corner = 0; corner < 3; corner++) {
+            const double *p = surface_corner(mesh, positions, t, corner);
+            double d[3] = {p[0] - e->first[0], p[1] - e->first[1], p[2] - e->first[2]};
+            e->size = fmax(e->size, surface_norm(d));
+        }
+    }
+}
+
+/* How far the corners of a triangle, which shares two of them with `plane`, lie outside the plane of that
+ * triangle. */
+static double distance_outside(const cscd_mesh *mesh, const double *positions, uint32_t triangle,
+                               uint32_t plane) {
+    double normal[3], farthest = 0.0;
+    surface_normal(mesh, positions, plane, normal);
+    double norm = surface_norm(normal);
+    if (norm == 0.0) return 0.0;
+    const double *origin = surface_corner(mesh, positions, plane, 0);
+    for (uint32_t corner = 0; corner < 3; corner++) {
+        const double *p = surface_corner(mesh, positions, triangle, corner);
+        if (triangle_contains(mesh->triangles[plane], mesh->triangles[triangle][corner])) continue;
+        double distance = 0.0;
+        for (int k = 0; k < 3; k++) distance += (p[k] - origin[k]) * (normal[k] / norm);
+        farthest = fmax(farthest, distance);
+    }
+    return farthest;
+}
+
+/* A component is convex when it is closed, manifold, consistently oriented, of Euler characteristic 2, and no
+ * edge is concave by more than 1e-6 of the component's size. A triangle without area makes no edge
+ * concave. */
+static cscd_status find_convex_components(const cscd_mesh *mesh, const double *positions, bool *convex) {
+    extent *extents = context_allocate(mesh->context, mesh->component_count, sizeof *extents);
+    if (extents == NULL) return context_out_of_memory(mesh->context);
+    find_extents(mesh, positions, extents);
+    for (uint32_t c = 0; c < mesh->component_count; c++)
+        convex[c] = mesh->components[c].closed_manifold && mesh->components[c].euler_characteristic == 2;
+    for (uint32_t edge = 0; edge < mesh->edge_count; edge++) {
+        const uint32_t *star = mesh->edge_stars + mesh->edge_star_offsets[edge];
+        uint32_t c = mesh->triangle_components[star[0]];
+        if (!convex[c]) continue;
+        double allowed = concave_tolerance * extents[c].size;
+        convex[c] = distance_outside(mesh, positions, star[0], star[1]) <= allowed &&
+                    distance_outside(mesh, positions, star[1], star[0]) <= allowed;
+    }
+    context_free(mesh->context, extents);
+    return CSCD_OK;
+}
+
+/* ---- the partition ------------------------------------------------------------------------------------- */
 
 static const double normal_weight_max = 1e6;
 
@@ -29,7 +169,7 @@ static cscd_status check_options(cscd_context *context, const cscd_partition_opt
     return CSCD_OK;
 }
 
-/* ---- making cells ------------------------------------------------------------------------------------ */
+/* ---- making cells -------------------------------------------------------------------------------------- */
 
 /* Measures of all parts: the number of cells that one gets depends on the others. */
 typedef struct measures {
@@ -101,7 +241,7 @@ static cscd_status make_cells_of(cscd_partition *partition, const double *positi
     return status;
 }
 
-/* ---- the interface ----------------------------------------------------------------------------------- */
+/* ---- the interface ------------------------------------------------------------------------------------- */
 
 static cscd_status check_plan(cscd_context *context, const cscd_mesh *mesh, const cscd_plan *plan) {
     if (plan == NULL || plan->mesh_hash == cscd_mesh_hash(mesh)) return CSCD_OK;

@@ -1,5 +1,6 @@
 /* Takes parts as spheres of their areas: a part gets as many cells as other spheres can touch it at once. */
-#include "preprocess/partition/spheres.h"
+#include "preprocess/partition/partition.h"
+
 #include "src/mesh/surface.h"
 
 enum { KISSING_NUMBER = 12 };
@@ -24,7 +25,7 @@ void find_radii(const cscd_partition *partition, const double *positions, double
     for (uint32_t p = 0; p < partition->part_count; p++) radii[p] = sqrt(radii[p] / (4.0 * pi));
 }
 
-/* ---- the smallest sphere that is watched ------------------------------------------------------------- */
+/* ---- the smallest sphere that is watched --------------------------------------------------------------- */
 
 /* The two smallest radii with different keys. */
 typedef struct smallest {
@@ -80,7 +81,7 @@ static double smallest_watched(const cscd_partition *partition, const spheres *s
     return radius;
 }
 
-/* ---- cells ------------------------------------------------------------------------------------------- */
+/* ---- cells --------------------------------------------------------------------------------------------- */
 
 static uint32_t count_for_part(const cscd_partition *partition, const spheres *s, double radius,
                                bool two_convex, uint32_t part) {

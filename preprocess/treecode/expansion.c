@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-/* ---- tables ---------------------------------------------------------------------------------------------- */
+/* ---- tables -------------------------------------------------------------------------------------------- */
 
 /* The place of a multi-index among all: those of lower degree, those of this degree with less z, and those with less y. */
 static uint8_t place_of(int x, int y, int z) {
@@ -97,7 +97,7 @@ void expansion_tables_set(expansion_tables *tables) {
     list_products(tables);
 }
 
-/* ---- one expansion --------------------------------------------------------------------------------------- */
+/* ---- one expansion ------------------------------------------------------------------------------------- */
 
 /* powers[i] = v^i / i! */
 static void list_powers(const expansion_tables *t, const double v[3], double powers[FULL_COUNT]) {

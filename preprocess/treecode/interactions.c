@@ -1,5 +1,5 @@
 /* Finds the interactions by going down the tree with itself, twice: to count, and to list. */
-#include "preprocess/treecode/interactions.h"
+#include "preprocess/treecode/source_tree.h"
 
 #include "preprocess/treecode/expansion.h"
 
@@ -30,7 +30,7 @@ static array_list list_items(interactions *lists) {
                          ARRAY(lists->long_sources, lists->long_count)}};
 }
 
-/* ---- pairs of nodes -------------------------------------------------------------------------------------- */
+/* ---- pairs of nodes ------------------------------------------------------------------------------------ */
 
 static double distance_of(const double a[3], const double b[3]) {
     const double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
@@ -105,7 +105,7 @@ static void search_subtree(void *data, uint32_t task) {
     if (progress_go_on(&s->tree->context->progress, 0.0)) search_pair(s, s->tree->task_nodes[task], 0);
 }
 
-/* ---- lists ----------------------------------------------------------------------------------------------- */
+/* ---- lists --------------------------------------------------------------------------------------------- */
 
 /* Turns counts into begins; returns their sum. */
 static size_t begin_lists(size_t *counts, size_t list_count) {

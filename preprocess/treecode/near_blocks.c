@@ -1,5 +1,5 @@
 /* Inverts the equations of each leaf and of the triangles around it (Vavasis 1992: mesh neighbours of boundary elements). */
-#include "preprocess/treecode/near_blocks.h"
+#include "preprocess/treecode/source_tree.h"
 
 #include <math.h>
 #include <string.h>
@@ -30,7 +30,7 @@ static uint32_t own_count(const source_node *leaf) {
     return leaf->end - leaf->begin;
 }
 
-/* ---- members --------------------------------------------------------------------------------------------- */
+/* ---- members ------------------------------------------------------------------------------------------- */
 
 /* The leaf's own, and of those that are near some. */
 static size_t block_size(const treecode *t, uint32_t l) {
@@ -103,7 +103,7 @@ static void list_block(near_blocks *b, uint32_t l) {
     for (uint32_t i = 0; i < count; i++) *members++ = nearest[i].source;
 }
 
-/* ---- rows of the inverse --------------------------------------------------------------------------------- */
+/* ---- rows of the inverse ------------------------------------------------------------------------------- */
 
 static void set_equations(const near_blocks *b, const uint32_t *members, uint32_t count, uint32_t own,
                           block_room *room) {
@@ -223,7 +223,7 @@ void near_blocks_destroy(near_blocks *blocks) {
     context_free_all(blocks->t->context, list_members(blocks));
 }
 
-/* ---- application ----------------------------------------------------------------------------------------- */
+/* ---- application --------------------------------------------------------------------------------------- */
 
 typedef struct block_product {
     const near_blocks *blocks;

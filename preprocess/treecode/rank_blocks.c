@@ -1,5 +1,5 @@
 /* Finds the columns of a block that give the others, from some of its rows, and looks in all columns at other rows whether they do. */
-#include "preprocess/treecode/rank_blocks.h"
+#include "preprocess/treecode/source_tree.h"
 
 #include "src/core/simd_lanes.h"
 
@@ -37,7 +37,7 @@ static uint32_t count_of(const source_node *node) {
     return node->end - node->begin;
 }
 
-/* ---- rows and columns ------------------------------------------------------------------------------------ */
+/* ---- rows and columns ---------------------------------------------------------------------------------- */
 
 /* Points of targets. */
 typedef struct row_points {
@@ -86,7 +86,7 @@ static void write_column(const source_tree *tree, const source_node *target, uin
     }
 }
 
-/* ---- the choice of columns ------------------------------------------------------------------------------- */
+/* ---- the choice of columns ----------------------------------------------------------------------------- */
 
 static uint32_t largest_column(const rank_room *room) {
     uint32_t largest = 0;
@@ -187,7 +187,7 @@ static bool choose_columns(const source_tree *tree, rank_room *room) {
     return false;
 }
 
-/* ---- lists ----------------------------------------------------------------------------------------------- */
+/* ---- lists --------------------------------------------------------------------------------------------- */
 
 typedef struct rank_search {
     const source_tree *tree;
@@ -325,7 +325,7 @@ void rank_blocks_destroy(rank_blocks *blocks) {
     blocks->context = NULL;
 }
 
-/* ---- application ----------------------------------------------------------------------------------------- */
+/* ---- application --------------------------------------------------------------------------------------- */
 
 /* The sum of products, in eight parts whose order is fixed. */
 static double weigh_charges(const float *weights, const double *charges, uint32_t count) {

@@ -20,7 +20,7 @@ static array_list list_arrays(source_tree *tree) {
                          ARRAY(tree->leaves, tree->leaf_count)}};
 }
 
-/* ---- its shape, which follows from the number of sources alone ------------------------------------------- */
+/* ---- its shape, which follows from the number of sources alone ----------------------------------------- */
 
 static uint32_t first_half(uint32_t count) {
     return count - count / 2;
@@ -51,7 +51,7 @@ static uint32_t shape_subtree(source_tree *tree, uint32_t begin, uint32_t end, i
     return number;
 }
 
-/* ---- the order of the sources ---------------------------------------------------------------------------- */
+/* ---- the order of the sources -------------------------------------------------------------------------- */
 
 static bool comes_before(const placed_source *a, const placed_source *b, int axis) {
     return a->centroid[axis] < b->centroid[axis] ||

@@ -1,5 +1,5 @@
 /* Evaluates the potential: moments up the tree, coefficients down, and what is near. */
-#include "preprocess/treecode/treecode.h"
+#include "preprocess/treecode/source_tree.h"
 
 #include <string.h>
 
@@ -9,7 +9,7 @@ static array_list list_expansions(treecode *t) {
                          ARRAY(t->exact_begins, (size_t)t->tree.leaf_count + 1)}};
 }
 
-/* ---- potentials of sources that are near ----------------------------------------------------------------- */
+/* ---- potentials of sources that are near --------------------------------------------------------------- */
 
 static uint32_t vectors_of(const source_node *leaf) {
     return (leaf->end - leaf->begin + LANES - 1) / LANES;
@@ -55,7 +55,7 @@ static void find_exact(void *data, uint32_t l) {
     }
 }
 
-/* ---- setup ----------------------------------------------------------------------------------------------- */
+/* ---- setup --------------------------------------------------------------------------------------------- */
 
 static cscd_status list_sources(treecode *t, const charge_system *system) {
     cscd_status status = source_tree_create(t->context, system, &t->tree);
@@ -105,7 +105,7 @@ void treecode_destroy(treecode *t) {
     t->exact_potentials = NULL;
 }
 
-/* ---- evaluation ------------------------------------------------------------------------------------------ */
+/* ---- evaluation ---------------------------------------------------------------------------------------- */
 
 typedef struct evaluation {
     treecode *t;

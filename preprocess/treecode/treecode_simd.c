@@ -1,8 +1,9 @@
 /* The kernels of the treecode: eight expansions at a time, and eight targets. */
-#include "preprocess/treecode/treecode_kernels.h"
+#include "preprocess/treecode/source_tree.h"
+
 #include "src/core/simd.h"
 
-/* ---- far field ------------------------------------------------------------------------------------------- */
+/* ---- far field ----------------------------------------------------------------------------------------- */
 
 /* Derivatives of 1 / r up to the order, but those with a z exponent above 2, which no product has. */
 static void list_tensors(const expansion_tables *t, uint32_t order, const f64x8 r[3],
@@ -58,7 +59,7 @@ static void add_far_field(const far_field *field, const double center[3],
     }
 }
 
-/* ---- near field ------------------------------------------------------------------------------------------ */
+/* ---- near field ---------------------------------------------------------------------------------------- */
 
 /* Sums of floats move into those of doubles after so many terms. */
 enum { TERMS_IN_FLOAT = 64 };

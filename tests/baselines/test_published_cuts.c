@@ -1,8 +1,6 @@
 /* The cuts of the thesis, step by step, on cans: bins, clusters, a ring that splits, a cluster that shrinks to cutting triangles, two
  * contours of unequal length. */
-#include "preprocess/baselines/clusters.h"
-#include "preprocess/baselines/contour_smoothing.h"
-#include "preprocess/baselines/cutting_list.h"
+#include "preprocess/baselines/baselines.h"
 #include "preprocess/baselines/published_cuts.h"
 #include "tests/support/models/body_of.h"
 #include "tests/support/preprocess/region_check.h"

@@ -1,5 +1,5 @@
 /* The dense solution by panels: matrices of one to three panels whose solutions are known, zero pivots, and cancelling. */
-#include "preprocess/baselines/dense/dense_solve.h"
+#include "preprocess/baselines/dense/dense.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/test.h"
 

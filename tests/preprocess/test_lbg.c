@@ -1,5 +1,5 @@
 /* Vector quantization: it converges, its distortion falls, and any number of codes will do. */
-#include "preprocess/partition/lbg.h"
+#include "preprocess/partition/partition.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
 

@@ -1,5 +1,5 @@
 /* How many cells a part gets: kissing numbers, two convex objects, the cap; and which parts are convex. */
-#include "preprocess/partition/spheres.h"
+#include "preprocess/partition/partition.h"
 #include "tests/support/packed.h"
 #include "tests/support/preprocess/partition_check.h"
 #include "tests/support/test.h"

@@ -1,5 +1,5 @@
 /* The potential of a triangle: against quadrature, known values, and the laws that it obeys. */
-#include "preprocess/charge/potential.h"
+#include "preprocess/charge/charge.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
 

@@ -1,6 +1,6 @@
 /* What stands in the place of libcscd-baselines in the tests on Windows and in WebAssembly, which have none: it hands out the dense
  * solver of the tests. */
-#include "preprocess/baselines/dense/dense_interface.h"
+#include "preprocess/baselines/dense/dense.h"
 #include "src/core/baseline_library.h"
 
 #include <string.h>

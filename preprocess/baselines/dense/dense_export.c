@@ -1,5 +1,6 @@
 /* What libcscd-baselines exports of the dense solution. */
-#include "preprocess/baselines/dense/dense_interface.h"
+#include "preprocess/baselines/dense/dense.h"
+
 #include "src/core/baseline_library.h"
 
 CSCD_API baseline_entry cscd_baseline_dense;

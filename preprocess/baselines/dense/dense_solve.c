@@ -6,7 +6,7 @@
  * but the size, so the factors are the same whoever runs the tasks. The next panel's task factors it at once:
  * nobody else touches it, and the others need not wait for it. Between two rounds the solve can be
  * cancelled. */
-#include "preprocess/baselines/dense/dense_solve.h"
+#include "preprocess/baselines/dense/dense.h"
 
 #include <lapacke.h>
 #include <pthread.h>

@@ -1,6 +1,6 @@
 /* The dense solution for the charges of one component, in double precision: matrix and factors. */
-#include "preprocess/baselines/dense/dense_interface.h"
-#include "preprocess/baselines/dense/dense_solve.h"
+#include "preprocess/baselines/dense/dense.h"
+
 #include "src/blas/blas_choice.h"
 #include "src/core/timer.h"
 

@@ -1,7 +1,7 @@
 /* The equations of a surface that is one component, and the treecode of them. */
 #pragma once
 
-#include "preprocess/treecode/treecode.h"
+#include "preprocess/treecode/source_tree.h"
 #include "tests/support/preprocess/charge_shapes.h"
 
 typedef struct treecode_rig {

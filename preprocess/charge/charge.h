@@ -1,8 +1,35 @@
-/* The equations for the charges of one component: its unknowns, and where their potential is known. */
+/* The charge of one component: the potential of a triangle, the equations for the unknowns, and another way to solve them. */
 #pragma once
 
-#include "preprocess/charge/potential.h"
 #include "src/core/context.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* ---- the potential of a triangle ----------------------------------------------------------------------- */
+
+/* A triangle with a charge of 1 per unit of area, prepared for many points. */
+typedef struct potential_source {
+    double corners[3][3];
+    double along[3][3];   /* l: unit vector of edge i, from corner i to the next */
+    double outward[3][3]; /* u = l x n: unit vector in the plane, away from the triangle */
+    double lengths[3];
+    double normal[3]; /* n */
+    double area;
+} potential_source;
+
+/* False, and nothing is set, when the triangle's height over its longest edge is below 2^-40 of that edge:
+ * its plane is then lost in rounding. */
+bool potential_source_set(potential_source *source, const double corners[3][3]);
+
+/* potentials[i] = the integral of dS' / |p_i - r'| over the triangle, p_i = (x[i], y[i], z[i]); finite
+ * everywhere, on corners and edges too. Lengths and distances are from 2^-60 to 2^60. Absolute error: some
+ * roundings of the triangle's longest edge; relative error at a distance R: some R / (longest edge)
+ * roundings. The same bits on every processor. */
+void potential_at(const potential_source *source, const double *x, const double *y, const double *z,
+                  size_t count, double *potentials);
+
+/* ---- the equations ------------------------------------------------------------------------------------- */
 
 /* Arrays begin on cache lines. */
 enum { CHARGE_ALIGNMENT = 64 };
@@ -16,7 +43,7 @@ typedef struct charge_point {
 
 /* Unknown k is the charge on a triangle, or on all triangles that coincide with it. Lengths are scaled by a
  * power of two so that the component's extent lies in [1/2, 1), about its box's middle. This is a part of what libcscd and
- * libcscd-baselines know of each other (preprocess/baselines/dense/dense_interface.h). */
+ * libcscd-baselines know of each other (preprocess/baselines/dense/dense.h). */
 typedef struct charge_system {
     uint32_t component, count; /* the number of unknowns */
     uint32_t point_count;      /* the number of triangles with an area */
@@ -69,3 +96,17 @@ cscd_status charge_system_collect(charge_system *system, const charge_surface *s
 
 /* The density of each triangle, at potential 1 in the caller's lengths; *capacitance is the sum of charges. */
 void charge_system_store(const charge_system *system, double *density, double *capacitance);
+
+/* ---- another solution ---------------------------------------------------------------------------------- */
+
+/* What a solver to compare with offers, in place of the tree. */
+typedef struct charge_solution {
+    const void *functions; /* of the solver, for all of these */
+    size_t (*memory)(const void *functions,
+                     uint32_t count); /* bytes for so many unknowns; SIZE_MAX: too many */
+    /* Writes system->charges, and adds to the timings. A failure has its sentence. solve NULL: there is no other way. */
+    cscd_status (*solve)(const void *functions, cscd_context *context, const charge_system *system,
+                         charge_timings *timings);
+    charge_kernels (*kernels)(const void *functions);
+    double (*work)(double count); /* for so many unknowns, by estimate: ns on one thread */
+} charge_solution;
