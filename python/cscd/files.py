@@ -205,7 +205,7 @@ def read(path: PathLike, frames: Union[None, PathLike, Sequence[PathLike]] = Non
     Parameters
     ----------
     path : path
-        An OBJ, PLY, OFF, STL, glTF or GIFTI file.
+        A mesh file: OBJ, PLY, STL, glTF, or another format that ``cscd`` reads.
     frames : path or sequence of paths, optional
         A point cache (.pc2, .mdd), a glTF file, a pattern (``f_%04d.obj``), a folder, or mesh files, one a frame. By
         default what a glTF file animates, else the mesh is the only frame.

@@ -34,7 +34,8 @@ static bool read_file_positions(recorded_object *o, uint32_t frame, io_error *er
 }
 
 const char *recorded_object_split_format(const recorded_object *o) {
-    return o->file.format == MESH_FORMAT_STL ? "STL" : o->file.format == MESH_FORMAT_GLTF ? "glTF" : NULL;
+    const mesh_format format = o->file.format;
+    return format == MESH_FORMAT_STL || format == MESH_FORMAT_GLTF ? mesh_format_name(format) : NULL;
 }
 
 const char *recorded_object_parts_word(mesh_parts_by parts_by) {
@@ -43,7 +44,6 @@ const char *recorded_object_parts_word(mesh_parts_by parts_by) {
 }
 
 void recorded_object_explain_parts(const recorded_object *o, char *text, size_t size) {
-    static const char *const formats[] = {"", "OBJ", "PLY", "OFF", "STL", "glTF", "GIFTI"};
     static const char *const keywords[] = {"", "o", "g", "usemtl"};
     const mesh_parts_by by = o->source.parts_by;
     const char *word = recorded_object_parts_word(by);
@@ -55,7 +55,7 @@ void recorded_object_explain_parts(const recorded_object *o, char *text, size_t 
     else if (o->file.format == MESH_FORMAT_GLTF && by == MESH_PARTS_BY_MATERIAL)
         snprintf(text, size, "none of its triangles has a material");
     else
-        snprintf(text, size, "%s files have no %ss", formats[o->file.format], word);
+        snprintf(text, size, "%s files have no %ss", mesh_format_name(o->file.format), word);
 }
 
 /* The part of each vertex: objects of a scene may stand on each other, and stay apart; the materials of one skin are joined. */

@@ -7,14 +7,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* By the first bytes, or the ending of the name. */
-bool gltf_recognise(const file_reader *reader);
+/* Do the first bytes of the file say that it is glTF, or the ending of its name? */
 bool gltf_recognise_path(const char *path);
-
-/* All nodes of the default scene as one mesh, in metres, y up: each node with a mesh in the order of the tree, and of it the vertices
- * of its primitives in file order. The state is that of the nodes' own transforms and weights. On false *out is untouched
- * and the reader's error set. */
-bool gltf_read(file_reader *reader, mesh_file *out);
 
 typedef struct gltf_frames gltf_frames;
 

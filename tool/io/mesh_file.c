@@ -1,16 +1,10 @@
-/* Triangle meshes from OBJ, PLY, OFF, STL, glTF and GIFTI files: which format it is, and writing OBJ. */
+/* Triangle meshes from files: which format it is, and writing OBJ. */
 #include "tool/io/mesh_file.h"
 
-#include "tool/io/file_reader.h"
 #include "tool/io/foreign_format.h"
-#include "tool/io/gifti.h"
-#include "tool/io/gltf.h"
-#include "tool/io/obj.h"
-#include "tool/io/off.h"
+#include "tool/io/format_reader.h"
 #include "tool/io/output_file.h"
 #include "tool/io/path_name.h"
-#include "tool/io/ply.h"
-#include "tool/io/stl.h"
 #include "tool/io/text_encoding.h"
 
 #include <errno.h>
@@ -20,48 +14,37 @@
 #include <string.h>
 #include <strings.h>
 
-typedef struct format_reader {
-    mesh_format format;
-    const char *ending; /* of the files that are read so, whatever is in them; NULL: none */
-    bool (*recognise)(const file_reader *); /* NULL: what is in them does not say */
-    bool (*read)(file_reader *, mesh_file *);
-} format_reader;
-
-static const format_reader readers[] = {
-    {MESH_FORMAT_GLTF, NULL, gltf_recognise, gltf_read},
-    {MESH_FORMAT_GIFTI, NULL, gifti_recognise, gifti_read},
-    {MESH_FORMAT_STL, ".stl", stl_recognise, stl_read},
-    {MESH_FORMAT_PLY, ".ply", ply_recognise, ply_read},
-    {MESH_FORMAT_OFF, ".off", off_recognise, off_read},
-    {MESH_FORMAT_OBJ, ".obj", NULL, obj_read},
-};
+/* In the order in which they are asked whether a file is theirs. */
+static const format_reader *const readers[] = {&gltf_reader, &gifti_reader, &stl_reader,
+                                               &ply_reader,  &off_reader,   &obj_reader};
 
 enum { READERS = sizeof readers / sizeof *readers };
 
 /* NULL: what is in the file does not say. */
 static const format_reader *recognise_reader(const file_reader *reader) {
     for (size_t i = 0; i < READERS; i++)
-        if (readers[i].recognise != NULL && readers[i].recognise(reader)) return &readers[i];
+        if (readers[i]->recognise != NULL && readers[i]->recognise(reader)) return readers[i];
     return NULL;
 }
 
 /* NULL: the file's ending does not say either. */
 static const format_reader *reader_of_ending(const file_reader *reader) {
-    for (size_t i = 0; i < READERS; i++)
-        if (readers[i].ending != NULL && path_has_extension(reader->path, readers[i].ending))
-            return &readers[i];
+    unsigned length;
+    const char *name = path_file_name(reader->path);
+    const mesh_format format = mesh_format_of_path(name, &length);
+    for (size_t i = 0; i < READERS && strlen(name) > length; i++)
+        if (readers[i]->by_ending && readers[i]->format == format) return readers[i];
     return NULL;
 }
 
 /* Formats without groups and materials have no parts of that kind; but for OBJ, parts by object are the file's. */
 static bool read_format(file_reader *reader, const format_reader *chosen, mesh_file *out) {
-    const bool chooses = chosen->format == MESH_FORMAT_OBJ || chosen->format == MESH_FORMAT_GLTF;
     const bool by_object = reader->parts_by == MESH_PARTS_BY_OBJECT;
     if (by_object && chosen->format != MESH_FORMAT_OBJ) reader->parts_by = MESH_PARTS_BY_FILE;
     if (!chosen->read(reader, out)) return false;
     out->format = chosen->format;
     out->parts_by = reader->parts_by;
-    if (!chooses && out->parts_by != MESH_PARTS_BY_FILE) {
+    if (!chosen->names_parts && out->parts_by != MESH_PARTS_BY_FILE) {
         out->own_parts = out->parts;
         out->parts = (mesh_parts){0};
     }
@@ -70,8 +53,7 @@ static bool read_format(file_reader *reader, const format_reader *chosen, mesh_f
 
 static bool read_any(file_reader *reader, mesh_file *out) {
     if (reader->size == 0)
-        return file_reader_fail(reader,
-                                "the file is empty, expected an OBJ, PLY, OFF, STL, glTF or GIFTI mesh");
+        return file_reader_fail(reader, "the file is empty, expected an " MESH_FORMAT_CHOICE " mesh");
     reader->at = text_mark_size(reader->bytes, reader->size);
     const format_reader *chosen = recognise_reader(reader);
     if (chosen == NULL && text_is_utf16(reader->bytes, reader->size))
@@ -80,7 +62,7 @@ static bool read_any(file_reader *reader, mesh_file *out) {
     if (chosen != NULL) return read_format(reader, chosen, out);
     const char *advice = foreign_format_advice(reader->path, reader->bytes, reader->size);
     if (advice != NULL) return file_reader_fail(reader, "this is %s", advice);
-    return file_reader_fail(reader, "unknown format, expected a mesh: " PATH_MESH_ENDINGS);
+    return file_reader_fail(reader, "unknown format, expected a mesh: " MESH_FORMAT_ENDINGS);
 }
 
 /* Readers of formats that have triangles only leave this to be filled. */

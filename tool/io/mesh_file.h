@@ -1,7 +1,8 @@
-/* Triangle meshes from OBJ, PLY, OFF, STL, glTF and GIFTI files. */
+/* Triangle meshes from files of all formats that mesh_format.h lists. */
 #pragma once
 
 #include "tool/io/io_error.h"
+#include "tool/io/mesh_format.h"
 #include "tool/io/mesh_parts.h"
 
 #include <stdbool.h>
@@ -17,17 +18,6 @@ typedef struct mesh_repairs {
     uint32_t fanned, first_fanned;   /* faces that cross themselves in every plane of two coordinates */
     uint32_t skipped_primitives;     /* of a glTF: points and lines */
 } mesh_repairs;
-
-/* Which format a file turned out to be. */
-typedef enum mesh_format {
-    MESH_FORMAT_NONE, /* a mesh that was not read */
-    MESH_FORMAT_OBJ,
-    MESH_FORMAT_PLY,
-    MESH_FORMAT_OFF,
-    MESH_FORMAT_STL,
-    MESH_FORMAT_GLTF,
-    MESH_FORMAT_GIFTI
-} mesh_format;
 
 /* Vertices in the file's own order; faces in file order, polygons cut into triangles by their shape (polygon.h), as they
  * are in this file. */

@@ -1,5 +1,5 @@
 /* Wavefront OBJ: vertices, polygons, and the names of objects, groups and materials; all other records are skipped. */
-#include "tool/io/obj.h"
+#include "tool/io/format_reader.h"
 
 #include "tool/io/mesh_builder.h"
 #include "tool/io/text.h"
@@ -162,7 +162,7 @@ static bool check_largest_index(obj_parser *obj) {
                                  obj->largest_index, vertex_count);
 }
 
-bool obj_read(file_reader *reader, mesh_file *out) {
+static bool read_obj(file_reader *reader, mesh_file *out) {
     reader->comments = true;
     reader->continuations = true;
     obj_parser obj = {.reader = reader, .builder = mesh_builder_of(reader, 1)};
@@ -170,3 +170,5 @@ bool obj_read(file_reader *reader, mesh_file *out) {
     mesh_builder_free(&obj.builder);
     return done;
 }
+
+const format_reader obj_reader = {MESH_FORMAT_OBJ, .by_ending = true, .names_parts = true, .read = read_obj};

@@ -1,5 +1,5 @@
 /* OFF (Object File Format) in text, with normals, colours or texture coordinates ignored. */
-#include "tool/io/off.h"
+#include "tool/io/format_reader.h"
 
 #include "tool/io/mesh_builder.h"
 #include "tool/io/text.h"
@@ -46,7 +46,8 @@ static size_t keyword_length(text_token token, off_kind *kind) {
     return at;
 }
 
-bool off_recognise(const file_reader *reader) {
+/* The first word of the file is one of the keywords. */
+static bool recognise_off(const file_reader *reader) {
     file_reader probe = *reader;
     text_token token;
     off_kind kind;
@@ -189,7 +190,7 @@ static bool expect_file_end(file_reader *reader) {
                                  text_show(token).text);
 }
 
-bool off_read(file_reader *reader, mesh_file *out) {
+static bool read_off(file_reader *reader, mesh_file *out) {
     reader->comments = true;
     mesh_builder builder = mesh_builder_of(reader, 0);
     off_kind kind = {0};
@@ -201,3 +202,6 @@ bool off_read(file_reader *reader, mesh_file *out) {
     mesh_builder_free(&builder);
     return done;
 }
+
+const format_reader off_reader = {MESH_FORMAT_OFF, .by_ending = true, .recognise = recognise_off,
+                                  .read = read_off};

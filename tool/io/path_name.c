@@ -1,5 +1,7 @@
-/* Reads the folder and the ending of a path. */
+/* Reads the folder and the ending of a path, by which it knows the formats of meshes. */
 #include "tool/io/path_name.h"
+
+#include "tool/io/mesh_format.h"
 
 #include <string.h>
 #include <strings.h>
@@ -32,14 +34,37 @@ bool path_has_extension(const char *path, const char *extension) {
     return length > extension_length && strcasecmp(name + length - extension_length, extension) == 0;
 }
 
-size_t path_mesh_ending(const char *path) {
-    static const char *const endings[] = {".obj", ".ply", ".off", ".stl", ".glb", ".gltf", ".gii"};
-    const size_t length = strlen(path);
-    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
-        const size_t own = strlen(endings[i]);
-        if (length >= own && strcasecmp(path + length - own, endings[i]) == 0) return own;
+#define ROW_OF_FORMAT(constant, name, endings) {MESH_FORMAT_##constant, name, endings},
+static const struct {
+    mesh_format format;
+    const char *name, *endings;
+} formats[] = {MESH_FORMATS(ROW_OF_FORMAT, ROW_OF_FORMAT, ROW_OF_FORMAT)};
+
+mesh_format mesh_format_of_path(const char *path, unsigned *length) {
+    const size_t path_length = strlen(path);
+    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
+        for (const char *at = formats[i].endings; *at != '\0'; at += strspn(at, ", ")) {
+            const size_t own = strcspn(at, ",");
+            *length = (unsigned)own;
+            if (path_length >= own && strncasecmp(path + path_length - own, at, own) == 0)
+                return formats[i].format;
+            at += own;
+        }
     }
-    return 0;
+    *length = 0;
+    return MESH_FORMAT_NONE;
+}
+
+const char *mesh_format_name(mesh_format format) {
+    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++)
+        if (formats[i].format == format) return formats[i].name;
+    return "";
+}
+
+size_t path_mesh_ending(const char *path) {
+    unsigned length;
+    mesh_format_of_path(path, &length);
+    return length;
 }
 
 /* Of frames, which may be many, as `frame-*.obj` names them, and of anything else. */

@@ -8,9 +8,6 @@
  * count. */
 bool path_has_extension(const char *path, const char *extension);
 
-/* The endings of mesh files, for messages. */
-#define PATH_MESH_ENDINGS ".obj, .ply, .off, .stl, .glb, .gltf or .gii"
-
 /* The length of the ending if it is that of a mesh file, else 0. */
 size_t path_mesh_ending(const char *path);
 

@@ -1,7 +1,7 @@
 /* Reads a plan from a PLY file, in whatever encoding, and checks it against the mesh. */
 #include "tool/io/plan_file.h"
 
-#include "tool/io/ply.h"
+#include "tool/io/format_reader.h"
 #include "tool/io/ply_data.h"
 #include "tool/io/text_encoding.h"
 
@@ -370,7 +370,7 @@ bool plan_file_is_plan(const char *path) {
     if (!file_reader_open(&reader, path, NULL)) return false;
     bool found = false;
     reader.at = text_mark_size(reader.bytes, reader.size);
-    if (ply_recognise(&reader)) {
+    if (ply_reader.recognise(&reader)) {
         ply_data data;
         bool opened = ply_data_open(&data, &reader);
         file_reader probe = reader;

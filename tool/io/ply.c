@@ -1,5 +1,5 @@
 /* PLY (Stanford polygon format) as a mesh. */
-#include "tool/io/ply.h"
+#include "tool/io/format_reader.h"
 
 #include "tool/io/mesh_builder.h"
 #include "tool/io/ply_data.h"
@@ -19,7 +19,8 @@ typedef struct ply_parser {
     bool is_stiff;    /* the face has one */
 } ply_parser;
 
-bool ply_recognise(const file_reader *reader) {
+/* The first line of the file is "ply". */
+static bool recognise_ply(const file_reader *reader) {
     file_reader probe = *reader;
     text_token token;
     return text_next_token(&probe, &token) && text_equals(token, "ply");
@@ -89,7 +90,7 @@ static bool end_row(void *user) {
     return !ply->labelled || set_part(ply);
 }
 
-bool ply_read(file_reader *reader, mesh_file *out) {
+static bool read_ply(file_reader *reader, mesh_file *out) {
     ply_parser ply = {.builder = mesh_builder_of(reader, 0)};
     const ply_visitor visitor = {visit_property, end_row, &ply};
     bool done = ply_data_open(&ply.data, reader) && ply_data_read(&ply.data, &visitor) &&
@@ -98,3 +99,6 @@ bool ply_read(file_reader *reader, mesh_file *out) {
     ply_data_close(&ply.data);
     return done;
 }
+
+const format_reader ply_reader = {MESH_FORMAT_PLY, .by_ending = true, .recognise = recognise_ply,
+                                  .read = read_ply};

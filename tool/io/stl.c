@@ -1,5 +1,5 @@
 /* STL (stereolithography), binary and as text: triangles that each bring their own three vertices. */
-#include "tool/io/stl.h"
+#include "tool/io/format_reader.h"
 
 #include "tool/io/mesh_builder.h"
 #include "tool/io/text.h"
@@ -42,7 +42,8 @@ static bool is_binary(const file_reader *reader) {
            (has_binary_start(reader) && !is_keyword(token, "solid") && !is_keyword(token, "facet"));
 }
 
-bool stl_recognise(const file_reader *reader) {
+/* The size is that of a binary file, or the text begins with "solid" and goes on with a facet. */
+static bool recognise_stl(const file_reader *reader) {
     file_reader probe = *reader;
     text_token token;
     if (has_binary_start(reader) && reader->size > HEADER_SIZE + COUNT_SIZE &&
@@ -196,10 +197,13 @@ static bool read_text(file_reader *reader, mesh_builder *builder) {
     return true;
 }
 
-bool stl_read(file_reader *reader, mesh_file *out) {
+static bool read_stl(file_reader *reader, mesh_file *out) {
     mesh_builder builder = mesh_builder_of(reader, 0);
     const bool done = (is_binary(reader) ? read_binary(reader, &builder) : read_text(reader, &builder)) &&
                       mesh_builder_finish(&builder, out);
     mesh_builder_free(&builder);
     return done;
 }
+
+const format_reader stl_reader = {MESH_FORMAT_STL, .by_ending = true, .recognise = recognise_stl,
+                                  .read = read_stl};

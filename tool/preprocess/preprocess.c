@@ -95,7 +95,8 @@ static const option_row rows[] = {
 static const option_table table = {
     "preprocess",
     "MODEL [FRAMES...] [-o PLAN.ply] [options]",
-    "Cuts the mesh MODEL (OBJ, PLY, OFF, STL, glTF, GIFTI), at rest as in the file, into regions, each with a point that sees "
+    "Cuts the mesh MODEL (" MESH_FORMAT_NAMES
+    "), at rest as in the file, into regions, each with a point that sees "
     "most of it, and saves this plan as a PLY that any viewer shows. cscd replay uses it to leave out pairs "
     "of triangles that cannot touch; it needs the same --weld. Contacts are the same with any plan and with none.\n"
     "Faces of a PLY may say how stiff they are, in a property stiffness: charge then cuts where the model is soft.\n"

@@ -110,7 +110,8 @@ static const option_row rows[] = {
 const option_table replay_table = {
     "replay",
     "MODEL FRAMES... [options]\n       cscd replay --list JOBS.jsonl [options]",
-    "Finds every contact of the mesh MODEL (OBJ, PLY, OFF, STL, glTF, GIFTI) with itself between one frame and the next, and what "
+    "Finds every contact of the mesh MODEL (" MESH_FORMAT_NAMES
+    ") with itself between one frame and the next, and what "
     "crosses or touches at each frame, as check does.\n"
     "FRAMES: one .pc2 or .mdd point cache, one .glb or .gltf file, a pattern like f_%04d.obj, a folder, or a "
     "list of mesh files.",

@@ -116,9 +116,10 @@ static bool check_listed(const char *path, io_error *error) {
     const char *advice = foreign_format_advice(path, NULL, 0);
     if (advice != NULL) return io_fail(error, "%s: this is %s", path, advice);
     if (path_mesh_ending(path) == 0)
-        return io_fail(
-            error, "%s: unknown extension, expected " PATH_MESH_ENDINGS " (one a frame), or one .pc2 or .mdd",
-            path);
+        return io_fail(error,
+                       "%s: unknown extension, expected " MESH_FORMAT_ENDINGS
+                       " (one a frame), or one .pc2 or .mdd",
+                       path);
     return true;
 }
 

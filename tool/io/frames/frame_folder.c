@@ -1,6 +1,7 @@
 /* Finds the frames in a folder and makes sure that they are one series. */
 #include "tool/io/frames/frame_folder.h"
 #include "tool/io/frames/frame_series.h"
+#include "tool/io/mesh_format.h"
 #include "tool/io/path_name.h"
 
 #include <string.h>
@@ -46,7 +47,7 @@ bool frame_folder_find(const char *folder, const char *prefix, bool allow_gaps, 
     *fractions = false;
     if (!frame_names_read_folder(list, folder, keep_mesh, NULL, error)) return false;
     if (frame_names_count(list) == 0)
-        return io_fail(error, "%s: no frames in this folder, expected " PATH_MESH_ENDINGS " files", folder);
+        return io_fail(error, "%s: no frames in this folder, expected " MESH_FORMAT_ENDINGS " files", folder);
     frame_names_sort(list);
     size_t number = SIZE_MAX;
     if (!check_extensions(folder, list, error)) return false;

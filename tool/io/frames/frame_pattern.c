@@ -3,6 +3,7 @@
 
 #include "tool/io/frames/frame_series.h"
 #include "tool/io/growable.h"
+#include "tool/io/mesh_format.h"
 #include "tool/io/path_name.h"
 
 #include <inttypes.h>
@@ -128,7 +129,7 @@ static bool find_files(frame_pattern *pattern, const char *source, bool allow_ga
                        frame_names *list, io_error *error) {
     if (!parse_pattern(pattern, source, error)) return false;
     if (path_mesh_ending(pattern->text + pattern->number_start) == 0)
-        return io_fail(error, "%s: unknown extension, a pattern is expected to end in " PATH_MESH_ENDINGS,
+        return io_fail(error, "%s: unknown extension, a pattern is expected to end in " MESH_FORMAT_ENDINGS,
                        source);
     char *found = frame_names_copy(pattern->text, pattern->name_start);
     if (found == NULL) return io_fail(error, "%s: out of memory", source);

@@ -1,5 +1,5 @@
 /* GIFTI surfaces: the XML around the data arrays, and the mesh of the first points and triangles. */
-#include "tool/io/gifti.h"
+#include "tool/io/format_reader.h"
 
 #include "tool/io/gifti/gifti_array.h"
 #include "tool/io/mesh_builder.h"
@@ -269,12 +269,13 @@ static bool build_mesh(gifti_parser *parser, mesh_file *out) {
 }
 
 /* The tag stands behind a line of XML and one with the type of the document. */
-bool gifti_recognise(const file_reader *reader) {
+/* The name has the ending, or the tag <GIFTI stands near the beginning. */
+static bool recognise_gifti(const file_reader *reader) {
     const size_t beginning = reader->size < 1000 ? reader->size : 1000;
     return path_has_extension(reader->path, ".gii") || memmem(reader->bytes, beginning, "<GIFTI", 6) != NULL;
 }
 
-bool gifti_read(file_reader *reader, mesh_file *out) {
+static bool read_gifti(file_reader *reader, mesh_file *out) {
     gifti_parser parser = {.reader = reader};
     for (int kind = 0; kind < ARRAY_COUNT; kind++)
         parser.arrays[kind] = (gifti_array){.text = growable_of(1), .bytes = growable_of(1)};
@@ -285,3 +286,5 @@ bool gifti_read(file_reader *reader, mesh_file *out) {
     }
     return done;
 }
+
+const format_reader gifti_reader = {MESH_FORMAT_GIFTI, .recognise = recognise_gifti, .read = read_gifti};

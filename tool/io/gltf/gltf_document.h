@@ -18,6 +18,9 @@ typedef struct gltf_document {
     size_t buffer_count;
 } gltf_document;
 
+/* By the first bytes, or the ending of the name. */
+bool gltf_recognise(const file_reader *reader);
+
 /* Reads the JSON, and checks the version and the extensions that the file requires. Buffers are loaded when they are asked
  * for. On false *out owns nothing, and the reader's error is set. */
 bool gltf_document_open(file_reader *reader, gltf_document *out);

@@ -1,5 +1,5 @@
 /* The mesh of a glTF file in its rest state. */
-#include "tool/io/gltf.h"
+#include "tool/io/format_reader.h"
 #include "tool/io/gltf/gltf_extensions.h"
 #include "tool/io/gltf/gltf_parts.h"
 #include "tool/io/gltf/gltf_pose.h"
@@ -63,7 +63,7 @@ static bool find_parts(const gltf_scene *scene, mesh_file *mesh) {
            (by != MESH_PARTS_BY_MATERIAL || gltf_parts_of_materials(scene, &mesh->parts));
 }
 
-bool gltf_read(file_reader *reader, mesh_file *out) {
+static bool read_gltf(file_reader *reader, mesh_file *out) {
     gltf_scene scene;
     gltf_pose pose = {0};
     mesh_file mesh = {0};
@@ -85,3 +85,6 @@ bool gltf_read(file_reader *reader, mesh_file *out) {
     gltf_scene_close(&scene);
     return done;
 }
+
+const format_reader gltf_reader = {MESH_FORMAT_GLTF, .names_parts = true, .recognise = gltf_recognise,
+                                   .read = read_gltf};
