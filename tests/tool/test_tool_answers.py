@@ -125,7 +125,7 @@ def test_rules_fail_the_run(code, line):
 @pytest.mark.parametrize("code, line", [
     # The meshes of check --each fail by the same words.
     (0, "check --each touch.obj named.obj --fail-on crossing"), (3, "check --each touch.obj named.obj --fail-on touching"),
-    (3, "check --each touch.obj named.obj --fail-on-contact"), (0, "check --each touch.obj --fail-depth 1"),
+    (3, "check --each touch.obj named.obj --fail-on-touching"), (0, "check --each touch.obj --fail-depth 1"),
     # A body that stands in another one for all frames moves without a new contact: it fails as well.
     (0, "check touch.obj --fail-on crossing"), (3, "check touch.obj --fail-on touching"),
     (3, "check touch.obj --fail-on-contact"), (3, "replay touch.obj touch.obj touch.obj --fail-on contact"),
