@@ -15,6 +15,10 @@ COMMANDS = ("preprocess", "replay", "report", "sense", "check", "merge", "info",
 PAGE = re.sub(r"\\f.", "", (ROOT / "docs/man/cscd.1").read_text()).replace("\\-", "-")
 
 
+# What each mesh format is called, and the endings of its files.
+FORMATS = re.findall(r'\((?:[A-Z]+), "([^"]*)", "([^"]*)"\)', (ROOT / "tool/io/mesh_format.h").read_text())
+
+
 def help_of(command=""):
     return run(f"{command} --help").out
 
@@ -82,6 +86,31 @@ def test_no_example_is_refused(command):
 @pytest.mark.parametrize("command", COMMANDS)
 def test_help_fits_a_terminal(command):
     assert all(len(line) <= 110 for line in help_of(command).splitlines())
+
+
+def test_formats_are_those_that_are_read():
+    """Pages name each format as the list of the readers has it, and --help names all."""
+    files = PAGE.split("\n.SH FILES\n")[1].split("\n.SH ")[0].split("\n.TP\n")[0]
+    rows = (ROOT / "docs/artist/formats.md").read_text().split("## Read: meshes")[1].split("\n## ")[0]
+    named = [re.sub(r"[ (].*", "", row) for row in re.findall(r"^\| ([A-Za-z][^|]*) \|", rows, re.MULTILINE)]
+    assert named == ["format", *(name for name, _ in FORMATS)] and len(FORMATS) > 5
+    assert all(name in files for name, _ in FORMATS)
+    assert ", ".join(name for name, _ in FORMATS) in " ".join(help_of("replay").split())
+
+
+@pytest.mark.parametrize("title, source", [
+    ("## Contacts: `replay", "tool/io/contact_file.c"), ("The table has a row per pair", "tool/check/check_output.c"),
+    ("## Events: `--events", "tool/answers/answer_files.c"), ("The CSV has a row per warning", "tool/sense/sense_files.c"),
+])
+def test_columns_are_those_of_the_tables(title, source):
+    """formats.md names the columns of each list in their order, as the program writes them."""
+    columns = ",".join(re.findall(r'^    \{"([a-z0-9_,]+)", [^}]*RECORD_', (ROOT / source).read_text(), re.MULTILINE)).split(",")
+    text = (ROOT / "docs/artist/formats.md").read_text().split(title)[1].split("\n## ")[0]
+    rows = re.findall(r"^\| ([a-z0-9_, ]+) \|", text, re.MULTILINE)[1:]
+    words = re.split(r"\W+", ", ".join(rows) if rows else text)
+    places = [i for i in range(len(words)) if words[i:i + 3] == columns[:3]]
+    listed = words[places[0]:] if rows else [word for word in words[places[0]:] if word in columns]
+    assert len(columns) > 9 and listed[:len(columns)] == columns
 
 
 @pytest.mark.parametrize("header", [

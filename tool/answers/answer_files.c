@@ -1,60 +1,85 @@
 /* The answers as files: members of a JSON object, a CSV file of the events, and a JUnit file for continuous integration. */
 #include "tool/answers/answer_files.h"
 
+#include "tool/io/record.h"
 #include "tool/io/text_escape.h"
 
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 
+/* ---- events --------------------------------------------------------------------------------------------- */
+
+/* An event as its fields have it: frames have the artist's numbers, triangles and faces those of their model files. */
+typedef struct event_row {
+    const char *a, *b, *object;
+    int32_t first, last, worst;
+    record_words kinds;
+    uint64_t pairs, contacts;
+    double depth, length, point[3];
+    uint32_t triangle, face;
+} event_row;
+
+#define FIELD_OF(member) offsetof(event_row, member)
+
+/* Columns and members of an event. */
+static const record_field event_fields[] = {
+    {"a", "a", RECORD_NAME, FIELD_OF(a)},
+    {"b", "b", RECORD_NAME, FIELD_OF(b)},
+    {"first", "first", RECORD_SIGNED, FIELD_OF(first)},
+    {"last", "last", RECORD_SIGNED, FIELD_OF(last)},
+    {"worst", "worst", RECORD_SIGNED, FIELD_OF(worst)},
+    {"kinds", "kinds", RECORD_WORDS, FIELD_OF(kinds)},
+    {"pairs", "pairs", RECORD_COUNT, FIELD_OF(pairs)},
+    {"contacts", "contacts", RECORD_COUNT, FIELD_OF(contacts)},
+    {"depth", "depth", RECORD_NUMBER, FIELD_OF(depth)},
+    {"length", "length", RECORD_NUMBER, FIELD_OF(length)},
+    {"x,y,z", "point", RECORD_VECTOR, FIELD_OF(point)},
+    {"triangle", "triangle", RECORD_INDEX, FIELD_OF(triangle)},
+    {"face", "face", RECORD_INDEX, FIELD_OF(face)},
+    {"object", "object", RECORD_NAME, FIELD_OF(object)},
+};
+
+enum { EVENT_FIELDS = sizeof event_fields / sizeof *event_fields };
+
+static record_words words_of_kinds(uint64_t kinds) {
+    record_words words = {.count = 0};
+    for (int kind = CSCD_INTERSECTION_CROSSING; kind <= CSCD_INTERSECTION_TOUCHING; kind++)
+        if (kinds & cscd_intersection_set((cscd_intersection_kind)kind))
+            words.items[words.count++] = cscd_intersection_kind_name((cscd_intersection_kind)kind);
+    if (kinds & CSCD_EVENT_SAME_SOLID) words.items[words.count++] = "same_solid";
+    return words;
+}
+
+static event_row row_of(const answers *a, const cscd_event *event) {
+    const recording *r = a->recording;
+    event_row row = {.a = part_names_at(a->parts, event->a),
+                     .b = part_names_at(a->parts, event->b),
+                     .first = answers_frame_number(a, event->first_frame),
+                     .last = answers_frame_number(a, event->last_frame),
+                     .worst = answers_frame_number(a, event->worst_frame),
+                     .kinds = words_of_kinds(event->kinds),
+                     .pairs = event->pairs,
+                     .contacts = event->contacts,
+                     .depth = answers_event_depth_known(a, event) ? event->depth : (double)NAN,
+                     .length = event->length,
+                     .point = {event->x[0], event->x[1], event->x[2]},
+                     .triangle = event->triangle,
+                     .face = event->triangle};
+    if (event->triangle == UINT32_MAX) return row;
+    row.triangle = recording_file_triangle(r, event->triangle);
+    row.face = recording_file_face(r, event->triangle);
+    row.object = r->objects[recording_object_of_triangle(r, event->triangle)].source.name;
+    return row;
+}
+
 /* ---- JSON ----------------------------------------------------------------------------------------------- */
 
-static void write_kinds(const cscd_event *event, json *out) {
-    json_begin_array(out, "kinds");
-    for (int kind = CSCD_INTERSECTION_CROSSING; kind <= CSCD_INTERSECTION_TOUCHING; kind++)
-        if (event->kinds & cscd_intersection_set((cscd_intersection_kind)kind))
-            json_string(out, NULL, cscd_intersection_kind_name((cscd_intersection_kind)kind));
-    if (event->kinds & CSCD_EVENT_SAME_SOLID) json_string(out, NULL, "same_solid");
-    json_end_array(out);
-}
-
-static void write_place(const answers *a, const cscd_event *event, json *out) {
-    const recording *r = a->recording;
-    if (isnan(event->x[0]))
-        json_null(out, "point");
-    else {
-        json_begin_array(out, "point");
-        for (int k = 0; k < 3; k++) json_number(out, NULL, event->x[k]);
-        json_end_array(out);
-    }
-    if (event->triangle == UINT32_MAX) {
-        json_null(out, "triangle");
-        json_null(out, "face");
-        json_null(out, "object");
-        return;
-    }
-    json_integer(out, "triangle", recording_file_triangle(r, event->triangle));
-    json_integer(out, "face", recording_file_face(r, event->triangle));
-    json_string(out, "object", r->objects[recording_object_of_triangle(r, event->triangle)].source.name);
-}
-
 static void write_event(const answers *a, const cscd_event *event, json *out) {
+    const event_row row = row_of(a, event);
     json_break_line(out);
     json_begin_object(out, NULL);
-    json_string(out, "a", part_names_at(a->parts, event->a));
-    json_string(out, "b", part_names_at(a->parts, event->b));
-    json_signed(out, "first", answers_frame_number(a, event->first_frame));
-    json_signed(out, "last", answers_frame_number(a, event->last_frame));
-    json_signed(out, "worst", answers_frame_number(a, event->worst_frame));
-    write_kinds(event, out);
-    json_integer(out, "pairs", event->pairs);
-    json_integer(out, "contacts", event->contacts);
-    if (answers_event_depth_known(a, event))
-        json_number(out, "depth", event->depth);
-    else
-        json_null(out, "depth");
-    json_number(out, "length", event->length);
-    write_place(a, event, out);
+    record_write_members(out, event_fields, EVENT_FIELDS, &row);
     json_end_object(out);
 }
 
@@ -143,40 +168,12 @@ void answers_write_frame(const answers *a, const frame_answer *frame, json *out)
 
 /* ---- CSV ------------------------------------------------------------------------------------------------ */
 
-static void write_row(const answers *a, const cscd_event *event, FILE *file) {
-    const recording *r = a->recording;
-    text_write_csv(file, part_names_at(a->parts, event->a));
-    fputc(',', file);
-    text_write_csv(file, part_names_at(a->parts, event->b));
-    fprintf(file, ",%" PRId32 ",%" PRId32 ",%" PRId32 ",", answers_frame_number(a, event->first_frame),
-            answers_frame_number(a, event->last_frame), answers_frame_number(a, event->worst_frame));
-    const char *before = "";
-    for (int kind = CSCD_INTERSECTION_CROSSING; kind <= CSCD_INTERSECTION_TOUCHING; kind++) {
-        if (!(event->kinds & cscd_intersection_set((cscd_intersection_kind)kind))) continue;
-        fprintf(file, "%s%s", before, cscd_intersection_kind_name((cscd_intersection_kind)kind));
-        before = " ";
-    }
-    if (event->kinds & CSCD_EVENT_SAME_SOLID) fprintf(file, "%ssame_solid", before);
-    fprintf(file, ",%" PRIu64 ",%" PRIu64 ",", event->pairs, event->contacts);
-    if (answers_event_depth_known(a, event)) fprintf(file, "%.17g", event->depth);
-    fprintf(file, ",%.17g,", event->length);
-    if (isnan(event->x[0]))
-        fputs(",,,", file);
-    else
-        fprintf(file, "%.17g,%.17g,%.17g,", event->x[0], event->x[1], event->x[2]);
-    if (event->triangle == UINT32_MAX)
-        fputs(",,", file);
-    else {
-        fprintf(file, "%" PRIu32 ",%" PRIu32 ",", recording_file_triangle(r, event->triangle),
-                recording_file_face(r, event->triangle));
-        text_write_csv(file, r->objects[recording_object_of_triangle(r, event->triangle)].source.name);
-    }
-    fputc('\n', file);
-}
-
 void answers_write_csv(const answers *a, FILE *file) {
-    fputs("a,b,first,last,worst,kinds,pairs,contacts,depth,length,x,y,z,triangle,face,object\n", file);
-    for (size_t i = 0; i < a->event_count; i++) write_row(a, &a->events[i], file);
+    record_write_header(file, event_fields, EVENT_FIELDS);
+    for (size_t i = 0; i < a->event_count; i++) {
+        const event_row row = row_of(a, &a->events[i]);
+        record_write_row(file, event_fields, EVENT_FIELDS, &row);
+    }
 }
 
 /* ---- JUnit ---------------------------------------------------------------------------------------------- */

@@ -1,9 +1,30 @@
 /* The pairs of triangles that `cscd check` finds, as JSON and as CSV, frame by frame. */
 #include "tool/check/check_output.h"
 
-#include "tool/io/text_escape.h"
+#include "tool/io/record.h"
 
-#include <inttypes.h>
+/* A pair as its columns have it; triangles and faces are those of the model files. */
+typedef struct pair_row {
+    int32_t frame;
+    const char *kind, *parts[2], *objects[2];
+    uint32_t a, b, face_a, face_b;
+} pair_row;
+
+#define FIELD_OF(member) offsetof(pair_row, member)
+
+/* The columns of a pair. In JSON a frame has an array for each of them. */
+static const record_field pair_fields[] = {
+    {"frame", NULL, RECORD_SIGNED, FIELD_OF(frame)},
+    {"kind", NULL, RECORD_WORD, FIELD_OF(kind)},
+    {"a", NULL, RECORD_INDEX, FIELD_OF(a)},
+    {"b", NULL, RECORD_INDEX, FIELD_OF(b)},
+    {"face_a", NULL, RECORD_INDEX, FIELD_OF(face_a)},
+    {"face_b", NULL, RECORD_INDEX, FIELD_OF(face_b)},
+    {"part_a,part_b", NULL, RECORD_NAMES, FIELD_OF(parts)},
+    {"object_a,object_b", NULL, RECORD_NAMES, FIELD_OF(objects)},
+};
+
+enum { PAIR_FIELDS = sizeof pair_fields / sizeof *pair_fields };
 
 static bool write_failed(const char *path, io_error *error) {
     return io_fail_write(error, path);
@@ -19,8 +40,7 @@ bool check_output_open(const char *json_path, const char *csv_path, check_output
         json_begin_object(&out->out, NULL);
         json_begin_array(&out->out, "frames");
     }
-    if (csv_path != NULL)
-        fputs("frame,kind,a,b,face_a,face_b,part_a,part_b,object_a,object_b\n", out->csv_file.file);
+    if (csv_path != NULL) record_write_header(out->csv_file.file, pair_fields, PAIR_FIELDS);
     return true;
 }
 
@@ -87,27 +107,22 @@ static void write_json(json *out, const answers *a, const frame_answer *frame,
     json_end_object(out);
 }
 
-static void write_names(FILE *file, const char *first, const char *second) {
-    fputc(',', file);
-    text_write_csv(file, first);
-    fputc(',', file);
-    text_write_csv(file, second);
-}
-
 static void write_csv(FILE *file, const answers *a, const frame_answer *frame,
                       const cscd_intersection_pairs *found) {
     const recording *r = a->recording;
     for (size_t i = 0; i < found->count; i++) {
         const cscd_intersection_pair *pair = &found->items[i];
         if (pair->kind == CSCD_INTERSECTION_DUPLICATE) continue;
-        fprintf(file, "%" PRId32 ",%s,%" PRIu32 ",%" PRIu32 ",%" PRIu32 ",%" PRIu32,
-                answers_frame_number(a, frame->frame), cscd_intersection_kind_name(pair->kind),
-                recording_file_triangle(r, pair->a), recording_file_triangle(r, pair->b),
-                recording_file_face(r, pair->a), recording_file_face(r, pair->b));
-        write_names(file, part_names_at(a->parts, a->parts->labels[pair->a]),
-                    part_names_at(a->parts, a->parts->labels[pair->b]));
-        write_names(file, object_name(r, pair->a), object_name(r, pair->b));
-        fputc('\n', file);
+        const pair_row row = {.frame = answers_frame_number(a, frame->frame),
+                              .kind = cscd_intersection_kind_name(pair->kind),
+                              .a = recording_file_triangle(r, pair->a),
+                              .b = recording_file_triangle(r, pair->b),
+                              .face_a = recording_file_face(r, pair->a),
+                              .face_b = recording_file_face(r, pair->b),
+                              .parts = {part_names_at(a->parts, a->parts->labels[pair->a]),
+                                        part_names_at(a->parts, a->parts->labels[pair->b])},
+                              .objects = {object_name(r, pair->a), object_name(r, pair->b)}};
+        record_write_row(file, pair_fields, PAIR_FIELDS, &row);
     }
 }
 

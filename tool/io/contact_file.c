@@ -1,22 +1,48 @@
 /* Contacts as rows of a CSV file or lines of a JSON Lines file. */
 #include "tool/io/contact_file.h"
 
-#include "tool/io/json.h"
 #include "tool/io/output_file.h"
 #include "tool/io/path_name.h"
-#include "tool/io/text_escape.h"
+#include "tool/io/record.h"
 
-#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
+/* A contact as its fields have it. */
+typedef struct contact_row {
+    contact_record record;
+    const char *kind, *objects[2];
+    record_indices a, b;
+} contact_row;
+
+#define FIELD_OF(member) offsetof(contact_row, member)
+
+/* Columns and members of a contact. The last two are written only if the file has them. */
+static const record_field fields[] = {
+    {"frame", "frame", RECORD_SIGNED, FIELD_OF(record.frame)},
+    {"kind", "kind", RECORD_WORD, FIELD_OF(kind)},
+    {"toi", "toi", RECORD_NUMBER, FIELD_OF(record.toi)},
+    {"a0,a1", "a", RECORD_INDICES, FIELD_OF(a)},
+    {"b0,b1,b2", "b", RECORD_INDICES, FIELD_OF(b)},
+    {"u", "u", RECORD_NUMBER, FIELD_OF(record.u)},
+    {"v", "v", RECORD_NUMBER, FIELD_OF(record.v)},
+    {"x,y,z", "point", RECORD_VECTOR, FIELD_OF(record.point)},
+    {"nx,ny,nz", "normal", RECORD_VECTOR, FIELD_OF(record.normal)},
+    {"bounded", "bounded", RECORD_FLAG, FIELD_OF(record.bounded)},
+    {"object_a,object_b", "objects", RECORD_NAMES, FIELD_OF(objects)},
+};
+
+enum { FIELDS = sizeof fields / sizeof *fields, BOUNDED = FIELDS - 2, OBJECTS = FIELDS - 1 };
+
 struct contact_file {
     output_file out;
     char *path;
     bool csv;
-    contact_columns columns;
+    const char *const *object_names;
+    record_field fields[FIELDS]; /* those that the file has */
+    size_t field_count;
 };
 
 static bool write_failed(const contact_file *file, io_error *error) {
@@ -36,11 +62,16 @@ bool contact_file_names_format(const char *path) {
     return names_csv(path) || path_has_extension(path, ".jsonl");
 }
 
+static void choose_fields(contact_file *file, contact_columns columns) {
+    file->object_names = columns.object_names;
+    for (size_t i = 0; i < FIELDS; i++)
+        if ((i != BOUNDED || columns.bounded) && (i != OBJECTS || columns.object_names != NULL))
+            file->fields[file->field_count++] = fields[i];
+}
+
 static bool write_header(const contact_file *file) {
-    const char *bounded = file->columns.bounded ? ",bounded" : "";
-    const char *objects = file->columns.object_names != NULL ? ",object_a,object_b" : "";
-    return !file->csv || fprintf(file->out.file, "frame,kind,toi,a0,a1,b0,b1,b2,u,v,x,y,z,nx,ny,nz%s%s\n",
-                                 bounded, objects) >= 0;
+    if (file->csv) record_write_header(file->out.file, file->fields, file->field_count);
+    return !ferror(file->out.file);
 }
 
 bool contact_file_open(const char *path, contact_columns columns, contact_file **out, io_error *error) {
@@ -53,7 +84,7 @@ bool contact_file_open(const char *path, contact_columns columns, contact_file *
         return io_fail(error, "%s: out of memory", path);
     }
     file->csv = csv;
-    file->columns = columns;
+    choose_fields(file, columns);
     if (!output_file_open(path, &file->out)) {
         write_failed(file, error);
         free_contact_file(file);
@@ -69,63 +100,28 @@ bool contact_file_open(const char *path, contact_columns columns, contact_file *
     return true;
 }
 
-static void write_csv(FILE *file, const contact_record *r, const contact_columns *columns) {
-    fprintf(file, "%" PRId32 ",%s,%.17g,", r->frame, cscd_contact_kind_name(r->kind), r->toi);
-    if (r->kind == CSCD_CONTACT_VF)
-        fprintf(file, "%" PRIu32 ",,%" PRIu32 ",%" PRIu32 ",%" PRIu32, r->a[0], r->b[0], r->b[1], r->b[2]);
-    else
-        fprintf(file, "%" PRIu32 ",%" PRIu32 ",%" PRIu32 ",%" PRIu32 ",", r->a[0], r->a[1], r->b[0], r->b[1]);
-    fprintf(file, ",%.17g,%.17g", r->u, r->v);
-    for (int k = 0; k < 3; k++) fprintf(file, ",%.17g", r->point[k]);
-    for (int k = 0; k < 3; k++) fprintf(file, ",%.17g", r->normal[k]);
-    if (columns->bounded) fprintf(file, ",%d", r->bounded);
-    for (int i = 0; i < 2 && columns->object_names != NULL; i++) {
-        fputc(',', file);
-        text_write_csv(file, columns->object_names[r->objects[i]]);
-    }
-    fputc('\n', file);
-}
-
-static void write_indices(json *out, const char *key, const uint32_t *indices, int count) {
-    json_begin_array(out, key);
-    for (int i = 0; i < count; i++) json_integer(out, NULL, indices[i]);
-    json_end_array(out);
-}
-
-static void write_vector(json *out, const char *key, const double vector[3]) {
-    json_begin_array(out, key);
-    for (int k = 0; k < 3; k++) json_number(out, NULL, vector[k]);
-    json_end_array(out);
-}
-
-static void write_json_line(FILE *file, const contact_record *r, const contact_columns *columns) {
-    json out = {.file = file};
-    bool vf = r->kind == CSCD_CONTACT_VF;
-    json_begin_object(&out, NULL);
-    json_signed(&out, "frame", r->frame);
-    json_string(&out, "kind", cscd_contact_kind_name(r->kind));
-    json_number(&out, "toi", r->toi);
-    write_indices(&out, "a", r->a, vf ? 1 : 2);
-    write_indices(&out, "b", r->b, vf ? 3 : 2);
-    json_number(&out, "u", r->u);
-    json_number(&out, "v", r->v);
-    write_vector(&out, "point", r->point);
-    write_vector(&out, "normal", r->normal);
-    if (columns->bounded) json_boolean(&out, "bounded", r->bounded);
-    if (columns->object_names != NULL) {
-        json_begin_array(&out, "objects");
-        for (int i = 0; i < 2; i++) json_string(&out, NULL, columns->object_names[r->objects[i]]);
-        json_end_array(&out);
-    }
-    json_end_object(&out);
-    fputc('\n', file);
+static contact_row row_of(const contact_file *file, const contact_record *r) {
+    const bool vf = r->kind == CSCD_CONTACT_VF;
+    contact_row row = {.record = *r,
+                       .kind = cscd_contact_kind_name(r->kind),
+                       .a = {{r->a[0], r->a[1]}, vf ? 1 : 2},
+                       .b = {{r->b[0], r->b[1], r->b[2]}, vf ? 3 : 2}};
+    for (int i = 0; i < 2 && file->object_names != NULL; i++)
+        row.objects[i] = file->object_names[r->objects[i]];
+    return row;
 }
 
 bool contact_file_write(contact_file *file, const contact_record *record, io_error *error) {
+    const contact_row row = row_of(file, record);
     if (file->csv)
-        write_csv(file->out.file, record, &file->columns);
-    else
-        write_json_line(file->out.file, record, &file->columns);
+        record_write_row(file->out.file, file->fields, file->field_count, &row);
+    else {
+        json out = {.file = file->out.file};
+        json_begin_object(&out, NULL);
+        record_write_members(&out, file->fields, file->field_count, &row);
+        json_end_object(&out);
+        fputc('\n', out.file);
+    }
     return output_file_writes(&file->out) || write_failed(file, error);
 }
 

@@ -1,9 +1,38 @@
 /* The warnings of `cscd sense` as CSV, and its intervals as JSON. */
 #include "tool/common/output_path.h"
 #include "tool/common/provenance.h"
+#include "tool/io/record.h"
 #include "tool/sense/sense_result.h"
 
-#include <stdio.h>
+#include <math.h>
+
+/* A warning as its columns have it. Without the exact check contact and toi are unknown. */
+typedef struct warning_row {
+    int32_t frame;
+    cscd_warning warning;
+    uint32_t vertex_a, vertex_b; /* of the model files */
+    uint32_t contact;            /* 0 or 1 */
+    double toi;
+} warning_row;
+
+#define FIELD_OF(member) offsetof(warning_row, member)
+
+/* The columns of a warning, which JSON does not have. */
+static const record_field warning_fields[] = {
+    {"frame", NULL, RECORD_SIGNED, FIELD_OF(frame)},
+    {"part_a", NULL, RECORD_INDEX, FIELD_OF(warning.part_a)},
+    {"part_b", NULL, RECORD_INDEX, FIELD_OF(warning.part_b)},
+    {"object_a", NULL, RECORD_INDEX, FIELD_OF(warning.object_a)},
+    {"object_b", NULL, RECORD_INDEX, FIELD_OF(warning.object_b)},
+    {"vertex_a", NULL, RECORD_INDEX, FIELD_OF(vertex_a)},
+    {"vertex_b", NULL, RECORD_INDEX, FIELD_OF(vertex_b)},
+    {"distance", NULL, RECORD_NUMBER, FIELD_OF(warning.distance)},
+    {"time", NULL, RECORD_NUMBER, FIELD_OF(warning.time)},
+    {"contact", NULL, RECORD_INDEX, FIELD_OF(contact)},
+    {"toi", NULL, RECORD_NUMBER, FIELD_OF(toi)},
+};
+
+enum { WARNING_FIELDS = sizeof warning_fields / sizeof *warning_fields };
 
 static bool open_one(const char *path, output_file *out, io_error *error) {
     return path == NULL || output_file_open(path, out) || io_fail_write(error, path);
@@ -12,28 +41,24 @@ static bool open_one(const char *path, output_file *out, io_error *error) {
 bool sense_files_open(const sense_options *o, sense_files *out, io_error *error) {
     if (!open_one(o->csv_path, &out->csv, error) || !open_one(o->json_path, &out->json, error)) return false;
     out->out.file = out->json.file;
-    if (out->csv.file != NULL)
-        fputs("frame,part_a,part_b,object_a,object_b,vertex_a,vertex_b,distance,time,contact,toi\n",
-              out->csv.file);
+    if (out->csv.file != NULL) record_write_header(out->csv.file, warning_fields, WARNING_FIELDS);
     if (out->out.file == NULL) return true;
     json_begin_object(&out->out, NULL);
     json_begin_array(&out->out, "intervals");
     return true;
 }
 
-/* Without the exact check the columns contact and toi stay empty. */
 static void write_warnings(FILE *csv, const sense_subject *subject, const sense_interval *interval) {
+    const bool exact = subject->options->sensors.exact;
     for (size_t i = 0; i < interval->warnings->count; i++) {
         const cscd_warning *w = &interval->warnings->items[i];
-        fprintf(csv, "%d,%u,%u,%u,%u,%u,%u,%.17g,%.17g,", interval->frame, w->part_a, w->part_b, w->object_a,
-                w->object_b, recording_file_vertex(subject->recording, w->vertex_a),
-                recording_file_vertex(subject->recording, w->vertex_b), w->distance, w->time);
-        if (!subject->options->sensors.exact)
-            fputs(",\n", csv);
-        else if (w->contact)
-            fprintf(csv, "1,%.17g\n", w->toi);
-        else
-            fputs("0,\n", csv);
+        const warning_row row = {.frame = interval->frame,
+                                 .warning = *w,
+                                 .vertex_a = recording_file_vertex(subject->recording, w->vertex_a),
+                                 .vertex_b = recording_file_vertex(subject->recording, w->vertex_b),
+                                 .contact = exact ? w->contact : UINT32_MAX,
+                                 .toi = exact && w->contact ? w->toi : (double)NAN};
+        record_write_row(csv, warning_fields, WARNING_FIELDS, &row);
     }
 }
 
