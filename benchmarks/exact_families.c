@@ -1,7 +1,7 @@
 /* How many elementary tests reach exact arithmetic when motions have a structure, and whether they had to. */
 #include "benchmarks/lib/options.h"
 #include "models/shapes/body.h"
-#include "runtime/ccd/ccd_kernels.h"
+#include "runtime/ccd/ccd.h"
 #include "runtime/detector/candidates.h"
 #include "src/core/timer.h"
 #include "src/mesh/predicates.h"

@@ -1,7 +1,7 @@
 /* Sets of elementary queries with their exact truth, in the published CSV form. */
 #pragma once
 
-#include "runtime/ccd/elementary.h"
+#include "runtime/ccd/ccd.h"
 #include "tool/io/io_error.h"
 
 #include <stddef.h>

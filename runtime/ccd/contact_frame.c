@@ -1,8 +1,7 @@
 /* Describes a contact: a time that is safe to step to, the points and the normal. */
-#include "runtime/ccd/contact_frame.h"
 
-#include "runtime/ccd/closest.h"
-#include "runtime/ccd/cubic.h"
+#include "runtime/ccd/elementary_levels.h"
+
 #include "src/core/vec3.h"
 
 /* A caller that steps to a time computes positions in doubles, which are off by at most 2 units in the last

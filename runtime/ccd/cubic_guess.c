@@ -1,5 +1,6 @@
 /* Guesses a cubic's roots by safeguarded Newton steps between the extrema. */
-#include "runtime/ccd/cubic_guess.h"
+
+#include "runtime/ccd/elementary_levels.h"
 
 #include <math.h>
 #include <stdbool.h>

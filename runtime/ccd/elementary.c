@@ -1,13 +1,8 @@
 /* Elementary tests: do a moving vertex and face, or two moving edges, touch, and when? Three levels, each of
  * which decides only what it is certain of; docs/theory/elementary.md derives every constant. */
-#include "runtime/ccd/elementary.h"
 
-#include "runtime/ccd/contact_frame.h"
-#include "runtime/ccd/coplanarity.h"
-#include "runtime/ccd/cubic.h"
-#include "runtime/ccd/exact/exact_test.h"
-#include "runtime/ccd/inside_test.h"
-#include "runtime/ccd/separating_axis.h"
+#include "runtime/ccd/elementary_levels.h"
+#include "runtime/ccd/exact.h"
 
 #include <assert.h>
 

@@ -1,8 +1,9 @@
 /* A moving vertex and a half-space whose normal is fixed and whose plane moves with a point: exact at distance 0, and
  * with a distance by bounds, since the vertex's height above the plane is linear in time. */
-#include "runtime/ccd/half_space.h"
 
-#include "runtime/ccd/exact/integer.h"
+#include "runtime/ccd/ccd.h"
+
+#include "src/core/integer.h"
 #include "src/core/vec3.h"
 
 #include <string.h>

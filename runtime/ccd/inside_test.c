@@ -1,6 +1,6 @@
 /* The inside test of level two: are two features' points, coplanar at some time in an interval, in touch?
  *
- * With a, b and c as in coplanarity.h and W = a x b, a point of the features' common plane has the parameters
+ * With a, b and c as in point_vectors and W = a x b, a point of the features' common plane has the parameters
  *     u = (c x b) / W,
  *     v = (a x c) / W (VF) or (c x a) / W (EE),
  * each a quotient of components along one axis. The axis with the largest |W| is taken. The features touch if
@@ -17,8 +17,7 @@
  * The bound used, (16 u + 5 h) S, leaves room for computing it and for the sums of up to three such
  * components, whose bounds are added. Nothing underflows: components are multiples of 2^-352, and blended
  * ones of 2^-460. */
-#include "runtime/ccd/inside_test.h"
-
+#include "runtime/ccd/elementary_levels.h"
 #include "src/core/vec3.h"
 
 /* A number, and how far it may be off. */

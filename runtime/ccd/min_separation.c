@@ -1,8 +1,7 @@
 /* Minimum separation: do a moving vertex and face, or two moving edges, come within a distance, and when? */
-#include "runtime/ccd/min_separation.h"
 
 #include "runtime/ccd/feature_moment.h"
-#include "runtime/ccd/kdop_directions.h"
+
 #include "src/core/check.h"
 #include "src/core/context.h"
 #include "src/core/vec3.h"

@@ -1,8 +1,8 @@
 /* A plane that certainly lies between two features at rest, and how far apart it certainly keeps them. */
-#include "runtime/ccd/pair_plane.h"
 
-#include "runtime/ccd/exact/exact_gap.h"
+#include "runtime/ccd/exact.h"
 #include "runtime/ccd/feature_moment.h"
+
 #include "src/core/vec3.h"
 
 #include <string.h>

@@ -1,8 +1,7 @@
 /* Distances of features at rest, many pairs at a time, each with a proof: a plane across the nearest points.
  */
-#include "runtime/ccd/ccd_kernels_simd.h"
-#include "runtime/ccd/coplanarity_simd.h"
-#include "runtime/ccd/min_separation.h"
+#include "runtime/ccd/ccd_simd.h"
+#include "runtime/ccd/cubic_simd.h"
 #include "src/core/vec3.h"
 
 /* Nearest points of lanes: parameters as in cscd_contact, and the offset from b's to a's. */

@@ -1,6 +1,7 @@
 /* Floors: how near two features may come that are nearer already than they should be. docs/solver/guarantees.md says what
  * they are for; docs/theory/floors.md has the lemmas that this file relies on. */
-#include "runtime/ccd/separation_floor.h"
+
+#include "runtime/ccd/feature_moment.h"
 
 #include "src/core/vec3.h"
 

@@ -2,7 +2,7 @@
  * near, which are found faster, and whether a point lies on a surface, exactly. */
 #include "runtime/depths/outer_surface.h"
 
-#include "runtime/ccd/closest.h"
+#include "runtime/ccd/ccd.h"
 #include "src/core/vec3.h"
 #include "src/mesh/predicates.h"
 #include "src/mesh/surface.h"

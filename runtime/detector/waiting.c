@@ -1,7 +1,7 @@
 /* Pairs that wait on a live detector: what a change of seams, ignored pairs or rules uncovers while it touches. */
 #include "runtime/detector/waiting.h"
 
-#include "runtime/ccd/separation_floor.h"
+#include "runtime/ccd/ccd.h"
 #include "runtime/loose/loose_search.h"
 #include "src/mesh/mesh.h"
 #include "src/mesh/triangle_intersection.h"

@@ -2,7 +2,7 @@
  * ends are: docs/theory/curves.md, whose lemmas are cited here. */
 #include "runtime/intersections/named_surface.h"
 
-#include "runtime/ccd/exact/integer.h"
+#include "src/core/integer.h"
 
 #include <math.h>
 #include <string.h>

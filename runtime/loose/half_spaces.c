@@ -1,5 +1,5 @@
 /* Half-spaces: every vertex that takes part in contacts against every one of them. */
-#include "runtime/ccd/half_space.h"
+#include "runtime/ccd/ccd.h"
 
 #include "runtime/loose/loose_search.h"
 

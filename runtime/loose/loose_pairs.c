@@ -1,7 +1,7 @@
 /* Pairs of features of which one is loose: those that count go to the lane's queue. */
 #include "runtime/loose/loose_pairs.h"
 
-#include "runtime/ccd/kdop_directions.h"
+#include "runtime/ccd/ccd.h"
 #include "runtime/narrow_phase/narrow_phase.h"
 
 static bool parted_by_directions(const swept_interval *interval, cscd_contact_kind kind, uint32_t a,

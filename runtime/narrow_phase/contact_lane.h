@@ -1,7 +1,7 @@
 /* What one thread finds in an interval, and the pairs of features that it still has to test. */
 #pragma once
 
-#include "runtime/ccd/elementary.h"
+#include "runtime/ccd/ccd.h"
 #include "src/core/context.h"
 
 #include <assert.h>

@@ -1,7 +1,7 @@
 /* Queue of feature pairs. SIMD kernels decide them in batches of eight; the scalar test decides the rest. */
 #include "runtime/narrow_phase/feature_queue.h"
 
-#include "runtime/ccd/separation_floor.h"
+#include "runtime/ccd/ccd.h"
 
 #include <assert.h>
 

@@ -1,7 +1,7 @@
 /* From triangle pairs to contacts: representatives, feature volumes, elementary tests. */
 #include "runtime/narrow_phase/narrow_phase.h"
 
-#include "runtime/ccd/kdop_directions.h"
+#include "runtime/ccd/ccd.h"
 #include "runtime/narrow_phase/feature_queue.h"
 #include "runtime/narrow_phase/narrow_phase_kernels.h"
 

@@ -7,7 +7,7 @@
  * what was found    exclusions_cover. */
 #pragma once
 
-#include "runtime/ccd/min_separation.h"
+#include "runtime/ccd/ccd.h"
 #include "runtime/narrow_phase/exclusions.h"
 #include "src/mesh/mesh_change.h"
 

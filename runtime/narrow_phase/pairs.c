@@ -2,7 +2,7 @@
  * the queue takes. */
 #include "cscd/pairs.h"
 
-#include "runtime/ccd/connection.h"
+#include "runtime/ccd/ccd.h"
 #include "runtime/narrow_phase/narrow_phase.h"
 #include "src/core/check.h"
 #include "src/mesh/positions.h"

@@ -10,8 +10,7 @@
  * If no projection does so, the face, or both edges together, are on one line or in one point. Then any two sides of the face
  * cover it, and a vertex is in it if it is on one of them. Edges meet if an end of the first is on the second, or if the first
  * reaches beyond the second on both sides: then either end of the second is on the first. */
-#include "runtime/ccd/contact_frame.h"
-#include "runtime/ccd/coplanarity.h"
+#include "runtime/ccd/ccd.h"
 #include "runtime/narrow_phase/feature_queue.h"
 #include "src/mesh/predicates.h"
 

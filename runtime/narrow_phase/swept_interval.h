@@ -2,9 +2,7 @@
 #pragma once
 
 #include "runtime/bvh/traversal.h"
-#include "runtime/ccd/ccd_kernels.h"
-#include "runtime/ccd/elementary.h"
-#include "runtime/ccd/min_separation.h"
+#include "runtime/ccd/ccd.h"
 #include "runtime/culling/culling.h"
 #include "runtime/narrow_phase/pair_filter.h"
 #include "src/mesh/mesh.h"

@@ -1,7 +1,7 @@
 /* Planes that divide the space between near pairs, and how far each vertex may go towards them. */
 #include "runtime/solver/division_planes.h"
 
-#include "runtime/ccd/half_space.h"
+#include "runtime/ccd/ccd.h"
 #include "src/core/vec3.h"
 
 #include <string.h>

@@ -1,8 +1,7 @@
 /* The pairs that displacement bounds and truncation look at: those near each other where a motion starts. */
 #include "runtime/solver/near_pairs.h"
 
-#include "runtime/ccd/half_space.h"
-#include "runtime/ccd/pair_plane.h"
+#include "runtime/ccd/ccd.h"
 #include "src/core/check.h"
 #include "src/core/floating.h"
 

@@ -1,8 +1,7 @@
 /* One item of a list of proximities: vertices, weights and nearest points of a pair. */
 #include "runtime/solver/proximity_item.h"
 
-#include "runtime/ccd/connection.h"
-#include "runtime/ccd/elementary.h"
+#include "runtime/ccd/ccd.h"
 #include "src/core/vec3.h"
 
 #include <string.h>

@@ -1,7 +1,6 @@
 /* The exact level from below: integers against GMP, signs at roots against rational arithmetic, and the room
  * that the worst queries take. */
-#include "runtime/ccd/exact/algebraic.h"
-#include "runtime/ccd/exact/exact_test.h"
+#include "runtime/ccd/exact.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
 

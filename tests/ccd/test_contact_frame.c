@@ -1,6 +1,5 @@
 /* What is told of a touch, where features are far smaller than their motion, or needles. */
-#include "runtime/ccd/closest.h"
-#include "runtime/ccd/min_separation.h"
+#include "runtime/ccd/ccd.h"
 #include "tests/support/ccd/queue_test.h"
 #include "tests/support/test.h"
 

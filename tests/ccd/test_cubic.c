@@ -1,6 +1,6 @@
 /* The coplanarity cubic: roots of known polynomials, and the error bound against exact integers. */
-#include "runtime/ccd/coplanarity.h"
-#include "runtime/ccd/cubic.h"
+#include "runtime/ccd/ccd.h"
+#include "runtime/ccd/elementary_levels.h"
 #include "tests/support/ccd/exact_integer.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"

@@ -1,5 +1,5 @@
 /* Guesses of roots, beside those of GSL and beside roots that the coefficients were made of. */
-#include "runtime/ccd/cubic_guess.h"
+#include "runtime/ccd/elementary_levels.h"
 
 #include "tests/support/random.h"
 #include "tests/support/test.h"

@@ -1,7 +1,6 @@
 /* The kernels that describe contacts: on every level the same bits as the description of one pair, whatever the pair and the
  * time, also where features are degenerate or of sizes far apart. */
-#include "runtime/ccd/ccd_kernels.h"
-#include "runtime/ccd/contact_frame.h"
+#include "runtime/ccd/ccd.h"
 #include "tests/support/ccd/elementary_generator.h"
 #include "tests/support/levels.h"
 #include "tests/support/test.h"

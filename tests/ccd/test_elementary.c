@@ -1,7 +1,6 @@
 /* Elementary tests in general position: contacts built backwards, near misses, invariances. Degenerate
  * configurations have their own suite. */
-#include "runtime/ccd/coplanarity.h"
-#include "runtime/ccd/elementary.h"
+#include "runtime/ccd/ccd.h"
 #include "tests/support/ccd/elementary_cases.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"

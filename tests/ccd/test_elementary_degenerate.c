@@ -1,6 +1,6 @@
 /* Elementary tests on degenerate configurations whose contacts are exact: small integers, at the ends of the
  * interval, at corners and borders, double and triple roots; mirror symmetry. */
-#include "runtime/ccd/elementary.h"
+#include "runtime/ccd/ccd.h"
 #include "tests/support/ccd/elementary_cases.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"

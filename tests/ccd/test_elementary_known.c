@@ -1,6 +1,6 @@
 /* Elementary tests on configurations with a known first contact: in a plane, on a line, zero sizes, at rest.
  */
-#include "runtime/ccd/elementary.h"
+#include "runtime/ccd/ccd.h"
 #include "tests/support/ccd/elementary_cases.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"

@@ -1,5 +1,5 @@
 /* A vertex and a half-space, against integers: verdicts, times, gaps, and floors over many motions. */
-#include "runtime/ccd/half_space.h"
+#include "runtime/ccd/ccd.h"
 
 #include "tests/support/ccd/exact_integer.h"
 #include "tests/support/random_stream.h"

@@ -1,6 +1,6 @@
 /* Gaps between features at rest, and planes that prove them, against rational numbers. */
-#include "runtime/ccd/exact/exact_gap.h"
-#include "runtime/ccd/pair_plane.h"
+#include "runtime/ccd/ccd.h"
+#include "runtime/ccd/exact.h"
 #include "tests/support/random.h"
 #include "tests/support/solver/exact_distance.h"
 #include "tests/support/test.h"

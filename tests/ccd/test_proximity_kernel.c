@@ -1,7 +1,6 @@
 /* The kernel that decides by the start of a motion which features are near and which stay apart: never
  * against the test of one pair, whose verdicts it anticipates; the same bits on every level. */
-#include "runtime/ccd/ccd_kernels.h"
-#include "runtime/ccd/min_separation.h"
+#include "runtime/ccd/ccd.h"
 #include "tests/support/levels.h"
 #include "tests/support/packed.h"
 #include "tests/support/random.h"

@@ -1,7 +1,7 @@
 /* Directions that separate two features in a part of the interval: never about a contact, and for parallel edges that pass a
  * common plane beside each other. */
-#include "runtime/ccd/exact/exact_test.h"
-#include "runtime/ccd/separating_axis.h"
+#include "runtime/ccd/elementary_levels.h"
+#include "runtime/ccd/exact.h"
 #include "tests/support/ccd/elementary_generator.h"
 #include "tests/support/ccd/queue_test.h"
 #include "tests/support/test.h"

@@ -1,6 +1,6 @@
 /* Floors of pairs, against distances in long double: never too high, never lost on a motion that is let through, and
  * never in the way of features that part. */
-#include "runtime/ccd/separation_floor.h"
+#include "runtime/ccd/ccd.h"
 #include "src/core/vec3.h"
 #include "tests/support/ccd/separation_check.h"
 #include "tests/support/ccd/separation_families.h"

@@ -1,11 +1,8 @@
 /* The kernels behind the feature queue: lane by lane what the scalar functions say, on every level that this
  * machine has; and whole intervals, the same on all levels and for all thread counts. */
 #include "cscd/research.h"
-#include "runtime/ccd/ccd_kernels.h"
-#include "runtime/ccd/coplanarity.h"
-#include "runtime/ccd/cubic.h"
-#include "runtime/ccd/inside_test.h"
-#include "runtime/ccd/separating_axis.h"
+#include "runtime/ccd/ccd.h"
+#include "runtime/ccd/elementary_levels.h"
 #include "tests/support/ccd/elementary_generator.h"
 #include "tests/support/levels.h"
 #include "tests/support/packed.h"

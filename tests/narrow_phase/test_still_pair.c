@@ -1,7 +1,7 @@
 /* Pairs that do not move: the same verdicts as integers give, alone and in steps, and the same contacts as without the short
  * cut. */
 #include "cscd/cscd.h"
-#include "runtime/ccd/exact/exact_test.h"
+#include "runtime/ccd/exact.h"
 #include "runtime/narrow_phase/feature_queue.h"
 #include "tests/support/ccd/elementary_generator.h"
 #include "tests/support/ccd/queue_test.h"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cscd/cscd.h"
-#include "runtime/ccd/min_separation.h"
+#include "runtime/ccd/ccd.h"
 #include "tests/support/scenes.h"
 
 /* A contact as a triple that can be sorted and compared. */

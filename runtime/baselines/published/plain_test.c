@@ -1,8 +1,7 @@
 /* The elementary test as such codes have it: the real roots of the coplanarity cubic in plain doubles, and an inside test at each. */
 #include "runtime/baselines/published/plain_test.h"
 
-#include "runtime/ccd/contact_frame.h"
-#include "runtime/ccd/coplanarity.h"
+#include "runtime/ccd/ccd.h"
 #include "src/core/vec3.h"
 
 /* Returns how many there are, ascending. A leading coefficient of 0 leaves a quadratic; without any coefficient the points are always

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "runtime/baselines/gsl/plain_cubic.h"
-#include "runtime/ccd/elementary.h"
+#include "runtime/ccd/ccd.h"
 
 /* Writes the first touch, as elementary_after_signs does. */
 bool plain_test(const plain_cubic_functions *roots, const elementary_query *query, cscd_contact_kind kind,

@@ -1,7 +1,7 @@
 /* Distances of moving features by dense sampling in long double: shares nothing with the code under test. */
 #pragma once
 
-#include "runtime/ccd/min_separation.h"
+#include "runtime/ccd/ccd.h"
 #include "tests/support/ccd/elementary_cases.h"
 
 #include <stdbool.h>

@@ -1,7 +1,7 @@
 /* Families of random queries for distances: ordinary, thin, parallel, degenerate, and far from the origin. */
 #pragma once
 
-#include "runtime/ccd/elementary.h"
+#include "runtime/ccd/ccd.h"
 
 enum { SEPARATION_FAMILY_COUNT = 8 };
 

@@ -1,7 +1,7 @@
 /* Distances from bodies, and how often they wind around a point, triangle by triangle. */
 #include "tests/support/intersections/body_measures.h"
 
-#include "runtime/ccd/closest.h"
+#include "runtime/ccd/ccd.h"
 #include "src/core/vec3.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
  *
  * Multiplication is by the schoolbook: at the sizes that occur (mostly 1 to 4 limbs, always below 190)
  * nothing beats it by enough to be worth a dependency. */
-#include "runtime/ccd/exact/integer.h"
+#include "src/core/integer.h"
 
 #include <assert.h>
 #include <math.h>

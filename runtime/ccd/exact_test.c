@@ -16,9 +16,7 @@
  *     parallel or points. The features touch if and only if some vertex of one lies on a segment of the
  *     other: it is collinear with the segment's ends (all three areas are 0) and between them in each
  *     coordinate. */
-#include "runtime/ccd/exact/exact_test.h"
-
-#include "runtime/ccd/exact/algebraic.h"
+#include "runtime/ccd/exact.h"
 
 /* Coordinates relative to point 0, and areas. */
 typedef struct configuration {

@@ -6,9 +6,7 @@
  *     n / m - s^2 = (distance - s) (distance + s)
  * for a length s. Each fraction is rounded at the end only, so that nothing cancels. As every such distance is that of
  * two points of the features, the least rounded result is right. */
-#include "runtime/ccd/exact/exact_gap.h"
-
-#include "runtime/ccd/exact/integer.h"
+#include "runtime/ccd/exact.h"
 #include "src/core/floating.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 /* The nearest double to the quotient of two long integers: multiples of numbers whose quotient the processor rounds. */
-#include "runtime/ccd/exact/integer.h"
+#include "src/core/integer.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/test.h"
 

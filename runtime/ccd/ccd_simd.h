@@ -1,8 +1,28 @@
-/* As many pairs of features as the processor takes at once, as vectors of their points. */
+/* What the kernels share: their names on the level that is compiled, products of vectors, and as many pairs as the processor takes
+ * at once, as vectors of their points. */
 #pragma once
 
-#include "runtime/ccd/ccd_kernels.h"
+#include "runtime/ccd/ccd.h"
 #include "src/core/simd_wide.h"
+
+/* ---- kernels that other files have --------------------------------------------------------------------- */
+
+describe_kernel SIMD_NAME(describe_vf), SIMD_NAME(describe_ee);
+proximity_kernel SIMD_NAME(proximity_vf), SIMD_NAME(proximity_ee);
+
+/* ---- products of many vectors of three doubles, summed up from left to right as in vec3.h -------------- */
+
+static inline void cross_x8(const f64w a[3], const f64w b[3], f64w out[3]) {
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static inline f64w dot_x8(const f64w a[3], const f64w b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* ---- pairs --------------------------------------------------------------------------------------------- */
 
 typedef struct points_x8 {
     f64w x0[4][3], x1[4][3]; /* points as in elementary_query, then coordinates */
