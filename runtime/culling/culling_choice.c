@@ -6,7 +6,7 @@
  * orphan pairs. This is the rule for renting or buying skis: whatever comes, the cost is at most about twice that of someone
  * who knows it in advance, and near to it when things go on as they are. Each time that culling has lost, its hopes count for
  * half, so that tries become rare. */
-#include "runtime/culling/culling_choice.h"
+#include "runtime/culling/culling.h"
 
 /* Prices in nanoseconds, on one core with AVX-512; only their ratios matter. Fitted to `cscd replay --no-check --json` by
  * `none` and `single` on the recordings of docs/about/measurements.md and to `scaling`. */
@@ -37,7 +37,7 @@ static double larger_of(double a, double b) {
     return a > b ? a : b;
 }
 
-/* ---- at the start ------------------------------------------------------------------------------------- */
+/* ---- at the start -------------------------------------------------------------------------------------- */
 
 static double proof_of(const component_start *start) {
     return price_of_proof * (start->unknown + start->crossing);
@@ -77,7 +77,7 @@ void culling_choice_decide(start_states *s, bool proves) {
     }
 }
 
-/* ---- at the end --------------------------------------------------------------------------------------- */
+/* ---- at the end ---------------------------------------------------------------------------------------- */
 
 /* A component that chose culling in vain, because too little of it was clean, has paid only for the proof. */
 static void learn_from_culling(component_start *start, double triangles, bool culled, uint64_t passes) {

@@ -1,5 +1,5 @@
 /* Culling and start states that move over to another mesh: untouched components keep what they have. */
-#include "runtime/culling/culling_move.h"
+#include "runtime/culling/culling.h"
 
 #include <string.h>
 
@@ -85,7 +85,7 @@ void region_move_free(cscd_context *context, region_move *m) {
     *m = (region_move){.old_count = 0};
 }
 
-/* ---- culling --------------------------------------------------------------------------------------------- */
+/* ---- culling ------------------------------------------------------------------------------------------- */
 
 static void move_run(const culling *c, const object_run *run, const region_move *regions, culling *out) {
     const uint32_t *from = c->triangle_regions + run->from.triangle;
@@ -130,7 +130,7 @@ cscd_status culling_move(const culling *c, const cscd_mesh *mesh, const cscd_mes
     return CSCD_OK;
 }
 
-/* ---- start states ------------------------------------------------------------------------------------------ */
+/* ---- start states -------------------------------------------------------------------------------------- */
 
 static void move_states_of_run(const start_states *s, const object_run *run, start_states *out) {
     memcpy(out->positions + (size_t)run->to.vertex * 3, s->positions + (size_t)run->from.vertex * 3,

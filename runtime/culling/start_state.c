@@ -1,5 +1,5 @@
 /* Knowledge about the triangles at the start of an interval: which are clean, and at which positions. */
-#include "runtime/culling/start_state.h"
+#include "runtime/culling/culling.h"
 
 #include <assert.h>
 #include <stdatomic.h>
@@ -35,7 +35,7 @@ void start_states_destroy(start_states *s) {
     *s = (start_states){0};
 }
 
-/* ---- the positions seen last ------------------------------------------------------------------------- */
+/* ---- the positions seen last --------------------------------------------------------------------------- */
 
 /* Data that the tasks of a comparison with x, or of a copy of x, share. */
 typedef struct position_work {
@@ -121,7 +121,7 @@ void start_states_begin(start_states *s, const double *x) {
     remember_positions(s, x);
 }
 
-/* ---- numbers per component --------------------------------------------------------------------------- */
+/* ---- numbers per component ----------------------------------------------------------------------------- */
 
 static void count_run(component_start *start, const uint8_t *states, uint32_t count) {
     uint32_t unknown = 0, crossing = 0, clean = 0;
@@ -159,7 +159,7 @@ const bool *start_states_clean(const start_states *s) {
     return s->clean;
 }
 
-/* ---- which free triangles are clean ------------------------------------------------------------------- */
+/* ---- which free triangles are clean -------------------------------------------------------------------- */
 
 /* The state of a triangle while its patch is gathered; no triangle has it when a function below returns to the
  * outside. */

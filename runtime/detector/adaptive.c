@@ -1,7 +1,7 @@
 /* Counts the work of each component with itself, by which the next intervals choose between culling it or not. */
 #include "runtime/detector/adaptive.h"
 
-#include "runtime/culling/culling_choice.h"
+#include "runtime/culling/culling.h"
 
 #include <string.h>
 

@@ -2,7 +2,7 @@
 #include "runtime/detector/candidates.h"
 
 #include "runtime/detector/detector.h"
-#include "runtime/loose/loose_pairs.h"
+#include "runtime/loose/loose.h"
 #include "runtime/narrow_phase/narrow_phase.h"
 
 #include <string.h>

@@ -3,7 +3,6 @@
 
 #include "runtime/bvh/bvh_rebuild.h"
 #include "runtime/culling/culling.h"
-#include "runtime/culling/start_state.h"
 #include "runtime/detector/edge_rest.h"
 #include "runtime/detector/interval_search.h"
 #include "runtime/detector/method_table.h"
@@ -63,7 +62,7 @@ struct cscd_detector {
     uint32_t *touched; /* so many contacts it has with itself */
     bool *incomplete;  /* some of its contacts may be missing */
     uint32_t
-        *kept; /* so many pairs of its triangles were not culled, where that decides (culling_choice.h) */
+        *kept; /* so many pairs of its triangles were not culled, where that decides (culling_choice.c) */
     uint32_t *kept_by_lanes; /* the same for each lane in turn */
     double *earliest; /* the least toi of its contacts with itself, where only the earliest are wanted */
 

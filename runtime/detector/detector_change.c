@@ -1,6 +1,6 @@
 /* A detector that moves over to a mesh that was made from its own: untouched components keep what they have. */
 #include "runtime/bvh/bvh_move.h"
-#include "runtime/culling/culling_move.h"
+#include "runtime/culling/culling.h"
 #include "runtime/detector/detector.h"
 #include "runtime/detector/detector_rules.h"
 #include "runtime/detector/list_cap.h"

@@ -1,7 +1,7 @@
 /* Mode EARLIEST: of the contacts of a component with itself, only the earliest are listed. */
 #include "runtime/detector/earliest_contacts.h"
 
-#include "runtime/culling/tainting.h"
+#include "runtime/culling/culling.h"
 #include "runtime/detector/list_cap.h"
 
 #include <math.h>

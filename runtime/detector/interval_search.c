@@ -1,7 +1,7 @@
 /* The search of one interval: from the trees, refitted to it, to the lanes' contacts. */
 #include "runtime/detector/interval_search.h"
 
-#include "runtime/loose/loose_search.h"
+#include "runtime/loose/loose.h"
 #include "runtime/narrow_phase/narrow_phase.h"
 #include "src/core/timer.h"
 

@@ -1,7 +1,7 @@
 /* A cap on the length of lists: contacts that find no room are counted, and leave nothing behind but taint. */
 #pragma once
 
-#include "runtime/culling/tainting.h"
+#include "runtime/culling/culling.h"
 #include "runtime/detector/detector.h"
 
 /* Which contacts that leave the lanes taint triangles: all of them, or, in a search of a moment, those that are left

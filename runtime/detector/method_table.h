@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cscd/research.h"
-#include "runtime/culling/culling_rules.h"
+#include "runtime/culling/culling.h"
 #include "runtime/narrow_phase/narrow_phase.h"
 
 typedef struct method_stages {

@@ -8,7 +8,7 @@
 #pragma once
 
 #include "runtime/bvh/bvh_rebuild.h"
-#include "runtime/culling/start_state.h"
+#include "runtime/culling/culling.h"
 
 typedef struct rollback {
     uint8_t *triangles;          /* start_states.triangles; NULL: nothing is restored */

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "runtime/bvh/traversal.h"
-#include "runtime/loose/loose_elements.h"
+#include "runtime/loose/loose.h"
 #include "runtime/narrow_phase/narrow_phase.h"
 
 typedef struct search_space {

@@ -1,7 +1,7 @@
 /* One interval through the stages of the pipeline. */
 #include "runtime/detector/step.h"
 
-#include "runtime/culling/tainting.h"
+#include "runtime/culling/culling.h"
 #include "runtime/detector/adaptive.h"
 #include "runtime/detector/alone_search.h"
 #include "runtime/detector/contact_list.h"

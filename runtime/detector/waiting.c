@@ -2,7 +2,7 @@
 #include "runtime/detector/waiting.h"
 
 #include "runtime/ccd/ccd.h"
-#include "runtime/loose/loose_search.h"
+#include "runtime/loose/loose.h"
 #include "src/mesh/mesh.h"
 #include "src/mesh/triangle_intersection.h"
 

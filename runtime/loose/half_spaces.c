@@ -1,7 +1,7 @@
 /* Half-spaces: every vertex that takes part in contacts against every one of them. */
-#include "runtime/ccd/ccd.h"
+#include "runtime/loose/loose.h"
 
-#include "runtime/loose/loose_search.h"
+#include "runtime/ccd/ccd.h"
 
 #include <string.h>
 

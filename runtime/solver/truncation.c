@@ -1,7 +1,7 @@
 /* Shortens the motion of each vertex, so that planes between near pairs keep these apart. */
 #include "runtime/solver/truncation.h"
 
-#include "runtime/culling/tainting.h"
+#include "runtime/culling/culling.h"
 #include "runtime/detector/list_cap.h"
 #include "runtime/detector/step.h"
 #include "runtime/detector/waiting.h"

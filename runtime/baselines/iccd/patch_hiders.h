@@ -2,7 +2,7 @@
  * start. */
 #pragma once
 
-#include "runtime/culling/culling_rules.h"
+#include "runtime/culling/culling.h"
 
 /* ICCD (Tang et al. 2009), corrected (docs/theory/iccd.md). */
 extern const pair_hider iccd_hider;
