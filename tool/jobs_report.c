@@ -8,7 +8,6 @@
 #include "tool/io/output_file.h"
 #include "tool/io/path_name.h"
 #include "tool/io/text_encoding.h"
-#include "tool/jobs/job_junit.h"
 #include "tool/jobs/job_merge.h"
 #include "tool/jobs/job_row.h"
 #include "tool/report/jobs_page.h"

@@ -5,7 +5,6 @@
 #include "tool/common/output_path.h"
 #include "tool/common/terminal.h"
 #include "tool/io/output_file.h"
-#include "tool/jobs/job_junit.h"
 #include "tool/jobs/job_merge.h"
 #include "tool/replay/replay_merge.h"
 #include "tool/replay/shard_file.h"

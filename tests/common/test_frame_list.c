@@ -1,6 +1,6 @@
 /* Frames one after the other are one span of a list. */
 #include "tests/support/test.h"
-#include "tool/common/frame_list.h"
+#include "tool/common/frame_range.h"
 
 TEST(neighbours_join) {
     static const uint32_t frames[] = {0, 1, 2, 4, 6, 7}, spans[][2] = {{0, 2}, {4, 4}, {6, 7}};

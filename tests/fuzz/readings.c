@@ -5,10 +5,9 @@
 #include "tool/io/animation.h"
 #include "tool/io/path_name.h"
 #include "tool/io/plan_file.h"
-#include "tool/jobs/job_junit.h"
 #include "tool/jobs/job_list.h"
 #include "tool/jobs/job_merge.h"
-#include "tool/jobs/job_results.h"
+#include "tool/jobs/job_record.h"
 #include "tool/jobs/job_row.h"
 #include "tool/summary_file.h"
 

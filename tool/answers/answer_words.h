@@ -1,4 +1,4 @@
-/* The answers for people: a sentence, which comes first. */
+/* The answers for people: a sentence, which comes first, and tables of events and frames. */
 #pragma once
 
 #include "tool/answers/answers.h"
@@ -14,3 +14,10 @@
  * first, and nothing is called clean; where less was asked for than the recording has, the frames are named. After
  * answers_finish. */
 void answers_print_sentence(FILE *out, const answers *a, const length_unit *unit);
+
+/* Prints on the standard output a row for each event, as many as a screen holds; nothing where there is none. */
+void answers_print_events(const answers *a, const length_unit *unit);
+
+/* The same for each frame that crosses or touches (pairs, share of the triangles that cross another one, depth,
+ * milliseconds), and how many are clean. */
+void answers_print_frames(const answers *a, const length_unit *unit);

@@ -2,7 +2,6 @@
  * these frames make up. */
 #pragma once
 
-#include "tool/answers/collapsed_parts.h"
 #include "tool/answers/shown_depths.h"
 #include "tool/answers/turned_parts.h"
 #include "tool/io/growable.h"

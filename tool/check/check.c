@@ -3,9 +3,8 @@
 #include "tool/common/command.h"
 #include "tool/common/option_values.h"
 #include "tool/common/output_path.h"
-#include "tool/common/shared_options.h"
 #include "tool/jobs/listed_recordings.h"
-#include "tool/jobs/mesh_kind.h"
+#include "tool/jobs/mesh_job.h"
 
 static bool read_fail_kind(const char *text, void *place) {
     int kind;

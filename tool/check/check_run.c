@@ -1,7 +1,6 @@
 /* A run of `cscd check`: frame by frame, what intersects. */
 #include "tool/check/check_run.h"
 
-#include "tool/answers/answer_tables.h"
 #include "tool/answers/answer_words.h"
 #include "tool/check/check_output.h"
 #include "tool/common/command.h"

@@ -27,7 +27,7 @@ typedef struct option_example {
 
 enum { OPTION_EXAMPLES = 3 }; /* of each command: before all else in --help, and in the manual page */
 
-/* Rows that several commands have (shared_options.h). --help shows them below a title. */
+/* Rows that several commands have (option_values.h). --help shows them below a title. */
 typedef struct option_list {
     const char *title;
     const option_row *rows; /* their places count from the struct that all these commands have */

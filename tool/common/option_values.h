@@ -1,7 +1,8 @@
-/* Readers of option values (option_table.h) that more than one command has. */
+/* Readers of option values, and rows of options, that more than one command has. */
 #pragma once
 
 #include "cscd/cscd.h"
+#include "tool/common/option_table.h"
 
 #include <stdbool.h>
 
@@ -32,3 +33,20 @@ bool parse_method(const char *text, cscd_method *method, uint32_t *k);
 
 /* The place of a text in a list of names; false, and *out untouched, when it is not there. */
 bool parse_choice(const char *text, const char *const *names, int count, int *out);
+
+/* Their places count from the command's recording_options. */
+extern const option_list object_rows; /* further objects and how they move */
+extern const option_list frame_rows;  /* frames, welding, threads */
+
+/* Its places count from the command's ignore_options. */
+extern const option_list pair_rows; /* parts, and pairs that are left out */
+
+/* As --up has it. */
+typedef enum up_axis { UP_BY_FORMAT, UP_Y, UP_Z } up_axis;
+
+/* Reads the value y or z of an option; place points to an up_axis. */
+bool read_up(const char *text, void *place);
+
+/* What was given, else what the format of the model's file says or its programs do: y of glTF, which defines it, and of OBJ,
+ * as exporters write it; z of STL and PLY, which come from printers and scanners, and of all others. */
+up_axis up_axis_choose(up_axis given, const char *model_path);

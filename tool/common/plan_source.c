@@ -1,13 +1,14 @@
-/* Finds a plan: in a file, or by making it in memory, or none; and chooses the method that the detector
- * then uses. */
+/* Finds a plan: in a file, or by making it in memory, or none; and chooses the method that the detector then uses. Reads how stiff
+ * the triangles are, which plans by charge take into account. */
 #include "tool/common/plan_source.h"
 
 #include "tool/common/methods.h"
-#include "tool/common/recorded_stiffness.h"
 #include "tool/io/path_name.h"
 #include "tool/io/plan_file.h"
 #include "tool/io/text_escape.h"
 
+#include <float.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -235,4 +236,48 @@ void plan_choice_print(const plan_choice *choice) {
     }
     if (choice->remark[0] != '\0') printf(" (%s)", choice->remark);
     putchar('\n');
+}
+
+/* ---- how stiff the material of a recording is ------------------------------------------------------------ */
+
+static const recorded_object *find_stiff(const recording *r) {
+    for (uint32_t i = 0; i < r->object_count; i++)
+        if (r->objects[i].file.stiffness != NULL) return &r->objects[i];
+    return NULL;
+}
+
+static bool read_triangle(const recording *r, uint32_t t, recorded_stiffness *s, io_error *error) {
+    const recorded_object *object = &r->objects[recording_object_of_triangle(r, t)];
+    s->of_triangle[t] = 1.0;
+    if (object->file.stiffness == NULL) return true;
+    const double value = object->file.stiffness[recording_file_triangle(r, t)];
+    if (!(value > 0.0 && value <= DBL_MAX))
+        return io_fail(error, "%s: the stiffness of face %u is %g, expected a positive finite number",
+                       object->source.model_path, recording_file_face(r, t), value);
+    s->of_triangle[t] = value;
+    s->least = fmin(s->least, value);
+    s->greatest = fmax(s->greatest, value);
+    return true;
+}
+
+bool recorded_stiffness_read(const recording *r, recorded_stiffness *out, io_error *error) {
+    const uint32_t count = cscd_mesh_triangle_count(r->mesh);
+    const recorded_object *first = find_stiff(r);
+    recorded_stiffness s = {.least = INFINITY};
+    *out = (recorded_stiffness){0};
+    if (first == NULL) return true;
+    s.path = first->source.model_path;
+    s.of_triangle = malloc(((size_t)count + 1) * sizeof *s.of_triangle);
+    bool read = s.of_triangle != NULL || io_fail(error, "out of memory");
+    for (uint32_t t = 0; t < count && read; t++) read = read_triangle(r, t, &s, error);
+    if (read)
+        *out = s;
+    else
+        free(s.of_triangle);
+    return read;
+}
+
+void recorded_stiffness_free(recorded_stiffness *s) {
+    free(s->of_triangle);
+    *s = (recorded_stiffness){0};
 }

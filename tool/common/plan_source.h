@@ -1,5 +1,5 @@
-/* Finds a plan: in a file, or by making it in memory, or none; and chooses the method that the detector
- * then uses. */
+/* Finds a plan: in a file, or by making it in memory, or none; and chooses the method that the detector then uses. Reads how stiff
+ * the triangles are, which plans by charge take into account. */
 #pragma once
 
 #include "tool/common/recording.h"
@@ -42,3 +42,14 @@ void plan_choice_free(plan_choice *choice);
 
 /* "charge, 4 regions, from pawn.plan.ply", and the remark. */
 void plan_choice_print(const plan_choice *choice);
+
+/* How stiff the material of a recording is, where its model files say so. */
+typedef struct recorded_stiffness {
+    double *of_triangle; /* of the mesh; NULL: no model says */
+    const char *path;    /* of the first model that does */
+    double least, greatest;
+} recorded_stiffness;
+
+/* Objects whose models do not say are as stiff everywhere. False: a value is not positive and finite, and there is nothing to free. */
+bool recorded_stiffness_read(const recording *r, recorded_stiffness *out, io_error *error);
+void recorded_stiffness_free(recorded_stiffness *s);

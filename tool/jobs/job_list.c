@@ -1,11 +1,15 @@
-/* Lists of jobs: which lines they have, and the hash that tells them apart. */
+/* Lists of jobs: a file of JSON Lines (docs/artist/formats.md), or the names of meshes, each a job; the lines, and the hash that
+ * tells lists apart. */
 #include "tool/jobs/job_list.h"
 
 #include "tool/common/provenance.h"
 #include "tool/io/file_reader.h"
 #include "tool/io/growable.h"
+#include "tool/io/json_room.h"
 #include "tool/io/text_encoding.h"
 
+#include <json-c/json.h>
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -100,4 +104,203 @@ void job_list_free(job_list *list) {
     free(list->text);
     free(list->jobs);
     *list = (job_list){.path = NULL};
+}
+
+/* ---- lines of a list of jobs, which are JSON objects ----------------------------------------------------- */
+
+enum { DEPTH_MAX = 8 };
+
+typedef struct line_reader {
+    json_object *root;
+    growable inputs, options; /* const char *, job_option */
+    io_error *error;
+} line_reader;
+
+/* ---- values ---------------------------------------------------------------------------------------------- */
+
+/* The text of a string, or of a number as the line has it; NULL with the error. */
+static const char *read_value(line_reader *r, json_object *value, const char *name) {
+    const bool is_text = json_object_is_type(value, json_type_string);
+    if (!is_text && !json_object_is_type(value, json_type_int) &&
+        !json_object_is_type(value, json_type_double)) {
+        io_fail(r->error, "'%s' must be a text or a number", name);
+        return NULL;
+    }
+    const char *text = json_object_get_string(value);
+    if (text == NULL)
+        io_fail(r->error, "out of memory");
+    else if (is_text && strlen(text) != (size_t)json_object_get_string_len(value)) {
+        io_fail(r->error, "'%s' has a character 0", name);
+        return NULL;
+    }
+    return text;
+}
+
+static bool add_input(line_reader *r, json_object *value, const char *name) {
+    const char **place;
+    if (!json_object_is_type(value, json_type_string))
+        return io_fail(r->error, "'%s' must be the name of a file", name);
+    const char *text = read_value(r, value, name);
+    if (text == NULL) return false;
+    if (text[0] == '\0') return io_fail(r->error, "'%s' is empty", name);
+    place = growable_push(&r->inputs);
+    if (place == NULL) return io_fail(r->error, "out of memory");
+    *place = text;
+    return true;
+}
+
+/* An array has several values, as an option that is given as often as needed. */
+static bool add_inputs(line_reader *r, json_object *value, const char *name) {
+    if (value == NULL) return true;
+    if (!json_object_is_type(value, json_type_array)) return add_input(r, value, name);
+    for (size_t i = 0; i < json_object_array_length(value); i++)
+        if (!add_input(r, json_object_array_get_idx(value, i), name)) return false;
+    return true;
+}
+
+static bool add_option(line_reader *r, const char *name, json_object *value) {
+    const char *text = NULL;
+    if (!json_object_is_type(value, json_type_boolean)) {
+        text = read_value(r, value, name);
+        if (text == NULL) return false;
+    } else if (!json_object_get_boolean(value))
+        return true;
+    job_option *option = growable_push(&r->options);
+    if (option == NULL) return io_fail(r->error, "out of memory");
+    *option = (job_option){name, text};
+    return true;
+}
+
+/* What is null or false is not given. */
+static bool add_options(line_reader *r, const char *name, json_object *value) {
+    if (value == NULL) return true;
+    if (!json_object_is_type(value, json_type_array)) return add_option(r, name, value);
+    for (size_t i = 0; i < json_object_array_length(value); i++)
+        if (!add_option(r, name, json_object_array_get_idx(value, i))) return false;
+    return true;
+}
+
+static bool add_object(line_reader *r, json_object *object, const char *name) {
+    if (object == NULL) return true;
+    if (!json_object_is_type(object, json_type_object))
+        return io_fail(r->error, "'%s' must be an object, as {\"json\": \"a.json\"}", name);
+    json_object_object_foreach(object, key, value) {
+        if (!add_options(r, key, value)) return false;
+    }
+    return true;
+}
+
+/* ---- members --------------------------------------------------------------------------------------------- */
+
+static bool know_members(const line_reader *r) {
+    static const char *const known[] = {"name", "model", "frames", "size", "parts", "options", "outputs"};
+    json_object_object_foreach(r->root, key, value) {
+        (void)value;
+        bool found = false;
+        for (size_t i = 0; i < sizeof known / sizeof *known; i++) found |= strcmp(key, known[i]) == 0;
+        if (!found)
+            return io_fail(
+                r->error,
+                "'%s' is no member of a job; name, model, frames, size, parts, options and outputs are", key);
+    }
+    return true;
+}
+
+static bool read_size(const line_reader *r, uint64_t *out) {
+    json_object *value = json_object_object_get(r->root, "size");
+    *out = NO_JOB_SIZE;
+    if (value == NULL) return true;
+    const int64_t size = json_object_is_type(value, json_type_int) ? json_object_get_int64(value) : -1;
+    if (size < 0 || (uint64_t)size > JOB_SIZE_MAX)
+        return io_fail(r->error, "'size' must be a whole number from 0 to 10^12");
+    *out = (uint64_t)size;
+    return true;
+}
+
+static bool read_name(line_reader *r, const char **out) {
+    json_object *value = json_object_object_get(r->root, "name");
+    const char *const *inputs = r->inputs.data;
+    *out = inputs != NULL ? inputs[0] : NULL;
+    if (value != NULL) {
+        *out = read_value(r, value, "name");
+        return *out != NULL;
+    }
+    return *out != NULL ||
+           io_fail(r->error, "a job needs a 'model', or a 'name' where options have its objects");
+}
+
+static bool read_members(line_reader *r, job_line *out) {
+    json_object *root = r->root;
+    json_object *model = json_object_object_get(root, "model"),
+                *frames = json_object_object_get(root, "frames");
+    if (!know_members(r) || !read_size(r, &out->size)) return false;
+    if (model != NULL && !add_input(r, model, "model")) return false;
+    if (model == NULL && frames != NULL) return io_fail(r->error, "'frames' need a 'model'");
+    return add_inputs(r, frames, "frames") && read_name(r, &out->name) &&
+           add_options(r, "parts", json_object_object_get(root, "parts")) &&
+           add_object(r, json_object_object_get(root, "options"), "options") &&
+           add_object(r, json_object_object_get(root, "outputs"), "outputs");
+}
+
+/* ---- lines ----------------------------------------------------------------------------------------------- */
+
+static json_object *parse_line(const char *text, size_t length, io_error *error) {
+    if (!json_has_room(text, length)) {
+        io_fail(error, "more objects than one in ten bytes, expected a job");
+        return NULL;
+    }
+    json_tokener *parser = length < INT_MAX ? json_tokener_new_ex(DEPTH_MAX) : NULL;
+    if (parser == NULL) {
+        io_fail(error, "out of memory");
+        return NULL;
+    }
+    json_tokener_set_flags(parser, JSON_TOKENER_STRICT);
+    /* The 0 behind the line ends a line that has too little. */
+    json_object *root = json_tokener_parse_ex(parser, text, (int)length + 1);
+    const enum json_tokener_error cause = json_tokener_get_error(parser);
+    const size_t end = json_tokener_get_parse_end(parser);
+    if (root == NULL && cause != json_tokener_success)
+        io_fail(error, "no valid JSON at character %zu: %s", end + 1,
+                cause == json_tokener_error_parse_eof ? "the line ends too early"
+                                                      : json_tokener_error_desc(cause));
+    else if (!json_object_is_type(root, json_type_object)) {
+        io_fail(error, "a job must be an object, as {\"model\": \"body.obj\"}");
+        json_object_put(root);
+        root = NULL;
+    }
+    json_tokener_free(parser);
+    return root;
+}
+
+bool job_line_read(const char *text, size_t length, job_line *out, io_error *error) {
+    line_reader r = {
+        .inputs = growable_of(sizeof(char *)), .options = growable_of(sizeof(job_option)), .error = error};
+    job_line line = {.memory = NULL};
+    char *copy = malloc(length + 1);
+    if (copy == NULL) return io_fail(error, "out of memory");
+    memcpy(copy, text, length);
+    copy[length] = '\0';
+    r.root = parse_line(copy, length, error);
+    free(copy);
+    const bool good = r.root != NULL && read_members(&r, &line);
+    if (!good) {
+        growable_free(&r.inputs);
+        growable_free(&r.options);
+        json_object_put(r.root);
+        return false;
+    }
+    line.input_count = r.inputs.count;
+    line.option_count = r.options.count;
+    line.inputs = growable_take(&r.inputs);
+    line.options = growable_take(&r.options);
+    line.memory = r.root;
+    *out = line;
+    return true;
+}
+
+void job_line_free(job_line *line) {
+    free(line->inputs);
+    free(line->options);
+    json_object_put(line->memory);
+    *line = (job_line){.memory = NULL};
 }

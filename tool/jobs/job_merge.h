@@ -1,4 +1,4 @@
-/* Brings the results of all shards of a list together, and proves that each job has one, or names those that have none. */
+/* Brings the results of all shards together: finds the line of each job, copies them in order, and writes them as JUnit. */
 #pragma once
 
 #include "tool/jobs/job_record.h"
@@ -44,3 +44,12 @@ typedef bool job_line_taker(void *user, const char *line, size_t length, const j
 bool job_merge_visit(const job_merge *merge, job_line_taker *take, void *user, io_error *error);
 
 void job_merge_free(job_merge *merge);
+
+/* A job fails if it found what --fail-on and the like ask for, and is an error if it has failed itself. suite: what all of them are
+ * called. */
+void job_junit_begin(FILE *out, const char *suite, const job_sums *sums);
+
+/* Adds a job by its line of results; NULL: the job is missing, which is an error. False if memory is short. */
+bool job_junit_add(FILE *out, const char *line, size_t length, const job_record *record);
+
+void job_junit_end(FILE *out);

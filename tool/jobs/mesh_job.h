@@ -1,8 +1,9 @@
-/* One mesh among many: how it is read and checked, and what was found, in all frames of the animation that its file holds. */
+/* One mesh among many: how it is read and checked, what was found in all frames that its file holds, and its line of results. */
 #pragma once
 
 #include "tool/answers/answer_options.h"
 #include "tool/jobs/job_record.h"
+#include "tool/jobs/job_work.h"
 
 typedef struct mesh_job {
     const char *path;
@@ -38,3 +39,13 @@ void mesh_answer_free(mesh_answer *answer);
 
 /* Why the mesh was not checked. */
 const char *mesh_answer_reason(const mesh_answer *answer);
+
+typedef struct mesh_kind_options {
+    const recording_options *source; /* how meshes are read */
+    const ignore_options *ignored;   /* pairs of parts */
+    const answer_options *answers;   /* rules, unit, depths */
+    bool reproducible;               /* lines come without times */
+} mesh_kind_options;
+
+/* The options outlive the kind. */
+job_kind mesh_kind_of(const mesh_kind_options *options);

@@ -1,7 +1,7 @@
 /* Runs the jobs of a list, or a shard of them, and keeps their results. */
 #pragma once
 
-#include "tool/jobs/job_results.h"
+#include "tool/jobs/job_record.h"
 #include "tool/jobs/job_shards.h"
 #include "tool/jobs/job_work.h"
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "tool/picture/camera.h"
-#include "tool/picture/ground.h"
 #include "tool/picture/image.h"
+#include "tool/picture/shadow.h"
 #include "tool/picture/visibility.h"
 
 /* Smooth: normals are interpolated, except across creases. Unlit: the colours exactly as given. */

@@ -1,7 +1,9 @@
-/* The soft shadow that a body casts straight down. */
+/* The ground below a body, and the soft shadow that the body casts straight down: each cell of a map of its heights spreads its shadow
+ * over a disc that widens with its height above the point. */
 #pragma once
 
 #include "tool/io/io_error.h"
+#include "tool/picture/camera.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -31,3 +33,14 @@ void picture_shadow_free(picture_shadow *shadow);
 /* How much light from above the body takes from a level surface at the point, 0 to 1: sharp and dark where
  * they are near, wider and fainter the farther the body is above. */
 double picture_shadow_at(const picture_shadow *shadow, const double point[3]);
+
+typedef struct picture_ground {
+    double square; /* side of the squares; 0: none */
+    bool y_up;     /* else z is up */
+    const picture_shadow *shadow;
+} picture_ground;
+
+/* The share of the light that is left at pixel (x, y) in the given depth; normal and view (towards the eye)
+ * are unit vectors in camera space. */
+double picture_ground_light(const picture_ground *ground, const picture_camera *camera,
+                            const double normal[3], const double view[3], double x, double y, double depth);

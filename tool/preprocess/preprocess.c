@@ -8,8 +8,6 @@
 #include "tool/common/output_path.h"
 #include "tool/common/plan_colours.h"
 #include "tool/common/plan_source.h"
-#include "tool/common/recorded_stiffness.h"
-#include "tool/common/shared_options.h"
 #include "tool/common/terminal.h"
 #include "tool/io/path_name.h"
 #include "tool/io/plan_file.h"

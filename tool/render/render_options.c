@@ -4,7 +4,6 @@
 #include "tool/common/command.h"
 #include "tool/common/option_values.h"
 #include "tool/common/output_path.h"
-#include "tool/common/shared_options.h"
 
 static bool read_colour(const char *text, void *place) {
     int colour;

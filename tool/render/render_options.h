@@ -3,7 +3,7 @@
 
 #include "tool/common/frame_range.h"
 #include "tool/common/ignore_pairs.h"
-#include "tool/common/up_axis.h"
+#include "tool/common/option_values.h"
 #include "tool/picture/scene.h"
 
 typedef enum colouring {

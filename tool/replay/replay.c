@@ -4,10 +4,10 @@
 #include "tool/common/output_path.h"
 #include "tool/jobs/listed_recordings.h"
 #include "tool/jobs/recording_answer.h"
-#include "tool/replay/replay_chunks.h"
 #include "tool/replay/replay_print.h"
 #include "tool/replay/replay_shard.h"
 #include "tool/replay/replay_sink.h"
+#include "tool/replay/shard_file.h"
 
 #include <math.h>
 #include <stdlib.h>

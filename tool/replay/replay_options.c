@@ -6,7 +6,6 @@
 #include "tool/common/methods.h"
 #include "tool/common/option_values.h"
 #include "tool/common/output_path.h"
-#include "tool/common/shared_options.h"
 #include "tool/io/contact_file.h"
 #include "tool/io/gltf.h"
 

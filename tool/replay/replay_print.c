@@ -1,7 +1,6 @@
 /* What a replay says to people. */
 #include "tool/replay/replay_print.h"
 
-#include "tool/answers/answer_tables.h"
 #include "tool/answers/answer_words.h"
 #include "tool/common/methods.h"
 

@@ -1,7 +1,7 @@
 /* A replay under way: what it reads, how far it is, and what it has found. */
 #pragma once
 
-#include "tool/common/frame_list.h"
+#include "tool/common/frame_range.h"
 #include "tool/common/ignore_pairs.h"
 #include "tool/common/plan_source.h"
 #include "tool/common/terminal.h"

@@ -2,7 +2,7 @@
 #include "tool/replay/replay_shard.h"
 
 #include "tool/common/provenance.h"
-#include "tool/replay/replay_chunks.h"
+#include "tool/replay/shard_file.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
 /* Where a replay has its intervals and frames from, one after the other. */
 #include "tool/replay/replay_source.h"
 
-#include "tool/replay/replay_chunks.h"
+#include "tool/replay/shard_file.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* `cscd sense`: particles that warn where objects come near each other, interval by interval. */
 #include "tool/common/command.h"
-#include "tool/common/frame_list.h"
+#include "tool/common/frame_range.h"
 #include "tool/common/object_pairs.h"
 #include "tool/common/output_path.h"
 #include "tool/common/terminal.h"

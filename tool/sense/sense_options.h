@@ -3,8 +3,8 @@
 
 #include "cscd/sensors.h"
 #include "tool/common/frame_range.h"
+#include "tool/common/option_values.h"
 #include "tool/common/recording.h"
-#include "tool/common/up_axis.h"
 #include "tool/picture/scene.h"
 
 typedef struct sense_options {

@@ -1,7 +1,7 @@
 /* The extensions of a glTF file: those that it requires must be read, and those that it only uses are named. */
 #include "tool/io/gltf/gltf_extensions.h"
 
-#include "tool/io/gltf/gltf_instancing.h"
+#include "tool/io/gltf/gltf_nodes.h"
 #include "tool/io/text_escape.h"
 
 #include <inttypes.h>

@@ -1,4 +1,4 @@
-/* The nodes of a glTF file: a forest, where its parts stand at rest, and which of them the scene shows. */
+/* The nodes of a glTF file: a forest, where its parts stand at rest, which of them the scene shows, and their instances. */
 #include "tool/io/gltf/gltf_nodes.h"
 
 #include <inttypes.h>
@@ -146,4 +146,121 @@ void gltf_nodes_close(gltf_nodes *nodes) {
     free(nodes->nodes);
     free(nodes->order);
     *nodes = (gltf_nodes){0};
+}
+
+/* ---- the extension EXT_mesh_gpu_instancing of nodes ------------------------------------------------------ */
+
+/* Reads one attribute, and checks that all of them are of as many copies. */
+static bool read_attribute(gltf_document *document, const gltf_element *attributes, const char *key,
+                           uint32_t components, gltf_accessor *accessor, bool *given, uint32_t *count) {
+    if (!gltf_accessor_open(document, attributes, key, components, accessor, given)) return false;
+    if (!*given) return true;
+    if (*count != 0 && accessor->count != *count)
+        return gltf_fail(attributes, "%s is of %" PRIu32 " instances, the attribute before it of %" PRIu32,
+                         key, accessor->count, *count);
+    *count = accessor->count;
+    return true;
+}
+
+/* Without bytes of its own in the file, an accessor stands for any number of zeros. */
+static bool holds_data(const gltf_accessor *accessor, bool given) {
+    return given && accessor->data != NULL;
+}
+
+static bool read_attributes(gltf_document *document, const gltf_element *attributes,
+                            gltf_instancing *copies) {
+    if (!read_attribute(document, attributes, "TRANSLATION", 3, &copies->translation,
+                        &copies->has_translation, &copies->count) ||
+        !read_attribute(document, attributes, "ROTATION", 4, &copies->rotation, &copies->has_rotation,
+                        &copies->count) ||
+        !read_attribute(document, attributes, "SCALE", 3, &copies->scale, &copies->has_scale, &copies->count))
+        return false;
+    return holds_data(&copies->translation, copies->has_translation) ||
+           holds_data(&copies->rotation, copies->has_rotation) ||
+           holds_data(&copies->scale, copies->has_scale) ||
+           gltf_fail(attributes,
+                     GLTF_INSTANCING " has neither TRANSLATION nor ROTATION nor SCALE with data, so "
+                                     "nothing says where its instances are");
+}
+
+bool gltf_instancing_open(gltf_document *document, uint32_t node, gltf_instancing *out) {
+    gltf_element element, extensions, extension, attributes;
+    gltf_instancing copies = {0};
+    *out = copies;
+    if (!gltf_element_at(&document->root, "nodes", "node", node, &element) ||
+        !gltf_object(&element, "extensions", &extensions))
+        return false;
+    if (extensions.value == NULL) return true;
+    if (!gltf_object(&extensions, GLTF_INSTANCING, &extension)) return false;
+    if (extension.value == NULL) return true;
+    if (gltf_has(&element, "skin"))
+        return gltf_fail(&element, "has a skin and " GLTF_INSTANCING
+                                   ", and the format does not say where its instances are then");
+    if (!gltf_object(&extension, "attributes", &attributes)) return false;
+    if (attributes.value == NULL) return gltf_fail(&element, GLTF_INSTANCING " has no attributes");
+    if (!read_attributes(document, &attributes, &copies)) return false;
+    *out = copies;
+    return true;
+}
+
+gltf_transform gltf_instancing_place(const gltf_instancing *copies, uint32_t copy) {
+    gltf_placement placement = {.rotation = {0, 0, 0, 1}, .scale = {1, 1, 1}};
+    if (copies->has_translation) gltf_accessor_get(&copies->translation, copy, placement.translation);
+    if (copies->has_rotation) gltf_accessor_get(&copies->rotation, copy, placement.rotation);
+    if (copies->has_scale) gltf_accessor_get(&copies->scale, copy, placement.scale);
+    return gltf_transform_of_placement(&placement);
+}
+
+/* ---- affine maps of glTF nodes --------------------------------------------------------------------------- */
+
+gltf_transform gltf_transform_identity(void) {
+    return (gltf_transform){{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+}
+
+gltf_transform gltf_transform_of_placement(const gltf_placement *placement) {
+    const double *q = placement->rotation, *s = placement->scale, *t = placement->translation;
+    const double x = q[0], y = q[1], z = q[2], w = q[3];
+    const double length =
+        x * x + y * y + z * z + w * w; /* squared: so it needs no root, and right angles are exact */
+    const double d = length > 0 ? 2 / length : 0;
+    return (gltf_transform){{
+        {(1 - d * (y * y + z * z)) * s[0], d * (x * y - z * w) * s[1], d * (x * z + y * w) * s[2], t[0]},
+        {d * (x * y + z * w) * s[0], (1 - d * (x * x + z * z)) * s[1], d * (y * z - x * w) * s[2], t[1]},
+        {d * (x * z - y * w) * s[0], d * (y * z + x * w) * s[1], (1 - d * (x * x + y * y)) * s[2], t[2]},
+    }};
+}
+
+gltf_transform gltf_transform_of_columns(const double columns[16]) {
+    gltf_transform out;
+    for (int row = 0; row < 3; row++)
+        for (int column = 0; column < 4; column++) out.rows[row][column] = columns[4 * column + row];
+    return out;
+}
+
+gltf_transform gltf_transform_multiply(const gltf_transform *a, const gltf_transform *b) {
+    gltf_transform out;
+    for (int row = 0; row < 3; row++)
+        for (int column = 0; column < 4; column++) {
+            double sum = column == 3 ? a->rows[row][3] : 0;
+            for (int k = 0; k < 3; k++) sum += a->rows[row][k] * b->rows[k][column];
+            out.rows[row][column] = sum;
+        }
+    return out;
+}
+
+void gltf_transform_apply(const gltf_transform *a, const double x[3], double out[3]) {
+    double moved[3];
+    for (int row = 0; row < 3; row++) {
+        const double *r = a->rows[row];
+        moved[row] = r[0] * x[0] + r[1] * x[1] + r[2] * x[2] + r[3];
+    }
+    for (int axis = 0; axis < 3; axis++) out[axis] = moved[axis];
+}
+
+int gltf_transform_mirrors(const gltf_transform *a) {
+    const double(*m)[4] = a->rows;
+    const double determinant = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+                               m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+                               m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+    return determinant < 0;
 }

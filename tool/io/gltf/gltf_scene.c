@@ -1,7 +1,7 @@
 /* What the default scene of a glTF file shows: its nodes with meshes, one behind the other. */
 #include "tool/io/gltf/gltf_scene.h"
 
-#include "tool/io/gltf/gltf_instancing.h"
+#include "tool/io/gltf/gltf_nodes.h"
 #include "tool/io/growable.h"
 
 #include <inttypes.h>

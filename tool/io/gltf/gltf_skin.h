@@ -1,8 +1,8 @@
-/* The skins of a glTF file: the nodes that move vertices as joints. */
+/* The skins of a glTF file: the nodes that move vertices as joints, and the weights of vertices. */
 #pragma once
 
 #include "tool/io/gltf/gltf_document.h"
-#include "tool/io/gltf/gltf_transform.h"
+#include "tool/io/gltf/gltf_nodes.h"
 
 typedef struct gltf_skin {
     uint32_t joint_count;
