@@ -103,7 +103,7 @@ TEST_LIBS   := -lcmocka -lflint-arb -lflint -lgmp $(TOOL_LIBS) $(BASELINE_LIBS)
 
 # A file that ends in _simd.c is compiled once per instruction set. libcscd-baselines.so has sources of its own.
 BASELINE_SOURCES := $(wildcard preprocess/baselines/dense/*.c runtime/baselines/gsl/*.c src/blas/*.c)
-CORE_FILES      := $(wildcard src/core/*.c src/mesh/*.c preprocess/*.c preprocess/*/*.c runtime/*/*.c runtime/*/*/*.c)
+CORE_FILES      := $(wildcard src/core/*.c src/mesh/*.c preprocess/*.c preprocess/*/*.c runtime/*/*.c runtime/*/*/*.c sensors/*.c)
 CORE_SOURCES    := $(filter-out %_simd.c $(BASELINE_SOURCES),$(CORE_FILES))
 KERNEL_SOURCES  := $(filter %_simd.c,$(CORE_FILES))
 # What commands of the tool share, and the commands.
@@ -112,7 +112,7 @@ OTHER_PROCESSES := $(foreach file,jobs/job_processes common/blas_kernels,tool/$(
 COMMON_SOURCES  := $(filter-out $(OTHER_PROCESSES) $(if $(filter 0,$(EXPAT)),$(filter-out $(WITHOUT_GIFTI),$(wildcard tool/io/gifti/*.c)),$(WITHOUT_GIFTI)), \
                      $(wildcard tool/io/*.c tool/io/*/*.c tool/picture/*.c tool/common/*.c tool/answers/*.c \
                      tool/jobs/*.c tool/export/*.c tool/report/*.c))
-COMMAND_SOURCES := $(wildcard tool/*.c $(patsubst %,tool/%/*.c,check preprocess replay render sense))
+COMMAND_SOURCES := $(wildcard tool/*.c $(patsubst %,tool/%/*.c,check preprocess replay render) sensors/tool/*.c)
 NATIVE_SOURCES  := $(wildcard python/native/*.c)
 SUPPORT_SOURCES := $(filter-out $(if $(WINDOWS),,tests/support/tool/tool_process.c),$(wildcard tests/support/*.c tests/support/*/*.c))
 # `rm -r runtime/baselines`, and its lines in runtime/detector/method_table.c: what needs them is not built then.
@@ -157,7 +157,7 @@ MODEL_PARTS     := $(wildcard models/*/*.c)
 CPP_MODEL_SOURCES := $(wildcard models/*.cpp)
 CPP_MODEL_PARTS   := $(wildcard models/*/*.cpp)
 BENCHMARK_SOURCES := $(filter-out $(if $(HAS_BASELINES),,benchmarks/thesis.c benchmarks/thesis_figures.c benchmarks/volumes.c),$(wildcard benchmarks/*.c))
-BENCHMARK_PARTS   := $(filter-out %_simd.c,$(wildcard benchmarks/lib/*.c))
+BENCHMARK_PARTS   := $(filter-out %_simd.c,$(wildcard benchmarks/lib/*.c benchmarks/sensors/*.c sensors/tool/object_pairs.c))
 PEER_SOURCES      := $(wildcard benchmarks/peers/*.c benchmarks/peers/*.cpp)
 SOURCES := $(CORE_SOURCES) $(BASELINE_SOURCES) $(KERNEL_SOURCES) $(COMMON_SOURCES) $(COMMAND_SOURCES) $(NATIVE_SOURCES) $(SUPPORT_SOURCES) $(ROOM_SOURCES) $(FUZZ_SOURCES) \
            $(MODEL_SOURCES) $(MODEL_PARTS) $(CPP_MODEL_SOURCES) $(CPP_MODEL_PARTS) $(BENCHMARK_SOURCES) $(BENCHMARK_PARTS) \
@@ -207,10 +207,10 @@ SLOW_loose         := loose_solver loose_steps
 SLOW_mesh          := predicates triangle_intersection
 SLOW_models        := cloth_drivers cloth_scenes ipc_scenes programs recording_pawn recordings shape_regions shapes soft_body
 SLOW_narrow_phase  := exclusions feature_queue orphan_pairs
-SLOW_preprocess    := best_draft charge connected_regions cover labelling motion partition partition_counts plan_failures rank_blocks regions stiffness
+SLOW_preprocess    := best_draft charge connected_regions cover labelling motion plan_failures rank_blocks regions stiffness
 SLOW_proofs        := creations intersections solver_calls steps told
 SLOW_report        := report_browser report_frames report_page report_view
-SLOW_sensors       := exact_check sensor_bounds sensor_recall sensor_scenes
+SLOW_sensors       := exact_check partition partition_counts sensor_bounds sensor_recall sensor_scenes
 SLOW_solver        := float_march max_step
 SLOW_tool          := large_recordings tool tool_export tool_figure tool_outputs tool_preprocess tool_render tool_shards tool_stop tool_streaming
 rooms_of = $(sort $(notdir $(patsubst %/,%,$(dir $(1)))))
@@ -828,7 +828,7 @@ $(BUILD)/tests/fuzz/fuzz_readers $(BUILD)/tests/fuzz/coverage_target: $(READING_
 $(BUILD)/tests/fuzz/coverage_target: TEST_LINKER :=
 $(BUILD)/tests/fuzz/coverage_target: LINK_ALL += -fsanitize=fuzzer
 
-$(BUILD)/tests/cpp/room: TEST_LIBS += -lstdc++
+$(BUILD)/tests/cpp/room $(BUILD)/tests/sensors/room: TEST_LIBS += -lstdc++
 ifneq ($(filter tests/ccd/test_root_finders.c,$(ROOM_SOURCES)),)
 $(BUILD)/tests/ccd/room: WRAPPED += -Wl,--wrap=cubic_guess_roots
 endif

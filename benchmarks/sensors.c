@@ -1,8 +1,8 @@
 /* What particle sensors are worth: recall, false alarms and time on scenes of many objects, beside the
  * detector. */
 #include "benchmarks/lib/scene_files.h"
-#include "benchmarks/lib/sensor_cost.h"
-#include "benchmarks/lib/sensor_trial.h"
+#include "benchmarks/sensors/cost.h"
+#include "benchmarks/sensors/trial.h"
 
 #include <stdio.h>
 #include <stdlib.h>

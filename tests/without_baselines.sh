@@ -8,7 +8,7 @@ started=$(date +%s)
 
 rm -rf "$copy"
 mkdir -p "$copy"
-git ls-files -co --exclude-standard Makefile include src preprocess runtime tool packaging models benchmarks tests |
+git ls-files -co --exclude-standard Makefile include src preprocess runtime sensors tool packaging models benchmarks tests |
     tar -cf - --ignore-failed-read -T - | tar -xf - -C "$copy"
 cd "$copy"
 marked='runtime/detector/method_table.c preprocess/plan_draft.c preprocess/charges.c'

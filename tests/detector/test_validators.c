@@ -2,7 +2,7 @@
  * library has made. */
 #include "cscd/sensors.h"
 #include "runtime/detector/detector_validate.h"
-#include "src/mesh/partition.h"
+#include "sensors/partition.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"
 

@@ -44,7 +44,7 @@ def test_todays_caller_on_later_library(tmp_path, later):
     What asserts that new members are looked after is left out, because nobody has; and so are vectors and what the caller does
     not use, which compiles quicker.
     """
-    for name in ("src", "preprocess", "runtime", "packaging", "Makefile"):
+    for name in ("src", "preprocess", "runtime", "sensors", "packaging", "Makefile"):
         (later / name).symlink_to(ROOT / name)
     compiler = "ccache gcc" if shutil.which("ccache") else "gcc"
     shell(f"make -s -j2 -C '{later}' library CC='{compiler}' CONFIG=debug BASELINES=0 OPTIMISE_debug='-O0 -DNDEBUG' "

@@ -100,7 +100,7 @@ def test_formats_are_those_that_are_read():
 
 @pytest.mark.parametrize("title, source", [
     ("## Contacts: `replay", "tool/io/contact_file.c"), ("The table has a row per pair", "tool/check/check_output.c"),
-    ("## Events: `--events", "tool/answers/answer_files.c"), ("The CSV has a row per warning", "tool/sense/sense_files.c"),
+    ("## Events: `--events", "tool/answers/answer_files.c"), ("The CSV has a row per warning", "sensors/tool/sense_files.c"),
 ])
 def test_columns_are_those_of_the_tables(title, source):
     """formats.md names the columns of each list in their order, as the program writes them."""

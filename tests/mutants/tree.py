@@ -5,7 +5,7 @@ import subprocess
 
 from mutants import ROOT
 
-COPIED = ("Makefile", ".ci/packages", "include", "src", "preprocess", "runtime", "tool", "packaging", "models", "benchmarks", "tests", "docs/man",
+COPIED = ("Makefile", ".ci/packages", "include", "src", "preprocess", "runtime", "sensors", "tool", "packaging", "models", "benchmarks", "tests", "docs/man",
           "README.md", "CMakeLists.txt")
 # A compiler that remembers gives what make test has compiled. Others optimise a little, without symbols: the quickest to build and run.
 REMEMBERS = "ccache" in os.environ.get("CC", "")

@@ -1,5 +1,5 @@
 /* The exact check of particle sensors: against brute force over the same areas, and against the detector. */
-#include "runtime/sensors/exact_check.h"
+#include "sensors/exact_check.h"
 #include "tests/support/ccd/queue_test.h"
 #include "tests/support/random.h"
 #include "tests/support/rig.h"

@@ -1,6 +1,6 @@
 /* Particles: what the grid finds, where forces lead, and how walks end. */
 #include "cscd/cscd.h"
-#include "runtime/sensors/particles.h"
+#include "sensors/particles.h"
 #include "src/core/vec3.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"

@@ -1,5 +1,5 @@
 /* When cells are due for renewal: nothing at rest, areas that grow, edges that stretch, parts that bend. */
-#include "runtime/sensors/renewal.h"
+#include "sensors/renewal.h"
 #include "tests/support/random.h"
 #include "tests/support/rig.h"
 #include "tests/support/sensors/hand_partition.h"

@@ -1,6 +1,6 @@
 /* Certified bounds: never apart where brute force finds a contact, apart where there is room. */
-#include "runtime/sensors/bounds.h"
-#include "runtime/sensors/exact_check.h"
+#include "sensors/bounds.h"
+#include "sensors/exact_check.h"
 #include "tests/support/random.h"
 #include "tests/support/rig.h"
 #include "tests/support/sensors/hand_partition.h"

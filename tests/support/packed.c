@@ -2,9 +2,9 @@
  * objects are all of the mesh's context. NULL goes on as NULL. */
 #include "tests/support/packed.h"
 
-#include "runtime/sensors/sensors.h"
+#include "sensors/sensors.h"
 #include "src/mesh/mesh.h"
-#include "src/mesh/partition.h"
+#include "sensors/partition.h"
 
 static const cscd_view *view_of(const cscd_mesh *mesh, const double *x, cscd_view *view) {
     *view = cscd_view_doubles(x, mesh != NULL ? mesh->vertex_count : 0);

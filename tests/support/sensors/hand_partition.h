@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cscd/sensors.h"
-#include "src/mesh/partition.h"
+#include "sensors/partition.h"
 
 /* Makes a partition of generation 1 whose parts all belong to different objects. A part has the vertices
  * whose first triangle it has, so a part with triangles may have no vertices and no cells. Each vertex
