@@ -9,7 +9,7 @@
 #include <string.h>
 
 static const char help[] =
-    "usage: sensors [--folder FOLDER] [--only rules|reach|certified|cost] [SCENE...]\n"
+    "usage: sensors [--folder FOLDER] [--only rules|reach|cost] [SCENE...]\n"
     "\n"
     "Recall and precision are of pairs of objects and intervals: those with a warning against those in which the\n"
     "detector finds a contact. Times are medians, ms a step; the detector is method none. Scenes: recordings\n"
@@ -23,9 +23,9 @@ static const char *const all_scenes[] = {"two-spheres",   "two-spheres-unequal",
                                          "t-pair",        "w-pair",
                                          "tumble"};
 
-typedef enum table { TABLE_RULES, TABLE_REACH, TABLE_CERTIFIED, TABLE_COST, TABLE_COUNT } table;
+typedef enum table { TABLE_RULES, TABLE_REACH, TABLE_COST, TABLE_COUNT } table;
 
-static const char *const table_names[TABLE_COUNT] = {"rules", "reach", "certified", "cost"};
+static const char *const table_names[TABLE_COUNT] = {"rules", "reach", "cost"};
 
 enum { SCENES = sizeof all_scenes / sizeof *all_scenes, RANDOM_SEEDS = 5 };
 
@@ -141,19 +141,6 @@ static bool run_sweep(const recording_data *r, io_error *error) {
     return good;
 }
 
-/* ---- the certified mode ------------------------------------------------------------------------------- */
-
-static bool run_certified(const recording_data *r, io_error *error) {
-    for (int plan = 0; plan < 2; plan++) {
-        certified_trial c;
-        if (!certified_trial_run(r, plan != 0, &c, error)) return false;
-        printf("  %-21s %-5s %8.0f %9.1f %9.1f %8.1f %8.1f %11.4f %11.4f\n", r->name, plan ? "plan" : "none",
-               c.pairs, 100.0 * c.walked / c.pairs, 100.0 * c.middles / c.pairs, 100.0 * c.boxes / c.pairs,
-               100.0 * c.either / c.pairs, c.middles_ms, c.boxes_ms);
-    }
-    return true;
-}
-
 /* ---- the program -------------------------------------------------------------------------------------- */
 
 static bool for_scenes(const char *folder, const char *const *names, size_t count,
@@ -179,12 +166,6 @@ static void print_heads(table t) {
             "medians)\n  %-21s %-18s %8s %7s %8s %7s %9s %9s %10s %10s %9s\n",
             "scene", "rule", "touching", "missed", "false", "recall", "precision", "confirmed", "vertices M",
             "pairs M", "ms");
-    if (t == TABLE_CERTIFIED)
-        printf(
-            "\ncertified apart, %% of watched pairs of parts in all intervals: balls about particles, about "
-            "middles; ms for the update and all questions\n  %-21s %-5s %8s %9s %9s %8s %8s %11s %11s\n",
-            "scene", "plan", "pairs", "walked %", "middles %", "boxes %", "either %", "middles ms",
-            "boxes ms");
 }
 
 static bool print_table(table t, const char *folder, const char *const *names, size_t count,
@@ -197,8 +178,6 @@ static bool print_table(table t, const char *folder, const char *const *names, s
         if (!for_scenes(folder, names, count, run_sweep, error)) return false;
         for (int i = 0; i < SWEEP; i++) print_sweep("all", sweep[i].name, &swept[i]);
         return true;
-    case TABLE_CERTIFIED:
-        return for_scenes(folder, names, count, run_certified, error);
     default:
         return sensor_cost_print(error);
     }

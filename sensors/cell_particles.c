@@ -3,7 +3,7 @@
 
 #include "src/core/vec3.h"
 
-uint32_t particle_group(const cscd_partition *partition, uint32_t part, bool by_parts) {
+uint32_t particle_group(const sensor_partition *partition, uint32_t part, bool by_parts) {
     uint32_t object = partition->parts[part].object;
     if (partition->object_obstacles[object]) return PARTITION_NONE;
     return by_parts ? part : object;
@@ -32,12 +32,12 @@ static uint32_t middle_of(const uint32_t *vertices, uint32_t count, const double
     return nearest;
 }
 
-static uint32_t middle_of_cell(const cscd_partition *partition, uint32_t cell, const double *x) {
+static uint32_t middle_of_cell(const sensor_partition *partition, uint32_t cell, const double *x) {
     uint32_t begin = partition->cell_offsets[cell];
     return middle_of(partition->cell_vertices + begin, partition->cell_offsets[cell + 1] - begin, x);
 }
 
-cscd_status cell_particles_place(particles *p, const cscd_partition *partition, uint64_t *generation,
+cscd_status cell_particles_place(particles *p, const sensor_partition *partition, uint64_t *generation,
                                  const double *x) {
     if (*generation == partition->generation) return CSCD_OK;
     cscd_status status = particles_reserve(p, partition->cell_count);
@@ -54,7 +54,7 @@ cscd_status cell_particles_place(particles *p, const cscd_partition *partition, 
         uint32_t part = partition->cell_parts[c];
         p->vertices[c] = placed[c] != PARTITION_NONE ? placed[c] : middle_of_cell(partition, c, x);
         p->objects[c] = partition->parts[part].object;
-        p->groups[c] = particle_group(partition, part, partition->options.within);
+        p->groups[c] = particle_group(partition, part, partition->options->within);
     }
     *generation = partition->generation;
     return CSCD_OK;

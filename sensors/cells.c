@@ -151,7 +151,7 @@ static array_list list_arrays(cell_maker *maker) {
     size_t vertices = mesh->vertex_count, parts = maker->partition->part_count, largest = maker->largest;
     return (array_list){
         {ARRAY(maker->offsets, vertices + 1), ARRAY(maker->neighbours, 2 * (size_t)mesh->edge_count),
-         ARRAY(maker->labels, vertices), ARRAY(maker->counts, parts), ARRAY(maker->distortions, parts),
+         ARRAY(maker->labels, vertices), ARRAY(maker->counts, parts),
          ARRAY(maker->vectors, largest * LBG_DIMENSIONS), ARRAY(maker->vector_labels, largest),
          ARRAY(maker->order, largest), ARRAY(maker->candidates, largest), ARRAY(maker->codes, largest),
          ARRAY(c->pieces, vertices), ARRAY(c->queue, largest), ARRAY(c->piece_offsets, largest + 1),
@@ -164,19 +164,16 @@ void cell_maker_free(cell_maker *maker) {
 
 /* Takes over the partition's present cells, numbered from 0 in each part. */
 static void take_cells(cell_maker *maker) {
-    const cscd_partition *partition = maker->partition;
+    const sensor_partition *partition = maker->partition;
     for (uint32_t v = 0; v < partition->mesh->vertex_count; v++) {
         uint32_t part = partition->vertex_parts[v];
         if (part != PARTITION_NONE)
             maker->labels[v] = partition->vertex_cells[v] - partition->parts[part].first_cell;
     }
-    for (uint32_t p = 0; p < partition->part_count; p++) {
-        maker->counts[p] = partition->parts[p].cell_count;
-        maker->distortions[p] = partition->distortions[p];
-    }
+    for (uint32_t p = 0; p < partition->part_count; p++) maker->counts[p] = partition->parts[p].cell_count;
 }
 
-cscd_status cell_maker_create(cscd_partition *partition, const double *positions, uint32_t largest,
+cscd_status cell_maker_create(sensor_partition *partition, const double *positions, uint32_t largest,
                               cell_maker *out) {
     *out = (cell_maker){.partition = partition, .positions = positions, .largest = largest};
     if (!context_allocate_all(partition->context, list_arrays(out)))
@@ -223,7 +220,7 @@ static void fill_vectors(const cell_maker *maker, const uint32_t *vertices, uint
         offset_from_first(maker, vertices, i, d);
         for (int k = 0; k < 3; k++) squares += (d[k] - mean[k]) * (d[k] - mean[k]);
     }
-    double radius = sqrt(squares / count), weight = maker->partition->options.normal_weight;
+    double radius = sqrt(squares / count), weight = maker->partition->options->normal_weight;
     for (uint32_t i = 0; i < count; i++) {
         double *vector = maker->vectors + (size_t)i * LBG_DIMENSIONS;
         offset_from_first(maker, vertices, i, d);
@@ -236,7 +233,7 @@ static void fill_vectors(const cell_maker *maker, const uint32_t *vertices, uint
 /* ---- cells --------------------------------------------------------------------------------------------- */
 
 void make_cells(cell_maker *maker, uint32_t part) {
-    const cscd_partition *partition = maker->partition;
+    const sensor_partition *partition = maker->partition;
     const uint32_t *vertices = partition->part_vertices + partition->part_vertex_offsets[part];
     uint32_t count = partition->part_vertex_offsets[part + 1] - partition->part_vertex_offsets[part];
     if (count == 0) return;
@@ -244,21 +241,17 @@ void make_cells(cell_maker *maker, uint32_t part) {
     lbg l = {.vectors = maker->vectors,
              .vector_count = count,
              .codes_max = maker->counts[part],
-             .epsilon = partition->options.epsilon,
+             .epsilon = partition->options->epsilon,
              .labels = maker->vector_labels,
              .codes = maker->codes,
              .order = maker->order,
              .candidates = maker->candidates};
     uint32_t code_count = lbg_run(&l);
     for (uint32_t i = 0; i < count; i++) maker->labels[vertices[i]] = l.labels[i];
-    code_count = connect_labels(&maker->connecting, vertices, count, code_count);
-    for (uint32_t i = 0; i < count; i++) l.labels[i] = maker->labels[vertices[i]];
-    lbg_find_codes(&l, code_count);
-    maker->counts[part] = code_count;
-    maker->distortions[part] = lbg_distortion(&l, code_count);
+    maker->counts[part] = connect_labels(&maker->connecting, vertices, count, code_count);
 }
 
-static void list_cells(cscd_partition *partition) {
+static void list_cells(sensor_partition *partition) {
     uint32_t *ends = partition->cell_offsets + 1, begin = 0;
     memset(partition->cell_offsets, 0, ((size_t)partition->cell_count + 1) * sizeof *ends);
     for (uint32_t v = 0; v < partition->mesh->vertex_count; v++) {
@@ -276,12 +269,11 @@ static void list_cells(cscd_partition *partition) {
 }
 
 void hand_over_cells(const cell_maker *maker) {
-    cscd_partition *partition = maker->partition;
+    sensor_partition *partition = maker->partition;
     uint32_t cell_count = 0;
     for (uint32_t p = 0; p < partition->part_count; p++) {
         partition->parts[p].first_cell = cell_count;
         partition->parts[p].cell_count = maker->counts[p];
-        partition->distortions[p] = maker->distortions[p];
         for (uint32_t i = 0; i < maker->counts[p]; i++) partition->cell_parts[cell_count++] = p;
     }
     partition->cell_count = cell_count;

@@ -45,12 +45,6 @@ typedef struct lbg {
  * half of the code of largest distortion. The smaller number wins every tie. */
 uint32_t lbg_run(const lbg *l);
 
-/* Finds the codes of given labels, which are all below code_count; codes has room for them. */
-void lbg_find_codes(const lbg *l, uint32_t code_count);
-
-/* The mean distortion per dimension (3.10) of code_count codes over all vectors. */
-double lbg_distortion(const lbg *l, uint32_t code_count);
-
 /* ---- cells --------------------------------------------------------------------------------------------- */
 
 /* A graph of all vertices, and workspace to connect the labels of a part. */
@@ -68,13 +62,12 @@ typedef struct connect_work {
 /* Makes cells and keeps them until they are all written to the partition, so that it is never half
  * renewed. */
 typedef struct cell_maker {
-    cscd_partition *partition;
+    sensor_partition *partition;
     const double *positions;
     uint32_t largest;               /* the most vertices of a part that cells are made for */
     uint32_t *offsets, *neighbours; /* of vertices, along edges in the same part */
     uint32_t *labels;               /* per vertex: its cell, numbered from 0 in each part */
-    uint32_t *counts;    /* per part: the number of cells that it shall get, then the number that it got */
-    double *distortions; /* per part */
+    uint32_t *counts; /* per part: the number of cells that it shall get, then the number that it got */
     double *vectors;
     uint32_t *vector_labels, *order, *candidates;
     lbg_code *codes;
@@ -83,7 +76,7 @@ typedef struct cell_maker {
 
 /* Begins with the partition's present cells. No part that cells are made for has more vertices than
  * `largest`. */
-cscd_status cell_maker_create(cscd_partition *partition, const double *positions, uint32_t largest,
+cscd_status cell_maker_create(sensor_partition *partition, const double *positions, uint32_t largest,
                               cell_maker *out);
 void cell_maker_free(cell_maker *maker);
 
@@ -105,11 +98,11 @@ void hand_over_cells(const cell_maker *maker);
 uint32_t kissing_number(double radius, double other, uint32_t most);
 
 /* Writes the radii of spheres that have the areas of the parts. */
-void find_radii(const cscd_partition *partition, const double *positions, double *radii);
+void find_radii(const sensor_partition *partition, const double *positions, double *radii);
 
 /* Counts the cells of each part: the number that the options give; else 1 for each of two convex objects that
  * are all there are, 1 for a part that is not watched, and for others the number of spheres, of the size of
  * the smallest part that is watched with it, that touch it at once. A part has at most as many cells as
  * vertices, and at most the options' cells_max. convex has an element per part. */
-cscd_status count_cells(const cscd_partition *partition, const double *radii, const bool *convex,
+cscd_status count_cells(const sensor_partition *partition, const double *radii, const bool *convex,
                         uint32_t *counts);

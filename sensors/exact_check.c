@@ -51,7 +51,7 @@ static bool add_to_side(area_list *list, uint32_t feature, uint8_t side) {
     return true;
 }
 
-static void add_cell(exact_check *check, const cscd_partition *partition, uint32_t cell, uint8_t side) {
+static void add_cell(exact_check *check, const sensor_partition *partition, uint32_t cell, uint8_t side) {
     const cscd_mesh *mesh = check->mesh;
     for (uint32_t i = partition->cell_offsets[cell]; i < partition->cell_offsets[cell + 1]; i++) {
         uint32_t vertex = partition->cell_vertices[i];
@@ -241,7 +241,7 @@ static area_verdict verdict_of(const contact_lane *lane, uint64_t tests) {
     return verdict;
 }
 
-cscd_status exact_check_run(exact_check *check, const cscd_partition *partition, const area_query *query,
+cscd_status exact_check_run(exact_check *check, const sensor_partition *partition, const area_query *query,
                             area_verdict *out) {
     swept_interval interval = {.mesh = check->mesh, .x0 = query->start, .x1 = query->end};
     cscd_status status = CSCD_OK;

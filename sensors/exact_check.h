@@ -52,5 +52,5 @@ void exact_check_destroy(exact_check *check);
 /* The features of a side are those of all triangles with a vertex in one of its cells. Every pair of a vertex
  * and a face, or of two edges, with one feature of each side, no shared vertex and overlapping swept boxes is
  * tested once, as the detector tests it. */
-cscd_status exact_check_run(exact_check *check, const cscd_partition *partition, const area_query *query,
+cscd_status exact_check_run(exact_check *check, const sensor_partition *partition, const area_query *query,
                             area_verdict *out);

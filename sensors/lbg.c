@@ -16,14 +16,15 @@ static double squared_distance(const double a[D], const double b[D]) {
     return sum;
 }
 
-double lbg_distortion(const lbg *l, uint32_t code_count) {
+/* Returns the mean distortion per dimension (3.10) over all vectors. */
+static double mean_distortion(const lbg *l, uint32_t code_count) {
     double sum = 0.0;
     for (uint32_t c = 0; c < code_count; c++) sum += l->codes[c].distortion;
     return sum / D / l->vector_count;
 }
 
 static void report_codes(const lbg *l, uint32_t code_count) {
-    if (l->observe != NULL) l->observe(l->user, code_count, lbg_distortion(l, code_count));
+    if (l->observe != NULL) l->observe(l->user, code_count, mean_distortion(l, code_count));
 }
 
 /* ---- means --------------------------------------------------------------------------------------------- */
@@ -63,13 +64,7 @@ static void find_means(const lbg *l, uint32_t code_count) {
     for (uint32_t c = 0; c < code_count; c++) l->codes[c].changed = false;
 }
 
-void lbg_find_codes(const lbg *l, uint32_t code_count) {
-    memset(l->codes, 0, code_count * sizeof *l->codes);
-    for (uint32_t c = 0; c < code_count; c++) l->codes[c].changed = true;
-    find_means(l, code_count);
-}
-
-/* ---- the nearest code ---------------------------------------------------------------------------------- */
+/* ---- the nearest code -------------------------------------------------------------------------------- */
 
 /* Sorts vectors by codes, ascending in each; the vectors of code c end at codes[c].end. */
 static void sort_by_code(const lbg *l, uint32_t code_count) {
@@ -236,13 +231,13 @@ static void fill_empty(const lbg *l, uint32_t code_count) {
 }
 
 static void settle_codes(const lbg *l, uint32_t code_count) {
-    double distortion = lbg_distortion(l, code_count);
+    double distortion = mean_distortion(l, code_count);
     for (int round = 0; round < LBG_ROUNDS_MAX && assign_vectors(l, code_count); round++) {
         find_means(l, code_count);
         fill_empty(l, code_count);
         report_codes(l, code_count);
         double before = distortion;
-        distortion = lbg_distortion(l, code_count);
+        distortion = mean_distortion(l, code_count);
         if (before - distortion <= l->epsilon * before) return;
     }
 }

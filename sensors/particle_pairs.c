@@ -28,7 +28,7 @@ static cscd_status reserve_pairs(cscd_context *context, particle_pairs *pairs) {
     return CSCD_OK;
 }
 
-static near_particles pair_of(const cscd_partition *partition, uint32_t a, uint32_t b) {
+static near_particles pair_of(const sensor_partition *partition, uint32_t a, uint32_t b) {
     bool ordered = partition->vertex_parts[a] < partition->vertex_parts[b];
     uint32_t first = ordered ? a : b, second = ordered ? b : a;
     return (near_particles){.part_a = partition->vertex_parts[first],
@@ -39,7 +39,7 @@ static near_particles pair_of(const cscd_partition *partition, uint32_t a, uint3
                             .vertex_b = second};
 }
 
-cscd_status particle_pairs_gather(particle_pairs *pairs, particles *p, const cscd_partition *partition,
+cscd_status particle_pairs_gather(particle_pairs *pairs, particles *p, const sensor_partition *partition,
                                   const sensor_reach *reach, const double *x, uint32_t moment,
                                   double *closest) {
     double limit = reach->mu_most, nearest = INFINITY;

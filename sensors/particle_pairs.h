@@ -23,7 +23,7 @@ void particle_pairs_free(cscd_context *context, particle_pairs *pairs);
 /* Adds the pairs of particles that are near each other at positions x. *closest is the smallest distance of
  * two particles that attract each other, within the largest mu; INFINITY if there is none. Builds the grid of
  * the particles again. */
-cscd_status particle_pairs_gather(particle_pairs *pairs, particles *p, const cscd_partition *partition,
+cscd_status particle_pairs_gather(particle_pairs *pairs, particles *p, const sensor_partition *partition,
                                   const sensor_reach *reach, const double *x, uint32_t moment,
                                   double *closest);
 

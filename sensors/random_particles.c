@@ -4,7 +4,7 @@
 #include "sensors/cell_particles.h"
 
 /* Lists vertices by object, in the order of their parts. */
-static void list_objects(const cscd_partition *partition, random_particles *r) {
+static void list_objects(const sensor_partition *partition, random_particles *r) {
     for (uint32_t p = 0; p < partition->part_count; p++) {
         uint32_t count = partition->part_vertex_offsets[p + 1] - partition->part_vertex_offsets[p];
         r->object_offsets[partition->parts[p].object + 1] += count;
@@ -39,7 +39,7 @@ static array_list list_arrays(random_particles *r) {
          ARRAY(r->neighbour_offsets, (size_t)r->vertex_count + 1), ARRAY(r->neighbours, r->neighbour_count)}};
 }
 
-cscd_status random_particles_create(const cscd_partition *partition, random_particles *out) {
+cscd_status random_particles_create(const sensor_partition *partition, random_particles *out) {
     const cscd_mesh *mesh = partition->mesh;
     out->object_count = partition->object_count;
     out->neighbour_count = (size_t)mesh->edge_count * 2;
@@ -67,7 +67,7 @@ static uint32_t particles_of(const random_particles *r, uint32_t object, uint32_
     return per_object < count ? per_object : count;
 }
 
-cscd_status random_particles_place(const random_particles *r, const cscd_partition *partition,
+cscd_status random_particles_place(const random_particles *r, const sensor_partition *partition,
                                    uint32_t per_object, uint32_t seed, particles *p) {
     uint32_t count = 0;
     for (uint32_t o = 0; o < r->object_count; o++) count += particles_of(r, o, per_object);

@@ -12,10 +12,10 @@ typedef struct random_particles {
     size_t neighbour_count;
 } random_particles;
 
-cscd_status random_particles_create(const cscd_partition *partition, random_particles *out);
+cscd_status random_particles_create(const sensor_partition *partition, random_particles *out);
 /* A structure of zeros is left as it is. */
 void random_particles_free(cscd_context *context, random_particles *r);
 
 /* Puts per_object particles, or as many as there are vertices, on different vertices of every object. */
-cscd_status random_particles_place(const random_particles *r, const cscd_partition *partition,
+cscd_status random_particles_place(const random_particles *r, const sensor_partition *partition,
                                    uint32_t per_object, uint32_t seed, particles *p);

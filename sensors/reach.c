@@ -8,7 +8,7 @@
 /* The sums and roots of mu lose less than this to rounding. */
 static const double rounding = 1.0 + 0x1p-40;
 
-cscd_status sensor_reach_create(const cscd_partition *partition, double mu_given, sensor_reach *reach) {
+cscd_status sensor_reach_create(const sensor_partition *partition, double mu_given, sensor_reach *reach) {
     reach->mu_given = mu_given;
     reach->parts = context_allocate(partition->context, partition->part_count, sizeof *reach->parts);
     return reach->parts != NULL ? CSCD_OK : CSCD_OUT_OF_MEMORY;
@@ -23,7 +23,7 @@ static double squared_distance(const double *x, uint32_t a, uint32_t b) {
 }
 
 /* Finds the longest sides of each part's triangles, as squares. */
-static void measure_edges(sensor_reach *reach, const cscd_partition *partition, const double *x0,
+static void measure_edges(sensor_reach *reach, const sensor_partition *partition, const double *x0,
                           const double *x1) {
     const cscd_mesh *mesh = partition->mesh;
     double sum = 0.0;
@@ -47,7 +47,7 @@ static void measure_edges(sensor_reach *reach, const cscd_partition *partition, 
     reach->typical_edge = sqrt(sum / (3.0 * mesh->triangle_count));
 }
 
-static void measure_motion(part_reach *part, const cscd_partition *partition, uint32_t p, const double *x0,
+static void measure_motion(part_reach *part, const sensor_partition *partition, uint32_t p, const double *x0,
                            const double *x1) {
     uint32_t begin = partition->part_vertex_offsets[p], end = partition->part_vertex_offsets[p + 1];
     for (uint32_t i = begin; i < end; i++) {
@@ -79,7 +79,7 @@ double sensor_reach_mu(const sensor_reach *reach, uint32_t part_a, uint32_t part
 }
 
 /* Takes all parts as one, which moves relative to itself as much as any two of them do. */
-static double largest_mu(const sensor_reach *reach, const cscd_partition *partition) {
+static double largest_mu(const sensor_reach *reach, const sensor_partition *partition) {
     if (reach->mu_given > 0.0) return reach->mu_given;
     part_reach all = {0};
     bool first = true;
@@ -131,7 +131,7 @@ static double largest_two_diameters(const walk_areas *areas, const double *x0, c
     return first + second;
 }
 
-void sensor_reach_measure(sensor_reach *reach, const cscd_partition *partition, const walk_areas *areas,
+void sensor_reach_measure(sensor_reach *reach, const sensor_partition *partition, const walk_areas *areas,
                           const double *x0, const double *x1, double radius_given) {
     memset(reach->parts, 0, partition->part_count * sizeof *reach->parts);
     reach->longest_edge = reach->longest_inside = 0.0;

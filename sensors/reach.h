@@ -18,7 +18,7 @@ typedef struct sensor_reach {
     double typical_edge;   /* the root mean square of the triangles' sides at the start */
 } sensor_reach;
 
-cscd_status sensor_reach_create(const cscd_partition *partition, double mu_given, sensor_reach *reach);
+cscd_status sensor_reach_create(const sensor_partition *partition, double mu_given, sensor_reach *reach);
 void sensor_reach_free(cscd_context *context, sensor_reach *reach);
 
 /* The sets of vertices that single particles walk on, cells or objects: vertices[offsets[i] .. offsets[i +
@@ -29,7 +29,7 @@ typedef struct walk_areas {
 } walk_areas;
 
 /* Measures the interval from x0 to x1. radius_given is R_eff, or 0 for the automatic one. */
-void sensor_reach_measure(sensor_reach *reach, const cscd_partition *partition, const walk_areas *areas,
+void sensor_reach_measure(sensor_reach *reach, const sensor_partition *partition, const walk_areas *areas,
                           const double *x0, const double *x1, double radius_given);
 
 /* The collision distance of two parts. */

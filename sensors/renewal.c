@@ -20,7 +20,7 @@ static array_list list_arrays(sensor_renewal *r) {
          ARRAY(r->inside_out, r->mesh->component_count)}};
 }
 
-cscd_status sensor_renewal_create(const cscd_partition *partition, sensor_renewal *out) {
+cscd_status sensor_renewal_create(const sensor_partition *partition, sensor_renewal *out) {
     sensor_renewal renewal = {.mesh = partition->mesh, .part_count = partition->part_count};
     cscd_context *context = partition->mesh->context;
     if (!context_allocate_all(context, list_arrays(&renewal))) return context_out_of_memory(context);
@@ -38,7 +38,7 @@ void sensor_renewal_destroy(sensor_renewal *renewal) {
 
 /* A straight walk over the vertices of a cell. */
 typedef struct walk {
-    const cscd_partition *partition;
+    const sensor_partition *partition;
     const double *positions;
     uint32_t from, cell;
     double direction[3];
@@ -138,7 +138,7 @@ static bool axes_at(const cscd_mesh *mesh, const double *positions, uint32_t ver
     return false;
 }
 
-double sensor_renewal_estimate(const cscd_partition *partition, const double *positions, uint32_t vertex) {
+double sensor_renewal_estimate(const sensor_partition *partition, const double *positions, uint32_t vertex) {
     double axes[2][3], sides[2] = {0.0, 0.0};
     uint32_t cell = partition->vertex_cells[vertex];
     if (cell == PARTITION_NONE || !axes_at(partition->mesh, positions, vertex, axes[0], axes[1])) return 0.0;
@@ -152,7 +152,7 @@ double sensor_renewal_estimate(const cscd_partition *partition, const double *po
 
 /* ---- measures ------------------------------------------------------------------------------------------ */
 
-static void measure_triangles(sensor_renewal *renewal, const cscd_partition *partition,
+static void measure_triangles(sensor_renewal *renewal, const sensor_partition *partition,
                               const double *positions) {
     const cscd_mesh *mesh = renewal->mesh;
     for (uint32_t c = 0; c < partition->cell_count; c++) renewal->cell_areas[c] = 0.0;
@@ -216,13 +216,14 @@ static bool edge_is_concave(const sensor_renewal *renewal, const double *positio
     return height * length > SINE_OF_FLAT * f->length * renewal->facings[star[1]].length;
 }
 
-static bool edge_is_inner(const cscd_mesh *mesh, const cscd_partition *partition, uint32_t edge) {
+static bool edge_is_inner(const cscd_mesh *mesh, const sensor_partition *partition, uint32_t edge) {
     const uint32_t *star = mesh->edge_stars + mesh->edge_star_offsets[edge];
     return edge_star_size(mesh, edge) == 2 &&
            partition->triangle_parts[star[0]] == partition->triangle_parts[star[1]];
 }
 
-static void measure_edges(sensor_renewal *renewal, const cscd_partition *partition, const double *positions) {
+static void measure_edges(sensor_renewal *renewal, const sensor_partition *partition,
+                          const double *positions) {
     const cscd_mesh *mesh = renewal->mesh;
     for (uint32_t p = 0; p < partition->part_count; p++) renewal->inner[p] = renewal->concave[p] = 0.0;
     for (uint32_t e = 0; e < mesh->edge_count; e++) {
@@ -244,7 +245,8 @@ static void measure_edges(sensor_renewal *renewal, const cscd_partition *partiti
 }
 
 /* Measures everything except the estimates of areas. */
-static void measure_parts(sensor_renewal *renewal, const cscd_partition *partition, const double *positions) {
+static void measure_parts(sensor_renewal *renewal, const sensor_partition *partition,
+                          const double *positions) {
     for (uint32_t p = 0; p < partition->part_count; p++) renewal->now[p] = (part_measures){0};
     measure_triangles(renewal, partition, positions);
     for (uint32_t c = 0; c < partition->cell_count; c++) {
@@ -257,7 +259,7 @@ static void measure_parts(sensor_renewal *renewal, const cscd_partition *partiti
 /* ---- the check ----------------------------------------------------------------------------------------- */
 
 /* Estimates from up to ESTIMATES_OF_CELL vertices that are spread over the cell. */
-static double largest_estimate(const cscd_partition *partition, const double *positions, uint32_t cell) {
+static double largest_estimate(const sensor_partition *partition, const double *positions, uint32_t cell) {
     uint32_t begin = partition->cell_offsets[cell], end = partition->cell_offsets[cell + 1];
     uint32_t stride = (end - begin + ESTIMATES_OF_CELL - 1) / ESTIMATES_OF_CELL;
     double largest = 0.0;
@@ -266,9 +268,9 @@ static double largest_estimate(const cscd_partition *partition, const double *po
     return largest;
 }
 
-static void take_measure(sensor_renewal *renewal, const cscd_partition *partition, const double *positions,
+static void take_measure(sensor_renewal *renewal, const sensor_partition *partition, const double *positions,
                          uint32_t part) {
-    const cscd_part *cells = &partition->parts[part];
+    const cscd_sensor_part *cells = &partition->parts[part];
     part_measures *first = &renewal->first[part];
     *first = renewal->now[part];
     for (uint32_t i = 0; i < cells->cell_count; i++)
@@ -276,7 +278,7 @@ static void take_measure(sensor_renewal *renewal, const cscd_partition *partitio
             max_of(first->estimate, largest_estimate(partition, positions, cells->first_cell + i));
 }
 
-void sensor_renewal_follow(sensor_renewal *renewal, const cscd_partition *partition,
+void sensor_renewal_follow(sensor_renewal *renewal, const sensor_partition *partition,
                            const double *positions) {
     if (renewal->generation == partition->generation) return;
     measure_triangles(renewal, partition, positions);
@@ -300,7 +302,7 @@ static cscd_renewal reason_of(const part_measures *first, const part_measures *n
     return edge > 0.0 && now->edge_squared > edge * edge ? CSCD_RENEWAL_EDGE : CSCD_RENEWAL_NONE;
 }
 
-uint32_t sensor_renewal_check(sensor_renewal *renewal, const cscd_partition *partition,
+uint32_t sensor_renewal_check(sensor_renewal *renewal, const sensor_partition *partition,
                               const double *positions, const uint32_t *particles,
                               const renewal_limits *limits, cscd_renewal *renewals) {
     uint32_t due = 0;

@@ -34,22 +34,23 @@ typedef struct renewal_limits {
     double edge_length; /* 0: no limit */
 } renewal_limits;
 
-cscd_status sensor_renewal_create(const cscd_partition *partition, sensor_renewal *out);
+cscd_status sensor_renewal_create(const sensor_partition *partition, sensor_renewal *out);
 /* A structure of zeros is left as it is. */
 void sensor_renewal_destroy(sensor_renewal *renewal);
 
 /* Measures, before each step, the parts whose cells are new since the last call. Their first estimate is the
  * largest one from any vertex of a cell, or from 64 vertices of a large cell, so that walking particles do
  * not change it much. */
-void sensor_renewal_follow(sensor_renewal *renewal, const cscd_partition *partition, const double *positions);
+void sensor_renewal_follow(sensor_renewal *renewal, const sensor_partition *partition,
+                           const double *positions);
 
 /* Writes for every part the first reason that holds of AREA, CONCAVE and EDGE, and returns how many are not
  * NONE. particles[c] is the vertex of the particle in cell c; with NULL areas are not estimated. Neither this
  * call nor the one above allocates. */
-uint32_t sensor_renewal_check(sensor_renewal *renewal, const cscd_partition *partition,
+uint32_t sensor_renewal_check(sensor_renewal *renewal, const sensor_partition *partition,
                               const double *positions, const uint32_t *particles,
                               const renewal_limits *limits, cscd_renewal *renewals);
 
 /* Returns the area of the rectangle that four walks from a vertex span within its cell (section 3.6).
  * External for its test, which compares it with walks done by hand. */
-double sensor_renewal_estimate(const cscd_partition *partition, const double *positions, uint32_t vertex);
+double sensor_renewal_estimate(const sensor_partition *partition, const double *positions, uint32_t vertex);

@@ -8,14 +8,23 @@
 #include "src/mesh/positions.h"
 #include "src/mesh/views.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
 /* When attractions are added, particles nearer than this share of a typical edge pull no harder. */
 static const double closest_share = 1e-3;
 
-static const cscd_sensor_options default_options = {
-    .step_limit = 256, .exact = true, .area_factor = 2.0, .particles = 5, .seed = 1};
+static const double normal_weight_max = 1e6;
+
+static const cscd_sensor_options default_options = {.cells_max = 64,
+                                                    .normal_weight = 1.0,
+                                                    .epsilon = 1e-3,
+                                                    .step_limit = 256,
+                                                    .exact = true,
+                                                    .area_factor = 2.0,
+                                                    .particles = 5,
+                                                    .seed = 1};
 
 void cscd_sensor_defaults_sized(cscd_sensor_options *out, size_t size) {
     struct_give_options(out, size, &default_options, sizeof default_options);
@@ -41,6 +50,19 @@ static cscd_status check_lengths(cscd_context *context, const cscd_sensor_option
     return status;
 }
 
+static cscd_status check_cells(cscd_context *context, const cscd_sensor_options *options) {
+    if (options->cells_max == 0)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "cells_max is 0, expected 1 or more");
+    if (!(options->normal_weight >= 0.0 && options->normal_weight <= normal_weight_max))
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "normal_weight is %g, expected a number from 0 to %g", options->normal_weight,
+                            normal_weight_max);
+    if (!(options->epsilon >= 0.0 && options->epsilon < 1.0))
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "epsilon is %g, expected a share of the distortion in [0,1)", options->epsilon);
+    return CSCD_OK;
+}
+
 static cscd_status check_options(cscd_context *context, const cscd_sensor_options *options) {
     if ((unsigned)options->method > CSCD_SENSORS_RANDOM)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "unknown sensor method %d", (int)options->method);
@@ -51,37 +73,36 @@ static cscd_status check_options(cscd_context *context, const cscd_sensor_option
                             "area_factor is %g, expected a number from 1 to 2^300", options->area_factor);
     if (options->particles == 0)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "particles is 0, expected 1 or more");
-    return check_lengths(context, options);
+    cscd_status status = check_cells(context, options);
+    return status == CSCD_OK ? check_lengths(context, options) : status;
 }
 
 /* ---- creation ----------------------------------------------------------------------------------------- */
 
 static array_list list_arrays(cscd_sensors *s) {
     size_t cells_most = s->mesh->vertex_count;
-    return (array_list){{ARRAY(s->renewals, s->partition->part_count), ARRAY(s->cells_a, cells_most),
+    return (array_list){{ARRAY(s->renewals, s->partition.part_count), ARRAY(s->cells_a, cells_most),
                          ARRAY(s->cells_b, cells_most), ARRAY(s->cell_checks, cells_most)}};
 }
 
 static cscd_status create_random(cscd_sensors *s) {
-    cscd_status status = random_particles_create(s->partition, &s->random);
+    cscd_status status = random_particles_create(&s->partition, &s->random);
     if (status != CSCD_OK) return status;
     s->particles.rule = PARTICLE_POTENTIAL;
     s->particles.steps = (vertex_steps){s->random.neighbour_offsets, s->random.neighbours};
-    return random_particles_place(&s->random, s->partition, s->options.particles, s->options.seed,
+    return random_particles_place(&s->random, &s->partition, s->options.particles, s->options.seed,
                                   &s->particles);
 }
 
 static cscd_status create_parts(cscd_sensors *s) {
     cscd_status status = context_allocate_all(s->context, list_arrays(s)) ? CSCD_OK : CSCD_OUT_OF_MEMORY;
-    s->particles.context = s->context;
     s->particles.rule = PARTICLE_STRONGEST;
-    s->particles.steps = (vertex_steps){s->partition->neighbour_offsets, s->partition->neighbours};
+    s->particles.steps = (vertex_steps){s->partition.neighbour_offsets, s->partition.neighbours};
     if (status == CSCD_OK)
-        status = sensor_reach_create(s->partition, s->options.collision_distance, &s->reach);
+        status = sensor_reach_create(&s->partition, s->options.collision_distance, &s->reach);
     if (status == CSCD_OK && s->options.method == CSCD_SENSORS_RANDOM) status = create_random(s);
     if (status == CSCD_OK) status = exact_check_create(s->mesh, &s->exact);
-    if (status == CSCD_OK) status = sensor_renewal_create(s->partition, &s->renewal);
-    if (status == CSCD_OK) status = sensor_bounds_create(s->partition, &s->bounds);
+    if (status == CSCD_OK) status = sensor_renewal_create(&s->partition, &s->renewal);
     return status;
 }
 
@@ -95,78 +116,137 @@ static void free_memory(cscd_sensors *s) {
     particle_pairs_free(context, &s->pairs);
     exact_check_destroy(&s->exact);
     sensor_renewal_destroy(&s->renewal);
-    sensor_bounds_destroy(&s->bounds);
     context_free_all(context, list_arrays(s));
     context_free(context, s->before);
     context_free(context, s->warnings);
+    partition_end(&s->partition);
     context_free(context, s);
 }
 
 static void free_sensors(reference_count *references) {
     cscd_sensors *s = (cscd_sensors *)references;
     cscd_context *context = s->context;
-    cscd_partition *partition = s->partition;
     free_memory(s);
-    partition_release(partition);
     context_release(context);
 }
 
 static const char *validate_listed(const reference_count *object) {
     const cscd_sensors *s = (const cscd_sensors *)object;
-    if (s->partition->references.alive != REFERENCE_ALIVE) return "the partition of sensors was freed";
     for (uint32_t i = 0; i < s->particles.count; i++) {
         if (s->particles.vertices[i] >= s->mesh->vertex_count)
             return "a particle is at a vertex that there is not";
     }
-    return s->generation <= s->partition->generation ? NULL : "sensors are ahead of their partition";
+    if (s->generation > s->partition.generation) return "sensors are ahead of their partition";
+    return partition_validate(&s->partition);
 }
 
-static cscd_status create_sensors(cscd_context *context, const cscd_mesh *mesh, cscd_partition *partition,
-                                  const cscd_sensor_options *options, cscd_sensors **out) {
-    if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_sensors_create: out is NULL");
-    if (!mesh_is_same(partition->mesh, mesh))
-        return context_fail(context, CSCD_INVALID_ARGUMENT, "the partition was made for another mesh");
-    if (partition->context != context)
-        return context_fail(
-            context, CSCD_INVALID_ARGUMENT,
-            "the partition was made in another context: sensors and their partition belong to "
-            "one, because its cells may be made anew");
-    cscd_sensor_options chosen = default_options;
-    cscd_status status = CSCD_OK;
-    if (options != NULL)
-        status = struct_take_options(context, &chosen, sizeof chosen, LEAST_SIZE(cscd_sensor_options),
-                                     options, "cscd_sensor_defaults");
-    if (status == CSCD_OK) status = check_options(context, &chosen);
-    if (status != CSCD_OK) return status;
+static cscd_status check_plan(cscd_context *context, const cscd_mesh *mesh, const cscd_plan *plan) {
+    if (plan == NULL || plan->mesh_hash == cscd_mesh_hash(mesh)) return CSCD_OK;
+    return context_fail(context, CSCD_INVALID_ARGUMENT,
+                        "the plan was made for another mesh (hash %016llx, this one has %016llx)",
+                        (unsigned long long)plan->mesh_hash, (unsigned long long)cscd_mesh_hash(mesh));
+}
 
+static cscd_status create_at(cscd_context *context, const cscd_mesh *mesh, const cscd_plan *plan,
+                             const double *positions, const cscd_sensor_options *options,
+                             cscd_sensors **out) {
+    cscd_status status = positions_check(context, positions, mesh->vertex_count, "positions");
+    if (status != CSCD_OK) return status;
     cscd_sensors *s = context_allocate(context, 1, sizeof *s);
     if (s == NULL) return context_out_of_memory(context);
-    partition_hold(partition);
     s->context = context;
-    s->mesh = partition->mesh;
-    s->partition = partition;
-    s->options = chosen;
+    s->options = *options;
+    s->particles.context = context;
+    partition_begin(&s->partition, context, mesh, &s->options);
+    s->mesh = s->partition.mesh;
     context_add_object(context, &s->references, free_sensors);
-    if (create_parts(s) != CSCD_OK) {
+    status = partition_divide(&s->partition, plan, positions);
+    if (status == CSCD_OK && create_parts(s) != CSCD_OK) status = context_out_of_memory(context);
+    if (status != CSCD_OK) {
         cscd_sensors_destroy(s);
-        return context_out_of_memory(context);
+        return status;
     }
     context_list_object(context, &s->references, validate_listed);
     *out = s;
     return CSCD_OK;
 }
 
-cscd_status cscd_sensors_create(cscd_context *context, const cscd_mesh *mesh, cscd_partition *partition,
-                                const cscd_sensor_options *options, cscd_sensors **out) {
-    if (context == NULL || mesh == NULL || partition == NULL)
-        return context_lacks(context, "cscd_sensors_create", mesh == NULL ? "mesh" : "partition");
+static cscd_status create_sensors(cscd_context *context, const cscd_mesh *mesh, const cscd_plan *plan,
+                                  const cscd_view *positions, const cscd_sensor_options *options,
+                                  cscd_sensors **out) {
+    if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_sensors_create: out is NULL");
+    cscd_sensor_options chosen = default_options;
+    double *buffer = NULL;
+    const double *x = NULL;
+    cscd_status status = CSCD_OK;
+    if (options != NULL)
+        status = struct_take_options(context, &chosen, sizeof chosen, LEAST_SIZE(cscd_sensor_options),
+                                     options, "cscd_sensor_defaults");
+    if (status == CSCD_OK) status = check_options(context, &chosen);
+    if (status == CSCD_OK && mesh_has_loose_objects(mesh))
+        status =
+            context_fail(context, CSCD_INVALID_MESH,
+                         "sensors are of triangles alone, but the mesh has wires, points or half-spaces");
+    if (status == CSCD_OK) status = check_plan(context, mesh, plan);
+    if (status == CSCD_OK) status = views_read(context, mesh, positions, "positions", &buffer, &x);
+    if (status == CSCD_OK) status = create_at(context, mesh, plan, x, &chosen, out);
+    context_free(context, buffer);
+    return status;
+}
+
+cscd_status cscd_sensors_create(cscd_context *context, const cscd_mesh *mesh, const cscd_plan *plan,
+                                const cscd_view *positions, const cscd_sensor_options *options,
+                                cscd_sensors **out) {
+    if (context == NULL || mesh == NULL) return context_lacks(context, "cscd_sensors_create", "mesh");
     context_entry entry;
     if (!context_enter(context, &entry)) return entry.status;
-    return context_leave(&entry, create_sensors(context, mesh, partition, options, out));
+    return context_leave(&entry, create_sensors(context, mesh, plan, positions, options, out));
 }
 
 void cscd_sensors_destroy(cscd_sensors *s) {
     if (s != NULL) context_destroy_object(s->context, &s->references);
+}
+
+/* ---- cells -------------------------------------------------------------------------------------------- */
+
+static cscd_status renew_cells(cscd_sensors *s, const cscd_view *positions, uint32_t part) {
+    cscd_context *context = s->context;
+    if (part != UINT32_MAX && part >= s->partition.part_count)
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "part is %u, but there are %u: expected one of them, or UINT32_MAX for all", part,
+                            s->partition.part_count);
+    double *buffer = NULL;
+    const double *x = NULL;
+    cscd_status status = views_read(context, s->mesh, positions, "positions", &buffer, &x);
+    if (status == CSCD_OK) status = positions_check(context, x, s->mesh->vertex_count, "positions");
+    if (status == CSCD_OK) status = partition_renew(&s->partition, x, part);
+    context_free(context, buffer);
+    return status;
+}
+
+cscd_status cscd_sensors_renew(cscd_sensors *sensors, const cscd_view *positions, uint32_t part) {
+    if (sensors == NULL) return CSCD_NULL_OBJECT;
+    context_entry entry;
+    if (!object_enter(sensors, &entry)) return entry.status;
+    return context_leave(&entry, renew_cells(sensors, positions, part));
+}
+
+uint32_t cscd_sensors_part_count(const cscd_sensors *sensors) {
+    return sensors->partition.part_count;
+}
+
+cscd_sensor_part cscd_sensors_part(const cscd_sensors *sensors, uint32_t part) {
+    assert(part < sensors->partition.part_count);
+    return sensors->partition.parts[part];
+}
+
+uint32_t cscd_sensors_cell_count(const cscd_sensors *sensors) {
+    return sensors->partition.cell_count;
+}
+
+uint32_t cscd_sensors_vertex_cell(const cscd_sensors *sensors, uint32_t vertex) {
+    assert(vertex < sensors->mesh->vertex_count);
+    return sensors->partition.vertex_cells[vertex];
 }
 
 /* ---- one interval ------------------------------------------------------------------------------------- */
@@ -187,7 +267,7 @@ static cscd_status remember_vertices(cscd_sensors *s) {
 }
 
 static walk_areas areas_of(const cscd_sensors *s) {
-    const cscd_partition *partition = s->partition;
+    const sensor_partition *partition = &s->partition;
     if (s->options.method == CSCD_SENSORS_RANDOM)
         return (walk_areas){s->random.object_offsets, s->random.object_vertices, s->random.object_count};
     return (walk_areas){partition->cell_offsets, partition->cell_vertices, partition->cell_count};
@@ -197,12 +277,12 @@ static walk_areas areas_of(const cscd_sensors *s) {
 static cscd_status begin_step(cscd_sensors *s, const double *start, const double *end) {
     cscd_status status = CSCD_OK;
     if (s->options.method == CSCD_SENSORS_CELLS)
-        status = cell_particles_place(&s->particles, s->partition, &s->generation, start);
+        status = cell_particles_place(&s->particles, &s->partition, &s->generation, start);
     if (status == CSCD_OK) status = remember_vertices(s);
     if (status != CSCD_OK) return status;
-    sensor_renewal_follow(&s->renewal, s->partition, start);
+    sensor_renewal_follow(&s->renewal, &s->partition, start);
     walk_areas areas = areas_of(s);
-    sensor_reach_measure(&s->reach, s->partition, &areas, start, end, s->options.effective_radius);
+    sensor_reach_measure(&s->reach, &s->partition, &areas, start, end, s->options.effective_radius);
     s->particles.radius = s->reach.radius;
     bool inside = s->options.method == CSCD_SENSORS_CELLS;
     s->particles.longest_step = inside ? s->reach.longest_inside : s->reach.longest_edge;
@@ -224,7 +304,7 @@ static cscd_status watch_moment(cscd_sensors *s, const double *x, uint32_t momen
     do {
         timer_lap(&since, &timings->walk_ms);
         cscd_status status =
-            particle_pairs_gather(&s->pairs, p, s->partition, &s->reach, x, moment, &closest);
+            particle_pairs_gather(&s->pairs, p, &s->partition, &s->reach, x, moment, &closest);
         if (status != CSCD_OK) return status;
         if (least == INFINITY || closest < least) particles_keep(p);
         least = fmin(least, closest);
@@ -236,14 +316,11 @@ static cscd_status watch_moment(cscd_sensors *s, const double *x, uint32_t momen
     return CSCD_OK;
 }
 
-/* Updates which cells are due for renewal, and the bounds behind cscd_sensors_apart. */
-static uint32_t update_certificates(cscd_sensors *s, const double *start, const double *end) {
+/* Notes why each part is due for new cells, and returns how many are. */
+static uint32_t check_renewals(cscd_sensors *s, const double *end) {
     const uint32_t *at = s->options.method == CSCD_SENSORS_CELLS ? s->particles.vertices : NULL;
     renewal_limits limits = {s->options.area_factor, s->options.collision_distance};
-    uint32_t due = sensor_renewal_check(&s->renewal, s->partition, end, at, &limits, s->renewals);
-    sensor_bounds_update(&s->bounds, s->partition, start, end, NULL);
-    sensor_bounds_update_boxes(&s->bounds, s->partition, start, end);
-    return due;
+    return sensor_renewal_check(&s->renewal, &s->partition, end, at, &limits, s->renewals);
 }
 
 static cscd_status run_step(cscd_sensors *s, const double *start, const double *end,
@@ -262,7 +339,7 @@ static cscd_status run_step(cscd_sensors *s, const double *start, const double *
     }
     since = timer_now_ms();
     found->items = s->warnings;
-    found->renewals_due = update_certificates(s, start, end);
+    found->renewals_due = check_renewals(s, end);
     timer_lap(&since, &timings->renewal_ms);
     return CSCD_OK;
 }
@@ -315,23 +392,6 @@ cscd_status cscd_sensors_step(cscd_sensors *sensors, const cscd_view *x0, const 
 
 cscd_renewal cscd_sensors_renewal(const cscd_sensors *sensors, uint32_t part) {
     return sensors->renewals[part];
-}
-
-/* After a renewal the balls still belong to the previous cells. Boxes are asked first: they separate more pairs, and
- * answer at once. */
-__attribute__((noinline)) static bool parts_apart(const cscd_sensors *sensors, uint32_t part_a,
-                                                  uint32_t part_b) {
-    const cscd_partition *partition = sensors->partition;
-    if (part_a == part_b || sensors->bounds.generation != partition->generation) return false;
-    return sensor_bounds_boxes_apart(&sensors->bounds, part_a, part_b) ||
-           sensor_bounds_apart(&sensors->bounds, partition, part_a, part_b);
-}
-
-bool cscd_sensors_apart(const cscd_sensors *sensors, uint32_t part_a, uint32_t part_b) {
-    float_environment host = float_environment_begin();
-    bool apart = parts_apart(sensors, part_a, part_b);
-    float_environment_set(host);
-    return apart;
 }
 
 uint32_t cscd_sensors_particle_count(const cscd_sensors *sensors) {

@@ -1,10 +1,10 @@
-/* Internal state of particle sensors: particles, bounds, and buffers that are kept from step to step. */
+/* Internal state of particle sensors: cells, particles, and buffers that are kept from step to step. */
 #pragma once
 
-#include "sensors/bounds.h"
 #include "sensors/exact_check.h"
 #include "sensors/particle_pairs.h"
 #include "sensors/particles.h"
+#include "sensors/partition.h"
 #include "sensors/random_particles.h"
 #include "sensors/reach.h"
 #include "sensors/renewal.h"
@@ -12,12 +12,12 @@
 struct cscd_sensors {
     reference_count references; /* the caller alone */
     cscd_context *context;
-    cscd_partition *partition; /* held, and with it its mesh: */
-    const cscd_mesh *mesh;
     cscd_sensor_options options;
+    sensor_partition partition;
+    const cscd_mesh *mesh; /* that of the partition */
 
-    uint64_t
-        generation; /* CELLS: the partition's generation that particles belong to; 0: before the first step */
+    /* CELLS: the partition's generation that particles belong to; 0: before the first step */
+    uint64_t generation;
     particles particles;
     random_particles random; /* RANDOM */
     uint32_t *before;        /* the vertices of particles before the step, for a step that fails */
@@ -27,7 +27,6 @@ struct cscd_sensors {
     particle_pairs pairs;
     exact_check exact;
     sensor_renewal renewal;
-    sensor_bounds bounds;
     cscd_renewal *renewals; /* per part */
 
     uint32_t *cells_a, *cells_b; /* the cells of the pair of parts that is checked */

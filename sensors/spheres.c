@@ -17,7 +17,7 @@ uint32_t kissing_number(double radius, double other, uint32_t most) {
     return count < 1.0 ? 1 : count < most ? (uint32_t)count : most;
 }
 
-void find_radii(const cscd_partition *partition, const double *positions, double *radii) {
+void find_radii(const sensor_partition *partition, const double *positions, double *radii) {
     const cscd_mesh *mesh = partition->mesh;
     for (uint32_t p = 0; p < partition->part_count; p++) radii[p] = 0.0;
     for (uint32_t t = 0; t < mesh->triangle_count; t++)
@@ -59,7 +59,7 @@ typedef struct spheres {
 } spheres;
 
 /* Parts without an area or a vertex of their own are left out, since nothing touches them. */
-static void collect_radii(const cscd_partition *partition, const double *radii, spheres *s) {
+static void collect_radii(const sensor_partition *partition, const double *radii, spheres *s) {
     s->all = s->bodies = none;
     for (uint32_t object = 0; object < partition->object_count; object++) s->own[object] = none;
     for (uint32_t p = 0; p < partition->part_count; p++) {
@@ -73,25 +73,25 @@ static void collect_radii(const cscd_partition *partition, const double *radii, 
 }
 
 /* The radius of the smallest sphere that is watched with a part; INFINITY if there is none. */
-static double smallest_watched(const cscd_partition *partition, const spheres *s, uint32_t part) {
+static double smallest_watched(const sensor_partition *partition, const spheres *s, uint32_t part) {
     uint32_t object = partition->parts[part].object;
     bool obstacle = partition->object_obstacles[object];
     double radius = smallest_but(obstacle ? &s->bodies : &s->all, object);
-    if (partition->options.within && !obstacle) radius = fmin(radius, smallest_but(&s->own[object], part));
+    if (partition->options->within && !obstacle) radius = fmin(radius, smallest_but(&s->own[object], part));
     return radius;
 }
 
 /* ---- cells --------------------------------------------------------------------------------------------- */
 
-static uint32_t count_for_part(const cscd_partition *partition, const spheres *s, double radius,
+static uint32_t count_for_part(const sensor_partition *partition, const spheres *s, double radius,
                                bool two_convex, uint32_t part) {
-    if (partition->options.cells > 0) return partition->options.cells;
+    if (partition->options->cells > 0) return partition->options->cells;
     double other = smallest_watched(partition, s, part);
     if (two_convex || isinf(other)) return 1;
-    return kissing_number(radius, other, partition->options.cells_max);
+    return kissing_number(radius, other, partition->options->cells_max);
 }
 
-cscd_status count_cells(const cscd_partition *partition, const double *radii, const bool *convex,
+cscd_status count_cells(const sensor_partition *partition, const double *radii, const bool *convex,
                         uint32_t *counts) {
     spheres s = {.own = context_allocate(partition->context, partition->object_count, sizeof *s.own)};
     if (s.own == NULL) return context_out_of_memory(partition->context);

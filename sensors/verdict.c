@@ -27,7 +27,7 @@ static cscd_status reserve_warnings(cscd_sensors *s, size_t count) {
 }
 
 static cscd_warning warning_of(const cscd_sensors *s, const near_particles *nearest) {
-    const cscd_part *parts = s->partition->parts;
+    const cscd_sensor_part *parts = s->partition.parts;
     return (cscd_warning){.part_a = nearest->part_a,
                           .part_b = nearest->part_b,
                           .object_a = parts[nearest->part_a].object,
@@ -53,7 +53,7 @@ static cscd_status check_cells(cscd_sensors *s, size_t begin, size_t end, const 
         add_cell(s, s->pairs.items[i].cell_a, s->cells_a, &query.count_a);
         add_cell(s, s->pairs.items[i].cell_b, s->cells_b, &query.count_b);
     }
-    return exact_check_run(&s->exact, s->partition, &query, verdict);
+    return exact_check_run(&s->exact, &s->partition, &query, verdict);
 }
 
 cscd_status sensor_verdict(cscd_sensors *s, const double *start, const double *end, size_t *count,

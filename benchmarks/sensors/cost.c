@@ -34,7 +34,6 @@ typedef struct cost {
 typedef struct contestants {
     cscd_context *context;
     cscd_mesh *mesh;
-    cscd_partition *partition;
     cscd_sensors *sensors;
     cscd_detector *detector;
 } contestants;
@@ -42,15 +41,13 @@ typedef struct contestants {
 static bool create_contestants(const body *b, contestants *c, io_error *error) {
     const cscd_object_desc desc = cscd_object_of_triangles(b->vertex_count, b->triangle_count, b->triangles);
     cscd_detector_options options = cscd_detector_defaults();
-    cscd_sensor_options sensing = cscd_sensor_defaults();
     options.method = CSCD_METHOD_NONE;
     options.start = CSCD_START_UNKNOWN;
     return (cscd_context_create(NULL, &c->context) == CSCD_OK &&
             cscd_mesh_create(c->context, &desc, 1, &c->mesh) == CSCD_OK &&
-            cscd_partition_create(c->context, c->mesh, NULL,
-                                  CSCD_DOUBLES(b->positions, cscd_mesh_vertex_count(c->mesh)), NULL,
-                                  &c->partition) == CSCD_OK &&
-            cscd_sensors_create(c->context, c->mesh, c->partition, &sensing, &c->sensors) == CSCD_OK &&
+            cscd_sensors_create(c->context, c->mesh, NULL,
+                                CSCD_DOUBLES(b->positions, cscd_mesh_vertex_count(c->mesh)), NULL,
+                                &c->sensors) == CSCD_OK &&
             cscd_detector_create(c->context, c->mesh, NULL, &options, &c->detector) == CSCD_OK) ||
            io_fail(error, "%s", cscd_context_detail(c->context));
 }
@@ -58,7 +55,6 @@ static bool create_contestants(const body *b, contestants *c, io_error *error) {
 static void destroy_contestants(contestants *c) {
     cscd_detector_destroy(c->detector);
     cscd_sensors_destroy(c->sensors);
-    cscd_partition_destroy(c->partition);
     cscd_mesh_destroy(c->mesh);
     cscd_context_destroy(c->context);
 }

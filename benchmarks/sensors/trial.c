@@ -50,19 +50,19 @@ bool sensor_truth_find(const recording_data *r, sensor_truth *out, io_error *err
     options.method = CSCD_METHOD_NONE;
     options.start = CSCD_START_UNKNOWN;
     cscd_detector *detector = NULL;
-    cscd_partition *partition = NULL;
+    cscd_sensors *sensors = NULL;
     object_map map = {NULL, NULL};
     double *ms = body_allocate(r->frame_count, sizeof *ms);
     truth.touching = body_allocate(r->frame_count, sizeof *truth.touching);
     bool good = (cscd_detector_create(r->context, r->mesh, NULL, &options, &detector) == CSCD_OK &&
-                 cscd_partition_create(r->context, r->mesh, NULL,
-                                       CSCD_DOUBLES(r->model.positions, cscd_mesh_vertex_count(r->mesh)),
-                                       NULL, &partition) == CSCD_OK) ||
+                 cscd_sensors_create(r->context, r->mesh, NULL,
+                                     CSCD_DOUBLES(r->model.positions, cscd_mesh_vertex_count(r->mesh)), NULL,
+                                     &sensors) == CSCD_OK) ||
                 api_failed(r, error);
-    good = good && (object_map_make(r->mesh, partition, &map) || io_fail(error, "out of memory")) &&
+    good = good && (object_map_make(r->mesh, sensors, &map) || io_fail(error, "out of memory")) &&
            find_intervals(r, detector, &map, &truth, ms, error);
     object_map_free(&map);
-    cscd_partition_destroy(partition);
+    cscd_sensors_destroy(sensors);
     cscd_detector_destroy(detector);
     free(ms);
     if (good)
@@ -94,27 +94,38 @@ static double mean_edge(const recording_data *r) {
     return sum / cscd_mesh_edge_count(r->mesh);
 }
 
+static bool create_sensors(const recording_data *r, const sensor_rules *rules,
+                           const cscd_sensor_options *options, cscd_sensors **out, io_error *error) {
+    return cscd_sensors_create(r->context, r->mesh, rules->plan ? r->charge : NULL,
+                               CSCD_DOUBLES(r->model.positions, cscd_mesh_vertex_count(r->mesh)), options,
+                               out) == CSCD_OK ||
+           api_failed(r, error);
+}
+
+/* As many random particles on each object as an object has cells, rounded up. */
+static bool take_particles_as_cells(const recording_data *r, const sensor_rules *rules,
+                                    cscd_sensor_options *options, io_error *error) {
+    cscd_sensors *sensors = NULL;
+    if (!create_sensors(r, rules, options, &sensors, error)) return false;
+    uint32_t cells = cscd_sensors_cell_count(sensors), objects = sensors->partition.object_count;
+    options->particles = (cells + objects - 1) / objects;
+    cscd_sensors_destroy(sensors);
+    return true;
+}
+
 /* With a given mu, particles still feel each other as far as they do by default. */
-static bool make_sensors(const recording_data *r, const sensor_rules *rules, cscd_partition **partition,
-                         cscd_sensors **sensors, io_error *error) {
-    const cscd_plan *plan = rules->plan ? r->charge : NULL;
-    cscd_partition_options cutting = cscd_partition_defaults();
-    cutting.cells = rules->cells;
-    if (cscd_partition_create(r->context, r->mesh, plan,
-                              CSCD_DOUBLES(r->model.positions, cscd_mesh_vertex_count(r->mesh)), &cutting,
-                              partition) != CSCD_OK)
-        return api_failed(r, error);
+static bool make_sensors(const recording_data *r, const sensor_rules *rules, cscd_sensors **sensors,
+                         io_error *error) {
     cscd_sensor_options options = cscd_sensor_defaults();
+    options.cells = rules->cells;
     options.method = rules->random ? CSCD_SENSORS_RANDOM : CSCD_SENSORS_CELLS;
     if (rules->mu_edges > 0.0) options.collision_distance = rules->mu_edges * mean_edge(r);
     if (rules->random) {
-        uint32_t cells = cscd_partition_cell_count(*partition),
-                 objects = cscd_partition_object_count(*partition);
-        options.particles = rules->as_cells ? (cells + objects - 1) / objects : rules->particles;
+        options.particles = rules->particles > 0 ? rules->particles : 1;
         options.seed = rules->seed;
+        if (rules->as_cells && !take_particles_as_cells(r, rules, &options, error)) return false;
     }
-    if (cscd_sensors_create(r->context, r->mesh, *partition, &options, sensors) != CSCD_OK)
-        return api_failed(r, error);
+    if (!create_sensors(r, rules, &options, sensors, error)) return false;
     static const particle_rule forces[] = {PARTICLE_ATTRACTION, PARTICLE_ATTRACTION, PARTICLE_SCALAR,
                                            PARTICLE_STRONGEST};
     if (rules->rule != RULE_DEFAULT) (*sensors)->particles.rule = forces[rules->rule];
@@ -122,21 +133,21 @@ static bool make_sensors(const recording_data *r, const sensor_rules *rules, csc
 }
 
 /* New cells would not shorten an edge. */
-static bool renew_due(const recording_data *r, cscd_partition *partition, const cscd_sensors *sensors,
-                      const cscd_warnings *warnings, uint32_t frame, io_error *error) {
-    for (uint32_t p = 0; warnings->renewals_due > 0 && p < cscd_partition_part_count(partition); p++) {
+static bool renew_due(const recording_data *r, cscd_sensors *sensors, const cscd_warnings *warnings,
+                      uint32_t frame, io_error *error) {
+    for (uint32_t p = 0; warnings->renewals_due > 0 && p < cscd_sensors_part_count(sensors); p++) {
         cscd_renewal why = cscd_sensors_renewal(sensors, p);
         if (why == CSCD_RENEWAL_NONE || why == CSCD_RENEWAL_EDGE) continue;
-        if (cscd_partition_renew(
-                partition, CSCD_DOUBLES(recording_data_frame(r, frame), cscd_mesh_vertex_count(r->mesh)),
-                p) != CSCD_OK)
+        if (cscd_sensors_renew(sensors,
+                               CSCD_DOUBLES(recording_data_frame(r, frame), cscd_mesh_vertex_count(r->mesh)),
+                               p) != CSCD_OK)
             return api_failed(r, error);
     }
     return true;
 }
 
 /* Returns the largest diameter of a cell in the first frame. */
-static double largest_cell(const recording_data *r, const cscd_partition *partition) {
+static double largest_cell(const recording_data *r, const sensor_partition *partition) {
     const double *x = recording_data_frame(r, 0);
     double largest = 0.0;
     for (uint32_t c = 0; c < partition->cell_count; c++)
@@ -158,10 +169,9 @@ static void set_reach(cscd_sensors *sensors, const sensor_rules *rules, double c
 }
 
 static bool run_intervals(const recording_data *r, const sensor_truth *truth, const sensor_rules *rules,
-                          cscd_partition *partition, cscd_sensors *sensors, sensor_trial *t, double *ms,
-                          io_error *error) {
+                          cscd_sensors *sensors, sensor_trial *t, double *ms, io_error *error) {
     object_pairs warned = object_pairs_none(), confirmed = object_pairs_none();
-    double cell = rules->reach_cells > 0.0 ? largest_cell(r, partition) : 0.0;
+    double cell = rules->reach_cells > 0.0 ? largest_cell(r, &sensors->partition) : 0.0;
     bool good = true;
     for (uint32_t k = 0; good && k < truth->interval_count; k++) {
         cscd_warnings warnings;
@@ -186,7 +196,7 @@ static bool run_intervals(const recording_data *r, const sensor_truth *truth, co
         t->warned += object_pairs_count(&warned);
         t->found += object_pairs_common(&warned, &truth->touching[k]);
         t->confirmed += object_pairs_common(&confirmed, &truth->touching[k]);
-        good = renew_due(r, partition, sensors, &warnings, k + 1, error);
+        good = renew_due(r, sensors, &warnings, k + 1, error);
     }
     object_pairs_free(&warned);
     object_pairs_free(&confirmed);
@@ -195,12 +205,11 @@ static bool run_intervals(const recording_data *r, const sensor_truth *truth, co
 
 bool sensor_trial_run(const recording_data *r, const sensor_truth *truth, const sensor_rules *rules,
                       sensor_trial *out, io_error *error) {
-    cscd_partition *partition = NULL;
     cscd_sensors *sensors = NULL;
     sensor_trial t = {.trees_ms = truth->trees_ms};
     double *ms = body_allocate(r->frame_count, sizeof *ms);
-    bool good = make_sensors(r, rules, &partition, &sensors, error) &&
-                run_intervals(r, truth, rules, partition, sensors, &t, ms, error);
+    bool good =
+        make_sensors(r, rules, &sensors, error) && run_intervals(r, truth, rules, sensors, &t, ms, error);
     if (good) {
         t.particles = cscd_sensors_particle_count(sensors);
         t.ms = sensor_median(ms, truth->interval_count);
@@ -208,7 +217,6 @@ bool sensor_trial_run(const recording_data *r, const sensor_truth *truth, const 
     }
     free(ms);
     cscd_sensors_destroy(sensors);
-    cscd_partition_destroy(partition);
     return good;
 }
 
@@ -224,80 +232,4 @@ void sensor_trial_add(sensor_trial *sum, const sensor_trial *one) {
     sum->vertices += one->vertices;
     sum->pairs += one->pairs;
     sum->trees_ms = one->trees_ms;
-}
-
-/* ---- the certified mode ------------------------------------------------------------------------------- */
-
-typedef bool (*apart_question)(const cscd_sensors *s, uint32_t a, uint32_t b);
-
-static bool balls_apart(const cscd_sensors *s, uint32_t a, uint32_t b) {
-    return sensor_bounds_apart(&s->bounds, s->partition, a, b);
-}
-
-static bool boxes_apart(const cscd_sensors *s, uint32_t a, uint32_t b) {
-    return sensor_bounds_boxes_apart(&s->bounds, a, b);
-}
-
-/* Writes the answers for all watched pairs, in their order, and returns how many there are. */
-static uint32_t ask_all(const cscd_sensors *s, apart_question ask, bool *answers) {
-    uint32_t count = 0;
-    for (uint32_t a = 0; a < s->partition->part_count; a++)
-        for (uint32_t b = a + 1; b < s->partition->part_count; b++)
-            if (partition_watches(s->partition, a, b)) answers[count++] = ask(s, a, b);
-    return count;
-}
-
-/* The API asks boxes first, then balls about the middles. */
-static void measure_interval(cscd_sensors *s, const double *start, const double *end, bool *answers[3],
-                             certified_trial *t, double ms[2]) {
-    sensor_bounds_update(&s->bounds, s->partition, start, end, s->particles.vertices);
-    uint32_t count = ask_all(s, balls_apart, answers[0]);
-    double since = timer_now_ms();
-    sensor_bounds_update(&s->bounds, s->partition, start, end, NULL);
-    ask_all(s, balls_apart, answers[1]);
-    timer_lap(&since, &ms[0]);
-    sensor_bounds_update_boxes(&s->bounds, s->partition, start, end);
-    ask_all(s, boxes_apart, answers[2]);
-    timer_lap(&since, &ms[1]);
-    for (uint32_t i = 0; i < count; i++) {
-        t->walked += answers[0][i];
-        t->middles += answers[1][i];
-        t->boxes += answers[2][i];
-        t->either += answers[1][i] || answers[2][i];
-    }
-    t->pairs += count;
-}
-
-bool certified_trial_run(const recording_data *r, bool plan, certified_trial *out, io_error *error) {
-    const sensor_rules rules = {.plan = plan};
-    cscd_partition *partition = NULL;
-    cscd_sensors *sensors = NULL;
-    certified_trial t = {0};
-    uint32_t count = r->frame_count - 1;
-    double *ms[2] = {body_allocate(count, sizeof **ms), body_allocate(count, sizeof **ms)};
-    bool *answers[3] = {NULL, NULL, NULL};
-    bool good = make_sensors(r, &rules, &partition, &sensors, error);
-    for (int i = 0; good && i < 3; i++)
-        answers[i] = body_allocate((size_t)partition->part_count * partition->part_count, 1);
-    for (uint32_t k = 0; good && k < count; k++) {
-        const double *start = recording_data_frame(r, k), *end = recording_data_frame(r, k + 1);
-        cscd_warnings warnings;
-        double taken[2] = {0.0, 0.0};
-        good = cscd_sensors_step(sensors, CSCD_DOUBLES(start, cscd_mesh_vertex_count(r->mesh)),
-                                 CSCD_DOUBLES(end, cscd_mesh_vertex_count(r->mesh)), &warnings) == CSCD_OK ||
-               api_failed(r, error);
-        if (!good) break;
-        measure_interval(sensors, start, end, answers, &t, taken);
-        for (int i = 0; i < 2; i++) ms[i][k] = taken[i];
-    }
-    if (good) {
-        t.middles_ms = sensor_median(ms[0], count);
-        t.boxes_ms = sensor_median(ms[1], count);
-        *out = t;
-    }
-    for (int i = 0; i < 2; i++) free(ms[i]);
-    for (int i = 0; i < 3; i++) free(answers[i]);
-    cscd_sensors_destroy(sensors);
-    cscd_partition_destroy(partition);
-    return good;
 }

@@ -39,12 +39,3 @@ typedef struct sensor_trial {
 bool sensor_trial_run(const recording_data *r, const sensor_truth *truth, const sensor_rules *rules,
                       sensor_trial *out, io_error *error);
 void sensor_trial_add(sensor_trial *sum, const sensor_trial *one);
-
-/* Counts pairs of parts in all intervals: all pairs, and those shown to be apart by balls about particles, by balls
- * about the cells' middles, by boxes, and by either of the last two. For the last two it also has the median ms of
- * an update and all questions. */
-typedef struct certified_trial {
-    double pairs, walked, middles, boxes, either, middles_ms, boxes_ms;
-} certified_trial;
-
-bool certified_trial_run(const recording_data *r, bool plan, certified_trial *out, io_error *error);

@@ -12,86 +12,11 @@
 extern "C" {
 #endif
 
-/* ---- the cells that particles walk in ------------------------------------------------------------------ */
-
-/* How a mesh is divided into objects, parts and cells. The objects are those of the scene, or the
- * components of a mesh that is one object. Parts are nearly convex pieces of an object: the regions of a
- * plan, or the components. Cells are connected groups of a part's vertices, found by vector quantization
- * of positions and normals (Linde, Buzo and Gray 1980); one particle walks in each. Obstacles have parts
- * and cells, too, but are watched neither for each other nor within themselves. */
-typedef struct cscd_partition cscd_partition;
-
-/* Options of a partition; start from cscd_partition_defaults. */
-typedef struct cscd_partition_options {
-    uint32_t struct_size; /* set by cscd_partition_defaults */
-    bool within;          /* parts of one object are watched for each other, too; false by default */
-    uint32_t cells;       /* of each part: at most as many as it has vertices, and more than asked for only
-                           * if these are not connected; 0, the default: as many as spheres of the size of
-                           * the smallest part of another object fit around the sphere of the part's area
-                           * (3.1) */
-    uint32_t cells_max;   /* the largest number of cells of a part when `cells` is 0; 1 or more, 64 by
-                           * default */
-    double normal_weight; /* how much unit normals count beside positions, which are scaled to a root mean
-                           * square of 1; from 0 to 1e6, 1 by default */
-    double epsilon;       /* iterations end when the distortion falls by a smaller share; in [0,1), 1e-3 by
-                           * default */
-} cscd_partition_options;
-
-/* The default options. */
-CSCD_API void cscd_partition_defaults_sized(cscd_partition_options *out, size_t size);
-static inline cscd_partition_options cscd_partition_defaults(void) {
-    cscd_partition_options options;
-    cscd_partition_defaults_sized(&options, sizeof options);
-    return options;
-}
-
-/* Creates the partition of a mesh, and keeps the mesh. plan: a plan of the same mesh, which may be
- * destroyed afterwards, or NULL. positions: the mesh at rest. options may be NULL. INVALID_MESH: it has objects
- * that are not of triangles. */
-CSCD_API cscd_status cscd_partition_create(cscd_context *context, const cscd_mesh *mesh,
-                                           const cscd_plan *plan, const cscd_view *positions,
-                                           const cscd_partition_options *options, cscd_partition **out);
-
-/* Gives the partition back. Its sensors keep it. */
-CSCD_API void cscd_partition_destroy(cscd_partition *partition);
-
-/* Makes new cells for one part, or for all if part is UINT32_MAX, at the given positions; their number
- * follows from the area that the part has now. Other parts keep their cells, but the numbers of these may
- * change. Sensors of the partition use the new cells from their next step on. */
-CSCD_API cscd_status cscd_partition_renew(cscd_partition *partition, const cscd_view *positions,
-                                          uint32_t part);
-
-/* A part of an object. */
-typedef struct cscd_part {
-    bool convex; /* the part is a whole object, and convex */
-    uint32_t object;
-    uint32_t first_cell, cell_count; /* cells are numbered part by part; a part has none if no vertex has
-                                      * most of its triangles in it */
-    double radius;                   /* of the sphere with the part's area, when its cells were made */
-} cscd_part;
-
-/* The number of objects. */
-CSCD_API uint32_t cscd_partition_object_count(const cscd_partition *partition);
-
-/* The number of parts of all objects together. */
-CSCD_API uint32_t cscd_partition_part_count(const cscd_partition *partition);
-
-/* A part. */
-CSCD_API cscd_part cscd_partition_part(const cscd_partition *partition, uint32_t part);
-
-/* The number of cells of all parts together. */
-CSCD_API uint32_t cscd_partition_cell_count(const cscd_partition *partition);
-
-/* The cell of a vertex; UINT32_MAX for a vertex without a triangle. */
-CSCD_API uint32_t cscd_partition_vertex_cell(const cscd_partition *partition, uint32_t vertex);
-
-/* How far the vertices of a part were from the means of their cells when these were made: the mean squared
- * distance per dimension (3.10). */
-CSCD_API double cscd_partition_distortion(const cscd_partition *partition, uint32_t part);
-
-/* ---- the particles ------------------------------------------------------------------------------------- */
-
-/* The particles on the objects of one mesh. */
+/* The particles on the objects of one mesh, and the cells that they walk in. The objects are those of the
+ * scene, or the components of a mesh that is one object. Parts are nearly convex pieces of an object: the
+ * regions of a plan, or the components. Cells are connected groups of a part's vertices, found by vector
+ * quantization of positions and normals (Linde, Buzo and Gray 1980). Obstacles have parts and cells, too, but
+ * are watched neither for each other nor within themselves. */
 typedef struct cscd_sensors cscd_sensors;
 
 /* Which particles there are, and what moves them. Later versions may add values. */
@@ -108,6 +33,21 @@ typedef enum cscd_sensor_method {
 typedef struct cscd_sensor_options {
     uint32_t struct_size; /* set by cscd_sensor_defaults */
     cscd_sensor_method method;
+
+    /* Parts and cells. */
+    bool within;          /* parts of one object are watched for each other, too; false by default */
+    uint32_t cells;       /* of each part: at most as many as it has vertices, and more than asked for only
+                           * if these are not connected; 0, the default: as many as spheres of the size of
+                           * the smallest part of another object fit around the sphere of the part's area
+                           * (3.1) */
+    uint32_t cells_max;   /* the largest number of cells of a part when `cells` is 0; 1 or more, 64 by
+                           * default */
+    double normal_weight; /* how much unit normals count beside positions, which are scaled to a root mean
+                           * square of 1; from 0 to 1e6, 1 by default */
+    double epsilon;       /* cells are improved while the distortion falls by more than this share; in
+                           * [0,1), 1e-3 by default */
+
+    /* Particles. */
     double collision_distance; /* mu, a length: two particles closer than this make a warning; 0, the
                                 * default: as large as the longest edges and the motion ask for */
     double effective_radius;   /* R_eff, a length: how far particles feel each other, at least mu; it is
@@ -116,7 +56,7 @@ typedef struct cscd_sensor_options {
     uint32_t step_limit;       /* the largest number of rounds in which particles walk at one moment; 256
                                 * by default */
     bool exact;                /* warnings are checked by elementary tests; true by default */
-    double area_factor;        /* new cells are due when the area of one is beyond so many times the
+    double area_factor;        /* new cells are due when one has more than this many times the area of the
                                 * largest at first; 2 by default */
     uint32_t particles;        /* RANDOM: on each object; 5 by default */
     uint32_t seed;             /* RANDOM: of the first vertices; 1 by default */
@@ -130,14 +70,45 @@ static inline cscd_sensor_options cscd_sensor_defaults(void) {
     return options;
 }
 
-/* Creates sensors, which keep the partition: one of this mesh, and made in the same context, because its
- * cells may be made anew. options may be NULL. */
-CSCD_API cscd_status cscd_sensors_create(cscd_context *context, const cscd_mesh *mesh,
-                                         cscd_partition *partition, const cscd_sensor_options *options,
+/* Creates sensors, which keep the mesh, and divides it into parts and cells. plan: a plan of the same mesh,
+ * which may be destroyed afterwards, or NULL. positions: the mesh at rest. options may be NULL. INVALID_MESH:
+ * it has objects that are not of triangles. */
+CSCD_API cscd_status cscd_sensors_create(cscd_context *context, const cscd_mesh *mesh, const cscd_plan *plan,
+                                         const cscd_view *positions, const cscd_sensor_options *options,
                                          cscd_sensors **out);
 
 /* Frees the sensors and their lists. */
 CSCD_API void cscd_sensors_destroy(cscd_sensors *sensors);
+
+/* ---- parts and cells ----------------------------------------------------------------------------------- */
+
+/* A part of an object. */
+typedef struct cscd_sensor_part {
+    bool convex; /* the part is a whole object, and convex */
+    uint32_t object;
+    uint32_t first_cell, cell_count; /* cells are numbered part by part; a part has none if no vertex has
+                                      * most of its triangles in it */
+    double radius;                   /* of the sphere with the part's area, when its cells were made */
+} cscd_sensor_part;
+
+/* The number of parts of all objects together. */
+CSCD_API uint32_t cscd_sensors_part_count(const cscd_sensors *sensors);
+
+/* A part. */
+CSCD_API cscd_sensor_part cscd_sensors_part(const cscd_sensors *sensors, uint32_t part);
+
+/* The number of cells of all parts together. */
+CSCD_API uint32_t cscd_sensors_cell_count(const cscd_sensors *sensors);
+
+/* The cell of a vertex; UINT32_MAX for a vertex without a triangle. */
+CSCD_API uint32_t cscd_sensors_vertex_cell(const cscd_sensors *sensors, uint32_t vertex);
+
+/* Makes new cells for one part, or for all if part is UINT32_MAX, at the given positions; their number
+ * follows from the area that the part has now. Other parts keep their cells, but the numbers of these may
+ * change. Particles take the new cells at the next step. */
+CSCD_API cscd_status cscd_sensors_renew(cscd_sensors *sensors, const cscd_view *positions, uint32_t part);
+
+/* ---- steps --------------------------------------------------------------------------------------------- */
 
 /* Two parts whose nearest particles are closer than mu at the start or at the end of the interval. */
 typedef struct cscd_warning {
@@ -174,12 +145,8 @@ typedef struct cscd_warnings {
 CSCD_API cscd_status cscd_sensors_step(cscd_sensors *sensors, const cscd_view *x0, const cscd_view *x1,
                                        cscd_warnings *out);
 
-/* Whether, and why, a part should have new cells (cscd_partition_renew). Ask after a step. */
+/* Whether, and why, a part should have new cells (cscd_sensors_renew). Ask after a step. */
 CSCD_API cscd_renewal cscd_sensors_renewal(const cscd_sensors *sensors, uint32_t part);
-
-/* True: it is certain that two different parts do not touch in the interval of the last step that did not
- * fail. False says nothing; before the first step and after new cells were made it is always false. */
-CSCD_API bool cscd_sensors_apart(const cscd_sensors *sensors, uint32_t part_a, uint32_t part_b);
 
 /* The number of particles. With CELLS there is one for each cell, in the order of the cells; with RANDOM
  * they are numbered object by object. */
@@ -191,7 +158,7 @@ CSCD_API uint32_t cscd_sensors_particle(const cscd_sensors *sensors, uint32_t pa
 /* Milliseconds of the last step. */
 typedef struct cscd_sensor_timings {
     double walk_ms;     /* particles walk */
-    double verdict_ms;  /* distances between particles, and the certificates of cscd_sensors_apart */
+    double verdict_ms;  /* distances between particles */
     double exact_ms;    /* elementary tests of warnings */
     double renewal_ms;  /* looking for parts that should have new cells */
     double total_ms;    /* the whole step */

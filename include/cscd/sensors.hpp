@@ -8,77 +8,44 @@
 
 namespace cscd {
 
-/* The members of cscd_partition_options and cscd_sensor_options, at their defaults. */
-struct partition_options : cscd_partition_options {
-    partition_options() noexcept : cscd_partition_options(cscd_partition_defaults()) {
-    }
-};
+/* The members of cscd_sensor_options, at their defaults. */
 struct sensor_options : cscd_sensor_options {
     sensor_options() noexcept : cscd_sensor_options(cscd_sensor_defaults()) {
     }
 };
 
-/* The parts and cells of a mesh. */
-class partition : public detail::owner<cscd_partition, cscd_partition_destroy> {
+using warnings = list<cscd_warnings>;
+
+/* The particles on the objects of one mesh, and their cells; warnings live until their next step. */
+class sensors : public detail::owner<cscd_sensors, cscd_sensors_destroy> {
   public:
-    partition(const context &context, mesh_ref mesh, const positions &rest,
-              const partition_options &options = {})
+    sensors(const context &context, mesh_ref mesh, const positions &rest, const sensor_options &options = {})
         : owner(context.state()), object_count_(mesh.object_count()) {
         create_from(context, mesh, nullptr, rest, options);
     }
-    partition(const context &context, mesh_ref mesh, const plan &plan, const positions &rest,
-              const partition_options &options = {})
+    sensors(const context &context, mesh_ref mesh, const plan &plan, const positions &rest,
+            const sensor_options &options = {})
         : owner(context.state()), object_count_(mesh.object_count()) {
         create_from(context, mesh, plan.get(), rest, options);
+    }
+
+    std::uint32_t part_count() const noexcept {
+        return cscd_sensors_part_count(get());
+    }
+    cscd_sensor_part part(std::uint32_t index) const noexcept {
+        return cscd_sensors_part(get(), index);
+    }
+    std::uint32_t cell_count() const noexcept {
+        return cscd_sensors_cell_count(get());
+    }
+    std::uint32_t vertex_cell(std::uint32_t vertex) const noexcept {
+        return cscd_sensors_vertex_cell(get(), vertex);
     }
 
     /* New cells for one part, or for all. */
     void renew(const positions &x, std::uint32_t part = UINT32_MAX) {
         const cscd_view *at = x.covering(object_count_);
-        detail::make_call(state_, [&] { return cscd_partition_renew(get(), at, part); });
-    }
-
-    std::uint32_t object_count() const noexcept {
-        return cscd_partition_object_count(get());
-    }
-    std::uint32_t part_count() const noexcept {
-        return cscd_partition_part_count(get());
-    }
-    cscd_part part(std::uint32_t index) const noexcept {
-        return cscd_partition_part(get(), index);
-    }
-    std::uint32_t cell_count() const noexcept {
-        return cscd_partition_cell_count(get());
-    }
-    std::uint32_t vertex_cell(std::uint32_t vertex) const noexcept {
-        return cscd_partition_vertex_cell(get(), vertex);
-    }
-    double distortion(std::uint32_t index) const noexcept {
-        return cscd_partition_distortion(get(), index);
-    }
-
-  private:
-    void create_from(const context &context, mesh_ref mesh, const cscd_plan *plan, const positions &rest,
-                     const partition_options &options) {
-        const cscd_view *views = rest.covering(object_count_);
-        create([&](cscd_partition **out) {
-            return cscd_partition_create(context.get(), mesh.get(), plan, views, &options, out);
-        });
-    }
-
-    std::uint32_t object_count_; /* of the mesh */
-};
-
-using warnings = list<cscd_warnings>;
-
-/* The particles on the objects of one mesh. They keep the partition; warnings live until their next step. */
-class sensors : public detail::owner<cscd_sensors, cscd_sensors_destroy> {
-  public:
-    sensors(const context &context, mesh_ref mesh, partition &partition, const sensor_options &options = {})
-        : owner(context.state()), object_count_(mesh.object_count()) {
-        create([&](cscd_sensors **out) {
-            return cscd_sensors_create(context.get(), mesh.get(), partition.get(), &options, out);
-        });
+        detail::make_call(state_, [&] { return cscd_sensors_renew(get(), at, part); });
     }
 
     warnings step(const positions &x0, const positions &x1) {
@@ -89,9 +56,6 @@ class sensors : public detail::owner<cscd_sensors, cscd_sensors_destroy> {
 
     cscd_renewal renewal(std::uint32_t part) const noexcept {
         return cscd_sensors_renewal(get(), part);
-    }
-    bool apart(std::uint32_t part_a, std::uint32_t part_b) const noexcept {
-        return cscd_sensors_apart(get(), part_a, part_b);
     }
     std::uint32_t particle_count() const noexcept {
         return cscd_sensors_particle_count(get());
@@ -107,6 +71,14 @@ class sensors : public detail::owner<cscd_sensors, cscd_sensors_destroy> {
     }
 
   private:
+    void create_from(const context &context, mesh_ref mesh, const cscd_plan *plan, const positions &rest,
+                     const sensor_options &options) {
+        const cscd_view *views = rest.covering(object_count_);
+        create([&](cscd_sensors **out) {
+            return cscd_sensors_create(context.get(), mesh.get(), plan, views, &options, out);
+        });
+    }
+
     std::uint32_t object_count_; /* of the mesh */
 };
 

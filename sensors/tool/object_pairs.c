@@ -55,26 +55,25 @@ uint32_t object_pairs_common(const object_pairs *a, const object_pairs *b) {
 }
 
 /* Finds the part of each cell first, because cells are numbered part by part. */
-static void fill_map(const cscd_mesh *mesh, const cscd_partition *partition, uint32_t *cell_parts,
+static void fill_map(const cscd_mesh *mesh, const cscd_sensors *sensors, uint32_t *cell_parts,
                      object_map *map) {
-    for (uint32_t p = 0; p < cscd_partition_part_count(partition); p++) {
-        cscd_part part = cscd_partition_part(partition, p);
+    for (uint32_t p = 0; p < cscd_sensors_part_count(sensors); p++) {
+        cscd_sensor_part part = cscd_sensors_part(sensors, p);
         for (uint32_t i = 0; i < part.cell_count; i++) cell_parts[part.first_cell + i] = p;
     }
     for (uint32_t v = 0; v < cscd_mesh_vertex_count(mesh); v++) {
-        uint32_t cell = cscd_partition_vertex_cell(partition, v);
+        uint32_t cell = cscd_sensors_vertex_cell(sensors, v);
         map->parts[v] = cell == UINT32_MAX ? UINT32_MAX : cell_parts[cell];
-        map->objects[v] =
-            cell == UINT32_MAX ? UINT32_MAX : cscd_partition_part(partition, map->parts[v]).object;
+        map->objects[v] = cell == UINT32_MAX ? UINT32_MAX : cscd_sensors_part(sensors, map->parts[v]).object;
     }
 }
 
-bool object_map_make(const cscd_mesh *mesh, const cscd_partition *partition, object_map *out) {
-    uint32_t vertices = cscd_mesh_vertex_count(mesh), cells = cscd_partition_cell_count(partition);
+bool object_map_make(const cscd_mesh *mesh, const cscd_sensors *sensors, object_map *out) {
+    uint32_t vertices = cscd_mesh_vertex_count(mesh), cells = cscd_sensors_cell_count(sensors);
     object_map map = {calloc(vertices, sizeof *map.objects), calloc(vertices, sizeof *map.parts)};
     uint32_t *cell_parts = calloc((size_t)cells + 1, sizeof *cell_parts);
     bool made = map.objects != NULL && map.parts != NULL && cell_parts != NULL;
-    if (made) fill_map(mesh, partition, cell_parts, &map);
+    if (made) fill_map(mesh, sensors, cell_parts, &map);
     free(cell_parts);
     if (made)
         *out = map;

@@ -26,7 +26,7 @@ typedef struct object_map {
     uint32_t *objects, *parts;
 } object_map;
 
-bool object_map_make(const cscd_mesh *mesh, const cscd_partition *partition, object_map *out);
+bool object_map_make(const cscd_mesh *mesh, const cscd_sensors *sensors, object_map *out);
 void object_map_free(object_map *map);
 
 /* Makes the closed set of object pairs of contacts. With `within`, an object also counts as a pair with

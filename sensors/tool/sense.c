@@ -1,11 +1,11 @@
 /* `cscd sense`: particles that warn where objects come near each other, interval by interval. */
-#include "tool/common/command.h"
-#include "tool/common/frame_range.h"
 #include "sensors/tool/object_pairs.h"
-#include "tool/common/output_path.h"
-#include "tool/common/terminal.h"
 #include "sensors/tool/sense_picture.h"
 #include "sensors/tool/sense_result.h"
+#include "tool/common/command.h"
+#include "tool/common/frame_range.h"
+#include "tool/common/output_path.h"
+#include "tool/common/terminal.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,7 +16,6 @@ typedef struct sense {
     const sense_options *options;
     recording recording;
     plan_choice plan;
-    cscd_partition *partition;
     cscd_sensors *sensors;
     object_map map;
     object_pairs warned, confirmed, touching;
@@ -36,7 +35,7 @@ static bool api_failed(const sense *s, io_error *error) {
 }
 
 static sense_subject subject_of(const sense *s) {
-    return (sense_subject){s->options, &s->recording, &s->plan, s->partition, s->sensors};
+    return (sense_subject){s->options, &s->recording, &s->plan, s->sensors};
 }
 
 static bool choose_frames(sense *s, io_error *error) {
@@ -70,7 +69,7 @@ static bool prepare_plan(sense *s, io_error *error) {
     return chosen;
 }
 
-/* Makes the partition from the mesh at rest. */
+/* Makes the cells from the mesh at rest. */
 static bool prepare_sensors(sense *s, io_error *error) {
     const cscd_mesh *mesh = s->recording.mesh;
     size_t size = (size_t)cscd_mesh_vertex_count(mesh) * 3 * sizeof *s->x0;
@@ -78,13 +77,11 @@ static bool prepare_sensors(sense *s, io_error *error) {
     s->x1 = malloc(size);
     if (s->x0 == NULL || s->x1 == NULL) return io_fail(error, "out of memory");
     recording_rest(&s->recording, s->x0);
-    if (cscd_partition_create(s->recording.context, mesh, s->plan.plan,
-                              CSCD_DOUBLES(s->x0, cscd_mesh_vertex_count(mesh)), &s->options->partition,
-                              &s->partition) != CSCD_OK ||
-        cscd_sensors_create(s->recording.context, mesh, s->partition, &s->options->sensors, &s->sensors) !=
-            CSCD_OK)
+    if (cscd_sensors_create(s->recording.context, mesh, s->plan.plan,
+                            CSCD_DOUBLES(s->x0, cscd_mesh_vertex_count(mesh)), &s->options->sensors,
+                            &s->sensors) != CSCD_OK)
         return api_failed(s, error);
-    return object_map_make(mesh, s->partition, &s->map) || io_fail(error, "out of memory");
+    return object_map_make(mesh, s->sensors, &s->map) || io_fail(error, "out of memory");
 }
 
 static bool prepare_detector(sense *s, io_error *error) {
@@ -126,7 +123,7 @@ static bool compare_with_detector(sense *s, uint32_t frame, sense_interval *inte
                            &contacts) != CSCD_OK)
         return api_failed(s, error);
     interval->trees_ms = cscd_detector_timings(s->detector).total_ms;
-    if (!object_pairs_of_contacts(s->recording.mesh, &s->map, &contacts, s->options->partition.within,
+    if (!object_pairs_of_contacts(s->recording.mesh, &s->map, &contacts, s->options->sensors.within,
                                   &s->touching))
         return io_fail(error, "out of memory");
     interval->pairs.touching = object_pairs_count(&s->touching);
@@ -146,17 +143,17 @@ static void tell_edge(sense *s, int32_t frame, uint32_t part) {
 /* Makes new cells for the parts that need them, at the frame that ends the interval. */
 static bool renew_cells(sense *s, uint32_t frame, sense_interval *interval, io_error *error) {
     int32_t number = s->recording.frame_numbers[frame];
-    for (uint32_t p = 0; interval->warnings->renewals_due > 0 && p < cscd_partition_part_count(s->partition);
+    for (uint32_t p = 0; interval->warnings->renewals_due > 0 && p < cscd_sensors_part_count(s->sensors);
          p++) {
         cscd_renewal why = cscd_sensors_renewal(s->sensors, p);
         if (why == CSCD_RENEWAL_EDGE) tell_edge(s, number, p);
         if (why == CSCD_RENEWAL_NONE || why == CSCD_RENEWAL_EDGE) continue;
-        if (cscd_partition_renew(s->partition, CSCD_DOUBLES(s->x1, cscd_mesh_vertex_count(s->recording.mesh)),
-                                 p) != CSCD_OK)
+        if (cscd_sensors_renew(s->sensors, CSCD_DOUBLES(s->x1, cscd_mesh_vertex_count(s->recording.mesh)),
+                               p) != CSCD_OK)
             return api_failed(s, error);
         if (!s->options->quiet)
             printf("frame %d: part %u has new cells, %u now (%s)\n", number, p,
-                   cscd_partition_part(s->partition, p).cell_count, sense_renewal_name(why));
+                   cscd_sensors_part(s->sensors, p).cell_count, sense_renewal_name(why));
         interval->renewed++;
     }
     if (interval->renewed > 0) sense_paths_break(&s->paths);
@@ -166,8 +163,7 @@ static bool renew_cells(sense *s, uint32_t frame, sense_interval *interval, io_e
 static bool draw_if_shown(const sense *s, const double *positions, uint32_t frame,
                           const cscd_warnings *warnings, io_error *error) {
     if (frame != s->shown) return true;
-    sense_view view = {&s->recording, s->partition, s->sensors,
-                       &s->paths,     positions,    s->recording.frame_numbers[frame],
+    sense_view view = {&s->recording, s->sensors, &s->paths, positions, s->recording.frame_numbers[frame],
                        warnings};
     return sense_picture_draw(&view, s->options, error);
 }
@@ -243,7 +239,6 @@ static void tell_interrupt(const sense *s) {
 static void end_sense(sense *s) {
     cscd_detector_destroy(s->detector);
     cscd_sensors_destroy(s->sensors);
-    cscd_partition_destroy(s->partition);
     plan_choice_free(&s->plan);
     object_map_free(&s->map);
     object_pairs_free(&s->warned);

@@ -1,7 +1,7 @@
 /* The warnings of `cscd sense` as CSV, and its intervals as JSON. */
+#include "sensors/tool/sense_result.h"
 #include "tool/common/output_path.h"
 #include "tool/common/provenance.h"
-#include "sensors/tool/sense_result.h"
 #include "tool/io/record.h"
 
 #include <math.h>
@@ -121,16 +121,16 @@ static void write_recall(json *out, const sense_totals *t) {
 static void write_subject(json *out, const sense_subject *s) {
     const sense_options *o = s->options;
     json_string(out, "method", sense_method_name(o->sensors.method));
-    json_boolean(out, "within", o->partition.within);
+    json_boolean(out, "within", o->sensors.within);
     json_boolean(out, "exact", o->sensors.exact);
     json_number(out, "mu", o->sensors.collision_distance);
     json_number(out, "reff", o->sensors.effective_radius);
     json_string(out, "plan", plan_source_name(s->plan->source));
     json_integer(out, "vertices", cscd_mesh_vertex_count(s->recording->mesh));
     json_integer(out, "triangles", cscd_mesh_triangle_count(s->recording->mesh));
-    json_integer(out, "objects", cscd_partition_object_count(s->partition));
-    json_integer(out, "parts", cscd_partition_part_count(s->partition));
-    json_integer(out, "cells", cscd_partition_cell_count(s->partition));
+    json_integer(out, "objects", sense_object_count(s->recording->mesh));
+    json_integer(out, "parts", cscd_sensors_part_count(s->sensors));
+    json_integer(out, "cells", cscd_sensors_cell_count(s->sensors));
     json_integer(out, "particles", cscd_sensors_particle_count(s->sensors));
 }
 

@@ -31,14 +31,14 @@ static const option_row rows[] = {
      "edges and the motion)"},
     {"reff", "D", read_length, offsetof(sense_options, sensors.effective_radius),
      "how far particles feel each other, a length, at least --mu (default 0: mu and the two largest cells)"},
-    {"cells", "N", read_unsigned, offsetof(sense_options, partition.cells),
+    {"cells", "N", read_unsigned, offsetof(sense_options, sensors.cells),
      "cells of each part (default 0: as many as spheres of the smallest part fit around the sphere of this one)"},
     {"particles", "N", read_positive, offsetof(sense_options, sensors.particles),
      "with random: on each object (default 5)"},
     {"seed", "N", read_unsigned, offsetof(sense_options, sensors.seed), "with random: default 1"},
     {"plan", "PLAN.ply|none", read_input_path, offsetof(sense_options, plan_path),
      "whose regions are the parts of concave objects (default as for replay); none: every component is one part"},
-    {"within", NULL, read_flag, offsetof(sense_options, partition.within),
+    {"within", NULL, read_flag, offsetof(sense_options, sensors.within),
      "with cells: parts of one object are watched for each other, too"},
     {"no-exact", NULL, read_no_exact, offsetof(sense_options, sensors.exact),
      "warnings are not checked by elementary tests"},
@@ -91,7 +91,7 @@ static int check_options(const sense_options *o, const given_options *given) {
                               of_random[i]);
     if (random && option_given(&sense_table, given, "cells"))
         return fail_usage("sense", "--cells is of --method cells; random takes --particles");
-    if (random && o->partition.within)
+    if (random && s->within)
         return fail_usage("sense", "--within is of --method cells; random watches whole objects");
     if (s->effective_radius > 0.0 && s->effective_radius < s->collision_distance)
         return fail_usage("sense", "--reff %g is below --mu %g: particles would not feel what they warn of",
@@ -106,7 +106,6 @@ static int check_options(const sense_options *o, const given_options *given) {
 
 bool sense_options_parse(int argument_count, char **arguments, sense_options *out, int *code) {
     sense_options o = {.frames = frame_range_all(),
-                       .partition = cscd_partition_defaults(),
                        .sensors = cscd_sensor_defaults(),
                        .picture = picture_options_defaults(),
                        .argument_count = argument_count,

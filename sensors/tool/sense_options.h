@@ -10,7 +10,6 @@
 typedef struct sense_options {
     recording_options source;
     frame_range frames;
-    cscd_partition_options partition;
     cscd_sensor_options sensors;
     const char *plan_path; /* NULL: as for replay */
     bool no_plan;

@@ -72,7 +72,7 @@ static bool colour_cells(canvas *c, const sense_view *view) {
     for (uint32_t t = 0; t < count; t++) {
         uint32_t *v = c->triangles + (size_t)t * 3, cells[3];
         cscd_mesh_triangle(mesh, t, v);
-        for (int i = 0; i < 3; i++) cells[i] = cscd_partition_vertex_cell(view->partition, v[i]);
+        for (int i = 0; i < 3; i++) cells[i] = cscd_sensors_vertex_cell(view->sensors, v[i]);
         picture_colour_category(cells[1] == cells[2] ? cells[1] : cells[0], c->colours + (size_t)t * 3);
     }
     return true;
@@ -139,7 +139,7 @@ static void set_texts(canvas *c, const sense_view *view) {
         c->legend[i].text = texts[i];
     }
     int used = snprintf(c->caption, sizeof c->caption, "frame %d: %u cells", view->frame,
-                        cscd_partition_cell_count(view->partition));
+                        cscd_sensors_cell_count(view->sensors));
     if (view->warnings != NULL)
         snprintf(c->caption + used, sizeof c->caption - (size_t)used, ", %zu warning%s",
                  view->warnings->count, view->warnings->count == 1 ? "" : "s");

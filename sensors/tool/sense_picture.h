@@ -2,8 +2,8 @@
 #pragma once
 
 #include "cscd/sensors.h"
-#include "tool/io/growable.h"
 #include "sensors/tool/sense_options.h"
+#include "tool/io/growable.h"
 
 /* Where the particles have been so far. */
 typedef struct sense_paths {
@@ -23,7 +23,6 @@ void sense_paths_break(sense_paths *paths);
 
 typedef struct sense_view {
     const recording *recording;
-    const cscd_partition *partition;
     const cscd_sensors *sensors;
     const sense_paths *paths;
     const double *positions; /* of the frame */

@@ -2,10 +2,10 @@
 #pragma once
 
 #include "cscd/sensors.h"
+#include "sensors/tool/sense_options.h"
 #include "tool/common/plan_source.h"
 #include "tool/io/json.h"
 #include "tool/io/output_file.h"
-#include "sensors/tool/sense_options.h"
 
 #include <stdio.h>
 
@@ -74,9 +74,11 @@ typedef struct sense_subject {
     const sense_options *options;
     const recording *recording;
     const plan_choice *plan;
-    const cscd_partition *partition;
     const cscd_sensors *sensors;
 } sense_subject;
+
+/* In a scene of one object its components are the objects that are watched. */
+uint32_t sense_object_count(const cscd_mesh *mesh);
 
 void sense_print_totals(const sense_subject *subject, const sense_totals *t);
 

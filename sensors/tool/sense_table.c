@@ -124,13 +124,18 @@ static void print_comparison(const sense_totals *t) {
            t->trees_ms > 0.0 ? t->timings.total_ms / t->trees_ms : 0.0);
 }
 
+uint32_t sense_object_count(const cscd_mesh *mesh) {
+    uint32_t count = cscd_mesh_object_count(mesh);
+    return count == 1 ? cscd_mesh_component_count(mesh) : count;
+}
+
 void sense_print_totals(const sense_subject *subject, const sense_totals *t) {
     const cscd_mesh *mesh = subject->recording->mesh;
     double count = t->intervals > 0 ? t->intervals : 1.0;
     printf("\n%s: %u triangles, %u objects, %u parts, %u cells; method %s, %u particles\n",
-           subject->options->source.model_path, cscd_mesh_triangle_count(mesh),
-           cscd_partition_object_count(subject->partition), cscd_partition_part_count(subject->partition),
-           cscd_partition_cell_count(subject->partition), sense_method_name(subject->options->sensors.method),
+           subject->options->source.model_path, cscd_mesh_triangle_count(mesh), sense_object_count(mesh),
+           cscd_sensors_part_count(subject->sensors), cscd_sensors_cell_count(subject->sensors),
+           sense_method_name(subject->options->sensors.method),
            cscd_sensors_particle_count(subject->sensors));
     plan_choice_print(subject->plan);
     printf("warnings: %llu in %u of %u intervals", (unsigned long long)t->warnings, t->intervals_warned,

@@ -15,5 +15,4 @@
 #define LEAST_cscd_object_change        STRUCT_THROUGH(cscd_object_change, triangle_origins)
 #define LEAST_cscd_plan_options         STRUCT_THROUGH(cscd_plan_options, growing)
 #define LEAST_cscd_plan_parts           STRUCT_THROUGH(cscd_plan_parts, origin)
-#define LEAST_cscd_partition_options    STRUCT_THROUGH(cscd_partition_options, epsilon)
 #define LEAST_cscd_sensor_options       STRUCT_THROUGH(cscd_sensor_options, seed)

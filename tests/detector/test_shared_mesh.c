@@ -1,7 +1,6 @@
 /* One mesh for several contexts, on several threads at once: it never changes, each object works in its own context,
  * and the last one to let go gives the memory back. */
 #include "cscd/cscd.h"
-#include "cscd/sensors.h"
 #include "tests/support/refusal.h"
 #include "tests/support/rig.h"
 #include "tests/support/scenes.h"
@@ -31,20 +30,14 @@ TEST(objects_work_in_their_own_context) {
     cscd_plan *plan;
     cscd_detector *detector;
     cscd_line_search *search;
-    cscd_partition *partition;
-    cscd_sensors *sensors;
     cscd_contacts contacts;
-    cscd_warnings warnings;
     expect_ok(cscd_plan_create(guest, mesh, x0, &by_kmeans, &plan));
     expect_ok(cscd_detector_create(guest, mesh, plan, NULL, &detector));
     assert_ptr_equal(cscd_detector_mesh(detector), mesh);
     assert_ptr_equal(cscd_mesh_context(cscd_detector_mesh(detector)), home);
     expect_ok(cscd_line_search_create(detector, &search));
-    expect_ok(cscd_partition_create(guest, mesh, plan, x0, NULL, &partition));
-    expect_ok(cscd_sensors_create(guest, mesh, partition, NULL, &sensors));
     expect_ok(cscd_detector_step(detector, x0, x1, &contacts));
     expect_ok(cscd_line_search_begin(search, x0, x1, 0.1));
-    expect_ok(cscd_sensors_step(sensors, x0, x1, &warnings));
     expect_invalid(guest, cscd_detector_step(detector, x0, too_short, &contacts), "x1");
     assert_string_equal(cscd_context_detail(home), "");
     assert_int_equal(of_home.calls, home_calls);
@@ -53,8 +46,6 @@ TEST(objects_work_in_their_own_context) {
     cscd_mesh_destroy(mesh);
     expect_ok(cscd_detector_step(detector, x0, x1, &contacts));
     assert_true(of_home.live > 0);
-    cscd_sensors_destroy(sensors);
-    cscd_partition_destroy(partition);
     cscd_plan_destroy(plan);
     cscd_detector_destroy(detector);
     assert_true(of_home.live > 0);

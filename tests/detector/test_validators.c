@@ -1,8 +1,7 @@
-/* The validators of meshes, plans, partitions and detectors find every kind of planted fault, and none in what the
+/* The validators of meshes, plans and detectors find every kind of planted fault, and none in what the
  * library has made. */
-#include "cscd/sensors.h"
+#include "cscd/cscd.h"
 #include "runtime/detector/detector_validate.h"
-#include "sensors/partition.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"
 
@@ -12,12 +11,11 @@
 
 static scene shape; /* large; one test at a time */
 
-/* Two objects, of which the second is an obstacle, with a plan, a partition, and a detector that has made a step. */
+/* Two objects, of which the second is an obstacle, with a plan, and a detector that has made a step. */
 typedef struct whole_set {
     cscd_context *context;
     cscd_mesh *mesh;
     cscd_plan *plan;
-    cscd_partition *partition;
     cscd_detector *detector;
 } whole_set;
 
@@ -54,19 +52,16 @@ static whole_set whole_set_create(void) {
     const cscd_view x0 = cscd_view_doubles(shape.x0, shape.vertex_count);
     const cscd_view x1 = cscd_view_doubles(shape.x1, shape.vertex_count);
     expect_ok(cscd_plan_create(w.context, w.mesh, &x0, &options, &w.plan));
-    expect_ok(cscd_partition_create(w.context, w.mesh, NULL, &x0, NULL, &w.partition));
     w.detector = create_detector(&w);
     expect_ok(cscd_detector_step(w.detector, &x0, &x1, &found));
     assert_null(mesh_validate(w.mesh));
     assert_null(plan_validate(w.plan));
-    assert_null(partition_validate(w.partition));
     assert_null(detector_validate(w.detector));
     return w;
 }
 
 static void whole_set_destroy(whole_set *w) {
     cscd_detector_destroy(w->detector);
-    cscd_partition_destroy(w->partition);
     cscd_plan_destroy(w->plan);
     cscd_mesh_destroy(w->mesh);
     cscd_context_destroy(w->context);
@@ -118,7 +113,7 @@ TEST(faults_of_meshes) {
     whole_set_destroy(&w);
 }
 
-TEST(faults_of_plans_and_partitions) {
+TEST(faults_of_plans) {
     whole_set w = whole_set_create();
     PLANT(plan_validate, w.plan, w.plan->triangle_regions[2], 99, "a plan names a region that there is not");
     PLANT(plan_validate, w.plan, w.plan->triangle_weights[2], (double)NAN,
@@ -127,15 +122,6 @@ TEST(faults_of_plans_and_partitions) {
           "the regions of a plan do not hold every triangle once");
     PLANT(plan_validate, w.plan, w.plan->regions[0].component, 9,
           "a region of a plan is of a component that there is not");
-    cscd_partition *p = w.partition;
-    PLANT(partition_validate, p, p->triangle_parts[2], 99, "a triangle is in a part that there is not");
-    PLANT(partition_validate, p, p->vertex_cells[2], p->cell_count,
-          "a vertex is in a cell that there is not");
-    PLANT(partition_validate, p, p->parts[1].object, 2, "a part is of an object that there is not");
-    PLANT(partition_validate, p, p->cell_parts[0], 2, "a cell is of a part that there is not");
-    PLANT(partition_validate, p, p->cell_offsets[0], 1, "the cells of a partition do not follow each other");
-    PLANT(partition_validate, p, p->cell_vertices[0], p->cell_vertices[p->cell_offsets[1]],
-          "a cell holds a vertex of another one");
     whole_set_destroy(&w);
 }
 

@@ -1,4 +1,4 @@
-/* What every call promises (tests/support/proofs/proof.h), of event trackers, of single pairs, and of particle sensors. */
+/* What every call promises (tests/support/proofs/proof.h), of event trackers and of single pairs. */
 #include "tests/support/events/recorded_frames.h"
 #include "tests/support/proofs/answers.h"
 #include "tests/support/proofs/openings.h"
@@ -148,92 +148,18 @@ static const proof_call rounded_step = {"pairs_step", PROOF_ASKS, step_rounded, 
 static const proof_call rounded_near = {"pairs_find_near", PROOF_ASKS, find_near_rounded,
                                         read_pair_distances};
 
-/* ---- particle sensors ----------------------------------------------------------------------------------- */
-
-static cscd_status create_partition(proof *p) {
-    cscd_partition_options options = cscd_partition_defaults();
-    cscd_view x;
-    options.within = true;
-    return cscd_partition_create(p->context, p->mesh, p->plan, at_moment(p, 0, &x), &options,
-                                 &p->answer.partition);
-}
-
-static void read_cells(proof *p) {
-    for (uint32_t v = 0; v < p->shape.vertex_count; v++) {
-        const uint32_t cell = cscd_partition_vertex_cell(p->partition, v);
-        proof_add(p, &cell, sizeof cell);
-    }
-}
-
-static void keep_partition(proof *p) {
-    p->partition = p->answer.partition;
-    read_cells(p);
-}
-
-static cscd_status renew_part(proof *p) {
-    cscd_view x;
-    return cscd_partition_renew(p->partition, at_moment(p, 2, &x), 1);
-}
-
-static cscd_status create_sensors(proof *p) {
-    cscd_sensor_options options = cscd_sensor_defaults();
-    options.method = p->row->seed == 0 ? CSCD_SENSORS_CELLS : CSCD_SENSORS_RANDOM;
-    return cscd_sensors_create(p->context, p->mesh, p->partition, &options, &p->answer.sensors);
-}
-
-static void keep_sensors(proof *p) {
-    p->sensors = p->answer.sensors;
-}
-
-static cscd_status sense_between(proof *p, int from, int to) {
-    cscd_view x0, x1;
-    return cscd_sensors_step(p->sensors, at_moment(p, from, &x0), at_moment(p, to, &x1), &p->answer.warnings);
-}
-
-static cscd_status sense_first(proof *p) {
-    return sense_between(p, 0, 1);
-}
-
-static cscd_status sense_second(proof *p) {
-    return sense_between(p, 1, 2);
-}
-
-/* How far particles have walked is counted, so one that is not put back after a failure is seen. */
-static void read_warnings(proof *p) {
-    const cscd_sensor_counters counters = cscd_sensors_counters(p->sensors);
-    proof_add(p, &counters, sizeof counters);
-    for (size_t i = 0; i < p->answer.warnings.count; i++) {
-        const cscd_warning *w = &p->answer.warnings.items[i];
-        const uint32_t vertices[2] = {w->vertex_a, w->vertex_b};
-        const double numbers[2] = {w->distance, w->toi};
-        proof_add_items(p, vertices, 2, sizeof *vertices);
-        proof_add_items(p, numbers, 2, sizeof *numbers);
-    }
-}
-
-static const proof_call partition_made = {"partition_create", PROOF_CREATES, create_partition,
-                                          keep_partition};
-static const proof_call part_renewed = {"partition_renew", PROOF_CHANGES, renew_part, read_cells};
-static const proof_call sensors_made = {"sensors_create", PROOF_CREATES, create_sensors, keep_sensors};
-static const proof_call first_sensed = {"sensors_step", PROOF_CHANGES, sense_first, read_warnings};
-static const proof_call second_sensed = {"sensors_step", PROOF_CHANGES, sense_second, read_warnings};
-
 /* ---- the table ------------------------------------------------------------------------------------------ */
 
 static const char packed[] = "packed doubles are read where they are";
 static const char unasked[] = "single pairs report no progress";
 static const char rounded[] = "floats are made doubles, which nothing keeps";
 static const char tracked[] = "a frame has few things, which one thread adds";
-static const char walking[] = "particles are few, and walk one after the other";
 
 #define FRAMES                                                                                               \
     {                                                                                                        \
         &tracker_made, &contacts, &frame, &contacts, &frame, &taken, &contacts, &frame, &contacts, &frame,   \
             &finished                                                                                        \
     }
-#define SENSORS                                                                                              \
-    { &partition_made, &sensors_made, &first_sensed, &part_renewed, &second_sensed }
-
 static const proof_row rows[] = {
     {"events", FRAMES, open_recording, close_recording, .seed = 1, .no_report = tracked,
      .one_thread = tracked},
@@ -251,9 +177,6 @@ static const proof_row rows[] = {
      free_pairs,
      .no_report = unasked,
      .allocates = rounded},
-    {"sensors", SENSORS, open_mesh, .family = SCENE_TWO_SPHERES, .no_report = walking, .one_thread = walking},
-    {"sensors_random", SENSORS, open_mesh, .family = SCENE_TWO_SPHERES, .seed = 1, .no_report = walking,
-     .one_thread = walking},
 };
 
 PROOFS(rows)

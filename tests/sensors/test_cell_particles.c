@@ -15,7 +15,7 @@ TEST(renewed_cells_begin_in_the_middle) {
     scene_add_sphere(&bodies, (double[3]){-4.0, 0.0, 0.0}, 1.0, 12, 16);
     scene_add_sphere(&bodies, (double[3]){4.0, 0.0, 0.0}, 1.0, 12, 16);
     rig r = rig_create(&bodies, 1, NULL);
-    cscd_partition *partition = hand_partition_create(r.mesh, bodies.x0, NULL, 2, 8);
+    sensor_partition *partition = hand_partition_create(r.mesh, bodies.x0, NULL, 2, 8);
     particles p = {.context = r.context};
     uint64_t generation = 0;
     uint32_t middles[SCENE_VERTICES_MAX], moved[SCENE_VERTICES_MAX], renewed = 0, kept = 0;

@@ -26,7 +26,7 @@ static bool contains_cell(const uint32_t *cells, uint32_t count, uint32_t cell) 
     return false;
 }
 
-static void mark_side(const cscd_partition *p, const uint32_t *cells, uint32_t count, uint8_t side,
+static void mark_side(const sensor_partition *p, const uint32_t *cells, uint32_t count, uint8_t side,
                       sides *out) {
     const cscd_mesh *mesh = p->mesh;
     for (uint32_t t = 0; t < mesh->triangle_count; t++) {
@@ -63,7 +63,7 @@ static void test_pair(const swept_interval *moving, cscd_contact_kind kind, uint
     out->contact = true;
 }
 
-static area_verdict brute_force(const cscd_partition *p, const area_query *query) {
+static area_verdict brute_force(const sensor_partition *p, const area_query *query) {
     static sides marks;
     const cscd_mesh *mesh = p->mesh;
     swept_interval moving = {.mesh = mesh, .x0 = query->start, .x1 = query->end};
@@ -88,7 +88,7 @@ static area_verdict brute_force(const cscd_partition *p, const area_query *query
     return verdict;
 }
 
-static area_verdict run_check(exact_check *exact, const cscd_partition *p, const area_query *query) {
+static area_verdict run_check(exact_check *exact, const sensor_partition *p, const area_query *query) {
     area_verdict verdict;
     assert_int_equal(exact_check_run(exact, p, query, &verdict), CSCD_OK);
     return verdict;
@@ -101,7 +101,7 @@ static void assert_same(const area_verdict *found, const area_verdict *expected)
 }
 
 /* Chooses each of a part's cells with a chance of two in three. */
-static uint32_t choose_cells(const cscd_partition *p, uint32_t part, uint32_t *out) {
+static uint32_t choose_cells(const sensor_partition *p, uint32_t part, uint32_t *out) {
     uint32_t count = 0;
     for (uint32_t i = 0; i < p->parts[part].cell_count; i++) {
         if (random_integer(0, 2) > 0) out[count++] = p->parts[part].first_cell + i;
@@ -127,7 +127,7 @@ TEST(equals_brute_force) {
         scene_make((scene_family)(i % SCENE_FAMILY_COUNT), (uint64_t)i, &interval);
         rig r = rig_create(&interval, 1, NULL);
         choose_parts(&interval, 3, triangle_parts);
-        cscd_partition *p = hand_partition_create(r.mesh, interval.x0, triangle_parts, 3, 6);
+        sensor_partition *p = hand_partition_create(r.mesh, interval.x0, triangle_parts, 3, 6);
         exact_check exact;
         assert_int_equal(exact_check_create(r.mesh, &exact), CSCD_OK);
         for (int k = 0; k < 3; k++) {
@@ -170,7 +170,7 @@ TEST(equals_detector) {
     for (int i = 0; i < SCENES_OF_TWO; i++) {
         scene_make(families[i % 3], 1000u + (uint64_t)i, &interval);
         rig r = rig_create(&interval, 1, NULL);
-        cscd_partition *p = hand_partition_create(r.mesh, interval.x0, NULL, 2, 9);
+        sensor_partition *p = hand_partition_create(r.mesh, interval.x0, NULL, 2, 9);
         uint32_t count = p->parts[0].cell_count;
         area_query query = {interval.x0, interval.x1, cells, cells + count, count, p->parts[1].cell_count};
         exact_check exact;
@@ -195,7 +195,7 @@ TEST(order_and_reuse_do_not_matter) {
     random_seed(3);
     scene_make(SCENE_LINKED_TORI, 5, &interval);
     rig r = rig_create(&interval, 1, NULL);
-    cscd_partition *p = hand_partition_create(r.mesh, interval.x0, NULL, 2, 9);
+    sensor_partition *p = hand_partition_create(r.mesh, interval.x0, NULL, 2, 9);
     uint32_t count = p->parts[0].cell_count, others = p->parts[1].cell_count;
     for (uint32_t i = 0; i < count + others; i++) cells[i] = i;
     for (uint32_t i = 0; i < count; i++) reversed[i] = count - 1 - i;

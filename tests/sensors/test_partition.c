@@ -1,18 +1,18 @@
 /* Partitions: parts, how many cells each gets, and cells that are connected and hold every vertex once. */
-#include "sensors/partition.h"
 #include "tests/support/packed.h"
-#include "tests/support/sensors/partition_check.h"
 #include "tests/support/random.h"
 #include "tests/support/refusal.h"
 #include "tests/support/scenes.h"
+#include "tests/support/sensors/partition_check.h"
+#include "tests/support/sensors/sensor_rig.h"
 #include "tests/support/test.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-static cscd_partition_options with_cells(uint32_t cells) {
-    cscd_partition_options options = cscd_partition_defaults();
+static cscd_sensor_options with_cells(uint32_t cells) {
+    cscd_sensor_options options = cscd_sensor_defaults();
     options.cells = cells;
     return options;
 }
@@ -20,10 +20,10 @@ static cscd_partition_options with_cells(uint32_t cells) {
 /* Counts the cells of a body that is one part, when so many are asked for. */
 static uint32_t cells_of(const body *b, uint32_t cells) {
     cscd_mesh *mesh = body_mesh(b, 1);
-    cscd_partition_options options = with_cells(cells);
-    cscd_partition *partition = partition_of(mesh, NULL, b->positions, &options);
-    uint32_t count = cscd_partition_cell_count(partition);
-    cscd_partition_destroy(partition);
+    cscd_sensor_options options = with_cells(cells);
+    cscd_sensors *sensors = sensors_of(mesh, NULL, b->positions, &options);
+    uint32_t count = cscd_sensors_cell_count(sensors);
+    cscd_sensors_destroy(sensors);
     body_mesh_destroy(mesh);
     return count;
 }
@@ -65,12 +65,12 @@ TEST(concave_bodies) {
         body b = body_of((body_kind)kind, body_nearest_count((body_kind)kind, 1500));
         cscd_mesh *mesh = body_mesh(&b, 1);
         for (uint32_t cells = 0; cells <= 64; cells = cells * 2 + 1) {
-            cscd_partition_options options = with_cells(cells);
-            cscd_partition *partition = partition_of(mesh, NULL, b.positions, &options);
-            assert_int_equal(cscd_partition_object_count(partition), mesh->component_count);
-            for (uint32_t p = 0; p < cscd_partition_part_count(partition) && cells > 0; p++)
-                assert_in_range(cscd_partition_part(partition, p).cell_count, 1, cells);
-            cscd_partition_destroy(partition);
+            cscd_sensor_options options = with_cells(cells);
+            cscd_sensors *sensors = sensors_of(mesh, NULL, b.positions, &options);
+            assert_int_equal(sensors->partition.object_count, mesh->component_count);
+            for (uint32_t p = 0; p < cscd_sensors_part_count(sensors) && cells > 0; p++)
+                assert_in_range(cscd_sensors_part(sensors, p).cell_count, 1, cells);
+            cscd_sensors_destroy(sensors);
         }
         body_mesh_destroy(mesh);
         body_free(&b);
@@ -90,14 +90,14 @@ TEST(random_scenes) {
             plan_options.method = CSCD_METHOD_KMEANS;
             plan_options.k = (uint32_t)random_integer(1, 60);
             expect_ok(plan_create_packed(mesh, b.positions, &plan_options, &plan));
-            cscd_partition_options options = with_cells((uint32_t)random_integer(0, 20));
+            cscd_sensor_options options = with_cells((uint32_t)random_integer(0, 20));
             options.within = random_integer(0, 1) == 1;
             options.normal_weight = random_between(0.0, 3.0);
-            cscd_partition *partition = partition_of(mesh, plan, b.positions, &options);
-            assert_int_equal(cscd_partition_part_count(partition), cscd_plan_region_count(plan));
-            expect_ok(partition_renew_packed(partition, s.x1, UINT32_MAX));
-            check_partition(partition);
-            cscd_partition_destroy(partition);
+            cscd_sensors *sensors = sensors_of(mesh, plan, b.positions, &options);
+            assert_int_equal(cscd_sensors_part_count(sensors), cscd_plan_region_count(plan));
+            expect_ok(sensors_renew_packed(sensors, s.x1, UINT32_MAX));
+            check_partition(&sensors->partition);
+            cscd_sensors_destroy(sensors);
             cscd_plan_destroy(plan);
             body_mesh_destroy(mesh);
         }
@@ -114,19 +114,18 @@ TEST(scale_and_place) {
             b.positions[i] = rint(b.positions[i] * 0x1p12) * 0x1p-12;
         cscd_mesh *mesh = body_mesh(&b, 1);
         double *other = body_allocate((size_t)b.vertex_count * 3, sizeof *other);
-        cscd_partition *first = partition_of(mesh, NULL, b.positions, NULL);
+        cscd_sensors *first = sensors_of(mesh, NULL, b.positions, NULL);
         for (size_t i = 0; i <= sizeof scales / sizeof *scales; i++) {
             for (uint32_t j = 0; j < b.vertex_count * 3; j++)
                 other[j] =
                     i > 0 ? b.positions[j] * scales[i - 1] : b.positions[j] + (j % 3 == 1 ? -977.0 : 64.5);
-            cscd_partition *second = partition_of(mesh, NULL, other, NULL);
-            assert_memory_equal(first->vertex_cells, second->vertex_cells,
-                                b.vertex_count * sizeof *first->vertex_cells);
-            assert_true(first->distortions[0] == second->distortions[0]);
-            cscd_partition_destroy(second);
+            cscd_sensors *second = sensors_of(mesh, NULL, other, NULL);
+            assert_memory_equal(first->partition.vertex_cells, second->partition.vertex_cells,
+                                b.vertex_count * sizeof *first->partition.vertex_cells);
+            cscd_sensors_destroy(second);
         }
         free(other);
-        cscd_partition_destroy(first);
+        cscd_sensors_destroy(first);
         body_mesh_destroy(mesh);
         body_free(&b);
     }
@@ -137,50 +136,34 @@ TEST(degenerate_meshes) {
     body b = body_of(BODY_SPHERE, 200);
     uint32_t lonely = body_add_vertex(&b, 1.0, 2.0, 3.0);
     cscd_mesh *mesh = body_mesh(&b, 1);
-    cscd_partition *partition = partition_of(mesh, NULL, b.positions, NULL);
-    assert_int_equal(cscd_partition_vertex_cell(partition, lonely), UINT32_MAX);
-    assert_int_equal(cscd_partition_cell_count(partition), 1); /* there is no other part to watch for */
-    cscd_partition_destroy(partition);
+    cscd_sensors *sensors = sensors_of(mesh, NULL, b.positions, NULL);
+    assert_int_equal(cscd_sensors_vertex_cell(sensors, lonely), UINT32_MAX);
+    assert_int_equal(cscd_sensors_cell_count(sensors), 1); /* there is no other part to watch for */
+    cscd_sensors_destroy(sensors);
     for (uint32_t i = 0; i < b.vertex_count * 3; i++) b.positions[i] = 0.3;
-    cscd_partition_options options = with_cells(12);
-    partition = partition_of(mesh, NULL, b.positions, &options);
-    assert_int_equal(cscd_partition_cell_count(partition), 1);
-    assert_true(cscd_partition_distortion(partition, 0) == 0.0);
-    assert_true(cscd_partition_part(partition, 0).radius == 0.0);
-    cscd_partition_destroy(partition);
+    cscd_sensor_options options = with_cells(12);
+    sensors = sensors_of(mesh, NULL, b.positions, &options);
+    assert_int_equal(cscd_sensors_cell_count(sensors), 1);
+    assert_true(cscd_sensors_part(sensors, 0).radius == 0.0);
+    cscd_sensors_destroy(sensors);
     body_mesh_destroy(mesh);
     body_free(&b);
 }
 
-/* More cells, and the distortion falls. */
-TEST(distortion_falls) {
-    body b = body_of(BODY_SPHERE, 800);
-    cscd_mesh *mesh = body_mesh(&b, 1);
-    double last = INFINITY;
-    for (uint32_t cells = 1; cells <= 64; cells *= 2) {
-        cscd_partition_options options = with_cells(cells);
-        cscd_partition *partition = partition_of(mesh, NULL, b.positions, &options);
-        double distortion = cscd_partition_distortion(partition, 0);
-        assert_true(distortion > 0.0 && distortion < last);
-        if (cells == 1)
-            assert_true(fabs(distortion - 2.0 / 6.0) < 0.01); /* positions and normals of length 1 */
-        last = distortion;
-        cscd_partition_destroy(partition);
-    }
-    body_mesh_destroy(mesh);
-    body_free(&b);
-}
-
-/* On a sphere positions and normals vary alike, so that what the weight makes of the normals is seen. */
+/* Two cells of a flat ball: by positions alone they lie beside each other, by normals above and below. */
 TEST(normals_have_their_weight) {
     body b = body_of(BODY_SPHERE, 800);
+    for (uint32_t v = 0; v < b.vertex_count; v++) b.positions[v * 3 + 2] *= 0.1;
     cscd_mesh *mesh = body_mesh(&b, 1);
-    for (int weight = 0; weight < 4; weight++) {
-        cscd_partition_options options = with_cells(1);
-        options.normal_weight = weight;
-        cscd_partition *partition = partition_of(mesh, NULL, b.positions, &options);
-        assert_true(fabs(cscd_partition_distortion(partition, 0) - (1.0 + weight * weight) / 6.0) < 0.02);
-        cscd_partition_destroy(partition);
+    for (int weighted = 0; weighted < 2; weighted++) {
+        cscd_sensor_options options = with_cells(2);
+        options.normal_weight = 4.0 * weighted;
+        cscd_sensors *sensors = sensors_of(mesh, NULL, b.positions, &options);
+        uint32_t above[2] = {0, 0};
+        for (uint32_t v = 0; v < b.vertex_count; v++)
+            if (b.positions[v * 3 + 2] > 0.05) above[cscd_sensors_vertex_cell(sensors, v)]++;
+        assert_int_equal(above[0] == 0 || above[1] == 0, weighted);
+        cscd_sensors_destroy(sensors);
     }
     body_mesh_destroy(mesh);
     body_free(&b);
@@ -190,30 +173,33 @@ TEST(normals_have_their_weight) {
 
 TEST(renewing_one_part) {
     const body_kind kinds[3] = {BODY_SPHERE, BODY_DUMBBELL, BODY_SPHERE};
-    partition_row r = row_of(3, kinds, (double[]){1.0, 1.0, 0.7}, NULL);
-    cscd_part before[3];
+    sensor_row r = row_of(3, kinds, (double[]){1.0, 1.0, 0.7}, NULL);
+    cscd_sensor_part before[3];
     uint32_t *cells = body_allocate(r.b.vertex_count, sizeof *cells);
-    for (uint32_t p = 0; p < 3; p++) before[p] = cscd_partition_part(r.partition, p);
-    memcpy(cells, r.partition->vertex_cells, r.b.vertex_count * sizeof *cells);
+    for (uint32_t p = 0; p < 3; p++) before[p] = cscd_sensors_part(r.sensors, p);
+    memcpy(cells, r.sensors->partition.vertex_cells, r.b.vertex_count * sizeof *cells);
     for (uint32_t v = 0; v < r.b.vertex_count; v++) {
-        if (r.partition->vertex_parts[v] == 1) r.b.positions[v * 3 + 2] *= 5.0;
+        if (r.sensors->partition.vertex_parts[v] == 1) r.b.positions[v * 3 + 2] *= 5.0;
     }
-    expect_ok(partition_renew_packed(r.partition, r.b.positions, 1));
-    check_partition(r.partition);
-    cscd_part after = cscd_partition_part(r.partition, 1), last = cscd_partition_part(r.partition, 2);
+    expect_ok(sensors_renew_packed(r.sensors, r.b.positions, 1));
+    check_partition(&r.sensors->partition);
+    cscd_sensor_part after = cscd_sensors_part(r.sensors, 1), last = cscd_sensors_part(r.sensors, 2);
     assert_true(after.cell_count > before[1].cell_count && after.radius > before[1].radius);
     assert_true(last.cell_count == before[2].cell_count && last.radius == before[2].radius);
     uint32_t shift = last.first_cell - before[2].first_cell;
     for (uint32_t v = 0; v < r.b.vertex_count; v++) {
-        uint32_t part = r.partition->vertex_parts[v];
-        if (part != 1) assert_int_equal(r.partition->vertex_cells[v], cells[v] + (part == 2 ? shift : 0));
+        uint32_t part = r.sensors->partition.vertex_parts[v];
+        if (part != 1)
+            assert_int_equal(r.sensors->partition.vertex_cells[v], cells[v] + (part == 2 ? shift : 0));
     }
-    assert_true(r.partition->generation == 2 && r.partition->part_generations[1] == 2);
-    assert_true(r.partition->part_generations[0] == 1 && r.partition->part_generations[2] == 1);
-    cscd_partition *fresh = partition_of(r.mesh, NULL, r.b.positions, NULL);
-    expect_ok(partition_renew_packed(r.partition, r.b.positions, UINT32_MAX));
-    assert_memory_equal(fresh->vertex_cells, r.partition->vertex_cells, r.b.vertex_count * sizeof *cells);
-    cscd_partition_destroy(fresh);
+    assert_true(r.sensors->partition.generation == 2 && r.sensors->partition.part_generations[1] == 2);
+    assert_true(r.sensors->partition.part_generations[0] == 1 &&
+                r.sensors->partition.part_generations[2] == 1);
+    cscd_sensors *fresh = sensors_of(r.mesh, NULL, r.b.positions, NULL);
+    expect_ok(sensors_renew_packed(r.sensors, r.b.positions, UINT32_MAX));
+    assert_memory_equal(fresh->partition.vertex_cells, r.sensors->partition.vertex_cells,
+                        r.b.vertex_count * sizeof *cells);
+    cscd_sensors_destroy(fresh);
     free(cells);
     row_free(&r);
 }
@@ -235,19 +221,19 @@ TEST(objects_of_scenes) {
     cscd_mesh *mesh = NULL;
     expect_ok(cscd_context_create(NULL, &context));
     expect_ok(cscd_mesh_create(context, descs, 4, &mesh));
-    cscd_partition_options options = cscd_partition_defaults();
+    cscd_sensor_options options = cscd_sensor_defaults();
     options.within = true;
-    cscd_partition *partition = partition_of(mesh, NULL, all.positions, &options);
-    assert_int_equal(cscd_partition_object_count(partition), 4);
-    assert_int_equal(cscd_partition_part_count(partition), 8);
+    cscd_sensors *sensors = sensors_of(mesh, NULL, all.positions, &options);
+    assert_int_equal(sensors->partition.object_count, 4);
+    assert_int_equal(cscd_sensors_part_count(sensors), 8);
     for (uint32_t p = 0; p < 8; p++) {
-        cscd_part part = cscd_partition_part(partition, p);
+        cscd_sensor_part part = cscd_sensors_part(sensors, p);
         assert_int_equal(part.object, p < 5 ? 0 : p - 4);
         assert_true(part.cell_count > 1);
         for (uint32_t q = 0; q < 8; q++)
-            assert_true(partition_watches(partition, p, q) == (p != q && (p < 6 || q < 6)));
+            assert_true(partition_watches(&sensors->partition, p, q) == (p != q && (p < 6 || q < 6)));
     }
-    cscd_partition_destroy(partition);
+    cscd_sensors_destroy(sensors);
     cscd_mesh_destroy(mesh);
     cscd_context_destroy(context);
     body_free(&all);
@@ -276,10 +262,10 @@ static uint32_t cells_of_ball(const double radii[3], bool two_in_one, uint32_t o
     }
     assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
     assert_int_equal(cscd_mesh_create(context, descs, count, &mesh), CSCD_OK);
-    cscd_partition *partition = partition_of(mesh, NULL, all.positions, NULL);
-    assert_int_equal(cscd_partition_part_count(partition), 3);
-    const uint32_t cells = cscd_partition_part(partition, part).cell_count;
-    cscd_partition_destroy(partition);
+    cscd_sensors *sensors = sensors_of(mesh, NULL, all.positions, NULL);
+    assert_int_equal(cscd_sensors_part_count(sensors), 3);
+    const uint32_t cells = cscd_sensors_part(sensors, part).cell_count;
+    cscd_sensors_destroy(sensors);
     cscd_mesh_destroy(mesh);
     cscd_context_destroy(context);
     body_free(&all);
@@ -300,11 +286,10 @@ TEST(cells_are_for_what_is_watched) {
 /* ---- what is refused --------------------------------------------------------------------------------- */
 
 static void check_refused(const cscd_mesh *mesh, const cscd_plan *plan, const double *positions,
-                          const cscd_partition_options *options, const char *word) {
-    cscd_partition *partition = NULL;
-    assert_int_equal(partition_create_packed(mesh, plan, positions, options, &partition),
-                     CSCD_INVALID_ARGUMENT);
-    assert_null(partition);
+                          const cscd_sensor_options *options, const char *word) {
+    cscd_sensors *sensors = NULL;
+    assert_int_equal(sensors_create_packed(mesh, plan, positions, options, &sensors), CSCD_INVALID_ARGUMENT);
+    assert_null(sensors);
     if (strstr(cscd_context_detail(mesh->context), word) == NULL)
         fail_msg("\"%s\" does not name %s", cscd_context_detail(mesh->context), word);
 }
@@ -318,35 +303,35 @@ TEST(bad_arguments) {
     expect_ok(plan_create_packed(other_mesh, other.positions, &plan_options, &plan));
     const double weights[] = {NAN, -1.0, INFINITY, 2e6}, shares[] = {NAN, -1e-3, 1.0, INFINITY};
     for (int i = 0; i < 4; i++) {
-        cscd_partition_options options = cscd_partition_defaults();
+        cscd_sensor_options options = cscd_sensor_defaults();
         options.normal_weight = weights[i];
         check_refused(mesh, NULL, b.positions, &options, "normal_weight");
-        options = cscd_partition_defaults();
+        options = cscd_sensor_defaults();
         options.epsilon = shares[i];
         check_refused(mesh, NULL, b.positions, &options, "epsilon");
     }
-    cscd_partition_options options = cscd_partition_defaults();
+    cscd_sensor_options options = cscd_sensor_defaults();
     options.cells_max = 0;
     check_refused(mesh, NULL, b.positions, &options, "cells_max");
     memset(&options, 0, sizeof options);
-    check_refused(mesh, NULL, b.positions, &options, "cscd_partition_defaults");
+    check_refused(mesh, NULL, b.positions, &options, "cscd_sensor_defaults");
     check_refused(mesh, plan, b.positions, NULL, "another mesh");
     check_refused(mesh, NULL, NULL, NULL, "positions is NULL");
-    cscd_partition *partition = NULL;
-    assert_int_equal(partition_create_packed(NULL, NULL, b.positions, NULL, &partition), CSCD_NULL_OBJECT);
-    assert_int_equal(partition_create_packed(mesh, NULL, b.positions, NULL, NULL), CSCD_INVALID_ARGUMENT);
-    partition = partition_of(mesh, NULL, b.positions, NULL);
-    assert_int_equal(partition_renew_packed(NULL, b.positions, 0), CSCD_NULL_OBJECT);
-    expect_invalid(mesh->context, partition_renew_packed(partition, b.positions, 1), "part is 1");
-    assert_int_equal(partition_renew_packed(partition, NULL, 0), CSCD_INVALID_ARGUMENT);
+    cscd_sensors *sensors = NULL;
+    assert_int_equal(sensors_create_packed(NULL, NULL, b.positions, NULL, &sensors), CSCD_NULL_OBJECT);
+    assert_int_equal(sensors_create_packed(mesh, NULL, b.positions, NULL, NULL), CSCD_INVALID_ARGUMENT);
+    sensors = sensors_of(mesh, NULL, b.positions, NULL);
+    assert_int_equal(sensors_renew_packed(NULL, b.positions, 0), CSCD_NULL_OBJECT);
+    expect_invalid(mesh->context, sensors_renew_packed(sensors, b.positions, 1), "part is 1");
+    assert_int_equal(sensors_renew_packed(sensors, NULL, 0), CSCD_INVALID_ARGUMENT);
     b.positions[4] = NAN;
-    assert_int_equal(partition_renew_packed(partition, b.positions, 0), CSCD_INVALID_ARGUMENT);
-    check_partition(partition);
+    assert_int_equal(sensors_renew_packed(sensors, b.positions, 0), CSCD_INVALID_ARGUMENT);
+    check_partition(&sensors->partition);
     check_refused(mesh, NULL, b.positions, NULL, "vertex 1 has y");
     b.positions[4] = 0x1p301;
     check_refused(mesh, NULL, b.positions, NULL, "vertex 1 has y");
-    cscd_partition_destroy(partition);
-    cscd_partition_destroy(NULL);
+    cscd_sensors_destroy(sensors);
+    cscd_sensors_destroy(NULL);
     cscd_plan_destroy(plan);
     body_mesh_destroy(other_mesh);
     body_mesh_destroy(mesh);

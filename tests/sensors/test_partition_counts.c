@@ -25,19 +25,19 @@ TEST(kissing_numbers) {
     assert_int_equal(kissing_number(0x1p300, 0x1p-300, 64), 64);
 }
 
-static uint32_t cells_in(const partition_row *r, uint32_t part) {
-    return cscd_partition_part(r->partition, part).cell_count;
+static uint32_t cells_in(const sensor_row *r, uint32_t part) {
+    return cscd_sensors_part(r->sensors, part).cell_count;
 }
 
 TEST(how_many_cells) {
     const body_kind spheres[3] = {BODY_SPHERE, BODY_SPHERE, BODY_SPHERE};
     const body_kind mixed[3] = {BODY_SPHERE, BODY_TORUS, BODY_SPHERE};
-    partition_row r = row_of(2, spheres, (double[]){1.0, 0.5}, NULL);
+    sensor_row r = row_of(2, spheres, (double[]){1.0, 0.5}, NULL);
     for (uint32_t p = 0; p < 2; p++) {
-        assert_true(cscd_partition_part(r.partition, p).convex);
+        assert_true(cscd_sensors_part(r.sensors, p).convex);
         assert_int_equal(cells_in(&r, p), 1);
     }
-    assert_true(fabs(cscd_partition_part(r.partition, 0).radius - 1.0) < 0.02);
+    assert_true(fabs(cscd_sensors_part(r.sensors, 0).radius - 1.0) < 0.02);
     row_free(&r);
     r = row_of(3, spheres, (double[]){1.0, 1.0, 1.0}, NULL);
     for (uint32_t p = 0; p < 3; p++) assert_int_equal(cells_in(&r, p), 12);
@@ -46,10 +46,10 @@ TEST(how_many_cells) {
     assert_true(cells_in(&r, 0) == 34 && cells_in(&r, 1) == 34 && cells_in(&r, 2) == 7);
     row_free(&r);
     r = row_of(2, mixed, (double[]){1.0, 1.0}, NULL);
-    assert_true(cscd_partition_part(r.partition, 0).convex && !cscd_partition_part(r.partition, 1).convex);
+    assert_true(cscd_sensors_part(r.sensors, 0).convex && !cscd_sensors_part(r.sensors, 1).convex);
     assert_true(cells_in(&r, 0) > 1 && cells_in(&r, 1) > 1);
     row_free(&r);
-    cscd_partition_options options = cscd_partition_defaults();
+    cscd_sensor_options options = cscd_sensor_defaults();
     options.cells_max = 20;
     r = row_of(3, spheres, (double[]){1.0, 1.0, 0.125}, &options);
     assert_true(cells_in(&r, 0) == 20 && cells_in(&r, 1) == 20 && cells_in(&r, 2) == 3);
@@ -64,9 +64,9 @@ TEST(how_many_cells) {
 
 static bool is_convex(const body *b) {
     cscd_mesh *mesh = body_mesh(b, 1);
-    cscd_partition *partition = partition_of(mesh, NULL, b->positions, NULL);
-    bool convex = cscd_partition_part(partition, 0).convex;
-    cscd_partition_destroy(partition);
+    cscd_sensors *sensors = sensors_of(mesh, NULL, b->positions, NULL);
+    bool convex = cscd_sensors_part(sensors, 0).convex;
+    cscd_sensors_destroy(sensors);
     body_mesh_destroy(mesh);
     return convex;
 }
@@ -152,10 +152,10 @@ TEST(a_part_of_a_ball_is_not_convex) {
     for (options.k = 1; options.k < 3; options.k++) {
         cscd_plan *plan = NULL;
         assert_int_equal(plan_create_packed(mesh, b.positions, &options, &plan), CSCD_OK);
-        cscd_partition *partition = partition_of(mesh, plan, b.positions, NULL);
+        cscd_sensors *sensors = sensors_of(mesh, plan, b.positions, NULL);
         for (uint32_t p = 0; p < options.k; p++)
-            assert_int_equal(cscd_partition_part(partition, p).convex, options.k == 1);
-        cscd_partition_destroy(partition);
+            assert_int_equal(cscd_sensors_part(sensors, p).convex, options.k == 1);
+        cscd_sensors_destroy(sensors);
         cscd_plan_destroy(plan);
     }
     body_mesh_destroy(mesh);

@@ -21,7 +21,7 @@ static const renewal_limits usual = {.area_factor = 2.0, .edge_length = 0.0};
 /* The body's mesh with its workspaces. */
 typedef struct renewal_bench {
     rig rig;
-    cscd_partition *partition;
+    sensor_partition *partition;
     sensor_renewal renewal;
 } renewal_bench;
 

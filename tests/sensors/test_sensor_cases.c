@@ -149,7 +149,7 @@ TEST(case_3_unequal_spheres) {
 /* ---- concave ones ------------------------------------------------------------------------------------- */
 
 /* A U is divided into three parts, as in figure 4-10. */
-static const sensor_setup in_parts = {ALL_REGIONS_MAX, NULL, NULL};
+static const sensor_setup in_parts = {ALL_REGIONS_MAX, NULL};
 
 TEST(case_4_two_concave) {
     meeting m = begin_meeting(); /* an arm of each goes into the other one */

@@ -14,7 +14,7 @@ enum { SEEDS = PACED(12, 2) };
 static scene s; /* large; one test at a time */
 
 static sensor_reach measure_reach(const sensor_rig *r) {
-    const cscd_partition *p = r->partition;
+    const sensor_partition *p = &r->sensors->partition;
     const walk_areas areas = {p->cell_offsets, p->cell_vertices, p->cell_count};
     sensor_reach reach;
     assert_int_equal(sensor_reach_create(p, 0.0, &reach), CSCD_OK);
@@ -46,7 +46,7 @@ static double nearest_in_mu(const sensor_rig *r, const sensor_reach *reach, cons
     double least = INFINITY;
     for (uint32_t i = 0; i < 2; i++) {
         for (uint32_t k = 0; k < count; k++) {
-            const uint32_t *parts = r->partition->vertex_parts;
+            const uint32_t *parts = r->sensors->partition.vertex_parts;
             double nearer = fmin(vertex_distance(s.x0, a[i], b[k]), vertex_distance(s.x1, a[i], b[k]));
             least = fmin(least, nearer / sensor_reach_mu(reach, parts[a[i]], parts[b[k]]));
         }
@@ -84,7 +84,7 @@ TEST(what_touches_has_near_vertices) {
     for (uint64_t seed = 1; seed <= SEEDS; seed++) {
         for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
             scene_make((scene_family)family, seed, &s);
-            sensor_setup setup = {seed % 2 ? 6 : 0, NULL, NULL};
+            sensor_setup setup = {seed % 2 ? 6 : 0, NULL};
             sensor_rig r = sensor_rig_create(&s, &setup);
             largest = fmax(largest, largest_in_mu(&r, &count));
             sensor_rig_destroy(&r);
@@ -146,13 +146,13 @@ TEST(any_corner_may_move_most) {
  * large. A diameter is twice the distance of a corner from the middle of the box, which is the square root of 1.25. */
 TEST(both_diameters_count) {
     for (uint32_t large = 0; large < 2; large++) {
-        cscd_partition_options cells = cscd_partition_defaults();
+        cscd_sensor_options cells = cscd_sensor_defaults();
         cells.cells = 1;
         make_cross(0.0);
         for (uint32_t i = large * 9; i < large * 9 + 9; i++) s.x0[i] = s.x1[i] = 3.0 * s.x0[i];
-        sensor_rig r = sensor_rig_create(&s, &(sensor_setup){0, &cells, NULL});
+        sensor_rig r = sensor_rig_create(&s, &(sensor_setup){0, &cells});
         sensor_reach reach = measure_reach(&r);
-        assert_int_equal(r.partition->cell_count, 2);
+        assert_int_equal(r.sensors->partition.cell_count, 2);
         assert_true(fabs(reach.radius - reach.mu_most - 4.0 * 2.0 * sqrt(1.25)) < 1e-9);
         sensor_reach_free(r.context, &reach);
         sensor_rig_destroy(&r);
@@ -177,11 +177,10 @@ static void make_spheres(bool floor) {
 
 static uint64_t distances_with(bool floor) {
     cscd_sensor_options options = cscd_sensor_defaults();
-    cscd_partition_options cells = cscd_partition_defaults();
     options.collision_distance = 0.5;
     options.effective_radius = 1.0;
-    cells.cells = 12;
-    sensor_setup setup = {0, &cells, &options};
+    options.cells = 12;
+    sensor_setup setup = {0, &options};
     make_spheres(floor);
     sensor_rig r = sensor_rig_create(&s, &setup);
     sensor_rig_step(&r, s.x0, s.x1);

@@ -1,5 +1,4 @@
 /* Particle sensors: options, cells, repetition, mu and R_eff, renewal, and what is found on random scenes. */
-#include "tests/support/packed.h"
 #include "tests/support/sensors/sensor_rig.h"
 #include "tests/support/test.h"
 
@@ -29,7 +28,7 @@ static double vertex_distance(const double *x, uint32_t a, uint32_t b) {
 
 static void expect_refused(const sensor_rig *r, const cscd_sensor_options *options, const char *name) {
     cscd_sensors *made = NULL;
-    assert_int_equal(sensors_create_here(r->mesh, r->partition, options, &made), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(sensors_create_packed(r->mesh, NULL, s.x0, options, &made), CSCD_INVALID_ARGUMENT);
     assert_null(made);
     assert_non_null(strstr(cscd_context_detail(r->context), name));
 }
@@ -65,21 +64,19 @@ TEST(bad_options_are_named) {
 
 TEST(bad_arguments_are_named) {
     two_spheres(1.0);
-    sensor_rig r = sensor_rig_create(&s, NULL), other = sensor_rig_create(&s, NULL);
+    sensor_rig r = sensor_rig_create(&s, NULL);
     cscd_sensors *made = NULL;
     cscd_warnings found;
-    assert_int_equal(sensors_create_here(NULL, r.partition, NULL, &made), CSCD_NULL_OBJECT);
-    assert_int_equal(sensors_create_here(r.mesh, NULL, NULL, &made), CSCD_NULL_OBJECT);
-    assert_int_equal(sensors_create_here(r.mesh, r.partition, NULL, NULL), CSCD_INVALID_ARGUMENT);
-    assert_int_equal(sensors_create_here(r.mesh, other.partition, NULL, &made), CSCD_INVALID_ARGUMENT);
-    assert_non_null(strstr(cscd_context_detail(r.context), "another mesh"));
+    assert_int_equal(sensors_create_packed(NULL, NULL, s.x0, NULL, &made), CSCD_NULL_OBJECT);
+    assert_int_equal(sensors_create_packed(r.mesh, NULL, s.x0, NULL, NULL), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(sensors_create_packed(r.mesh, NULL, NULL, NULL, &made), CSCD_INVALID_ARGUMENT);
+    assert_null(made);
     assert_int_equal(sensors_step_packed(NULL, s.x0, s.x0, &found), CSCD_NULL_OBJECT);
     assert_int_equal(sensors_step_packed(r.sensors, s.x0, s.x0, NULL), CSCD_INVALID_ARGUMENT);
     assert_int_equal(sensors_step_packed(r.sensors, NULL, s.x0, &found), CSCD_INVALID_ARGUMENT);
     s.x1[7] = NAN;
     assert_int_equal(sensors_step_packed(r.sensors, s.x0, s.x1, &found), CSCD_INVALID_ARGUMENT);
     assert_non_null(strstr(cscd_context_detail(r.context), "x1"));
-    sensor_rig_destroy(&other);
     sensor_rig_destroy(&r);
 }
 
@@ -87,19 +84,19 @@ TEST(bad_arguments_are_named) {
 
 static void expect_in_cells(const sensor_rig *r) {
     uint32_t count = cscd_sensors_particle_count(r->sensors);
-    assert_int_equal(count, cscd_partition_cell_count(r->partition));
+    assert_int_equal(count, cscd_sensors_cell_count(r->sensors));
     for (uint32_t i = 0; i < count; i++) {
         uint32_t vertex = cscd_sensors_particle(r->sensors, i);
-        assert_int_equal(cscd_partition_vertex_cell(r->partition, vertex), i);
+        assert_int_equal(cscd_sensors_vertex_cell(r->sensors, vertex), i);
     }
 }
 
 TEST(particles_stay_in_their_cells) {
     for (uint64_t seed = 1; seed < 30; seed++) {
         scene_make(seed % 2 ? SCENE_LINKED_TORI : SCENE_NESTED_SPHERES, seed, &s);
-        cscd_partition_options cells = cscd_partition_defaults();
+        cscd_sensor_options cells = cscd_sensor_defaults();
         cells.within = seed % 3 == 0;
-        sensor_setup setup = {seed % 4 ? 6 : 0, &cells, NULL};
+        sensor_setup setup = {seed % 4 ? 6 : 0, &cells};
         sensor_rig r = sensor_rig_create(&s, &setup);
         sensor_rig_step(&r, s.x0, s.x1);
         expect_in_cells(&r);
@@ -127,7 +124,7 @@ TEST(results_are_repeated) {
     for (int method = 0; method < 2; method++) {
         cscd_sensor_options options = cscd_sensor_defaults();
         options.method = (cscd_sensor_method)method;
-        sensor_setup setup = {6, NULL, &options};
+        sensor_setup setup = {6, &options};
         scene_make(SCENE_LINKED_TORI, 3, &s);
         sensor_rig r = sensor_rig_create(&s, &setup), other = sensor_rig_create(&s, &setup);
         for (int frame = 0; frame < 6; frame++) {
@@ -167,7 +164,7 @@ static cscd_warnings step_with(double mu, sensor_rig *r) {
     cscd_sensor_options options = cscd_sensor_defaults();
     options.collision_distance = mu;
     options.effective_radius = 6.0;
-    sensor_setup setup = {0, NULL, &options};
+    sensor_setup setup = {0, &options};
     *r = sensor_rig_create(&s, &setup);
     return sensor_rig_step(r, s.x0, s.x0);
 }
@@ -199,7 +196,7 @@ TEST(the_nearer_moment_is_told) {
         for (uint32_t v = s.vertex_count / 2; v < s.vertex_count; v++) apart[v * 3] += 0.5;
         cscd_sensor_options options = cscd_sensor_defaults();
         options.collision_distance = 1.0;
-        sensor_setup setup = {0, NULL, &options};
+        sensor_setup setup = {0, &options};
         sensor_rig r = sensor_rig_create(&s, &setup);
         cscd_warnings found = sensor_rig_step(&r, s.x0, s.x1);
         assert_int_equal(found.count, 1);
@@ -218,7 +215,7 @@ TEST(a_given_radius_is_taken) {
         cscd_sensor_options options = cscd_sensor_defaults();
         options.collision_distance = 0.1;
         options.effective_radius = wider ? 6.0 : 0.9;
-        sensor_setup setup = {0, NULL, &options};
+        sensor_setup setup = {0, &options};
         sensor_rig r = sensor_rig_create(&s, &setup);
         sensor_rig_step(&r, s.x0, s.x0);
         cscd_sensor_counters counters = cscd_sensors_counters(r.sensors);
@@ -278,7 +275,7 @@ TEST(cells_do_not_miss_an_arm) {
         options.particles = 3;
         options.seed = seed;
         options.effective_radius = 1.2;
-        sensor_setup setup = {0, NULL, &options};
+        sensor_setup setup = {0, &options};
         r = sensor_rig_create(&s, &setup);
         if (all_on_the_right(&r, first)) {
             one_sided++;
@@ -299,7 +296,7 @@ TEST(repulsion_spreads_them) {
         options.method = CSCD_SENSORS_RANDOM;
         options.particles = 3;
         options.seed = seed;
-        sensor_setup setup = {0, NULL, &options};
+        sensor_setup setup = {0, &options};
         sensor_rig r = sensor_rig_create(&s, &setup);
         sensor_rig_step(&r, s.x0, s.x0);
         double least = INFINITY;
@@ -327,30 +324,15 @@ TEST(new_cells_are_taken_up) {
     cscd_warnings found = sensor_rig_step(&r, s.x0, s.x1);
     assert_true(found.renewals_due > 0);
     uint32_t due = 0;
-    for (uint32_t p = 0; p < cscd_partition_part_count(r.partition); p++) {
+    for (uint32_t p = 0; p < cscd_sensors_part_count(r.sensors); p++) {
         if (cscd_sensors_renewal(r.sensors, p) == CSCD_RENEWAL_NONE) continue;
         due++;
-        assert_int_equal(partition_renew_packed(r.partition, s.x1, p), CSCD_OK);
-        assert_false(cscd_sensors_apart(r.sensors, 0, 1)); /* renewed cells have no bounds yet */
+        assert_int_equal(sensors_renew_packed(r.sensors, s.x1, p), CSCD_OK);
     }
     assert_int_equal(due, found.renewals_due);
     found = sensor_rig_step(&r, s.x1, s.x1);
     assert_int_equal(found.renewals_due, 0);
     expect_in_cells(&r);
-    sensor_rig_destroy(&r);
-}
-
-/* Spheres that are far from each other are apart, but not between the renewal of cells and the next step. */
-TEST(bounds_are_those_of_the_cells) {
-    two_spheres(3.0);
-    sensor_rig r = sensor_rig_create(&s, NULL);
-    for (int round = 0; round < 3; round++) {
-        sensor_rig_step(&r, s.x0, s.x0);
-        assert_true(cscd_sensors_apart(r.sensors, 0, 1));
-        for (uint32_t v = 0; v < s.vertex_count; v++) s.x0[v * 3 + 1] *= 1.5;
-        assert_int_equal(partition_renew_packed(r.partition, s.x0, (uint32_t)round % 2), CSCD_OK);
-        assert_false(cscd_sensors_apart(r.sensors, 0, 1));
-    }
     sensor_rig_destroy(&r);
 }
 
@@ -360,7 +342,6 @@ TEST(bounds_are_those_of_the_cells) {
 static uint64_t pairs_with(uint32_t mask) {
     cscd_context *context = NULL;
     cscd_mesh *mesh = NULL;
-    cscd_partition *partition = NULL;
     cscd_sensors *sensors = NULL;
     cscd_object_desc objects[2];
     cscd_warnings found;
@@ -371,13 +352,11 @@ static uint64_t pairs_with(uint32_t mask) {
     }
     assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
     assert_int_equal(cscd_mesh_create(context, objects, 2, &mesh), CSCD_OK);
-    assert_int_equal(partition_create_packed(mesh, NULL, s.x0, NULL, &partition), CSCD_OK);
-    assert_int_equal(sensors_create_here(mesh, partition, NULL, &sensors), CSCD_OK);
+    assert_int_equal(sensors_create_packed(mesh, NULL, s.x0, NULL, &sensors), CSCD_OK);
     assert_int_equal(sensors_step_packed(sensors, s.x0, s.x0, &found), CSCD_OK);
     const uint64_t pairs = cscd_sensors_counters(sensors).particle_pairs;
     assert_int_equal(found.count > 0, pairs > 0);
     cscd_sensors_destroy(sensors);
-    cscd_partition_destroy(partition);
     cscd_mesh_destroy(mesh);
     cscd_context_destroy(context);
     return pairs;

@@ -1,10 +1,7 @@
 /* Sensors and memory: every allocation fails once, nothing leaks, steady steps allocate nothing; and work
  * grows with the scene, not with its square. */
-#include "cscd/cscd.h"
-#include "cscd/sensors.h"
 #include "tests/support/counting_allocator.h"
-#include "tests/support/packed.h"
-#include "tests/support/scenes.h"
+#include "tests/support/sensors/sensor_rig.h"
 #include "tests/support/test.h"
 
 #include <string.h>
@@ -14,7 +11,6 @@ static scene s; /* large; one test at a time */
 typedef struct sensed {
     cscd_context *context;
     cscd_mesh *mesh;
-    cscd_partition *partition;
     cscd_sensors *sensors;
 } sensed;
 
@@ -27,15 +23,13 @@ static cscd_status create_sensed(counting_allocator *counter, cscd_sensor_method
     cscd_object_desc desc = cscd_object_of_triangles(s.vertex_count, s.triangle_count, s.triangles);
     cscd_status status = cscd_context_create(&options, &out->context);
     if (status == CSCD_OK) status = cscd_mesh_create(out->context, &desc, 1, &out->mesh);
-    if (status == CSCD_OK) status = partition_create_packed(out->mesh, NULL, s.x0, NULL, &out->partition);
     if (status == CSCD_OK)
-        status = sensors_create_here(out->mesh, out->partition, &sensor_options, &out->sensors);
+        status = sensors_create_packed(out->mesh, NULL, s.x0, &sensor_options, &out->sensors);
     return status;
 }
 
 static void destroy_sensed(sensed *r) {
     cscd_sensors_destroy(r->sensors);
-    cscd_partition_destroy(r->partition);
     cscd_mesh_destroy(r->mesh);
     cscd_context_destroy(r->context);
     *r = (sensed){0};

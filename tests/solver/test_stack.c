@@ -1,5 +1,4 @@
 /* What a thread that calls the library needs of its stack: cscd/cscd.h promises that 256 KiB are enough. */
-#include "cscd/sensors.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 
@@ -51,18 +50,6 @@ static void move_safely(rig *r, const scene *s) {
     cscd_line_search_destroy(search);
 }
 
-static void walk_particles(rig *r, const scene *s) {
-    const cscd_view *x0 = CSCD_DOUBLES(s->x0, s->vertex_count), *x1 = CSCD_DOUBLES(s->x1, s->vertex_count);
-    cscd_partition *partition;
-    cscd_sensors *sensors;
-    cscd_warnings warnings;
-    expect_ok(cscd_partition_create(r->context, r->mesh, NULL, x0, NULL, &partition));
-    expect_ok(cscd_sensors_create(r->context, r->mesh, partition, NULL, &sensors));
-    expect_ok(cscd_sensors_step(sensors, x0, x1, &warnings));
-    cscd_sensors_destroy(sensors);
-    cscd_partition_destroy(partition);
-}
-
 /* A torus is folded, one half into the other. An assertion must not fail in another thread, so scenes that it holds for were tried. */
 static void *call_all(void *data) {
     static scene s;
@@ -75,7 +62,6 @@ static void *call_all(void *data) {
     plan_and_step(&r, &s);
     ask_of_a_moment(&r, &s);
     move_safely(&r, &s);
-    walk_particles(&r, &s);
     rig_destroy(&r);
     return NULL;
 }

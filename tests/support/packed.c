@@ -2,9 +2,7 @@
  * objects are all of the mesh's context. NULL goes on as NULL. */
 #include "tests/support/packed.h"
 
-#include "sensors/sensors.h"
 #include "src/mesh/mesh.h"
-#include "sensors/partition.h"
 
 static const cscd_view *view_of(const cscd_mesh *mesh, const double *x, cscd_view *view) {
     *view = cscd_view_doubles(x, mesh != NULL ? mesh->vertex_count : 0);
@@ -131,30 +129,6 @@ cscd_status line_max_step_packed(cscd_line_search *line, double longest, double 
                                  cscd_free_step *out) {
     cscd_mutable_view end;
     return cscd_line_search_max_step(line, longest, mutable_line_view_of(reached, &end), out);
-}
-
-cscd_status partition_create_packed(const cscd_mesh *mesh, const cscd_plan *plan, const double *positions,
-                                    const cscd_partition_options *options, cscd_partition **out) {
-    cscd_view x;
-    return cscd_partition_create(own_context(mesh), mesh, plan, view_of(mesh, positions, &x), options, out);
-}
-
-cscd_status partition_renew_packed(cscd_partition *partition, const double *positions, uint32_t part) {
-    cscd_view x;
-    return cscd_partition_renew(partition, view_of(partition != NULL ? partition->mesh : NULL, positions, &x),
-                                part);
-}
-
-cscd_status sensors_create_here(const cscd_mesh *mesh, cscd_partition *partition,
-                                const cscd_sensor_options *options, cscd_sensors **out) {
-    return cscd_sensors_create(own_context(mesh), mesh, partition, options, out);
-}
-
-cscd_status sensors_step_packed(cscd_sensors *sensors, const double *x0, const double *x1,
-                                cscd_warnings *out) {
-    const cscd_mesh *mesh = sensors != NULL ? sensors->mesh : NULL;
-    cscd_view from, to;
-    return cscd_sensors_step(sensors, view_of(mesh, x0, &from), view_of(mesh, x1, &to), out);
 }
 
 /* All points as packed doubles; NULL goes on as NULL. */

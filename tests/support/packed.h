@@ -4,7 +4,6 @@
 
 #include "cscd/cscd.h"
 #include "cscd/research.h"
-#include "cscd/sensors.h"
 
 cscd_status plan_create_packed(const cscd_mesh *mesh, const double *positions,
                                const cscd_plan_options *options, cscd_plan **out);
@@ -33,14 +32,6 @@ cscd_status line_begin_packed(cscd_line_search *line, const double *x0, const do
 cscd_status line_positions_packed(cscd_line_search *line, double fraction, double *positions);
 cscd_status line_max_step_packed(cscd_line_search *line, double longest, double *reached,
                                  cscd_free_step *out);
-
-cscd_status partition_create_packed(const cscd_mesh *mesh, const cscd_plan *plan, const double *positions,
-                                    const cscd_partition_options *options, cscd_partition **out);
-cscd_status partition_renew_packed(cscd_partition *partition, const double *positions, uint32_t part);
-cscd_status sensors_create_here(const cscd_mesh *mesh, cscd_partition *partition,
-                                const cscd_sensor_options *options, cscd_sensors **out);
-cscd_status sensors_step_packed(cscd_sensors *sensors, const double *x0, const double *x1,
-                                cscd_warnings *out);
 
 /* Pairs of points; out as in the functions of the API. */
 cscd_status pairs_step_packed(cscd_context *context, const cscd_pairs *pairs, const double *x0,

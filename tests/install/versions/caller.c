@@ -14,7 +14,6 @@ typedef struct caller_state {
     cscd_mesh *mesh;
     cscd_plan *plan;
     cscd_detector *detector;
-    cscd_partition *partition;
     cscd_sensors *sensors;
 } caller_state;
 
@@ -167,18 +166,12 @@ static void track_events(caller_state *s) {
 
 static void create_sensors(caller_state *s) {
     const cscd_view *rest = CSCD_DOUBLES(start, VERTEX_COUNT);
-    OPTIONS(cscd_partition_options, cscd_partition_defaults_sized, options);
-    REFUSE(cscd_partition_options, options.value,
-           cscd_partition_create(s->context, s->mesh, NULL, rest, &options.value, &s->partition),
-           cscd_context_detail(s->context));
-    expect_ok(s, cscd_partition_create(s->context, s->mesh, NULL, rest, &options.value, &s->partition),
-              "partition");
     OPTIONS(cscd_sensor_options, cscd_sensor_defaults_sized, sensing);
     expect_that(sensing.value.step_limit == 256, "cscd_sensor_options", "the default of step_limit");
     REFUSE(cscd_sensor_options, sensing.value,
-           cscd_sensors_create(s->context, s->mesh, s->partition, &sensing.value, &s->sensors),
+           cscd_sensors_create(s->context, s->mesh, NULL, rest, &sensing.value, &s->sensors),
            cscd_context_detail(s->context));
-    expect_ok(s, cscd_sensors_create(s->context, s->mesh, s->partition, &sensing.value, &s->sensors),
+    expect_ok(s, cscd_sensors_create(s->context, s->mesh, NULL, rest, &sensing.value, &s->sensors),
               "sensors");
 }
 
@@ -194,7 +187,6 @@ int main(void) {
     track_events(&s);
     create_sensors(&s);
     cscd_sensors_destroy(s.sensors);
-    cscd_partition_destroy(s.partition);
     cscd_detector_destroy(s.detector);
     cscd_plan_destroy(s.plan);
     cscd_mesh_destroy(s.mesh);

@@ -237,8 +237,6 @@ static void expect_nothing_left(const proof *p) {
 static void destroy_all(proof *p) {
     cscd_event_tracker_destroy(p->tracker);
     cscd_event_tracker_destroy(p->later);
-    cscd_sensors_destroy(p->sensors);
-    cscd_partition_destroy(p->partition);
     cscd_line_search_destroy(p->line);
     cscd_detector_destroy(p->clone);
     cscd_detector_destroy(p->detector);

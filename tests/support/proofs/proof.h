@@ -11,7 +11,6 @@
 #pragma once
 
 #include "cscd/cscd.h"
-#include "cscd/sensors.h"
 #include "tests/support/counting_allocator.h"
 #include "tests/support/scenes.h"
 
@@ -65,8 +64,6 @@ typedef struct proof {
     cscd_plan *plan;
     cscd_detector *detector, *clone;
     cscd_line_search *line;
-    cscd_partition *partition;
-    cscd_sensors *sensors;
     cscd_event_tracker *tracker, *later;
     void *own; /* of the row, which frees it in `close` */
 
@@ -78,8 +75,6 @@ typedef struct proof {
         cscd_plan *plan;
         cscd_detector *detector;
         cscd_line_search *line;
-        cscd_partition *partition;
-        cscd_sensors *sensors;
         cscd_event_tracker *tracker;
         cscd_contacts contacts;
         cscd_intersections intersections;
@@ -90,7 +85,7 @@ typedef struct proof {
         cscd_truncation truncation;
         cscd_contact_part_pairs part_pairs;
         cscd_events events;
-        cscd_warnings warnings;
+        void *words[8]; /* of a row whose types are not known here */
         struct {
             const uint8_t *items;
             size_t count;

@@ -12,10 +12,12 @@ static void *allocate_zeros(size_t count, size_t size) {
     return block;
 }
 
-static cscd_partition *allocate_partition(const cscd_mesh *mesh, uint32_t part_count) {
+static sensor_partition *allocate_partition(const cscd_mesh *mesh, uint32_t part_count) {
     size_t vertices = mesh->vertex_count;
-    cscd_partition *p = allocate_zeros(1, sizeof *p);
-    *p = (cscd_partition){.context = mesh->context, .mesh = mesh, .part_count = part_count};
+    sensor_partition *p = allocate_zeros(1, sizeof *p);
+    static const cscd_sensor_options none;
+    *p = (sensor_partition){
+        .context = mesh->context, .mesh = mesh, .options = &none, .part_count = part_count};
     p->object_count = part_count;
     p->object_obstacles = allocate_zeros(part_count, sizeof *p->object_obstacles);
     p->parts = allocate_zeros(part_count, sizeof *p->parts);
@@ -33,7 +35,7 @@ static cscd_partition *allocate_partition(const cscd_mesh *mesh, uint32_t part_c
     return p;
 }
 
-static void list_part_vertices(cscd_partition *p) {
+static void list_part_vertices(sensor_partition *p) {
     const cscd_mesh *mesh = p->mesh;
     uint32_t count = 0;
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
@@ -58,11 +60,11 @@ static double squared_distance(const double *positions, uint32_t a, uint32_t b) 
 }
 
 /* Gives each vertex of the part to the nearest of the centres, or to the first of equally near ones. */
-static void make_cells(cscd_partition *p, const double *positions, uint32_t part, uint32_t cells_max) {
+static void make_cells(sensor_partition *p, const double *positions, uint32_t part, uint32_t cells_max) {
     const uint32_t *vertices = p->part_vertices + p->part_vertex_offsets[part];
     uint32_t count = p->part_vertex_offsets[part + 1] - p->part_vertex_offsets[part], made = 0;
     uint32_t *nearest = allocate_zeros(count, sizeof *nearest), centres[64];
-    p->parts[part] = (cscd_part){.object = part, .first_cell = p->cell_count};
+    p->parts[part] = (cscd_sensor_part){.object = part, .first_cell = p->cell_count};
     for (uint32_t c = 0; c < cells_max && count > 0; c++)
         centres[c] = vertices[random_integer(0, (int)count - 1)];
     for (uint32_t i = 0; i < count; i++) {
@@ -89,10 +91,10 @@ static void make_cells(cscd_partition *p, const double *positions, uint32_t part
     free(nearest);
 }
 
-cscd_partition *hand_partition_create(const cscd_mesh *mesh, const double *positions,
-                                      const uint32_t *triangle_parts, uint32_t part_count,
-                                      uint32_t cells_max) {
-    cscd_partition *p = allocate_partition(mesh, part_count);
+sensor_partition *hand_partition_create(const cscd_mesh *mesh, const double *positions,
+                                        const uint32_t *triangle_parts, uint32_t part_count,
+                                        uint32_t cells_max) {
+    sensor_partition *p = allocate_partition(mesh, part_count);
     memcpy(p->triangle_parts, triangle_parts != NULL ? triangle_parts : mesh->triangle_components,
            mesh->triangle_count * sizeof(uint32_t));
     list_part_vertices(p);
@@ -100,7 +102,7 @@ cscd_partition *hand_partition_create(const cscd_mesh *mesh, const double *posit
     return p;
 }
 
-void hand_partition_destroy(cscd_partition *p) {
+void hand_partition_destroy(sensor_partition *p) {
     free(p->object_obstacles);
     free(p->parts);
     free(p->triangle_parts);
@@ -115,7 +117,7 @@ void hand_partition_destroy(cscd_partition *p) {
     free(p);
 }
 
-void hand_partition_particles(const cscd_partition *p, uint32_t *out) {
+void hand_partition_particles(const sensor_partition *p, uint32_t *out) {
     for (uint32_t c = 0; c < p->cell_count; c++) {
         int begin = (int)p->cell_offsets[c], end = (int)p->cell_offsets[c + 1];
         out[c] = p->cell_vertices[random_integer(begin, end - 1)];

@@ -1,15 +1,43 @@
-/* A context, a mesh, a plan, a partition and sensors for a scene; any failure to make them fails the test. */
+/* A context, a mesh, a plan and sensors for a scene; any failure to make them fails the test. */
 #include "tests/support/sensors/sensor_rig.h"
+#include "sensors/sensors.h"
 #include "tests/support/packed.h"
 #include "tests/support/test.h"
 
 #include <assert.h>
 #include <math.h>
 
+/* NULL goes on as NULL. */
+static const cscd_view *view_of_packed(const cscd_mesh *mesh, const double *positions, cscd_view *view) {
+    if (positions == NULL || mesh == NULL) return NULL;
+    *view = cscd_view_doubles(positions, mesh->vertex_count);
+    return view;
+}
+
+cscd_status sensors_create_packed(const cscd_mesh *mesh, const cscd_plan *plan, const double *positions,
+                                  const cscd_sensor_options *options, cscd_sensors **out) {
+    cscd_view x;
+    cscd_context *context = mesh != NULL ? mesh->context : NULL;
+    return cscd_sensors_create(context, mesh, plan, view_of_packed(mesh, positions, &x), options, out);
+}
+
+cscd_status sensors_renew_packed(cscd_sensors *sensors, const double *positions, uint32_t part) {
+    cscd_view x;
+    const cscd_mesh *mesh = sensors != NULL ? sensors->mesh : NULL;
+    return cscd_sensors_renew(sensors, view_of_packed(mesh, positions, &x), part);
+}
+
+cscd_status sensors_step_packed(cscd_sensors *sensors, const double *x0, const double *x1,
+                                cscd_warnings *out) {
+    const cscd_mesh *mesh = sensors != NULL ? sensors->mesh : NULL;
+    cscd_view from, to;
+    return cscd_sensors_step(sensors, view_of_packed(mesh, x0, &from), view_of_packed(mesh, x1, &to), out);
+}
+
 sensor_rig sensor_rig_create(const scene *s, const sensor_setup *setup) {
-    static const sensor_setup defaults = {0, NULL, NULL};
+    static const sensor_setup defaults = {0, NULL};
     if (setup == NULL) setup = &defaults;
-    sensor_rig r = {NULL, NULL, NULL, NULL, NULL};
+    sensor_rig r = {NULL, NULL, NULL, NULL};
     cscd_object_desc desc = cscd_object_of_triangles(s->vertex_count, s->triangle_count, s->triangles);
     assert_int_equal(cscd_context_create(NULL, &r.context), CSCD_OK);
     assert_int_equal(cscd_mesh_create(r.context, &desc, 1, &r.mesh), CSCD_OK);
@@ -19,14 +47,12 @@ sensor_rig sensor_rig_create(const scene *s, const sensor_setup *setup) {
         options.k = setup->regions;
         assert_int_equal(plan_create_packed(r.mesh, s->x0, &options, &r.plan), CSCD_OK);
     }
-    assert_int_equal(partition_create_packed(r.mesh, r.plan, s->x0, setup->partition, &r.partition), CSCD_OK);
-    assert_int_equal(sensors_create_here(r.mesh, r.partition, setup->sensors, &r.sensors), CSCD_OK);
+    assert_int_equal(sensors_create_packed(r.mesh, r.plan, s->x0, setup->sensors, &r.sensors), CSCD_OK);
     return r;
 }
 
 void sensor_rig_destroy(sensor_rig *r) {
     cscd_sensors_destroy(r->sensors);
-    cscd_partition_destroy(r->partition);
     cscd_plan_destroy(r->plan);
     cscd_mesh_destroy(r->mesh);
     cscd_context_destroy(r->context);

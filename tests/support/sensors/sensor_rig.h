@@ -1,21 +1,26 @@
-/* A context, a mesh, a plan, a partition and sensors for a scene; any failure to make them fails the test. */
+/* A context, a mesh, a plan and sensors for a scene; any failure to make them fails the test. */
 #pragma once
 
 #include "cscd/cscd.h"
 #include "cscd/sensors.h"
 #include "tests/support/scenes.h"
 
+/* Calls with packed doubles. The context is that of the mesh. */
+cscd_status sensors_create_packed(const cscd_mesh *mesh, const cscd_plan *plan, const double *positions,
+                                  const cscd_sensor_options *options, cscd_sensors **out);
+cscd_status sensors_renew_packed(cscd_sensors *sensors, const double *positions, uint32_t part);
+cscd_status sensors_step_packed(cscd_sensors *sensors, const double *x0, const double *x1,
+                                cscd_warnings *out);
+
 typedef struct sensor_setup {
-    uint32_t regions;                        /* regions of a plan by k-means; 0: no plan */
-    const cscd_partition_options *partition; /* NULL: the defaults */
-    const cscd_sensor_options *sensors;
+    uint32_t regions;                   /* regions of a plan by k-means; 0: no plan */
+    const cscd_sensor_options *sensors; /* NULL: the defaults */
 } sensor_setup;
 
 typedef struct sensor_rig {
     cscd_context *context;
     cscd_mesh *mesh;
     cscd_plan *plan;
-    cscd_partition *partition;
     cscd_sensors *sensors;
 } sensor_rig;
 
