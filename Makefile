@@ -1,7 +1,8 @@
 # cscd: `make demo` and `make test` do all their own set-up; `make help` lists the rest.
 #
-#   CONFIG=release|debug|sanitize|fuzz|tsan|scalar   CC=gcc|clang   BASELINES=0   EXPAT=0   DYNAMIC=1   WERROR=1   HOST=...   `make -j` as usual
+#   CONFIG=release|debug|sanitize|fuzz|tsan|scalar   CC=gcc|clang   BASELINES=0   SENSORS=0   EXPAT=0   DYNAMIC=1   WERROR=1   HOST=...   `make -j` as usual
 # BASELINES=0 leaves out libcscd-baselines.so, what cscd is compared with and needs LAPACKE, OpenBLAS and GSL (GPL-3); nothing else changes.
+# SENSORS=0 leaves out the particle sensors and their command, `sense`; so does `rm -r sensors`.
 # EXPAT=0 builds a tool that does not read GIFTI surfaces, as on a machine where pkg-config finds no expat; the library never needs it.
 # NIGHTLY=1 tests more random cases, in a folder of its own.
 # DYNAMIC=1 is for distributions: the tool and the Python package link libcscd.so and the libraries of the system in place of archives.
@@ -29,13 +30,15 @@ CXX     := $(TOOLS)g++
 endif
 WERROR  ?= 0
 BASELINES ?= 1
+SENSORS ?= 1
 DYNAMIC ?= 0
 NIGHTLY ?= 0
 BUILD_ROOT ?= build$(if $(HOST),/$(HOST))
 MORE_CASES := $(if $(filter 1,$(NIGHTLY)),-nightly)
 # A machine without expat builds in the same folder as one with it; only who leaves it out on purpose has another.
 WITHOUT_EXPAT := $(if $(filter 0,$(EXPAT)),-without-expat)
-BUILD   := $(BUILD_ROOT)/$(CONFIG)$(if $(WINDOWS)$(WASM),,$(WITHOUT_EXPAT)$(if $(filter 1,$(DYNAMIC)),-dynamic))$(MORE_CASES)
+WITHOUT_SENSORS := $(if $(filter 0,$(SENSORS)),-without-sensors)
+BUILD   := $(BUILD_ROOT)/$(CONFIG)$(if $(WINDOWS)$(WASM),,$(WITHOUT_EXPAT)$(if $(filter 1,$(DYNAMIC)),-dynamic))$(WITHOUT_SENSORS)$(MORE_CASES)
 # The flags of a package that pkg-config finds, else those given here.
 PKG_CONFIG := $(if $(HOST),PKG_CONFIG_SYSROOT_DIR='$(SYSROOT)' PKG_CONFIG_LIBDIR='$(SYSROOT)/usr/lib/$(HOST)/pkgconfig:$(SYSROOT)/usr/share/pkgconfig') pkg-config
 packaged = $(shell $(PKG_CONFIG) $(1) 2>/dev/null || echo $(2))
@@ -101,9 +104,10 @@ FILE_LIBS   := $(call packaged,--libs libpng zlib json-c,-lpng -lz -ljson-c) $(E
 TOOL_LIBS   := $(FILE_LIBS) $(CORE_LIBS)
 TEST_LIBS   := -lcmocka -lflint-arb -lflint -lgmp $(TOOL_LIBS) $(BASELINE_LIBS)
 
+HAS_SENSORS := $(if $(filter 0,$(SENSORS)),,$(wildcard sensors/*.c))
 # A file that ends in _simd.c is compiled once per instruction set. libcscd-baselines.so has sources of its own.
 BASELINE_SOURCES := $(wildcard preprocess/baselines/dense/*.c runtime/baselines/gsl/*.c src/blas/*.c)
-CORE_FILES      := $(wildcard src/core/*.c src/mesh/*.c preprocess/*.c preprocess/*/*.c runtime/*/*.c runtime/*/*/*.c sensors/*.c)
+CORE_FILES      := $(wildcard src/core/*.c src/mesh/*.c preprocess/*.c preprocess/*/*.c runtime/*/*.c runtime/*/*/*.c) $(HAS_SENSORS)
 CORE_SOURCES    := $(filter-out %_simd.c $(BASELINE_SOURCES),$(CORE_FILES))
 KERNEL_SOURCES  := $(filter %_simd.c,$(CORE_FILES))
 # What commands of the tool share, and the commands.
@@ -112,9 +116,9 @@ OTHER_PROCESSES := $(foreach file,jobs/job_processes common/blas_kernels,tool/$(
 COMMON_SOURCES  := $(filter-out $(OTHER_PROCESSES) $(if $(filter 0,$(EXPAT)),$(filter-out $(WITHOUT_GIFTI),$(wildcard tool/io/gifti/*.c)),$(WITHOUT_GIFTI)), \
                      $(wildcard tool/io/*.c tool/io/*/*.c tool/picture/*.c tool/common/*.c tool/answers/*.c \
                      tool/jobs/*.c tool/export/*.c tool/report/*.c))
-COMMAND_SOURCES := $(wildcard tool/*.c $(patsubst %,tool/%/*.c,check preprocess replay render) sensors/tool/*.c)
+COMMAND_SOURCES := $(wildcard tool/*.c $(patsubst %,tool/%/*.c,check preprocess replay render) $(if $(HAS_SENSORS),sensors/tool/*.c))
 NATIVE_SOURCES  := $(wildcard python/native/*.c)
-SUPPORT_SOURCES := $(filter-out $(if $(WINDOWS),,tests/support/tool/tool_process.c),$(wildcard tests/support/*.c tests/support/*/*.c))
+SUPPORT_SOURCES := $(filter-out $(if $(WINDOWS),,tests/support/tool/tool_process.c) $(if $(HAS_SENSORS),,tests/support/sensors/%),$(wildcard tests/support/*.c tests/support/*/*.c))
 # `rm -r runtime/baselines`, and its lines in runtime/detector/method_table.c: what needs them is not built then.
 HAS_BASELINES   := $(wildcard runtime/baselines/*/*.h)
 # The browser's tests look at pages, which no other configuration writes differently. Only a release is installed. Under sanitizers each
@@ -127,7 +131,7 @@ NOT_HERE        := $(if $(filter %/release,$(BUILD)),,tests/install/test_baselin
                    $(if $(filter sanitize,$(CONFIG)),$(wildcard tests/models/test_cloth_*.c tests/models/test_recording*.c tests/models/test_soft_body*.c) \
                      tests/models/test_shapes.c tests/tool/test_large_recordings.py) \
                    $(if $(filter 0,$(EXPAT)),tests/io/test_gifti.py tests/io/test_gifti_memory.c) \
-                   $(if $(HAS_BASELINES),,$(wildcard tests/baselines/*))
+                   $(if $(HAS_BASELINES),,$(wildcard tests/baselines/*)) $(if $(HAS_SENSORS),,$(wildcard tests/sensors/*))
 TEST_SOURCES    := $(filter-out $(NOT_HERE),$(wildcard tests/*/test_*.c tests/*/test_*.cpp tests/*/test_*.py))
 ifneq ($(findstring mingw,$(HOST)),)
 include tool/windows/windows.mk
@@ -156,8 +160,8 @@ MODEL_SOURCES   := $(wildcard models/*.c)
 MODEL_PARTS     := $(wildcard models/*/*.c)
 CPP_MODEL_SOURCES := $(wildcard models/*.cpp)
 CPP_MODEL_PARTS   := $(wildcard models/*/*.cpp)
-BENCHMARK_SOURCES := $(filter-out $(if $(HAS_BASELINES),,benchmarks/thesis.c benchmarks/thesis_figures.c benchmarks/volumes.c),$(wildcard benchmarks/*.c))
-BENCHMARK_PARTS   := $(filter-out %_simd.c,$(wildcard benchmarks/lib/*.c benchmarks/sensors/*.c sensors/tool/object_pairs.c))
+BENCHMARK_SOURCES := $(filter-out $(if $(HAS_BASELINES),,benchmarks/thesis.c benchmarks/thesis_figures.c benchmarks/volumes.c) $(if $(HAS_SENSORS),,benchmarks/sensors.c),$(wildcard benchmarks/*.c))
+BENCHMARK_PARTS   := $(filter-out %_simd.c,$(wildcard benchmarks/lib/*.c $(if $(HAS_SENSORS),benchmarks/sensors/*.c sensors/tool/object_pairs.c)))
 PEER_SOURCES      := $(wildcard benchmarks/peers/*.c benchmarks/peers/*.cpp)
 SOURCES := $(CORE_SOURCES) $(BASELINE_SOURCES) $(KERNEL_SOURCES) $(COMMON_SOURCES) $(COMMAND_SOURCES) $(NATIVE_SOURCES) $(SUPPORT_SOURCES) $(ROOM_SOURCES) $(FUZZ_SOURCES) \
            $(MODEL_SOURCES) $(MODEL_PARTS) $(CPP_MODEL_SOURCES) $(CPP_MODEL_PARTS) $(BENCHMARK_SOURCES) $(BENCHMARK_PARTS) \
@@ -232,7 +236,7 @@ COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 # What installs packages; a build that leaves expat out on purpose does not ask for it.
 PACKAGES = BASELINES=$(BASELINES) EXPAT=$(if $(WITHOUT_EXPAT),0,1) .ci/packages
 
-.PHONY: all python wheel wheels test-wheels sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench reproduce bench-charge bench-peers bench-instructions referee bench-plot claims manual performance check check-run test test-run test-threads test-threads-run test-without-baselines test-blender blender-extension test-vtk windows windows-libraries windows-zip test-windows test-windows-run test-bridges test-farm test-mutants test-aarch64 test-s390x wasm test-wasm test-riscv64 deb test-deb test-builds cscd-mpi python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces fuzz-readers test-fuzz test-faults FORCE
+.PHONY: all python wheel wheels test-wheels sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench reproduce bench-charge bench-peers bench-instructions referee bench-plot claims manual performance check check-run test test-run test-threads test-threads-run test-without-baselines test-without-sensors test-blender blender-extension test-vtk windows windows-libraries windows-zip test-windows test-windows-run test-bridges test-farm test-mutants test-aarch64 test-s390x wasm test-wasm test-riscv64 deb test-deb test-builds cscd-mpi python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces fuzz-readers test-fuzz test-faults FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -296,7 +300,7 @@ INCLUDEDIR ?= $(PREFIX)/include
 MANDIR     ?= $(PREFIX)/share/man
 # One word of the shell, whatever is in it.
 quoted = '$(subst ','\'',$(1))'
-INSTALLER = BUILD=$(call quoted,$(BUILD)) VERSION='$(VERSION)' STATIC_LIBS='$(CORE_LIBS) -pthread' BASELINES='$(BASELINES)' \
+INSTALLER = BUILD=$(call quoted,$(BUILD)) VERSION='$(VERSION)' STATIC_LIBS='$(CORE_LIBS) -pthread' BASELINES='$(BASELINES)' SENSORS='$(SENSORS)' \
             POINTER_SIZE='$(shell echo __SIZEOF_POINTER__ | $(CC) $(CFLAGS) -E -P -)' DESTDIR=$(call quoted,$(DESTDIR)) \
             BINDIR=$(call quoted,$(BINDIR)) LIBDIR=$(call quoted,$(LIBDIR)) INCLUDEDIR=$(call quoted,$(INCLUDEDIR)) \
             MANDIR=$(call quoted,$(MANDIR)) packaging/install.sh
@@ -472,8 +476,8 @@ test-builds: packages
 	@tests/builds/run.sh build/test-builds
 
 # What is left without runtime/baselines builds, and passes its tests: about a minute.
-test-without-baselines: packages
-	@tests/without_baselines.sh
+test-without-baselines test-without-sensors: test-without-%: packages
+	@tests/without.sh $*
 
 # Faults planted one at a time in copies of the sources, and the tests that catch them: tests/mutants/run.py says what the words are for.
 SAMPLE ?=
@@ -544,7 +548,7 @@ bench: packages
 # The tables and figures of both theses, with their numbers beside ours: docs/theory/thesis.md.
 reproduce: packages
 	@.ci/packages reproduce
-	@$(MAKE) --no-print-directory tool $(addprefix $(BUILD)/benchmarks/,thesis thesis_figures volumes experiments sensors)
+	@$(MAKE) --no-print-directory tool $(addprefix $(BUILD)/benchmarks/,thesis thesis_figures volumes experiments $(if $(HAS_SENSORS),sensors))
 	@benchmarks/reproduce.sh $(BUILD)
 
 # The cost of a step by size, scene and machine, on one thread except for the rows on threads; some minutes.
@@ -628,7 +632,7 @@ help:
 	@echo 'make check     build and run the tests that take less than a second each, for the inner loop'
 	@echo 'make test      build and run every test (CONFIG=sanitize: with sanitizers; ONLY="bvh line_search": of these rooms or names;'
 	@echo '               NIGHTLY=1: more random cases, in a folder of its own)'
-	@echo 'make test-without-baselines   build and test what is left when runtime/baselines is removed'
+	@echo 'make test-without-baselines   build and test what is left when runtime/baselines is removed; make test-without-sensors'
 	@echo 'make test-mutants   plant faults in copies of the sources, and show which test catches each (ROOM="tool/io": its own)'
 	@echo 'make test-blender   frames of glTF files beside those that Blender evaluates, faces selected in it, the extension, and the steps of docs/artist/from-your-program.md'
 	@echo '               (installs blender); PAGE=--write puts what the steps print into the page, and draws its pictures'
@@ -649,7 +653,7 @@ help:
 	@echo 'make test-builds   other compilers, flags, users and folders, and without each optional library; as root: some minutes'
 	@echo 'make test-threads   the tests that use threads, under the thread sanitizer'
 	@echo 'make           build the tool (./cscd), build/release/libcscd.a and libcscd.so; make library builds these alone'
-	@echo '               BASELINES=0: without libcscd-baselines.so, for LAPACKE, OpenBLAS and GSL (--charge dense);'
+	@echo '               BASELINES=0: without libcscd-baselines.so, for LAPACKE, OpenBLAS and GSL (--charge dense); SENSORS=0: without sense;'
 	@echo '               EXPAT=0: a tool without GIFTI surfaces'
 	@echo 'make python    the Python package, in build/python; make wheel: a wheel to give away, make sdist: its sources, in build/dist;'
 	@echo '               make test-python: its tests, types and archives (installs pytest, mypy, venv); PYTHON=python3'
@@ -818,8 +822,9 @@ $(PYTHON_ORACLE): $(OBJECTS)/tests/python/oracle.o $(BUILD)/tests/support.a $(BU
 TEST_LEVELS := $(foreach level,$(LEVELS),$(OBJECTS)/tests/core/simd_operations_simd.$(level).o)
 $(BUILD)/tests/core/room: $(TEST_LEVELS)
 
-# Whether there are baselines is a word on the command line, which a compiler cache looks at; at __has_include it does not.
+# Whether there are baselines or sensors is a word on the command line, which a compiler cache looks at; at __has_include it does not.
 $(OBJECTS)/tests/support/methods.o: CFLAGS_ALL += $(if $(HAS_BASELINES),-DWITH_BASELINES)
+$(OBJECTS)/tool/tool.o: CFLAGS_ALL += $(if $(HAS_SENSORS),-DWITH_SENSORS)
 
 # Readers that one command has for itself, and what damaged files and those of libFuzzer go through.
 READING_OBJECTS := $(call objects,$(addprefix tests/fuzz/,readings.c reading_memory.c) tool/summary_file.c)

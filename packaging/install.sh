@@ -4,7 +4,7 @@
 set -eu
 cd "$(dirname "$0")/.."
 : "${BUILD:?}" "${VERSION:?}" "${STATIC_LIBS:?}" "${POINTER_SIZE:?}"
-: "${BASELINES:?}" "${BINDIR:?}" "${LIBDIR:?}" "${INCLUDEDIR:?}" "${MANDIR:?}"
+: "${BASELINES:?}" "${SENSORS:?}" "${BINDIR:?}" "${LIBDIR:?}" "${INCLUDEDIR:?}" "${MANDIR:?}"
 plain() { realpath -ms -- "$1"; } # plain PATH: absolute, and one of the ways to write it
 DESTDIR=${DESTDIR:+$(plain "$DESTDIR")}
 [ "$DESTDIR" != / ] || DESTDIR=''
@@ -32,6 +32,9 @@ what=all
 each_file() {
     [ "$what" = library ] || "$1" 755 "$BUILD/cscd" "$BINDIR/cscd"
     for header in include/cscd/*.h include/cscd/*.hpp; do
+        case $SENSORS,$header in
+        0,*/sensors.h*) continue ;;
+        esac
         "$1" 644 "$header" "$INCLUDEDIR/cscd/${header##*/}"
     done
     "$1" 644 "$BUILD/libcscd.a" "$LIBDIR/libcscd.a"

@@ -19,7 +19,9 @@ static const command commands[] = {
     {"preprocess", "cut a closed mesh into regions, once, so that replays are faster", command_preprocess},
     {"replay", "find every contact between the frames of a recording, and what check finds", command_replay},
     {"report", "compare runs of replay, or list many jobs, on one page for a browser", command_report},
+#ifdef WITH_SENSORS
     {"sense", "warn where objects come near each other; can miss contacts", command_sense},
+#endif
     {"check", "find which parts cross or touch in which frames, and how deep", command_check},
     {"merge", "bring the results of the shards of a list together", command_merge},
     {"info", "counts, components, holes, bounds of a mesh", command_info},
