@@ -1,7 +1,6 @@
 /* The particle sensors of the public API: options, and one interval through its stages. */
 #include "sensors/sensors.h"
 
-#include "sensors/cell_particles.h"
 #include "src/core/check.h"
 #include "src/core/struct_size.h"
 #include "src/core/timer.h"

@@ -2,12 +2,12 @@
 #pragma once
 
 #include "sensors/exact_check.h"
-#include "sensors/particle_pairs.h"
 #include "sensors/particles.h"
 #include "sensors/partition.h"
-#include "sensors/random_particles.h"
+#include "sensors/placement.h"
 #include "sensors/reach.h"
 #include "sensors/renewal.h"
+#include "sensors/warnings.h"
 
 struct cscd_sensors {
     reference_count references; /* the caller alone */

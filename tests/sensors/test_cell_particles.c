@@ -1,5 +1,5 @@
 /* Each cell has one particle: those of new cells begin in the middle, all others stay where they are. */
-#include "sensors/cell_particles.h"
+#include "sensors/placement.h"
 #include "tests/support/random.h"
 #include "tests/support/rig.h"
 #include "tests/support/sensors/hand_partition.h"
