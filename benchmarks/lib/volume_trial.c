@@ -75,12 +75,12 @@ enum { PAIRS_AT_ONCE = 256 };
 
 /* As a step tests what its traversal has found. */
 static void test_filtered(volume_trial *t) {
-    const bvh *f = t->interval.bvh;
+    const bvh *hierarchy = t->interval.bvh;
     triangle_pair slots[PAIRS_AT_ONCE];
     uint32_t count = 0;
     for (size_t i = 0; i < t->search.count; i++) {
         const uint32_t *pair = t->search.pairs[i];
-        slots[count++] = (triangle_pair){f->slots[pair[0]], f->slots[pair[1]]};
+        slots[count++] = (triangle_pair){hierarchy->slots[pair[0]], hierarchy->slots[pair[1]]};
         if (count < PAIRS_AT_ONCE && i + 1 < t->search.count) continue;
         narrow_phase_test(&t->interval, slots, count, &t->lane);
         count = 0;

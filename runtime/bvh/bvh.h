@@ -133,48 +133,48 @@ typedef struct bvh_regions {
  * bvh_refit. *out is untouched unless CSCD_OK; CANCELLED: the call that builds them is. */
 cscd_status bvh_build(const cscd_mesh *mesh, bvh_regions regions, const double *positions, int axis_count,
                       bvh *out);
-void bvh_free(bvh *f);
+void bvh_free(bvh *hierarchy);
 
 /* Builds what bvh_move_over (bvh_move.h) has left out, as a step of its own; positions shape the trees that are missing.
  * sets, active: as for bvh_set_objects and bvh_set_active. On failure everything that was there stays, so that it can be
  * called again. */
-cscd_status bvh_finish(bvh *f, bvh_regions regions, const object_set *sets, const bool *active,
+cscd_status bvh_finish(bvh *hierarchy, bvh_regions regions, const object_set *sets, const bool *active,
                        const double *positions);
 
 /* How many triangles are in missing trees. */
-uint32_t bvh_count_missing(const bvh *f);
+uint32_t bvh_count_missing(const bvh *hierarchy);
 
 /* Adds all blocks above the leaves, as a step of bvh_build; counts: scratch, one number per tree. False: no memory. */
-bool bvh_build_levels(bvh *f, uint32_t *counts);
+bool bvh_build_levels(bvh *hierarchy, uint32_t *counts);
 
 /* Frees them, as a step of bvh_free. */
-void bvh_free_levels(bvh *f);
+void bvh_free_levels(bvh *hierarchy);
 
 /* Names the objects of trees and fills in obstacle_lanes, as a step of bvh_build. False: no memory. */
-bool bvh_mark_objects(bvh *f);
+bool bvh_mark_objects(bvh *hierarchy);
 
 /* Frees obstacle_lanes and child_sets, as a step of bvh_free. */
-void bvh_free_objects(bvh *f);
+void bvh_free_objects(bvh *hierarchy);
 
 /* Fills in child_sets; sets: one for each object, NULL: there are no rules. False: no memory, and nothing has changed. */
-bool bvh_set_objects(bvh *f, const object_set *sets);
+bool bvh_set_objects(bvh *hierarchy, const object_set *sets);
 
 /* Makes the traversal leave out pairs of inactive triangles. active: per triangle, NULL: all are. False: no memory, and
  * nothing has changed; that is only where all were active. */
-bool bvh_set_active(bvh *f, const bool *active);
+bool bvh_set_active(bvh *hierarchy, const bool *active);
 
 /* Returns the first disagreement with what bvh_set_active would do as a sentence, or NULL. */
-const char *bvh_check_active(const bvh *f, const bool *active);
+const char *bvh_check_active(const bvh *hierarchy, const bool *active);
 
 /* Notes which trees and blocks hold nothing but triangles of these components, for traversals that skip such pairs.
  * collapsed: per component. False: no memory. */
-bool bvh_mark_collapsed(bvh *f, const bool *collapsed);
+bool bvh_mark_collapsed(bvh *hierarchy, const bool *collapsed);
 
 /* Frees collapsed_lanes, as a step of bvh_free. */
-void bvh_free_collapsed(bvh *f);
+void bvh_free_collapsed(bvh *hierarchy);
 
-static inline uint32_t bvh_triangle(const bvh *f, uint32_t slot) {
-    return f->leaves[slot / LANES].triangles[slot % LANES];
+static inline uint32_t bvh_triangle(const bvh *hierarchy, uint32_t slot) {
+    return hierarchy->leaves[slot / LANES].triangles[slot % LANES];
 }
 
 /* How far volumes are widened: so far that those of two triangles overlap when the triangles come within the distance
@@ -191,29 +191,29 @@ static inline volume_growth uniform_growth(double distance) {
 
 /* Moves frames, records and bounds to the interval from x0 to x1, or to a moment if both are the same array. Clears
  * all flags and shows all hidden pairs. Widens the volumes. */
-void bvh_refit(bvh *f, const double *x0, const double *x1, volume_growth growth);
+void bvh_refit(bvh *hierarchy, const double *x0, const double *x1, volume_growth growth);
 
 /* Returns the first fault of the structure as a sentence, or NULL. After a build it checks that lanes fill prefixes,
  * that the blocks of one tree and level lie together, and that slots and leaves are inverse. After a refit it also
  * checks that bounds hold the bounds below them. Takes linear time; asserts call it in debug and sanitizer builds. */
-const char *bvh_validate(const bvh *f, bool refitted);
+const char *bvh_validate(const bvh *hierarchy, bool refitted);
 
 /* Shows all pairs that are hidden, where there is room for hidden pairs. */
-void bvh_show_all(bvh *f);
+void bvh_show_all(bvh *hierarchy);
 
 /* Makes room for hidden pairs. None is hidden yet. False: no memory. */
-bool bvh_allow_hiding(bvh *f);
+bool bvh_allow_hiding(bvh *hierarchy);
 
-static inline bool bvh_can_hide(const bvh *f) {
-    return f->leaf_self_pairs != NULL;
+static inline bool bvh_can_hide(const bvh *hierarchy) {
+    return hierarchy->leaf_self_pairs != NULL;
 }
 
 /* Makes the traversal leave out pairs of adjacent triangles in the given components; NULL: in none. */
-void bvh_skip_adjacent(bvh *f, const bool *components);
+void bvh_skip_adjacent(bvh *hierarchy, const bool *components);
 
 /* The same in all components, but pairs whose common vertices are all shared by very many triangles are kept: their number
  * grows with its square, and the traversal can tell most of them apart. */
-void bvh_skip_all_adjacent(bvh *f);
+void bvh_skip_all_adjacent(bvh *hierarchy);
 
 /* Orientation of a triangle as seen from a detector point d during a whole interval. PLUS (MINUS) certifies that
  * (p0 - d) . n > 0 (< 0) at every moment, with n = (p1 - p0) x (p2 - p0); ZERO is everything else. */
@@ -244,15 +244,15 @@ typedef struct orientation_query {
 } orientation_query;
 
 /* Writes where the detector point of each region is at both ends of the last interval, up to rounding. */
-void bvh_detector_points(const bvh *f, const orientation_query *view, double (*points)[2][3]);
+void bvh_detector_points(const bvh *hierarchy, const orientation_query *view, double (*points)[2][3]);
 
 /* Sets the detector points and the flags of the last interval. Writes the orientations of the triangles that are
  * oriented, per triangle of the mesh. */
-void bvh_orient(bvh *f, const orientation_query *view, uint8_t *orientations);
+void bvh_orient(bvh *hierarchy, const orientation_query *view, uint8_t *orientations);
 
 /* Sets the flags of leaves and blocks from the orientations of the triangles before and now. A triangle is newly
  * kept if it had an orientation and has none now. */
-void bvh_mark_newly_kept(bvh *f, const uint8_t *before, const uint8_t *now);
+void bvh_mark_newly_kept(bvh *hierarchy, const uint8_t *before, const uint8_t *now);
 
 /* Marks these triangles as newly kept, and clears all other flags. */
-void bvh_mark_unproven(bvh *f, const bool *unproven);
+void bvh_mark_unproven(bvh *hierarchy, const bool *unproven);

@@ -93,38 +93,42 @@ static uint32_t rounded_up(uint32_t count) {
     return (count + LANES - 1) / LANES * LANES;
 }
 
-static uint32_t record_of(builder *b, bvh *f, const bvh_tree *tree, uint32_t vertex) {
+static uint32_t record_of(builder *b, bvh *hierarchy, const bvh_tree *tree, uint32_t vertex) {
     uint32_t known = b->record_of[vertex];
     if (known != UINT32_MAX && known >= tree->first_record) return known;
-    f->record_vertices[f->record_count] = vertex;
-    return b->record_of[vertex] = f->record_count++;
+    hierarchy->record_vertices[hierarchy->record_count] = vertex;
+    return b->record_of[vertex] = hierarchy->record_count++;
 }
 
-static void fill_leaf(builder *b, bvh *f, const bvh_tree *tree, const placed_item *items, uint32_t count) {
-    uint32_t index = f->leaf_count++;
-    bvh_leaf *out = &f->leaves[index];
-    f->leaf_trees[index] = (uint32_t)(tree - f->trees);
-    f->leaf_flags[index] = (lane_flags){.used = (uint8_t)((1u << count) - 1)};
+static void fill_leaf(builder *b, bvh *hierarchy, const bvh_tree *tree, const placed_item *items,
+                      uint32_t count) {
+    uint32_t index = hierarchy->leaf_count++;
+    bvh_leaf *out = &hierarchy->leaves[index];
+    hierarchy->leaf_trees[index] = (uint32_t)(tree - hierarchy->trees);
+    hierarchy->leaf_flags[index] = (lane_flags){.used = (uint8_t)((1u << count) - 1)};
     for (uint32_t lane = 0; lane < LANES; lane++) {
         uint32_t t = items[lane < count ? lane : 0].name;
         out->triangles[lane] = lane < count ? t : UINT32_MAX;
         for (int i = 0; i < 3; i++) {
-            uint32_t record = record_of(b, f, tree, b->mesh->triangles[t][i]);
+            uint32_t record = record_of(b, hierarchy, tree, b->mesh->triangles[t][i]);
             out->corners[i][lane] = record;
-            if (lane < count) f->record_weights[record] += (float)(b->given.triangle_weights[t] / 3.0);
+            if (lane < count)
+                hierarchy->record_weights[record] += (float)(b->given.triangle_weights[t] / 3.0);
         }
-        if (lane < count) f->slots[t] = index * LANES + lane;
+        if (lane < count) hierarchy->slots[t] = index * LANES + lane;
     }
 }
 
 /* Cuts the records of all trees into chunks. */
-static void cut_chunks(bvh *f) {
-    f->chunk_count = 0;
-    for (uint32_t index = 0; index < f->tree_count; index++) {
-        uint32_t begin = f->trees[index].first_record, end = begin + f->trees[index].record_count;
+static void cut_chunks(bvh *hierarchy) {
+    hierarchy->chunk_count = 0;
+    for (uint32_t index = 0; index < hierarchy->tree_count; index++) {
+        uint32_t begin = hierarchy->trees[index].first_record,
+                 end = begin + hierarchy->trees[index].record_count;
         for (uint32_t i = begin; i < end; i += BVH_CHUNK_RECORDS) {
             uint32_t stop = end - i < BVH_CHUNK_RECORDS ? end : i + BVH_CHUNK_RECORDS;
-            f->chunks[f->chunk_count++] = (record_chunk){.tree = index, .begin = i, .end = stop};
+            hierarchy->chunks[hierarchy->chunk_count++] =
+                (record_chunk){.tree = index, .begin = i, .end = stop};
         }
     }
 }
@@ -132,21 +136,22 @@ static void cut_chunks(bvh *f) {
 enum { TRIANGLES_PER_ASK = 1 << 13 };
 
 /* Asks whether the call goes on; false: it does not, and the tree is not whole. */
-static bool fill_run(builder *b, bvh *f, bvh_tree *tree, uint32_t region, uint32_t begin, uint32_t end,
-                     progress *asked) {
+static bool fill_run(builder *b, bvh *hierarchy, bvh_tree *tree, uint32_t region, uint32_t begin,
+                     uint32_t end, progress *asked) {
     *tree = (bvh_tree){.region = region,
                        .object = OBJECT_UNKNOWN,
-                       .first_leaf = f->leaf_count,
-                       .first_record = f->record_count};
+                       .first_leaf = hierarchy->leaf_count,
+                       .first_record = hierarchy->record_count};
     for (uint32_t i = begin; i < end; i += LANES) {
         if ((i - begin) % TRIANGLES_PER_ASK == 0 && asked != NULL && !progress_go_on(asked, 0.0))
             return false;
-        fill_leaf(b, f, tree, b->triangles + i, end - i < LANES ? end - i : LANES);
+        fill_leaf(b, hierarchy, tree, b->triangles + i, end - i < LANES ? end - i : LANES);
     }
-    tree->leaf_count = f->leaf_count - tree->first_leaf;
-    while (f->record_count % LANES != 0)
-        f->record_vertices[f->record_count++] = f->record_vertices[tree->first_record];
-    tree->record_count = f->record_count - tree->first_record;
+    tree->leaf_count = hierarchy->leaf_count - tree->first_leaf;
+    while (hierarchy->record_count % LANES != 0)
+        hierarchy->record_vertices[hierarchy->record_count++] =
+            hierarchy->record_vertices[tree->first_record];
+    tree->record_count = hierarchy->record_count - tree->first_record;
     return true;
 }
 
@@ -191,24 +196,25 @@ static uint32_t all_leaves(const builder *b) {
     return sum;
 }
 
-static bool allocate_bvh(const builder *b, bvh *f) {
+static bool allocate_bvh(const builder *b, bvh *hierarchy) {
     cscd_context *context = b->context;
     uint32_t leaf_count = all_leaves(b), record_count = most_records(b);
-    f->trees = context_allocate(context, f->tree_count, sizeof *f->trees);
-    f->leaves = context_allocate(context, leaf_count, sizeof *f->leaves);
-    f->leaf_flags = context_allocate(context, leaf_count, sizeof *f->leaf_flags);
-    f->flags_before = context_allocate(context, leaf_count, sizeof *f->flags_before);
-    f->leaf_trees = context_allocate(context, leaf_count, sizeof *f->leaf_trees);
-    f->record_vertices = context_allocate(context, record_count, sizeof *f->record_vertices);
-    f->record_weights = context_allocate(context, record_count, sizeof *f->record_weights);
-    f->records = context_allocate(context, record_count, sizeof *f->records);
-    f->record_capacity = record_count;
-    f->chunks =
-        context_allocate(context, record_count / BVH_CHUNK_RECORDS + f->tree_count, sizeof *f->chunks);
-    f->slots = context_allocate(context, f->mesh->triangle_count, sizeof *f->slots);
-    return f->trees != NULL && f->leaves != NULL && f->leaf_flags != NULL && f->flags_before != NULL &&
-           f->leaf_trees != NULL && f->record_vertices != NULL && f->record_weights != NULL &&
-           f->records != NULL && f->chunks != NULL && f->slots != NULL;
+    hierarchy->trees = context_allocate(context, hierarchy->tree_count, sizeof *hierarchy->trees);
+    hierarchy->leaves = context_allocate(context, leaf_count, sizeof *hierarchy->leaves);
+    hierarchy->leaf_flags = context_allocate(context, leaf_count, sizeof *hierarchy->leaf_flags);
+    hierarchy->flags_before = context_allocate(context, leaf_count, sizeof *hierarchy->flags_before);
+    hierarchy->leaf_trees = context_allocate(context, leaf_count, sizeof *hierarchy->leaf_trees);
+    hierarchy->record_vertices = context_allocate(context, record_count, sizeof *hierarchy->record_vertices);
+    hierarchy->record_weights = context_allocate(context, record_count, sizeof *hierarchy->record_weights);
+    hierarchy->records = context_allocate(context, record_count, sizeof *hierarchy->records);
+    hierarchy->record_capacity = record_count;
+    hierarchy->chunks = context_allocate(context, record_count / BVH_CHUNK_RECORDS + hierarchy->tree_count,
+                                         sizeof *hierarchy->chunks);
+    hierarchy->slots = context_allocate(context, hierarchy->mesh->triangle_count, sizeof *hierarchy->slots);
+    return hierarchy->trees != NULL && hierarchy->leaves != NULL && hierarchy->leaf_flags != NULL &&
+           hierarchy->flags_before != NULL && hierarchy->leaf_trees != NULL &&
+           hierarchy->record_vertices != NULL && hierarchy->record_weights != NULL &&
+           hierarchy->records != NULL && hierarchy->chunks != NULL && hierarchy->slots != NULL;
 }
 
 /* Returns the power of two that brings the extent of these triangles' positions near 1. */
@@ -237,54 +243,55 @@ static cscd_status failure_of(cscd_context *context) {
 cscd_status bvh_build(const cscd_mesh *mesh, bvh_regions regions, const double *positions, int axis_count,
                       bvh *out) {
     builder b = {.context = mesh->context, .mesh = mesh, .given = regions};
-    bvh f = {.mesh = mesh,
-             .kernels = bvh_kernels_of(mesh->context),
-             .axis_count = axis_count,
-             .tree_count = regions.count};
+    bvh hierarchy = {.mesh = mesh,
+                     .kernels = bvh_kernels_of(mesh->context),
+                     .axis_count = axis_count,
+                     .tree_count = regions.count};
     bool made = allocate_builder(&b);
     if (made) {
         list_triangles(&b);
-        f.scale = scale_for(mesh, positions, b.triangles, mesh->triangle_count);
-        find_centres(&b, positions, f.scale, mesh->triangle_count);
+        hierarchy.scale = scale_for(mesh, positions, b.triangles, mesh->triangle_count);
+        find_centres(&b, positions, hierarchy.scale, mesh->triangle_count);
         place_regions(&b);
-        made = order_items(&b) && allocate_bvh(&b, &f);
-        for (uint32_t p = 0; made && p < f.tree_count; p++) {
+        made = order_items(&b) && allocate_bvh(&b, &hierarchy);
+        for (uint32_t p = 0; made && p < hierarchy.tree_count; p++) {
             uint32_t region = b.regions[p].name;
-            made = fill_run(&b, &f, &f.trees[p], region, b.region_offsets[region],
+            made = fill_run(&b, &hierarchy, &hierarchy.trees[p], region, b.region_offsets[region],
                             b.region_offsets[region + 1], &mesh->context->progress);
         }
-        if (made) cut_chunks(&f);
-        made = made && bvh_build_levels(&f, b.region_offsets) && bvh_mark_objects(&f) &&
-               bvh_allocate_hubs(&f) && bvh_allocate_slivers(&f, positions);
+        if (made) cut_chunks(&hierarchy);
+        made = made && bvh_build_levels(&hierarchy, b.region_offsets) && bvh_mark_objects(&hierarchy) &&
+               bvh_allocate_hubs(&hierarchy) && bvh_allocate_slivers(&hierarchy, positions);
     }
     free_builder(&b);
     if (!made) {
-        bvh_free(&f);
+        bvh_free(&hierarchy);
         return failure_of(mesh->context);
     }
-    assert(bvh_validate(&f, false) == NULL);
-    *out = f;
+    assert(bvh_validate(&hierarchy, false) == NULL);
+    *out = hierarchy;
     return CSCD_OK;
 }
 
 /* ---- trees that are missing ---------------------------------------------------------------------------- */
 
-uint32_t bvh_count_missing(const bvh *f) {
+uint32_t bvh_count_missing(const bvh *hierarchy) {
     uint32_t sum = 0;
-    for (uint32_t i = 0; i < f->tree_count; i++) sum += f->trees[i].missing;
+    for (uint32_t i = 0; i < hierarchy->tree_count; i++) sum += hierarchy->trees[i].missing;
     return sum;
 }
 
 /* Lists the triangles of missing trees by region, as runs; other regions have empty ones. */
-static void list_missing(builder *b, const bvh *f) {
+static void list_missing(builder *b, const bvh *hierarchy) {
     uint32_t sum = 0, *offsets = b->region_offsets, *next = offsets + 1;
-    for (uint32_t i = 0; i < f->tree_count; i++) next[f->trees[i].region] = f->trees[i].missing;
+    for (uint32_t i = 0; i < hierarchy->tree_count; i++)
+        next[hierarchy->trees[i].region] = hierarchy->trees[i].missing;
     for (uint32_t r = 0; r < b->given.count; r++) {
         uint32_t size = next[r];
         next[r] = size > 0 ? sum : UINT32_MAX;
         sum += size;
     }
-    for (uint32_t t = f->missing_begin; t < f->missing_end; t++) {
+    for (uint32_t t = hierarchy->missing_begin; t < hierarchy->missing_end; t++) {
         uint32_t *place = &next[b->given.of_triangle[t]];
         if (*place != UINT32_MAX) b->triangles[(*place)++].name = t;
     }
@@ -292,98 +299,106 @@ static void list_missing(builder *b, const bvh *f) {
 }
 
 /* Fills the place that a missing tree has been given. */
-static void fill_missing(builder *b, bvh *f, uint32_t index) {
-    bvh_tree place = f->trees[index], *tree = &f->trees[index];
-    uint32_t leaves = f->leaf_count, records = f->record_count, begin = b->region_offsets[place.region];
-    memset(f->record_weights + place.first_record, 0, place.record_count * sizeof *f->record_weights);
-    f->leaf_count = place.first_leaf;
-    f->record_count = place.first_record;
-    fill_run(b, f, tree, place.region, begin, begin + place.missing, NULL);
+static void fill_missing(builder *b, bvh *hierarchy, uint32_t index) {
+    bvh_tree place = hierarchy->trees[index], *tree = &hierarchy->trees[index];
+    uint32_t leaves = hierarchy->leaf_count, records = hierarchy->record_count,
+             begin = b->region_offsets[place.region];
+    memset(hierarchy->record_weights + place.first_record, 0,
+           place.record_count * sizeof *hierarchy->record_weights);
+    hierarchy->leaf_count = place.first_leaf;
+    hierarchy->record_count = place.first_record;
+    fill_run(b, hierarchy, tree, place.region, begin, begin + place.missing, NULL);
     assert(tree->leaf_count == place.leaf_count && tree->record_count == place.record_count);
-    f->leaf_count = leaves;
-    f->record_count = records;
+    hierarchy->leaf_count = leaves;
+    hierarchy->record_count = records;
 }
 
-static void drop_levels(bvh *f) {
-    cscd_context *context = f->mesh->context;
-    bvh_free_objects(f);
-    bvh_free_collapsed(f);
-    bvh_free_hubs(f);
-    bvh_free_slivers(f);
-    bvh_free_levels(f);
-    context_free(context, f->block_trees);
-    f->block_trees = NULL;
-    f->level_count = 0;
+static void drop_levels(bvh *hierarchy) {
+    cscd_context *context = hierarchy->mesh->context;
+    bvh_free_objects(hierarchy);
+    bvh_free_collapsed(hierarchy);
+    bvh_free_hubs(hierarchy);
+    bvh_free_slivers(hierarchy);
+    bvh_free_levels(hierarchy);
+    context_free(context, hierarchy->block_trees);
+    hierarchy->block_trees = NULL;
+    hierarchy->level_count = 0;
 }
 
-static bool allocate_missing(builder *b, bvh *f, uint32_t missing) {
+static bool allocate_missing(builder *b, bvh *hierarchy, uint32_t missing) {
     cscd_context *context = b->context;
     b->triangles = context_allocate(context, missing, sizeof *b->triangles);
     b->region_offsets = context_allocate(context, (size_t)b->given.count + 1, sizeof(uint32_t));
     b->record_of = context_reserve(context, b->mesh->vertex_count, sizeof(uint32_t));
-    if (f->records == NULL) {
-        f->record_capacity = f->record_count + f->record_count / 16;
-        f->records = context_allocate(context, f->record_capacity, sizeof *f->records);
+    if (hierarchy->records == NULL) {
+        hierarchy->record_capacity = hierarchy->record_count + hierarchy->record_count / 16;
+        hierarchy->records =
+            context_allocate(context, hierarchy->record_capacity, sizeof *hierarchy->records);
     }
-    return b->triangles != NULL && b->region_offsets != NULL && b->record_of != NULL && f->records != NULL;
+    return b->triangles != NULL && b->region_offsets != NULL && b->record_of != NULL &&
+           hierarchy->records != NULL;
 }
 
-static bool fill_all_missing(builder *b, bvh *f, const double *positions, uint32_t missing) {
+static bool fill_all_missing(builder *b, bvh *hierarchy, const double *positions, uint32_t missing) {
     memset(b->record_of, 0xff, b->mesh->vertex_count * sizeof(uint32_t));
-    list_missing(b, f);
-    f->scale = fmin(f->scale, scale_for(b->mesh, positions, b->triangles, missing));
-    find_centres(b, positions, f->scale, missing);
+    list_missing(b, hierarchy);
+    hierarchy->scale = fmin(hierarchy->scale, scale_for(b->mesh, positions, b->triangles, missing));
+    find_centres(b, positions, hierarchy->scale, missing);
     if (!bvh_order_runs(b->context, (item_runs){b->triangles, b->region_offsets, b->given.count}))
         return false;
-    for (uint32_t i = 0; i < f->tree_count; i++) {
-        if (f->trees[i].missing > 0) fill_missing(b, f, i);
+    for (uint32_t i = 0; i < hierarchy->tree_count; i++) {
+        if (hierarchy->trees[i].missing > 0) fill_missing(b, hierarchy, i);
     }
     return true;
 }
 
-cscd_status bvh_finish(bvh *f, bvh_regions regions, const object_set *sets, const bool *active,
+cscd_status bvh_finish(bvh *hierarchy, bvh_regions regions, const object_set *sets, const bool *active,
                        const double *positions) {
-    builder b = {.context = f->mesh->context, .mesh = f->mesh, .given = regions};
-    uint32_t missing = bvh_count_missing(f);
-    bool made = allocate_missing(&b, f, missing) && fill_all_missing(&b, f, positions, missing);
+    builder b = {.context = hierarchy->mesh->context, .mesh = hierarchy->mesh, .given = regions};
+    uint32_t missing = bvh_count_missing(hierarchy);
+    bool made =
+        allocate_missing(&b, hierarchy, missing) && fill_all_missing(&b, hierarchy, positions, missing);
     if (made) {
-        cut_chunks(f);
-        made = bvh_build_levels(f, b.region_offsets) && bvh_mark_objects(f) && bvh_allocate_hubs(f) &&
-               bvh_allocate_slivers(f, positions) && bvh_set_objects(f, sets) && bvh_set_active(f, active);
-        if (!made) drop_levels(f);
+        cut_chunks(hierarchy);
+        made = bvh_build_levels(hierarchy, b.region_offsets) && bvh_mark_objects(hierarchy) &&
+               bvh_allocate_hubs(hierarchy) && bvh_allocate_slivers(hierarchy, positions) &&
+               bvh_set_objects(hierarchy, sets) && bvh_set_active(hierarchy, active);
+        if (!made) drop_levels(hierarchy);
     }
     free_builder(&b);
-    assert(!made || bvh_validate(f, false) == NULL);
-    return made ? CSCD_OK : failure_of(f->mesh->context);
+    assert(!made || bvh_validate(hierarchy, false) == NULL);
+    return made ? CSCD_OK : failure_of(hierarchy->mesh->context);
 }
 
-void bvh_free(bvh *f) {
-    if (f->mesh == NULL) return;
-    cscd_context *context = f->mesh->context;
-    void *blocks[] = {f->trees,           f->leaves,      f->leaf_flags,      f->flags_before,
-                      f->leaf_self_pairs, f->block_trees, f->record_vertices, f->record_weights,
-                      f->records,         f->slots,       f->chunks,          f->leaf_trees,
-                      f->leaf_inactive};
+void bvh_free(bvh *hierarchy) {
+    if (hierarchy->mesh == NULL) return;
+    cscd_context *context = hierarchy->mesh->context;
+    void *blocks[] = {hierarchy->trees,           hierarchy->leaves,          hierarchy->leaf_flags,
+                      hierarchy->flags_before,    hierarchy->leaf_self_pairs, hierarchy->block_trees,
+                      hierarchy->record_vertices, hierarchy->record_weights,  hierarchy->records,
+                      hierarchy->slots,           hierarchy->chunks,          hierarchy->leaf_trees,
+                      hierarchy->leaf_inactive};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(context, blocks[i]);
-    bvh_free_objects(f);
-    bvh_free_collapsed(f);
-    bvh_free_hubs(f);
-    bvh_free_slivers(f);
-    bvh_free_levels(f);
-    *f = (bvh){0};
+    bvh_free_objects(hierarchy);
+    bvh_free_collapsed(hierarchy);
+    bvh_free_hubs(hierarchy);
+    bvh_free_slivers(hierarchy);
+    bvh_free_levels(hierarchy);
+    *hierarchy = (bvh){0};
 }
 
-bool bvh_allow_hiding(bvh *f) {
-    cscd_context *context = f->mesh->context;
-    if (f->leaf_self_pairs == NULL)
-        f->leaf_self_pairs = context_allocate(context, f->leaf_count, sizeof *f->leaf_self_pairs);
-    bool allocated = f->leaf_self_pairs != NULL;
-    for (int i = 0; i < f->tree_level; i++) {
-        bvh_level *level = &f->levels[i];
+bool bvh_allow_hiding(bvh *hierarchy) {
+    cscd_context *context = hierarchy->mesh->context;
+    if (hierarchy->leaf_self_pairs == NULL)
+        hierarchy->leaf_self_pairs =
+            context_allocate(context, hierarchy->leaf_count, sizeof *hierarchy->leaf_self_pairs);
+    bool allocated = hierarchy->leaf_self_pairs != NULL;
+    for (int i = 0; i < hierarchy->tree_level; i++) {
+        bvh_level *level = &hierarchy->levels[i];
         if (level->self_pairs == NULL)
             level->self_pairs = context_allocate(context, level->block_count, sizeof *level->self_pairs);
         allocated &= level->self_pairs != NULL;
     }
-    bvh_show_all(f);
+    bvh_show_all(hierarchy);
     return allocated;
 }

@@ -21,19 +21,20 @@ static bool has_hubs(const cscd_mesh *mesh) {
     return false;
 }
 
-static bool leaf_shares(const bvh *f, const bvh_leaf *leaf, uint32_t vertex) {
+static bool leaf_shares(const bvh *hierarchy, const bvh_leaf *leaf, uint32_t vertex) {
     for (int lane = 1; lane < LANES && leaf->triangles[lane] != UINT32_MAX; lane++) {
-        if (!triangle_contains(f->mesh->triangles[leaf->triangles[lane]], vertex)) return false;
+        if (!triangle_contains(hierarchy->mesh->triangles[leaf->triangles[lane]], vertex)) return false;
     }
     return true;
 }
 
 /* The first one in the first triangle; of two the lesser, so that all pages of a book name them alike. */
-static void name_hubs(const bvh *f, uint32_t index, hub_volume *out) {
-    const bvh_leaf *leaf = &f->leaves[index];
-    const uint32_t *corners = f->mesh->triangles[leaf->triangles[0]];
+static void name_hubs(const bvh *hierarchy, uint32_t index, hub_volume *out) {
+    const bvh_leaf *leaf = &hierarchy->leaves[index];
+    const uint32_t *corners = hierarchy->mesh->triangles[leaf->triangles[0]];
     for (int i = 0; i < 3; i++) {
-        if (!vertex_is_hub(f->mesh, corners[i]) || !leaf_shares(f, leaf, corners[i])) continue;
+        if (!vertex_is_hub(hierarchy->mesh, corners[i]) || !leaf_shares(hierarchy, leaf, corners[i]))
+            continue;
         if (out->hub == NO_HUB) {
             out->hub = corners[i];
         } else {
@@ -57,21 +58,21 @@ static void name_hubs_of_block(const bvh_level *level, uint32_t block, hub_volum
     out->other = children[0].other;
 }
 
-bool bvh_allocate_hubs(bvh *f) {
-    if (!has_hubs(f->mesh)) return true;
-    for (int i = 0; i < f->level_count; i++) {
-        bvh_level *level = &f->levels[i];
-        level->child_hubs =
-            context_allocate(f->mesh->context, (size_t)level->block_count * LANES, sizeof *level->child_hubs);
+bool bvh_allocate_hubs(bvh *hierarchy) {
+    if (!has_hubs(hierarchy->mesh)) return true;
+    for (int i = 0; i < hierarchy->level_count; i++) {
+        bvh_level *level = &hierarchy->levels[i];
+        level->child_hubs = context_allocate(hierarchy->mesh->context, (size_t)level->block_count * LANES,
+                                             sizeof *level->child_hubs);
         if (level->child_hubs == NULL) return false;
     }
     return true;
 }
 
-void bvh_free_hubs(bvh *f) {
+void bvh_free_hubs(bvh *hierarchy) {
     for (int i = 0; i < BVH_LEVEL_MAX; i++) {
-        context_free(f->mesh->context, f->levels[i].child_hubs);
-        f->levels[i].child_hubs = NULL;
+        context_free(hierarchy->mesh->context, hierarchy->levels[i].child_hubs);
+        hierarchy->levels[i].child_hubs = NULL;
     }
 }
 
@@ -94,12 +95,12 @@ static bool look_at_corner(const double *hub, const double *corner, corner_view 
     return true;
 }
 
-static bool look_at_triangle(const bvh *f, uint32_t triangle, uint32_t hub, const double *const ends[2],
-                             corner_view *view) {
+static bool look_at_triangle(const bvh *hierarchy, uint32_t triangle, uint32_t hub,
+                             const double *const ends[2], corner_view *view) {
     *view = (corner_view){.nearest = INFINITY};
-    for (int e = 0; e < (f->still ? 1 : 2); e++) {
+    for (int e = 0; e < (hierarchy->still ? 1 : 2); e++) {
         for (int i = 0; i < 3; i++) {
-            const uint32_t corner = f->mesh->triangles[triangle][i];
+            const uint32_t corner = hierarchy->mesh->triangles[triangle][i];
             if (corner != hub &&
                 !look_at_corner(ends[e] + (size_t)hub * 3, ends[e] + (size_t)corner * 3, view))
                 return false;
@@ -116,12 +117,12 @@ static void add_product(const double a[3], const double b[3], double sum[3]) {
 
 /* The normal of a page is a product of two vectors that move linearly, so it is a sum, with weights of 0 or more, of three: those at
  * the ends, and one that is mixed of both ends. A sum that is not small beside its terms has a direction. */
-static bool look_at_page(const bvh *f, uint32_t triangle, const hub_volume *v, const double *const ends[2],
-                         corner_view *view) {
+static bool look_at_page(const bvh *hierarchy, uint32_t triangle, const hub_volume *v,
+                         const double *const ends[2], corner_view *view) {
     double edges[2][3], sides[2][3];
     uint32_t corner = UINT32_MAX;
     for (int i = 0; i < 3; i++) {
-        const uint32_t next = f->mesh->triangles[triangle][i];
+        const uint32_t next = hierarchy->mesh->triangles[triangle][i];
         if (next != v->hub && next != v->other) corner = next;
     }
     for (int e = 0; e < 2; e++) {
@@ -129,7 +130,7 @@ static bool look_at_page(const bvh *f, uint32_t triangle, const hub_volume *v, c
         vec3_subtract(ends[e] + (size_t)corner * 3, ends[e] + (size_t)v->hub * 3, sides[e]);
     }
     /* corners may be near the edge, so that pages are never apart by a distance */
-    *view = (corner_view){.nearest = 0.0, .count = f->still ? 1 : 3};
+    *view = (corner_view){.nearest = 0.0, .count = hierarchy->still ? 1 : 3};
     for (int i = 0; i < view->count; i++) {
         const int from = i / 2, to = (i + 1) / 2; /* 0 0, 0 1, 1 1 */
         double normal[3] = {0.0, 0.0, 0.0}, size = surface_norm(edges[from]) * surface_norm(sides[to]);
@@ -184,9 +185,9 @@ static hub_volume nothing_seen(void) {
     return v;
 }
 
-static void add_sides(const bvh *f, uint32_t triangle, const double *const ends[2], hub_volume *out) {
+static void add_sides(const bvh *hierarchy, uint32_t triangle, const double *const ends[2], hub_volume *out) {
     for (int i = 0; i < 6; i++) {
-        const uint32_t corner = f->mesh->triangles[triangle][i % 3];
+        const uint32_t corner = hierarchy->mesh->triangles[triangle][i % 3];
         for (int k = 0; corner != out->hub && k < 3; k++) {
             const double x = ends[i / 3][(size_t)corner * 3 + (size_t)k];
             out->sides[i / 3][0][k] = fmin(out->sides[i / 3][0][k], x);
@@ -196,17 +197,17 @@ static void add_sides(const bvh *f, uint32_t triangle, const double *const ends[
 }
 
 /* One wide triangle leaves nothing known of its leaf. */
-static void view_leaf(const bvh *f, uint32_t index, const double *const ends[2], hub_volume *out) {
-    const bvh_leaf *leaf = &f->leaves[index];
+static void view_leaf(const bvh *hierarchy, uint32_t index, const double *const ends[2], hub_volume *out) {
+    const bvh_leaf *leaf = &hierarchy->leaves[index];
     *out = nothing_seen();
-    name_hubs(f, index, out);
+    name_hubs(hierarchy, index, out);
     if (out->hub == NO_HUB) return;
     for (int e = 0; e < 2; e++) memcpy(out->place[e], ends[e] + (size_t)out->hub * 3, sizeof out->place[e]);
     for (int lane = 0; lane < LANES && leaf->triangles[lane] != UINT32_MAX && out->hub != NO_HUB; lane++) {
         corner_view view;
-        add_sides(f, leaf->triangles[lane], ends, out);
-        if (out->other == NO_HUB ? look_at_triangle(f, leaf->triangles[lane], out->hub, ends, &view)
-                                 : look_at_page(f, leaf->triangles[lane], out, ends, &view))
+        add_sides(hierarchy, leaf->triangles[lane], ends, out);
+        if (out->other == NO_HUB ? look_at_triangle(hierarchy, leaf->triangles[lane], out->hub, ends, &view)
+                                 : look_at_page(hierarchy, leaf->triangles[lane], out, ends, &view))
             add_view(&view, out);
         else
             out->hub = NO_HUB;
@@ -331,11 +332,11 @@ static void view_some_blocks(void *data, uint32_t index) {
     }
 }
 
-void bvh_refit_hubs(bvh *f, const double *x0, const double *x1) {
-    hub_work work = {f, {x0, x1}, 0};
-    if (f->levels[0].child_hubs == NULL) return;
-    for (; work.level < f->level_count; work.level++)
-        parallel_run(f->mesh->context->threads,
-                     (f->levels[work.level].block_count + BLOCKS_PER_TASK - 1) / BLOCKS_PER_TASK,
+void bvh_refit_hubs(bvh *hierarchy, const double *x0, const double *x1) {
+    hub_work work = {hierarchy, {x0, x1}, 0};
+    if (hierarchy->levels[0].child_hubs == NULL) return;
+    for (; work.level < hierarchy->level_count; work.level++)
+        parallel_run(hierarchy->mesh->context->threads,
+                     (hierarchy->levels[work.level].block_count + BLOCKS_PER_TASK - 1) / BLOCKS_PER_TASK,
                      view_some_blocks, &work);
 }

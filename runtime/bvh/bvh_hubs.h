@@ -24,10 +24,10 @@ typedef struct hub_volume {
 bool hub_volumes_apart(const hub_volume *a, const hub_volume *b, double distance);
 
 /* Makes room for hub volumes, as a step of bvh_build; where the mesh has no hub, none is needed. False: no memory. */
-bool bvh_allocate_hubs(bvh *f);
+bool bvh_allocate_hubs(bvh *hierarchy);
 
 /* Frees them, as a step of bvh_free. */
-void bvh_free_hubs(bvh *f);
+void bvh_free_hubs(bvh *hierarchy);
 
 /* Finds the volumes for the interval from x0 to x1, as a step of bvh_refit. */
-void bvh_refit_hubs(bvh *f, const double *x0, const double *x1);
+void bvh_refit_hubs(bvh *hierarchy, const double *x0, const double *x1);

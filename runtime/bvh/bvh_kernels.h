@@ -26,23 +26,23 @@ typedef struct extents {
 
 typedef struct bvh_kernels {
     /* Fills records begin to end - 1, multiples of 8, of a tree; see runtime/bvh/bvh.h. */
-    void (*copy_in)(const struct bvh *f, const struct bvh_tree *tree, uint32_t begin, uint32_t end,
+    void (*copy_in)(const struct bvh *hierarchy, const struct bvh_tree *tree, uint32_t begin, uint32_t end,
                     const double *x0, const double *x1, copied *out);
 
     /* Computes the bounds of the children of blocks begin to end - 1 of any level but the tree level. */
-    void (*refit)(const struct bvh *f, int level, uint32_t begin, uint32_t end);
+    void (*refit)(const struct bvh *hierarchy, int level, uint32_t begin, uint32_t end);
 
     /* Sums the extents of all leaves, and those of all triangles, at the start. */
-    extents (*extents_at_start)(const struct bvh *f);
+    extents (*extents_at_start)(const struct bvh *hierarchy);
 
     /* Writes the flags of leaves begin to end - 1 of a tree, and the orientations of their triangles. clean has an
      * element per triangle of the mesh, and triangles that are not clean become ZERO; NULL: all are clean. */
-    void (*orient)(const struct bvh *f, const struct bvh_tree *tree, uint32_t begin, uint32_t end,
+    void (*orient)(const struct bvh *hierarchy, const struct bvh_tree *tree, uint32_t begin, uint32_t end,
                    const bool *clean, uint8_t *orientations);
 
     /* The same for orientations that last: see orientation_query. */
-    void (*orient_lasting)(const struct bvh *f, const struct bvh_tree *tree, uint32_t begin, uint32_t end,
-                           const bool *clean, const struct orientation_lasting *lasting,
+    void (*orient_lasting)(const struct bvh *hierarchy, const struct bvh_tree *tree, uint32_t begin,
+                           uint32_t end, const bool *clean, const struct orientation_lasting *lasting,
                            uint8_t *orientations);
 
     /* Writes how far records begin to end - 1, multiples of 8, are from their reference at positions x, in a frame with
@@ -59,8 +59,8 @@ typedef struct bvh_kernels {
     void (*near_children)(const float *bounds, const struct framed_query *q, float *out);
 
     /* Which of a leaf's eight triangles may be as near to such a point at the start as the root of squared? */
-    uint32_t (*near_triangles)(const struct bvh *f, const struct bvh_tree *tree, const struct bvh_leaf *leaf,
-                               const struct framed_query *q, double squared);
+    uint32_t (*near_triangles)(const struct bvh *hierarchy, const struct bvh_tree *tree,
+                               const struct bvh_leaf *leaf, const struct framed_query *q, double squared);
 
     /* Visits block pairs of the lane's stack, at most visits_max, until it is empty or there is no room for
      * what another visit may add. */

@@ -22,11 +22,12 @@ static array_list order_arrays(const bvh_move *move, tree_order *o) {
                          ARRAY(o->next, move->fresh_count)}};
 }
 
-static void add_list(const bvh *f, tree_order *o, uint32_t first) {
-    for (uint32_t i = first; i != UINT32_MAX; i = o->next[i]) o->trees[o->count++] = f->tree_count + i;
+static void add_list(const bvh *hierarchy, tree_order *o, uint32_t first) {
+    for (uint32_t i = first; i != UINT32_MAX; i = o->next[i])
+        o->trees[o->count++] = hierarchy->tree_count + i;
 }
 
-static void order_trees(const bvh *f, const bvh_move *move, tree_order *o) {
+static void order_trees(const bvh *hierarchy, const bvh_move *move, tree_order *o) {
     memset(o->first, 0xff, ((size_t)move->old_region_count + 1) * sizeof *o->first);
     for (uint32_t i = move->fresh_count; i-- > 0;) {
         uint32_t after = move->fresh[i].after;
@@ -34,11 +35,11 @@ static void order_trees(const bvh *f, const bvh_move *move, tree_order *o) {
         o->next[i] = *first;
         *first = i;
     }
-    for (uint32_t i = 0; i < f->tree_count; i++) {
-        if (move->regions[f->trees[i].region] != UINT32_MAX) o->trees[o->count++] = i;
-        add_list(f, o, o->first[f->trees[i].region]);
+    for (uint32_t i = 0; i < hierarchy->tree_count; i++) {
+        if (move->regions[hierarchy->trees[i].region] != UINT32_MAX) o->trees[o->count++] = i;
+        add_list(hierarchy, o, o->first[hierarchy->trees[i].region]);
     }
-    add_list(f, o, o->first[move->old_region_count]);
+    add_list(hierarchy, o, o->first[move->old_region_count]);
 }
 
 /* ---- places ------------------------------------------------------------------------------------------- */
@@ -47,16 +48,16 @@ static uint32_t rounded_up(uint32_t count) {
     return (count + LANES - 1) / LANES * LANES;
 }
 
-static bvh_tree place_of(const bvh *f, const bvh_move *move, uint32_t item) {
-    if (item >= f->tree_count) {
-        const fresh_region *fresh = &move->fresh[item - f->tree_count];
+static bvh_tree place_of(const bvh *hierarchy, const bvh_move *move, uint32_t item) {
+    if (item >= hierarchy->tree_count) {
+        const fresh_region *fresh = &move->fresh[item - hierarchy->tree_count];
         return (bvh_tree){.region = fresh->region,
                           .object = OBJECT_UNKNOWN,
                           .missing = fresh->triangle_count,
                           .leaf_count = rounded_up(fresh->triangle_count) / LANES,
                           .record_count = rounded_up(fresh->vertex_count)};
     }
-    const bvh_tree *old = &f->trees[item];
+    const bvh_tree *old = &hierarchy->trees[item];
     bool unknown = old->object == OBJECT_UNKNOWN;
     return (bvh_tree){.region = move->regions[old->region],
                       .object = unknown ? OBJECT_UNKNOWN : move->change->objects.to_new[old->object],
@@ -65,9 +66,9 @@ static bvh_tree place_of(const bvh *f, const bvh_move *move, uint32_t item) {
                       .record_count = old->record_count};
 }
 
-static void place_trees(const bvh *f, const bvh_move *move, const tree_order *o, bvh *out) {
+static void place_trees(const bvh *hierarchy, const bvh_move *move, const tree_order *o, bvh *out) {
     for (uint32_t i = 0; i < o->count; i++) {
-        bvh_tree tree = place_of(f, move, o->trees[i]);
+        bvh_tree tree = place_of(hierarchy, move, o->trees[i]);
         tree.first_leaf = out->leaf_count;
         tree.first_record = out->record_count;
         out->leaf_count += tree.leaf_count;
@@ -77,9 +78,9 @@ static void place_trees(const bvh *f, const bvh_move *move, const tree_order *o,
 }
 
 /* Missing trees are of objects that have changed, or were missing already. */
-static void find_missing(const bvh *f, const cscd_mesh_change *change, bvh *out) {
-    out->missing_begin = bvh_count_missing(f) > 0 ? 0 : UINT32_MAX;
-    out->missing_end = bvh_count_missing(f) > 0 ? out->mesh->triangle_count : 0;
+static void find_missing(const bvh *hierarchy, const cscd_mesh_change *change, bvh *out) {
+    out->missing_begin = bvh_count_missing(hierarchy) > 0 ? 0 : UINT32_MAX;
+    out->missing_end = bvh_count_missing(hierarchy) > 0 ? out->mesh->triangle_count : 0;
     for (uint32_t i = 0; i < change->described_count; i++) {
         const object_range *range = &change->described[i];
         uint32_t begin = range->triangle, end = begin + range->triangle_count;
@@ -126,59 +127,64 @@ static void move_leaf(const bvh_leaf *from, const bvh_move *move, const number_r
         map_triangles(from->triangles, move->change->triangles.to_new, to->triangles);
 }
 
-static void move_leaves(const bvh *f, const bvh_move *move, const bvh_tree *from, const number_run *run,
-                        const bvh_tree *to, bvh *out) {
+static void move_leaves(const bvh *hierarchy, const bvh_move *move, const bvh_tree *from,
+                        const number_run *run, const bvh_tree *to, bvh *out) {
     uint32_t records = to->first_record - from->first_record;
     for (uint32_t i = 0; i < to->leaf_count; i++) {
         bvh_leaf *leaf = &out->leaves[to->first_leaf + i];
-        uint8_t used = f->leaf_flags[from->first_leaf + i].used;
-        move_leaf(&f->leaves[from->first_leaf + i], move, run, records, leaf);
+        uint8_t used = hierarchy->leaf_flags[from->first_leaf + i].used;
+        move_leaf(&hierarchy->leaves[from->first_leaf + i], move, run, records, leaf);
         for (uint32_t lane = 0; lane < LANES && (used >> lane & 1) != 0; lane++)
             out->slots[leaf->triangles[lane]] = (to->first_leaf + i) * LANES + lane;
         out->leaf_flags[to->first_leaf + i] = (lane_flags){.used = used};
     }
 }
 
-static void move_records(const bvh *f, const bvh_move *move, const bvh_tree *from, const bvh_tree *to,
+static void move_records(const bvh *hierarchy, const bvh_move *move, const bvh_tree *from, const bvh_tree *to,
                          bvh *out) {
-    const uint32_t *vertices = f->record_vertices + from->first_record;
+    const uint32_t *vertices = hierarchy->record_vertices + from->first_record;
     const number_run *run = number_map_run(&move->change->vertices, vertices[0]);
     uint32_t *moved = out->record_vertices + to->first_record;
     if (run != NULL) copy_shifted(vertices, to->record_count, run->to - run->from, moved);
     for (uint32_t i = 0; run == NULL && i < to->record_count; i++)
         moved[i] = move->change->vertices.to_new[vertices[i]];
-    memcpy(out->record_weights + to->first_record, f->record_weights + from->first_record,
+    memcpy(out->record_weights + to->first_record, hierarchy->record_weights + from->first_record,
            to->record_count * sizeof *out->record_weights);
 }
 
 /* All triangles of a tree that is kept are of one component. */
-static void move_tree(const bvh *f, const bvh_move *move, const bvh_tree *from, uint32_t index, bvh *out) {
+static void move_tree(const bvh *hierarchy, const bvh_move *move, const bvh_tree *from, uint32_t index,
+                      bvh *out) {
     const bvh_tree *to = &out->trees[index];
     for (uint32_t i = 0; i < to->leaf_count; i++) out->leaf_trees[to->first_leaf + i] = index;
     if (from == NULL || from->missing > 0) return;
     const number_run *run =
-        number_map_run(&move->change->triangles, f->leaves[from->first_leaf].triangles[0]);
-    move_leaves(f, move, from, run, to, out);
-    move_records(f, move, from, to, out);
+        number_map_run(&move->change->triangles, hierarchy->leaves[from->first_leaf].triangles[0]);
+    move_leaves(hierarchy, move, from, run, to, out);
+    move_records(hierarchy, move, from, to, out);
 }
 
-static bool move_all(const bvh *f, const bvh_move *move, const tree_order *o, bvh *out) {
+static bool move_all(const bvh *hierarchy, const bvh_move *move, const tree_order *o, bvh *out) {
     out->trees = context_allocate(out->mesh->context, move->region_count, sizeof *out->trees);
     if (out->trees == NULL) return false;
-    place_trees(f, move, o, out);
-    find_missing(f, move->change, out);
+    place_trees(hierarchy, move, o, out);
+    find_missing(hierarchy, move->change, out);
     if (!allocate_places(out)) return false;
     for (uint32_t i = 0; i < o->count; i++)
-        move_tree(f, move, o->trees[i] < f->tree_count ? &f->trees[o->trees[i]] : NULL, i, out);
+        move_tree(hierarchy, move,
+                  o->trees[i] < hierarchy->tree_count ? &hierarchy->trees[o->trees[i]] : NULL, i, out);
     return true;
 }
 
-cscd_status bvh_move_over(const bvh *f, const bvh_move *move, bvh *out) {
-    bvh moved = {.mesh = move->mesh, .kernels = f->kernels, .axis_count = f->axis_count, .scale = f->scale};
+cscd_status bvh_move_over(const bvh *hierarchy, const bvh_move *move, bvh *out) {
+    bvh moved = {.mesh = move->mesh,
+                 .kernels = hierarchy->kernels,
+                 .axis_count = hierarchy->axis_count,
+                 .scale = hierarchy->scale};
     tree_order order = {.count = 0};
     if (!context_allocate_all(move->mesh->context, order_arrays(move, &order))) return CSCD_OUT_OF_MEMORY;
-    order_trees(f, move, &order);
-    bool made = move_all(f, move, &order, &moved);
+    order_trees(hierarchy, move, &order);
+    bool made = move_all(hierarchy, move, &order, &moved);
     context_free_all(move->mesh->context, order_arrays(move, &order));
     if (!made) {
         bvh_free(&moved);
@@ -188,24 +194,29 @@ cscd_status bvh_move_over(const bvh *f, const bvh_move *move, bvh *out) {
     return CSCD_OK;
 }
 
-void bvh_take_records(bvh *f, bvh *from) {
-    if (from->records == NULL || from->record_capacity < f->record_count || f->records != NULL) return;
-    f->records = from->records;
-    f->record_capacity = from->record_capacity;
+void bvh_take_records(bvh *hierarchy, bvh *from) {
+    if (from->records == NULL || from->record_capacity < hierarchy->record_count ||
+        hierarchy->records != NULL)
+        return;
+    hierarchy->records = from->records;
+    hierarchy->record_capacity = from->record_capacity;
     from->records = NULL;
 }
 
 /* ---- copies of all ------------------------------------------------------------------------------------- */
 
-static array_list bvh_arrays(bvh *f) {
-    size_t leaves = f->leaf_count, records = f->record_capacity, blocks = f->levels[0].block_count;
+static array_list bvh_arrays(bvh *hierarchy) {
+    size_t leaves = hierarchy->leaf_count, records = hierarchy->record_capacity,
+           blocks = hierarchy->levels[0].block_count;
     return (array_list){
-        {ARRAY(f->trees, f->tree_count), ARRAY(f->leaves, leaves), ARRAY(f->leaf_flags, leaves),
-         ARRAY(f->flags_before, leaves), ARRAY(f->leaf_self_pairs, leaves), ARRAY(f->leaf_inactive, leaves),
-         ARRAY(f->block_trees, blocks), ARRAY(f->leaf_trees, leaves),
-         ARRAY(f->record_vertices, f->record_count), ARRAY(f->record_weights, f->record_count),
-         ARRAY(f->chunks, f->record_count / BVH_CHUNK_RECORDS + f->tree_count), ARRAY(f->records, records),
-         ARRAY(f->slots, f->mesh->triangle_count)}};
+        {ARRAY(hierarchy->trees, hierarchy->tree_count), ARRAY(hierarchy->leaves, leaves),
+         ARRAY(hierarchy->leaf_flags, leaves), ARRAY(hierarchy->flags_before, leaves),
+         ARRAY(hierarchy->leaf_self_pairs, leaves), ARRAY(hierarchy->leaf_inactive, leaves),
+         ARRAY(hierarchy->block_trees, blocks), ARRAY(hierarchy->leaf_trees, leaves),
+         ARRAY(hierarchy->record_vertices, hierarchy->record_count),
+         ARRAY(hierarchy->record_weights, hierarchy->record_count),
+         ARRAY(hierarchy->chunks, hierarchy->record_count / BVH_CHUNK_RECORDS + hierarchy->tree_count),
+         ARRAY(hierarchy->records, records), ARRAY(hierarchy->slots, hierarchy->mesh->triangle_count)}};
 }
 
 static array_list level_arrays(bvh_level *level, int axis_count) {
@@ -219,17 +230,18 @@ static array_list level_arrays(bvh_level *level, int axis_count) {
 }
 
 /* A level that is not whole belongs to the other BVH. */
-static bool copy_levels(cscd_context *context, bvh *f) {
+static bool copy_levels(cscd_context *context, bvh *hierarchy) {
     bool whole = true;
     for (int i = 0; i < BVH_LEVEL_MAX; i++) {
-        if (whole) whole = context_copy_all(context, level_arrays(&f->levels[i], f->axis_count));
-        if (!whole) f->levels[i] = (bvh_level){.block_count = 0};
+        if (whole)
+            whole = context_copy_all(context, level_arrays(&hierarchy->levels[i], hierarchy->axis_count));
+        if (!whole) hierarchy->levels[i] = (bvh_level){.block_count = 0};
     }
     return whole;
 }
 
-cscd_status bvh_copy(const bvh *f, const cscd_mesh *mesh, bvh *out) {
-    bvh copy = *f;
+cscd_status bvh_copy(const bvh *hierarchy, const cscd_mesh *mesh, bvh *out) {
+    bvh copy = *hierarchy;
     copy.mesh = mesh;
     copy.kernels = bvh_kernels_of(mesh->context);
     bool arrays = context_copy_all(mesh->context, bvh_arrays(&copy));

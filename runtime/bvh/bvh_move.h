@@ -23,10 +23,10 @@ typedef struct bvh_move {
 /* Copies the trees that are kept, and makes room for the others, which are missing: only bvh_finish, bvh_move_over and
  * bvh_free may be called then. There are no records, unless bvh_take_records gives them. f may have missing trees itself.
  * On failure *out is untouched. */
-cscd_status bvh_move_over(const bvh *f, const bvh_move *move, bvh *out);
+cscd_status bvh_move_over(const bvh *hierarchy, const bvh_move *move, bvh *out);
 
 /* Takes the memory for records from trees that are about to be freed, if it is enough. */
-void bvh_take_records(bvh *f, bvh *from);
+void bvh_take_records(bvh *hierarchy, bvh *from);
 
 /* Copies everything; mesh: the same one in the context of the copy. On failure *out is untouched. */
-cscd_status bvh_copy(const bvh *f, const cscd_mesh *mesh, bvh *out);
+cscd_status bvh_copy(const bvh *hierarchy, const cscd_mesh *mesh, bvh *out);

@@ -4,10 +4,10 @@
 
 /* ---- trees ------------------------------------------------------------------------------------------- */
 
-static bool holds_only(const bvh *f, const bvh_tree *tree, const cscd_object *object) {
+static bool holds_only(const bvh *hierarchy, const bvh_tree *tree, const cscd_object *object) {
     for (uint32_t i = 0; i < tree->leaf_count; i++) {
-        const uint32_t *triangles = f->leaves[tree->first_leaf + i].triangles;
-        uint32_t used = f->leaf_flags[tree->first_leaf + i].used;
+        const uint32_t *triangles = hierarchy->leaves[tree->first_leaf + i].triangles;
+        uint32_t used = hierarchy->leaf_flags[tree->first_leaf + i].used;
         for (uint32_t lane = 0; lane < LANES && (used >> lane & 1) != 0; lane++) {
             if (triangles[lane] - object->first_triangle >= object->triangle_count) return false;
         }
@@ -15,64 +15,66 @@ static bool holds_only(const bvh *f, const bvh_tree *tree, const cscd_object *ob
     return true;
 }
 
-static uint32_t object_of_tree(const bvh *f, const bvh_tree *tree) {
-    const cscd_mesh *mesh = f->mesh;
-    uint32_t triangle = f->leaves[tree->first_leaf].triangles[0];
+static uint32_t object_of_tree(const bvh *hierarchy, const bvh_tree *tree) {
+    const cscd_mesh *mesh = hierarchy->mesh;
+    uint32_t triangle = hierarchy->leaves[tree->first_leaf].triangles[0];
     uint32_t object = cscd_mesh_vertex_object(mesh, mesh->triangles[triangle][0]);
-    return holds_only(f, tree, &mesh->objects[object]) ? object : OBJECT_SEVERAL;
+    return holds_only(hierarchy, tree, &mesh->objects[object]) ? object : OBJECT_SEVERAL;
 }
 
-static void name_objects(bvh *f) {
-    for (uint32_t i = 0; i < f->tree_count; i++) {
-        bvh_tree *tree = &f->trees[i];
-        if (tree->object == OBJECT_UNKNOWN) tree->object = object_of_tree(f, tree);
-        f->trees_mix_objects |= tree->object == OBJECT_SEVERAL;
+static void name_objects(bvh *hierarchy) {
+    for (uint32_t i = 0; i < hierarchy->tree_count; i++) {
+        bvh_tree *tree = &hierarchy->trees[i];
+        if (tree->object == OBJECT_UNKNOWN) tree->object = object_of_tree(hierarchy, tree);
+        hierarchy->trees_mix_objects |= tree->object == OBJECT_SEVERAL;
     }
 }
 
 /* ---- obstacles --------------------------------------------------------------------------------------- */
 
 /* Tells by one triangle: a tree holds obstacles only, or none at all. */
-static bool tree_is_obstacle(const bvh *f, uint32_t tree) {
-    return triangle_of_obstacle(f->mesh, f->leaves[f->trees[tree].first_leaf].triangles[0]);
+static bool tree_is_obstacle(const bvh *hierarchy, uint32_t tree) {
+    return triangle_of_obstacle(hierarchy->mesh,
+                                hierarchy->leaves[hierarchy->trees[tree].first_leaf].triangles[0]);
 }
 
-static uint8_t obstacle_children(const bvh *f, int level, uint32_t block) {
-    const bvh_level *at = &f->levels[level], *below = at - 1;
+static uint8_t obstacle_children(const bvh *hierarchy, int level, uint32_t block) {
+    const bvh_level *at = &hierarchy->levels[level], *below = at - 1;
     uint8_t obstacles = 0;
     for (uint32_t i = 0; i < LANES && (at->flags[block].used >> i & 1) != 0; i++) {
         uint32_t child = at->first_children[block] + i;
-        bool all = level == f->tree_level ? tree_is_obstacle(f, child)
-                                          : below->obstacle_lanes[child] == below->flags[child].used;
+        bool all = level == hierarchy->tree_level ? tree_is_obstacle(hierarchy, child)
+                                                  : below->obstacle_lanes[child] == below->flags[child].used;
         obstacles |= (uint8_t)(all << i);
     }
     return obstacles;
 }
 
-static bool mark_obstacles(bvh *f) {
-    if (f->mesh->obstacles == NULL) return true;
-    for (int level = f->tree_level; level < f->level_count; level++) {
-        bvh_level *at = &f->levels[level];
-        at->obstacle_lanes = context_allocate(f->mesh->context, at->block_count, sizeof *at->obstacle_lanes);
+static bool mark_obstacles(bvh *hierarchy) {
+    if (hierarchy->mesh->obstacles == NULL) return true;
+    for (int level = hierarchy->tree_level; level < hierarchy->level_count; level++) {
+        bvh_level *at = &hierarchy->levels[level];
+        at->obstacle_lanes =
+            context_allocate(hierarchy->mesh->context, at->block_count, sizeof *at->obstacle_lanes);
         if (at->obstacle_lanes == NULL) return false;
         for (uint32_t block = 0; block < at->block_count; block++)
-            at->obstacle_lanes[block] = obstacle_children(f, level, block);
+            at->obstacle_lanes[block] = obstacle_children(hierarchy, level, block);
     }
     return true;
 }
 
-bool bvh_mark_objects(bvh *f) {
-    name_objects(f);
-    return mark_obstacles(f);
+bool bvh_mark_objects(bvh *hierarchy) {
+    name_objects(hierarchy);
+    return mark_obstacles(hierarchy);
 }
 
 /* ---- sets of objects --------------------------------------------------------------------------------- */
 
-static object_set set_of_tree(const bvh *f, uint32_t tree, const object_set *sets) {
-    uint32_t object = f->trees[tree].object;
+static object_set set_of_tree(const bvh *hierarchy, uint32_t tree, const object_set *sets) {
+    uint32_t object = hierarchy->trees[tree].object;
     if (object != OBJECT_SEVERAL) return sets[object];
     object_set all = sets[0];
-    for (uint32_t i = 1; i < f->mesh->object_count; i++) all = object_sets_join(&all, &sets[i]);
+    for (uint32_t i = 1; i < hierarchy->mesh->object_count; i++) all = object_sets_join(&all, &sets[i]);
     return all;
 }
 
@@ -85,48 +87,49 @@ static object_set set_of_block(const bvh_level *level, uint32_t block) {
 }
 
 /* From the trees up. */
-static void fill_sets(bvh *f, const object_set *sets) {
-    for (int index = f->tree_level; index < f->level_count; index++) {
-        const bvh_level *level = &f->levels[index];
+static void fill_sets(bvh *hierarchy, const object_set *sets) {
+    for (int index = hierarchy->tree_level; index < hierarchy->level_count; index++) {
+        const bvh_level *level = &hierarchy->levels[index];
         for (uint32_t block = 0; block < level->block_count; block++) {
             for (uint32_t i = 0; i < LANES && (level->flags[block].used >> i & 1) != 0; i++) {
                 uint32_t child = level->first_children[block] + i;
-                level->child_sets[(size_t)block * LANES + i] =
-                    index == f->tree_level ? set_of_tree(f, child, sets) : set_of_block(level - 1, child);
+                level->child_sets[(size_t)block * LANES + i] = index == hierarchy->tree_level
+                                                                   ? set_of_tree(hierarchy, child, sets)
+                                                                   : set_of_block(level - 1, child);
             }
         }
     }
 }
 
-static void drop_sets(bvh *f) {
-    for (int i = f->tree_level; i < f->level_count; i++) {
-        context_free(f->mesh->context, f->levels[i].child_sets);
-        f->levels[i].child_sets = NULL;
+static void drop_sets(bvh *hierarchy) {
+    for (int i = hierarchy->tree_level; i < hierarchy->level_count; i++) {
+        context_free(hierarchy->mesh->context, hierarchy->levels[i].child_sets);
+        hierarchy->levels[i].child_sets = NULL;
     }
 }
 
-bool bvh_set_objects(bvh *f, const object_set *sets) {
-    bool had_none = f->levels[f->tree_level].child_sets == NULL;
+bool bvh_set_objects(bvh *hierarchy, const object_set *sets) {
+    bool had_none = hierarchy->levels[hierarchy->tree_level].child_sets == NULL;
     if (sets == NULL) {
-        drop_sets(f);
+        drop_sets(hierarchy);
         return true;
     }
-    for (int i = f->tree_level; had_none && i < f->level_count; i++) {
-        bvh_level *level = &f->levels[i];
+    for (int i = hierarchy->tree_level; had_none && i < hierarchy->level_count; i++) {
+        bvh_level *level = &hierarchy->levels[i];
         size_t lanes = (size_t)level->block_count * LANES;
-        level->child_sets = context_allocate(f->mesh->context, lanes, sizeof *level->child_sets);
+        level->child_sets = context_allocate(hierarchy->mesh->context, lanes, sizeof *level->child_sets);
         if (level->child_sets == NULL) {
-            drop_sets(f);
+            drop_sets(hierarchy);
             return false;
         }
     }
-    fill_sets(f, sets);
+    fill_sets(hierarchy, sets);
     return true;
 }
 
-void bvh_free_objects(bvh *f) {
+void bvh_free_objects(bvh *hierarchy) {
     for (int i = 0; i < BVH_LEVEL_MAX; i++) {
-        context_free(f->mesh->context, f->levels[i].obstacle_lanes);
-        context_free(f->mesh->context, f->levels[i].child_sets);
+        context_free(hierarchy->mesh->context, hierarchy->levels[i].obstacle_lanes);
+        context_free(hierarchy->mesh->context, hierarchy->levels[i].child_sets);
     }
 }

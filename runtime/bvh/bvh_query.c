@@ -5,20 +5,21 @@
 
 /* In doubles a coordinate in a frame is off by 2^-51 of the larger of its two terms; bounds have a slack for that, and the
  * float's 2^-23 covers the rest. */
-static framed_query frame_box(const bvh *f, const bvh_tree *tree, const query_box *box) {
+static framed_query frame_box(const bvh *hierarchy, const bvh_tree *tree, const query_box *box) {
     framed_query q;
     for (int k = 0; k < 3; k++) {
-        double low = (box->low[k] - tree->origin[0][k]) * f->scale;
-        double high = (box->high[k] - tree->origin[0][k]) * f->scale;
-        double rounding = (fabs(tree->origin[0][k]) * f->scale) * 0x1p-50;
+        double low = (box->low[k] - tree->origin[0][k]) * hierarchy->scale;
+        double high = (box->high[k] - tree->origin[0][k]) * hierarchy->scale;
+        double rounding = (fabs(tree->origin[0][k]) * hierarchy->scale) * 0x1p-50;
         q.low[k] = (float)(low - fabs(low) * 0x1p-22 - rounding - 0x1p-120);
         q.high[k] = (float)(high + fabs(high) * 0x1p-22 + rounding + 0x1p-120);
     }
     return q;
 }
 
-static uint32_t children_in_box(const bvh *f, int level, uint32_t block, const framed_query *q) {
-    const float *bounds = f->levels[level].bounds + (size_t)block * (size_t)f->axis_count * 2 * LANES;
+static uint32_t children_in_box(const bvh *hierarchy, int level, uint32_t block, const framed_query *q) {
+    const float *bounds =
+        hierarchy->levels[level].bounds + (size_t)block * (size_t)hierarchy->axis_count * 2 * LANES;
     uint32_t apart[LANES] = {0}, lanes = 0;
     for (int k = 0; k < BOX_AXES; k++) {
         const float *lows = bounds + 2 * k * LANES, *highs = lows + LANES;
@@ -26,14 +27,15 @@ static uint32_t children_in_box(const bvh *f, int level, uint32_t block, const f
             apart[lane] |= (uint32_t)(lows[lane] > q->high[k]) | (uint32_t)(highs[lane] < q->low[k]);
     }
     for (uint32_t lane = 0; lane < LANES; lane++) lanes |= (apart[lane] ^ 1u) << lane;
-    return lanes & f->levels[level].flags[block].used;
+    return lanes & hierarchy->levels[level].flags[block].used;
 }
 
 /* Is the triangle's box apart from the query? The slack of its tree covers the rounding of its records. */
-static bool triangle_is_apart(const bvh *f, const bvh_tree *tree, const bvh_leaf *leaf, uint32_t lane,
+static bool triangle_is_apart(const bvh *hierarchy, const bvh_tree *tree, const bvh_leaf *leaf, uint32_t lane,
                               const framed_query *q) {
-    const float *a = f->records[leaf->corners[0][lane]], *b = f->records[leaf->corners[1][lane]];
-    const float *c = f->records[leaf->corners[2][lane]];
+    const float *a = hierarchy->records[leaf->corners[0][lane]],
+                *b = hierarchy->records[leaf->corners[1][lane]];
+    const float *c = hierarchy->records[leaf->corners[2][lane]];
     for (int k = 0; k < BOX_AXES; k++) {
         float low = q->low[k] - tree->slack[0], high = q->high[k] + tree->slack[0];
         if ((a[k] > high && b[k] > high && c[k] > high) || (a[k] < low && b[k] < low && c[k] < low))
@@ -42,11 +44,11 @@ static bool triangle_is_apart(const bvh *f, const bvh_tree *tree, const bvh_leaf
     return false;
 }
 
-static void visit_leaf(const bvh *f, const bvh_tree *tree, uint32_t index, const framed_query *q,
+static void visit_leaf(const bvh *hierarchy, const bvh_tree *tree, uint32_t index, const framed_query *q,
                        void (*visit)(void *data, uint32_t triangle), void *data) {
-    const bvh_leaf *leaf = &f->leaves[index];
-    for (uint32_t used = f->leaf_flags[index].used, lane = 0; (used >> lane & 1) != 0; lane++) {
-        if (!triangle_is_apart(f, tree, leaf, lane, q)) visit(data, leaf->triangles[lane]);
+    const bvh_leaf *leaf = &hierarchy->leaves[index];
+    for (uint32_t used = hierarchy->leaf_flags[index].used, lane = 0; (used >> lane & 1) != 0; lane++) {
+        if (!triangle_is_apart(hierarchy, tree, leaf, lane, q)) visit(data, leaf->triangles[lane]);
     }
 }
 
@@ -59,37 +61,39 @@ typedef struct query_place {
 enum { QUERY_STACK = BVH_LEVEL_MAX * LANES };
 
 /* A tree is that of one component, unless a baseline has joined components to fewer trees: UINT32_MAX. */
-static uint32_t component_of_tree(const bvh *f, const bvh_tree *tree) {
-    if (f->tree_count < f->mesh->component_count) return UINT32_MAX;
-    return f->mesh->triangle_components[f->leaves[tree->first_leaf].triangles[0]];
+static uint32_t component_of_tree(const bvh *hierarchy, const bvh_tree *tree) {
+    if (hierarchy->tree_count < hierarchy->mesh->component_count) return UINT32_MAX;
+    return hierarchy->mesh->triangle_components[hierarchy->leaves[tree->first_leaf].triangles[0]];
 }
 
-static bool tree_is_open(const bvh *f, const bvh_tree *tree) {
-    uint32_t component = component_of_tree(f, tree);
-    return component != UINT32_MAX && !f->mesh->components[component].closed_manifold;
+static bool tree_is_open(const bvh *hierarchy, const bvh_tree *tree) {
+    uint32_t component = component_of_tree(hierarchy, tree);
+    return component != UINT32_MAX && !hierarchy->mesh->components[component].closed_manifold;
 }
 
-void bvh_visit_box(const bvh *f, const query_box *box, bool closed_only,
+void bvh_visit_box(const bvh *hierarchy, const query_box *box, bool closed_only,
                    void (*visit)(void *data, uint32_t triangle), void *data) {
-    if (f->tree_count == 0) return; /* and of one tree, nothing above it has bounds */
+    if (hierarchy->tree_count == 0) return; /* and of one tree, nothing above it has bounds */
     query_place stack[QUERY_STACK];
     int count = 0;
-    framed_query above = frame_box(f, &f->trees[0], box), q = above;
-    const bvh_tree *tree = &f->trees[0];
-    stack[count++] = (query_place){f->tree_count == 1 ? f->tree_level - 1 : f->level_count - 1, 0};
+    framed_query above = frame_box(hierarchy, &hierarchy->trees[0], box), q = above;
+    const bvh_tree *tree = &hierarchy->trees[0];
+    stack[count++] =
+        (query_place){hierarchy->tree_count == 1 ? hierarchy->tree_level - 1 : hierarchy->level_count - 1, 0};
     while (count > 0) {
         query_place at = stack[--count];
-        if (at.level == f->tree_level - 1) { /* a tree begins, with a frame of its own */
-            tree = &f->trees[at.block];
-            if (closed_only && tree_is_open(f, tree)) continue;
-            q = frame_box(f, tree, box);
+        if (at.level == hierarchy->tree_level - 1) { /* a tree begins, with a frame of its own */
+            tree = &hierarchy->trees[at.block];
+            if (closed_only && tree_is_open(hierarchy, tree)) continue;
+            q = frame_box(hierarchy, tree, box);
         }
-        uint32_t first = f->levels[at.level].first_children[at.block];
-        const framed_query *here = at.level >= f->tree_level ? &above : &q;
-        for (uint32_t near = children_in_box(f, at.level, at.block, here); near != 0; near &= near - 1) {
+        uint32_t first = hierarchy->levels[at.level].first_children[at.block];
+        const framed_query *here = at.level >= hierarchy->tree_level ? &above : &q;
+        for (uint32_t near = children_in_box(hierarchy, at.level, at.block, here); near != 0;
+             near &= near - 1) {
             uint32_t child = first + (uint32_t)__builtin_ctz(near);
             if (at.level == 0)
-                visit_leaf(f, tree, child, &q, visit, data);
+                visit_leaf(hierarchy, tree, child, &q, visit, data);
             else
                 stack[count++] = (query_place){at.level - 1, child};
         }
@@ -109,14 +113,15 @@ static double round_down(float squared) {
 }
 
 /* Puts the children that may be near on the stack, the nearest one last. */
-static int push_children(const bvh *f, const near_place *at, const framed_query *q, double squared,
+static int push_children(const bvh *hierarchy, const near_place *at, const framed_query *q, double squared,
                          near_place *stack, int count) {
     float distances[LANES];
-    uint32_t first = f->levels[at->level].first_children[at->block];
-    uint32_t used = f->levels[at->level].flags[at->block].used;
+    uint32_t first = hierarchy->levels[at->level].first_children[at->block];
+    uint32_t used = hierarchy->levels[at->level].flags[at->block].used;
     int begin = count;
-    f->kernels->near_children(
-        f->levels[at->level].bounds + (size_t)at->block * (size_t)f->axis_count * 2 * LANES, q, distances);
+    hierarchy->kernels->near_children(hierarchy->levels[at->level].bounds +
+                                          (size_t)at->block * (size_t)hierarchy->axis_count * 2 * LANES,
+                                      q, distances);
     for (uint32_t lane = 0; (used >> lane & 1) != 0; lane++) {
         const double distance = round_down(distances[lane]);
         if (distance > squared) continue;
@@ -127,40 +132,43 @@ static int push_children(const bvh *f, const near_place *at, const framed_query 
     return count;
 }
 
-static bool tree_is_asked_for(const bvh *f, const bvh_tree *tree, const near_quest *quest) {
+static bool tree_is_asked_for(const bvh *hierarchy, const bvh_tree *tree, const near_quest *quest) {
     if (tree->object != quest->object && tree->object != OBJECT_SEVERAL) return false;
-    uint32_t component = quest->numbers != NULL ? component_of_tree(f, tree) : UINT32_MAX;
+    uint32_t component = quest->numbers != NULL ? component_of_tree(hierarchy, tree) : UINT32_MAX;
     return component == UINT32_MAX || quest->numbers[component] == quest->number;
 }
 
-static void visit_near_leaf(const bvh *f, const bvh_tree *tree, uint32_t index, const framed_query *q,
+static void visit_near_leaf(const bvh *hierarchy, const bvh_tree *tree, uint32_t index, const framed_query *q,
                             const double *squared, void (*visit)(void *data, uint32_t triangle), void *data) {
-    const bvh_leaf *leaf = &f->leaves[index];
-    uint32_t near = f->kernels->near_triangles(f, tree, leaf, q, *squared) & f->leaf_flags[index].used;
+    const bvh_leaf *leaf = &hierarchy->leaves[index];
+    uint32_t near = hierarchy->kernels->near_triangles(hierarchy, tree, leaf, q, *squared) &
+                    hierarchy->leaf_flags[index].used;
     for (; near != 0; near &= near - 1) visit(data, leaf->triangles[__builtin_ctz(near)]);
 }
 
-void bvh_visit_near(const bvh *f, const near_quest *quest, const double point[3], double *squared,
+void bvh_visit_near(const bvh *hierarchy, const near_quest *quest, const double point[3], double *squared,
                     void (*visit)(void *data, uint32_t triangle), void *data) {
-    if (f->tree_count == 0) return;
+    if (hierarchy->tree_count == 0) return;
     const query_box box = {{point[0], point[1], point[2]}, {point[0], point[1], point[2]}};
     near_place stack[QUERY_STACK];
     int count = 0;
-    framed_query above = frame_box(f, &f->trees[0], &box), q = above;
-    const bvh_tree *tree = &f->trees[0];
-    stack[count++] = (near_place){0.0, f->tree_count == 1 ? f->tree_level - 1 : f->level_count - 1, 0};
+    framed_query above = frame_box(hierarchy, &hierarchy->trees[0], &box), q = above;
+    const bvh_tree *tree = &hierarchy->trees[0];
+    stack[count++] = (near_place){
+        0.0, hierarchy->tree_count == 1 ? hierarchy->tree_level - 1 : hierarchy->level_count - 1, 0};
     while (count > 0) {
         near_place at = stack[--count];
         if (at.squared > *squared) continue;
-        if (at.level == f->tree_level - 1) {
-            tree = &f->trees[at.block];
-            if (!tree_is_asked_for(f, tree, quest)) continue;
-            q = frame_box(f, tree, &box);
+        if (at.level == hierarchy->tree_level - 1) {
+            tree = &hierarchy->trees[at.block];
+            if (!tree_is_asked_for(hierarchy, tree, quest)) continue;
+            q = frame_box(hierarchy, tree, &box);
         }
         if (at.level >= 0) {
-            count = push_children(f, &at, at.level >= f->tree_level ? &above : &q, *squared, stack, count);
+            count = push_children(hierarchy, &at, at.level >= hierarchy->tree_level ? &above : &q, *squared,
+                                  stack, count);
             continue;
         }
-        visit_near_leaf(f, tree, at.block, &q, squared, visit, data);
+        visit_near_leaf(hierarchy, tree, at.block, &q, squared, visit, data);
     }
 }

@@ -16,7 +16,7 @@ typedef struct framed_query {
 
 /* Calls visit for each triangle whose bounding volume overlaps the box, and perhaps for some more. closed_only:
  * those of components that are no closed manifolds may be left out. */
-void bvh_visit_box(const bvh *f, const query_box *box, bool closed_only,
+void bvh_visit_box(const bvh *hierarchy, const query_box *box, bool closed_only,
                    void (*visit)(void *data, uint32_t triangle), void *data);
 
 /* The triangles that are asked for: those of an object, in components with this number. */
@@ -28,5 +28,5 @@ typedef struct near_quest {
 /* Calls visit for each triangle that is asked for, and perhaps for some others, whose bounding volume may be as near to
  * the point as the root of *squared, nearer blocks first; visit may lower *squared, which is a squared distance times
  * the square of the trees' scale, so that it neither overflows nor vanishes. INFINITY: any distance. */
-void bvh_visit_near(const bvh *f, const near_quest *quest, const double point[3], double *squared,
+void bvh_visit_near(const bvh *hierarchy, const near_quest *quest, const double point[3], double *squared,
                     void (*visit)(void *data, uint32_t triangle), void *data);

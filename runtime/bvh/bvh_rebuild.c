@@ -27,9 +27,9 @@ static cscd_status build_trees(const bvh_rebuild *r, const double *positions, bv
 }
 
 /* Returns how far blocks of trees extend, as a multiple of the extent of their trees; 0 if there is only one block. */
-static double spread_of_trees(const bvh *f) {
-    const bvh_level *level = &f->levels[f->tree_level];
-    const size_t stride = (size_t)f->axis_count * 2 * LANES;
+static double spread_of_trees(const bvh *hierarchy) {
+    const bvh_level *level = &hierarchy->levels[hierarchy->tree_level];
+    const size_t stride = (size_t)hierarchy->axis_count * 2 * LANES;
     double whole = 0.0, of_trees = 0.0;
     for (uint32_t block = 0; level->block_count > 1 && block < level->block_count; block++) {
         for (int k = 0; k < BOX_AXES; k++) {
@@ -46,20 +46,20 @@ static double spread_of_trees(const bvh *f) {
     return of_trees > 0.0 ? whole / of_trees : 0.0;
 }
 
-static bvh_spread spread_of(const bvh *f) {
-    extents sum = f->kernels->extents_at_start(f);
-    return (bvh_spread){sum.triangles > 0.0 ? sum.leaves / sum.triangles : 0.0, spread_of_trees(f)};
+static bvh_spread spread_of(const bvh *hierarchy) {
+    extents sum = hierarchy->kernels->extents_at_start(hierarchy);
+    return (bvh_spread){sum.triangles > 0.0 ? sum.leaves / sum.triangles : 0.0, spread_of_trees(hierarchy)};
 }
 
 static bool is_beyond(bvh_spread now, bvh_spread before, double factor) {
     return now.leaves > factor * before.leaves || now.trees > factor * before.trees;
 }
 
-static bool replace_trees(bvh_rebuild *r, bvh *f, const double *positions) {
+static bool replace_trees(bvh_rebuild *r, bvh *hierarchy, const double *positions) {
     bvh built;
     if (build_trees(r, positions, &built) != CSCD_OK) return false;
-    bvh_free(f);
-    *f = built;
+    bvh_free(hierarchy);
+    *hierarchy = built;
     r->rebuilt = true;
     return true;
 }
@@ -96,52 +96,52 @@ static bvh_spread least_spread(bvh_spread now, bvh_spread before) {
 }
 
 /* The first volumes are widened as for a step, so that the first spread can be compared with later ones. */
-static cscd_status refit_or_build(bvh_rebuild *r, bvh *f, const double *x0, const double *x1,
+static cscd_status refit_or_build(bvh_rebuild *r, bvh *hierarchy, const double *x0, const double *x1,
                                   volume_growth growth, volume_growth step_growth) {
     if (r->mesh->triangle_count == 0) return CSCD_OK;
-    if (f->mesh == NULL) {
+    if (hierarchy->mesh == NULL) {
         bool moved = r->kept.mesh != NULL, known = moved && spread_is_known(r);
-        cscd_status status = moved ? finish_kept(r, x0, f) : build_trees(r, x0, f);
+        cscd_status status = moved ? finish_kept(r, x0, hierarchy) : build_trees(r, x0, hierarchy);
         if (status != CSCD_OK) return status;
         if (!known) {
-            bvh_refit(f, x0, x1, step_growth);
-            bvh_spread spread = spread_of(f);
+            bvh_refit(hierarchy, x0, x1, step_growth);
+            bvh_spread spread = spread_of(hierarchy);
             r->spread_when_built = moved ? least_spread(spread, r->spread_when_built) : spread;
             if (same_growth(&growth, &step_growth)) return CSCD_OK;
         }
     }
-    bvh_refit(f, x0, x1, growth);
+    bvh_refit(hierarchy, x0, x1, growth);
     return CSCD_OK;
 }
 
-cscd_status bvh_rebuild_move_to(bvh_rebuild *r, bvh *f, const double *positions, volume_growth growth,
+cscd_status bvh_rebuild_move_to(bvh_rebuild *r, bvh *hierarchy, const double *positions, volume_growth growth,
                                 volume_growth step_growth) {
-    return refit_or_build(r, f, positions, positions, growth, step_growth);
+    return refit_or_build(r, hierarchy, positions, positions, growth, step_growth);
 }
 
 /* Compares the trees, refitted as for a step, with what they were when they were built, and rebuilds them if they have
  * decayed. */
-static void measure_trees(bvh_rebuild *r, bvh *f, const double *x0, const double *x1,
+static void measure_trees(bvh_rebuild *r, bvh *hierarchy, const double *x0, const double *x1,
                           volume_growth step_growth) {
-    bvh_spread spread = spread_of(f);
+    bvh_spread spread = spread_of(hierarchy);
     r->intervals_unmeasured = 0;
-    if (!is_beyond(spread, r->spread_when_built, decayed) || !replace_trees(r, f, x0)) return;
-    bvh_refit(f, x0, x1, step_growth);
-    r->spread_when_built = spread_of(f);
+    if (!is_beyond(spread, r->spread_when_built, decayed) || !replace_trees(r, hierarchy, x0)) return;
+    bvh_refit(hierarchy, x0, x1, step_growth);
+    r->spread_when_built = spread_of(hierarchy);
     if (is_beyond(spread, r->spread_when_built, of_use))
         r->useless_rebuilds = 0;
     else if (r->useless_rebuilds < USELESS_MAX)
         r->useless_rebuilds++;
 }
 
-cscd_status bvh_rebuild_move(bvh_rebuild *r, bvh *f, const double *x0, const double *x1, volume_growth growth,
-                             volume_growth step_growth) {
+cscd_status bvh_rebuild_move(bvh_rebuild *r, bvh *hierarchy, const double *x0, const double *x1,
+                             volume_growth growth, volume_growth step_growth) {
     r->rebuilt = false;
     if (r->mesh->triangle_count == 0) return CSCD_OK;
     bool due = ++r->intervals_unmeasured >= (uint32_t)MEASURE_EVERY << r->useless_rebuilds;
-    cscd_status status = refit_or_build(r, f, x0, x1, due ? step_growth : growth, step_growth);
+    cscd_status status = refit_or_build(r, hierarchy, x0, x1, due ? step_growth : growth, step_growth);
     if (status != CSCD_OK || !due) return status;
-    measure_trees(r, f, x0, x1, step_growth);
-    if (!same_growth(&growth, &step_growth)) bvh_refit(f, x0, x1, growth);
+    measure_trees(r, hierarchy, x0, x1, step_growth);
+    if (!same_growth(&growth, &step_growth)) bvh_refit(hierarchy, x0, x1, growth);
     return CSCD_OK;
 }

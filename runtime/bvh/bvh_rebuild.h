@@ -32,10 +32,10 @@ typedef struct bvh_rebuild {
  * waits twice as long. Spreads are compared with volumes that are widened by step_growth, whatever the growth.
  * All this depends on positions alone. Without memory for new trees the old ones stay. A mesh
  * without triangles has no trees. */
-cscd_status bvh_rebuild_move(bvh_rebuild *r, bvh *f, const double *x0, const double *x1, volume_growth growth,
-                             volume_growth step_growth);
+cscd_status bvh_rebuild_move(bvh_rebuild *r, bvh *hierarchy, const double *x0, const double *x1,
+                             volume_growth growth, volume_growth step_growth);
 
 /* Refits the trees to a moment, and builds them first if there are none. It measures nothing, because only intervals
  * count. */
-cscd_status bvh_rebuild_move_to(bvh_rebuild *r, bvh *f, const double *positions, volume_growth growth,
+cscd_status bvh_rebuild_move_to(bvh_rebuild *r, bvh *hierarchy, const double *positions, volume_growth growth,
                                 volume_growth step_growth);

@@ -27,12 +27,12 @@ typedef struct moving {
 
 /* The origins are the means of a few vertices, since any points will do. The difference of the two origins is the
  * common displacement of the tree, which is thereby taken out of all its volumes. */
-static void place_frame(const bvh *f, bvh_tree *tree, const moving *m) {
+static void place_frame(const bvh *hierarchy, bvh_tree *tree, const moving *m) {
     uint32_t step = tree->record_count / SAMPLE_COUNT + 1, count = 0;
     double sums[2][3] = {{0.0}};
-    const double *first = m->x0 + (size_t)f->record_vertices[tree->first_record] * 3;
+    const double *first = m->x0 + (size_t)hierarchy->record_vertices[tree->first_record] * 3;
     for (uint32_t i = 0; i < tree->record_count; i += step, count++) {
-        size_t at = (size_t)f->record_vertices[tree->first_record + i] * 3;
+        size_t at = (size_t)hierarchy->record_vertices[tree->first_record + i] * 3;
         for (size_t k = 0; k < 3; k++) {
             sums[0][k] += m->x0[at + k] - first[k];
             sums[1][k] += m->x1[at + k] - first[k];
@@ -46,18 +46,19 @@ static void place_frame(const bvh *f, bvh_tree *tree, const moving *m) {
 
 static void copy_chunk(void *data, uint32_t index) {
     const moving *now = data;
-    const bvh *f = now->bvh;
-    record_chunk *c = &f->chunks[index];
-    f->kernels->copy_in(f, &f->trees[c->tree], c->begin, c->end, now->x0, now->x1, &c->copied);
+    const bvh *hierarchy = now->bvh;
+    record_chunk *c = &hierarchy->chunks[index];
+    hierarchy->kernels->copy_in(hierarchy, &hierarchy->trees[c->tree], c->begin, c->end, now->x0, now->x1,
+                                &c->copied);
 }
 
 /* Copies all records; returns the largest magnitude of a coordinate. */
 static double copy_records(moving *now) {
-    const bvh *f = now->bvh;
+    const bvh *hierarchy = now->bvh;
     double reach = 0.0;
-    parallel_run(f->mesh->context->threads, f->chunk_count, copy_chunk, now);
-    for (uint32_t i = 0; i < f->chunk_count; i++)
-        reach = f->chunks[i].copied.reach > reach ? f->chunks[i].copied.reach : reach;
+    parallel_run(hierarchy->mesh->context->threads, hierarchy->chunk_count, copy_chunk, now);
+    for (uint32_t i = 0; i < hierarchy->chunk_count; i++)
+        reach = hierarchy->chunks[i].copied.reach > reach ? hierarchy->chunks[i].copied.reach : reach;
     return reach;
 }
 
@@ -76,70 +77,72 @@ static void finish_tree(bvh_tree *tree, double distance, const copied *sum) {
 }
 
 /* With the distances of objects: the greatest of those in the tree. */
-static double tree_distance(const bvh *f, const bvh_tree *tree, const volume_growth *growth) {
+static double tree_distance(const bvh *hierarchy, const bvh_tree *tree, const volume_growth *growth) {
     double distance = growth->distance;
     if (growth->of_objects != NULL) {
         bool several = tree->object == OBJECT_SEVERAL;
-        uint32_t first = several ? 0 : tree->object, last = several ? f->mesh->object_count - 1 : first;
+        uint32_t first = several ? 0 : tree->object,
+                 last = several ? hierarchy->mesh->object_count - 1 : first;
         for (uint32_t i = first; i <= last; i++) distance = max_of(growth->of_objects[i], distance);
     }
     return distance + growth->beyond;
 }
 
-static double greatest_distance(const bvh *f, const volume_growth *growth) {
+static double greatest_distance(const bvh *hierarchy, const volume_growth *growth) {
     double greatest = 0.0;
-    for (uint32_t i = 0; i < f->tree_count; i++)
-        greatest = fmax(greatest, tree_distance(f, &f->trees[i], growth));
+    for (uint32_t i = 0; i < hierarchy->tree_count; i++)
+        greatest = fmax(greatest, tree_distance(hierarchy, &hierarchy->trees[i], growth));
     return greatest;
 }
 
 /* Chunks are sorted by tree. */
-static void finish_trees(const bvh *f, const volume_growth *growth) {
-    for (uint32_t i = 0, at = 0; i < f->tree_count; i++) {
+static void finish_trees(const bvh *hierarchy, const volume_growth *growth) {
+    for (uint32_t i = 0, at = 0; i < hierarchy->tree_count; i++) {
         copied sum = {0};
-        for (; at < f->chunk_count && f->chunks[at].tree == i; at++) {
-            const copied *c = &f->chunks[at].copied;
+        for (; at < hierarchy->chunk_count && hierarchy->chunks[at].tree == i; at++) {
+            const copied *c = &hierarchy->chunks[at].copied;
             sum.reach = c->reach > sum.reach ? c->reach : sum.reach;
             for (int k = 0; k < 6; k++) sum.weighted[k / 3][k % 3] += c->weighted[k / 3][k % 3];
         }
-        finish_tree(&f->trees[i], tree_distance(f, &f->trees[i], growth) * f->scale, &sum);
+        finish_tree(&hierarchy->trees[i],
+                    tree_distance(hierarchy, &hierarchy->trees[i], growth) * hierarchy->scale, &sum);
     }
 }
 
 static void move_records(moving *now) {
-    bvh *f = now->bvh;
-    for (uint32_t i = 0; i < f->tree_count; i++) place_frame(f, &f->trees[i], now);
+    bvh *hierarchy = now->bvh;
+    for (uint32_t i = 0; i < hierarchy->tree_count; i++) place_frame(hierarchy, &hierarchy->trees[i], now);
     double reach = copy_records(now);
     if (reach > greatest_reach || (reach > 0.0 && reach < least_reach)) {
         int exponent;
         frexp(reach, &exponent);
-        f->scale = ldexp(f->scale, -exponent);
+        hierarchy->scale = ldexp(hierarchy->scale, -exponent);
         copy_records(now);
     }
-    finish_trees(f, &now->growth);
+    finish_trees(hierarchy, &now->growth);
 }
 
 /* ---- bounds -------------------------------------------------------------------------------------------- */
 
-static uint32_t blocks_per_task(const bvh *f, int level) {
-    uint32_t count = f->levels[level].block_count;
+static uint32_t blocks_per_task(const bvh *hierarchy, int level) {
+    uint32_t count = hierarchy->levels[level].block_count;
     if (count < SHARED_BLOCKS_MIN) return count;
     return level == 0 ? LOW_BLOCKS_PER_TASK : HIGH_BLOCKS_PER_TASK;
 }
 
 static void refit_task(void *data, uint32_t index) {
     const moving *now = data;
-    const bvh *f = now->bvh;
-    uint32_t size = blocks_per_task(f, now->level), begin = index * size;
-    uint32_t rest = f->levels[now->level].block_count - begin;
-    f->kernels->refit(f, now->level, begin, begin + (rest < size ? rest : size));
+    const bvh *hierarchy = now->bvh;
+    uint32_t size = blocks_per_task(hierarchy, now->level), begin = index * size;
+    uint32_t rest = hierarchy->levels[now->level].block_count - begin;
+    hierarchy->kernels->refit(hierarchy, now->level, begin, begin + (rest < size ? rest : size));
 }
 
 static void refit_level(moving *now) {
-    const bvh *f = now->bvh;
-    uint32_t size = blocks_per_task(f, now->level);
-    uint32_t tasks = (f->levels[now->level].block_count + size - 1) / size;
-    parallel_run(f->mesh->context->threads, tasks, refit_task, now);
+    const bvh *hierarchy = now->bvh;
+    uint32_t size = blocks_per_task(hierarchy, now->level);
+    uint32_t tasks = (hierarchy->levels[now->level].block_count + size - 1) / size;
+    parallel_run(hierarchy->mesh->context->threads, tasks, refit_task, now);
 }
 
 /* Where trees are too far apart for floats, a low bound stays finite and a high one goes to infinity, or the other way
@@ -154,15 +157,15 @@ static float high_bound(double x) {
 
 /* Writes a tree's volume over the interval in the frame of another tree, rounded outward by 2^-20 of what is
  * added. */
-static void place_tree(const bvh *f, const bvh_tree *tree, const float *own, const bvh_tree *frame,
+static void place_tree(const bvh *hierarchy, const bvh_tree *tree, const float *own, const bvh_tree *frame,
                        float *bounds) {
     double from[2][3], size = 4.0 * (double)tree->reach;
     for (int i = 0; i < 6; i++) {
         double origin = tree->origin[i / 3][i % 3], at = frame->origin[i / 3][i % 3];
-        from[i / 3][i % 3] = (origin - at) * f->scale;
-        size += fabs(from[i / 3][i % 3]) + 0x1p-30 * f->scale * (fabs(origin) + fabs(at));
+        from[i / 3][i % 3] = (origin - at) * hierarchy->scale;
+        size += fabs(from[i / 3][i % 3]) + 0x1p-30 * hierarchy->scale * (fabs(origin) + fabs(at));
     }
-    for (int k = 0; k < f->axis_count; k++) {
+    for (int k = 0; k < hierarchy->axis_count; k++) {
         double low = INFINITY, high = -INFINITY;
         double start = kdop_along(from[0], k), end = kdop_along(from[1], k);
         for (int i = 0; i < LANES; i++) {
@@ -175,24 +178,24 @@ static void place_tree(const bvh *f, const bvh_tree *tree, const float *own, con
     }
 }
 
-static void place_nothing(const bvh *f, float *bounds) {
-    for (int k = 0; k < f->axis_count; k++) {
+static void place_nothing(const bvh *hierarchy, float *bounds) {
+    for (int k = 0; k < hierarchy->axis_count; k++) {
         bounds[2 * k * LANES] = INFINITY;
         bounds[(2 * k + 1) * LANES] = -INFINITY;
     }
 }
 
 /* Computes the bounds on the tree level. Block i of the level below is the only block there of tree i. */
-static void place_trees(const bvh *f) {
-    const bvh_level *level = &f->levels[f->tree_level];
-    size_t stride = (size_t)f->axis_count * 2 * LANES;
-    const float *roots = f->levels[f->tree_level - 1].bounds;
-    for (uint32_t i = 0; f->tree_count > 1 && i < level->block_count * LANES; i++) {
+static void place_trees(const bvh *hierarchy) {
+    const bvh_level *level = &hierarchy->levels[hierarchy->tree_level];
+    size_t stride = (size_t)hierarchy->axis_count * 2 * LANES;
+    const float *roots = hierarchy->levels[hierarchy->tree_level - 1].bounds;
+    for (uint32_t i = 0; hierarchy->tree_count > 1 && i < level->block_count * LANES; i++) {
         float *bounds = level->bounds + i / LANES * stride + i % LANES;
-        if (i < f->tree_count)
-            place_tree(f, &f->trees[i], roots + i * stride, &f->trees[0], bounds);
+        if (i < hierarchy->tree_count)
+            place_tree(hierarchy, &hierarchy->trees[i], roots + i * stride, &hierarchy->trees[0], bounds);
         else
-            place_nothing(f, bounds);
+            place_nothing(hierarchy, bounds);
     }
 }
 
@@ -202,47 +205,49 @@ static void clear_flags(lane_flags *flags, uint32_t count) {
     for (uint32_t i = 0; i < count; i++) flags[i] = (lane_flags){.used = flags[i].used};
 }
 
-void bvh_show_all(bvh *f) {
-    if (f->leaf_self_pairs != NULL)
-        memset(f->leaf_self_pairs, 0xff, f->leaf_count * sizeof *f->leaf_self_pairs);
-    for (int i = 0; i < f->tree_level; i++) {
-        bvh_level *level = &f->levels[i];
+void bvh_show_all(bvh *hierarchy) {
+    if (hierarchy->leaf_self_pairs != NULL)
+        memset(hierarchy->leaf_self_pairs, 0xff, hierarchy->leaf_count * sizeof *hierarchy->leaf_self_pairs);
+    for (int i = 0; i < hierarchy->tree_level; i++) {
+        bvh_level *level = &hierarchy->levels[i];
         if (level->self_pairs != NULL)
             memset(level->self_pairs, 0xff, level->block_count * sizeof *level->self_pairs);
     }
 }
 
-void bvh_refit(bvh *f, const double *x0, const double *x1, volume_growth growth) {
-    moving now = {f, x0, x1, growth, 0};
-    f->still = x0 == x1;
+void bvh_refit(bvh *hierarchy, const double *x0, const double *x1, volume_growth growth) {
+    moving now = {hierarchy, x0, x1, growth, 0};
+    hierarchy->still = x0 == x1;
     move_records(&now);
-    for (; now.level < f->level_count; now.level++) {
-        if (now.level == f->tree_level)
-            place_trees(f);
+    for (; now.level < hierarchy->level_count; now.level++) {
+        if (now.level == hierarchy->tree_level)
+            place_trees(hierarchy);
         else
             refit_level(&now);
-        clear_flags(f->levels[now.level].flags, f->levels[now.level].block_count);
+        clear_flags(hierarchy->levels[now.level].flags, hierarchy->levels[now.level].block_count);
     }
-    clear_flags(f->leaf_flags, f->leaf_count);
-    f->hub_distance = greatest_distance(f, &growth);
-    bvh_refit_hubs(f, x0, x1);
-    bvh_refit_slivers(f, x0, x1);
-    bvh_show_all(f);
+    clear_flags(hierarchy->leaf_flags, hierarchy->leaf_count);
+    hierarchy->hub_distance = greatest_distance(hierarchy, &growth);
+    bvh_refit_hubs(hierarchy, x0, x1);
+    bvh_refit_slivers(hierarchy, x0, x1);
+    bvh_show_all(hierarchy);
     /* A distance that floats cannot hold leaves the bounds of empty lanes without a value, so bounds are checked
      * only where no distance widens them. */
-    assert(bvh_validate(f, growth.distance + growth.beyond == 0.0 && growth.of_objects == NULL) == NULL);
+    assert(bvh_validate(hierarchy, growth.distance + growth.beyond == 0.0 && growth.of_objects == NULL) ==
+           NULL);
 }
 
-void bvh_skip_adjacent(bvh *f, const bool *components) {
-    for (uint32_t i = 0; i < f->tree_count; i++) {
-        bvh_tree *tree = &f->trees[i];
-        uint32_t component = f->mesh->triangle_components[f->leaves[tree->first_leaf].triangles[0]];
+void bvh_skip_adjacent(bvh *hierarchy, const bool *components) {
+    for (uint32_t i = 0; i < hierarchy->tree_count; i++) {
+        bvh_tree *tree = &hierarchy->trees[i];
+        uint32_t component =
+            hierarchy->mesh->triangle_components[hierarchy->leaves[tree->first_leaf].triangles[0]];
         tree->skip_adjacent = components != NULL && components[component];
     }
-    f->keeps_hub_pairs = false;
+    hierarchy->keeps_hub_pairs = false;
 }
 
-void bvh_skip_all_adjacent(bvh *f) {
-    for (uint32_t i = 0; i < f->tree_count; i++) f->trees[i].skip_adjacent = true;
-    f->keeps_hub_pairs = f->levels[0].child_hubs != NULL;
+void bvh_skip_all_adjacent(bvh *hierarchy) {
+    for (uint32_t i = 0; i < hierarchy->tree_count; i++) hierarchy->trees[i].skip_adjacent = true;
+    hierarchy->keeps_hub_pairs = hierarchy->levels[0].child_hubs != NULL;
 }

@@ -43,11 +43,12 @@ static double shift_between(const double before[3], const double now[3], const d
 }
 
 /* Adds the corners of one leaf. */
-static void add_leaf(const bvh *f, uint32_t leaf, const double *x0, const double *x1, const double by[3],
-                     skin_motion *greatest) {
+static void add_leaf(const bvh *hierarchy, uint32_t leaf, const double *x0, const double *x1,
+                     const double by[3], skin_motion *greatest) {
     double low[3], high[3], farthest = 0.0, extent = 0.0;
     for (int i = 0; i < 3 * LANES; i++) {
-        size_t at = (size_t)f->record_vertices[f->leaves[leaf].corners[i / LANES][i % LANES]] * 3;
+        size_t at =
+            (size_t)hierarchy->record_vertices[hierarchy->leaves[leaf].corners[i / LANES][i % LANES]] * 3;
         double sum = 0.0;
         for (size_t k = 0; k < 3; k++) {
             double off = (x1[at + k] - x0[at + k]) - by[k];
@@ -62,12 +63,12 @@ static void add_leaf(const bvh *f, uint32_t leaf, const double *x0, const double
     greatest->stretch = fmax(greatest->stretch, sqrt(extent));
 }
 
-skin_motion bvh_skin_estimate(const bvh *f, const double *x0, const double *x1) {
+skin_motion bvh_skin_estimate(const bvh *hierarchy, const double *x0, const double *x1) {
     double first[2][3];
     skin_motion greatest = {0.0, 0.0};
-    for (uint32_t t = 0; t < f->tree_count; t++) {
-        const bvh_tree *tree = &f->trees[t];
-        const uint32_t *vertices = f->record_vertices + tree->first_record;
+    for (uint32_t t = 0; t < hierarchy->tree_count; t++) {
+        const bvh_tree *tree = &hierarchy->trees[t];
+        const uint32_t *vertices = hierarchy->record_vertices + tree->first_record;
         uint32_t step = tree->leaf_count / SAMPLED_LEAVES + 1, end = tree->first_leaf + tree->leaf_count;
         double origin[2][3], by[3];
         skin_motion of_tree = {0.0, 0.0};
@@ -75,7 +76,7 @@ skin_motion bvh_skin_estimate(const bvh *f, const double *x0, const double *x1) 
         place_origin(vertices, tree->record_count, x1, origin[1]);
         if (t == 0) memcpy(first, origin, sizeof first);
         for (int k = 0; k < 3; k++) by[k] = origin[1][k] - origin[0][k];
-        for (uint32_t i = tree->first_leaf; i < end; i += step) add_leaf(f, i, x0, x1, by, &of_tree);
+        for (uint32_t i = tree->first_leaf; i < end; i += step) add_leaf(hierarchy, i, x0, x1, by, &of_tree);
         if (t > 0) of_tree.distance += shift_between(origin[0], origin[1], first[0], first[1]);
         greatest.distance = fmax(greatest.distance, of_tree.distance);
         greatest.stretch = fmax(greatest.stretch, of_tree.stretch);
@@ -97,20 +98,20 @@ static array_list skin_arrays(bvh_skin *s) {
                          ARRAY(s->within, leaf_task_count(s))}};
 }
 
-static uint32_t count_chunks(const bvh *f) {
+static uint32_t count_chunks(const bvh *hierarchy) {
     uint32_t count = 0;
-    for (uint32_t i = 0; i < f->tree_count; i++)
-        count += (f->trees[i].record_count + CHUNK_RECORDS - 1) / CHUNK_RECORDS;
+    for (uint32_t i = 0; i < hierarchy->tree_count; i++)
+        count += (hierarchy->trees[i].record_count + CHUNK_RECORDS - 1) / CHUNK_RECORDS;
     return count;
 }
 
-bool bvh_skin_reserve(bvh_skin *s, const bvh *f) {
-    bvh_skin wanted = {.context = f->mesh->context,
-                       .kernels = f->kernels,
-                       .tree_count = f->tree_count,
-                       .record_count = f->record_count,
-                       .leaf_count = f->leaf_count,
-                       .chunk_count = count_chunks(f)};
+bool bvh_skin_reserve(bvh_skin *s, const bvh *hierarchy) {
+    bvh_skin wanted = {.context = hierarchy->mesh->context,
+                       .kernels = hierarchy->kernels,
+                       .tree_count = hierarchy->tree_count,
+                       .record_count = hierarchy->record_count,
+                       .leaf_count = hierarchy->leaf_count,
+                       .chunk_count = count_chunks(hierarchy)};
     if (s->context != NULL && s->tree_count == wanted.tree_count && s->record_count == wanted.record_count &&
         s->leaf_count == wanted.leaf_count && s->chunk_count == wanted.chunk_count)
         return true;
@@ -120,8 +121,8 @@ bool bvh_skin_reserve(bvh_skin *s, const bvh *f) {
     return true;
 }
 
-static void take_tree(bvh_skin *s, const bvh *f, uint32_t index, uint32_t *chunk) {
-    const bvh_tree *tree = &f->trees[index];
+static void take_tree(bvh_skin *s, const bvh *hierarchy, uint32_t index, uint32_t *chunk) {
+    const bvh_tree *tree = &hierarchy->trees[index];
     uint32_t end = tree->first_record + tree->record_count;
     skin_tree *to = &s->trees[index];
     *to = (skin_tree){.region = tree->region,
@@ -136,17 +137,18 @@ static void take_tree(bvh_skin *s, const bvh *f, uint32_t index, uint32_t *chunk
     }
 }
 
-static void take_leaf(bvh_skin *s, const bvh *f, uint32_t index) {
+static void take_leaf(bvh_skin *s, const bvh *hierarchy, uint32_t index) {
     skin_leaf *to = &s->leaves[index];
-    memcpy(to->corners, f->leaves[index].corners, sizeof to->corners);
-    to->tree = f->leaf_trees[index];
-    to->plus = f->leaf_flags[index].plus;
-    to->minus = f->leaf_flags[index].minus;
+    memcpy(to->corners, hierarchy->leaves[index].corners, sizeof to->corners);
+    to->tree = hierarchy->leaf_trees[index];
+    to->plus = hierarchy->leaf_flags[index].plus;
+    to->minus = hierarchy->leaf_flags[index].minus;
 }
 
-orientation_lasting bvh_skin_lasting(const bvh_skin *s, const bvh *f, double distance, double least_stretch) {
-    return (orientation_lasting){float_above(distance * f->scale), float_above(least_stretch * f->scale),
-                                 s->stretches};
+orientation_lasting bvh_skin_lasting(const bvh_skin *s, const bvh *hierarchy, double distance,
+                                     double least_stretch) {
+    return (orientation_lasting){float_above(distance * hierarchy->scale),
+                                 float_above(least_stretch * hierarchy->scale), s->stretches};
 }
 
 /* Floats are off by 2^-24 of what a record is off by, which is at most the distance. The square of what is smaller than
@@ -156,20 +158,20 @@ static float squared_stretch(float stretch, float distance) {
     return least < 0x1p-40 ? 0.0f : least < 0x1p40 ? (float)(least * least * (1.0 - 0x1p-20)) : INFINITY;
 }
 
-void bvh_skin_set(bvh_skin *s, const bvh *f, double distance) {
-    float scaled = float_above(distance * f->scale);
+void bvh_skin_set(bvh_skin *s, const bvh *hierarchy, double distance) {
+    float scaled = float_above(distance * hierarchy->scale);
     uint32_t chunk = 0;
-    for (uint32_t i = 0; i < f->tree_count; i++) take_tree(s, f, i, &chunk);
-    memcpy(s->vertices, f->record_vertices, s->record_count * sizeof *s->vertices);
-    memcpy(s->items, f->records, s->record_count * sizeof *s->items);
+    for (uint32_t i = 0; i < hierarchy->tree_count; i++) take_tree(s, hierarchy, i, &chunk);
+    memcpy(s->vertices, hierarchy->record_vertices, s->record_count * sizeof *s->vertices);
+    memcpy(s->items, hierarchy->records, s->record_count * sizeof *s->items);
     for (uint32_t i = 0; i < s->leaf_count; i++) {
-        take_leaf(s, f, i);
+        take_leaf(s, hierarchy, i);
         bool any =
             (s->leaves[i].plus | s->leaves[i].minus) != 0; /* otherwise it may not have been oriented */
         s->stretches[i] = any ? squared_stretch(s->stretches[i], scaled) : INFINITY;
     }
     memset(s->stray_at_start, 0, s->leaf_count * sizeof *s->stray_at_start);
-    s->scale = f->scale;
+    s->scale = hierarchy->scale;
     s->distance = distance;
 }
 

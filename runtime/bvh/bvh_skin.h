@@ -50,14 +50,15 @@ enum { SKIN_LEAVES = 256 };
 
 /* Makes room for the records and leaves of trees. The skin is zeroed before its first call; its memory is used again. False: no
  * memory, and nothing holds. */
-bool bvh_skin_reserve(bvh_skin *s, const bvh *f);
+bool bvh_skin_reserve(bvh_skin *s, const bvh *hierarchy);
 
 /* What orientations have to endure, for bvh_orient, so that bvh_skin_set can follow. */
-orientation_lasting bvh_skin_lasting(const bvh_skin *s, const bvh *f, double distance, double least_stretch);
+orientation_lasting bvh_skin_lasting(const bvh_skin *s, const bvh *hierarchy, double distance,
+                                     double least_stretch);
 
 /* Takes the places that the last refit, which was to a moment, has given to the records, and what the last bvh_orient says of
  * leaves and detector points. */
-void bvh_skin_set(bvh_skin *s, const bvh *f, double distance);
+void bvh_skin_set(bvh_skin *s, const bvh *hierarchy, double distance);
 void bvh_skin_free(bvh_skin *s);
 
 /* Are all vertices near their places throughout an interval, at the start of which they are, and do all signs last? */
@@ -75,4 +76,4 @@ typedef struct skin_motion {
 } skin_motion;
 
 /* Estimates the motion from x0 to x1, by samples: no bound. */
-skin_motion bvh_skin_estimate(const bvh *f, const double *x0, const double *x1);
+skin_motion bvh_skin_estimate(const bvh *hierarchy, const double *x0, const double *x1);

@@ -47,21 +47,21 @@ static bool has_slivers(const cscd_mesh *mesh, const double *positions) {
     return count > mesh->triangle_count / 2;
 }
 
-bool bvh_allocate_slivers(bvh *f, const double *positions) {
-    if (!has_slivers(f->mesh, positions)) return true;
-    for (int i = 0; i < f->level_count; i++) {
-        bvh_level *level = &f->levels[i];
-        level->child_slivers = context_allocate(f->mesh->context, (size_t)level->block_count * LANES,
+bool bvh_allocate_slivers(bvh *hierarchy, const double *positions) {
+    if (!has_slivers(hierarchy->mesh, positions)) return true;
+    for (int i = 0; i < hierarchy->level_count; i++) {
+        bvh_level *level = &hierarchy->levels[i];
+        level->child_slivers = context_allocate(hierarchy->mesh->context, (size_t)level->block_count * LANES,
                                                 sizeof *level->child_slivers);
         if (level->child_slivers == NULL) return false;
     }
     return true;
 }
 
-void bvh_free_slivers(bvh *f) {
+void bvh_free_slivers(bvh *hierarchy) {
     for (int i = 0; i < BVH_LEVEL_MAX; i++) {
-        context_free(f->mesh->context, f->levels[i].child_slivers);
-        f->levels[i].child_slivers = NULL;
+        context_free(hierarchy->mesh->context, hierarchy->levels[i].child_slivers);
+        hierarchy->levels[i].child_slivers = NULL;
     }
 }
 
@@ -114,11 +114,11 @@ static void hold_triangle(const uint32_t corners[3], const double *const ends[2]
     }
 }
 
-static void hold_leaf(const bvh *f, uint32_t index, const double *const ends[2], sliver_volume *out) {
-    const bvh_leaf *leaf = &f->leaves[index];
-    *out = nothing_held(long_axis(f->mesh->triangles[leaf->triangles[0]], ends[0]));
+static void hold_leaf(const bvh *hierarchy, uint32_t index, const double *const ends[2], sliver_volume *out) {
+    const bvh_leaf *leaf = &hierarchy->leaves[index];
+    *out = nothing_held(long_axis(hierarchy->mesh->triangles[leaf->triangles[0]], ends[0]));
     for (int lane = 0; lane < LANES && leaf->triangles[lane] != UINT32_MAX; lane++)
-        hold_triangle(f->mesh->triangles[leaf->triangles[lane]], ends, out);
+        hold_triangle(hierarchy->mesh->triangles[leaf->triangles[lane]], ends, out);
 }
 
 static void join_children(const bvh_level *level, uint32_t block, sliver_volume *out) {
@@ -225,11 +225,11 @@ static void hold_some_blocks(void *data, uint32_t index) {
     }
 }
 
-void bvh_refit_slivers(bvh *f, const double *x0, const double *x1) {
-    sliver_work work = {f, {x0, x1}, 0};
-    if (f->levels[0].child_slivers == NULL) return;
-    for (; work.level < f->level_count; work.level++)
-        parallel_run(f->mesh->context->threads,
-                     (f->levels[work.level].block_count + BLOCKS_PER_TASK - 1) / BLOCKS_PER_TASK,
+void bvh_refit_slivers(bvh *hierarchy, const double *x0, const double *x1) {
+    sliver_work work = {hierarchy, {x0, x1}, 0};
+    if (hierarchy->levels[0].child_slivers == NULL) return;
+    for (; work.level < hierarchy->level_count; work.level++)
+        parallel_run(hierarchy->mesh->context->threads,
+                     (hierarchy->levels[work.level].block_count + BLOCKS_PER_TASK - 1) / BLOCKS_PER_TASK,
                      hold_some_blocks, &work);
 }

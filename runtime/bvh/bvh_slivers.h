@@ -16,10 +16,10 @@ typedef struct sliver_volume {
 bool sliver_volumes_apart(const sliver_volume *a, const sliver_volume *b, double distance);
 
 /* Makes room for sliver volumes, as a step of bvh_build, where half of the triangles are slivers or large at these positions. False: no memory. */
-bool bvh_allocate_slivers(bvh *f, const double *positions);
+bool bvh_allocate_slivers(bvh *hierarchy, const double *positions);
 
 /* Frees them, as a step of bvh_free. */
-void bvh_free_slivers(bvh *f);
+void bvh_free_slivers(bvh *hierarchy);
 
 /* Finds the volumes for the interval from x0 to x1, as a step of bvh_refit, after bvh_refit_hubs. */
-void bvh_refit_slivers(bvh *f, const double *x0, const double *x1);
+void bvh_refit_slivers(bvh *hierarchy, const double *x0, const double *x1);

@@ -7,10 +7,11 @@
 /* Indexed by corner, end of the interval and axis, with a lane per triangle. */
 typedef f32x8 leaf_corners[3][2][3];
 
-static inline void load_corners(const bvh *f, const bvh_leaf *l, leaf_corners out) {
+static inline void load_corners(const bvh *hierarchy, const bvh_leaf *l, leaf_corners out) {
     for (int i = 0; i < 3; i++) {
         f32x8 rows[8];
-        for (int lane = 0; lane < LANES; lane++) rows[lane] = f32x8_load(f->records[l->corners[i][lane]]);
+        for (int lane = 0; lane < LANES; lane++)
+            rows[lane] = f32x8_load(hierarchy->records[l->corners[i][lane]]);
         f32x8_transpose(rows);
         for (int k = 0; k < 3; k++) {
             out[i][0][k] = rows[k];

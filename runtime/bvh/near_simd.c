@@ -58,13 +58,13 @@ static float reach_of_planes(const bvh_tree *tree, const framed_query *q, double
     return (float)(most * most * (1.0 + 0x1p-20));
 }
 
-uint32_t SIMD_NAME(near_triangles)(const bvh *f, const bvh_tree *tree, const bvh_leaf *leaf,
+uint32_t SIMD_NAME(near_triangles)(const bvh *hierarchy, const bvh_tree *tree, const bvh_leaf *leaf,
                                    const framed_query *q, double squared) {
     leaf_corners corners;
     f32x8 sum = f32x8_all(0.0f), low[BOX_AXES], high[BOX_AXES];
     float p[3];
     const float most = reach_of_planes(tree, q, squared, p);
-    load_corners(f, leaf, corners);
+    load_corners(hierarchy, leaf, corners);
     enclose_corners(corners[0][0], corners[1][0], corners[2][0], BOX_AXES, tree->slack[0], low, high);
     for (int k = 0; k < BOX_AXES; k++) sum = add_gap(sum, low[k], high[k], q, k);
     return ~(f32x8_below(f32x8_all(most), sum) | planes_beyond(corners, p, most));

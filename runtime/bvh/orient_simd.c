@@ -117,19 +117,19 @@ static void store_orientations(const bvh_leaf *l, uint32_t used, uint32_t plus, 
     }
 }
 
-static inline void orient_leaf(const bvh *f, const bvh_tree *tree, uint32_t index, const bool *clean,
+static inline void orient_leaf(const bvh *hierarchy, const bvh_tree *tree, uint32_t index, const bool *clean,
                                const orientation_lasting *lasting, uint8_t *orientations) {
-    const bvh_leaf *l = &f->leaves[index];
+    const bvh_leaf *l = &hierarchy->leaves[index];
     f32x8 stretches;
-    uint32_t plus, minus, used = f->leaf_flags[index].used;
+    uint32_t plus, minus, used = hierarchy->leaf_flags[index].used;
     uint32_t counted = clean != NULL ? clean_lanes(l, used, clean) : used;
     leaf_corners corners;
-    load_corners(f, l, corners);
+    load_corners(hierarchy, l, corners);
     orient_lanes(tree, corners, lasting, &plus, &minus, &stretches);
     plus &= counted;
     minus &= counted;
-    f->leaf_flags[index].plus = (uint8_t)plus;
-    f->leaf_flags[index].minus = (uint8_t)minus;
+    hierarchy->leaf_flags[index].plus = (uint8_t)plus;
+    hierarchy->leaf_flags[index].minus = (uint8_t)minus;
     store_orientations(l, used, plus, minus, orientations);
     if (lasting == NULL) return;
     float least = __builtin_inff();
@@ -138,14 +138,14 @@ static inline void orient_leaf(const bvh *f, const bvh_tree *tree, uint32_t inde
     lasting->of_leaves[index] = least;
 }
 
-void SIMD_NAME(orient)(const bvh *f, const bvh_tree *tree, uint32_t begin, uint32_t end, const bool *clean,
-                       uint8_t *orientations) {
-    for (uint32_t i = begin; i < end; i++) orient_leaf(f, tree, i, clean, NULL, orientations);
+void SIMD_NAME(orient)(const bvh *hierarchy, const bvh_tree *tree, uint32_t begin, uint32_t end,
+                       const bool *clean, uint8_t *orientations) {
+    for (uint32_t i = begin; i < end; i++) orient_leaf(hierarchy, tree, i, clean, NULL, orientations);
 }
 
-void SIMD_NAME(orient_lasting)(const bvh *f, const bvh_tree *tree, uint32_t begin, uint32_t end,
+void SIMD_NAME(orient_lasting)(const bvh *hierarchy, const bvh_tree *tree, uint32_t begin, uint32_t end,
                                const bool *clean, const orientation_lasting *lasting, uint8_t *orientations) {
-    for (uint32_t i = begin; i < end; i++) orient_leaf(f, tree, i, clean, lasting, orientations);
+    for (uint32_t i = begin; i < end; i++) orient_leaf(hierarchy, tree, i, clean, lasting, orientations);
 }
 
 void SIMD_NAME(orient_corners)(const bvh_tree *tree, f32x8 (*corners)[2][3], uint32_t *plus,

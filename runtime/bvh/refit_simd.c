@@ -5,11 +5,11 @@
 #include "src/core/simd_lanes.h"
 
 /* Finds the least and greatest coordinates of a leaf's records, lane by lane. */
-static void enclose_records(const bvh *f, const bvh_leaf *l, f32x8 *low, f32x8 *high) {
-    f32x8 least = f32x8_load(f->records[l->corners[0][0]]), greatest = least;
+static void enclose_records(const bvh *hierarchy, const bvh_leaf *l, f32x8 *low, f32x8 *high) {
+    f32x8 least = f32x8_load(hierarchy->records[l->corners[0][0]]), greatest = least;
     for (int i = 0; i < 3; i++) {
         for (int lane = 0; lane < LANES; lane++) {
-            f32x8 record = f32x8_load(f->records[l->corners[i][lane]]);
+            f32x8 record = f32x8_load(hierarchy->records[l->corners[i][lane]]);
             least = f32x8_min(least, record);
             greatest = f32x8_max(greatest, record);
         }
@@ -39,38 +39,38 @@ static void store_diagonals(leaf_corners corners, const float slack[2], int lane
 }
 
 /* Computes the bounds of a block of level 0. */
-static void enclose_leaves(const bvh *f, uint32_t block) {
-    const bvh_tree *tree = &f->trees[f->block_trees[block]];
-    const bvh_level *level = &f->levels[0];
-    float *bounds = level->bounds + (size_t)block * (size_t)f->axis_count * 2 * LANES;
+static void enclose_leaves(const bvh *hierarchy, uint32_t block) {
+    const bvh_tree *tree = &hierarchy->trees[hierarchy->block_trees[block]];
+    const bvh_level *level = &hierarchy->levels[0];
+    float *bounds = level->bounds + (size_t)block * (size_t)hierarchy->axis_count * 2 * LANES;
     f32x8 low[8], high[8];
     for (uint32_t lane = 0; lane < LANES; lane++) {
         uint32_t index = level->first_children[block] + lane;
         if ((level->flags[block].used >> lane & 1) == 0) {
             low[lane] = f32x8_all(__builtin_inff());
             high[lane] = f32x8_all(-__builtin_inff());
-            for (int k = 3; k < f->axis_count; k++) {
+            for (int k = 3; k < hierarchy->axis_count; k++) {
                 bounds[2 * k * LANES + (int)lane] = __builtin_inff();
                 bounds[(2 * k + 1) * LANES + (int)lane] = -__builtin_inff();
             }
             continue;
         }
-        enclose_records(f, &f->leaves[index], &low[lane], &high[lane]);
-        if (f->axis_count == BOX_AXES) continue;
+        enclose_records(hierarchy, &hierarchy->leaves[index], &low[lane], &high[lane]);
+        if (hierarchy->axis_count == BOX_AXES) continue;
         leaf_corners corners;
-        load_corners(f, &f->leaves[index], corners);
+        load_corners(hierarchy, &hierarchy->leaves[index], corners);
         store_diagonals(corners, tree->slack, (int)lane, bounds);
     }
     store_boxes(low, high, tree->slack[0], bounds);
 }
 
 /* Computes the bounds of a block of a higher level. */
-static void enclose_blocks(const bvh *f, int index, uint32_t block) {
-    const bvh_level *level = &f->levels[index], *below = level - 1;
-    size_t stride = (size_t)f->axis_count * 2 * LANES;
+static void enclose_blocks(const bvh *hierarchy, int index, uint32_t block) {
+    const bvh_level *level = &hierarchy->levels[index], *below = level - 1;
+    size_t stride = (size_t)hierarchy->axis_count * 2 * LANES;
     float *bounds = level->bounds + block * stride;
     const float *children = below->bounds + level->first_children[block] * stride;
-    for (int k = 0; k < f->axis_count; k++) {
+    for (int k = 0; k < hierarchy->axis_count; k++) {
         f32x8 low[8], high[8];
         for (uint32_t i = 0; i < LANES; i++) {
             bool used = (level->flags[block].used >> i & 1) != 0;
@@ -89,24 +89,24 @@ static void enclose_blocks(const bvh *f, int index, uint32_t block) {
     }
 }
 
-void SIMD_NAME(refit)(const bvh *f, int level, uint32_t begin, uint32_t end) {
+void SIMD_NAME(refit)(const bvh *hierarchy, int level, uint32_t begin, uint32_t end) {
     for (uint32_t block = begin; block < end; block++) {
         if (level == 0)
-            enclose_leaves(f, block);
+            enclose_leaves(hierarchy, block);
         else
-            enclose_blocks(f, level, block);
+            enclose_blocks(hierarchy, level, block);
     }
 }
 
 /* Empty lanes repeat the first triangle, so they do not extend the leaf. They count as triangles, but always the
  * same ones, so spreads can be compared. */
-extents SIMD_NAME(extents_at_start)(const bvh *f) {
+extents SIMD_NAME(extents_at_start)(const bvh *hierarchy) {
     extents sum = {0.0, 0.0};
-    for (uint32_t i = 0; i < f->leaf_count; i++) {
+    for (uint32_t i = 0; i < hierarchy->leaf_count; i++) {
         leaf_corners corners;
         float whole = 0.0f;
         f32x8 of_triangles = f32x8_all(0.0f);
-        load_corners(f, &f->leaves[i], corners);
+        load_corners(hierarchy, &hierarchy->leaves[i], corners);
         for (int k = 0; k < BOX_AXES; k++) {
             f32x8 low = f32x8_min(f32x8_min(corners[0][0][k], corners[1][0][k]), corners[2][0][k]);
             f32x8 high = f32x8_max(f32x8_max(corners[0][0][k], corners[1][0][k]), corners[2][0][k]);

@@ -76,10 +76,10 @@ static bool spread_shares(traversal *t, size_t wanted) {
 }
 
 /* Leaves the root on the first lane. */
-static void begin_pass(traversal *t, const bvh *f, traversal_pass pass) {
-    t->bvh = f;
+static void begin_pass(traversal *t, const bvh *hierarchy, traversal_pass pass) {
+    t->bvh = hierarchy;
     t->pass = pass;
-    t->skips_inactive = f->leaf_inactive != NULL && pass != TRAVERSAL_UNPROVEN && !t->whole;
+    t->skips_inactive = hierarchy->leaf_inactive != NULL && pass != TRAVERSAL_UNPROVEN && !t->whole;
     t->share_count = 0;
     atomic_store(&t->next_share, 0);
     for (uint32_t i = 0; i < t->lane_count; i++) {
@@ -90,12 +90,12 @@ static void begin_pass(traversal *t, const bvh *f, traversal_pass pass) {
         lane->out_of_memory = false;
         memset(lane->cache.tags, 0, sizeof lane->cache.tags);
     }
-    t->lanes[0].stack[t->lanes[0].stack_count++] = (block_pair){.level = f->level_count - 1};
+    t->lanes[0].stack[t->lanes[0].stack_count++] = (block_pair){.level = hierarchy->level_count - 1};
 }
 
-void traversal_begin(traversal *t, const bvh *f, traversal_pass pass) {
-    begin_pass(t, f, pass);
-    bool large = f->leaf_count >= SHARED_LEAVES_MIN;
+void traversal_begin(traversal *t, const bvh *hierarchy, traversal_pass pass) {
+    begin_pass(t, hierarchy, pass);
+    bool large = hierarchy->leaf_count >= SHARED_LEAVES_MIN;
     t->busy_lanes = large ? t->lane_count : 1;
     if (large && (t->lane_count > 1 || progress_wanted(&t->context->progress)))
         t->lanes[0].out_of_memory = !spread_shares(t, (size_t)t->lane_count * SHARES_PER_LANE);
@@ -168,8 +168,8 @@ uint64_t traversal_boxes_tested(const traversal *t) {
 
 /* ---- in tasks ------------------------------------------------------------------------------------------ */
 
-cscd_status traversal_begin_tasks(traversal *t, const bvh *f, traversal_pass pass) {
-    begin_pass(t, f, pass);
+cscd_status traversal_begin_tasks(traversal *t, const bvh *hierarchy, traversal_pass pass) {
+    begin_pass(t, hierarchy, pass);
     t->busy_lanes = t->lane_count;
     if (!spread_shares(t, t->tasks_wanted)) return CSCD_OUT_OF_MEMORY;
     atomic_store(&t->next_share, t->share_count); /* lanes take none by themselves */

@@ -81,8 +81,8 @@ typedef struct traversal {
 cscd_status traversal_create(cscd_context *context, traversal *out);
 void traversal_destroy(traversal *t);
 
-/* Starts a pass at the root of f, which must be up to date. */
-void traversal_begin(traversal *t, const bvh *f, traversal_pass pass);
+/* Starts a pass at the root of the hierarchy, which must be up to date. */
+void traversal_begin(traversal *t, const bvh *hierarchy, traversal_pass pass);
 
 /* Fills the lane's batch with some pairs that no lane has found yet, usually TRAVERSAL_BATCH_ENOUGH or a few more.
  * Each lane runs on one thread at a time, independently of the others. False: the batch is empty, because only pairs
@@ -111,8 +111,8 @@ enum {
     TRAVERSAL_TASKS_MAX = TRAVERSAL_TASKS_WANTED + TRAVERSAL_PUSHES_PER_VISIT
 };
 
-/* Starts a pass at the root of f, of t->share_count tasks. OUT_OF_MEMORY: a stack could not grow. */
-cscd_status traversal_begin_tasks(traversal *t, const bvh *f, traversal_pass pass);
+/* Starts a pass at the root of the hierarchy, of t->share_count tasks. OUT_OF_MEMORY: a stack could not grow. */
+cscd_status traversal_begin_tasks(traversal *t, const bvh *hierarchy, traversal_pass pass);
 
 /* Lets a lane begin a task, and forget the rest of the one before. */
 void traversal_begin_task(traversal *t, uint32_t lane, uint32_t task);

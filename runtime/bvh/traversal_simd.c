@@ -26,15 +26,15 @@ typedef struct displacement {
 
 /* Rounding: differences of origins are off by 2^-52 of these, floats by 2^-24 of the sums, and a moved volume by as
  * much. The slack that covers all of it, three times over along diagonals, is 2^-20 of all lengths involved. */
-static displacement displacement_between(const bvh *f, const bvh_tree *a, const bvh_tree *b) {
+static displacement displacement_between(const bvh *hierarchy, const bvh_tree *a, const bvh_tree *b) {
     displacement out;
     double start[3], end[3], size = (double)a->reach + (double)b->reach;
     for (int k = 0; k < 3; k++) {
-        start[k] = (b->origin[0][k] - a->origin[0][k]) * f->scale;
-        end[k] = (b->origin[1][k] - a->origin[1][k]) * f->scale;
+        start[k] = (b->origin[0][k] - a->origin[0][k]) * hierarchy->scale;
+        end[k] = (b->origin[1][k] - a->origin[1][k]) * hierarchy->scale;
         size += (start[k] < 0 ? -start[k] : start[k]) + (end[k] < 0 ? -end[k] : end[k]);
         for (int e = 0; e < 2; e++) {
-            double from = a->origin[e][k] * f->scale, to = b->origin[e][k] * f->scale;
+            double from = a->origin[e][k] * hierarchy->scale, to = b->origin[e][k] * hierarchy->scale;
             size += 0x1p-30 * ((from < 0 ? -from : from) + (to < 0 ? -to : to));
         }
     }
@@ -91,14 +91,14 @@ static inline uint32_t apart_at_ends(const leaf_volumes *a, const leaf_volumes *
 _Static_assert(sizeof(leaf_volumes) == LEAF_VOLUME_FLOATS * sizeof(float),
                "traversal.h makes room for these");
 
-static const leaf_volumes *leaf_volumes_of(const bvh *f, leaf_cache *cache, uint32_t index,
+static const leaf_volumes *leaf_volumes_of(const bvh *hierarchy, leaf_cache *cache, uint32_t index,
                                            const bvh_tree *tree) {
     uint32_t place = index % LEAF_CACHE_SIZE;
     leaf_volumes *out = (leaf_volumes *)cache->volumes + place;
     if (cache->tags[place] == index + 1) return out;
     leaf_corners corners;
-    load_corners(f, &f->leaves[index], corners);
-    if (f->still)
+    load_corners(hierarchy, &hierarchy->leaves[index], corners);
+    if (hierarchy->still)
         volumes_of(corners, tree->slack, true, out);
     else
         volumes_of(corners, tree->slack, false, out);
@@ -126,14 +126,14 @@ typedef struct leaf_pair {
 } leaf_pair;
 
 /* As lanes_without_shared_vertex, but a hub does not count as shared. */
-static __attribute__((noinline)) uint32_t lanes_without_small_star(const bvh *f, const leaf_pair *pair, int i,
-                                                                   uint32_t lanes) {
-    const cscd_mesh *mesh = f->mesh;
-    const uint32_t *corners = mesh->triangles[f->leaves[pair->a].triangles[i]];
+static __attribute__((noinline)) uint32_t
+lanes_without_small_star(const bvh *hierarchy, const leaf_pair *pair, int i, uint32_t lanes) {
+    const cscd_mesh *mesh = hierarchy->mesh;
+    const uint32_t *corners = mesh->triangles[hierarchy->leaves[pair->a].triangles[i]];
     uint32_t kept = lanes;
     for (uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
         int lane = __builtin_ctz(rest);
-        const uint32_t *others = mesh->triangles[f->leaves[pair->b].triangles[lane]];
+        const uint32_t *others = mesh->triangles[hierarchy->leaves[pair->b].triangles[lane]];
         bool shared = false;
         for (int j = 0; j < 3; j++)
             shared |= triangle_contains(others, corners[j]) && !vertex_is_hub(mesh, corners[j]);
@@ -143,9 +143,9 @@ static __attribute__((noinline)) uint32_t lanes_without_small_star(const bvh *f,
 }
 
 /* Returns the given lanes of b, without those whose triangles share a vertex with triangle i of a. */
-static inline uint32_t lanes_without_shared_vertex(const bvh *f, const leaf_pair *pair, int i, uint32_t lanes,
-                                                   bool one_tree) {
-    const bvh_leaf *a = &f->leaves[pair->a], *b = &f->leaves[pair->b];
+static inline uint32_t lanes_without_shared_vertex(const bvh *hierarchy, const leaf_pair *pair, int i,
+                                                   uint32_t lanes, bool one_tree) {
+    const bvh_leaf *a = &hierarchy->leaves[pair->a], *b = &hierarchy->leaves[pair->b];
     if (one_tree) {
         i32x8 shared = {0};
         for (int j = 0; j < 3; j++) {
@@ -159,7 +159,8 @@ static inline uint32_t lanes_without_shared_vertex(const bvh *f, const leaf_pair
         int lane = __builtin_ctz(rest);
         bool shared = false;
         for (int j = 0; j < 9; j++)
-            shared |= f->record_vertices[a->corners[j / 3][i]] == f->record_vertices[b->corners[j % 3][lane]];
+            shared |= hierarchy->record_vertices[a->corners[j / 3][i]] ==
+                      hierarchy->record_vertices[b->corners[j % 3][lane]];
         kept ^= (uint32_t)shared << lane;
     }
     return kept;
@@ -167,17 +168,17 @@ static inline uint32_t lanes_without_shared_vertex(const bvh *f, const leaf_pair
 
 static inline void compare_leaves(const traversal *t, traversal_lane *lane, const leaf_pair *pair,
                                   bool skip_adjacent, bool one_tree, bool still, const displacement *d) {
-    const bvh *f = t->bvh;
-    const lane_comparison c = {.a = f->leaf_flags[pair->a],
-                               .b = f->leaf_flags[pair->b],
-                               .before_a = f->flags_before[pair->a],
-                               .before_b = f->flags_before[pair->b],
-                               .self_pairs =
-                                   f->leaf_self_pairs != NULL ? f->leaf_self_pairs[pair->a] : UINT64_MAX,
-                               .itself = pair->a == pair->b,
-                               .one_tree = one_tree,
-                               .leaves = true,
-                               .pass = t->pass};
+    const bvh *hierarchy = t->bvh;
+    const lane_comparison c = {
+        .a = hierarchy->leaf_flags[pair->a],
+        .b = hierarchy->leaf_flags[pair->b],
+        .before_a = hierarchy->flags_before[pair->a],
+        .before_b = hierarchy->flags_before[pair->b],
+        .self_pairs = hierarchy->leaf_self_pairs != NULL ? hierarchy->leaf_self_pairs[pair->a] : UINT64_MAX,
+        .itself = pair->a == pair->b,
+        .one_tree = one_tree,
+        .leaves = true,
+        .pass = t->pass};
     for (uint32_t rows = pair->rows & c.a.used; rows != 0; rows &= rows - 1) {
         int i = __builtin_ctz(rows);
         uint32_t lanes = lanes_to_compare(&c, i) & pair->columns;
@@ -185,8 +186,9 @@ static inline void compare_leaves(const traversal *t, traversal_lane *lane, cons
         lane->boxes_tested += (uint32_t)__builtin_popcount(lanes);
         lanes &= ~apart_at_ends(pair->volumes_a, pair->volumes_b, i, 0, BOX_AXES, still, d);
         if (lanes != 0 && skip_adjacent) {
-            uint32_t kept = f->keeps_hub_pairs ? lanes_without_small_star(f, pair, i, lanes)
-                                               : lanes_without_shared_vertex(f, pair, i, lanes, one_tree);
+            uint32_t kept = hierarchy->keeps_hub_pairs
+                                ? lanes_without_small_star(hierarchy, pair, i, lanes)
+                                : lanes_without_shared_vertex(hierarchy, pair, i, lanes, one_tree);
             lane->adjacent += (uint32_t)__builtin_popcount(lanes & ~kept);
             lanes = kept;
         }
@@ -226,23 +228,23 @@ static __attribute__((noinline)) void compare_leaves_otherwise(const traversal *
 }
 
 /* Returns those of the lanes of b whose hub volumes do not overlap that of lane i of a. */
-static __attribute__((noinline)) uint32_t lanes_apart_at_hub(const bvh *f, const hub_volume *a,
+static __attribute__((noinline)) uint32_t lanes_apart_at_hub(const bvh *hierarchy, const hub_volume *a,
                                                              const hub_volume *b, uint32_t lanes) {
     uint32_t apart = 0;
     for (uint32_t rest = a->hub != NO_HUB ? lanes : 0; rest != 0; rest &= rest - 1) {
         int lane = __builtin_ctz(rest);
-        apart |= (uint32_t)hub_volumes_apart(a, &b[lane], f->hub_distance) << lane;
+        apart |= (uint32_t)hub_volumes_apart(a, &b[lane], hierarchy->hub_distance) << lane;
     }
     return apart;
 }
 
 /* The same of sliver volumes. */
-static __attribute__((noinline)) uint32_t lanes_apart_as_slivers(const bvh *f, const sliver_volume *a,
+static __attribute__((noinline)) uint32_t lanes_apart_as_slivers(const bvh *hierarchy, const sliver_volume *a,
                                                                  const sliver_volume *b, uint32_t lanes) {
     uint32_t apart = 0;
     for (uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
         int lane = __builtin_ctz(rest);
-        apart |= (uint32_t)sliver_volumes_apart(a, &b[lane], f->hub_distance) << lane;
+        apart |= (uint32_t)sliver_volumes_apart(a, &b[lane], hierarchy->hub_distance) << lane;
     }
     return apart;
 }
@@ -252,30 +254,30 @@ static __attribute__((noinline)) uint32_t lanes_apart_as_slivers(const bvh *f, c
 /* Compares child i of block a with children of block b. */
 static inline void visit_children(const traversal *t, traversal_lane *lane, const block_pair *at, int i,
                                   uint32_t lanes, const displacement *d) {
-    const bvh *f = t->bvh;
-    const bvh_level *level = &f->levels[at->level];
+    const bvh *hierarchy = t->bvh;
+    const bvh_level *level = &hierarchy->levels[at->level];
     uint32_t child_a = level->first_children[at->a] + (uint32_t)i, first_b = level->first_children[at->b];
     /* Tree b belongs to the same component, or no triangle of it is adjacent to one of tree a. */
-    bool skip_adjacent = f->trees[at->tree_a].skip_adjacent;
-    bool otherwise = t->skips_inactive || f->still;
-    size_t stride = (size_t)f->axis_count * 2 * LANES;
+    bool skip_adjacent = hierarchy->trees[at->tree_a].skip_adjacent;
+    bool otherwise = t->skips_inactive || hierarchy->still;
+    size_t stride = (size_t)hierarchy->axis_count * 2 * LANES;
     for (; lanes != 0; lanes &= lanes - 1) {
         int j = __builtin_ctz(lanes);
         uint32_t child_b = first_b + (uint32_t)j;
         if (at->level > 0) {
-            bool trees = at->level == f->tree_level;
+            bool trees = at->level == hierarchy->tree_level;
             lane->stack[lane->stack_count++] = (block_pair){child_a, child_b, trees ? child_a : at->tree_a,
                                                             trees ? child_b : at->tree_b, at->level - 1};
             continue;
         }
         leaf_pair pair = {child_a, child_b, NULL, NULL, ALL_LANES, ALL_LANES};
-        pair.volumes_a = leaf_volumes_of(f, &lane->cache, child_a, &f->trees[at->tree_a]);
+        pair.volumes_a = leaf_volumes_of(hierarchy, &lane->cache, child_a, &hierarchy->trees[at->tree_a]);
         if (child_a % LEAF_CACHE_SIZE == child_b % LEAF_CACHE_SIZE && child_a != child_b) {
             leaf_volumes *copy = (leaf_volumes *)lane->cache.volumes + LEAF_CACHE_SIZE;
             *copy = *pair.volumes_a;
             pair.volumes_a = copy;
         }
-        pair.volumes_b = leaf_volumes_of(f, &lane->cache, child_b, &f->trees[at->tree_b]);
+        pair.volumes_b = leaf_volumes_of(hierarchy, &lane->cache, child_b, &hierarchy->trees[at->tree_b]);
         if (child_a != child_b) {
             pair.columns = near_lane(pair.volumes_b, level->bounds + at->a * stride, i, d);
             if (pair.columns == 0) continue;
@@ -291,13 +293,15 @@ static inline void visit_children(const traversal *t, traversal_lane *lane, cons
 }
 
 static inline void visit_blocks(const traversal *t, traversal_lane *lane, block_pair at) {
-    const bvh *f = t->bvh;
-    const bvh_level *level = &f->levels[at.level];
-    bool below = at.level < f->tree_level, crosses = below && at.tree_a != at.tree_b;
+    const bvh *hierarchy = t->bvh;
+    const bvh_level *level = &hierarchy->levels[at.level];
+    bool below = at.level < hierarchy->tree_level, crosses = below && at.tree_a != at.tree_b;
     displacement between_trees;
-    if (crosses) between_trees = displacement_between(f, &f->trees[at.tree_a], &f->trees[at.tree_b]);
+    if (crosses)
+        between_trees =
+            displacement_between(hierarchy, &hierarchy->trees[at.tree_a], &hierarchy->trees[at.tree_b]);
     const displacement *d = crosses ? &between_trees : NULL;
-    size_t stride = (size_t)f->axis_count * 2 * LANES;
+    size_t stride = (size_t)hierarchy->axis_count * 2 * LANES;
     const float *bounds_a = level->bounds + at.a * stride, *bounds_b = level->bounds + at.b * stride;
     const object_set *sets = level->child_sets;
     const hub_volume *hubs = level->child_hubs;
@@ -332,13 +336,13 @@ static inline void visit_blocks(const traversal *t, traversal_lane *lane, block_
         if (set != NULL) lanes = lanes_looked_at(set, sets + (size_t)at.b * LANES, lanes);
         if (lanes != 0) {
             lane->boxes_tested += (uint32_t)__builtin_popcount(lanes);
-            lanes &= ~lanes_apart(bounds_a, bounds_b, i, f->axis_count, d);
+            lanes &= ~lanes_apart(bounds_a, bounds_b, i, hierarchy->axis_count, d);
         }
         if (hubs != NULL && lanes != 0)
-            lanes &= ~lanes_apart_at_hub(f, &hubs[(size_t)at.a * LANES + (size_t)i],
+            lanes &= ~lanes_apart_at_hub(hierarchy, &hubs[(size_t)at.a * LANES + (size_t)i],
                                          hubs + (size_t)at.b * LANES, lanes);
         if (slivers != NULL && lanes != 0)
-            lanes &= ~lanes_apart_as_slivers(f, &slivers[(size_t)at.a * LANES + (size_t)i],
+            lanes &= ~lanes_apart_as_slivers(hierarchy, &slivers[(size_t)at.a * LANES + (size_t)i],
                                              slivers + (size_t)at.b * LANES, lanes);
         if (c.itself) {
             bool own = (c.self_pairs >> (9 * i) & 1) != 0 && ((c.a.plus | c.a.minus) >> i & 1) == 0;

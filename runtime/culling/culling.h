@@ -21,7 +21,8 @@ typedef struct culling_rules {
 typedef struct pair_hider {
     void *(*create)(cscd_context *context); /* NULL: out of memory */
     void (*destroy)(cscd_context *context, void *state);
-    cscd_status (*hide)(void *state, bvh *f, const double *x0, const double *x1, cscd_counters *counters);
+    cscd_status (*hide)(void *state, bvh *hierarchy, const double *x0, const double *x1,
+                        cscd_counters *counters);
 } pair_hider;
 
 /* ---- orientations -------------------------------------------------------------------------------------- */

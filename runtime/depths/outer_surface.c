@@ -189,9 +189,9 @@ static bool box_runs(outer_surface *o) {
     return true;
 }
 
-bool outer_surface_find(outer_surface *o, const surface_cuts *found, const bvh *f) {
+bool outer_surface_find(outer_surface *o, const surface_cuts *found, const bvh *hierarchy) {
     triangle_cuts *c = &o->cuts;
-    o->scale = f->scale;
+    o->scale = hierarchy->scale;
     o->budget = found->budget;
     if (!triangle_cuts_sort(c, found)) return false;
     size_t triangles = found->surface->mesh->triangle_count;
@@ -393,7 +393,7 @@ static double squared_beyond(const double x[3], const outer_part *part) {
     return squared * (1.0 + 0x1p-20) + 0x1p-70 * size + DBL_MIN;
 }
 
-outer_point outer_surface_nearest(const outer_surface *o, const surface_cuts *found, const bvh *f,
+outer_point outer_surface_nearest(const outer_surface *o, const surface_cuts *found, const bvh *hierarchy,
                                   uint32_t body, const double x[3], const outer_point *near) {
     nearest_search s = {
         .outer = o, .found = found, .body = body, .best = {.squared = (double)INFINITY, UINT32_MAX}};
@@ -401,7 +401,7 @@ outer_point outer_surface_nearest(const outer_surface *o, const surface_cuts *fo
     const near_quest quest = {object_of_body(bodies, body), body, bodies != NULL ? bodies->components : NULL};
     scale_point(o, x, s.x);
     if (near != NULL && near->triangle != UINT32_MAX) s.best.squared = squared_beyond(s.x, &near->part);
-    bvh_visit_near(f, &quest, x, &s.best.squared, try_triangle, &s);
+    bvh_visit_near(hierarchy, &quest, x, &s.best.squared, try_triangle, &s);
     for (int k = 0; k < 3; k++) s.best.x[k] /= o->scale;
     return s.best;
 }
@@ -519,12 +519,12 @@ outer_point outer_surface_near(const outer_surface *o, const surface_cuts *found
     return walk_near(o, found, triangle, x, enough >= 0.0 ? scaled * scaled : -1.0);
 }
 
-outer_point outer_surface_search(const outer_surface *o, const surface_cuts *found, const bvh *f,
+outer_point outer_surface_search(const outer_surface *o, const surface_cuts *found, const bvh *hierarchy,
                                  uint32_t body, const double x[3], const outer_point *near, double enough) {
     outer_point begin = {.squared = (double)INFINITY, .triangle = UINT32_MAX};
     if (near != NULL && near->triangle != UINT32_MAX) begin = walk_near(o, found, near->triangle, x, -1.0);
     if (sqrt(begin.squared) <= enough) return begin;
-    return outer_surface_nearest(o, found, f, body, x, &begin);
+    return outer_surface_nearest(o, found, hierarchy, body, x, &begin);
 }
 
 /* ---- points of it -------------------------------------------------------------------------------------- */
@@ -564,9 +564,9 @@ static void look_for_point(void *data, uint32_t triangle) {
     s->found = orient3d(corners[0], corners[1], corners[2], s->x) == 0 && lies_in_projections(s->x, corners);
 }
 
-bool body_has_point(const named_surface *s, const bvh *f, uint32_t body, const double x[3]) {
+bool body_has_point(const named_surface *s, const bvh *hierarchy, uint32_t body, const double x[3]) {
     body_point_search search = {s, body, x, false};
     const query_box box = {{x[0], x[1], x[2]}, {x[0], x[1], x[2]}};
-    bvh_visit_box(f, &box, true, look_for_point, &search);
+    bvh_visit_box(hierarchy, &box, true, look_for_point, &search);
     return search.found;
 }

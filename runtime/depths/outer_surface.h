@@ -43,7 +43,7 @@ typedef struct outer_surface {
 void outer_surface_free(outer_surface *o);
 
 /* Finds the parts. False: no memory. */
-bool outer_surface_find(outer_surface *o, const surface_cuts *found, const bvh *f);
+bool outer_surface_find(outer_surface *o, const surface_cuts *found, const bvh *hierarchy);
 
 /* Takes the work of comparing so many points with the parts that are near them, of which a triangle that is cut has as many as all of
  * them have in the mean. False: it does not fit. */
@@ -72,7 +72,7 @@ double outer_part_reach_of_all(const outer_surface *o, const double *const x[3],
 
 /* near: the answer for another point and the same body, or NULL. The nearer the points, the shorter the search; the
  * answer does not depend on it. */
-outer_point outer_surface_nearest(const outer_surface *o, const surface_cuts *found, const bvh *f,
+outer_point outer_surface_nearest(const outer_surface *o, const surface_cuts *found, const bvh *hierarchy,
                                   uint32_t body, const double x[3], const outer_point *near);
 
 /* Some point that is near to x, on a triangle or on those that one comes to from it over sides, going nearer until it is no farther
@@ -86,9 +86,9 @@ outer_point outer_surface_near_on(const outer_surface *o, const surface_cuts *fo
 
 /* The nearest point, which is looked for from a near one on. near: the answer for another point and the same body, or NULL.
  * enough: if such a near point is no farther than this, scaled, it is the answer. */
-outer_point outer_surface_search(const outer_surface *o, const surface_cuts *found, const bvh *f,
+outer_point outer_surface_search(const outer_surface *o, const surface_cuts *found, const bvh *hierarchy,
                                  uint32_t body, const double x[3], const outer_point *near, double enough);
 
 /* Whether the point lies on a triangle of the body's closed components, exactly. The bounds of the trees are those of the surface's
  * positions. */
-bool body_has_point(const named_surface *s, const bvh *f, uint32_t body, const double x[3]);
+bool body_has_point(const named_surface *s, const bvh *hierarchy, uint32_t body, const double x[3]);

@@ -98,14 +98,14 @@ void static_check_destroy(static_check *c);
 /* Compares the triangles that are marked as unproven with one another, each with those of its own component. The
  * volumes of the trees must contain the triangles at positions, so they belong to that moment or to an interval that
  * contains it. CANCELLED, here and below: not all pairs have been compared. */
-cscd_status static_check_unproven(static_check *c, traversal *t, bvh *f, const double *positions);
+cscd_status static_check_unproven(static_check *c, traversal *t, bvh *hierarchy, const double *positions);
 
 /* Compares all triangles whose objects are looked at with one another, and marks all triangles as unproven. */
-cscd_status static_check_all(static_check *c, traversal *t, bvh *f, const double *positions);
+cscd_status static_check_all(static_check *c, traversal *t, bvh *hierarchy, const double *positions);
 
 /* The same, with the kind of each pair, and with duplicates, which mark nothing. names: per vertex; vertices of one name
  * count as one. NULL: each is its own. */
-cscd_status static_check_kinds(static_check *c, traversal *t, bvh *f, const double *positions,
+cscd_status static_check_kinds(static_check *c, traversal *t, bvh *hierarchy, const double *positions,
                                const uint32_t *names);
 
 /* Which pairs count, and how many of them are enough. */
@@ -120,7 +120,7 @@ typedef struct pair_quest {
 /* As static_check_kinds, but ends once it has found enough pairs that count and stay. Then the lanes have these alone,
  * and of each number the same ones for any lane count: the traversal's tasks are in a fixed order, as are the pairs of a
  * task. No triangle is marked. */
-cscd_status first_pairs_find(static_check *c, traversal *t, bvh *f, const double *positions,
+cscd_status first_pairs_find(static_check *c, traversal *t, bvh *hierarchy, const double *positions,
                              const uint32_t *names, const pair_quest *quest);
 
 /* ---- the surface --------------------------------------------------------------------------------------- */
@@ -260,7 +260,7 @@ typedef struct orientation_request {
 
 /* Finds which components are turned around, where none was before, which bodies there are, and the boxes, and gives them to
  * the surface. The bounds of the trees are those of its positions. False: no memory. */
-bool orientation_finder_run(orientation_finder *o, named_surface *s, const bvh *f,
+bool orientation_finder_run(orientation_finder *o, named_surface *s, const bvh *hierarchy,
                             const orientation_request *request);
 
 /* ---- patches ------------------------------------------------------------------------------------------- */
@@ -315,8 +315,8 @@ cscd_status patch_finder_create(const cscd_mesh *mesh, uint32_t lane_count, patc
 void patch_finder_free(patch_finder *p);
 
 /* Finds the patches between the pieces of all curves. The bounds of the trees are those of the surface's positions. */
-cscd_status patch_finder_run(patch_finder *p, const named_surface *s, const bvh *f, const curve_piece *pieces,
-                             size_t piece_count, cscd_patches *out);
+cscd_status patch_finder_run(patch_finder *p, const named_surface *s, const bvh *hierarchy,
+                             const curve_piece *pieces, size_t piece_count, cscd_patches *out);
 
 /* ---- what curves cut out of triangles ------------------------------------------------------------------ */
 

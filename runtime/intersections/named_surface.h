@@ -58,10 +58,11 @@ bool winding_is_collapsed(const named_surface *s, uint32_t triangle);
 /* Adds the winding numbers of all bodies at the point, none at a collapsed triangle: of a body the sum over its closed manifold
  * components. A body winds once around what its surfaces, with normals outwards, enclose. Those of components that are turned
  * around count as turned. The bounds of the trees are those of the surface's positions. Theory: docs/theory/curves.md, lemma 5. */
-void winding_find(const named_surface *s, const bvh *f, corner_side at, winding_tally *tally);
+void winding_find(const named_surface *s, const bvh *hierarchy, corner_side at, winding_tally *tally);
 
 /* The same of each component, in a tally that has room for all components. */
-void winding_find_by_component(const named_surface *s, const bvh *f, corner_side at, winding_tally *tally);
+void winding_find_by_component(const named_surface *s, const bvh *hierarchy, corner_side at,
+                               winding_tally *tally);
 
 /* ---- patches ------------------------------------------------------------------------------------------- */
 

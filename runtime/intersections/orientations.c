@@ -372,9 +372,9 @@ static void own_bodies(orientation_finder *o, named_surface *s, bool by_componen
     s->bodies = &o->bodies;
 }
 
-bool orientation_finder_run(orientation_finder *o, named_surface *s, const bvh *f,
+bool orientation_finder_run(orientation_finder *o, named_surface *s, const bvh *hierarchy,
                             const orientation_request *request) {
-    const orientation_work work = {o, s, f, request->labels};
+    const orientation_work work = {o, s, hierarchy, request->labels};
     own_bodies(o, s, request->by_component);
     if (o->mesh->component_count > 1) {
         find_component_boxes(o->mesh, s->positions, o->boxes);

@@ -337,10 +337,10 @@ static bool join_numbers(patch_finder *p) {
     return true;
 }
 
-cscd_status patch_finder_run(patch_finder *p, const named_surface *s, const bvh *f, const curve_piece *pieces,
-                             size_t piece_count, cscd_patches *out) {
+cscd_status patch_finder_run(patch_finder *p, const named_surface *s, const bvh *hierarchy,
+                             const curve_piece *pieces, size_t piece_count, cscd_patches *out) {
     atomic_size_t windings = 0;
-    patch_work work = {.finder = p, .surface = s, .bvh = f, .windings = &windings};
+    patch_work work = {.finder = p, .surface = s, .bvh = hierarchy, .windings = &windings};
     p->bodies = s->bodies;
     if (!reserve_tallies(p, body_count(s->bodies, s->mesh))) return CSCD_OUT_OF_MEMORY;
     mark_pieces(&work, pieces, piece_count);

@@ -213,9 +213,9 @@ static bool component_counts(const check_work *work, uint32_t component) {
     return object_sets_may_meet(own, own);
 }
 
-static bool is_inactive(const bvh *f, uint32_t triangle) {
-    uint32_t slot = f->slots[triangle];
-    return (f->leaf_inactive[slot / LANES] >> slot % LANES & 1) != 0;
+static bool is_inactive(const bvh *hierarchy, uint32_t triangle) {
+    uint32_t slot = hierarchy->slots[triangle];
+    return (hierarchy->leaf_inactive[slot / LANES] >> slot % LANES & 1) != 0;
 }
 
 static bool adjacent_pair_counts(const check_work *work, const uint32_t pair[2]) {
@@ -387,16 +387,16 @@ static cscd_status compare_found(check_work *work) {
     return status;
 }
 
-static cscd_status compare_triangles(check_work *work, bvh *f, traversal_pass pass) {
+static cscd_status compare_triangles(check_work *work, bvh *hierarchy, traversal_pass pass) {
     static_check *check = work->check;
     assert(check->lane_count == work->traversal->lane_count);
     begin_check(work);
     if (check->mesh->triangle_count == 0) return CSCD_OK;
     if (work->by_stars)
-        bvh_skip_all_adjacent(f);
+        bvh_skip_all_adjacent(hierarchy);
     else
-        bvh_skip_adjacent(f, NULL);
-    traversal_begin(work->traversal, f, pass);
+        bvh_skip_adjacent(hierarchy, NULL);
+    traversal_begin(work->traversal, hierarchy, pass);
     cscd_status status = work->by_stars ? compare_adjacent(work) : CSCD_OK;
     if (status == CSCD_OK) status = compare_found(work);
     if (status != CSCD_OK) return status;
@@ -413,35 +413,35 @@ static bool most_are_unproven(const static_check *c) {
     return count > all / 2;
 }
 
-cscd_status static_check_unproven(static_check *c, traversal *t, bvh *f, const double *positions) {
+cscd_status static_check_unproven(static_check *c, traversal *t, bvh *hierarchy, const double *positions) {
     check_work work = {
-        .check = c, .traversal = t, .bvh = f, .positions = positions, .own_component_only = true};
-    bvh_mark_unproven(f, c->unproven);
+        .check = c, .traversal = t, .bvh = hierarchy, .positions = positions, .own_component_only = true};
+    bvh_mark_unproven(hierarchy, c->unproven);
     work.by_stars = most_are_unproven(c);
-    cscd_status status = compare_triangles(&work, f, TRAVERSAL_UNPROVEN);
+    cscd_status status = compare_triangles(&work, hierarchy, TRAVERSAL_UNPROVEN);
     if (status == CSCD_OK) mark_crossing(c);
     return status;
 }
 
-static cscd_status compare_all(check_work *work, bvh *f) {
+static cscd_status compare_all(check_work *work, bvh *hierarchy) {
     static_check *c = work->check;
     memset(c->unproven, true, c->mesh->triangle_count * sizeof *c->unproven);
     work->by_stars = true;
-    cscd_status status = compare_triangles(work, f, TRAVERSAL_KEPT);
+    cscd_status status = compare_triangles(work, hierarchy, TRAVERSAL_KEPT);
     if (status == CSCD_OK) mark_crossing(c);
     return status;
 }
 
-cscd_status static_check_all(static_check *c, traversal *t, bvh *f, const double *positions) {
-    check_work work = {.check = c, .traversal = t, .bvh = f, .positions = positions};
-    return compare_all(&work, f);
+cscd_status static_check_all(static_check *c, traversal *t, bvh *hierarchy, const double *positions) {
+    check_work work = {.check = c, .traversal = t, .bvh = hierarchy, .positions = positions};
+    return compare_all(&work, hierarchy);
 }
 
-cscd_status static_check_kinds(static_check *c, traversal *t, bvh *f, const double *positions,
+cscd_status static_check_kinds(static_check *c, traversal *t, bvh *hierarchy, const double *positions,
                                const uint32_t *names) {
-    check_work work = {.check = c, .traversal = t, .bvh = f, .positions = positions, .names = names};
+    check_work work = {.check = c, .traversal = t, .bvh = hierarchy, .positions = positions, .names = names};
     c->kinds = true;
-    cscd_status status = compare_all(&work, f);
+    cscd_status status = compare_all(&work, hierarchy);
     c->kinds = false;
     return status;
 }
@@ -574,16 +574,17 @@ static cscd_status run_rounds(pair_hunt *hunt) {
     return CSCD_OK;
 }
 
-cscd_status first_pairs_find(static_check *c, traversal *t, bvh *f, const double *positions,
+cscd_status first_pairs_find(static_check *c, traversal *t, bvh *hierarchy, const double *positions,
                              const uint32_t *names, const pair_quest *quest) {
     pair_hunt hunt = {.quest = quest};
-    hunt.work = (check_work){.check = c, .traversal = t, .bvh = f, .positions = positions, .names = names};
+    hunt.work =
+        (check_work){.check = c, .traversal = t, .bvh = hierarchy, .positions = positions, .names = names};
     atomic_store(&hunt.last, UINT32_MAX);
     memset(c->unproven, true, c->mesh->triangle_count * sizeof *c->unproven);
     begin_check(&hunt.work);
     if (c->mesh->triangle_count == 0) return CSCD_OK;
-    bvh_skip_adjacent(f, NULL);
-    cscd_status status = traversal_begin_tasks(t, f, TRAVERSAL_KEPT);
+    bvh_skip_adjacent(hierarchy, NULL);
+    cscd_status status = traversal_begin_tasks(t, hierarchy, TRAVERSAL_KEPT);
     c->kinds = true;
     if (status == CSCD_OK) status = run_rounds(&hunt);
     c->kinds = false;

@@ -118,7 +118,7 @@ static void pass_triangle(void *data, uint32_t triangle) {
     add_number(work->tally, of, number * surface_sense(work->surface, triangle));
 }
 
-static void cast_ray(const named_surface *s, const bvh *f, corner_side at, bool by_component,
+static void cast_ray(const named_surface *s, const bvh *hierarchy, corner_side at, bool by_component,
                      winding_tally *tally) {
     symbolic_point p[3];
     load_points(s, at.triangle, p);
@@ -133,13 +133,14 @@ static void cast_ray(const named_surface *s, const bvh *f, corner_side at, bool 
                      .next_name = surface_sense(s, at.triangle) > 0 ? next.name : before.name};
     const double *x = work.origin.x;
     query_box ray = {{x[0], x[1], x[2]}, {x[0], x[1], (double)INFINITY}};
-    bvh_visit_box(f, &ray, true, pass_triangle, &work);
+    bvh_visit_box(hierarchy, &ray, true, pass_triangle, &work);
 }
 
-void winding_find(const named_surface *s, const bvh *f, corner_side at, winding_tally *tally) {
-    cast_ray(s, f, at, false, tally);
+void winding_find(const named_surface *s, const bvh *hierarchy, corner_side at, winding_tally *tally) {
+    cast_ray(s, hierarchy, at, false, tally);
 }
 
-void winding_find_by_component(const named_surface *s, const bvh *f, corner_side at, winding_tally *tally) {
-    cast_ray(s, f, at, true, tally);
+void winding_find_by_component(const named_surface *s, const bvh *hierarchy, corner_side at,
+                               winding_tally *tally) {
+    cast_ray(s, hierarchy, at, true, tally);
 }

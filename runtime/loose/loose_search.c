@@ -32,8 +32,9 @@ static framed_box box_in_frame(const swept_interval *interval, const loose_eleme
 }
 
 /* The children of a block whose bounds overlap the box during the interval. In bounds without a value nothing is sure. */
-static uint32_t children_near(const bvh *f, int level, uint32_t block, const framed_box *box) {
-    const float *bounds = f->levels[level].bounds + (size_t)block * (size_t)f->axis_count * 2 * LANES;
+static uint32_t children_near(const bvh *hierarchy, int level, uint32_t block, const framed_box *box) {
+    const float *bounds =
+        hierarchy->levels[level].bounds + (size_t)block * (size_t)hierarchy->axis_count * 2 * LANES;
     uint32_t apart[LANES] = {0}, near = 0;
     for (int k = 0; k < BOX_AXES; k++) {
         float low = fminf(box->low[0][k], box->low[1][k]), high = fmaxf(box->high[0][k], box->high[1][k]);
@@ -41,7 +42,7 @@ static uint32_t children_near(const bvh *f, int level, uint32_t block, const fra
         for (int lane = 0; lane < LANES; lane++) apart[lane] |= (lows[lane] > high) | (highs[lane] < low);
     }
     for (int lane = 0; lane < LANES; lane++) near |= (uint32_t)(apart[lane] == 0) << lane;
-    return near & f->levels[level].flags[block].used;
+    return near & hierarchy->levels[level].flags[block].used;
 }
 
 /* ---- triangles ----------------------------------------------------------------------------------------- */
@@ -57,9 +58,9 @@ typedef struct tree_walk {
 } tree_walk;
 
 static uint32_t children_that_count(const tree_walk *w, int level, uint32_t block, const framed_box *box) {
-    const bvh *f = w->interval->bvh;
-    uint32_t near = children_near(f, level, block, box);
-    return w->inactive ? near & ~(uint32_t)f->levels[level].inactive_lanes[block] : near;
+    const bvh *hierarchy = w->interval->bvh;
+    uint32_t near = children_near(hierarchy, level, block, box);
+    return w->inactive ? near & ~(uint32_t)hierarchy->levels[level].inactive_lanes[block] : near;
 }
 
 /* The slack of a tree covers the rounding of its records and the triangles' half of the distance. */
@@ -88,11 +89,11 @@ static bool triangle_looks(const tree_walk *w, uint32_t triangle) {
 }
 
 static void test_leaf(const tree_walk *w, uint32_t index) {
-    const bvh *f = w->interval->bvh;
-    const bvh_leaf *leaf = &f->leaves[index];
-    for (uint32_t used = f->leaf_flags[index].used, lane = 0; (used >> lane & 1) != 0; lane++) {
+    const bvh *hierarchy = w->interval->bvh;
+    const bvh_leaf *leaf = &hierarchy->leaves[index];
+    for (uint32_t used = hierarchy->leaf_flags[index].used, lane = 0; (used >> lane & 1) != 0; lane++) {
         uint32_t triangle = leaf->triangles[lane];
-        if (w->inactive && (f->leaf_inactive[index] >> lane & 1) != 0) continue;
+        if (w->inactive && (hierarchy->leaf_inactive[index] >> lane & 1) != 0) continue;
         if (triangle_parted(w, leaf, (int)lane) || !triangle_looks(w, triangle)) continue;
         loose_pairs_with_triangle(w->interval, w->element, triangle, w->lane);
     }
@@ -107,14 +108,14 @@ typedef struct open_block {
 enum { STACK_SIZE = BVH_LEVEL_MAX * LANES };
 
 static void walk_tree(tree_walk *w) {
-    const bvh *f = w->interval->bvh;
+    const bvh *hierarchy = w->interval->bvh;
     open_block stack[STACK_SIZE];
-    int count = 0, top = f->tree_level - 1;
+    int count = 0, top = hierarchy->tree_level - 1;
     w->box = box_in_frame(w->interval, w->element, w->tree);
     stack[count++] = (open_block){top, w->tree->first_blocks[top]};
     while (count > 0) {
         open_block at = stack[--count];
-        uint32_t first = f->levels[at.level].first_children[at.block];
+        uint32_t first = hierarchy->levels[at.level].first_children[at.block];
         for (uint32_t near = children_that_count(w, at.level, at.block, &w->box); near != 0;
              near &= near - 1) {
             uint32_t child = first + (uint32_t)__builtin_ctz(near);
@@ -135,24 +136,24 @@ static void test_tree(tree_walk *w, uint32_t tree) {
 
 /* Above the trees bounds are in the frame of the first one; if it is the only one, there are none. */
 static void test_trees(const swept_interval *interval, const loose_element *element, contact_lane *lane) {
-    const bvh *f = interval->bvh;
+    const bvh *hierarchy = interval->bvh;
     tree_walk w = {.interval = interval, .element = element, .lane = lane};
     w.inactive = interval->filter.active != NULL &&
                  !edge_is_active(interval->filter.active, interval->mesh, element->edge);
-    if (f->tree_count <= 1) {
-        if (f->tree_count == 1) test_tree(&w, 0);
+    if (hierarchy->tree_count <= 1) {
+        if (hierarchy->tree_count == 1) test_tree(&w, 0);
         return;
     }
-    framed_box box = box_in_frame(interval, element, &f->trees[0]);
+    framed_box box = box_in_frame(interval, element, &hierarchy->trees[0]);
     open_block stack[STACK_SIZE];
     int count = 0;
-    stack[count++] = (open_block){f->level_count - 1, 0};
+    stack[count++] = (open_block){hierarchy->level_count - 1, 0};
     while (count > 0) {
         open_block at = stack[--count];
-        uint32_t first = f->levels[at.level].first_children[at.block];
+        uint32_t first = hierarchy->levels[at.level].first_children[at.block];
         for (uint32_t near = children_that_count(&w, at.level, at.block, &box); near != 0; near &= near - 1) {
             uint32_t child = first + (uint32_t)__builtin_ctz(near);
-            if (at.level == f->tree_level)
+            if (at.level == hierarchy->tree_level)
                 test_tree(&w, child);
             else
                 stack[count++] = (open_block){at.level - 1, child};

@@ -69,12 +69,12 @@ typedef struct chosen_pairs {
  * holds several components or objects, the traversal leaves to us whether triangles are looked at. */
 static void choose_pairs(const swept_interval *interval, const triangle_pair *slots, uint32_t count,
                          chosen_pairs *settled, chosen_pairs *open) {
-    const bvh *f = interval->bvh;
+    const bvh *hierarchy = interval->bvh;
     const pair_filter *filter = &interval->filter;
-    bool trees_mix = (filter->rules != NULL && f->trees_mix_objects) || filter->collapsed != NULL;
+    bool trees_mix = (filter->rules != NULL && hierarchy->trees_mix_objects) || filter->collapsed != NULL;
     settled->count = open->count = 0;
     for (uint32_t i = 0; i < count; i++) {
-        triangle_pair pair = {bvh_triangle(f, slots[i].a), bvh_triangle(f, slots[i].b)};
+        triangle_pair pair = {bvh_triangle(hierarchy, slots[i].a), bvh_triangle(hierarchy, slots[i].b)};
         pair_selection selection = representatives_select_early(interval, pair);
         chosen_pairs *to = selection.settled ? settled : open;
         if (trees_mix && !pair_filter_admits_triangles(filter, pair.a, pair.b)) continue;

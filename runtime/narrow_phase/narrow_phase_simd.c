@@ -243,14 +243,16 @@ static double tree_distance(const swept_interval *interval, const bvh_tree *p, c
 }
 
 static void relate_parts(const swept_interval *interval, uint32_t a, uint32_t b, tree_pair *out) {
-    const bvh *f = interval->bvh;
-    const bvh_tree *p = &f->trees[a], *q = &f->trees[b];
+    const bvh *hierarchy = interval->bvh;
+    const bvh_tree *p = &hierarchy->trees[a], *q = &hierarchy->trees[b];
     double distance = tree_distance(interval, p, q);
     float between[LANES] = {0.0f};
-    double size = (double)p->reach + (double)q->reach, d = distance * f->scale * (1.0 + 0x1p-20);
+    double size = (double)p->reach + (double)q->reach, d = distance * hierarchy->scale * (1.0 + 0x1p-20);
     for (int i = 0; i < 6 && a != b; i++) {
-        double from = p->origin[i / 3][i % 3] * f->scale, to = q->origin[i / 3][i % 3] * f->scale;
-        between[i / 3 * 4 + i % 3] = (float)((q->origin[i / 3][i % 3] - p->origin[i / 3][i % 3]) * f->scale);
+        double from = p->origin[i / 3][i % 3] * hierarchy->scale,
+               to = q->origin[i / 3][i % 3] * hierarchy->scale;
+        between[i / 3 * 4 + i % 3] =
+            (float)((q->origin[i / 3][i % 3] - p->origin[i / 3][i % 3]) * hierarchy->scale);
         size += __builtin_fabs(to - from) + 0x1p-28 * (__builtin_fabs(from) + __builtin_fabs(to));
     }
     out->a = a;
@@ -263,19 +265,20 @@ static void relate_parts(const swept_interval *interval, uint32_t a, uint32_t b,
 /* The places of the last pair are filled up with itself. */
 static inline void load_pairs(const swept_interval *interval, const triangle_pair *pairs, uint32_t count,
                               tree_pair *trees, pairs_x8 *out) {
-    const bvh *f = interval->bvh;
+    const bvh *hierarchy = interval->bvh;
     f32x8 rows[6][LANES];
     for (uint32_t lane = 0; lane < LANES; lane++) {
         triangle_pair pair = pairs[lane < count ? lane : count - 1];
-        const bvh_leaf *a = &f->leaves[pair.a / LANES], *b = &f->leaves[pair.b / LANES];
-        uint32_t tree_a = f->leaf_trees[pair.a / LANES], tree_b = f->leaf_trees[pair.b / LANES];
+        const bvh_leaf *a = &hierarchy->leaves[pair.a / LANES], *b = &hierarchy->leaves[pair.b / LANES];
+        uint32_t tree_a = hierarchy->leaf_trees[pair.a / LANES],
+                 tree_b = hierarchy->leaf_trees[pair.b / LANES];
         if (tree_a != trees->a || tree_b != trees->b) relate_parts(interval, tree_a, tree_b, trees);
         for (int i = 0; i < 3; i++) {
             uint32_t record_a = a->corners[i][pair.a % LANES], record_b = b->corners[i][pair.b % LANES];
-            rows[i][lane] = f32x8_load(f->records[record_a]);
-            rows[3 + i][lane] = f32x8_load(f->records[record_b]) + trees->between;
-            out->vertices[i][lane] = tree_a == tree_b ? record_a : f->record_vertices[record_a];
-            out->vertices[3 + i][lane] = tree_a == tree_b ? record_b : f->record_vertices[record_b];
+            rows[i][lane] = f32x8_load(hierarchy->records[record_a]);
+            rows[3 + i][lane] = f32x8_load(hierarchy->records[record_b]) + trees->between;
+            out->vertices[i][lane] = tree_a == tree_b ? record_a : hierarchy->record_vertices[record_a];
+            out->vertices[3 + i][lane] = tree_a == tree_b ? record_b : hierarchy->record_vertices[record_b];
         }
         out->gap[lane] = trees->gap;
         out->wide[lane] = trees->wide;

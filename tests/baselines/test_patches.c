@@ -368,23 +368,24 @@ TEST(patches_are_hidden_in_their_tree) {
     scene_add_sphere(&s, origin, 1.0, 12, 16);
     scene_add_sphere(&s, far_away, 1.0, 12, 16);
     assert_true(bvh_rig_create(&s, (bvh_setup){CSCD_SIMD_AUTO, 1, BOX_AXES, 0}, &r));
-    bvh *f = &r.bvh;
-    assert_int_equal(f->tree_count, 2);
-    assert_true(bvh_allow_hiding(f));
-    assert_int_equal(patch_tree_build(f, 0, &tree), CSCD_OK);
+    bvh *hierarchy = &r.bvh;
+    assert_int_equal(hierarchy->tree_count, 2);
+    assert_true(bvh_allow_hiding(hierarchy));
+    assert_int_equal(patch_tree_build(hierarchy, 0, &tree), CSCD_OK);
     bool *sealed = calloc(tree.node_count, sizeof *sealed);
     assert_non_null(sealed);
     for (uint32_t i = 0; i < tree.node_count; i++) {
-        bvh_show_all(f);
+        bvh_show_all(hierarchy);
         sealed[i] = true;
-        patch_tree_hide(&tree, sealed, f);
+        patch_tree_hide(&tree, sealed, hierarchy);
         sealed[i] = false;
         const uint32_t other = 1 - tree.nodes[i].tree;
-        for (int level = 0; level < f->tree_level; level++) {
-            const uint32_t first = f->trees[other].first_blocks[level];
-            const uint32_t end = other == 0 ? f->trees[1].first_blocks[level] : f->levels[level].block_count;
-            for (uint32_t b = 0; b < f->levels[level].block_count; b++) {
-                const bool whole = f->levels[level].self_pairs[b] == UINT64_MAX;
+        for (int level = 0; level < hierarchy->tree_level; level++) {
+            const uint32_t first = hierarchy->trees[other].first_blocks[level];
+            const uint32_t end =
+                other == 0 ? hierarchy->trees[1].first_blocks[level] : hierarchy->levels[level].block_count;
+            for (uint32_t b = 0; b < hierarchy->levels[level].block_count; b++) {
+                const bool whole = hierarchy->levels[level].self_pairs[b] == UINT64_MAX;
                 assert_true(whole || b < first || b >= end);
                 hidden += !whole;
             }

@@ -19,72 +19,72 @@ typedef struct child_place {
 
 static child_place places[BVH_LEVEL_MAX][SCENE_TRIANGLES_MAX];
 
-static uint32_t child_count(const bvh *f, int level) {
-    if (level == 0) return f->leaf_count;
-    return level == f->tree_level ? f->tree_count : f->levels[level - 1].block_count;
+static uint32_t child_count(const bvh *hierarchy, int level) {
+    if (level == 0) return hierarchy->leaf_count;
+    return level == hierarchy->tree_level ? hierarchy->tree_count : hierarchy->levels[level - 1].block_count;
 }
 
 /* Finds the places and checks that each child has only one. */
-static void find_places(const bvh *f) {
-    for (int level = 0; level < f->level_count; level++) {
-        const bvh_level *l = &f->levels[level];
+static void find_places(const bvh *hierarchy) {
+    for (int level = 0; level < hierarchy->level_count; level++) {
+        const bvh_level *l = &hierarchy->levels[level];
         memset(places[level], 0xff, sizeof places[level]);
         for (uint32_t b = 0; b < l->block_count; b++) {
             for (uint32_t lane = 0; lane < LANES; lane++) {
                 uint32_t child = l->first_children[b] + lane;
                 if ((l->flags[b].used >> lane & 1) == 0) continue;
-                assert_true(child < child_count(f, level));
+                assert_true(child < child_count(hierarchy, level));
                 assert_int_equal(places[level][child].block, UINT32_MAX);
                 places[level][child] = (child_place){b, lane};
             }
         }
-        for (uint32_t c = 0; c < child_count(f, level); c++)
+        for (uint32_t c = 0; c < child_count(hierarchy, level); c++)
             assert_int_not_equal(places[level][c].block, UINT32_MAX);
     }
-    assert_int_equal(f->levels[f->level_count - 1].block_count, 1);
-    assert_int_equal(f->levels[f->tree_level - 1].block_count, f->tree_count);
+    assert_int_equal(hierarchy->levels[hierarchy->level_count - 1].block_count, 1);
+    assert_int_equal(hierarchy->levels[hierarchy->tree_level - 1].block_count, hierarchy->tree_count);
 }
 
 /* ---- places of triangles ------------------------------------------------------------------------------- */
 
 static void check_leaf(const bvh_rig *r, uint32_t index, const bvh_tree *p, uint32_t *seen) {
-    const bvh *f = &r->bvh;
-    const bvh_leaf *l = &f->leaves[index];
-    assert_ptr_equal(&f->trees[f->leaf_trees[index]], p);
+    const bvh *hierarchy = &r->bvh;
+    const bvh_leaf *l = &hierarchy->leaves[index];
+    assert_ptr_equal(&hierarchy->trees[hierarchy->leaf_trees[index]], p);
     for (uint32_t lane = 0; lane < LANES; lane++) {
         uint32_t t = l->triangles[lane], from = t != UINT32_MAX ? t : l->triangles[0];
-        assert_int_equal(f->leaf_flags[index].used >> lane & 1, t != UINT32_MAX);
+        assert_int_equal(hierarchy->leaf_flags[index].used >> lane & 1, t != UINT32_MAX);
         for (int i = 0; i < 3; i++) {
             uint32_t record = l->corners[i][lane];
             assert_true(record - p->first_record < p->record_count);
-            assert_int_equal(f->record_vertices[record], r->mesh->triangles[from][i]);
+            assert_int_equal(hierarchy->record_vertices[record], r->mesh->triangles[from][i]);
         }
         if (t == UINT32_MAX) continue;
         assert_int_equal(r->regions[t], p->region);
-        assert_int_equal(f->slots[t], index * LANES + lane);
-        assert_int_equal(bvh_triangle(f, f->slots[t]), t);
+        assert_int_equal(hierarchy->slots[t], index * LANES + lane);
+        assert_int_equal(bvh_triangle(hierarchy, hierarchy->slots[t]), t);
         seen[t]++;
     }
 }
 
 static void check_layout(const bvh_rig *r) {
     static uint32_t seen[SCENE_TRIANGLES_MAX];
-    const bvh *f = &r->bvh;
+    const bvh *hierarchy = &r->bvh;
     uint32_t leaf = 0, record = 0;
     memset(seen, 0, sizeof seen);
-    for (uint32_t i = 0; i < f->tree_count; i++) {
-        const bvh_tree *p = &f->trees[i];
+    for (uint32_t i = 0; i < hierarchy->tree_count; i++) {
+        const bvh_tree *p = &hierarchy->trees[i];
         assert_int_equal(p->first_leaf, leaf);
         assert_int_equal(p->first_record, record);
         assert_int_equal(p->record_count % LANES, 0);
         for (; leaf < p->first_leaf + p->leaf_count; leaf++) {
             check_leaf(r, leaf, p, seen);
-            assert_int_equal(f->block_trees[places[0][leaf].block], i);
+            assert_int_equal(hierarchy->block_trees[places[0][leaf].block], i);
         }
         record += p->record_count;
     }
-    assert_int_equal(leaf, f->leaf_count);
-    assert_int_equal(record, f->record_count);
+    assert_int_equal(leaf, hierarchy->leaf_count);
+    assert_int_equal(record, hierarchy->record_count);
     for (uint32_t t = 0; t < r->mesh->triangle_count; t++) assert_int_equal(seen[t], 1);
 }
 
@@ -104,30 +104,31 @@ TEST(every_triangle_has_one_slot) {
 
 /* ---- bounds -------------------------------------------------------------------------------------------- */
 
-static const float *bounds_of(const bvh *f, int level, child_place at, int axis) {
-    size_t stride = (size_t)f->axis_count * 2 * LANES;
-    return f->levels[level].bounds + at.block * stride + (size_t)axis * 2 * LANES + at.lane;
+static const float *bounds_of(const bvh *hierarchy, int level, child_place at, int axis) {
+    size_t stride = (size_t)hierarchy->axis_count * 2 * LANES;
+    return hierarchy->levels[level].bounds + at.block * stride + (size_t)axis * 2 * LANES + at.lane;
 }
 
 /* The levels of trees and above have no bounds when there is only one tree. */
-static int bounded_levels(const bvh *f) {
-    return f->tree_count > 1 ? f->level_count : f->tree_level;
+static int bounded_levels(const bvh *hierarchy) {
+    return hierarchy->tree_count > 1 ? hierarchy->level_count : hierarchy->tree_level;
 }
 
 /* Checks that all bounds above a triangle hold its vertex and everything within half the distance of it. */
-static void check_held(const bvh *f, uint32_t leaf, gap_motion m, uint32_t vertex, double distance) {
-    const bvh_tree *p = &f->trees[f->leaf_trees[leaf]];
+static void check_held(const bvh *hierarchy, uint32_t leaf, gap_motion m, uint32_t vertex, double distance) {
+    const bvh_tree *p = &hierarchy->trees[hierarchy->leaf_trees[leaf]];
     for (int moment = 0; moment < 3; moment++) {
         long double own[3], common[3];
-        in_frame(f, p, m, vertex, moment, own);
-        in_frame(f, NULL, m, vertex, moment, common);
+        in_frame(hierarchy, p, m, vertex, moment, own);
+        in_frame(hierarchy, NULL, m, vertex, moment, common);
         uint32_t child = leaf;
-        for (int level = 0; level < bounded_levels(f); level++) {
+        for (int level = 0; level < bounded_levels(hierarchy); level++) {
             child_place at = places[level][child];
-            for (int axis = 0; axis < f->axis_count; axis++) {
-                long double wide = (axis < BOX_AXES ? 0.5L : 0.5L * sqrtl(3.0L)) * distance * f->scale;
-                long double value = along_direction(level < f->tree_level ? own : common, axis);
-                const float *low = bounds_of(f, level, at, axis);
+            for (int axis = 0; axis < hierarchy->axis_count; axis++) {
+                long double wide =
+                    (axis < BOX_AXES ? 0.5L : 0.5L * sqrtl(3.0L)) * distance * hierarchy->scale;
+                long double value = along_direction(level < hierarchy->tree_level ? own : common, axis);
+                const float *low = bounds_of(hierarchy, level, at, axis);
                 assert_true((long double)low[0] <= value - wide);
                 assert_true((long double)low[LANES] >= value + wide);
             }
@@ -137,18 +138,18 @@ static void check_held(const bvh *f, uint32_t leaf, gap_motion m, uint32_t verte
 }
 
 /* Checks that the bounds of a leaf are no wider than documented. */
-static void check_leaf_tight(const bvh *f, uint32_t leaf, gap_motion m) {
-    const bvh_tree *p = &f->trees[f->leaf_trees[leaf]];
-    for (int axis = 0; axis < f->axis_count; axis++) {
+static void check_leaf_tight(const bvh *hierarchy, uint32_t leaf, gap_motion m) {
+    const bvh_tree *p = &hierarchy->trees[hierarchy->leaf_trees[leaf]];
+    for (int axis = 0; axis < hierarchy->axis_count; axis++) {
         long double least = INFINITY, greatest = -INFINITY;
         for (int i = 0; i < 6 * LANES; i++) {
             long double own[3];
-            uint32_t record = f->leaves[leaf].corners[i % 3][i / 6];
-            in_frame(f, p, m, f->record_vertices[record], i % 6 < 3 ? 0 : 2, own);
+            uint32_t record = hierarchy->leaves[leaf].corners[i % 3][i / 6];
+            in_frame(hierarchy, p, m, hierarchy->record_vertices[record], i % 6 < 3 ? 0 : 2, own);
             least = fminl(least, along_direction(own, axis));
             greatest = fmaxl(greatest, along_direction(own, axis));
         }
-        const float *low = bounds_of(f, 0, places[0][leaf], axis);
+        const float *low = bounds_of(hierarchy, 0, places[0][leaf], axis);
         long double slack = 2.0L * p->slack[axis < BOX_AXES ? 0 : 1];
         assert_true((long double)low[0] >= least - slack);
         assert_true((long double)low[LANES] <= greatest + slack);
@@ -156,33 +157,34 @@ static void check_leaf_tight(const bvh *f, uint32_t leaf, gap_motion m) {
 }
 
 /* Checks that bounds above the leaves are the union of those below. */
-static void check_union(const bvh *f, int level, uint32_t child) {
-    const lane_flags flags = f->levels[level - 1].flags[child];
-    for (int axis = 0; axis < f->axis_count; axis++) {
+static void check_union(const bvh *hierarchy, int level, uint32_t child) {
+    const lane_flags flags = hierarchy->levels[level - 1].flags[child];
+    for (int axis = 0; axis < hierarchy->axis_count; axis++) {
         float least = INFINITY, greatest = -INFINITY;
         for (uint32_t lane = 0; lane < LANES; lane++) {
-            const float *low = bounds_of(f, level - 1, (child_place){child, lane}, axis);
+            const float *low = bounds_of(hierarchy, level - 1, (child_place){child, lane}, axis);
             bool used = (flags.used >> lane & 1) != 0;
             if (!used) assert_true(low[0] > low[LANES]);
             least = used ? fminf(least, low[0]) : least;
             greatest = used ? fmaxf(greatest, low[LANES]) : greatest;
         }
-        if (level == f->tree_level) continue;
-        const float *low = bounds_of(f, level, places[level][child], axis);
+        if (level == hierarchy->tree_level) continue;
+        const float *low = bounds_of(hierarchy, level, places[level][child], axis);
         assert_true(low[0] == least && low[LANES] == greatest);
     }
 }
 
-static void check_bounds(const bvh *f, gap_motion m, double distance) {
-    for (uint32_t leaf = 0; leaf < f->leaf_count; leaf++) {
+static void check_bounds(const bvh *hierarchy, gap_motion m, double distance) {
+    for (uint32_t leaf = 0; leaf < hierarchy->leaf_count; leaf++) {
         for (int i = 0; i < 3 * LANES; i++) {
-            uint32_t record = f->leaves[leaf].corners[i % 3][i / 3];
-            check_held(f, leaf, m, f->record_vertices[record], distance);
+            uint32_t record = hierarchy->leaves[leaf].corners[i % 3][i / 3];
+            check_held(hierarchy, leaf, m, hierarchy->record_vertices[record], distance);
         }
-        check_leaf_tight(f, leaf, m);
+        check_leaf_tight(hierarchy, leaf, m);
     }
-    for (int level = 1; level < bounded_levels(f); level++) {
-        for (uint32_t child = 0; child < child_count(f, level); child++) check_union(f, level, child);
+    for (int level = 1; level < bounded_levels(hierarchy); level++) {
+        for (uint32_t child = 0; child < child_count(hierarchy, level); child++)
+            check_union(hierarchy, level, child);
     }
 }
 

@@ -38,14 +38,14 @@ static bool skin_rig_begin(cscd_simd simd, uint32_t region_count, double distanc
     memset(culled, true, sizeof culled);
     *out = (skin_rig){.distance = distance};
     if (!bvh_rig_create(&shape, (bvh_setup){simd, 2, BOX_AXES, region_count}, &out->rig)) return false;
-    bvh *f = &out->rig.bvh;
-    bvh_refit(f, shape.x0, shape.x0, uniform_growth(2.0 * distance));
-    assert_true(bvh_skin_reserve(&out->skin, f));
-    const orientation_lasting lasting = bvh_skin_lasting(&out->skin, f, distance, least);
+    bvh *hierarchy = &out->rig.bvh;
+    bvh_refit(hierarchy, shape.x0, shape.x0, uniform_growth(2.0 * distance));
+    assert_true(bvh_skin_reserve(&out->skin, hierarchy));
+    const orientation_lasting lasting = bvh_skin_lasting(&out->skin, hierarchy, distance, least);
     const orientation_query query = {
         .culled = culled, .detector_offsets = (const double(*)[3])offsets, .lasting = &lasting};
-    bvh_orient(f, &query, facing);
-    bvh_skin_set(&out->skin, f, distance);
+    bvh_orient(hierarchy, &query, facing);
+    bvh_skin_set(&out->skin, hierarchy, distance);
     return true;
 }
 

@@ -61,17 +61,17 @@ static double distance_from(const double x[3], uint32_t t) {
 }
 
 /* Returns how many were visited and farther away than the distance by more than one part in 200 and the rounding of floats. */
-static size_t compare_query(const bvh *f, const double x[3], double distance, size_t *within) {
+static size_t compare_query(const bvh *hierarchy, const double x[3], double distance, size_t *within) {
     visited v = {.count = 0};
     size_t beyond = 0;
-    double squared = distance * distance * f->scale * f->scale;
+    double squared = distance * distance * hierarchy->scale * hierarchy->scale;
     const near_quest quest = {0, 0, NULL};
-    bvh_visit_near(f, &quest, x, &squared, visit_triangle, &v);
+    bvh_visit_near(hierarchy, &quest, x, &squared, visit_triangle, &v);
     for (uint32_t t = 0; t < TRIANGLES; t++) {
         const double at = distance_from(x, t);
         if (at <= distance) assert_true(v.triangles[t]);
         *within += at <= distance;
-        beyond += v.triangles[t] && at > distance * 1.005 + 1e-5 / f->scale;
+        beyond += v.triangles[t] && at > distance * 1.005 + 1e-5 / hierarchy->scale;
     }
     return beyond;
 }
@@ -88,11 +88,11 @@ static void come_nearer(void *data, uint32_t triangle) {
     s->squared = s->least * s->least * s->scale * s->scale * (1.0 + 1e-9);
 }
 
-static void compare_nearest(const bvh *f, const double x[3]) {
-    narrowing_search s = {x, f->scale, (double)INFINITY, (double)INFINITY};
+static void compare_nearest(const bvh *hierarchy, const double x[3]) {
+    narrowing_search s = {x, hierarchy->scale, (double)INFINITY, (double)INFINITY};
     const near_quest quest = {0, 0, NULL};
     double least = (double)INFINITY;
-    bvh_visit_near(f, &quest, x, &s.squared, come_nearer, &s);
+    bvh_visit_near(hierarchy, &quest, x, &s.squared, come_nearer, &s);
     for (uint32_t t = 0; t < TRIANGLES; t++) least = fmin(least, distance_from(x, t));
     assert_true(s.least == least);
 }
@@ -107,14 +107,14 @@ static void point_near(random_stream *random, uint32_t t, double extent, double 
 }
 
 /* One of the triangles is just within the distance. */
-static void compare_cloud(const bvh *f, random_stream *random, size_t *within, size_t *beyond) {
+static void compare_cloud(const bvh *hierarchy, random_stream *random, size_t *within, size_t *beyond) {
     for (int i = 0; i < QUERIES; i++) {
         const uint32_t near = stream_below(random, TRIANGLES);
         double x[3];
-        point_near(random, near, 1.0 / f->scale, x);
+        point_near(random, near, 1.0 / hierarchy->scale, x);
         const double distance = distance_from(x, i % 4 == 0 ? stream_below(random, TRIANGLES) : near);
-        *beyond += compare_query(f, x, distance, within);
-        compare_nearest(f, x);
+        *beyond += compare_query(hierarchy, x, distance, within);
+        compare_nearest(hierarchy, x);
     }
 }
 

@@ -61,9 +61,9 @@ static void add_determinant(const exact_vector *a, const exact_vector *b, const 
 
 /* Computes the signs of the four exact Bernstein coefficients of (p0 - d) . n, where d is the tree's
  * detector point. */
-static void exact_signs(const double x0[9], const double x1[9], const bvh *f, int signs[4]) {
+static void exact_signs(const double x0[9], const double x1[9], const bvh *hierarchy, int signs[4]) {
     static const double zero[3] = {0.0, 0.0, 0.0};
-    const bvh_tree *p = &f->trees[0];
+    const bvh_tree *p = &hierarchy->trees[0];
     static exact_triangle t;
     static bool ready;
     exact_vector *vectors[6] = {&t.c[0], &t.c[1], &t.a[0], &t.a[1], &t.b[0], &t.b[1]};
@@ -72,7 +72,7 @@ static void exact_signs(const double x0[9], const double x1[9], const bvh *f, in
     for (int end = 0; end < 2; end++) {
         const double *x = end == 0 ? x0 : x1;
         double d[3];
-        for (int k = 0; k < 3; k++) d[k] = (double)p->detector[end][k] / f->scale;
+        for (int k = 0; k < 3; k++) d[k] = (double)p->detector[end][k] / hierarchy->scale;
         exact_difference(x, p->origin[end], d, &t.c[end]);
         exact_difference(x + 3, x, zero, &t.a[end]);
         exact_difference(x + 6, x, zero, &t.b[end]);
@@ -116,27 +116,27 @@ static void move_triangles(double offset, double speed) {
 }
 
 /* Moves a vertex so that triangle t lies nearly in one plane with the detector point at one end. */
-static void put_into_plane(bvh *f, uint32_t t, int end) {
+static void put_into_plane(bvh *hierarchy, uint32_t t, int end) {
     const double *x = (end == 0 ? shape.x0 : shape.x1) + (size_t)t * 9;
     double u = 3.0 * random_unit(), v = 3.0 * random_unit();
-    bvh_tree *p = &f->trees[0];
+    bvh_tree *p = &hierarchy->trees[0];
     for (int k = 0; k < 3; k++) {
         double at = x[k] + u * (x[3 + k] - x[k]) + v * (x[6 + k] - x[k]);
-        p->detector[end][k] = nudged_by((float)((at - p->origin[end][k]) * f->scale));
+        p->detector[end][k] = nudged_by((float)((at - p->origin[end][k]) * hierarchy->scale));
     }
 }
 
-static void place_detector(bvh *f, double speed, bool near_zero) {
-    bvh_tree *p = &f->trees[0];
+static void place_detector(bvh *hierarchy, double speed, bool near_zero) {
+    bvh_tree *p = &hierarchy->trees[0];
     for (int k = 0; k < 3; k++) {
-        p->detector[0][k] = (float)(2.0 * random_unit() * f->scale);
-        p->detector[1][k] = p->detector[0][k] + (float)(speed * random_unit() * f->scale);
+        p->detector[0][k] = (float)(2.0 * random_unit() * hierarchy->scale);
+        p->detector[1][k] = p->detector[0][k] + (float)(speed * random_unit() * hierarchy->scale);
     }
     if (!near_zero) return;
     uint32_t t = (uint32_t)random_integer(0, BATCH_SIZE - 1);
     int where = random_integer(0, 2); /* at the start, at the end, or at both */
-    if (where != 1) put_into_plane(f, t, 0);
-    if (where != 0) put_into_plane(f, t, 1);
+    if (where != 1) put_into_plane(hierarchy, t, 0);
+    if (where != 0) put_into_plane(hierarchy, t, 1);
 }
 
 /* Creates a BVH for each level of vector instructions that the processor has; returns how many there are. */
@@ -147,14 +147,14 @@ static uint32_t open_levels(bvh_rig levels[SIMD_LAST]) {
     return count;
 }
 
-static void orient_all(bvh *f, uint8_t *flags) {
-    f->kernels->orient(f, &f->trees[0], 0, f->leaf_count, NULL, flags);
+static void orient_all(bvh *hierarchy, uint8_t *flags) {
+    hierarchy->kernels->orient(hierarchy, &hierarchy->trees[0], 0, hierarchy->leaf_count, NULL, flags);
 }
 
-static void check_batch(const bvh *f, const uint8_t *flags, int count[4], int *lost) {
+static void check_batch(const bvh *hierarchy, const uint8_t *flags, int count[4], int *lost) {
     for (uint32_t t = 0; t < BATCH_SIZE; t++) {
         int signs[4];
-        exact_signs(shape.x0 + (size_t)t * 9, shape.x1 + (size_t)t * 9, f, signs);
+        exact_signs(shape.x0 + (size_t)t * 9, shape.x1 + (size_t)t * 9, hierarchy, signs);
         int sum = signs[0] + signs[1] + signs[2] + signs[3];
         if (flags[t] == ORIENTATION_PLUS) assert_int_equal(sum, 4);
         if (flags[t] == ORIENTATION_MINUS) assert_int_equal(sum, -4);
@@ -173,11 +173,12 @@ TEST(signs_are_exact) {
         uint8_t flags[SIMD_LAST][BATCH_SIZE];
         move_triangles(random_integer(0, 1) ? 0.0 : ldexp(random_unit(), random_integer(0, 20)), speed);
         for (uint32_t l = 0; l < level_count; l++) {
-            bvh *f = &levels[l].bvh;
-            bvh_refit(f, shape.x0, shape.x1, uniform_growth(0.0));
-            if (l == 0) place_detector(f, speed, i % 3 == 0);
-            memcpy(f->trees[0].detector, levels[0].bvh.trees[0].detector, sizeof f->trees[0].detector);
-            orient_all(f, flags[l]);
+            bvh *hierarchy = &levels[l].bvh;
+            bvh_refit(hierarchy, shape.x0, shape.x1, uniform_growth(0.0));
+            if (l == 0) place_detector(hierarchy, speed, i % 3 == 0);
+            memcpy(hierarchy->trees[0].detector, levels[0].bvh.trees[0].detector,
+                   sizeof hierarchy->trees[0].detector);
+            orient_all(hierarchy, flags[l]);
             assert_memory_equal(flags[l], flags[0], sizeof flags[l]);
         }
         check_batch(&levels[0].bvh, flags[0], count, &lost);
@@ -189,16 +190,17 @@ TEST(signs_are_exact) {
     assert_true(lost < TRIANGLE_COUNT / 10);
 }
 
-static uint8_t orientation_from(bvh *f, double end_height, const double start[3], const double end[3]) {
+static uint8_t orientation_from(bvh *hierarchy, double end_height, const double start[3],
+                                const double end[3]) {
     uint8_t flag;
     for (int i = 0; i < 3; i++) shape.x1[3 * i + 2] = end_height;
-    bvh_refit(f, shape.x0, shape.x1, uniform_growth(0.0));
-    bvh_tree *p = &f->trees[0];
+    bvh_refit(hierarchy, shape.x0, shape.x1, uniform_growth(0.0));
+    bvh_tree *p = &hierarchy->trees[0];
     for (int k = 0; k < 3; k++) {
-        p->detector[0][k] = (float)((start[k] - p->origin[0][k]) * f->scale);
-        p->detector[1][k] = (float)((end[k] - p->origin[1][k]) * f->scale);
+        p->detector[0][k] = (float)((start[k] - p->origin[0][k]) * hierarchy->scale);
+        p->detector[1][k] = (float)((end[k] - p->origin[1][k]) * hierarchy->scale);
     }
-    orient_all(f, &flag);
+    orient_all(hierarchy, &flag);
     return flag;
 }
 
@@ -237,15 +239,15 @@ static void expected_point(const bvh_rig *r, uint32_t region, const double *x, l
 }
 
 static void check_points(const bvh_rig *r, const double (*offsets)[3]) {
-    const bvh *f = &r->bvh;
+    const bvh *hierarchy = &r->bvh;
     double extent = motion_extent((gap_motion){shape.x0, shape.x1}, shape.vertex_count);
-    for (uint32_t i = 0; i < f->tree_count; i++) {
-        const bvh_tree *p = &f->trees[i];
+    for (uint32_t i = 0; i < hierarchy->tree_count; i++) {
+        const bvh_tree *p = &hierarchy->trees[i];
         for (int end = 0; end < 2; end++) {
             long double expected[3];
             expected_point(r, p->region, end == 0 ? shape.x0 : shape.x1, expected);
             for (int k = 0; k < 3; k++) {
-                long double found = p->origin[end][k] + (long double)p->detector[end][k] / f->scale;
+                long double found = p->origin[end][k] + (long double)p->detector[end][k] / hierarchy->scale;
                 long double wanted = expected[k] + offsets[p->region][k];
                 assert_true(fabsl(found - wanted) <= 0x1p-20L * extent);
             }
@@ -288,13 +290,14 @@ static void orient_sphere(bvh_rig *r) {
 }
 
 /* Returns how many leaves and children of blocks have a flag. */
-static uint32_t count_flags(const bvh *f) {
+static uint32_t count_flags(const bvh *hierarchy) {
     uint32_t count = 0;
-    for (uint32_t i = 0; i < f->leaf_count; i++)
-        count += (f->leaf_flags[i].plus | f->leaf_flags[i].minus | f->leaf_flags[i].newly_kept) != 0;
-    for (int level = 0; level < f->level_count; level++) {
-        for (uint32_t b = 0; b < f->levels[level].block_count; b++) {
-            const lane_flags flags = f->levels[level].flags[b];
+    for (uint32_t i = 0; i < hierarchy->leaf_count; i++)
+        count += (hierarchy->leaf_flags[i].plus | hierarchy->leaf_flags[i].minus |
+                  hierarchy->leaf_flags[i].newly_kept) != 0;
+    for (int level = 0; level < hierarchy->level_count; level++) {
+        for (uint32_t b = 0; b < hierarchy->levels[level].block_count; b++) {
+            const lane_flags flags = hierarchy->levels[level].flags[b];
             count += (flags.plus | flags.minus | flags.newly_kept) != 0;
         }
     }
@@ -316,18 +319,18 @@ TEST(all_leaves_are_oriented_and_refits_forget_it) {
 TEST(what_had_a_sign_and_has_none_is_newly_kept) {
     bvh_rig r;
     orient_sphere(&r);
-    const bvh *f = &r.bvh;
+    const bvh *hierarchy = &r.bvh;
     for (uint32_t t = 0; t < shape.triangle_count; t++) {
         orientations[0][t] = (uint8_t)random_integer(ORIENTATION_ZERO, ORIENTATION_MINUS);
         orientations[1][t] = random_integer(0, 1) == 0 ? orientations[0][t] : ORIENTATION_ZERO;
     }
     bvh_mark_newly_kept(&r.bvh, orientations[0], orientations[1]);
-    for (uint32_t i = 0; i < f->leaf_count; i++) {
-        for (uint32_t lane = 0; lane < LANES && (f->leaf_flags[i].used >> lane & 1) != 0; lane++) {
-            const uint32_t t = f->leaves[i].triangles[lane];
+    for (uint32_t i = 0; i < hierarchy->leaf_count; i++) {
+        for (uint32_t lane = 0; lane < LANES && (hierarchy->leaf_flags[i].used >> lane & 1) != 0; lane++) {
+            const uint32_t t = hierarchy->leaves[i].triangles[lane];
             const bool expected =
                 orientations[0][t] != ORIENTATION_ZERO && orientations[1][t] == ORIENTATION_ZERO;
-            assert_int_equal(f->leaf_flags[i].newly_kept >> lane & 1, expected);
+            assert_int_equal(hierarchy->leaf_flags[i].newly_kept >> lane & 1, expected);
         }
     }
     bvh_rig_destroy(&r);

@@ -22,9 +22,9 @@ static scene shape; /* large; one test at a time */
 static pair_table all, kept, others;
 
 /* Adds a pair; fails when its triangles are the same or the table has it already. */
-static void add_pair(const bvh *f, triangle_pair pair, pair_table *out) {
-    uint32_t a = bvh_triangle(f, pair.a), b = bvh_triangle(f, pair.b);
-    assert_true(a < f->mesh->triangle_count && b < f->mesh->triangle_count && a != b);
+static void add_pair(const bvh *hierarchy, triangle_pair pair, pair_table *out) {
+    uint32_t a = bvh_triangle(hierarchy, pair.a), b = bvh_triangle(hierarchy, pair.b);
+    assert_true(a < hierarchy->mesh->triangle_count && b < hierarchy->mesh->triangle_count && a != b);
     uint8_t *place = &out->found[a < b ? a : b][a < b ? b : a];
     assert_int_equal(*place, 0);
     *place = 1;

@@ -164,19 +164,20 @@ TEST(faults_of_active_sets) {
     const uint32_t vertices[2] = {3, 40};
     expect_ok(cscd_detector_set_active(d, vertices, 2));
     assert_null(detector_validate(d));
-    bvh *f = &d->space.bvh;
+    bvh *hierarchy = &d->space.bvh;
     active_set *set = &d->space.active;
     PLANT(detector_validate, d, set->vertices[50], true, "a triangle is not as active as its vertices");
     PLANT(detector_validate, d, set->triangles[0], !set->triangles[0],
           "a triangle is not as active as its vertices");
     PLANT(detector_validate, d, d->rebuild.active, NULL,
           "the trees and their detector have different active sets");
-    PLANT(detector_validate, d, f->leaf_inactive, NULL,
+    PLANT(detector_validate, d, hierarchy->leaf_inactive, NULL,
           "the trees and their detector have different active sets");
-    PLANT(detector_validate, d, f->leaf_inactive[1], (uint8_t)~f->leaf_inactive[1],
+    PLANT(detector_validate, d, hierarchy->leaf_inactive[1], (uint8_t)~hierarchy->leaf_inactive[1],
           "a leaf has the wrong active triangles");
-    PLANT(detector_validate, d, f->levels[0].inactive_lanes, NULL, "a level does not know its active blocks");
-    PLANT(detector_validate, d, f->levels[1].inactive_lanes[0], 0xff,
+    PLANT(detector_validate, d, hierarchy->levels[0].inactive_lanes, NULL,
+          "a level does not know its active blocks");
+    PLANT(detector_validate, d, hierarchy->levels[1].inactive_lanes[0], 0xff,
           "a block has the wrong active children");
     expect_ok(cscd_detector_set_active(d, NULL, 0));
     assert_null(detector_validate(d));

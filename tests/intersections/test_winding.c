@@ -22,11 +22,11 @@ static winding_tally tally_of(tally_rig *r) {
     return (winding_tally){r->numbers, r->is_touched, r->touched, 0};
 }
 
-static int compare_corner(const grid_scene *s, const bvh *f, corner_side at) {
+static int compare_corner(const grid_scene *s, const bvh *hierarchy, corner_side at) {
     tally_rig memory;
     winding_tally tally = tally_of(&memory);
     int largest = 0;
-    winding_find(&s->surface, f, at, &tally);
+    winding_find(&s->surface, hierarchy, at, &tally);
     for (uint32_t object = 0; object < s->object_count; object++) {
         int truth = winding_oracle_number(s, at, object);
         assert_int_equal(tally.numbers[object], truth);
@@ -43,15 +43,16 @@ TEST(numbers_are_those_of_polynomials) {
     int wound = 0, twice = 0;
     for (uint64_t seed = 0; seed < 5 * GRIDS; seed++) {
         grid_scene s;
-        bvh f;
+        bvh hierarchy;
         grid_scene_make(families[seed % 5], 1000 + seed, &s);
-        mesh_trees_build(s.mesh, s.positions, seed % 3 == 0 ? KDOP_AXES : BOX_AXES, &f);
+        mesh_trees_build(s.mesh, s.positions, seed % 3 == 0 ? KDOP_AXES : BOX_AXES, &hierarchy);
         for (uint32_t i = 0; i < s.mesh->triangle_count * 6; i++) {
-            int number = compare_corner(&s, &f, (corner_side){i / 6, (uint8_t)(i % 3), i / 3 % 2 == 0});
+            int number =
+                compare_corner(&s, &hierarchy, (corner_side){i / 6, (uint8_t)(i % 3), i / 3 % 2 == 0});
             wound += number > 0;
             twice += number > 1;
         }
-        bvh_free(&f);
+        bvh_free(&hierarchy);
         grid_scene_free(&s);
     }
     print_message("  %d points are wound around, %d of them more than once\n", wound, twice);

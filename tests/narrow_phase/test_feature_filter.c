@@ -58,22 +58,22 @@ static bool share_vertex(const feature_points *p) {
 
 /* As documented: 48 u of both reaches and of what lies between the trees, along diagonals; as much again is
  * what a gap may be off. */
-static long double slack_between(const bvh *f, triangle_pair pair) {
-    const bvh_tree *p = &f->trees[f->leaf_trees[pair.a / LANES]];
-    const bvh_tree *q = &f->trees[f->leaf_trees[pair.b / LANES]];
+static long double slack_between(const bvh *hierarchy, triangle_pair pair) {
+    const bvh_tree *p = &hierarchy->trees[hierarchy->leaf_trees[pair.a / LANES]];
+    const bvh_tree *q = &hierarchy->trees[hierarchy->leaf_trees[pair.b / LANES]];
     long double size = (long double)p->reach + q->reach;
     for (int i = 0; i < 6; i++) {
         double from = p->origin[i / 3][i % 3], to = q->origin[i / 3][i % 3];
-        size += (fabs(to - from) + 0x1p-24 * (fabs(from) + fabs(to))) * f->scale;
+        size += (fabs(to - from) + 0x1p-24 * (fabs(from) + fabs(to))) * hierarchy->scale;
     }
-    return 0x1p-18L * size / f->scale;
+    return 0x1p-18L * size / hierarchy->scale;
 }
 
 static void check_features(uint32_t i, double distance) {
-    const bvh *f = &levels[0].bvh;
-    const uint32_t *a = shape.triangles + (size_t)bvh_triangle(f, pairs[i].a) * 3;
-    const uint32_t *b = shape.triangles + (size_t)bvh_triangle(f, pairs[i].b) * 3;
-    long double slack = slack_between(f, pairs[i]);
+    const bvh *hierarchy = &levels[0].bvh;
+    const uint32_t *a = shape.triangles + (size_t)bvh_triangle(hierarchy, pairs[i].a) * 3;
+    const uint32_t *b = shape.triangles + (size_t)bvh_triangle(hierarchy, pairs[i].b) * 3;
+    long double slack = slack_between(hierarchy, pairs[i]);
     for (int bit = 0; bit < 15; bit++) {
         bool kept = (features[0][i] >> bit & 1) != 0;
         feature_points p = points_of(a, b, bit);
@@ -102,15 +102,16 @@ static void choose_pairs(random_stream *random) {
 }
 
 /* Any number of pairs at a time, and no more of them is written. */
-static void feature_filter_in_runs(const bvh *f, double distance, uint16_t *out) {
+static void feature_filter_in_runs(const bvh *hierarchy, double distance, uint16_t *out) {
     enum { UNWRITTEN = 0xffff };
     uint32_t run = 1;
     for (uint32_t i = 0; i < PAIR_COUNT; i += run, run = run % 20 + 1) {
         uint32_t count = PAIR_COUNT - i < run ? PAIR_COUNT - i : run;
         uint16_t some[32];
         for (uint32_t k = 0; k < 32; k++) some[k] = k < count ? FEATURE_ALL : UNWRITTEN;
-        swept_interval interval = {.bvh = f, .limit = {distance, 0.0}};
-        narrow_phase_kernels_of(f->mesh->context)->feature_filter(&interval, pairs + i, count, false, some);
+        swept_interval interval = {.bvh = hierarchy, .limit = {distance, 0.0}};
+        narrow_phase_kernels_of(hierarchy->mesh->context)
+            ->feature_filter(&interval, pairs + i, count, false, some);
         for (uint32_t k = count; k < 32; k++) assert_int_equal(some[k], UNWRITTEN);
         memcpy(out + i, some, count * sizeof *some);
     }
@@ -121,8 +122,8 @@ static void check_scene(random_stream *random, uint32_t region_count, double dis
     open_levels(region_count, distance);
     choose_pairs(random);
     for (uint32_t l = 0; l < level_count; l++) {
-        const bvh *f = &levels[l].bvh;
-        feature_filter_in_runs(f, distance, features[l]);
+        const bvh *hierarchy = &levels[l].bvh;
+        feature_filter_in_runs(hierarchy, distance, features[l]);
         assert_memory_equal(features[l], features[0], sizeof features[l]);
     }
     for (uint32_t i = 0; i < PAIR_COUNT; i++) check_features(i, distance);

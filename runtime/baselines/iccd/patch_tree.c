@@ -11,9 +11,9 @@ typedef struct pending_node {
     uint32_t first, height, parent;
 } pending_node;
 
-static uint32_t triangles_of(const bvh *f, const bvh_tree *p) {
+static uint32_t triangles_of(const bvh *hierarchy, const bvh_tree *p) {
     uint32_t last = p->first_leaf + p->leaf_count - 1;
-    return (p->leaf_count - 1) * LANES + (uint32_t)__builtin_popcount(f->leaf_flags[last].used);
+    return (p->leaf_count - 1) * LANES + (uint32_t)__builtin_popcount(hierarchy->leaf_flags[last].used);
 }
 
 /* Trees follow each other. */
@@ -23,9 +23,9 @@ static uint32_t triangles_before(const patch_tree *tree) {
     return last->first + last->count;
 }
 
-static void add_tree(const bvh *f, uint32_t index, uint32_t leaf_height, patch_tree *tree) {
-    const bvh_tree *p = &f->trees[index];
-    uint32_t count = triangles_of(f, p), before = triangles_before(tree), depth = 0, height = 0;
+static void add_tree(const bvh *hierarchy, uint32_t index, uint32_t leaf_height, patch_tree *tree) {
+    const bvh_tree *p = &hierarchy->trees[index];
+    uint32_t count = triangles_of(hierarchy, p), before = triangles_before(tree), depth = 0, height = 0;
     pending_node stack[DEPTH_MAX];
     while ((uint64_t)1 << height < count) height++;
     tree->roots[tree->root_count++] = tree->node_count;
@@ -39,7 +39,7 @@ static void add_tree(const bvh *f, uint32_t index, uint32_t leaf_height, patch_t
         tree->nodes[node] = (patch_node){
             .first = first, .count = size, .tree = index, .first_slot = at.first, .height = at.height};
         if (at.height <= leaf_height) {
-            const bvh_leaf *l = &f->leaves[p->first_leaf + at.first / LANES];
+            const bvh_leaf *l = &hierarchy->leaves[p->first_leaf + at.first / LANES];
             memcpy(tree->triangles + first, l->triangles + at.first % LANES, size * sizeof *l->triangles);
             continue;
         }
@@ -49,19 +49,20 @@ static void add_tree(const bvh *f, uint32_t index, uint32_t leaf_height, patch_t
     }
 }
 
-cscd_status patch_tree_build(const bvh *f, uint32_t leaf_height, patch_tree *out) {
-    cscd_context *context = f->mesh->context;
+cscd_status patch_tree_build(const bvh *hierarchy, uint32_t leaf_height, patch_tree *out) {
+    cscd_context *context = hierarchy->mesh->context;
     patch_tree tree = {0};
-    size_t leaves = leaf_height == 0 ? f->mesh->triangle_count : 0;
-    for (uint32_t i = 0; i < f->tree_count && leaf_height > 0; i++) leaves += f->trees[i].leaf_count;
+    size_t leaves = leaf_height == 0 ? hierarchy->mesh->triangle_count : 0;
+    for (uint32_t i = 0; i < hierarchy->tree_count && leaf_height > 0; i++)
+        leaves += hierarchy->trees[i].leaf_count;
     tree.nodes = context_allocate(context, leaves * 2, sizeof *tree.nodes);
-    tree.triangles = context_allocate(context, f->mesh->triangle_count, sizeof *tree.triangles);
-    tree.roots = context_allocate(context, f->tree_count, sizeof *tree.roots);
+    tree.triangles = context_allocate(context, hierarchy->mesh->triangle_count, sizeof *tree.triangles);
+    tree.roots = context_allocate(context, hierarchy->tree_count, sizeof *tree.roots);
     if (tree.nodes == NULL || tree.triangles == NULL || tree.roots == NULL) {
         patch_tree_free(context, &tree);
         return CSCD_OUT_OF_MEMORY;
     }
-    for (uint32_t i = 0; i < f->tree_count; i++) add_tree(f, i, leaf_height, &tree);
+    for (uint32_t i = 0; i < hierarchy->tree_count; i++) add_tree(hierarchy, i, leaf_height, &tree);
     *out = tree;
     return CSCD_OK;
 }
@@ -80,21 +81,21 @@ static uint64_t bits_of_square(uint32_t first, uint32_t count) {
     return bits;
 }
 
-static void hide_patch(const patch_node *node, bvh *f) {
+static void hide_patch(const patch_node *node, bvh *hierarchy) {
     if (node->height <= LEAF_HEIGHT) {
-        uint32_t index = f->trees[node->tree].first_leaf + node->first_slot / LANES;
-        f->leaf_self_pairs[index] &= ~bits_of_square(node->first_slot % LANES, 1u << node->height);
+        uint32_t index = hierarchy->trees[node->tree].first_leaf + node->first_slot / LANES;
+        hierarchy->leaf_self_pairs[index] &= ~bits_of_square(node->first_slot % LANES, 1u << node->height);
         return;
     }
     int level = (int)(node->height - LEAF_HEIGHT - 1) / HEIGHT_PER_LEVEL;
     uint32_t unit_height = LEAF_HEIGHT + HEIGHT_PER_LEVEL * (uint32_t)level;
     uint32_t child = node->first_slot >> unit_height, count = 1u << (node->height - unit_height);
-    uint32_t block = f->trees[node->tree].first_blocks[level] + child / LANES;
-    f->levels[level].self_pairs[block] &= ~bits_of_square(child % LANES, count);
+    uint32_t block = hierarchy->trees[node->tree].first_blocks[level] + child / LANES;
+    hierarchy->levels[level].self_pairs[block] &= ~bits_of_square(child % LANES, count);
 }
 
-void patch_tree_hide(const patch_tree *tree, const bool *sealed, bvh *f) {
+void patch_tree_hide(const patch_tree *tree, const bool *sealed, bvh *hierarchy) {
     for (uint32_t i = 0; i < tree->node_count; i++) {
-        if (sealed[i]) hide_patch(&tree->nodes[i], f);
+        if (sealed[i]) hide_patch(&tree->nodes[i], hierarchy);
     }
 }

@@ -23,7 +23,7 @@ typedef struct patch_tree {
 
 /* Nodes of this height or less are leaves: 0 (one triangle each), or 3 (those of a leaf of the BVH). *out is untouched unless
  * CSCD_OK. */
-cscd_status patch_tree_build(const bvh *f, uint32_t leaf_height, patch_tree *out);
+cscd_status patch_tree_build(const bvh *hierarchy, uint32_t leaf_height, patch_tree *out);
 void patch_tree_free(cscd_context *context, patch_tree *tree);
 
 static inline bool patch_is_leaf(const patch_node *node) {
@@ -31,4 +31,4 @@ static inline bool patch_is_leaf(const patch_node *node) {
 }
 
 /* Hides in a BVH the pairs that lie in one patch of `sealed`, which is given per node. */
-void patch_tree_hide(const patch_tree *tree, const bool *sealed, bvh *f);
+void patch_tree_hide(const patch_tree *tree, const bool *sealed, bvh *hierarchy);

@@ -57,14 +57,14 @@ void translate(double *x, uint32_t vertex_count, const double by[3]) {
     for (size_t i = 0; i < (size_t)vertex_count * 3; i++) x[i] += by[i % 3];
 }
 
-void in_frame(const bvh *f, const bvh_tree *p, gap_motion m, uint32_t vertex, int moment,
+void in_frame(const bvh *hierarchy, const bvh_tree *p, gap_motion m, uint32_t vertex, int moment,
               long double out[3]) {
     long double t = 0.5L * moment;
     for (size_t k = 0; k < 3; k++) {
         size_t at = (size_t)vertex * 3 + k;
-        const bvh_tree *frame = p != NULL ? p : &f->trees[0];
+        const bvh_tree *frame = p != NULL ? p : &hierarchy->trees[0];
         long double start = (long double)m.x0[at] - frame->origin[0][k];
         long double end = (long double)m.x1[at] - frame->origin[1][k];
-        out[k] = ((1.0L - t) * start + t * end) * f->scale;
+        out[k] = ((1.0L - t) * start + t * end) * hierarchy->scale;
     }
 }

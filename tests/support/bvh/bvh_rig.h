@@ -30,4 +30,5 @@ void translate(double *x, uint32_t vertex_count, const double by[3]);
 
 /* Computes where a vertex is at t = moment / 2, in the frame of tree p (of the first tree when p is NULL),
  * scaled as the BVH scales. */
-void in_frame(const bvh *f, const bvh_tree *p, gap_motion m, uint32_t vertex, int moment, long double out[3]);
+void in_frame(const bvh *hierarchy, const bvh_tree *p, gap_motion m, uint32_t vertex, int moment,
+              long double out[3]);
