@@ -6,8 +6,7 @@
 #include "tool/common/terminal.h"
 #include "tool/io/output_file.h"
 #include "tool/jobs/job_merge.h"
-#include "tool/replay/replay_merge.h"
-#include "tool/replay/shard_file.h"
+#include "tool/replay/replay.h"
 
 #include <errno.h>
 #include <sys/stat.h>

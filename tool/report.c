@@ -7,7 +7,7 @@
 #include "tool/common/output_path.h"
 #include "tool/common/provenance.h"
 #include "tool/jobs_report.h"
-#include "tool/replay/shard_file.h"
+#include "tool/replay/replay.h"
 #include "tool/summary_file.h"
 
 #include <stdio.h>

@@ -4,7 +4,7 @@
 #include "tool/answers/answer_options.h"
 #include "tool/common/frame_range.h"
 #include "tool/common/ignore_pairs.h"
-#include "tool/export/exports.h"
+#include "tool/export/export.h"
 #include "tool/jobs/list_options.h"
 
 typedef struct check_options {

@@ -1,7 +1,6 @@
 /* Frames as binary PLY files, whose vertices and faces have the arrays of an export as properties. */
-#include "tool/export/ply_output.h"
 
-#include "tool/export/export_names.h"
+#include "tool/export/export_values.h"
 #include "tool/io/output_file.h"
 
 #include <errno.h>

@@ -1,5 +1,5 @@
 /* Lists of what to select in a modelling program: vertices and polygons of triangles that cross, part by part. */
-#include "tool/export/selection_output.h"
+#include "tool/export/export_values.h"
 
 #include <stdlib.h>
 

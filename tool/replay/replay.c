@@ -4,8 +4,7 @@
 #include "tool/common/output_path.h"
 #include "tool/jobs/listed_recordings.h"
 #include "tool/jobs/recording_answer.h"
-#include "tool/replay/replay_print.h"
-#include "tool/replay/replay_shard.h"
+#include "tool/replay/replay_run.h"
 #include "tool/replay/replay_sink.h"
 #include "tool/replay/shard_file.h"
 

@@ -28,9 +28,6 @@ typedef enum shard_record {
     SHARD_INTERVAL  /* an interval and the frame at its end */
 } shard_record;
 
-/* Is it such a file? Any file that cannot be read is none. */
-bool shard_file_recognise(const char *path);
-
 /* ---- reading ----------------------------------------------------------------------------------------------- */
 
 typedef struct shard_reader {

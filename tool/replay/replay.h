@@ -1,4 +1,4 @@
-/* The shards of one recording, brought together. */
+/* What other commands use of replay: merging the shards of one recording, and telling their files from others. */
 #pragma once
 
 #include <stdbool.h>
@@ -22,3 +22,6 @@ typedef struct merge_request {
 /* Says and writes what one run of the whole recording says and writes, byte for byte but for its times and its command line. Returns
  * the exit code, that of such a run. */
 int replay_merge(const merge_request *request);
+
+/* Is it the file of a shard of one recording? A file that cannot be read is none. */
+bool shard_file_recognise(const char *path);
