@@ -5,7 +5,7 @@
 #include "tool/common/frame_range.h"
 #include "tool/common/option_values.h"
 #include "tool/common/recording.h"
-#include "tool/picture/scene.h"
+#include "tool/picture/picture.h"
 
 typedef struct sense_options {
     recording_options source;

@@ -1,7 +1,7 @@
 /* A picture of cells, particles and the vertices that these have visited. */
 #include "sensors/tool/sense_picture.h"
 
-#include "tool/picture/colour.h"
+#include "tool/picture/picture.h"
 
 #include <math.h>
 #include <stdio.h>

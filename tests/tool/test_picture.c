@@ -1,7 +1,6 @@
 /* The renderer: known pixels, hidden surfaces, markers, and PNG files that read back or leave nothing. */
 #include "tests/support/test.h"
-#include "tool/picture/colour.h"
-#include "tool/picture/scene.h"
+#include "tool/picture/picture.h"
 
 #include <math.h>
 #include <png.h>

@@ -1,8 +1,7 @@
 /* The parts of strips and scenery: sheets of tiles, cameras for many frames, shadows, squares, the second
  * mesh. */
 #include "tests/support/test.h"
-#include "tool/picture/scene.h"
-#include "tool/picture/sheet.h"
+#include "tool/picture/picture.h"
 
 #include <math.h>
 #include <stdlib.h>

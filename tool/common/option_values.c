@@ -8,7 +8,7 @@
 #include "tool/common/recording.h"
 #include "tool/io/gltf.h"
 #include "tool/io/path_name.h"
-#include "tool/picture/scene.h"
+#include "tool/picture/picture.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,7 +2,7 @@
 #include "tool/common/plan_colours.h"
 
 #include "tool/io/growable.h"
-#include "tool/picture/colour.h"
+#include "tool/picture/picture.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -3,7 +3,7 @@
 
 #include "tool/io/animation.h"
 #include "tool/io/mesh_file.h"
-#include "tool/picture/scene.h"
+#include "tool/picture/picture.h"
 
 typedef struct scenery {
     picture_mesh mesh; /* points into the file */

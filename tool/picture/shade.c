@@ -2,7 +2,7 @@
  * does), and averages in linear light. */
 #include "tool/picture/shade.h"
 
-#include "tool/picture/colour.h"
+#include "tool/picture/picture.h"
 
 #include <math.h>
 #include <string.h>

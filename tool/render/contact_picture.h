@@ -2,7 +2,7 @@
 #pragma once
 
 #include "tool/common/ignore_pairs.h"
-#include "tool/picture/scene.h"
+#include "tool/picture/picture.h"
 
 typedef struct contact_picture {
     picture_scene scene; /* points into the arrays below */

@@ -2,7 +2,7 @@
 #include "tool/render/plan_picture.h"
 
 #include "tool/common/plan_colours.h"
-#include "tool/picture/colour.h"
+#include "tool/picture/picture.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -4,7 +4,7 @@
 #include "tool/common/frame_range.h"
 #include "tool/common/ignore_pairs.h"
 #include "tool/common/option_values.h"
-#include "tool/picture/scene.h"
+#include "tool/picture/picture.h"
 
 typedef enum colouring {
     COLOUR_PLAIN,

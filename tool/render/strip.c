@@ -1,7 +1,7 @@
 /* Several frames of a recording side by side in one picture. */
 #include "tool/render/strip.h"
 
-#include "tool/picture/sheet.h"
+#include "tool/picture/picture.h"
 
 #include <math.h>
 #include <stdio.h>

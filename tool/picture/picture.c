@@ -1,8 +1,11 @@
-/* Renders a scene: places the camera, projects, finds what is visible, shades, draws the markers and
- * writes the file. */
-#include "tool/picture/scene.h"
+/* Renders a scene: places the camera, projects, finds what is visible, shades, draws the markers and writes the file. Puts pictures side
+ * by side, and gives numbers colours. */
+#include "tool/picture/picture.h"
 
+#include <assert.h>
+#include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 picture_options picture_options_defaults(void) {
     return (picture_options){.width = 1280,
@@ -147,4 +150,97 @@ bool picture_render(const picture_scene *scene, const picture_options *options, 
     bool written = picture_image_write_png(png_path, &image, error);
     picture_image_free(&image);
     return written;
+}
+
+/* ---- colours of numbers ---------------------------------------------------------------------------------- */
+
+/* The transfer functions of IEC 61966-2-1. */
+static double decode_srgb(double value) {
+    return value <= 0.04045 ? value / 12.92 : pow((value + 0.055) / 1.055, 2.4);
+}
+
+static double encode_srgb(double linear) {
+    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1.0 / 2.4) - 0.055;
+}
+
+void picture_gamma_set(picture_gamma *out) {
+    for (int i = 0; i < 256; i++) out->linear[i] = (float)decode_srgb(i / 255.0);
+    for (int i = 0; i <= PICTURE_ENCODE_STEPS; i++)
+        out->encoded[i] = (uint8_t)(255.0 * encode_srgb((double)i / PICTURE_ENCODE_STEPS) + 0.5);
+}
+
+uint8_t picture_gamma_encode(const picture_gamma *gamma, double linear) {
+    if (!(linear > 0.0)) return 0;
+    return gamma->encoded[linear < 1.0 ? (int)(linear * PICTURE_ENCODE_STEPS + 0.5) : PICTURE_ENCODE_STEPS];
+}
+
+/* Viridis (Smith and van der Walt, 2015, in the public domain) at every eighth; linear between is not told
+ * apart by the eye. */
+static const uint8_t viridis[9][3] = {{68, 1, 84},    {71, 44, 122},  {59, 81, 139},
+                                      {44, 113, 142}, {33, 144, 141}, {39, 173, 129},
+                                      {92, 200, 99},  {170, 220, 50}, {253, 231, 37}};
+
+void picture_colour_map(double value, uint8_t rgb[3]) {
+    double place = 8.0 * (value > 0.0 ? fmin(value, 1.0) : 0.0);
+    int lower = place < 7.0 ? (int)place : 7;
+    double share = place - lower;
+    for (int i = 0; i < 3; i++)
+        rgb[i] = (uint8_t)(viridis[lower][i] * (1.0 - share) + viridis[lower + 1][i] * share + 0.5);
+}
+
+/* The colours of Okabe and Ito (2008), told apart with any colour vision; then the same lighter, and
+ * darker. */
+void picture_colour_category(uint32_t index, uint8_t rgb[3]) {
+    static const uint8_t hues[7][3] = {{86, 180, 233}, {230, 159, 0}, {0, 158, 115},  {213, 94, 0},
+                                       {240, 228, 66}, {0, 114, 178}, {204, 121, 167}};
+    static const struct {
+        uint16_t target, share; /* how many 256ths of the way to this grey */
+    } tones[3] = {{0, 0}, {255, 128}, {0, 112}};
+    const uint8_t *hue = hues[index % 7];
+    uint32_t tone = index / 7 % 3, share = tones[tone].share, target = tones[tone].target;
+    for (int i = 0; i < 3; i++) rgb[i] = (uint8_t)((hue[i] * (256 - share) + target * share) / 256);
+}
+
+/* ---- several pictures as one ----------------------------------------------------------------------------- */
+
+static const uint8_t line_colour[3] = {150, 152, 156};
+
+/* Lines to the left and above, but not at the rim of the sheet. */
+static void rule_place(picture_sheet *sheet, uint32_t index) {
+    uint32_t left = index % sheet->columns * sheet->tile_width,
+             top = index / sheet->columns * sheet->tile_height;
+    for (uint32_t row = 0; left > 0 && row < sheet->tile_height; row++)
+        picture_image_blend(&sheet->image, left, top + row, line_colour, 1.0);
+    for (uint32_t column = 0; top > 0 && column < sheet->tile_width; column++)
+        picture_image_blend(&sheet->image, left + column, top, line_colour, 1.0);
+}
+
+bool picture_sheet_create(uint32_t tile_count, uint32_t columns, uint32_t tile_width, uint32_t tile_height,
+                          picture_sheet *out, io_error *error) {
+    uint64_t rows = columns > 0 ? ((uint64_t)tile_count + columns - 1) / columns : 0;
+    uint64_t width = (uint64_t)columns * tile_width, height = rows * tile_height;
+    if (width == 0 || height == 0 || width > PICTURE_SIDE_MAX || height > PICTURE_SIDE_MAX)
+        return io_fail(error,
+                       "%u tiles of %u x %u pixels in %u columns make %llu x %llu pixels: each side must be "
+                       "1 to %u; draw fewer or smaller tiles",
+                       (unsigned)tile_count, (unsigned)tile_width, (unsigned)tile_height, (unsigned)columns,
+                       (unsigned long long)width, (unsigned long long)height, PICTURE_SIDE_MAX);
+    picture_sheet sheet = {.columns = columns, .tile_width = tile_width, .tile_height = tile_height};
+    if (!picture_image_create((uint32_t)width, (uint32_t)height, &sheet.image, error)) return false;
+    memset(sheet.image.pixels, 255, (size_t)width * height * 4);
+    for (uint32_t i = 0; i < rows * columns; i++) rule_place(&sheet, i);
+    *out = sheet;
+    return true;
+}
+
+void picture_sheet_place(picture_sheet *sheet, uint32_t index, const picture_image *tile) {
+    uint32_t left = index % sheet->columns * sheet->tile_width,
+             top = index / sheet->columns * sheet->tile_height;
+    picture_image *image = &sheet->image;
+    assert(top + sheet->tile_height <= image->height);
+    assert(tile->width == sheet->tile_width && tile->height == sheet->tile_height);
+    for (uint32_t row = 0; row < sheet->tile_height; row++)
+        memcpy(image->pixels + 4 * ((size_t)(top + row) * image->width + left),
+               tile->pixels + 4 * (size_t)row * tile->width, 4 * (size_t)tile->width);
+    rule_place(sheet, index);
 }

@@ -1,8 +1,11 @@
-/* A picture of a triangle mesh with markers and a caption, as a PNG file. */
+/* A picture of a triangle mesh with markers and a caption, as a PNG file; several of them as one; and colours of numbers. */
 #pragma once
 
+#include "tool/picture/image.h"
 #include "tool/picture/overlay.h"
 #include "tool/picture/shade.h"
+
+#include <stdint.h>
 
 typedef struct picture_mesh {
     uint32_t vertex_count, triangle_count;
@@ -54,3 +57,36 @@ bool picture_render_image(const picture_scene *scene, const picture_options *opt
 /* Renders into a file. On false *error says why and no file is left. */
 bool picture_render(const picture_scene *scene, const picture_options *options, const char *png_path,
                     io_error *error);
+
+#define PICTURE_ENCODE_STEPS 4096
+
+/* Tables for both directions; light is added and averaged in linear values. */
+typedef struct picture_gamma {
+    float linear[256];
+    uint8_t encoded[PICTURE_ENCODE_STEPS + 1];
+} picture_gamma;
+
+void picture_gamma_set(picture_gamma *out);
+
+/* linear is clamped to 0..1. */
+uint8_t picture_gamma_encode(const picture_gamma *gamma, double linear);
+
+/* A perceptually uniform map (viridis) from dark violet at 0 over green to yellow at 1; value is clamped. */
+void picture_colour_map(double value, uint8_t rgb[3]);
+
+/* One of 21 distinct colours, the first seven the most; those of index and index + 21 are the same. */
+void picture_colour_category(uint32_t index, uint8_t rgb[3]);
+
+typedef struct picture_sheet {
+    picture_image image;
+    uint32_t columns, tile_width, tile_height;
+} picture_sheet;
+
+/* White with thin lines between the tiles, exactly columns x ceil(tile_count / columns) tiles large. On false
+ * *out is untouched. */
+bool picture_sheet_create(uint32_t tile_count, uint32_t columns, uint32_t tile_width, uint32_t tile_height,
+                          picture_sheet *out, io_error *error);
+
+/* Copies the tile, which has the sheet's tile size, to place `index`, counted row by row from the upper left
+ * corner; the lines stay, one pixel inside its left and upper side. */
+void picture_sheet_place(picture_sheet *sheet, uint32_t index, const picture_image *tile);
