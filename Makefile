@@ -833,7 +833,7 @@ $(BUILD)/tests/fuzz/fuzz_readers $(BUILD)/tests/fuzz/coverage_target: $(READING_
 $(BUILD)/tests/fuzz/coverage_target: TEST_LINKER :=
 $(BUILD)/tests/fuzz/coverage_target: LINK_ALL += -fsanitize=fuzzer
 
-$(BUILD)/tests/cpp/room $(BUILD)/tests/sensors/room: TEST_LIBS += -lstdc++
+$(BUILD)/tests/cpp/room $(if $(WASM),,$(BUILD)/tests/sensors/room): TEST_LIBS += -lstdc++
 ifneq ($(filter tests/ccd/test_root_finders.c,$(ROOM_SOURCES)),)
 $(BUILD)/tests/ccd/room: WRAPPED += -Wl,--wrap=cubic_guess_roots
 endif
