@@ -1,8 +1,7 @@
-/* Notes which objects trees and blocks hold: obstacles, which are not compared with each other, and sets of objects, by
- * which the traversal leaves out pairs where there are rules. */
+/* What is left out of traversals: pairs of objects, features that are not active, and components without a surface. */
 #include "runtime/bvh/bvh.h"
 
-/* ---- trees ------------------------------------------------------------------------------------------- */
+/* ---- trees --------------------------------------------------------------------------------------------- */
 
 static bool holds_only(const bvh *hierarchy, const bvh_tree *tree, const cscd_object *object) {
     for (uint32_t i = 0; i < tree->leaf_count; i++) {
@@ -30,7 +29,7 @@ static void name_objects(bvh *hierarchy) {
     }
 }
 
-/* ---- obstacles --------------------------------------------------------------------------------------- */
+/* ---- obstacles ----------------------------------------------------------------------------------------- */
 
 /* Tells by one triangle: a tree holds obstacles only, or none at all. */
 static bool tree_is_obstacle(const bvh *hierarchy, uint32_t tree) {
@@ -68,7 +67,7 @@ bool bvh_mark_objects(bvh *hierarchy) {
     return mark_obstacles(hierarchy);
 }
 
-/* ---- sets of objects --------------------------------------------------------------------------------- */
+/* ---- sets of objects ----------------------------------------------------------------------------------- */
 
 static object_set set_of_tree(const bvh *hierarchy, uint32_t tree, const object_set *sets) {
     uint32_t object = hierarchy->trees[tree].object;
@@ -132,4 +131,138 @@ void bvh_free_objects(bvh *hierarchy) {
         context_free(hierarchy->mesh->context, hierarchy->levels[i].obstacle_lanes);
         context_free(hierarchy->mesh->context, hierarchy->levels[i].child_sets);
     }
+}
+
+/* ---- active vertices ----------------------------------------------------------------------------------- */
+
+/* Leaves and blocks without an active triangle are not compared with each other. */
+
+static uint8_t inactive_triangles(const bvh *hierarchy, uint32_t leaf, const bool *active) {
+    uint8_t lanes = 0;
+    for (uint32_t i = 0; i < LANES && (hierarchy->leaf_flags[leaf].used >> i & 1) != 0; i++)
+        lanes |= (uint8_t)(!active[hierarchy->leaves[leaf].triangles[i]] << i);
+    return lanes;
+}
+
+/* A child is inactive when all its lanes are. A tree has the number of its block on the level below. */
+static uint8_t inactive_children(const bvh *hierarchy, int level, uint32_t block) {
+    const bvh_level *at = &hierarchy->levels[level];
+    const lane_flags *flags = level == 0 ? hierarchy->leaf_flags : at[-1].flags;
+    const uint8_t *below = level == 0 ? hierarchy->leaf_inactive : at[-1].inactive_lanes;
+    uint8_t lanes = 0;
+    for (uint32_t i = 0; i < LANES && (at->flags[block].used >> i & 1) != 0; i++) {
+        uint32_t child = at->first_children[block] + i;
+        lanes |= (uint8_t)((below[child] == flags[child].used) << i);
+    }
+    return lanes;
+}
+
+static void drop_marks(bvh *hierarchy) {
+    context_free(hierarchy->mesh->context, hierarchy->leaf_inactive);
+    hierarchy->leaf_inactive = NULL;
+    for (int i = 0; i < hierarchy->level_count; i++) {
+        context_free(hierarchy->mesh->context, hierarchy->levels[i].inactive_lanes);
+        hierarchy->levels[i].inactive_lanes = NULL;
+    }
+}
+
+static bool allocate_marks(bvh *hierarchy) {
+    cscd_context *context = hierarchy->mesh->context;
+    hierarchy->leaf_inactive =
+        context_allocate(context, hierarchy->leaf_count, sizeof *hierarchy->leaf_inactive);
+    bool made = hierarchy->leaf_inactive != NULL;
+    for (int i = 0; made && i < hierarchy->level_count; i++) {
+        bvh_level *level = &hierarchy->levels[i];
+        level->inactive_lanes = context_allocate(context, level->block_count, sizeof *level->inactive_lanes);
+        made = level->inactive_lanes != NULL;
+    }
+    if (!made) drop_marks(hierarchy);
+    return made;
+}
+
+bool bvh_set_active(bvh *hierarchy, const bool *active) {
+    if (active == NULL) {
+        drop_marks(hierarchy);
+        return true;
+    }
+    if (hierarchy->leaf_inactive == NULL && !allocate_marks(hierarchy)) return false;
+    for (uint32_t i = 0; i < hierarchy->leaf_count; i++)
+        hierarchy->leaf_inactive[i] = inactive_triangles(hierarchy, i, active);
+    for (int level = 0; level < hierarchy->level_count; level++) {
+        for (uint32_t i = 0; i < hierarchy->levels[level].block_count; i++)
+            hierarchy->levels[level].inactive_lanes[i] = inactive_children(hierarchy, level, i);
+    }
+    return true;
+}
+
+const char *bvh_check_active(const bvh *hierarchy, const bool *active) {
+    if ((hierarchy->leaf_inactive != NULL) != (active != NULL))
+        return "the trees and their detector have different active sets";
+    if (active == NULL) return NULL;
+    for (uint32_t i = 0; i < hierarchy->leaf_count; i++) {
+        if (hierarchy->leaf_inactive[i] != inactive_triangles(hierarchy, i, active))
+            return "a leaf has the wrong active triangles";
+    }
+    for (int level = 0; level < hierarchy->level_count; level++) {
+        if (hierarchy->levels[level].inactive_lanes == NULL) return "a level does not know its active blocks";
+        for (uint32_t i = 0; i < hierarchy->levels[level].block_count; i++) {
+            if (hierarchy->levels[level].inactive_lanes[i] != inactive_children(hierarchy, level, i))
+                return "a block has the wrong active children";
+        }
+    }
+    return NULL;
+}
+
+/* ---- components without a surface ---------------------------------------------------------------------- */
+
+static bool tree_is_collapsed(const bvh *hierarchy, const bvh_tree *tree, const bool *collapsed) {
+    const uint32_t *components = hierarchy->mesh->triangle_components;
+    uint32_t end = tree->first_leaf + tree->leaf_count;
+    for (uint32_t leaf = tree->first_leaf; leaf < end; leaf++) {
+        for (uint32_t i = 0; i < LANES && (hierarchy->leaf_flags[leaf].used >> i & 1) != 0; i++) {
+            if (!collapsed[components[hierarchy->leaves[leaf].triangles[i]]]) return false;
+        }
+    }
+    return true;
+}
+
+static uint8_t collapsed_children(const bvh *hierarchy, int level, uint32_t block, const bool *collapsed) {
+    const bvh_level *at = &hierarchy->levels[level], *below = at - 1;
+    uint8_t lanes = 0;
+    for (uint32_t i = 0; i < LANES && (at->flags[block].used >> i & 1) != 0; i++) {
+        uint32_t child = at->first_children[block] + i;
+        bool all = level == hierarchy->tree_level
+                       ? tree_is_collapsed(hierarchy, &hierarchy->trees[child], collapsed)
+                       : below->collapsed_lanes[child] == below->flags[child].used;
+        lanes |= (uint8_t)(all << i);
+    }
+    return lanes;
+}
+
+void bvh_free_collapsed(bvh *hierarchy) {
+    for (int i = 0; i < BVH_LEVEL_MAX; i++) {
+        context_free(hierarchy->mesh->context, hierarchy->levels[i].collapsed_lanes);
+        hierarchy->levels[i].collapsed_lanes = NULL;
+    }
+}
+
+static bool allocate_collapsed_marks(bvh *hierarchy) {
+    for (int i = hierarchy->tree_level; i < hierarchy->level_count; i++) {
+        bvh_level *level = &hierarchy->levels[i];
+        if (level->collapsed_lanes == NULL)
+            level->collapsed_lanes = context_allocate(hierarchy->mesh->context, level->block_count,
+                                                      sizeof *level->collapsed_lanes);
+        if (level->collapsed_lanes == NULL) return false;
+    }
+    return true;
+}
+
+bool bvh_mark_collapsed(bvh *hierarchy, const bool *collapsed) {
+    if (!allocate_collapsed_marks(hierarchy)) return false;
+    for (int level = hierarchy->tree_level; level < hierarchy->level_count; level++) {
+        for (uint32_t block = 0; block < hierarchy->levels[level].block_count; block++)
+            hierarchy->levels[level].collapsed_lanes[block] =
+                collapsed_children(hierarchy, level, block, collapsed);
+    }
+    return true;
 }
