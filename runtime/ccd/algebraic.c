@@ -342,8 +342,8 @@ static double double_above(int64_t x) {
     return (int64_t)rounded < x ? nextafter(rounded, 0x1p61) : rounded;
 }
 
-/* Returns the greatest multiple of `narrow` that is not above the root. A bracket below `narrow` holds at most one,
- * and the root is compared with it. */
+/* Returns the greatest multiple of `narrow` that is not above the root. A bracket below `narrow` holds at
+ * most one, and the root is compared with it. */
 static int64_t cell_of(integer_pool *pool, const algebraic *root, bracket *known) {
     int64_t cell = known->low - known->low % narrow, next = cell + narrow;
     return next <= known->high && compare_at(pool, root, next, known) >= 0 ? next : cell;

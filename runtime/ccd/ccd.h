@@ -1,5 +1,5 @@
-/* Elementary tests: do a moving vertex and face, or two moving edges, touch or come within a distance, and when? And how far
- * apart are such features at rest? */
+/* Elementary tests: do a moving vertex and face, or two moving edges, touch or come within a distance, and
+ * when? And how far apart are such features at rest? */
 #pragma once
 
 #include "cscd/detector.h"
@@ -21,8 +21,8 @@ static inline int points_of_first(cscd_contact_kind kind) {
     return kind == CSCD_CONTACT_VF ? 1 : 2;
 }
 
-/* The points of a stencil are those of a vertex and a face, or of two edges, one point of which it may have several
- * times. */
+/* The points of a stencil are those of a vertex and a face, or of two edges, one point of which it may have
+ * several times. */
 static inline cscd_contact_kind stencil_points(cscd_contact_kind kind) {
     return kind == CSCD_CONTACT_EE || kind == CSCD_CONTACT_EV ? CSCD_CONTACT_EE : CSCD_CONTACT_VF;
 }
@@ -54,9 +54,9 @@ elementary_verdict elementary_after_signs(const elementary_query *query, cscd_co
                                           elementary_contact *contact);
 
 /* Are the two features farther apart than the distance along one of the seven directions of 14-DOPs, at both
- * ends and on the same side? Then they are throughout. The filters of the detector's methods work in floats and
- * leave out only pairs of which this is true. Asking for the features' own points gives each method the same
- * pairs, whatever its trees. */
+ * ends and on the same side? Then they are throughout. The filters of the detector's methods work in floats
+ * and leave out only pairs of which this is true. Asking for the features' own points gives each method the
+ * same pairs, whatever its trees. */
 bool directions_part(const elementary_query *query, cscd_contact_kind kind, double distance);
 
 /* ---- the coplanarity cubic: its roots are the times at which four moving points are coplanar ----------- */
@@ -78,9 +78,10 @@ typedef struct coplanarity {
 
 coplanarity coplanarity_cubic(const point_vectors *vectors);
 
-/* Describes a contact: a time that is safe to step to, the points and the normal. f is the features' coplanarity cubic. toi is
- * not after the first touch, and before it by at most 2^-31. contact->toi is earlier than toi by at most 2^-32, so that
- * positions at it, rounded to doubles, have not passed each other yet. */
+/* Describes a contact: a time that is safe to step to, the points and the normal. f is the features'
+ * coplanarity cubic. toi is not after the first touch, and before it by at most 2^-31. contact->toi is
+ * earlier than toi by at most 2^-32, so that positions at it, rounded to doubles, have not passed each other
+ * yet. */
 void contact_frame_describe(const elementary_query *query, cscd_contact_kind kind, const coplanarity *f,
                             double toi, elementary_contact *contact);
 
@@ -91,7 +92,8 @@ typedef struct separation {
     double distance, tolerance;
 } separation;
 
-/* Returns INVALID_ARGUMENT, with a sentence, unless the one is a length or 0 and the other a share of it or 0. */
+/* Returns INVALID_ARGUMENT, with a sentence, unless the one is a length or 0 and the other a share of it or
+ * 0. */
 cscd_status separation_check(cscd_context *context, double min_separation, double tolerance);
 
 /* A distance and its tolerance, which is given as a share; 0: the default share. */
@@ -109,11 +111,11 @@ enum { SEPARATION_STEPS_MAX = 128 };
  * The extent is the largest difference of a coordinate from that of the first point at t = 0. */
 #define SEPARATION_FINEST 0x1p-42
 
-/* These return true for all features that come within the distance. contact->toi is never after the first moment
- * at which they do. u and v name the nearest points at that time, and normal points from b's point to a's.
- * The points are then at most distance + max(tolerance, SEPARATION_FINEST * extent) apart, unless *bounded is
- * set: then the steps ran out, and toi is the last moment before which the features were proven farther apart
- * than the distance. *contact and *bounded are written only when true is returned. */
+/* These return true for all features that come within the distance. contact->toi is never after the first
+ * moment at which they do. u and v name the nearest points at that time, and normal points from b's point to
+ * a's. The points are then at most distance + max(tolerance, SEPARATION_FINEST * extent) apart, unless
+ * *bounded is set: then the steps ran out, and toi is the last moment before which the features were proven
+ * farther apart than the distance. *contact and *bounded are written only when true is returned. */
 bool separation_vf(const elementary_query *query, const separation *limit, elementary_contact *contact,
                    bool *bounded);
 bool separation_ee(const elementary_query *query, const separation *limit, elementary_contact *contact,
@@ -124,22 +126,23 @@ void separation_describe(const elementary_query *query, cscd_contact_kind kind, 
 
 /* ---- floors: how near two features may come that are nearer already than they should be ---------------- */
 
-/* The rungs of a pair are distance, ratio * distance, ratio^2 * distance and so on; ratio lies in (0, 1). tolerance is
- * a share of a rung. */
+/* The rungs of a pair are distance, ratio * distance, ratio^2 * distance and so on; ratio lies in (0, 1).
+ * tolerance is a share of a rung. */
 typedef struct floor_ladder {
     double distance, ratio, tolerance;
 } floor_ladder;
 
-/* Rungs below this share of the pair's extent at a moment count as 0: touching is decided exactly. The same share of
- * the extent is what a distance must exceed a rung by, beside the tolerance, to exceed it surely. The extent is the
- * largest difference of a coordinate from that of the first point. */
+/* Rungs below this share of the pair's extent at a moment count as 0: touching is decided exactly. The same
+ * share of the extent is what a distance must exceed a rung by, in addition to the tolerance, to exceed it
+ * surely. The extent is the largest difference of a coordinate from that of the first point. */
 #define FLOOR_FINEST 0x1p-40
 
 /* Returns the greatest rung below a distance, 0 if that is 0. */
 double separation_floor_rung(const floor_ladder *ladder, double distance);
 
-/* The floor of features at rest in these positions: the greatest rung that their distance surely exceeds, or 0. It
- * depends on nothing else, and a common translation changes the differences only, that is, nothing but rounding. */
+/* The floor of features at rest in these positions: the greatest rung that their distance surely exceeds, or
+ * 0. It depends on nothing else, and a common translation changes the differences only, that is, nothing but
+ * rounding. */
 double separation_floor_at(const double x[4][3], cscd_contact_kind kind, const floor_ladder *ladder);
 
 typedef enum floor_verdict {
@@ -153,9 +156,9 @@ floor_verdict separation_floor_test(const elementary_query *query, cscd_contact_
 
 /* ---- planes: one that certainly lies between two features at rest, and how far apart it keeps them ----- */
 
-/* The points of a pair along a direction. docs/theory/displacement-bounds.md, lemma 2, has the errors: with a scale 2^e
- * above the extent of the pair, the heights are off by 2^-50 of the scale and `gap` is at most the distance of the
- * features. Any direction does; a bad one only gives a small gap. */
+/* The points of a pair along a direction. docs/theory/displacement-bounds.md, lemma 2, has the errors: with
+ * a scale 2^e above the extent of the pair, the heights are off by 2^-50 of the scale and `gap` is at most
+ * the distance of the features. Any direction does; a bad one only gives a small gap. */
 typedef struct pair_plane {
     double normal[3];     /* from b to a; its length is 1 up to 2^-50 */
     double height[4];     /* of the points along it, above the first point */
@@ -167,14 +170,14 @@ typedef struct pair_plane {
 /* Finds a plane across the nearest points. x: the points, as in an elementary_query. */
 void pair_plane_find(cscd_contact_kind kind, const double x[4][3], pair_plane *out);
 
-/* Returns a number that is at most the distance of the features less the length, and at least 0.985 times that; 0 if
- * they are no farther apart, or by less than 2^-352. Planes prove most of it, integers the rest. */
+/* Returns a number that is at most the distance of the features less the length, and at least 0.985 times
+ * that; 0 if they are no farther apart, or by less than 2^-352. Planes prove most of it, integers the rest. */
 double pair_gap(cscd_contact_kind kind, const double x[4][3], double length);
 
 /* ---- a moving vertex and a half-space ------------------------------------------------------------------ */
 
-/* The normal is fixed, and the plane moves with a point. Tests are exact at distance 0, and with a distance by bounds, since the
- * vertex's height above the plane is linear in time. */
+/* The normal is fixed, and the plane moves with a point. Tests are exact at distance 0, and with a distance
+ * by bounds, since the vertex's height above the plane is linear in time. */
 
 /* x[0] is the vertex, x[1] the point of the plane; both move linearly from x0 (t = 0) to x1 (t = 1). */
 typedef struct half_space_query {
@@ -182,30 +185,34 @@ typedef struct half_space_query {
     double normal[3]; /* out of the half-space, of any length but 0 */
 } half_space_query;
 
-/* How far the vertex is above the plane in the positions x; below 0 inside. The height is off by at most `error`, and
- * `extent` is the largest difference of a coordinate of the two points. */
+/* The height of the vertex above the plane in the positions x; below 0 inside. The height is off by at most
+ * `error`, and `extent` is the largest difference of a coordinate of the two points. */
 typedef struct plane_height {
     double value, error, extent;
 } plane_height;
 
 plane_height half_space_height(const double x[2][3], const double normal[3]);
 
-/* Is the vertex ever on the plane or behind it? contact->toi is never after the first such moment, and less than 1e-9
- * before it. u and v are 0, and the normal is that of the half-space. *contact is written only with true. */
+/* Is the vertex ever on the plane or behind it? contact->toi is never after the first such moment, and less
+ * than 1e-9 before it. u and v are 0, and the normal is that of the half-space. *contact is written only
+ * with true. */
 elementary_verdict half_space_touch(const half_space_query *query, elementary_contact *contact);
 
-/* Does the vertex come within the distance of the plane? What separation_vf promises holds here; nothing is bounded. */
+/* Does the vertex come within the distance of the plane? What separation_vf promises holds here; nothing is
+ * bounded. */
 bool half_space_within(const half_space_query *query, double distance, elementary_contact *contact);
 
 /* Does the vertex keep its floor above the plane? See separation_floor_test. */
 floor_verdict half_space_floor_test(const half_space_query *query, const floor_ladder *ladder,
                                     elementary_contact *contact);
 
-/* Returns a number that is at most the vertex's height less the length, and at least 0.985 times that; see pair_gap. */
+/* Returns a number that is at most the vertex's height less the length, and at least 0.985 times that; see
+ * pair_gap. */
 double half_space_gap(const double x[2][3], const double normal[3], double length);
 
-/* The plane of the half-space as one between a pair. Its normal is the half-space's times a power of two, without any
- * rounding, so that it is not of length 1: `gap` and heights are in units of it. Returns its length, or a little more. */
+/* The plane of the half-space as one between a pair. Its normal is the half-space's times a power of two,
+ * without any rounding, so that it is not of length 1: `gap` and heights are in units of it. Returns its
+ * length, or a little more. */
 double half_space_plane(const double x[2][3], const double normal[3], pair_plane *out);
 
 /* ---- points of features at rest ------------------------------------------------------------------------ */
@@ -217,9 +224,9 @@ double closest_point_triangle(const double p[3], const double a[3], const double
 double closest_segments(const double a0[3], const double a1[3], const double b0[3], const double b1[3],
                         double *u, double *v);
 
-/* Writes the vector from the second feature's point to the first one's. x: the vertices, of which the first `own` belong to
- * the first feature; its weights add up to 1, the others' to -1. Sums differences of coordinates, so that the result is
- * as exact as these are. */
+/* Writes the vector from the second feature's point to the first one's. x: the vertices, of which the first
+ * `own` belong to the first feature; its weights add up to 1, the others' to -1. Sums differences of
+ * coordinates, so that the result is as exact as these are. */
 void connection_between(const double *const x[4], const double weights[4], int own, double out[3]);
 
 /* Returns the length of a vector of any size: nothing over- or underflows. */
@@ -240,7 +247,8 @@ typedef struct feature_pairs {
     uint32_t count;
 } feature_pairs;
 
-/* The verdicts on eight pairs, and for each contact the begin of the first root interval in which it touches. */
+/* The verdicts on eight pairs, and for each contact the begin of the first root interval in which it
+ * touches. */
 typedef struct root_outcomes {
     uint32_t apart, contacts; /* sets of lanes */
     double begin[LANES];
@@ -267,9 +275,10 @@ typedef struct separations_x8 {
     double distance[LANES], tolerance[LANES];
 } separations_x8;
 
-/* The outcomes for eight pairs. Pairs apart certainly stay farther apart than their limit's distance and tolerance.
- * Pairs within its distance are so for certain at the start. For them u, v and offset name the nearest points at
- * the start as parameters and as the offset from b's point to a's; distance is the offset's length. */
+/* The outcomes for eight pairs. Pairs apart certainly stay farther apart than their limit's distance and
+ * tolerance. Pairs within its distance are so for certain at the start. For them u, v and offset name the
+ * nearest points at the start as parameters and as the offset from b's point to a's; distance is the
+ * offset's length. */
 typedef struct proximity_outcomes {
     uint32_t apart, within; /* sets of lanes */
     double u[LANES], v[LANES], offset[3][LANES], distance[LANES];

@@ -1,5 +1,5 @@
-/* What the kernels share: their names on the level that is compiled, products of vectors, and as many pairs as the processor takes
- * at once, as vectors of their points. */
+/* Shared by the kernels: their names on the level that is compiled, products of vectors, and as many pairs
+ * as the processor takes at once, as vectors of their points. */
 #pragma once
 
 #include "runtime/ccd/ccd.h"
@@ -67,7 +67,7 @@ static inline void load_features(const feature_source *source, cscd_contact_kind
         load_ee(source, a, b, out);
 }
 
-/* What becomes of the pairs i to i + WIDTH - 1 of the eight. */
+/* Decides the pairs i to i + WIDTH - 1 of the eight. */
 typedef void decide_some(const points_x8 *points, cscd_contact_kind kind, int i, root_outcomes *out);
 
 static inline void decide_eight(const feature_source *source, const uint32_t *a, const uint32_t *b,

@@ -66,12 +66,13 @@ static bool add_projection(const double p[3], const double a[3], const double ab
     return *u != old_u || *v != old_v;
 }
 
-/* Are u and v, after one projection, so far outside of the triangle that no further one leads into it? A projection is off by
- * less than 2^-44 of Q E |ac| / area in u, and of Q E |ab| / area in v, where E is at least |ab| |ac|, the largest magnitude
- * of the normal, and Q at least what the residual is the sum of: coordinates of the residual are off by 2^-50 Q, those of
- * the normal by 2^-50 E, products and sums with them by a few units more of 2^-53, and area is at most E E. If these errors
- * are at most a half, Q is no less than at all later points, and these are at most twice the errors away. An area of 2^-900
- * or more keeps what underflow loses below that. */
+/* Are u and v, after one projection, so far outside of the triangle that no further one leads into it? A
+ * projection is off by less than 2^-44 of Q E |ac| / area in u, and of Q E |ab| / area in v, where E is at
+ * least |ab| |ac|, the largest magnitude of the normal, and Q at least what the residual is the sum of:
+ * coordinates of the residual are off by 2^-50 Q, those of the normal by 2^-50 E, products and sums with
+ * them by a few units more of 2^-53, and area is at most E E. If these errors are at most a half, Q is no
+ * less than at all later points, and these are at most twice the errors away. An area of 2^-900 or more
+ * keeps what underflow loses below that. */
 static bool stays_outside(const double p[3], const double a[3], const double ab[3], const double ac[3],
                           double area, double u, double v) {
     double offset = 0.0, long_ab = 0.0, long_ac = 0.0;

@@ -12,7 +12,7 @@ static const double gap_left = 0x1p-48;
 static const double earlier_at_most = 0x1p-32;
 
 /* Vectors between the points at one moment, as in point_vectors. Blending differences keeps the shape of
- * features that are small beside their motion; blending positions would not. */
+ * features that are small compared with their motion; blending positions would not. */
 typedef struct moment_vectors {
     double a[3], b[3], c[3];
 } moment_vectors;

@@ -1,11 +1,12 @@
-/* Describes many contacts at a time. The twin of contact_frame.c: the same operations in the same order, so the same bits. */
+/* Describes many contacts at a time. The twin of contact_frame.c: the same operations in the same order, so
+ * the same bits. */
 #include "runtime/ccd/ccd_simd.h"
 #include "runtime/ccd/cubic_simd.h"
 
 /* ---- closest points of features at rest: the twin of closest.c ----------------------------------------- */
 
-/* The same operations in the same order, so the same bits. Where closest.c returns early, lanes go on and their results are
- * not taken. */
+/* The same operations in the same order, so the same bits. Where closest.c returns early, lanes go on and
+ * their results are not taken. */
 
 enum { PROJECTIONS_MAX = 16 };
 
@@ -43,8 +44,9 @@ static inline void keep_nearer(f64w distance, parameters_x8 candidate, f64w *bes
     out->v = f64w_select(nearer, candidate.v, out->v);
 }
 
-/* Takes the inner points unless the ones on sides or ends, whose distance is `best`, are nearer. When rounding hides the
- * difference, the inner points are the better ones; below this share of the squared lengths the distance is rounding. */
+/* Takes the inner points unless the ones on sides or ends, whose distance is `best`, are nearer. When
+ * rounding hides the difference, the inner points are the better ones; below this share of the squared
+ * lengths the distance is rounding. */
 static inline parameters_x8 inner_or_outer(f64w distance, f64w size, parameters_x8 inner, f64w best,
                                            parameters_x8 outer) {
     const f64w touching = f64w_all(0x1p-90);

@@ -1,6 +1,6 @@
-/* The cubic whose roots are the times at which four moving points are coplanar, and certified intervals that hold its roots.
- * The roots are guessed, polished, and then proven by the signs of the Bernstein coefficients between them. A wrong or missing
- * guess, or a multiple root, only makes the proof fail. */
+/* The cubic whose roots are the times at which four moving points are coplanar, and certified intervals that
+ * hold its roots. The roots are guessed, polished, and then proven by the signs of the Bernstein
+ * coefficients between them. A wrong or missing guess, or a multiple root, only makes the proof fail. */
 #include "runtime/ccd/elementary_levels.h"
 #include "src/core/vec3.h"
 

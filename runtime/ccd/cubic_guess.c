@@ -10,8 +10,8 @@ enum { STEPS_MAX = 100 };
 /* A leading coefficient as small as this has its root far outside. */
 static const double negligible = 0x1p-40;
 
-/* Roots are looked for a little beyond [0, 1], which is what callers ask for. A step of Newton's method leaves about the square of its
- * length, so after one as short as this nothing is left. */
+/* Roots are looked for a little beyond [0, 1], which is what callers ask for. A step of Newton's method
+ * leaves about the square of its length, so after one as short as this nothing is left. */
 static const double margin = 0x1p-10, converged = 0x1p-30;
 
 static double value_at(const double c[4], double t) {

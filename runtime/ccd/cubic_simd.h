@@ -1,5 +1,5 @@
-/* The coplanarity cubics of many pairs, and their roots: Newton's method and certified intervals. The twin of cubic.c: the same
- * operations in the same order, so its error bounds hold. */
+/* The coplanarity cubics of many pairs, and their roots: Newton's method and certified intervals. The twin
+ * of cubic.c: the same operations in the same order, so its error bounds hold. */
 #pragma once
 
 #include "runtime/ccd/ccd_simd.h"

@@ -18,8 +18,8 @@ static bool separated_throughout(const elementary_query *query, cscd_contact_kin
     return separated_by_diagonals(query, kind) || separated_in_plane(query, kind);
 }
 
-/* Tries the whole interval, its halves and so on. Features that keep changing sides, as parallel edges that pass beside each
- * other, have no direction for all of it. */
+/* Tries the whole interval, its halves and so on. Features that keep changing sides, as parallel edges that
+ * pass close to each other, have no direction for all of it. */
 static bool separated_in_halves(const elementary_query *query, cscd_contact_kind kind, double begin,
                                 double end, int halvings) {
     if (separated_in_part(query, kind, begin, end)) return true;
@@ -37,7 +37,8 @@ static elementary_verdict decide_exactly(const elementary_query *query, cscd_con
     return (elementary_verdict){touching, ELEMENTARY_EXACT};
 }
 
-/* Decides where no roots are known. The directions come here, because before level two they cost more than they save. */
+/* Decides where no roots are known. The directions come here, because before level two they cost more than
+ * they save. */
 static elementary_verdict decide_without_roots(const elementary_query *query, cscd_contact_kind kind,
                                                const coplanarity *f, elementary_contact *contact) {
     if (separated_throughout(query, kind) || separated_in_halves(query, kind, 0.0, 1.0, HALVINGS))
@@ -45,8 +46,8 @@ static elementary_verdict decide_without_roots(const elementary_query *query, cs
     return decide_exactly(query, kind, f, contact);
 }
 
-/* A root that is not clear is no contact if the features are certainly apart about it. If a later one is a contact, level three
- * says when, as for every pair whose first contact is not clear. */
+/* A root that is not clear is no contact if the features are certainly apart about it. If a later one is a
+ * contact, level three says when, as for every pair whose first contact is not clear. */
 static elementary_verdict decide_at_roots(const elementary_query *query, const point_vectors *vectors,
                                           cscd_contact_kind kind, const coplanarity *f,
                                           elementary_contact *contact) {

@@ -1,4 +1,5 @@
-/* The levels of an elementary test, for those who go through them: signs, certified intervals about roots, the inside test. */
+/* The levels of an elementary test, for those who go through them: signs, certified intervals about roots,
+ * the inside test. */
 #pragma once
 
 #include "runtime/ccd/ccd.h"
@@ -15,8 +16,8 @@ bool separated_by_diagonals(const elementary_query *query, cscd_contact_kind kin
 /* Tries directions in the features' common plane at mid-interval, for points that are nearly coplanar. */
 bool separated_in_plane(const elementary_query *query, cscd_contact_kind kind);
 
-/* The same from one time to another, both in [0, 1], also for features that have no common normal: parallel edges, and a face
- * that is a segment. The shorter the part, the fewer pairs that stay apart are left. */
+/* The same from one time to another, both in [0, 1], also for features that have no common normal: parallel
+ * edges, and a face that is a segment. The shorter the part, the fewer pairs that stay apart are left. */
 bool separated_in_part(const elementary_query *query, cscd_contact_kind kind, double begin, double end);
 
 /* Are all coefficients beyond the error on one side of zero? Then the points are never coplanar in [0,1]. */
@@ -44,14 +45,14 @@ double cubic_slope(const coplanarity *f, double t);
 
 /* Guesses where a cubic's roots are; callers prove them. */
 
-/* What callers tell of a root must not depend on how it was guessed. So a time that follows from a guess is rounded
- * down to a multiple of this: the cell that the root is proven to be in names it, and every right guess has the same
- * cell. */
+/* The time that callers report must not depend on how a root was guessed. So a time that follows from a
+ * guess is rounded down to a multiple of this: the cell that the root is proven to be in names it, and every
+ * right guess has the same cell. */
 #define ROOT_CELL 0x1p-34
 
-/* Writes approximate real roots of c[0] + c[1] t + c[2] t^2 + c[3] t^3 in ascending order, and returns how many.
- * Leading coefficients may be 0 or tiny. Roots outside of [0, 1] are only known to be outside, others may be wrong, and some may be
- * missing. */
+/* Writes approximate real roots of c[0] + c[1] t + c[2] t^2 + c[3] t^3 in ascending order, and returns how
+ * many. Leading coefficients may be 0 or tiny. Roots outside of [0, 1] are only known to be outside, others
+ * may be wrong, and some may be missing. */
 int cubic_guess_roots(const double c[4], double roots[3]);
 
 /* ---- level two: are features whose points are coplanar in an interval in touch? ------------------------ */

@@ -1,5 +1,6 @@
-/* Levels one and two of the elementary tests on many pairs at a time, and the table of all kernels, one per instruction set. The twin
- * of cubic.c, separating_axis.c and inside_test.c: the same operations in the same order, so their error bounds hold. */
+/* Levels one and two of the elementary tests on many pairs at a time, and the table of all kernels, one per
+ * instruction set. The twin of cubic.c, separating_axis.c and inside_test.c: the same operations in the same
+ * order, so their error bounds hold. */
 #include "runtime/ccd/ccd_simd.h"
 #include "runtime/ccd/cubic_simd.h"
 

@@ -1,4 +1,5 @@
-/* Exact arithmetic on pairs of features: whether they touch while they move, and how far apart they are at rest. */
+/* Exact arithmetic on pairs of features: whether they touch while they move, and how far apart they are at
+ * rest. */
 #pragma once
 
 #include "runtime/ccd/ccd.h"
@@ -56,8 +57,8 @@ typedef struct algebraic {
  * constant has none. The numbers that out refers to stay in the pool. */
 int algebraic_roots(integer_pool *pool, const polynomial *a, algebraic out[3]);
 
-/* Finds low and high, less than 2^-34 apart; they are equal only if the root is equal to them. How they are found
- * depends on a guess, but the cell does not. Returns false if the root is not in [0,1]. */
+/* Finds low and high, less than 2^-34 apart; they are equal only if the root is equal to them. How they are
+ * found depends on a guess, but the cell does not. Returns false if the root is not in [0,1]. */
 bool algebraic_locate(integer_pool *pool, algebraic *root);
 
 /* Returns the sign of q, of degree 2 at most, at the root: -1, 0 or 1. This is faster once the root is
@@ -66,14 +67,15 @@ int algebraic_sign(integer_pool *pool, const algebraic *root, const polynomial *
 
 /* ---- pairs --------------------------------------------------------------------------------------------- */
 
-/* Level three of the elementary tests. Returns true when the features touch at some t in [0,1]. *toi is then the greatest multiple of 2^-34 that is not
- * above the first such t. Coordinates are 0 or have a magnitude in [2^-300, 2^300]. */
+/* Level three of the elementary tests. Returns true when the features touch at some t in [0,1]. *toi is then
+ * the greatest multiple of 2^-34 that is not above the first such t. Coordinates are 0 or have a magnitude
+ * in [2^-300, 2^300]. */
 bool exact_touch(const elementary_query *query, cscd_contact_kind kind, double *toi);
 
 /* The same with the caller's pool, whose peak then tells how much room was needed. */
 bool exact_touch_in(integer_pool *pool, const elementary_query *query, cscd_contact_kind kind, double *toi);
 
-/* Returns a number that is at most the distance of the features less the length, and at least 1 - 2^-40 times that.
- * Returns 0 if they are no farther apart, or by less than 2^-352, which no two coordinates differ by. x: the points, as
- * in an elementary_query. */
+/* Returns a number that is at most the distance of the features less the length, and at least 1 - 2^-40
+ * times that. Returns 0 if they are no farther apart, or by less than 2^-352, which no two coordinates
+ * differ by. x: the points, as in an elementary_query. */
 double exact_gap(cscd_contact_kind kind, const double x[4][3], double length);

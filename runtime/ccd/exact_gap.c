@@ -1,4 +1,4 @@
-/* How much farther apart than a length two features at rest are, by integers.
+/* Computes by integers how much farther apart than a length two features at rest are.
  *
  * The distance is the least of finitely many: between two points, between a point and the inside of an edge, between a
  * point and the inside of a face, and between the insides of two edges. Where the foot of the perpendicular is inside,
@@ -49,8 +49,9 @@ static double root_of(double mantissa, int exponent) {
     return ldexp(sqrt(odd ? 2.0 * mantissa : mantissa), (exponent - odd) / 2);
 }
 
-/* Takes a distance whose square is n / m. Three conversions, a root, a sum and three more operations are off by 2^-48
- * together; 2^-40 is taken off at the end. A distance that underflows here is far below what counts as 0. */
+/* Takes a distance whose square is n / m. Three conversions, a root, a sum and three more operations are off
+ * by 2^-48 together; 2^-40 is taken off at the end. A distance that underflows here is far below what counts
+ * as 0. */
 static void take_distance(integer_pair *p, integer n, integer m) {
     integer_pool *pool = p->pool;
     integer above = integer_subtract(pool, n, integer_multiply(pool, m, p->squared_length));

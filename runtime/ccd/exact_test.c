@@ -154,8 +154,8 @@ typedef struct touch_search {
     double toi;
 } touch_search;
 
-/* Tries one time. Its cell becomes that of the first touch if the features touch then and no touch so far is in an
- * earlier one. */
+/* Tries one time. Its cell becomes that of the first touch if the features touch then and no touch so far is
+ * in an earlier one. */
 static void try_root(touch_search *s, algebraic *root) {
     if (!algebraic_locate(s->pool, root)) return;
     if (root->cell < s->toi && touch_at(s->pool, s->configuration, root)) s->toi = root->cell;

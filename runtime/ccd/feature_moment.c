@@ -1,4 +1,5 @@
-/* Two moving features in their own frame, their nearest points at one moment, and planes that keep them apart from then on. */
+/* Two moving features in their own frame, their nearest points at one moment, and planes that keep them
+ * apart from then on. */
 #include "runtime/ccd/feature_moment.h"
 
 #include "src/core/vec3.h"
@@ -318,8 +319,8 @@ static long_sum share_of_side(double share, double from, double to) {
     return product;
 }
 
-/* The same offset as of connect_vf or connect_ee. It is off by 2^-53 of its length and 2^-100 of the extent, so that the
- * planes across it are as good as their own rounding. */
+/* The same offset as of connect_vf or connect_ee. It is off by 2^-53 of its length and 2^-100 of the extent,
+ * so that the planes across it are as good as their own rounding. */
 static void refine_offset(feature_moment *m) {
     const double(*x)[3] = (const double(*)[3])m->features.x;
     bool vf = m->features.kind == CSCD_CONTACT_VF;

@@ -1,4 +1,5 @@
-/* Two moving features in their own frame, their nearest points at one moment, and planes that keep them apart from then on. */
+/* Two moving features in their own frame, their nearest points at one moment, and planes that keep them
+ * apart from then on. */
 #pragma once
 
 #include "runtime/ccd/ccd.h"
@@ -32,13 +33,13 @@ typedef struct separating_plane {
 separating_plane separating_plane_find(const moving_features *features, const shortest_connection *shortest,
                                        int axes_max);
 
-/* So many edges are counted: 1-2, 1-3, 2-3 (vertex and face) or 0-1, 2-3. */
+/* Returns the number of edges: 1-2, 1-3, 2-3 (vertex and face) or 0-1, 2-3. */
 static inline int separating_plane_edges(cscd_contact_kind kind) {
     return kind == CSCD_CONTACT_VF ? 3 : 2;
 }
 
-/* The plane that is parallel to the edges in a set, of which two count: in thin faces, and beside edges that are nearly
- * parallel, rounding hides in which of them the connection ends. */
+/* The plane that is parallel to the edges in a set, of which two count: in thin faces, and near edges that
+ * are nearly parallel, rounding hides in which of them the connection ends. */
 separating_plane separating_plane_along(const moving_features *features, const shortest_connection *shortest,
                                         unsigned edges);
 
@@ -57,9 +58,9 @@ double separating_plane_gap(const moving_features *features, const separating_pl
 
 /* ---- moments ------------------------------------------------------------------------------------------- */
 
-/* What the frame of a query is relative to: the first point at t = 0, or the first point at each time. In the moving
- * frame the offset between the nearest points is computed with twice the digits, for features that are much nearer to
- * each other than they are long. */
+/* The origin of the frame of a query: the first point at t = 0, or the first point at each time. In the
+ * moving frame the offset between the nearest points is computed with twice the digits, for features that
+ * are much nearer to each other than they are long. */
 typedef enum query_frame { FRAME_AT_REST, FRAME_MOVING } query_frame;
 
 /* A query relative to its first point, scaled by a power of two to an extent in [1/2, 1). */
@@ -79,10 +80,10 @@ typedef struct feature_moment {
     double middle[3]; /* of the shortest connection */
 } feature_moment;
 
-/* Scales the query so that no later product over- or underflows. The subtraction rounds, so coordinates are off by at
- * most 2^-53. Scaling is exact, also for distances: their exponent stays within 1000. In the moving frame points are
- * relative to the first one at either end, which changes no distance, and the extent does not grow with a motion that
- * they have in common. */
+/* Scales the query so that no later product over- or underflows. The subtraction rounds, so coordinates are
+ * off by at most 2^-53. Scaling is exact, also for distances: their exponent stays within 1000. In the
+ * moving frame points are relative to the first one at either end, which changes no distance, and the extent
+ * does not grow with a motion that they have in common. */
 local_query local_query_of(const elementary_query *query, cscd_contact_kind kind, query_frame frame);
 
 /* The largest coordinate of the local points at t = 0. */
@@ -91,15 +92,15 @@ double local_query_extent_at_start(const local_query *local);
 /* The features at t = 0, with their velocities. */
 feature_moment feature_moment_start(const local_query *local);
 
-/* Moves the features to time t. Each coordinate is off by at most 3 * 2^-53: (1 - t) x0 rounds twice, t x1 once, and
- * their sum once. */
+/* Moves the features to time t. Each coordinate is off by at most 3 * 2^-53: (1 - t) x0 rounds twice, t x1
+ * once, and their sum once. */
 void feature_moment_move(const local_query *local, double t, feature_moment *m);
 
 /* ---- steps from one moment to the next ----------------------------------------------------------------- */
 
-/* The finest tolerance in the units of a local query. Its extent is at least 1/2, so this is no larger than promised.
- * It is 16 times the error of a distance and 8 times SEPARATING_PLANE_ERROR, so the steps get down to distance and
- * tolerance and do not end before them. */
+/* The finest tolerance in the units of a local query. Its extent is at least 1/2, so this is no larger than
+ * promised. It is 16 times the error of a distance and 8 times SEPARATING_PLANE_ERROR, so the steps get down
+ * to distance and tolerance and do not end before them. */
 #define SEPARATION_FINEST_LOCAL (0.5 * SEPARATION_FINEST)
 
 /* The same for a query in its own frame, with its distance and the tolerance scaled. */

@@ -1,5 +1,5 @@
-/* A moving vertex and a half-space whose normal is fixed and whose plane moves with a point: exact at distance 0, and
- * with a distance by bounds, since the vertex's height above the plane is linear in time. */
+/* A moving vertex and a half-space whose normal is fixed and whose plane moves with a point: exact at
+ * distance 0, and with a distance by bounds, since the vertex's height above the plane is linear in time. */
 
 #include "runtime/ccd/ccd.h"
 
@@ -15,9 +15,9 @@ typedef struct scaled_height {
     double value, error;
 } scaled_height;
 
-/* A product is off by 2^-53 for the difference and as much for itself, and the sums by as much of what is added: below
- * 5 * 2^-53 of the sum of magnitudes, which is itself off by less. Nothing over- or underflows: a coordinate that is not
- * 0 is at least 2^-300, and a difference 2^-352. */
+/* A product is off by 2^-53 for the difference and as much for itself, and the sums by as much of what is
+ * added: below 5 * 2^-53 of the sum of magnitudes, which is itself off by less. Nothing over- or underflows:
+ * a coordinate that is not 0 is at least 2^-300, and a difference 2^-352. */
 static scaled_height scaled_height_of(const double x[2][3], const double normal[3]) {
     double sum = 0.0, magnitude = 0.0;
     for (int k = 0; k < 3; k++) {
@@ -84,7 +84,8 @@ typedef struct plane_crossing {
     double toi;
 } plane_crossing;
 
-/* Returns a / (a + b) for a > 0 and b >= 0, a little less. Nothing cancels, so a share of 2^-48 covers the rounding. */
+/* Returns a / (a + b) for a > 0 and b >= 0, a little less. Nothing cancels, so a share of 2^-48 covers the
+ * rounding. */
 static double share_of_sum(double a, double b) {
     return a / (a + b) * (1.0 - 0x1p-48);
 }
@@ -136,8 +137,9 @@ static void describe_height(const half_space_query *q, double toi, elementary_co
     }
 }
 
-/* A caller that steps to a time computes positions in doubles, each off by at most 2^-52 of the largest coordinate C; two
- * of them are along the normal off by less than 4 sqrt 3 of that. Twice as much is left open, as in contact_frame.c. */
+/* A caller that steps to a time computes positions in doubles, each off by at most 2^-52 of the largest
+ * coordinate C; two of them are along the normal off by less than 4 sqrt 3 of that. Twice as much is left
+ * open, as in contact_frame.c. */
 static double leave_gap(const half_space_query *q, double toi) {
     double largest = 0.0;
     for (int i = 0; i < 2; i++)
@@ -155,8 +157,9 @@ elementary_verdict half_space_touch(const half_space_query *q, elementary_contac
 
 /* ---- with a distance ----------------------------------------------------------------------------------- */
 
-/* Heights are linear in time, so a number that is below them at both ends is so in between, and where it is the distance
- * the vertex is no nearer before. The errors, 2^-48 of the extent, are well within the tolerance. */
+/* Heights are linear in time, so a number that is below them at both ends is so in between, and where it is
+ * the distance the vertex is no nearer before. The errors, 2^-48 of the extent, are well within the
+ * tolerance. */
 bool half_space_within(const half_space_query *q, double distance, elementary_contact *contact) {
     double start = least_height(q->x0, q->normal), end = least_height(q->x1, q->normal);
     if (start > distance && end > distance) return false;
@@ -167,7 +170,7 @@ bool half_space_within(const half_space_query *q, double distance, elementary_co
 
 /* ---- floors (docs/theory/floors.md) -------------------------------------------------------------------- */
 
-/* What the height surely exceeds. */
+/* Returns a number that the height surely exceeds. */
 static double sure_height(const double x[2][3], const double normal[3], const floor_ladder *ladder,
                           double *finest) {
     plane_height height = half_space_height(x, normal);
@@ -193,7 +196,8 @@ floor_verdict half_space_floor_test(const half_space_query *q, const floor_ladde
 
 /* ---- gaps (docs/theory/displacement-bounds.md) --------------------------------------------------------- */
 
-/* By integers: with the height h = n.(x - p) / |n|, the gap h - s is ((n.(x - p))^2 - s^2 |n|^2) / ((h + s) |n|^2). */
+/* By integers: with the height h = n.(x - p) / |n|, the gap h - s is ((n.(x - p))^2 - s^2 |n|^2) / ((h + s)
+ * |n|^2). */
 static double exact_plane_gap(const double x[2][3], const double normal[3], double length) {
     integer_pool pool;
     integer sum, squared, limit;

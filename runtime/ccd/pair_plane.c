@@ -7,8 +7,8 @@
 
 #include <string.h>
 
-/* In units of the scale: what is taken from the difference of two heights (lemma 2), and what is added to the distance
- * of the nearest points (DISTANCE_ERROR of min_separation.c). */
+/* In units of the scale: what is taken from the difference of two heights (lemma 2), and what is added to
+ * the distance of the nearest points (DISTANCE_ERROR of min_separation.c). */
 static const double gap_error = 0x1p-47, distance_error = 0x1p-47;
 
 /* A plane that proves so much of what the nearest points allow is not improved on. */
@@ -47,8 +47,9 @@ static void measure_along(const feature_moment *m, const double normal[3], pair_
     memcpy(out->normal, normal, sizeof out->normal);
 }
 
-/* Tries planes along fewer and fewer edges until one proves enough. The shortest connection itself is tilted by its
- * rounding, which tells when it is short; an edge that is nearly parallel to another one tilts a plane along both. */
+/* Tries planes along fewer and fewer edges until one proves enough. The shortest connection itself is tilted
+ * by its rounding, which tells when it is short; an edge that is nearly parallel to another one tilts a
+ * plane along both. */
 static void find_local_plane(const feature_moment *m, double length, pair_plane *out) {
     double normal[3], enough = share_proven * (m->distance + distance_error - length);
     for (int k = 0; k < 3; k++) normal[k] = m->shortest.offset[k] / m->distance;

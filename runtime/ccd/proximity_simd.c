@@ -105,7 +105,7 @@ static inline void direction_of(const nearest *n, f64w distance, f64w out[3]) {
     for (int k = 0; k < 3; k++) out[k] = n->offset[k] / distance;
 }
 
-/* How far planes across a direction keep all points of the features apart. */
+/* Returns how far planes across a direction keep all points of the features apart. */
 static inline f64w gap_along(const f64w direction[3], cscd_contact_kind kind, const f64w c[3],
                              const f64w a[3], const f64w b[3]) {
     f64w zero = f64w_all(0.0);
@@ -131,8 +131,8 @@ static inline f64w to_one(f64w extent) {
     return extent;
 }
 
-/* The vectors between the points at one end: a vertex c and the triangle of a and b, or the edge a and the edge b
- * that begins at c. */
+/* The vectors between the points at one end: a vertex c and the triangle of a and b, or the edge a and the
+ * edge b that begins at c. */
 typedef struct vectors_at_end {
     f64w a[3], b[3], c[3];
 } vectors_at_end;
@@ -166,14 +166,14 @@ static inline void store_nearest(const nearest *n, f64w distance, f64w factor, i
     }
 }
 
-/* Vectors below 1 at both ends. In units of 2^-53: they are off by 1 each; the offset is off by 1 + 2 + 2 for
- * them, by 4 for the products and by 6 for the sums per coordinate, its length by twice that; dots with the
- * direction, itself off by 4 of 1, by 3 (1 + 4 + 3) each, three of them below 80. 2^-45 is 256. Distances
- * from 2^-40 on then have a direction that is right to 2^-4 of that bound. Along one direction the gap is the
- * least of differences that are linear in time, so it is least at an end. Pairs that come within the
- * tolerance are left to the test that knows it. So are those within 2^-38 beyond it: no point is farther than 2
- * from the first one, so the finest tolerance (SEPARATION_FINEST) is less, and at the next start the pair surely
- * exceeds its distance, by 2^-40 of that extent (floors.md, lemma 3). */
+/* Vectors below 1 at both ends. In units of 2^-53: they are off by 1 each; the offset is off by 1 + 2 + 2
+ * for them, by 4 for the products and by 6 for the sums per coordinate, its length by twice that; dots with
+ * the direction, itself off by 4 of 1, by 3 (1 + 4 + 3) each, three of them below 80. 2^-45 is 256.
+ * Distances from 2^-40 on then have a direction that is right to 2^-4 of that bound. Along one direction the
+ * gap is the least of differences that are linear in time, so it is least at an end. Pairs that come within
+ * the tolerance are left to the test that knows it. So are those within 2^-38 beyond it: no point is farther
+ * than 2 from the first one, so the finest tolerance (SEPARATION_FINEST) is less, and at the next start the
+ * pair surely exceeds its distance, by 2^-40 of that extent (floors.md, lemma 3). */
 static inline void decide_proximity(points_x8 *p, cscd_contact_kind kind, int i, const separations_x8 *limits,
                                     proximity_outcomes *out) {
     vectors_at_end start, end;

@@ -82,9 +82,9 @@ typedef struct loose_query {
 } loose_query;
 
 /* Does every point of the first feature lie beyond every point of the second along n? A gap is three
- * differences, three products and two sums: 4 roundings of parts that add up to `size`, below 4.1 u size with
- * u = 2^-53. The bound 8 u size leaves room for computing it. Underflow loses 3 times 2^-1075 at most. Slack makes a gap
- * smaller by its share of the sum of |n|; what computing that loses, its maker has added. */
+ * differences, three products and two sums: 4 roundings of parts that add up to `size`, below 4.1 u size
+ * with u = 2^-53. The bound 8 u size leaves room for computing it. Underflow loses 3 times 2^-1075 at most.
+ * Slack makes a gap smaller by its share of the sum of |n|; what computing that loses, its maker has added. */
 static bool beyond_along(const double x[4][3], cscd_contact_kind kind, const double n[3], double slack) {
     int first = points_of_first(kind);
     double loose = slack * (fabs(n[0]) + fabs(n[1]) + fabs(n[2]));
@@ -178,9 +178,9 @@ static double blend_ends(double start, double end, double t) {
     return (1.0 - t) * start + t * end;
 }
 
-/* The points from begin to end. A coordinate there is off by three roundings of numbers up to the largest coordinate C, less
- * than 3.1 u C, so that a difference of two is off by less than 6.2 u C; 8 u C is the slack. Nothing underflows: coordinates
- * are multiples of 2^-352, and times of 2^-103. */
+/* The points from begin to end. A coordinate there is off by three roundings of numbers up to the largest
+ * coordinate C, less than 3.1 u C, so that a difference of two is off by less than 6.2 u C; 8 u C is the
+ * slack. Nothing underflows: coordinates are multiples of 2^-352, and times of 2^-103. */
 static loose_query part_of_query(const elementary_query *query, double begin, double end) {
     loose_query part;
     double largest = 0.0;
@@ -203,8 +203,8 @@ static bool separated_along_axes(const loose_query *query, cscd_contact_kind kin
     return false;
 }
 
-/* Parallel edges, and a vertex and a face that is all but a segment, have no normal. Tries the direction along the longest
- * side, and the one across it to the other feature. */
+/* Parallel edges, and a vertex and a face that is all but a segment, have no normal. Tries the direction
+ * along the longest side, and the one across it to the other feature. */
 static bool separated_beside_longest(const loose_query *query, cscd_contact_kind kind) {
     static const int sides_of_face[3][3] = {{1, 2, 0}, {2, 3, 0}, {3, 1, 0}},
                      edges[2][3] = {{0, 1, 2}, {2, 3, 0}};

@@ -1,5 +1,6 @@
-/* Floors: how near two features may come that are nearer already than they should be. docs/solver/guarantees.md says what
- * they are for; docs/theory/floors.md has the lemmas that this file relies on. */
+/* Floors: how near two features may come that are nearer already than they should be.
+ * docs/solver/guarantees.md says what they are for; docs/theory/floors.md has the lemmas that this file
+ * relies on. */
 
 #include "runtime/ccd/feature_moment.h"
 
@@ -21,8 +22,8 @@ static unsigned edges_inside(const feature_moment *m) {
     return edges;
 }
 
-/* Returns a distance that the features certainly have, the greatest that is found or one that is enough. The planes are
- * those by which approach_within proves that they stay apart. */
+/* Returns a distance that the features certainly have, the greatest that is found or one that is enough. The
+ * planes are those by which approach_within proves that they stay apart. */
 static double least_distance(const feature_moment *m, double enough) {
     double greatest = 0.0, wanted = min_of(enough, m->distance - tight);
     unsigned inside = edges_inside(m), sets = 1u << separating_plane_edges(m->features.kind);
@@ -35,8 +36,8 @@ static double least_distance(const feature_moment *m, double enough) {
 
 enum { POWERS_MAX = 64 };
 
-/* Rung k is the product of the powers ratio^(2^i) over the bits of k, from the highest on. So it has one value, bit for
- * bit, wherever it comes from: pairs that are pressed come as near to it as doubles allow. */
+/* Rung k is the product of the powers ratio^(2^i) over the bits of k, from the highest on. So it has one
+ * value, bit for bit, wherever it comes from: pairs that are pressed come as near to it as doubles allow. */
 static double rung_of(const floor_ladder *ladder, uint64_t k) {
     double powers[POWERS_MAX], rung = ladder->distance;
     powers[0] = ladder->ratio;
@@ -62,12 +63,14 @@ double separation_floor_rung(const floor_ladder *ladder, double distance) {
     return rung_of(ladder, k + 1);
 }
 
-/* What the distance must exceed at the start beside the floor, in local units: the tolerance and the rounding. */
+/* The excess over the floor that the distance must have at the start, in local units: the tolerance and the
+ * rounding. */
 static double margin_above(const local_query *local, const floor_ladder *ladder, double floor) {
     return ladder->tolerance * floor + FLOOR_FINEST * local_query_extent_at_start(local);
 }
 
-/* Returns what the distance surely exceeds at the start, in local units, or more than `enough` if that is so. */
+/* Returns what the distance surely exceeds at the start, in local units, or more than `enough` if that is
+ * so. */
 static double sure_distance(const local_query *local, const floor_ladder *ladder, double enough) {
     feature_moment m = feature_moment_start(local);
     double finest = FLOOR_FINEST * local_query_extent_at_start(local), share = 1.0 + ladder->tolerance;
@@ -92,12 +95,12 @@ double separation_floor_at(const double x[4][3], cscd_contact_kind kind, const f
 
 /* ---- a motion ---------------------------------------------------------------------------------------- */
 
-/* A motion is followed down to this share of its margin above the floor, so that it is stopped little later than its end
- * would be refused. */
+/* A motion is followed down to this share of its margin above the floor, so that it is stopped little later
+ * than its end would be refused. */
 static const double share_left = 0.125;
 
-/* Does the motion certainly stay above the floor? The distance that it is proven to keep is below that at the start by
- * more than the tolerance, so no motion is refused at its start. */
+/* Does the motion certainly stay above the floor? The distance that it is proven to keep is below that at
+ * the start by more than the tolerance, so no motion is refused at its start. */
 static bool stays_above(const elementary_query *query, cscd_contact_kind kind, const floor_ladder *ladder,
                         double floor, elementary_contact *contact, bool *bounded) {
     local_query local = local_query_of(query, kind, FRAME_MOVING);
@@ -107,15 +110,15 @@ static bool stays_above(const elementary_query *query, cscd_contact_kind kind, c
     return !approach_within(query, &local, tolerance, contact, bounded);
 }
 
-/* Are the features at rest surely above the floor, so that it is no lower at the next start? Should their extent have
- * become so great that it is 0 there, they may have come nowhere near it. */
+/* Are the features at rest surely above the floor, so that it is no lower at the next start? Should their
+ * extent have become so great that it is 0 there, they may have come nowhere near it. */
 static bool is_above(const double x[4][3], cscd_contact_kind kind, const floor_ladder *ladder, double floor) {
     local_query local = query_at_rest(x, kind);
     return sure_distance(&local, ladder, floor * local.scale) > floor * local.scale;
 }
 
-/* Describes the features at the end of the motion, where they have fallen below their floor. The time is an estimate of
- * when they have: the motion itself stays above. */
+/* Describes the features at the end of the motion, where they have fallen below their floor. The time is an
+ * estimate of when they have: the motion itself stays above. */
 static void describe_end(const elementary_query *query, cscd_contact_kind kind, const floor_ladder *ladder,
                          double floor, elementary_contact *contact) {
     elementary_query end;

@@ -39,7 +39,8 @@ static void test_edge(const swept_interval *interval, uint32_t a, contact_lane *
     }
 }
 
-/* A row is a triangle with all vertices, or an edge with all edges behind it. The cursor is that of the lane's rows. */
+/* A row is a triangle with all vertices, or an edge with all edges behind it. The cursor is that of the
+ * lane's rows. */
 void brute_force_test(const swept_interval *interval, uint32_t lane_index, uint32_t lane_count,
                       contact_lane *lane) {
     const cscd_mesh *mesh = interval->mesh;

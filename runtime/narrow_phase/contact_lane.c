@@ -1,4 +1,4 @@
-/* What one thread finds in an interval, and the pairs of features that it still has to test. */
+/* The contacts that one thread finds in an interval, and the pairs of features that it still has to test. */
 #include "runtime/narrow_phase/contact_lane.h"
 
 #include <string.h>

@@ -1,4 +1,4 @@
-/* What one thread finds in an interval, and the pairs of features that it still has to test. */
+/* The contacts that one thread finds in an interval, and the pairs of features that it still has to test. */
 #pragma once
 
 #include "runtime/ccd/ccd.h"
@@ -9,7 +9,8 @@
 /* Whoever adds up to FEATURE_LIST_BURST pairs asks once whether there is room for them. */
 enum { FEATURE_LIST_CAPACITY = 512, FEATURE_LIST_BURST = 16 };
 
-/* Vertex a[i] and triangle b[i], or edges a[i] < b[i]. Kernels fill up their last eight behind the last pair. */
+/* Vertex a[i] and triangle b[i], or edges a[i] < b[i]. Kernels fill up their last eight behind the last
+ * pair. */
 typedef struct feature_list {
     uint32_t count;
     uint32_t a[FEATURE_LIST_CAPACITY + FEATURE_LIST_BURST], b[FEATURE_LIST_CAPACITY + FEATURE_LIST_BURST];
@@ -34,7 +35,7 @@ typedef struct candidate_list {
     size_t count, capacity;
 } candidate_list;
 
-/* The first block has room for so many contacts, and each of the others for as many as all before it. */
+/* The first block holds LANE_FIRST_BLOCK contacts, and each later block as many as all blocks before it. */
 enum { LANE_FIRST_BLOCK = 256, LANE_BLOCKS_MAX = 8 * sizeof(size_t) - 8 };
 
 typedef struct contact_lane {
@@ -49,8 +50,8 @@ typedef struct contact_lane {
     uint64_t decided[ELEMENTARY_LEVEL_COUNT]; /* elementary tests, by the level that decided them */
     uint64_t separations;                     /* tests for minimum separation */
     bool out_of_memory;
-    uint32_t
-        *kept; /* per component that is culled: pairs of its triangles that came here; NULL: nobody asks */
+    /* Per component that is culled: pairs of its triangles that came here; NULL: nobody asks. */
+    uint32_t *kept;
     feature_list queue[2];        /* by cscd_contact_kind; see feature_queue.h */
     candidate_list candidates[2]; /* by cscd_contact_kind */
 } contact_lane;
@@ -59,7 +60,7 @@ static inline size_t contact_lane_capacity(const contact_lane *lane) {
     return lane->block_count == 0 ? 0 : (size_t)LANE_FIRST_BLOCK << (lane->block_count - 1);
 }
 
-/* Where a contact of the lane is; i is less than its capacity. */
+/* Returns the place of a contact of the lane; i is less than its capacity. */
 static inline cscd_contact *contact_lane_at(const contact_lane *lane, size_t i) {
     assert(i < contact_lane_capacity(lane));
     if (i < LANE_FIRST_BLOCK) return &lane->blocks[0][i];
@@ -81,7 +82,7 @@ static inline bool contact_lane_suspend(contact_lane *lane, uint64_t cursor) {
 /* Empties the lane; it keeps its memory, and has no limit. */
 void contact_lane_reset(contact_lane *lane);
 
-/* Makes room for so many contacts in all. False: no memory. */
+/* Makes room for `count` contacts in all. False: no memory. */
 bool contact_lane_reserve(cscd_context *context, contact_lane *lane, size_t count);
 
 /* Gives back the memory of the contacts; the lane has none then. */

@@ -234,8 +234,8 @@ void exclusions_free(cscd_context *context, exclusions *e) {
 
 /* ---- seams of another mesh --------------------------------------------------------------------------------------------- */
 
-/* Unites what has become of the vertices of each seam: the first that came from each, or all. first: scratch, per old
- * vertex. */
+/* Unites what has become of the vertices of each seam: the first that came from each, or all. first:
+ * scratch, per old vertex. */
 static void unite_seams(const exclusions *e, const cscd_mesh_change *change, bool all, uint32_t *first,
                         uint32_t *names) {
     memset(first, 0xff, change->vertices.old_count * sizeof *first);

@@ -1,4 +1,5 @@
-/* Pairs that are left out: by the caller, with a callback, a list, and seams; or until they have once been apart. */
+/* Pairs that are left out: by the caller, with a callback, a list, and seams; or until they have once been
+ * apart. */
 #pragma once
 
 #include "runtime/bvh/object_set.h"
@@ -53,8 +54,9 @@ cscd_status seam_list_create(const cscd_mesh *mesh, const uint32_t *pairs, size_
                              seam_list *out);
 void seam_list_free(cscd_context *context, seam_list *s);
 
-/* Checks the first positions that the detector is given: INVALID_ARGUMENT names the first pair whose vertices are
- * farther apart there than the reach. Once all are near, this does nothing: later they may part. */
+/* Checks the first positions that the detector is given: INVALID_ARGUMENT names the first pair whose
+ * vertices are farther apart there than the reach. Once all are near, this does nothing: later they may
+ * part. */
 cscd_status seam_list_check(const cscd_mesh *mesh, seam_list *s, const double *positions);
 
 typedef struct exclusions {
@@ -73,8 +75,8 @@ typedef struct exclusions {
 cscd_status exclusions_create(const cscd_mesh *mesh, const cscd_detector_options *options, exclusions *out);
 void exclusions_free(cscd_context *context, exclusions *e);
 
-/* Copy everything but the seams, or but the ignored pairs, and take these from the caller. Seams that are still to be
- * checked stay with *now. */
+/* Copy everything but the seams, or but the ignored pairs, and take these from the caller. Seams that are
+ * still to be checked stay with *now. */
 cscd_status exclusions_with_seams(const exclusions *now, const uint32_t *seams, size_t seam_count,
                                   double seam_reach, exclusions *out);
 cscd_status exclusions_with_ignored(const exclusions *now, const uint32_t *ignored, size_t ignored_count,
@@ -94,8 +96,9 @@ static inline bool exclusions_any(const exclusions *e) {
 /* Is this pair of triangles among those that the caller lists? */
 bool exclusions_have(const exclusions *e, uint32_t a, uint32_t b);
 
-/* A seam joins what has become of its vertices: of vertices that came apart, the first. A pair of ignored triangles
- * becomes all pairs of triangles that came from the two. Pairs do not wait. OUT_OF_MEMORY without a sentence: *out is untouched. */
+/* A seam joins what has become of its vertices: of vertices that came apart, the first. A pair of ignored
+ * triangles becomes all pairs of triangles that came from the two. Pairs do not wait. OUT_OF_MEMORY without
+ * a sentence: *out is untouched. */
 cscd_status exclusions_move(const exclusions *e, const cscd_mesh *mesh, const cscd_mesh_change *change,
                             exclusions *out);
 
@@ -103,31 +106,31 @@ cscd_status exclusions_move(const exclusions *e, const cscd_mesh *mesh, const cs
 cscd_status exclusions_move_former(const exclusions *e, const cscd_mesh *mesh, const cscd_mesh_change *change,
                                    exclusions *out);
 
-/* Copies all of it but the waiting pairs; mesh: the same one in the context of the copy. On failure *out is untouched. */
+/* Copies all of it but the waiting pairs; mesh: the same one in the context of the copy. On failure *out is
+ * untouched. */
 cscd_status exclusions_copy(const exclusions *e, const cscd_mesh *mesh, exclusions *out);
 
 /* ---- pairs that wait: a change has uncovered them while they touched ----------------------------------- */
 
-/* What was left out before a change: by seams and ignored pairs, or among objects. */
+/* The pairs that were left out before a change: by seams and ignored pairs, or among objects. */
 typedef struct former_exclusions {
     struct former_exclusions *next;
     exclusions exclusions;
-    object_set
-        *sets; /* one for each object, as it was; without kinds: it was not there. NULL: by the others */
+    /* One for each object, as it was; a set without kinds: the object did not exist. NULL: only the exclusions count. */
+    object_set *sets;
 } former_exclusions;
 
 typedef struct waiting_pairs {
     named_pair_set pairs; /* of features, which searches leave out, and of triangles, which the check does */
-    named_pair_set
-        torn; /* pairs of neighbours that the mesh has parted: they wait if they are not apart at the next
-                          * positions */
+    /* Pairs of neighbours that the mesh has parted: they wait if they are not apart at the next positions. */
+    named_pair_set torn;
     former_exclusions *former; /* changes since positions were last seen, the last one first; NULL: none */
     former_exclusions *spare;  /* for the next change; NULL: none */
 } waiting_pairs;
 
 void waiting_pairs_free(const cscd_mesh *mesh, waiting_pairs *w);
 
-/* How many pairs of features wait. */
+/* Returns the number of pairs of features that wait. */
 static inline size_t waiting_features(const waiting_pairs *w) {
     return w->pairs.count - w->pairs.triangle_pairs;
 }
@@ -135,9 +138,10 @@ static inline size_t waiting_features(const waiting_pairs *w) {
 /* Makes room for one change, so that it cannot fail later. */
 cscd_status waiting_pairs_reserve(const cscd_mesh *mesh, waiting_pairs *w);
 
-/* Remembers what has been left out until now, and owns it from then on: the seams and ignored pairs of *before, or
- * the sets of objects. Names are in the numbering of the present mesh: vertices of one name counted as one. Room has
- * been made. What an earlier change leaves out as well is not remembered twice, so changes to and fro take no memory. */
+/* Remembers what has been left out until now, and owns it from then on: the seams and ignored pairs of
+ * *before, or the sets of objects. Names are in the numbering of the present mesh: vertices of one name
+ * counted as one. Room has been made. What an earlier change leaves out as well is not remembered twice, so
+ * changes to and fro take no memory. */
 void waiting_pairs_uncover(const cscd_mesh *mesh, waiting_pairs *w, exclusions *before);
 void waiting_pairs_uncover_objects(const cscd_mesh *mesh, waiting_pairs *w, object_set *before);
 
@@ -148,16 +152,17 @@ bool waiting_pairs_uncovered(const cscd_mesh *mesh, const waiting_pairs *w, cscd
 /* Forgets the changes. */
 void waiting_pairs_settled(const cscd_mesh *mesh, waiting_pairs *w);
 
-/* What is left out in the old mesh, as the detector sees it. */
+/* The exclusions and rules of the old mesh, as the detector sees them. */
 typedef struct left_out_before {
     const cscd_mesh *mesh;
     const exclusions *exclusions;
     const struct pair_rules *rules;
 } left_out_before;
 
-/* A pair that waits becomes all pairs that came from its two features. Neighbours that the change has parted, because
- * their common vertex, or the seam between them, came apart, are added to *out as torn. Where obstacles become free,
- * what they left out is uncovered. mesh: the new one. OUT_OF_MEMORY without a sentence: *out holds nothing. */
+/* A pair that waits becomes all pairs that came from its two features. Neighbours that the change has
+ * parted, because their common vertex, or the seam between them, came apart, are added to *out as torn.
+ * Where obstacles become free, what they left out is uncovered. mesh: the new one. OUT_OF_MEMORY without a
+ * sentence: *out holds nothing. */
 cscd_status waiting_pairs_move(const waiting_pairs *w, const left_out_before *before, const cscd_mesh *mesh,
                                const cscd_mesh_change *change, waiting_pairs *out);
 

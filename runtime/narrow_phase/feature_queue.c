@@ -5,8 +5,8 @@
 
 #include <assert.h>
 
-/* A point is an edge behind all others, so it is the second one; with another point it may be the first, too. Its own
- * parameter says nothing. */
+/* A point is an edge behind all others, so it is the second one; with another point it may be the first,
+ * too. Its own parameter says nothing. */
 static void add_contact_of_point(const cscd_mesh *mesh, uint32_t a, uint32_t b,
                                  const elementary_contact *contact, bool bounded, contact_lane *lane) {
     bool points = edge_is_point(mesh, a);

@@ -8,7 +8,7 @@
  * that queue empty. */
 void feature_queue_decide(const swept_interval *interval, cscd_contact_kind kind, contact_lane *lane);
 
-/* Returns whether no point of the pair moves. If so, decides it as elementary_after_signs does, with the same contact, but
- * sooner. */
+/* Returns whether no point of the pair moves. If so, decides it as elementary_after_signs does, with the
+ * same contact, but sooner. */
 bool still_pair_decide(const elementary_query *query, cscd_contact_kind kind, elementary_verdict *verdict,
                        elementary_contact *contact);

@@ -65,8 +65,9 @@ typedef struct chosen_pairs {
     uint32_t count;
 } chosen_pairs;
 
-/* Most pairs are far from each other on the surface: whatever they represent is theirs. The others are `open`. Where a tree
- * holds several components or objects, the traversal leaves to us whether triangles are looked at. */
+/* Most pairs are far from each other on the surface: whatever they represent is theirs. The others are
+ * `open`. Where a tree holds several components or objects, the traversal leaves to us whether triangles are
+ * looked at. */
 static void choose_pairs(const swept_interval *interval, const triangle_pair *slots, uint32_t count,
                          chosen_pairs *settled, chosen_pairs *open) {
     const bvh *hierarchy = interval->bvh;
@@ -144,8 +145,8 @@ static bool parted_by_directions(const swept_interval *interval, cscd_contact_ki
     return directions_part(&query, kind, pair_reach(interval, kind, a, b));
 }
 
-/* Adjacent triangles of components that are culled are pairs like others, and some components are not looked at with
- * themselves. */
+/* Adjacent triangles of components that are culled are pairs like others, and some components are not looked
+ * at with themselves. */
 static bool left_to_others(const swept_interval *interval, uint32_t component) {
     return (interval->culling != NULL && interval->culled[component]) ||
            !pair_filter_admits_components(&interval->filter, component, component);

@@ -22,8 +22,8 @@ static inline bool triangles_share_vertex(const uint32_t a[3], const uint32_t b[
 /* *too_many is set when there are more than eight per triangle, as in a fan; *out is empty then. */
 cscd_status orphan_pairs_create(const cscd_mesh *mesh, orphan_pairs *out, bool *too_many);
 
-/* Those of a mesh that was made from another one, whose pairs are given: only what has changed is looked at. mesh: the new
- * one. On failure *out holds nothing. */
+/* Those of a mesh that was made from another one, whose pairs are given: only what has changed is looked at.
+ * mesh: the new one. On failure *out holds nothing. */
 cscd_status orphan_pairs_move(const orphan_pairs *pairs, const cscd_mesh *mesh,
                               const cscd_mesh_change *change, orphan_pairs *out, bool *too_many);
 
@@ -41,8 +41,8 @@ void narrow_phase_finish(const swept_interval *interval, contact_lane *lane);
 void narrow_phase_test(const swept_interval *interval, const triangle_pair *pairs, uint32_t count,
                        contact_lane *lane);
 
-/* The orphan pairs index, index + stride, and so on from the lane's cursor on, but those that a direction parts. The
- * lane may be suspended on the way. */
+/* The orphan pairs index, index + stride, and so on from the lane's cursor on, but those that a direction
+ * parts. The lane may be suspended on the way. */
 void narrow_phase_test_orphan_pairs(const swept_interval *interval, const orphan_pairs *orphans,
                                     uint32_t index, uint32_t stride, contact_lane *lane);
 
@@ -52,9 +52,9 @@ void narrow_phase_test_vf(const swept_interval *interval, uint32_t vertex, uint3
                           contact_lane *lane);
 void narrow_phase_test_ee(const swept_interval *interval, uint32_t a, uint32_t b, contact_lane *lane);
 
-/* Tests every pair of features that share no vertex: the reference that the other methods must equal. Runs the share
- * lane_index of lane_count of all pairs. Uses no tree: pairs are rejected by their own boxes in double, which loses none,
- * and by the test of the pair. */
+/* Tests every pair of features that share no vertex: the reference that the other methods must equal. Runs
+ * the share lane_index of lane_count of all pairs. Uses no tree: pairs are rejected by their own boxes in
+ * double, which loses none, and by the test of the pair. */
 void brute_force_test(const swept_interval *interval, uint32_t lane_index, uint32_t lane_count,
                       contact_lane *lane);
 
@@ -63,15 +63,15 @@ void brute_force_test(const swept_interval *interval, uint32_t lane_index, uint3
 /* An interval, and what is known of its start. */
 typedef struct own_interval {
     const swept_interval *swept;
-    culling
-        *culling; /* regions; the search says in it where detector points are and how triangles face them */
+    /* Regions; the search writes into it where detector points are and how triangles face them. */
+    culling *culling;
     const bool *culled; /* per component: pairs of its triangles may be left out */
     const bool *clean;  /* per triangle: it may be left out; NULL: all may */
     uint64_t ours;      /* of the detector's options: steps that are not done as published */
 } own_interval;
 
-/* A search that goes its own way from the positions of an interval to its contacts, with trees and tests of its own: what stands
- * in place of the stages of a step, for methods to compare with. */
+/* A search that goes its own way from the positions of an interval to its contacts, with trees and tests of
+ * its own: what stands in place of the stages of a step, for methods to compare with. */
 typedef struct own_search {
     /* On failure, which has its sentence, *out is untouched. */
     cscd_status (*create)(cscd_context *context, uint64_t ours, void **out);

@@ -5,13 +5,14 @@
 #include "runtime/narrow_phase/representatives.h"
 #include "src/core/kernels.h"
 
-/* Keeps, of the given pairs of features of two triangles, in slots, those that may touch, or come within their distance, by
- * their volumes, and that share no vertex. apart: the caller knows that the triangles share none. */
+/* Keeps, of the given pairs of features of two triangles, in slots, those that may touch, or come within
+ * their distance, by their volumes, and that share no vertex. apart: the caller knows that the triangles
+ * share none. */
 typedef void feature_filter_kernel(const swept_interval *interval, const triangle_pair *pairs, uint32_t count,
                                    bool apart, uint16_t *features);
 
-/* Of features of pairs of triangles, those that these represent; open: those whose representatives share a
- * vertex, where the features share none. */
+/* Keeps, of the features of pairs of triangles, those that these triangles represent. open: the features
+ * whose representatives share a vertex although the features share none. */
 typedef void represent_kernel(const cscd_mesh *mesh, const representatives *r, const triangle_pair *pairs,
                               uint32_t count, uint16_t *features, uint16_t *open);
 

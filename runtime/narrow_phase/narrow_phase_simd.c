@@ -1,4 +1,5 @@
-/* The kernels of the narrow phase, one table per instruction set: which pairs of features eight pairs of triangles test. */
+/* The kernels of the narrow phase, one table per instruction set: which pairs of features eight pairs of
+ * triangles test. */
 #include "runtime/narrow_phase/narrow_phase_kernels.h"
 #include "src/core/simd.h"
 #include "src/core/simd_lanes.h"
@@ -132,7 +133,7 @@ static inline range join_ranges(range a, range b) {
     return (range){f32x8_min(a.low, b.low), f32x8_max(a.high, b.high)};
 }
 
-/* How far a and b stay apart on the same side at both ends; negative where they do not. */
+/* The distance by which a and b stay apart on the same side at both ends; negative where they do not. */
 static inline f32x8 gap_between(range a0, range b0, range a1, range b1) {
     f32x8 before = f32x8_min(b0.low - a0.high, b1.low - a1.high);
     f32x8 behind = f32x8_min(a0.low - b0.high, a1.low - b1.high);
@@ -224,7 +225,7 @@ static inline i32x8 sharing_vertex(const pairs_x8 *o) {
     return features;
 }
 
-/* What is known of two trees, whichever. */
+/* Two trees, and the margins that all pairs of their triangles share. */
 typedef struct tree_pair {
     uint32_t a, b;
     f32x8 between;   /* is added to a record of b */

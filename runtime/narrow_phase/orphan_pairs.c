@@ -29,12 +29,13 @@ typedef struct orphan_search {
     uint8_t *marks;                 /* per vertex, of objects that have changed */
 } orphan_search;
 
-/* Where a vertex has very many triangles, looking takes the square of their number, whatever is found. Then it is given up as
- * well: steps test pairs of adjacent triangles instead, of which the traversal leaves out most there. An ordinary mesh takes
- * some twenty looks for each triangle. */
+/* Where a vertex has very many triangles, looking takes the square of their number, whatever is found. Then
+ * it is given up as well: steps test pairs of adjacent triangles instead, of which the traversal leaves out
+ * most there. An ordinary mesh takes some twenty looks for each triangle. */
 enum { ORPHANS_PER_TRIANGLE = 8, LOOKS_PER_TRIANGLE = 256 };
 
-/* In the place of an opposite corner: an edge of one triangle has no second one, and an edge of more than two has many. */
+/* In the place of an opposite corner: an edge of one triangle has no second one, and an edge of more than
+ * two has many. */
 enum { NO_CORNER = UINT32_MAX, MANY_CORNERS = UINT32_MAX - 1 };
 
 /* Does every triangle at vertex v share a vertex with triangle f? */
@@ -58,8 +59,8 @@ static bool are_orphan_edges(const cscd_mesh *mesh, uint32_t a, uint32_t b) {
 
 /* ---- by the corners opposite edges ------------------------------------------------------------------------ */
 
-/* Writes the corners opposite an edge: NO_CORNER in the second place for an edge of one triangle, MANY_CORNERS for one of more
- * than two. */
+/* Writes the corners opposite an edge: NO_CORNER in the second place for an edge of one triangle,
+ * MANY_CORNERS for one of more than two. */
 static void orphan_search_opposites(const cscd_mesh *mesh, uint32_t edge, uint32_t out[2]) {
     uint32_t begin = mesh->edge_star_offsets[edge], count = mesh->edge_star_offsets[edge + 1] - begin;
     out[0] = out[1] = NO_CORNER;
@@ -76,8 +77,8 @@ static bool is_end(const uint32_t edge[2], uint32_t vertex) {
     return edge[0] == vertex || edge[1] == vertex;
 }
 
-/* Two triangles at edges that share no vertex share one if the corner opposite the one edge is an end of the other, or both
- * corners are the same. As are_orphan_edges, without a look at the triangles. */
+/* Two triangles at edges that share no vertex share one if the corner opposite the one edge is an end of the
+ * other, or both corners are the same. As are_orphan_edges, without a look at the triangles. */
 static bool opposites_say_orphan(const orphan_search *f, uint32_t a, uint32_t b) {
     const uint32_t *ends_a = f->mesh->edges[a], *ends_b = f->mesh->edges[b], *p = f->opposites[a],
                    *q = f->opposites[b];
@@ -114,7 +115,7 @@ static bool orphan_search_has_enough(const orphan_search *f) {
 
 enum { LOOKS_NOTED = 1 << 14 };
 
-/* Counts looks at so many triangles. */
+/* Counts looks at a number of triangles. */
 static void orphan_search_look(orphan_search *f, size_t triangles) {
     f->looks += triangles;
     if (f->all_looks == NULL || f->looks - f->noted < LOOKS_NOTED) return;
@@ -169,7 +170,7 @@ static uint32_t orphan_search_features(const cscd_mesh *mesh, uint32_t t) {
     return features;
 }
 
-/* Where all triangles are looked at, these are known for all of them. */
+/* The search of a whole mesh knows the features of all triangles beforehand. */
 static uint32_t features_of(const orphan_search *f, uint32_t t) {
     return f->features != NULL ? f->features[t] : orphan_search_features(f->mesh, t);
 }
@@ -185,8 +186,8 @@ static void find_edges_between(orphan_search *f, uint32_t t, uint32_t edges_t, u
     }
 }
 
-/* Pairs the features of t, whose stars begin with it, with features of triangle u; for edges u is the first of the
- * other star, too. So each pair is looked at once. */
+/* Pairs the features of t, whose stars begin with it, with features of triangle u; for edges u is the first
+ * of the other star, too. So each pair is looked at once. */
 static void find_between(orphan_search *f, uint32_t t, uint32_t features, uint32_t u) {
     const cscd_mesh *mesh = f->mesh;
     for (int i = 0; i < 3; i++) {
@@ -262,9 +263,9 @@ static void mark_beside(const cscd_mesh *mesh, const bool *edges, bool *vertices
     }
 }
 
-/* Fills in f->even: the edges of which the search below finds the pairs with one another. An edge is even if it and all edges
- * of the triangles at its ends have two triangles each. uneven: of vertices, those of triangles that have another edge.
- * f->opposites is known. */
+/* Fills in f->even: the edges of which the search below finds the pairs with one another. An edge is even if
+ * it and all edges of the triangles at its ends have two triangles each. uneven: of vertices, those of
+ * triangles that have another edge. f->opposites is known. */
 static void orphan_edges_mark(const orphan_search *f, bool *uneven) {
     const cscd_mesh *mesh = f->mesh;
     for (uint32_t e = 0; e < mesh->edge_count; e++) f->even[e] = has_two_triangles(f->opposites[e]);
@@ -274,7 +275,8 @@ static void orphan_edges_mark(const orphan_search *f, bool *uneven) {
     mark_beside(mesh, f->even, uneven);
 }
 
-/* Is a triangle near an edge that is not even, so that all of its pairs with adjacent triangles have to be looked at? */
+/* Is a triangle near an edge that is not even, so that all of its pairs with adjacent triangles have to be
+ * looked at? */
 static bool orphan_edges_near(const cscd_mesh *mesh, const bool *uneven, uint32_t t) {
     const uint32_t *v = mesh->triangles[t];
     return uneven[v[0]] || uneven[v[1]] || uneven[v[2]];
@@ -321,7 +323,8 @@ static void find_across(orphan_search *f, uint32_t a) {
     if (!both || a < b) add_edges(f, a, b);
 }
 
-/* The third case, for one corner p opposite a, in this triangle, and one end q of a. Each pair is found from both edges. */
+/* The third case, for one corner p opposite a, in this triangle, and one end q of a. Each pair is found from
+ * both edges. */
 static void find_beside(orphan_search *f, uint32_t a, uint32_t triangle, uint32_t p, uint32_t q) {
     const cscd_mesh *mesh = f->mesh;
     uint32_t shared = edge_in(mesh, triangle, p, q);
@@ -349,7 +352,8 @@ static void orphan_edges_of(orphan_search *f, uint32_t t) {
     }
 }
 
-/* Looks at the triangles at one corner of a triangle at v that have neither v nor the other corner, if there is one. */
+/* Looks at the triangles at one corner of a triangle at v that have neither v nor the other corner, if there
+ * is one. */
 static void find_faces_at(orphan_search *f, uint32_t v, uint32_t corner, uint32_t other) {
     const cscd_mesh *mesh = f->mesh;
     orphan_search_look(f, star_size(mesh, corner));
@@ -362,8 +366,8 @@ static void find_faces_at(orphan_search *f, uint32_t v, uint32_t corner, uint32_
     }
 }
 
-/* Adds the pairs of the vertices whose stars begin with a triangle that is not near an uneven edge. A triangle of an orphan
- * pair shares a vertex with the first triangle at v, so one of its other two corners. */
+/* Adds the pairs of the vertices whose stars begin with a triangle that is not near an uneven edge. A
+ * triangle of an orphan pair shares a vertex with the first triangle at v, so one of its other two corners. */
 static void orphan_edges_vertices(orphan_search *f, uint32_t t) {
     const cscd_mesh *mesh = f->mesh;
     for (int i = 0; i < 3; i++) {
@@ -530,8 +534,8 @@ static void mark_changed(orphan_search *f, const object_range *range) {
     }
 }
 
-/* A pair that is not known has a feature at changed vertices only, or a triangle whose vertices have changed. So one
- * of its two adjacent triangles has a changed vertex, and both have a vertex that is near. */
+/* A pair that is not known has a feature at changed vertices only, or a triangle whose vertices have
+ * changed. So one of its two adjacent triangles has a changed vertex, and both have a vertex that is near. */
 static void find_in_object(orphan_search *f, const object_range *range) {
     uint32_t end = range->triangle + range->triangle_count;
     mark_changed(f, range);

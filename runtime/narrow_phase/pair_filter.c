@@ -1,4 +1,5 @@
-/* Which pairs are looked at: the rules of their objects, the active vertices, and whether what was found is left out. */
+/* Decides which pairs are looked at: by the rules of their objects, by active vertices, and by what the
+ * caller leaves out. */
 #include "runtime/narrow_phase/pair_filter.h"
 
 #include "src/core/check.h"

@@ -1,4 +1,4 @@
-/* Which pairs are looked at. A search asks one question on each level, from the trees down to what it has found:
+/* Decides which pairs are looked at. A search asks one question on each level, from the trees down to what it has found:
  * trees and leaves  object_sets_may_meet, which the traversal asks for eight sets of objects at once;
  * objects           pair_filter_admits_objects, and pair_filter_admits_components;
  * triangles         pair_filter_admits_triangles, where a tree holds several components;
@@ -13,8 +13,8 @@
 
 /* ---- rules --------------------------------------------------------------------------------------------- */
 
-/* Which objects are looked at with which, and how far apart they have to stay: the rules of the caller, as they were given.
- * The matrix has class_count rows; NULL: distances are sums of halves of thicknesses. */
+/* The rules of the caller, as they were given: which objects are looked at with which, and how far apart
+ * they have to stay. The matrix has class_count rows; NULL: distances are sums of halves of thicknesses. */
 typedef struct given_rules {
     const cscd_object_rule *objects; /* NULL: the default rule for each */
     uint32_t count;                  /* 0, or the number of objects */
@@ -36,12 +36,12 @@ typedef struct pair_rules {
     uint32_t *classes, class_count; /* per object its class; NULL and 0 without a matrix */
     double *matrix;
 
-    double greatest,
-        greatest_to_itself; /* distances, the latter of objects that are looked at with themselves */
+    /* The greatest distance, and the greatest one of an object that is looked at with itself. */
+    double greatest, greatest_to_itself;
 } pair_rules;
 
-/* Copies and checks what the caller says. INVALID_ARGUMENT names the object or the place in the matrix. On failure *out
- * holds nothing. */
+/* Copies and checks what the caller says. INVALID_ARGUMENT names the object or the place in the matrix. On
+ * failure *out holds nothing. */
 cscd_status pair_rules_create(const cscd_mesh *mesh, const given_rules *given, pair_rules *out);
 
 /* Copies all of it; mesh: the same one in the context of the copy. On failure *out is untouched. */
@@ -51,7 +51,7 @@ void pair_rules_free(const cscd_mesh *mesh, pair_rules *rules);
 /* A copy of the sets alone; of default rules, if there are none. NULL: no memory. */
 object_set *pair_rules_copy_sets(const cscd_mesh *mesh, const pair_rules *rules);
 
-/* How far these objects have to stay apart; 0: they must not touch. */
+/* Returns the distance that these objects have to keep; 0: they must not touch. */
 static inline double pair_rules_distance(const pair_rules *rules, uint32_t a, uint32_t b) {
     if (rules->matrix == NULL) return rules->halves[a] + rules->halves[b];
     return rules->matrix[(size_t)rules->classes[a] * rules->class_count + rules->classes[b]];
@@ -59,7 +59,8 @@ static inline double pair_rules_distance(const pair_rules *rules, uint32_t a, ui
 
 /* ---- active vertices ----------------------------------------------------------------------------------- */
 
-/* Which vertices may move in the next motions. Pairs of two features without any of them are not looked for. */
+/* The vertices that may move in the next motions. Pairs of two features without any of them are not looked
+ * for. */
 typedef struct active_set {
     bool *vertices;  /* NULL: all are active, and so is everything */
     bool *triangles; /* whether one of their vertices is active */
@@ -71,11 +72,12 @@ cscd_status active_set_reserve(const cscd_mesh *mesh, active_set *s);
 /* Makes these vertices, which are of the mesh, and no others active. There is room. */
 void active_set_fill(const cscd_mesh *mesh, const uint32_t *vertices, size_t count, active_set *s);
 
-/* Copies all of it; mesh: the same one in the context of the copy. Here and below *out is untouched on failure. */
+/* Copies all of it; mesh: the same one in the context of the copy. Here and below *out is untouched on
+ * failure. */
 cscd_status active_set_copy(const active_set *s, const cscd_mesh *mesh, active_set *out);
 
-/* The set of a mesh that was made from another one; mesh: the new one. What comes from an active vertex is active, and
- * so is what is new. */
+/* The set of a mesh that was made from another one; mesh: the new one. What comes from an active vertex is
+ * active, and so is what is new. */
 cscd_status active_set_move(const active_set *s, const cscd_mesh *mesh, const cscd_mesh_change *change,
                             active_set *out);
 void active_set_free(cscd_context *context, active_set *s);
@@ -95,7 +97,7 @@ static inline uint32_t active_corners(const active_set *s, const uint32_t corner
 
 /* ---- the filter ----------------------------------------------------------------------------------------- */
 
-/* What decides, in one interval, whether a pair is looked at. */
+/* The filter of one interval. */
 typedef struct pair_filter {
     const cscd_mesh *mesh;
     const pair_rules *rules;  /* NULL: all objects are looked at, but obstacles with obstacles */
@@ -155,9 +157,9 @@ static inline bool pair_filter_admits_features(const pair_filter *f, cscd_contac
 
 /* ---- what was found ------------------------------------------------------------------------------------- */
 
-/* Is what was found left out? It is a contact, or a proximity, of two features without a common vertex, or, of kind TT, an
- * intersection of triangles a < b at these positions. Seams leave out an intersection if every two features of the
- * triangles that intersect have a vertex of one seam in common. */
+/* Is what was found left out? It is a contact, or a proximity, of two features without a common vertex, or,
+ * of kind TT, an intersection of triangles a < b at these positions. Seams leave out an intersection if
+ * every two features of the triangles that intersect have a vertex of one seam in common. */
 bool exclusions_cover(const exclusions *e, cscd_contact_kind kind, uint32_t a, uint32_t b,
                       const double *positions);
 

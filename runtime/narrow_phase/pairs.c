@@ -1,5 +1,5 @@
-/* Single pairs of the public API: points are gathered pair by pair, and a task decides as many pairs as one call of
- * the queue takes. */
+/* Single pairs of the public API: points are gathered pair by pair, and a task decides as many pairs as one
+ * call of the queue takes. */
 #include "cscd/pairs.h"
 
 #include "runtime/ccd/ccd.h"
@@ -23,15 +23,15 @@ typedef struct point_pairs {
     const double *x0, *x1; /* four points of three coordinates for each pair, one pair after the other */
 } point_pairs;
 
-/* A function that is told of each pair that comes into contact, by the pair's number and in no certain order. The
- * contact's own numbers mean nothing. */
+/* A function that is told of each pair that comes into contact, by the pair's number and in no certain
+ * order. The contact's own numbers mean nothing. */
 typedef void point_pair_found(void *user, size_t pair, const cscd_contact *contact);
 
 /* The pairs that one call of point_pairs_test takes at most. */
 enum { POINT_PAIRS_MAX = 128 };
 
-/* The features of POINT_PAIRS_MAX pairs: triangle i and the edges 2 i and 2 i + 1 belong to pair i, as do the points
- * from 4 i on. */
+/* The features of POINT_PAIRS_MAX pairs: triangle i and the edges 2 i and 2 i + 1 belong to pair i, as do
+ * the points from 4 i on. */
 typedef struct pair_features {
     uint32_t triangles[POINT_PAIRS_MAX][3], edges[2 * POINT_PAIRS_MAX][2];
 } pair_features;
@@ -57,8 +57,8 @@ static void queue_pairs(const swept_interval *interval, cscd_contact_kind kind, 
 /* The lane has room for a contact of each pair, so it never asks the allocator for more. */
 _Static_assert((int)POINT_PAIRS_MAX <= (int)LANE_FIRST_BLOCK,
                "the contacts of all pairs are one block of a lane");
-/* Tests up to POINT_PAIRS_MAX pairs on the calling thread, without an allocation: for contact or, with a distance above 0,
- * for coming within it. Every bit is that of a step over a mesh that holds these features. */
+/* Tests up to POINT_PAIRS_MAX pairs on the calling thread, without an allocation: for contact or, with a
+ * distance above 0, for coming within it. Every bit is that of a step over a mesh that holds these features. */
 static void point_pairs_test(cscd_context *context, const point_pairs *pairs, separation limit,
                              point_pair_found *found, void *user) {
     pair_features features;

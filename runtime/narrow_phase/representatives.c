@@ -7,16 +7,17 @@
 #include <assert.h>
 #include <string.h>
 
-/* The kernel marks the undecided features of so many pairs at a time. */
+/* The kernel marks the undecided features of up to 256 pairs at a time. */
 enum { PAIRS_AT_ONCE = 256 };
 
 /* ---- ring marks --------------------------------------------------------------------------------------- */
 
-/* With patches of 128 vertices, a mark of cloth has 1.7 bits in the mean; with smaller patches it has more of them, and larger
- * ones hold more pairs of triangles that are far from each other. Between 32 and 256 vertices it makes little difference. */
+/* With patches of 128 vertices, a mark of cloth has 1.7 bits in the mean; with smaller patches it has more
+ * of them, and larger ones hold more pairs of triangles that are far from each other. Between 32 and 256
+ * vertices it makes little difference. */
 enum { PATCH_VERTICES = 128, MARK_BITS = 64 - RING_MARK_FIRST_BIT, UNASSIGNED = 255 };
 
-/* Of the vertices of one object. */
+/* The patches of the vertices of one object. */
 typedef struct vertex_patches {
     const cscd_mesh *mesh;
     uint32_t first_vertex;

@@ -22,7 +22,7 @@ static bool nothing_moves(const elementary_query *query) {
     return true;
 }
 
-/* How three of the points turn when they are seen along an axis. */
+/* Returns the turn of three of the points, as seen along an axis. */
 static int turn_along(const double x[4][3], int axis, int a, int b, int c) {
     int y = (axis + 1) % 3, z = (axis + 2) % 3;
     return orient2d(x[a][y], x[a][z], x[b][y], x[b][z], x[c][y], x[c][z]);

@@ -32,7 +32,7 @@ typedef struct swept_interval {
     bool collecting;        /* pairs of features become the lanes' candidates instead of being tested */
 } swept_interval;
 
-/* What the kernels read of an interval. */
+/* Returns the part of an interval that the kernels read. */
 static inline feature_source swept_interval_source(const swept_interval *interval) {
     return (feature_source){interval->x0, interval->x1, (const uint32_t(*)[3])interval->mesh->triangles,
                             (const uint32_t(*)[2])interval->mesh->edges};
@@ -59,7 +59,7 @@ static inline uint32_t object_of_edge(const swept_interval *interval, uint32_t e
     return interval->filter.rules->component_objects[edge_component(mesh, edge)];
 }
 
-/* How far two objects have to stay apart, and how exactly. */
+/* Returns the distance that two objects have to keep, and its tolerance. */
 static inline separation object_separation(const swept_interval *interval, uint32_t a, uint32_t b) {
     if (!interval->thick) return interval->limit;
     double distance = pair_rules_distance(interval->filter.rules, a, b);
@@ -67,7 +67,8 @@ static inline separation object_separation(const swept_interval *interval, uint3
     return separation_limit(distance, interval->tolerance);
 }
 
-/* How far features a and b, as in cscd_contact, have to stay apart. Points may be named as edges. */
+/* Returns the distance that features a and b, as in cscd_contact, have to keep. Points may be named as
+ * edges. */
 static inline separation pair_separation(const swept_interval *interval, cscd_contact_kind kind, uint32_t a,
                                          uint32_t b) {
     if (!interval->thick) return interval->limit;

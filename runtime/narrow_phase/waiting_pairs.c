@@ -270,8 +270,8 @@ static cscd_status move_sets(const waiting_pairs *w, const cscd_mesh *mesh, cons
 
 /* ---- neighbours that have parted ------------------------------------------------------------------------- */
 
-/* Vertices that were one vertex, or one seam, some of which have come apart: a name in the upper half, the vertex in
- * the lower one. */
+/* Vertices that were one vertex, or one seam, some of which have come apart: a name in the upper half, the
+ * vertex in the lower one. */
 typedef struct parted_vertices {
     uint64_t *items;
     size_t count, capacity;
@@ -409,7 +409,7 @@ static cscd_status part_neighbours(const exclusions *e, const cscd_mesh *mesh, c
 
 /* ---- changes whose positions have not been seen ------------------------------------------------------------ */
 
-/* What makes the new one from one of the changes. */
+/* Makes the new former_exclusions from one of the old ones. */
 typedef struct former_maker {
     const cscd_mesh *mesh;
     const cscd_mesh_change *change; /* NULL: it is copied */
