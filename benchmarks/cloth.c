@@ -71,7 +71,7 @@ static bool measure_pair(const cloth_pair *p, const deforming_body *b, const ben
 static bool run_pairs(const bench_options *o, json *out, io_error *error) {
     static const cloth_pair pairs[] = {{"cloth_ball", 92}, {"cloth_funnel", 227}};
     printf("mode all, %u thread%s, simd %s; milliseconds\n  %-14s %9s", o->thread_count,
-           o->thread_count == 1 ? "" : "s", cscd_simd_name(o->simd), "frames", "triangles");
+           o->thread_count == 1 ? "" : "s", cscd_name(CSCD_SIMDS, o->simd), "frames", "triangles");
     for (int i = 0; i < STAGE_COUNT; i++) printf(" %8s", stage_name(i));
     printf(" %10s %10s %8s %8s\n", "#PCPs", "tests", "VF", "EE");
     for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {

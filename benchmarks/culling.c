@@ -97,7 +97,7 @@ static bool parse_method(const char *name, cscd_plan_options *plan, cscd_detecto
     method[length] = '\0';
     if (name[length] == ':') plan->k = (uint32_t)strtoul(name + length + 1, NULL, 10);
     if (strchr(name, '+') != NULL) detector->mode = CSCD_MODE_EARLIEST;
-    return cscd_method_from_name(method, &detector->method);
+    return cscd_from_name(CSCD_METHODS, method, (uint32_t *)&detector->method);
 }
 
 static bool run_method(culled_recording *r, const char *name) {

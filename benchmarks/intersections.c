@@ -155,7 +155,7 @@ static cscd_status run_later_rounds(cscd_detector *d, const moment *m, cscd_even
 
 static void print_heading(const bench_options *o) {
     printf("%u thread%s, simd %s; ms\n  %-13s %8s %7s %8s %7s %7s %7s %7s", o->thread_count,
-           o->thread_count == 1 ? "" : "s", cscd_simd_name(o->simd), "scene", "triangles", "pairs",
+           o->thread_count == 1 ? "" : "s", cscd_name(CSCD_SIMDS, o->simd), "scene", "triangles", "pairs",
            "crossing", "curves", "pieces", "patches", "buried");
     for (int q = 0; q < FIRST_TABLE_COUNT; q++) printf(" %8s", question_names[q]);
     printf(" %6s %5s\n", "x", "grown");

@@ -206,8 +206,8 @@ static bool run_rows(const loose_rig *r, json *out, io_error *error) {
 static bool run_sizes(const bench_options *o, json *out, io_error *error) {
     bool good = true;
     printf("%u thread%s, simd %s; ms a step\n  %9s %-22s %9s %7s %10s %12s %9s\n", o->thread_count,
-           o->thread_count == 1 ? "" : "s", cscd_simd_name(o->simd), "triangles", "objects", "step", "ratio",
-           "contacts", "brute force", "times");
+           o->thread_count == 1 ? "" : "s", cscd_name(CSCD_SIMDS, o->simd), "triangles", "objects", "step",
+           "ratio", "contacts", "brute force", "times");
     for (uint32_t i = 0; good && i < o->size_count; i++) {
         loose_rig r = {.repeats = o->interval_count > 0 ? o->interval_count : o->quick ? 9 : REPEATS};
         cscd_context_options options = cscd_context_defaults();

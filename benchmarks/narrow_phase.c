@@ -216,7 +216,7 @@ static void print_triangles(interval_recording *r) {
     puts("ns per pair of triangles      pairs    feature_filter");
     for (int level = CSCD_SIMD_SCALAR; level <= (int)best; level++) {
         use_level(r, (cscd_simd)level);
-        printf("    %-10s %20zu %8.1f\n", cscd_simd_name((cscd_simd)level), pairs,
+        printf("    %-10s %20zu %8.1f\n", cscd_name(CSCD_SIMDS, (cscd_simd)level), pairs,
                time_pairs(r, CSCD_CONTACT_VF, pairs, feature_filter));
     }
     printf("    leaves %.2f of 15 pairs of features\n\n", (double)left / (double)(pairs > 0 ? pairs : 1));
@@ -232,7 +232,7 @@ static void print_kind(interval_recording *r, cscd_contact_kind kind) {
         use_level(r, (cscd_simd)level);
         double signs = time_pairs(r, kind, pairs, by_signs);
         open = r->left;
-        printf("%-3s %-10s %20zu %8.1f %8.1f\n", name, cscd_simd_name((cscd_simd)level), pairs, signs,
+        printf("%-3s %-10s %20zu %8.1f %8.1f\n", name, cscd_name(CSCD_SIMDS, (cscd_simd)level), pairs, signs,
                time_pairs(r, kind, pairs, by_all));
     }
     const uint64_t *decided = r->lane->decided;

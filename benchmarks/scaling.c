@@ -79,7 +79,7 @@ static void print_title(const char *unit) {
 }
 
 static void print_stages(const scaling_row *r, double scale) {
-    printf("  %9u %-7s %-8s", r->triangles, cscd_method_name(r->method), cscd_mode_name(r->mode));
+    printf("  %9u %-7s %-8s", r->triangles, cscd_method_name(r->method), cscd_name(CSCD_MODES, r->mode));
     for (int i = 0; i < STAGE_COUNT; i++) printf(" %8.*f", scale == 1.0 ? 3 : 1, r->ms[i] * scale);
 }
 
@@ -123,7 +123,7 @@ static void print_growth(const table *t) {
         if (r->triangles != last->triangles) continue;
         const scaling_row *small = nearest_row(t, r, COMPARED_SIZE);
         double scale = (double)small->triangles / r->triangles;
-        printf("  %-7s %-8s", cscd_method_name(r->method), cscd_mode_name(r->mode));
+        printf("  %-7s %-8s", cscd_method_name(r->method), cscd_name(CSCD_MODES, r->mode));
         for (int k = 0; k < STAGE_COUNT; k++) {
             if (k != stage_named("proof") && small->ms[k] > 0.0)
                 printf(" %s %.2f", stage_name(k), r->ms[k] / small->ms[k] * scale);
@@ -139,9 +139,9 @@ static void write_row(json *out, const scaling_row *r, const bench_options *o) {
     json_string(out, "body", body_kind_name(o->kind));
     json_integer(out, "triangles", r->triangles);
     json_string(out, "method", cscd_method_name(r->method));
-    json_string(out, "mode", cscd_mode_name(r->mode));
-    json_string(out, "simd", cscd_simd_name(o->simd));
-    json_string(out, "volume", cscd_volume_name(o->volume));
+    json_string(out, "mode", cscd_name(CSCD_MODES, r->mode));
+    json_string(out, "simd", cscd_name(CSCD_SIMDS, o->simd));
+    json_string(out, "volume", cscd_name(CSCD_VOLUMES, o->volume));
     json_integer(out, "threads", o->thread_count);
     json_begin_object(out, "ms");
     for (int i = 0; i < STAGE_COUNT; i++) json_number(out, stage_name(i), r->ms[i]);
@@ -195,7 +195,8 @@ static bool run_table(const bench_options *o, json *out, io_error *error) {
     double contacts = 0.0;
     terminal_progress_begin(&shown, false);
     printf("%s, %u thread%s, simd %s, volume %s\n", body_kind_name(o->kind), o->thread_count,
-           o->thread_count == 1 ? "" : "s", cscd_simd_name(o->simd), cscd_volume_name(o->volume));
+           o->thread_count == 1 ? "" : "s", cscd_name(CSCD_SIMDS, o->simd),
+           cscd_name(CSCD_VOLUMES, o->volume));
     print_title("milliseconds per interval");
     printf(" %8s %9s %9s %9s %9s %8s %8s %6s\n", "ns/tri", "boxes", "#PCPs", "features", "tests", "contacts",
            "peak B/t", "loop");

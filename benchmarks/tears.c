@@ -179,7 +179,7 @@ static cscd_status measure_change(const tear_rig *r, cscd_detector *d, int torn,
     cscd_mesh_change *change = NULL;
     double ms[PART_COUNT], now = timer_now_ms();
     cscd_status status = cscd_mesh_change_create(r->context, cscd_detector_mesh(d), changes, 1, &change);
-    if (status == CSCD_OK) cscd_mesh_change_vertex_origins(change, NULL);
+    if (status == CSCD_OK) cscd_mesh_change_to_old(change, CSCD_VERTICES, NULL);
     ms[PART_MESH] = timer_now_ms() - now;
     now = timer_now_ms();
     if (status == CSCD_OK) status = cscd_detector_change_mesh(d, change);
@@ -325,7 +325,8 @@ static bool run_size(const bench_options *o, uint32_t size, json *out, io_error 
 
 static bool run_sizes(const bench_options *o, json *out, io_error *error) {
     printf("%s, %u thread%s, simd %s; ms\n  %9s %9s %29s %29s\n", body_kind_name(o->kind), o->thread_count,
-           o->thread_count == 1 ? "" : "s", cscd_simd_name(o->simd), "", "", "the cloth alone", "the change");
+           o->thread_count == 1 ? "" : "s", cscd_name(CSCD_SIMDS, o->simd), "", "", "the cloth alone",
+           "the change");
     printf("  %9s %9s %9s %9s %9s %9s %9s %9s %8s %8s %8s\n", "triangles", "torn", "mesh", "detector",
            "first", "mesh", "detector", "next", "ratio", "ns > 1", "ns > 1.3");
     bool good = true;

@@ -215,7 +215,7 @@ static bool run_serial_shares(const bench_options *o, json *out, io_error *error
 static bool run_duels(const bench_options *o, json *out, io_error *error) {
     static const cscd_method methods[] = {CSCD_METHOD_NONE, CSCD_METHOD_ICCD, CSCD_METHOD_SINGLE};
     printf("%s, mode all, simd %s; speedup by a second thread\n  %9s %-7s", body_kind_name(o->kind),
-           cscd_simd_name(o->simd), "triangles", "method");
+           cscd_name(CSCD_SIMDS, o->simd), "triangles", "method");
     for (int i = 0; i < STAGE_COUNT; i++) {
         if (i != stage_named("proof")) printf(" %8s", stage_name(i));
     }

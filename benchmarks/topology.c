@@ -228,7 +228,8 @@ static bool run_size(const bench_options *o, uint32_t size, json *out, io_error 
 
 static bool run_sizes(const bench_options *o, json *out, io_error *error) {
     printf("%s, %u thread%s, simd %s; ms, in brackets steady steps\n  %9s %-7s", body_kind_name(o->kind),
-           o->thread_count, o->thread_count == 1 ? "" : "s", cscd_simd_name(o->simd), "triangles", "method");
+           o->thread_count, o->thread_count == 1 ? "" : "s", cscd_name(CSCD_SIMDS, o->simd), "triangles",
+           "method");
     for (int i = 0; i < PART_COUNT; i++) printf(i == PART_STEADY ? " %12s" : " %17s", part_names[i]);
     printf(" %9s\n", "change");
     bool good = true;

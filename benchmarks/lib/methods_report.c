@@ -76,8 +76,8 @@ void methods_report_write(const methods_report *r, json *out, uint32_t thread_co
         json_begin_object(out, NULL);
         json_string(out, "scene", r->truth->recording->name);
         json_string(out, "method", e->name);
-        json_string(out, "mode", cscd_mode_name(e->mode));
-        json_string(out, "volume", cscd_volume_name(e->volume));
+        json_string(out, "mode", cscd_name(CSCD_MODES, e->mode));
+        json_string(out, "volume", cscd_name(CSCD_VOLUMES, e->volume));
         json_integer(out, "threads", thread_count);
         json_integer(out, "triangles", r->truth->recording->model.triangle_count);
         json_number(out, "ttcd_ms", s.ms.total_ms);

@@ -48,8 +48,8 @@ static bool parse_value(const char *name, const char *value, bench_options *o, b
     if (strcmp(name, "--sizes") == 0) return parse_sizes(value, o);
     if (strcmp(name, "--intervals") == 0) return parse_number(value, INTERVALS_MAX, &o->interval_count);
     if (strcmp(name, "--threads") == 0) return parse_number(value, 256, &o->thread_count);
-    if (strcmp(name, "--simd") == 0) return cscd_simd_from_name(value, &o->simd);
-    if (strcmp(name, "--volume") == 0) return cscd_volume_from_name(value, &o->volume);
+    if (strcmp(name, "--simd") == 0) return cscd_from_name(CSCD_SIMDS, value, (uint32_t *)&o->simd);
+    if (strcmp(name, "--volume") == 0) return cscd_from_name(CSCD_VOLUMES, value, (uint32_t *)&o->volume);
     if (strcmp(name, "--body") == 0) return body_kind_from_name(value, &o->kind);
     const char **text = strcmp(name, "--data") == 0   ? &o->data
                         : strcmp(name, "--json") == 0 ? &o->json_path

@@ -177,7 +177,7 @@ static bool parse_arguments(const recording_program *program, int count, char **
             if (!parse_threads(arguments[++i], &o->thread_count))
                 return refuse_argument(program, value, "is no number of threads");
         } else if (simd) {
-            if (!cscd_simd_from_name(arguments[++i], &o->simd) ||
+            if (!cscd_from_name(CSCD_SIMDS, arguments[++i], (uint32_t *)&o->simd) ||
                 (o->simd != CSCD_SIMD_AUTO && !processor_has_simd(o->simd)))
                 return refuse_argument(program, value, "is no level of instructions that this processor has");
         } else if (name[0] == '-') {

@@ -82,7 +82,8 @@ static cscd_status make_parts(const deforming_body *b, subject *s) {
 static bool explain_status(const subject *s, cscd_status status, io_error *error) {
     const char *detail = s->context != NULL ? cscd_context_detail(s->context) : "";
     return io_fail(error, "method %s, mode %s: %s", cscd_method_name(s->options.method),
-                   cscd_mode_name(s->options.mode), detail[0] != '\0' ? detail : cscd_status_string(status));
+                   cscd_name(CSCD_MODES, s->options.mode),
+                   detail[0] != '\0' ? detail : cscd_status_string(status));
 }
 
 subject *subject_make(const deforming_body *b, const subject_options *options, io_error *error) {

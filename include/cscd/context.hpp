@@ -2,7 +2,7 @@
 #ifndef CSCD_CONTEXT_HPP
 #define CSCD_CONTEXT_HPP
 
-#include <cscd/context.h>
+#include <cscd/detector.h>
 #include <cscd/error.hpp>
 
 #include <atomic>

@@ -6,7 +6,7 @@
  * touches on the way, and when it first does.
  *
  * What holds for every function:
- *   positions   are given as views (cscd/view.h): floats or doubles, packed, in structs, or by columns. Each
+ *   positions   are given as views (cscd/detector.h): floats or doubles, packed, in structs, or by columns. Each
  *               coordinate is 0 or has a magnitude from 2^-300 to 2^300; a function that is given another one
  *               fails and names array, vertex and coordinate
  *   units       any one unit of length; nothing inside depends on it. A length is 0 or from 2^-300 to 2^300
@@ -23,7 +23,7 @@
  *   threads     one call at a time works in a context: another one fails with CSCD_BUSY, as calls from callbacks do.
  *               Separate contexts are independent. A mesh never changes: objects of any contexts use it on any
  *               threads at the same time, and its functions may be called from any thread. A thread that calls
- *               needs 256 KiB of stack. cscd/context.h has the rules of callbacks and of fork
+ *               needs 256 KiB of stack. cscd/detector.h has the rules of callbacks and of fork
  *   errors      functions that can fail return cscd_status; *out is written only with CSCD_OK. Afterwards
  *               cscd_context_detail() gives a sentence: what is wrong, where, and what to do; "" after a call
  *               that succeeded. A function that needs an object and is given NULL returns CSCD_NULL_OBJECT; the
@@ -67,18 +67,12 @@
 #ifndef CSCD_H
 #define CSCD_H
 
-#include <cscd/context.h>
 #include <cscd/detector.h>
 #include <cscd/events.h>
-#include <cscd/intersections.h>
 #include <cscd/live.h>
-#include <cscd/mesh.h>
-#include <cscd/mesh_change.h>
-#include <cscd/pairs.h>
-#include <cscd/parts.h>
 #include <cscd/plan.h>
 #include <cscd/solver.h>
-#include <cscd/view.h>
+#include <cscd/surface.h>
 
 #define CSCD_VERSION_MAJOR 2
 #define CSCD_VERSION_MINOR 0

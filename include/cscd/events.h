@@ -1,5 +1,4 @@
-/* Events: what intersects or touches somewhere for some time, followed through the frames of a recording. Part of
- * cscd/cscd.h, which says what holds for every function.
+/* Events: what intersects or touches somewhere for some time, followed through the frames of a recording.
  *
  * An *event* is what two parts have to do with each other at one place: it begins in one frame of a recording and ends in
  * a later one or in the same. (In docs/theory/curves.md the word stands for an edge that passes through a face.) A tracker
@@ -23,7 +22,7 @@
 #ifndef CSCD_EVENTS_API_H
 #define CSCD_EVENTS_API_H
 
-#include <cscd/intersections.h>
+#include <cscd/surface.h>
 
 #ifdef __cplusplus
 extern "C" {

@@ -3,8 +3,8 @@
 #define CSCD_LISTS_HPP
 
 #include <cscd/context.hpp>
-#include <cscd/intersections.h>
 #include <cscd/solver.h>
+#include <cscd/surface.h>
 #include <cscd/view.hpp>
 
 #include <algorithm>

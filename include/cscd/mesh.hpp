@@ -3,9 +3,9 @@
 #define CSCD_MESH_HPP
 
 #include <cscd/context.hpp>
-#include <cscd/mesh.h>
-#include <cscd/parts.h>
+#include <cscd/detector.h>
 #include <cscd/solver.h>
+#include <cscd/surface.h>
 #include <cscd/view.hpp>
 
 #include <initializer_list>
@@ -53,7 +53,7 @@ cscd_object_desc obstacle_of_triangles(std::uint32_t vertex_count, const Triangl
 
 /* ---- what a mesh knows ----------------------------------------------------------------------------------- */
 
-/* The functions of cscd/mesh.h, which check nothing and may be called from any thread. Arrays live as long as the mesh. */
+/* The functions of cscd/detector.h, which check nothing and may be called from any thread. Arrays live as long as the mesh. */
 template <class Mesh> class mesh_functions {
   public:
     using pair = std::array<std::uint32_t, 2>;
@@ -94,13 +94,13 @@ template <class Mesh> class mesh_functions {
         return edges;
     }
     indices all_triangles() const noexcept {
-        return {cscd_mesh_all_triangles(c()), std::size_t{3} * triangle_count()};
+        return {cscd_mesh_array(c(), CSCD_TRIANGLE_VERTICES), std::size_t{3} * triangle_count()};
     }
     indices all_edges() const noexcept {
-        return {cscd_mesh_all_edges(c()), std::size_t{2} * edge_count()};
+        return {cscd_mesh_array(c(), CSCD_EDGE_VERTICES), std::size_t{2} * edge_count()};
     }
     indices all_triangle_edges() const noexcept {
-        return {cscd_mesh_all_triangle_edges(c()), std::size_t{3} * triangle_count()};
+        return {cscd_mesh_array(c(), CSCD_TRIANGLE_EDGES), std::size_t{3} * triangle_count()};
     }
     indices vertex_triangles(std::uint32_t index) const noexcept {
         std::uint32_t count = 0;
@@ -123,9 +123,8 @@ template <class Mesh> class mesh_functions {
     }
     /* As labels of parts; there are component_count() parts. */
     std::vector<std::uint32_t> component_labels() const {
-        std::vector<std::uint32_t> labels(triangle_count());
-        cscd_mesh_component_labels(c(), labels.data());
-        return labels;
+        const std::uint32_t *labels = cscd_mesh_array(c(), CSCD_TRIANGLE_COMPONENTS);
+        return {labels, labels + triangle_count()};
     }
     std::uint64_t hash() const noexcept {
         return cscd_mesh_hash(c());

@@ -2,8 +2,8 @@
 #ifndef CSCD_MESH_CHANGE_HPP
 #define CSCD_MESH_CHANGE_HPP
 
+#include <cscd/live.h>
 #include <cscd/mesh.hpp>
-#include <cscd/mesh_change.h>
 
 #include <vector>
 
@@ -41,43 +41,45 @@ class mesh_change : public detail::owner<cscd_mesh_change, cscd_mesh_change_dest
 
     /* The new number of each old feature, UINT32_MAX if it is gone. */
     indices vertices() const noexcept {
-        return array(cscd_mesh_change_vertices);
+        return array(cscd_mesh_change_to_new, CSCD_VERTICES);
     }
     indices edges() const noexcept {
-        return array(cscd_mesh_change_edges);
+        return array(cscd_mesh_change_to_new, CSCD_EDGES);
     }
     indices triangles() const noexcept {
-        return array(cscd_mesh_change_triangles);
+        return array(cscd_mesh_change_to_new, CSCD_TRIANGLES);
     }
     indices objects() const noexcept {
-        return array(cscd_mesh_change_objects);
+        return array(cscd_mesh_change_to_new, CSCD_OBJECTS);
     }
     /* Those that are untouched. */
     indices components() const noexcept {
-        return array(cscd_mesh_change_components);
+        return array(cscd_mesh_change_to_new, CSCD_COMPONENTS);
     }
 
     /* The old number of each new feature, UINT32_MAX if it is new. */
     indices vertex_origins() const noexcept {
-        return array(cscd_mesh_change_vertex_origins);
+        return array(cscd_mesh_change_to_old, CSCD_VERTICES);
     }
     indices edge_origins() const noexcept {
-        return array(cscd_mesh_change_edge_origins);
+        return array(cscd_mesh_change_to_old, CSCD_EDGES);
     }
     indices triangle_origins() const noexcept {
-        return array(cscd_mesh_change_triangle_origins);
+        return array(cscd_mesh_change_to_old, CSCD_TRIANGLES);
     }
     indices object_origins() const noexcept {
-        return array(cscd_mesh_change_object_origins);
+        return array(cscd_mesh_change_to_old, CSCD_OBJECTS);
     }
     indices component_origins() const noexcept {
-        return array(cscd_mesh_change_component_origins);
+        return array(cscd_mesh_change_to_old, CSCD_COMPONENTS);
     }
 
   private:
-    indices array(const std::uint32_t *(*of)(const cscd_mesh_change *, std::uint32_t *)) const noexcept {
+    using map = const std::uint32_t *(*)(const cscd_mesh_change *, cscd_element, std::uint32_t *);
+
+    indices array(map of, cscd_element what) const noexcept {
         std::uint32_t count = 0;
-        const std::uint32_t *first = of(get(), &count);
+        const std::uint32_t *first = of(get(), what, &count);
         return {first, count};
     }
 

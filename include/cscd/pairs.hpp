@@ -3,7 +3,7 @@
 #define CSCD_PAIRS_HPP
 
 #include <cscd/context.hpp>
-#include <cscd/pairs.h>
+#include <cscd/solver.h>
 #include <cscd/view.hpp>
 
 #include <vector>

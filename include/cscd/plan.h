@@ -1,37 +1,15 @@
 /* A plan: how a mesh is cut into regions, and the point inside each from which the detector tells which
  * triangles cannot touch. It is made once, from the mesh at rest, and makes steps faster; contacts are the
- * same with any plan and with none. Part of cscd/cscd.h, which says what holds for every function.
+ * same with any plan and with none.
  * docs/theory/charge.md has the method. */
 #ifndef CSCD_PLAN_API_H
 #define CSCD_PLAN_API_H
 
-#include <cscd/mesh.h>
+#include <cscd/detector.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-/* How triangle pairs that need no test are found and left out. Methods differ in time only: every method
- * promises what the mode says. Later versions may add values; cscd/research.h has methods to compare with. */
-typedef enum cscd_method {
-    CSCD_METHOD_AUTO, /* by the regions of the plan, without a plan as SINGLE; but only in the components and
-                         * intervals in which culling pays, as counts of work tell, else as NONE. A later version
-                         * may choose better, with the same results */
-    CSCD_METHOD_NONE, /* bounding volumes only */
-    CSCD_METHOD_SINGLE, /* culling by orientation, one region for each component */
-    CSCD_METHOD_KMEANS, /* culling by orientation, regions by k-means */
-    CSCD_METHOD_CHARGE, /* culling by orientation, regions by charge density */
-    CSCD_METHOD_MAX_ENUM = 0x7fffffff
-} cscd_method;
-
-/* The names are "auto", "none", "single", "kmeans" and "charge", those of cscd/research.h, and "unknown";
- * static storage, never NULL. cscd_method_from_name returns false for any other text and then leaves *out
- * untouched. */
-CSCD_API const char *cscd_method_name(cscd_method method);
-CSCD_API bool cscd_method_from_name(const char *name, cscd_method *out);
-
-/* The regions of a mesh and their detector points. */
-typedef struct cscd_plan cscd_plan;
 
 /* How the equations for the charge of a component are solved. The regions that follow differ by few triangles. Later
  * versions may add values. */
@@ -146,8 +124,11 @@ CSCD_API uint32_t cscd_plan_region_count(const cscd_plan *plan);
 /* A region. */
 CSCD_API cscd_region cscd_plan_region(const cscd_plan *plan, uint32_t region);
 
-/* The region that a triangle belongs to. */
-CSCD_API uint32_t cscd_plan_triangle_region(const cscd_plan *plan, uint32_t triangle);
+/* The region of each triangle: labels for cscd_detector_set_parts. The array belongs to the plan and lives as long. */
+CSCD_API const uint32_t *cscd_plan_triangle_regions(const cscd_plan *plan);
+static inline uint32_t cscd_plan_triangle_region(const cscd_plan *plan, uint32_t triangle) {
+    return cscd_plan_triangle_regions(plan)[triangle];
+}
 
 /* The charge density of a triangle, in Gaussian units, when its component is a conductor at potential 1; 0
  * where the method is not by charge. */

@@ -3,8 +3,8 @@
 #define CSCD_PLAN_HPP
 
 #include <cscd/mesh.hpp>
-#include <cscd/parts.h>
 #include <cscd/plan.h>
+#include <cscd/surface.h>
 
 namespace cscd {
 
@@ -69,9 +69,8 @@ class plan : public detail::owner<cscd_plan, cscd_plan_destroy> {
     }
     /* As labels of parts of the plan's mesh, which has so many triangles; there are region_count() parts. */
     std::vector<std::uint32_t> region_labels(std::uint32_t triangle_count) const {
-        std::vector<std::uint32_t> labels(triangle_count);
-        cscd_plan_region_labels(get(), labels.data());
-        return labels;
+        const std::uint32_t *labels = cscd_plan_triangle_regions(get());
+        return {labels, labels + triangle_count};
     }
     double triangle_charge(std::uint32_t triangle) const noexcept {
         return cscd_plan_triangle_charge(get(), triangle);

@@ -3,8 +3,8 @@
 #ifndef CSCD_VIEW_HPP
 #define CSCD_VIEW_HPP
 
+#include <cscd/detector.h>
 #include <cscd/error.hpp>
-#include <cscd/view.h>
 
 #include <array>
 #include <cstddef>

@@ -11,6 +11,7 @@ from typing import Any, Callable, Dict, Iterable, NoReturn, Optional, Set
 
 import numpy as np
 
+from ._api import VALUES
 from ._library import library
 from .errors import Cancelled, Error, ListTooLong
 
@@ -75,7 +76,7 @@ def code_of(what: str, name: Any) -> int:
     code = ctypes.c_uint32()
     if not isinstance(name, str) or "\0" in name:
         raise ValueError(f"{what}: expected a name, got {name!r}")
-    if not getattr(library, f"cscd_{what}_from_name")(name.encode(), ctypes.byref(code)):
+    if not library.cscd_from_name(VALUES[f"CSCD_{what.upper()}S"], name.encode(), ctypes.byref(code)):
         raise ValueError(f"{what}: {name!r} is unknown")
     return code.value
 

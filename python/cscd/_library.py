@@ -14,6 +14,7 @@ from typing import Any, Dict, List
 
 import numpy as np
 
+from ._api import FUNCTIONS
 from ._prototypes import PROTOTYPES
 
 __all__ = ["address_of", "copy_items", "copy_list", "items_of", "library", "new_struct", "records", "structs"]
@@ -32,7 +33,7 @@ def _load() -> ctypes.PyDLL:
         raise ImportError(f"cscd: the compiled library {path} is missing; `pip install .` or `make python` in the "
                           "sources of cscd builds it")
     loaded = ctypes.PyDLL(path)
-    for name, (result, arguments) in PROTOTYPES.items():
+    for name, (result, arguments) in {**PROTOTYPES, **FUNCTIONS}.items():
         function = getattr(loaded, name)
         function.restype = result
         function.argtypes = arguments

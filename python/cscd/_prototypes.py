@@ -1,7 +1,4 @@
-"""The functions of the compiled library that Python calls, with their types.
-
-Those named ``cscd_...`` are of its public headers (include/cscd), those named ``cscdpy_...`` of python/native.
-"""
+"""The functions of python/native that Python calls, with their types. Those of the public headers are in ``_api``."""
 
 from __future__ import annotations
 
@@ -93,59 +90,6 @@ _CALLS: Dict[str, List[Any]] = {
     "tracker_finish": [_p, _p],
 }
 
-_PUBLIC: Dict[str, Tuple[Any, List[Any]]] = {
-    "cscd_version_string": (c_char_p, []),
-    "cscd_status_string": (c_char_p, [_u32]),
-    "cscd_reason_text": (c_char_p, [_u32]),
-    "cscd_mesh_destroy": (None, [_p]),
-    "cscd_mesh_object_count": (_u32, [_p]),
-    "cscd_mesh_vertex_count": (_u32, [_p]),
-    "cscd_mesh_triangle_count": (_u32, [_p]),
-    "cscd_mesh_edge_count": (_u32, [_p]),
-    "cscd_mesh_all_triangles": (_p, [_p]),
-    "cscd_mesh_all_edges": (_p, [_p]),
-    "cscd_mesh_all_triangle_edges": (_p, [_p]),
-    "cscd_mesh_component_count": (_u32, [_p]),
-    "cscd_mesh_component_labels": (_u32, [_p, _p]),
-    "cscd_mesh_hash": (_u64, [_p]),
-    "cscd_plan_defaults_sized": (None, [_p, _size]),
-    "cscd_plan_destroy": (None, [_p]),
-    "cscd_plan_method": (_u32, [_p]),
-    "cscd_plan_compared_count": (_u32, [_p]),
-    "cscd_plan_region_count": (_u32, [_p]),
-    "cscd_plan_region_labels": (_u32, [_p, _p]),
-    "cscd_plan_triangle_charge": (_f64, [_p, _u32]),
-    "cscd_plan_capacitance": (_f64, [_p, _u32]),
-    "cscd_method_from_name": (c_bool, [c_char_p, POINTER(c_uint32)]),
-    "cscd_method_name": (c_char_p, [_u32]),
-    "cscd_mode_from_name": (c_bool, [c_char_p, POINTER(c_uint32)]),
-    "cscd_volume_from_name": (c_bool, [c_char_p, POINTER(c_uint32)]),
-    "cscd_simd_from_name": (c_bool, [c_char_p, POINTER(c_uint32)]),
-    "cscd_contact_kind_name": (c_char_p, [_u32]),
-    "cscd_intersection_kind_name": (c_char_p, [_u32]),
-    "cscd_left_out_name": (c_char_p, [_u32]),
-    "cscd_curve_end_name": (c_char_p, [_u32]),
-    "cscd_detector_body_labels": (_u32, [_p, _p]),
-    "cscd_detector_defaults_sized": (None, [_p, _size]),
-    "cscd_detector_destroy": (None, [_p]),
-    "cscd_detector_collapsed": (c_bool, [_p, _u32]),
-    "cscd_detector_orientation": (c_int, [_p, _u32]),
-    "cscd_detector_set_separation": (_status, [_p, _f64, _f64]),
-    "cscd_detector_set_longest_list": (_status, [_p, _size]),
-    "cscd_detector_set_seams": (_status, [_p, _p, _size]),
-    "cscd_detector_set_ignored": (_status, [_p, _p, _size]),
-    "cscd_detector_set_rules": (_status, [_p, _p, _u32, _p, _u32]),
-    "cscd_detector_set_active": (_status, [_p, _p, _size]),
-    "cscd_detector_set_bodies": (_status, [_p, _p, _u32]),
-    "cscd_detector_set_parts": (_status, [_p, _p, _u32]),
-    "cscd_intersection_defaults_sized": (None, [_p, _size]),
-    "cscd_line_search_create": (_status, [_p, POINTER(c_void_p)]),
-    "cscd_line_search_destroy": (None, [_p]),
-    "cscd_line_search_candidate_count": (_size, [_p]),
-    "cscd_event_defaults_sized": (None, [_p, _size]),
-    "cscd_event_tracker_destroy": (None, [_p]),
-}
-
 #: By name: the type of the result, and those of the arguments.
 PROTOTYPES: Dict[str, Tuple[Any, List[Any]]] = {
-    **_LAYER, **_PUBLIC, **{f"cscdpy_{name}": (_status, [_p, *arguments]) for name, arguments in _CALLS.items()}}
+    **_LAYER, **{f"cscdpy_{name}": (_status, [_p, *arguments]) for name, arguments in _CALLS.items()}}

@@ -7,6 +7,7 @@ from typing import Any, Callable, Dict, Iterable, List, Optional, Tuple
 
 import numpy as np
 
+from ._api import VALUES
 from ._arrays import as_faces, count_of, mutable_view, number_of, views_of
 from ._host import IN_CONTACT, Handle, Host, new_handle, raise_status
 from ._library import address_of, items_of, library, new_struct, structs
@@ -292,7 +293,7 @@ class Detector(LiveSettings):
         if not 0 <= component < self.mesh.component_count:
             raise IndexError(f"component {component}: the mesh has {self.mesh.component_count}")
         found = self._read("guarantee", library.cscdpy_detector_guarantee, component)
-        found["reason"] = library.cscd_reason_text(found["reason"]).decode()
+        found["reason"] = library.cscd_name(VALUES["CSCD_REASONS"], found["reason"]).decode()
         return found
 
     def collapsed(self) -> List[int]:

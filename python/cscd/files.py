@@ -15,6 +15,7 @@ from typing import Any, Iterable, Iterator, List, Optional, Sequence, Tuple, Uni
 
 import numpy as np
 
+from ._api import VALUES
 from ._arrays import as_positions, number_of
 from ._host import Keeper
 from ._library import address_of, copy_list, library
@@ -120,9 +121,10 @@ class Recording:
     def __init__(self, opened: _OpenRecording) -> None:
         pointer = opened.pointer
         of_library = library.cscdpy_recording_mesh(pointer)
-        vertex_count = int(library.cscd_mesh_vertex_count(of_library))
-        triangle_count = int(library.cscd_mesh_triangle_count(of_library))
-        triangles = copy_list(library.cscd_mesh_all_triangles(of_library), 3 * triangle_count, np.uint32)
+        vertex_count = int(library.cscd_mesh_count(of_library, VALUES["CSCD_VERTICES"]))
+        triangle_count = int(library.cscd_mesh_count(of_library, VALUES["CSCD_TRIANGLES"]))
+        corners = library.cscd_mesh_array(of_library, VALUES["CSCD_TRIANGLE_VERTICES"])
+        triangles = copy_list(corners, 3 * triangle_count, np.uint32)
         numbers = np.empty(library.cscdpy_recording_frame_count(pointer), np.int32)
         faces, parts = np.empty(triangle_count, np.uint32), np.empty(triangle_count, np.uint32)
         file_vertices = np.empty(vertex_count, np.uint32)

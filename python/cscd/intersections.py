@@ -22,7 +22,7 @@ _NONE = 2**32 - 1
 _LIST, _ANY = 0, 2
 
 #: What a search may leave out: see ``Intersections.left_out``.
-LEFT_OUT = names_of(library.cscd_left_out_name)
+LEFT_OUT = names_of("CSCD_LEFT_OUTS")
 
 
 def kind_set(kinds: Union[None, str, Iterable[str]]) -> int:
@@ -154,7 +154,7 @@ class Intersections:
 
     @property
     def depths(self) -> Array:
-        """All depths, by the members of ``cscd_depth`` (include/cscd/depths.h): of vertices, then of edges, whose ``vertex``
+        """All depths, by the members of ``cscd_depth`` (include/cscd/surface.h): of vertices, then of edges, whose ``vertex``
         is -1, then the deepest points of faces, whose ``edge`` is -1, too."""
         return self._found().depths
 

@@ -51,7 +51,7 @@ class LiveSettings:
             self._labels = labels
 
     def set_bodies(self, labels: Any, label_count: Optional[int] = None) -> None:
-        """Says what belongs together, for depths, by such numbers; None: the parts say so (include/cscd/parts.h)."""
+        """Says what belongs together, for depths, by such numbers; None: the parts say so (include/cscd/surface.h)."""
         self._set_bodies(None if labels is None else labels_of(labels, self.mesh.triangle_count, label_count))
 
     def _set_bodies(self, labels: Optional[Tuple[Array, int]]) -> None:

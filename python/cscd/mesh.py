@@ -8,6 +8,7 @@ from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
+from ._api import VALUES
 from ._arrays import as_faces, as_floats, as_indices, as_positions, check_magnitudes, count_of
 from ._host import Handle, Host, Keeper, new_handle
 from ._library import address_of, copy_list, items_of, library, new_struct, structs
@@ -257,8 +258,8 @@ class Mesh:
     def edges(self) -> Array:
         """(e, 2) int64: the two vertices of each edge, the smaller one first, sorted."""
         if self._edges is None:
-            count = 0 if self._handle is None else library.cscd_mesh_edge_count(self.pointer)
-            source = library.cscd_mesh_all_edges(self.pointer) if count else 0
+            count = 0 if self._handle is None else library.cscd_mesh_count(self.pointer, VALUES["CSCD_EDGES"])
+            source = library.cscd_mesh_array(self.pointer, VALUES["CSCD_EDGE_VERTICES"]) if count else 0
             self._edges = copy_list(source, 2 * count, np.uint32).reshape(count, 2).astype(np.int64)
             self._edges.flags.writeable = False
         return self._edges
@@ -266,18 +267,16 @@ class Mesh:
     @property
     def component_count(self) -> int:
         """The number of components: triangles that can be reached from each other over common vertices."""
-        return 0 if self._handle is None else int(library.cscd_mesh_component_count(self.pointer))
+        return 0 if self._handle is None else int(library.cscd_mesh_count(self.pointer, VALUES["CSCD_COMPONENTS"]))
 
     @property
     def triangle_components(self) -> Array:
         """(t,) int64: the component of each triangle."""
-        labels = np.zeros(self.triangle_count, np.uint32)
-        if self._handle is not None:
-            library.cscd_mesh_component_labels(self.pointer, address_of(labels))
-        return labels.astype(np.int64)
+        source = 0 if self._handle is None else library.cscd_mesh_array(self.pointer, VALUES["CSCD_TRIANGLE_COMPONENTS"])
+        return copy_list(source, self.triangle_count, np.uint32).astype(np.int64)
 
     def component(self, index: int) -> Dict[str, Any]:
-        """The counts and the defects of a component, by the names of ``cscd_component`` (include/cscd/mesh.h).
+        """The counts and the defects of a component, by the names of ``cscd_component`` (include/cscd/detector.h).
 
         The first edge or vertex with a defect is -1 where there is none.
         """

@@ -9,9 +9,10 @@ from typing import Any, Callable, Dict, Iterable, List, NamedTuple, Optional, Tu
 
 import numpy as np
 
+from ._api import VALUES
 from ._arrays import as_floats, as_indices, as_positions, check_magnitudes, count_of, number_of, views_of
 from ._host import PLAN_STEPS, Handle, Host, code_of, new_handle, ours_of
-from ._library import address_of, items_of, library, new_struct, structs
+from ._library import address_of, copy_list, items_of, library, new_struct, structs
 from .errors import Error
 from .mesh import Mesh, read_surface
 
@@ -37,7 +38,7 @@ class ComparedPlan(NamedTuple):
 
 def _compared(row: Any) -> ComparedPlan:
     failure = ctypes.c_char_p(int(row["failure"])).value
-    return ComparedPlan(str(library.cscd_method_name(int(row["method"])).decode()), int(row["k"]) or None,
+    return ComparedPlan(str(library.cscd_name(VALUES["CSCD_METHODS"], int(row["method"])).decode()), int(row["k"]) or None,
                         int(row["region_count"]), float(row["tested_share"]), bool(row["kept"]),
                         failure.decode() if failure is not None else None)
 
@@ -294,7 +295,7 @@ class Plan:
 
     @property
     def method(self) -> str:
-        return str(library.cscd_method_name(library.cscd_plan_method(self.pointer)).decode())
+        return str(library.cscd_name(VALUES["CSCD_METHODS"], library.cscd_plan_method(self.pointer)).decode())
 
     @property
     def region_count(self) -> int:
@@ -302,9 +303,8 @@ class Plan:
 
     @property
     def triangle_regions(self) -> Array:
-        labels = np.empty(self.mesh.triangle_count, np.uint32)
-        library.cscd_plan_region_labels(self.pointer, address_of(labels))
-        return labels.astype(np.int64)
+        labels = library.cscd_plan_triangle_regions(self.pointer)
+        return copy_list(labels, self.mesh.triangle_count, np.uint32).astype(np.int64)
 
     @property
     def regions(self) -> Any:

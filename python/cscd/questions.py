@@ -51,7 +51,7 @@ def self_intersections(V: Any, F: Any, kinds: Any = None, *, threads: int = 1, p
     F : (m, 3) or (m, 4) integers, or Mesh
         Faces; those of four corners are cut into triangles by their shape.
     kinds : str or iterable of str, optional
-        Which pairs count: "crossing", "coplanar", "folded", "duplicate", "touching" (include/cscd/intersections.h).
+        Which pairs count: "crossing", "coplanar", "folded", "duplicate", "touching" (include/cscd/surface.h).
         By default all. Curves, buried vertices and depths need all.
     threads : int
         0: one per processor.

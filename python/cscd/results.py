@@ -6,24 +6,27 @@ from typing import Any, List, Tuple
 
 import numpy as np
 
-from ._library import address_of, copy_items, library, records, structs
+from ._api import VALUES
+from ._library import copy_items, library, records
 
 __all__ = ["CONTACT_KINDS", "Contacts", "Events", "INTERSECTION_KINDS", "PairContacts", "PairDistances", "Proximities"]
 
 
-def names_of(function: Any) -> Tuple[str, ...]:
-    """The names of all kinds, in the order of their codes."""
+def names_of(enumeration: str) -> Tuple[str, ...]:
+    """The names of all values of an enumeration (``cscd_enumeration``), in the order of their codes."""
     names: List[str] = []
-    while function(len(names)) != b"unknown":
-        names.append(function(len(names)).decode())
-    return tuple(names)
+    while True:
+        name = library.cscd_name(VALUES[enumeration], len(names))
+        if name == b"unknown":
+            return tuple(names)
+        names.append(name.decode())
 
 
 #: The kinds of contacts by their codes: "vf", "ee", ...
-CONTACT_KINDS = names_of(library.cscd_contact_kind_name)
+CONTACT_KINDS = names_of("CSCD_CONTACT_KINDS")
 
 #: The kinds of intersections by their codes: "crossing", "coplanar", "folded", "duplicate", "touching".
-INTERSECTION_KINDS = names_of(library.cscd_intersection_kind_name)
+INTERSECTION_KINDS = names_of("CSCD_INTERSECTION_KINDS")
 
 
 class Records(np.recarray):  # type: ignore[type-arg]

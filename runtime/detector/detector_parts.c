@@ -38,9 +38,11 @@ bool detector_bodies_are_components(const cscd_detector *d) {
 }
 
 uint32_t cscd_detector_body_labels(const cscd_detector *detector, uint32_t *labels) {
-    if (detector_bodies_are_components(detector))
-        return labels != NULL ? cscd_mesh_component_labels(detector->mesh, labels)
-                              : detector->mesh->component_count;
+    if (detector_bodies_are_components(detector)) {
+        for (uint32_t t = 0; labels != NULL && t < detector->mesh->triangle_count; t++)
+            labels[t] = detector->mesh->triangle_components[t];
+        return detector->mesh->component_count;
+    }
     const surface_bodies *bodies = &detector_grouping(detector)->bodies;
     for (uint32_t t = 0; labels != NULL && t < detector->mesh->triangle_count; t++)
         labels[t] = body_of_triangle(bodies, detector->mesh, t);

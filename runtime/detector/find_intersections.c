@@ -1,5 +1,5 @@
 /* Intersections by kind, of the public API: all, the first ones, their number, or whether there is one. */
-#include "cscd/intersections.h"
+#include "cscd/surface.h"
 
 #include "runtime/detector/check.h"
 #include "runtime/detector/list_cap.h"
@@ -16,17 +16,6 @@
 enum { KIND_COUNT = CSCD_INTERSECTION_TOUCHING + 1 };
 
 static const uint64_t ALL_KINDS = (UINT64_C(1) << KIND_COUNT) - 1;
-
-const char *cscd_left_out_name(cscd_left_out answer) {
-    static const char *const names[] = {"pairs",    "curves", "patches", "overlaps",
-                                        "cut-offs", "depths", "parts"};
-    return (unsigned)answer < sizeof names / sizeof *names ? names[answer] : "unknown";
-}
-
-const char *cscd_intersection_kind_name(cscd_intersection_kind kind) {
-    static const char *const names[KIND_COUNT] = {"crossing", "coplanar", "folded", "duplicate", "touching"};
-    return (unsigned)kind < KIND_COUNT ? names[kind] : "unknown";
-}
 
 static const cscd_intersection_options default_options = {.struct_size = sizeof default_options,
                                                           .answer = CSCD_ANSWER_LIST,

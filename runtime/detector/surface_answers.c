@@ -3,11 +3,6 @@
 
 #include "runtime/intersections/intersections.h"
 
-const char *cscd_curve_end_name(cscd_curve_end end) {
-    static const char *const names[] = {"none", "vertex", "border", "junction", "left out"};
-    return (unsigned)end < sizeof names / sizeof *names ? names[end] : "unknown";
-}
-
 void surface_answers_free(cscd_context *context, surface_answers *a) {
     if (a == NULL) return;
     same_solids_free(&a->same_solids);

@@ -5,7 +5,7 @@
 #include "runtime/detector/detector.h"
 #include "runtime/intersections/intersections.h"
 
-#include <cscd/intersections.h>
+#include <cscd/surface.h>
 
 /* The memory of a detector for these answers, and those of its last call. Made at the first call that asks. */
 typedef struct surface_answers {

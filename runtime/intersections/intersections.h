@@ -11,10 +11,7 @@
 #include "src/mesh/bodies.h"
 #include "src/mesh/part_labels.h"
 
-#include <cscd/cut_offs.h>
-#include <cscd/depths.h>
-#include <cscd/intersections.h>
-#include <cscd/patches.h>
+#include <cscd/surface.h>
 
 /* ---- pairs of triangles -------------------------------------------------------------------------------- */
 

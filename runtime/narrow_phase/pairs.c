@@ -1,14 +1,12 @@
 /* Single pairs of the public API: points are gathered pair by pair, and a task decides as many pairs as one
  * call of the queue takes. */
-#include "cscd/pairs.h"
+#include "cscd/solver.h"
 
 #include "runtime/ccd/ccd.h"
 #include "runtime/narrow_phase/narrow_phase.h"
 #include "src/core/check.h"
 #include "src/mesh/positions.h"
 #include "src/mesh/views.h"
-
-#include <cscd/solver.h>
 
 #include <assert.h>
 #include <math.h>

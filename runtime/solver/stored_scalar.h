@@ -1,7 +1,7 @@
 /* Rounding to the scalar in which the caller stores a number. */
 #pragma once
 
-#include "cscd/view.h"
+#include "cscd/detector.h"
 #include "src/core/check.h"
 
 #include <math.h>

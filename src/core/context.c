@@ -46,7 +46,7 @@ static cscd_status check_options(cscd_context *context, const cscd_context_optio
         return context_fail(
             context, CSCD_INVALID_ARGUMENT,
             "simd is %s, which this processor has not; the best that it has is %s: use CSCD_SIMD_AUTO",
-            cscd_simd_name(options->simd), cscd_simd_name(processor_best_simd()));
+            cscd_name(CSCD_SIMDS, options->simd), cscd_name(CSCD_SIMDS, processor_best_simd()));
     return CSCD_OK;
 }
 

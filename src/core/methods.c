@@ -27,16 +27,9 @@ const method_traits *method_traits_of(cscd_method method) {
     return NULL;
 }
 
-const char *cscd_method_name(cscd_method method) {
-    const method_traits *found = method_traits_of(method);
-    return found != NULL ? found->name : "unknown";
-}
-
-bool cscd_method_from_name(const char *name, cscd_method *out) {
-    for (int i = 0; name != NULL && i < METHOD_COUNT; i++) {
-        if (strcmp(traits[i].name, name) != 0) continue;
-        *out = traits[i].method;
-        return true;
+const method_traits *method_traits_named(const char *name) {
+    for (int i = 0; i < METHOD_COUNT; i++) {
+        if (strcmp(traits[i].name, name) == 0) return &traits[i];
     }
-    return false;
+    return NULL;
 }

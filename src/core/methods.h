@@ -16,3 +16,4 @@ typedef struct method_traits {
 
 /* NULL: there is no such method. */
 const method_traits *method_traits_of(cscd_method method);
+const method_traits *method_traits_named(const char *name);

@@ -4,21 +4,6 @@
 #include <stddef.h>
 #include <string.h>
 
-static const char *const simd_names[] = {"auto", "scalar", "avx2", "avx512", "neon"};
-
-const char *cscd_simd_name(cscd_simd simd) {
-    return (unsigned)simd <= SIMD_LAST ? simd_names[simd] : "unknown";
-}
-
-bool cscd_simd_from_name(const char *name, cscd_simd *out) {
-    for (size_t i = 0; i < sizeof simd_names / sizeof *simd_names; i++) {
-        if (strcmp(name, simd_names[i]) != 0) continue;
-        *out = (cscd_simd)i;
-        return true;
-    }
-    return false;
-}
-
 #if defined(CSCD_WITH_AVX)
 
 bool processor_has_simd(cscd_simd simd) {

@@ -1,5 +1,7 @@
 /* The names of the enumerations of the public API. */
-#include "cscd/cscd.h"
+#include "src/core/methods.h"
+
+#include <cscd/cscd.h>
 
 #include <string.h>
 
@@ -37,27 +39,16 @@ const char *cscd_status_string(cscd_status status) {
     }
 }
 
-const char *cscd_contact_kind_name(cscd_contact_kind kind) {
-    switch (kind) {
-    case CSCD_CONTACT_VF:
-        return "vf";
-    case CSCD_CONTACT_EE:
-        return "ee";
-    case CSCD_CONTACT_TT:
-        return "tt";
-    case CSCD_CONTACT_VV:
-        return "vv";
-    case CSCD_CONTACT_EV:
-        return "ev";
-    case CSCD_CONTACT_VH:
-        return "vh";
-    default:
-        return "unknown";
-    }
-}
+/* ---- names ----------------------------------------------------------------------------------------------- */
 
-static const char *const volume_names[] = {[CSCD_VOLUME_BOX] = "box", [CSCD_VOLUME_KDOP14] = "kdop14"};
-static const char *const mode_names[] = {[CSCD_MODE_ALL] = "all", [CSCD_MODE_EARLIEST] = "earliest"};
+static const char *const simds[] = {"auto", "scalar", "avx2", "avx512", "neon"};
+static const char *const volumes[] = {"box", "kdop14"};
+static const char *const modes[] = {"all", "earliest"};
+static const char *const contact_kinds[] = {"vf", "ee", "tt", "vv", "ev", "vh"};
+static const char *const intersection_kinds[] = {"crossing", "coplanar", "folded", "duplicate", "touching"};
+static const char *const left_outs[] = {"pairs",    "curves", "patches", "overlaps",
+                                        "cut-offs", "depths", "parts"};
+static const char *const curve_ends[] = {"none", "vertex", "border", "junction", "left out"};
 static const char *const reasons[] = {
     [CSCD_REASON_METHOD] = "every pair of features whose volumes overlap is tested",
     [CSCD_REASON_SURFACE] = "open, non-manifold or inconsistently oriented",
@@ -72,41 +63,47 @@ static const char *const reasons[] = {
     [CSCD_REASON_MASK] = "masked by its rule; contacts with itself are not looked for",
     [CSCD_REASON_COLLAPSED] = "collapsed at an end; contacts with itself are not looked for"};
 
-static const char *name_at(const char *const *names, size_t count, size_t i) {
-    return i < count ? names[i] : "unknown";
+#define NAMES(array)                                                                                         \
+    { array, sizeof(array) / sizeof *(array) }
+
+/* All but those of methods, which are not numbered one after the other. */
+static const struct name_list {
+    const char *const *names;
+    uint32_t count;
+} lists[] = {[CSCD_SIMDS] = NAMES(simds),
+             [CSCD_METHODS] = {NULL, 0},
+             [CSCD_MODES] = NAMES(modes),
+             [CSCD_VOLUMES] = NAMES(volumes),
+             [CSCD_REASONS] = NAMES(reasons),
+             [CSCD_CONTACT_KINDS] = NAMES(contact_kinds),
+             [CSCD_INTERSECTION_KINDS] = NAMES(intersection_kinds),
+             [CSCD_LEFT_OUTS] = NAMES(left_outs),
+             [CSCD_CURVE_ENDS] = NAMES(curve_ends)};
+
+static struct name_list list_of(cscd_enumeration of) {
+    const bool known = (unsigned)of < sizeof lists / sizeof *lists;
+    return known ? lists[of] : (struct name_list){NULL, 0};
 }
 
-/* Returns count if no name is equal. */
-static size_t find_name(const char *const *names, size_t count, const char *name) {
-    size_t i = 0;
-    while (name != NULL && i < count && strcmp(names[i], name) != 0) i++;
-    return name != NULL ? i : count;
+const char *cscd_name(cscd_enumeration of, uint32_t value) {
+    const struct name_list list = list_of(of);
+    const method_traits *method = of == CSCD_METHODS ? method_traits_of((cscd_method)value) : NULL;
+    if (method != NULL) return method->name;
+    return value < list.count ? list.names[value] : "unknown";
 }
 
-#define COUNT(array) (sizeof(array) / sizeof *(array))
-
-const char *cscd_volume_name(cscd_volume volume) {
-    return name_at(volume_names, COUNT(volume_names), (size_t)volume);
-}
-
-bool cscd_volume_from_name(const char *name, cscd_volume *out) {
-    size_t i = find_name(volume_names, COUNT(volume_names), name);
-    if (i == COUNT(volume_names)) return false;
-    *out = (cscd_volume)i;
-    return true;
-}
-
-const char *cscd_mode_name(cscd_mode mode) {
-    return name_at(mode_names, COUNT(mode_names), (size_t)mode);
-}
-
-bool cscd_mode_from_name(const char *name, cscd_mode *out) {
-    size_t i = find_name(mode_names, COUNT(mode_names), name);
-    if (i == COUNT(mode_names)) return false;
-    *out = (cscd_mode)i;
-    return true;
-}
-
-const char *cscd_reason_text(cscd_reason reason) {
-    return name_at(reasons, COUNT(reasons), (size_t)reason);
+bool cscd_from_name(cscd_enumeration of, const char *name, uint32_t *out) {
+    if (name == NULL) return false;
+    if (of == CSCD_METHODS) {
+        const method_traits *method = method_traits_named(name);
+        if (method != NULL) *out = method->method;
+        return method != NULL;
+    }
+    const struct name_list list = list_of(of);
+    for (uint32_t i = 0; i < list.count; i++) {
+        if (strcmp(list.names[i], name) != 0) continue;
+        *out = i;
+        return true;
+    }
+    return false;
 }

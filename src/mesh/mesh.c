@@ -291,21 +291,24 @@ cscd_context *cscd_mesh_context(const cscd_mesh *mesh) {
     return mesh->context;
 }
 
-uint32_t cscd_mesh_vertex_count(const cscd_mesh *mesh) {
-    return mesh->vertex_count;
+uint32_t cscd_mesh_count(const cscd_mesh *mesh, cscd_element what) {
+    return what == CSCD_VERTICES     ? mesh->vertex_count
+           : what == CSCD_EDGES      ? mesh->edge_count
+           : what == CSCD_TRIANGLES  ? mesh->triangle_count
+           : what == CSCD_COMPONENTS ? mesh->component_count
+                                     : mesh->object_count;
 }
 
-uint32_t cscd_mesh_triangle_count(const cscd_mesh *mesh) {
-    return mesh->triangle_count;
+const uint32_t *cscd_mesh_array(const cscd_mesh *mesh, cscd_mesh_array_kind kind) {
+    return kind == CSCD_TRIANGLE_VERTICES     ? mesh->triangles[0]
+           : kind == CSCD_TRIANGLE_EDGES      ? mesh->triangle_edges[0]
+           : kind == CSCD_TRIANGLE_COMPONENTS ? mesh->triangle_components
+                                              : mesh->edges[0];
 }
 
 void cscd_mesh_triangle(const cscd_mesh *mesh, uint32_t triangle, uint32_t vertices[3]) {
     assert(triangle < mesh->triangle_count);
     memcpy(vertices, mesh->triangles[triangle], sizeof mesh->triangles[triangle]);
-}
-
-uint32_t cscd_mesh_edge_count(const cscd_mesh *mesh) {
-    return mesh->edge_count;
 }
 
 void cscd_mesh_edge(const cscd_mesh *mesh, uint32_t edge, uint32_t vertices[2]) {
@@ -330,10 +333,6 @@ const uint32_t *cscd_mesh_edge_triangles(const cscd_mesh *mesh, uint32_t edge, u
     return mesh->edge_stars + mesh->edge_star_offsets[edge];
 }
 
-uint32_t cscd_mesh_component_count(const cscd_mesh *mesh) {
-    return mesh->component_count;
-}
-
 cscd_component cscd_mesh_component(const cscd_mesh *mesh, uint32_t component) {
     assert(component < mesh->component_count);
     return mesh->components[component];
@@ -342,10 +341,6 @@ cscd_component cscd_mesh_component(const cscd_mesh *mesh, uint32_t component) {
 uint32_t cscd_mesh_triangle_component(const cscd_mesh *mesh, uint32_t triangle) {
     assert(triangle < mesh->triangle_count);
     return mesh->triangle_components[triangle];
-}
-
-uint32_t cscd_mesh_object_count(const cscd_mesh *mesh) {
-    return mesh->object_count;
 }
 
 cscd_object cscd_mesh_object(const cscd_mesh *mesh, uint32_t object) {

@@ -295,54 +295,26 @@ const cscd_mesh *cscd_mesh_change_mesh(const cscd_mesh_change *change) {
     return change->mesh;
 }
 
-static const uint32_t *give_new(const cscd_mesh_change *change, const number_map *map, uint32_t *old_count) {
+static const number_map *map_of(const cscd_mesh_change *change, cscd_element what) {
+    const number_map *map = what == CSCD_VERTICES    ? &change->vertices
+                            : what == CSCD_EDGES     ? &change->edges
+                            : what == CSCD_TRIANGLES ? &change->triangles
+                            : what == CSCD_OBJECTS   ? &change->objects
+                                                     : &change->components;
     mesh_change_make_whole(change, map);
+    return map;
+}
+
+const uint32_t *cscd_mesh_change_to_new(const cscd_mesh_change *change, cscd_element what,
+                                        uint32_t *old_count) {
+    const number_map *map = map_of(change, what);
     if (old_count != NULL) *old_count = map->old_count;
     return map->to_new;
 }
 
-static const uint32_t *give_old(const cscd_mesh_change *change, const number_map *map, uint32_t *new_count) {
-    mesh_change_make_whole(change, map);
+const uint32_t *cscd_mesh_change_to_old(const cscd_mesh_change *change, cscd_element what,
+                                        uint32_t *new_count) {
+    const number_map *map = map_of(change, what);
     if (new_count != NULL) *new_count = map->new_count;
     return map->to_old;
-}
-
-const uint32_t *cscd_mesh_change_vertices(const cscd_mesh_change *change, uint32_t *old_count) {
-    return give_new(change, &change->vertices, old_count);
-}
-
-const uint32_t *cscd_mesh_change_edges(const cscd_mesh_change *change, uint32_t *old_count) {
-    return give_new(change, &change->edges, old_count);
-}
-
-const uint32_t *cscd_mesh_change_triangles(const cscd_mesh_change *change, uint32_t *old_count) {
-    return give_new(change, &change->triangles, old_count);
-}
-
-const uint32_t *cscd_mesh_change_objects(const cscd_mesh_change *change, uint32_t *old_count) {
-    return give_new(change, &change->objects, old_count);
-}
-
-const uint32_t *cscd_mesh_change_components(const cscd_mesh_change *change, uint32_t *old_count) {
-    return give_new(change, &change->components, old_count);
-}
-
-const uint32_t *cscd_mesh_change_vertex_origins(const cscd_mesh_change *change, uint32_t *new_count) {
-    return give_old(change, &change->vertices, new_count);
-}
-
-const uint32_t *cscd_mesh_change_edge_origins(const cscd_mesh_change *change, uint32_t *new_count) {
-    return give_old(change, &change->edges, new_count);
-}
-
-const uint32_t *cscd_mesh_change_triangle_origins(const cscd_mesh_change *change, uint32_t *new_count) {
-    return give_old(change, &change->triangles, new_count);
-}
-
-const uint32_t *cscd_mesh_change_object_origins(const cscd_mesh_change *change, uint32_t *new_count) {
-    return give_old(change, &change->objects, new_count);
-}
-
-const uint32_t *cscd_mesh_change_component_origins(const cscd_mesh_change *change, uint32_t *new_count) {
-    return give_old(change, &change->components, new_count);
 }

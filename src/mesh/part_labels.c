@@ -5,16 +5,6 @@
 
 #include <string.h>
 
-uint32_t cscd_mesh_component_labels(const cscd_mesh *mesh, uint32_t *labels) {
-    memcpy(labels, mesh->triangle_components, mesh->triangle_count * sizeof *labels);
-    return mesh->component_count;
-}
-
-uint32_t cscd_plan_region_labels(const cscd_plan *plan, uint32_t *labels) {
-    memcpy(labels, plan->triangle_regions, plan->triangle_count * sizeof *labels);
-    return plan->region_count;
-}
-
 /* ---- the labels of a detector ---------------------------------------------------------------------------- */
 
 static array_list list_arrays(const cscd_mesh *mesh, part_labels *p) {

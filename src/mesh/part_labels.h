@@ -4,8 +4,7 @@
 #include "src/mesh/bodies.h"
 #include "src/mesh/mesh_change.h"
 
-#include <cscd/intersections.h>
-#include <cscd/parts.h>
+#include <cscd/surface.h>
 
 typedef struct part_labels {
     uint32_t *triangles; /* a label each; NULL: the objects are the parts */

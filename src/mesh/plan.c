@@ -103,9 +103,8 @@ cscd_region cscd_plan_region(const cscd_plan *plan, uint32_t region) {
     return plan->regions[region];
 }
 
-uint32_t cscd_plan_triangle_region(const cscd_plan *plan, uint32_t triangle) {
-    assert(triangle < plan->triangle_count);
-    return plan->triangle_regions[triangle];
+const uint32_t *cscd_plan_triangle_regions(const cscd_plan *plan) {
+    return plan->triangle_regions;
 }
 
 double cscd_plan_triangle_charge(const cscd_plan *plan, uint32_t triangle) {

@@ -300,5 +300,6 @@ TEST(guarantees_say_how) {
     assert_string_equal(cscd_method_name(CSCD_METHOD_ICCD), "iccd");
     assert_string_equal(cscd_method_name(CSCD_METHOD_CONES), "cones");
     cscd_method method = CSCD_METHOD_AUTO;
-    assert_true(cscd_method_from_name("iccd-published", &method) && method == CSCD_METHOD_ICCD_PUBLISHED);
+    assert_true(cscd_from_name(CSCD_METHODS, "iccd-published", (uint32_t *)&method) &&
+                method == CSCD_METHOD_ICCD_PUBLISHED);
 }

@@ -10,10 +10,10 @@ TEST(names_of_unknown_values) {
     for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
         int value = values[i];
         assert_string_equal(cscd_status_string((cscd_status)value), "unknown status");
-        assert_string_equal(cscd_simd_name((cscd_simd)value), "unknown");
+        assert_string_equal(cscd_name(CSCD_SIMDS, (cscd_simd)value), "unknown");
         assert_string_equal(cscd_method_name((cscd_method)value), "unknown");
-        assert_string_equal(cscd_mode_name((cscd_mode)value), "unknown");
-        assert_string_equal(cscd_volume_name((cscd_volume)value), "unknown");
+        assert_string_equal(cscd_name(CSCD_MODES, (cscd_mode)value), "unknown");
+        assert_string_equal(cscd_name(CSCD_VOLUMES, (cscd_volume)value), "unknown");
         assert_string_equal(cscd_contact_kind_name((cscd_contact_kind)value), "unknown");
         assert_string_equal(cscd_reason_text((cscd_reason)value), "unknown");
     }
@@ -48,8 +48,10 @@ TEST(unknown_is_not_read) {
     cscd_mode mode = CSCD_MODE_EARLIEST;
     cscd_volume volume = CSCD_VOLUME_KDOP14;
     cscd_simd simd = CSCD_SIMD_SCALAR;
-    assert_false(cscd_method_from_name("unknown", &method) || cscd_mode_from_name("unknown", &mode) ||
-                 cscd_volume_from_name("unknown", &volume) || cscd_simd_from_name("unknown", &simd));
+    assert_false(cscd_from_name(CSCD_METHODS, "unknown", (uint32_t *)&method) ||
+                 cscd_from_name(CSCD_MODES, "unknown", (uint32_t *)&mode) ||
+                 cscd_from_name(CSCD_VOLUMES, "unknown", (uint32_t *)&volume) ||
+                 cscd_from_name(CSCD_SIMDS, "unknown", (uint32_t *)&simd));
     assert_true(method == CSCD_METHOD_SINGLE && mode == CSCD_MODE_EARLIEST && volume == CSCD_VOLUME_KDOP14 &&
                 simd == CSCD_SIMD_SCALAR);
 }
@@ -66,7 +68,7 @@ TEST(methods_are_described) {
         cscd_method_info info;
         assert_true(cscd_method_describe(method, &info));
         assert_string_equal(info.name, cscd_method_name(method));
-        assert_true(cscd_method_from_name(info.name, &read));
+        assert_true(cscd_from_name(CSCD_METHODS, info.name, (uint32_t *)&read));
         assert_int_equal(read, method);
         assert_false(info.needs_plan && !info.makes_plan);
         assert_false(info.by_orientation && info.by_contours);

@@ -3,12 +3,12 @@
 
 namespace {
 
-using getter = const std::uint32_t *(*)(const cscd_mesh_change *, std::uint32_t *);
+using map = const std::uint32_t *(*)(const cscd_mesh_change *, cscd_element, std::uint32_t *);
 
-void expect_array(cscd::span<const std::uint32_t> found, const cscd_mesh_change *c, getter of,
+void expect_array(cscd::span<const std::uint32_t> found, const cscd_mesh_change *c, map of, cscd_element what,
                   std::size_t count) {
     std::uint32_t expected = 0;
-    assert_ptr_equal(found.data(), of(c, &expected));
+    assert_ptr_equal(found.data(), of(c, what, &expected));
     assert_int_equal(found.size(), expected);
     assert_int_equal(found.size(), count);
 }
@@ -32,16 +32,16 @@ TEST(changes) {
     const cscd_mesh_change *c = change.get();
     assert_ptr_equal(change.mesh().get(), cscd_mesh_change_mesh(c));
     assert_int_equal(change.mesh().vertex_count(), 25);
-    expect_array(change.vertices(), c, cscd_mesh_change_vertices, 32);
-    expect_array(change.edges(), c, cscd_mesh_change_edges, old.edge_count());
-    expect_array(change.triangles(), c, cscd_mesh_change_triangles, 36);
-    expect_array(change.objects(), c, cscd_mesh_change_objects, 2);
-    expect_array(change.components(), c, cscd_mesh_change_components, 2);
-    expect_array(change.vertex_origins(), c, cscd_mesh_change_vertex_origins, 25);
-    expect_array(change.edge_origins(), c, cscd_mesh_change_edge_origins, change.mesh().edge_count());
-    expect_array(change.triangle_origins(), c, cscd_mesh_change_triangle_origins, 26);
-    expect_array(change.object_origins(), c, cscd_mesh_change_object_origins, 2);
-    expect_array(change.component_origins(), c, cscd_mesh_change_component_origins,
+    expect_array(change.vertices(), c, cscd_mesh_change_to_new, CSCD_VERTICES, 32);
+    expect_array(change.edges(), c, cscd_mesh_change_to_new, CSCD_EDGES, old.edge_count());
+    expect_array(change.triangles(), c, cscd_mesh_change_to_new, CSCD_TRIANGLES, 36);
+    expect_array(change.objects(), c, cscd_mesh_change_to_new, CSCD_OBJECTS, 2);
+    expect_array(change.components(), c, cscd_mesh_change_to_new, CSCD_COMPONENTS, 2);
+    expect_array(change.vertex_origins(), c, cscd_mesh_change_to_old, CSCD_VERTICES, 25);
+    expect_array(change.edge_origins(), c, cscd_mesh_change_to_old, CSCD_EDGES, change.mesh().edge_count());
+    expect_array(change.triangle_origins(), c, cscd_mesh_change_to_old, CSCD_TRIANGLES, 26);
+    expect_array(change.object_origins(), c, cscd_mesh_change_to_old, CSCD_OBJECTS, 2);
+    expect_array(change.component_origins(), c, cscd_mesh_change_to_old, CSCD_COMPONENTS,
                  change.mesh().component_count());
     assert_int_equal(change.vertex_origins()[16], scene.triangles[0][1]);
 

@@ -76,9 +76,9 @@ TEST(meshes) {
     assert_int_equal(mesh.component_count(), 4);
     assert_int_equal(mesh.component(2).euler_characteristic, 2);
     assert_int_equal(mesh.hash(), cscd_mesh_hash(c));
-    assert_true(equal(mesh.all_triangles(), cscd_mesh_all_triangles(c), 48));
-    assert_true(equal(mesh.all_edges(), cscd_mesh_all_edges(c), 48));
-    assert_true(equal(mesh.all_triangle_edges(), cscd_mesh_all_triangle_edges(c), 48));
+    assert_true(equal(mesh.all_triangles(), cscd_mesh_array(c, CSCD_TRIANGLE_VERTICES), 48));
+    assert_true(equal(mesh.all_edges(), cscd_mesh_array(c, CSCD_EDGE_VERTICES), 48));
+    assert_true(equal(mesh.all_triangle_edges(), cscd_mesh_array(c, CSCD_TRIANGLE_EDGES), 48));
     assert_int_equal(cscd::mesh_ref(mesh).vertex_count(), 16);
     features(mesh);
     const cscd_stencil stencil = mesh.stencil(CSCD_CONTACT_VF, 4, 0, 0.25, 0.5);

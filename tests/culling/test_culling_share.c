@@ -92,7 +92,7 @@ TEST(a_quarter_of_the_pairs) {
         cscd_mode mode = i < 2 ? CSCD_MODE_EARLIEST : CSCD_MODE_ALL;
         totals culled = replay_poses(r, methods[i % 2], mode);
         print_message("  %s, %s: %.1f %% of %llu pairs\n", cscd_method_name(methods[i % 2]),
-                      cscd_mode_name(mode), 100.0 * (double)culled.pairs / (double)none.pairs,
+                      cscd_name(CSCD_MODES, mode), 100.0 * (double)culled.pairs / (double)none.pairs,
                       (unsigned long long)none.pairs);
         assert_true(4 * culled.pairs <= none.pairs);
         assert_int_equal(culled.contacts, 0);

@@ -293,8 +293,8 @@ static void run_march(march_kind kind, cscd_method method, cscd_mode mode, doubl
     march_on(&a, disturbed);
     printf(
         "%-8s %-6s %-8s shake %5.3f%s: %u of %d intervals from lists, %u with contacts, %u right after a list\n",
-        names[kind], cscd_method_name(method), cscd_mode_name(mode), shake, disturbed ? ", disturbed" : "",
-        a.answered, INTERVALS, a.with_contacts, a.ended_by_contact);
+        names[kind], cscd_method_name(method), cscd_name(CSCD_MODES, mode), shake,
+        disturbed ? ", disturbed" : "", a.answered, INTERVALS, a.with_contacts, a.ended_by_contact);
     assert_true(a.answered >= INTERVALS / 18 && a.with_contacts > 0);
     marching_end(&a);
     sum->ended_by_contact += a.ended_by_contact;

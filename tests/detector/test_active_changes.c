@@ -59,7 +59,7 @@ TEST(rebuilt_trees_have_the_set) {
 static void map_set(void) {
     static bool before[TWIN_VERTICES_MAX];
     uint32_t count;
-    const uint32_t *origins = cscd_mesh_change_vertex_origins(moving.last, &count);
+    const uint32_t *origins = cscd_mesh_change_to_old(moving.last, CSCD_VERTICES, &count);
     memcpy(before, twins.active, sizeof before);
     for (uint32_t v = 0; v < count; v++) twins.active[v] = origins[v] == UINT32_MAX || before[origins[v]];
 }

@@ -49,8 +49,8 @@ static known_triangle knowledge_of(const cscd_detector *d, uint32_t t) {
 static void check_knowledge(const cscd_mesh_change *made, size_t *kept, size_t *forgotten) {
     const cscd_detector *d = moving.detector;
     const cscd_mesh *mesh = cscd_mesh_change_mesh(made);
-    const uint32_t *origins = cscd_mesh_change_triangle_origins(made, NULL);
-    const uint32_t *components = cscd_mesh_change_component_origins(made, NULL);
+    const uint32_t *origins = cscd_mesh_change_to_old(made, CSCD_TRIANGLES, NULL);
+    const uint32_t *components = cscd_mesh_change_to_old(made, CSCD_COMPONENTS, NULL);
     static uint32_t sizes[SCENE_TRIANGLES_MAX]; /* of regions; none is left without a triangle */
     memset(sizes, 0, sizeof sizes);
     for (uint32_t t = 0; t < mesh->triangle_count; t++) sizes[d->culling.triangle_regions[t]]++;
@@ -77,8 +77,8 @@ static void check_knowledge(const cscd_mesh_change *made, size_t *kept, size_t *
 /* The order of the triangles in the trees of untouched components stays. */
 static void check_trees(const cscd_mesh_change *made, const bvh *old, size_t *kept) {
     const bvh *now = &moving.detector->rebuild.kept;
-    const uint32_t *triangles = cscd_mesh_change_triangles(made, NULL);
-    const uint32_t *components = cscd_mesh_change_components(made, NULL);
+    const uint32_t *triangles = cscd_mesh_change_to_new(made, CSCD_TRIANGLES, NULL);
+    const uint32_t *components = cscd_mesh_change_to_new(made, CSCD_COMPONENTS, NULL);
     const cscd_mesh *old_mesh = made->old_mesh;
     for (uint32_t slot = 0; now->mesh != NULL && slot < old->leaf_count * LANES; slot++) {
         uint32_t t = bvh_triangle(old, slot);
@@ -130,7 +130,7 @@ TEST(keeps_rest_lengths) {
         cscd_mesh_change *made = make_change(context);
         expect_ok(cscd_detector_change_mesh(moving.detector, made));
         uint32_t count;
-        const uint32_t *origins = cscd_mesh_change_edge_origins(made, &count);
+        const uint32_t *origins = cscd_mesh_change_to_old(made, CSCD_EDGES, &count);
         for (uint32_t e = 0; e < count; e++) {
             double expected = origins[e] != UINT32_MAX ? before[origins[e]] : 0.0;
             assert_true(moving.detector->rest.squared_lengths[e] == expected);

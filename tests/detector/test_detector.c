@@ -142,13 +142,13 @@ TEST(bad_arguments_are_refused) {
 TEST(names_and_values_match) {
     cscd_method method = CSCD_METHOD_NONE;
     cscd_mode mode = CSCD_MODE_ALL;
-    assert_true(cscd_method_from_name("brute", &method));
+    assert_true(cscd_from_name(CSCD_METHODS, "brute", (uint32_t *)&method));
     assert_int_equal(method, CSCD_METHOD_BRUTE);
     assert_string_equal(cscd_method_name(CSCD_METHOD_NONE), "none");
-    assert_false(cscd_method_from_name("warp", &method));
-    assert_false(cscd_method_from_name(NULL, &method));
+    assert_false(cscd_from_name(CSCD_METHODS, "warp", (uint32_t *)&method));
+    assert_false(cscd_from_name(CSCD_METHODS, NULL, (uint32_t *)&method));
     assert_int_equal(method, CSCD_METHOD_BRUTE);
-    assert_true(cscd_mode_from_name("all", &mode));
-    assert_false(cscd_mode_from_name("some", &mode));
+    assert_true(cscd_from_name(CSCD_MODES, "all", (uint32_t *)&mode));
+    assert_false(cscd_from_name(CSCD_MODES, "some", (uint32_t *)&mode));
     assert_string_equal(cscd_version_string(), "2.0.0");
 }

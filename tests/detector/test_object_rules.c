@@ -121,7 +121,7 @@ static rules_tally run_method(cscd_method method, cscd_mode mode, int sequences,
         run_sequence(seed + (uint64_t)i, options, 1 + (uint32_t)i % 3, &sum);
     }
     print_message("  %s, %s: %zu contacts, %zu culled (%zu beside a distance), %zu masked, %zu left out\n",
-                  cscd_method_name(method), cscd_mode_name(mode), sum.contacts, sum.culled,
+                  cscd_method_name(method), cscd_name(CSCD_MODES, mode), sum.contacts, sum.culled,
                   sum.thick_and_culled, sum.masked, sum.later);
     assert_true(sum.contacts > 1000 && sum.masked > 100);
     return sum;

@@ -300,9 +300,9 @@ static waiting_tally run_method(cscd_method method, cscd_mode mode, int sequence
     }
     print_message("  %s, %s: %zu contacts, %zu waiting, %zu let go, %zu triangle pairs waiting, %zu culled, "
                   "%zu later, %zu free, %zu touched, %zu near, %zu crossing\n",
-                  cscd_method_name(method), cscd_mode_name(mode), sum.steps.contacts, sum.waiting, sum.let_go,
-                  sum.triangles_waiting, sum.steps.culled, sum.steps.later, sum.free, sum.touched, sum.near,
-                  sum.crossing);
+                  cscd_method_name(method), cscd_name(CSCD_MODES, mode), sum.steps.contacts, sum.waiting,
+                  sum.let_go, sum.triangles_waiting, sum.steps.culled, sum.steps.later, sum.free, sum.touched,
+                  sum.near, sum.crossing);
     assert_true(sum.waiting > 100 && sum.triangles_waiting > 20);
     return sum;
 }

@@ -2,7 +2,9 @@
 """Reads the public headers of the C API: what they promise, and the headers that a later version would have.
 
     api_headers.py print             what is frozen, a line for each enumerator, struct, member and function
-    api_headers.py write             renews api_frozen.txt and src/core/least_sizes.h: `make freeze-api`
+    api_headers.py write             renews what is made from the headers: api_frozen.txt, src/core/least_sizes.h, the
+                                     prototypes of python/cscd/_api.py, the functions in docs/man/cscd.3: `make freeze-api`
+    api_headers.py check             fails if the prototypes or the man page are not those of the headers
     api_headers.py rules             fails if a struct ends in padding, with 64-bit and with 32-bit pointers, or if the
                                      library could not know the size of one that grows
     api_headers.py grows             the structs that may grow
@@ -19,6 +21,8 @@ import tempfile
 FROZEN = 'tests/install/api_frozen.txt'
 LEAST = 'src/core/least_sizes.h'
 COMPILER = os.environ.get('CC', 'gcc').split()
+PYTHON = 'python/cscd/_api.py'
+MAN = 'docs/man/cscd.3'
 LATER = 'uint32_t later_member[2];'
 HEADERS = sorted(glob.glob('include/cscd/*.h'))
 INCLUDES = ''.join(f'#include <cscd/{os.path.basename(header)}>\n' for header in HEADERS)
@@ -200,6 +204,106 @@ def write_later(api, folder):
             file.write(text)
 
 
+# ---- Python ------------------------------------------------------------------------------------------------------------------
+
+SCALARS = {'void': 'None', 'bool': 'c_bool', 'int': 'c_int', 'double': 'c_double', 'size_t': 'c_size_t',
+           'uint32_t': 'c_uint32', 'uint64_t': 'c_uint64', 'const char *': 'c_char_p'}
+
+
+def python_type(kind):
+    """The type of ctypes for a result or a parameter; what is not listed is an enumeration."""
+    kind = kind.strip()
+    return SCALARS.get(kind, 'c_void_p' if kind.endswith(('*', ']')) else 'c_uint32')
+
+
+def python_text(api):
+    """The functions that Python calls by their names, and the values of all enumerators."""
+    called = set()
+    for path in glob.glob('python/cscd/*.py'):
+        with open(path, encoding='utf-8') as file:
+            called.update(re.findall(r'library\.(cscd_\w+)', file.read()))
+    rows = []
+    for kind, name, parameters in sorted(api.exported, key=lambda function: function[1]):
+        if name not in called:
+            continue
+        types = without_names(parameters)
+        arguments = [] if types == 'void' else [python_type(each) for each in types.split(', ')]
+        rows.append(f'    "{name}": ({python_type(kind)}, [{", ".join(arguments)}]),')
+        called.remove(name)
+    if called:
+        fail('Python calls functions that the headers do not have: ' + ', '.join(sorted(called)))
+    values = [line.split()[1:] for line in print_frozen(api) if line.startswith('value ')]
+    rows_of_values = [f'    "{name}": {value},' for name, value in values if not name.endswith('_MAX_ENUM')]
+    return ('"""The functions of the public headers that Python calls, and the values of their enumerators.\n\n'
+            'Made from include/cscd by ``make freeze-api``.\n"""\n\nfrom __future__ import annotations\n\n'
+            'from ctypes import c_bool, c_char_p, c_double, c_int, c_size_t, c_uint32, c_uint64, c_void_p\n'
+            'from typing import Any, Dict, List, Tuple\n\n__all__ = ["FUNCTIONS", "VALUES"]\n\n'
+            '#: By name: the type of the result, and those of the arguments.\n'
+            'FUNCTIONS: Dict[str, Tuple[Any, List[Any]]] = {\n' + '\n'.join(rows) + '\n}\n\n'
+            '#: Enumerators and flags by name.\n'
+            'VALUES: Dict[str, int] = {\n' + '\n'.join(rows_of_values) + '\n}\n')
+
+
+# ---- the man page ------------------------------------------------------------------------------------------------------------
+
+MAN_BEGIN, MAN_END = '.\\" Functions, made from the headers by make freeze-api.\n', '.\\" The end of what is made.\n'
+
+
+def first_sentence(comment):
+    """The first sentence of a comment, in one line."""
+    text = re.sub(r'\s*\n\s*\*\s?', ' ', comment).strip()
+    sentence = re.match(r'.*?[.:;](?= [A-Z]|$)', text)
+    return re.sub(r'[:;]$', '.', sentence.group() if sentence else text + '.')
+
+
+def man_text():
+    """An entry for each function: its parameters, and the first sentence above it. Those without one follow others."""
+    text = ''
+    for header in HEADERS:
+        with open(header, encoding='utf-8') as file:
+            code = re.sub(r'/\* (?:====|----).*?\*/|^#.*?$', '', file.read(), flags=re.M)
+        entries = ''
+        pattern = r'(?:/\*((?:(?!\*/).)*?)\*/\n)?(?:CSCD_API|static inline) [^;{(]*?(\w+)\(([^;{)]*)\)'
+        for comment, name, parameters in re.findall(pattern, code, flags=re.S):
+            if name.endswith('_sized'):
+                last = comment
+                continue
+            names = [re.search(r'(\w+)(?:\[\w*\])*$', each.strip()).group(1)
+                     for each in parameters.split(',') if each.strip() not in ('', 'void')]
+            comment = comment or last
+            last = comment
+            arguments = ', '.join(f'\\fI{each}\\fR' for each in names)
+            sentence = first_sentence(comment).replace('\\', '\\e').replace('-', '\\-')
+            entries += f'.TP\n\\fB{name}\\fR({arguments})\n{sentence}\n'
+        if entries:
+            text += f'.SS <cscd/{os.path.basename(header)}>\n{entries}'
+    return text
+
+
+def man_page():
+    with open(MAN, encoding='utf-8') as file:
+        page = file.read()
+    before, rest = page.split(MAN_BEGIN)
+    return before + MAN_BEGIN + man_text() + MAN_END + rest.split(MAN_END)[1]
+
+
+def made_files(api):
+    return {PYTHON: python_text(api), MAN: man_page()}
+
+
+def write_made(api):
+    for path, text in made_files(api).items():
+        with open(path, 'w', encoding='utf-8') as file:
+            file.write(text)
+
+
+def check_made(api):
+    for path, text in made_files(api).items():
+        with open(path, encoding='utf-8') as file:
+            if file.read() != text:
+                fail(f'{path} is not what the headers say; run make freeze-api')
+
+
 def main():
     api = Api()
     command = sys.argv[1] if len(sys.argv) > 1 else ''
@@ -207,6 +311,9 @@ def main():
         print('\n'.join(print_frozen(api)))
     elif command == 'write':
         write_frozen(api)
+        write_made(api)
+    elif command == 'check':
+        check_made(api)
     elif command == 'rules':
         check_sizes(api)
         check_padding(api)

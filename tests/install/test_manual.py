@@ -1,4 +1,4 @@
-"""The man pages have no warnings, and name every option of the tool and every function of the library, and no others.
+"""The man pages have no warnings, and name every option of the tool, and no others.
 
 The examples are those of --help, and none is refused.
 """
@@ -7,7 +7,7 @@ import shlex
 
 import pytest
 
-from support.install.built_tree import ROOT, functions_of, shell
+from support.install.built_tree import ROOT, shell
 from support.tool.running import run
 
 COMMANDS = ("preprocess", "replay", "report", "sense", "check", "merge", "info", "render")
@@ -111,11 +111,3 @@ def test_columns_are_those_of_the_tables(title, source):
     places = [i for i in range(len(words)) if words[i:i + 3] == columns[:3]]
     listed = words[places[0]:] if rows else [word for word in words[places[0]:] if word in columns]
     assert len(columns) > 9 and listed[:len(columns)] == columns
-
-
-@pytest.mark.parametrize("header", [
-    "context.h", "mesh.h", "plan.h", "detector.h", "solver.h", "research.h", "sensors.h", "cscd.h",
-])
-def test_functions_are_those_of_the_headers(header):
-    part = part_of((ROOT / "docs/man/cscd.3").read_text(), f"<cscd/{header}>")
-    assert sorted(re.findall(r"^\\fB(cscd_[a-z_0-9]*)\\fR\(", part, re.MULTILINE)) == functions_of(header) != []

@@ -319,10 +319,10 @@ TEST(events_stay_on_their_budget) {
 }
 
 TEST(names_are_those_of_the_header) {
-    assert_string_equal(cscd_left_out_name(CSCD_LEFT_OUT_PAIRS), "pairs");
-    assert_string_equal(cscd_left_out_name(CSCD_LEFT_OUT_CUT_OFFS), "cut-offs");
-    assert_string_equal(cscd_left_out_name(CSCD_LEFT_OUT_PARTS), "parts");
-    assert_string_equal(cscd_left_out_name((cscd_left_out)77), "unknown");
+    assert_string_equal(cscd_name(CSCD_LEFT_OUTS, CSCD_LEFT_OUT_PAIRS), "pairs");
+    assert_string_equal(cscd_name(CSCD_LEFT_OUTS, CSCD_LEFT_OUT_CUT_OFFS), "cut-offs");
+    assert_string_equal(cscd_name(CSCD_LEFT_OUTS, CSCD_LEFT_OUT_PARTS), "parts");
+    assert_string_equal(cscd_name(CSCD_LEFT_OUTS, (cscd_left_out)77), "unknown");
 }
 
 AROUND_EACH(NULL, body_rigs_free)

@@ -30,7 +30,7 @@ static cscd_mesh_change *change_bodies(const body_rig *r, body_rig *to) {
     expect_ok(cscd_mesh_change_create(r->context, r->mesh, changes, 3, &change));
     to->all.vertex_count = 2 * ball->vertex_count + torus->vertex_count;
     to->all.triangle_count = cscd_mesh_triangle_count(cscd_mesh_change_mesh(change));
-    memcpy(to->all.triangles, cscd_mesh_all_triangles(cscd_mesh_change_mesh(change)),
+    memcpy(to->all.triangles, cscd_mesh_array(cscd_mesh_change_mesh(change), CSCD_TRIANGLE_VERTICES),
            to->all.triangle_count * 3 * sizeof *to->all.triangles);
     const double *x = r->all.x0 + (size_t)ball->first_vertex * 3;
     uint32_t kept = ball->vertex_count + torus->vertex_count;
@@ -48,7 +48,7 @@ TEST(labels_move_to_another_mesh) {
     labelled_scene_find(&rig);
     memcpy(before, labels.items, sizeof before);
     cscd_mesh_change *change = change_bodies(&rig, &other);
-    const uint32_t *origins = cscd_mesh_change_triangle_origins(change, &count);
+    const uint32_t *origins = cscd_mesh_change_to_old(change, CSCD_TRIANGLES, &count);
     size_t fresh = 0;
     for (uint32_t t = 0; t < count; t++) {
         fresh += origins[t] == UINT32_MAX;

@@ -264,9 +264,9 @@ TEST(a_larger_mesh_has_its_own_answers) {
 }
 
 TEST(names_of_ends) {
-    assert_string_equal(cscd_curve_end_name(CSCD_CURVE_END_NONE), "none");
-    assert_string_equal(cscd_curve_end_name(CSCD_CURVE_END_LEFT_OUT), "left out");
-    assert_string_equal(cscd_curve_end_name((cscd_curve_end)77), "unknown");
+    assert_string_equal(cscd_name(CSCD_CURVE_ENDS, CSCD_CURVE_END_NONE), "none");
+    assert_string_equal(cscd_name(CSCD_CURVE_ENDS, CSCD_CURVE_END_LEFT_OUT), "left out");
+    assert_string_equal(cscd_name(CSCD_CURVE_ENDS, (cscd_curve_end)77), "unknown");
 }
 
 AROUND_EACH(NULL, body_rigs_free)

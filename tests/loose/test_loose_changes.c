@@ -52,7 +52,7 @@ typedef struct changed_scene {
 
 static void map_positions(const cscd_mesh_change *change, const double *old, double *out) {
     uint32_t count;
-    const uint32_t *origins = cscd_mesh_change_vertex_origins(change, &count);
+    const uint32_t *origins = cscd_mesh_change_to_old(change, CSCD_VERTICES, &count);
     for (uint32_t v = 0; v < count; v++) {
         for (size_t k = 0; k < 3; k++)
             out[v * 3 + k] = origins[v] != UINT32_MAX ? old[origins[v] * 3 + k] : 0.1 * (double)(v % 7);

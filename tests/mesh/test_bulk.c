@@ -9,8 +9,9 @@ TEST(arrays_are_those_of_single_calls) {
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         scene_make((scene_family)family, 2, &interval);
         rig r = rig_create(&interval, 1, NULL);
-        const uint32_t *triangles = cscd_mesh_all_triangles(r.mesh), *edges = cscd_mesh_all_edges(r.mesh),
-                       *triangle_edges = cscd_mesh_all_triangle_edges(r.mesh);
+        const uint32_t *triangles = cscd_mesh_array(r.mesh, CSCD_TRIANGLE_VERTICES),
+                       *edges = cscd_mesh_array(r.mesh, CSCD_EDGE_VERTICES),
+                       *triangle_edges = cscd_mesh_array(r.mesh, CSCD_TRIANGLE_EDGES);
         for (uint32_t t = 0; t < cscd_mesh_triangle_count(r.mesh); t++) {
             uint32_t vertices[3], sides[3];
             cscd_mesh_triangle(r.mesh, t, vertices);

@@ -43,7 +43,7 @@ static void check_features(const cscd_mesh *mesh) {
     assert_int_equal(cscd_mesh_vertex_count(mesh), 20);
     assert_int_equal(cscd_mesh_triangle_count(mesh), 4);
     assert_int_equal(cscd_mesh_edge_count(mesh), 12);
-    assert_memory_equal(cscd_mesh_all_edges(mesh), edges, sizeof edges);
+    assert_memory_equal(cscd_mesh_array(mesh, CSCD_EDGE_VERTICES), edges, sizeof edges);
     for (uint32_t e = 0; e < 12; e++) {
         uint32_t count, v[2];
         cscd_mesh_edge_triangles(mesh, e, &count);

@@ -28,10 +28,10 @@ static void check_inverse(const uint32_t *to_new, uint32_t old_count, const uint
     assert_int_equal(found, origins);
 }
 
-#define MAPS(name, single)                                                                                   \
+#define MAPS(name, what)                                                                                     \
     uint32_t old_##name##_count, new_##name##_count;                                                         \
-    const uint32_t *new_##name = cscd_mesh_change_##name(made, &old_##name##_count);                         \
-    const uint32_t *old_##name = cscd_mesh_change_##single##_origins(made, &new_##name##_count);             \
+    const uint32_t *new_##name = cscd_mesh_change_to_new(made, what, &old_##name##_count);                   \
+    const uint32_t *old_##name = cscd_mesh_change_to_old(made, what, &new_##name##_count);                   \
     check_inverse(new_##name, old_##name##_count, old_##name, new_##name##_count)
 
 /* The origin that the caller has said, in the numbering of the mesh. */
@@ -49,10 +49,10 @@ static const cscd_object_change *change_of(uint32_t old_object) {
 
 static void check_features(const cscd_mesh_change *made, const cscd_mesh *old) {
     const cscd_mesh *mesh = cscd_mesh_change_mesh(made);
-    MAPS(vertices, vertex);
-    MAPS(triangles, triangle);
-    MAPS(edges, edge);
-    MAPS(objects, object);
+    MAPS(vertices, CSCD_VERTICES);
+    MAPS(triangles, CSCD_TRIANGLES);
+    MAPS(edges, CSCD_EDGES);
+    MAPS(objects, CSCD_OBJECTS);
     for (uint32_t o = 0; o < mesh->object_count; o++) {
         cscd_object now = cscd_mesh_object(mesh, o), was = {0};
         const cscd_object_change *said = NULL;
@@ -87,8 +87,8 @@ static void check_features(const cscd_mesh_change *made, const cscd_mesh *old) {
 /* Is every triangle of the old component one of the new component, with what became of its corners, and is no other? */
 static bool is_untouched(const cscd_mesh_change *made, const cscd_mesh *old, uint32_t was, uint32_t now) {
     const cscd_mesh *mesh = cscd_mesh_change_mesh(made);
-    const uint32_t *triangles = cscd_mesh_change_triangles(made, NULL),
-                   *vertices = cscd_mesh_change_vertices(made, NULL);
+    const uint32_t *triangles = cscd_mesh_change_to_new(made, CSCD_TRIANGLES, NULL),
+                   *vertices = cscd_mesh_change_to_new(made, CSCD_VERTICES, NULL);
     if (old->components[was].triangle_count != mesh->components[now].triangle_count) return false;
     if (component_is_obstacle(old, was) != component_is_obstacle(mesh, now)) return false;
     for (uint32_t t = 0; t < old->triangle_count; t++) {
@@ -105,7 +105,7 @@ static bool is_untouched(const cscd_mesh_change *made, const cscd_mesh *old, uin
 static uint32_t check_components(const cscd_mesh_change *made, const cscd_mesh *old) {
     const cscd_mesh *mesh = cscd_mesh_change_mesh(made);
     uint32_t untouched = 0;
-    MAPS(components, component);
+    MAPS(components, CSCD_COMPONENTS);
     assert_int_equal(new_components_count, mesh->component_count);
     for (uint32_t c = 0; c < old->component_count; c++) {
         uint32_t expected = UINT32_MAX;

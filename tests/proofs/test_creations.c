@@ -48,8 +48,8 @@ static void keep_mesh(proof *p) {
     const uint64_t hash = cscd_mesh_hash(mesh);
     const uint32_t triangles = cscd_mesh_triangle_count(mesh), edges = cscd_mesh_edge_count(mesh);
     proof_add(p, &hash, sizeof hash);
-    proof_add_items(p, cscd_mesh_all_edges(mesh), edges, sizeof(uint32_t[2]));
-    proof_add_items(p, cscd_mesh_all_triangle_edges(mesh), triangles, sizeof(uint32_t[3]));
+    proof_add_items(p, cscd_mesh_array(mesh, CSCD_EDGE_VERTICES), edges, sizeof(uint32_t[2]));
+    proof_add_items(p, cscd_mesh_array(mesh, CSCD_TRIANGLE_EDGES), triangles, sizeof(uint32_t[3]));
     for (uint32_t v = 0, count; v < cscd_mesh_vertex_count(mesh); v++) {
         const uint32_t *star = cscd_mesh_vertex_triangles(mesh, v, &count);
         proof_add_items(p, star, count, sizeof *star);
@@ -77,10 +77,10 @@ static void keep_change(proof *p) {
     p->change = p->answer.change;
     const uint64_t hash = cscd_mesh_hash(cscd_mesh_change_mesh(p->change));
     uint32_t count;
-    const uint32_t *edges = cscd_mesh_change_edges(p->change, &count);
+    const uint32_t *edges = cscd_mesh_change_to_new(p->change, CSCD_EDGES, &count);
     proof_add(p, &hash, sizeof hash);
     proof_add_items(p, edges, count, sizeof *edges);
-    const uint32_t *origins = cscd_mesh_change_vertex_origins(p->change, &count);
+    const uint32_t *origins = cscd_mesh_change_to_old(p->change, CSCD_VERTICES, &count);
     proof_add_items(p, origins, count, sizeof *origins);
 }
 

@@ -12,7 +12,8 @@ int open_levels(void **state) {
         bool created = cscd_context_create(&options, &contexts[i]) == CSCD_OK;
         if (created != processor_has_simd(options.simd)) return 1;
         if (!created) contexts[i] = NULL;
-        print_message("%s: %s\n", cscd_simd_name(options.simd), contexts[i] != NULL ? "compared" : "absent");
+        print_message("%s: %s\n", cscd_name(CSCD_SIMDS, options.simd),
+                      contexts[i] != NULL ? "compared" : "absent");
     }
     return 0;
 }

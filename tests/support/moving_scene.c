@@ -128,14 +128,14 @@ static void part_copies(const uint32_t *vertices, const uint32_t *origins) {
 
 void moving_take_change(cscd_mesh_change *made) {
     uint32_t old_count, new_count;
-    const uint32_t *vertices = cscd_mesh_change_vertices(made, &old_count);
+    const uint32_t *vertices = cscd_mesh_change_to_new(made, CSCD_VERTICES, &old_count);
     torn_model_change(made, moving.labels);
     map_labels(vertices, old_count);
-    map_rules(cscd_mesh_change_object_origins(made, NULL), moving.shape.object_count);
-    const uint32_t *triangles = cscd_mesh_change_triangle_origins(made, &new_count);
+    map_rules(cscd_mesh_change_to_old(made, CSCD_OBJECTS, NULL), moving.shape.object_count);
+    const uint32_t *triangles = cscd_mesh_change_to_old(made, CSCD_TRIANGLES, &new_count);
     map_ignored(triangles, new_count);
     if (stream_below(&moving.random, 2) == 0)
-        part_copies(vertices, cscd_mesh_change_vertex_origins(made, NULL));
+        part_copies(vertices, cscd_mesh_change_to_old(made, CSCD_VERTICES, NULL));
     changing_scene_join(&moving.shape, &moving_joined);
     cscd_mesh_change_destroy(moving.last);
     moving.last = made;

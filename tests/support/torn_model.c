@@ -79,9 +79,9 @@ static bool is_pair(const cscd_mesh *mesh, cscd_contact_kind kind, uint32_t a, u
 /* All pairs of features of the new mesh that came from a pair. */
 static void follow_pairs(const cscd_mesh_change *made, model_list *list) {
     const cscd_mesh *mesh = cscd_mesh_change_mesh(made);
-    const uint32_t *origins[3] = {cscd_mesh_change_vertex_origins(made, NULL),
-                                  cscd_mesh_change_edge_origins(made, NULL),
-                                  cscd_mesh_change_triangle_origins(made, NULL)};
+    const uint32_t *origins[3] = {cscd_mesh_change_to_old(made, CSCD_VERTICES, NULL),
+                                  cscd_mesh_change_to_old(made, CSCD_EDGES, NULL),
+                                  cscd_mesh_change_to_old(made, CSCD_TRIANGLES, NULL)};
     const uint32_t counts[3] = {mesh->vertex_count, mesh->edge_count, mesh->triangle_count};
     scratch.count = 0;
     for (size_t i = 0; i < list->count; i++) {
@@ -104,8 +104,8 @@ static void follow_pairs(const cscd_mesh_change *made, model_list *list) {
 static void name_vertices(const cscd_mesh_change *made, const uint32_t *labels, int64_t *names) {
     static bool torn[2 * SCENE_VERTICES_MAX];
     uint32_t count;
-    const uint32_t *origins = cscd_mesh_change_vertex_origins(made, &count),
-                   *to_new = cscd_mesh_change_vertices(made, NULL);
+    const uint32_t *origins = cscd_mesh_change_to_old(made, CSCD_VERTICES, &count),
+                   *to_new = cscd_mesh_change_to_new(made, CSCD_VERTICES, NULL);
     memset(torn, 0, sizeof torn);
     for (int pass = 0; pass < 2; pass++) {
         for (uint32_t v = 0; v < count; v++) {
@@ -138,7 +138,7 @@ static void part_kind(const cscd_mesh *mesh, cscd_contact_kind kind, const int64
 }
 
 static void follow_obstacles(const cscd_mesh_change *made) {
-    const uint32_t *origins = cscd_mesh_change_object_origins(made, NULL);
+    const uint32_t *origins = cscd_mesh_change_to_old(made, CSCD_OBJECTS, NULL);
     assert_true(former_count < FORMER_MAX && mesh_now->object_count <= OBJECTS_MAX);
     for (uint32_t i = 0; i < made->old_mesh->object_count; i++)
         former[former_count][i] = made->old_mesh->objects[i].obstacle;

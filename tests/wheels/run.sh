@@ -75,7 +75,8 @@ count "$folder/python"
 
 # ---- the DLL
 
-/usr/bin/python3 -c 'import runpy; print(*runpy.run_path("python/cscd/_prototypes.py")["PROTOTYPES"], sep="\n")' >"$folder/names"
+/usr/bin/python3 -c 'import runpy
+print(*runpy.run_path("python/cscd/_prototypes.py")["PROTOTYPES"], *runpy.run_path("python/cscd/_api.py")["FUNCTIONS"], sep="\n")' >"$folder/names"
 check 'the caller compiles' ${cache}gcc -Iinclude -o "$folder/call_library" tests/wheels/call_library.c -ldl
 check 'the caller compiles for Windows' ${cache}x86_64-w64-mingw32-gcc-posix -D__USE_MINGW_ANSI_STDIO=1 -Iinclude \
     -o "$folder/call_library.exe" tests/wheels/call_library.c

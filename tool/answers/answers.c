@@ -253,7 +253,7 @@ static void name_left_out(uint64_t left_out, char text[NAMES_SIZE]) {
     for (int what = CSCD_LEFT_OUT_PAIRS; what < CSCD_LEFT_OUT_PARTS; what++) {
         if ((left_out >> what & 1) == 0 || what == CSCD_LEFT_OUT_PATCHES) continue;
         names[count++] =
-            what == CSCD_LEFT_OUT_PAIRS ? "a list of them" : cscd_left_out_name((cscd_left_out)what);
+            what == CSCD_LEFT_OUT_PAIRS ? "a list of them" : cscd_name(CSCD_LEFT_OUTS, (cscd_left_out)what);
         if (what == CSCD_LEFT_OUT_PAIRS) break;
     }
     if (count == 0) names[count++] = "sums by parts";

@@ -15,15 +15,12 @@ bool turned_parts_open(const recording *r, const part_names *names, turned_parts
     turned_parts t = {.recording = r, .names = names};
     t.components = io_zeroed(((size_t)count + 1) * sizeof *t.components);
     t.parts = io_zeroed(((size_t)count + 1) * sizeof *t.parts);
-    uint32_t *labels = io_zeroed(((size_t)triangles + 1) * sizeof *labels);
-    if (t.components == NULL || t.parts == NULL || labels == NULL) {
-        free(labels);
+    if (t.components == NULL || t.parts == NULL) {
         turned_parts_close(&t);
         return false;
     }
-    cscd_mesh_component_labels(r->mesh, labels);
+    const uint32_t *labels = cscd_mesh_array(r->mesh, CSCD_TRIANGLE_COMPONENTS);
     for (uint32_t i = triangles; i-- > 0;) t.parts[labels[i]] = names->labels[i];
-    free(labels);
     *out = t;
     return true;
 }

@@ -151,7 +151,7 @@ bool read_picture_view(const char *text, void *place) {
 
 bool parse_method(const char *text, cscd_method *method, uint32_t *k) {
     uint32_t regions;
-    if (strncmp(text, "kmeans:", 7) != 0) return cscd_method_from_name(text, method);
+    if (strncmp(text, "kmeans:", 7) != 0) return cscd_from_name(CSCD_METHODS, text, (uint32_t *)method);
     if (!parse_unsigned(text + 7, &regions) || regions == 0) return false;
     *method = CSCD_METHOD_KMEANS;
     *k = regions;

@@ -167,6 +167,12 @@ static bool files_name_parts(const recording *r) {
     return false;
 }
 
+static bool label_by(const recording *r, const uint32_t *labels, const char *word, uint32_t count,
+                     part_names *parts, io_error *error) {
+    memcpy(parts->labels, labels, cscd_mesh_triangle_count(r->mesh) * sizeof *labels);
+    return number_parts(parts, word, count, error);
+}
+
 static bool label_parts(const recording *r, const cscd_plan *plan, part_names *parts, io_error *error) {
     parts->named = r->object_count > 1 || files_name_parts(r);
     if (r->parts_by != MESH_PARTS_BY_FILE && !files_name_parts(r)) return fail_without_parts(r, error);
@@ -175,9 +181,11 @@ static bool label_parts(const recording *r, const cscd_plan *plan, part_names *p
     if (parts->named) return true;
     const uint32_t components = cscd_mesh_component_count(r->mesh);
     if (components == 1 && plan != NULL && cscd_plan_region_count(plan) > 1)
-        return number_parts(parts, "region", cscd_plan_region_labels(plan, parts->labels), error);
-    cscd_mesh_component_labels(r->mesh, parts->labels);
-    if (components > 1) return number_parts(parts, "component", components, error);
+        return label_by(r, cscd_plan_triangle_regions(plan), "region", cscd_plan_region_count(plan), parts,
+                        error);
+    const uint32_t *labels = cscd_mesh_array(r->mesh, CSCD_TRIANGLE_COMPONENTS);
+    if (components > 1) return label_by(r, labels, "component", components, parts, error);
+    memset(parts->labels, 0, cscd_mesh_triangle_count(r->mesh) * sizeof *parts->labels);
     return add_part(parts, r->objects[0].source.name, NULL, error);
 }
 

@@ -165,7 +165,7 @@ static bool create_context(const recording_options *options, recording *r, io_er
                        options->thread_count);
     if (status == CSCD_INVALID_ARGUMENT)
         return io_fail(error, "this processor does not have %s; leave --simd at auto",
-                       cscd_simd_name(options->simd));
+                       cscd_name(CSCD_SIMDS, options->simd));
     return status == CSCD_OK || io_fail(error, "%s", cscd_status_string(status));
 }
 

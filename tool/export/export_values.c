@@ -53,7 +53,7 @@ static bool add_plan(const cscd_plan *plan, export_values *v) {
     if (plan == NULL) return true;
     uint32_t *region = add_array(&v->triangles, "region", EXPORT_UINT32);
     if (region == NULL) return false;
-    cscd_plan_region_labels(plan, region);
+    memcpy(region, cscd_plan_triangle_regions(plan), v->triangles.count * sizeof *region);
     if (!method_facts_of(cscd_plan_method(plan)).by_charge) return true;
     double *charge = add_array(&v->triangles, "charge", EXPORT_FLOAT64);
     if (charge == NULL) return false;

@@ -100,7 +100,7 @@ static void put_row(FILE *out, const export_table *table, uint32_t row) {
 }
 
 static void write_elements(FILE *out, const ply_output *p, const double *positions) {
-    const uint32_t *corners = cscd_mesh_all_triangles(p->recording->mesh);
+    const uint32_t *corners = cscd_mesh_array(p->recording->mesh, CSCD_TRIANGLE_VERTICES);
     for (uint32_t v = 0; v < p->values->vertices.count; v++) {
         for (size_t k = 0; k < 3; k++) put_number(out, positions + 3 * (size_t)v + k, sizeof *positions);
         put_row(out, &p->values->vertices, v);

@@ -122,7 +122,7 @@ static bool collect_names(vtk_output *v, const part_names *parts) {
 
 static bool collect_triangles(vtk_output *v) {
     const size_t count = v->values->triangles.count;
-    const uint32_t *corners = cscd_mesh_all_triangles(v->recording->mesh);
+    const uint32_t *corners = cscd_mesh_array(v->recording->mesh, CSCD_TRIANGLE_VERTICES);
     v->corners = malloc((3 * count + 1) * sizeof *v->corners);
     v->ends = malloc((count + 1) * sizeof *v->ends);
     if (v->corners == NULL || v->ends == NULL) return false;

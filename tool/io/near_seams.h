@@ -1,7 +1,7 @@
 /* Open edges that all but lie on each other, as rounding leaves them between triangles that bring vertices of their own. */
 #pragma once
 
-#include <cscd/mesh.h>
+#include <cscd/detector.h>
 
 #include <stdbool.h>
 #include <stdint.h>

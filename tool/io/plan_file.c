@@ -90,7 +90,7 @@ static bool read_comment(plan_reader *p, file_reader *reader, comment_kind kind)
     if (kind == COMMENT_METHOD) {
         expected = "charge, kmeans, single or published";
         cscd_method_info info;
-        fits = cscd_method_from_name(text_show(value).text, &p->method) &&
+        fits = cscd_from_name(CSCD_METHODS, text_show(value).text, (uint32_t *)&p->method) &&
                cscd_method_describe(p->method, &info) && info.makes_plan;
         p->charged = fits && info.by_charge;
     } else if (kind == COMMENT_MESH) {

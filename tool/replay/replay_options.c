@@ -15,7 +15,7 @@ static bool read_method(const char *text, void *place) {
 }
 
 static bool read_mode(const char *text, void *place) {
-    return cscd_mode_from_name(text, place);
+    return cscd_from_name(CSCD_MODES, text, place);
 }
 
 static bool read_start(const char *text, void *place) {
@@ -26,11 +26,11 @@ static bool read_start(const char *text, void *place) {
 }
 
 static bool read_volume(const char *text, void *place) {
-    return cscd_volume_from_name(text, place);
+    return cscd_from_name(CSCD_VOLUMES, text, place);
 }
 
 static bool read_simd(const char *text, void *place) {
-    return cscd_simd_from_name(text, place);
+    return cscd_from_name(CSCD_SIMDS, text, place);
 }
 
 static bool read_fail_kind(const char *text, void *place) {

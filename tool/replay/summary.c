@@ -120,7 +120,8 @@ static void write_guarantees(summary_writer *w, const cscd_guarantee *guarantees
         const int g = k == 0 ? largest : k <= largest ? k - 1 : k;
         const cscd_guarantee shared = groups[g].guarantee;
         json_begin_object(&w->out, NULL);
-        json_string(&w->out, "mode", cscd_mode_name(shared.complete ? CSCD_MODE_ALL : CSCD_MODE_EARLIEST));
+        json_string(&w->out, "mode",
+                    cscd_name(CSCD_MODES, shared.complete ? CSCD_MODE_ALL : CSCD_MODE_EARLIEST));
         json_string(&w->out, "reason", cscd_reason_text(shared.reason));
         json_integer(&w->out, "count", groups[g].count);
         if (k > 0) write_members(&w->out, guarantees, count, shared);
@@ -245,9 +246,10 @@ static void write_summary(summary_writer *w, const replay *r) {
     json_boolean(out, "complete", unfinished == NULL);
     if (unfinished != NULL) json_string(out, "stopped_by", unfinished);
     json_string(out, "method", cscd_method_name(r->plan.method));
-    json_string(out, "mode", cscd_mode_name(o->mode));
-    json_string(out, "volume", cscd_volume_name(o->volume));
-    if (!o->reproducible) json_string(out, "simd", cscd_simd_name(cscd_context_simd(r->recording.context)));
+    json_string(out, "mode", cscd_name(CSCD_MODES, o->mode));
+    json_string(out, "volume", cscd_name(CSCD_VOLUMES, o->volume));
+    if (!o->reproducible)
+        json_string(out, "simd", cscd_name(CSCD_SIMDS, cscd_context_simd(r->recording.context)));
     json_number(out, "min_separation", o->min_separation);
     write_plan(out, &r->plan, w->times);
     json_integer(out, "vertices", cscd_mesh_vertex_count(w->mesh));

@@ -7,7 +7,7 @@ from conan.tools.cmake import CMake, CMakeDeps, CMakeToolchain
 from conan.tools.files import copy
 
 ROOT = os.path.join("..", "..", "..")
-SOURCES = ["CMakeLists.txt", "LICENSE", "include/*", "src/*", "preprocess/*", "runtime/*", "packaging/*"]
+SOURCES = ["CMakeLists.txt", "LICENSE", "include/*", "src/*", "preprocess/*", "runtime/*", "sensors/*", "packaging/*"]
 
 
 class CscdConan(ConanFile):
@@ -19,8 +19,8 @@ class CscdConan(ConanFile):
     package_type = "library"
     settings = "os", "arch", "compiler", "build_type"
     # The same questions as CMakeLists.txt asks.
-    options = {"shared": [True, False], "baselines": [True, False]}
-    default_options = {"shared": False, "baselines": False}
+    options = {"shared": [True, False], "baselines": [True, False], "sensors": [True, False]}
+    default_options = {"shared": False, "baselines": False, "sensors": True}
 
     def export_sources(self):
         for pattern in SOURCES:
@@ -40,6 +40,7 @@ class CscdConan(ConanFile):
         toolchain = CMakeToolchain(self)
         toolchain.cache_variables["BUILD_SHARED_LIBS"] = bool(self.options.shared)
         toolchain.cache_variables["CSCD_BASELINES"] = bool(self.options.baselines)
+        toolchain.cache_variables["CSCD_SENSORS"] = bool(self.options.sensors)
         toolchain.cache_variables["CSCD_INSTALL"] = True
         toolchain.generate()
 

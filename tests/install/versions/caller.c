@@ -97,7 +97,7 @@ static void change_mesh(caller_state *s) {
               "cscd_mesh_change_create");
     expect_guard(changes.guard, "cscd_object_change");
     puts("cscd_object_change");
-    cscd_mesh_change_vertex_origins(change, &count);
+    cscd_mesh_change_to_old(change, CSCD_VERTICES, &count);
     expect_that(count == VERTEX_COUNT + OWN_VERTICES, "cscd_mesh_change_create", "an object was not taken");
     cscd_mesh_change_destroy(change);
 }

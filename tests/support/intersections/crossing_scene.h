@@ -1,7 +1,7 @@
 /* Meshes that cross, and short calls for intersections by kind. */
 #pragma once
 
-#include "cscd/intersections.h"
+#include "cscd/surface.h"
 #include "tests/support/scenes.h"
 
 /* Makes two wavy spheres, one turned, which cross at many places unless they are apart. */

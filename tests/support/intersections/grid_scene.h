@@ -1,7 +1,7 @@
 /* Small meshes with integer coordinates, so few of them that everything degenerates. */
 #pragma once
 
-#include "cscd/intersections.h"
+#include "cscd/surface.h"
 #include "runtime/intersections/named_surface.h"
 #include "tests/support/intersections/epsilon_polynomial.h"
 #include "tests/support/mesh_shapes.h"

@@ -4,7 +4,7 @@
 
 #include "tests/support/intersections/feature_oracle.h"
 
-#include "cscd/intersections.h"
+#include "cscd/surface.h"
 
 /* The kind of a pair that intersects, or is a duplicate; -1 for all others. names: of vertices, NULL: their indices. What
  * seams leave out is -1, too, unless by_index is set: then names only say which vertices are shared. Coordinates up to

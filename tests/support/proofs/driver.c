@@ -134,7 +134,7 @@ static void prove_levels(void **state) {
             found.large = large == 1;
             proof_live(&found);
             if (level == CSCD_SIMD_SCALAR) expected = found;
-            compare_worlds(COMPARE_COUNTERS, cscd_simd_name((cscd_simd)level), (size_t)level);
+            compare_worlds(COMPARE_COUNTERS, cscd_name(CSCD_SIMDS, (cscd_simd)level), (size_t)level);
         }
     }
 }
