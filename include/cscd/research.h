@@ -1,12 +1,11 @@
-/* What there is to compare with: brute force, the methods as they were published, and the plan of the thesis.
- * No solver needs this header, so cscd/cscd.h does not include it. What cscd/cscd.h says of every function
- * holds here, too. */
+/* What there is to compare with: brute force, published methods, and the plan of the thesis. No solver needs
+ * this header, so cscd/cscd.h does not include it; what that says of every function holds here, too. */
 #ifndef CSCD_RESEARCH_API_H
 #define CSCD_RESEARCH_API_H
 
 #include <cscd/detector.h>
 
-/* Further values of cscd_method. The published ones lose contacts and report some that do not exist, so their lists promise
+/* Further values of cscd_method. The published ones lose contacts, report some that do not exist, and promise
  * nothing. */
 #define CSCD_METHOD_BRUTE          ((cscd_method)64) /* every pair of features is tested; quadratic in time */
 #define CSCD_METHOD_PUBLISHED      ((cscd_method)65) /* the whole pipeline as published (Yeh 2012) */
@@ -15,19 +14,17 @@
 #define CSCD_METHOD_CONES                                                                                    \
     ((cscd_method)68) /* normal cones and star-shaped contours (Wang et al. 2017), proven */
 
-/* PUBLISHED makes plans as section 3 of the thesis says: charge by the dense system in doubles, densities equalized by 256 bins,
- * clusters below the threshold that grow ring by ring, shrink, and cut along the shorter contour, detector points at the centroids.
- * cscd_plan_options.ours, a sum of these, takes single steps from CHARGE instead. docs/theory/thesis.md has them all. */
+/* PUBLISHED makes plans by section 3 of the thesis (docs/theory/thesis.md). cscd_plan_options.ours, a sum of
+ * these, takes single steps from CHARGE instead. */
 #define CSCD_OURS_CHARGE 1u /* the charge by charge_solver */
 #define CSCD_OURS_RANKS  2u /* densities become ranks */
 #define CSCD_OURS_CUTS   4u /* regions by what their points see; needs CSCD_OURS_RANKS */
 #define CSCD_OURS_POINTS 8u /* points where they see the most; needs CSCD_OURS_CUTS */
 
-/* PUBLISHED and ICCD_PUBLISHED run as chapters 4 and 5.1 say, on one thread: binary trees of 14-DOPs with one triangle a leaf, a start
- * that is assumed to be free, detector points that stay, features that are tested by the first triangle of their one-ring list, no test
- * of adjacent triangles, and elementary tests by the roots of the cubic in plain doubles, from libcscd-baselines (without it,
- * cscd_detector_create fails with SYSTEM_ERROR, unless CSCD_OURS_TESTS is set). PUBLISHED takes any plan. With a distance to keep they
- * search as NONE. cscd_detector_options.ours, a sum of these, takes single steps from CHARGE instead. */
+/* PUBLISHED, with any plan, and ICCD_PUBLISHED run by chapters 4 and 5.1 (docs/theory/thesis.md), on one
+ * thread; with a distance to keep they search as NONE. cscd_detector_create fails with SYSTEM_ERROR without
+ * libcscd-baselines, unless CSCD_OURS_TESTS is set. cscd_detector_options.ours, a sum of these, takes single
+ * steps from CHARGE instead. */
 #define CSCD_OURS_MOTION 16u /* detector points move with their regions */
 #define CSCD_OURS_STARTS 32u /* the start is proven, and what is not clean is not culled */
 #define CSCD_OURS_REPRESENTATIVES                                                                            \
@@ -40,7 +37,7 @@
 extern "C" {
 #endif
 
-/* What is known of a method without running it. */
+/* Facts about a method. */
 typedef struct cscd_method_info {
     const char *name;
     bool makes_plan;     /* cscd_plan_create makes plans by it */
@@ -54,7 +51,7 @@ typedef struct cscd_method_info {
     uint8_t reserved[1]; /* 0 */
 } cscd_method_info;
 
-/* Facts about a method; false if there is no such method, and then *out is left untouched. */
+/* Writes facts about a method. Returns false and leaves *out untouched if there is no such method. */
 CSCD_API bool cscd_method_describe(cscd_method method, cscd_method_info *out);
 
 #ifdef __cplusplus

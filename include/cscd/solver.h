@@ -1,5 +1,5 @@
-/* What solvers ask beside contacts: which features are close at one moment, how far a step may go without
- * contact, and both again many times along one line. docs/solver/line-search.md has a complete program. */
+/* Functions for solvers: near pairs at one moment, steps without contact, and both many times along one line.
+ * docs/solver/line-search.md has a complete program. */
 #ifndef CSCD_SOLVER_API_H
 #define CSCD_SOLVER_API_H
 
@@ -11,21 +11,21 @@ extern "C" {
 
 /* ---- the vertices behind a pair ---------------------------------------------------------------------- */
 
-/* The four vertices of a pair of features, with weights: the sum of weights[i] * x[vertices[i]] is the
- * vector to the point that u and v name on a from the one on b.
+/* The four vertices of a pair of features, with weights: the sum of weights[i] * x[vertices[i]] is the vector
+ * to the point on a from the point on b.
  *   VF  the vertex a, then the triangle's three vertices; weights 1, -(1-u-v), -u, -v
  *   EE  the two vertices of a, then those of b; weights 1-u, u, -(1-v), -v
  *   VV  the vertex a, then b three times; weights 1, -1, 0, 0
  *   EV  the two vertices of a, then the vertex b twice; weights 1-u, u, -1, 0
- *   VH  the vertex a, then the half-space's point three times; weights 1, -1, 0, 0. The sum is the vector from
- *       this point; its part along the normal is the distance, so the gradient is that of the others: weights
- *       times normal */
+ *   VH  the vertex a, then the half-space's point three times; weights 1, -1, 0, 0. The distance is the part
+ *       of the sum along the normal
+ * The gradient of the distance is weights[i] times the normal. */
 typedef struct cscd_stencil {
     uint32_t vertices[4];
     double weights[4];
 } cscd_stencil;
 
-/* Writes the four weights of a pair with this kind, u and v. */
+/* Writes the four weights of a pair of this kind. */
 static inline void cscd_stencil_weights(cscd_contact_kind kind, double u, double v, double weights[4]) {
     const bool vf = kind == CSCD_CONTACT_VF, vh = kind == CSCD_CONTACT_VH;
     const bool vertex_a = vf || vh || kind == CSCD_CONTACT_VV;
@@ -36,8 +36,8 @@ static inline void cscd_stencil_weights(cscd_contact_kind kind, double u, double
     weights[3] = vertex_b ? 0.0 : -v;
 }
 
-/* The stencil of a contact or a proximity with this kind, a, b, u and v. Contacts have its vertices already, and
- * proximities its vertices and weights. An example, in which each contact stops the approach of its points:
+/* Returns the stencil of a contact or a proximity. Contacts have its vertices already, and proximities its
+ * weights, too. An example, in which each contact stops the approach of its points:
  *
  *     for (size_t i = 0; i < contacts.count; i++) {
  *         const cscd_contact *c = &contacts.items[i];
@@ -55,75 +55,58 @@ CSCD_API cscd_stencil cscd_mesh_stencil(const cscd_mesh *mesh, cscd_contact_kind
 
 /* ---- proximity at one moment -------------------------------------------------------------------------- */
 
-/* Two features without a common vertex that are close at one moment, or, in the form UNIQUE, all pairs of
- * features whose nearest points lie on the same two vertices, or on the same edge and vertex; and the nearest
- * points. */
+/* Two features without a common vertex that are near each other. In the form UNIQUE: all pairs with their
+ * nearest points on the same two vertices, or on the same edge and vertex. */
 typedef struct cscd_proximity {
     cscd_contact_kind kind;
-    uint32_t a, b;        /* VF: vertex and triangle. EE: edges a < b. VV: vertices a < b. EV: edge, vertex.
-                           * VH: vertex, object */
-    uint32_t count;       /* how many pairs of features it stands for: */
-    uint32_t vf_count;    /* so many of a vertex and a face */
-    uint32_t ee_count;    /* and so many of two edges; the others are of points with points or wires, or VH */
+    /* VF: vertex, triangle. EE: edges a < b. VV: vertices a < b. EV: edge, vertex. VH: vertex, object. */
+    uint32_t a, b;
+    uint32_t count;       /* the number of pairs of features */
+    uint32_t vf_count;    /* those of a vertex and a face */
+    uint32_t ee_count;    /* those of two edges; the others are of points with points or wires, or VH */
     uint32_t vertices[4]; /* and weights: see cscd_stencil */
     double distance;      /* between the nearest points; VH: the height above the plane, below 0 behind it */
-    double u, v;          /* in [0,1], as in cscd_contact; EV: u names the point on the edge. Exactly 0 or 1
-                           * where a nearest point lies on the border of a feature */
+    /* In [0,1], as in cscd_contact; EV: u names the point on the edge. Exactly 0 or 1 on the border of a
+     * feature. */
+    double u, v;
     double weights[4];
     double point[3];  /* the middle between the nearest points */
-    double normal[3]; /* unit vector from b's nearest point to a's; if they touch, across both features, or
-                       * 0 */
-    double threshold; /* EE, after cscd_detector_set_rest: where the squared length of the cross product of
-                       * the two edges is below this, a barrier's energy fades. Else 0 */
+    double normal[3]; /* unit vector from b's nearest point to a's; if they touch, across both, or 0 */
+    double threshold; /* EE, after cscd_detector_set_rest: that of the mollifier (cscd_near_form); else 0 */
 } cscd_proximity;
 
 /* The form of a list of proximities. Later versions may add values.
  *
- * Many pairs of features have the same nearest points: a vertex over an inner edge of a mesh is as far from
- * both triangles at the edge. A sum of energies that depend on the distance needs all of them, or else it
- * jumps where a nearest point passes from a face to its edge. UNIQUE lists them once, as VV or EV, with their
- * number. So the sum of count * energy(distance) over the list is the sum over all pairs, up to rounding.
- *
- * The energy of two edges may have a mollifier besides, which fades it where they are nearly parallel and
- * their nearest points jump (Li et al. 2020, eq. 24): with c = |e_a x e_b|^2, it is c / threshold *
- * (2 - c / threshold) below the threshold, and 1 above, where threshold = 1e-3 |e_a|^2 |e_b|^2 at rest. It
- * depends on both edges, so edges below their threshold stay an item EE of their own, also where their
- * nearest points are ends; edges above it, whose factor is 1, may be part of a VV or an EV. Where a pair
- * passes from one to the other, its factor is 1 on both sides, so the sum goes on without a jump. Without
- * cscd_detector_set_rest every threshold is 0, and no pair has a mollifier. An example, for either form:
- *
- *     double energy = 0.0;
- *     for (size_t i = 0; i < proximities.count; i++) {
- *         const cscd_proximity *p = &proximities.items[i];
- *         energy += p->count * mollifier(p->vertices, p->threshold) * barrier(p->distance);
- *     } // its gradient has count * mollifier * barrier'(distance) * weights[k] * normal at vertices[k]
- */
+ * UNIQUE lists pairs with the same nearest points once, as VV or EV: the sum of count * energy(distance) is
+ * that over all pairs, up to rounding. After cscd_detector_set_rest, two edges with c = |e_a x e_b|^2 below
+ * threshold = 1e-3 |e_a|^2 |e_b|^2 (at rest) stay an item EE. There c / threshold * (2 - c / threshold) is
+ * the mollifier of the energy (Li et al. 2020, eq. 24), and for all others 1. docs/solver/line-search.md says
+ * why, and has a sum. */
 typedef enum cscd_near_form {
     CSCD_NEAR_PAIRS,  /* every pair of features, also those of points and half-spaces; counts are 1 */
     CSCD_NEAR_UNIQUE, /* no two items with the same nearest features: VF, EE, VV, EV and VH */
     CSCD_NEAR_FORM_MAX_ENUM = 0x7fffffff
 } cscd_near_form;
 
-/* Proximities, sorted by (kind, a, b). The list belongs to the detector, also when one of its line
- * searches was asked, and lives until the next call of the detector or of one of its line searches. */
+/* Proximities, sorted by (kind, a, b). The list belongs to the detector, and lives until the next call of it
+ * or of one of its line searches. */
 typedef struct cscd_proximities {
     const cscd_proximity *items;
     size_t count;
-    size_t waiting; /* so many pairs of features wait, and are left out: see cscd_detector_set_seams */
+    size_t waiting; /* pairs that wait, and are left out: see cscd_detector_set_seams */
 } cscd_proximities;
 
-/* Finds every pair of features whose distance at `positions` is at most `distance`, a length above 0, and
- * lists them in this form. No listed pair is farther apart than (1 + 1e-6) times that or, where rounding is
- * coarser, than 2^-42 of the pair's extent beyond it. Seams and pairs to leave out count as in the options;
- * min_separation has no part in it. Items beyond `distance` need not count all of their pairs. CANCELLED: see
- * cscd_progress. Timings, counters and guarantees stay those of the last step. */
+/* Finds every pair of features that is at most `distance`, a length above 0, apart at `positions`. Listed
+ * pairs are at most (1 + 1e-6) times that apart or, where rounding is coarser, 2^-42 of their extent beyond
+ * it. Seams and pairs to leave out count; min_separation does not. Items beyond `distance` need not count all
+ * of their pairs. Timings, counters and guarantees stay those of the last step. CANCELLED: see cscd_progress.
+ */
 CSCD_API cscd_status cscd_detector_find_near(cscd_detector *detector, const cscd_view *positions,
                                              double distance, cscd_near_form form, cscd_proximities *out);
 
-/* Takes from `rest`, positions of the mesh at rest, the lengths by which proximities of two edges get their
- * threshold, in lists of the detector and of its line searches from the next call on. NULL forgets them.
- * INVALID_ARGUMENT also where an edge is shorter than 2^-250, but not 0, or longer than 2^250, because of
- * the fourth power. */
+/* Sets the thresholds of pairs of edges (cscd_near_form) from the positions at rest, from the next call on.
+ * They hold in lists of the detector and of its line searches. NULL forgets them. INVALID_ARGUMENT also where
+ * an edge is longer than 2^250, or shorter than 2^-250 but not 0. */
 CSCD_API cscd_status cscd_detector_set_rest(cscd_detector *detector, const cscd_view *rest);
 
 /* ---- a step that is free of contact ------------------------------------------------------------------ */
@@ -131,73 +114,54 @@ CSCD_API cscd_status cscd_detector_set_rest(cscd_detector *detector, const cscd_
 /* How far a motion may go without contact. */
 typedef struct cscd_free_step {
     double fraction; /* in (0,1]; with 1 the end is x1, in the scalar of `reached` */
-    bool limited; /* the fraction is below the longest that was asked for, because of the contact `limit` */
-    bool moved;   /* false: no coordinate is another than in x0, and `reached` is x0 in every bit */
-    cscd_contact limit; /* a first contact of the whole motion; fraction <= step_factor * limit.toi, unless
-                         * toi is 0 or so small that rounding decides */
-    size_t waiting;     /* so many pairs of features wait, and limit nothing: see cscd_detector_set_seams */
+    bool limited;    /* the contact `limit` keeps it below the longest that was asked for */
+    bool moved;      /* false: `reached` is x0 in every bit */
+    /* A first contact of the whole motion. fraction <= step_factor * limit.toi, unless toi is 0 or so small
+     * that rounding decides. */
+    cscd_contact limit;
+    size_t waiting; /* pairs that wait, and limit nothing: see cscd_detector_set_seams */
 } cscd_free_step;
 
-/* Finds how far the vertices may go from x0 towards x1 without any contact, and certifies it. The positions
- * x0 + fraction (x1 - x0), rounded to the scalar of `reached`, are written to it; it may be x1 itself, or NULL
- * if they are not wanted, and then the scalar is that of x0. It is the motion to these very numbers that was
- * searched: nothing touches on the way, both ends included. A component that is embedded at x0 is therefore
- * embedded at `reached`, and the next step from there need not prove its start.
- * With min_separation d every pair keeps a floor: the greatest of d, s d, s^2 d, ... (s: floor_ratio) that its
- * distance at x0 surely exceeds, or touching, where that is below 2^-40 of its extent. So a pair above d stays
- * above d over any number of steps, and one below it may part, and sinks no farther than its floor.
- * A solver that presses into contact leaves no room: what rests on its distance lets no motion pass that would come
- * nearer by a rounding error. Keep a little distance, or move what touches together by one translation.
- * IN_CONTACT: two features touch at x0, or would where x0 in doubles is rounded to floats; the sentence names them, *out has them as its limit, and nothing else
- * is written. INVALID_ARGUMENT also for the methods PUBLISHED and ICCD_PUBLISHED, which certify nothing, and
- * for coordinates that are infinite as floats. CANCELLED: see cscd_progress.
- * Culls as cscd_detector_step does in mode EARLIEST. Timings and counters are those of the whole call,
- * guarantees those of the motion that was certified. An example, a motion in floats that ends before two sheets
- * meet half way, which prints "0.4 of the way":
+/* Finds how far the vertices may go from x0 towards x1 without contact, and certifies it. It writes x0 +
+ * fraction (x1 - x0), rounded, to `reached`, which may be x1 itself, or NULL; then the scalar is that of x0.
+ * Nothing touches on the motion to these very numbers, both ends included. With min_separation no pair sinks
+ * below its floor, and one that starts nearer may part. docs/solver/guarantees.md has all promises. A pair
+ * that rests exactly on its distance stops every motion that brings it nearer by a rounding error: keep a
+ * little more, or move what touches together by one translation.
  *
- *     cscd_free_step step;
- *     cscd_status status = cscd_detector_max_step(detector, CSCD_FLOATS(now, n), CSCD_FLOATS(wanted, n),
- *                                                 CSCD_MUTABLE_FLOATS(wanted, n), &step);
- *     if (status == CSCD_IN_CONTACT) // nothing was written; the caller moves this pair apart first
- *         printf("features %u and %u touch at the start\n", step.limit.a, step.limit.b);
- *     if (status == CSCD_OK && step.limited) // wanted is now what was reached, in every bit
- *         printf("%.1f of the way\n", step.fraction);
- *     if (status == CSCD_OK && !step.moved) // the caller takes the approach of step.limit out of the motion
- *         printf("no way\n");
- */
+ * Timings and counters are those of the whole call, guarantees those of the certified motion, in mode
+ * EARLIEST. IN_CONTACT: two features touch at x0, or would where x0 is rounded to floats; the sentence and
+ * `limit` name them, and nothing else is written. INVALID_ARGUMENT also for the methods PUBLISHED and
+ * ICCD_PUBLISHED, and for coordinates that are infinite as floats. CANCELLED: see cscd_progress.
+ * docs/solver/first-contact.md shows a call. */
 CSCD_API cscd_status cscd_detector_max_step(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
                                             const cscd_mutable_view *reached, cscd_free_step *out);
 
 /* ---- how far vertices may go on any path ---------------------------------------------------------------- */
 
-/* What cscd_detector_displacement_bounds found beside the bounds. The list belongs to the detector and
- * lives until the next call of the detector or of one of its line searches. */
+/* The findings besides the bounds. The list lives as cscd_proximities. */
 typedef struct cscd_displacement_bounds {
-    const cscd_proximity
-        *blocked; /* the pairs that are not apart at x0: each of their vertices has a bound of
-                                    * 0, and so have no others; sorted by (kind, a, b) */
+    /* The pairs that are not apart at x0, sorted by (kind, a, b). Their vertices have a bound of 0, and so
+     * have those of a seam with them; no others have. */
+    const cscd_proximity *blocked;
     size_t blocked_count;
     size_t near_count; /* the number of pairs that were looked at */
     double least;      /* of all bounds */
     uint32_t vertex;   /* the first that has it */
-    uint32_t limited;  /* the number of vertices that have less than half the search radius */
-    size_t waiting;    /* so many pairs of features wait, and bound nothing: see cscd_detector_set_seams */
+    uint32_t limited;  /* the number of vertices with less than half of search_radius */
+    size_t waiting;    /* pairs that wait, and bound nothing: see cscd_detector_set_seams */
 } cscd_displacement_bounds;
 
-/* Finds how far each vertex may go from x0, as Offset Geometric Contact (Chen et al. 2025) uses it. Every
- * motion, straight or not, all of whose positions, as stored, stay within bounds[v] of x0 for each vertex
- * v, keeps all pairs of features without a common vertex apart that are apart at x0; with min_separation,
- * farther apart than that. Seams, pairs to leave out and obstacles count as in cscd_detector_find_near, and
- * vertices of a seam have one bound in common. Obstacles have bounds, too: a motion of theirs that exceeds
- * these is not covered. A bound is at least 0.49 times the distance of the vertex's nearest pair less
- * min_separation, or half of search_radius, a length above 0, whichever is less. Neighbours may still fold
- * onto each other at their common vertices.
+/* Finds how far each vertex v may go from x0 on any path: bounds[v] (Offset Geometric Contact, Chen et al.
+ * 2025). While all positions, as stored, keep to their bounds, obstacles included, pairs without a common
+ * vertex that are apart at x0 stay apart; with min_separation, farther apart than that. Neighbours may still
+ * fold onto each other. A bound is at least 0.49 times the distance of the nearest pair less min_separation,
+ * or half of search_radius, a length above 0, whichever is less. Vertices of a seam have one bound.
+ * docs/theory/displacement-bounds.md has the proof.
  *
- * bounds: vertex_count numbers, floats or doubles as scalar says, in `size` bytes; they are rounded down.
- * Comparing rounded distances with them is safe: a share of 2^-20 of each is left for that. What counts is
- * where a vertex is after its position was rounded. CANCELLED: see cscd_progress. Timings, counters and
- * guarantees stay those of the last step. docs/theory/displacement-bounds.md has the proof. An example, in
- * which each vertex goes no farther than its bound, on whatever path:
+ * bounds: vertex_count numbers, floats or doubles as scalar says, in `size` bytes, rounded down. You may
+ * compare rounded distances with them. Seams, pairs to leave out, timings, counters, guarantees and CANCELLED
+ * are as for cscd_detector_find_near. An example, in which no vertex exceeds its bound:
  *
  *     double *bounds = malloc(n * sizeof *bounds);
  *     cscd_displacement_bounds found;
@@ -220,32 +184,28 @@ CSCD_API cscd_status cscd_detector_displacement_bounds(cscd_detector *detector, 
 
 /* What cscd_detector_truncate did. The list lives as that of cscd_displacement_bounds. */
 typedef struct cscd_truncation {
-    double fraction; /* the least share of its motion that a vertex went; 1 if it did not want to move */
+    double fraction;          /* the least share of its motion that a vertex went; 1 if none wanted to move */
     double obstacle_fraction; /* the same of the vertices of obstacles; 1 without obstacles */
-    const cscd_proximity
-        *held; /* pairs that touch at x0, or nearly: their vertices stay; sorted by (kind, a, b) */
+    /* The pairs that touch at x0, or nearly, sorted by (kind, a, b). Their vertices stay. */
+    const cscd_proximity *held;
     size_t held_count;
     size_t near_count;  /* the number of pairs that were looked at */
     bool moved;         /* some vertex is not where it was, bit for bit */
     uint32_t shortened; /* the number of vertices that did not reach x1 */
-    size_t waiting;     /* so many pairs of features wait, and hold nothing: see cscd_detector_set_seams */
+    size_t waiting;     /* pairs that wait, and hold nothing: see cscd_detector_set_seams */
 } cscd_truncation;
 
-/* Lets every vertex go from x0 towards x1 on its own straight line as far as planes between near pairs
- * allow, as Divide and Truncate (Chen et al. 2026) does. Each pair of features whose distance at x0 is at
- * most search_radius, or that beyond min_separation, has a plane across its nearest points, and its
- * vertices keep to their sides of it; what lies between them is shared by what both want, and obstacles
- * come first. No vertex goes farther than half of search_radius. So pairs without a common vertex stay
- * apart that are apart at x0: farther than min_separation, if they are that at x0, and otherwise they keep
- * all of their distance but what planes cannot prove, 0.985 of it at least. All of this holds for the positions as they are stored: `reached`, which may be x1 itself, or
- * NULL, is rounded before it is compared with the planes. It is of floats only where x0 is. The vertices of
- * a seam go the same share.
+/* Moves each vertex from x0 towards x1 as far as planes between near pairs allow (Divide and Truncate, Chen
+ * et al. 2026). Pairs at most search_radius, a length above 0, farther apart than min_separation have a
+ * plane, and their vertices keep to their sides. No vertex goes farther than half of search_radius; twice the
+ * longest motion stops none. Obstacles come first. The vertices of a seam go the same share. Motions are
+ * shortened, not turned.
  *
- * A component that is known to be free of contact at x0 is so at `reached`, and the next step from there
- * need not prove its start. Neighbours may still fold onto each other at their common vertices. Motions are
- * shortened, not turned: a motion that goes on along a plane must not go towards it. search_radius is a
- * length above 0; twice the longest motion stops none. Otherwise as cscd_detector_displacement_bounds. An
- * example, rounds that each go a part of a motion, until it is done or stopped:
+ * Pairs without a common vertex that are apart at x0 stay apart: farther than min_separation if they are that
+ * at x0, else at 0.985 of their distance or more. This holds for the positions as stored in `reached`, which
+ * may be x1 itself, or NULL, and is of floats only where x0 is. A component known to be free of contact at x0
+ * is so there. All else is as for cscd_detector_displacement_bounds. An example, rounds until the motion is
+ * done or stopped:
  *
  *     cscd_truncation cut;
  *     for (int round = 0; round < 10; round++) {
@@ -261,90 +221,70 @@ CSCD_API cscd_status cscd_detector_truncate(cscd_detector *detector, const cscd_
 
 /* ---- a line search ----------------------------------------------------------------------------------- */
 
-/* One motion that is asked about many times, as in the line search of an implicit solver (Li et al. 2020).
- * The feature pairs that can come near each other anywhere on it, the candidates, are collected once;
- * every shorter step and every moment on the line is then answered from them. Nothing is culled, so for a
- * single step cscd_detector_max_step is faster. A line search uses the trees and options of its detector, so the
- * two are never called at the same time. */
+/* One motion about which a solver asks many times (Li et al. 2020). All answers come from the candidates, the
+ * pairs that can come near each other on it, which are collected once. Nothing is culled: for a single step
+ * cscd_detector_max_step is faster. A line search uses the trees and options of its detector, so never call
+ * the two at the same time. */
 typedef struct cscd_line_search cscd_line_search;
 
-/* Creates a line search, which keeps its detector. An example, one search of an implicit solver, along the line to
- * x1, whose energy has a barrier for each pair nearer than 0.3:
- *
- *     cscd_line_search *search = NULL;
- *     cscd_free_step step = {0};
- *     cscd_status status = cscd_line_search_create(detector, &search);
- *     if (status == CSCD_OK)
- *         status = cscd_line_search_begin(search, CSCD_DOUBLES(x0, n), CSCD_DOUBLES(x1, n), 0.3);
- *     for (double f = 1.0; status == CSCD_OK && f > 1e-6; f = 0.5 * step.fraction) {
- *         status = cscd_line_search_max_step(search, f, CSCD_MUTABLE_DOUBLES(reached, n), &step);
- *         if (status == CSCD_OK) // `reached` is certified as it is stored: rounding may take a shorter step elsewhere
- *             status = cscd_line_search_find_near(search, step.fraction, 0.3, CSCD_NEAR_UNIQUE, &proximities);
- *         if (status == CSCD_OK && energy_at(reached, &proximities) < energy_before) break;
- *     }
- *     cscd_line_search_destroy(search);
- */
+/* Creates a line search, which keeps its detector. The page docs/solver/line-search.md shows its use. */
 CSCD_API cscd_status cscd_line_search_create(cscd_detector *detector, cscd_line_search **out);
 
 /* Frees the line search. */
 CSCD_API void cscd_line_search_destroy(cscd_line_search *search);
 
-/* Collects the candidates of the motion from x0 to x1, which are copied, in place of those before. reach:
- * the largest distance that cscd_line_search_find_near will be asked for, or 0. CANCELLED: see cscd_progress. */
+/* Collects the candidates of the motion from x0 to x1 in place of those before. Both positions are copied.
+ * reach: the largest distance for cscd_line_search_find_near, or 0. CANCELLED: see cscd_progress. */
 CSCD_API cscd_status cscd_line_search_begin(cscd_line_search *search, const cscd_view *x0,
                                             const cscd_view *x1, double reach);
 
-/* The number of candidates: pairs of features whose volumes come near each other. Half-spaces have none: every
- * vertex is tested with them each time. */
+/* Returns the number of candidates. Half-spaces have none: every vertex is tested with them. */
 CSCD_API size_t cscd_line_search_candidate_count(const cscd_line_search *search);
 
-/* Writes the positions at `fraction` in [0,1]: x0 + fraction (x1 - x0), rounded; x0 and x1 themselves at 0
- * and 1. */
+/* Writes the positions x0 + fraction (x1 - x0), rounded, for a fraction in [0,1]. At 0 and 1 they are x0 and
+ * x1 themselves. */
 CSCD_API cscd_status cscd_line_search_positions(cscd_line_search *search, double fraction,
                                                 const cscd_mutable_view *positions);
 
-/* Does what cscd_detector_max_step does, for the motion of the line and no farther than `longest` in
- * (0,1]. reached may be NULL. */
+/* Does what cscd_detector_max_step does, for the motion of the line and no farther than `longest` in (0,1].
+ * Here, too, reached may be NULL. */
 CSCD_API cscd_status cscd_line_search_max_step(cscd_line_search *search, double longest,
                                                const cscd_mutable_view *reached, cscd_free_step *out);
 
-/* Does what cscd_detector_find_near does, at the positions that cscd_line_search_positions gives for `fraction`.
- * distance: above 0, and at most the reach of the line. */
+/* Does what cscd_detector_find_near does, at the positions of cscd_line_search_positions. The distance is
+ * above 0, and at most the reach of the line. */
 CSCD_API cscd_status cscd_line_search_find_near(cscd_line_search *search, double fraction, double distance,
                                                 cscd_near_form form, cscd_proximities *out);
 
 /* ==== Single pairs ========================================================================================== */
 
-/* Single pairs: the elementary tests of a step by themselves, on four points each, for hosts that find their
- * pairs in another way. A batch of pairs goes through the kernels of a step, eight at a time, and is shared
- * by the threads of the context. Every result is that of cscd_detector_step, or of cscd_detector_find_near,
- * on a mesh with just these features, bit for bit. Its structs never grow. */
+/* The tests of single pairs, four points each, for hosts that find their pairs in another way. The threads of
+ * the context share a batch. Results are those of cscd_detector_step and cscd_detector_find_near on a mesh
+ * with just these features, bit for bit. These structs never grow. */
 
-/* Pairs of features, all of one kind, and the points that they have. Of the four points of a pair,
+/* Pairs of features of one kind. Features with a common point touch there all the time, so they do not belong
+ * here. Of the four points of a pair,
  *   VF  the first is the vertex a, the others are those of the triangle b;
- *   EE  the first two are the ends of the edge a, the others those of b.
- * Features that have a point in common touch there all the time, so pairs of neighbours do not belong in the
- * list. */
+ *   EE  the first two are the ends of the edge a, the others those of b. */
 typedef struct cscd_pairs {
     cscd_contact_kind kind; /* VF or EE */
     uint32_t point_count;   /* of the positions, 1 or more */
     size_t pair_count;      /* 0 is allowed */
-    const uint32_t *points; /* pair_count * 4 numbers below point_count; NULL: pair i has the points 4 i to
-                             * 4 i + 3 */
+    const uint32_t *points; /* pair_count * 4 numbers below point_count; NULL: pair i has 4 i to 4 i + 3 */
 } cscd_pairs;
 
-/* What a pair does in an interval; the members are those of cscd_contact. */
+/* The contact of a pair; the members are those of cscd_contact. */
 typedef struct cscd_pair_contact {
-    double toi; /* INFINITY: there is no contact, and all other members are 0 */
+    double toi; /* INFINITY: no contact, and all other members are 0 */
     bool contact, bounded;
     double u, v;
     double point[3], normal[3];
 } cscd_pair_contact;
 
-/* Tests each pair for contact while its points move in straight lines from x0 to x1, or at rest where x1 is
- * NULL, and writes pair_count results. Each view holds the positions of all points; object_count is 0.
- * min_separation and tolerance, a length and a share of it, are those of cscd_detector_options. An example, a
- * vertex that falls through a triangle, which prints "at 0.500":
+/* Tests each pair for contact while its points move in straight lines from x0 to x1. Where x1 is NULL, they
+ * rest. It writes pair_count results. Each view holds all points; object_count is 0. min_separation and
+ * tolerance are those of cscd_detector_options. An example, a vertex that falls through a triangle, which
+ * prints "at 0.500":
  *
  *     const double x0[12] = {0.2, 0.2, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0};
  *     const double x1[12] = {0.2, 0.2, -1, 0, 0, 0, 1, 0, 0, 0, 1, 0};
@@ -357,17 +297,16 @@ CSCD_API cscd_status cscd_pairs_step(cscd_context *context, const cscd_pairs *pa
                                      const cscd_view *x1, double min_separation, double tolerance,
                                      cscd_pair_contact *out);
 
-/* The nearest points of a pair at one moment; the members are those of cscd_proximity. */
+/* The nearest points of a pair; the members are those of cscd_proximity. */
 typedef struct cscd_pair_distance {
-    double distance; /* INFINITY: farther apart than was asked for, and all other members are 0 */
+    double distance; /* INFINITY: farther apart than `distance`, and all other members are 0 */
     double u, v;
     double point[3], normal[3];
 } cscd_pair_distance;
 
-/* Measures each pair at rest, as far as `distance`, a length above 0 or INFINITY, and writes pair_count
- * results. Pairs within `distance` are measured; pairs farther apart than (1 + 1e-6) times that are not,
- * up to the rounding that cscd_detector_find_near has, too. An example, two pairs of edges of six points, which
- * prints "1.0 1.5":
+/* Measures each pair at rest, and writes pair_count results. Pairs count up to `distance`, a length above 0
+ * or INFINITY, with the rounding of cscd_detector_find_near. An example, two pairs of edges of six points,
+ * which prints "1.0 1.5":
  *
  *     const double x[18] = {0, 0, 0, 2, 0, 0, 1, -1, 1, 1, 1, 1, 1, -1, -1.5, 1, 1, -1.5};
  *     const uint32_t points[8] = {0, 1, 2, 3, 0, 1, 4, 5};

@@ -11,8 +11,7 @@
 
 enum { SIDE = 4, SHEET = SIDE * SIDE, VERTICES = 2 * SHEET };
 
-/* The faces of the tetrahedron, which an example takes for a roof. */
-static const uint32_t vertex_count = 4, triangle_count = 4, roof[12] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
+static const uint32_t tetrahedron_faces[12] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
 
 static cscd_context *context;
 static cscd_mesh *mesh, *tetrahedron;
@@ -22,10 +21,7 @@ static uint32_t triangles[18][3];
 static double x0[3 * VERTICES], x1[3 * VERTICES], reached[3 * VERTICES], moved[3 * VERTICES + 3];
 static double velocities[3 * VERTICES], impulses[10000];
 static const double corners[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
-static float now[3 * VERTICES], wanted[3 * VERTICES];
 static cscd_contacts contacts;
-static cscd_proximities proximities;
-static const double energy_before = 1e9;
 
 /* A host in another language. */
 typedef struct binding {
@@ -36,25 +32,6 @@ typedef struct binding {
 static inline bool ask_host(binding *host, cscd_contact_kind kind, uint32_t a, uint32_t b) {
     host->answer = kind == CSCD_CONTACT_TT && a == b;
     return true;
-}
-
-/* Functions of the reader's own. */
-#define barrier(distance)              barrier_energy(distance)
-#define mollifier(vertices, threshold) mollifier_factor(vertices, threshold)
-
-static inline double barrier_energy(double distance) {
-    return distance < 1.0 ? -(distance - 1.0) * (distance - 1.0) * log(distance) : 0.0;
-}
-
-static inline double mollifier_factor(const uint32_t vertices[4], double threshold) {
-    return vertices != NULL && threshold >= 0.0 ? 1.0 : 0.0;
-}
-
-static inline double energy_at(const double *x, const cscd_proximities *list) {
-    double energy = x[0];
-    for (size_t i = 0; i < list->count; i++)
-        energy += list->items[i].count * barrier(list->items[i].distance);
-    return energy;
 }
 
 static void expect_success(cscd_status status) {
@@ -74,11 +51,7 @@ static void place_sheets(void) {
         from[2] = upper ? 0.5 : 0.0;
         to[2] = velocities[3 * v + 2] = upper ? -0.5 : 0.0;
     }
-    for (uint32_t i = 0; i < 3 * n; i++) {
-        now[i] = (float)x0[i];
-        wanted[i] = (float)x1[i];
-        reached[i] = x0[i];
-    }
+    memcpy(reached, x0, sizeof reached);
     for (uint32_t i = 0; i + 1 < SIDE; i++) {
         for (uint32_t j = 0; j + 1 < SIDE; j++) {
             uint32_t k = i * SIDE + j, both[2][3] = {{k, k + SIDE, k + 1}, {k + 1, k + SIDE, k + SIDE + 1}};
@@ -91,13 +64,12 @@ static void place_sheets(void) {
 static void set_up(void) {
     place_sheets();
     const cscd_object_desc sheet = cscd_object_of_triangles(SHEET, 18, &triangles[0][0]);
-    const cscd_object_desc sheets[2] = {sheet, sheet}, body = cscd_object_of_triangles(4, 4, roof);
+    const cscd_object_desc sheets[2] = {sheet, sheet},
+                           body = cscd_object_of_triangles(4, 4, tetrahedron_faces);
     expect_success(cscd_context_create(NULL, &context));
     expect_success(cscd_mesh_create(context, sheets, 2, &mesh));
     expect_success(cscd_mesh_create(context, &body, 1, &tetrahedron));
     expect_success(cscd_detector_create(context, mesh, NULL, NULL, &detector));
-    expect_success(
-        cscd_detector_find_near(detector, CSCD_DOUBLES(x0, n), 0.9, CSCD_NEAR_UNIQUE, &proximities));
     expect_success(cscd_detector_step(detector, CSCD_DOUBLES(x0, n), CSCD_DOUBLES(x1, n), &contacts));
 }
 
