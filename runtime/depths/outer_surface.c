@@ -312,7 +312,6 @@ static double squared_reach(const double x[3], const double p[3][3], reach_point
 typedef struct nearest_search {
     const outer_surface *outer;
     const surface_cuts *found;
-    uint32_t body;
     double x[3]; /* scaled, as all that is found */
     outer_point best;
 } nearest_search;
@@ -371,10 +370,8 @@ static void try_parts(nearest_search *s, uint32_t triangle, size_t cut) {
 
 static void try_triangle(void *data, uint32_t triangle) {
     nearest_search *s = data;
-    const named_surface *surface = s->found->surface;
     uint32_t place = s->outer->places[triangle];
     if (place == OUTER_NOWHERE) return;
-    if (surface_body(surface, triangle) != s->body) return;
     outer_part whole;
     outer_surface_whole(s->outer, s->found, triangle, &whole);
     if (part_is_far(s, whole.corners)) return;
@@ -395,8 +392,7 @@ static double squared_beyond(const double x[3], const outer_part *part) {
 
 outer_point outer_surface_nearest(const outer_surface *o, const surface_cuts *found, const bvh *hierarchy,
                                   uint32_t body, const double x[3], const outer_point *near) {
-    nearest_search s = {
-        .outer = o, .found = found, .body = body, .best = {.squared = (double)INFINITY, UINT32_MAX}};
+    nearest_search s = {.outer = o, .found = found, .best = {.squared = (double)INFINITY, UINT32_MAX}};
     const surface_bodies *bodies = found->surface->bodies;
     const near_quest quest = {object_of_body(bodies, body), body, bodies != NULL ? bodies->components : NULL};
     scale_point(o, x, s.x);
