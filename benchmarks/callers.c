@@ -1,9 +1,9 @@
 /* The cost of detection in three solvers: its share of a simulation step, its latency, its allocations. */
 #include "benchmarks/lib/options.h"
-#include "models/cloth/cloth_simulation.h"
-#include "models/common/allocation_count.h"
-#include "models/ipc/solver.h"
-#include "models/softbody/recorder.h"
+#include "models/cloth/cloth.h"
+#include "models/common/scene_program.h"
+#include "models/ipc/ipc.h"
+#include "models/softbody/softbody.h"
 #include "src/core/timer.h"
 
 #include <stdlib.h>

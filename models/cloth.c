@@ -1,8 +1,6 @@
 /* Records cloth that falls, drapes and folds without ever passing through anything: a model, its frames, and
  * what it falls onto. */
-#include "models/cloth/cloth_simulation.h"
-#include "models/common/allocation_count.h"
-#include "models/common/recording_files.h"
+#include "models/cloth/cloth.h"
 #include "models/common/scene_program.h"
 
 #include <errno.h>

@@ -1,9 +1,8 @@
 /* Records bodies that touch and never pass through each other, by incremental potential
  * contact: a model and its frames. */
+#include "models/ipc/ipc.h"
 #include "models/common/motion.h"
-#include "models/common/recording_files.h"
 #include "models/common/scene_program.h"
-#include "models/ipc/solver.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,6 +1,5 @@
 /* A skinned figure whose arms go through its trunk, in each of the forms in which animations come. */
 #include "models/mannequin/mannequin.h"
-#include "models/mannequin/skinned_file.h"
 #include "tool/io/point_cache_write.h"
 
 #include <errno.h>

@@ -1,12 +1,8 @@
 /* Records several closed objects that touch and part, for the sensors between objects: one model and its
  * frames. */
-#include "models/common/clock.h"
-#include "models/common/recording_files.h"
+#include "models/objects/objects.h"
 #include "models/common/scene_program.h"
-#include "models/objects/census.h"
-#include "models/objects/object_scene.h"
-#include "models/objects/tumble.h"
-#include "models/softbody/scenery.h"
+#include "models/softbody/softbody.h"
 
 #include <stdio.h>
 

@@ -1,7 +1,7 @@
 /* Two sewn panels of cloth, a seam that opens, a tear, a ball and a floor, by a C++ program: it uses cscd/cscd.hpp, has its
  * positions as floats in an array of structs, and runs cscd on its own threads. It checks itself in every frame, and ends
  * with 1 if anything passes through anything. */
-#include "models/panels/simulation.hpp"
+#include "models/panels/panels.hpp"
 
 #include <cstdio>
 #include <cstdlib>

@@ -1,10 +1,8 @@
 /* Records soft bodies that fall, bend and run into themselves: a model, its frames, and what they fall
  * onto. */
 #include "models/common/motion.h"
-#include "models/common/recording_files.h"
 #include "models/common/scene_program.h"
-#include "models/softbody/recorder.h"
-#include "models/softbody/scenery.h"
+#include "models/softbody/softbody.h"
 
 #include <math.h>
 #include <stdio.h>

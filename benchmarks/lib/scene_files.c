@@ -1,7 +1,7 @@
 /* Recordings that benchmarks replay: all frames in memory, and a plan by charge, which is made anew. */
 #include "benchmarks/lib/scene_files.h"
 
-#include "models/softbody/recorder.h"
+#include "models/softbody/softbody.h"
 #include "src/core/timer.h"
 #include "tool/io/animation.h"
 #include "tool/io/point_cache_write.h"

@@ -1,5 +1,5 @@
 /* Contact and friction: turns the pairs of cscd_detector_find_near into constraints on positions. */
-#include "models/cloth/apart.h"
+#include "models/cloth/cloth.h"
 #include "models/common/vec3.h"
 #include "models/shapes/body.h"
 

@@ -1,5 +1,5 @@
 /* Changes the motion that a solver wants into one that displacement bounds or planes allow, without a test on the way. */
-#include "models/cloth/bounded_motion.h"
+#include "models/cloth/cloth.h"
 #include "models/shapes/body.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* Cloth that nothing passes through: a solver for cloth on the public API of cscd alone, frame by frame. */
-#include "models/cloth/cloth_simulation.h"
-#include "models/common/clock.h"
+#include "models/cloth/cloth.h"
+#include "models/common/scene_program.h"
 #include "models/common/vec3.h"
 
 #include <stdlib.h>

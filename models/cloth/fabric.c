@@ -1,5 +1,5 @@
 /* Cloth as springs along its edges and stiff hinges across them, by XPBD. */
-#include "models/cloth/fabric.h"
+#include "models/cloth/cloth_scene.h"
 #include "models/common/vec3.h"
 
 #include <stdlib.h>

@@ -1,6 +1,5 @@
 /* Changes the motion that a solver wants into one near it that is certified to have no contact. */
-#include "models/cloth/safe_motion.h"
-#include "models/cloth/apart.h"
+#include "models/cloth/cloth.h"
 #include "models/common/vec3.h"
 #include "models/shapes/body.h"
 

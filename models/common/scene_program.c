@@ -1,10 +1,15 @@
-/* A program that simulates scenes and writes a recording of each: its arguments, its help, its exit
- * status. */
+/* The common part of programs that record scenes: arguments, help and exit status; the files of a recording; a clock; an
+ * allocator that counts. */
 #include "models/common/scene_program.h"
 
+#include "tool/io/mesh_file.h"
+
 #include <errno.h>
+#include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 static int print_help(const scene_program *p, FILE *stream) {
@@ -62,4 +67,59 @@ void scene_program_show(const char *scene_name, uint32_t frame, uint32_t frame_c
     else
         fprintf(stderr, "\r\033[K");
     fflush(stderr);
+}
+
+/* ---- the files of a recording -------------------------------------------------------------------------- */
+
+enum { PATH_MAX_LENGTH = 4096 };
+
+static bool name_file(const char *folder, const char *name, const char *ending, char path[PATH_MAX_LENGTH],
+                      io_error *error) {
+    int length = snprintf(path, PATH_MAX_LENGTH, "%s/%s%s", folder[0] != '\0' ? folder : ".", name, ending);
+    return (length > 0 && length < PATH_MAX_LENGTH) ||
+           io_fail(error, "%s%s: the folder's name is too long", name, ending);
+}
+
+bool recording_write_model(const char *folder, const char *name, const char *ending, const body *b,
+                           io_error *error) {
+    char path[PATH_MAX_LENGTH];
+    const mesh_file mesh = mesh_file_of(b->vertex_count, b->triangle_count, b->positions, b->triangles);
+    return name_file(folder, name, ending, path, error) && mesh_file_write_obj(path, &mesh, error);
+}
+
+bool recording_open_frames(const char *folder, const char *name, const char *ending, uint32_t vertex_count,
+                           uint32_t frame_count, point_cache_writer **out, io_error *error) {
+    char path[PATH_MAX_LENGTH];
+    return name_file(folder, name, ending, path, error) &&
+           point_cache_writer_open(path, vertex_count, frame_count, out, error);
+}
+
+/* ---- measurements -------------------------------------------------------------------------------------- */
+
+double clock_now_ms(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
+}
+
+/* The address that malloc gave lies before the block: not every system can align memory that free takes back. */
+static void *count_and_allocate(void *user, size_t size, size_t alignment) {
+    ++*(uint64_t *)user;
+    char *whole = size < SIZE_MAX - 2 * alignment ? malloc(size + 2 * alignment) : NULL;
+    if (whole == NULL) return NULL;
+    char *block = whole + 2 * alignment - (uintptr_t)whole % alignment;
+    memcpy(block - sizeof whole, &whole, sizeof whole);
+    return block;
+}
+
+static void free_block(void *user, void *block, size_t size) {
+    (void)user;
+    (void)size;
+    void *whole;
+    memcpy(&whole, (char *)block - sizeof whole, sizeof whole);
+    free(whole);
+}
+
+cscd_allocator allocation_count_interface(uint64_t *count) {
+    return (cscd_allocator){count_and_allocate, free_block, count};
 }

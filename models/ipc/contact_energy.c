@@ -1,10 +1,33 @@
-/* The energy of the barrier over all pairs of features nearer than its reach, as a list of terms. */
-#include "models/ipc/contact_energy.h"
+/* The barrier of incremental potential contact, and its energy over all pairs of features nearer than its reach. */
+#include "models/ipc/newton_system.h"
+
 #include "models/common/vec3.h"
-#include "models/ipc/barrier.h"
 #include "models/shapes/body.h"
 
+#include <math.h>
 #include <stdlib.h>
+
+/* ---- the barrier --------------------------------------------------------------------------------------- */
+
+ipc_curve ipc_barrier(double distance, double reach) {
+    if (distance >= reach) return (ipc_curve){0.0, 0.0, 0.0};
+    if (distance <= 0.0) return (ipc_curve){INFINITY, -INFINITY, INFINITY};
+    double beyond = distance - reach, logarithm = log(distance / reach), share = beyond / distance;
+    return (ipc_curve){
+        .value = -beyond * beyond * logarithm,
+        .slope = -2.0 * beyond * logarithm - beyond * share,
+        .curvature = -2.0 * logarithm - 4.0 * share + share * share,
+    };
+}
+
+ipc_curve ipc_mollifier(double crossing, double threshold) {
+    if (crossing >= threshold) return (ipc_curve){1.0, 0.0, 0.0};
+    double share = crossing / threshold;
+    return (ipc_curve){share * (2.0 - share), 2.0 * (1.0 - share) / threshold,
+                       -2.0 / (threshold * threshold)};
+}
+
+/* ---- the energy of contacts ---------------------------------------------------------------------------- */
 
 /* Multiplies the energy by the mollifier and adds the mollifier's part of the gradient. crossing is |a x
  * b|^2, whose derivative by a is 2 b x (a x b), and by b 2 (a x b) x a. */

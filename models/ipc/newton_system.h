@@ -1,8 +1,113 @@
-/* The linear system of a Newton step, never assembled, and its solution by conjugate gradients. */
+/* The energies of the IPC solver, springs and barrier, and the linear system of a Newton step, never assembled. */
 #pragma once
 
-#include "models/ipc/contact_energy.h"
-#include "models/ipc/springs.h"
+#include "cscd/cscd.h"
+#include "models/shapes/body.h"
+
+/* ---- elasticity of closed bodies ----------------------------------------------------------------------- */
+
+/* Energy: stiffness / 2 * (length - rest)^2. */
+typedef struct ipc_spring {
+    uint32_t a, b; /* a < b */
+    double rest, stiffness;
+} ipc_spring;
+
+/* Grows from {0}; sorted by (a, b), without repetitions. ipc_springs_free releases it. */
+typedef struct ipc_springs {
+    ipc_spring *items;
+    uint32_t count, capacity;
+} ipc_springs;
+
+typedef struct ipc_stuff {
+    double density;  /* mass per volume */
+    double membrane; /* stiffness of the surface: force per length of every edge */
+    double solid;    /* stiffness of the inside: force per area */
+} ipc_stuff;
+
+/* Adds a closed body whose first vertex has this number: a spring for each edge, and from each vertex five
+ * struts that run inwards, straight and tilted, to the opposite surface. So the body keeps its shape,
+ * about equally stiff for any size of triangles. */
+void ipc_springs_add_body(ipc_springs *springs, const body *b, uint32_t first_vertex, const ipc_stuff *stuff);
+void ipc_springs_free(ipc_springs *springs);
+
+double ipc_springs_energy(const ipc_springs *springs, const double *positions);
+void ipc_springs_add_gradient(const ipc_springs *springs, const double *positions, double *gradient);
+
+/* The Hessian of a spring: the block B = along * n n^T + aside * I at (a, a) and (b, b), and -B at (a, b)
+ * and (b, a). The part that would make it indefinite is left out: a compressed spring also pushes aside. */
+typedef struct ipc_spring_hessian {
+    double n[3], along, aside;
+} ipc_spring_hessian;
+
+/* Computes one Hessian for each spring. */
+void ipc_springs_hessians(const ipc_springs *springs, const double *positions, ipc_spring_hessian *hessians);
+
+/* Adds Hessian * x to out. */
+void ipc_springs_add_product(const ipc_springs *springs, const ipc_spring_hessian *hessians, const double *x,
+                             double *out);
+
+/* Computes the area of each vertex: a third of that of its triangles. */
+void ipc_vertex_areas(const body *b, double *areas);
+
+/* ---- the barrier --------------------------------------------------------------------------------------- */
+
+/* A function of one variable, with its derivatives. */
+typedef struct ipc_curve {
+    double value, slope, curvature;
+} ipc_curve;
+
+/* Returns -(d - reach)^2 ln(d / reach) below the reach, 0 from there on, and infinity at 0 and below (Li
+ * et al., "Incremental potential contact: intersection- and inversion-free, large-deformation dynamics",
+ * 2020). Two derivatives are continuous at the reach. */
+ipc_curve ipc_barrier(double distance, double reach);
+
+/* Returns the factor of the energy of two edges: 1 where they cross at an angle, falling to 0 where they
+ * are parallel, with one continuous derivative (same paper). crossing: the squared length of the edges'
+ * cross product; threshold: the factor is 1 above it. */
+ipc_curve ipc_mollifier(double crossing, double threshold);
+
+/* ---- the barrier over all pairs of features nearer than its reach -------------------------------------- */
+
+/* One item of the list. Its Hessian is approximated by curvature * g g^T, where g, the gradient of the distance, is
+ * weights[i] * normal at vertex i; see ipc_contacts_find. */
+typedef struct ipc_contact {
+    uint32_t vertices[4];
+    double weights[4], normal[3];
+    double gradient[4][3]; /* gradient of the energy */
+    double energy, curvature;
+} ipc_contact;
+
+/* Grows from {0}; ipc_contacts_free releases it. */
+typedef struct ipc_contacts {
+    ipc_contact *items;
+    size_t count, capacity;
+    double energy, least_distance; /* the sum of energies; the least distance, INFINITY without pairs */
+} ipc_contacts;
+
+typedef struct ipc_barrier_options {
+    double reach;     /* pairs nearer than this repel */
+    double stiffness; /* kappa: the factor of the barrier */
+} ipc_barrier_options;
+
+/* The terms of `near`, found at `positions` in the form without repetitions: each counts as many times as the pairs
+ * of features that it stands for. So the sum is that over all pairs, and continuous, for each distance is; a sum
+ * without the counts would jump where a nearest point passes from a face to its edge.
+ *
+ * The gradient is exact: how the nearest points slide along the features does not change the distance to
+ * first order. The Hessian leaves out that they slide and the normal turns, slope * (Hessian of the
+ * distance), which only ever takes curvature away while the features are convex and the slope negative; so
+ * what is left is positive semidefinite, and the directions that come of it lead down. Pairs of edges that
+ * are nearly parallel, whose nearest points jump, fade out; pairs of vertices and faces take over there. */
+void ipc_contacts_find(ipc_contacts *contacts, const double *positions, const cscd_proximities *near,
+                       const ipc_barrier_options *options);
+void ipc_contacts_free(ipc_contacts *contacts);
+
+void ipc_contacts_add_gradient(const ipc_contacts *contacts, double *gradient);
+
+/* Adds Hessian * x to out. */
+void ipc_contacts_add_product(const ipc_contacts *contacts, const double *x, double *out);
+
+/* ---- the linear system --------------------------------------------------------------------------------- */
 
 /* A symmetric 3 x 3 matrix: xx, xy, xz, yy, yz, zz. */
 typedef struct ipc_block {

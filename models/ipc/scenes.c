@@ -1,9 +1,7 @@
 /* The scenes of the IPC solver: bodies, their materials, and obstacles. */
-#include "models/ipc/scenes.h"
-#include "models/shapes/outline.h"
-#include "models/shapes/revolution.h"
+#include "models/ipc/ipc.h"
+#include "models/shapes/bodies.h"
 #include "models/shapes/rings.h"
-#include "models/shapes/slab.h"
 
 #include <math.h>
 #include <string.h>

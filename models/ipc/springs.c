@@ -1,6 +1,6 @@
 /* Elasticity of closed bodies by springs: along the edges of the surface, and as struts across the inside. */
-#include "models/ipc/springs.h"
 #include "models/common/vec3.h"
+#include "models/ipc/newton_system.h"
 
 #include <stdlib.h>
 #include <string.h>

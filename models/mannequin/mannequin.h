@@ -7,6 +7,9 @@
  * after, the distance is ten times what the mesh lies within its capsule. Nothing else touches. */
 #pragma once
 
+#include "tool/io/io_error.h"
+
+#include <stdbool.h>
 #include <stdint.h>
 
 enum {
@@ -71,3 +74,6 @@ double mannequin_angle(int bone, int frame);
 
 /* Positions of a frame: linear blend skinning. */
 void mannequin_pose(const mannequin *m, int frame, double (*positions)[3]);
+
+/* Writes the figure as glTF, a .glb file: a node with a mesh for each part, a skin and an animation, which the reader evaluates. */
+bool skinned_file_write(const char *path, const mannequin *m, io_error *error);

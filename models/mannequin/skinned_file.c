@@ -1,5 +1,5 @@
 /* A binary glTF 2.0 file: a chunk of JSON, and one of arrays. Numbers are little-endian, as those of the processor. */
-#include "models/mannequin/skinned_file.h"
+#include "models/mannequin/mannequin.h"
 
 #include "tool/io/json.h"
 

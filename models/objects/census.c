@@ -1,6 +1,6 @@
 /* Finds which objects of a recording touch each other, and when, by detector steps from frame to frame. */
-#include "models/objects/census.h"
 #include "models/common/vec3.h"
+#include "models/objects/objects.h"
 #include "models/shapes/body.h"
 
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 /* Eight soft bodies that fall into a tray and tumble together. */
-#include "models/objects/tumble.h"
 #include "models/common/vec3.h"
+#include "models/objects/objects.h"
 #include "models/shapes/catalogue.h"
-#include "models/softbody/turn.h"
+#include "models/softbody/softbody.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* The scene: two panels of cloth, sewn together, a ball and a floor. */
-#include "models/panels/scene.hpp"
+#include "models/panels/panels.hpp"
 
 #include <algorithm>
 #include <map>

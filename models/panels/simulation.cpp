@@ -1,9 +1,59 @@
 /* A cloth solver that works on positions (Müller et al. 2007), in floats, and goes only where cscd certifies the way. */
-#include "models/panels/simulation.hpp"
+#include "models/panels/panels.hpp"
 
 #include <algorithm>
 
 namespace panels {
+
+/* ---- the host's thread pool ---------------------------------------------------------------------------- */
+
+thread_pool::thread_pool(unsigned thread_count) {
+    for (unsigned i = 1; i < thread_count; i++) threads_.emplace_back([this] { work(); });
+}
+
+thread_pool::~thread_pool() {
+    {
+        std::lock_guard<std::mutex> hold(lock_);
+        ends_ = true;
+    }
+    changed_.notify_all();
+    for (std::thread &thread : threads_) thread.join();
+}
+
+/* Runs one task without the lock; false: there is none to be taken. */
+bool thread_pool::run_next(std::unique_lock<std::mutex> &hold) {
+    if (!task_ || next_ == count_) return false;
+    const cscd::task task = *task_;
+    const std::uint32_t index = next_++;
+    running_++;
+    hold.unlock();
+    task(index);
+    hold.lock();
+    tasks_run_++;
+    if (--running_ == 0 && next_ == count_) finished_.notify_one();
+    return true;
+}
+
+void thread_pool::work() {
+    std::unique_lock<std::mutex> hold(lock_);
+    while (!ends_) {
+        if (!run_next(hold)) changed_.wait(hold);
+    }
+}
+
+void thread_pool::run(std::uint32_t count, cscd::task task) {
+    std::unique_lock<std::mutex> hold(lock_);
+    task_ = task;
+    next_ = 0;
+    count_ = count;
+    changed_.notify_all();
+    while (run_next(hold)) {
+    }
+    finished_.wait(hold, [this] { return running_ == 0; });
+    task_.reset();
+}
+
+/* ---- constants and views ------------------------------------------------------------------------------- */
 
 namespace {
 
@@ -36,7 +86,7 @@ cscd_view positions_of(const std::vector<particle> &particles) {
 
 } // namespace
 
-/* ---- what cscd is told once ------------------------------------------------------------------------------ */
+/* ---- what cscd is told once ---------------------------------------------------------------------------- */
 
 cscd::context_options simulation::host_options(unsigned thread_count) {
     cscd::context_options options;
@@ -67,7 +117,7 @@ simulation::simulation(std::uint32_t side, unsigned thread_count, bool certified
     reached_ = scene_.particles;
 }
 
-/* ---- the motion that the solver wants -------------------------------------------------------------------- */
+/* ---- the motion that the solver wants ------------------------------------------------------------------ */
 
 void simulation::want_motion() {
     const vec3 sway = floor_sway(seconds_ + step_seconds);
@@ -137,7 +187,7 @@ void simulation::project() {
     }
 }
 
-/* ---- what keeps it apart --------------------------------------------------------------------------------- */
+/* ---- what keeps it apart ------------------------------------------------------------------------------- */
 
 void simulation::collect_barriers(report &out) {
     const cscd::proximities near = detector_.find_near(positions_of(scene_.particles), reach);
@@ -172,7 +222,7 @@ void simulation::add_barrier(const cscd_contact &limit) {
     barriers_.push_back(b);
 }
 
-/* ---- steps ----------------------------------------------------------------------------------------------- */
+/* ---- steps --------------------------------------------------------------------------------------------- */
 
 /* What limits the motion becomes a barrier, and the motion is wanted anew; the last one goes as far as it may. */
 double simulation::go_as_far() {

@@ -1,10 +1,6 @@
 /* Bodies by name, with any possible number of triangles. */
 #include "models/shapes/catalogue.h"
-#include "models/shapes/animals.h"
-#include "models/shapes/figure.h"
-#include "models/shapes/letters.h"
-#include "models/shapes/revolution.h"
-#include "models/shapes/slab.h"
+#include "models/shapes/bodies.h"
 
 #include <string.h>
 

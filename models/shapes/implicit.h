@@ -1,4 +1,4 @@
-/* Meshes of implicit surfaces. */
+/* Meshes of implicit surfaces, by surface nets, and made even with an exact number of triangles. */
 #pragma once
 
 #include "models/shapes/body.h"
@@ -20,3 +20,13 @@ double body_add_implicit(body *b, const implicit *surface, double spacing);
 
 /* Moves a point near the zero set onto it; `scale` is the length over which derivatives are taken. */
 void implicit_project(const implicit *surface, double scale, double p[3]);
+
+/* ---- even triangles ------------------------------------------------------------------------------------ */
+
+/* Replaces a closed manifold near the zero set by one on it with exactly triangle_count triangles, about
+ * equilateral and of one size. False, with *b as it comes out, when the count cannot be reached: it is odd,
+ * or far too small. */
+bool body_remesh(body *b, const implicit *surface, uint32_t triangle_count);
+
+/* Makes nets and then remeshes them with body_remesh. */
+bool body_add_even_implicit(body *b, const implicit *surface, uint32_t triangle_count);

@@ -1,5 +1,5 @@
 /* Bodies that are an outline revolved, bent, or linked. */
-#include "models/shapes/revolution.h"
+#include "models/shapes/bodies.h"
 #include "models/shapes/rings.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 /* Boxes of equal squares, flat and folded. */
-#include "models/shapes/slab.h"
+#include "models/shapes/bodies.h"
 
 #include <math.h>
 #include <string.h>

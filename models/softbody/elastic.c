@@ -1,7 +1,7 @@
 /* Elastic tetrahedra as constraints of XPBD: neo-Hookean, with separate constraints for volume and shape. */
-#include "models/softbody/elastic.h"
 #include "models/common/vec3.h"
 #include "models/shapes/body.h"
+#include "models/softbody/softbody.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
 /* A lattice of cubes around a closed surface: the lattice is simulated, and carries the surface along. */
-#include "models/softbody/lattice.h"
 #include "models/common/vec3.h"
 #include "models/shapes/body.h"
+#include "models/softbody/softbody.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* The response to contacts of a body with itself: each pair that cscd reports is kept on its side, gently. */
-#include "models/softbody/self_contact.h"
 #include "models/common/vec3.h"
 #include "models/shapes/body.h"
+#include "models/softbody/softbody.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* Cloth driven by displacement bounds and by planes: each round is a straight motion without contact. */
-#include "models/cloth/cloth_simulation.h"
+#include "models/cloth/cloth.h"
 #include "tests/support/packed.h"
 #include "tests/support/test.h"
 

@@ -1,8 +1,7 @@
 /* Certified motions: whatever a solver asks for, there is no contact on the way, and nothing is changed
  * without need. */
+#include "models/cloth/cloth.h"
 #include "models/cloth/cloth_scene.h"
-#include "models/cloth/garment.h"
-#include "models/cloth/safe_motion.h"
 #include "tests/support/packed.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/test.h"

@@ -1,8 +1,6 @@
 /* The parts of the cloth simulator: garments, springs and hinges, contact with friction. */
-#include "models/cloth/apart.h"
+#include "models/cloth/cloth.h"
 #include "models/cloth/cloth_scene.h"
-#include "models/cloth/fabric.h"
-#include "models/cloth/garment.h"
 #include "models/common/vec3.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/test.h"

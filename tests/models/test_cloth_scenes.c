@@ -1,6 +1,6 @@
 /* The cloth scenes, whole and small: there is no contact in any step, and yet much happens. */
 #include "cscd/research.h"
-#include "models/cloth/cloth_simulation.h"
+#include "models/cloth/cloth.h"
 #include "models/common/vec3.h"
 #include "tests/support/packed.h"
 #include "tests/support/test.h"

@@ -1,9 +1,7 @@
 /* The energies of the IPC solver, compared with finite differences: barrier, mollifier, springs, near
  * pairs. */
 #include "models/common/vec3.h"
-#include "models/ipc/barrier.h"
-#include "models/ipc/contact_energy.h"
-#include "models/ipc/springs.h"
+#include "models/ipc/newton_system.h"
 #include "models/shapes/catalogue.h"
 #include "tests/support/packed.h"
 #include "tests/support/random_stream.h"

@@ -2,7 +2,7 @@
  * links hold each other, and the motion is repeatable. */
 #include "cscd/research.h"
 #include "models/common/vec3.h"
-#include "models/ipc/solver.h"
+#include "models/ipc/ipc.h"
 #include "tests/support/packed.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/test.h"

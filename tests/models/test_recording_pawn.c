@@ -1,7 +1,7 @@
 /* The whole of pawn-drop is a good recording: soft, of moderate speed, with contacts at times, and
  * healing. */
 #include "models/common/motion.h"
-#include "models/softbody/recorder.h"
+#include "models/softbody/softbody.h"
 #include "tests/support/test.h"
 
 #include <math.h>

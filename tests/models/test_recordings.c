@@ -1,5 +1,5 @@
 /* The recordings begin embedded, are repeatable bit for bit, gain no energy, and fit into their files. */
-#include "models/softbody/recorder.h"
+#include "models/softbody/softbody.h"
 #include "tests/support/packed.h"
 #include "tests/support/test.h"
 

@@ -1,5 +1,5 @@
 /* The tools that make bodies: flips, splits and collapses of edges of closed meshes; rings; remeshing. */
-#include "models/shapes/remesh.h"
+#include "models/shapes/implicit.h"
 #include "models/shapes/rings.h"
 #include "models/shapes/surface.h"
 #include "tests/support/models/body_of.h"

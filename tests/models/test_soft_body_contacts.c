@@ -1,8 +1,7 @@
 /* The response to contacts of a body with itself, on a body of two parts: a slab, and a block that comes
  * down onto it. */
 #include "models/common/vec3.h"
-#include "models/softbody/self_contact.h"
-#include "models/softbody/simulation.h"
+#include "models/softbody/softbody.h"
 #include "tests/support/models/body_of.h"
 #include "tests/support/models/soft_fixture.h"
 #include "tests/support/packed.h"

@@ -1,8 +1,7 @@
 /* Elastic tetrahedra: no energy at rest or turned, the energy of the formula when deformed, and momentum
  * kept. */
 #include "models/common/vec3.h"
-#include "models/softbody/elastic.h"
-#include "models/softbody/simulation.h"
+#include "models/softbody/softbody.h"
 #include "tests/support/models/body_of.h"
 #include "tests/support/models/soft_fixture.h"
 #include "tests/support/test.h"

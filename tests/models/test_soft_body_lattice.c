@@ -1,7 +1,7 @@
 /* The lattice covers its surface and carries it along exactly, and the tetrahedra of its cells fit
  * together. */
 #include "models/common/vec3.h"
-#include "models/softbody/elastic.h"
+#include "models/softbody/softbody.h"
 #include "tests/support/models/body_of.h"
 #include "tests/support/models/soft_fixture.h"
 #include "tests/support/random.h"

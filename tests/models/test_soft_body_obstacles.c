@@ -1,7 +1,6 @@
 /* Ground, stairs and balls: their heights, the shortest ways out of them, and the motion of balls. */
 #include "models/common/vec3.h"
-#include "models/softbody/obstacles.h"
-#include "models/softbody/scenery.h"
+#include "models/softbody/softbody.h"
 #include "tests/support/test.h"
 
 /* The tops of the stairs are at 1.5, 1 and 0.5, and end at x = 3, 5 and 7. */

@@ -1,8 +1,6 @@
 /* The recordings of several closed objects: what is in them, that they touch and part, and that they repeat.
  */
-#include "models/objects/census.h"
-#include "models/objects/object_scene.h"
-#include "models/objects/tumble.h"
+#include "models/objects/objects.h"
 #include "tests/support/test.h"
 
 #include <stdlib.h>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "models/shapes/body.h"
-#include "models/softbody/soft_body.h"
+#include "models/softbody/softbody.h"
 
 /* Computes to = matrix * from + offset for each point. */
 void affine_map(double matrix[3][3], const double offset[3], const double *from, uint32_t point_count,
