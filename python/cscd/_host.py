@@ -106,7 +106,7 @@ class Keeper:
 
     It is there before what it keeps: a function that creates an object puts it into ``place``, so that no signal comes
     in between. It has no ``__del__``, in which an exception of a signal's handler would be lost, but a capsule, whose
-    destructor is in C (python/native/keeper.c).
+    destructor is in C (python/native/host.c).
     """
 
     __slots__ = ("_capsule", "_out")

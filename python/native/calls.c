@@ -2,7 +2,6 @@
  * functions Python calls as cscd/cscd.h has them. Structs have the sizes of this build, whose layouts.c tells Python of them. */
 #include "cscd/cscd.h"
 
-#include "python/native/exports.h"
 #include "python/native/host.h"
 
 #define CALL_OF(name, arguments, call)                                                                       \
@@ -33,7 +32,7 @@ CALL_OF(tracker_create,
         (host * h, const cscd_mesh *mesh, const cscd_event_options *options, cscd_event_tracker **out),
         cscd_event_tracker_create(h->context, mesh, options, out))
 
-/* ---- a detector ----------------------------------------------------------------------------------------- */
+/* ---- a detector ---------------------------------------------------------------------------------------- */
 
 CALL_OF(detector_step,
         (host * h, cscd_detector *detector, const cscd_view *x0, const cscd_view *x1, cscd_contacts *out),
@@ -69,7 +68,7 @@ CALL_OF(detector_contact_parts,
 CALL_OF(detector_set_rest, (host * h, cscd_detector *detector, const cscd_view *rest),
         cscd_detector_set_rest(detector, rest))
 
-/* ---- a line search -------------------------------------------------------------------------------------- */
+/* ---- a line search ------------------------------------------------------------------------------------- */
 
 CALL_OF(line_search_begin,
         (host * h, cscd_line_search *search, const cscd_view *x0, const cscd_view *x1, double reach),
@@ -86,7 +85,7 @@ CALL_OF(line_search_find_near,
          cscd_proximities *out),
         cscd_line_search_find_near(search, fraction, distance, (cscd_near_form)form, out))
 
-/* ---- structs that the library returns: how each is passed is left to the compiler ------------------------- */
+/* ---- structs that the library returns: how each is passed is left to the compiler ---------------------- */
 
 #define RESULT_OF(name, arguments, call)                                                                     \
     PYTHON_API void cscdpy_##name arguments {                                                                \
@@ -107,7 +106,7 @@ RESULT_OF(detector_timings, (const cscd_detector *detector, cscd_timings *out),
 RESULT_OF(detector_counters, (const cscd_detector *detector, cscd_counters *out),
           cscd_detector_counters(detector))
 
-/* ---- single pairs, and events --------------------------------------------------------------------------- */
+/* ---- single pairs, and events -------------------------------------------------------------------------- */
 
 CALL_OF(pairs_step,
         (host * h, const cscd_pairs *pairs, const cscd_view *x0, const cscd_view *x1, double min_separation,

@@ -1,11 +1,25 @@
-/* Contexts for Python: the lock, signals and callbacks during a call. */
+/* Contexts for Python: the lock, signals and callbacks during a call, and objects that go when Python lets go of them. */
 #include "python/native/host.h"
 
-#include "python/native/exports.h"
-#include "python/native/interpreter.h"
-
 #include <stdlib.h>
+#include <string.h>
 #include <time.h>
+
+interpreter python;
+
+/* functions: the addresses of all members, in their order. False: it is another number of them. */
+PYTHON_API bool cscdpy_set_interpreter(void *const *functions, size_t count) {
+    if (count * sizeof *functions != sizeof python) return false;
+    memcpy(&python, functions, sizeof python);
+    return true;
+}
+
+/* Copies what a list of the library has into an array of Python's. */
+PYTHON_API void cscdpy_copy(void *to, const void *from, size_t size) {
+    if (size > 0) memcpy(to, from, size);
+}
+
+/* ---- contexts ------------------------------------------------------------------------------------------ */
 
 /* Callbacks and signals have their turn once in so many milliseconds. */
 enum { LOOK_EVERY_MS = 5 };
@@ -122,4 +136,38 @@ PYTHON_API uint32_t cscdpy_host_thread_count(const host *h) {
 /* Is a call running? */
 PYTHON_API bool cscdpy_host_is_busy(const host *h) {
     return h->thread != NULL;
+}
+
+/* ---- keepers ------------------------------------------------------------------------------------------- */
+
+/* A capsule keeps an object that goes when Python lets go of it, and the capsule's destructor is in C: between the lines of a __del__
+ * Python may handle a signal, and what the handler raises there, as Ctrl-C does, would be lost. */
+static const char capsule_name[] = "cscd.keeper";
+
+typedef struct keeper {
+    void *object; /* NULL: none has been created */
+    void (*destroy)(void *object);
+    host *host; /* of the object's context, or NULL */
+} keeper;
+
+static void destroy_kept(void *capsule) {
+    keeper *k = python.capsule_pointer(capsule, capsule_name);
+    if (k->object != NULL && (k->host == NULL || !k->host->lost)) k->destroy(k->object);
+    if (k->host != NULL) host_release(k->host);
+    free(k);
+}
+
+/* A new capsule, which gives back by `destroy` what is at *place by then; h, or NULL, lives as long. NULL: no memory. */
+PYTHON_API void *cscdpy_keep(host *h, void (*destroy)(void *object), void **place) {
+    keeper *k = malloc(sizeof *k);
+    if (k == NULL) return NULL;
+    *k = (keeper){NULL, destroy, h};
+    void *capsule = python.new_capsule(k, capsule_name, destroy_kept);
+    if (capsule == NULL) {
+        free(k);
+        return NULL;
+    }
+    if (h != NULL) h->users++;
+    *place = &k->object;
+    return capsule;
 }

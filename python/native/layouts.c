@@ -1,6 +1,6 @@
 /* Tells Python how the structs of the library lie in memory, so that it reads and writes them as numpy records and
  * nothing is written down twice. */
-#include "python/native/exports.h"
+#include "python/native/host.h"
 
 #include "cscd/cscd.h"
 

@@ -1,5 +1,5 @@
 /* What a replay of Python leaves out, by parts and at rest, and which depths and events are left then: as the tool does. */
-#include "python/native/exports.h"
+#include "python/native/host.h"
 
 #include "tool/answers/consequences.h"
 #include "tool/answers/shown_depths.h"

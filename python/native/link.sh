@@ -5,7 +5,7 @@
 # The libraries for files and pictures go into it as archives, hidden, so that it runs on machines without them, and neither uses nor
 # disturbs other versions of them in the same process. Debian's archives are compiled for programs: hidden, they fit into a shared
 # library as well, but for the variable stderr of the C library, which libpng reads directly. A copy of libpng reads
-# cscdpy_standard_error in its place (standard_error.c). Where an archive is missing or does not fit, the library needs the shared ones,
+# cscdpy_standard_error in its place (recordings.c). Where an archive is missing or does not fit, the library needs the shared ones,
 # as a distribution wants it: DYNAMIC=1.
 set -eu
 output=$1

@@ -1,11 +1,11 @@
-/* Recordings and plans in files, for Python. */
-#include "python/native/exports.h"
-#include "python/native/interpreter.h"
+/* Recordings, plans and polygons for Python: what the tool reads from files, and the tool itself. */
+#include "python/native/host.h"
 
 #include "tool/common/methods.h"
 #include "tool/common/option_values.h"
 #include "tool/common/part_names.h"
 #include "tool/common/plan_colours.h"
+#include "tool/io/mesh_builder.h"
 #include "tool/io/plan_file.h"
 #include "tool/tool.h"
 #include "tool/windows/console.h"
@@ -176,7 +176,7 @@ PYTHON_API bool cscdpy_recording_read(read_recording *r, uint32_t frame, double 
     return read;
 }
 
-/* ---- plans ----------------------------------------------------------------------------------------------- */
+/* ---- plans --------------------------------------------------------------------------------------------- */
 
 /* Within a turn in the host of the mesh, which has the plan. */
 PYTHON_API bool cscdpy_plan_read(const char *path, const cscd_mesh *mesh, cscd_plan **out, io_error *error) {
@@ -219,7 +219,7 @@ PYTHON_API void cscdpy_mesh_copy_positions(const mesh_file *mesh, double *positi
     memcpy(positions, mesh->positions, (size_t)mesh->vertex_count * 3 * sizeof *positions);
 }
 
-/* ---- the tool ---------------------------------------------------------------------------------------------- */
+/* ---- the tool ------------------------------------------------------------------------------------------ */
 
 /* Runs the tool `cscd` in this process, with its own signals and output, and returns its exit code. */
 PYTHON_API int cscdpy_run_tool(int argument_count, char **arguments) {
@@ -231,4 +231,66 @@ PYTHON_API int cscdpy_run_tool(int argument_count, char **arguments) {
     console_end(page);
     if (has_lock_to_give) python.restore_thread(thread);
     return code;
+}
+
+/* ---- polygons ------------------------------------------------------------------------------------------ */
+
+/* Faces that Python has are cut into triangles in the way that faces of files are. */
+static bool add_faces(mesh_builder *builder, const double *positions, uint32_t vertex_count,
+                      const uint32_t *corners, const uint32_t *face_sizes, size_t face_count) {
+    for (uint32_t v = 0; v < vertex_count; v++)
+        if (!mesh_builder_add_vertex(builder, positions + (size_t)v * 3)) return false;
+    for (size_t face = 0; face < face_count; face++) {
+        if (!mesh_builder_begin_face(builder)) return false;
+        for (uint32_t i = 0; i < face_sizes[face]; i++)
+            if (!mesh_builder_add_corner(builder, *corners++)) return false;
+        if (!mesh_builder_end_face(builder)) return false;
+    }
+    return true;
+}
+
+/* Faces of face_sizes corners, one after the other, become *out, which cscdpy_polygons_free gives back. Faces without three
+ * different corners are left without a triangle. On false `error` says why. */
+PYTHON_API bool cscdpy_polygons_cut(const double *positions, uint32_t vertex_count, const uint32_t *corners,
+                                    const uint32_t *face_sizes, size_t face_count, mesh_file **out,
+                                    io_error *error) {
+    file_reader reader = {.path = "faces", .error = error};
+    mesh_builder builder = mesh_builder_of(&reader, 0);
+    mesh_file *mesh = calloc(1, sizeof *mesh);
+    bool cut = mesh != NULL &&
+               add_faces(&builder, positions, vertex_count, corners, face_sizes, face_count) &&
+               (builder.triangle_count == 0 || mesh_builder_finish(&builder, mesh));
+    if (mesh == NULL) io_fail(error, "out of memory");
+    mesh_builder_free(&builder);
+    if (!cut) {
+        free(mesh);
+        return false;
+    }
+    *out = mesh;
+    return true;
+}
+
+PYTHON_API uint32_t cscdpy_polygons_count(const mesh_file *mesh) {
+    return mesh->triangle_count;
+}
+
+/* Copies the triangles, three vertices each, and the face that each is cut from. */
+PYTHON_API void cscdpy_polygons_copy(const mesh_file *mesh, uint32_t *triangles, uint32_t *faces) {
+    memcpy(triangles, mesh->triangles, (size_t)mesh->triangle_count * 3 * sizeof *triangles);
+    for (uint32_t i = 0; i < mesh->triangle_count; i++) faces[i] = mesh_file_polygon(mesh, i);
+}
+
+PYTHON_API void cscdpy_polygons_free(mesh_file *mesh) {
+    mesh_file_free(mesh);
+    free(mesh);
+}
+
+/* ---- standard error ------------------------------------------------------------------------------------ */
+
+/* libpng writes to this stream inside the module, in place of the C library's variable: see link.sh. */
+extern FILE *cscdpy_standard_error;
+FILE *cscdpy_standard_error;
+
+__attribute__((constructor)) static void find_stream(void) {
+    cscdpy_standard_error = stderr;
 }
