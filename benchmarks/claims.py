@@ -15,8 +15,8 @@ RESULTS = ROOT / 'benchmarks' / 'results'
 PAGE = ROOT / 'docs' / 'about' / 'measurements.md'
 SECTIONS = (
     'demo', 'methods', 'culling-choice', 'small-steps', 'size', 'threads', 'bulk-motion', 'topology', 'intersections', 'proximity',
-    'solvers', 'cloth', 'peers', 'elementary', 'volumes', 'charge', 'cuts', 'auto-plans', 'stiffness', 'many-meshes', 'farm', 'cold-disk',
-    'extremes', 'extreme-shapes', 'reports', 'python-calls')
+    'solvers', 'cloth', 'peers', 'elementary', 'volumes', 'charge', 'cuts', 'auto-plans', 'stiffness', 'cold-disk',
+    'extremes', 'extreme-shapes', 'reports')
 OPENING = """# Measurements
 
 This page is made by `make claims` from the tables in [benchmarks/results](../../benchmarks/results/), which have every row, the
