@@ -15,7 +15,7 @@ RESULTS = ROOT / 'benchmarks' / 'results'
 PAGE = ROOT / 'docs' / 'about' / 'measurements.md'
 SECTIONS = (
     'demo', 'methods', 'culling-choice', 'small-steps', 'size', 'threads', 'bulk-motion', 'topology', 'intersections', 'proximity',
-    'solvers', 'cloth', 'peers', 'elementary', 'volumes', 'charge', 'cuts', 'auto-plans', 'stiffness', 'cold-disk',
+    'peers', 'elementary', 'volumes', 'charge', 'cuts', 'stiffness', 'cold-disk',
     'extremes', 'extreme-shapes', 'reports')
 OPENING = """# Measurements
 
