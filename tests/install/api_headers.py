@@ -257,12 +257,13 @@ def first_sentence(comment):
 
 
 def man_text():
-    """An entry for each function: its parameters, and the first sentence above it. Those without one follow others."""
+    """An entry for each function: its parameters, and the first sentence above it. Functions that follow each other with the same
+    sentence, or without one, share an entry."""
     text = ''
     for header in HEADERS:
         with open(header, encoding='utf-8') as file:
             code = re.sub(r'/\* (?:====|----).*?\*/|^#.*?$', '', file.read(), flags=re.M)
-        entries = ''
+        entries = []
         pattern = r'(?:/\*((?:(?!\*/).)*?)\*/\n)?(?:CSCD_API|static inline) [^;{(]*?(\w+)\(([^;{)]*)\)'
         for comment, name, parameters in re.findall(pattern, code, flags=re.S):
             if name.endswith('_sized'):
@@ -274,9 +275,13 @@ def man_text():
             last = comment
             arguments = ', '.join(f'\\fI{each}\\fR' for each in names)
             sentence = first_sentence(comment).replace('\\', '\\e').replace('-', '\\-')
-            entries += f'.TP\n\\fB{name}\\fR({arguments})\n{sentence}\n'
+            heading = f'\\fB{name}\\fR({arguments})\n'
+            if entries and entries[-1][1] == sentence:
+                entries[-1][0] += f'.TQ\n{heading}'
+            else:
+                entries.append([f'.TP\n{heading}', sentence])
         if entries:
-            text += f'.SS <cscd/{os.path.basename(header)}>\n{entries}'
+            text += f'.SS <cscd/{os.path.basename(header)}>\n' + ''.join(f'{headings}{sentence}\n' for headings, sentence in entries)
     return text
 
 
