@@ -1,6 +1,6 @@
 /* Nanoseconds per pair of triangles for the feature filter, and per pair of features for signs and roots: on each
  * level of vector instructions, and one by one. */
-#include "runtime/bvh/bvh_rebuild.h"
+#include "runtime/bvh/bvh.h"
 #include "runtime/detector/detector.h"
 #include "runtime/narrow_phase/feature_queue.h"
 #include "tool/io/mesh_file.h"

@@ -1,8 +1,5 @@
-/* Builds the trees: the order of triangles, leaves, blocks and records. */
-#include "runtime/bvh/bvh.h"
-#include "runtime/bvh/bvh_hubs.h"
-#include "runtime/bvh/bvh_order.h"
-#include "runtime/bvh/bvh_slivers.h"
+/* Builds the trees: leaves, records, and the blocks above the leaves, level by level. */
+#include "runtime/bvh/bvh_parts.h"
 
 #include <assert.h>
 #include <math.h>
@@ -155,6 +152,95 @@ static bool fill_run(builder *b, bvh *hierarchy, bvh_tree *tree, uint32_t region
     return true;
 }
 
+/* ---- levels ------------------------------------------------------------------------------------------------ */
+
+static uint32_t blocks_over(uint32_t children) {
+    return (children + LANES - 1) / LANES;
+}
+
+static bool allocate_level(cscd_context *context, bvh_level *level, uint32_t block_count, int axis_count) {
+    size_t floats = (size_t)axis_count * 2 * LANES;
+    level->block_count = block_count;
+    level->first_children = context_allocate(context, block_count, sizeof *level->first_children);
+    level->bounds = context_allocate(context, block_count * floats, sizeof *level->bounds);
+    level->flags = context_allocate(context, block_count, sizeof *level->flags);
+    return level->first_children != NULL && level->bounds != NULL && level->flags != NULL;
+}
+
+static uint32_t add_blocks(bvh_level *level, uint32_t at, uint32_t first_child, uint32_t child_count) {
+    for (uint32_t i = 0; i < child_count; i += LANES, at++) {
+        uint32_t count = child_count - i < LANES ? child_count - i : LANES;
+        level->first_children[at] = first_child + i;
+        level->flags[at].used = (uint8_t)((1u << count) - 1);
+    }
+    return at;
+}
+
+/* Returns the number of levels of the largest tree, at least one. */
+static int height_of(const bvh *hierarchy) {
+    int height = 1;
+    for (uint32_t p = 0; p < hierarchy->tree_count; p++) {
+        int own = 1;
+        for (uint32_t n = blocks_over(hierarchy->trees[p].leaf_count); n > 1; n = blocks_over(n)) own++;
+        height = own > height ? own : height;
+    }
+    return height;
+}
+
+/* Adds the blocks of one level of all trees. On entry counts holds the number of children of each tree on this
+ * level, on return the number of its blocks. */
+static bool add_tree_level(bvh *hierarchy, int level, uint32_t *counts) {
+    uint32_t total = 0, at = 0, child = 0;
+    for (uint32_t p = 0; p < hierarchy->tree_count; p++) total += blocks_over(counts[p]);
+    if (!allocate_level(hierarchy->mesh->context, &hierarchy->levels[level], total, hierarchy->axis_count))
+        return false;
+    for (uint32_t p = 0; p < hierarchy->tree_count; p++) {
+        uint32_t first = hierarchy->trees[p].first_blocks[level] = at;
+        at = add_blocks(&hierarchy->levels[level], at, child, counts[p]);
+        for (uint32_t i = first; level == 0 && i < at; i++) hierarchy->block_trees[i] = p;
+        child += counts[p];
+        counts[p] = at - first;
+    }
+    return true;
+}
+
+/* Adds all blocks above the leaves; counts: scratch, one number per tree. False: no memory. */
+static bool build_levels(bvh *hierarchy, uint32_t *counts) {
+    uint32_t blocks = 0;
+    hierarchy->tree_level = hierarchy->level_count = height_of(hierarchy);
+    for (uint32_t p = 0; p < hierarchy->tree_count; p++) {
+        counts[p] = hierarchy->trees[p].leaf_count;
+        blocks += blocks_over(counts[p]);
+    }
+    hierarchy->block_trees =
+        context_allocate(hierarchy->mesh->context, blocks, sizeof *hierarchy->block_trees);
+    if (hierarchy->block_trees == NULL) return false;
+    for (int level = 0; level < hierarchy->tree_level; level++) {
+        if (!add_tree_level(hierarchy, level, counts)) return false;
+    }
+    uint32_t children = hierarchy->tree_count;
+    do {
+        bvh_level *level = &hierarchy->levels[hierarchy->level_count++];
+        if (!allocate_level(hierarchy->mesh->context, level, blocks_over(children), hierarchy->axis_count))
+            return false;
+        add_blocks(level, 0, 0, children);
+        children = level->block_count;
+    } while (children > 1);
+    return true;
+}
+
+static void free_levels(bvh *hierarchy) {
+    cscd_context *context = hierarchy->mesh->context;
+    for (int i = 0; i < BVH_LEVEL_MAX; i++) {
+        context_free(context, hierarchy->levels[i].first_children);
+        context_free(context, hierarchy->levels[i].bounds);
+        context_free(context, hierarchy->levels[i].flags);
+        context_free(context, hierarchy->levels[i].self_pairs);
+        context_free(context, hierarchy->levels[i].inactive_lanes);
+        hierarchy->levels[i] = (bvh_level){0};
+    }
+}
+
 /* ---- all of it ----------------------------------------------------------------------------------------- */
 
 static bool allocate_builder(builder *b) {
@@ -260,7 +346,7 @@ cscd_status bvh_build(const cscd_mesh *mesh, bvh_regions regions, const double *
                             b.region_offsets[region + 1], &mesh->context->progress);
         }
         if (made) cut_chunks(&hierarchy);
-        made = made && bvh_build_levels(&hierarchy, b.region_offsets) && bvh_mark_objects(&hierarchy) &&
+        made = made && build_levels(&hierarchy, b.region_offsets) && bvh_mark_objects(&hierarchy) &&
                bvh_allocate_hubs(&hierarchy) && bvh_allocate_slivers(&hierarchy, positions);
     }
     free_builder(&b);
@@ -319,7 +405,7 @@ static void drop_levels(bvh *hierarchy) {
     bvh_free_collapsed(hierarchy);
     bvh_free_hubs(hierarchy);
     bvh_free_slivers(hierarchy);
-    bvh_free_levels(hierarchy);
+    free_levels(hierarchy);
     context_free(context, hierarchy->block_trees);
     hierarchy->block_trees = NULL;
     hierarchy->level_count = 0;
@@ -360,7 +446,7 @@ cscd_status bvh_finish(bvh *hierarchy, bvh_regions regions, const object_set *se
         allocate_missing(&b, hierarchy, missing) && fill_all_missing(&b, hierarchy, positions, missing);
     if (made) {
         cut_chunks(hierarchy);
-        made = bvh_build_levels(hierarchy, b.region_offsets) && bvh_mark_objects(hierarchy) &&
+        made = build_levels(hierarchy, b.region_offsets) && bvh_mark_objects(hierarchy) &&
                bvh_allocate_hubs(hierarchy) && bvh_allocate_slivers(hierarchy, positions) &&
                bvh_set_objects(hierarchy, sets) && bvh_set_active(hierarchy, active);
         if (!made) drop_levels(hierarchy);
@@ -383,7 +469,7 @@ void bvh_free(bvh *hierarchy) {
     bvh_free_collapsed(hierarchy);
     bvh_free_hubs(hierarchy);
     bvh_free_slivers(hierarchy);
-    bvh_free_levels(hierarchy);
+    free_levels(hierarchy);
     *hierarchy = (bvh){0};
 }
 

@@ -1,5 +1,5 @@
 /* Finds the directions in which triangles lie as seen from a vertex that very many of them share. */
-#include "runtime/bvh/bvh_hubs.h"
+#include "runtime/bvh/bvh_parts.h"
 #include "src/core/floating.h"
 #include "src/mesh/surface.h"
 

@@ -1,7 +1,6 @@
 /* Trees that move over to another mesh: what is kept is renumbered and copied, what is missing gets a place. */
-#include "runtime/bvh/bvh_move.h"
-#include "runtime/bvh/bvh_hubs.h"
-#include "runtime/bvh/bvh_slivers.h"
+#include "runtime/bvh/bvh_parts.h"
+#include "src/mesh/mesh_change.h"
 
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* What is left out of traversals: pairs of objects, features that are not active, and components without a surface. */
-#include "runtime/bvh/bvh.h"
+#include "runtime/bvh/bvh_parts.h"
 
 /* ---- trees --------------------------------------------------------------------------------------------- */
 

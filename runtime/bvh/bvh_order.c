@@ -1,5 +1,5 @@
 /* Orders items in space, so that neighbours in the order are near each other. */
-#include "runtime/bvh/bvh_order.h"
+#include "runtime/bvh/bvh_parts.h"
 
 #include "src/core/kernels.h"
 

@@ -1,5 +1,5 @@
 /* Sets the flags of leaves and blocks: their orientations, and which triangles are newly kept. */
-#include "runtime/bvh/bvh.h"
+#include "runtime/bvh/bvh_parts.h"
 
 enum { LEAVES_PER_TASK = 64, BLOCKS_PER_TASK = 128 };
 

@@ -1,5 +1,5 @@
 /* Triangles near a box at one moment, by the trees. */
-#include "runtime/bvh/bvh_query.h"
+#include "runtime/bvh/bvh_parts.h"
 
 #include <math.h>
 

@@ -1,5 +1,5 @@
 /* Trees that follow a motion: built when they are first needed, refitted, and rebuilt when they have decayed. */
-#include "runtime/bvh/bvh_rebuild.h"
+#include "runtime/bvh/bvh_parts.h"
 
 #include <math.h>
 

@@ -1,7 +1,5 @@
 /* Refits the BVH to an interval: frames, records, bounds, flags. */
-#include "runtime/bvh/bvh.h"
-#include "runtime/bvh/bvh_hubs.h"
-#include "runtime/bvh/bvh_slivers.h"
+#include "runtime/bvh/bvh_parts.h"
 #include "src/core/floating.h"
 
 #include <assert.h>

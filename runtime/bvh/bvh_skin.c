@@ -1,5 +1,5 @@
 /* How far trees have moved since a moment. */
-#include "runtime/bvh/bvh_skin.h"
+#include "runtime/bvh/bvh_parts.h"
 
 #include "src/core/floating.h"
 

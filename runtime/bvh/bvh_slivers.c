@@ -1,5 +1,5 @@
 /* Finds the hulls of two boxes around slivers, and planes between two of them. */
-#include "runtime/bvh/bvh_slivers.h"
+#include "runtime/bvh/bvh_parts.h"
 #include "src/mesh/surface.h"
 
 #include <math.h>

@@ -16,9 +16,7 @@
  *   u (36.2 M (A + B) C + 18.2 M A B + 198.2 A B C) <= u M' (37 (A + B) C + 217 A B).
  * The code takes 2^-18 M' (C (A + B) + 4 A B) = u M' (64 (A + B) C + 256 A B), which leaves room. Nothing of this
  * underflows by more than the 2^-100 that is added. */
-#include "runtime/bvh/bvh_kernels_simd.h"
-
-#include "runtime/bvh/leaf_volumes.h"
+#include "runtime/bvh/bvh_simd.h"
 
 static f32x8 largest_component(f32x8 (*v)[3]) {
     f32x8 largest = f32x8_abs(v[0][0]);
@@ -43,7 +41,7 @@ static f32x8 length_above(const f32x8 v[3]) {
 }
 
 /* Returns the E up to which a and b may change while c changes by up to R, so that s = c . (a x b) changes by less than its
- * magnitude (runtime/bvh/bvh_skin.h); below 0 where R alone is too much. n = a x b changes by at most E (L + E), with
+ * magnitude (the skin in bvh.h); below 0 where R alone is too much. n = a x b changes by at most E (L + E), with
  * L = |a| + |b|, so s by at most |n| R + E (L + E) (|c| + R). This is |s| without the bound on its error where
  * E (L + E) = K, which is (|s| - bound - |n| R) / (|c| + R), and E = 2 K / (L + sqrt(L^2 + 4 K)). */
 static f32x8 lasting_stretch(const f32x8 a[3], const f32x8 b[3], const f32x8 c[3], const f32x8 normal[3],
@@ -151,4 +149,84 @@ void SIMD_NAME(orient_lasting)(const bvh *hierarchy, const bvh_tree *tree, uint3
 void SIMD_NAME(orient_corners)(const bvh_tree *tree, f32x8 (*corners)[2][3], uint32_t *plus,
                                uint32_t *minus) {
     orient_lanes(tree, corners, NULL, plus, minus, NULL);
+}
+
+/* ---- how far records are from where they were at a reference ----------------------------------------------- */
+
+double SIMD_NAME(skin_move)(bvh_skin *s, uint32_t begin, uint32_t end, const double *x,
+                            const double origin[3]) {
+    f64x8 farthest = f64x8_all(0.0);
+    for (uint32_t i = begin; i < end; i += LANES) {
+        f64x8 at[3], sum = f64x8_all(0.0);
+        f32x8 rows[8];
+        for (int lane = 0; lane < LANES; lane++) rows[lane] = f32x8_load(s->items[i + (uint32_t)lane]);
+        f32x8_transpose(rows);
+        f64x8_load_points(x, s->vertices + i, at);
+        for (int k = 0; k < 3; k++) {
+            f64x8 by = (at[k] - f64x8_all(origin[k])) * f64x8_all(s->scale) - f64x8_from(rows[k]);
+            sum += by * by;
+            rows[4 + k] = f32x8_from(by);
+        }
+        farthest = f64x8_max(farthest, sum);
+        f32x8_transpose(rows);
+        for (int lane = 0; lane < LANES; lane++) f32x8_store(s->items[i + (uint32_t)lane], rows[lane]);
+    }
+    double greatest = 0.0;
+    for (int lane = 0; lane < LANES; lane++) greatest = farthest[lane] > greatest ? farthest[lane] : greatest;
+    return greatest;
+}
+
+/* ---- signs ------------------------------------------------------------------------------------------------- */
+
+/* The corners of a leaf at one end, in the frame of its tree, as floats; returns the largest magnitude. */
+static float place_corners(const bvh_skin *s, const skin_leaf *leaf, const double *x, int end,
+                           leaf_corners corners) {
+    const double *origin = s->trees[leaf->tree].ends[end];
+    f32x8 largest = f32x8_all(0.0f);
+    for (int i = 0; i < 3; i++) {
+        uint32_t vertices[LANES];
+        f64x8 at[3];
+        for (int lane = 0; lane < LANES; lane++)
+            vertices[lane] = s->vertices[leaf->corners[i * LANES + lane]];
+        f64x8_load_points(x, vertices, at);
+        for (int k = 0; k < 3; k++) {
+            corners[i][end][k] = f32x8_from((at[k] - f64x8_all(origin[k])) * f64x8_all(s->scale));
+            largest = f32x8_max(largest, f32x8_abs(corners[i][end][k]));
+        }
+    }
+    return f32x8_greatest(largest);
+}
+
+/* Computes the signs of a leaf for the interval. Are they what they were? */
+static __attribute__((noinline)) bool keeps_signs(const bvh_skin *s, const skin_leaf *leaf, const double *x0,
+                                                  const double *x1) {
+    const skin_tree *of = &s->trees[leaf->tree];
+    bvh_tree tree = {.reach = 0.0f};
+    leaf_corners corners;
+    uint32_t plus, minus;
+    float start = place_corners(s, leaf, x0, 0, corners), stop = place_corners(s, leaf, x1, 1, corners);
+    tree.reach = (start > stop ? start : stop) * (1.0f + 0x1p-20f);
+    for (int k = 0; k < 3; k++) tree.detector[0][k] = tree.detector[1][k] = of->detector[k];
+    SIMD_NAME(orient_corners)(&tree, corners, &plus, &minus);
+    return (leaf->plus & ~plus) == 0 && (leaf->minus & ~minus) == 0;
+}
+
+/* The extents of what the corners of a leaf are off by bound what any two of them differ by. Signs last where these are small
+ * at both ends; what they were at the start is known from the interval before. */
+bool SIMD_NAME(skin_signs)(const bvh_skin *s, uint32_t begin, uint32_t end, const double *x0,
+                           const double *x1) {
+    for (uint32_t i = begin; i < end; i++) {
+        const skin_leaf *leaf = &s->leaves[i];
+        f32x8 low = f32x8_load(s->items[leaf->corners[0]]), high = low;
+        for (int j = 1; j < 3 * LANES; j++) {
+            f32x8 item = f32x8_load(s->items[leaf->corners[j]]);
+            low = f32x8_min(low, item);
+            high = f32x8_max(high, item);
+        }
+        f32x8 extent = high - low;
+        float sum = (extent[4] * extent[4] + extent[5] * extent[5]) + extent[6] * extent[6];
+        s->stray_at_end[i] = !(sum < s->stretches[i]);
+        if ((s->stray_at_start[i] || s->stray_at_end[i]) && !keeps_signs(s, leaf, x0, x1)) return false;
+    }
+    return true;
 }

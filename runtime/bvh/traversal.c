@@ -1,5 +1,5 @@
 /* Self-traversal of the BVH: batches, and how threads share the work. */
-#include "runtime/bvh/traversal.h"
+#include "runtime/bvh/bvh_parts.h"
 
 #include "src/core/timer.h"
 

@@ -11,11 +11,7 @@
  *
  * A block that is visited with itself compares lane i with the lanes after i, and its children with themselves. Blocks
  * of two trees are in two frames: a displacement moves the volumes of a into the frame of b. */
-#include "runtime/bvh/bvh_kernels_simd.h"
-
-#include "runtime/bvh/bvh_hubs.h"
-#include "runtime/bvh/bvh_slivers.h"
-#include "runtime/bvh/leaf_volumes.h"
+#include "runtime/bvh/bvh_simd.h"
 
 /* ---- lanes --------------------------------------------------------------------------------------------- */
 
@@ -143,8 +139,7 @@ static inline uint32_t apart_at_ends(const leaf_volumes *a, const leaf_volumes *
 
 /* ---- triangles of leaves ------------------------------------------------------------------------------- */
 
-_Static_assert(sizeof(leaf_volumes) == LEAF_VOLUME_FLOATS * sizeof(float),
-               "traversal.h makes room for these");
+_Static_assert(sizeof(leaf_volumes) == LEAF_VOLUME_FLOATS * sizeof(float), "bvh.h makes room for these");
 
 static const leaf_volumes *leaf_volumes_of(const bvh *hierarchy, leaf_cache *cache, uint32_t index,
                                            const bvh_tree *tree) {
@@ -416,3 +411,18 @@ void SIMD_NAME(search)(const traversal *t, traversal_lane *lane, size_t visits_m
         visit_blocks(t, lane, lane->stack[--lane->stack_count]);
     }
 }
+
+/* ---- the table of the kernels ------------------------------------------------------------------------------ */
+
+const bvh_kernels SIMD_NAME(bvh_kernels) = {
+    .copy_in = SIMD_NAME(copy_in),
+    .refit = SIMD_NAME(refit),
+    .extents_at_start = SIMD_NAME(extents_at_start),
+    .orient = SIMD_NAME(orient),
+    .orient_lasting = SIMD_NAME(orient_lasting),
+    .skin_move = SIMD_NAME(skin_move),
+    .skin_signs = SIMD_NAME(skin_signs),
+    .near_children = SIMD_NAME(near_children),
+    .near_triangles = SIMD_NAME(near_triangles),
+    .search = SIMD_NAME(search),
+};

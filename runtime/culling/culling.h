@@ -3,7 +3,6 @@
 #pragma once
 
 #include "runtime/bvh/bvh.h"
-#include "runtime/bvh/bvh_move.h"
 #include "src/mesh/mesh_change.h"
 #include "src/mesh/plan.h"
 

@@ -1,7 +1,7 @@
 /* The outer surfaces of bodies, what bodies do not bury in themselves, and the points of these surfaces that are near to others. */
 #pragma once
 
-#include "runtime/bvh/bvh_query.h"
+#include "runtime/bvh/bvh.h"
 #include "runtime/intersections/intersections.h"
 
 /* A convex part of a triangle, scaled. */

@@ -1,7 +1,7 @@
 /* Internal state of a detector: what lives from one call to the next. */
 #pragma once
 
-#include "runtime/bvh/bvh_rebuild.h"
+#include "runtime/bvh/bvh.h"
 #include "runtime/culling/culling.h"
 #include "runtime/detector/edge_rest.h"
 #include "runtime/detector/interval_search.h"

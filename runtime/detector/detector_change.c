@@ -1,5 +1,5 @@
 /* A detector that moves over to a mesh that was made from its own: untouched components keep what they have. */
-#include "runtime/bvh/bvh_move.h"
+#include "runtime/bvh/bvh.h"
 #include "runtime/culling/culling.h"
 #include "runtime/detector/detector.h"
 #include "runtime/detector/detector_rules.h"

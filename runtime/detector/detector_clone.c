@@ -1,5 +1,5 @@
 /* A second detector on the same mesh, which knows what the first one knows: everything is copied, nothing is built. */
-#include "runtime/bvh/bvh_move.h"
+#include "runtime/bvh/bvh.h"
 #include "runtime/detector/detector.h"
 #include "runtime/detector/list_cap.h"
 #include "runtime/narrow_phase/narrow_phase.h"

@@ -7,7 +7,7 @@
  * repetition as well. */
 #pragma once
 
-#include "runtime/bvh/bvh_rebuild.h"
+#include "runtime/bvh/bvh.h"
 #include "runtime/culling/culling.h"
 
 typedef struct rollback {

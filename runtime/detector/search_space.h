@@ -2,7 +2,7 @@
  * features. */
 #pragma once
 
-#include "runtime/bvh/traversal.h"
+#include "runtime/bvh/bvh.h"
 #include "runtime/loose/loose.h"
 #include "runtime/narrow_phase/narrow_phase.h"
 

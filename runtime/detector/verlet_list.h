@@ -6,7 +6,7 @@
  *                                          within the skin test these pairs alone. */
 #pragma once
 
-#include "runtime/bvh/bvh_skin.h"
+#include "runtime/bvh/bvh.h"
 #include "runtime/detector/candidates.h"
 
 struct step_outcome;

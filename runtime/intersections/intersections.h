@@ -5,8 +5,7 @@
  * pair of parts. Theory: docs/theory/static-check.md, docs/theory/curves.md and docs/theory/orientation.md. */
 #pragma once
 
-#include "runtime/bvh/object_set.h"
-#include "runtime/bvh/traversal.h"
+#include "runtime/bvh/bvh.h"
 #include "src/core/memory_budget.h"
 #include "src/mesh/bodies.h"
 #include "src/mesh/part_labels.h"

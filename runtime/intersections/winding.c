@@ -2,7 +2,7 @@
  * counted with signs. docs/theory/curves.md, lemma 5. */
 #include "runtime/intersections/named_surface.h"
 
-#include "runtime/bvh/bvh_query.h"
+#include "runtime/bvh/bvh.h"
 
 #include <math.h>
 

@@ -2,7 +2,7 @@
  * apart. */
 #pragma once
 
-#include "runtime/bvh/object_set.h"
+#include "runtime/bvh/bvh.h"
 #include "src/core/context.h"
 #include "src/mesh/mesh_heirs.h"
 

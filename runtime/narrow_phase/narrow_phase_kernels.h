@@ -1,7 +1,7 @@
 /* The kernels of the narrow phase: from pairs of triangles to the pairs of their features. */
 #pragma once
 
-#include "runtime/bvh/traversal.h"
+#include "runtime/bvh/bvh.h"
 #include "runtime/narrow_phase/representatives.h"
 #include "src/core/kernels.h"
 

@@ -1,7 +1,7 @@
 /* The interval that is searched: the mesh, its positions at both ends, and which pairs count. */
 #pragma once
 
-#include "runtime/bvh/traversal.h"
+#include "runtime/bvh/bvh.h"
 #include "runtime/ccd/ccd.h"
 #include "runtime/culling/culling.h"
 #include "runtime/narrow_phase/pair_filter.h"

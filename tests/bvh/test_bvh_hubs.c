@@ -1,5 +1,5 @@
 /* Vertices of very many triangles: the same contacts and intersections as of all pairs, and in near-linear time. */
-#include "runtime/bvh/bvh_hubs.h"
+#include "runtime/bvh/bvh_parts.h"
 #include "src/core/vec3.h"
 #include "src/mesh/mesh.h"
 #include "src/mesh/triangle_intersection.h"

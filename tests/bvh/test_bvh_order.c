@@ -1,5 +1,5 @@
 /* The order of items equals one by sorting, and is the same for any number of threads. */
-#include "runtime/bvh/bvh_order.h"
+#include "runtime/bvh/bvh_parts.h"
 #include "src/core/kernels.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"

@@ -1,6 +1,6 @@
 /* A skin that holds is no thicker than it says, every sign it keeps is right throughout the interval, and it does hold where
  * little has moved. */
-#include "runtime/bvh/bvh_skin.h"
+#include "runtime/bvh/bvh_parts.h"
 #include "tests/support/bvh/bvh_rig.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"

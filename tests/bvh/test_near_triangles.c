@@ -1,5 +1,5 @@
 /* Triangles near a point: none within the distance is left out, on any level, and few others come with them. */
-#include "runtime/bvh/bvh_query.h"
+#include "runtime/bvh/bvh.h"
 #include "runtime/ccd/ccd.h"
 #include "tests/support/bvh/bvh_rig.h"
 #include "tests/support/random_stream.h"

@@ -1,6 +1,6 @@
 /* Orientation signs are checked by exact arithmetic: one wrong S+ or S- fails. So are the places of
  * detector points. */
-#include "runtime/bvh/bvh.h"
+#include "runtime/bvh/bvh_parts.h"
 #include "tests/support/bvh/bvh_rig.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"

@@ -1,7 +1,6 @@
 /* The traversal is compared with all pairs: what it must find, what it may find, and that nothing else
  * matters. */
-#include "runtime/bvh/bvh_slivers.h"
-#include "runtime/bvh/traversal.h"
+#include "runtime/bvh/bvh_parts.h"
 #include "tests/support/bvh/bvh_rig.h"
 #include "tests/support/bvh/touching.h"
 #include "tests/support/test.h"

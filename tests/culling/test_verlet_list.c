@@ -2,6 +2,7 @@
  * and of brute force, however slowly bodies approach, fold, turn or jump, and whatever comes between two steps. */
 #include "cscd/cscd.h"
 #include "cscd/research.h"
+#include "runtime/bvh/bvh_parts.h"
 #include "runtime/detector/detector.h"
 #include "tests/support/culling/exact_numbers.h"
 #include "tests/support/culling/march.h"

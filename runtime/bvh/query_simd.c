@@ -1,6 +1,5 @@
 /* How far a point is from boxes: those of a block's children, and those of a leaf's triangles. */
-#include "runtime/bvh/bvh_kernels_simd.h"
-#include "runtime/bvh/leaf_volumes.h"
+#include "runtime/bvh/bvh_simd.h"
 
 #include <math.h>
 
