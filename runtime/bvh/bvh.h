@@ -26,11 +26,8 @@ struct cscd_mesh_change;
 
 /* ---- sets of objects --------------------------------------------------------------------------------------- */
 
-/* In place of an object: triangles of more than one. */
-#define OBJECT_SEVERAL UINT32_MAX
-
-/* In place of an object: it has not been looked for. */
-#define OBJECT_UNKNOWN (UINT32_MAX - 1)
+/* In place of the object of a tree, before bvh_build or bvh_finish has found it. */
+#define OBJECT_UNKNOWN UINT32_MAX
 
 /* The library's own categories. An obstacle is compared with free objects only, unless it and another obstacle ask for
  * each other. */
@@ -132,7 +129,7 @@ typedef struct bvh_level {
  * and multiplies by the BVH's scale. */
 typedef struct bvh_tree {
     uint32_t region;
-    uint32_t object;    /* OBJECT_SEVERAL: only where a baseline has joined components */
+    uint32_t object;    /* the one that its component lies in */
     uint32_t missing;   /* the number of triangles that are still to be put into it; 0: it is complete */
     bool skip_adjacent; /* the traversal leaves out pairs of its triangles that share a vertex */
     uint32_t first_leaf, leaf_count, first_record, record_count;
@@ -165,19 +162,22 @@ typedef struct bvh {
     bvh_level levels[BVH_LEVEL_MAX];
     int tree_level, level_count;
     double scale;
-    bool still;             /* the last refit was to a moment: both ends of everything are the same */
-    bool keeps_hub_pairs;   /* adjacent triangles are left out only if they share another vertex than a hub */
-    double hub_distance;    /* for which child_hubs and child_slivers tell triangles apart */
-    bool trees_mix_objects; /* some tree holds several objects */
-    uint32_t *slots;        /* per triangle, where it is: 8 * leaf + lane */
+    bool still;           /* the last refit was to a moment: both ends of everything are the same */
+    bool keeps_hub_pairs; /* adjacent triangles are left out only if they share another vertex than a hub */
+    double hub_distance;  /* for which child_hubs and child_slivers tell triangles apart */
+    uint32_t *slots;      /* per triangle, where it is: 8 * leaf + lane */
 } bvh;
+
+static inline uint32_t bvh_tree_component(const bvh *hierarchy, const bvh_tree *tree) {
+    return hierarchy->mesh->triangle_components[hierarchy->leaves[tree->first_leaf].triangles[0]];
+}
 
 static inline uint32_t bvh_triangle(const bvh *hierarchy, uint32_t slot) {
     return hierarchy->leaves[slot / LANES].triangles[slot % LANES];
 }
 
-/* Triangles in regions 0 to count - 1, none of them empty, and none in two components unless joined on purpose by a
- * baseline; the weights of a region's triangles in its detector point add up to 1. */
+/* Triangles in regions 0 to count - 1, none of which is empty or spans two components; the weights of a region's triangles
+ * in its detector point add up to 1. */
 typedef struct bvh_regions {
     const uint32_t *of_triangle;
     const double *triangle_weights;

@@ -3,47 +3,28 @@
 
 /* ---- trees --------------------------------------------------------------------------------------------- */
 
-static bool holds_only(const bvh *hierarchy, const bvh_tree *tree, const cscd_object *object) {
-    for (uint32_t i = 0; i < tree->leaf_count; i++) {
-        const uint32_t *triangles = hierarchy->leaves[tree->first_leaf + i].triangles;
-        uint32_t used = hierarchy->leaf_flags[tree->first_leaf + i].used;
-        for (uint32_t lane = 0; lane < LANES && (used >> lane & 1) != 0; lane++) {
-            if (triangles[lane] - object->first_triangle >= object->triangle_count) return false;
-        }
-    }
-    return true;
-}
-
 static uint32_t object_of_tree(const bvh *hierarchy, const bvh_tree *tree) {
-    const cscd_mesh *mesh = hierarchy->mesh;
     uint32_t triangle = hierarchy->leaves[tree->first_leaf].triangles[0];
-    uint32_t object = cscd_mesh_vertex_object(mesh, mesh->triangles[triangle][0]);
-    return holds_only(hierarchy, tree, &mesh->objects[object]) ? object : OBJECT_SEVERAL;
+    return cscd_mesh_vertex_object(hierarchy->mesh, hierarchy->mesh->triangles[triangle][0]);
 }
 
 static void name_objects(bvh *hierarchy) {
     for (uint32_t i = 0; i < hierarchy->tree_count; i++) {
         bvh_tree *tree = &hierarchy->trees[i];
         if (tree->object == OBJECT_UNKNOWN) tree->object = object_of_tree(hierarchy, tree);
-        hierarchy->trees_mix_objects |= tree->object == OBJECT_SEVERAL;
     }
 }
 
 /* ---- obstacles ----------------------------------------------------------------------------------------- */
-
-/* Tells by one triangle: a tree holds obstacles only, or none at all. */
-static bool tree_is_obstacle(const bvh *hierarchy, uint32_t tree) {
-    return triangle_of_obstacle(hierarchy->mesh,
-                                hierarchy->leaves[hierarchy->trees[tree].first_leaf].triangles[0]);
-}
 
 static uint8_t obstacle_children(const bvh *hierarchy, int level, uint32_t block) {
     const bvh_level *at = &hierarchy->levels[level], *below = at - 1;
     uint8_t obstacles = 0;
     for (uint32_t i = 0; i < LANES && (at->flags[block].used >> i & 1) != 0; i++) {
         uint32_t child = at->first_children[block] + i;
-        bool all = level == hierarchy->tree_level ? tree_is_obstacle(hierarchy, child)
-                                                  : below->obstacle_lanes[child] == below->flags[child].used;
+        bool all = level == hierarchy->tree_level
+                       ? hierarchy->mesh->objects[hierarchy->trees[child].object].obstacle
+                       : below->obstacle_lanes[child] == below->flags[child].used;
         obstacles |= (uint8_t)(all << i);
     }
     return obstacles;
@@ -69,14 +50,6 @@ bool bvh_mark_objects(bvh *hierarchy) {
 
 /* ---- sets of objects ----------------------------------------------------------------------------------- */
 
-static object_set set_of_tree(const bvh *hierarchy, uint32_t tree, const object_set *sets) {
-    uint32_t object = hierarchy->trees[tree].object;
-    if (object != OBJECT_SEVERAL) return sets[object];
-    object_set all = sets[0];
-    for (uint32_t i = 1; i < hierarchy->mesh->object_count; i++) all = object_sets_join(&all, &sets[i]);
-    return all;
-}
-
 static object_set set_of_block(const bvh_level *level, uint32_t block) {
     const object_set *children = level->child_sets + (size_t)block * LANES;
     object_set all = children[0];
@@ -93,7 +66,7 @@ static void fill_sets(bvh *hierarchy, const object_set *sets) {
             for (uint32_t i = 0; i < LANES && (level->flags[block].used >> i & 1) != 0; i++) {
                 uint32_t child = level->first_children[block] + i;
                 level->child_sets[(size_t)block * LANES + i] = index == hierarchy->tree_level
-                                                                   ? set_of_tree(hierarchy, child, sets)
+                                                                   ? sets[hierarchy->trees[child].object]
                                                                    : set_of_block(level - 1, child);
             }
         }
@@ -215,24 +188,13 @@ const char *bvh_check_active(const bvh *hierarchy, const bool *active) {
 
 /* ---- components without a surface ---------------------------------------------------------------------- */
 
-static bool tree_is_collapsed(const bvh *hierarchy, const bvh_tree *tree, const bool *collapsed) {
-    const uint32_t *components = hierarchy->mesh->triangle_components;
-    uint32_t end = tree->first_leaf + tree->leaf_count;
-    for (uint32_t leaf = tree->first_leaf; leaf < end; leaf++) {
-        for (uint32_t i = 0; i < LANES && (hierarchy->leaf_flags[leaf].used >> i & 1) != 0; i++) {
-            if (!collapsed[components[hierarchy->leaves[leaf].triangles[i]]]) return false;
-        }
-    }
-    return true;
-}
-
 static uint8_t collapsed_children(const bvh *hierarchy, int level, uint32_t block, const bool *collapsed) {
     const bvh_level *at = &hierarchy->levels[level], *below = at - 1;
     uint8_t lanes = 0;
     for (uint32_t i = 0; i < LANES && (at->flags[block].used >> i & 1) != 0; i++) {
         uint32_t child = at->first_children[block] + i;
         bool all = level == hierarchy->tree_level
-                       ? tree_is_collapsed(hierarchy, &hierarchy->trees[child], collapsed)
+                       ? collapsed[bvh_tree_component(hierarchy, &hierarchy->trees[child])]
                        : below->collapsed_lanes[child] == below->flags[child].used;
         lanes |= (uint8_t)(all << i);
     }

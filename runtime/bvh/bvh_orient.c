@@ -30,10 +30,6 @@ void bvh_detector_points(const bvh *hierarchy, const orientation_query *view, do
     }
 }
 
-static uint32_t component_of(const bvh *hierarchy, const bvh_tree *tree) {
-    return hierarchy->mesh->triangle_components[hierarchy->leaves[tree->first_leaf].triangles[0]];
-}
-
 static uint32_t tree_of_leaf(const bvh *hierarchy, uint32_t index) {
     uint32_t first = 0, last = hierarchy->tree_count - 1;
     while (first < last) {
@@ -54,7 +50,7 @@ static void orient_task(void *data, uint32_t index) {
     for (uint32_t i = tree_of_leaf(hierarchy, begin);
          i < hierarchy->tree_count && hierarchy->trees[i].first_leaf < end; i++) {
         const bvh_tree *tree = &hierarchy->trees[i];
-        if (!now->view->culled[component_of(hierarchy, tree)]) continue;
+        if (!now->view->culled[bvh_tree_component(hierarchy, tree)]) continue;
         uint32_t stop = tree->first_leaf + tree->leaf_count;
         uint32_t first = begin > tree->first_leaf ? begin : tree->first_leaf, last = end < stop ? end : stop;
         if (now->view->lasting != NULL)

@@ -60,15 +60,8 @@ typedef struct query_place {
 /* Each block takes one place and leaves eight, and there are no more levels than this. */
 enum { QUERY_STACK = BVH_LEVEL_MAX * LANES };
 
-/* A tree is that of one component, unless a baseline has joined components to fewer trees: UINT32_MAX. */
-static uint32_t component_of_tree(const bvh *hierarchy, const bvh_tree *tree) {
-    if (hierarchy->tree_count < hierarchy->mesh->component_count) return UINT32_MAX;
-    return hierarchy->mesh->triangle_components[hierarchy->leaves[tree->first_leaf].triangles[0]];
-}
-
 static bool tree_is_open(const bvh *hierarchy, const bvh_tree *tree) {
-    uint32_t component = component_of_tree(hierarchy, tree);
-    return component != UINT32_MAX && !hierarchy->mesh->components[component].closed_manifold;
+    return !hierarchy->mesh->components[bvh_tree_component(hierarchy, tree)].closed_manifold;
 }
 
 void bvh_visit_box(const bvh *hierarchy, const query_box *box, bool closed_only,
@@ -133,9 +126,8 @@ static int push_children(const bvh *hierarchy, const near_place *at, const frame
 }
 
 static bool tree_is_asked_for(const bvh *hierarchy, const bvh_tree *tree, const near_quest *quest) {
-    if (tree->object != quest->object && tree->object != OBJECT_SEVERAL) return false;
-    uint32_t component = quest->numbers != NULL ? component_of_tree(hierarchy, tree) : UINT32_MAX;
-    return component == UINT32_MAX || quest->numbers[component] == quest->number;
+    if (tree->object != quest->object) return false;
+    return quest->numbers == NULL || quest->numbers[bvh_tree_component(hierarchy, tree)] == quest->number;
 }
 
 static void visit_near_leaf(const bvh *hierarchy, const bvh_tree *tree, uint32_t index, const framed_query *q,

@@ -74,22 +74,16 @@ static void finish_tree(bvh_tree *tree, double distance, const copied *sum) {
     memcpy(tree->weighted, sum->weighted, sizeof tree->weighted);
 }
 
-/* With the distances of objects: the greatest of those in the tree. */
-static double tree_distance(const bvh *hierarchy, const bvh_tree *tree, const volume_growth *growth) {
+static double tree_distance(const bvh_tree *tree, const volume_growth *growth) {
     double distance = growth->distance;
-    if (growth->of_objects != NULL) {
-        bool several = tree->object == OBJECT_SEVERAL;
-        uint32_t first = several ? 0 : tree->object,
-                 last = several ? hierarchy->mesh->object_count - 1 : first;
-        for (uint32_t i = first; i <= last; i++) distance = max_of(growth->of_objects[i], distance);
-    }
+    if (growth->of_objects != NULL) distance = max_of(growth->of_objects[tree->object], distance);
     return distance + growth->beyond;
 }
 
 static double greatest_distance(const bvh *hierarchy, const volume_growth *growth) {
     double greatest = 0.0;
     for (uint32_t i = 0; i < hierarchy->tree_count; i++)
-        greatest = fmax(greatest, tree_distance(hierarchy, &hierarchy->trees[i], growth));
+        greatest = fmax(greatest, tree_distance(&hierarchy->trees[i], growth));
     return greatest;
 }
 
@@ -102,8 +96,8 @@ static void finish_trees(const bvh *hierarchy, const volume_growth *growth) {
             sum.reach = c->reach > sum.reach ? c->reach : sum.reach;
             for (int k = 0; k < 6; k++) sum.weighted[k / 3][k % 3] += c->weighted[k / 3][k % 3];
         }
-        finish_tree(&hierarchy->trees[i],
-                    tree_distance(hierarchy, &hierarchy->trees[i], growth) * hierarchy->scale, &sum);
+        finish_tree(&hierarchy->trees[i], tree_distance(&hierarchy->trees[i], growth) * hierarchy->scale,
+                    &sum);
     }
 }
 
@@ -238,9 +232,7 @@ void bvh_refit(bvh *hierarchy, const double *x0, const double *x1, volume_growth
 void bvh_skip_adjacent(bvh *hierarchy, const bool *components) {
     for (uint32_t i = 0; i < hierarchy->tree_count; i++) {
         bvh_tree *tree = &hierarchy->trees[i];
-        uint32_t component =
-            hierarchy->mesh->triangle_components[hierarchy->leaves[tree->first_leaf].triangles[0]];
-        tree->skip_adjacent = components != NULL && components[component];
+        tree->skip_adjacent = components != NULL && components[bvh_tree_component(hierarchy, tree)];
     }
     hierarchy->keeps_hub_pairs = false;
 }

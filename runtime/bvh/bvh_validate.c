@@ -25,7 +25,7 @@ static const char *check_leaf(const bvh *hierarchy, const bvh_tree *tree, uint32
         if (filled && hierarchy->slots[t] != index * LANES + lane) return "slots and leaves are not inverse";
         if (filled && triangle_of_obstacle(hierarchy->mesh, t) != of_obstacles)
             return "a tree holds obstacles and other triangles";
-        if (filled && tree->object != OBJECT_SEVERAL &&
+        if (filled &&
             cscd_mesh_vertex_object(hierarchy->mesh, hierarchy->mesh->triangles[t][0]) != tree->object)
             return "a tree holds triangles of another object";
         for (int i = 0; i < 3; i++) {

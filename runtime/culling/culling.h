@@ -264,7 +264,7 @@ typedef struct region_move {
     uint32_t fresh_count;
 } region_move;
 
-/* c: of the old mesh, without regions of several components. On failure *out holds nothing. */
+/* c: of the old mesh. On failure *out holds nothing. */
 cscd_status region_move_find(cscd_context *context, const culling *c, const cscd_mesh_change *change,
                              region_move *out);
 void region_move_free(cscd_context *context, region_move *m);

@@ -132,9 +132,7 @@ static void test_kind(const check_work *work, intersection_lane *lane, triangle_
 static bool pair_counts(const check_work *work, uint32_t a, uint32_t b) {
     const static_check *c = work->check;
     if (work->own_component_only && a != b) return false;
-    if (c->collapsed != NULL && (c->collapsed[a] || c->collapsed[b])) return false;
-    if (c->objects == NULL || !work->bvh->trees_mix_objects) return true;
-    return object_sets_may_meet(&c->objects[c->component_objects[a]], &c->objects[c->component_objects[b]]);
+    return c->collapsed == NULL || !(c->collapsed[a] || c->collapsed[b]);
 }
 
 /* Replaces the slots of a batch by triangles, and drops the pairs that do not count. */

@@ -80,21 +80,13 @@ static bool triangle_parted(const tree_walk *w, const bvh_leaf *leaf, int lane) 
     return false;
 }
 
-/* Only a tree of several objects leaves this to us. */
-static bool triangle_looks(const tree_walk *w, uint32_t triangle) {
-    const cscd_mesh *mesh = w->interval->mesh;
-    if (w->tree->object != OBJECT_SEVERAL) return true;
-    return pair_filter_admits_objects(&w->interval->filter, w->element->object,
-                                      cscd_mesh_vertex_object(mesh, mesh->triangles[triangle][0]));
-}
-
 static void test_leaf(const tree_walk *w, uint32_t index) {
     const bvh *hierarchy = w->interval->bvh;
     const bvh_leaf *leaf = &hierarchy->leaves[index];
     for (uint32_t used = hierarchy->leaf_flags[index].used, lane = 0; (used >> lane & 1) != 0; lane++) {
         uint32_t triangle = leaf->triangles[lane];
         if (w->inactive && (hierarchy->leaf_inactive[index] >> lane & 1) != 0) continue;
-        if (triangle_parted(w, leaf, (int)lane) || !triangle_looks(w, triangle)) continue;
+        if (triangle_parted(w, leaf, (int)lane)) continue;
         loose_pairs_with_triangle(w->interval, w->element, triangle, w->lane);
     }
 }
@@ -129,9 +121,7 @@ static void walk_tree(tree_walk *w) {
 
 static void test_tree(tree_walk *w, uint32_t tree) {
     w->tree = &w->interval->bvh->trees[tree];
-    bool several = w->tree->object == OBJECT_SEVERAL;
-    if (several || pair_filter_admits_objects(&w->interval->filter, w->element->object, w->tree->object))
-        walk_tree(w);
+    if (pair_filter_admits_objects(&w->interval->filter, w->element->object, w->tree->object)) walk_tree(w);
 }
 
 /* Above the trees bounds are in the frame of the first one; if it is the only one, there are none. */

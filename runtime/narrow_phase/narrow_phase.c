@@ -66,19 +66,15 @@ typedef struct chosen_pairs {
 } chosen_pairs;
 
 /* Most pairs are far from each other on the surface: whatever they represent is theirs. The others are
- * `open`. Where a tree holds several components or objects, the traversal leaves to us whether triangles are
- * looked at. */
+ * `open`. */
 static void choose_pairs(const swept_interval *interval, const triangle_pair *slots, uint32_t count,
                          chosen_pairs *settled, chosen_pairs *open) {
     const bvh *hierarchy = interval->bvh;
-    const pair_filter *filter = &interval->filter;
-    bool trees_mix = (filter->rules != NULL && hierarchy->trees_mix_objects) || filter->collapsed != NULL;
     settled->count = open->count = 0;
     for (uint32_t i = 0; i < count; i++) {
         triangle_pair pair = {bvh_triangle(hierarchy, slots[i].a), bvh_triangle(hierarchy, slots[i].b)};
         pair_selection selection = representatives_select_early(interval, pair);
         chosen_pairs *to = selection.settled ? settled : open;
-        if (trees_mix && !pair_filter_admits_triangles(filter, pair.a, pair.b)) continue;
         to->slots[to->count] = slots[i];
         to->pairs[to->count] = pair;
         to->features[to->count] = selection.features;

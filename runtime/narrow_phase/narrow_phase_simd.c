@@ -232,13 +232,10 @@ typedef struct tree_pair {
     float gap, wide; /* as in pairs_x8 */
 } tree_pair;
 
-/* A tree of several objects has pairs of any distance, the greatest one among them. */
 static double tree_distance(const swept_interval *interval, const bvh_tree *p, const bvh_tree *q) {
     double distance = interval->limit.distance;
     if (interval->thick) {
-        bool several = p->object == OBJECT_SEVERAL || q->object == OBJECT_SEVERAL;
-        distance = several ? __builtin_fmax(distance, interval->filter.rules->greatest)
-                           : object_separation(interval, p->object, q->object).distance;
+        distance = object_separation(interval, p->object, q->object).distance;
     }
     return distance + interval->beyond;
 }

@@ -1,7 +1,7 @@
 /* Decides which pairs are looked at. A search asks one question on each level, from the trees down to what it has found:
  * trees and leaves  object_sets_may_meet, which the traversal asks for eight sets of objects at once;
  * objects           pair_filter_admits_objects, and pair_filter_admits_components;
- * triangles         pair_filter_admits_triangles, where a tree holds several components;
+ * triangles         pair_filter_admits_triangles, where trees of a baseline hold several components;
  * their features    pair_filter_features;
  * two features      pair_filter_admits_features;
  * what was found    exclusions_cover. */
