@@ -347,7 +347,7 @@ cscd_status bvh_build(const cscd_mesh *mesh, bvh_regions regions, const double *
         }
         if (made) cut_chunks(&hierarchy);
         made = made && build_levels(&hierarchy, b.region_offsets) && bvh_mark_objects(&hierarchy) &&
-               bvh_allocate_hubs(&hierarchy) && bvh_allocate_slivers(&hierarchy, positions);
+               bvh_allocate_second_volumes(&hierarchy, positions);
     }
     free_builder(&b);
     if (!made) {
@@ -403,8 +403,7 @@ static void drop_levels(bvh *hierarchy) {
     cscd_context *context = hierarchy->mesh->context;
     bvh_free_objects(hierarchy);
     bvh_free_collapsed(hierarchy);
-    bvh_free_hubs(hierarchy);
-    bvh_free_slivers(hierarchy);
+    bvh_free_second_volumes(hierarchy);
     free_levels(hierarchy);
     context_free(context, hierarchy->block_trees);
     hierarchy->block_trees = NULL;
@@ -447,8 +446,8 @@ cscd_status bvh_finish(bvh *hierarchy, bvh_regions regions, const object_set *se
     if (made) {
         cut_chunks(hierarchy);
         made = build_levels(hierarchy, b.region_offsets) && bvh_mark_objects(hierarchy) &&
-               bvh_allocate_hubs(hierarchy) && bvh_allocate_slivers(hierarchy, positions) &&
-               bvh_set_objects(hierarchy, sets) && bvh_set_active(hierarchy, active);
+               bvh_allocate_second_volumes(hierarchy, positions) && bvh_set_objects(hierarchy, sets) &&
+               bvh_set_active(hierarchy, active);
         if (!made) drop_levels(hierarchy);
     }
     free_builder(&b);
@@ -467,8 +466,7 @@ void bvh_free(bvh *hierarchy) {
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(context, blocks[i]);
     bvh_free_objects(hierarchy);
     bvh_free_collapsed(hierarchy);
-    bvh_free_hubs(hierarchy);
-    bvh_free_slivers(hierarchy);
+    bvh_free_second_volumes(hierarchy);
     free_levels(hierarchy);
     *hierarchy = (bvh){0};
 }

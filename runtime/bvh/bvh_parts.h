@@ -106,7 +106,7 @@ void bvh_free_objects(bvh *hierarchy);
 /* Frees collapsed_lanes, as a step of bvh_free. */
 void bvh_free_collapsed(bvh *hierarchy);
 
-/* ---- vertices that very many triangles share --------------------------------------------------------------- */
+/* ---- second volumes ---------------------------------------------------------------------------------------- */
 
 /* The volumes of all triangles at a hub overlap there. They are told apart by the directions in which they lie as seen from
  * the hub or, where they share two hubs like the pages of a book, as seen from the edge between these. */
@@ -121,25 +121,15 @@ typedef struct hub_volume {
      * vectors from hub to other and from hub to the third corner are a right-handed pair. */
     double low[3], high[3];
 
-    float reach;           /* the sides opposite the hub come no nearer to it; not scaled, as what follows */
-    double place[2][3];    /* of the hub, at both ends */
-    double sides[2][2][3]; /* at both ends, the least and the greatest coordinates of the sides opposite it */
+    float reach; /* the sides opposite the hub come no nearer to it; not scaled, as what follows */
+
+    /* The hub, and the sides opposite it: at both ends of the interval, the least and the greatest coordinates. */
+    double boxes[2][2][2][3];
 } hub_volume;
 
 /* Tells whether features of the triangles of a are farther than the distance from those of b throughout the interval,
  * except for features with a common vertex. */
 bool hub_volumes_apart(const hub_volume *a, const hub_volume *b, double distance);
-
-/* Makes room for hub volumes, as a step of bvh_build; where the mesh has no hub, none is needed. False: no memory. */
-bool bvh_allocate_hubs(bvh *hierarchy);
-
-/* Frees them, as a step of bvh_free. */
-void bvh_free_hubs(bvh *hierarchy);
-
-/* Finds the volumes for the interval from x0 to x1, as a step of bvh_refit. */
-void bvh_refit_hubs(bvh *hierarchy, const double *x0, const double *x1);
-
-/* ---- slivers ----------------------------------------------------------------------------------------------- */
 
 /* The boxes of slivers that lie side by side along a diagonal all overlap. They are told apart by the hulls of two boxes,
  * one around their near ends and one around their far ends; in doubles, because large triangles may lie on each other more
@@ -156,15 +146,15 @@ typedef struct sliver_volume {
 /* Tells whether triangles of a are farther than the distance from those of b throughout the interval. */
 bool sliver_volumes_apart(const sliver_volume *a, const sliver_volume *b, double distance);
 
-/* Makes room for sliver volumes, as a step of bvh_build, where half of the triangles are slivers or large at these
- * positions. False: no memory. */
-bool bvh_allocate_slivers(bvh *hierarchy, const double *positions);
+/* Makes room for them, as a step of bvh_build: hub volumes where the mesh has a hub, sliver volumes where half of the triangles
+ * are slivers or large at these positions. False: no memory. */
+bool bvh_allocate_second_volumes(bvh *hierarchy, const double *positions);
 
 /* Frees them, as a step of bvh_free. */
-void bvh_free_slivers(bvh *hierarchy);
+void bvh_free_second_volumes(bvh *hierarchy);
 
-/* Finds the volumes for the interval from x0 to x1, as a step of bvh_refit, after bvh_refit_hubs. */
-void bvh_refit_slivers(bvh *hierarchy, const double *x0, const double *x1);
+/* Finds them for the interval from x0 to x1, as a step of bvh_refit. */
+void bvh_refit_second_volumes(bvh *hierarchy, const double *x0, const double *x1);
 
 /* ---- the skin ---------------------------------------------------------------------------------------------- */
 

@@ -220,8 +220,7 @@ void bvh_refit(bvh *hierarchy, const double *x0, const double *x1, volume_growth
     }
     clear_flags(hierarchy->leaf_flags, hierarchy->leaf_count);
     hierarchy->hub_distance = greatest_distance(hierarchy, &growth);
-    bvh_refit_hubs(hierarchy, x0, x1);
-    bvh_refit_slivers(hierarchy, x0, x1);
+    bvh_refit_second_volumes(hierarchy, x0, x1);
     bvh_show_all(hierarchy);
     /* A distance that floats cannot hold leaves the bounds of empty lanes without a value, so bounds are checked
      * only where no distance widens them. */

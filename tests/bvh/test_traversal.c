@@ -80,7 +80,7 @@ static size_t check_scene(bvh_setup setup, double distance) {
     bvh_rig r;
     assert_true(shape.triangle_count <= TRIANGLES_MAX);
     assert_true(bvh_rig_create(&shape, setup, &r));
-    bvh_free_slivers(&r.bvh); /* they tell more pairs apart than axes: test_bvh_slivers.c */
+    bvh_free_second_volumes(&r.bvh); /* they tell more pairs apart than axes: test_bvh_slivers.c */
     bvh_refit(&r.bvh, shape.x0, shape.x1, uniform_growth(distance));
     traverse_all(&r, TRAVERSAL_KEPT, &all);
     size_t required = check_against_gaps(&all, distance);
