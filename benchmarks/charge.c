@@ -3,7 +3,7 @@
 #include "benchmarks/lib/charge_trial.h"
 #include "benchmarks/lib/row_file.h"
 #include "models/shapes/catalogue.h"
-#include "tool/common/blas_kernels.h"
+#include "tool/common/plans.h"
 
 #include <stdlib.h>
 #include <string.h>

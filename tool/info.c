@@ -1,8 +1,6 @@
 /* `cscd info`: prints counts, components, holes, parts and bounds of a mesh, for people and as JSON. */
 #include "tool/common/command.h"
-#include "tool/common/option_table.h"
-#include "tool/common/option_values.h"
-#include "tool/common/output_path.h"
+#include "tool/common/options.h"
 #include "tool/common/part_names.h"
 #include "tool/io/json.h"
 #include "tool/io/output_file.h"
@@ -51,7 +49,7 @@ typedef struct mesh_facts {
     uint32_t rest_triangles;  /* in none of them */
 } mesh_facts;
 
-/* ---- finding ----------------------------------------------------------------------------------------- */
+/* ---- finding ------------------------------------------------------------------------------------------- */
 
 static void find_bounds(const mesh_file *file, mesh_facts *facts) {
     for (int k = 0; k < 3; k++) facts->low[k] = facts->high[k] = file->positions[k];
@@ -125,7 +123,7 @@ static long long genus_of(const cscd_component *c) {
     return (long long)(2 - c->euler_characteristic) / 2;
 }
 
-/* ---- for people -------------------------------------------------------------------------------------- */
+/* ---- for people ---------------------------------------------------------------------------------------- */
 
 static void print_component(const cscd_mesh *mesh, uint32_t index, bool turned) {
     cscd_component c = cscd_mesh_component(mesh, index);
@@ -173,7 +171,7 @@ static void print_facts(const recording *r, const mesh_facts *facts) {
            facts->zero_area_triangles, facts->pairs);
 }
 
-/* ---- JSON -------------------------------------------------------------------------------------------- */
+/* ---- JSON ---------------------------------------------------------------------------------------------- */
 
 static void write_point(json *out, const char *key, const double x[3]) {
     json_begin_array(out, key);
@@ -265,7 +263,7 @@ static void write_facts(json *out, const recording *r, const mesh_facts *facts) 
     fputc('\n', out->file);
 }
 
-/* ---- the command ------------------------------------------------------------------------------------- */
+/* ---- the command --------------------------------------------------------------------------------------- */
 
 /* Both texts: the standard output is that of the JSON from when its file is opened. */
 static bool say_facts(const info_options *options, recording *r, const mesh_facts *facts, io_error *error) {

@@ -2,7 +2,7 @@
 #include "tool/jobs_report.h"
 
 #include "tool/common/command.h"
-#include "tool/common/output_path.h"
+#include "tool/common/options.h"
 #include "tool/common/provenance.h"
 #include "tool/common/terminal.h"
 #include "tool/io/output_file.h"
@@ -18,7 +18,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* ---- what is given ----------------------------------------------------------------------------------------------- */
+/* ---- what is given ------------------------------------------------------------------------------------- */
 
 enum { FIRST_LINE_MAX = 1 << 20 };
 
@@ -42,7 +42,7 @@ bool jobs_report_takes(const char *path) {
     return path_has_extension(path, ".jsonl") || begins_with_result(path);
 }
 
-/* ---- the page ---------------------------------------------------------------------------------------------------- */
+/* ---- the page ------------------------------------------------------------------------------------------ */
 
 typedef struct night_files {
     const jobs_report_request *request;
@@ -140,7 +140,7 @@ static bool write_files(const jobs_report_request *r, const job_merge *merge, io
     return good;
 }
 
-/* ---- the end ----------------------------------------------------------------------------------------------------- */
+/* ---- the end ------------------------------------------------------------------------------------------- */
 
 static int end_report(const jobs_report_request *r, const job_merge *merge) {
     const job_sums *sums = &merge->sums;

@@ -1,5 +1,5 @@
 /* The program `cscd`. */
-#include "tool/common/blas_kernels.h"
+#include "tool/common/plans.h"
 #include "tool/tool.h"
 
 #include <fcntl.h>

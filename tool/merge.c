@@ -1,8 +1,6 @@
 /* `cscd merge`: brings the results of shards together, of a list or of one recording. */
 #include "tool/common/command.h"
-#include "tool/common/option_table.h"
-#include "tool/common/option_values.h"
-#include "tool/common/output_path.h"
+#include "tool/common/options.h"
 #include "tool/common/terminal.h"
 #include "tool/io/output_file.h"
 #include "tool/jobs/job_merge.h"

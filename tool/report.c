@@ -2,9 +2,7 @@
 #include "tool/report/report.h"
 
 #include "tool/common/command.h"
-#include "tool/common/option_table.h"
-#include "tool/common/option_values.h"
-#include "tool/common/output_path.h"
+#include "tool/common/options.h"
 #include "tool/common/provenance.h"
 #include "tool/jobs_report.h"
 #include "tool/replay/replay.h"

@@ -1,7 +1,7 @@
 /* Reads back what `cscd replay --json` wrote. */
 #include "tool/summary_file.h"
 
-#include "tool/common/stages.h"
+#include "tool/common/methods.h"
 #include "tool/io/json_room.h"
 #include "tool/io/pipe_file.h"
 #include "tool/io/text_encoding.h"

@@ -2,7 +2,7 @@
 #include "benchmarks/lib/contest.h"
 
 #include "cscd/research.h"
-#include "tool/common/stages.h"
+#include "tool/common/methods.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* The table and the JSON of benchmarks/methods. */
 #include "benchmarks/lib/methods_report.h"
 
-#include "tool/common/stages.h"
+#include "tool/common/methods.h"
 
 #include <stdio.h>
 

@@ -3,7 +3,7 @@
 
 #include "benchmarks/lib/deforming_body.h"
 #include "cscd/cscd.h"
-#include "tool/common/stages.h"
+#include "tool/common/methods.h"
 
 /* The columns of the tables: the stages of a step, in the order of timing_rows; then the part of the total that
  * belongs to no stage, such as checks of the input; then the total. */

@@ -23,7 +23,7 @@ __all__ = ["Frame", "Replay", "replay"]
 Array = Any
 
 _NO_PART = 2**32 - 1
-_MOST_PARTS = 8192  # of tables of pairs, tool/common/part_rules.c
+_MOST_PARTS = 8192  # of tables of pairs, tool/common/ignore_pairs.c
 _RESTS = (None, "pairs", "parts")
 _END = object()
 

@@ -2,9 +2,9 @@
 #include "python/native/host.h"
 
 #include "tool/common/methods.h"
-#include "tool/common/option_values.h"
+#include "tool/common/options.h"
 #include "tool/common/part_names.h"
-#include "tool/common/plan_colours.h"
+#include "tool/common/plans.h"
 #include "tool/io/mesh_builder.h"
 #include "tool/io/plan_file.h"
 #include "tool/tool.h"

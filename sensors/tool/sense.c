@@ -4,7 +4,7 @@
 #include "sensors/tool/sense_result.h"
 #include "tool/common/command.h"
 #include "tool/common/frame_range.h"
-#include "tool/common/output_path.h"
+#include "tool/common/options.h"
 #include "tool/common/terminal.h"
 
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* The warnings of `cscd sense` as CSV, and its intervals as JSON. */
 #include "sensors/tool/sense_result.h"
-#include "tool/common/output_path.h"
+#include "tool/common/options.h"
 #include "tool/common/provenance.h"
 #include "tool/io/record.h"
 

@@ -2,8 +2,7 @@
 #include "sensors/tool/sense_options.h"
 
 #include "tool/common/command.h"
-#include "tool/common/option_values.h"
-#include "tool/common/output_path.h"
+#include "tool/common/options.h"
 
 #include <string.h>
 

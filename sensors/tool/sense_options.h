@@ -3,7 +3,7 @@
 
 #include "cscd/sensors.h"
 #include "tool/common/frame_range.h"
-#include "tool/common/option_values.h"
+#include "tool/common/options.h"
 #include "tool/common/recording.h"
 #include "tool/picture/picture.h"
 

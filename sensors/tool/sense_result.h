@@ -3,7 +3,7 @@
 
 #include "cscd/sensors.h"
 #include "sensors/tool/sense_options.h"
-#include "tool/common/plan_source.h"
+#include "tool/common/plans.h"
 #include "tool/io/json.h"
 #include "tool/io/output_file.h"
 

@@ -1,6 +1,6 @@
 /* The hash of a model, by which results of another one are refused. */
 #include "tests/support/test.h"
-#include "tool/common/recorded_object.h"
+#include "tool/common/recording.h"
 
 #include <string.h>
 

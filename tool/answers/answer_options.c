@@ -3,8 +3,7 @@
 
 #include "tool/answers/answer_files.h"
 #include "tool/common/command.h"
-#include "tool/common/option_values.h"
-#include "tool/common/output_path.h"
+#include "tool/common/options.h"
 
 static bool read_unit(const char *text, void *place) {
     return length_unit_from_name(text, place);

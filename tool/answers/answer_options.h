@@ -2,7 +2,7 @@
 #pragma once
 
 #include "tool/answers/fail_rules.h"
-#include "tool/common/option_table.h"
+#include "tool/common/options.h"
 #include "tool/io/output_file.h"
 
 typedef struct answer_options {

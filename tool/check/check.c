@@ -1,8 +1,7 @@
 /* `cscd check`: finds where a mesh intersects or touches itself, frame by frame. */
 #include "tool/check/check_run.h"
 #include "tool/common/command.h"
-#include "tool/common/option_values.h"
-#include "tool/common/output_path.h"
+#include "tool/common/options.h"
 #include "tool/jobs/listed_recordings.h"
 #include "tool/jobs/mesh_job.h"
 
@@ -77,7 +76,7 @@ static int run_recording(check_options *options, const given_options *given, con
     return check_run_on(options, name, job);
 }
 
-/* ---- many ------------------------------------------------------------------------------------------------------- */
+/* ---- many ---------------------------------------------------------------------------------------------- */
 
 static int run_listed(void *options, given_options *given, const char *name, cscd_context *context,
                       job_output *out) {

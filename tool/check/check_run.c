@@ -4,7 +4,7 @@
 #include "tool/answers/answer_words.h"
 #include "tool/check/check_output.h"
 #include "tool/common/command.h"
-#include "tool/common/output_path.h"
+#include "tool/common/options.h"
 #include "tool/common/terminal.h"
 #include "tool/jobs/recording_answer.h"
 

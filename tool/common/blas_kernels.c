@@ -1,5 +1,5 @@
 /* The tool sees to it that OpenBLAS starts as it should: on one thread, and with kernels for the processor. */
-#include "tool/common/blas_kernels.h"
+#include "tool/common/plans.h"
 
 #include "cscd/cscd.h"
 #include "tool/common/command.h"

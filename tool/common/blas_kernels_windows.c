@@ -1,5 +1,5 @@
 /* A build for Windows has no OpenBLAS, so there is nothing to see to before a plan is made. */
-#include "tool/common/blas_kernels.h"
+#include "tool/common/plans.h"
 
 void blas_kernels_own_process(void) {
 }

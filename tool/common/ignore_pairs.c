@@ -1,15 +1,153 @@
-/* Triangle pairs that the user wants left out: those that intersect or touch in the first frame, and those of a
- * list file. */
+/* Pairs that the user wants left out: tables of pairs of parts, from the names of the command line; pairs of triangles that
+ * intersect or touch in the first frame; and those of a list file. */
 #include "tool/common/ignore_pairs.h"
 
 #include "tool/io/growable.h"
 #include "tool/io/pipe_file.h"
 #include "tool/io/text_encoding.h"
+#include "tool/io/text_escape.h"
 
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* ---- pairs of parts ------------------------------------------------------------------------------------ */
+
+/* Tables are square, so that many parts are too many. */
+enum { PARTS_MAX = 8192 };
+
+static uint32_t row_of(const part_rules *rules, uint32_t part) {
+    return part == NO_PART ? rules->size - 1 : part;
+}
+
+static void mark_pair(const part_rules *rules, unsigned char *table, uint32_t a, uint32_t b) {
+    table[(size_t)a * rules->size + b] = table[(size_t)b * rules->size + a] = 1;
+}
+
+static unsigned char *make_table(const part_rules *rules) {
+    return io_zeroed((size_t)rules->size * rules->size);
+}
+
+static bool fail_name(const part_names *parts, const char *option, const char *name, size_t length,
+                      io_error *error) {
+    char known[400] = "";
+    size_t used = 0;
+    for (uint32_t i = 0; i < parts->count && used + 48 < sizeof known; i++)
+        used += (size_t)snprintf(known + used, sizeof known - used, "%s%.*s", i > 0 ? ", " : "",
+                                 TEXT_CUT(parts->names[i], 40));
+    return io_fail(error, "%s: there is no part '%.*s'; the parts are %s%s", option, (int)length, name, known,
+                   parts->count > 0 && used + 48 >= sizeof known ? ", ..." : "");
+}
+
+/* Marks the pairs of one text; chosen: two times size. */
+static bool mark_text(const part_rules *rules, const char *option, const char *text, unsigned char *table,
+                      bool *chosen, io_error *error) {
+    const char *comma = strchr(text, ','), *names[2] = {text, comma != NULL ? comma + 1 : NULL};
+    const size_t lengths[2] = {comma != NULL ? (size_t)(comma - text) : strlen(text),
+                               comma != NULL ? strlen(comma + 1) : 0};
+    bool *sides[2] = {chosen, chosen + rules->size};
+    for (int i = 0; i < 2; i++) {
+        memset(sides[i], names[i] == NULL, rules->size * sizeof *sides[i]);
+        if (names[i] != NULL && part_names_choose(rules->parts, names[i], lengths[i], sides[i]) == 0)
+            return fail_name(rules->parts, option, names[i], lengths[i], error);
+    }
+    for (uint32_t a = 0; a < rules->size; a++)
+        for (uint32_t b = 0; b < rules->size; b++)
+            if (sides[0][a] && sides[1][b]) mark_pair(rules, table, a, b);
+    return true;
+}
+
+static bool mark_list(const part_rules *rules, const char *option, const part_pairs_list *list,
+                      unsigned char **table, io_error *error) {
+    if (list->count == 0) return true;
+    bool *chosen = io_realloc(NULL, 2 * (size_t)rules->size * sizeof *chosen), marked = chosen != NULL;
+    *table = make_table(rules);
+    if (*table == NULL || chosen == NULL) marked = io_fail(error, "%s: out of memory", option);
+    for (uint32_t i = 0; i < list->count && marked; i++)
+        marked = mark_text(rules, option, list->items[i], *table, chosen, error);
+    free(chosen);
+    return marked;
+}
+
+/* Fails where rules cannot be of so many parts. The sentence begins with the options, and "take" or "takes". */
+static bool check_part_count(const part_names *parts, const char *options_take, io_error *error) {
+    return parts->count <= PARTS_MAX ||
+           io_fail(error, "%s at most %d parts, and there are %u", options_take, PARTS_MAX, parts->count);
+}
+
+static void free_rules(part_rules *rules) {
+    free(rules->ignored);
+    free(rules->only);
+    *rules = (part_rules){0};
+}
+
+/* The parts outlive the rules. The error names a part that there is not, and those that there are. */
+static bool create_rules(const part_names *parts, const part_pairs_list *ignored, const part_pairs_list *only,
+                         part_rules *out, io_error *error) {
+    part_rules rules = {.parts = parts, .size = parts->count + 1};
+    if (ignored->count + only->count > 0 && !check_part_count(parts, "--ignore-parts and --only take", error))
+        return false;
+    if (!mark_list(&rules, "--ignore-parts", ignored, &rules.ignored, error) ||
+        !mark_list(&rules, "--only", only, &rules.only, error)) {
+        free_rules(&rules);
+        return false;
+    }
+    *out = rules;
+    return true;
+}
+
+bool part_rules_ignore(part_rules *rules, uint32_t a, uint32_t b) {
+    if (rules->parts->count > PARTS_MAX) return false;
+    if (rules->ignored == NULL) rules->ignored = make_table(rules);
+    if (rules->ignored == NULL) return false;
+    mark_pair(rules, rules->ignored, row_of(rules, a), row_of(rules, b));
+    return true;
+}
+
+static bool rules_leave_out_any(const part_rules *rules) {
+    return rules->ignored != NULL || rules->only != NULL;
+}
+
+static bool any_in_no_part(const part_names *parts, uint32_t triangle_count) {
+    for (uint32_t t = 0; t < triangle_count; t++)
+        if (parts->labels[t] == NO_PART) return true;
+    return false;
+}
+
+/* Counts the pairs of parts that are left out, and all, each part with itself among them. What is in no part of a mesh of so many
+ * triangles counts as one. */
+static void count_part_pairs(const part_rules *rules, uint32_t triangle_count, size_t *left_out,
+                             size_t *all) {
+    const uint32_t count = rules->parts->count + any_in_no_part(rules->parts, triangle_count);
+    *left_out = 0;
+    *all = (size_t)count * (count + 1) / 2;
+    if (!rules_leave_out_any(rules)) return;
+    for (uint32_t a = 0; a < count; a++)
+        for (uint32_t b = a; b < count; b++) {
+            const size_t pair = (size_t)a * rules->size + b;
+            *left_out += (rules->ignored != NULL && rules->ignored[pair]) ||
+                         (rules->only != NULL && !rules->only[pair]);
+        }
+}
+
+/* Two sets of triangles, each that of a feature, are left out if one of the first and one of the second form a pair that is
+ * ignored, or if none form a pair that is to be looked at. */
+static bool rules_leave_out(const part_rules *rules, const uint32_t *a, uint32_t a_count, const uint32_t *b,
+                            uint32_t b_count) {
+    bool wanted = rules->only == NULL;
+    for (uint32_t i = 0; i < a_count; i++) {
+        const size_t row = (size_t)row_of(rules, rules->parts->labels[a[i]]) * rules->size;
+        for (uint32_t k = 0; k < b_count; k++) {
+            const size_t pair = row + row_of(rules, rules->parts->labels[b[k]]);
+            if (rules->ignored != NULL && rules->ignored[pair]) return true;
+            wanted = wanted || rules->only[pair];
+        }
+    }
+    return !wanted;
+}
+
+/* ---- pairs of triangles -------------------------------------------------------------------------------- */
 
 static bool append_pair(cscd_intersection **items, size_t *count, size_t *capacity, uint32_t a, uint32_t b) {
     if (*count == *capacity) {
@@ -174,7 +312,7 @@ static bool check_rest(ignore_pairs *pairs, bool by_parts, recording *r, cscd_de
         CSCD_OK)
         return io_fail(error, "frame %d: %s", r->frame_numbers[0], cscd_context_detail(r->context));
     if (ignore_pairs_add_rest(pairs, found.items, found.count, by_parts)) return true;
-    return (!by_parts || part_rules_check_count(&pairs->parts, "--ignore-rest=parts takes", error)) &&
+    return (!by_parts || check_part_count(&pairs->parts, "--ignore-rest=parts takes", error)) &&
            io_fail(error, "frame %d: out of memory for what intersects or touches at rest",
                    r->frame_numbers[0]);
 }
@@ -204,7 +342,7 @@ bool ignore_pairs_prepare(const ignore_options *options, recording *r, ignore_pa
     const bool named = options->parts_path != NULL
                            ? part_names_read(r, options->parts_path, &out->parts, error)
                            : part_names_find(r, NULL, &out->parts, error);
-    if (named && part_rules_create(&out->parts, &options->ignored, &options->only, &out->rules, error) &&
+    if (named && create_rules(&out->parts, &options->ignored, &options->only, &out->rules, error) &&
         (options->path == NULL || read_list(out, r, options->path, error)) &&
         (options->rest == REST_KEPT || add_rest(out, options->rest == REST_PARTS, r, error)) &&
         (separate_components(out) || io_fail(error, "out of memory for the pairs that are left out")))
@@ -217,7 +355,7 @@ bool ignore_pairs_of(const cscd_mesh *mesh, part_names *parts, ignore_pairs *out
     const part_pairs_list none = {.count = 0};
     *out = (ignore_pairs){.mesh = mesh, .parts = *parts};
     *parts = (part_names){0};
-    if (part_rules_create(&out->parts, &none, &none, &out->rules, error)) return true;
+    if (create_rules(&out->parts, &none, &none, &out->rules, error)) return true;
     ignore_pairs_free(out);
     return false;
 }
@@ -240,7 +378,7 @@ static bool components_contain(const ignore_pairs *pairs, uint32_t a, uint32_t b
 static bool triangles_left_out(const ignore_pairs *pairs, const uint32_t *a, uint32_t a_count,
                                const uint32_t *b, uint32_t b_count) {
     return (pairs->component_count > 0 && components_contain(pairs, a[0], b[0])) ||
-           (part_rules_any(&pairs->rules) && part_rules_leave_out(&pairs->rules, a, a_count, b, b_count));
+           (rules_leave_out_any(&pairs->rules) && rules_leave_out(&pairs->rules, a, a_count, b, b_count));
 }
 
 /* The callback for cscd_detector_options.ignore. */
@@ -277,7 +415,7 @@ bool ignore_pairs_separate_triangles(const ignore_pairs *pairs, uint32_t a, uint
 }
 
 bool ignore_pairs_any(const ignore_pairs *pairs) {
-    return pairs->triangle_count > 0 || pairs->component_count > 0 || part_rules_any(&pairs->rules);
+    return pairs->triangle_count > 0 || pairs->component_count > 0 || rules_leave_out_any(&pairs->rules);
 }
 
 static size_t count_different(const cscd_intersection *sorted, size_t count) {
@@ -289,14 +427,14 @@ static size_t count_different(const cscd_intersection *sorted, size_t count) {
 ignore_counts ignore_pairs_count(const ignore_pairs *pairs) {
     ignore_counts counts = {.components = count_different(pairs->components, pairs->component_count),
                             .triangles = count_different(pairs->triangles, pairs->triangle_count)};
-    part_rules_count(&pairs->rules, cscd_mesh_triangle_count(pairs->mesh), &counts.parts, &counts.all_parts);
+    count_part_pairs(&pairs->rules, cscd_mesh_triangle_count(pairs->mesh), &counts.parts, &counts.all_parts);
     return counts;
 }
 
 void ignore_pairs_choose(ignore_pairs *pairs, cscd_detector_options *options) {
     options->ignored_count = pairs->triangle_count;
     if (pairs->triangle_count > 0) options->ignored = &pairs->triangles->a;
-    if (pairs->component_count == 0 && !part_rules_any(&pairs->rules)) return;
+    if (pairs->component_count == 0 && !rules_leave_out_any(&pairs->rules)) return;
     options->ignore = leaves_out;
     options->ignore_user = pairs;
 }
@@ -305,7 +443,7 @@ void ignore_pairs_free(ignore_pairs *pairs) {
     free(pairs->triangles);
     free(pairs->components);
     free(pairs->separated);
-    part_rules_free(&pairs->rules);
+    free_rules(&pairs->rules);
     part_names_free(&pairs->parts);
     *pairs = (ignore_pairs){0};
 }

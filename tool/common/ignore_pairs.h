@@ -1,8 +1,27 @@
-/* What the user wants left out: pairs of triangles that intersect or touch in the first frame, those of a list file, and
+/* Pairs that the user wants left out: pairs of triangles that intersect or touch in the first frame, those of a list file, and
  * pairs of parts. */
 #pragma once
 
-#include "tool/common/part_rules.h"
+#include "tool/common/part_names.h"
+
+enum { PART_RULES_MAX = 64 };
+
+/* The texts A or A,B of an option that may be given several times: the pairs of A with B, or of A with everything. */
+typedef struct part_pairs_list {
+    const char *items[PART_RULES_MAX];
+    uint32_t count;
+} part_pairs_list;
+
+typedef struct part_rules {
+    const part_names *parts;
+    uint32_t size;          /* parts, and one more for what is in no part */
+    unsigned char *ignored; /* size * size: the pairs that are left out; NULL: none */
+    unsigned char *only; /* size * size: the pairs that are looked at, all others are left out; NULL: all */
+} part_rules;
+
+/* Leaves out the pairs of two parts, which may be NO_PART, from now on. False when there are too many parts, or when out of
+ * memory. */
+bool part_rules_ignore(part_rules *rules, uint32_t a, uint32_t b);
 
 typedef struct ignore_options {
     const char *path;       /* of a list file; NULL: none */

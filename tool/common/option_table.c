@@ -1,5 +1,5 @@
 /* The options of a command as a table: the command line and --help are read from the same rows. */
-#include "tool/common/option_table.h"
+#include "tool/common/options.h"
 
 #include "tool/common/command.h"
 #include "tool/common/provenance.h"
@@ -47,7 +47,7 @@ static void collect_rows(const option_table *table, all_rows *all) {
     all->count = option_table_rows(table, all->rows);
 }
 
-/* ---- help -------------------------------------------------------------------------------------------- */
+/* ---- help ---------------------------------------------------------------------------------------------- */
 
 /* Prints the words of a text, in lines that begin at `column`; the cursor stands at `used`. */
 static void print_wrapped(const char *text, int column, int used) {
@@ -115,7 +115,7 @@ static void print_help(const option_table *table) {
     }
 }
 
-/* ---- command line ------------------------------------------------------------------------------------ */
+/* ---- command line -------------------------------------------------------------------------------------- */
 
 /* The options in the form that getopt_long takes. */
 typedef struct getopt_tables {

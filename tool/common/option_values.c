@@ -1,10 +1,9 @@
 /* Readers of option values, and rows of options, that more than one command has. */
-#include "tool/common/option_values.h"
+#include "tool/common/options.h"
 
 #include "tool/common/command.h"
 #include "tool/common/frame_range.h"
 #include "tool/common/ignore_pairs.h"
-#include "tool/common/output_path.h"
 #include "tool/common/recording.h"
 #include "tool/io/gltf.h"
 #include "tool/io/path_name.h"
@@ -167,7 +166,7 @@ bool parse_choice(const char *text, const char *const *names, int count, int *ou
     return false;
 }
 
-/* ---- rows of options that several commands have, so that each has one text ------------------------------- */
+/* ---- rows of options that several commands have, so that each has one text ----------------------------- */
 
 static const option_row of_objects[] = {
     {"object", "NAME=MODEL", read_named_path, offsetof(recording_options, objects),
@@ -223,7 +222,7 @@ const option_list frame_rows = {"Frames, welding, threads:", of_frames, sizeof o
 const option_list pair_rows = {"Parts, and which pairs are looked at:", of_pairs,
                                sizeof of_pairs / sizeof *of_pairs};
 
-/* ---- which axis of a model points up in pictures and pages ----------------------------------------------- */
+/* ---- which axis of a model points up in pictures and pages --------------------------------------------- */
 
 bool read_up(const char *text, void *place) {
     int axis;

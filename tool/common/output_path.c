@@ -1,5 +1,5 @@
 /* Keeps a command from writing over what it reads. */
-#include "tool/common/output_path.h"
+#include "tool/common/options.h"
 
 #include "tool/io/output_file.h"
 #include "tool/io/path_name.h"
@@ -102,7 +102,7 @@ bool output_path_is_safe(const char *path, const char *const *others, size_t oth
            (output_path_differs(path, others, other_count, error) && is_named_apart(path, error));
 }
 
-/* ---- all paths of a command ------------------------------------------------------------------------------ */
+/* ---- all paths of a command ---------------------------------------------------------------------------- */
 
 bool read_input_path(const char *text, void *place) {
     *(const char **)place = text;

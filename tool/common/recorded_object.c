@@ -1,5 +1,5 @@
 /* Opens the model and the frames of an object, and reads one frame after the other. */
-#include "tool/common/recorded_object.h"
+#include "tool/common/recording.h"
 
 #include "tool/common/provenance.h"
 

@@ -2,14 +2,15 @@
 #include "tool/common/recording.h"
 
 #include "tool/common/command.h"
-#include "tool/common/late_files.h"
 #include "tool/common/provenance.h"
+#include "tool/common/terminal.h"
 #include "tool/io/gltf.h"
 #include "tool/io/path_name.h"
 
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 void recording_options_take(recording_options *options, const given_options *given) {
     if (given->input_count == 0) return;
@@ -22,7 +23,7 @@ const char *recording_options_path(const recording_options *options) {
     return options->model_path != NULL ? options->model_path : options->objects.items[0].path;
 }
 
-/* ---- objects ----------------------------------------------------------------------------------------- */
+/* ---- objects ------------------------------------------------------------------------------------------- */
 
 static char *name_of_model(const char *path) {
     const char *name = path_file_name(path), *dot = strrchr(name, '.');
@@ -93,7 +94,7 @@ static bool open_objects(const recording_options *options, recording *r, io_erro
     return check_named(options, r, error);
 }
 
-/* ---- frames ------------------------------------------------------------------------------------------ */
+/* ---- frames -------------------------------------------------------------------------------------------- */
 
 static bool plays_itself(const recorded_object *object) {
     return object->source.itself != NULL && object->source.frame_paths == object->source.itself;
@@ -138,7 +139,7 @@ static bool number_frames(const recording_options *options, recording *r, io_err
     return true;
 }
 
-/* ---- mesh -------------------------------------------------------------------------------------------- */
+/* ---- mesh ---------------------------------------------------------------------------------------------- */
 
 /* Unless the user says otherwise: starting threads takes longer than a whole command on a mesh so small that the library
  * would give them nothing to do (runtime/bvh/traversal.c shares trees of 768 triangles and more). */
@@ -226,7 +227,37 @@ static bool map_edges(recording *r, io_error *error) {
     return true;
 }
 
-/* ---- the interface ----------------------------------------------------------------------------------- */
+/* ---- the interface ------------------------------------------------------------------------------------- */
+
+/* ---- files that come late, as those of a network file system do after another machine has written them ---- */
+
+/* How long a file that cannot be read is tried again, and since when. */
+typedef struct late_files {
+    double seconds, began_ms;
+} late_files;
+
+/* The time of a clock that nobody sets. */
+static double now_ms(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
+}
+
+/* Begins to try, for this many seconds; 0: once. */
+static late_files begin_trying(double seconds) {
+    return (late_files){seconds, seconds > 0.0 ? now_ms() : 0.0};
+}
+
+/* Rests for a moment after a failure, and returns true if there is to be another try. An interrupt ends it. */
+static bool try_again(const late_files *late) {
+    const struct timespec rest = {.tv_nsec = 50 * 1000 * 1000};
+    if (late->seconds <= 0.0 || now_ms() - late->began_ms >= late->seconds * 1e3) return false;
+    if (interrupt_ends_wait()) return false;
+    nanosleep(&rest, NULL);
+    return true;
+}
+
+/* ---- opening and reading ------------------------------------------------------------------------------- */
 
 static bool open_once(const recording_options *options, recording *out, io_error *error) {
     recording r = {
@@ -242,9 +273,9 @@ static bool open_once(const recording_options *options, recording *out, io_error
 
 /* A file that is not there yet, or not all of it, may be a moment later. */
 bool recording_open(const recording_options *options, recording *out, io_error *error) {
-    const late_files late = late_files_begin(options->wait_seconds);
+    const late_files late = begin_trying(options->wait_seconds);
     while (!open_once(options, out, error))
-        if (!late_files_again(&late)) return false;
+        if (!try_again(&late)) return false;
     return true;
 }
 
@@ -275,9 +306,9 @@ static bool read_once(recording *r, uint32_t frame, double *positions, io_error 
 }
 
 bool recording_read(recording *r, uint32_t frame, double *positions, io_error *error) {
-    const late_files late = late_files_begin(r->wait_seconds);
+    const late_files late = begin_trying(r->wait_seconds);
     while (!read_once(r, frame, positions, error))
-        if (!late_files_again(&late)) return false;
+        if (!try_again(&late)) return false;
     return true;
 }
 

@@ -1,8 +1,7 @@
 /* Results in the files of other programs, by what was asked for: the options, and all files that they name. */
 #include "tool/export/export.h"
 
-#include "tool/common/option_values.h"
-#include "tool/common/output_path.h"
+#include "tool/common/options.h"
 #include "tool/export/export_values.h"
 #include "tool/io/output_file.h"
 #include "tool/io/path_name.h"
@@ -135,7 +134,7 @@ bool exports_close(exports *e, io_error *error) {
     return finished && closed;
 }
 
-/* ---- the options of exports, and which paths fit them ---------------------------------------------------- */
+/* ---- the options of exports, and which paths fit them -------------------------------------------------- */
 
 static const option_row rows[] = {
     {"vtk", "OUT", read_output_stem, offsetof(export_request, vtk_path),

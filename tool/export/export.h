@@ -1,7 +1,7 @@
 /* Results in the files of other programs: ParaView's, coloured PLY meshes, and lists of what to select. */
 #pragma once
 
-#include "tool/common/option_table.h"
+#include "tool/common/options.h"
 #include "tool/common/part_names.h"
 
 typedef struct export_request {

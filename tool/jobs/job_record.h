@@ -2,9 +2,9 @@
  * reading the results of an earlier run. */
 #pragma once
 
-#include "tool/common/append_file.h"
 #include "tool/io/io_error.h"
 #include "tool/io/json.h"
+#include "tool/io/output_file.h"
 
 #include <stddef.h>
 #include <stdint.h>

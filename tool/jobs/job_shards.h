@@ -10,7 +10,7 @@ typedef struct shard_choice {
 
 enum { SHARD_COUNT_MAX = 1000 * 1000 };
 
-/* The reader of --shard (option_table.h); place: shard_choice. */
+/* The reader of --shard (options.h); place: shard_choice. */
 bool read_shard(const char *text, void *place);
 
 /* The jobs of the shard, ascending, to be freed. Of jobs with a size, the largest goes first to the shard with the least

@@ -1,8 +1,7 @@
 /* Options about lists, shards, results and time limits. */
 #include "tool/jobs/list_options.h"
 
-#include "tool/common/option_values.h"
-#include "tool/common/output_path.h"
+#include "tool/common/options.h"
 #include "tool/common/provenance.h"
 #include "tool/io/output_file.h"
 

@@ -1,7 +1,7 @@
 /* The options of commands that take lists of jobs. */
 #pragma once
 
-#include "tool/common/option_table.h"
+#include "tool/common/options.h"
 #include "tool/jobs/run_jobs.h"
 
 typedef struct list_options {

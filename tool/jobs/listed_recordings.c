@@ -2,7 +2,7 @@
 #include "tool/jobs/listed_recordings.h"
 
 #include "tool/common/command.h"
-#include "tool/common/output_path.h"
+#include "tool/common/options.h"
 #include "tool/common/terminal.h"
 #include "tool/io/growable.h"
 #include "tool/io/path_name.h"
@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- finds jobs that would write over files of each other or of the run ---------------------------------- */
+/* ---- finds jobs that would write over files of each other or of the run -------------------------------- */
 
 typedef struct output_names {
     growable names; /* of output_name */
@@ -108,7 +108,7 @@ static bool output_names_collide(output_names *names, const char **path, uint32_
     return false;
 }
 
-/* ---- what may stand where ---------------------------------------------------------------------------------------- */
+/* ---- what may stand where ------------------------------------------------------------------------------ */
 
 static bool name_among(const char *name, const char *const *names) {
     while (*names != NULL && strcmp(*names, name) != 0) names++;
@@ -141,7 +141,7 @@ static bool take_options(const list_command *c, const job_line *line, void *opti
     return true;
 }
 
-/* ---- a job ------------------------------------------------------------------------------------------------------- */
+/* ---- a job --------------------------------------------------------------------------------------------- */
 
 /* The page of the job, for the page of all jobs. */
 static void write_report(const job_line *line, json *out) {
@@ -179,7 +179,7 @@ static void fail_command(const void *user, const char *name, const char *reason,
     recording_answer_fail(name, reason, out);
 }
 
-/* ---- the list ---------------------------------------------------------------------------------------------------- */
+/* ---- the list ------------------------------------------------------------------------------------------ */
 
 /* The files of all jobs together, and the options that one is tried on. */
 typedef struct list_check {

@@ -1,6 +1,8 @@
 /* A picture of a triangle mesh with markers and a caption, as a PNG file; several of them as one; and colours of numbers. */
 #pragma once
 
+#include "tool/io/animation.h"
+#include "tool/io/mesh_file.h"
 #include "tool/picture/image.h"
 #include "tool/picture/overlay.h"
 #include "tool/picture/shade.h"
@@ -90,3 +92,25 @@ bool picture_sheet_create(uint32_t tile_count, uint32_t columns, uint32_t tile_w
 /* Copies the tile, which has the sheet's tile size, to place `index`, counted row by row from the upper left
  * corner; the lines stay, one pixel inside its left and upper side. */
 void picture_sheet_place(picture_sheet *sheet, uint32_t index, const picture_image *tile);
+
+/* ---- scenery ------------------------------------------------------------------------------------------- */
+
+/* A mesh that is drawn beside the recording and never tested: ground, stairs, a ball. */
+typedef struct picture_scenery {
+    picture_mesh mesh; /* points into the file */
+    mesh_file file;
+    animation *frames; /* NULL: it stands still */
+    uint32_t frame_count;
+    const char *path; /* where the positions come from */
+} picture_scenery;
+
+/* frames_path: a point cache, a pattern or a folder, of frame_count frames or of one; or NULL. On false *out
+ * holds nothing to close. */
+bool picture_scenery_open(const char *model_path, const char *frames_path, uint32_t frame_count,
+                          picture_scenery *out, io_error *error);
+
+/* Moves it to its place in that frame of the recording. */
+bool picture_scenery_read(picture_scenery *s, uint32_t frame, io_error *error);
+
+/* Closes the files and frees the memory; a zeroed struct is fine. */
+void picture_scenery_close(picture_scenery *s);

@@ -1,7 +1,7 @@
 /* Paints a picture with a plan, its charge or its regions, and says in a legend what the colours mean. */
 #include "tool/render/plan_picture.h"
 
-#include "tool/common/plan_colours.h"
+#include "tool/common/plans.h"
 #include "tool/picture/picture.h"
 
 #include <stdio.h>

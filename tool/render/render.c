@@ -1,7 +1,7 @@
 /* `cscd render`: draws frames to a PNG: plain, with the contacts of their intervals, or with a plan. */
 #include "tool/common/command.h"
-#include "tool/common/plan_source.h"
-#include "tool/common/scenery.h"
+#include "tool/common/plans.h"
+#include "tool/picture/picture.h"
 #include "tool/render/contact_picture.h"
 #include "tool/render/plan_picture.h"
 #include "tool/render/render_options.h"
@@ -28,8 +28,8 @@ static bool paint_plan(const render_options *o, const recording *r, contact_pict
     return painted;
 }
 
-static bool draw_frame(const render_options *o, recording *r, contact_picture *picture, scenery *beside,
-                       io_error *error) {
+static bool draw_frame(const render_options *o, recording *r, contact_picture *picture,
+                       picture_scenery *beside, io_error *error) {
     bool contacts = o->colouring == COLOUR_CONTACTS;
     uint32_t frame = 0;
     if (o->frame.given && !frame_range_find(o->frame.value, r->frame_numbers, r->frame_count, &frame, error))
@@ -39,7 +39,8 @@ static bool draw_frame(const render_options *o, recording *r, contact_picture *p
                        r->frame_numbers[frame]);
     plan_legend legend;
     if (!contact_picture_show(picture, r, frame, contacts, error) ||
-        (beside != NULL && !scenery_read(beside, frame, error)) || !paint_plan(o, r, picture, &legend, error))
+        (beside != NULL && !picture_scenery_read(beside, frame, error)) ||
+        !paint_plan(o, r, picture, &legend, error))
         return false;
     picture_options options = o->picture;
     if (o->no_text) options.text_scale = 0.0;
@@ -47,8 +48,8 @@ static bool draw_frame(const render_options *o, recording *r, contact_picture *p
     return picture_render(&picture->scene, &options, o->output_path, error);
 }
 
-static bool draw_strip(const render_options *o, recording *r, contact_picture *picture, scenery *beside,
-                       io_error *error) {
+static bool draw_strip(const render_options *o, recording *r, contact_picture *picture,
+                       picture_scenery *beside, io_error *error) {
     plan_legend legend;
     return paint_plan(o, r, picture, &legend, error) && strip_draw(o, r, picture, beside, error);
 }
@@ -71,17 +72,17 @@ static bool draw_picture(render_options *o, recording *r, io_error *error) {
     ignore_pairs ignored;
     if (!ignore_pairs_prepare(&o->ignored, r, &ignored, error)) return false;
     contact_picture picture = {.ignored = &ignored};
-    scenery other = {0};
-    scenery *beside = o->scenery_path != NULL ? &other : NULL;
+    picture_scenery other = {0};
+    picture_scenery *beside = o->scenery_path != NULL ? &other : NULL;
     o->picture.square = square_side(r);
-    bool drawn = (beside == NULL ||
-                  scenery_open(o->scenery_path, o->scenery_frames_path, r->frame_count, beside, error)) &&
+    bool drawn = (beside == NULL || picture_scenery_open(o->scenery_path, o->scenery_frames_path,
+                                                         r->frame_count, beside, error)) &&
                  contact_picture_load(&picture, r, error);
     if (beside != NULL) picture.scene.scenery = &beside->mesh;
     drawn = drawn && (o->strip ? draw_strip : draw_frame)(o, r, &picture, beside, error);
     contact_picture_free(&picture);
     ignore_pairs_free(&ignored);
-    scenery_close(&other);
+    picture_scenery_close(&other);
     return drawn;
 }
 

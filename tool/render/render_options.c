@@ -2,8 +2,7 @@
 #include "tool/render/render_options.h"
 
 #include "tool/common/command.h"
-#include "tool/common/option_values.h"
-#include "tool/common/output_path.h"
+#include "tool/common/options.h"
 
 static bool read_colour(const char *text, void *place) {
     int colour;

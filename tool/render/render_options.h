@@ -3,7 +3,7 @@
 
 #include "tool/common/frame_range.h"
 #include "tool/common/ignore_pairs.h"
-#include "tool/common/option_values.h"
+#include "tool/common/options.h"
 #include "tool/picture/picture.h"
 
 typedef enum colouring {

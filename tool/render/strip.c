@@ -11,7 +11,7 @@ typedef struct strip {
     const render_options *options;
     recording *recording;
     contact_picture *picture;
-    scenery *beside; /* or NULL */
+    picture_scenery *beside; /* or NULL */
     frame_choice frames;
     uint32_t count;
     picture_camera camera; /* following: of a body whose middle is the origin */
@@ -87,7 +87,7 @@ static bool draw_tile(strip *s, uint32_t tile, io_error *error) {
     if (contacts) contact_picture_clear(s->picture);
     contacts = contacts && frame + 1 < s->recording->frame_count;
     if (!contact_picture_show(s->picture, s->recording, frame, contacts, error) ||
-        (s->beside != NULL && !scenery_read(s->beside, frame, error)))
+        (s->beside != NULL && !picture_scenery_read(s->beside, frame, error)))
         return false;
     picture_legend lines[LABEL_LINES];
     char texts[LABEL_LINES][32];
@@ -113,8 +113,8 @@ static uint32_t default_columns(uint32_t count) {
     return columns > 0 ? columns : 1;
 }
 
-bool strip_draw(const render_options *options, recording *r, contact_picture *picture, scenery *beside,
-                io_error *error) {
+bool strip_draw(const render_options *options, recording *r, contact_picture *picture,
+                picture_scenery *beside, io_error *error) {
     strip s = {.options = options, .recording = r, .picture = picture, .beside = beside};
     if (!frame_range_choose(&options->frames, r->frame_numbers, r->frame_count, &s.frames, error))
         return false;

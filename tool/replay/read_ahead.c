@@ -30,7 +30,7 @@ static void read_next(read_ahead *a) {
 }
 
 /* While a frame is read the lock is free, and `full` says whose the place is: the thread's while it is false. */
-static void *read_frames(void *user) {
+static void *read_on(void *user) {
     read_ahead *a = user;
     pthread_mutex_lock(&a->lock);
     while (!a->quits && a->next <= a->last) {
@@ -59,7 +59,7 @@ bool read_ahead_open(recording *r, uint32_t first, uint32_t last, read_ahead **o
     a->last = last;
     pthread_mutex_init(&a->lock, NULL);
     pthread_cond_init(&a->changed, NULL);
-    a->runs = pthread_create(&a->thread, NULL, read_frames, a) == 0;
+    a->runs = pthread_create(&a->thread, NULL, read_on, a) == 0;
     *out = a;
     return true;
 }

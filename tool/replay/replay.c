@@ -1,7 +1,7 @@
 /* `cscd replay`: finds every contact of a recorded mesh with itself, interval by interval. */
 #include "tool/common/command.h"
 #include "tool/common/methods.h"
-#include "tool/common/output_path.h"
+#include "tool/common/options.h"
 #include "tool/jobs/listed_recordings.h"
 #include "tool/jobs/recording_answer.h"
 #include "tool/replay/replay_run.h"

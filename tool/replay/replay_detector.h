@@ -2,7 +2,7 @@
 #pragma once
 
 #include "tool/answers/answers.h"
-#include "tool/common/plan_source.h"
+#include "tool/common/plans.h"
 #include "tool/replay/interval_step.h"
 #include "tool/replay/replay_options.h"
 

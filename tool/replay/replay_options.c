@@ -4,8 +4,7 @@
 #include "cscd/research.h"
 #include "tool/common/command.h"
 #include "tool/common/methods.h"
-#include "tool/common/option_values.h"
-#include "tool/common/output_path.h"
+#include "tool/common/options.h"
 #include "tool/io/contact_file.h"
 #include "tool/io/gltf.h"
 

@@ -1,7 +1,7 @@
 /* The report of a replay. An error in it ends the report and not the replay, and is printed at the end. */
 #include "tool/common/provenance.h"
-#include "tool/common/scenery.h"
 #include "tool/io/path_name.h"
+#include "tool/picture/picture.h"
 #include "tool/replay/replay_sink.h"
 #include "tool/report/report.h"
 
@@ -11,8 +11,8 @@
 typedef struct replay_report {
     replay *replay;
     const report_request *request;
-    report *report;  /* NULL: it has failed */
-    scenery scenery; /* zeroed: none */
+    report *report;          /* NULL: it has failed */
+    picture_scenery scenery; /* zeroed: none */
     char generator[PROVENANCE_GENERATOR_SIZE];
     io_error failure; /* "" while all is well */
 } replay_report;
@@ -28,8 +28,8 @@ static void file_vertices(void *user, const cscd_contact *contact, uint32_t vert
 static bool open_scenery(replay_report *r, io_error *error) {
     const report_request *request = r->request;
     return request->scenery_path == NULL ||
-           scenery_open(request->scenery_path, request->scenery_frames_path, r->replay->recording.frame_count,
-                        &r->scenery, error);
+           picture_scenery_open(request->scenery_path, request->scenery_frames_path,
+                                r->replay->recording.frame_count, &r->scenery, error);
 }
 
 static bool create_report(replay_report *r, io_error *error) {
@@ -60,7 +60,7 @@ static bool create_report(replay_report *r, io_error *error) {
 
 static void free_report(replay_report *r) {
     report_destroy(r->report);
-    scenery_close(&r->scenery);
+    picture_scenery_close(&r->scenery);
     free(r);
 }
 
@@ -110,7 +110,7 @@ static bool add_scenery(replay_report *r, io_error *error) {
     if (r->request->scenery_path == NULL) return true;
     uint32_t count = r->scenery.frame_count > 1 ? report_frame_count(r->report) : 1;
     for (uint32_t i = 0; i < count; i++) {
-        if (!scenery_read(&r->scenery, report_frame(r->report, i), error) ||
+        if (!picture_scenery_read(&r->scenery, report_frame(r->report, i), error) ||
             !report_add_scenery(r->report, r->scenery.file.positions, error))
             return false;
     }

@@ -3,8 +3,8 @@
 
 #include "tool/common/frame_range.h"
 #include "tool/common/ignore_pairs.h"
-#include "tool/common/plan_source.h"
-#include "tool/common/stages.h"
+#include "tool/common/methods.h"
+#include "tool/common/plans.h"
 #include "tool/common/terminal.h"
 #include "tool/replay/replay_options.h"
 #include "tool/replay/replay_source.h"
@@ -31,7 +31,7 @@ typedef struct replay_totals {
     uint32_t intervals_unlisted; /* contacts are counted only, */
     uint64_t contacts_unlisted;  /* so many */
     cscd_timings time_sum, time_max;
-    cscd_counters counter_sum, counter_max; /* of the counters that have a row in stages.h */
+    cscd_counters counter_sum, counter_max; /* of the counters that have a row in methods.h */
 } replay_totals;
 
 void totals_add(replay_totals *t, const interval_result *result, const cscd_mesh *mesh);

@@ -2,8 +2,8 @@
  * consist of chunks of fixed length, which one run and all its shards have in common. */
 #pragma once
 
-#include "tool/common/append_file.h"
 #include "tool/io/io_error.h"
+#include "tool/io/output_file.h"
 #include "tool/jobs/job_shards.h"
 #include "tool/replay/step_bytes.h"
 
@@ -28,7 +28,7 @@ typedef enum shard_record {
     SHARD_INTERVAL  /* an interval and the frame at its end */
 } shard_record;
 
-/* ---- reading ----------------------------------------------------------------------------------------------- */
+/* ---- reading ------------------------------------------------------------------------------------------- */
 
 typedef struct shard_reader {
     const char *path;
@@ -50,7 +50,7 @@ typedef enum shard_end { SHARD_GOES_ON, SHARD_ENDS, SHARD_IS_TORN } shard_end;
 /* The next record, whose bytes live until the next call. Torn: the file ends within a record, or its sum is wrong. */
 shard_end shard_reader_next(shard_reader *r, shard_record *kind, packed_reader *bytes);
 
-/* ---- writing ----------------------------------------------------------------------------------------------- */
+/* ---- writing ------------------------------------------------------------------------------------------- */
 
 /* Opens a file and locks it. It must be new or empty, unless it is to be resumed: then what does not make up a whole chunk is cut
  * off from its end, and *next is the frame to go on with; else it is shard_first. On false *out holds nothing to close. */

@@ -2,7 +2,7 @@
 #include "tool/report/page_arrays.h"
 #include "tool/common/methods.h"
 
-#include "tool/common/plan_colours.h"
+#include "tool/common/plans.h"
 #include "tool/report/collected.h"
 
 #include <assert.h>

@@ -1,7 +1,7 @@
 /* The options of a command about the report that it writes. */
 #pragma once
 
-#include "tool/common/option_values.h"
+#include "tool/common/options.h"
 #include "tool/io/io_error.h"
 
 #include <stdbool.h>

@@ -1,7 +1,7 @@
 /* A record that a full disk lets through in part is taken back. */
 #include "tests/support/temp_file.h"
 #include "tests/support/test.h"
-#include "tool/common/append_file.h"
+#include "tool/io/output_file.h"
 
 #include <signal.h>
 #include <string.h>
