@@ -111,9 +111,9 @@ CORE_FILES      := $(wildcard src/core/*.c src/mesh/*.c preprocess/*.c preproces
 CORE_SOURCES    := $(filter-out %_simd.c $(BASELINE_SOURCES),$(CORE_FILES))
 KERNEL_SOURCES  := $(filter %_simd.c,$(CORE_FILES))
 # What commands of the tool share, and the commands.
-WITHOUT_GIFTI   := tool/io/gifti/no_gifti.c
+WITHOUT_GIFTI   := tool/io/no_gifti.c
 OTHER_PROCESSES := $(foreach file,jobs/job_processes common/blas_kernels,tool/$(file)$(if $(WINDOWS),,_windows).c)
-COMMON_SOURCES  := $(filter-out $(OTHER_PROCESSES) $(if $(filter 0,$(EXPAT)),$(filter-out $(WITHOUT_GIFTI),$(wildcard tool/io/gifti/*.c)),$(WITHOUT_GIFTI)), \
+COMMON_SOURCES  := $(filter-out $(OTHER_PROCESSES) $(if $(filter 0,$(EXPAT)),tool/io/gifti.c,$(WITHOUT_GIFTI)), \
                      $(wildcard tool/io/*.c tool/io/*/*.c tool/picture/*.c tool/common/*.c tool/answers/*.c \
                      tool/jobs/*.c tool/export/*.c tool/report/*.c))
 COMMAND_SOURCES := $(wildcard tool/*.c $(patsubst %,tool/%/*.c,check preprocess replay render) $(if $(HAS_SENSORS),sensors/tool/*.c))

@@ -3,7 +3,7 @@
 #include "cscd/cscd.h"
 #include "src/core/timer.h"
 #include "tool/io/mesh_file.h"
-#include "tool/io/point_cache_write.h"
+#include "tool/io/point_cache.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -1,5 +1,5 @@
 /* How long one face with many corners takes to be cut into triangles. */
-#include "tool/io/polygon.h"
+#include "tool/io/mesh_builder.h"
 
 #include <math.h>
 #include <stdbool.h>

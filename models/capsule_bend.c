@@ -16,7 +16,7 @@
  * Nothing else touches: the inside of the bend keeps the radius L / theta - 1 > 1.6. The mesh is inscribed,
  * which delays its contact by less than 0.2 frames. */
 #include "tool/io/mesh_file.h"
-#include "tool/io/point_cache_write.h"
+#include "tool/io/point_cache.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -4,7 +4,7 @@
  * rays from the centre, so no two triangles meet in the first frame. Then each vertex moves along its normal of that frame, most in some
  * places and not at all in others, until the banks of some trenches have passed through each other, and back again. */
 #include "tool/io/mesh_file.h"
-#include "tool/io/point_cache_write.h"
+#include "tool/io/point_cache.h"
 
 #include <assert.h>
 #include <math.h>

@@ -1,6 +1,6 @@
 /* A skinned figure whose arms go through its trunk, in each of the forms in which animations come. */
 #include "models/mannequin/mannequin.h"
-#include "tool/io/point_cache_write.h"
+#include "tool/io/point_cache.h"
 
 #include <errno.h>
 #include <stdbool.h>

@@ -1,7 +1,7 @@
 /* `cscd report` of results of jobs: one page over all of them. */
 #pragma once
 
-#include "tool/io/io_error.h"
+#include "tool/io/io.h"
 
 #include <stdbool.h>
 #include <stddef.h>

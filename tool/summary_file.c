@@ -2,7 +2,7 @@
 #include "tool/summary_file.h"
 
 #include "tool/common/methods.h"
-#include "tool/io/json_room.h"
+#include "tool/io/json.h"
 #include "tool/io/pipe_file.h"
 #include "tool/io/text_encoding.h"
 

@@ -1,7 +1,7 @@
 /* Reads back what `cscd replay --json` wrote. */
 #pragma once
 
-#include "tool/io/io_error.h"
+#include "tool/io/io.h"
 
 #include <stdbool.h>
 

@@ -3,7 +3,7 @@
 
 #include "cscd/cscd.h"
 #include "models/shapes/body.h"
-#include "tool/io/io_error.h"
+#include "tool/io/io.h"
 
 typedef struct charge_request {
     cscd_charge_solver solver;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "models/shapes/body.h"
-#include "tool/io/io_error.h"
+#include "tool/io/io.h"
 
 /* figure    legs that pass through each other
  * knot      a closed tube that passes through itself 14 times: much of it is buried

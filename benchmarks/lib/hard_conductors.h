@@ -2,7 +2,7 @@
 #pragma once
 
 #include "models/shapes/body.h"
-#include "tool/io/io_error.h"
+#include "tool/io/io.h"
 
 enum { HARD_CONDUCTORS = 16 };
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "runtime/ccd/ccd.h"
-#include "tool/io/io_error.h"
+#include "tool/io/io.h"
 
 #include <stddef.h>
 

@@ -1,7 +1,7 @@
 /* The JSON file of a benchmark: an object with its rows and where they come from. */
 #pragma once
 
-#include "tool/io/io_error.h"
+#include "tool/io/io.h"
 #include "tool/io/json.h"
 
 /* Begins the object. Without a path there is no file: out->file is NULL then, and nothing may be written. */

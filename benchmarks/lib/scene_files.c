@@ -4,7 +4,7 @@
 #include "models/softbody/softbody.h"
 #include "src/core/timer.h"
 #include "tool/io/animation.h"
-#include "tool/io/point_cache_write.h"
+#include "tool/io/point_cache.h"
 
 #include <stdio.h>
 #include <stdlib.h>

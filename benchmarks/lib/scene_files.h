@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cscd/cscd.h"
-#include "tool/io/io_error.h"
+#include "tool/io/io.h"
 #include "tool/io/mesh_file.h"
 
 typedef struct recording_data {

@@ -1,7 +1,7 @@
 /* Scenes for the programs that are measured beside us: one mesh, and the positions at both ends of an interval. */
 #pragma once
 
-#include "tool/io/io_error.h"
+#include "tool/io/io.h"
 
 #include <stdint.h>
 

@@ -4,8 +4,8 @@
 
 #include "cscd/cscd.h"
 #include "models/shapes/body.h"
-#include "tool/io/io_error.h"
-#include "tool/io/point_cache_write.h"
+#include "tool/io/io.h"
+#include "tool/io/point_cache.h"
 
 #include <stdint.h>
 

@@ -7,7 +7,7 @@
  * after, the distance is ten times what the mesh lies within its capsule. Nothing else touches. */
 #pragma once
 
-#include "tool/io/io_error.h"
+#include "tool/io/io.h"
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -5,7 +5,7 @@
 #include "models/shapes/body.h"
 #include "models/shapes/catalogue.h"
 #include "models/softbody/softbody.h"
-#include "tool/io/io_error.h"
+#include "tool/io/io.h"
 
 /* ---- objects that move by formula ---------------------------------------------------------------------- */
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "models/shapes/body.h"
-#include "tool/io/io_error.h"
+#include "tool/io/io.h"
 
 /* z is up; lengths are in the unit of the models, about a metre:
  *   pawn       3 high, 2 wide, stands on z = 0: foot, waist, collar, head

@@ -4,7 +4,7 @@
 #include "cscd/cscd.h"
 #include "models/shapes/body.h"
 #include "models/shapes/catalogue.h"
-#include "tool/io/io_error.h"
+#include "tool/io/io.h"
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -3,7 +3,7 @@
 
 #include "cscd/cscd.h"
 #include "cscd/sensors.h"
-#include "tool/io/growable.h"
+#include "tool/io/io.h"
 
 typedef struct object_pairs {
     growable keys; /* of uint64_t: the smaller object, then the larger; ascending once closed */

@@ -3,7 +3,7 @@
 
 #include "cscd/sensors.h"
 #include "sensors/tool/sense_options.h"
-#include "tool/io/growable.h"
+#include "tool/io/io.h"
 
 /* Where the particles have been so far. */
 typedef struct sense_paths {

@@ -4,7 +4,7 @@
  * their formats. The file that is read when the program dies is left where the first line says. */
 #include "tests/fuzz/readings.h"
 #include "tests/support/io/byte_damage.h"
-#include "tool/io/path_name.h"
+#include "tool/io/io.h"
 
 #include <dirent.h>
 #include <stdio.h>

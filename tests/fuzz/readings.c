@@ -3,7 +3,7 @@
 
 #include "tests/fuzz/reading_memory.h"
 #include "tool/io/animation.h"
-#include "tool/io/path_name.h"
+#include "tool/io/io.h"
 #include "tool/io/plan_file.h"
 #include "tool/jobs/job_list.h"
 #include "tool/jobs/job_merge.h"

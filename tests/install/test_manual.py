@@ -16,7 +16,7 @@ PAGE = re.sub(r"\\f.", "", (ROOT / "docs/man/cscd.1").read_text()).replace("\\-"
 
 
 # What each mesh format is called, and the endings of its files.
-FORMATS = re.findall(r'\((?:[A-Z]+), "([^"]*)", "([^"]*)"\)', (ROOT / "tool/io/mesh_format.h").read_text())
+FORMATS = re.findall(r'\((?:[A-Z]+), "([^"]*)", "([^"]*)"\)', (ROOT / "tool/io/mesh_file.h").read_text())
 
 
 def help_of(command=""):
@@ -99,7 +99,7 @@ def test_formats_are_those_that_are_read():
 
 
 @pytest.mark.parametrize("title, source", [
-    ("## Contacts: `replay", "tool/io/contact_file.c"), ("The table has a row per pair", "tool/check/check_output.c"),
+    ("## Contacts: `replay", "tool/io/record.c"), ("The table has a row per pair", "tool/check/check_output.c"),
     ("## Events: `--events", "tool/answers/answer_files.c"), ("The CSV has a row per warning", "sensors/tool/sense_files.c"),
 ])
 def test_columns_are_those_of_the_tables(title, source):

@@ -3,8 +3,8 @@
 #include "tests/support/io/frame_fixture.h"
 #include "tests/support/io_allocations.h"
 #include "tests/support/test.h"
-#include "tool/io/growable.h"
-#include "tool/io/point_cache_write.h"
+#include "tool/io/io.h"
+#include "tool/io/point_cache.h"
 
 #include <stdbool.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* GIFTI files, in each encoding, when memory fails and when they are damaged. */
 #include "tests/support/io/mesh_check.h"
 #include "tests/support/test.h"
-#include "tool/io/growable.h"
+#include "tool/io/io.h"
 
 #include <stdlib.h>
 #include <string.h>

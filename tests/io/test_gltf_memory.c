@@ -5,7 +5,7 @@
 #include "tests/support/temp_file.h"
 #include "tests/support/test.h"
 #include "tool/io/animation.h"
-#include "tool/io/growable.h"
+#include "tool/io/io.h"
 
 #include <stdlib.h>
 #include <string.h>

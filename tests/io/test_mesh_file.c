@@ -2,9 +2,9 @@
 #include "tests/support/io/mesh_check.h"
 #include "tests/support/temp_file.h"
 #include "tests/support/test.h"
-#include "tool/io/growable.h"
+#include "tool/io/file_reader.h"
+#include "tool/io/io.h"
 #include "tool/io/mesh_builder.h"
-#include "tool/io/text.h"
 
 #include <signal.h>
 #include <stdio.h>

@@ -4,7 +4,7 @@
 #include "tests/support/packed.h"
 #include "tests/support/test.h"
 #include "tests/support/tool/tool_fixture.h"
-#include "tool/io/growable.h"
+#include "tool/io/io.h"
 #include "tool/io/mesh_file.h"
 #include "tool/io/plan_file.h"
 

@@ -2,7 +2,7 @@
 #include "tests/support/io/frame_fixture.h"
 #include "tests/support/own_folder.h"
 #include "tests/support/test.h"
-#include "tool/io/point_cache_write.h"
+#include "tool/io/point_cache.h"
 
 #include <float.h>
 #include <math.h>

@@ -4,7 +4,7 @@
 #include "tests/support/tool/tool_fixture.h"
 #include "tool/answers/answers.h"
 #include "tool/answers/consequences.h"
-#include "tool/io/growable.h"
+#include "tool/io/io.h"
 
 #include <stdlib.h>
 #include <string.h>

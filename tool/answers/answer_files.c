@@ -2,7 +2,7 @@
 #include "tool/answers/answer_files.h"
 
 #include "tool/io/record.h"
-#include "tool/io/text_escape.h"
+#include "tool/io/text_encoding.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -4,7 +4,7 @@
 
 #include "tool/answers/shown_depths.h"
 #include "tool/answers/turned_parts.h"
-#include "tool/io/growable.h"
+#include "tool/io/io.h"
 
 /* What was found in a frame. */
 typedef struct frame_answer {

@@ -2,7 +2,7 @@
 #include "tool/answers/consequences.h"
 
 #include "tool/common/event_order.h"
-#include "tool/io/growable.h"
+#include "tool/io/io.h"
 
 #include <stdlib.h>
 

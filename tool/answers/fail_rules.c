@@ -3,7 +3,7 @@
 
 #include "tool/common/command.h"
 #include "tool/common/terminal.h"
-#include "tool/io/text_escape.h"
+#include "tool/io/text_encoding.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "tool/common/ignore_pairs.h"
-#include "tool/io/growable.h"
+#include "tool/io/io.h"
 
 typedef struct shown_depths {
     const ignore_pairs *ignored;

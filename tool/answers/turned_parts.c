@@ -2,7 +2,7 @@
 #include "tool/answers/turned_parts.h"
 
 #include "tool/common/command.h"
-#include "tool/io/growable.h"
+#include "tool/io/io.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* Exit codes, error lines and numbers of the command line, for all commands of the tool. */
 #pragma once
 
-#include "tool/io/io_error.h"
+#include "tool/io/io.h"
 
 #include <stdbool.h>
 #include <stdint.h>

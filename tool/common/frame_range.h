@@ -1,7 +1,7 @@
 /* Frames: those that --frames A:B:STEP chooses, and lists of spans for people to read. */
 #pragma once
 
-#include "tool/io/io_error.h"
+#include "tool/io/io.h"
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -2,10 +2,9 @@
  * intersect or touch in the first frame; and those of a list file. */
 #include "tool/common/ignore_pairs.h"
 
-#include "tool/io/growable.h"
+#include "tool/io/io.h"
 #include "tool/io/pipe_file.h"
 #include "tool/io/text_encoding.h"
-#include "tool/io/text_escape.h"
 
 #include <errno.h>
 #include <stdio.h>

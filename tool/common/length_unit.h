@@ -1,7 +1,7 @@
 /* Units of length: what one unit of a recording's coordinates is, and lengths as people write and read them. */
 #pragma once
 
-#include "tool/io/io_error.h"
+#include "tool/io/io.h"
 
 #include <stdbool.h>
 

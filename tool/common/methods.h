@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cscd/cscd.h"
-#include "tool/io/io_error.h"
+#include "tool/io/io.h"
 
 typedef struct method_facts {
     bool by_regions;  /* culls by the orientation of triangles, for which it needs regions */

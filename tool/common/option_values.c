@@ -5,8 +5,8 @@
 #include "tool/common/frame_range.h"
 #include "tool/common/ignore_pairs.h"
 #include "tool/common/recording.h"
-#include "tool/io/gltf.h"
-#include "tool/io/path_name.h"
+#include "tool/io/format_reader.h"
+#include "tool/io/io.h"
 #include "tool/picture/picture.h"
 
 #include <math.h>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "cscd/cscd.h"
-#include "tool/io/io_error.h"
+#include "tool/io/io.h"
 
 #include <stdbool.h>
 #include <stddef.h>

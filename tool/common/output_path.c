@@ -1,8 +1,8 @@
 /* Keeps a command from writing over what it reads. */
 #include "tool/common/options.h"
 
+#include "tool/io/io.h"
 #include "tool/io/output_file.h"
-#include "tool/io/path_name.h"
 
 #include <stdio.h>
 #include <stdlib.h>

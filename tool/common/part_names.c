@@ -1,8 +1,8 @@
 /* Finds the parts of a recording, and keeps their names. */
 #include "tool/common/part_names.h"
 
-#include "tool/io/growable.h"
-#include "tool/io/mesh_parts.h"
+#include "tool/io/io.h"
+#include "tool/io/mesh_file.h"
 #include "tool/io/pipe_file.h"
 #include "tool/io/text_encoding.h"
 

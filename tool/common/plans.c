@@ -3,10 +3,9 @@
 #include "tool/common/plans.h"
 
 #include "tool/common/methods.h"
-#include "tool/io/growable.h"
-#include "tool/io/path_name.h"
+#include "tool/io/io.h"
 #include "tool/io/plan_file.h"
-#include "tool/io/text_escape.h"
+#include "tool/io/text_encoding.h"
 #include "tool/picture/picture.h"
 
 #include <float.h>

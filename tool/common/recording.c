@@ -4,8 +4,8 @@
 #include "tool/common/command.h"
 #include "tool/common/provenance.h"
 #include "tool/common/terminal.h"
-#include "tool/io/gltf.h"
-#include "tool/io/path_name.h"
+#include "tool/io/format_reader.h"
+#include "tool/io/io.h"
 
 #include <assert.h>
 #include <stdlib.h>
@@ -227,9 +227,9 @@ static bool map_edges(recording *r, io_error *error) {
     return true;
 }
 
-/* ---- the interface ------------------------------------------------------------------------------------- */
+/* ---- files that come late ------------------------------------------------------------------------------ */
 
-/* ---- files that come late, as those of a network file system do after another machine has written them ---- */
+/* A file that cannot be read may be one that another machine has written a moment ago, on a network file system. */
 
 /* How long a file that cannot be read is tried again, and since when. */
 typedef struct late_files {

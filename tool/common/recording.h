@@ -5,8 +5,8 @@
 #include "cscd/cscd.h"
 #include "tool/common/options.h"
 #include "tool/io/animation.h"
-#include "tool/io/contact_file.h"
 #include "tool/io/mesh_file.h"
+#include "tool/io/record.h"
 #include "tool/io/weld.h"
 
 /* ---- an object of a recording -------------------------------------------------------------------------- */

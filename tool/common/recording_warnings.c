@@ -1,8 +1,8 @@
 /* Warnings about a mesh, which a person should know before trusting its results. */
 #include "tool/common/command.h"
 #include "tool/common/recording.h"
-#include "tool/io/near_seams.h"
-#include "tool/io/path_name.h"
+#include "tool/io/io.h"
+#include "tool/io/weld.h"
 
 #include <stdio.h>
 #include <stdlib.h>

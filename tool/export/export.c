@@ -3,8 +3,8 @@
 
 #include "tool/common/options.h"
 #include "tool/export/export_values.h"
+#include "tool/io/io.h"
 #include "tool/io/output_file.h"
-#include "tool/io/path_name.h"
 
 #include <stdlib.h>
 #include <string.h>

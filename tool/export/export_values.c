@@ -2,7 +2,7 @@
 #include "tool/export/export_values.h"
 
 #include "tool/common/methods.h"
-#include "tool/io/path_name.h"
+#include "tool/io/io.h"
 
 #include <inttypes.h>
 #include <stdio.h>

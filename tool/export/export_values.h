@@ -3,8 +3,7 @@
 #pragma once
 
 #include "tool/common/part_names.h"
-#include "tool/io/growable.h"
-#include "tool/io/io_error.h"
+#include "tool/io/io.h"
 #include "tool/io/json.h"
 #include "tool/io/output_file.h"
 

@@ -1,8 +1,8 @@
 /* Frames as .vtp files of ParaView, with the intersection curves as polylines. */
 #include "cscd/cscd.h"
 #include "tool/export/export_values.h"
+#include "tool/io/io.h"
 #include "tool/io/output_file.h"
-#include "tool/io/path_name.h"
 
 #include <assert.h>
 #include <inttypes.h>

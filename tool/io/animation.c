@@ -1,10 +1,8 @@
 /* Chooses the reader that the given paths call for and passes the frames on. */
 #include "tool/io/animation.h"
 
-#include "tool/io/frame_files.h"
-#include "tool/io/gltf.h"
-#include "tool/io/growable.h"
-#include "tool/io/path_name.h"
+#include "tool/io/format_reader.h"
+#include "tool/io/io.h"
 #include "tool/io/point_cache.h"
 
 #include <errno.h>

@@ -1,7 +1,7 @@
-/* Writes JSON as it goes, and takes care of commas, nesting and escapes. */
+/* Writes JSON as it goes, with its commas, nesting and escapes; and bounds the JSON of strangers before it is parsed. */
 #include "tool/io/json.h"
 
-#include "tool/io/text_escape.h"
+#include "tool/io/text_encoding.h"
 
 #include <assert.h>
 #include <inttypes.h>
@@ -103,4 +103,17 @@ void json_verbatim(json *out, const char *key, const char *text) {
 
 void json_break_line(json *out) {
     out->break_line = true;
+}
+
+/* ---- JSON of strangers --------------------------------------------------------------------------------- */
+
+enum { BYTES_AN_OBJECT = 10, FREE_OBJECTS = 1000 };
+
+/* Braces in strings count, too: they would have to be many. */
+bool json_has_room(const char *text, size_t size) {
+    const size_t most = size / BYTES_AN_OBJECT + FREE_OBJECTS;
+    size_t count = 0;
+    for (const char *at = text, *end = text + size; (at = memchr(at, '{', (size_t)(end - at))) != NULL; at++)
+        if (++count > most) return false;
+    return true;
 }

@@ -1,7 +1,8 @@
-/* Writes JSON as it goes, and takes care of commas, nesting and escapes. */
+/* Writes JSON as it goes, with its commas, nesting and escapes; and bounds the JSON of strangers before it is parsed. */
 #pragma once
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 
@@ -32,3 +33,7 @@ void json_null(json *out, const char *key);
 void json_verbatim(json *out, const char *key, const char *text);
 /* Starts the next value on a new line, for human readers. */
 void json_break_line(json *out);
+
+/* False: the text has more than an object in ten bytes, beside a thousand, which no program writes. Parsed, each takes a thousand
+ * bytes, so that text of nothing but braces would become 350 times as large; what is left becomes 100 times as large at most. */
+bool json_has_room(const char *text, size_t size);

@@ -1,13 +1,77 @@
-/* Triangle meshes from files of all formats that mesh_format.h lists. */
+/* Triangle meshes from files of all formats, and the list of these formats. */
 #pragma once
 
-#include "tool/io/io_error.h"
-#include "tool/io/mesh_format.h"
-#include "tool/io/mesh_parts.h"
+#include "tool/io/io.h"
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+/* ---- the list of formats ------------------------------------------------------------------------------- */
+
+/* Each row is the constant behind MESH_FORMAT_, the name for people, and the endings. */
+#define MESH_FORMATS(FIRST, NEXT, LAST)                                                                      \
+    FIRST(OBJ, "OBJ", ".obj")                                                                                \
+    NEXT(PLY, "PLY", ".ply")                                                                                 \
+    NEXT(OFF, "OFF", ".off")                                                                                 \
+    NEXT(STL, "STL", ".stl")                                                                                 \
+    NEXT(GLTF, "glTF", ".glb, .gltf")                                                                        \
+    LAST(GIFTI, "GIFTI", ".gii")
+
+#define MESH_FORMAT_CONSTANT(constant, name, endings) MESH_FORMAT_##constant,
+typedef enum mesh_format {
+    MESH_FORMAT_NONE, /* a mesh that was not read */
+    MESH_FORMATS(MESH_FORMAT_CONSTANT, MESH_FORMAT_CONSTANT, MESH_FORMAT_CONSTANT)
+} mesh_format;
+
+#define MESH_FIRST_NAME(constant, name, endings)   name
+#define MESH_NEXT_NAME(constant, name, endings)    ", " name
+#define MESH_OR_NAME(constant, name, endings)      " or " name
+#define MESH_FIRST_ENDING(constant, name, endings) endings
+#define MESH_NEXT_ENDING(constant, name, endings)  ", " endings
+#define MESH_OR_ENDING(constant, name, endings)    " or " endings
+
+/* "OBJ, PLY, .., GIFTI"; "OBJ, PLY, .. or GIFTI"; ".obj, .ply, .. or .gii". */
+#define MESH_FORMAT_NAMES   MESH_FORMATS(MESH_FIRST_NAME, MESH_NEXT_NAME, MESH_NEXT_NAME)
+#define MESH_FORMAT_CHOICE  MESH_FORMATS(MESH_FIRST_NAME, MESH_NEXT_NAME, MESH_OR_NAME)
+#define MESH_FORMAT_ENDINGS MESH_FORMATS(MESH_FIRST_ENDING, MESH_NEXT_ENDING, MESH_OR_ENDING)
+
+/* The format that the ending of a path says, or MESH_FORMAT_NONE. *length is that of the ending. */
+mesh_format mesh_format_of_path(const char *path, unsigned *length);
+
+/* What a format is called; "" for MESH_FORMAT_NONE. */
+const char *mesh_format_name(mesh_format format);
+
+/* ---- parts --------------------------------------------------------------------------------------------- */
+
+#define NO_MESH_PART UINT32_MAX
+
+/* What makes the parts of a mesh file. */
+typedef enum mesh_parts_by {
+    MESH_PARTS_BY_FILE, /* what the file has: of an OBJ objects with their groups, of a glTF nodes, STL solids, PLY labels */
+    MESH_PARTS_BY_OBJECT,  /* of an OBJ objects alone; else as above */
+    MESH_PARTS_BY_GROUP,   /* groups of an OBJ; no other format has any */
+    MESH_PARTS_BY_MATERIAL /* materials of an OBJ or glTF; no other format has any */
+} mesh_parts_by;
+
+typedef struct mesh_parts {
+    uint32_t count;        /* 0: the file names none, and there are no labels */
+    char **names;          /* count of them, each another one */
+    uint32_t *of_triangle; /* per triangle: which part, or NO_MESH_PART */
+
+    /* A hash table of the names, for mesh_parts_find: parts + 1, 0 for a free place. */
+    uint32_t *places;
+    size_t place_count; /* a power of 2, more than twice the parts; 0: there is no table yet */
+} mesh_parts;
+
+/* Frees names and labels; a zeroed struct is fine. */
+void mesh_parts_free(mesh_parts *parts);
+
+/* The part of that name, which is added if there is none yet; the first length characters of name count. NO_MESH_PART when
+ * out of memory. The list was empty at first, and all of its names came by this function. */
+uint32_t mesh_parts_find(mesh_parts *parts, const char *name, size_t length);
+
+/* ---- meshes -------------------------------------------------------------------------------------------- */
 
 /* What a reader did to faces that are no polygons of three different corners or more, or that it could not fill by their
  * shape. Faces are counted from 0, in the file's order. */
@@ -19,7 +83,7 @@ typedef struct mesh_repairs {
     uint32_t skipped_primitives;     /* of a glTF: points and lines */
 } mesh_repairs;
 
-/* Vertices in the file's own order; faces in file order, polygons cut into triangles by their shape (polygon.h), as they
+/* Vertices in the file's own order; faces in file order, polygons cut into triangles by their shape (mesh_builder.h), as they
  * are in this file. */
 typedef struct mesh_file {
     mesh_format format;

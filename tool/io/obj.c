@@ -1,8 +1,8 @@
 /* Wavefront OBJ: vertices, polygons, and the names of objects, groups and materials; all other records are skipped. */
 #include "tool/io/format_reader.h"
 
+#include "tool/io/file_reader.h"
 #include "tool/io/mesh_builder.h"
-#include "tool/io/text.h"
 
 #include <inttypes.h>
 #include <stdio.h>

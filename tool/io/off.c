@@ -1,8 +1,8 @@
 /* OFF (Object File Format) in text, with normals, colours or texture coordinates ignored. */
 #include "tool/io/format_reader.h"
 
+#include "tool/io/file_reader.h"
 #include "tool/io/mesh_builder.h"
-#include "tool/io/text.h"
 
 #include <inttypes.h>
 #include <string.h>

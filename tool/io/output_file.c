@@ -2,7 +2,7 @@
  * that only grows. */
 #include "tool/io/output_file.h"
 
-#include "tool/io/path_name.h"
+#include "tool/io/io.h"
 #include "tool/io/pipe_file.h"
 
 #include <errno.h>

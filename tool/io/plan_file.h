@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cscd/cscd.h"
-#include "tool/io/io_error.h"
+#include "tool/io/io.h"
 
 /* Does the file begin as a PLY with the comment that every plan has? False too when it cannot be read. */
 bool plan_file_is_plan(const char *path);

@@ -1,7 +1,7 @@
-/* Point caches: all frames of an animation in one PC2 or MDD file. */
+/* Point caches: all frames of an animation in one PC2 or MDD file, read and written frame by frame. */
 #pragma once
 
-#include "tool/io/io_error.h"
+#include "tool/io/io.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -37,3 +37,20 @@ int32_t point_cache_frame_number(const point_cache *cache, uint32_t frame);
 
 /* frame is below the count; positions takes vertex_count * 3 and is undefined on false. */
 bool point_cache_read(point_cache *cache, uint32_t frame, double *positions, io_error *error);
+
+/* ---- writing ------------------------------------------------------------------------------------------- */
+
+typedef struct point_cache_writer point_cache_writer;
+
+/* Begins the file for path, whose extension (.pc2 or .mdd) says the format, and writes the header. Counts are
+ * 1 to INT32_MAX. PC2 gets start 0 and rate 1, MDD 24 frames a second. On false *out is untouched. */
+bool point_cache_writer_open(const char *path, uint32_t vertex_count, uint32_t frame_count,
+                             point_cache_writer **out, io_error *error);
+
+/* Appends a frame, vertex_count * 3 positions rounded to float32; a value that is not finite in float32 is an
+ * error. After an error nothing is left of the file, every further write fails, and only close is left to do. */
+bool point_cache_writer_write(point_cache_writer *writer, const double *positions, io_error *error);
+
+/* Always frees the writer; NULL is fine. True if all frame_count frames are in the file. If not, none of it is
+ * there; *error is set unless a write has already failed and said why. */
+bool point_cache_writer_close(point_cache_writer *writer, io_error *error);

@@ -1,8 +1,8 @@
 /* STL (stereolithography), binary and as text: triangles that each bring their own three vertices. */
 #include "tool/io/format_reader.h"
 
+#include "tool/io/file_reader.h"
 #include "tool/io/mesh_builder.h"
-#include "tool/io/text.h"
 
 #include <inttypes.h>
 #include <string.h>

@@ -1,9 +1,12 @@
-/* How the characters of a text file are encoded: UTF-8, with a mark or without, or UTF-16, which is not read. */
+/* The encodings of texts: UTF-8 and UTF-16 of files that are read, quotes and escapes of formats that are written, and Base64. */
 #pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <string.h>
+
+/* ---- files that are read ------------------------------------------------------------------------------- */
 
 /* The end of a sentence about a file in UTF-16. */
 #define TEXT_UTF16_ADVICE "this is text in UTF-16, expected UTF-8: save it as UTF-8 in an editor"
@@ -33,3 +36,29 @@ static inline bool text_is_utf16(const char *bytes, size_t size) {
     return (!big && text_is_wide(bytes + start, size - start, 1)) ||
            (!little && text_is_wide(bytes + start, size - start, 0));
 }
+
+/* ---- texts of users (names, paths) as parts of other formats ------------------------------------------- */
+
+/* Bytes of the UTF-8 character at s; 0 if it is none. */
+size_t text_utf8_length(const unsigned char *s);
+
+/* Bytes of the longest beginning of a text that has at most so many bytes and does not end within a character. */
+int text_cut_length(const char *text, int most);
+
+/* The two arguments of "%.*s" that print such a beginning. */
+#define TEXT_CUT(text, most) text_cut_length((text), (most)), (text)
+
+/* In quotes, with those of the text doubled, so that any text is one field of a CSV file. */
+void text_write_csv(FILE *file, const char *text);
+
+/* As the content of an element or of an attribute in double quotes. What XML cannot hold becomes U+FFFD. */
+void text_write_xml(FILE *file, const char *text);
+
+/* ---- Base64, as data URIs and GIFTI files hold it ------------------------------------------------------ */
+
+/* The most bytes that length characters stand for. */
+size_t base64_room(size_t length);
+
+/* Decodes length characters to out, which has that room. Blanks and line ends may stand anywhere, and the padding at the
+ * end may be missing. On false *wrong is the place of the first character that does not belong there. */
+bool base64_decode(const char *text, size_t length, unsigned char *out, size_t *size, size_t *wrong);

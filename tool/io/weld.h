@@ -1,7 +1,10 @@
-/* Joins vertices that lie on each other, as exporters split them along texture seams. */
+/* Joins vertices that lie on each other, as exporters split them along texture seams; and finds open edges that all but lie on each
+ * other. */
 #pragma once
 
-#include "tool/io/io_error.h"
+#include <cscd/detector.h>
+
+#include "tool/io/io.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -34,3 +37,17 @@ void weld_free(weld *w);
 /* Welded positions are those of the first file vertex. False, with the vertices and their distance, when two
  * that were welded lie farther apart than epsilon in this frame. */
 bool weld_positions(const weld *w, const double *file_positions, double *out, io_error *error);
+
+/* ---- near seams ---------------------------------------------------------------------------------------- */
+
+/* Open edges that all but lie on each other, as rounding leaves them between triangles that bring vertices of their own. */
+typedef struct near_seams {
+    uint32_t open_edges;   /* of the object */
+    uint32_t joined_edges; /* of these: so many would be joined with others */
+    double gap;            /* their corners lie so far apart at most */
+    double distance;       /* by --weld with this distance, which has two digits at most */
+} near_seams;
+
+/* Looks at an object of the mesh, whose vertices have these positions: open edges whose corners lie within 1e-5 of its size of those of
+ * another one. False: there are none, or not enough memory to find them. */
+bool near_seams_find(const cscd_mesh *mesh, uint32_t object, const double *positions, near_seams *out);

@@ -4,8 +4,8 @@
 
 #include "tool/common/provenance.h"
 #include "tool/io/file_reader.h"
-#include "tool/io/growable.h"
-#include "tool/io/json_room.h"
+#include "tool/io/io.h"
+#include "tool/io/json.h"
 #include "tool/io/text_encoding.h"
 
 #include <json-c/json.h>

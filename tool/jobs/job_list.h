@@ -2,7 +2,7 @@
  * tells lists apart. */
 #pragma once
 
-#include "tool/io/io_error.h"
+#include "tool/io/io.h"
 #include "tool/jobs/job_record.h"
 
 #include <stdbool.h>

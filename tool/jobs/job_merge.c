@@ -4,7 +4,6 @@
 #include "tool/common/terminal.h"
 #include "tool/io/file_reader.h"
 #include "tool/io/text_encoding.h"
-#include "tool/io/text_escape.h"
 
 #include <errno.h>
 #include <json-c/json.h>

@@ -3,7 +3,7 @@
 #include "tool/jobs/job_record.h"
 
 #include "tool/io/file_reader.h"
-#include "tool/io/json_room.h"
+#include "tool/io/json.h"
 #include "tool/io/text_encoding.h"
 
 #include <inttypes.h>
@@ -110,9 +110,7 @@ void job_sums_print(FILE *out, const job_sums *sums, const char *one, const char
     fputc('\n', out);
 }
 
-/* ---- appends results, and finds out which ones a file holds ---------------------------------------------- */
-
-/* ---- what is there ----------------------------------------------------------------------------------------- */
+/* ---- the results that a file holds --------------------------------------------------------------------- */
 
 enum { HELD_FOUND = 0x80 }; /* beside the outcome, from 1 */
 

@@ -2,7 +2,7 @@
  * reading the results of an earlier run. */
 #pragma once
 
-#include "tool/io/io_error.h"
+#include "tool/io/io.h"
 #include "tool/io/json.h"
 #include "tool/io/output_file.h"
 

@@ -4,8 +4,7 @@
 #include "tool/common/command.h"
 #include "tool/common/options.h"
 #include "tool/common/terminal.h"
-#include "tool/io/growable.h"
-#include "tool/io/path_name.h"
+#include "tool/io/io.h"
 #include "tool/jobs/job_list.h"
 #include "tool/jobs/recording_answer.h"
 

@@ -1,7 +1,7 @@
 /* An RGBA picture in memory and its PNG file. */
 #pragma once
 
-#include "tool/io/io_error.h"
+#include "tool/io/io.h"
 
 #include <stdbool.h>
 #include <stdint.h>

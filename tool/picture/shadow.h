@@ -2,7 +2,7 @@
  * over a disc that widens with its height above the point. */
 #pragma once
 
-#include "tool/io/io_error.h"
+#include "tool/io/io.h"
 #include "tool/picture/camera.h"
 
 #include <stdbool.h>

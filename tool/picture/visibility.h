@@ -1,7 +1,7 @@
 /* The z-buffer: which triangle is seen at each sample, and how near. */
 #pragma once
 
-#include "tool/io/io_error.h"
+#include "tool/io/io.h"
 
 #include <stdbool.h>
 #include <stdint.h>

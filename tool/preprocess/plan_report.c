@@ -2,7 +2,7 @@
 #include "tool/preprocess/plan_report.h"
 
 #include "tool/common/provenance.h"
-#include "tool/io/path_name.h"
+#include "tool/io/io.h"
 #include "tool/report/report.h"
 
 #include <stdlib.h>

@@ -5,7 +5,7 @@
 #include "tool/common/options.h"
 #include "tool/common/plans.h"
 #include "tool/common/terminal.h"
-#include "tool/io/path_name.h"
+#include "tool/io/io.h"
 #include "tool/io/plan_file.h"
 #include "tool/preprocess/motion_frames.h"
 #include "tool/preprocess/plan_print.h"

@@ -1,7 +1,7 @@
 /* Reads the frames of a recording on a thread of its own, one ahead of those that are asked for. */
 #include "tool/replay/read_ahead.h"
 
-#include "tool/io/growable.h"
+#include "tool/io/io.h"
 
 #include <pthread.h>
 #include <stdlib.h>

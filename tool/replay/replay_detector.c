@@ -4,7 +4,7 @@
 #include "tool/common/command.h"
 #include "tool/common/methods.h"
 #include "tool/common/part_names.h"
-#include "tool/io/growable.h"
+#include "tool/io/io.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -5,8 +5,8 @@
 #include "tool/common/command.h"
 #include "tool/common/methods.h"
 #include "tool/common/options.h"
-#include "tool/io/contact_file.h"
-#include "tool/io/gltf.h"
+#include "tool/io/format_reader.h"
+#include "tool/io/record.h"
 
 static bool read_method(const char *text, void *place) {
     replay_options *o = place;

@@ -1,6 +1,6 @@
 /* The report of a replay. An error in it ends the report and not the replay, and is printed at the end. */
 #include "tool/common/provenance.h"
-#include "tool/io/path_name.h"
+#include "tool/io/io.h"
 #include "tool/picture/picture.h"
 #include "tool/replay/replay_sink.h"
 #include "tool/report/report.h"

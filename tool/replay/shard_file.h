@@ -2,7 +2,7 @@
  * consist of chunks of fixed length, which one run and all its shards have in common. */
 #pragma once
 
-#include "tool/io/io_error.h"
+#include "tool/io/io.h"
 #include "tool/io/output_file.h"
 #include "tool/jobs/job_shards.h"
 #include "tool/replay/step_bytes.h"

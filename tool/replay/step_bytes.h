@@ -1,7 +1,7 @@
 /* Intervals and frames as bytes, packed and unpacked. */
 #pragma once
 
-#include "tool/io/growable.h"
+#include "tool/io/io.h"
 #include "tool/replay/interval_step.h"
 
 #include <stdint.h>

@@ -1,7 +1,7 @@
 /* What intersects in each frame of a report: triangles with their kinds, points of curves, depths of vertices. */
 #include "tool/report/answer_arrays.h"
 
-#include "tool/io/growable.h"
+#include "tool/io/io.h"
 #include "tool/report/page_coordinate.h"
 
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* The state of a report while it is collected, shared by the files of this folder. */
 #pragma once
 
-#include "tool/io/growable.h"
+#include "tool/io/io.h"
 #include "tool/report/answer_arrays.h"
 #include "tool/report/contact_arrays.h"
 #include "tool/report/event_list.h"

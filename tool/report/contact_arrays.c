@@ -1,7 +1,7 @@
 /* The contacts of a report: the kept ones as arrays, and how many every triangle takes part in. */
 #include "tool/report/contact_arrays.h"
 
-#include "tool/io/growable.h"
+#include "tool/io/io.h"
 #include "tool/report/page_coordinate.h"
 
 #include <stdlib.h>

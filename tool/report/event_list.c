@@ -2,7 +2,7 @@
 #include "tool/report/event_list.h"
 
 #include "tool/common/event_order.h"
-#include "tool/io/growable.h"
+#include "tool/io/io.h"
 #include "tool/report/page_coordinate.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
  * before. */
 #include "tool/report/frame_stream.h"
 
-#include "tool/io/growable.h"
+#include "tool/io/io.h"
 #include "tool/report/page_coordinate.h"
 
 #include <math.h>

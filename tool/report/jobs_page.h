@@ -1,7 +1,7 @@
 /* The page of many jobs: a table of all of them, the worst first. */
 #pragma once
 
-#include "tool/io/io_error.h"
+#include "tool/io/io.h"
 
 #include <stdbool.h>
 #include <stdint.h>

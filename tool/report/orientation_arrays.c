@@ -1,7 +1,7 @@
 /* How triangles faced their regions' detector points, and where these points were, as arrays of a report. */
 #include "tool/report/orientation_arrays.h"
 
-#include "tool/io/growable.h"
+#include "tool/io/io.h"
 #include "tool/report/page_coordinate.h"
 
 #include <stdlib.h>

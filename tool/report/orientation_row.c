@@ -1,7 +1,7 @@
 /* How the triangles faced their regions' detector points in one interval, and where these points were. */
 #include "tool/report/orientation_row.h"
 
-#include "tool/io/growable.h"
+#include "tool/io/io.h"
 
 #include <stdlib.h>
 #include <string.h>

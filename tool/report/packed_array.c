@@ -3,7 +3,7 @@
 
 #include "tool/report/packed_array.h"
 
-#include "tool/io/growable.h"
+#include "tool/io/io.h"
 
 #include <stdlib.h>
 #include <string.h>

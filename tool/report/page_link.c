@@ -1,7 +1,7 @@
 /* Links from a page to other files, relative to its own place. */
 #include "tool/report/page_link.h"
 
-#include "tool/io/path_name.h"
+#include "tool/io/io.h"
 
 #include <stdio.h>
 #include <stdlib.h>

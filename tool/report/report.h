@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cscd/cscd.h"
-#include "tool/io/io_error.h"
+#include "tool/io/io.h"
 #include "tool/report/orientation_row.h"
 
 typedef enum report_kind { REPORT_REPLAY, REPORT_PREPROCESS, REPORT_COMPARE } report_kind;

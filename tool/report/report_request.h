@@ -2,7 +2,7 @@
 #pragma once
 
 #include "tool/common/options.h"
-#include "tool/io/io_error.h"
+#include "tool/io/io.h"
 
 #include <stdbool.h>
 #include <stddef.h>

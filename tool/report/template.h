@@ -1,7 +1,7 @@
 /* The pages without their data: tool/report/template.html and jobs.html, parts of the program. */
 #pragma once
 
-#include "tool/io/io_error.h"
+#include "tool/io/io.h"
 
 #include <stddef.h>
 

@@ -3,7 +3,7 @@
 
 #include "tests/support/temp_file.h"
 #include "tool/io/animation.h"
-#include "tool/io/io_error.h"
+#include "tool/io/io.h"
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -2,7 +2,7 @@
 #include "tests/support/tool/tool_fixture.h"
 
 #include "tool/io/mesh_file.h"
-#include "tool/io/point_cache_write.h"
+#include "tool/io/point_cache.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,15 +1,10 @@
 /* Plays a sequence of mesh files: keeps their names and reads one file for each frame asked for. */
-#include "tool/io/frame_files.h"
+#include "tool/io/format_reader.h"
 
 #include "tool/io/file_reader.h"
-#include "tool/io/foreign_format.h"
-#include "tool/io/frames/frame_folder.h"
 #include "tool/io/frames/frame_names.h"
-#include "tool/io/frames/frame_pattern.h"
-#include "tool/io/frames/frame_series.h"
-#include "tool/io/growable.h"
+#include "tool/io/io.h"
 #include "tool/io/mesh_file.h"
-#include "tool/io/path_name.h"
 #include "tool/io/point_cache.h"
 
 #include <errno.h>

@@ -1,6 +1,6 @@
 /* A growing list of file names, filled from a folder and sorted in natural order. */
 #include "tool/io/frames/frame_names.h"
-#include "tool/io/path_name.h"
+#include "tool/io/io.h"
 
 #include <dirent.h>
 #include <errno.h>

@@ -1,7 +1,7 @@
 /* Compares the numbers in file names: which one counts the frames, and which of its values is missing. */
-#include "tool/io/frames/frame_series.h"
+#include "tool/io/frames/frame_names.h"
 
-#include "tool/io/path_name.h"
+#include "tool/io/io.h"
 
 #include <inttypes.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* Accessors of a glTF file: typed arrays in its buffers, element by element as doubles. */
-#include "tool/io/gltf/gltf_accessor.h"
+#include "tool/io/gltf/gltf_document.h"
 
-#include "tool/io/text_escape.h"
+#include "tool/io/text_encoding.h"
 
 #include <inttypes.h>
 #include <string.h>

@@ -1,17 +1,242 @@
-/* The container of a glTF file: the chunks of a .glb file, its version, and its buffers. */
+/* A glTF file: its JSON, and the bytes that the JSON speaks of. */
 #include "tool/io/gltf/gltf_document.h"
 
-#include "tool/io/base64.h"
-#include "tool/io/gltf.h"
-#include "tool/io/gltf/gltf_extensions.h"
-#include "tool/io/growable.h"
-#include "tool/io/path_name.h"
-#include "tool/io/text_escape.h"
+#include "tool/io/format_reader.h"
+#include "tool/io/gltf/gltf_scene.h"
+#include "tool/io/io.h"
+#include "tool/io/json.h"
+#include "tool/io/text_encoding.h"
 
 #include <inttypes.h>
+#include <json-c/json.h>
+#include <limits.h>
+#include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* ---- JSON ---------------------------------------------------------------------------------------------- */
+
+/* Objects inside each other: "extras" of programs may go deep, but freeing them takes a call for each level. */
+enum { DEPTH_MAX = 512 };
+
+/* ---- parsing ---------------------------------------------------------------------------------------- */
+
+/* Places the reader at the byte where the parser stopped: .gltf files have lines, .glb files bytes. */
+static bool fail_parse(file_reader *reader, size_t offset, size_t place, enum json_tokener_error cause) {
+    const char *text = json_tokener_error_desc(cause);
+    if (cause == json_tokener_continue) text = "the JSON ends too early";
+    reader->mark = offset + place;
+    for (size_t i = offset; i < reader->mark && i < reader->size; i++)
+        reader->line += reader->bytes[i] == '\n';
+    return file_reader_fail_here(reader, "no valid JSON: %s", text);
+}
+
+gltf_value *gltf_json_parse(file_reader *reader, size_t offset, size_t size) {
+    if (size > INT_MAX) {
+        file_reader_fail(reader, "the JSON has %zu bytes, expected %d at most", size, INT_MAX);
+        return NULL;
+    }
+    if (!json_has_room(reader->bytes + offset, size)) {
+        file_reader_fail(reader,
+                         "the JSON has more objects than one in ten bytes, expected that of a glTF file");
+        return NULL;
+    }
+    json_tokener *parser = json_tokener_new_ex(DEPTH_MAX);
+    if (parser == NULL) {
+        file_reader_fail(reader, "out of memory");
+        return NULL;
+    }
+    gltf_value *root = json_tokener_parse_ex(parser, reader->bytes + offset, (int)size);
+    enum json_tokener_error cause = json_tokener_get_error(parser);
+    const size_t end = json_tokener_get_parse_end(parser);
+    json_tokener_free(parser);
+    if (cause != json_tokener_success) {
+        fail_parse(reader, offset, end, cause);
+        return NULL;
+    }
+    if (json_object_get_type(root) == json_type_object) return root;
+    json_object_put(root);
+    file_reader_fail(reader, "the JSON is no object, expected that of a glTF file");
+    return NULL;
+}
+
+void gltf_json_free(gltf_value *root) {
+    json_object_put(root);
+}
+
+bool gltf_fail(const gltf_element *element, const char *format, ...) {
+    char message[600];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(message, sizeof message, format, arguments);
+    va_end(arguments);
+    if (element->name[0] == '\0') return file_reader_fail(element->reader, "%s", message);
+    return file_reader_fail(element->reader, "%s: %s", element->name, message);
+}
+
+/* ---- members ---------------------------------------------------------------------------------------- */
+
+/* NULL: not there, or null. */
+static gltf_value *find_member(const gltf_element *element, const char *key) {
+    gltf_value *found = NULL;
+    if (!json_object_object_get_ex(element->value, key, &found)) return NULL;
+    return found;
+}
+
+/* NULL: there is none. */
+static gltf_value *find_item(gltf_value *array, size_t at) {
+    return json_object_get_type(array) == json_type_array ? json_object_array_get_idx(array, at) : NULL;
+}
+
+bool gltf_has(const gltf_element *element, const char *key) {
+    return find_member(element, key) != NULL;
+}
+
+bool gltf_array_length(const gltf_element *element, const char *key, size_t *length) {
+    gltf_value *array = find_member(element, key);
+    *length = 0;
+    if (array == NULL) return true;
+    if (json_object_get_type(array) != json_type_array) return gltf_fail(element, "%s is no array", key);
+    *length = json_object_array_length(array);
+    return true;
+}
+
+bool gltf_element_at(const gltf_element *element, const char *key, const char *label, size_t index,
+                     gltf_element *out) {
+    gltf_value *array = find_member(element, key);
+    gltf_element found = {.reader = element->reader, .value = find_item(array, index)};
+    snprintf(found.name, sizeof found.name, "%.60s%s%s %zu", element->name,
+             element->name[0] != '\0' ? ", " : "", label, index);
+    if (json_object_get_type(found.value) != json_type_object) return gltf_fail(&found, "is no object");
+    *out = found;
+    return true;
+}
+
+bool gltf_object(const gltf_element *element, const char *key, gltf_element *out) {
+    gltf_element found = *element;
+    found.value = find_member(element, key);
+    if (found.value != NULL && json_object_get_type(found.value) != json_type_object)
+        return gltf_fail(element, "%s is no object", key);
+    *out = found;
+    return true;
+}
+
+/* ---- numbers ---------------------------------------------------------------------------------------- */
+
+/* What a message shows of a value; NULL is null, and a value has no text when memory runs out. */
+static const char *text_of(gltf_value *value) {
+    const char *text = json_object_get_string(value);
+    return text != NULL ? text : "null";
+}
+
+/* Some exporters write 3.0 for 3. */
+static bool whole_number(gltf_value *value, int64_t *number) {
+    const enum json_type type = json_object_get_type(value);
+    if (type == json_type_int) {
+        *number = json_object_get_int64(value);
+        return true;
+    }
+    const double real = json_object_get_double(value);
+    if (type != json_type_double || !(fabs(real) <= 0x1p53) || real != floor(real)) return false;
+    *number = (int64_t)real;
+    return true;
+}
+
+static bool take_integer(const gltf_element *element, const char *key, gltf_value *value, int64_t least,
+                         int64_t most, int64_t *out) {
+    int64_t number = 0;
+    if (!whole_number(value, &number))
+        return gltf_fail(element, "%s is %.*s, expected a whole number", key, TEXT_CUT(text_of(value), 40));
+    if (number < least || number > most)
+        return gltf_fail(element, "%s is %" PRId64 ", expected %" PRId64 " to %" PRId64, key, number, least,
+                         most);
+    *out = number;
+    return true;
+}
+
+bool gltf_integer(const gltf_element *element, const char *key, int64_t least, int64_t most, int64_t *value) {
+    gltf_value *found = find_member(element, key);
+    return found == NULL || take_integer(element, key, found, least, most, value);
+}
+
+bool gltf_required_integer(const gltf_element *element, const char *key, int64_t least, int64_t most,
+                           int64_t *value) {
+    if (!gltf_has(element, key)) return gltf_fail(element, "%s is missing", key);
+    return gltf_integer(element, key, least, most, value);
+}
+
+static bool take_index(const gltf_element *element, const char *key, gltf_value *value, const char *what,
+                       size_t count, uint32_t *index) {
+    int64_t number = 0;
+    if (!take_integer(element, key, value, 0, INT64_C(1) << 53, &number)) return false;
+    if ((uint64_t)number >= count || number >= GLTF_NONE)
+        return gltf_fail(element, "%s is %" PRId64 ", but the file has %zu %s, from 0", key, number, count,
+                         what);
+    *index = (uint32_t)number;
+    return true;
+}
+
+bool gltf_index(const gltf_element *element, const char *key, const char *what, size_t count,
+                uint32_t *index) {
+    gltf_value *found = find_member(element, key);
+    return found == NULL || take_index(element, key, found, what, count, index);
+}
+
+bool gltf_index_at(const gltf_element *element, const char *key, size_t at, const char *what, size_t count,
+                   uint32_t *index) {
+    char place[64];
+    snprintf(place, sizeof place, "%s[%zu]", key, at);
+    return take_index(element, place, find_item(find_member(element, key), at), what, count, index);
+}
+
+bool gltf_numbers(const gltf_element *element, const char *key, size_t count, double *numbers, bool *given) {
+    size_t length;
+    *given = gltf_has(element, key);
+    if (!*given) return true;
+    if (!gltf_array_length(element, key, &length)) return false;
+    if (length != count) return gltf_fail(element, "%s has %zu numbers, expected %zu", key, length, count);
+    gltf_value *array = find_member(element, key);
+    for (size_t i = 0; i < count; i++) {
+        gltf_value *value = find_item(array, i);
+        const enum json_type type = json_object_get_type(value);
+        if ((type != json_type_int && type != json_type_double) || !isfinite(json_object_get_double(value)))
+            return gltf_fail(element, "%s[%zu] is %.*s, expected a finite number", key, i,
+                             TEXT_CUT(text_of(value), 40));
+        numbers[i] = json_object_get_double(value);
+    }
+    return true;
+}
+
+/* ---- the rest --------------------------------------------------------------------------------------- */
+
+void gltf_visit_members(const gltf_element *element, void (*visit)(const char *name, void *user),
+                        void *user) {
+    json_object_object_foreach(element->value, name, value) {
+        (void)value;
+        visit(name, user);
+    }
+}
+
+static const char *string_of(gltf_value *value) {
+    return json_object_get_type(value) == json_type_string ? json_object_get_string(value) : NULL;
+}
+
+const char *gltf_string(const gltf_element *element, const char *key) {
+    return string_of(find_member(element, key));
+}
+
+const char *gltf_string_at(const gltf_element *element, const char *key, size_t at) {
+    return string_of(find_item(find_member(element, key), at));
+}
+
+bool gltf_is_true(const gltf_element *element, const char *key) {
+    gltf_value *value = find_member(element, key);
+    return json_object_get_type(value) == json_type_boolean && json_object_get_boolean(value);
+}
+
+/* ---- the file ------------------------------------------------------------------------------------------ */
 
 static const char magic[4] = {'g', 'l', 'T', 'F'};
 enum { HEADER_SIZE = 12, CHUNK_HEADER_SIZE = 8, CHUNK_JSON = 0x4e4f534a, CHUNK_BIN = 0x004e4942 };
@@ -61,7 +286,7 @@ static bool read_chunk(file_reader *reader, size_t at, size_t end, chunk_span *o
 }
 
 /* The first chunk is the JSON, the second, if it is there, the buffer; others are unknown, and passed over. */
-static bool read_chunks(file_reader *reader, chunk_span *json, gltf_document *document) {
+static bool read_chunks(file_reader *reader, chunk_span *text, gltf_document *document) {
     reader->binary = true;
     if (reader->size < HEADER_SIZE)
         return file_reader_fail(reader, "ends after %zu bytes, inside the header of a .glb file",
@@ -72,10 +297,10 @@ static bool read_chunks(file_reader *reader, chunk_span *json, gltf_document *do
     if (length > reader->size)
         return file_reader_fail(reader, "has %zu of %" PRIu32 " bytes: it is cut off", reader->size, length);
     const size_t end = length < HEADER_SIZE ? reader->size : length;
-    if (!read_chunk(reader, HEADER_SIZE, end, json)) return false;
-    if (json->kind != CHUNK_JSON)
+    if (!read_chunk(reader, HEADER_SIZE, end, text)) return false;
+    if (text->kind != CHUNK_JSON)
         return file_reader_fail_here(reader, "the first chunk is not the JSON of a .glb file");
-    const size_t next = json->at + json->size;
+    const size_t next = text->at + text->size;
     chunk_span second = {0};
     if (next < end && !read_chunk(reader, next, end, &second)) return false;
     document->has_chunk = second.kind == CHUNK_BIN;
@@ -85,11 +310,11 @@ static bool read_chunks(file_reader *reader, chunk_span *json, gltf_document *do
 }
 
 static bool read_json(file_reader *reader, gltf_document *document) {
-    chunk_span json = {.at = reader->at, .size = reader->size - reader->at}; /* behind a byte order mark */
+    chunk_span text = {.at = reader->at, .size = reader->size - reader->at}; /* behind a byte order mark */
     if (reader->size >= sizeof magic && memcmp(reader->bytes, magic, sizeof magic) == 0 &&
-        !read_chunks(reader, &json, document))
+        !read_chunks(reader, &text, document))
         return false;
-    document->root = (gltf_element){.reader = reader, .value = gltf_json_parse(reader, json.at, json.size)};
+    document->root = (gltf_element){.reader = reader, .value = gltf_json_parse(reader, text.at, text.size)};
     return document->root.value != NULL;
 }
 

@@ -1,8 +1,7 @@
 /* The extensions of a glTF file: those that it requires must be read, and those that it only uses are named. */
-#include "tool/io/gltf/gltf_extensions.h"
+#include "tool/io/gltf/gltf_scene.h"
 
-#include "tool/io/gltf/gltf_nodes.h"
-#include "tool/io/text_escape.h"
+#include "tool/io/text_encoding.h"
 
 #include <inttypes.h>
 #include <stdio.h>

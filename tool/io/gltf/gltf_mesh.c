@@ -1,5 +1,5 @@
 /* The meshes of a glTF file: vertices with their morph targets and joints, and triangles. */
-#include "tool/io/gltf/gltf_mesh.h"
+#include "tool/io/gltf/gltf_scene.h"
 
 #include <inttypes.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* The nodes of a glTF file: a forest, where its parts stand at rest, which of them the scene shows, and their instances. */
-#include "tool/io/gltf/gltf_nodes.h"
+#include "tool/io/gltf/gltf_scene.h"
 
 #include <inttypes.h>
 #include <stdlib.h>

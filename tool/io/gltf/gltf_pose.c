@@ -1,5 +1,5 @@
 /* Where the nodes of a glTF scene are at one moment, and with them its vertices. */
-#include "tool/io/gltf/gltf_pose.h"
+#include "tool/io/gltf/gltf_scene.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -1,9 +1,134 @@
-/* What the default scene of a glTF file shows: its nodes with meshes, one behind the other. */
+/* The scene of a glTF file: meshes, nodes and skins, the instances that it shows, where they are at a moment, and animations. */
 #pragma once
 
-#include "tool/io/gltf/gltf_mesh.h"
-#include "tool/io/gltf/gltf_nodes.h"
-#include "tool/io/gltf/gltf_skin.h"
+#include "tool/io/gltf/gltf_document.h"
+#include "tool/io/io.h"
+#include "tool/io/mesh_file.h"
+
+/* ---- meshes: vertices with their morph targets and joints, and triangles ------------------------------- */
+
+/* The vertices of one or more primitives: those with the same accessors share them. */
+typedef struct gltf_vertices {
+    gltf_accessor positions;
+    gltf_accessor *targets; /* of the mesh's target_count: what is added to the positions, times a weight */
+    uint32_t influences;    /* joints per vertex, a multiple of 4; 0: not skinned */
+    uint32_t *joints;       /* positions.count * influences; 0 where the weight is 0 */
+    double *weights;        /* of each vertex sum 1, or all 0 */
+    uint32_t largest_joint; /* with a weight */
+    uint32_t first;         /* in the mesh */
+    growable
+        accessors; /* of uint32_t: the indices of all accessors, which tell whether two primitives share */
+} gltf_vertices;
+
+/* The triangles of a primitive, behind those of the one before. */
+typedef struct gltf_material_run {
+    size_t triangle_end;
+    uint32_t material; /* GLTF_NONE: none */
+} gltf_material_run;
+
+typedef struct gltf_mesh {
+    gltf_vertices *vertices;
+    uint32_t vertices_count; /* of the array above */
+    uint32_t vertex_count;   /* of all */
+    uint32_t target_count;
+    double *default_weights; /* target_count */
+    growable triangles;      /* of uint32_t[3] */
+    growable materials;      /* of gltf_material_run, where parts are asked for by material; else empty */
+    growable faces;          /* of uint32_t: which face of the mesh a triangle is */
+    uint32_t face_count;     /* with those that were dropped */
+    uint32_t dropped_count, first_dropped; /* triangles that name a vertex twice */
+    uint32_t skipped_primitives;           /* of points or lines */
+    const char *name;                      /* NULL: none; the document's */
+} gltf_mesh;
+
+/* On false *out owns nothing, and the reader's error is set. */
+bool gltf_mesh_open(gltf_document *document, uint32_t index, gltf_mesh *out);
+void gltf_mesh_close(gltf_mesh *mesh);
+
+/* The attributes of a set of four joints and weights: JOINTS_0, WEIGHTS_0, ... */
+typedef struct gltf_joint_names {
+    char joints[24], weights[24];
+} gltf_joint_names;
+
+gltf_joint_names gltf_joints_name(uint32_t set);
+uint32_t gltf_joints_sets(const gltf_element *attributes);
+
+/* Reads the joints and weights of vertices whose positions are known. */
+bool gltf_joints_read(gltf_document *document, const gltf_element *attributes, gltf_vertices *vertices);
+
+/* ---- nodes: a forest, which of them the scene shows, and their instances ------------------------------- */
+
+/* x becomes rows * (x, 1). */
+typedef struct gltf_transform {
+    double rows[3][4];
+} gltf_transform;
+
+/* Translation, rotation (a quaternion x, y, z, w) and scale, as files have them. */
+typedef struct gltf_placement {
+    double translation[3], rotation[4], scale[3];
+} gltf_placement;
+
+gltf_transform gltf_transform_identity(void);
+/* Scale first, then rotation, then translation. The quaternion need not be of length 1; of length 0 it turns nothing. */
+gltf_transform gltf_transform_of_placement(const gltf_placement *placement);
+/* From 16 numbers, column by column; the last row is taken as 0 0 0 1. */
+gltf_transform gltf_transform_of_columns(const double columns[16]);
+
+/* b first, then a. */
+gltf_transform gltf_transform_multiply(const gltf_transform *a, const gltf_transform *b);
+void gltf_transform_apply(const gltf_transform *a, const double x[3], double out[3]);
+/* Whether it turns the inside out. */
+int gltf_transform_mirrors(const gltf_transform *a);
+
+typedef struct gltf_node {
+    uint32_t parent, first_child, last_child, next_sibling; /* GLTF_NONE: none */
+    uint32_t mesh, skin;                                    /* GLTF_NONE: none */
+    bool reached;    /* a root leads to it, as to every node of a forest */
+    bool shown;      /* in the default scene */
+    bool has_matrix; /* then the placement says nothing */
+    gltf_transform matrix;
+    gltf_placement placement;
+    const char *name; /* NULL: none; the document's */
+} gltf_node;
+
+typedef struct gltf_nodes {
+    gltf_node *nodes;
+    uint32_t count;
+    uint32_t *order; /* count: every node behind its parent, and children in the order of the file */
+} gltf_nodes;
+
+/* Fails when the nodes are not a forest. On false *out owns nothing, and the reader's error is set. */
+bool gltf_nodes_open(gltf_document *document, size_t mesh_count, size_t skin_count, gltf_nodes *out);
+void gltf_nodes_close(gltf_nodes *nodes);
+
+#define GLTF_INSTANCING "EXT_mesh_gpu_instancing"
+
+/* Where the copies of a node's mesh stand, seen from the node. */
+typedef struct gltf_instancing {
+    uint32_t count; /* 0: the node has no such extension, and its mesh is there once */
+    bool has_translation, has_rotation, has_scale;
+    gltf_accessor translation, rotation, scale; /* of as many elements as there are copies */
+} gltf_instancing;
+
+/* Of the node with this index, which has a mesh. On false the reader's error is set. */
+bool gltf_instancing_open(gltf_document *document, uint32_t node, gltf_instancing *out);
+
+/* The place of a copy below the count. */
+gltf_transform gltf_instancing_place(const gltf_instancing *copies, uint32_t copy);
+
+/* ---- skins: the nodes that move vertices as joints, and the weights of vertices ------------------------ */
+
+typedef struct gltf_skin {
+    uint32_t joint_count;
+    uint32_t *joints;             /* joint_count nodes */
+    gltf_transform *inverse_bind; /* joint_count: from the mesh to the joint */
+} gltf_skin;
+
+/* On false *out owns nothing, and the reader's error is set. */
+bool gltf_skin_open(gltf_document *document, uint32_t index, uint32_t node_count, gltf_skin *out);
+void gltf_skin_close(gltf_skin *skin);
+
+/* ---- what the default scene shows: its nodes with meshes, one behind the other ------------------------- */
 
 /* A node with a mesh, or one of the copies of it that its instancing makes. Two nodes may have the same mesh. */
 typedef struct gltf_instance {
@@ -30,3 +155,78 @@ typedef struct gltf_scene {
  * set. */
 bool gltf_scene_open(file_reader *reader, gltf_scene *out);
 void gltf_scene_close(gltf_scene *scene);
+
+/* ---- where nodes are at one moment, and with them the vertices ----------------------------------------- */
+
+/* An animation writes placements and weights, and asks for positions. */
+typedef struct gltf_pose {
+    const gltf_scene *scene;
+    gltf_placement *placements; /* of each node; not used where the node has a matrix */
+    uint32_t *first_weight;     /* of each node, in weights: as many as its mesh has targets */
+    double *weights;
+    gltf_transform *world; /* of each node */
+    gltf_transform *joints;
+} gltf_pose;
+
+/* A pose at rest. The scene must outlive it. On false *out owns nothing, and the error of the scene's reader is set. */
+bool gltf_pose_open(const gltf_scene *scene, gltf_pose *out);
+void gltf_pose_close(gltf_pose *pose);
+
+/* The transforms of all nodes follow their placements. */
+void gltf_pose_update(gltf_pose *pose);
+/* Where an instance that no joints move is, after an update. */
+gltf_transform gltf_pose_place(const gltf_pose *pose, const gltf_instance *instance);
+/* Writes the scene's vertices after an update; false, with the node, when one of them is not finite. */
+bool gltf_pose_write(gltf_pose *pose, double *positions);
+
+/* ---- parts --------------------------------------------------------------------------------------------- */
+
+/* Nodes are called by their own name, else by that of their mesh, else "node 3"; a name that is taken gets .001, .002, ... behind
+ * it. On false *out owns nothing, and the error of the scene's reader is set. */
+bool gltf_parts_of(const gltf_scene *scene, mesh_parts *out);
+
+/* The materials of triangles, in the order of these, by their names, else "material 3"; taken names as above. The reader must have been
+ * asked for parts by material. Where no triangle has one, there are no parts. */
+bool gltf_parts_of_materials(const gltf_scene *scene, mesh_parts *out);
+
+/* ---- extensions: those that the file requires must be read, and those that it only uses are named ------ */
+
+/* False, with the reader's error, when the file requires an extension that is not read and may change where surfaces are. */
+bool gltf_extensions_check(const gltf_element *root);
+
+/* Which extensions of the nodes, meshes and views that the scene shows are not read, though they may change where surfaces are:
+ * a sentence, which the caller frees; *out is NULL when there are none. */
+bool gltf_extensions_note(const gltf_scene *scene, char **out);
+
+/* ---- animations: keys of placements and weights over time ---------------------------------------------- */
+
+typedef enum gltf_path { GLTF_TRANSLATION, GLTF_ROTATION, GLTF_SCALE, GLTF_WEIGHTS } gltf_path;
+typedef enum gltf_interpolation { GLTF_LINEAR, GLTF_STEP, GLTF_CUBICSPLINE } gltf_interpolation;
+
+/* What moves one property of one node. */
+typedef struct gltf_channel {
+    uint32_t node;
+    gltf_path path;
+    gltf_interpolation interpolation;
+    uint32_t width; /* numbers of a key: 3, 4, or as many as there are weights */
+    gltf_accessor times, values;
+} gltf_channel;
+
+typedef struct gltf_animation {
+    gltf_channel *channels;
+    uint32_t channel_count;
+    double start, end; /* the first and the last key of all channels, in seconds */
+} gltf_animation;
+
+/* The animation of this name, or with NULL the first one. On false *out owns nothing, and the error of the scene's reader is
+ * set. */
+bool gltf_animation_open(gltf_scene *scene, const char *name, gltf_animation *out);
+/* The number of animations, and the names of all; "..." stands for those that do not fit into size, which is 16 or more. */
+bool gltf_animation_names(const gltf_scene *scene, size_t *count, char *text, size_t size);
+void gltf_animation_close(gltf_animation *animation);
+
+/* Moves the pose to this time; before its first key a channel holds that, and behind its last one that. */
+void gltf_animation_apply(const gltf_animation *animation, double time, gltf_pose *pose);
+
+/* Whether two times are the same but for the rounding of files, which hold them as floats. */
+bool gltf_same_time(double a, double b);

@@ -1,7 +1,7 @@
 /* GIFTI in a build without expat: the files are known, and not read. */
 #include "tool/io/format_reader.h"
 
-#include "tool/io/path_name.h"
+#include "tool/io/io.h"
 
 static bool recognise_gifti(const file_reader *reader) {
     return path_has_extension(reader->path, ".gii");

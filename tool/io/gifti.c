@@ -1,16 +1,211 @@
-/* GIFTI surfaces: the XML around the data arrays, and the mesh of the first points and triangles. */
+/* GIFTI surfaces, as programs for brains write them: XML, and in it data arrays. */
+#include "tool/io/file_reader.h"
 #include "tool/io/format_reader.h"
-
-#include "tool/io/gifti/gifti_array.h"
+#include "tool/io/io.h"
 #include "tool/io/mesh_builder.h"
-#include "tool/io/path_name.h"
-#include "tool/io/text_escape.h"
+#include "tool/io/text_encoding.h"
 
 #include <expat.h>
 #include <inttypes.h>
 #include <limits.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <zlib.h>
+
+/* ---- data arrays --------------------------------------------------------------------------------------- */
+
+typedef enum gifti_type { GIFTI_FLOAT32, GIFTI_FLOAT64, GIFTI_INT32 } gifti_type;
+typedef enum gifti_encoding { GIFTI_ASCII, GIFTI_BASE64, GIFTI_ZIPPED } gifti_encoding;
+
+/* A data array of a GIFTI file: what its attributes say, and its numbers. */
+typedef struct gifti_array {
+    gifti_type type;
+    gifti_encoding encoding;
+    bool big_endian, column_major;
+    uint32_t row_count; /* of three numbers each */
+    size_t line;        /* where its data begin */
+    growable text;      /* of char: its data, as in the file, and a 0 that does not count */
+    growable bytes; /* of unsigned char: decoded, unless it is ASCII; as numbers in this machine's order */
+} gifti_array;
+
+/* The size of a number in bytes. */
+static size_t size_of_type(gifti_type type) {
+    return type == GIFTI_FLOAT64 ? 8 : 4;
+}
+
+static size_t expected_size(const gifti_array *array) {
+    return (size_t)array->row_count * 3 * size_of_type(array->type);
+}
+
+static bool fail_size(const gifti_array *array, file_reader *reader, size_t found) {
+    return file_reader_fail_here(reader, "the data have %zu bytes, expected %zu for %" PRIu32 " rows of 3",
+                                 found, expected_size(array), array->row_count);
+}
+
+static bool reserve_bytes(growable *bytes, file_reader *reader, size_t size) {
+    return growable_reserve(bytes, size) ||
+           file_reader_fail_here(reader, "out of memory for %zu bytes", size);
+}
+
+/* ---- text -------------------------------------------------------------------------------------------- */
+
+/* The next word of the text; false at its end. */
+static bool next_word(const gifti_array *array, size_t *at, text_token *word) {
+    static const char blanks[] = " \t\r\n";
+    const char *text = array->text.data;
+    const size_t size = array->text.count;
+    while (*at < size && memchr(blanks, text[*at], sizeof blanks) != NULL) (*at)++;
+    *word = (text_token){text + *at, 0};
+    while (*at < size && memchr(blanks, text[*at], sizeof blanks) == NULL) (*at)++;
+    word->length = (size_t)(text + *at - word->text);
+    return word->length > 0;
+}
+
+static bool parse_word(const gifti_array *array, file_reader *reader, text_token word, unsigned char *out) {
+    double number;
+    int64_t integer;
+    const bool whole = array->type == GIFTI_INT32;
+    if (whole ? !text_parse_integer(word, &integer) || integer < INT32_MIN || integer > INT32_MAX
+              : !text_parse_number(word, &number))
+        return file_reader_fail_here(reader, "found '%s', expected %s", text_show(word).text,
+                                     whole ? "a whole number" : "a number");
+    const float single = whole ? 0 : (float)number;
+    const int32_t small = whole ? (int32_t)integer : 0;
+    const void *from = array->type == GIFTI_FLOAT64 ? (const void *)&number : &single;
+    memcpy(out, whole ? &small : from, size_of_type(array->type));
+    return true;
+}
+
+/* Decimals are rounded to the type that the array has. */
+static bool decode_text(gifti_array *array, file_reader *reader) {
+    const size_t count = (size_t)array->row_count * 3, size = size_of_type(array->type);
+    text_token word;
+    size_t at = 0;
+    if (count > array->text.count) /* at least a digit each: so that a wrong number of rows takes no memory */
+        return file_reader_fail_here(reader, "the data have %zu characters, expected %zu numbers",
+                                     array->text.count, count);
+    if (!reserve_bytes(&array->bytes, reader, expected_size(array))) return false;
+    for (size_t i = 0; i < count; i++) {
+        if (!next_word(array, &at, &word))
+            return file_reader_fail_here(reader, "the data have %zu numbers, expected %zu", i, count);
+        if (!parse_word(array, reader, word, (unsigned char *)array->bytes.data + i * size)) return false;
+    }
+    array->bytes.count = count * size;
+    return !next_word(array, &at, &word) ||
+           file_reader_fail_here(reader, "found '%s' after the last of %zu numbers", text_show(word).text,
+                                 count);
+}
+
+/* ---- base64 and zlib --------------------------------------------------------------------------------- */
+
+static bool decode_base64(const gifti_array *array, file_reader *reader, growable *bytes) {
+    size_t wrong;
+    if (!reserve_bytes(bytes, reader, base64_room(array->text.count))) return false;
+    return base64_decode(array->text.data, array->text.count, bytes->data, &bytes->count, &wrong) ||
+           file_reader_fail_here(reader, "the data are no base64 at character %zu", wrong);
+}
+
+static void *zip_allocate(void *user, unsigned count, unsigned size) {
+    (void)user;
+    return io_realloc(NULL, (size_t)count * size);
+}
+
+static void zip_free(void *user, void *memory) {
+    (void)user;
+    free(memory);
+}
+
+/* Unzips as many bytes as the rows need; a file that has more or fewer is refused. */
+static bool unzip_bytes(const growable *packed, const gifti_array *array, file_reader *reader,
+                        growable *out) {
+    const size_t size = expected_size(array);
+    z_stream stream = {.zalloc = zip_allocate, .zfree = zip_free};
+    if (packed->count > UINT_MAX || size / 1100 > packed->count) /* zlib packs 1032 times at most */
+        return fail_size(array, reader, packed->count);
+    if (!reserve_bytes(out, reader, size + 1)) return false;
+    if (inflateInit2(&stream, MAX_WBITS + 32) != Z_OK) /* of zlib or of gzip */
+        return file_reader_fail_here(reader, "out of memory for unzipping");
+    stream.next_in = packed->data;
+    stream.avail_in = (unsigned)packed->count;
+    int status = Z_OK;
+    while (status == Z_OK && out->count <= size) {
+        const size_t room = size + 1 - out->count;
+        stream.next_out = (unsigned char *)out->data + out->count;
+        stream.avail_out = room > UINT_MAX ? UINT_MAX : (unsigned)room;
+        const unsigned before = stream.avail_out;
+        status = inflate(&stream, Z_NO_FLUSH);
+        out->count += before - stream.avail_out;
+    }
+    inflateEnd(&stream);
+    if (status == Z_MEM_ERROR) return file_reader_fail_here(reader, "out of memory for unzipping");
+    if (out->count == size && status == Z_STREAM_END) return true;
+    if (status == Z_STREAM_END || out->count > size) return fail_size(array, reader, out->count);
+    return file_reader_fail_here(reader, "the data cannot be unzipped: they are damaged or cut off");
+}
+
+static bool is_big_endian(void) {
+    const uint16_t one = 1;
+    unsigned char first;
+    memcpy(&first, &one, 1);
+    return first == 0;
+}
+
+static void swap_bytes(unsigned char *bytes, size_t count, size_t size) {
+    for (size_t i = 0; i < count; i++, bytes += size)
+        for (size_t k = 0; k < size / 2; k++) {
+            const unsigned char kept = bytes[k];
+            bytes[k] = bytes[size - 1 - k];
+            bytes[size - 1 - k] = kept;
+        }
+}
+
+static bool decode_binary(gifti_array *array, file_reader *reader) {
+    growable packed = growable_of(1);
+    const bool zipped = array->encoding == GIFTI_ZIPPED;
+    bool done = decode_base64(array, reader, zipped ? &packed : &array->bytes);
+    if (done && zipped) done = unzip_bytes(&packed, array, reader, &array->bytes);
+    growable_free(&packed);
+    if (done && array->bytes.count != expected_size(array))
+        done = fail_size(array, reader, array->bytes.count);
+    if (done && array->big_endian != is_big_endian())
+        swap_bytes(array->bytes.data, (size_t)array->row_count * 3, size_of_type(array->type));
+    return done;
+}
+
+/* ---- the interface ----------------------------------------------------------------------------------- */
+
+/* Decodes the text. On false the reader's error is set. */
+static bool decode_array(gifti_array *array, file_reader *reader) {
+    reader->line = array->line;
+    return array->encoding == GIFTI_ASCII ? decode_text(array, reader) : decode_binary(array, reader);
+}
+
+/* The number `column` of a decoded row. */
+static double array_number(const gifti_array *array, uint32_t row, uint32_t column) {
+    const size_t place =
+        array->column_major ? (size_t)column * array->row_count + row : (size_t)row * 3 + column;
+    const unsigned char *at = (const unsigned char *)array->bytes.data + place * size_of_type(array->type);
+    float single;
+    double number = 0;
+    int32_t integer;
+    switch (array->type) {
+    case GIFTI_FLOAT32:
+        memcpy(&single, at, sizeof single);
+        return (double)single;
+    case GIFTI_FLOAT64:
+        memcpy(&number, at, sizeof number);
+        return number;
+    case GIFTI_INT32:
+        memcpy(&integer, at, sizeof integer);
+        return integer;
+    }
+    return number;
+}
+
+/* ---- the file ------------------------------------------------------------------------------------------ */
 
 enum { POINTS, TRIANGLES, ARRAY_COUNT };
 
@@ -241,7 +436,7 @@ static bool add_triangle(const gifti_array *array, uint32_t row, uint32_t vertex
                          mesh_builder *builder) {
     if (!mesh_builder_begin_face(builder)) return false;
     for (uint32_t k = 0; k < 3; k++) {
-        const double vertex = gifti_array_number(array, row, k);
+        const double vertex = array_number(array, row, k);
         if (!(vertex >= 0 && vertex < vertex_count))
             return file_reader_fail_here(
                 builder->reader, "triangle %" PRIu32 " names vertex %.0f, but there are %" PRIu32 ", from 0",
@@ -254,13 +449,13 @@ static bool add_triangle(const gifti_array *array, uint32_t row, uint32_t vertex
 static bool build_mesh(gifti_parser *parser, mesh_file *out) {
     gifti_array *points = &parser->arrays[POINTS], *triangles = &parser->arrays[TRIANGLES];
     mesh_builder builder = mesh_builder_of(parser->reader, 0);
-    bool done = gifti_array_decode(points, parser->reader);
+    bool done = decode_array(points, parser->reader);
     for (uint32_t i = 0; done && i < points->row_count; i++) {
         double position[3];
-        for (uint32_t k = 0; k < 3; k++) position[k] = gifti_array_number(points, i, k);
+        for (uint32_t k = 0; k < 3; k++) position[k] = array_number(points, i, k);
         done = mesh_builder_add_vertex(&builder, position);
     }
-    done = done && gifti_array_decode(triangles, parser->reader);
+    done = done && decode_array(triangles, parser->reader);
     for (uint32_t i = 0; done && i < triangles->row_count; i++)
         done = add_triangle(triangles, i, points->row_count, &builder);
     done = done && mesh_builder_finish(&builder, out);
