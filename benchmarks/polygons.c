@@ -1,5 +1,5 @@
 /* How long one face with many corners takes to be cut into triangles. */
-#include "tool/io/mesh_builder.h"
+#include "tool/io/polygon.h"
 
 #include <math.h>
 #include <stdbool.h>

@@ -4,7 +4,7 @@
 #include "cscd/research.h"
 #include "models/shapes/catalogue.h"
 #include "preprocess/baselines/baselines.h"
-#include "tool/io/plan_file.h"
+#include "tool/io/ply.h"
 
 #include <stdio.h>
 #include <stdlib.h>

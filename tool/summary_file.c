@@ -2,8 +2,8 @@
 #include "tool/summary_file.h"
 
 #include "tool/common/methods.h"
+#include "tool/io/io.h"
 #include "tool/io/json.h"
-#include "tool/io/pipe_file.h"
 #include "tool/io/text_encoding.h"
 
 #include <errno.h>

@@ -6,7 +6,7 @@
 #include "tool/common/part_names.h"
 #include "tool/common/plans.h"
 #include "tool/io/mesh_builder.h"
-#include "tool/io/plan_file.h"
+#include "tool/io/ply.h"
 #include "tool/tool.h"
 #include "tool/windows/console.h"
 

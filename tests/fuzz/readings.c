@@ -4,7 +4,7 @@
 #include "tests/fuzz/reading_memory.h"
 #include "tool/io/animation.h"
 #include "tool/io/io.h"
-#include "tool/io/plan_file.h"
+#include "tool/io/ply.h"
 #include "tool/jobs/job_list.h"
 #include "tool/jobs/job_merge.h"
 #include "tool/jobs/job_record.h"

@@ -6,7 +6,7 @@
 #include "tests/support/tool/tool_fixture.h"
 #include "tool/io/io.h"
 #include "tool/io/mesh_file.h"
-#include "tool/io/plan_file.h"
+#include "tool/io/ply.h"
 
 #include <stdio.h>
 #include <stdlib.h>

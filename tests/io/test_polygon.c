@@ -2,8 +2,8 @@
  * numbers, and those on which fans fail. */
 #include "tests/support/io/flat_polygon.h"
 #include "tests/support/test.h"
-#include "tool/io/ear_clipping.h"
 #include "tool/io/mesh_builder.h"
+#include "tool/io/polygon.h"
 
 #include <math.h>
 #include <stdbool.h>

@@ -3,7 +3,6 @@
 
 #include "tool/io/io.h"
 #include "tool/io/mesh_file.h"
-#include "tool/io/pipe_file.h"
 #include "tool/io/text_encoding.h"
 
 #include <assert.h>

@@ -4,7 +4,7 @@
 
 #include "tool/common/methods.h"
 #include "tool/io/io.h"
-#include "tool/io/plan_file.h"
+#include "tool/io/ply.h"
 #include "tool/io/text_encoding.h"
 #include "tool/picture/picture.h"
 

@@ -1,7 +1,7 @@
 /* A line on the terminal that shows how far a long command is, and signals that interrupt it. */
 #include "tool/common/terminal.h"
 
-#include "tool/io/pipe_file.h"
+#include "tool/io/io.h"
 
 #include <signal.h>
 #include <stdatomic.h>

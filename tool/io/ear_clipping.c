@@ -1,5 +1,5 @@
 /* Triangles of a polygon in a plane, by clipping ears: exact orientations, and a tree in which the corners within an ear are found. */
-#include "tool/io/ear_clipping.h"
+#include "tool/io/polygon.h"
 
 #include "tool/io/io.h"
 

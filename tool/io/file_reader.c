@@ -2,7 +2,6 @@
 #include "tool/io/file_reader.h"
 
 #include "tool/io/io.h"
-#include "tool/io/pipe_file.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -1,8 +1,9 @@
-/* The ground of readers and writers of files: the line that a failure leaves behind, arrays that grow, and the names of paths. */
+/* The ground of readers and writers of files: the line that a failure leaves behind, arrays that grow, the names of paths, and pipes. */
 #pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
 
 /* ---- errors -------------------------------------------------------------------------------------------- */
 
@@ -85,3 +86,17 @@ const char *path_file_name(const char *path);
 static inline bool path_is_digit(char c) {
     return c >= '0' && c <= '9';
 }
+
+/* ---- files that may be named pipes --------------------------------------------------------------------- */
+
+/* The other side of a pipe comes when it likes: a program that is told to stop does not wait for it. */
+
+/* While a pipe has nobody on its other side, or nothing to read, stopped is asked again and again, by any thread. When it says so,
+ * the opening or reading fails with EINTR. NULL, as at the start: nobody is asked, and pipes wait as the system has it. */
+void pipe_file_ask(bool (*stopped)(void));
+
+/* As fopen with "rb", of any file. NULL: errno says why. A stream of a pipe may have no descriptor (fileno). */
+FILE *pipe_file_read(const char *path);
+
+/* As fopen with "wb", of a pipe. */
+FILE *pipe_file_write(const char *path);

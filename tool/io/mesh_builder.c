@@ -1,5 +1,6 @@
 /* Collects the vertices and faces of a mesh file, checking each. */
 #include "tool/io/mesh_builder.h"
+#include "tool/io/polygon.h"
 
 #include <inttypes.h>
 #include <math.h>

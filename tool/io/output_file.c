@@ -3,7 +3,6 @@
 #include "tool/io/output_file.h"
 
 #include "tool/io/io.h"
-#include "tool/io/pipe_file.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -1,7 +1,7 @@
 /* Named pipes that a signal interrupts. A look at a flag before open(2) or read(2) would be a moment too early for a signal that
  * comes between the two, and the call then waits for ever. So no call here waits without an end: pipes are opened without
  * waiting, poll(2) waits for their bytes, and both end soon enough to look again. */
-#include "tool/io/pipe_file.h"
+#include "tool/io/io.h"
 
 #include <stdatomic.h>
 

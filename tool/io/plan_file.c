@@ -1,11 +1,10 @@
 /* A plan as a PLY file that any viewer shows: the mesh at rest, charge and region per face, a colour. */
-#include "tool/io/plan_file.h"
+#include "tool/io/ply.h"
 
 #include <cscd/research.h>
 
 #include "tool/io/format_reader.h"
 #include "tool/io/output_file.h"
-#include "tool/io/ply.h"
 #include "tool/io/text_encoding.h"
 
 #include <inttypes.h>

@@ -1,6 +1,7 @@
-/* PLY files: the header, with encoding, elements and properties, and the rows, value by value. */
+/* PLY files: the header, with encoding, elements and properties, and the rows, value by value; and plans in such files. */
 #pragma once
 
+#include "cscd/cscd.h"
 #include "tool/io/file_reader.h"
 #include "tool/io/io.h"
 
@@ -89,3 +90,18 @@ bool ply_data_read(ply_data *data, const ply_visitor *visitor);
 bool ply_data_number(ply_data *data, const ply_property *property, double *value);
 bool ply_data_length(ply_data *data, const ply_property *property, int64_t *length);
 bool ply_data_skip(ply_data *data, const ply_property *property);
+
+/* ---- plans: the mesh at rest, charge and region per face, and a colour, which any viewer shows --------- */
+
+/* Does the file begin as a PLY with the comment that every plan has? False too when it cannot be read. */
+bool plan_file_is_plan(const char *path);
+
+/* positions: the mesh at rest, as the plan was made from it; colours: red, green, blue per triangle. A file that
+ * was there stays until the plan is whole. */
+bool plan_file_write(const char *path, const cscd_mesh *mesh, const double *positions, const cscd_plan *plan,
+                     const uint8_t *colours, io_error *error);
+
+/* Reads the plan that was written, bit for bit. It refuses a plan of another mesh, and says what differs. context:
+ * that of the mesh. */
+bool plan_file_read(const char *path, const cscd_context *context, const cscd_mesh *mesh, cscd_plan **out,
+                    io_error *error);

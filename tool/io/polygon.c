@@ -1,8 +1,8 @@
 /* Looks at a polygon in the plane of two coordinates, and fills it there: a fan where that is right, else by clipping ears. */
 #include "tool/io/mesh_builder.h"
 
-#include "tool/io/ear_clipping.h"
 #include "tool/io/io.h"
+#include "tool/io/polygon.h"
 
 #include <math.h>
 #include <stdbool.h>

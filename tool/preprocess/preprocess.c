@@ -6,7 +6,7 @@
 #include "tool/common/plans.h"
 #include "tool/common/terminal.h"
 #include "tool/io/io.h"
-#include "tool/io/plan_file.h"
+#include "tool/io/ply.h"
 #include "tool/preprocess/motion_frames.h"
 #include "tool/preprocess/plan_print.h"
 #include "tool/preprocess/plan_report.h"

@@ -4,7 +4,7 @@
 #include "tool/replay/replay.h"
 
 #include "tool/common/provenance.h"
-#include "tool/io/pipe_file.h"
+#include "tool/io/io.h"
 
 #include <assert.h>
 #include <errno.h>

@@ -2,7 +2,7 @@
 #include "tests/support/io/flat_polygon.h"
 
 #include "tests/support/test.h"
-#include "tool/io/mesh_builder.h"
+#include "tool/io/polygon.h"
 
 #include <string.h>
 
