@@ -890,7 +890,7 @@ MULTIARCH := $(shell $(CC) -print-multiarch 2>/dev/null)
 $(OBJECTS)/src/core/baseline_library.o: CFLAGS_ALL += $(if $(MULTIARCH),-DLIBRARY_FOLDER='"$(MULTIARCH)"')
 
 # This object contains the pages of the reports.
-$(OBJECTS)/tool/report/template.o: tool/report/template.html tool/report/jobs.html
+$(OBJECTS)/tool/report/page_file.o: tool/report/template.html tool/report/jobs.html
 
 # Only this file is compiled again when the commit changes.
 $(OBJECTS)/tool/common/provenance.o: CFLAGS_ALL += -DCSCD_COMMIT='"$(COMMIT)"' -DCSCD_FLAGS='"$(OPTIMISE_$(CONFIG))"'

@@ -8,9 +8,8 @@
 #include "tool/io/io.h"
 #include "tool/io/output_file.h"
 #include "tool/io/text_encoding.h"
-#include "tool/jobs/job_merge.h"
-#include "tool/jobs/job_row.h"
-#include "tool/report/jobs_page.h"
+#include "tool/jobs/jobs.h"
+#include "tool/report/report.h"
 
 #include <errno.h>
 #include <math.h>

@@ -3,7 +3,7 @@
 #include "tool/common/options.h"
 #include "tool/common/terminal.h"
 #include "tool/io/output_file.h"
-#include "tool/jobs/job_merge.h"
+#include "tool/jobs/jobs.h"
 #include "tool/replay/replay.h"
 
 #include <errno.h>

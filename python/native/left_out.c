@@ -1,8 +1,7 @@
 /* What a replay of Python leaves out, by parts and at rest, and which depths and events are left then: as the tool does. */
 #include "python/native/host.h"
 
-#include "tool/answers/consequences.h"
-#include "tool/answers/shown_depths.h"
+#include "tool/answers/answers.h"
 
 #include <stdlib.h>
 #include <string.h>

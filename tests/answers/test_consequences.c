@@ -1,6 +1,6 @@
 /* Events that only follow from others are left out. */
 #include "tests/support/test.h"
-#include "tool/answers/consequences.h"
+#include "tool/answers/answers.h"
 
 #include <string.h>
 

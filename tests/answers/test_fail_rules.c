@@ -1,6 +1,6 @@
 /* When a frame fails by a depth: it passes only if no point can be deeper than is allowed. */
 #include "tests/support/test.h"
-#include "tool/answers/fail_rules.h"
+#include "tool/answers/answers.h"
 
 static void check_depth(double depth, double bound, const char *expected) {
     const fail_rules rules = {.options.depth.given = true, .depth = 1.0};

@@ -6,9 +6,7 @@
 #include "tool/io/io.h"
 #include "tool/io/ply.h"
 #include "tool/jobs/job_list.h"
-#include "tool/jobs/job_merge.h"
-#include "tool/jobs/job_record.h"
-#include "tool/jobs/job_row.h"
+#include "tool/jobs/jobs.h"
 #include "tool/summary_file.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
 #include "tests/support/own_folder.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/test.h"
-#include "tool/jobs/job_shards.h"
+#include "tool/jobs/job_list.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* A file of results that changes between the two times that it is read. */
 #include "tests/support/own_folder.h"
 #include "tests/support/test.h"
-#include "tool/jobs/job_merge.h"
+#include "tool/jobs/jobs.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* Jobs in processes: each is taken or fails once, whatever happens to the process of one of them. */
-#include "tool/jobs/job_processes.h"
+#include "tool/jobs/job_list.h"
 
 #include "tests/support/test.h"
 #include "tool/common/terminal.h"

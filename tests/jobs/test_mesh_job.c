@@ -2,7 +2,7 @@
 #include "tests/support/own_folder.h"
 #include "tests/support/test.h"
 #include "tool/common/terminal.h"
-#include "tool/jobs/mesh_job.h"
+#include "tool/jobs/jobs.h"
 
 #include <signal.h>
 #include <stdbool.h>

@@ -1,6 +1,6 @@
 /* The links from a page of jobs to the pages of each. */
 #include "tests/support/test.h"
-#include "tool/report/page_link.h"
+#include "tool/report/page.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -5,9 +5,8 @@
 #include "tests/support/packed.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
-#include "tool/report/json_table.h"
+#include "tool/report/page.h"
 #include "tool/report/report.h"
-#include "tool/report/template.h"
 
 #include <math.h>
 #include <stdio.h>

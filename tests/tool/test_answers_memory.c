@@ -3,7 +3,6 @@
 #include "tests/support/test.h"
 #include "tests/support/tool/tool_fixture.h"
 #include "tool/answers/answers.h"
-#include "tool/answers/consequences.h"
 #include "tool/io/io.h"
 
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* The answers as files: members of a JSON object, a CSV file of the events, and a JUnit file for continuous integration. */
-#include "tool/answers/answer_files.h"
+#include "tool/answers/answers.h"
 
 #include "tool/io/record.h"
 #include "tool/io/text_encoding.h"

@@ -1,5 +1,5 @@
 /* The answers for people: a sentence, which comes first, and tables of events and frames. */
-#include "tool/answers/answer_words.h"
+#include "tool/answers/answers.h"
 
 #include <string.h>
 

@@ -1,5 +1,5 @@
-/* Parts whose triangles are not what they seem: those that are inside out, and taken as turned around, and those without a surface. */
-#include "tool/answers/turned_parts.h"
+/* Parts that are inside out, and parts without a surface: in which frames. */
+#include "tool/answers/answers.h"
 
 #include "tool/common/command.h"
 #include "tool/io/io.h"

@@ -2,8 +2,7 @@
 #include "tool/check/check_run.h"
 #include "tool/common/command.h"
 #include "tool/common/options.h"
-#include "tool/jobs/listed_recordings.h"
-#include "tool/jobs/mesh_job.h"
+#include "tool/jobs/jobs.h"
 
 static bool read_fail_kind(const char *text, void *place) {
     int kind;

@@ -1,7 +1,7 @@
 /* The pairs of triangles that `cscd check` finds, as JSON and as CSV, frame by frame. */
 #pragma once
 
-#include "tool/answers/answer_files.h"
+#include "tool/answers/answers.h"
 #include "tool/io/output_file.h"
 
 typedef struct check_output {

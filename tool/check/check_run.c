@@ -1,12 +1,12 @@
 /* A run of `cscd check`: frame by frame, what intersects. */
 #include "tool/check/check_run.h"
 
-#include "tool/answers/answer_words.h"
+#include "tool/answers/answers.h"
 #include "tool/check/check_output.h"
 #include "tool/common/command.h"
 #include "tool/common/options.h"
 #include "tool/common/terminal.h"
-#include "tool/jobs/recording_answer.h"
+#include "tool/jobs/jobs.h"
 
 #include <stdlib.h>
 

@@ -1,11 +1,11 @@
 /* The options of `cscd check`, and a run with them. */
 #pragma once
 
-#include "tool/answers/answer_options.h"
+#include "tool/answers/answers.h"
 #include "tool/common/frame_range.h"
 #include "tool/common/ignore_pairs.h"
 #include "tool/export/export.h"
-#include "tool/jobs/list_options.h"
+#include "tool/jobs/jobs.h"
 
 typedef struct check_options {
     recording_options source;

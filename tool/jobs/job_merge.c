@@ -1,5 +1,6 @@
-/* Brings the results of all shards together: finds the line of each job, copies them in order, and writes them as JUnit. */
-#include "tool/jobs/job_merge.h"
+/* Brings the results of all shards together: finds the line of each job, copies them in order, writes them as JUnit, and reads what a page
+ * says of a job. */
+#include "tool/jobs/jobs.h"
 
 #include "tool/common/terminal.h"
 #include "tool/io/file_reader.h"
@@ -7,10 +8,14 @@
 
 #include <errno.h>
 #include <json-c/json.h>
+#include <limits.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+
+/* ---- merging ------------------------------------------------------------------------------------------- */
 
 /* ---- lines --------------------------------------------------------------------------------------------------------- */
 
@@ -283,4 +288,52 @@ bool job_junit_add(FILE *out, const char *line, size_t length, const job_record 
     json_object_put(root);
     json_tokener_free(parser);
     return true;
+}
+
+/* ---- rows of a page ------------------------------------------------------------------------------------ */
+
+/* The text of the first of two members that is one. */
+static const char *find_first_text(json_object *line, const char *name, const char *other) {
+    json_object *value = json_object_object_get(line, name);
+    if (!json_object_is_type(value, json_type_string)) value = json_object_object_get(line, other);
+    const char *text = json_object_is_type(value, json_type_string) ? json_object_get_string(value) : NULL;
+    return text != NULL ? text : "";
+}
+
+static double find_first_number(json_object *line, const char *name, const char *other) {
+    json_object *value = json_object_object_get(line, name);
+    if (value == NULL) value = json_object_object_get(line, other);
+    const bool is_number =
+        json_object_is_type(value, json_type_int) || json_object_is_type(value, json_type_double);
+    return is_number ? json_object_get_double(value) : NAN;
+}
+
+bool job_row_read(const char *text, size_t length, job_row *out) {
+    json_tokener *parser = length < INT_MAX ? json_tokener_new() : NULL;
+    if (parser == NULL) return false;
+    json_object *line = json_tokener_parse_ex(parser, text, (int)length);
+    json_tokener_free(parser);
+    if (!json_object_is_type(line, json_type_object)) {
+        json_object_put(line);
+        return false;
+    }
+    *out = (job_row){
+        .name = find_first_text(line, "name", "file"),
+        .answer = find_first_text(line, "error", "answer"),
+        .report = find_first_text(line, "report", "report"),
+        .frames = find_first_number(line, "frames_checked", "frames"),
+        .crossing_frames = find_first_number(line, "frames_crossing", "frames_crossing"),
+        .events = find_first_number(line, "events", "events"),
+        .depth = find_first_number(line, "depth", "depth"),
+        .crossing_pairs = find_first_number(line, "crossing_pairs", "crossing"),
+        .seconds = 1e-3 * (find_first_number(line, "read_ms", "read_ms") +
+                           find_first_number(line, "check_ms", "check_ms")),
+        .memory = line,
+    };
+    return true;
+}
+
+void job_row_free(job_row *row) {
+    json_object_put(row->memory);
+    *row = (job_row){.memory = NULL};
 }

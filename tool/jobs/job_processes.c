@@ -1,5 +1,5 @@
 /* Processes that take jobs from a board in shared memory, and send their results through sockets. */
-#include "tool/jobs/job_processes.h"
+#include "tool/jobs/job_list.h"
 
 #include "tool/common/terminal.h"
 
@@ -14,6 +14,7 @@
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
+
 #ifdef __linux__
 #include <sys/prctl.h>
 #endif

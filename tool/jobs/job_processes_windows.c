@@ -1,5 +1,5 @@
 /* The jobs on Windows, which has no fork: one after another in the calling process, with the threads of all. */
-#include "tool/jobs/job_processes.h"
+#include "tool/jobs/job_list.h"
 
 #include "tool/common/terminal.h"
 

@@ -1,12 +1,11 @@
 /* Jobs that are commands of the tool: their options are those of the command line and their own. */
-#include "tool/jobs/listed_recordings.h"
+#include "tool/jobs/jobs.h"
 
 #include "tool/common/command.h"
 #include "tool/common/options.h"
 #include "tool/common/terminal.h"
 #include "tool/io/io.h"
 #include "tool/jobs/job_list.h"
-#include "tool/jobs/recording_answer.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "tool/common/recording.h"
-#include "tool/report/report_request.h"
+#include "tool/report/report.h"
 
 typedef struct plan_report {
     const report_request *request;

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "cscd/cscd.h"
-#include "tool/report/orientation_row.h"
+#include "tool/report/report.h"
 
 /* An interval. */
 typedef struct interval_step {

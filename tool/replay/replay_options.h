@@ -1,12 +1,12 @@
 /* The options of `cscd replay`. */
 #pragma once
 
-#include "tool/answers/answer_options.h"
+#include "tool/answers/answers.h"
 #include "tool/common/frame_range.h"
 #include "tool/common/ignore_pairs.h"
 #include "tool/export/export.h"
-#include "tool/jobs/list_options.h"
-#include "tool/report/report_request.h"
+#include "tool/jobs/jobs.h"
+#include "tool/report/report.h"
 
 typedef struct replay_options {
     recording_options source;

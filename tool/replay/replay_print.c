@@ -1,6 +1,6 @@
 /* What a replay says to people, the sums over its intervals, and the table of stages. */
 
-#include "tool/answers/answer_words.h"
+#include "tool/answers/answers.h"
 #include "tool/common/methods.h"
 #include "tool/replay/replay_run.h"
 

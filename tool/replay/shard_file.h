@@ -4,7 +4,7 @@
 
 #include "tool/io/io.h"
 #include "tool/io/output_file.h"
-#include "tool/jobs/job_shards.h"
+#include "tool/jobs/jobs.h"
 #include "tool/replay/step_bytes.h"
 
 #include <stdbool.h>

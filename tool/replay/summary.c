@@ -1,5 +1,5 @@
 /* The JSON summary of a replay, written interval by interval. */
-#include "tool/answers/answer_files.h"
+#include "tool/answers/answers.h"
 #include "tool/common/provenance.h"
 #include "tool/io/output_file.h"
 #include "tool/replay/replay_sink.h"

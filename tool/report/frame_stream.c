@@ -1,9 +1,8 @@
 /* Frames as the page stores them: positions rounded to a grid, each frame as its difference from the one
  * before. */
-#include "tool/report/frame_stream.h"
+#include "tool/report/collected.h"
 
 #include "tool/io/io.h"
-#include "tool/report/page_coordinate.h"
 
 #include <math.h>
 #include <stdlib.h>

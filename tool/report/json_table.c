@@ -1,5 +1,5 @@
 /* Reads JSON that this tool has written, row by row; what does not have the expected form stays as it is. */
-#include "tool/report/json_table.h"
+#include "tool/report/page.h"
 
 #include "tool/io/io.h"
 #include "tool/io/json.h"

@@ -1,7 +1,7 @@
 /* Collects a report while the replay runs: chooses the frames that are kept, and fills the arrays. */
-#include "tool/report/report.h"
-
 #include "tool/report/collected.h"
+
+#include "tool/report/report.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -146,4 +146,13 @@ bool report_add_scenery(report *r, const double *positions, io_error *error) {
     bool begun = r->scenery.vertex_count > 0 ||
                  frame_stream_create(r->options.scenery.vertex_count, 1.0 / r->unit, &r->scenery);
     return (begun && frame_stream_add(&r->scenery, positions)) || out_of_memory(error);
+}
+
+/* ---- options ------------------------------------------------------------------------------------------- */
+
+bool report_request_agrees(const report_request *r, io_error *error) {
+    if (r->path == NULL && (r->scenery_path != NULL || r->scenery_frames_path != NULL))
+        return io_fail(error, "--scenery is drawn in a report; say where with --report OUT.html");
+    return r->scenery_frames_path == NULL || r->scenery_path != NULL ||
+           io_fail(error, "--scenery-frames moves the mesh of --scenery MODEL, which is missing");
 }

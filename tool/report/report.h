@@ -1,9 +1,53 @@
-/* A report: one HTML page that shows a replay, a plan, or replays side by side, and needs no network. */
+/* Reports: one HTML page that shows a replay, a plan, or replays side by side, or lists many jobs, and needs no network. */
 #pragma once
 
 #include "cscd/cscd.h"
+#include "tool/common/options.h"
 #include "tool/io/io.h"
-#include "tool/report/orientation_row.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* ---- options ------------------------------------------------------------------------------------------- */
+
+/* The options of a command about the report that it writes. */
+typedef struct report_request {
+    const char *path;                               /* NULL: no report */
+    const char *scenery_path, *scenery_frames_path; /* NULL: none */
+    const char *title;                              /* NULL: the model's file */
+    up_axis up;
+} report_request;
+
+/* False, with the reason, if the options contradict each other. */
+bool report_request_agrees(const report_request *r, io_error *error);
+
+/* ---- orientations of an interval ----------------------------------------------------------------------- */
+
+/* How the triangles faced their regions' detector points in one interval, and where these points were. */
+typedef struct orientation_row {
+    uint32_t triangle_count,
+        region_count;    /* no regions: the method has no detector points, and there are no orientations */
+    double (*points)[6]; /* per region: where it is at the start, and at the end */
+    uint8_t *facing;     /* two bits a triangle, four to a byte, the first lowest: 0: neither, 1: S+, 2: S- */
+} orientation_row;
+
+/* Bytes of facing. */
+static inline size_t orientation_row_size(uint32_t triangle_count) {
+    return ((size_t)triangle_count + 3) / 4;
+}
+
+/* Room for the rows of a detector, filled by _take. False: out of memory; *out then holds nothing to free. */
+bool orientation_row_create(const cscd_detector *detector, const cscd_mesh *mesh, orientation_row *out);
+void orientation_row_free(orientation_row *row); /* a zeroed struct is fine */
+
+/* Those of the detector's last step. */
+void orientation_row_take(orientation_row *row, const cscd_detector *detector);
+
+/* Those of a step that has none: no triangle faces any point. */
+void orientation_row_forget(orientation_row *row);
+
+/* ---- reports ------------------------------------------------------------------------------------------- */
 
 typedef enum report_kind { REPORT_REPLAY, REPORT_PREPROCESS, REPORT_COMPARE } report_kind;
 
@@ -92,3 +136,47 @@ typedef struct report_summary {
  * pipe or a device is written to directly. preprocess: a JSON object as text, or NULL. Once. */
 bool report_write(report *r, const char *path, const report_summary *summaries, size_t summary_count,
                   const char *preprocess, io_error *error);
+
+/* ---- the page of many jobs ----------------------------------------------------------------------------- */
+
+/* A table of all jobs, the worst first. */
+
+/* What is known of a job in numbers; NaN: nothing. A column that no job has is not shown. */
+typedef enum jobs_page_number {
+    JOBS_PAGE_CROSSING_FRAMES,
+    JOBS_PAGE_FRAMES, /* that were looked at */
+    JOBS_PAGE_EVENTS,
+    JOBS_PAGE_DEPTH,
+    JOBS_PAGE_PAIRS,
+    JOBS_PAGE_SECONDS,
+    JOBS_PAGE_NUMBERS
+} jobs_page_number;
+
+typedef struct jobs_page_row {
+    uint8_t outcome; /* one of the page's outcomes */
+    bool found;      /* what the rules of the run ask for */
+    const char *name, *answer;
+    const char *report; /* the path of its page, from the current folder; "": it has none */
+    double numbers[JOBS_PAGE_NUMBERS];
+} jobs_page_row;
+
+typedef struct jobs_page_options {
+    const char *path; /* of the page: links to others are relative to its folder */
+    const char *title, *generator;
+    const char *const
+        *outcomes; /* their names, up to a NULL; the page has words for those of docs/artist/formats.md */
+    const char *missing; /* the jobs that are not done, in words; "": none */
+    uint64_t list;       /* the hash of the list */
+} jobs_page_options;
+
+typedef struct jobs_page jobs_page;
+
+/* Everything that the options point to outlives the page. */
+bool jobs_page_create(const jobs_page_options *options, jobs_page **out, io_error *error);
+void jobs_page_destroy(jobs_page *page);
+
+/* The next job, in the order of the list; the row is copied. */
+bool jobs_page_add(jobs_page *page, const jobs_page_row *row, io_error *error);
+
+/* Puts the page at its path in one go. Once. */
+bool jobs_page_write(jobs_page *page, io_error *error);

@@ -1,6 +1,6 @@
 /* Lengths for people: three digits, in the unit that suits, and read back from the command line. */
 #include "tests/support/test.h"
-#include "tool/common/length_unit.h"
+#include "tool/answers/answers.h"
 
 #include <math.h>
 #include <stddef.h>

@@ -1,6 +1,6 @@
 /* The order of events that everything names the worst by: of each rule a pair that nothing else tells apart. */
 #include "tests/support/test.h"
-#include "tool/common/event_order.h"
+#include "tool/answers/answers.h"
 
 #include <stddef.h>
 #include <stdint.h>
