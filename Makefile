@@ -106,8 +106,8 @@ TEST_LIBS   := -lcmocka -lflint-arb -lflint -lgmp $(TOOL_LIBS) $(BASELINE_LIBS)
 
 HAS_SENSORS := $(if $(filter 0,$(SENSORS)),,$(wildcard sensors/*.c))
 # A file that ends in _simd.c is compiled once per instruction set. libcscd-baselines.so has sources of its own.
-BASELINE_SOURCES := $(wildcard preprocess/baselines/dense/*.c runtime/baselines/gsl/*.c src/blas/*.c)
-CORE_FILES      := $(wildcard src/core/*.c src/mesh/*.c preprocess/*.c preprocess/*/*.c runtime/*/*.c runtime/*/*/*.c) $(HAS_SENSORS)
+BASELINE_SOURCES := $(wildcard preprocess/baselines/dense/*.c runtime/baselines/*_export.c src/blas/*.c)
+CORE_FILES      := $(wildcard src/core/*.c src/mesh/*.c preprocess/*.c preprocess/*/*.c runtime/*/*.c) $(HAS_SENSORS)
 CORE_SOURCES    := $(filter-out %_simd.c $(BASELINE_SOURCES),$(CORE_FILES))
 KERNEL_SOURCES  := $(filter %_simd.c,$(CORE_FILES))
 # What commands of the tool share, and the commands.
@@ -120,7 +120,7 @@ COMMAND_SOURCES := $(wildcard tool/*.c $(patsubst %,tool/%/*.c,check preprocess 
 NATIVE_SOURCES  := $(wildcard python/native/*.c)
 SUPPORT_SOURCES := $(filter-out $(if $(WINDOWS),,tests/support/tool/tool_process.c) $(if $(HAS_SENSORS),,tests/support/sensors/%),$(wildcard tests/support/*.c tests/support/*/*.c))
 # `rm -r runtime/baselines`, and its lines in runtime/detector/method_table.c: what needs them is not built then.
-HAS_BASELINES   := $(wildcard runtime/baselines/*/*.h)
+HAS_BASELINES   := $(wildcard runtime/baselines/*.h)
 # The browser's tests look at pages, which no other configuration writes differently. Only a release is installed. Under sanitizers each
 # program of models/ runs (models/test_programs); how bodies and cloth move in them is looked at in a release.
 BROWSER_TESTS   := tests/report/test_report_browser.py tests/report/test_report_view.py

@@ -1,7 +1,7 @@
 /* Checks of what searches with volumes find: nothing that is in contact is missing, and k-DOPs nest. */
 #pragma once
 
-#include "runtime/baselines/trees/volume_tree.h"
+#include "runtime/baselines/volume_tree.h"
 #include "runtime/culling/culling.h"
 
 /* Pairs of triangles that have to be found: of the stars of two features in contact, those that share no vertex and that

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "benchmarks/lib/scene_files.h"
-#include "runtime/baselines/trees/volume_tree.h"
+#include "runtime/baselines/volume_tree.h"
 
 enum { VOLUME_ROUNDS = 5 };
 

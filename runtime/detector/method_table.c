@@ -5,8 +5,7 @@
 #include "src/core/methods.h"
 
 /* baselines: begin */
-#include "runtime/baselines/iccd/patch_hiders.h"
-#include "runtime/baselines/published/published_search.h"
+#include "runtime/baselines/baselines.h"
 /* baselines: end */
 
 static const culling_rules tests_every_pair = {.by_orientation = false};

@@ -1,6 +1,6 @@
 /* The contour test: a contour that it calls simple is simple at every sampled moment, by a reference in
  * long double, and plain motions of plain polygons pass at any place and scale. */
-#include "runtime/baselines/iccd/contour.h"
+#include "runtime/baselines/patches.h"
 #include "tests/support/baselines/moving_polygon.h"
 #include "tests/support/test.h"
 

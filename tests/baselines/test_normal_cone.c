@@ -1,6 +1,6 @@
 /* Normal cones contain every normal of moving triangles, by a reference in long double; as published they
  * do not. */
-#include "runtime/baselines/iccd/normal_cone.h"
+#include "runtime/baselines/patches.h"
 #include "tests/support/levels.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/test.h"

@@ -1,7 +1,6 @@
 /* The patches of all nodes of trees, compared with a reference that counts and walks: their contours,
  * which edges the parent has too, which patches are disks, and how the loops of these run. */
-#include "runtime/baselines/iccd/patch.h"
-#include "runtime/baselines/iccd/star.h"
+#include "runtime/baselines/patches.h"
 #include "tests/support/bvh/bvh_rig.h"
 #include "tests/support/mesh_shapes.h"
 #include "tests/support/models/body_of.h"

@@ -1,5 +1,5 @@
 /* libcscd-baselines is opened and hands out what GSL finds of roots, and nothing that it does not have. */
-#include "runtime/baselines/gsl/plain_cubic.h"
+#include "runtime/baselines/plain_cubic.h"
 #include "src/core/baseline_library.h"
 #include "tests/support/test.h"
 

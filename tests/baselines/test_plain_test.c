@@ -1,6 +1,6 @@
 /* The published elementary test: what it finds by plain roots is, but for a rounding error, what the certified test proves. */
 #include "tests/support/test.h"
-#include "runtime/baselines/published/plain_test.h"
+#include "runtime/baselines/published.h"
 #include "src/core/baseline_library.h"
 #include "tests/support/random_stream.h"
 

@@ -1,6 +1,6 @@
 /* The star test: of disks whose triangles all keep their orientation, those that it calls one-to-one have contours that are simple at
  * every sampled moment, by a reference in long double; plain motions pass at any place and scale; and each condition is needed. */
-#include "runtime/baselines/iccd/star.h"
+#include "runtime/baselines/patches.h"
 #include "tests/support/baselines/moving_polygon.h"
 #include "tests/support/test.h"
 

@@ -1,5 +1,5 @@
 /* The binary trees of the thesis: one triangle a leaf, halves of the longest axis, volumes that hold the motion, flags, sealed nodes. */
-#include "runtime/baselines/trees/volume_tree.h"
+#include "runtime/baselines/volume_tree.h"
 #include "runtime/bvh/bvh.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"

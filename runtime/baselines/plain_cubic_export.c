@@ -1,5 +1,5 @@
 /* What libcscd-baselines exports of GSL. These functions of GSL call no error handler, and cannot fail. */
-#include "runtime/baselines/gsl/plain_cubic.h"
+#include "runtime/baselines/plain_cubic.h"
 #include "src/core/baseline_library.h"
 
 #include <gsl/gsl_poly.h>

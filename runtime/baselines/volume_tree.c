@@ -1,5 +1,5 @@
 /* Binary trees over the triangles of each region: how they are built, flagged and freed. */
-#include "runtime/baselines/trees/volume_tree.h"
+#include "runtime/baselines/volume_tree.h"
 
 #include "runtime/bvh/bvh.h"
 

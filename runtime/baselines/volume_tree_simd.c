@@ -10,7 +10,7 @@
  *     26-DOP   x y z, 4 of the cube, 1 of faces   -(the same)    5 of the faces, . . .   -(the same)
  *
  * So a volume around two is a minimum, and two are apart where a sum of opposite lanes is above 0. */
-#include "runtime/baselines/trees/volume_tree.h"
+#include "runtime/baselines/volume_tree.h"
 #include "runtime/bvh/bvh.h"
 #include "src/core/simd.h"
 

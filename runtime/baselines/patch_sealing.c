@@ -1,5 +1,5 @@
 /* Which patches cannot touch themselves in an interval: cones from the leaves up, contours from the roots down. */
-#include "runtime/baselines/iccd/patch.h"
+#include "runtime/baselines/patches.h"
 
 #include <math.h>
 #include <stdatomic.h>

@@ -1,5 +1,5 @@
 /* Continuous normal cones of triangles and of their unions, eight at a time. */
-#include "runtime/baselines/iccd/normal_cone.h"
+#include "runtime/baselines/patches.h"
 
 #include "src/core/simd_lanes.h"
 

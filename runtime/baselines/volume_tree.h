@@ -42,8 +42,10 @@ typedef struct volume_tree {
     const uint32_t (*triangles)[3];
     volume_node *nodes;
     uint32_t *roots; /* per region */
-    float (*records)
-        [LANES]; /* per vertex: x y z 0 at the start, x y z 0 at the end, beside the frame's origin */
+
+    /* Per vertex: x y z 0 at the start, x y z 0 at the end, relative to the frame's origin. */
+    float (*records)[LANES];
+
     float *vertex_volumes; /* of k-DOPs, of what a vertex covers in the interval */
     float *volumes;        /* of nodes */
 } volume_tree;
@@ -62,8 +64,10 @@ typedef struct volume_search {
     cscd_context *context;
     uint32_t (*pairs)[2]; /* triangles whose volumes overlap, the smaller number first */
     size_t count, capacity;
-    const bool *
-        keeps_adjacent; /* per region: pairs of its triangles that share a vertex are listed; NULL: none are */
+
+    /* Per region: pairs of its triangles that share a vertex are listed; NULL: none are. */
+    const bool *keeps_adjacent;
+
     uint64_t tests, adjacent; /* pairs of volumes; pairs that share a vertex, listed or not */
     uint32_t (*stack)[2];
     bool out_of_memory;
