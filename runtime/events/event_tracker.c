@@ -1,10 +1,32 @@
 /* The tracker of the public API: options, frames, and events that have ended. */
-#include "runtime/events/event_tracker.h"
-
+#include "runtime/events/events.h"
 #include "src/core/sort.h"
 #include "src/core/struct_size.h"
+#include "src/core/vec3.h"
 
+#include <math.h>
 #include <string.h>
+
+struct cscd_event_tracker {
+    reference_count references;
+    cscd_context *context;
+    cscd_mesh mesh; /* as objects of the context see it */
+    part_labels parts;
+    mesh_rings rings;
+
+    event_history history;
+    frame_groups groups;
+    size_t max_memory; /* of a frame */
+
+    /* Of the interval that ends in the next frame. */
+    tracked_contact *contacts;
+    size_t contact_count, contact_capacity;
+
+    /* Memory of what was given out last. */
+    cscd_event *given;
+    tracked_event *spare_closed; /* for sorting */
+    size_t given_capacity;
+};
 
 static const cscd_event_options default_options = {.struct_size = sizeof default_options, .rings = 2};
 
@@ -123,6 +145,76 @@ void cscd_event_tracker_destroy(cscd_event_tracker *t) {
     if (t != NULL) context_destroy_object(t->context, &t->references);
 }
 
+/* ---- what a frame is given, from anywhere ------------------------------------------------------------------ */
+
+static cscd_status check_pairs(const cscd_mesh *mesh, const cscd_intersection_pairs *found) {
+    if (found->items == NULL && found->count > 0)
+        return context_fail(mesh->context, CSCD_INVALID_ARGUMENT,
+                            "found counts %zu pairs but has no list; ask for CSCD_ANSWER_LIST", found->count);
+    for (size_t i = 0; i < found->count; i++) {
+        const cscd_intersection_pair *pair = &found->items[i];
+        if (pair->a < mesh->triangle_count && pair->b < mesh->triangle_count && (unsigned)pair->kind < 64)
+            continue;
+        return context_fail(mesh->context, CSCD_INVALID_ARGUMENT,
+                            "pair %zu (kind %d, triangles %u and %u) is not of the tracker's mesh", i,
+                            (int)pair->kind, pair->a, pair->b);
+    }
+    return CSCD_OK;
+}
+
+static bool piece_fits(const cscd_mesh *mesh, const cscd_curves *curves, const cscd_curve *curve, size_t i) {
+    const cscd_curve_piece *piece = &curves->pieces[curve->first_piece + i];
+    return piece->a < mesh->triangle_count && piece->b < mesh->triangle_count &&
+           isfinite(curve_piece_length(curves, curve, i));
+}
+
+static bool range_fits(size_t first, size_t count, size_t all) {
+    return first <= all && count <= all - first;
+}
+
+static bool curve_fits(const cscd_mesh *mesh, const cscd_curves *curves, const cscd_curve *curve) {
+    if (!range_fits(curve->first_point, curve->point_count, curves->point_count) ||
+        !range_fits(curve->first_piece, curve->piece_count, curves->piece_count) ||
+        curve->point_count < curve->piece_count || (curve->piece_count > 0 && curve->point_count == 0))
+        return false;
+    for (size_t i = 0; i < curve->piece_count; i++) {
+        if (!piece_fits(mesh, curves, curve, i)) return false;
+    }
+    return true;
+}
+
+static cscd_status check_curves(const cscd_mesh *mesh, const cscd_curves *curves) {
+    for (size_t i = 0; curves != NULL && i < curves->count; i++) {
+        if (curve_fits(mesh, curves, &curves->items[i])) continue;
+        return context_fail(mesh->context, CSCD_INVALID_ARGUMENT, "curve %zu is not of the tracker's mesh",
+                            i);
+    }
+    return CSCD_OK;
+}
+
+static bool depth_fits(const cscd_mesh *mesh, const cscd_depth *depth) {
+    bool has_vertex = depth->vertex < mesh->vertex_count || depth->vertex == UINT32_MAX;
+    bool has_edge = depth->edge < mesh->edge_count || depth->edge == UINT32_MAX;
+    return has_vertex && has_edge && depth->face < mesh->triangle_count &&
+           depth->triangle < mesh->triangle_count && depth->depth >= 0.0 && isfinite(depth->depth);
+}
+
+static cscd_status check_depths(const cscd_mesh *mesh, const cscd_depths *depths) {
+    for (size_t i = 0; depths != NULL && i < depths->count; i++) {
+        if (depth_fits(mesh, &depths->items[i])) continue;
+        return context_fail(mesh->context, CSCD_INVALID_ARGUMENT, "depth %zu is not of the tracker's mesh",
+                            i);
+    }
+    return CSCD_OK;
+}
+
+static cscd_status check_input(const cscd_mesh *mesh, const cscd_intersection_pairs *found) {
+    if (found == NULL) return CSCD_OK;
+    cscd_status status = check_pairs(mesh, found);
+    if (status == CSCD_OK) status = check_curves(mesh, found->curves);
+    return status == CSCD_OK ? check_depths(mesh, found->depths) : status;
+}
+
 /* ---- frames --------------------------------------------------------------------------------------------- */
 
 static cscd_status add_contacts(cscd_event_tracker *t, const cscd_contact *contacts, size_t count) {
@@ -165,7 +257,7 @@ static cscd_status check_frame(cscd_event_tracker *t, uint64_t frame, const cscd
         return context_fail(t->context, CSCD_INVALID_ARGUMENT,
                             "frame %llu does not come after frame %llu; frames go in by ascending numbers",
                             (unsigned long long)frame, (unsigned long long)h->last_frame);
-    return found != NULL ? frame_input_check(&t->mesh, found) : CSCD_OK;
+    return found != NULL ? check_input(&t->mesh, found) : CSCD_OK;
 }
 
 static cscd_status append_frame(cscd_event_tracker *t, const frame_input *input) {

@@ -1,5 +1,6 @@
 /* One frame: what was found in it, joined to groups. */
-#include "runtime/events/frame_groups.h"
+#include "runtime/events/events.h"
+#include "src/core/vec3.h"
 
 #include <math.h>
 #include <string.h>
@@ -27,6 +28,11 @@ void frame_groups_free(cscd_context *context, frame_groups *g) {
     stamp_table_free(context, &g->stamps);
     context_free_all(context, list_group_arrays(g));
     *g = (frame_groups){.things = NULL};
+}
+
+double curve_piece_length(const cscd_curves *curves, const cscd_curve *curve, size_t piece) {
+    const cscd_curve_point *points = &curves->points[curve->first_point];
+    return sqrt(vec3_squared_distance(points[piece].x, points[(piece + 1) % curve->point_count].x));
 }
 
 /* ---- things that are joined ----------------------------------------------------------------------------- */

@@ -1,5 +1,5 @@
 /* Trackers with mistakes, failing allocations and long recordings. */
-#include "runtime/events/mesh_rings.h"
+#include "runtime/events/events.h"
 #include "tests/support/counting_allocator.h"
 #include "tests/support/events/recording_oracle.h"
 #include "tests/support/random.h"
