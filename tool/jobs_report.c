@@ -1,5 +1,5 @@
 /* `cscd report` of results of jobs: the page of a night, of which jobs may be missing. */
-#include "tool/jobs_report.h"
+#include "tool/tool.h"
 
 #include "tool/common/command.h"
 #include "tool/common/options.h"

@@ -4,9 +4,8 @@
 #include "tool/common/command.h"
 #include "tool/common/options.h"
 #include "tool/common/provenance.h"
-#include "tool/jobs_report.h"
 #include "tool/replay/replay.h"
-#include "tool/summary_file.h"
+#include "tool/tool.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* Reads back what `cscd replay --json` wrote. */
-#include "tool/summary_file.h"
+#include "tool/tool.h"
 
 #include "tool/common/methods.h"
 #include "tool/io/io.h"

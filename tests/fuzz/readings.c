@@ -7,7 +7,7 @@
 #include "tool/io/ply.h"
 #include "tool/jobs/job_list.h"
 #include "tool/jobs/jobs.h"
-#include "tool/summary_file.h"
+#include "tool/tool.h"
 
 #include <math.h>
 #include <stdio.h>

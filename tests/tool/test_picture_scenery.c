@@ -2,6 +2,7 @@
  * mesh. */
 #include "tests/support/test.h"
 #include "tool/picture/picture.h"
+#include "tool/picture/shade.h"
 
 #include <math.h>
 #include <stdlib.h>

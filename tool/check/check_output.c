@@ -1,5 +1,5 @@
 /* The pairs of triangles that `cscd check` finds, as JSON and as CSV, frame by frame. */
-#include "tool/check/check_output.h"
+#include "tool/check/check_run.h"
 
 #include "tool/io/record.h"
 

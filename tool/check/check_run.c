@@ -2,7 +2,6 @@
 #include "tool/check/check_run.h"
 
 #include "tool/answers/answers.h"
-#include "tool/check/check_output.h"
 #include "tool/common/command.h"
 #include "tool/common/options.h"
 #include "tool/common/terminal.h"

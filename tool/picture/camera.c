@@ -1,7 +1,7 @@
 /* The perspective camera: orientation from two angles, place from the points that must fit. */
-#include "tool/picture/camera.h"
-
 #include "tool/picture/picture.h"
+
+#include "tool/picture/shade.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,5 +1,6 @@
 /* RGBA pictures: memory, blending and the way into a PNG file. */
-#include "tool/picture/image.h"
+#include "tool/picture/picture.h"
+
 #include "tool/io/output_file.h"
 
 #include <errno.h>

@@ -1,5 +1,5 @@
 /* Markers, caption and legend, blended over the finished picture. */
-#include "tool/picture/overlay.h"
+#include "tool/picture/shade.h"
 
 #include <math.h>
 #include <stdbool.h>

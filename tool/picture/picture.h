@@ -2,12 +2,93 @@
 #pragma once
 
 #include "tool/io/animation.h"
+#include "tool/io/io.h"
 #include "tool/io/mesh_file.h"
-#include "tool/picture/image.h"
-#include "tool/picture/overlay.h"
-#include "tool/picture/shade.h"
 
+#include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
+
+/* ---- images -------------------------------------------------------------------------------------------- */
+
+/* No side may be longer: keeps every size computation far from overflow. */
+#define PICTURE_SIDE_MAX 16384u
+
+/* Rows from the top, pixels from the left, four bytes each: red, green, blue and straight (not premultiplied)
+ * alpha, the colours in sRGB. */
+typedef struct picture_image {
+    uint32_t width, height;
+    uint8_t *pixels;
+} picture_image;
+
+/* A fully transparent picture. On false *out is untouched. */
+bool picture_image_create(uint32_t width, uint32_t height, picture_image *out, io_error *error);
+
+/* Frees what create allocated and zeroes the struct; a zeroed struct is fine. */
+void picture_image_free(picture_image *image);
+
+/* Lays `colour` with weight `coverage` (0..1) over the pixel; outside the picture nothing happens. */
+void picture_image_blend(picture_image *image, int64_t x, int64_t y, const uint8_t colour[3],
+                         double coverage);
+
+/* On false *error names the file and the reason, and no half-written file is left. */
+bool picture_image_write_png(const char *path, const picture_image *image, io_error *error);
+
+/* ---- the camera ---------------------------------------------------------------------------------------- */
+
+/* Camera space is right-handed: right, down, forward. */
+typedef struct picture_camera {
+    double right[3], down[3], forward[3], eye[3];
+    double focal;      /* pixels */
+    double centre[2];  /* pixels from the upper left corner */
+    double near_depth; /* nearer than this along `forward` nothing is drawn; 0.5 to 1 */
+    double unit;       /* depths are lengths times this power of two: single precision holds any model's */
+} picture_camera;
+
+/* Looks from azimuth and elevation (degrees) so that the points (x, y, z each; the corners of a box, say)
+ * just fit into the picture, with a margin. Azimuth 0 looks along +y (z up: x to the right) or along -z (y
+ * up: x to the right); it grows towards +x. A positive elevation looks down from above. */
+void picture_camera_frame(const double *points, size_t point_count, double azimuth, double elevation,
+                          bool y_up, uint32_t width, uint32_t height, picture_camera *out);
+
+enum { PICTURE_OUTERMOST = 5 };
+
+/* Picks those of many points that decide where picture_camera_frame, with the same arguments, places the
+ * eye. So a whole motion can be framed with a few points of each of its frames. */
+void picture_camera_outermost(const double *points, size_t point_count, double azimuth, double elevation,
+                              bool y_up, uint32_t width, uint32_t height, double out[PICTURE_OUTERMOST][3]);
+
+/* Homogeneous pixel coordinates: the point lies at (out[0] / out[2], out[1] / out[2]) in depth out[2], in
+ * the camera's unit, which is negative behind the eye. */
+void picture_camera_project(const picture_camera *camera, const double point[3], double out[3]);
+
+/* The point of the world seen at pixel (x, y) in the given depth. */
+void picture_camera_unproject(const picture_camera *camera, double x, double y, double depth, double out[3]);
+
+/* A direction in camera space. */
+void picture_camera_turn(const picture_camera *camera, const double direction[3], double out[3]);
+
+/* ---- markers and a legend, which are drawn over the surface -------------------------------------------- */
+
+/* A filled disc with an outline around a point; half transparent where the surface hides the point. */
+typedef struct picture_marker {
+    double position[3];
+    float radius_pixels;
+    uint8_t colour[4]; /* red, green, blue, alpha */
+} picture_marker;
+
+/* A coloured dot and what it stands for. */
+typedef struct picture_legend {
+    uint8_t colour[3];
+    const char *text;
+} picture_legend;
+
+/* ---- pictures ------------------------------------------------------------------------------------------ */
+
+#define PICTURE_SAMPLES_MAX 4u
+
+/* Smooth: normals are interpolated, except across creases. Unlit: the colours exactly as given. */
+typedef enum picture_shading { PICTURE_SMOOTH, PICTURE_FLAT, PICTURE_UNLIT } picture_shading;
 
 typedef struct picture_mesh {
     uint32_t vertex_count, triangle_count;

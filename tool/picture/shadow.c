@@ -1,6 +1,6 @@
 /* The ground below a body, and the soft shadow that the body casts straight down: each cell of a map of its heights spreads its shadow
  * over a disc that widens with its height above the point. */
-#include "tool/picture/shadow.h"
+#include "tool/picture/shade.h"
 
 #include <math.h>
 #include <stdlib.h>

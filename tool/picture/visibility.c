@@ -1,8 +1,8 @@
 /* Rasterises triangles with edge functions in homogeneous coordinates (Olano and Greer, "Triangle scan
  * conversion using 2D homogeneous coordinates", 1997): no clipping, whatever lies behind the eye. */
-#include "tool/picture/visibility.h"
+#include "tool/picture/shade.h"
 
-#include "tool/picture/image.h"
+#include "tool/picture/picture.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* Several frames of a recording side by side in one picture. */
-#include "tool/render/strip.h"
+#include "tool/render/render.h"
 
 #include "tool/picture/picture.h"
 

@@ -1,20 +1,215 @@
 /* `cscd preprocess`: makes the plan of a mesh, prints what it found and saves it. */
+#include "cscd/cscd.h"
 #include "cscd/research.h"
 #include "tool/common/command.h"
+#include "tool/common/frame_range.h"
 #include "tool/common/methods.h"
 #include "tool/common/options.h"
 #include "tool/common/plans.h"
+#include "tool/common/provenance.h"
+#include "tool/common/recording.h"
 #include "tool/common/terminal.h"
 #include "tool/io/io.h"
 #include "tool/io/ply.h"
-#include "tool/preprocess/motion_frames.h"
-#include "tool/preprocess/plan_print.h"
-#include "tool/preprocess/plan_report.h"
+#include "tool/report/report.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+
+/* ---- frames that a plan looks at ----------------------------------------------------------------------- */
+
+/* As many as a plan looks at. */
+enum { MOTION_FRAMES_MOST = 8 };
+
+typedef struct motion_frames {
+    uint32_t count;
+    double *positions;
+    cscd_view views[MOTION_FRAMES_MOST];
+    const cscd_view *items[MOTION_FRAMES_MOST]; /* as cscd_plan_options takes them */
+} motion_frames;
+
+static uint32_t frame_of(const frame_choice *choice, uint32_t i, uint32_t wanted) {
+    const uint32_t last = frame_choice_count(choice) - 1;
+    return choice->first + choice->step * (uint32_t)((uint64_t)i * last / (wanted > 1 ? wanted - 1 : 1));
+}
+
+static void free_motion_frames(motion_frames *frames) {
+    free(frames->positions);
+    *frames = (motion_frames){0};
+}
+
+/* Reads frames of the range, evenly spaced, the first and the last among them. On false there is nothing to free. */
+static bool read_motion_frames(recording *r, const frame_range *range, motion_frames *out, io_error *error) {
+    const uint32_t vertices = cscd_mesh_vertex_count(r->mesh);
+    frame_choice choice;
+    *out = (motion_frames){0};
+    if (!frame_range_choose(range, r->frame_numbers, r->frame_count, &choice, error)) return false;
+    const uint32_t found = frame_choice_count(&choice),
+                   wanted = found < MOTION_FRAMES_MOST ? found : MOTION_FRAMES_MOST;
+    out->positions = malloc((size_t)wanted * vertices * sizeof(double[3]));
+    bool read = out->positions != NULL || io_fail(error, "out of memory");
+    for (uint32_t i = 0; i < wanted && read; i++) {
+        double *positions = out->positions + (size_t)i * vertices * 3;
+        read = recording_read(r, frame_of(&choice, i, wanted), positions, error);
+        out->views[i] = *CSCD_DOUBLES(positions, vertices);
+        out->items[i] = &out->views[i];
+        out->count++;
+    }
+    if (!read) free_motion_frames(out);
+    return read;
+}
+
+/* ---- for people ---------------------------------------------------------------------------------------- */
+
+enum { LINES_MAX = 50 };
+
+static double total_area(const cscd_plan *plan) {
+    double area = 0.0;
+    for (uint32_t i = 0; i < cscd_plan_region_count(plan); i++) area += cscd_plan_region(plan, i).area;
+    return area;
+}
+
+static double percent_of(double part, double whole) {
+    return whole > 0.0 ? 100.0 * part / whole : 0.0;
+}
+
+static void print_components(const cscd_mesh *mesh, const cscd_plan *plan) {
+    uint32_t count = cscd_mesh_component_count(mesh);
+    for (uint32_t i = 0; i < count && i < LINES_MAX; i++)
+        printf("component %u: %u triangles, capacitance %.6g\n", i,
+               cscd_mesh_component(mesh, i).triangle_count, cscd_plan_capacitance(plan, i));
+    if (count > LINES_MAX) printf("and %u more components\n", count - LINES_MAX);
+}
+
+static void print_regions(const cscd_plan *plan) {
+    const uint32_t count = cscd_plan_region_count(plan);
+    const double whole = total_area(plan);
+    printf("%6s %9s %9s %13s %16s   detector point\n", "region", "component", "triangles", "share of area",
+           "its point sees");
+    for (uint32_t i = 0; i < count && i < LINES_MAX; i++) {
+        const cscd_region r = cscd_plan_region(plan, i);
+        const double *p = r.detector_point;
+        printf("%6u %9u %9u %11.1f %% %14.1f %%   (%.6g, %.6g, %.6g)\n", i, r.component, r.triangle_count,
+               percent_of(r.area, whole), 100.0 * r.visible_share, p[0], p[1], p[2]);
+    }
+    if (count > LINES_MAX) printf("and %u more regions\n", count - LINES_MAX);
+}
+
+/* The answer: how many regions there are, and how much of the model is seen. */
+static void print_answer(const char *model_path, const cscd_plan *plan) {
+    const uint32_t count = cscd_plan_region_count(plan);
+    double seen = 0.0;
+    for (uint32_t i = 0; i < count; i++) {
+        const cscd_region r = cscd_plan_region(plan, i);
+        seen += r.visible_share * r.area;
+    }
+    printf("%s: %u region%s by method %s; %s %.1f %% of the area\n", model_path, count, count == 1 ? "" : "s",
+           cscd_method_name(cscd_plan_method(plan)), count == 1 ? "its point sees" : "their points see",
+           percent_of(seen, total_area(plan)));
+}
+
+/* What method auto has compared. */
+static void print_compared(const cscd_plan *plan) {
+    const uint32_t count = cscd_plan_compared_count(plan);
+    if (count == 0) return;
+    printf("%-10s %8s %30s\n", "method", "regions", "triangles left to test");
+    for (uint32_t i = 0; i < count; i++) {
+        const cscd_compared_plan c = cscd_plan_compared(plan, i);
+        char name[24];
+        snprintf(name, sizeof name, c.k > 0 ? "%s:%u" : "%s", cscd_method_name(c.method), c.k);
+        if (c.failure != NULL)
+            printf("%-10s %8s %30s\n    %s\n", name, "-", "-", c.failure);
+        else
+            printf("%-10s %8u %28.1f %%%s\n", name, c.region_count, 100.0 * c.tested_share,
+                   c.kept ? "   kept" : "");
+    }
+}
+
+/* Prints components, regions and seconds on the standard output. */
+static void print_plan(const char *model_path, const cscd_mesh *mesh, const cscd_plan *plan) {
+    const cscd_preprocess_timings t = cscd_plan_timings(plan);
+    const uint32_t components = cscd_mesh_component_count(mesh);
+    print_answer(model_path, plan);
+    printf("%u vertices, %u triangles, %u component%s\n", cscd_mesh_vertex_count(mesh),
+           cscd_mesh_triangle_count(mesh), components, components == 1 ? "" : "s");
+    if (method_facts_of(cscd_plan_method(plan)).by_charge) print_components(mesh, plan);
+    print_compared(plan);
+    print_regions(plan);
+    printf("seconds: assembly %.3f, solve %.3f, regions %.3f, total %.3f\n", t.assembly_ms * 1e-3,
+           t.solve_ms * 1e-3, t.regions_ms * 1e-3, t.total_ms * 1e-3);
+}
+
+/* ---- the report ---------------------------------------------------------------------------------------- */
+
+typedef struct plan_report {
+    const report_request *request;
+    const char *model_path;
+    const recording *recording;
+    const double *positions; /* at rest */
+    const cscd_plan *plan;
+    int argument_count; /* the command line */
+    char **arguments;
+} plan_report;
+
+static void write_origin(json *out, const plan_report *r) {
+    cscd_preprocess_timings t = cscd_plan_timings(r->plan);
+    json_begin_object(out, NULL);
+    json_begin_object(out, "timings");
+    json_number(out, "assembly_ms", t.assembly_ms);
+    json_number(out, "solve_ms", t.solve_ms);
+    json_number(out, "regions_ms", t.regions_ms);
+    json_number(out, "total_ms", t.total_ms);
+    json_end_object(out);
+    json_begin_object(out, "provenance");
+    provenance_write(out, r->argument_count, r->arguments, cscd_context_thread_count(r->recording->context));
+    json_begin_array(out, "inputs");
+    provenance_write_input(out, r->model_path, recorded_object_hash_model(&r->recording->objects[0]));
+    json_end_array(out);
+    json_end_object(out);
+    json_end_object(out);
+}
+
+/* NULL: out of memory. */
+static char *text_of_origin(const plan_report *r) {
+    char *text = NULL;
+    size_t size = 0;
+    json out = {.file = open_memstream(&text, &size)};
+    if (out.file == NULL) return NULL;
+    write_origin(&out, r);
+    bool whole = !ferror(out.file);
+    if (fclose(out.file) == 0 && whole) return text;
+    free(text);
+    return NULL;
+}
+
+static bool write_page(const plan_report *r, const char *origin, io_error *error) {
+    char generator[PROVENANCE_GENERATOR_SIZE];
+    provenance_generator(generator);
+    report_options options = {.kind = REPORT_PREPROCESS,
+                              .title = r->request->title != NULL ? r->request->title
+                                                                 : path_file_name(r->model_path),
+                              .generator = generator,
+                              .mesh = r->recording->mesh,
+                              .plan = r->plan,
+                              .up_axis = (int)up_axis_choose(r->request->up, r->model_path)};
+    report *page = NULL;
+    bool written = report_create(&options, &page, error) && report_begin(page, r->positions, error) &&
+                   report_write(page, r->request->path, NULL, 0, origin, error);
+    report_destroy(page);
+    return written;
+}
+
+static bool write_plan_report(const plan_report *r, io_error *error) {
+    char *origin = text_of_origin(r);
+    io_error reason = {"out of memory"};
+    bool written = origin != NULL && write_page(r, origin, &reason);
+    free(origin);
+    return written || io_fail(error, "no report was written: %s", reason.text);
+}
+
+/* ---- the command --------------------------------------------------------------------------------------- */
 
 typedef struct preprocess_options {
     recording_options source;
@@ -123,7 +318,7 @@ static bool save_report(const preprocess_options *o, const recording *r, const d
     if (o->report.path == NULL) return true;
     plan_report shown = {&o->report, o->source.model_path, r,           positions,
                          plan,       o->argument_count,    o->arguments};
-    if (!plan_report_write(&shown, error)) return false;
+    if (!write_plan_report(&shown, error)) return false;
     if (!o->quiet) printf("written: %s\n", o->report.path);
     return true;
 }
@@ -139,7 +334,7 @@ static bool print_and_save(const preprocess_options *o, const recording *r, cons
                            const recorded_stiffness *stiffness, const cscd_plan *plan, io_error *error) {
     if (!save_plan(o, r, positions, plan, error)) return false;
     if (!o->quiet) {
-        plan_print(o->source.model_path, r->mesh, plan);
+        print_plan(o->source.model_path, r->mesh, plan);
         if (stiffness->of_triangle != NULL)
             printf("stiffness: %g to %g, from %s\n", stiffness->least, stiffness->greatest, stiffness->path);
         printf("written: %s\n", o->output_path);
@@ -187,7 +382,7 @@ static bool read_positions(const preprocess_options *o, recording *r, double *po
     *motion = (motion_frames){0};
     if (o->source.frame_path_count == 0) return recording_read(r, 0, positions, error);
     recording_rest(r, positions);
-    return motion_frames_read(r, &o->frames, motion, error);
+    return read_motion_frames(r, &o->frames, motion, error);
 }
 
 /* Makes the plan, with the stiffness of the model's file where its method knows of one. */
@@ -208,7 +403,7 @@ static bool plan_recording(preprocess_options *o, recording *r, io_error *error)
     bool made = read_positions(o, r, positions, &motion, error);
     if (made) {
         made = make_stiff_plan(o, r, positions, &motion, error);
-        motion_frames_free(&motion);
+        free_motion_frames(&motion);
     }
     free(positions);
     return made;
