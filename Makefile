@@ -721,7 +721,7 @@ $(NATIVE_LIBRARY): $(NATIVE_OBJECTS) python/native/link.sh
 endif
 
 # It exports a function for each of its parts, and needs two more files of libcscd.
-BASELINE_LIBRARY_OBJECTS := $(call objects,$(BASELINE_SOURCES) preprocess/charge/potential.c src/core/timer.c)
+BASELINE_LIBRARY_OBJECTS := $(call objects,$(BASELINE_SOURCES) preprocess/charge/potential.c)
 $(BUILD)/libcscd-baselines.so.$(VERSION): $(BASELINE_LIBRARY_OBJECTS)
 	@mkdir -p $(@D)
 	$(say) '  LD $@'

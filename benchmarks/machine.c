@@ -1,7 +1,7 @@
 /* The limits of this machine on one thread: bandwidth, arithmetic, random reads, latency. */
 #include "benchmarks/lib/machine_kernels.h"
 #include "models/shapes/body.h"
-#include "src/core/processor.h"
+#include "src/core/system.h"
 #include "src/core/timer.h"
 
 #include <stdbool.h>

@@ -1,7 +1,7 @@
 /* The steps of preprocessing: reads the frames of a motion, makes drafts by one method, and compares those of several. */
 #include "preprocess/preprocess.h"
 
-#include "src/core/methods.h"
+#include "src/core/names.h"
 #include "src/core/timer.h"
 #include "src/mesh/positions.h"
 #include "src/mesh/views.h"

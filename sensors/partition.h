@@ -47,7 +47,7 @@ cscd_status partition_divide(sensor_partition *partition, const cscd_plan *plan,
 /* Makes new cells for a part, or for all if part is UINT32_MAX; or none, if it fails. */
 cscd_status partition_renew(sensor_partition *partition, const double *positions, uint32_t part);
 
-/* Returns the first fault of a partition as a sentence, or NULL. See live_objects.h. */
+/* Returns the first fault of a partition as a sentence, or NULL. See live_objects_add. */
 const char *partition_validate(const sensor_partition *partition);
 
 /* Sensors watch parts of different objects unless both are obstacles, and with the option `within` also different parts of one

@@ -2,7 +2,7 @@
  * derived in docs/theory/sensors.md, whose lemmas are cited below. */
 #include "sensors/reach.h"
 
-#include "src/core/check.h"
+#include "src/core/floating.h"
 #include "src/core/vec3.h"
 
 /* The sums and roots of mu lose less than this to rounding. */

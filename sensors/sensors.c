@@ -1,8 +1,8 @@
 /* The particle sensors of the public API: options, and one interval through its stages. */
 #include "sensors/sensors.h"
 
-#include "src/core/check.h"
-#include "src/core/struct_size.h"
+#include "src/core/floating.h"
+#include "src/core/least_sizes.h"
 #include "src/core/timer.h"
 #include "src/mesh/positions.h"
 #include "src/mesh/views.h"

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "runtime/narrow_phase/narrow_phase.h"
-#include "src/core/processor.h"
+#include "src/core/system.h"
 
 enum { PAIR_BATCH_LEVELS = SIMD_LAST, PAIR_BATCH_MAX = FEATURE_LIST_CAPACITY - 1 };
 

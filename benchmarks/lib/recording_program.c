@@ -3,7 +3,7 @@
 
 #include "benchmarks/lib/options.h"
 #include "benchmarks/lib/row_file.h"
-#include "src/core/processor.h"
+#include "src/core/system.h"
 #include "src/core/timer.h"
 
 #include <dirent.h>

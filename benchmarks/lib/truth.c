@@ -1,7 +1,7 @@
 /* The contacts of method none on a recording, and how the lists of other methods differ from them. */
 #include "benchmarks/lib/truth.h"
 
-#include "src/core/methods.h"
+#include "src/core/names.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* The mesh's dual graph: triangles, joined across their common edges. */
 #include "preprocess/regions/tiles.h"
 
-#include "src/core/disjoint_sets.h"
+#include "src/core/sort.h"
 
 typedef struct link {
     uint32_t a, b, edge;

@@ -1,7 +1,7 @@
 /* Finds the columns of a block that give the others, from some of its rows, and looks in all columns at other rows whether they do. */
 #include "preprocess/treecode/source_tree.h"
 
-#include "src/core/simd_lanes.h"
+#include "src/core/simd.h"
 
 #include <math.h>
 #include <string.h>

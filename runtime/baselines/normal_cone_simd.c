@@ -1,7 +1,7 @@
 /* Continuous normal cones of triangles and of their unions, eight at a time. */
 #include "runtime/baselines/patches.h"
 
-#include "src/core/simd_lanes.h"
+#include "src/core/simd.h"
 
 /* An upper bound on what rounding in single precision adds to an angle, per operation on cones. */
 static const float slack = 4e-6f;

@@ -15,8 +15,8 @@
 #pragma once
 
 #include "src/core/context.h"
-#include "src/core/kdop.h"
 #include "src/core/kernels.h"
+#include "src/core/vec3.h"
 #include "src/mesh/mesh.h"
 
 #include <stdatomic.h>

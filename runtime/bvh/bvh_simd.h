@@ -4,7 +4,6 @@
 
 #include "runtime/bvh/bvh_parts.h"
 #include "src/core/simd.h"
-#include "src/core/simd_lanes.h"
 
 /* ---- kernels ----------------------------------------------------------------------------------------------- */
 

@@ -2,8 +2,8 @@
 
 #include "runtime/ccd/feature_moment.h"
 
-#include "src/core/check.h"
 #include "src/core/context.h"
+#include "src/core/floating.h"
 #include "src/core/vec3.h"
 
 /* ---- limits ------------------------------------------------------------------------------------------- */

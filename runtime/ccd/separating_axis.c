@@ -4,7 +4,6 @@
  * direction along which every point of one feature lies beyond every point of the other at both ends
  * separates them throughout. */
 #include "runtime/ccd/elementary_levels.h"
-#include "src/core/kdop.h"
 #include "src/core/vec3.h"
 
 #include <string.h>

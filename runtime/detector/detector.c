@@ -6,9 +6,9 @@
 #include "runtime/detector/list_cap.h"
 #include "runtime/detector/surface_answers.h"
 #include "runtime/narrow_phase/narrow_phase.h"
-#include "src/core/check.h"
-#include "src/core/methods.h"
-#include "src/core/struct_size.h"
+#include "src/core/floating.h"
+#include "src/core/least_sizes.h"
+#include "src/core/names.h"
 #include "src/core/vec3.h"
 
 #include <math.h>

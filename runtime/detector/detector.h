@@ -12,7 +12,7 @@
 #include "runtime/detector/verlet_list.h"
 #include "runtime/intersections/intersections.h"
 #include "runtime/narrow_phase/narrow_phase.h"
-#include "src/core/methods.h"
+#include "src/core/names.h"
 #include "src/mesh/collapsed.h"
 
 struct cscd_detector {

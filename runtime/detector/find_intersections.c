@@ -5,8 +5,8 @@
 #include "runtime/detector/list_cap.h"
 #include "runtime/detector/surface_answers.h"
 #include "runtime/intersections/intersections.h"
+#include "src/core/least_sizes.h"
 #include "src/core/sort.h"
-#include "src/core/struct_size.h"
 #include "src/mesh/views.h"
 
 #include <string.h>

@@ -2,7 +2,7 @@
  * lines between the marks here, the detector has all other methods. */
 #include "runtime/detector/method_table.h"
 
-#include "src/core/methods.h"
+#include "src/core/names.h"
 
 /* baselines: begin */
 #include "runtime/baselines/baselines.h"

@@ -1,7 +1,7 @@
 /* Marks on the mesh, by which events find each other: the edges at each vertex, where vertices that seams unite are one, and who has
  * been at a vertex or triangle, with which pair of parts, and when. */
 #include "runtime/events/events.h"
-#include "src/core/disjoint_sets.h"
+#include "src/core/sort.h"
 
 #include <assert.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* The tracker of the public API: options, frames, and events that have ended. */
 #include "runtime/events/events.h"
+#include "src/core/least_sizes.h"
 #include "src/core/sort.h"
-#include "src/core/struct_size.h"
 #include "src/core/vec3.h"
 
 #include <math.h>

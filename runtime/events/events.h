@@ -1,7 +1,7 @@
 /* What the files of the events share: what is near on a mesh, stamps on it, events, the history of frames, and groups of a frame. */
 #pragma once
 
-#include "src/core/memory_budget.h"
+#include "src/core/memory.h"
 #include "src/mesh/given_contacts.h"
 #include "src/mesh/mesh.h"
 

@@ -6,7 +6,7 @@
 #pragma once
 
 #include "runtime/bvh/bvh.h"
-#include "src/core/memory_budget.h"
+#include "src/core/memory.h"
 #include "src/mesh/bodies.h"
 #include "src/mesh/part_labels.h"
 

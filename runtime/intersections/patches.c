@@ -2,7 +2,6 @@
 #include "runtime/intersections/named_surface.h"
 
 #include "src/core/context.h"
-#include "src/core/disjoint_sets.h"
 #include "src/core/sort.h"
 
 #include <string.h>

@@ -1,7 +1,6 @@
 /* Pairs that the caller wants to be left out: by callback, by list, and by seams. */
 #include "runtime/narrow_phase/exclusions.h"
 
-#include "src/core/disjoint_sets.h"
 #include "src/core/sort.h"
 #include "src/mesh/surface.h"
 

@@ -2,7 +2,6 @@
  * triangles test. */
 #include "runtime/narrow_phase/narrow_phase_kernels.h"
 #include "src/core/simd.h"
-#include "src/core/simd_lanes.h"
 
 /* ---- representatives ---------------------------------------------------------------------------------- */
 

@@ -2,7 +2,7 @@
  * caller leaves out. */
 #include "runtime/narrow_phase/pair_filter.h"
 
-#include "src/core/check.h"
+#include "src/core/floating.h"
 #include "src/mesh/triangle_intersection.h"
 
 #include <math.h>

@@ -4,7 +4,7 @@
 
 #include "runtime/ccd/ccd.h"
 #include "runtime/narrow_phase/narrow_phase.h"
-#include "src/core/check.h"
+#include "src/core/floating.h"
 #include "src/mesh/positions.h"
 #include "src/mesh/views.h"
 

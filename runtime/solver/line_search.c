@@ -4,7 +4,7 @@
 #include "runtime/detector/waiting.h"
 #include "runtime/solver/free_step.h"
 #include "runtime/solver/proximity.h"
-#include "src/core/check.h"
+#include "src/core/floating.h"
 #include "src/core/vec3.h"
 #include "src/mesh/positions.h"
 #include "src/mesh/views.h"

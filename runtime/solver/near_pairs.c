@@ -2,7 +2,6 @@
 #include "runtime/solver/near_pairs.h"
 
 #include "runtime/ccd/ccd.h"
-#include "src/core/check.h"
 #include "src/core/floating.h"
 
 #include <string.h>

@@ -5,7 +5,7 @@
 #include "runtime/detector/list_cap.h"
 #include "runtime/detector/waiting.h"
 #include "runtime/solver/unique_pairs.h"
-#include "src/core/check.h"
+#include "src/core/floating.h"
 #include "src/core/sort.h"
 #include "src/mesh/positions.h"
 #include "src/mesh/views.h"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cscd/detector.h"
-#include "src/core/check.h"
+#include "src/core/floating.h"
 
 #include <math.h>
 

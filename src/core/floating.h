@@ -1,10 +1,11 @@
-/* Doubles: minimum, maximum, exponent and powers of two without a function call. */
+/* Doubles: minimum, maximum, exponent and powers of two without a function call; and the range of coordinates and lengths. */
 #pragma once
 
 #if defined(__FAST_MATH__) || __FINITE_MATH_ONLY__ || defined(__NO_SIGNED_ZEROS__)
 #error "cscd proves what it says by IEEE arithmetic: compile it without -Ofast and -ffast-math"
 #endif
 
+#include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -40,4 +41,21 @@ static inline double power_of_two(int e) {
     double x;
     memcpy(&x, &bits, sizeof x);
     return x;
+}
+
+/* ---- the range of coordinates and lengths -------------------------------------------------------------- */
+
+/* The range of every coordinate and length: 0, or a magnitude from 2^-300 to 2^300. Inside it no product of
+ * the exact predicates overflows, and none loses bits below the normal range. */
+#define LENGTH_MIN 0x1p-300
+#define LENGTH_MAX 0x1p300
+
+/* False for 0 and for NaN. */
+static inline bool is_positive_length(double x) {
+    return x >= LENGTH_MIN && x <= LENGTH_MAX;
+}
+
+/* False for NaN. */
+static inline bool is_length(double x) {
+    return x == 0.0 || is_positive_length(x);
 }

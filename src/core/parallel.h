@@ -1,12 +1,21 @@
 /* Independent tasks, run by a fixed crew of threads or by the host; results never depend on who ran which. */
 #pragma once
 
-#include "src/core/host_loop.h"
 #include "src/core/memory.h"
 
 /* Data that a thread writes often starts on a cache line of its own: two threads on one line halve the speed
  * of both (measured: traversal took twice as long with two threads as with one). */
 enum { CACHE_LINE_SIZE = 64 };
+
+typedef void parallel_task(void *data, uint32_t task);
+
+/* How often the loop has broken its contract in the present call. */
+typedef struct loop_faults {
+    uint32_t left_out,
+        unfinished;    /* tasks that the loop has not run, or not to their ends when it returned */
+    uint32_t repeated; /* calls of tasks that had been run before, or do not exist */
+    uint64_t tasks;    /* all tasks of the call */
+} loop_faults;
 
 typedef struct parallel parallel;
 

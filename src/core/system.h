@@ -1,6 +1,8 @@
 /* What the library asks of the operating system beyond C11 and POSIX threads; system.c alone knows which system it is. */
 #pragma once
 
+#include "cscd/cscd.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -29,3 +31,14 @@ bool system_has_threads(void);
 
 /* How many forks lie between this process and the one that first asked: another number in every child. 0 where there is no fork. */
 uint32_t system_forks(void);
+
+/* ---- vector instructions of the processor -------------------------------------------------------------- */
+
+/* Levels are the values from CSCD_SIMD_SCALAR to this one. */
+#define SIMD_LAST CSCD_SIMD_NEON
+
+/* The best level that this processor, its operating system and this build have; never AUTO. */
+cscd_simd processor_best_simd(void);
+
+/* Whether they have this level; false for AUTO and for what is no level. */
+bool processor_has_simd(cscd_simd simd);

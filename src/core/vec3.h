@@ -35,3 +35,15 @@ static inline double vec3_squared_distance(const double a[3], const double b[3])
 static inline double vec3_largest(const double a[3]) {
     return max_of(fabs(a[0]), max_of(fabs(a[1]), fabs(a[2])));
 }
+
+/* ---- the directions of 14-DOPs; the first three are those of boxes ------------------------------------- */
+
+enum { BOX_AXES = 3, KDOP_AXES = 7 };
+
+/* x, y, z, x+y+z, x+y-z, x-y+z, -x+y+z. Vector code writes these sums out, in this order. */
+static const double kdop_axes[KDOP_AXES][3] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1}, {1, 1, 1},
+                                               {1, 1, -1}, {1, -1, 1}, {-1, 1, 1}};
+
+static inline double kdop_along(const double v[3], int axis) {
+    return kdop_axes[axis][0] * v[0] + kdop_axes[axis][1] * v[1] + kdop_axes[axis][2] * v[2];
+}

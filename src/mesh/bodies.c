@@ -1,7 +1,7 @@
 /* Bodies: the groups of components that winding numbers count as one. */
 #include "src/mesh/bodies.h"
 
-#include "src/core/disjoint_sets.h"
+#include "src/core/sort.h"
 
 #include <string.h>
 

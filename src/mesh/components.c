@@ -1,7 +1,7 @@
 /* Connected components of a mesh and what is wrong with each: holes, fins, bow-ties, flipped triangles. */
 #include "src/mesh/mesh.h"
 
-#include "src/core/disjoint_sets.h"
+#include "src/core/sort.h"
 
 static uint32_t *single_sets(cscd_context *context, uint32_t count) {
     uint32_t *parents = context_allocate(context, count, sizeof *parents);

@@ -1,5 +1,5 @@
 /* Objects of a mesh that are not of triangles: wires, points and half-spaces. */
-#include "src/core/check.h"
+#include "src/core/floating.h"
 #include "src/core/sort.h"
 #include "src/mesh/mesh.h"
 

@@ -1,7 +1,7 @@
 /* The mesh of the public API: checks what it is given, copies it, and answers questions about it. */
 #include "src/mesh/mesh.h"
 
-#include "src/core/struct_size.h"
+#include "src/core/least_sizes.h"
 
 #include <assert.h>
 #include <stdio.h>

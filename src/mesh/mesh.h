@@ -70,7 +70,7 @@ cscd_stencil mesh_stencil(const cscd_mesh *mesh, cscd_contact_kind kind, uint32_
                           double v) __attribute__((noinline));
 
 /* Returns the first fault of the structure as a sentence, or NULL: indices out of range, stars, components and objects that
- * do not agree with the triangles. Takes linear time; see live_objects.h. */
+ * do not agree with the triangles. Takes linear time; see live_objects_add. */
 const char *mesh_validate(const cscd_mesh *mesh);
 
 /* Builds edges, triangle_edges and both kinds of stars from the triangles. */

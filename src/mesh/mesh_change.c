@@ -1,7 +1,7 @@
 /* The change of a mesh, of the public API: checks what is to happen, builds what is new, and joins it with the rest. */
 #include "src/mesh/mesh_change.h"
 
-#include "src/core/struct_size.h"
+#include "src/core/least_sizes.h"
 
 #include <string.h>
 

@@ -1,6 +1,6 @@
 /* The plan: what preprocessing hands to the runtime. */
 #include "src/mesh/plan.h"
-#include "src/core/methods.h"
+#include "src/core/names.h"
 
 #include <assert.h>
 #include <string.h>

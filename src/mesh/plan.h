@@ -34,7 +34,7 @@ struct cscd_plan {
     plan_candidates candidates;
 };
 
-/* Returns the first fault of a plan as a sentence, or NULL. See live_objects.h. */
+/* Returns the first fault of a plan as a sentence, or NULL. See live_objects_add. */
 const char *plan_validate(const cscd_plan *plan);
 
 /* Returns a plan of zeros with room for region_count regions; NULL when out of memory. */

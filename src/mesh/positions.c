@@ -1,7 +1,7 @@
 /* Checks the coordinates of positions. */
 #include "src/mesh/positions.h"
 
-#include "src/core/check.h"
+#include "src/core/floating.h"
 
 #include <math.h>
 #include <stdatomic.h>

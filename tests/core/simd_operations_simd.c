@@ -1,7 +1,7 @@
 /* The operations of src/core/simd.h behind plain arrays, compiled once per instruction set. */
 #include "tests/core/simd_operations.h"
 
-#include "src/core/simd_lanes.h"
+#include "src/core/simd.h"
 #include "src/core/simd_wide.h"
 
 static f64x8 load_f64(const double *from) {

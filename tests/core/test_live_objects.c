@@ -1,6 +1,6 @@
 /* The list of live objects: the first fault is found, whatever comes and goes; and in debug builds the next call of a
  * context reports a structure that was broken behind its back. */
-#include "src/core/live_objects.h"
+#include "src/core/entry.h"
 #include "src/mesh/mesh.h"
 #include "tests/support/test.h"
 

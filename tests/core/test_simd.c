@@ -1,6 +1,6 @@
 /* Compares the operations of src/core/simd.h with plain C on every level that this machine has, at the ends
  * of the ranges, for zeros of both signs and for NaN. */
-#include "src/core/processor.h"
+#include "src/core/system.h"
 #include "tests/core/simd_operations.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/test.h"

@@ -1,6 +1,5 @@
 /* Structs that callers fill, between a caller and a library of different ages. */
 #include "src/core/context.h"
-#include "src/core/struct_size.h"
 #include "tests/support/test.h"
 
 #include <stdio.h>

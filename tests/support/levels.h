@@ -1,7 +1,7 @@
 /* A context for each level of vector instructions that this processor has. */
 #pragma once
 
-#include "src/core/processor.h"
+#include "src/core/system.h"
 
 enum { LEVEL_COUNT = SIMD_LAST };
 

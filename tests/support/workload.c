@@ -3,7 +3,7 @@
 #include "tests/support/workload.h"
 #include "tests/support/packed.h"
 
-#include "src/core/methods.h"
+#include "src/core/names.h"
 
 #include <math.h>
 #include <string.h>

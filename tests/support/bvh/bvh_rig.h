@@ -2,7 +2,7 @@
 #pragma once
 
 #include "runtime/bvh/bvh.h"
-#include "src/core/processor.h"
+#include "src/core/system.h"
 #include "tests/support/bvh/direction_gap.h"
 #include "tests/support/scenes.h"
 

@@ -1,7 +1,7 @@
 /* The promises, each proven by worlds whose answers are compared. */
 #include "tests/support/proofs/world.h"
 
-#include "src/core/processor.h"
+#include "src/core/system.h"
 #include "tests/support/test.h"
 
 #include <stdio.h>
