@@ -106,7 +106,7 @@ TEST_LIBS   := -lcmocka -lflint-arb -lflint -lgmp $(TOOL_LIBS) $(BASELINE_LIBS)
 
 HAS_SENSORS := $(if $(filter 0,$(SENSORS)),,$(wildcard sensors/*.c))
 # A file that ends in _simd.c is compiled once per instruction set. libcscd-baselines.so has sources of its own.
-BASELINE_SOURCES := $(wildcard preprocess/baselines/dense/*.c runtime/baselines/*_export.c src/blas/*.c)
+BASELINE_SOURCES := $(wildcard preprocess/baselines/dense/*.c runtime/baselines/*_export.c)
 CORE_FILES      := $(wildcard src/core/*.c src/mesh/*.c preprocess/*.c preprocess/*/*.c runtime/*/*.c) $(HAS_SENSORS)
 CORE_SOURCES    := $(filter-out %_simd.c $(BASELINE_SOURCES),$(CORE_FILES))
 KERNEL_SOURCES  := $(filter %_simd.c,$(CORE_FILES))

@@ -55,7 +55,7 @@ typedef struct charge_system {
     double *charges;           /* at potential 1 in scaled lengths */
 } charge_system;
 
-/* Names of kernels of OpenBLAS, in static storage; see src/blas/blas_choice.h. */
+/* Names of kernels of OpenBLAS, in static storage; see preprocess/baselines/dense/blas_choice.h. */
 typedef struct charge_kernels {
     const char *used, *better; /* NULL: unknown; used will do */
 } charge_kernels;

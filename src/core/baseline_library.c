@@ -31,8 +31,8 @@ cscd_status baseline_library_find(cscd_context *context, const char *entry_name,
 
 enum { PATH_SIZE = 4096 };
 
-/* Writes where the library would be that stands in the folder of a file, or in one that `beside` leads to from there.
- * Does it? */
+/* Writes the path that the library has if it stands in the folder of a file, or in one that `beside` leads to
+ * from there. Returns whether it does. */
 static bool stands_by(const char *file, const char *beside, char path[PATH_SIZE]) {
     const char *slash = strrchr(file, '/');
     if (slash == NULL) return false;
@@ -40,8 +40,8 @@ static bool stands_by(const char *file, const char *beside, char path[PATH_SIZE]
     return length > 0 && length < PATH_SIZE && access(path, F_OK) == 0;
 }
 
-/* Returns the path of a file that was loaded under this name, without links on the way; NULL: unknown. A program has
- * the name that its caller has typed, so the system is asked where it is. To be freed. */
+/* Returns the path of a file that was loaded under this name, without links on the way, to be freed; NULL if
+ * it is unknown. A program has the name that its caller has typed, so the system tells its path. */
 static char *own_path(const char *name) {
 #ifdef __GLIBC__
     if (strcmp(name, program_invocation_name) == 0) return realpath("/proc/self/exe", NULL);
@@ -59,8 +59,9 @@ static bool stands_in_prefix(const char *file, char path[PATH_SIZE]) {
     return stands_by(file, "../lib/", path) || stands_by(file, "../lib64/", path);
 }
 
-/* Looks beside the file that this function is in, under the name by which it was loaded and under its own, and in the
- * folder cscd there, since distributions keep libraries that nothing links out of the folder of all libraries. */
+/* Looks in the folder of the file that has this function, under the name by which it was loaded and under its
+ * own, and in the folder cscd there, since distributions keep libraries that nothing links out of the folder
+ * of all libraries. */
 static bool find_library(char path[PATH_SIZE]) {
     Dl_info here;
     if (dladdr((void *)(uintptr_t)find_library, &here) == 0 || here.dli_fname == NULL) return false;
@@ -72,7 +73,7 @@ static bool find_library(char path[PATH_SIZE]) {
     return found;
 }
 
-/* OpenBLAS starts so many threads when it is loaded, and nothing but these variables changes that. */
+/* OpenBLAS starts this number of threads when it is loaded, and only these variables change it. */
 static size_t blas_threads(void) {
     static const char *const variables[] = {"OPENBLAS_NUM_THREADS", "GOTO_NUM_THREADS", "OMP_NUM_THREADS"};
     long count = 0;
@@ -87,7 +88,7 @@ static size_t blas_threads(void) {
 /* Measured with OpenBLAS 0.3.21: what it takes of the address space in all, and for each thread that it starts. */
 enum { BLAS_MEBIBYTES = 60, BLAS_THREAD_MEBIBYTES = 140 };
 
-/* Where a limit (`ulimit -v`) leaves less, OpenBLAS hangs as it is loaded. */
+/* OpenBLAS hangs while it is loaded if a limit (`ulimit -v`) leaves less. */
 static bool has_room(size_t mebibytes) {
     struct rlimit limit;
     if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return true;

@@ -1,6 +1,7 @@
-/* Where libcscd-baselines is: what cscd is compared with, and needs LAPACKE, OpenBLAS and GSL. Nothing links it; the first call that
- * needs it opens it. Libraries of two builds may meet, so they know nothing of each other but functions that are looked up by their
- * names, and interfaces that these hand out, by number: a struct of functions, whose header counts its changes. */
+/* Opens libcscd-baselines, which holds the methods that cscd is compared with, and which needs LAPACKE,
+ * OpenBLAS and GSL. Nothing links it; the first call that needs it opens it. Libraries of two builds may
+ * meet. So they share only functions that are looked up by their names, and numbered interfaces that these
+ * functions hand out: structs of functions whose headers count their changes. */
 #pragma once
 
 #include "src/core/context.h"

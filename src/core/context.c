@@ -1,4 +1,5 @@
-/* What all objects share: memory, threads, progress, and the sentence that explains the last failure. */
+/* The context that all objects share: memory, threads, progress, and the sentence that explains the last
+ * failure. */
 #include "src/core/context.h"
 
 #include "src/core/least_sizes.h"

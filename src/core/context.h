@@ -1,4 +1,5 @@
-/* What all objects share: memory, threads, progress, and the sentence that explains the last failure. */
+/* The context that all objects share: memory, threads, progress, and the sentence that explains the last
+ * failure. */
 #pragma once
 
 #include "src/core/entry.h"
@@ -71,7 +72,7 @@ static inline void context_free_all(cscd_context *context, array_list list) {
     memory_free_all(&context->memory, list);
 }
 
-/* So many items are a long list: it has little room to spare, and is not kept twice. */
+/* A list with this number of items is long: it has little room to spare, and is not kept twice. */
 enum { LONG_LIST = 1 << 18 };
 
 /* The items to allocate where count are needed now and perhaps more in later calls: never 0. */
@@ -80,9 +81,9 @@ static inline size_t room_with_spare(size_t count) {
     return count < SIZE_MAX - count / 16 ? count + count / 16 : SIZE_MAX;
 }
 
-/* Makes sure that the arrays of a list have room for count items; the list is one of room_with_spare(count) items, and is
- * allocated anew if there is no array yet or *capacity is less than count. What the arrays held is lost then. False: no
- * memory, and *capacity is 0. */
+/* Makes sure that the arrays of a list have room for count items. The list is one of room_with_spare(count)
+ * items. If there is no array yet, or *capacity is less than count, new arrays replace the old ones and their
+ * contents. False: no memory, and *capacity is 0. */
 bool context_renew_all(cscd_context *context, array_list list, size_t *capacity, size_t count);
 
 /* Sets the detail and returns status, so that a function can end with it. */
@@ -116,9 +117,10 @@ cscd_status context_explain(cscd_context *context, cscd_status status);
  * member, a uint32_t, becomes the caller's size. */
 void struct_give_options(void *out, size_t out_size, const void *from, size_t size);
 
-/* Overwrites the beginning of `into`, which holds the defaults, with the caller's struct. least_size: the struct's
- * LEAST_SIZE. INVALID_ARGUMENT: the caller's struct is smaller than that, or has members that this library does not know and that
- * are not 0; the sentence calls the struct `name`. What is known has been copied then. */
+/* Overwrites the beginning of `into`, which holds the defaults, with the caller's struct. least_size: the
+ * struct's LEAST_SIZE. INVALID_ARGUMENT: the caller's struct is smaller than that, or has members that this
+ * library does not know and that are not 0; the sentence calls the struct `name`. The known members have been
+ * copied then. */
 cscd_status struct_take(cscd_context *context, void *into, size_t size, size_t least_size, const void *from,
                         size_t from_size, const char *name);
 

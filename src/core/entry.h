@@ -30,7 +30,7 @@
  * it. So every entry sets that environment and puts the host's back when it leaves, and while the host's own code runs
  * in a callback. The flags of the host come back as they were: what the library's arithmetic raises is no news to it. */
 typedef struct float_environment {
-    uint64_t bits; /* what they mean is the processor's affair; elsewhere only the rounding mode */
+    uint64_t bits; /* in the form of the processor; elsewhere only the rounding mode */
 } float_environment;
 
 #if defined(__SSE2__)
@@ -90,8 +90,8 @@ static inline float_environment float_environment_begin(void) {
 
 /* ---- references ---------------------------------------------------------------------------------------- */
 
-/* How many hold an object: the caller who made it, and every object that was made from it. The last one to let
- * go frees it, on whatever thread that happens. */
+/* An object counts its holders: the caller who made it, and every object that was made from it. The last
+ * holder to let go frees it, on whatever thread that happens. */
 #define REFERENCE_ALIVE 0x600DC0DEu
 
 /* The first member of an object. */
@@ -164,7 +164,7 @@ const char *live_objects_fault(live_objects *list);
 
 /* ---- calls --------------------------------------------------------------------------------------------- */
 
-/* Of a context: the call that is inside. */
+/* The call that is inside a context. */
 typedef struct entry_state {
     atomic_uintptr_t mark;   /* 0: nobody is inside. Else a flag, and a list of objects: see entry.c */
     atomic_uintptr_t thread; /* who has made the call */

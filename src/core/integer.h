@@ -3,8 +3,8 @@
 
 #include <stdint.h>
 
-/* The exact level of one elementary test never holds so many limbs of 64 bits at once, with coordinates from
- * 2^-300 to 2^300 in one query. docs/theory/elementary.md counts them. */
+/* The exact level of one elementary test always holds fewer limbs of 64 bits than this at once, with
+ * coordinates from 2^-300 to 2^300 in one query. docs/theory/elementary.md counts them. */
 enum { INTEGER_POOL_LIMBS = 6144 };
 
 /* A number has |size| limbs, least significant first, and the last one is not 0. A negative size means a

@@ -45,7 +45,7 @@ bool memory_begin(host_memory *m, cscd_allocator allocator, entry_state *entry) 
 
 /* ---- blocks -------------------------------------------------------------------------------------------- */
 
-/* What is reserved holds nonsense in debug builds, so that who reads it too early is noticed. */
+/* In debug builds reserved memory holds nonsense, so that a read that comes too early is noticed. */
 enum { AS_IT_WAS = -1 };
 #ifdef NDEBUG
 enum { RESERVED = AS_IT_WAS };

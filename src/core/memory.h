@@ -64,8 +64,8 @@ typedef struct array_list {
 #define ARRAY_IF(condition, pointer, count)                                                                  \
     { &(pointer), count, (condition) ? sizeof *(pointer) : 0 }
 
-/* Allocates all arrays of a list, or none: on failure every pointer is NULL. What the pointers were before
- * does not matter. */
+/* Allocates all arrays of a list, or none: on failure every pointer is NULL. The earlier values of the
+ * pointers do not matter. */
 bool memory_allocate_all(host_memory *m, array_list list);
 
 bool memory_reserve_all(host_memory *m, array_list list);
@@ -82,16 +82,16 @@ void memory_free_all(host_memory *m, array_list list);
 
 /* ---- budgets ------------------------------------------------------------------------------------------- */
 
-/* How much memory, and how much work, a call may take for what it finds. Counted is what lists need, by how long they are, and not what is
- * allocated: so what a call leaves out is the same for any number of threads, and whatever calls there were before. */
+/* A budget limits the memory and the work that a call may take for its findings. It counts the bytes that
+ * lists need by their lengths, and not the bytes that are allocated. So a call leaves out the same for any
+ * number of threads, whatever calls there were before. */
 
-/* A list that grows to twice its length needs so many times what it has until the old one is given back. */
+/* A list that grows to twice its length needs this many times its bytes until the old one is given back. */
 enum { MEMORY_WHILE_DOUBLING = 3 };
 
 typedef struct memory_budget {
     size_t most, taken; /* bytes */
-    size_t
-        wanted; /* so many were needed in all by the first one that did not fit, as far as it was counted */
+    size_t wanted; /* bytes in all that the first one that did not fit needed, as far as it was counted */
     uint64_t most_work, work,
         wanted_work; /* the same; wanted_work is 0 unless it was work that did not fit */
     bool exceeded;   /* something did not fit, and has not been taken */
@@ -111,7 +111,7 @@ static inline bool memory_budget_take(memory_budget *b, size_t count, size_t siz
     return true;
 }
 
-/* The same for work, which later work needs beside it. */
+/* The same for work, which adds to the work so far. */
 static inline bool memory_budget_work(memory_budget *b, uint64_t count, uint64_t work) {
     if (b == NULL) return true;
     if (count > 0 && work > (b->most_work - b->work) / count) {
@@ -128,7 +128,7 @@ static inline bool memory_budget_take_all(memory_budget *b, array_list list) {
     return memory_budget_take(b, 1, memory_size_of_all(list));
 }
 
-/* So many items of this size would fit. */
+/* Returns the number of items of this size that would fit. */
 static inline size_t memory_budget_room(const memory_budget *b, size_t size) {
     return b != NULL ? (b->most - b->taken) / size : SIZE_MAX;
 }

@@ -1,6 +1,8 @@
 /* The names of the enumerations of the public API, and facts about each method that are known without running it. */
 #include "src/core/names.h"
 
+#include "cscd/cscd.h"
+
 #include <string.h>
 
 /* ---- methods ------------------------------------------------------------------------------------------- */

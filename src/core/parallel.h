@@ -9,7 +9,7 @@ enum { CACHE_LINE_SIZE = 64 };
 
 typedef void parallel_task(void *data, uint32_t task);
 
-/* How often the loop has broken its contract in the present call. */
+/* The number of times that the loop has broken its contract in the present call. */
 typedef struct loop_faults {
     uint32_t left_out,
         unfinished;    /* tasks that the loop has not run, or not to their ends when it returned */
@@ -27,7 +27,8 @@ void parallel_destroy(host_memory *m, parallel *threads);
 /* Is this a child that fork made after the crew was started? threads may be NULL. */
 bool parallel_is_of_parent(const parallel *threads);
 
-/* The number of threads, the caller included: work that keeps data per lane has as many lanes. */
+/* The number of threads, the caller included. Work that keeps data for each thread divides it into this
+ * number of shares. */
 uint32_t parallel_thread_count(const parallel *threads);
 
 /* Calls task(data, 0 .. task_count - 1), each once, in any order, and returns when all are done. The host may
@@ -38,8 +39,8 @@ void parallel_run(parallel *threads, uint32_t task_count, parallel_task *task, v
 void parallel_begin_call(parallel *threads);
 loop_faults parallel_faults(const parallel *threads);
 
-/* Where the share of a lane begins when count things are divided among share_count lanes; that of lane share_count is count. The
- * product would not fit into a size of 32 bits. */
-static inline size_t parallel_share(size_t count, uint32_t lane, uint32_t share_count) {
-    return (size_t)((uint64_t)count * lane / share_count);
+/* Returns the beginning of a share when count things are divided into share_count shares; that of share
+ * share_count is count. The product would not fit into a size of 32 bits. */
+static inline size_t parallel_share(size_t count, uint32_t share, uint32_t share_count) {
+    return (size_t)((uint64_t)count * share / share_count);
 }

@@ -1,4 +1,4 @@
-/* How far a call has come, and whether the host wants it to end. */
+/* The progress of a call, and the host's wish to end it. */
 #include "src/core/progress.h"
 
 #include "src/core/timer.h"

@@ -1,4 +1,4 @@
-/* How far a call has come, and whether the host wants it to end. */
+/* The progress of a call, and the host's wish to end it. */
 #pragma once
 
 #include "src/core/entry.h"
@@ -10,7 +10,7 @@
 typedef struct progress {
     cscd_progress host; /* report NULL: nobody is told, and nothing is cancelled */
     entry_state *entry; /* of the context */
-    double interval_ms; /* the host is asked no more often */
+    double interval_ms; /* the shortest time between two calls of report */
     pthread_t caller;   /* the thread that made the call, the only one to ask the host */
     double asked_ms;    /* when the host was asked last, or the call began */
     const char *stage;
@@ -54,7 +54,7 @@ typedef struct progress_outer {
 progress_outer progress_enter(progress *p, const char *stage);
 void progress_leave(progress *p, progress_outer outer);
 
-/* Says which share of the stage is done, from 0 to 1, and asks the host when it is time. Returns false when
+/* Says which share of the stage is done, from 0 to 1, and calls the host when it is time. Returns false when
  * the call is cancelled: the caller then returns as soon as it can, and unfinished results must not be used.
  * Any thread may ask, in a task too, but only the one that made the call reaches the host; on the others, and
  * where no host wants to know, this only reads flags. */

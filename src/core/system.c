@@ -1,4 +1,5 @@
-/* What the library asks of the operating system: Linux, Windows, macOS, FreeBSD, WebAssembly. */
+/* The services of the operating system that the library needs: Linux, Windows, macOS, FreeBSD,
+ * WebAssembly. */
 
 /* Before every header: a machine may lack those of 32-bit systems, and its complaint would hide this one. */
 #if __SIZEOF_POINTER__ < 8 && !defined(_WIN64) && !defined(__wasm__)
@@ -22,7 +23,7 @@ void system_memory_free(void *block) {
     _aligned_free(block);
 }
 
-/* What is promised to programs, in memory and on disk, has an end of its own. */
+/* Windows also limits the memory that it promises to programs, in memory and on disk. */
 size_t system_memory_left(void) {
     MEMORYSTATUSEX memory = {.dwLength = sizeof memory};
     if (!GlobalMemoryStatusEx(&memory)) return SIZE_MAX;

@@ -1,4 +1,5 @@
-/* What the library asks of the operating system beyond C11 and POSIX threads; system.c alone knows which system it is. */
+/* The services of the operating system that the library needs beyond C11 and POSIX threads; system.c alone
+ * knows the system. */
 #pragma once
 
 #include "cscd/cscd.h"
@@ -17,7 +18,8 @@ void system_memory_free(void *block);
  * that the system shows; SIZE_MAX where the system does not tell. */
 size_t system_memory_left(void);
 
-/* What a control group's limit leaves of memory, by the files that say so; UINT64_MAX where they do not. Linux alone has it. */
+/* Returns the memory that a control group's limit leaves, by the files that say so; UINT64_MAX where they do
+ * not. Linux alone has it. */
 uint64_t system_group_memory_left(const char *limit_path, const char *usage_path, const char *stat_path);
 
 /* The processors of the machine, at least 1. */
@@ -29,7 +31,8 @@ uint32_t system_processors_for_us(void);
 /* False where a program has but one thread, as a build for WebAssembly without -pthread. */
 bool system_has_threads(void);
 
-/* How many forks lie between this process and the one that first asked: another number in every child. 0 where there is no fork. */
+/* Returns the number of forks between this process and the one that called first: another number in every
+ * child. 0 where there is no fork. */
 uint32_t system_forks(void);
 
 /* ---- vector instructions of the processor -------------------------------------------------------------- */
@@ -40,5 +43,5 @@ uint32_t system_forks(void);
 /* The best level that this processor, its operating system and this build have; never AUTO. */
 cscd_simd processor_best_simd(void);
 
-/* Whether they have this level; false for AUTO and for what is no level. */
+/* Returns whether they have this level; false for AUTO and for any number that is no level. */
 bool processor_has_simd(cscd_simd simd);

@@ -1,6 +1,6 @@
 /* A plan whose charge was solved for by a dense matrix says with which kernels OpenBLAS has done that. The program runs itself again behind a library that plays an OpenBLAS that
  * does not know the processor. */
-#include "src/blas/blas_choice.h"
+#include "preprocess/baselines/dense/blas_choice.h"
 #include "tests/support/models/body_of.h"
 #include "tests/support/packed.h"
 #include "tests/support/temp_file.h"

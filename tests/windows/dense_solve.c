@@ -1,7 +1,7 @@
 /* Dense linear systems for the tests on Windows, which has no LAPACKE: plain elimination with partial pivoting, on one thread. The tree
  * is compared with it, which makes plans by charge there. */
+#include "preprocess/baselines/dense/blas_choice.h"
 #include "preprocess/baselines/dense/dense.h"
-#include "src/blas/blas_choice.h"
 
 #include <math.h>
 #include <stddef.h>

@@ -1,7 +1,7 @@
 /* The dense solution for the charges of one component, in double precision: matrix and factors. */
 #include "preprocess/baselines/dense/dense.h"
 
-#include "src/blas/blas_choice.h"
+#include "preprocess/baselines/dense/blas_choice.h"
 #include "src/core/timer.h"
 
 #include <math.h>

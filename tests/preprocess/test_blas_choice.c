@@ -1,5 +1,5 @@
 /* Which kernels of OpenBLAS are better than those that it has chosen. */
-#include "src/blas/blas_choice.h"
+#include "preprocess/baselines/dense/blas_choice.h"
 #include "tests/support/test.h"
 
 TEST(the_processor_decides) {

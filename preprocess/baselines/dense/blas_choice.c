@@ -1,5 +1,5 @@
 /* Which kernels OpenBLAS has chosen, and which it should have. */
-#include "src/blas/blas_choice.h"
+#include "preprocess/baselines/dense/blas_choice.h"
 
 #include <stddef.h>
 #include <string.h>
