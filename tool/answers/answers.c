@@ -70,8 +70,8 @@ bool shown_depths_choose(shown_depths *s, cscd_intersection_pairs *found) {
 
 /* A pair of parts comes with the deepest of all its depths. If some are left out, others may still be there: of a vertex between
  * two parts, only one of which is left out. */
-void shown_depths_of_parts(const shown_depths *s, const cscd_intersection_pairs *found,
-                           cscd_part_pair *pair) {
+static void shown_depths_of_parts(const shown_depths *s, const cscd_intersection_pairs *found,
+                                  cscd_part_pair *pair) {
     if (found->depths != &s->list || pair->deepest == SIZE_MAX) return;
     pair->depth = pair->bound = 0.0;
     for (size_t i = 0; i < s->list.count; i++) {

@@ -46,9 +46,6 @@ const char *length_text(double length, const length_unit *files, char text[LENGT
 
 /* ---- events -------------------------------------------------------------------------------------------- */
 
-/* Is all that the event has that one part lies in itself, within one body, without a pair or a contact? */
-bool event_is_in_itself(const cscd_event *event);
-
 /* Sorts pointers into one array. What crosses or overlaps comes before what touches, then contacts. What is only in itself
  * comes after all others: some other part cuts it, and the nearest surface to what that buries
  * happens to be its own. Of one rank the deeper events come first, then those with longer curves, more pairs, more contacts, and
@@ -78,9 +75,6 @@ void shown_depths_free(shown_depths *s);
 /* Leaves out what ignored pairs say of a frame: found->depths is this list from now on, until the next call. False when out of
  * memory. */
 bool shown_depths_choose(shown_depths *s, cscd_intersection_pairs *found);
-
-/* Gives a pair of parts the greatest depth and bound that are shown, in the frame chosen last; 0: none. */
-void shown_depths_of_parts(const shown_depths *s, const cscd_intersection_pairs *found, cscd_part_pair *pair);
 
 /* ---- parts that are inside out, or have no surface ----------------------------------------------------- */
 

@@ -7,7 +7,8 @@
 
 /* ---- order --------------------------------------------------------------------------------------------- */
 
-bool event_is_in_itself(const cscd_event *event) {
+/* Is all that the event has that one part lies in itself, within one body, without a pair or a contact? */
+static bool event_is_in_itself(const cscd_event *event) {
     return event->a == event->b && event->pairs == 0 && event->contacts == 0 &&
            (event->kinds & CSCD_EVENT_IN_OTHER_BODY) == 0;
 }

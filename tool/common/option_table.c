@@ -199,12 +199,6 @@ static size_t find_row(const all_rows *all, const char *name) {
     return i;
 }
 
-bool option_table_has(const option_table *table, const char *name) {
-    all_rows all;
-    collect_rows(table, &all);
-    return find_row(&all, name) < all.count;
-}
-
 bool option_table_set(const option_table *table, const char *name, const char *value, void *options,
                       given_options *given, io_error *error) {
     all_rows all;

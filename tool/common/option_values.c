@@ -41,7 +41,7 @@ bool read_length(const char *text, void *place) {
     return true;
 }
 
-bool read_threads(const char *text, void *place) {
+static bool read_threads(const char *text, void *place) {
     uint32_t *out = place;
     return parse_unsigned(text, out) && *out <= 256;
 }
@@ -70,13 +70,13 @@ bool read_parts_by(const char *text, void *place) {
     return true;
 }
 
-bool read_rest(const char *text, void *place) {
+static bool read_rest(const char *text, void *place) {
     ignore_options *options = place;
     options->rest = text == NULL ? REST_PAIRS : REST_PARTS;
     return text == NULL || strcmp(text, "parts") == 0;
 }
 
-bool read_part_pairs(const char *text, void *place) {
+static bool read_part_pairs(const char *text, void *place) {
     part_pairs_list *list = place;
     if (text[0] == '\0' || text[0] == ',' || list->count == PART_RULES_MAX) return false;
     list->items[list->count++] = text;
@@ -103,14 +103,14 @@ bool read_seconds(const char *text, void *place) {
     return true;
 }
 
-bool read_fps(const char *text, void *place) {
+static bool read_fps(const char *text, void *place) {
     double value;
     if (!parse_double(text, &value) || value <= 0.0 || value > 1e6) return false;
     *(double *)place = value;
     return true;
 }
 
-bool read_named_path(const char *text, void *place) {
+static bool read_named_path(const char *text, void *place) {
     named_paths *list = place;
     const char *equals = strchr(text, '=');
     if (equals == NULL || equals == text || equals[1] == '\0' || list->count == RECORDING_OBJECTS_MAX)
@@ -126,7 +126,7 @@ bool read_named_path(const char *text, void *place) {
     return true;
 }
 
-bool read_obstacle(const char *text, void *place) {
+static bool read_obstacle(const char *text, void *place) {
     named_paths *list = place;
     if (!read_named_path(text, place)) return false;
     list->items[list->count - 1].obstacle = true;

@@ -72,8 +72,6 @@ bool option_table_read(const option_table *table, int argument_count, char **arg
 bool option_table_set(const option_table *table, const char *name, const char *value, void *options,
                       given_options *given, io_error *error);
 
-bool option_table_has(const option_table *table, const char *name);
-
 /* Collects all rows of a table, shared ones behind its own, with their places in the command's struct of options. Returns the
  * number. */
 size_t option_table_rows(const option_table *table, option_row rows[OPTION_ROWS_MAX]);
@@ -100,19 +98,12 @@ bool read_text(const char *text, void *place);         /* const char * */
 bool read_unsigned(const char *text, void *place);     /* uint32_t */
 bool read_positive(const char *text, void *place);     /* uint32_t, 1 or more */
 bool read_length(const char *text, void *place);       /* double: 0, or from 2^-300 to 2^300 */
-bool read_threads(const char *text, void *place);      /* uint32_t, 256 at most */
 bool read_frame_number(const char *text, void *place); /* frame_number */
 bool read_frames(const char *text, void *place);       /* frame_range: A:B[:STEP] */
 bool read_weld(const char *text, void *place);         /* weld_choice: exact|none|EPS */
 bool read_parts_by(const char *text, void *place);     /* mesh_parts_by: object|group|material */
-bool read_rest(const char *text, void *place);         /* ignore_options.rest: nothing, or parts */
-bool read_part_pairs(const char *text, void *place);   /* part_pairs_list: A or A,B */
 bool read_size(const char *text, void *place); /* size_t: bytes above 0, or with K, M, G or T behind them */
-bool read_seconds(const char *text, void *place); /* double above 0 */
-bool read_fps(const char *text, void *place);     /* double above 0 */
-bool read_named_path(const char *text,
-                     void *place);                 /* named_paths: NAME=PATH; a name has no ':' and no ',' */
-bool read_obstacle(const char *text, void *place); /* the same, of an obstacle */
+bool read_seconds(const char *text, void *place);      /* double above 0 */
 bool read_picture_size(const char *text, void *place); /* picture_options: WxH */
 bool read_picture_view(const char *text, void *place); /* picture_options: AZ,EL */
 

@@ -353,7 +353,7 @@ bool recording_moves(const recording *r) {
     return false;
 }
 
-uint32_t recording_object_of_vertex(const recording *r, uint32_t vertex) {
+static uint32_t recording_object_of_vertex(const recording *r, uint32_t vertex) {
     uint32_t i = 0;
     while (i + 1 < r->object_count && vertex >= r->objects[i + 1].first_vertex) i++;
     return i;

@@ -188,8 +188,7 @@ bool recording_moves(const recording *r);
 /* A contact, with the vertices that the model files number. */
 contact_record recording_contact(const recording *r, uint32_t frame, const cscd_contact *contact);
 
-/* The object of a vertex or triangle of the mesh. */
-uint32_t recording_object_of_vertex(const recording *r, uint32_t vertex);
+/* The object of a triangle of the mesh. */
 uint32_t recording_object_of_triangle(const recording *r, uint32_t triangle);
 
 /* The object of that name; UINT32_MAX: there is none. */

@@ -16,12 +16,12 @@ typedef struct header_parser {
     bool has_format;
 } header_parser;
 
-size_t ply_type_size(ply_type type) {
+static size_t ply_type_size(ply_type type) {
     static const size_t sizes[] = {1, 1, 2, 2, 4, 4, 4, 8};
     return sizes[type];
 }
 
-bool ply_type_is_integer(ply_type type) {
+static bool ply_type_is_integer(ply_type type) {
     return type < PLY_FLOAT32;
 }
 
@@ -222,7 +222,10 @@ static bool read_lines(header_parser *parser) {
     return file_reader_fail_here(reader, "file ends inside the header, expected end_header");
 }
 
-bool ply_header_read(file_reader *reader, ply_header *header) {
+/* Reads up to the first byte of the data. The header must have one element vertex with x, y, z and one
+ * element face with vertex_indices or vertex_index. On false the reader's error is set. Free it in either
+ * case. */
+static bool ply_header_read(file_reader *reader, ply_header *header) {
     *header = (ply_header){
         .elements = growable_of(sizeof(ply_element)),
         .properties = growable_of(sizeof(ply_property)),
@@ -245,7 +248,7 @@ bool ply_header_read(file_reader *reader, ply_header *header) {
     return true;
 }
 
-void ply_header_free(ply_header *header) {
+static void ply_header_free(ply_header *header) {
     growable_free(&header->elements);
     growable_free(&header->properties);
 }

@@ -52,15 +52,6 @@ typedef struct ply_header {
     int64_t vertex_count;
 } ply_header;
 
-/* Reads up to the first byte of the data. The header must have one element vertex with x, y, z and one
- * element face with vertex_indices or vertex_index. On false the reader's error is set. Free it in either
- * case. */
-bool ply_header_read(file_reader *reader, ply_header *header);
-void ply_header_free(ply_header *header);
-
-size_t ply_type_size(ply_type type);
-bool ply_type_is_integer(ply_type type);
-
 /* ---- the rows ------------------------------------------------------------------------------------------ */
 
 typedef struct ply_data {

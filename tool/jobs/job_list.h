@@ -118,12 +118,6 @@ typedef struct job_record {
     bool found; /* what --fail-on, --fail-depth or --max-faces asks for */
 } job_record;
 
-/* Begins a line with these members. */
-void job_record_write(json *line, const job_record *record);
-
-/* Is this how a line of the list begins? The text may end anywhere, or with characters 0, as files do after a power cut. */
-bool job_record_begins(const char *text, size_t length, uint64_t list, uint32_t jobs);
-
 /* Reads them back; false for what is no line of results. */
 bool job_record_read(const char *text, size_t length, job_record *out);
 

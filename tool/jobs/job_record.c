@@ -20,7 +20,8 @@ const char *job_outcome_name(job_outcome outcome) {
     return outcome_names[outcome];
 }
 
-void job_record_write(json *line, const job_record *r) {
+/* Begins a line with these members. */
+static void job_record_write(json *line, const job_record *r) {
     char digits[17];
     snprintf(digits, sizeof digits, "%016" PRIx64, r->list);
     json_begin_object(line, NULL);
@@ -31,7 +32,8 @@ void job_record_write(json *line, const job_record *r) {
     json_boolean(line, "found", r->found);
 }
 
-bool job_record_begins(const char *text, size_t length, uint64_t list, uint32_t jobs) {
+/* Is this how a line of the list begins? The text may end anywhere, or with characters 0, as files do after a power cut. */
+static bool job_record_begins(const char *text, size_t length, uint64_t list, uint32_t jobs) {
     char begin[80];
     snprintf(begin, sizeof begin, "{\"list\":\"%016" PRIx64 "\",\"jobs\":%" PRIu32 ",\"job\":", list, jobs);
     while (length > 0 && text[length - 1] == '\0') length--;

@@ -50,11 +50,6 @@ typedef struct list_command {
 /* Returns the exit code. */
 int run_listed_recordings(const list_command *command);
 
-/* What finished answers come to, and whether any frame fails by the rules. JOB_FAILED where nobody can rely on them: not all was
- * looked at, or in some frame no triangle has an area and nothing else was found. */
-job_outcome recording_answer_outcome(const answers *a, const fail_rules *rules);
-bool recording_answer_found(const answers *a, const fail_rules *rules);
-
 /* The answers are finished. */
 void recording_answer_write(const char *name, const answers *a, const length_unit *unit,
                             const fail_rules *rules, job_output *out);
@@ -96,11 +91,6 @@ typedef struct mesh_answer {
 /* Reads a mesh and finds what intersects in it. False: the search was interrupted, and *out holds
  * nothing to free. A mesh that cannot be read or checked is an answer, too: its error says why. */
 bool mesh_job_run(const mesh_job *job, cscd_context *context, mesh_answer *out);
-void mesh_answer_free(mesh_answer *answer);
-
-/* Why the mesh was not checked. */
-const char *mesh_answer_reason(const mesh_answer *answer);
-
 typedef struct mesh_kind_options {
     const recording_options *source; /* how meshes are read */
     const ignore_options *ignored;   /* pairs of parts */

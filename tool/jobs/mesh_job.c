@@ -38,7 +38,9 @@ static frame_sums sum_frames(const answers *a) {
 }
 
 /* Where not all was looked at, there is no answer that anybody may rely on. */
-job_outcome recording_answer_outcome(const answers *a, const fail_rules *rules) {
+/* The outcome of finished answers: JOB_FAILED where nobody can rely on them, since not all was looked at, or in some frame no triangle
+ * has an area and nothing else was found. */
+static job_outcome recording_answer_outcome(const answers *a, const fail_rules *rules) {
     const frame_sums s = sum_frames(a);
     if (answers_unfinished(a) != NULL || fail_rules_undecided(rules, a)) return JOB_FAILED;
     if (s.crossing > 0) return JOB_CROSSING;
@@ -48,7 +50,8 @@ job_outcome recording_answer_outcome(const answers *a, const fail_rules *rules) 
     return answers_count(a, frame_answer_without_area) > 0 ? JOB_FAILED : JOB_CLEAN;
 }
 
-bool recording_answer_found(const answers *a, const fail_rules *rules) {
+/* True if any frame fails by the rules. */
+static bool recording_answer_found(const answers *a, const fail_rules *rules) {
     char text[FAIL_TEXT_SIZE];
     for (size_t i = 0; i < answers_frame_count(a); i++)
         if (fail_rules_meet(rules, a, &answers_frames(a)[i], text)) return true;
@@ -142,7 +145,7 @@ static double now_ms(void) {
     return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
 }
 
-void mesh_answer_free(mesh_answer *answer) {
+static void mesh_answer_free(mesh_answer *answer) {
     free(answer->error);
     free(answer->sentence);
     free(answer->unread);
@@ -239,7 +242,8 @@ static bool check_mesh(const mesh_job *job, recording *r, mesh_answer *out, io_e
     return good;
 }
 
-const char *mesh_answer_reason(const mesh_answer *answer) {
+/* Why the mesh was not checked. */
+static const char *mesh_answer_reason(const mesh_answer *answer) {
     return answer->error != NULL ? answer->error : "out of memory";
 }
 

@@ -90,7 +90,8 @@ static int check_options(const render_options *o, const given_options *given) {
     return EXIT_RAN;
 }
 
-bool render_options_parse(int argument_count, char **arguments, render_options *out, int *code) {
+/* False: *code is the exit code to end with (0 after --help). */
+static bool render_options_parse(int argument_count, char **arguments, render_options *out, int *code) {
     render_options o = {.picture = picture_options_defaults()};
     given_options given;
     io_error error;

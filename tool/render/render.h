@@ -32,9 +32,6 @@ typedef struct render_options {
     ignore_options ignored;
 } render_options;
 
-/* False: *code is the exit code to end with (0 after --help). */
-bool render_options_parse(int argument_count, char **arguments, render_options *out, int *code);
-
 /* ---- a frame ------------------------------------------------------------------------------------------- */
 
 typedef struct contact_picture {

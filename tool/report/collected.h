@@ -26,9 +26,6 @@ bool packed_array_add_u32(packed_array *array, const uint32_t *values, size_t co
 bool packed_array_add_f32(packed_array *array, const float *values, size_t count);
 bool packed_array_add_f64(packed_array *array, const double *values, size_t count);
 
-/* Bytes added so far. */
-size_t packed_array_size(const packed_array *array);
-
 /* Ends the stream (RFC 1950); nothing can be added any more. */
 bool packed_array_finish(packed_array *array);
 
@@ -149,9 +146,6 @@ typedef struct event_list {
 bool event_list_set(event_list *list, const cscd_event *events, size_t count, report_part_name name,
                     void *user);
 void event_list_free(event_list *list); /* a zeroed struct is fine */
-
-/* Writes the members "events_found" and "events" of an object. Points are in the page's unit. */
-void event_list_write(const event_list *list, const int32_t *frame_numbers, double scale, json *out);
 
 /* ---- coordinates --------------------------------------------------------------------------------------- */
 

@@ -56,7 +56,8 @@ static char *real_folder(const char *here, const char *folder) {
     return found;
 }
 
-bool page_folder_find(const char *page, page_folder *out) {
+/* Finds the folder of a page; "-", the standard output, is in the current one. False: memory is short. */
+static bool page_folder_find(const char *page, page_folder *out) {
     const char *slash = path_last_separator(page);
     char *folder = slash != NULL ? strndup(page, (size_t)(slash - page) + 1) : strdup(".");
     out->here = real_folder("", ".");
@@ -65,7 +66,7 @@ bool page_folder_find(const char *page, page_folder *out) {
     return out->page != NULL;
 }
 
-void page_folder_free(page_folder *folder) {
+static void page_folder_free(page_folder *folder) {
     free(folder->page);
     free(folder->here);
 }

@@ -138,7 +138,8 @@ bool packed_array_add_f64(packed_array *array, const double *values, size_t coun
     return true;
 }
 
-size_t packed_array_size(const packed_array *array) {
+/* Bytes added so far. */
+static size_t packed_array_size(const packed_array *array) {
     return array->size;
 }
 

@@ -87,7 +87,8 @@ static void write_event(const event_list *list, const cscd_event *event, const i
     json_end_object(out);
 }
 
-void event_list_write(const event_list *list, const int32_t *frame_numbers, double scale, json *out) {
+/* Writes the members "events_found" and "events" of an object. Points are in the page's unit. */
+static void event_list_write(const event_list *list, const int32_t *frame_numbers, double scale, json *out) {
     if (!list->known) {
         json_null(out, "events");
         return;

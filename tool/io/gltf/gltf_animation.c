@@ -11,7 +11,27 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- keys: which animation ----------------------------------------------------------------------------- */
+/* ---- animations ---------------------------------------------------------------------------------------- */
+
+typedef enum gltf_path { GLTF_TRANSLATION, GLTF_ROTATION, GLTF_SCALE, GLTF_WEIGHTS } gltf_path;
+typedef enum gltf_interpolation { GLTF_LINEAR, GLTF_STEP, GLTF_CUBICSPLINE } gltf_interpolation;
+
+/* The keys that move one property of one node. */
+typedef struct gltf_channel {
+    uint32_t node;
+    gltf_path path;
+    gltf_interpolation interpolation;
+    uint32_t width; /* numbers of a key: 3, 4, or as many as there are weights */
+    gltf_accessor times, values;
+} gltf_channel;
+
+typedef struct gltf_animation {
+    gltf_channel *channels;
+    uint32_t channel_count;
+    double start, end; /* the first and the last key of all channels, in seconds */
+} gltf_animation;
+
+/* ---- the choice of an animation ------------------------------------------------------------------------ */
 
 /* Of each animation in a list; a longer name is cut. */
 enum { SHOWN_NAME_LENGTH = 60 };
@@ -21,7 +41,8 @@ static const char *name_of(const gltf_element *element) {
     return name != NULL ? name : "(no name)";
 }
 
-bool gltf_animation_names(const gltf_scene *scene, size_t *count, char *text, size_t size) {
+/* The number of animations, and the names of all; "..." stands for those that do not fit into size, which is 16 or more. */
+static bool gltf_animation_names(const gltf_scene *scene, size_t *count, char *text, size_t size) {
     const gltf_element *root = &scene->document.root;
     size_t used = 0;
     text[0] = '\0';
@@ -177,7 +198,14 @@ static bool read_channels(gltf_scene *scene, const gltf_element *element, size_t
     return gltf_fail(element, "moves no node of the scene, so it has no frames");
 }
 
-bool gltf_animation_open(gltf_scene *scene, const char *name, gltf_animation *out) {
+static void gltf_animation_close(gltf_animation *animation) {
+    free(animation->channels);
+    *animation = (gltf_animation){0};
+}
+
+/* The animation of this name, or with NULL the first one. On false *out owns nothing, and the error of the scene's reader is
+ * set. */
+static bool gltf_animation_open(gltf_scene *scene, const char *name, gltf_animation *out) {
     gltf_element element;
     size_t count;
     gltf_animation animation = {0};
@@ -192,15 +220,10 @@ bool gltf_animation_open(gltf_scene *scene, const char *name, gltf_animation *ou
     return true;
 }
 
-void gltf_animation_close(gltf_animation *animation) {
-    free(animation->channels);
-    *animation = (gltf_animation){0};
-}
-
 /* ---- the values of an animation between its keys: constant, linear, or a cubic spline -------------------- */
 
 /* Four times the rounding of a float. */
-bool gltf_same_time(double a, double b) {
+static bool gltf_same_time(double a, double b) {
     return fabs(a - b) <= 0x1p-22 * fmax(fabs(a), fabs(b));
 }
 
@@ -292,7 +315,8 @@ static void sample_channel(const gltf_channel *channel, double time, double *out
     for (uint32_t i = 0; i < channel->width; i++) out[i] = interpolated_number(channel, place, i);
 }
 
-void gltf_animation_apply(const gltf_animation *animation, double time, gltf_pose *pose) {
+/* Moves the pose to this time; before its first key a channel holds that, and behind its last one that. */
+static void gltf_animation_apply(const gltf_animation *animation, double time, gltf_pose *pose) {
     for (uint32_t i = 0; i < animation->channel_count; i++) {
         const gltf_channel *channel = &animation->channels[i];
         gltf_placement *placement = &pose->placements[channel->node];

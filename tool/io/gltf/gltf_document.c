@@ -33,7 +33,8 @@ static bool fail_parse(file_reader *reader, size_t offset, size_t place, enum js
     return file_reader_fail_here(reader, "no valid JSON: %s", text);
 }
 
-gltf_value *gltf_json_parse(file_reader *reader, size_t offset, size_t size) {
+/* Parses the size bytes at `offset` of the reader's file; NULL after an error. */
+static gltf_value *gltf_json_parse(file_reader *reader, size_t offset, size_t size) {
     if (size > INT_MAX) {
         file_reader_fail(reader, "the JSON has %zu bytes, expected %d at most", size, INT_MAX);
         return NULL;
@@ -62,7 +63,7 @@ gltf_value *gltf_json_parse(file_reader *reader, size_t offset, size_t size) {
     return NULL;
 }
 
-void gltf_json_free(gltf_value *root) {
+static void gltf_json_free(gltf_value *root) {
     json_object_put(root);
 }
 

@@ -22,10 +22,6 @@ typedef struct gltf_element {
 /* No index. */
 #define GLTF_NONE UINT32_MAX
 
-/* Parses the size bytes at `offset` of the reader's file; NULL after an error. */
-gltf_value *gltf_json_parse(file_reader *reader, size_t offset, size_t size);
-void gltf_json_free(gltf_value *root);
-
 /* Writes "path: name: message" to the reader's error; always false. */
 bool gltf_fail(const gltf_element *element, const char *format, ...) __attribute__((format(printf, 2, 3)));
 

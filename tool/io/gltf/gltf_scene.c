@@ -44,7 +44,14 @@ static bool read_inverse_bind(gltf_document *document, const gltf_element *eleme
     return true;
 }
 
-bool gltf_skin_open(gltf_document *document, uint32_t index, uint32_t node_count, gltf_skin *out) {
+static void gltf_skin_close(gltf_skin *skin) {
+    free(skin->joints);
+    free(skin->inverse_bind);
+    *skin = (gltf_skin){0};
+}
+
+/* On false *out owns nothing, and the reader's error is set. */
+static bool gltf_skin_open(gltf_document *document, uint32_t index, uint32_t node_count, gltf_skin *out) {
     gltf_element element;
     gltf_skin skin = {0};
     if (!gltf_element_at(&document->root, "skins", "skin", index, &element) ||
@@ -55,12 +62,6 @@ bool gltf_skin_open(gltf_document *document, uint32_t index, uint32_t node_count
     }
     *out = skin;
     return true;
-}
-
-void gltf_skin_close(gltf_skin *skin) {
-    free(skin->joints);
-    free(skin->inverse_bind);
-    *skin = (gltf_skin){0};
 }
 
 /* ---- which joints move a vertex, and with which weights -------------------------------------------------- */

@@ -1,9 +1,8 @@
-/* The scene of a glTF file: meshes, nodes and skins, the instances that it shows, where they are at a moment, and animations. */
+/* The scene of a glTF file: meshes, nodes and skins, the instances that it shows, and where they are at a moment. */
 #pragma once
 
 #include "tool/io/gltf/gltf_document.h"
 #include "tool/io/io.h"
-#include "tool/io/mesh_file.h"
 
 /* ---- meshes: vertices with their morph targets and joints, and triangles ------------------------------- */
 
@@ -124,10 +123,6 @@ typedef struct gltf_skin {
     gltf_transform *inverse_bind; /* joint_count: from the mesh to the joint */
 } gltf_skin;
 
-/* On false *out owns nothing, and the reader's error is set. */
-bool gltf_skin_open(gltf_document *document, uint32_t index, uint32_t node_count, gltf_skin *out);
-void gltf_skin_close(gltf_skin *skin);
-
 /* ---- what the default scene shows: its nodes with meshes, one behind the other ------------------------- */
 
 /* A node with a mesh, or one of the copies of it that its instancing makes. Two nodes may have the same mesh. */
@@ -179,54 +174,11 @@ gltf_transform gltf_pose_place(const gltf_pose *pose, const gltf_instance *insta
 /* Writes the scene's vertices after an update; false, with the node, when one of them is not finite. */
 bool gltf_pose_write(gltf_pose *pose, double *positions);
 
-/* ---- parts --------------------------------------------------------------------------------------------- */
-
-/* Nodes are called by their own name, else by that of their mesh, else "node 3"; a name that is taken gets .001, .002, ... behind
- * it. On false *out owns nothing, and the error of the scene's reader is set. */
-bool gltf_parts_of(const gltf_scene *scene, mesh_parts *out);
-
-/* The materials of triangles, in the order of these, by their names, else "material 3"; taken names as above. The reader must have been
- * asked for parts by material. Where no triangle has one, there are no parts. */
-bool gltf_parts_of_materials(const gltf_scene *scene, mesh_parts *out);
-
 /* ---- extensions: those that the file requires must be read, and those that it only uses are named ------ */
 
 /* False, with the reader's error, when the file requires an extension that is not read and may change where surfaces are. */
 bool gltf_extensions_check(const gltf_element *root);
 
-/* Which extensions of the nodes, meshes and views that the scene shows are not read, though they may change where surfaces are:
- * a sentence, which the caller frees; *out is NULL when there are none. */
+/* Writes a sentence, which the caller frees, about extensions of the nodes, meshes and views that the scene shows, which are not read
+ * though they may change where surfaces are; *out is NULL when there are none. */
 bool gltf_extensions_note(const gltf_scene *scene, char **out);
-
-/* ---- animations: keys of placements and weights over time ---------------------------------------------- */
-
-typedef enum gltf_path { GLTF_TRANSLATION, GLTF_ROTATION, GLTF_SCALE, GLTF_WEIGHTS } gltf_path;
-typedef enum gltf_interpolation { GLTF_LINEAR, GLTF_STEP, GLTF_CUBICSPLINE } gltf_interpolation;
-
-/* What moves one property of one node. */
-typedef struct gltf_channel {
-    uint32_t node;
-    gltf_path path;
-    gltf_interpolation interpolation;
-    uint32_t width; /* numbers of a key: 3, 4, or as many as there are weights */
-    gltf_accessor times, values;
-} gltf_channel;
-
-typedef struct gltf_animation {
-    gltf_channel *channels;
-    uint32_t channel_count;
-    double start, end; /* the first and the last key of all channels, in seconds */
-} gltf_animation;
-
-/* The animation of this name, or with NULL the first one. On false *out owns nothing, and the error of the scene's reader is
- * set. */
-bool gltf_animation_open(gltf_scene *scene, const char *name, gltf_animation *out);
-/* The number of animations, and the names of all; "..." stands for those that do not fit into size, which is 16 or more. */
-bool gltf_animation_names(const gltf_scene *scene, size_t *count, char *text, size_t size);
-void gltf_animation_close(gltf_animation *animation);
-
-/* Moves the pose to this time; before its first key a channel holds that, and behind its last one that. */
-void gltf_animation_apply(const gltf_animation *animation, double time, gltf_pose *pose);
-
-/* Whether two times are the same but for the rounding of files, which hold them as floats. */
-bool gltf_same_time(double a, double b);
