@@ -38,14 +38,14 @@ static const option_table table = {
 
 enum { COMPONENTS_LISTED = 50, PARTS_LISTED = 20 };
 
-/* What is said of a mesh beside what its recording holds. */
+/* The facts of a mesh that its recording does not hold. */
 typedef struct mesh_facts {
     uint32_t unused_vertices; /* in no triangle */
     double low[3], high[3];   /* of the file */
     uint32_t zero_area_triangles;
     size_t pairs;             /* of triangles that intersect or touch */
     bool *turned;             /* of each component: it is inside out */
-    uint32_t *part_triangles; /* of each part that the file names: so many of its triangles */
+    uint32_t *part_triangles; /* of each part that the file names: its triangles */
     uint32_t rest_triangles;  /* in none of them */
 } mesh_facts;
 
@@ -72,7 +72,7 @@ static bool count_parts(const mesh_file *file, mesh_facts *facts, io_error *erro
     return true;
 }
 
-/* Which components are inside out is found as check does, by the parts that the file names. */
+/* The components that are inside out are found as check does, by the parts that the file names. */
 static bool ask_detector(recording *r, const part_names *parts, const double *positions, mesh_facts *facts,
                          io_error *error) {
     const uint32_t components = cscd_mesh_component_count(r->mesh);

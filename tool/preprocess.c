@@ -40,7 +40,8 @@ static void free_motion_frames(motion_frames *frames) {
     *frames = (motion_frames){0};
 }
 
-/* Reads frames of the range, evenly spaced, the first and the last among them. On false there is nothing to free. */
+/* Reads frames of the range, evenly spaced, the first and the last among them. On false there is nothing to
+ * free. */
 static bool read_motion_frames(recording *r, const frame_range *range, motion_frames *out, io_error *error) {
     const uint32_t vertices = cscd_mesh_vertex_count(r->mesh);
     frame_choice choice;
@@ -110,7 +111,7 @@ static void print_answer(const char *model_path, const cscd_plan *plan) {
            percent_of(seen, total_area(plan)));
 }
 
-/* What method auto has compared. */
+/* Prints the methods that method auto has compared. */
 static void print_compared(const cscd_plan *plan) {
     const uint32_t count = cscd_plan_compared_count(plan);
     if (count == 0) return;

@@ -48,7 +48,7 @@ static const member of_summary[] = {{"complete", 'b'},
                                     {"ee", 'n'},
                                     {NULL, 0}};
 static const member of_plan[] = {{"source", 's'}, {"method", 's'}, {"regions", 'n'}, {NULL, 0}};
-/* What --reproducible leaves out, with the times of all stages. */
+/* The members that --reproducible leaves out, with the times of all stages. */
 static const member of_timed_interval[] = {{"ms", 'o'}, {NULL, 0}};
 static const member of_timed_summary[] = {{"simd", 's'}, {NULL, 0}};
 static const member of_timed_plan[] = {{"made_ms", 'n'}, {NULL, 0}};
@@ -131,7 +131,8 @@ static bool is_state(const char *name) {
     return false;
 }
 
-/* One object per component, as version 1 has it, or per group of components, of which the first names none. */
+/* One object per component, as version 1 has it, or per group of components, of which the first names
+ * none. */
 static bool check_guarantees(json_object *guarantees, const char *where, io_error *error) {
     if (!elements_have(guarantees, of_guarantee, where, error)) return false;
     for (size_t i = 0; i < json_object_array_length(guarantees); i++) {
@@ -229,7 +230,7 @@ static bool check_events(json_object *root, io_error *error) {
     return has_members(root, of_unit, "the file", error);
 }
 
-/* What --reproducible leaves out is there as a whole, or not at all. */
+/* The members that --reproducible leaves out are all there, or none is. */
 static bool check_moment(json_object *summary, json_object *provenance, io_error *error) {
     return has_members(summary, of_timed_summary, "the summary", error) &&
            has_members(find_member(summary, "plan"), of_timed_plan, "the plan", error) &&

@@ -72,14 +72,14 @@ static int run_command(int argument_count, char **arguments) {
 }
 
 int tool_run(int argument_count, char **arguments) {
-    /* A closed pipe and a file that may not grow (ulimit -f) are then write errors like any other, so that files still get
-     * finished. */
+    /* A closed pipe and a file that may not grow (ulimit -f) are then write errors like any other, so that
+     * files still get finished. */
     signal(SIGPIPE, SIG_IGN);
 #ifdef SIGXFSZ /* Windows has none */
     signal(SIGXFSZ, SIG_IGN);
 #endif
     int code = run_command(argument_count, arguments);
-    /* What an interrupt has kept from being opened is no bad input. */
+    /* A file that an interrupt has kept from being opened is no bad input. */
     if ((code == EXIT_BAD_INPUT || code == EXIT_UNDONE) && interrupt_ended_wait())
         code = interrupt_exit_code();
     if ((fflush(stdout) != 0 || ferror(stdout)) && code != EXIT_BAD_INPUT) {

@@ -1,4 +1,5 @@
-/* The tool `cscd`: the function that its program and Python call, summaries that are read back, and reports of many jobs. */
+/* The tool `cscd`: the function that its program and Python call, summaries that are read back, and reports
+ * of many jobs. */
 #pragma once
 
 #include "tool/io/io.h"
@@ -6,8 +7,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Runs the command that the arguments name, of which the first is the program itself. It prints to stdout and stderr,
- * catches signals while it runs, and returns the exit code of the tool. */
+/* Runs the command that the arguments name, of which the first is the program itself. It prints to stdout and
+ * stderr, catches signals while it runs, and returns the exit code of the tool. */
 int tool_run(int argument_count, char **arguments);
 
 /* Reads a summary and checks all members that a report shows. Returns it as JSON, to be freed; NULL with
@@ -22,9 +23,9 @@ typedef struct jobs_report_request {
     bool quiet;
 } jobs_report_request;
 
-/* Has the file results of jobs, by its first line? By its name, if its content does not say so. */
+/* True if the file has results of jobs, by its first line, or by its name, if its content does not say so. */
 bool jobs_report_takes(const char *path);
 
-/* Writes the page and prints how many jobs came to what. Returns the exit code, that of one run of the whole list; of a list that
- * is not done, of a failure. */
+/* Writes the page and prints how many jobs came to what. Returns the exit code, that of one run of the whole
+ * list; of a list that is not done, of a failure. */
 int jobs_report_write(const jobs_report_request *request);

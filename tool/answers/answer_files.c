@@ -1,4 +1,5 @@
-/* The answers as files: members of a JSON object, a CSV file of the events, and a JUnit file for continuous integration. */
+/* The answers as files: members of a JSON object, a CSV file of the events, and a JUnit file for continuous
+ * integration. */
 #include "tool/answers/answers.h"
 
 #include "tool/io/record.h"
@@ -10,7 +11,8 @@
 
 /* ---- events --------------------------------------------------------------------------------------------- */
 
-/* An event as its fields have it: frames have the artist's numbers, triangles and faces those of their model files. */
+/* An event as its fields have it: frames have the artist's numbers, triangles and faces those of their model
+ * files. */
 typedef struct event_row {
     const char *a, *b, *object;
     int32_t first, last, worst;
@@ -95,7 +97,7 @@ static void write_spans(const answers *a, const char *name, const frame_list *li
     json_end_array(out);
 }
 
-/* What has no surface, and when. */
+/* The parts without a surface, and their frames. */
 static void write_collapsed(const answers *a, json *out) {
     json_begin_array(out, "collapsed");
     for (uint32_t i = 0; i < a->parts->count; i++) {
@@ -110,7 +112,7 @@ static void write_collapsed(const answers *a, json *out) {
     json_end_array(out);
 }
 
-/* What was not looked at because somebody asked for that: all else is true but for these pairs. */
+/* Pairs that were not looked at because somebody asked for that: all else is true except of these. */
 static void write_left_out(const answers *a, json *out) {
     const ignore_counts counts = ignore_pairs_count(a->shown.ignored);
     json_begin_object(out, "left_out");
@@ -135,7 +137,7 @@ void answers_write_json(const answers *a, const length_unit *unit, json *out) {
     write_left_out(a, out);
 }
 
-/* What nobody has looked at is null. */
+/* A value that nobody has looked at is null. */
 static void write_known(json *out, const frame_answer *frame, const char *name, double number) {
     if (frame->spaces_known)
         json_number(out, name, number);
@@ -185,7 +187,7 @@ static fail_rules rules_of_cases(const fail_rules *rules) {
     return own;
 }
 
-/* Why a frame neither fails nor passes; NULL: it does. */
+/* The reason why a frame neither fails nor passes; NULL: it does. */
 static const char *why_undecided(const answers *a, const fail_rules *rules, const frame_answer *frame) {
     char text[FAIL_TEXT_SIZE];
     return fail_rules_meet(rules, a, frame, text) ? NULL : fail_rules_unknown(rules, a, frame);
@@ -206,7 +208,7 @@ static void write_case(const answers *a, const fail_rules *rules, const frame_an
     fputs("\"/>\n    </testcase>\n", file);
 }
 
-/* What was not looked at is an error, and a test case of its own. */
+/* Anything that was not looked at is an error, and a test case of its own. */
 static void write_unfinished(const char *reason, FILE *file) {
     fputs(
         "    <testcase classname=\"cscd\" name=\"all was looked at\" time=\"0\">\n      <error message=\"Not finished: ",

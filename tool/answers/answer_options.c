@@ -1,4 +1,5 @@
-/* The options about answers that check and replay have in common, lengths among them, and the rules by which a run fails. */
+/* The options about answers that check and replay have in common, lengths among them, and the rules by which
+ * a run fails. */
 #include "tool/answers/answers.h"
 
 #include "tool/common/command.h"

@@ -27,7 +27,7 @@ static void say_frames(FILE *out, const answers *a, frame_test *test) {
 
 /* ---- the sentence --------------------------------------------------------------------------------------- */
 
-/* What frames have, the weightiest first: each counts for one of these. */
+/* The kinds of frames, the weightiest first: each frame counts for one of these. */
 static bool triangles_cross(const frame_answer *frame) {
     return frame->crossing > 0;
 }
@@ -158,8 +158,8 @@ static void say_frame(FILE *out, const answers *a) {
     fprintf(out, ".");
 }
 
-/* First of all, since a mesh with a triangle too many is not clean, whatever else is found. In a single frame in which nothing
- * is, the sentence goes on. */
+/* First of all, since a mesh with a triangle too many is not clean, whatever else is found. In a single frame
+ * in which nothing is, the sentence goes on. */
 static void say_duplicates(FILE *out, const answers *a) {
     const frame_answer *first = answers_frames(a);
     const bool goes_on = answers_single(a) && !frame_answer_meets(first) && !frame_answer_crosses(first);
@@ -253,7 +253,7 @@ static void say_what_was_left_out(FILE *out, const answers *a) {
     if (said > 0) fprintf(out, " %s not looked at.", said > 1 ? "were" : "was");
 }
 
-/* What files hold beside it. */
+/* Says which animations the files hold that are not played. */
 static void say_animations(FILE *out, const answers *a) {
     const recording *r = a->recording;
     for (uint32_t i = 0; i < r->object_count; i++) {
@@ -285,7 +285,8 @@ static void say_places(FILE *out, const answers *a, const frame_list *list) {
     if (list->count > SPANS_SAID) fprintf(out, " and others");
 }
 
-/* Has the part no surface in frames in which others have one? Of the rest it is said that no triangle has an area. */
+/* Has the part no surface in frames in which others have one? Of the rest it is said that no triangle has an
+ * area. */
 static bool is_missing(const answers *a, const collapsed_part *frames) {
     return frame_list_frames(&frames->whole) > answers_count(a, frame_answer_without_area);
 }
@@ -350,7 +351,7 @@ enum { EVENTS_SHOWN = 20, NAME_WIDTH_MAX = 60 };
 
 /* ---- names ------------------------------------------------------------------------------------------- */
 
-/* Columns that a text takes in a terminal, but for wide characters: characters, not bytes. */
+/* Columns that a text takes in a terminal, wide characters aside: characters, not bytes. */
 static int text_width(const char *text) {
     int width = 0;
     for (; *text != '\0'; text++) width += ((unsigned char)*text & 0xc0) != 0x80;
@@ -369,7 +370,7 @@ static void print_pair(const answers *a, uint32_t first, uint32_t second, int wi
 
 /* ---- events --------------------------------------------------------------------------------------------- */
 
-/* What an event is, in a word: that which weighs most. */
+/* The kind of an event in a word: that which weighs most. */
 static const char *event_word(const cscd_event *event) {
     if (event->kinds & cscd_intersection_set(CSCD_INTERSECTION_CROSSING)) return "cross";
     if (event->depth > 0.0) return event->pairs > 0 ? "overlap" : "inside";

@@ -1,4 +1,4 @@
-/* What was found in each frame, and the events that these frames make up; of depths, those that are shown. */
+/* The findings of each frame, and the events that these frames make up; of depths, those that are shown. */
 #include "tool/answers/answers.h"
 
 #include <inttypes.h>
@@ -68,8 +68,8 @@ bool shown_depths_choose(shown_depths *s, cscd_intersection_pairs *found) {
     return true;
 }
 
-/* A pair of parts comes with the deepest of all its depths. If some are left out, others may still be there: of a vertex between
- * two parts, only one of which is left out. */
+/* A pair of parts comes with the deepest of all its depths. If some are left out, others may still be there:
+ * of a vertex between two parts, only one of which is left out. */
 static void shown_depths_of_parts(const shown_depths *s, const cscd_intersection_pairs *found,
                                   cscd_part_pair *pair) {
     if (found->depths != &s->list || pair->deepest == SIZE_MAX) return;
@@ -262,7 +262,7 @@ static int compare_part_pairs(const void *left, const void *right) {
     return l->b < r->b ? -1 : l->b > r->b;
 }
 
-/* Which of two parts is the one inside is that which has the buried points. A part inside of several counts once. */
+/* Of two parts, the one that has the buried points is inside. A part inside of several counts once. */
 static void count_inside(answers *a, const cscd_intersection_pairs *found, frame_answer *frame) {
     const uint32_t *labels = a->parts->labels;
     for (size_t i = 0; i < found->depths->count; i++) {
@@ -276,7 +276,7 @@ static void count_inside(answers *a, const cscd_intersection_pairs *found, frame
     }
 }
 
-/* What lies in itself alone follows from something else in the frame, if there is anything else. */
+/* A part that only lies in itself follows from something else in the frame, if there is anything else. */
 static void find_worst(answers *a, const cscd_intersection_pairs *found, frame_answer *frame) {
     cscd_part_pair worst = {.a = NO_PART, .b = NO_PART};
     bool worst_of_none = true, any_inside = false;
@@ -320,7 +320,8 @@ bool answers_find(const answers *a, cscd_detector *detector, const double *posit
 
 enum { NAMES_SIZE = 200, SIZE_TEXT_SIZE = 32 };
 
-/* "curves, patches and depths"; without pairs nothing else is named. Parts are ours, and not asked for by anybody. */
+/* "curves, patches and depths"; without pairs nothing else is named. Parts are ours, and not asked for by
+ * anybody. */
 static void name_left_out(uint64_t left_out, char text[NAMES_SIZE]) {
     const char *names[8];
     size_t count = 0, length = 0;
@@ -339,7 +340,7 @@ static void name_left_out(uint64_t left_out, char text[NAMES_SIZE]) {
                                    names[i]);
 }
 
-/* What to try, in binary millions, upwards, as --max-memory and --max-work take it. */
+/* Values to try, in binary millions, upwards, as --max-memory and --max-work take them. */
 static const char *size_text(const cscd_intersection_pairs *found, char text[SIZE_TEXT_SIZE]) {
     const bool large = found->wanted_work >> 20 > 0;
     if (found->wanted_work > 0)

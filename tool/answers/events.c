@@ -13,7 +13,7 @@ static bool event_is_in_itself(const cscd_event *event) {
            (event->kinds & CSCD_EVENT_IN_OTHER_BODY) == 0;
 }
 
-/* What is within another part comes before what only touches it, and that before contacts alone. */
+/* An event within another part comes before one that only touches it, and that before contacts alone. */
 static int rank_of(const cscd_event *event) {
     const uint64_t within = cscd_intersection_set(CSCD_INTERSECTION_CROSSING) | CSCD_EVENT_SAME_SOLID;
     if (event_is_in_itself(event)) return 3;
@@ -37,7 +37,8 @@ void event_order_sort(const cscd_event **events, size_t count) {
 
 /* ---- consequences -------------------------------------------------------------------------------------- */
 
-/* Triangles that are one and the same are no event: they never come apart. Nor are points of depth 0 alone. */
+/* Triangles that are one and the same are no event: they never come apart. Nor are points of depth 0
+ * alone. */
 static bool is_event(const cscd_event *event) {
     const bool has_pairs =
         event->pairs > 0 && event->kinds != cscd_intersection_set(CSCD_INTERSECTION_DUPLICATE);
@@ -71,7 +72,8 @@ static size_t collect_spans(const cscd_event *events, size_t count, part_span *s
     return used;
 }
 
-/* Does a span of the event's part have a frame in common with it? The last span that begins before the event ends knows. */
+/* Does a span of the event's part have a frame in common with it? The last span that begins before the event
+ * ends knows. */
 static bool happens_during(const part_span *spans, size_t count, const cscd_event *event) {
     size_t low = 0, high = count;
     while (low < high) {

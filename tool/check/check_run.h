@@ -23,8 +23,8 @@ typedef struct check_options {
 
 extern const option_table check_table;
 
-/* Runs the command on a recording, whose inputs the options have. name, job: of a job among many, which gets the answer; NULL: what is
- * found is printed. Returns the exit code. */
+/* Runs the command on a recording, whose inputs the options have. name, job: of a job among many, which gets
+ * the answer; NULL: what is found is printed. Returns the exit code. */
 int check_run_on(const check_options *options, const char *name, job_output *job);
 
 /* ---- pairs of triangles, frame by frame ---------------------------------------------------------------- */
@@ -38,8 +38,8 @@ typedef struct check_output {
 /* On false check_output_abandon is due. */
 bool check_output_open(const char *json_path, const char *csv_path, check_output *out, io_error *error);
 
-/* Adds the frame that the answers have taken last. Triangles are numbered as in their model files; the smaller comes first,
- * because welding keeps the order. Duplicates are counted and not listed. */
+/* Adds the frame that the answers have taken last. Triangles are numbered as in their model files; the
+ * smaller comes first, because welding keeps the order. Duplicates are counted and not listed. */
 bool check_output_add(check_output *out, const answers *a, const cscd_intersection_pairs *found,
                       io_error *error);
 

@@ -1,4 +1,5 @@
-/* The tool sees to it that OpenBLAS starts as it should: on one thread, and with kernels for the processor. */
+/* The tool sees to it that OpenBLAS starts as it should: on one thread, and with kernels for the
+ * processor. */
 #include "tool/common/plans.h"
 
 #include "cscd/cscd.h"

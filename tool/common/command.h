@@ -27,8 +27,8 @@ int command_info(int argument_count, char **arguments);
 int command_report(int argument_count, char **arguments);
 int command_render(int argument_count, char **arguments);
 
-/* From now on the functions below print nothing: the last failure is kept here, warnings and notes are dropped. NULL: they print
- * again. For a job among many, whose failure is part of its answer. */
+/* From now on the functions below print nothing: the last failure is kept here, warnings and notes are
+ * dropped. NULL: they print again. For a job among many, whose failure is part of its answer. */
 void failures_keep(io_error *place);
 
 /* Prints one line on stderr, "cscd: ...", and returns the exit code for it. */
@@ -50,5 +50,6 @@ bool parse_unsigned(const char *text, uint32_t *out);
 bool parse_integer(const char *text, int32_t *out);
 bool parse_double(const char *text, double *out);
 
-/* A number at the beginning, and where it ends. As all numbers of the command line it is decimal and finite: 0x10 is none, nor 0x1p3. */
+/* A number at the beginning, and where it ends. As all numbers of the command line it is decimal and finite:
+ * 0x10 is none, nor 0x1p3. */
 bool parse_decimal(const char *text, double *out, const char **end);

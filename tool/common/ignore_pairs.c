@@ -1,5 +1,5 @@
-/* Pairs that the user wants left out: tables of pairs of parts, from the names of the command line; pairs of triangles that
- * intersect or touch in the first frame; and those of a list file. */
+/* Pairs that the user wants left out: tables of pairs of parts, from the names of the command line; pairs of
+ * triangles that intersect or touch in the first frame; and those of a list file. */
 #include "tool/common/ignore_pairs.h"
 
 #include "tool/io/io.h"
@@ -68,7 +68,8 @@ static bool mark_list(const part_rules *rules, const char *option, const part_pa
     return marked;
 }
 
-/* Fails where rules cannot be of so many parts. The sentence begins with the options, and "take" or "takes". */
+/* Fails where there are too many parts for rules. The sentence begins with the options, and "take" or
+ * "takes". */
 static bool check_part_count(const part_names *parts, const char *options_take, io_error *error) {
     return parts->count <= PARTS_MAX ||
            io_fail(error, "%s at most %d parts, and there are %u", options_take, PARTS_MAX, parts->count);
@@ -113,8 +114,8 @@ static bool any_in_no_part(const part_names *parts, uint32_t triangle_count) {
     return false;
 }
 
-/* Counts the pairs of parts that are left out, and all, each part with itself among them. What is in no part of a mesh of so many
- * triangles counts as one. */
+/* Counts the pairs of parts that are left out, and all, each part with itself among them. What is in no part
+ * of a mesh of so many triangles counts as one. */
 static void count_part_pairs(const part_rules *rules, uint32_t triangle_count, size_t *left_out,
                              size_t *all) {
     const uint32_t count = rules->parts->count + any_in_no_part(rules->parts, triangle_count);
@@ -129,8 +130,8 @@ static void count_part_pairs(const part_rules *rules, uint32_t triangle_count, s
         }
 }
 
-/* Two sets of triangles, each that of a feature, are left out if one of the first and one of the second form a pair that is
- * ignored, or if none form a pair that is to be looked at. */
+/* Two sets of triangles, each that of a feature, are left out if one of the first and one of the second form
+ * a pair that is ignored, or if none form a pair that is to be looked at. */
 static bool rules_leave_out(const part_rules *rules, const uint32_t *a, uint32_t a_count, const uint32_t *b,
                             uint32_t b_count) {
     bool wanted = rules->only == NULL;
@@ -172,10 +173,11 @@ static void sort_pairs(ignore_pairs *pairs) {
         qsort(pairs->components, pairs->component_count, sizeof *pairs->components, compare_pairs);
 }
 
-/* What a line speaks of. */
+/* The things that a line speaks of. */
 typedef enum listed_kind { LISTED_TRIANGLES, LISTED_COMPONENTS } listed_kind;
 
-/* Takes an object's name and its ':' off the text, if they are there: object_count when no object has that name. */
+/* Takes an object's name and its ':' off the text, if they are there: object_count when no object has that
+ * name. */
 static uint32_t take_object(const recording *r, char **text) {
     char *colon = strchr(*text, ':');
     if (colon == NULL || colon > *text + strcspn(*text, " \t,")) return 0;
@@ -197,8 +199,8 @@ static bool take_number(char **text, uint32_t limit, uint32_t *number) {
     return true;
 }
 
-/* Reads two numbers, of triangles of the mesh or of components; UINT32_MAX for a triangle that welding has dropped.
- * False if there is anything else in the text. */
+/* Reads two numbers, of triangles of the mesh or of components; UINT32_MAX for a triangle that welding has
+ * dropped. False if there is anything else in the text. */
 static bool parse_pair(const recording *r, char *text, listed_kind kind, uint32_t pair[2]) {
     for (int i = 0; i < 2; i++) {
         text += strspn(text, " \t,");

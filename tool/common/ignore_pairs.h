@@ -1,12 +1,13 @@
-/* Pairs that the user wants left out: pairs of triangles that intersect or touch in the first frame, those of a list file, and
- * pairs of parts. */
+/* Pairs that the user wants left out: pairs of triangles that intersect or touch in the first frame, those of
+ * a list file, and pairs of parts. */
 #pragma once
 
 #include "tool/common/part_names.h"
 
 enum { PART_RULES_MAX = 64 };
 
-/* The texts A or A,B of an option that may be given several times: the pairs of A with B, or of A with everything. */
+/* The texts A or A,B of an option that may be given several times: the pairs of A with B, or of A with
+ * everything. */
 typedef struct part_pairs_list {
     const char *items[PART_RULES_MAX];
     uint32_t count;
@@ -19,8 +20,8 @@ typedef struct part_rules {
     unsigned char *only; /* size * size: the pairs that are looked at, all others are left out; NULL: all */
 } part_rules;
 
-/* Leaves out the pairs of two parts, which may be NO_PART, from now on. False when there are too many parts, or when out of
- * memory. */
+/* Leaves out the pairs of two parts, which may be NO_PART, from now on. False when there are too many parts,
+ * or when out of memory. */
 bool part_rules_ignore(part_rules *rules, uint32_t a, uint32_t b);
 
 typedef struct ignore_options {
@@ -34,15 +35,14 @@ typedef struct ignore_options {
     part_pairs_list ignored, only; /* pairs of parts */
 } ignore_options;
 
-/* Is anything to be left out? */
+/* True if the options leave out anything. */
 bool ignore_options_any(const ignore_options *options);
 
 typedef struct ignore_pairs {
     const cscd_mesh *mesh;
     part_names parts;
     part_rules rules;
-    size_t
-        rest_pairs; /* so many pairs of triangles intersect or touch in the first frame, if that was asked */
+    size_t rest_pairs; /* of triangles that intersect or touch in the first frame, if that was asked */
     cscd_intersection *triangles; /* sorted by (a, b) */
     size_t triangle_count, triangle_capacity;
     cscd_intersection *components; /* a <= b; few; sorted */
@@ -59,30 +59,31 @@ typedef struct ignore_pairs {
  * are numbered as `cscd info` lists them. */
 bool ignore_pairs_prepare(const ignore_options *options, recording *r, ignore_pairs *out, io_error *error);
 
-/* The same of a mesh without files, from which nothing is left out yet. Takes the parts. *out stays where it is, since its
- * rules point to its parts. */
+/* The same of a mesh without files, from which nothing is left out yet. Takes the parts. *out stays where it
+ * is, since its rules point to its parts. */
 bool ignore_pairs_of(const cscd_mesh *mesh, part_names *parts, ignore_pairs *out, io_error *error);
 
-/* Leaves out pairs that intersect or touch at rest; by_parts: all pairs of the two parts, unless both triangles are in one. False
- * when there are too many parts for that, or when out of memory. */
+/* Leaves out pairs that intersect or touch at rest; by_parts: all pairs of the two parts, unless both
+ * triangles are in one. False when there are too many parts for that, or when out of memory. */
 bool ignore_pairs_add_rest(ignore_pairs *pairs, const cscd_intersection *found, size_t count, bool by_parts);
 
 /* Makes a detector leave out the pairs, which live until it has been destroyed. */
 void ignore_pairs_choose(ignore_pairs *pairs, cscd_detector_options *options);
 
-/* Is anything left out? */
+/* True if anything is left out. */
 bool ignore_pairs_any(const ignore_pairs *pairs);
 
-/* How much is left out: different pairs of parts, of components, and of triangles. A part with itself is a pair, too. */
+/* Numbers of different pairs of parts, of components, and of triangles that are left out. A part with itself
+ * is a pair, too. */
 typedef struct ignore_counts {
-    size_t parts, all_parts; /* so many of all there are */
+    size_t parts, all_parts; /* left out, and in all */
     size_t components, triangles;
 } ignore_counts;
 
 ignore_counts ignore_pairs_count(const ignore_pairs *pairs);
 
-/* Is it left out that a vertex, an edge or a triangle is inside of what has the other triangle? As contacts of the two are; and of different
- * components, if any pair of their triangles is left out. */
+/* True if it is left out that a vertex, an edge or a triangle is inside of what has the other triangle: if
+ * contacts of the two are, or if the components differ and any pair of their triangles is left out. */
 bool ignore_pairs_separate_vertex(const ignore_pairs *pairs, uint32_t vertex, uint32_t triangle);
 bool ignore_pairs_separate_edge(const ignore_pairs *pairs, uint32_t edge, uint32_t triangle);
 bool ignore_pairs_separate_triangles(const ignore_pairs *pairs, uint32_t a, uint32_t b);

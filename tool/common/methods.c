@@ -1,4 +1,5 @@
-/* What the commands know of methods, and of the stages and counters of their steps, from what the library says about them. */
+/* Methods, and the stages and counters of their steps, as the commands know them from what the library
+ * says. */
 #include "tool/common/methods.h"
 
 #include <cscd/research.h>

@@ -1,4 +1,5 @@
-/* What the commands know of methods, and of the stages and counters of their steps, from what the library says about them. */
+/* Methods, and the stages and counters of their steps, as the commands know them from what the library
+ * says. */
 #pragma once
 
 #include "cscd/cscd.h"
@@ -17,15 +18,15 @@ typedef struct method_facts {
 /* All false: the library has no such method. */
 method_facts method_facts_of(cscd_method method);
 
-/* Read a list of steps of the published method that are done as charge does them, such as "charge,ranks", into a uint64_t: a sum
- * of the CSCD_OURS_ constants of plans, or of all. */
+/* Read a list of steps of the published method that are done as charge does them, such as "charge,ranks",
+ * into a uint64_t: a sum of the CSCD_OURS_ constants of plans, or of all. */
 bool read_ours_of_plans(const char *text, void *place);
 bool read_ours(const char *text, void *place);
 
 /* Those of plans alone. */
 uint64_t ours_of_plans(uint64_t ours);
 
-/* Do these steps count with this method, and with each other? The error names the word that does not. */
+/* True if these steps count with this method, and with each other. The error names the word that does not. */
 bool ours_agrees(cscd_method method, uint64_t ours, io_error *error);
 
 /* ---- stages and counters of a step --------------------------------------------------------------------- */

@@ -1,5 +1,6 @@
-/* The options of a command: a table, one row of which says how an option is read, where its value goes and what --help says of
- * it; the readers and rows that several commands have; and outputs, which are kept apart from inputs. */
+/* The options of a command: a table, one row of which says how an option is read, where its value goes and
+ * what --help says of it; the readers and rows that several commands have; and outputs, which are kept apart
+ * from inputs. */
 #pragma once
 
 #include "cscd/cscd.h"
@@ -62,31 +63,31 @@ typedef struct given_options {
     size_t input_count;
 } given_options;
 
-/* Reads the command line, from the command's name on, into the command's struct of options. False: *code is the
- * exit code to end with, after --help or an error that was printed. */
+/* Reads the command line, from the command's name on, into the command's struct of options. False: *code is
+ * the exit code to end with, after --help or an error that was printed. */
 bool option_table_read(const option_table *table, int argument_count, char **arguments, void *options,
                        given_options *given, int *code);
 
-/* Gives an option another value or its first, as if it stood at the end of the command line. False, with the reason: there is no such
- * option, or the value does not fit. */
+/* Gives an option another value or its first, as if it stood at the end of the command line. False, with the
+ * reason: there is no such option, or the value does not fit. */
 bool option_table_set(const option_table *table, const char *name, const char *value, void *options,
                       given_options *given, io_error *error);
 
-/* Collects all rows of a table, shared ones behind its own, with their places in the command's struct of options. Returns the
- * number. */
+/* Collects all rows of a table, shared ones behind its own, with their places in the command's struct of
+ * options. Returns the number. */
 size_t option_table_rows(const option_table *table, option_row rows[OPTION_ROWS_MAX]);
 
-/* Is the option a single letter, which has one dash? */
+/* True if the option is a single letter, which has one dash. */
 bool option_is_letter(const option_row *row);
 
-/* Was the option of that name given? The table must have it. */
+/* True if the option of that name was given. The table must have it. */
 bool option_given(const option_table *table, const given_options *given, const char *name);
 
 /* The first option that was given and is none of those names; NULL: there is none. */
 const char *option_given_beside(const option_table *table, const given_options *given,
                                 const char *const *names, size_t name_count);
 
-/* The hash of all options that were given, and of their values, but for those names. */
+/* The hash of all options that were given and of their values, those names aside. */
 uint64_t option_hash_beside(const option_table *table, const given_options *given, const char *const *names,
                             size_t name_count);
 
@@ -126,27 +127,28 @@ typedef enum up_axis { UP_BY_FORMAT, UP_Y, UP_Z } up_axis;
 /* Reads the value y or z of an option; place points to an up_axis. */
 bool read_up(const char *text, void *place);
 
-/* What was given, else what the format of the model's file says or its programs do: y of glTF, which defines it, and of OBJ,
- * as exporters write it; z of STL and PLY, which come from printers and scanners, and of all others. */
+/* The axis that was given, else that of the format of the model's file, or of the programs that write it: y
+ * of glTF, which defines it, and of OBJ, as exporters write it; z of STL and PLY, which come from printers
+ * and scanners, and of all others. */
 up_axis up_axis_choose(up_axis given, const char *model_path);
 
 /* ---- paths --------------------------------------------------------------------------------------------- */
 
-/* Readers of paths (const char *), by which the functions below know what a row of a table of options is: a file or folder that the
- * command reads, or one that it looks after by itself; a file that it writes, with an ending of those that the row's value has; the
- * beginning of the names of several files that it writes. */
+/* Readers of paths (const char *), by which the functions below know what a row of a table of options is: a
+ * file or folder that the command reads, or one that it looks after by itself; a file that it writes, with an
+ * ending of those that the row's value has; the beginning of the names of several files that it writes. */
 bool read_input_path(const char *text, void *place);
 bool read_output_path(const char *text, void *place);
 bool read_output_stem(const char *text, void *place);
 
 bool option_is_output(const option_row *row);
 
-/* Outputs are not inputs, and not each other, are not named like meshes, and have the ending of their format. False, with the reason and
- * the option. */
+/* Outputs are not inputs, and not each other, are not named like meshes, and have the ending of their format.
+ * False, with the reason and the option. */
 bool output_paths_are_safe(const option_table *table, const void *options, const given_options *given,
                            io_error *error);
 
-/* Can all files of a command be opened for writing? See output_path_opens. */
+/* True if all files of a command can be opened for writing. See output_path_opens. */
 bool output_paths_open(const option_table *table, const void *options, io_error *error);
 
 /* Collects the paths of all outputs, NULLs among them, in the order of the table. Returns the number. */
@@ -164,6 +166,6 @@ bool output_path_is_safe(const char *path, const char *const *others, size_t oth
  * `ending` names (".png"). Endings that no program knows are fine. path may be NULL. */
 bool output_path_fits(const char *path, const char *ending, io_error *error);
 
-/* Can path be opened for writing? Its content stays as it is. A command asks this of all outputs before it
- * truncates any. path may be NULL. */
+/* True if path can be opened for writing. Its content stays as it is. A command asks this of all outputs
+ * before it truncates any. path may be NULL. */
 bool output_path_opens(const char *path, io_error *error);

@@ -140,7 +140,7 @@ static const option_row *given_row(const option_row *rows, size_t count, size_t 
     return &rows[i];
 }
 
-/* What an output must not be: what is read, and the outputs above it. */
+/* The paths that an output must not have: those of inputs, and of the outputs above it. */
 static size_t collect_others(const option_row *rows, size_t count, size_t i, const void *options,
                              const char *others[OPTION_ROWS_MAX]) {
     size_t used = 0;

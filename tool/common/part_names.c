@@ -77,8 +77,8 @@ typedef struct object_parts {
     uint32_t rest; /* the part of what its file names in none */
 } object_parts;
 
-/* The parts that an object's file names; of a file that names none, the object itself. What the file leaves without a name
- * is in no part, unless the object has a name of its own. */
+/* The parts that an object's file names; of a file that names none, the object itself. What the file leaves
+ * without a name is in no part, unless the object has a name of its own. */
 static object_parts parts_of_object(const recording *r, uint32_t index, const mesh_parts *named,
                                     uint32_t first) {
     object_parts own = {.named = named, .first = first, .rest = NO_PART};
@@ -150,7 +150,8 @@ static bool label_bodies(const recording *r, part_names *parts, io_error *error)
     return true;
 }
 
-/* Who asks for parts of a kind must get some: else all of a file would silently be one part, or its components parts. */
+/* Who asks for parts of a kind must get some: else all of a file would silently be one part, or its
+ * components parts. */
 static bool fail_without_parts(const recording *r, io_error *error) {
     char reason[120];
     recorded_object_explain_parts(&r->objects[0], reason, sizeof reason);
@@ -201,7 +202,7 @@ bool part_names_find(const recording *r, const cscd_plan *plan, part_names *out,
 
 /* ---- reads the parts of a recording from a table of numbers and names ------------------------------------ */
 
-/* What the numbers of a table count. */
+/* The things that the numbers of a table count. */
 typedef enum table_kind { TABLE_OF_TRIANGLES, TABLE_OF_FACES, TABLE_OF_VERTICES } table_kind;
 
 typedef struct part_table {

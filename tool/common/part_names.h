@@ -16,24 +16,24 @@ typedef struct part_names {
     bool named; /* by files or a table; else they are components or regions, or the recording itself */
 } part_names;
 
-/* Names parts by what the recording says, the first of these that says anything: the objects and parts that its files name
- * (OBJECT/PART where there are several objects), its components, the regions of a plan (NULL: none), itself. On false
- * *out holds nothing to free. */
+/* Names parts by what the recording says, the first of these that says anything: the objects and parts that
+ * its files name (OBJECT/PART where there are several objects), its components, the regions of a plan (NULL:
+ * none), itself. On false *out holds nothing to free. */
 bool part_names_find(const recording *r, const cscd_plan *plan, part_names *out, io_error *error);
 
-/* Reads parts from a table of two columns: `triangle,name`, `face,name` or `vertex,name` in its first line, and a number of
- * the model file and a name in each other one; with several objects the number is NAME:12. Of vertices a triangle is in
- * the part that most of its corners are in; of equally many, that of its first corner. What no line names is in no part.
- * The error names the file and the line. */
+/* Reads parts from a table of two columns: `triangle,name`, `face,name` or `vertex,name` in its first line,
+ * and a number of the model file and a name in each other one; with several objects the number is NAME:12. Of
+ * vertices a triangle is in the part that most of its corners are in; of equally many, that of its first
+ * corner. What no line names is in no part. The error names the file and the line. */
 bool part_names_read(const recording *r, const char *path, part_names *out, io_error *error);
 void part_names_free(part_names *parts);
 
 /* Tells a detector what the parts are, and what belongs together. */
 cscd_status part_names_tell(const part_names *parts, cscd_detector *detector);
 
-/* What a sentence calls a part; NO_PART is "(no part)". */
+/* The name of a part in a sentence; that of NO_PART is "(no part)". */
 const char *part_names_at(const part_names *parts, uint32_t part);
 
-/* Marks the parts that a name stands for: that of the same name, and all below it (NAME/...). chosen: count of them.
- * Returns how many there are. */
+/* Marks the parts that a name stands for: that of the same name, and all below it (NAME/...). chosen: count
+ * of them. Returns how many there are. */
 uint32_t part_names_choose(const part_names *parts, const char *name, size_t length, bool *chosen);

@@ -1,5 +1,6 @@
-/* Finds a plan, in a file or by making it in memory, or none, and chooses the method that the detector then uses. Reads how stiff
- * triangles are, which plans by charge take into account, and colours triangles by their plan. */
+/* Finds a plan, in a file or by making it in memory, or none, and chooses the method that the detector then
+ * uses. Reads how stiff triangles are, which plans by charge take into account, and colours triangles by
+ * their plan. */
 #include "tool/common/plans.h"
 
 #include "tool/common/methods.h"
@@ -34,8 +35,8 @@ static bool insists_on_plan(const plan_request *request) {
     return request->insists_on_plan || method_facts_of(request->method).insists_on_plan;
 }
 
-/* A method that makes no plans takes one of any method. So does a published one, but only if the caller names it: what is not
- * wholly as published is asked for. */
+/* A method that makes no plans takes one of any method. So does a published one, but only if the caller names
+ * it: what is not wholly as published is asked for. */
 static bool method_fits(const plan_request *request, const cscd_plan *plan) {
     const method_facts facts = method_facts_of(request->method);
     const bool takes_any = !facts.makes_plan || (facts.insists_on_plan && request->plan_path != NULL);
@@ -166,7 +167,8 @@ static bool any_closed(const cscd_mesh *mesh) {
     return false;
 }
 
-/* By numbers of triangles and intervals, never by clock, so that all shards of a recording choose the same. */
+/* By numbers of triangles and intervals, never by clock, so that all shards of a recording choose the
+ * same. */
 static bool charge_pays(const recording *r) {
     return cscd_mesh_triangle_count(r->mesh) <= PLAN_FEW_TRIANGLES ||
            r->frame_count > 10 * PLAN_PRICE_INTERVALS; /* intervals: one less */

@@ -17,10 +17,12 @@ void provenance_generator(char text[PROVENANCE_GENERATOR_SIZE]);
  * not protect against forgery. */
 #define PROVENANCE_HASH_START 0xcbf29ce484222325u
 uint64_t provenance_hash(uint64_t hash, const void *bytes, size_t size);
-/* The same of `count` numbers of `size` bytes each, which count from the lowest byte on, whatever the machine. */
+/* The same of `count` numbers of `size` bytes each, which count from the lowest byte on, whatever the
+ * machine. */
 uint64_t provenance_hash_numbers(uint64_t hash, const void *numbers, size_t count, size_t size);
 
-/* Writes the members "version", "commit", "compiler" and "flags" into the open object: what does not change from run to run. */
+/* Writes the members "version", "commit", "compiler" and "flags" into the open object: what does not change
+ * from run to run. */
 void provenance_write_build(json *out);
 
 /* The same, and "date", "machine", "threads" and "arguments". */

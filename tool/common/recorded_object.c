@@ -58,7 +58,8 @@ void recorded_object_explain_parts(const recorded_object *o, char *text, size_t 
         snprintf(text, size, "%s files have no %ss", mesh_format_name(o->file.format), word);
 }
 
-/* The part of each vertex: objects of a scene may stand on each other, and stay apart; the materials of one skin are joined. */
+/* The part of each vertex: objects of a scene may stand on each other, and stay apart; the materials of one
+ * skin are joined. */
 static bool label_vertices(const mesh_file *file, uint32_t **out, io_error *error) {
     const mesh_parts *own = mesh_file_own_parts(file);
     uint32_t *parts = malloc((size_t)file->vertex_count * sizeof *parts);
@@ -71,8 +72,8 @@ static bool label_vertices(const mesh_file *file, uint32_t **out, io_error *erro
     return true;
 }
 
-/* Takes apart, of what lies together in the first frame, what comes apart in any other. A frame that cannot be read is passed over:
- * that is said when its turn comes. */
+/* Takes apart, of what lies together in the first frame, what comes apart in any other. A frame that cannot
+ * be read is passed over: that is said when its turn comes. */
 static bool part_in_frames(recorded_object *o, weld *w, weld_parting *parting, bool *changed,
                            io_error *error) {
     const uint32_t count = recorded_object_frame_count(o);
@@ -92,7 +93,8 @@ static bool part_in_frames(recorded_object *o, weld *w, weld_parting *parting, b
 static bool weld_in_all_frames(recorded_object *o, weld *w, weld_parting *parting, io_error *error) {
     const uint32_t joined = w->vertex_count;
     bool changed = joined < w->file_vertex_count && o->frames != NULL && animation_is_one_file(o->frames);
-    /* Where distances are allowed, another vertex may stand for those that are left, which must lie near it in every frame. */
+    /* If distances are allowed, another vertex may stand for those that are left, which must lie near it in
+     * every frame. */
     while (changed) {
         if (!part_in_frames(o, w, parting, &changed, error)) return false;
         if (w->epsilon == 0.0) break;

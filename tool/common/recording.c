@@ -141,8 +141,9 @@ static bool number_frames(const recording_options *options, recording *r, io_err
 
 /* ---- mesh ---------------------------------------------------------------------------------------------- */
 
-/* Unless the user says otherwise: starting threads takes longer than a whole command on a mesh so small that the library
- * would give them nothing to do (runtime/bvh/traversal.c shares trees of 768 triangles and more). */
+/* Unless the user says otherwise: starting threads takes longer than a whole command on a mesh so small
+ * that the library would give them nothing to do (runtime/bvh/traversal.c shares trees of 768 triangles
+ * and more). */
 static uint32_t choose_thread_count(const recording_options *options, const recording *r) {
     enum { SHARED_TRIANGLES_MIN = 1000 };
     uint64_t triangles = 0;
@@ -229,9 +230,10 @@ static bool map_edges(recording *r, io_error *error) {
 
 /* ---- files that come late ------------------------------------------------------------------------------ */
 
-/* A file that cannot be read may be one that another machine has written a moment ago, on a network file system. */
+/* A file that cannot be read may be one that another machine has written a moment ago, on a network file
+ * system. */
 
-/* How long a file that cannot be read is tried again, and since when. */
+/* The time for which a file that cannot be read is tried again, and when that began. */
 typedef struct late_files {
     double seconds, began_ms;
 } late_files;
@@ -248,7 +250,8 @@ static late_files begin_trying(double seconds) {
     return (late_files){seconds, seconds > 0.0 ? now_ms() : 0.0};
 }
 
-/* Rests for a moment after a failure, and returns true if there is to be another try. An interrupt ends it. */
+/* Rests for a moment after a failure, and returns true if there is to be another try. An interrupt ends
+ * it. */
 static bool try_again(const late_files *late) {
     const struct timespec rest = {.tv_nsec = 50 * 1000 * 1000};
     if (late->seconds <= 0.0 || now_ms() - late->began_ms >= late->seconds * 1e3) return false;

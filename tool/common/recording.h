@@ -1,5 +1,5 @@
-/* A recording: one object or several, each with its model file and its frames, as one mesh and an array of positions
- * for each frame. */
+/* A recording: one object or several, each with its model file and its frames, as one mesh and an array of
+ * positions for each frame. */
 #pragma once
 
 #include "cscd/cscd.h"
@@ -11,7 +11,7 @@
 
 /* ---- an object of a recording -------------------------------------------------------------------------- */
 
-/* Where an object comes from. The texts live as long as the command line. */
+/* The source of an object. The texts live as long as the command line. */
 typedef struct recorded_source {
     const char *name;
     const char *model_path;
@@ -25,7 +25,7 @@ typedef struct recorded_source {
         obstacle; /* its own triangles are not looked at with each other, nor with those of other obstacles */
 } recorded_source;
 
-/* Which vertices of a model are joined. */
+/* The choice of vertices of a model that are joined. */
 typedef struct weld_choice {
     enum {
         WELD_BY_FORMAT, /* equal ones, of glTF within a node, where the format stores vertices several times; else none */
@@ -35,9 +35,10 @@ typedef struct weld_choice {
     double epsilon; /* WITHIN: how far they lie apart at most; 0: not at all */
 } weld_choice;
 
-/* Vertices that lie together in the first frame and come apart in another one, so that they are not joined. */
+/* Vertices that lie together in the first frame and come apart in another one, so that they are not
+ * joined. */
 typedef struct weld_parting {
-    uint32_t count; /* so many more vertices are left than if the first frame decided; 0: none comes apart */
+    uint32_t count; /* how many more vertices are left than if the first frame decided; 0: none comes apart */
     uint32_t vertex,
         frame; /* the first of them that was found, by its number in the file, and the frame by its index */
 } weld_parting;
@@ -55,14 +56,15 @@ typedef struct recorded_object {
     uint64_t frames_hash;                  /* of the hashes of its frames so far */
 } recorded_object;
 
-/* What the model's format is called if it stores a vertex once for each face (STL), or for each of its normals (glTF); else
- * NULL. */
+/* The name of the model's format if it stores a vertex once for each face (STL), or for each of its normals
+ * (glTF); else NULL. */
 const char *recorded_object_split_format(const recorded_object *object);
 
-/* Why the file has no parts of the kind that was asked for: a sentence without a full stop, such as "STL files have no materials". */
+/* Explains why the file has no parts of the kind that was asked for: a sentence without a full stop, such as
+ * "STL files have no materials". */
 void recorded_object_explain_parts(const recorded_object *object, char *text, size_t size);
 
-/* What parts by a kind are called: "material". */
+/* The word for parts by a kind: "material". */
 const char *recorded_object_parts_word(mesh_parts_by parts_by);
 
 /* On false *out holds nothing to close. */
@@ -70,8 +72,8 @@ bool recorded_object_open(const recorded_source *source, weld_choice welding, co
                           recorded_object *out, io_error *error);
 void recorded_object_close(recorded_object *object);
 
-/* Joins what lies within epsilon in all frames, or, where each frame has a file of its own, in the first one. parts: as for
- * weld_begin. On false *out is untouched. */
+/* Joins what lies within epsilon in all frames, or, where each frame has a file of its own, in the first one.
+ * parts: as for weld_begin. On false *out is untouched. */
 bool recorded_object_weld(recorded_object *object, const uint32_t *parts, double epsilon, weld *out,
                           weld_parting *parting, io_error *error);
 
@@ -93,8 +95,8 @@ uint64_t recorded_object_hash_frame(const recorded_object *object);
 /* The corners of its triangles, counted from 0 within the object; triangle_count * 3 of them. */
 const uint32_t *recorded_object_triangles(const recorded_object *object);
 
-/* The numbers of the model file for a vertex and a triangle, both counted from 0 within the object, and the reverse:
- * UINT32_MAX for a triangle that welding has dropped. */
+/* The numbers of the model file for a vertex and a triangle, both counted from 0 within the object, and the
+ * reverse: UINT32_MAX for a triangle that welding has dropped. */
 uint32_t recorded_object_file_vertex(const recorded_object *object, uint32_t vertex);
 uint32_t recorded_object_file_triangle(const recorded_object *object, uint32_t triangle);
 uint32_t recorded_object_find_triangle(const recorded_object *object, uint32_t file_triangle);
@@ -143,7 +145,7 @@ typedef struct recording_options {
 /* MODEL and FRAMES: the first input and the others, if there are any. */
 void recording_options_take(recording_options *options, const given_options *given);
 
-/* What a sentence calls the recording: the first model's path. */
+/* The name of the recording in a sentence: the first model's path. */
 const char *recording_options_path(const recording_options *options);
 
 typedef struct recording {
@@ -165,8 +167,8 @@ typedef struct recording {
 bool recording_open(const recording_options *options, recording *out, io_error *error);
 void recording_close(recording *r);
 
-/* Reads a frame, by its index from 0. positions: cscd_mesh_vertex_count(mesh) * 3. The error names the frame, and vertices
- * as the file numbers them. */
+/* Reads a frame, by its index from 0. positions: cscd_mesh_vertex_count(mesh) * 3. The error names the frame,
+ * and vertices as the file numbers them. */
 bool recording_read(recording *r, uint32_t frame, double *positions, io_error *error);
 
 /* Says that a frame is read soon, as animation_expect. */
@@ -175,14 +177,15 @@ void recording_expect(recording *r, uint32_t frame);
 /* Copies the positions of the model files themselves, unchecked; positions as above. */
 void recording_rest(const recording *r, double *positions);
 
-/* The hashes of the files' positions of the frame read last, per object; and adds those of a frame to the objects' hashes. */
+/* The hashes of the files' positions of the frame read last, per object; and adds those of a frame to the
+ * objects' hashes. */
 void recording_hash_frame(const recording *r, uint64_t hashes[RECORDING_OBJECTS_MAX + 1]);
 void recording_add_hashes(recording *r, const uint64_t hashes[RECORDING_OBJECTS_MAX + 1]);
 
 /* Frames a second: as --fps says, or 24 where a glTF file was sampled; 0: nobody knows. */
 double recording_fps(const recording *r);
 
-/* Does any object have frames? */
+/* True if any object has frames. */
 bool recording_moves(const recording *r);
 
 /* A contact, with the vertices that the model files number. */
@@ -204,7 +207,8 @@ uint32_t recording_file_face(const recording *r, uint32_t triangle);
 /* The number of the edge between two vertices of the mesh, which must have it. */
 uint32_t recording_find_edge(const cscd_mesh *mesh, uint32_t a, uint32_t b);
 
-/* Does the model of an object hold an animation that is not played, although it has no other frames? */
+/* True if the model of an object holds an animation that is not played, although the object has no other
+ * frames. */
 bool recording_object_rests(const recorded_object *object);
 
 /* Warns on stderr about triangles that welding has dropped, and about open, non-manifold and

@@ -1,4 +1,5 @@
-/* Results in the files of other programs, by what was asked for: the options, and all files that they name. */
+/* Results in the files of other programs, by what was asked for: the options, and all files that they
+ * name. */
 #include "tool/export/export.h"
 
 #include "tool/common/options.h"

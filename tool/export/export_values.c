@@ -1,4 +1,4 @@
-/* What is said of each vertex and triangle of a frame, as arrays with names, and the names of the files. */
+/* Values of each vertex and triangle of a frame, as arrays with names, and the names of the files. */
 #include "tool/export/export_values.h"
 
 #include "tool/common/methods.h"

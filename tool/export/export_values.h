@@ -1,5 +1,5 @@
-/* What the files of exports share: what is said of each vertex and triangle of a frame, as arrays with names, the names of files, and
- * the outputs of each kind. */
+/* The files of exports share these: values of each vertex and triangle of a frame, as arrays with names, the
+ * names of files, and the outputs of each kind. */
 #pragma once
 
 #include "tool/common/part_names.h"
@@ -26,37 +26,37 @@ typedef struct export_table {
     size_t array_count;
 } export_table;
 
-/* How a triangle meets others: not; only otherwise than by crossing them; it crosses one. */
+/* The way a triangle meets others: not; only otherwise than by crossing them; it crosses one. */
 typedef enum export_meeting { EXPORT_MEETS_NONE, EXPORT_TOUCHES, EXPORT_CROSSES } export_meeting;
 
 static inline export_meeting export_meeting_of(const cscd_intersection_pair *pair) {
     return pair->kind == CSCD_INTERSECTION_CROSSING ? EXPORT_CROSSES : EXPORT_TOUCHES;
 }
 
-/* How much of a triangle an object contains. */
+/* The share of a triangle that an object contains. */
 typedef enum export_buried { EXPORT_NOT_BURIED, EXPORT_BURIED, EXPORT_CUT } export_buried;
 
 typedef struct export_values {
     export_table vertices, triangles;
-    uint32_t *kinds[5];    /* per triangle: in so many pairs of the kind */
+    uint32_t *kinds[5];    /* per triangle: pairs of the kind that it is in */
     uint8_t *intersecting; /* per triangle: an export_meeting */
     uint8_t *buried;       /* per triangle: an export_buried; NULL: not known */
     double *depth;         /* per vertex; NULL: not known */
     uint32_t *contacts;    /* per vertex; NULL: not counted */
 } export_values;
 
-/* What there is besides the pairs. */
+/* The values that there are besides the pairs. */
 typedef struct export_choice {
     bool contacts, depths;
 } export_choice;
 
-/* Allocates all arrays, and fills those that are the same in every frame. plan: NULL if there is none. On false *out
- * holds nothing to free. */
+/* Allocates all arrays, and fills those that are the same in every frame. plan: NULL if there is none. On
+ * false *out holds nothing to free. */
 bool export_values_open(const recording *r, const part_names *parts, const cscd_plan *plan,
                         export_choice choice, export_values *out, io_error *error);
 void export_values_free(export_values *values);
 
-/* Counts the contacts of each vertex, those before among them, and begins to count anew. */
+/* Counts the contacts of each vertex, those before among them, and sets the count to 0. */
 void export_values_add_contacts(export_values *values, const cscd_contacts *contacts);
 void export_values_clear_contacts(export_values *values);
 
@@ -79,8 +79,9 @@ typedef struct vtk_choice {
     bool curves;
 } vtk_choice;
 
-/* Curves have files of their own, because an array of VTK says something of every cell of its file, and what is said of curves and
- * of triangles differs; in ParaView they are then an object of their own, with its own width, colour and eye. */
+/* Curves have files of their own, because an array of VTK says something of every cell of its file, and what
+ * is said of curves and of triangles differs; in ParaView they are then an object of their own, with its own
+ * width, colour and eye. */
 typedef struct vtk_output {
     char *stem; /* NULL: nothing was asked for */
     vtk_choice choice;
@@ -110,8 +111,8 @@ typedef struct ply_output {
     const export_values *values;
 } ply_output;
 
-/* No file that a frame would be written to may be a mesh that this module has not written. On false *out holds nothing to
- * free. */
+/* No file that a frame would be written to may be a mesh that this module has not written. On false *out
+ * holds nothing to free. */
 bool ply_output_open(const char *path, const recording *r, const part_names *parts,
                      const export_values *values, ply_output *out, io_error *error);
 bool ply_output_add_frame(const ply_output *p, int32_t number, const double *positions, io_error *error);
@@ -180,5 +181,6 @@ void vtp_add(vtp_file *file, vtp_section section, const char *name, vtp_type typ
 /* count texts behind each other, each with its NUL. */
 void vtp_add_texts(vtp_file *file, const char *name, uint64_t count, const char *texts, size_t size);
 
-/* Writes the file with its numbers as they are in memory, behind the XML: the shortest form, and every double is exact. */
+/* Writes the file with its numbers as they are in memory, behind the XML: the shortest form, and every double
+ * is exact. */
 bool vtp_write(const vtp_file *file, const char *path, io_error *error);

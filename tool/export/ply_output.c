@@ -9,7 +9,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* Where the header says whose file it is. */
+/* The place in the header that says whose file it is. */
 static const char beginning[] = "ply\nformat binary_little_endian 1.0\ncomment cscd export 1\n";
 
 void ply_output_free(ply_output *p) {

@@ -1,9 +1,10 @@
-/* Lists of what to select in a modelling program: vertices and polygons of triangles that cross, part by part. */
+/* Lists of what to select in a modelling program: vertices and polygons of triangles that cross, part by
+ * part. */
 #include "tool/export/export_values.h"
 
 #include <stdlib.h>
 
-/* What a triangle is listed for: crossing another one, or meeting one otherwise. */
+/* The reasons for which a triangle is listed: crossing another one, or meeting one otherwise. */
 enum { LISTED_CROSSING = 1, LISTED_TOUCHING = 2 };
 
 static void free_arrays(selection_output *s) {
@@ -18,8 +19,8 @@ static uint32_t object_of(const selection_output *s, uint32_t triangle) {
     return recording_object_of_triangle(s->recording, triangle);
 }
 
-/* The polygon of a triangle, or a corner, as the model file numbers them. The corners are the file's own, also where
- * vertices are welded. */
+/* The polygon of a triangle, or a corner, as the model file numbers them. The corners are the file's own,
+ * also where vertices are welded. */
 static uint32_t file_number(const selection_output *s, uint32_t triangle, int corner) {
     const mesh_file *file = &s->recording->objects[object_of(s, triangle)].file;
     const uint32_t own = recording_file_triangle(s->recording, triangle);
@@ -67,7 +68,8 @@ static void write_part(selection_output *s, uint32_t object, uint32_t part, numb
     json_end_object(&s->out);
 }
 
-/* The parts of one object, with the ranges of their numbers: one object of a scene is mostly one range of its file. */
+/* The parts of one object, with the ranges of their numbers: one object of a scene is mostly one range of its
+ * file. */
 static void write_object_parts(selection_output *s, uint32_t index, number_range (*ranges)[2]) {
     const recorded_object *object = &s->recording->objects[index];
     for (uint32_t i = 0; i < s->parts->count; i++)
@@ -140,7 +142,8 @@ static int compare_triangles(const void *a, const void *b, void *user) {
     return (first > second) - (first < second);
 }
 
-/* The vertices, or the polygons, of those of some triangles that are listed for something, ascending and each once. */
+/* The vertices, or the polygons, of those of some triangles that are listed for something, ascending and each
+ * once. */
 static void write_list(selection_output *s, const char *key, const uint32_t *triangles, size_t count,
                        const uint8_t *marks, uint8_t mark, bool vertices) {
     size_t used = 0;

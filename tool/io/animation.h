@@ -24,29 +24,32 @@ typedef struct animation_options {
     const char *animation_name; /* of a glTF file: which of its animations; NULL: the first */
 } animation_options;
 
-/* paths: one .pc2 or .mdd file; one .glb or .gltf file; one printf pattern (f_%04d.obj); one folder; or a list of mesh files, one a frame.
- * Only headers (and, of a folder, names) are read here; the size of a point cache is checked at once. Every frame
- * must have vertex_count vertices. options NULL: none. On false *out is untouched. */
+/* paths: one .pc2 or .mdd file; one .glb or .gltf file; one printf pattern (f_%04d.obj); one folder; or a
+ * list of mesh files, one a frame. Only headers (and, of a folder, names) are read here; the size of a point
+ * cache is checked at once. Every frame must have vertex_count vertices. options NULL: none. On false *out is
+ * untouched. */
 bool animation_open(const char *const *paths, size_t path_count, uint32_t vertex_count,
                     const animation_options *options, animation **out, io_error *error);
 void animation_close(animation *animation);
 
-/* Are all frames in one file, which may be read again and in any order? */
+/* True if all frames are in one file, which may be read again and in any order. */
 bool animation_is_one_file(const animation *animation);
 
 uint32_t animation_frame_count(const animation *animation);
 
-/* What the artist calls a frame: its file's number, or that of its sample by the start and rate of a PC2 header, or
- * by its time and the frames a second; where there is none, its index. Numbers ascend. */
+/* The artist's number of a frame: that of its file, or that of its sample by the start and rate of a PC2
+ * header, or by its time and the frames a second; where there is none, its index. Numbers ascend. */
 int32_t animation_frame_number(const animation *animation, uint32_t frame);
 
-/* A sentence about the order of listed files, or the choice among animations, if there is something to say; else NULL. */
+/* A sentence about the order of listed files, or the choice among animations, if there is something to say;
+ * else NULL. */
 const char *animation_note(const animation *animation);
 
-/* Reads a frame, by its index from 0, into positions, vertex_count * 3. The memory in use does not grow with the frames
- * read. On false *error names the frame; positions are then undefined. */
+/* Reads a frame, by its index from 0, into positions, vertex_count * 3. The memory in use does not grow with
+ * the frames read. On false *error names the frame; positions are then undefined. */
 bool animation_read(animation *animation, uint32_t frame, double *positions, io_error *error);
 
-/* Says that a frame, by its index below the count, is read soon: the system begins to fetch its file from the disk, and the caller
- * does not wait. A file that is missing is no error here. Does nothing where all frames are in one file. */
+/* Says that a frame, by its index below the count, is read soon: the system begins to fetch its file from the
+ * disk, and the caller does not wait. A file that is missing is no error here. Does nothing where all frames
+ * are in one file. */
 void animation_expect(animation *animation, uint32_t frame);

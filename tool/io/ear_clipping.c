@@ -1,4 +1,5 @@
-/* Triangles of a polygon in a plane, by clipping ears: exact orientations, and a tree in which the corners within an ear are found. */
+/* Triangles of a polygon in a plane, by clipping ears: exact orientations, and a tree in which the corners
+ * within an ear are found. */
 #include "tool/io/polygon.h"
 
 #include "tool/io/io.h"
@@ -10,11 +11,13 @@
 
 /* ---- orientation --------------------------------------------------------------------------------------- */
 
-/* The computed determinant is wrong by at most (3 + 16 e) e times the sum of its two products' magnitudes, e = 2^-53
- * (Shewchuk, ccwerrboundA); products that underflow are smaller than 2^-600 here only if they are 0. */
+/* The computed determinant is wrong by at most (3 + 16 e) e times the sum of its two products'
+ * magnitudes, e = 2^-53 (Shewchuk, ccwerrboundA); products that underflow are smaller than 2^-600 here
+ * only if they are 0. */
 static const double error_bound = (3.0 + 16.0 * 0x1p-53) * 0x1p-53;
 
-/* Adds a number to an expansion of `count` components, which grow in magnitude; the sum has one component more. */
+/* Adds a number to an expansion of `count` components, which grow in magnitude; the sum has one component
+ * more. */
 static void grow_expansion(double *expansion, size_t count, double number) {
     double sum = number;
     for (size_t i = 0; i < count; i++) {
@@ -34,8 +37,8 @@ static split_number split_double(double a) {
     return (split_number){high, a - high};
 }
 
-/* What is missing in the rounded product a b (Dekker 1971). Not by fma(), which some C libraries compute in two roundings, as that
- * of mingw-w64 does. */
+/* The error of the rounded product a b (Dekker 1971). Not by fma(), which some C libraries compute in two
+ * roundings, as that of mingw-w64 does. */
 static double missing_in_product(double a, double b, double product) {
     const split_number x = split_double(a), y = split_double(b);
     return x.low * y.low - (((product - x.high * y.high) - x.low * y.high) - x.high * y.low);
@@ -102,8 +105,8 @@ static void find_direction(const corner_tree *tree, corner_node *node) {
     node->direction[1] = isfinite(angle) ? sin(angle) : 0.0;
 }
 
-/* Any direction will do for a box, so all that rounding can spoil are the projections: both those here and those of
- * triangles, each by less than 3 * 2^-53 times twice the largest coordinate. */
+/* Any direction will do for a box, so all that rounding can spoil are the projections: both those here and
+ * those of triangles, each by less than 3 * 2^-53 times twice the largest coordinate. */
 static void find_box(const corner_tree *tree, corner_node *node) {
     find_direction(tree, node);
     for (int k = 0; k < 2; k++) {
@@ -140,7 +143,8 @@ static void split_nodes(corner_tree *tree) {
 }
 
 bool corner_tree_create(const double (*points)[2], uint32_t count, corner_tree *out) {
-    /* Halves of more than LEAF_SIZE points have half of these at least, so there are fewer leaves than this. */
+    /* Halves of more than LEAF_SIZE points have half of these at least, so there are fewer leaves than
+     * this. */
     const size_t leaf_limit = 2 * (size_t)count / LEAF_SIZE + 1;
     corner_tree tree = {.points = points,
                         .node_of = io_realloc(NULL, (size_t)count * sizeof *tree.node_of),
@@ -199,8 +203,8 @@ static searched_triangle take_triangle(const corner_tree *tree, const uint32_t t
     return t;
 }
 
-/* Does the whole box lie to the right of a b? Both ends may be off by the slack, and so may the box; what rounds here is
- * less than that. */
+/* Does the whole box lie to the right of a b? Both ends may be off by the slack, and so may the box; what
+ * rounds here is less than that. */
 static bool side_has_box_outside(const corner_node *node, const double a[2], const double b[2],
                                  double slack) {
     const double side[2] = {b[0] - a[0], b[1] - a[1]};
@@ -329,8 +333,8 @@ static int turn_at(const ear_clipper *c, uint32_t a, uint32_t b, uint32_t d) {
     return orientation_of(c->points[a], c->points[b], c->points[d]);
 }
 
-/* The candidates that wait for a corner may be ears once it is clipped, and not before: a corner in the way stays there, even
- * when it has become convex. */
+/* The candidates that wait for a corner may be ears once it is clipped, and not before: a corner in the way
+ * stays there, even when it has become convex. */
 static void release_waiting(ear_clipper *c, uint32_t corner) {
     uint32_t waiting = c->corners[corner].first_waiting;
     c->corners[corner].first_waiting = NO_CORNER;
@@ -399,9 +403,9 @@ static void clip_ear(ear_clipper *c, uint32_t corner, uint32_t triangle[3]) {
     renew_corner(c, w);
 }
 
-/* The corner that keeps a candidate from being an ear: a neighbour from which the diagonal leaves outwards, or one in the
- * way. The candidate turns left, so the diagonal lies to the left of its side at either end, and leaves outwards only where an
- * angle of less than 180 degrees ends before it. */
+/* The corner that keeps a candidate from being an ear: a neighbour from which the diagonal leaves outwards,
+ * or one in the way. The candidate turns left, so the diagonal lies to the left of its side at either end,
+ * and leaves outwards only where an angle of less than 180 degrees ends before it. */
 static uint32_t find_obstacle(ear_clipper *c, uint32_t corner) {
     const uint32_t u = c->corners[corner].previous, w = c->corners[corner].next;
     if (c->corners[u].convex && turn_at(c, u, w, c->corners[u].previous) <= 0) return u;

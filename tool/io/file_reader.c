@@ -1,4 +1,5 @@
-/* A whole file in memory, a position in it, errors that name the place, and the tokens and numbers of text formats. */
+/* A whole file in memory, a position in it, errors that name the place, and the tokens and numbers of text
+ * formats. */
 #include "tool/io/file_reader.h"
 
 #include "tool/io/io.h"
@@ -172,8 +173,8 @@ static bool ends_word(const file_reader *reader) {
     return reader->at == reader->size || is_blank(c) || is_line_end(c) || is_continuation(reader);
 }
 
-/* A # begins a comment where a word could begin. Within one it is of the word: programs of Windows write 1.#QNAN for what
- * is no number, and names may have it. */
+/* A # begins a comment where a word could begin. Within one it is of the word: programs of Windows write
+ * 1.#QNAN for what is no number, and names may have it. */
 static bool begins_comment(const file_reader *reader) {
     return reader->comments && reader->bytes[reader->at] == '#';
 }
@@ -268,8 +269,8 @@ bool text_expect_line_end(file_reader *reader) {
     return !text_next_token(reader, &token) || fail_expected(reader, token, "the end of the line");
 }
 
-/* What the C library of Visual C++ printed before 2015 for what is no number: 1.#QNAN, -1.#IND00, 1.#INF, and, when it
- * rounded that as if it were digits, 1.#R and 1.#J. */
+/* Spellings of what is no number, as the C library of Visual C++ printed them before 2015: 1.#QNAN,
+ * -1.#IND00, 1.#INF, and, when it rounded that as if it were digits, 1.#R and 1.#J. */
 static bool parse_no_number(text_token token, double *value) {
     static const char mark[] = "1.#";
     const size_t sign = token.length > 0 && (*token.text == '-' || *token.text == '+') ? 1 : 0;

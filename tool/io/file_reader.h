@@ -1,4 +1,5 @@
-/* A whole file in memory, a position in it, errors that name the place, and the tokens and numbers of text formats. */
+/* A whole file in memory, a position in it, errors that name the place, and the tokens and numbers of text
+ * formats. */
 #pragma once
 
 #include "tool/io/io.h"
@@ -26,11 +27,12 @@ typedef struct file_reader {
 bool file_reader_open(file_reader *reader, const char *path, io_error *error);
 void file_reader_close(file_reader *reader);
 
-/* Asks the system to begin to fetch the file from its disk, without waiting for it. Where that cannot be, nothing happens. */
+/* Asks the system to begin to fetch the file from its disk, without waiting for it. Where that cannot be,
+ * nothing happens. */
 void file_reader_expect(const char *path);
 
-/* Write "path: message" to reader->error, or, with the place where the reader is, "path:LINE: message", as compilers do, or
- * "path: byte N: message". The message is always one line; the result is always false. */
+/* Write "path: message" to reader->error, or, with the place where the reader is, "path:LINE: message", as
+ * compilers do, or "path: byte N: message". The message is always one line; the result is always false. */
 bool file_reader_fail(file_reader *reader, const char *format, ...) __attribute__((format(printf, 2, 3)));
 bool file_reader_fail_here(file_reader *reader, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
@@ -51,7 +53,8 @@ typedef struct text_shown {
 /* Finds the next token of the line; false at the line's end, which is not passed. */
 bool text_next_token(file_reader *reader, text_token *token);
 
-/* Takes all that is left of the line, with blanks and # within it, but without blanks around it; false when that is nothing. */
+/* Takes all that is left of the line, with blanks and # within it, but without blanks around it; false when
+ * that is nothing. */
 bool text_rest_of_line(file_reader *reader, text_token *rest);
 
 /* Moves to the start of the next line, whatever the rest of this one holds. */
@@ -67,15 +70,15 @@ bool text_integer(file_reader *reader, const char *expected, int64_t *value);
 /* Checks that the line ends here. */
 bool text_expect_line_end(file_reader *reader);
 
-/* Reads the whole token as a number, rounded to the nearest double; infinities and NaN are let through, also as 1.#INF and
- * 1.#QNAN. */
+/* Reads the whole token as a number, rounded to the nearest double; infinities and NaN are let through, also
+ * as 1.#INF and 1.#QNAN. */
 bool text_parse_number(text_token token, double *value);
 /* Reads the whole token as a decimal integer of at most 18 digits. */
 bool text_parse_integer(text_token token, int64_t *value);
 /* Reads such an integer at the beginning of the token; returns its length, 0 when there is none. */
 size_t text_parse_integer_prefix(text_token token, int64_t *value);
 
-/* What to say behind a message about a token that should be a number: that it has a decimal comma; else "". */
+/* Advice behind a message about a token that should be a number: that it has a decimal comma; else "". */
 const char *text_number_advice(text_token token);
 
 bool text_equals(text_token token, const char *word);

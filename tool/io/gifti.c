@@ -326,7 +326,8 @@ static void begin_data(gifti_parser *parser) {
     parser->receiver = array;
 }
 
-/* The format has no arrays in arrays and nothing but text in Data; what is written so has no meaning that we could guess. */
+/* The format has no arrays in arrays and nothing but text in Data; what is written so has no meaning that we
+ * could guess. */
 static void begin_element(void *user, const char *name, const char **attributes) {
     gifti_parser *parser = user;
     const bool is_array = strcmp(name, "DataArray") == 0;

@@ -1,4 +1,5 @@
-/* The ground of readers and writers of files: the line that a failure leaves behind, arrays that grow, and the names of paths. */
+/* The ground of readers and writers of files: the line that a failure leaves behind, arrays that grow, and
+ * the names of paths. */
 #include "tool/io/io.h"
 
 #include "tool/io/mesh_file.h"
@@ -153,7 +154,7 @@ size_t path_mesh_ending(const char *path) {
     return length;
 }
 
-/* Of frames, which may be many, as `frame-*.obj` names them, and of anything else. */
+/* Advises on frames, which may be many, as `frame-*.obj` names them, and on anything else. */
 const char *path_missing_advice(const char *path) {
     const char *name = path_file_name(path);
     if (strpbrk(name, "*?[") != NULL)

@@ -1,4 +1,5 @@
-/* Where the mesh readers get memory: a file of its own, so that a test that has a failing io_realloc links without it. */
+/* The mesh readers get memory here, in a file of its own, so that a test that has a failing io_realloc links
+ * without it. */
 #include "tool/io/io.h"
 
 #include <stdlib.h>

@@ -1,4 +1,5 @@
-/* Writes JSON as it goes, with its commas, nesting and escapes; and bounds the JSON of strangers before it is parsed. */
+/* Writes JSON as it goes, with its commas, nesting and escapes; and bounds the JSON of strangers before it is
+ * parsed. */
 #include "tool/io/json.h"
 
 #include "tool/io/text_encoding.h"

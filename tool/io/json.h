@@ -1,4 +1,5 @@
-/* Writes JSON as it goes, with its commas, nesting and escapes; and bounds the JSON of strangers before it is parsed. */
+/* Writes JSON as it goes, with its commas, nesting and escapes; and bounds the JSON of strangers before it is
+ * parsed. */
 #pragma once
 
 #include <stdbool.h>
@@ -34,6 +35,7 @@ void json_verbatim(json *out, const char *key, const char *text);
 /* Starts the next value on a new line, for human readers. */
 void json_break_line(json *out);
 
-/* False: the text has more than an object in ten bytes, beside a thousand, which no program writes. Parsed, each takes a thousand
- * bytes, so that text of nothing but braces would become 350 times as large; what is left becomes 100 times as large at most. */
+/* False: the text has more than an object in ten bytes, beside a thousand, which no program writes. Parsed,
+ * each takes a thousand bytes, so that text of nothing but braces would become 350 times as large; what is
+ * left becomes 100 times as large at most. */
 bool json_has_room(const char *text, size_t size);

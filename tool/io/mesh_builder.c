@@ -79,7 +79,7 @@ bool mesh_builder_set_face_part(mesh_builder *builder, const char *name, size_t 
     return true;
 }
 
-/* Where the corners of the face that was begun last begin. */
+/* The first corner of the face that was begun last. */
 static size_t corner_start(const mesh_builder *builder) {
     const built_face *faces = builder->faces.data;
     return builder->faces.count > 1 ? faces[builder->faces.count - 2].corner_end : 0;
@@ -106,7 +106,8 @@ static void note_repair(uint32_t face, uint32_t *count, uint32_t *first) {
     if ((*count)++ == 0 || face < *first) *first = face;
 }
 
-/* Leaves a vertex out that follows itself in the face, which is a cycle; returns how many corners are left. */
+/* Leaves a vertex out that follows itself in the face, which is a cycle; returns how many corners are
+ * left. */
 static size_t shorten_face(uint32_t *corners, size_t count) {
     size_t left = 0;
     for (size_t i = 0; i < count; i++)
@@ -148,8 +149,8 @@ static bool repeats_vertex(const uint32_t triangle[3]) {
     return triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0];
 }
 
-/* Cuts a face into triangles behind those that there are. A face that names a vertex twice, but not in a row, may have
- * triangles that do so, too, and are left out. */
+/* Cuts a face into triangles behind those that there are. A face that names a vertex twice, but not in a row,
+ * may have triangles that do so, too, and are left out. */
 static bool cut_face(mesh_builder *builder, uint32_t face, mesh_file *out) {
     const built_face *faces = builder->faces.data;
     const size_t start = face > 0 ? faces[face - 1].corner_end : 0, count = faces[face].corner_end - start;
@@ -181,7 +182,7 @@ static bool cut_face(mesh_builder *builder, uint32_t face, mesh_file *out) {
     return true;
 }
 
-/* Where there are parts, each triangle has one. */
+/* If there are parts, each triangle has one. */
 static bool reserve_labels(mesh_parts *parts, size_t count) {
     if (parts->count == 0) return true;
     parts->of_triangle = io_realloc(NULL, count * sizeof *parts->of_triangle);

@@ -27,7 +27,7 @@ typedef struct mesh_builder {
     growable stiffness;  /* of double: of all faces, or empty */
     uint32_t part;       /* of the faces to come; NO_MESH_PART: none */
     mesh_parts parts;
-    uint32_t own_part; /* the same by MESH_PARTS_BY_FILE, where the reader is asked for other parts */
+    uint32_t own_part; /* the same by MESH_PARTS_BY_FILE, where the reader wants other parts */
     mesh_parts own_parts;
     mesh_repairs repairs;
     uint64_t triangle_count; /* of all faces together */
@@ -43,7 +43,7 @@ bool mesh_builder_add_vertex(mesh_builder *builder, const double position[3]);
 /* The faces to come belong to the part of that name; length 0: to none. */
 bool mesh_builder_set_part(mesh_builder *builder, const char *name, size_t length);
 
-/* The same of the parts by MESH_PARTS_BY_FILE, where the reader is asked for others. */
+/* The same of the parts by MESH_PARTS_BY_FILE, where the reader wants others. */
 bool mesh_builder_set_own_part(mesh_builder *builder, const char *name, size_t length);
 
 /* The face that was begun last belongs to the part of that name, and so do those to come. */
@@ -57,5 +57,6 @@ bool mesh_builder_end_face(mesh_builder *builder);
 /* Adds the stiffness of the face that was begun last; every face has one, or none. */
 bool mesh_builder_add_face_stiffness(mesh_builder *builder, double stiffness);
 
-/* Cuts the faces into triangles, now that all vertices are known, and moves the mesh to *out; false, and *out untouched, when it has no vertices or no triangles. */
+/* Cuts the faces into triangles, now that all vertices are known, and moves the mesh to *out; false, and *out
+ * untouched, when it has no vertices or no triangles. */
 bool mesh_builder_finish(mesh_builder *builder, mesh_file *out);

@@ -1,5 +1,5 @@
-/* Triangle meshes from files: which format it is, the names of parts, and writing OBJ; and files of other programs that are not
- * read, with the way out of them. */
+/* Triangle meshes from files: which format it is, the names of parts, and writing OBJ; and files of other
+ * programs that are not read, with the way out of them. */
 #include "tool/io/mesh_file.h"
 
 #include "tool/io/format_reader.h"
@@ -89,7 +89,8 @@ void mesh_parts_free(mesh_parts *parts) {
     *parts = (mesh_parts){0};
 }
 
-/* FNV-1a, from where the table happens to lie: names that meet in one place of every table cannot be made up beforehand. */
+/* FNV-1a, from where the table happens to lie: names that meet in one place of every table cannot be made up
+ * beforehand. */
 static uint64_t hash_name(const uint32_t *places, const char *name, size_t length) {
     uint64_t hash =
         UINT64_C(0xcbf29ce484222325) ^ ((uint64_t)(uintptr_t)places >> 4) * UINT64_C(0x9e3779b97f4a7c15);
@@ -97,7 +98,7 @@ static uint64_t hash_name(const uint32_t *places, const char *name, size_t lengt
     return hash ^ hash >> 32;
 }
 
-/* Where the name stands, or would. There is a free place. */
+/* Finds the place of the name, or the free one that it would get. There is a free place. */
 static uint32_t *find_place(const mesh_parts *parts, const char *name, size_t length) {
     const size_t mask = parts->place_count - 1;
     for (size_t i = (size_t)hash_name(parts->places, name, length) & mask;; i = (i + 1) & mask) {
@@ -172,7 +173,8 @@ static const format_reader *reader_of_ending(const file_reader *reader) {
     return NULL;
 }
 
-/* Formats without groups and materials have no parts of that kind; but for OBJ, parts by object are the file's. */
+/* Formats without groups and materials have no parts of that kind; except of OBJ, parts by object are the
+ * file's. */
 static bool read_format(file_reader *reader, const format_reader *chosen, mesh_file *out) {
     const bool by_object = reader->parts_by == MESH_PARTS_BY_OBJECT;
     if (by_object && chosen->format != MESH_FORMAT_OBJ) reader->parts_by = MESH_PARTS_BY_FILE;

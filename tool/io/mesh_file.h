@@ -39,14 +39,14 @@ typedef enum mesh_format {
 /* The format that the ending of a path says, or MESH_FORMAT_NONE. *length is that of the ending. */
 mesh_format mesh_format_of_path(const char *path, unsigned *length);
 
-/* What a format is called; "" for MESH_FORMAT_NONE. */
+/* The name of a format; "" for MESH_FORMAT_NONE. */
 const char *mesh_format_name(mesh_format format);
 
 /* ---- parts --------------------------------------------------------------------------------------------- */
 
 #define NO_MESH_PART UINT32_MAX
 
-/* What makes the parts of a mesh file. */
+/* The choice of what makes the parts of a mesh file. */
 typedef enum mesh_parts_by {
     MESH_PARTS_BY_FILE, /* what the file has: of an OBJ objects with their groups, of a glTF nodes, STL solids, PLY labels */
     MESH_PARTS_BY_OBJECT,  /* of an OBJ objects alone; else as above */
@@ -67,14 +67,15 @@ typedef struct mesh_parts {
 /* Frees names and labels; a zeroed struct is fine. */
 void mesh_parts_free(mesh_parts *parts);
 
-/* The part of that name, which is added if there is none yet; the first length characters of name count. NO_MESH_PART when
- * out of memory. The list was empty at first, and all of its names came by this function. */
+/* The part of that name, which is added if there is none yet; the first length characters of name count.
+ * NO_MESH_PART when out of memory. The list was empty at first, and all of its names came by this
+ * function. */
 uint32_t mesh_parts_find(mesh_parts *parts, const char *name, size_t length);
 
 /* ---- meshes -------------------------------------------------------------------------------------------- */
 
-/* What a reader did to faces that are no polygons of three different corners or more, or that it could not fill by their
- * shape. Faces are counted from 0, in the file's order. */
+/* The repairs of a reader to faces that are no polygons of three different corners or more, or that it could
+ * not fill by their shape. Faces are counted from 0, in the file's order. */
 typedef struct mesh_repairs {
     uint32_t shortened,
         first_shortened;             /* faces that named a vertex twice in a row, which then counts once */
@@ -83,8 +84,8 @@ typedef struct mesh_repairs {
     uint32_t skipped_primitives;     /* of a glTF: points and lines */
 } mesh_repairs;
 
-/* Vertices in the file's own order; faces in file order, polygons cut into triangles by their shape (mesh_builder.h), as they
- * are in this file. */
+/* Vertices in the file's own order; faces in file order, polygons cut into triangles by their shape
+ * (mesh_builder.h), as they are in this file. */
 typedef struct mesh_file {
     mesh_format format;
     uint32_t vertex_count, triangle_count,
@@ -103,7 +104,8 @@ typedef struct mesh_file {
     char *unread;             /* a sentence about what may change the mesh and is not read; NULL: nothing */
 } mesh_file;
 
-/* Adds a face to the hash of those before it (64-bit FNV-1a). Files whose faces have the same hash have the same faces. */
+/* Adds a face to the hash of those before it (64-bit FNV-1a). Files whose faces have the same hash have the
+ * same faces. */
 #define MESH_HASH_START 0xcbf29ce484222325u
 static inline uint64_t mesh_file_hash(uint64_t hash, const uint32_t *corners, size_t count) {
     hash = (hash ^ count) * 0x100000001b3u;

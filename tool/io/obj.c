@@ -1,4 +1,5 @@
-/* Wavefront OBJ: vertices, polygons, and the names of objects, groups and materials; all other records are skipped. */
+/* Wavefront OBJ: vertices, polygons, and the names of objects, groups and materials; all other records are
+ * skipped. */
 #include "tool/io/format_reader.h"
 
 #include "tool/io/file_reader.h"
@@ -67,7 +68,7 @@ static bool resolve_index(obj_parser *obj, int64_t index, uint32_t *vertex) {
     return true;
 }
 
-/* What exporters write where an object or a group has no name. */
+/* Names that exporters write for an object or a group without one. */
 static bool is_no_name(text_token name) {
     return text_equals(name, "default") || text_equals(name, "off") || text_equals(name, "(null)");
 }
@@ -102,7 +103,8 @@ static bool name_joined(obj_parser *obj, part_setter *set_part) {
     return set_part(&obj->builder, joined, (size_t)length);
 }
 
-/* By objects, groups or materials alone the faces to come are in a part of that name, and besides in one of their own. */
+/* By objects, groups or materials alone the faces to come are in a part of that name, and besides in one of
+ * their own. */
 static bool name_part(obj_parser *obj) {
     const mesh_parts_by by = obj->reader->parts_by;
     obj->renamed = false;

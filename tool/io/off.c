@@ -7,7 +7,7 @@
 #include <inttypes.h>
 #include <string.h>
 
-/* What the keyword and the line of a dimension say of a vertex. */
+/* The properties of a vertex, as the keyword and the line of a dimension say them. */
 typedef struct off_kind {
     bool homogeneous; /* 4: a last coordinate divides the others */
     bool dimensioned; /* n: the number of dimensions stands behind the keyword */
@@ -22,7 +22,8 @@ static bool starts_with(text_token token, size_t at, const char *word) {
     return token.length >= at + length && memcmp(token.text + at, word, length) == 0;
 }
 
-/* Which of the letters in front of OFF stands here: texture coordinates, colour, normal, 4 or n; NULL: none. */
+/* Finds which of the letters in front of OFF stands here: texture coordinates, colour, normal, 4 or n; NULL:
+ * none. */
 static const char *prefix_at(text_token token, size_t at) {
     static const char *const prefixes[] = {"ST", "C", "N", "4", "n"};
     for (size_t i = 0; i < sizeof prefixes / sizeof *prefixes; i++)
@@ -30,8 +31,8 @@ static const char *prefix_at(text_token token, size_t at) {
     return NULL;
 }
 
-/* [ST][C][N][4][n]OFF, in any order, with the first count behind it or, in some widely used files, glued to it. Returns
- * the keyword's length, 0 when it is none. */
+/* [ST][C][N][4][n]OFF, in any order, with the first count behind it or, in some widely used files, glued to
+ * it. Returns the keyword's length, 0 when it is none. */
 static size_t keyword_length(text_token token, off_kind *kind) {
     off_kind found = {0};
     size_t at = 0;
@@ -81,8 +82,8 @@ static bool check_count(file_reader *reader, const char *what, int64_t count) {
                                  count, MESH_COUNT_LIMIT);
 }
 
-/* The number of edges is not needed, and may be missing. It may have a line of its own, which then has one number, while a
- * vertex has three. */
+/* The number of edges is not needed, and may be missing. It may have a line of its own, which then has one
+ * number, while a vertex has three. */
 static bool skip_edge_count(file_reader *reader) {
     text_token token;
     int64_t edges;
@@ -146,8 +147,8 @@ static bool read_vertices(file_reader *reader, off_kind kind, int64_t count, mes
     return true;
 }
 
-/* A face's indices may go on in further lines. A line that is too short takes from the next one then, and the file ends
- * too early, so it is noticed all the same. */
+/* A face's indices may go on in further lines. A line that is too short takes from the next one then, and the
+ * file ends too early, so it is noticed all the same. */
 static bool read_index(file_reader *reader, int64_t vertex_count, int64_t *index) {
     text_seek_token(reader);
     if (!text_integer(reader, "a vertex index of the face", index)) return false;

@@ -1,5 +1,5 @@
-/* Files that are written: one that takes another's place only when it is complete, where "-" is the standard output; and one
- * that only grows. */
+/* Files that are written: one that takes another's place only when it is complete, where "-" is the standard
+ * output; and one that only grows. */
 #include "tool/io/output_file.h"
 
 #include "tool/io/io.h"
@@ -158,7 +158,7 @@ bool output_file_flush(output_file *f) {
     return true;
 }
 
-/* What was written up to the last flush, without what a full disk has cut off behind it. */
+/* Keeps what was written up to the last flush, without what a full disk has cut off behind it. */
 static bool cut_to_whole(const output_file *f) {
     return f->temporary != NULL && f->whole_size > 0 && truncate(f->temporary, f->whole_size) == 0;
 }
@@ -227,7 +227,7 @@ bool append_file_cut(append_file *f, off_t size, io_error *error) {
     return true;
 }
 
-/* What would be written to a file that has no name any more, or that somebody else changes, would be lost. */
+/* Bytes that go to a file that has no name any more, or that somebody else changes, would be lost. */
 static bool file_is_ours(const append_file *f, io_error *error) {
     struct stat own, named;
     if (!f->regular || fstat(f->file, &own) != 0) return true;

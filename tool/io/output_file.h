@@ -1,5 +1,5 @@
-/* Files that are written: one that takes another's place only when it is complete, where "-" is the standard output; and one
- * that only grows. */
+/* Files that are written: one that takes another's place only when it is complete, where "-" is the standard
+ * output; and one that only grows. */
 #pragma once
 
 #include "tool/io/io.h"
@@ -17,7 +17,7 @@ typedef struct output_file {
     int cause;        /* errno of the first failure that was seen; 0: none was */
 } output_file;
 
-/* How a file ends. Whatever a path held before stays until a file takes its place. */
+/* The ways in which a file ends. Whatever a path held before stays until a file takes its place. */
 typedef enum output_ending {
     OUTPUT_WHOLE,       /* it takes its place, or is removed if the rest could not be written */
     OUTPUT_WHOLE_LINES, /* the same, but what the last flush had written takes its place in any case */
@@ -29,7 +29,8 @@ typedef enum output_ending {
  * *out holds nothing to close, and errno says why. */
 bool output_file_open(const char *path, output_file *out);
 
-/* Could everything so far be written, as far as is known yet? If not, errno says why, the same at each look and at the end. */
+/* True if everything so far could be written, as far as is known yet. If not, errno says why, the same at
+ * each look and at the end. */
 bool output_file_writes(output_file *file);
 
 /* Passes everything written so far to the system. The same answer. */
@@ -38,15 +39,16 @@ bool output_file_flush(output_file *file);
 /* Closes, and puts the file in its place. False: not all of it is there, and errno says why. */
 bool output_file_close(output_file *file, output_ending ending);
 
-/* Can the standard output be written to? If not, errno says why. */
+/* True if the standard output can be written to. If not, errno says why. */
 bool output_file_standard_opens(void);
 
-/* Is the path "-"? It may be NULL. */
+/* True if the path is "-". It may be NULL. */
 bool output_file_is_standard(const char *path);
 
 /* ---- files that only grow ------------------------------------------------------------------------------ */
 
-/* A file that only grows, by whole records, and has one writer: what is in it stays, whatever ends the program. */
+/* A file that only grows, by whole records, and has one writer: what is in it stays, whatever ends the
+ * program. */
 typedef struct append_file {
     const char *path;
     int file;     /* locked: nobody else appends to it. -1: none is open */
@@ -54,15 +56,15 @@ typedef struct append_file {
     off_t size;   /* of its whole records; 0 of a device, which holds none */
 } append_file;
 
-/* Opens a file, which is made if there is none, and locks it. Its size is all of it. On false *out holds nothing to close: it cannot
- * be written, is a pipe, or another process writes it. */
+/* Opens a file, which is made if there is none, and locks it. Its size is all of it. On false *out holds
+ * nothing to close: it cannot be written, is a pipe, or another process writes it. */
 bool append_file_open(const char *path, append_file *out, io_error *error);
 
 /* Cuts off what lies behind. */
 bool append_file_cut(append_file *f, off_t size, io_error *error);
 
-/* Adds a record. After an error the file ends with the record before. It is an error, too, if somebody else has removed, replaced or
- * changed the file. */
+/* Adds a record. After an error the file ends with the record before. It is an error, too, if somebody else
+ * has removed, replaced or changed the file. */
 bool append_file_add(append_file *f, const void *record, size_t size, io_error *error);
 
 /* In a process that only inherited the file: the lock stays with the one that opened it. */

@@ -1,6 +1,7 @@
-/* Named pipes that a signal interrupts. A look at a flag before open(2) or read(2) would be a moment too early for a signal that
- * comes between the two, and the call then waits for ever. So no call here waits without an end: pipes are opened without
- * waiting, poll(2) waits for their bytes, and both end soon enough to look again. */
+/* Named pipes that a signal interrupts. A look at a flag before open(2) or read(2) would be a moment too
+ * early for a signal that comes between the two, and the call then waits for ever. So no call here waits
+ * without an end: pipes are opened without waiting, poll(2) waits for their bytes, and both end soon enough
+ * to look again. */
 #include "tool/io/io.h"
 
 #include <stdatomic.h>
@@ -43,7 +44,8 @@ static bool is_pipe(const char *path) {
 
 /* ---- reading ------------------------------------------------------------------------------------------- */
 
-/* Until there are bytes, or nobody is left to write any. That nobody has come yet is neither, as poll has it. */
+/* Until there are bytes, or nobody is left to write any. That nobody has come yet is neither, as poll
+ * has it. */
 static bool await_bytes(int file) {
     struct pollfd polled = {.fd = file, .events = POLLIN};
     for (int found = 0; found <= 0;) {
@@ -117,7 +119,8 @@ FILE *pipe_file_write(const char *path) {
 
 #else
 
-/* Pipes are others elsewhere, and so are streams of one's own; there a second signal ends the wait, and the process. */
+/* Pipes are others elsewhere, and so are streams of one's own; there a second signal ends the wait, and the
+ * process. */
 FILE *pipe_file_read(const char *path) {
     return fopen(path, "rb");
 }

@@ -1,4 +1,5 @@
-/* PLY files: the header, the rows of its elements, text and binary of either byte order, and the mesh in them. */
+/* PLY files: the header, the rows of its elements, text and binary of either byte order, and the mesh in
+ * them. */
 #include "tool/io/ply.h"
 
 #include "tool/io/format_reader.h"
@@ -502,7 +503,8 @@ static bool visit_property(void *user, const ply_property *property) {
     return ply_data_skip(&ply->data, property);
 }
 
-/* Parts are called by their number. A face is begun before its label is known if the label stands behind its corners. */
+/* Parts are called by their number. A face is begun before its label is known if the label stands behind its
+ * corners. */
 static bool set_part(ply_parser *ply) {
     char name[32];
     if (ply->has_parts && ply->label == ply->part_label) return true; /* as the face before it */

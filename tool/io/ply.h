@@ -1,4 +1,5 @@
-/* PLY files: the header, with encoding, elements and properties, and the rows, value by value; and plans in such files. */
+/* PLY files: the header, with encoding, elements and properties, and the rows, value by value; and plans in
+ * such files. */
 #pragma once
 
 #include "cscd/cscd.h"
@@ -26,8 +27,8 @@ typedef enum ply_type {
 
 typedef enum ply_kind { PLY_OTHER, PLY_VERTEX, PLY_FACE } ply_kind;
 
-/* The role of a property in a mesh; X, Y, Z are 0, 1, 2. A face's integer part, or label, says which part it belongs to; of
- * several the first counts. Its stiffness is a number of any type. */
+/* The role of a property in a mesh; X, Y, Z are 0, 1, 2. A face's integer part, or label, says which part it
+ * belongs to; of several the first counts. Its stiffness is a number of any type. */
 typedef enum ply_role { PLY_X, PLY_Y, PLY_Z, PLY_CORNERS, PLY_PART, PLY_STIFFNESS, PLY_IGNORED } ply_role;
 
 typedef struct ply_property {
@@ -84,15 +85,15 @@ bool ply_data_skip(ply_data *data, const ply_property *property);
 
 /* ---- plans: the mesh at rest, charge and region per face, and a colour, which any viewer shows --------- */
 
-/* Does the file begin as a PLY with the comment that every plan has? False too when it cannot be read. */
+/* True if the file begins as a PLY with the comment that every plan has; false too when it cannot be read. */
 bool plan_file_is_plan(const char *path);
 
-/* positions: the mesh at rest, as the plan was made from it; colours: red, green, blue per triangle. A file that
- * was there stays until the plan is whole. */
+/* positions: the mesh at rest, as the plan was made from it; colours: red, green, blue per triangle. A file
+ * that was there stays until the plan is whole. */
 bool plan_file_write(const char *path, const cscd_mesh *mesh, const double *positions, const cscd_plan *plan,
                      const uint8_t *colours, io_error *error);
 
-/* Reads the plan that was written, bit for bit. It refuses a plan of another mesh, and says what differs. context:
- * that of the mesh. */
+/* Reads the plan that was written, bit for bit. It refuses a plan of another mesh, and says what differs.
+ * context: that of the mesh. */
 bool plan_file_read(const char *path, const cscd_context *context, const cscd_mesh *mesh, cscd_plan **out,
                     io_error *error);

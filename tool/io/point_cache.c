@@ -62,7 +62,8 @@ static int64_t read_at(int file, unsigned char *bytes, size_t size, int64_t offs
     return (int64_t)done;
 }
 
-/* A named pipe is not opened: whoever writes it would take this for its reader, and until somebody does, opening waits. */
+/* A named pipe is not opened: whoever writes it would take this for its reader, and until somebody does,
+ * opening waits. */
 static bool is_regular(const char *path) {
     struct stat status;
     return stat(path, &status) == 0 && S_ISREG(status.st_mode);
@@ -116,7 +117,7 @@ static bool check_magic(const char *path, const unsigned char *header, size_t si
                    POINT_CACHE_PC2_MAGIC);
 }
 
-/* What frames are called, by the header's start and rate. */
+/* Numbers the frames by the header's start and rate. */
 static void number_frames(point_cache *cache, double start, double rate) {
     cache->first_number = 0;
     cache->number_step = 1;

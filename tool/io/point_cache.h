@@ -7,11 +7,11 @@
 #include <stdint.h>
 
 /* PC2: 32 bytes, little endian: "POINTCACHE2" with its NUL, int32 version (1), int32 points, float32 start,
- * float32 rate, int32 samples; then for each sample x,y,z float32 of every point.
- * MDD: big endian: int32 frames, int32 points, float32 time of every frame; then for each frame x,y,z float32
- * of every point. Frames are taken in the file's order. A PC2 header says what they are called: the first is number start,
- * and the others follow in steps of rate, if both are whole numbers and rate is at least 1. MDD's times, in seconds, are
- * not used. */
+ * float32 rate, int32 samples; then for each sample x,y,z float32 of every point. MDD: big endian: int32
+ * frames, int32 points, float32 time of every frame; then for each frame x,y,z float32 of every point. Frames
+ * are taken in the file's order. A PC2 header says what they are called: the first is number start, and the
+ * others follow in steps of rate, if both are whole numbers and rate is at least 1. MDD's times, in seconds,
+ * are not used. */
 #define POINT_CACHE_PC2_MAGIC "POINTCACHE2"
 enum {
     POINT_CACHE_PC2_MAGIC_SIZE = sizeof POINT_CACHE_PC2_MAGIC,
@@ -22,7 +22,7 @@ enum {
 
 typedef struct point_cache point_cache;
 
-/* Whether path is to be read as a point cache: it begins like a PC2 file, or ends in .pc2 or .mdd. */
+/* True if path is to be read as a point cache: it begins like a PC2 file, or ends in .pc2 or .mdd. */
 bool point_cache_recognise(const char *path);
 
 /* Checks the header and the file's size against it; vertex_count is at least 1. On false *out is
@@ -32,7 +32,7 @@ void point_cache_close(point_cache *cache);
 
 uint32_t point_cache_frame_count(const point_cache *cache);
 
-/* What the header calls a frame; its index where it does not say so. */
+/* The number that the header gives a frame; its index where there is none. */
 int32_t point_cache_frame_number(const point_cache *cache, uint32_t frame);
 
 /* frame is below the count; positions takes vertex_count * 3 and is undefined on false. */
@@ -47,10 +47,11 @@ typedef struct point_cache_writer point_cache_writer;
 bool point_cache_writer_open(const char *path, uint32_t vertex_count, uint32_t frame_count,
                              point_cache_writer **out, io_error *error);
 
-/* Appends a frame, vertex_count * 3 positions rounded to float32; a value that is not finite in float32 is an
- * error. After an error nothing is left of the file, every further write fails, and only close is left to do. */
+/* Appends a frame, vertex_count * 3 positions rounded to float32; a value that is not finite in float32
+ * is an error. After an error nothing is left of the file, every further write fails, and only close is
+ * left to do. */
 bool point_cache_writer_write(point_cache_writer *writer, const double *positions, io_error *error);
 
-/* Always frees the writer; NULL is fine. True if all frame_count frames are in the file. If not, none of it is
- * there; *error is set unless a write has already failed and said why. */
+/* Always frees the writer; NULL is fine. True if all frame_count frames are in the file. If not, none of it
+ * is there; *error is set unless a write has already failed and said why. */
 bool point_cache_writer_close(point_cache_writer *writer, io_error *error);

@@ -1,4 +1,5 @@
-/* Looks at a polygon in the plane of two coordinates, and fills it there: a fan where that is right, else by clipping ears. */
+/* Looks at a polygon in the plane of two coordinates, and fills it there: a fan where that is right, else by
+ * clipping ears. */
 #include "tool/io/mesh_builder.h"
 
 #include "tool/io/io.h"
@@ -103,8 +104,8 @@ static bool sides_cross(const double *a, const double *b, const double *c, const
            orientation_of(c, d, a) * orientation_of(c, d, b) < 0;
 }
 
-/* Ears may fill a polygon that crosses itself as well, by triangles that lie twofold in places. All pairs of sides are
- * looked at, but not where that takes longer than the ears. */
+/* Ears may fill a polygon that crosses itself as well, by triangles that lie twofold in places. All pairs of
+ * sides are looked at, but not where that takes longer than the ears. */
 static bool crosses_itself(const polygon_places *places) {
     enum { SIDES_MAX = 128 };
     const uint32_t n = places->count;
@@ -117,8 +118,8 @@ static bool crosses_itself(const polygon_places *places) {
     return false;
 }
 
-/* A fan gives its first corner a triangle for each side, and what looks at all pairs of triangles at a vertex takes the square
- * of their number. Clipped ears give a corner about the logarithm. */
+/* A fan gives its first corner a triangle for each side, and what looks at all pairs of triangles at a vertex
+ * takes the square of their number. Clipped ears give a corner about the logarithm. */
 enum { FAN_CORNERS_MOST = 128 };
 
 /* Fills in one plane; false: its triangles would overlap there. */
@@ -137,8 +138,8 @@ static bool fill_in_plane(const double *positions, const uint32_t *corners, poly
     return true;
 }
 
-/* Turns places into vertices, and adds a triangle without area for each further corner at a place, so that its edges have
- * their face. */
+/* Turns places into vertices, and adds a triangle without area for each further corner at a place, so that
+ * its edges have their face. */
 static void name_vertices(const uint32_t *corners, uint32_t corner_count, const polygon_places *places,
                           uint32_t (*triangles)[3]) {
     for (uint32_t i = 0; i + 2 < places->count; i++)

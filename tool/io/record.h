@@ -7,7 +7,8 @@
 
 #include <stddef.h>
 
-/* The type of a field in the struct, and what it looks like. What is unknown is an empty column, and null in JSON. */
+/* The type of a field in the struct, and what it looks like. What is unknown is an empty column, and null in
+ * JSON. */
 typedef enum record_kind {
     RECORD_NAME,    /* const char *: a user's text, in quotes; NULL: unknown */
     RECORD_NAMES,   /* const char *[2]: the same, a column each, and an array */
@@ -63,7 +64,7 @@ typedef struct contact_record {
 
 typedef struct contact_file contact_file;
 
-/* Does the extension say a format that contact_file_open knows? */
+/* True if the extension says a format that contact_file_open knows. */
 bool contact_file_names_format(const char *path);
 
 typedef struct contact_columns {
@@ -72,7 +73,8 @@ typedef struct contact_columns {
         *object_names; /* each row names its two objects; NULL: none does. They outlive the file */
 } contact_columns;
 
-/* The format follows from the extension: .csv or .jsonl; "-", the standard output, is CSV. On false *out is untouched. */
+/* The format follows from the extension: .csv or .jsonl; "-", the standard output, is CSV. On false *out is
+ * untouched. */
 bool contact_file_open(const char *path, contact_columns columns, contact_file **out, io_error *error);
 bool contact_file_write(contact_file *file, const contact_record *record, io_error *error);
 /* Passes everything written so far to the system. That much is kept even if the disk is full later. */

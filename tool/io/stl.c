@@ -8,8 +8,8 @@
 #include <string.h>
 #include <strings.h>
 
-/* A binary file: a header of any content, the number of triangles, and for each a normal, three vertices (12 floats)
- * and two bytes of attributes, all little endian. */
+/* A binary file: a header of any content, the number of triangles, and for each a normal, three vertices (12
+ * floats) and two bytes of attributes, all little endian. */
 enum { HEADER_SIZE = 80, COUNT_SIZE = 4, NORMAL_SIZE = 12, ATTRIBUTE_SIZE = 2, TRIANGLE_SIZE = 50 };
 
 static uint32_t load_word(const char *bytes) {
@@ -30,8 +30,8 @@ static bool is_keyword(text_token token, const char *word) {
     return token.length == strlen(word) && strncasecmp(token.text, word, token.length) == 0;
 }
 
-/* The size decides: the header of a binary file may begin with "solid" as a text does. Files that are not as long as they
- * say are binary if they hold a zero, or do not begin as a text. */
+/* The size decides: the header of a binary file may begin with "solid" as a text does. Files that are not as
+ * long as they say are binary if they hold a zero, or do not begin as a text. */
 static bool is_binary(const file_reader *reader) {
     file_reader probe = *reader;
     text_token token;

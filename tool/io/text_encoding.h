@@ -1,4 +1,5 @@
-/* The encodings of texts: UTF-8 and UTF-16 of files that are read, quotes and escapes of formats that are written, and Base64. */
+/* The encodings of texts: UTF-8 and UTF-16 of files that are read, quotes and escapes of formats that are
+ * written, and Base64. */
 #pragma once
 
 #include <stdbool.h>
@@ -18,7 +19,7 @@ static inline size_t text_mark_size(const char *bytes, size_t size) {
     return size >= length && memcmp(bytes, mark, length) == 0 ? length : 0;
 }
 
-/* Are the characters ASCII, of two bytes each? high: which of the two is zero. */
+/* True if the characters are ASCII, of two bytes each. high: which of the two is zero. */
 static inline bool text_is_wide(const char *bytes, size_t size, size_t high) {
     enum { CHARACTERS_LOOKED_AT = 4 };
     if (size < 2 * CHARACTERS_LOOKED_AT) return false;
@@ -27,8 +28,8 @@ static inline bool text_is_wide(const char *bytes, size_t size, size_t high) {
     return true;
 }
 
-/* Whether a file that should be text begins as one in UTF-16 does, of either byte order: with its mark, or with a character
- * of ASCII beside a zero, several times. */
+/* True if a file that should be text begins as one in UTF-16 does, of either byte order: with its mark, or
+ * with a character of ASCII beside a zero, several times. */
 static inline bool text_is_utf16(const char *bytes, size_t size) {
     const bool little = size >= 2 && memcmp(bytes, "\xff\xfe", 2) == 0,
                big = size >= 2 && memcmp(bytes, "\xfe\xff", 2) == 0;
@@ -42,7 +43,8 @@ static inline bool text_is_utf16(const char *bytes, size_t size) {
 /* Bytes of the UTF-8 character at s; 0 if it is none. */
 size_t text_utf8_length(const unsigned char *s);
 
-/* Bytes of the longest beginning of a text that has at most so many bytes and does not end within a character. */
+/* Bytes of the longest beginning of a text that has at most `most` bytes and does not end within a
+ * character. */
 int text_cut_length(const char *text, int most);
 
 /* The two arguments of "%.*s" that print such a beginning. */
@@ -59,6 +61,7 @@ void text_write_xml(FILE *file, const char *text);
 /* The most bytes that length characters stand for. */
 size_t base64_room(size_t length);
 
-/* Decodes length characters to out, which has that room. Blanks and line ends may stand anywhere, and the padding at the
- * end may be missing. On false *wrong is the place of the first character that does not belong there. */
+/* Decodes length characters to out, which has that room. Blanks and line ends may stand anywhere, and the
+ * padding at the end may be missing. On false *wrong is the place of the first character that does not belong
+ * there. */
 bool base64_decode(const char *text, size_t length, unsigned char *out, size_t *size, size_t *wrong);

@@ -1,5 +1,5 @@
-/* Joins vertices that lie on each other, as exporters split them along texture seams; and finds open edges that all but lie on each
- * other. */
+/* Joins vertices that lie on each other, as exporters split them along texture seams; and finds open edges
+ * that all but lie on each other. */
 #include "tool/io/weld.h"
 
 #include <math.h>
@@ -116,7 +116,8 @@ bool weld_begin(const double *positions, uint32_t vertex_count, const uint32_t *
     return true;
 }
 
-/* The first vertex, in file order, that lies farther than epsilon from the one that stands for it, or UINT32_MAX. */
+/* The first vertex, in file order, that lies farther than epsilon from the one that stands for it, or
+ * UINT32_MAX. */
 static uint32_t find_parted(const weld *w, const double *positions) {
     for (uint32_t v = 0; v < w->file_vertex_count; v++) {
         const uint32_t first = w->file_vertex[w->vertex_of_file_vertex[v]];
@@ -216,8 +217,8 @@ static bool edge_is_open(const cscd_mesh *mesh, uint32_t edge) {
     return count == 1;
 }
 
-/* The place of a vertex of the object among those of the border, to which it is added if it is not there yet. numbers: of each
- * vertex of the object, from 1. */
+/* The place of a vertex of the object among those of the border, to which it is added if it is not there yet.
+ * numbers: of each vertex of the object, from 1. */
 static uint32_t place_vertex(object_border *border, uint32_t *numbers, const double *positions,
                              uint32_t vertex) {
     if (numbers[vertex] == 0) {
@@ -299,7 +300,7 @@ static bool same_ends(const joined_edge *a, const joined_edge *b) {
     return a->ends[0] == b->ends[0] && a->ends[1] == b->ends[1];
 }
 
-/* Which open edges two or more of have the same ends then. */
+/* Finds the open edges of which two or more have the same ends then. */
 static void count_joined(const object_border *border, const weld *w, joined_edge *edges, near_seams *out) {
     uint32_t count = 0;
     for (uint32_t e = 0; e < border->edge_count; e++) {

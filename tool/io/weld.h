@@ -1,5 +1,5 @@
-/* Joins vertices that lie on each other, as exporters split them along texture seams; and finds open edges that all but lie on each
- * other. */
+/* Joins vertices that lie on each other, as exporters split them along texture seams; and finds open edges
+ * that all but lie on each other. */
 #pragma once
 
 #include <cscd/detector.h>
@@ -21,13 +21,14 @@ typedef struct weld {
 } weld;
 
 /* Each vertex joins the first one, in file order, that stands for itself and lies within epsilon. Welded
- * vertices are numbered in the order of their first file vertex. parts: vertex_count labels, and a vertex joins those of its own
- * part alone; NULL: there are none. There are no triangles before weld_finish. On false *out is untouched. */
+ * vertices are numbered in the order of their first file vertex. parts: vertex_count labels, and a vertex
+ * joins those of its own part alone; NULL: there are none. There are no triangles before weld_finish. On
+ * false *out is untouched. */
 bool weld_begin(const double *positions, uint32_t vertex_count, const uint32_t *parts, double epsilon,
                 weld *out, io_error *error);
 
-/* Takes apart what lies apart in these positions, too: of vertices that were joined only those within epsilon of each other stay
- * so. *parted becomes the first that lay apart, UINT32_MAX if none did. */
+/* Takes apart what lies apart in these positions, too: of vertices that were joined only those within epsilon
+ * of each other stay so. *parted becomes the first that lay apart, UINT32_MAX if none did. */
 bool weld_part(weld *w, const double *positions, uint32_t *parted, io_error *error);
 
 /* Maps the triangles. False if none is left, too. After any false the caller frees the weld. */
@@ -40,14 +41,15 @@ bool weld_positions(const weld *w, const double *file_positions, double *out, io
 
 /* ---- near seams ---------------------------------------------------------------------------------------- */
 
-/* Open edges that all but lie on each other, as rounding leaves them between triangles that bring vertices of their own. */
+/* Open edges that all but lie on each other, as rounding leaves them between triangles that bring vertices of
+ * their own. */
 typedef struct near_seams {
     uint32_t open_edges;   /* of the object */
-    uint32_t joined_edges; /* of these: so many would be joined with others */
+    uint32_t joined_edges; /* those of them that would be joined with others */
     double gap;            /* their corners lie so far apart at most */
     double distance;       /* by --weld with this distance, which has two digits at most */
 } near_seams;
 
-/* Looks at an object of the mesh, whose vertices have these positions: open edges whose corners lie within 1e-5 of its size of those of
- * another one. False: there are none, or not enough memory to find them. */
+/* Looks at an object of the mesh, whose vertices have these positions: open edges whose corners lie within
+ * 1e-5 of its size of those of another one. False: there are none, or not enough memory to find them. */
 bool near_seams_find(const cscd_mesh *mesh, uint32_t object, const double *positions, near_seams *out);

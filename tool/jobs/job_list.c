@@ -173,7 +173,7 @@ static bool add_option(line_reader *r, const char *name, json_object *value) {
     return true;
 }
 
-/* What is null or false is not given. */
+/* A value that is null or false is not given. */
 static bool add_options(line_reader *r, const char *name, json_object *value) {
     if (value == NULL) return true;
     if (!json_object_is_type(value, json_type_array)) return add_option(r, name, value);

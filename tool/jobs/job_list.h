@@ -13,11 +13,12 @@
 
 /* ---- lists --------------------------------------------------------------------------------------------- */
 
-/* A list is a file of JSON Lines (docs/artist/formats.md), or the names of meshes, each a job. A hash tells lists apart. */
+/* A list is a file of JSON Lines (docs/artist/formats.md), or the names of meshes, each a job. A hash tells
+ * lists apart. */
 
 /* The size of a job that has none. */
 #define NO_JOB_SIZE UINT64_MAX
-/* So many jobs as a list may have add up without overflow. */
+/* The sizes of as many jobs as a list may have add up without overflow. */
 #define JOB_SIZE_MAX UINT64_C(1000000000000)
 
 typedef struct job_option {
@@ -35,7 +36,8 @@ typedef struct job_line {
     void *memory;  /* of these texts */
 } job_line;
 
-/* Reads a line, as docs/artist/formats.md has it. The error says what is wrong, and not where. On false *out holds nothing to free. */
+/* Reads a line, as docs/artist/formats.md has it. The error says what is wrong, and not where. On false *out
+ * holds nothing to free. */
 bool job_line_read(const char *text, size_t length, job_line *out, io_error *error);
 
 void job_line_free(job_line *line); /* a zeroed one is fine */
@@ -83,18 +85,19 @@ enum { SHARD_COUNT_MAX = 1000 * 1000 };
 /* The reader of --shard (options.h); place: shard_choice. */
 bool read_shard(const char *text, void *place);
 
-/* The jobs of the shard, ascending, to be freed. Of jobs with a size, the largest goes first to the shard with the least
- * (Graham 1969, largest processing time first; of equals the first); the others go round, job i to shard i modulo n. */
+/* The jobs of the shard, ascending, to be freed. Of jobs with a size, the largest goes first to the shard
+ * with the least (Graham 1969, largest processing time first; of equals the first); the others go round, job
+ * i to shard i modulo n. */
 bool job_shard_choose(const job_list *list, shard_choice shard, uint32_t **jobs, uint32_t *count,
                       io_error *error);
 
 /* ---- results ------------------------------------------------------------------------------------------- */
 
-/* Lines of results: the members that every line has, whatever the command (docs/artist/formats.md), the sums of many lines, and the
- * results of an earlier run. */
+/* Lines of results: the members that every line has, whatever the command (docs/artist/formats.md), the sums
+ * of many lines, and the results of an earlier run. */
 
-/* What a job came to: the worst that was found, in the order crossing, inside, touching, duplicate. As in `check`, what lies in one
- * plane or is folded touches, and duplicates do neither. */
+/* The outcome of a job: the worst that was found, in the order crossing, inside, touching, duplicate. As in
+ * `check`, what lies in one plane or is folded touches, and duplicates do neither. */
 typedef enum job_outcome {
     JOB_CLEAN,
     JOB_CROSSING,
@@ -121,7 +124,7 @@ typedef struct job_record {
 /* Reads them back; false for what is no line of results. */
 bool job_record_read(const char *text, size_t length, job_record *out);
 
-/* So many jobs of a run. */
+/* The numbers of jobs of a run, by outcome. */
 typedef struct job_sums {
     uint32_t outcomes[JOB_OUTCOMES], found;
     uint32_t missing; /* no result of them is there */
@@ -129,7 +132,8 @@ typedef struct job_sums {
 
 void job_sums_add(job_sums *sums, const job_record *record);
 
-/* "1000 meshes: 940 clean, 58 with intersections, 2 failed", behind "Not finished: " if some are missing. one: what one job is. */
+/* "1000 meshes: 940 clean, 58 with intersections, 2 failed", behind "Not finished: " if some are missing.
+ * one: what one job is. */
 void job_sums_print(FILE *out, const job_sums *sums, const char *one, const char *several);
 
 typedef struct job_results {
@@ -147,11 +151,12 @@ void job_results_held(const job_results *r, uint32_t job, job_record *out);
 typedef enum resume_choice {
     RESUME_NOTHING, /* the file must be new or empty */
     RESUME_ALL,     /* jobs that the file holds are not run again, */
-    RESUME_FAILED   /* but for those that have failed */
+    RESUME_FAILED   /* those that have failed aside */
 } resume_choice;
 
-/* Opens the results of a list and locks them. A last line that is not whole is cut off. On false *out holds nothing to close: the
- * file has results already, or of another list, or is no file of results, or another process has it. */
+/* Opens the results of a list and locks them. A last line that is not whole is cut off. On false *out holds
+ * nothing to close: the file has results already, or of another list, or is no file of results, or another
+ * process has it. */
 bool job_results_open(const char *path, resume_choice resume, uint64_t list, uint32_t jobs, job_results *out,
                       io_error *error);
 
@@ -167,7 +172,7 @@ bool job_results_close(job_results *r, io_error *error);
 
 /* A worker runs a job, and packs its answer, or why there is none, into bytes. */
 
-/* What a job that has run, or has failed, leaves behind. */
+/* The traces of a job that has run, or has failed. */
 typedef struct job_output {
     FILE *text;          /* a line for people, without its end */
     json *members;       /* of its line of results, behind those of the record */
@@ -176,7 +181,7 @@ typedef struct job_output {
     bool given_up;       /* because the program was interrupted: there is neither an answer nor a failure */
 } job_output;
 
-/* What the jobs of a command do. */
+/* The kind of the jobs of a command, and what they do. */
 typedef struct job_kind {
     const char *one, *several; /* what a job is: "mesh", "meshes" */
     const void *user;
@@ -189,7 +194,7 @@ typedef struct job_kind {
     void (*fail)(const void *user, const char *name, const char *reason, job_output *out);
 } job_kind;
 
-/* What all jobs of a run have in common. */
+/* The things that all jobs of a run have in common. */
 typedef struct job_work {
     const job_list *list;
     uint64_t hash; /* of the list and of the options that all its jobs share */
@@ -214,7 +219,8 @@ job_result job_work_unpack(const char *bytes, size_t size);
 
 /* ---- processes ----------------------------------------------------------------------------------------- */
 
-/* Many jobs run in processes of their own, so that one that crashes, takes too long or too much memory takes no other with it. */
+/* Many jobs run in processes of their own, so that one that crashes, takes too long or too much memory takes
+ * no other with it. */
 
 typedef struct job_set {
     uint32_t count;
@@ -222,24 +228,26 @@ typedef struct job_set {
     double seconds;        /* that a job may take; 0: any time */
     void *user;
 
-    /* In a worker that is a process of its own, first: drops the files that the calling process alone writes. */
+    /* In a worker that is a process of its own, first: drops the files that the calling process alone
+     * writes. */
     void (*leave)(void *user);
 
     /* In a worker, before its first job. False, with the reason: no job runs. */
     bool (*begin)(void *user, io_error *error);
 
-    /* In a worker: does a job, and writes its result. False: the job was given up because the program was interrupted. */
+    /* In a worker: does a job, and writes its result. False: the job was given up because the program was
+     * interrupted. */
     bool (*run)(void *user, uint32_t job, FILE *result);
 
-    /* In the calling process, each job once, in the order in which they end: the result, or why there is none. False: no
-     * further job is to begin, since results cannot be kept. */
+    /* In the calling process, each job once, in the order in which they end: the result, or why there is
+     * none. False: no further job is to begin, since results cannot be kept. */
     bool (*take)(void *user, uint32_t job, const char *result, size_t size);
     bool (*fail)(void *user, uint32_t job, const char *reason);
 } job_set;
 
-/* Runs the jobs, which begin in their order. After an interrupt no further job begins, and what is done is taken. Processes
- * that the system refuses are done without. *done is how many jobs were taken or have failed. The calling process has one thread, and
- * catches interrupts. */
+/* Runs the jobs, which begin in their order. After an interrupt no further job begins, and what is done is
+ * taken. Processes that the system refuses are done without. *done is how many jobs were taken or have
+ * failed. The calling process has one thread, and catches interrupts. */
 bool jobs_run(const job_set *set, uint32_t *done, io_error *error);
 
 /* ---- a run --------------------------------------------------------------------------------------------- */

@@ -1,5 +1,5 @@
-/* Brings the results of all shards together: finds the line of each job, copies them in order, writes them as JUnit, and reads what a page
- * says of a job. */
+/* Brings the results of all shards together: finds the line of each job, copies them in order, writes them as
+ * JUnit, and reads what a page says of a job. */
 #include "tool/jobs/jobs.h"
 
 #include "tool/common/terminal.h"
@@ -25,7 +25,7 @@ static const merged_line *line_of(const job_merge *m, uint32_t job) {
     return page != NULL && page[job % MERGE_PAGE].length > 0 ? &page[job % MERGE_PAGE] : NULL;
 }
 
-/* Where the line of a job goes, zeroed at first; NULL: memory is short. */
+/* The place for the line of a job, zeroed at first; NULL: memory is short. */
 static merged_line *place_of(job_merge *m, uint32_t job) {
     merged_line **page = &m->pages[job / MERGE_PAGE];
     if (*page == NULL) *page = calloc(MERGE_PAGE, sizeof **page);
@@ -159,7 +159,8 @@ static void close_files(line_copier *c) {
     }
 }
 
-/* A pipe would have to be written again. Where the system has no room for all files, others are closed, and opened again later. */
+/* A pipe would have to be written again. Where the system has no room for all files, others are closed, and
+ * opened again later. */
 static bool open_again(const char *path, line_copier *c, uint32_t index, io_error *error) {
     struct stat status;
     if (stat(path, &status) == 0 && !S_ISREG(status.st_mode))

@@ -31,7 +31,7 @@ enum {
     BARREN_MAX = 20  /* workers in a row that die before they have taken a job */
 };
 
-/* What a worker is at; its successor goes on with it. */
+/* The state of a worker; its successor goes on with it. */
 typedef struct job_slot {
     atomic_llong job;      /* runs now; NO_JOB: none */
     atomic_llong again;    /* comes first: it was given up for another's sake; NO_JOB: none */
@@ -67,7 +67,7 @@ typedef struct job_pool {
     unsigned char *ended; /* per job: it was taken, or has failed */
     struct pollfd *polled;
     uint32_t done;
-    uint32_t barren; /* so many workers have died without a job since the last job ended */
+    uint32_t barren; /* workers that have died without a job since the last job ended */
     bool stopping;   /* no further job begins */
     char *result;    /* of the message read last */
     size_t result_size;
@@ -142,8 +142,8 @@ static bool work_on_jobs(const job_pool *pool, uint32_t worker) {
     return true;
 }
 
-/* Who stops a whole group of processes signals a worker as well as the process that then tells it to stop: it closes its files all
- * the same. Ends without writing what the calling process has left in its buffers. */
+/* Who stops a whole group of processes signals a worker as well as the process that then tells it to stop: it
+ * closes its files all the same. Ends without writing what the calling process has left in its buffers. */
 static _Noreturn void be_worker(const job_pool *pool, uint32_t worker, pid_t parent) {
 #ifdef __linux__
     prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -276,7 +276,8 @@ static bool receive_message(job_pool *pool, int socket, job_message *message) {
     return receive_bytes(socket, room, message->size);
 }
 
-/* A job is given up by a worker that was told to stop: because it was late itself, or the job before it was. */
+/* A job is given up by a worker that was told to stop: because it was late itself, or the job before it
+ * was. */
 static void hear_given_up(job_pool *pool, uint32_t worker, int64_t job) {
     if (pool->workers[worker].late == job)
         fail_late_job(pool, (uint32_t)job);

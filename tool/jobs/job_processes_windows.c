@@ -1,4 +1,5 @@
-/* The jobs on Windows, which has no fork: one after another in the calling process, with the threads of all. */
+/* The jobs on Windows, which has no fork: one after another in the calling process, with the threads of
+ * all. */
 #include "tool/jobs/job_list.h"
 
 #include "tool/common/terminal.h"

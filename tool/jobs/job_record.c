@@ -1,4 +1,5 @@
-/* Lines of results: the members that every line has, the sums of many lines, the results that a file holds, and how a worker packs one. */
+/* Lines of results: the members that every line has, the sums of many lines, the results that a file holds,
+ * and how a worker packs one. */
 #include "tool/jobs/job_list.h"
 
 #include "tool/io/file_reader.h"
@@ -32,7 +33,8 @@ static void job_record_write(json *line, const job_record *r) {
     json_boolean(line, "found", r->found);
 }
 
-/* Is this how a line of the list begins? The text may end anywhere, or with characters 0, as files do after a power cut. */
+/* Is this how a line of the list begins? The text may end anywhere, or with characters 0, as files do after a
+ * power cut. */
 static bool job_record_begins(const char *text, size_t length, uint64_t list, uint32_t jobs) {
     char begin[80];
     snprintf(begin, sizeof begin, "{\"list\":\"%016" PRIx64 "\",\"jobs\":%" PRIu32 ",\"job\":", list, jobs);
@@ -127,13 +129,13 @@ static bool job_has_failed(const job_results *r, uint32_t job) {
     return r->held[job] == JOB_FAILED + 1;
 }
 
-/* What a file must be of. */
+/* The list whose results a file must hold. */
 typedef struct expected_results {
     uint64_t list;
     uint32_t jobs;
 } expected_results;
 
-/* Of several lines of one job only the last one may be without a failure. */
+/* Only the last of several lines of one job may be without a failure. */
 static bool hold_line(job_results *r, const expected_results *expected, const char *text, size_t length,
                       size_t number, io_error *error) {
     job_record record;
@@ -154,7 +156,8 @@ static bool hold_line(job_results *r, const expected_results *expected, const ch
     return true;
 }
 
-/* The last line may have been torn by whatever ended the program. It is cut off, so it must be one of these results. */
+/* The last line may have been torn by whatever ended the program. It is cut off, so it must be one of these
+ * results. */
 static bool hold_torn_line(const job_results *r, const expected_results *expected, const char *text,
                            size_t length, size_t number, io_error *error) {
     return job_record_begins(text, length, expected->list, expected->jobs) ||

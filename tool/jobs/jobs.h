@@ -1,4 +1,5 @@
-/* Jobs: lists of them, as commands take them, recordings and meshes that are jobs, and results that are merged. */
+/* Jobs: lists of them, as commands take them, recordings and meshes that are jobs, and results that are
+ * merged. */
 #pragma once
 
 #include "tool/answers/answers.h"
@@ -18,7 +19,8 @@ typedef struct list_options {
 /* Their rows. */
 extern const option_list list_rows;
 
-/* What to run: the list with these options, and those that were given beside them. Threads, quiet and lines are the caller's. */
+/* A request to run the list with these options, and those that were given beside them. Threads, quiet and
+ * lines are the caller's. */
 jobs_request list_options_request(const list_options *o, const job_list *list, const option_table *table,
                                   const given_options *given);
 
@@ -42,8 +44,8 @@ typedef struct list_command {
     uint32_t thread_count;
     bool quiet;
 
-    /* Runs the command with these options and inputs, and writes its answer. Returns the exit code; failures are
-     * kept (command.h). */
+    /* Runs the command with these options and inputs, and writes its answer. Returns the exit code; failures
+     * are kept (command.h). */
     int (*run)(void *options, given_options *given, const char *name, cscd_context *context, job_output *out);
 } list_command;
 
@@ -59,7 +61,8 @@ void recording_answer_fail(const char *name, const char *reason, job_output *out
 
 /* ---- meshes -------------------------------------------------------------------------------------------- */
 
-/* One mesh among many: how it is read and checked, what was found in all frames that its file holds, and its line of results. */
+/* One mesh among many: how it is read and checked, what was found in all frames that its file holds, and its
+ * line of results. */
 
 typedef struct mesh_job {
     const char *path;
@@ -74,11 +77,10 @@ typedef struct mesh_answer {
     uint32_t triangle_count, vertex_count; /* welded, if that was asked for */
     uint32_t frame_count;                  /* that were checked: 1, or those of the animation */
     size_t crossing, coplanar, folded, duplicate,
-        touching; /* so many pairs of triangles of each kind, of all frames together */
-    uint32_t
-        crossing_faces;    /* so many triangles are in a pair that crosses, in the frame that has the most, */
-    double crossing_share; /* and that share of all */
-    double depth;          /* the greatest; 0: none is known */
+        touching;            /* pairs of triangles of each kind, of all frames together */
+    uint32_t crossing_faces; /* triangles in a pair that crosses, in the frame that has the most, */
+    double crossing_share;   /* and that share of all */
+    double depth;            /* the greatest; 0: none is known */
     job_outcome outcome;
     bool found;     /* what the rules ask for */
     char *sentence; /* as `check` begins */
@@ -103,20 +105,21 @@ job_kind mesh_kind_of(const mesh_kind_options *options);
 
 /* ---- results of all shards ----------------------------------------------------------------------------- */
 
-/* Where a job's line stands. */
+/* The place of a job's line. */
 typedef struct merged_line {
     uint64_t offset;
     uint32_t file, length; /* with its '\n'; 0: there is none */
     job_record record;
 } merged_line;
 
-/* What the results must have. */
+/* The lines that the results must have. */
 typedef enum job_merge_rule {
     MERGE_WHOLE,        /* a line of each job */
     MERGE_WHAT_IS_THERE /* jobs may be missing, and a last line torn: its shard may be running */
 } job_merge_rule;
 
-/* A line is some hundred bytes long: so the memory goes with the lines that are there, and not with the jobs that they speak of. */
+/* A line is some hundred bytes long: so the memory goes with the lines that are there, and not with the jobs
+ * that they speak of. */
 enum { MERGE_NAMED_SIZE = 256, MERGE_PAGE = 64 };
 
 typedef struct job_merge {
@@ -130,13 +133,14 @@ typedef struct job_merge {
     char missing[MERGE_NAMED_SIZE]; /* "3, 6, 9 to 21 and others"; "": none */
 } job_merge;
 
-/* Reads the files. False: a job is missing or there twice, a file is of another list, or a line is none of results; the error names
- * file, line and job. *out holds nothing to free then. The paths outlive the merge. */
+/* Reads the files. False: a job is missing or there twice, a file is of another list, or a line is none
+ * of results; the error names file, line and job. *out holds nothing to free then. The paths outlive the
+ * merge. */
 bool job_merge_read(const char *const *paths, size_t count, job_merge_rule rule, job_merge *out,
                     io_error *error);
 
-/* Takes a line, without its end; false, with the error, ends the visit. Of a job that is missing the line is NULL, and the record
- * says which job it is and nothing else. */
+/* Takes a line, without its end; false, with the error, ends the visit. Of a job that is missing the line is
+ * NULL, and the record says which job it is and nothing else. */
 typedef bool job_line_taker(void *user, const char *line, size_t length, const job_record *record,
                             io_error *error);
 
@@ -145,11 +149,12 @@ bool job_merge_visit(const job_merge *merge, job_line_taker *take, void *user, i
 
 void job_merge_free(job_merge *merge);
 
-/* A job fails if it found what --fail-on and the like ask for, and is an error if it has failed itself. suite: what all of them are
- * called. */
+/* A job fails if it found what --fail-on and the like ask for, and is an error if it has failed itself.
+ * suite: what all of them are called. */
 void job_junit_begin(FILE *out, const char *suite, const job_sums *sums);
 
-/* Adds a job by its line of results; NULL: the job is missing, which is an error. False if memory is short. */
+/* Adds a job by its line of results; NULL: the job is missing, which is an error. False if memory is
+ * short. */
 bool job_junit_add(FILE *out, const char *line, size_t length, const job_record *record);
 
 void job_junit_end(FILE *out);

@@ -42,7 +42,8 @@ static void output_names_free(output_names *names) {
     growable_free(&names->names);
 }
 
-/* "./a//b" is "a/b". Links and ".." stay as they are: where they lead is not looked up for each of a million names. */
+/* "./a//b" is "a/b". Links and ".." stay as they are: where they lead is not looked up for each of a million
+ * names. */
 static char *plain_path(const char *path) {
     char *plain = malloc(strlen(path) + 1), *end = plain;
     for (const char *c = path; plain != NULL && *c != '\0'; c++) {
@@ -91,7 +92,8 @@ static int compare_names(const void *a, const void *b) {
 }
 
 /* Within a job its command looks itself. */
-/* Finds a file that two jobs write, or a job (`first`) and the run (`second` is NAME_OF_RUN); false: there is none. */
+/* Finds a file that two jobs write, or a job (`first`) and the run (`second` is NAME_OF_RUN); false: there is
+ * none. */
 static bool output_names_collide(output_names *names, const char **path, uint32_t *first, uint32_t *second) {
     const output_name *items = names->names.data;
     const size_t count = names->names.count;

@@ -1,4 +1,5 @@
-/* Jobs: one mesh among many, how it is read and checked, and its line of results; and what is said of a recording among many. */
+/* Jobs: one mesh among many, how it is read and checked, and its line of results; and what is said of a
+ * recording among many. */
 #include "tool/jobs/jobs.h"
 
 #include "tool/answers/answers.h"
@@ -37,9 +38,9 @@ static frame_sums sum_frames(const answers *a) {
     return s;
 }
 
-/* Where not all was looked at, there is no answer that anybody may rely on. */
-/* The outcome of finished answers: JOB_FAILED where nobody can rely on them, since not all was looked at, or in some frame no triangle
- * has an area and nothing else was found. */
+/* Unless all was looked at, there is no answer that anybody may rely on. */
+/* The outcome of finished answers: JOB_FAILED where nobody can rely on them, since not all was looked at, or
+ * in some frame no triangle has an area and nothing else was found. */
 static job_outcome recording_answer_outcome(const answers *a, const fail_rules *rules) {
     const frame_sums s = sum_frames(a);
     if (answers_unfinished(a) != NULL || fail_rules_undecided(rules, a)) return JOB_FAILED;
@@ -211,7 +212,7 @@ static bool print_sentence(const answers *a, const length_unit *unit, char **out
     return true;
 }
 
-/* What all frames come to. */
+/* Sums up all frames. */
 static bool conclude_check(mesh_check *c, io_error *error) {
     mesh_answer *out = c->out;
     const answers *a = &c->answers;
@@ -242,7 +243,7 @@ static bool check_mesh(const mesh_job *job, recording *r, mesh_answer *out, io_e
     return good;
 }
 
-/* Why the mesh was not checked. */
+/* The reason why the mesh was not checked. */
 static const char *mesh_answer_reason(const mesh_answer *answer) {
     return answer->error != NULL ? answer->error : "out of memory";
 }
@@ -297,7 +298,7 @@ static void print_answer(FILE *out, const char *path, const mesh_answer *a) {
 
 /* ---- members ------------------------------------------------------------------------------------------- */
 
-/* Of a mesh that was not checked all is null. */
+/* All values of a mesh that was not checked are null. */
 static void write_count(json *line, const mesh_answer *a, const char *key, uint64_t count) {
     if (a->checked)
         json_integer(line, key, count);

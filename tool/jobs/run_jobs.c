@@ -26,9 +26,9 @@ typedef struct job_run {
     job_work work;
     uint32_t *jobs; /* those of the shard that are to run, ascending */
     uint32_t count, worker_count, threads_each;
-    uint32_t held; /* so many others of the shard are done already */
+    uint32_t held; /* others of the shard that are done already */
     waiting_result *waiting;
-    uint32_t told; /* so many of the first jobs have been printed */
+    uint32_t told; /* the first jobs, as many as have been printed */
     job_results results;
     output_file lines;
     io_error write_error; /* why not all could be written; "": it could */
@@ -184,7 +184,7 @@ static bool prepare_run(job_run *run, io_error *error) {
 
 /* ---- the end ------------------------------------------------------------------------------------------------- */
 
-/* What was written of whole lines stays even if the disk is full. */
+/* Whole lines that were written stay even if the disk is full. */
 static bool close_outputs(job_run *run, io_error *error) {
     bool good = run->write_error.text[0] == '\0' || io_fail(error, "%s", run->write_error.text);
     if (run->lines.file != NULL && !output_file_close(&run->lines, OUTPUT_WHOLE_LINES) && good)

@@ -1,5 +1,5 @@
-/* cscd-mpi: the shards of a list on the ranks of an MPI job. Rank 0 hands them out one by one and works as well; a shard is a
- * process of `cscd`, and so is the merge at the end. */
+/* cscd-mpi: the shards of a list on the ranks of an MPI job. Rank 0 hands them out one by one and works as
+ * well; a shard is a process of `cscd`, and so is the merge at the end. */
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -42,7 +42,8 @@ static const char launch_help[] =
     "\n"
     "The exit code is that of `cscd merge`, that is, of one run of the whole list.\n";
 
-/* The value of --NAME VALUE or --NAME=VALUE at *i, which moves to the last word of it; NULL: it is another option. "": it lacks one. */
+/* The value of --NAME VALUE or --NAME=VALUE at *i, which moves to the last word of it; NULL: it is another
+ * option. "": it lacks one. */
 static const char *read_value(int word_count, char **words, int *i, const char *name) {
     const size_t length = strlen(name);
     const char *word = words[*i];
@@ -97,7 +98,7 @@ static const char *read_options(int word_count, char **words, launch_options *o)
 
 /* ---- processes of `cscd`, one at a time, a shard or the merge ------------------------------------------ */
 
-/* What became of a shard, as ranks tell it to rank 0. */
+/* The end of a shard, as ranks tell it to rank 0. */
 typedef struct shard_report {
     int shard;  /* 0: there was none, the rank asks for its first one */
     int code;   /* its exit code; with `error`, 127 */
@@ -118,7 +119,7 @@ static void on_signal(int number) {
     if (stop_signal == 0) stop_signal = number;
 }
 
-/* What is ignored at the start, as nohup has it with SIGHUP, stays so, here and in the shards. */
+/* A signal that is ignored at the start, as nohup has it with SIGHUP, stays so, here and in the shards. */
 static void catch_stop_signals(void) {
     static const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
     const struct sigaction catch = {.sa_handler = on_signal};
@@ -240,7 +241,7 @@ enum {
     REPORT_INTS = sizeof(shard_report) / sizeof(int)
 };
 
-/* What rank 0 knows. */
+/* The knowledge of rank 0. */
 typedef struct shard_board {
     int next, count;
     int dismissed; /* ranks that have been told that there is no more */
@@ -268,7 +269,8 @@ static void take_nap(void) {
 
 /* ---- rank 0 -------------------------------------------------------------------------------------------- */
 
-/* How many shards the folder has results of, as the names of the files say. 0: none; -1: of different numbers. */
+/* The number of shards of which the folder has results, as the names of the files say. 0: none; -1: of
+ * different numbers. */
 static int shards_in_folder(const char *results) {
     DIR *folder = opendir(results);
     int found = 0;

@@ -56,7 +56,7 @@ static double dot_at(const uint8_t *glyph, int column, int row) {
 
 /* Bilinear between the dots' middles, cut where it falls below a little less than half (so that diagonals
  * hold together), the cut spread over one pixel. */
-/* How much (0..1) the glyph covers of a pixel at (x, y) in dots from its upper left corner, for `scale`
+/* The share (0..1) that the glyph covers of a pixel at (x, y) in dots from its upper left corner, for `scale`
  * pixels a dot: corners are rounded and rims smoothed as the scale grows. */
 static double picture_glyph_coverage(char character, double x, double y, double scale) {
     bool printable = character >= ' ' && character <= '~';

@@ -1,5 +1,5 @@
-/* Renders a scene: places the camera, projects, finds what is visible, shades, draws the markers and writes the file. Puts pictures side
- * by side, and gives numbers colours. */
+/* Renders a scene: places the camera, projects, finds what is visible, shades, draws the markers and writes
+ * the file. Puts pictures side by side, and gives numbers colours. */
 #include "tool/picture/picture.h"
 
 #include "tool/picture/shade.h"

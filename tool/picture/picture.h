@@ -1,4 +1,5 @@
-/* A picture of a triangle mesh with markers and a caption, as a PNG file; several of them as one; and colours of numbers. */
+/* A picture of a triangle mesh with markers and a caption, as a PNG file; several of them as one; and colours
+ * of numbers. */
 #pragma once
 
 #include "tool/io/animation.h"

@@ -144,8 +144,9 @@ static void interpolate_normal(const picture_surface *surface, const uint32_t co
     memcpy(normal, sum, sizeof sum);
 }
 
-/* How dark the wires make the point: a line one and a half pixels wide along the edges, fading out where
- * triangles are only a few pixels high. An edge function over its gradient is the distance in pixels. */
+/* The darkness that the wires give the point: a line one and a half pixels wide along the edges, fading
+ * out where triangles are only a few pixels high. An edge function over its gradient is the distance in
+ * pixels. */
 static double wire_darkness(const picture_edges *edges, const double *projected, const uint32_t corners[3],
                             double x, double y) {
     double nearest = HUGE_VAL, height = HUGE_VAL;

@@ -1,4 +1,5 @@
-/* The steps of a rendering: the z-buffer, the ground with the shadow of a body, the pixels of surfaces, and markers, caption and legend. */
+/* The steps of a rendering: the z-buffer, the ground with the shadow of a body, the pixels of surfaces, and
+ * markers, caption and legend. */
 #pragma once
 
 #include "tool/io/io.h"
@@ -67,7 +68,7 @@ bool picture_shadow_create(const double *positions, uint32_t vertex_count, const
                            uint32_t triangle_count, bool y_up, picture_shadow *out, io_error *error);
 void picture_shadow_free(picture_shadow *shadow);
 
-/* How much light from above the body takes from a level surface at the point, 0 to 1: sharp and dark where
+/* The light from above that the body takes from a level surface at the point, 0 to 1: sharp and dark where
  * they are near, wider and fainter the farther the body is above. */
 double picture_shadow_at(const picture_shadow *shadow, const double point[3]);
 
@@ -113,7 +114,8 @@ bool picture_draw_markers(picture_image *image, const picture_visibility *visibi
                           const picture_camera *camera, const picture_marker *markers, size_t count,
                           io_error *error);
 
-/* How far picture_draw_caption, with the same arguments, reaches from the upper left corner, in pixels. */
+/* The distances that picture_draw_caption, with the same arguments, reaches from the upper left corner, in
+ * pixels. */
 void picture_caption_size(uint32_t width, uint32_t height, double enlarged, const char *caption,
                           const picture_legend *legend, size_t count, double size[2]);
 

@@ -1,5 +1,5 @@
-/* The ground below a body, and the soft shadow that the body casts straight down: each cell of a map of its heights spreads its shadow
- * over a disc that widens with its height above the point. */
+/* The ground below a body, and the soft shadow that the body casts straight down: each cell of a map of its
+ * heights spreads its shadow over a disc that widens with its height above the point. */
 #include "tool/picture/shade.h"
 
 #include <math.h>
@@ -139,10 +139,10 @@ double picture_shadow_at(const picture_shadow *shadow, const double point[3]) {
 
 /* ---- faint squares and the shadow of the body ------------------------------------------------------------ */
 
-/* How much darker every other square is. */
+/* The darkness of every other square. */
 static const double contrast = 0.13;
 
-/* How much darker the deepest shadow is. */
+/* The darkness of the deepest shadow. */
 static const double depth_of_shadow = 0.55;
 
 static double dot_product(const double a[3], const double b[3]) {

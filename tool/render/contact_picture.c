@@ -1,4 +1,5 @@
-/* A frame of a recording as a scene, with the contacts of its interval if they are wanted, or painted with a plan. */
+/* A frame of a recording as a scene, with the contacts of its interval if they are wanted, or painted with a
+ * plan. */
 #include "tool/render/render.h"
 
 #include "tool/common/plans.h"

@@ -1,4 +1,5 @@
-/* Pictures of recordings: the options of `cscd render`, a frame with its contacts or a plan as a scene, and several frames side by side. */
+/* Pictures of recordings: the options of `cscd render`, a frame with its contacts or a plan as a scene, and
+ * several frames side by side. */
 #pragma once
 
 #include "tool/common/frame_range.h"
@@ -47,7 +48,8 @@ typedef struct contact_picture {
     double *end;
 } contact_picture;
 
-/* Takes the mesh, in one colour. *out: zeroed but for ignored, which outlives it. Whatever this returns, contact_picture_free is due. */
+/* Takes the mesh, in one colour. *out: zeroed except for ignored, which outlives it. Whatever this returns,
+ * contact_picture_free is due. */
 bool contact_picture_load(contact_picture *out, const recording *r, io_error *error);
 
 /* Shows a frame, with the caption that belongs to it. With contacts: those of the interval to the next frame,
@@ -61,7 +63,8 @@ void contact_picture_clear(contact_picture *picture);
 /* Red, green, blue of the dots of a cscd_contact_kind. */
 void contact_picture_kind_colour(int kind, uint8_t rgb[3]);
 
-/* Zooms to the contacts and their neighbourhood, a tenth of the body at least; does nothing without contacts. */
+/* Zooms to the contacts and their neighbourhood, a tenth of the body at least; does nothing without
+ * contacts. */
 void contact_picture_focus(const contact_picture *picture, picture_options *options);
 
 void contact_picture_free(contact_picture *picture);
@@ -75,7 +78,8 @@ typedef struct plan_legend {
     char texts[PLAN_LEGEND_LINES][40];
 } plan_legend;
 
-/* Colours a loaded picture by CHARGE, DENSITY or REGION, and writes its caption and legend, which must live until the picture is drawn. */
+/* Colours a loaded picture by CHARGE, DENSITY or REGION, and writes its caption and legend, which must live
+ * until the picture is drawn. */
 bool plan_picture_paint(contact_picture *picture, plan_legend *legend, const recording *r,
                         const cscd_plan *plan, colouring by, io_error *error);
 

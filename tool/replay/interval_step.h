@@ -1,5 +1,5 @@
-/* What a replay learns of an interval and of a frame, from the detector or from the file of a shard. What pointers lead to
- * lives until the next interval or frame is asked for. */
+/* What a replay learns of an interval and of a frame, from the detector or from the file of a shard. What
+ * pointers lead to lives until the next interval or frame is asked for. */
 #pragma once
 
 #include "cscd/cscd.h"

@@ -29,7 +29,8 @@ static void read_next(read_ahead *a) {
     if (a->good) recording_hash_frame(a->recording, a->hashes);
 }
 
-/* While a frame is read the lock is free, and `full` says whose the place is: the thread's while it is false. */
+/* While a frame is read the lock is free, and `full` says whose the place is: the thread's while it is
+ * false. */
 static void *read_on(void *user) {
     read_ahead *a = user;
     pthread_mutex_lock(&a->lock);

@@ -126,8 +126,8 @@ static bool any_collapsed(const replay *r, const cscd_guarantee *guarantees) {
     return false;
 }
 
-/* A mesh that is embedded at the start and intersects itself at the end had a contact in between. Pairs that are
- * left out may hide it, and those of what appears out of a point. */
+/* A mesh that is embedded at the start and intersects itself at the end had a contact in between. Pairs that
+ * are left out may hide it, and those of what appears out of a point. */
 static void alarm_contradiction(replay *r, const interval_result *result) {
     if (ignore_options_any(&r->options->ignored) || result->state != INTERVAL_CLEAN ||
         r->end_state != FRAME_CROSSING || any_collapsed(r, result->guarantees))

@@ -1,4 +1,5 @@
-/* What other commands use of replay: merging the shards of one recording, and telling their files from others. */
+/* What other commands use of replay: merging the shards of one recording, and telling their files from
+ * others. */
 #pragma once
 
 #include <stdbool.h>
@@ -19,8 +20,8 @@ typedef struct merge_request {
     char **arguments;
 } merge_request;
 
-/* Says and writes what one run of the whole recording says and writes, byte for byte but for its times and its command line. Returns
- * the exit code, that of such a run. */
+/* Says and writes what one run of the whole recording says and writes, byte for byte but for its times and
+ * its command line. Returns the exit code, that of such a run. */
 int replay_merge(const merge_request *request);
 
 /* Is it the file of a shard of one recording? A file that cannot be read is none. */

@@ -40,7 +40,8 @@ static void add_corner(spread *s, uint32_t vertex, const double *x0, const doubl
     }
 }
 
-/* Half-way each corner is the mean of its ends: its square is (square0 + square1 + 2 product) / 4, about the means. */
+/* Half-way each corner is the mean of its ends: its square is (square0 + square1 + 2 product) / 4, about the
+ * means. */
 static double size_half_way(const spread *s) {
     double square0 = s->square0, square1 = s->square1, product = s->product;
     for (int i = 0; i < 3; i++) {
@@ -54,8 +55,9 @@ static double size_half_way(const spread *s) {
 
 #define SHRINKS_BELOW 0.59
 
-/* Finds the component that shrinks most between two frames (doubles, xyz of each vertex of the mesh), if one shrinks below 0.59,
- * as a flat thing does that turns by more than 107 degrees, and a ball by more than 161. Returns false: none does, or no memory. */
+/* Finds the component that shrinks most between two frames (doubles, xyz of each vertex of the mesh), if one
+ * shrinks below 0.59, as a flat thing does that turns by more than 107 degrees, and a ball by more than 161.
+ * Returns false: none does, or no memory. */
 static bool half_turn_find(const cscd_mesh *mesh, const double *x0, const double *x1, half_turn *out) {
     const uint32_t components = cscd_mesh_component_count(mesh);
     spread *spreads = io_zeroed(((size_t)components + 1) * sizeof *spreads);

@@ -22,7 +22,8 @@ typedef struct replay_detector {
     orientation_row orientations;
 } replay_detector;
 
-/* Makes the first detector; the members above are set. Whatever this returns, replay_detector_close is due. */
+/* Makes the first detector; the members above are set. Whatever this returns, replay_detector_close is
+ * due. */
 bool replay_detector_open(replay_detector *d, io_error *error);
 void replay_detector_close(replay_detector *d); /* a zeroed struct is fine */
 

@@ -70,19 +70,19 @@ typedef struct replay {
     terminal_progress progress;
 } replay;
 
-/* Runs a replay. merged: all shards of it, which have been done; NULL: there are none. name and job: of a job among many, and its
- * output; NULL: it is none. Returns the exit code. */
+/* Runs a replay. merged: all shards of it, which have been done; NULL: there are none. name and job: of a job
+ * among many, and its output; NULL: it is none. Returns the exit code. */
 int replay_run(const replay_options *options, shard_series *merged, const char *name, job_output *job);
 
-/* Prints the answer, the events, the contacts, and what limits them; with --timings more. The replay has ended, be it earlier
- * than expected; without an interval there is the answer alone. */
+/* Prints the answer, the events, the contacts, and what limits them; with --timings more. The replay has
+ * ended, be it earlier than expected; without an interval there is the answer alone. */
 void replay_print_results(const replay *r);
 
 /* Prints what a person should know beside the results: faults of the mesh, and pairs that are left out. */
 void replay_print_remarks(replay *r);
 
-/* Chooses the frames of the shard that the options ask for, and opens its file; what that has already is not found again. Without
- * --shard nothing happens. The recording, what is ignored and the plan are there. */
+/* Chooses the frames of the shard that the options ask for, and opens its file; what that has already is not
+ * found again. Without --shard nothing happens. The recording, what is ignored and the plan are there. */
 bool replay_shard_prepare(replay *r, io_error *error);
 
 /* Are the shards that are merged those of this very recording? */

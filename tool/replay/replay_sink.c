@@ -125,8 +125,8 @@ static const replay_sink export_sink = {
 
 /* ---- all ------------------------------------------------------------------------------------------------------- */
 
-/* Outputs are closed in this order, because the report contains the summary. They are opened from the last to the first, so
- * that a report whose scenery is missing leaves all files as they are. */
+/* Outputs are closed in this order, because the report contains the summary. They are opened from the last to
+ * the first, so that a report whose scenery is missing leaves all files as they are. */
 static const replay_sink *const sinks[REPLAY_SINKS] = {&contact_sink, &summary_sink, &event_sink,
                                                        &export_sink, &report_sink};
 

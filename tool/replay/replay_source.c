@@ -62,8 +62,8 @@ static bool step_anew(replay_source *s, uint32_t k, interval_step *out, io_error
     return true;
 }
 
-/* The frame is checked after the step, so that the detector knows it when the next interval starts there: the old one, or the
- * new one of the next chunk. */
+/* The frame is checked after the step, so that the detector knows it when the next interval starts there: the
+ * old one, or the new one of the next chunk. */
 static bool check_anew(replay_source *s, uint32_t k, frame_check *out, io_error *error) {
     if (chunk_begins(s->first, k + 1) && !replay_detector_renew(&s->detector, error)) return false;
     return check_frame(s, k + 1, s->x0, out, error) && add_record(s, SHARD_INTERVAL, out, error);
@@ -79,8 +79,8 @@ static bool read_wanted(replay_source *s, uint32_t frame, double **positions, io
     return !s->reads_frames || read_frame(s, frame, positions, error);
 }
 
-/* Where the file ends that a shard goes on with, the detector goes on, as if it had been there: at the beginning of a chunk it
- * knows nothing but the frame. */
+/* Where the file ends that a shard goes on with, the detector goes on, as if it had been there: at the
+ * beginning of a chunk it knows nothing but the frame. */
 static bool go_on(replay_source *s, uint32_t frame, const uint64_t *hashes, io_error *error) {
     frame_check known;
     if (have_interval(s, frame) || s->results == NULL) return true;

@@ -1,5 +1,5 @@
-/* Where a replay has its intervals and frames from, one after the other: from the files of shards, as far as these have them,
- * and from the detector. */
+/* Where a replay has its intervals and frames from, one after the other: from the files of shards, as far as
+ * these have them, and from the detector. */
 #pragma once
 
 #include "tool/replay/read_ahead.h"

@@ -1,5 +1,6 @@
-/* The file of a shard of a recording: who it is, then a record for each of its intervals, in order (docs/artist/formats.md). Shards
- * consist of chunks of fixed length, which one run and all its shards have in common. */
+/* The file of a shard of a recording: who it is, then a record for each of its intervals, in order
+ * (docs/artist/formats.md). Shards consist of chunks of fixed length, which one run and all its shards have
+ * in common. */
 #include "tool/replay/shard_file.h"
 #include "tool/replay/replay.h"
 

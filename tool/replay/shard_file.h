@@ -1,5 +1,6 @@
-/* The file of a shard of a recording: who it is, then a record for each of its intervals, in order (docs/artist/formats.md). Shards
- * consist of chunks of fixed length, which one run and all its shards have in common. */
+/* The file of a shard of a recording: who it is, then a record for each of its intervals, in order
+ * (docs/artist/formats.md). Shards consist of chunks of fixed length, which one run and all its shards have
+ * in common. */
 #pragma once
 
 #include "tool/io/io.h"
@@ -19,7 +20,8 @@ typedef struct shard_identity {
     uint32_t object_count, component_count, triangle_count, reserved;
 } shard_identity;
 
-/* What the second of two shards is of, if not of the same replay: "another model"; NULL: it is of the same. */
+/* What the second of two shards is of, if not of the same replay: "another model"; NULL: it is of the
+ * same. */
 const char *shard_identity_difference(const shard_identity *a, const shard_identity *b);
 
 typedef enum shard_record {
@@ -47,13 +49,15 @@ void shard_reader_close(shard_reader *r); /* a zeroed struct is fine */
 
 typedef enum shard_end { SHARD_GOES_ON, SHARD_ENDS, SHARD_IS_TORN } shard_end;
 
-/* The next record, whose bytes live until the next call. Torn: the file ends within a record, or its sum is wrong. */
+/* The next record, whose bytes live until the next call. Torn: the file ends within a record, or its sum is
+ * wrong. */
 shard_end shard_reader_next(shard_reader *r, shard_record *kind, packed_reader *bytes);
 
 /* ---- writing ------------------------------------------------------------------------------------------- */
 
-/* Opens a file and locks it. It must be new or empty, unless it is to be resumed: then what does not make up a whole chunk is cut
- * off from its end, and *next is the frame to go on with; else it is shard_first. On false *out holds nothing to close. */
+/* Opens a file and locks it. It must be new or empty, unless it is to be resumed: then what does not make up
+ * a whole chunk is cut off from its end, and *next is the frame to go on with; else it is shard_first. On
+ * false *out holds nothing to close. */
 bool shard_file_open(const char *path, bool resume, const shard_identity *identity, int argument_count,
                      char **arguments, append_file *out, uint32_t *next, io_error *error);
 /* After an error the file ends with the record before. The bytes were begun by shard_file_begin. */
@@ -62,14 +66,14 @@ bool shard_file_add(append_file *f, shard_record kind, packed_bytes *bytes, io_e
 /* Begins the bytes of a record. */
 void shard_file_begin(packed_bytes *bytes);
 
-/* A new detector builds its trees anew. At every 32nd interval that took 5 % of a replay's time in the middle of eight cases, and 20 %
- * at most. */
+/* A new detector builds its trees anew. At every 32nd interval that took 5 % of a replay's time in the middle
+ * of eight cases, and 20 % at most. */
 enum { CHUNK_INTERVALS = 32 };
 
 /* Does a chunk begin with this frame? first: that of the whole replay. */
 bool chunk_begins(uint32_t first, uint32_t frame);
 
-/* The frames of a shard, of a replay of the frames first to last: whole chunks. Of more shards than chunks some are empty, and
- * have *shard_first == *shard_last. */
+/* The frames of a shard, of a replay of the frames first to last: whole chunks. Of more shards than chunks
+ * some are empty, and have *shard_first == *shard_last. */
 void chunks_of_shard(uint32_t first, uint32_t last, shard_choice shard, uint32_t *shard_first,
                      uint32_t *shard_last);

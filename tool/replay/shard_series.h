@@ -26,8 +26,8 @@ typedef struct shard_series {
     uint64_t hashes[RECORDING_OBJECTS_MAX + 1]; /* of the frame taken last */
 } shard_series;
 
-/* All shards of a recording. False, with the reason, which names those that are missing, there twice, not done, or of something
- * else. On false *out holds nothing to close. The paths outlive the series. */
+/* All shards of a recording. False, with the reason, which names those that are missing, there twice, not
+ * done, or of something else. On false *out holds nothing to close. The paths outlive the series. */
 bool shard_series_open(const char *const *paths, size_t count, shard_series *out, io_error *error);
 
 /* What one file has up to the frame `until`. */

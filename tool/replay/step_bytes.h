@@ -37,8 +37,8 @@ void step_bytes_add_interval(packed_bytes *out, const interval_step *step, uint3
 void step_bytes_add_frame(packed_bytes *out, const frame_check *check, uint32_t object_count,
                           uint32_t component_count);
 
-/* What an interval and a frame that were taken point to beside the bytes. The triangle count of the orientations is set by the
- * caller. */
+/* What an interval and a frame that were taken point to beside the bytes. The triangle count of the
+ * orientations is set by the caller. */
 typedef struct step_place {
     orientation_row orientations;
     cscd_curves curves;

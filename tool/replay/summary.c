@@ -107,7 +107,8 @@ static void write_members(json *out, const cscd_guarantee *guarantees, uint32_t 
     json_end_array(out);
 }
 
-/* By exception, because a mesh may have very many components: the largest group comes first and names none. */
+/* By exception, because a mesh may have very many components: the largest group comes first and names
+ * none. */
 static void write_guarantees(summary_writer *w, const cscd_guarantee *guarantees) {
     guarantee_group groups[GROUPS_MAX];
     const uint32_t count = guarantees != NULL ? cscd_mesh_component_count(w->mesh) : 0;
@@ -311,7 +312,8 @@ static bool write_ending(summary_writer *w, io_error *error) {
     return forward_text(w, error);
 }
 
-/* The report gets the whole text, also when the file could not be written; NULL if there was no memory for it. */
+/* The report gets the whole text, also when the file could not be written; NULL if there was no memory for
+ * it. */
 static void hand_on_text(summary_writer *w) {
     bool whole = !ferror(w->memory);
     whole = fclose(w->memory) == 0 && whole;

@@ -1,4 +1,5 @@
-/* What a report has collected for its page: arrays, which are compressed as they come, frames, and what was found in them. */
+/* The contents that a report has collected for its page: arrays, which are compressed as they come, frames,
+ * and what was found in them. */
 #pragma once
 
 #include "tool/io/io.h"
@@ -51,9 +52,10 @@ typedef struct frame_stream {
     int32_t *values, *previous; /* vertex_count each of x, y, z */
     uint32_t *residuals;
     uint8_t *plane;
-    /* The largest error of a coordinate as the page shows it, in units of the positions given, and by the longest
-     * side of its frame's box. The latter is below 2^-15, except for frames that page_coordinate limits (1 for one
-     * of no size) and for frames that float32 cannot tell from a point, because they are 2^-125 of the page's unit. */
+    /* The largest error of a coordinate as the page shows it, in units of the positions given, and by the
+     * longest side of its frame's box. The latter is below 2^-15, except for frames that page_coordinate
+     * limits (1 for one of no size) and for frames that float32 cannot tell from a point, because they are
+     * 2^-125 of the page's unit. */
     double max_error, relative_error;
 } frame_stream;
 
@@ -89,10 +91,11 @@ bool contact_arrays_add(contact_arrays *arrays, const report_options *options, u
 typedef struct answer_counts {
     uint32_t crossing;                  /* pairs that cross */
     uint32_t touching;                  /* pairs that meet otherwise */
-    uint32_t triangles, points, depths; /* so many of each are kept */
+    uint32_t triangles, points, depths; /* of each, those that are kept */
 } answer_counts;
 
-/* The intersections in each frame of a report: triangles with their kinds, points of curves, depths of vertices. */
+/* The intersections in each frame of a report: triangles with their kinds, points of curves, depths of
+ * vertices. */
 typedef struct answer_arrays {
     uint32_t frames_checked;
     answer_counts found, kept; /* of all frames: 'crossing' and 'touching' of found alone */
@@ -111,7 +114,7 @@ bool answer_arrays_add(answer_arrays *arrays, const report_options *options, uin
 
 /* ---- orientations -------------------------------------------------------------------------------------- */
 
-/* How triangles faced their regions' detector points, and where these points were. */
+/* Orientations of triangles towards their regions' detector points, and the places of these points. */
 typedef struct orientation_arrays {
     packed_array *orientations, *points; /* NULL: left out */
     uint32_t triangle_count, interval_count;

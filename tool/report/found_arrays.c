@@ -1,5 +1,5 @@
-/* What was found, as arrays of the page: contacts of intervals, intersections and depths of frames, and how triangles face their
- * detector points. */
+/* Findings as arrays of the page: contacts of intervals, intersections and depths of frames, and how
+ * triangles face their detector points. */
 #include "tool/report/collected.h"
 
 #include "tool/io/io.h"
@@ -69,8 +69,8 @@ static bool keep_contact(contact_arrays *a, const report_options *options, uint3
            packed_array_add_f64(a->toi, &contact->toi, 1) && packed_array_add_f64(a->point, point, 3);
 }
 
-/* How many contacts of an interval may be kept, so that each later interval is left its share of the
- * whole. */
+/* The number of contacts of an interval that may be kept, so that each later interval is left its share of
+ * the whole. */
 static size_t room_for(const contact_arrays *a, const report_options *options, uint32_t interval) {
     uint32_t intervals = options->last - options->first, to_come = options->last - 1 - interval;
     size_t reserved = (size_t)(REPORT_CONTACTS_MAX / intervals) * to_come;
@@ -121,7 +121,7 @@ void answer_arrays_free(answer_arrays *a) {
     *a = (answer_arrays){0};
 }
 
-/* How many more may be kept in a frame, so that each later frame is left its share of the whole. */
+/* The number that may still be kept in a frame, so that each later frame is left its share of the whole. */
 static uint32_t room_of(uint32_t most, uint32_t kept, const report_options *options, uint32_t frame) {
     uint32_t frames = options->last - options->first + 1, to_come = options->last - frame;
     return most - kept - most / frames * to_come;

@@ -123,7 +123,7 @@ static bool add_key(frame_stream *s) {
            packed_array_add_f64(s->bytes, s->origin, 3) && packed_array_add_f64(s->bytes, &s->step, 1);
 }
 
-/* How far the vertices have moved on average; the prediction is moved by it. */
+/* The average movement of the vertices; the prediction is moved by it. */
 static bool add_shift(frame_stream *s) {
     uint32_t shifts[3];
     for (size_t k = 0; k < 3; k++) {

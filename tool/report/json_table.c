@@ -191,7 +191,8 @@ static bool take_value(text_table *t, size_t *column, const text_span *keys, int
     return !t->out_of_memory;
 }
 
-/* Takes the values of an object; objects in it are columns of their own. Returns its end; NULL: it has another form. */
+/* Takes the values of an object; objects in it are columns of their own. Returns its end; NULL: it has
+ * another form. */
 static const char *take_object(text_table *t, size_t *column, text_span keys[DEPTH_MAX], int depth,
                                const char *p) {
     bool more = true;
@@ -285,7 +286,8 @@ static void put_table(FILE *file, const text_table *t) {
     fputs("]}", file);
 }
 
-/* Writes the table at p in place of the array there, if it is one. False: out of memory. *end stays NULL if it is none. */
+/* Writes the table at p in place of the array there, if it is one. False: out of memory. *end stays NULL if
+ * it is none. */
 static bool move_array(FILE *file, const char *p, text_span key, const char *prefix, page_arrays *arrays,
                        const char **end) {
     text_table *t = io_zeroed(sizeof *t);

@@ -1,4 +1,5 @@
-/* A page: the arrays in it, by name, tables of the summary that become arrays, the template, links, and the file. */
+/* A page: the arrays in it, by name, tables of the summary that become arrays, the template, links, and the
+ * file. */
 #pragma once
 
 #include "tool/io/io.h"
@@ -30,7 +31,7 @@ bool page_arrays_list(report *r, page_arrays *out);
 /* Lists a new, empty array, which the list owns; NULL: out of memory. */
 packed_array *page_arrays_add(page_arrays *a, const char *name, const char *type);
 
-/* So many more may be listed. */
+/* The number of arrays that may still be listed. */
 size_t page_arrays_room(const page_arrays *a);
 
 void page_arrays_free(page_arrays *arrays);
@@ -40,16 +41,17 @@ size_t page_array_count(const page_array *array);
 
 /* ---- tables of a summary ------------------------------------------------------------------------------- */
 
-/* Long arrays of objects in JSON, such as the intervals of a summary, become columns in the page: a browser reads these ten times as
- * fast. */
+/* Long arrays of objects in JSON, such as the intervals of a summary, become columns in the page: a browser
+ * reads these ten times as fast. */
 
 enum { JSON_TABLE_ROWS_LEAST = 1000 };
 
-/* Looks at the members intervals and frames of the object `text`: arrays of at least that many objects, all with the same members in
- * the same order. Moves their values into arrays of the page, whose names begin with the prefix. In the text that results (to be freed) such a
- * member is {"count": ROWS, "columns": [{"path": ["ms", "total"], "array": {"name": .., "type": .., "count": ROWS}}, ..]}. In a column
- * of type f64, NaN stands for null; one with the member "texts" holds the places of its values in that array. *out becomes NULL when
- * there is no such member, or no room for the arrays. False: out of memory. */
+/* Looks at the members intervals and frames of the object `text`: arrays of at least that many objects, all
+ * with the same members in the same order. Moves their values into arrays of the page, whose names begin with
+ * the prefix. In the text that results (to be freed) such a member is {"count": ROWS, "columns": [{"path":
+ * ["ms", "total"], "array": {"name": .., "type": .., "count": ROWS}}, ..]}. In a column of type f64, NaN
+ * stands for null; one with the member "texts" holds the places of its values in that array. *out becomes
+ * NULL when there is no such member, or no room for the arrays. False: out of memory. */
 bool json_table_move(const char *text, const char *prefix, page_arrays *arrays, char **out);
 
 /* ---- templates ----------------------------------------------------------------------------------------- */
@@ -78,7 +80,8 @@ bool report_template_divide(const char *page, size_t size, report_template *out,
 /* Writes the member `arrays` of the document: what the arrays are called, their types and counts. */
 void page_file_list(json *out, const page_arrays *arrays);
 
-/* Puts the page at path in one go; document: JSON, in which any `<` is escaped here. The arrays are finished. */
+/* Puts the page at path in one go; document: JSON, in which any `<` is escaped here. The arrays are
+ * finished. */
 bool page_file_write(const char *path, const report_template *page, const char *document,
                      const page_arrays *arrays, io_error *error);
 
@@ -90,6 +93,6 @@ typedef struct page_folder {
     char *page, *here; /* the folder of the page, and the one that paths count from; "/" alone is "" */
 } page_folder;
 
-/* The path of a file as it is called from the page's folder, without "." and ".." but at its beginning; to be freed. NULL: memory is
- * short. */
+/* The path of a file as it is called from the page's folder, without "." and ".." but at its beginning; to be
+ * freed. NULL: memory is short. */
 char *page_link_make(const page_folder *folder, const char *path);

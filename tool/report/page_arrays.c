@@ -1,5 +1,5 @@
-/* The arrays of a page: packed, values in, compressed in memory as they come, base64 out; and listed by name, those collected and those
- * that follow from the mesh and the plan. */
+/* The arrays of a page: packed, values in, compressed in memory as they come, base64 out; and listed by name,
+ * those collected and those that follow from the mesh and the plan. */
 #include "tool/report/page.h"
 
 #include "tool/common/methods.h"

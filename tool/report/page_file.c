@@ -1,4 +1,5 @@
-/* Puts a page together: the template, which is a part of the program, and in it the document and the arrays. */
+/* Puts a page together: the template, which is a part of the program, and in it the document and the
+ * arrays. */
 #include "tool/report/page.h"
 
 #include "tool/io/output_file.h"
@@ -7,7 +8,7 @@
 
 /* ---- templates ----------------------------------------------------------------------------------------- */
 
-/* Where constants lie, in words of the assembler; only ELF has names that are hidden. */
+/* The place of constants, in words of the assembler; only ELF has names that are hidden. */
 #if defined(__ELF__)
 #define IN_CONSTANTS ".pushsection .rodata, \"a\"\n"
 #define IN_CODE      ".popsection\n"

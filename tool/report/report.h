@@ -1,4 +1,5 @@
-/* Reports: one HTML page that shows a replay, a plan, or replays side by side, or lists many jobs, and needs no network. */
+/* Reports: one HTML page that shows a replay, a plan, or replays side by side, or lists many jobs, and needs
+ * no network. */
 #pragma once
 
 #include "cscd/cscd.h"
@@ -24,7 +25,8 @@ bool report_request_agrees(const report_request *r, io_error *error);
 
 /* ---- orientations of an interval ----------------------------------------------------------------------- */
 
-/* How the triangles faced their regions' detector points in one interval, and where these points were. */
+/* The orientations of triangles towards their regions' detector points in one interval, and the places of
+ * these points. */
 typedef struct orientation_row {
     uint32_t triangle_count,
         region_count;    /* no regions: the method has no detector points, and there are no orientations */
@@ -103,17 +105,17 @@ void report_destroy(report *r);
 /* The positions of the first frame. */
 bool report_begin(report *r, const double *positions, io_error *error);
 
-/* The next interval: how its triangles faced their detector points (NULL where the options say that there are no
- * orientations), its contacts, and the positions of the frame at its end. The report ends with the last frame that it was
- * given here, be it earlier than expected. */
+/* The next interval: how its triangles faced their detector points (NULL where the options say that there are
+ * no orientations), its contacts, and the positions of the frame at its end. The report ends with the last
+ * frame that it was given here, be it earlier than expected. */
 bool report_add_interval(report *r, const orientation_row *orientations, const cscd_contacts *contacts,
                          const double *end, io_error *error);
 
-/* What intersects in a frame: pairs and, if they were asked for, curves and depths of vertices. Frames come in their
- * order, those that were not checked are left out. */
+/* Adds what intersects in a frame: pairs and, if they were asked for, curves and depths of vertices. Frames
+ * come in their order, those that were not checked are left out. */
 bool report_add_answers(report *r, uint32_t frame, const cscd_intersection_pairs *found, io_error *error);
 
-/* What a part is called, in the buffer or elsewhere; UINT32_MAX stands for what is in no part. */
+/* The name of a part, in the buffer or elsewhere; UINT32_MAX stands for what is in no part. */
 typedef const char *(*report_part_name)(void *user, uint32_t part, char buffer[REPORT_PART_NAME_SIZE]);
 
 /* The events, by the indices of frames; they are copied. name must live as long as the report. Once. */
@@ -141,7 +143,7 @@ bool report_write(report *r, const char *path, const report_summary *summaries, 
 
 /* A table of all jobs, the worst first. */
 
-/* What is known of a job in numbers; NaN: nothing. A column that no job has is not shown. */
+/* The numbers of a job; NaN: not known. A column that no job has is not shown. */
 typedef enum jobs_page_number {
     JOBS_PAGE_CROSSING_FRAMES,
     JOBS_PAGE_FRAMES, /* that were looked at */

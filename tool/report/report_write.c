@@ -115,7 +115,7 @@ static void write_frames(json *out, const report *r, bool all) {
     json_end_array(out);
 }
 
-/* What all frames are called, also those that are not kept. */
+/* The numbers of all frames, also of those that are not kept. */
 static void write_numbers(json *out, const report *r) {
     json_begin_array(out, "numbers");
     for (uint32_t frame = r->options.first; frame <= r->last; frame++)

@@ -3,8 +3,8 @@
 
 #ifdef _WIN32
 
-/* The standard files carry bytes, a console shows UTF-8 and understands the sequences that clear a line, and a wrong descriptor is an
- * error of the call and no end of the process. Returns what console_end takes. */
+/* The standard files carry bytes, a console shows UTF-8 and understands the sequences that clear a line, and
+ * a wrong descriptor is an error of the call and no end of the process. Returns what console_end takes. */
 unsigned console_begin(void);
 void console_end(unsigned page);
 

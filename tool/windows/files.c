@@ -10,7 +10,8 @@
 
 #undef stat
 
-/* A path that is a moment away from being free, because a virus scanner or an indexer looks at it, is tried again. */
+/* A path that is a moment away from being free, because a virus scanner or an indexer looks at it, is tried
+ * again. */
 enum { RETRIES = 20, RETRY_MS = 25 };
 
 /* Whoever reads a file keeps nobody from replacing or removing it, as elsewhere. */
@@ -180,8 +181,8 @@ static bool try_again(int attempt) {
 /* FileRenameInfoEx, which headers have from a later version of Windows on than ours. */
 static const FILE_INFO_BY_HANDLE_CLASS rename_info_ex = (FILE_INFO_BY_HANDLE_CLASS)22;
 
-/* Names the file anew as POSIX does, also where somebody has one of that name open: he keeps what he has opened. Windows 10 does so
- * on its own file system; false: this one does not, or it went wrong. */
+/* Names the file anew as POSIX does, also where somebody has one of that name open: he keeps what he has
+ * opened. Windows 10 does so on its own file system; false: this one does not, or it went wrong. */
 static bool rename_as_posix(const wchar_t *from, const wchar_t *to) {
     const size_t size = wcslen(to) * sizeof *to;
     FILE_RENAME_INFO *info = calloc(1, sizeof *info + size);
@@ -309,7 +310,8 @@ ssize_t windows_write(int file, const void *bytes, size_t size) {
     return _write(file, bytes, size < TRANSFER_MAX ? (unsigned)size : TRANSFER_MAX);
 }
 
-/* Unlike that of POSIX it moves the place at which the next plain read begins, which nobody uses beside it. */
+/* Unlike that of POSIX it moves the place at which the next plain read begins, which nobody uses beside
+ * it. */
 ssize_t windows_pread(int file, void *bytes, size_t size, off_t offset) {
     OVERLAPPED place = {.Offset = (DWORD)offset, .OffsetHigh = (DWORD)((uint64_t)offset >> 32)};
     DWORD got = 0;

@@ -1,6 +1,7 @@
-/* The part of POSIX that our programs use and Windows lacks, or has with other meanings. A build for Windows includes this file
- * before every file in C (-include), so that no other one knows of Windows: paths are UTF-8, may be as long as the system allows, and
- * have either slash; files are never translated; whoever has a file open keeps nobody from replacing it. */
+/* The part of POSIX that our programs use and Windows lacks, or has with other meanings. A build for Windows
+ * includes this file before every file in C (-include), so that no other one knows of Windows: paths are
+ * UTF-8, may be as long as the system allows, and have either slash; files are never translated; whoever has
+ * a file open keeps nobody from replacing it. */
 #pragma once
 
 #if defined(_WIN32) && !defined(__cplusplus)

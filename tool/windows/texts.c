@@ -9,7 +9,8 @@
 #undef fclose
 #undef strerror
 
-/* A stream into memory is a file that is deleted when it is closed, and that the system keeps in memory while there is room. */
+/* A stream into memory is a file that is deleted when it is closed, and that the system keeps in memory while
+ * there is room. */
 typedef struct memory_stream {
     FILE *file;
     char **text;

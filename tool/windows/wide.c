@@ -6,8 +6,9 @@
 #include <string.h>
 #include <windows.h>
 
-/* The wide functions take longer paths only with a prefix, which turns off everything that they do for us: slashes, dots, and
- * what is relative. A folder's limit is lower, because a name of 8.3 must fit behind it. */
+/* The wide functions take longer paths only with a prefix, which turns off everything that they do for
+ * us: slashes, dots, and what is relative. A folder's limit is lower, because a name of 8.3 must fit
+ * behind it. */
 enum { PREFIX_FROM = MAX_PATH - 12, PREFIX_ROOM = 8 };
 
 wchar_t *wide_text(const char *text) {

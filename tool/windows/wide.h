@@ -3,8 +3,8 @@
 
 #include <wchar.h>
 
-/* A path as the wide functions take it, to be freed: absolute and with the prefix that lifts the limit of 260 characters where it
- * would be reached. NULL, and errno. */
+/* A path as the wide functions take it, to be freed: absolute and with the prefix that lifts the limit of 260
+ * characters where it would be reached. NULL, and errno. */
 wchar_t *wide_path(const char *path);
 
 /* Text as UTF-16, to be freed; NULL, and errno: no memory, or no UTF-8. */

@@ -143,11 +143,11 @@ static bool copy_sorted(const frame_names *list, const char *name, frame_names *
     return copied;
 }
 
-/* What names that are listed may be. */
+/* The kinds of names that may be listed. */
 typedef enum list_kind { LIST_OF_NAMES, LIST_IS_SERIES, LIST_HAS_FRACTIONS } list_kind;
 
-/* If the list, with the model unless that is NULL, is a series, it becomes the list in its order, and *number the one
- * that counts the frames; the same of subframes. */
+/* If the list, with the model unless that is NULL, is a series, it becomes the list in its order, and *number
+ * the one that counts the frames; the same of subframes. */
 static bool take_series(frame_files *files, const char *model_path, list_kind *kind, size_t *number,
                         io_error *error) {
     frame_names unused = frame_names_none();
@@ -165,7 +165,8 @@ static bool take_series(frame_files *files, const char *model_path, list_kind *k
     return good || io_fail(error, "%s: out of memory", frame_names_at(&files->list, 0));
 }
 
-/* Names that are no series make one story with the model, which is told first: it is looked at as they are. */
+/* Names that are no series make one story with the model, which is told first: it is looked at as they
+ * are. */
 static bool put_model_first(frame_names *list, const char *model_path, io_error *error) {
     frame_names all = frame_names_none();
     bool good = frame_names_add(&all, model_path);
@@ -270,8 +271,8 @@ static bool fail_faces(const frame_files *files, const mesh_file *mesh, const ch
                        : "");
 }
 
-/* If the faces differ from those of earlier frames, the vertices most likely have another order. A model with another
- * number of faces may be the same mesh all the same, triangulated or with its quads. */
+/* If the faces differ from those of earlier frames, the vertices most likely have another order. A model with
+ * another number of faces may be the same mesh all the same, triangulated or with its quads. */
 static bool same_faces(frame_files *files, uint32_t frame, const mesh_file *mesh, io_error *error) {
     if (files->faces_seen && mesh->faces_hash != files->faces_hash)
         return fail_faces(files, mesh, frame_names_at(&files->list, files->faces_frame), error);

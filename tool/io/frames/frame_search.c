@@ -13,8 +13,8 @@
 
 enum { WIDTH_LIMIT = 32 };
 
-/* The pattern without its conversion and with "%%" undone: the folder, the text before the number, and the text
- * after it. */
+/* The pattern without its conversion and with "%%" undone: the folder, the text before the number, and the
+ * text after it. */
 typedef struct frame_pattern {
     char *text;
     size_t name_start, number_start; /* positions in text; the suffix starts where the number does */
@@ -67,8 +67,8 @@ static bool parse_pattern(frame_pattern *pattern, const char *source, io_error *
     return true;
 }
 
-/* Whether the name is that of some *number by the pattern. printf counts the sign of a negative one among its digits; others write as
- * many digits as of any number. */
+/* Whether the name is that of some *number by the pattern. printf counts the sign of a negative one among its
+ * digits; others write as many digits as of any number. */
 static bool matches_name(const frame_pattern *pattern, const char *name, int32_t *number) {
     const char *prefix = pattern->text + pattern->name_start, *suffix = pattern->text + pattern->number_start;
     const size_t length = strlen(name), suffix_length = strlen(suffix);
@@ -174,8 +174,8 @@ static bool check_extensions(const char *folder, const frame_names *list, io_err
     return true;
 }
 
-/* Compares all names with the first: each must differ from it in one number, always the same one, and no two may be
- * equal. */
+/* Compares all names with the first: each must differ from it in one number, always the same one, and no two
+ * may be equal. */
 static bool check_series(const char *folder, const frame_names *list, size_t *number, io_error *error) {
     size_t series_number = 0;
     for (size_t i = 1; i < frame_names_count(list); i++) {

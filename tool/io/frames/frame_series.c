@@ -52,7 +52,7 @@ bool frame_series_find(const frame_names *list, size_t *number) {
     return frame_names_count(list) > 1;
 }
 
-/* Where the number begins, and *length of it with its sign; NULL if the name has fewer. */
+/* Finds the beginning of the number, and its *length with its sign; NULL if the name has fewer. */
 static const char *find_number(const char *name, size_t number, size_t *length) {
     const bool last = number == SIZE_MAX;
     const char *found = NULL;
@@ -171,7 +171,7 @@ static bool read_time(const char *name, size_t fraction, name_time *out) {
     return value <= INT32_MAX;
 }
 
-/* Which number is the fraction: the last one that differs anywhere; 0: none may be. */
+/* Finds the number that is the fraction: the last one that differs anywhere; 0: none may be. */
 static size_t find_fraction(const frame_names *list) {
     size_t fraction = 0, most = 0;
     for (size_t i = 1; i < frame_names_count(list); i++) {

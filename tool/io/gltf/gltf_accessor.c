@@ -58,7 +58,7 @@ static bool open_view(gltf_document *document, const gltf_element *user, buffer_
     return true;
 }
 
-/* Where count elements of this size begin in the view of `user`, and how far apart they are. */
+/* Finds the beginning of count elements of this size in the view of `user`, and how far apart they are. */
 static bool locate_elements(gltf_document *document, const gltf_element *user, int64_t count, size_t size,
                             const unsigned char **data, size_t *stride) {
     buffer_view view = {0};
@@ -171,7 +171,8 @@ static bool check_type(const gltf_element *element, const gltf_element *user, co
                      TEXT_CUT(type != NULL ? type : "missing", 20), expected, key, user->name);
 }
 
-/* Elements without a buffer view are zeros, which take no room in the file: a few bytes could claim billions of them. */
+/* Elements without a buffer view are zeros, which take no room in the file: a few bytes could claim billions
+ * of them. */
 static bool check_zeros(const gltf_document *document, const gltf_element *element,
                         const gltf_accessor *accessor) {
     uint64_t size = document->reader->size;
@@ -220,7 +221,7 @@ bool gltf_accessor_require(gltf_document *document, const gltf_element *user, co
 
 /* ---- elements ---------------------------------------------------------------------------------------- */
 
-/* Where the element's bytes are; NULL: it is 0. */
+/* The element's bytes; NULL: it is 0. */
 static const unsigned char *find_element(const gltf_accessor *accessor, uint32_t element) {
     const size_t index_size = component_size(accessor->sparse_component);
     uint32_t low = 0, high = accessor->sparse_count;

@@ -1,4 +1,5 @@
-/* An animation of a glTF file, keys of placements and weights over time; and the frames of a file: its scene, moved by one of them. */
+/* An animation of a glTF file, keys of placements and weights over time; and the frames of a file: its scene,
+ * moved by one of them. */
 #include "tool/io/gltf/gltf_scene.h"
 
 #include "tool/io/format_reader.h"
@@ -33,7 +34,7 @@ typedef struct gltf_animation {
 
 /* ---- the choice of an animation ------------------------------------------------------------------------ */
 
-/* Of each animation in a list; a longer name is cut. */
+/* The longest name of an animation in a list; a longer one is cut. */
 enum { SHOWN_NAME_LENGTH = 60 };
 
 static const char *name_of(const gltf_element *element) {
@@ -41,7 +42,8 @@ static const char *name_of(const gltf_element *element) {
     return name != NULL ? name : "(no name)";
 }
 
-/* The number of animations, and the names of all; "..." stands for those that do not fit into size, which is 16 or more. */
+/* The number of animations, and the names of all; "..." stands for those that do not fit into size, which is
+ * 16 or more. */
 static bool gltf_animation_names(const gltf_scene *scene, size_t *count, char *text, size_t size) {
     const gltf_element *root = &scene->document.root;
     size_t used = 0;
@@ -110,7 +112,8 @@ static bool read_interpolation(const gltf_element *sampler, gltf_interpolation *
                      TEXT_CUT(name, 40));
 }
 
-/* Which node, and what of it; *moves becomes false when this channel moves no vertex of the scene. */
+/* Reads which node a channel moves, and what of it; *moves becomes false when this channel moves no vertex of
+ * the scene. */
 static bool read_target(const gltf_scene *scene, const gltf_element *element, gltf_channel *channel,
                         bool *moves) {
     gltf_element target;
@@ -203,8 +206,8 @@ static void gltf_animation_close(gltf_animation *animation) {
     *animation = (gltf_animation){0};
 }
 
-/* The animation of this name, or with NULL the first one. On false *out owns nothing, and the error of the scene's reader is
- * set. */
+/* The animation of this name, or with NULL the first one. On false *out owns nothing, and the error of the
+ * scene's reader is set. */
 static bool gltf_animation_open(gltf_scene *scene, const char *name, gltf_animation *out) {
     gltf_element element;
     size_t count;
@@ -227,9 +230,9 @@ static bool gltf_same_time(double a, double b) {
     return fabs(a - b) <= 0x1p-22 * fmax(fabs(a), fabs(b));
 }
 
-/* Where a time lies among the keys of a channel. */
+/* The place of a time among the keys of a channel. */
 typedef struct key_place {
-    uint32_t key;    /* at or before the time, but for times before the first key */
+    uint32_t key;    /* at or before the time, unless that is before the first key */
     double share;    /* of the way to the next key, 0 to 1; 0 also behind the last one */
     double interval; /* from this key to the next, in seconds */
 } key_place;
@@ -240,8 +243,8 @@ static double key_time(const gltf_channel *channel, uint32_t key) {
     return time;
 }
 
-/* A key whose time was rounded past a frame's time belongs to that frame: otherwise a constant piece would begin a frame
- * late. */
+/* A key whose time was rounded past a frame's time belongs to that frame: otherwise a constant piece would
+ * begin a frame late. */
 static key_place find_place(const gltf_channel *channel, double time) {
     uint32_t low = 0,
              high = channel->times.count; /* keys below low are not behind the time, those from high on are */
@@ -261,7 +264,8 @@ static key_place find_place(const gltf_channel *channel, double time) {
     return place;
 }
 
-/* Number `column` of a key: its value, or in splines also its tangents (part 0: into the key, 1: the value, 2: out of it). */
+/* Number `column` of a key: its value, or in splines also its tangents (part 0: into the key, 1: the value,
+ * 2: out of it). */
 static double key_number(const gltf_channel *channel, uint32_t key, uint32_t part, uint32_t column) {
     const uint32_t elements = channel->path == GLTF_WEIGHTS ? channel->width : 1;
     const uint32_t parts = channel->interpolation == GLTF_CUBICSPLINE ? 3 : 1;
@@ -351,7 +355,8 @@ struct gltf_frames {
     char path[];    /* the reader's */
 };
 
-/* A frame for each step of 1 / fps from the start on; the end counts when the last step meets it but for rounding. */
+/* A frame for each step of 1 / fps from the start on; the end counts when the last step meets it, rounding
+ * aside. */
 static bool count_frames(gltf_frames *frames) {
     const double start = frames->animation.start, end = frames->animation.end;
     double steps = floor((end - start) * frames->fps);

@@ -18,7 +18,8 @@
 
 /* ---- JSON ---------------------------------------------------------------------------------------------- */
 
-/* Objects inside each other: "extras" of programs may go deep, but freeing them takes a call for each level. */
+/* Objects inside each other: "extras" of programs may go deep, but freeing them takes a call for each
+ * level. */
 enum { DEPTH_MAX = 512 };
 
 /* ---- parsing ---------------------------------------------------------------------------------------- */
@@ -126,7 +127,7 @@ bool gltf_object(const gltf_element *element, const char *key, gltf_element *out
 
 /* ---- numbers ---------------------------------------------------------------------------------------- */
 
-/* What a message shows of a value; NULL is null, and a value has no text when memory runs out. */
+/* The text of a value in a message; NULL is null, and a value has no text when memory runs out. */
 static const char *text_of(gltf_value *value) {
     const char *text = json_object_get_string(value);
     return text != NULL ? text : "null";
@@ -286,7 +287,8 @@ static bool read_chunk(file_reader *reader, size_t at, size_t end, chunk_span *o
     return true;
 }
 
-/* The first chunk is the JSON, the second, if it is there, the buffer; others are unknown, and passed over. */
+/* The first chunk is the JSON, the second, if it is there, the buffer; others are unknown, and passed
+ * over. */
 static bool read_chunks(file_reader *reader, chunk_span *text, gltf_document *document) {
     reader->binary = true;
     if (reader->size < HEADER_SIZE)
@@ -387,7 +389,8 @@ static bool decode_percents(char *text, size_t *length) {
     return true;
 }
 
-/* A file of a stranger must not bring others from somewhere on the disk into what is written. Windows has two separators. */
+/* A file of a stranger must not bring others from somewhere on the disk into what is written. Windows has two
+ * separators. */
 static bool leaves_folder(const char *path) {
     for (const char *part = path;; part++) {
         const size_t length = strcspn(part, "/\\");

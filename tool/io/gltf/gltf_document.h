@@ -25,13 +25,14 @@ typedef struct gltf_element {
 /* Writes "path: name: message" to the reader's error; always false. */
 bool gltf_fail(const gltf_element *element, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* The functions below return false after an error. A member that the file does not have is none, and leaves the output as it
- * was, unless the function's name says otherwise. */
+/* The functions below return false after an error. A member that the file does not have is none, and leaves
+ * the output as it was, unless the function's name says otherwise. */
 
 /* The length of an array, 0 when there is none. */
 bool gltf_array_length(const gltf_element *element, const char *key, size_t *length);
 
-/* The object at `index` of the array `key`, which is called "<label> <index>" after the element's own name. */
+/* The object at `index` of the array `key`, which is called "<label> <index>" after the element's own
+ * name. */
 bool gltf_element_at(const gltf_element *element, const char *key, const char *label, size_t index,
                      gltf_element *out);
 
@@ -53,7 +54,7 @@ bool gltf_index_at(const gltf_element *element, const char *key, size_t at, cons
 /* An array of exactly count finite numbers. */
 bool gltf_numbers(const gltf_element *element, const char *key, size_t count, double *numbers, bool *given);
 
-/* Whether there is such a member, of whatever type. */
+/* True if there is such a member, of whatever type. */
 bool gltf_has(const gltf_element *element, const char *key);
 /* Visits the names of all members, in the file's order. */
 void gltf_visit_members(const gltf_element *element, void (*visit)(const char *name, void *user), void *user);
@@ -82,8 +83,8 @@ typedef struct gltf_document {
 /* By the first bytes, or the ending of the name. */
 bool gltf_recognise(const file_reader *reader);
 
-/* Reads the JSON, and checks the version and the extensions that the file requires. Buffers are loaded when they are asked
- * for. On false *out owns nothing, and the reader's error is set. */
+/* Reads the JSON, and checks the version and the extensions that the file requires. Buffers are loaded when
+ * they are asked for. On false *out owns nothing, and the reader's error is set. */
 bool gltf_document_open(file_reader *reader, gltf_document *out);
 void gltf_document_close(gltf_document *document);
 
@@ -119,8 +120,9 @@ typedef struct gltf_accessor {
     const unsigned char *sparse_indices, *sparse_values;
 } gltf_accessor;
 
-/* The accessor that member `key` of `user` names, whose elements have this many components (1: SCALAR, 16: MAT4). *given is
- * false, and *out untouched, when there is no such member. On false the reader's error is set. */
+/* The accessor that member `key` of `user` names, whose elements have this many components (1: SCALAR, 16:
+ * MAT4). *given is false, and *out untouched, when there is no such member. On false the reader's error is
+ * set. */
 bool gltf_accessor_open(gltf_document *document, const gltf_element *user, const char *key,
                         uint32_t components, gltf_accessor *out, bool *given);
 
@@ -131,5 +133,5 @@ bool gltf_accessor_require(gltf_document *document, const gltf_element *user, co
 /* The components of an element below the count. */
 void gltf_accessor_get(const gltf_accessor *accessor, uint32_t element, double *components);
 
-/* Whether the components are unsigned integers that stand for themselves, as indices must. */
+/* True if the components are unsigned integers that stand for themselves, as indices must. */
 bool gltf_accessor_is_index(const gltf_accessor *accessor);

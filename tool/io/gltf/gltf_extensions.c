@@ -1,4 +1,5 @@
-/* The extensions of a glTF file: those that it requires must be read, and those that it only uses are named. */
+/* The extensions of a glTF file: those that it requires must be read, and those that it only uses are
+ * named. */
 #include "tool/io/gltf/gltf_scene.h"
 
 #include "tool/io/text_encoding.h"
@@ -63,7 +64,7 @@ bool gltf_extensions_check(const gltf_element *root) {
 
 enum { NAMES_MAX = 8, NAME_SIZE = 64 };
 
-/* What was found so far. */
+/* The extensions found so far. */
 typedef struct unread_extensions {
     uint32_t count, more; /* names, and how many uses of further ones there are */
     struct {
@@ -140,8 +141,8 @@ static bool look_at_meshes(const gltf_scene *scene, unread_extensions *found) {
     return true;
 }
 
-/* "KHR_x (node 3 and 2 more)", and what that means. Of compressed data a plain copy was read, or the file would have been
- * refused. */
+/* "KHR_x (node 3 and 2 more)", and what that means. Of compressed data a plain copy was read, or the file
+ * would have been refused. */
 static void write_note(const unread_extensions *found, char *text, size_t size) {
     size_t used = (size_t)snprintf(text, size, "the glTF extension%s ", found->count > 1 ? "s" : "");
     bool all_compressed = found->more == 0;

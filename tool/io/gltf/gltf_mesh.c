@@ -197,7 +197,7 @@ static bool read_triangles(const gltf_primitive *primitive, const gltf_vertices 
 
 /* ---- the mesh ---------------------------------------------------------------------------------------- */
 
-/* Where nobody asks for materials, one that is not there is no error. */
+/* Unless somebody asks for materials, one that is not there is no error. */
 static bool read_material(const gltf_primitive *primitive) {
     gltf_document *document = primitive->document;
     gltf_mesh *mesh = primitive->mesh;

@@ -153,14 +153,14 @@ static bool make_parts(const gltf_scene *scene, uint32_t most, part_namer *name,
     return done;
 }
 
-/* Nodes are called by their own name, else by that of their mesh, else "node 3"; a name that is taken gets .001, .002, ... behind
- * it. On false *out owns nothing, and the error of the scene's reader is set. */
+/* Nodes are called by their own name, else by that of their mesh, else "node 3"; a name that is taken gets
+ * .001, .002, ... behind it. On false *out owns nothing, and the error of the scene's reader is set. */
 static bool gltf_parts_of(const gltf_scene *scene, mesh_parts *out) {
     return make_parts(scene, scene->instance_count, name_instances, out);
 }
 
-/* The materials of triangles, in the order of these, by their names, else "material 3"; taken names as above. The reader must have been
- * asked for parts by material. Where no triangle has one, there are no parts. */
+/* The materials of triangles, in the order of these, by their names, else "material 3"; taken names as above.
+ * The reader must have been asked for parts by material. Where no triangle has one, there are no parts. */
 static bool gltf_parts_of_materials(const gltf_scene *scene, mesh_parts *out) {
     size_t count;
     if (!gltf_array_length(&scene->document.root, "materials", &count)) return false;
@@ -200,7 +200,8 @@ static void write_triangles(const gltf_scene *scene, const gltf_pose *pose, mesh
     }
 }
 
-/* Which face of the file each triangle is: one that names a vertex twice is dropped, and keeps its number. */
+/* Writes which face of the file each triangle is: one that names a vertex twice is dropped, and keeps its
+ * number. */
 static void write_polygons(const gltf_scene *scene, mesh_file *out) {
     uint32_t *polygon = out->polygons;
     for (uint32_t i = 0; i < scene->instance_count; i++) {

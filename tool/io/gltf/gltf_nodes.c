@@ -1,4 +1,5 @@
-/* The nodes of a glTF file: a forest, where its parts stand at rest, which of them the scene shows, and their instances. */
+/* The nodes of a glTF file: a forest, where its parts stand at rest, which of them the scene shows, and their
+ * instances. */
 #include "tool/io/gltf/gltf_scene.h"
 
 #include <inttypes.h>
@@ -59,7 +60,8 @@ static bool read_nodes(gltf_document *document, size_t mesh_count, size_t skin_c
     return true;
 }
 
-/* The node behind this one and all that is below it, in the order of its tree; GLTF_NONE behind the last one. */
+/* The node behind this one and all that is below it, in the order of its tree; GLTF_NONE behind the last
+ * one. */
 static uint32_t node_behind(const gltf_nodes *nodes, uint32_t root, uint32_t index) {
     while (index != root && nodes->nodes[index].next_sibling == GLTF_NONE) index = nodes->nodes[index].parent;
     return index == root ? GLTF_NONE : nodes->nodes[index].next_sibling;
@@ -94,7 +96,8 @@ static bool order_nodes(gltf_document *document, gltf_nodes *nodes) {
     return ordered == nodes->count || fail_circle(document, nodes);
 }
 
-/* What is below a node that is shown is shown already, and is not walked through again: a scene may name every node of a chain. */
+/* The nodes below one that is shown are shown already, and are not walked through again: a scene may name
+ * every node of a chain. */
 static void show_tree(gltf_nodes *nodes, uint32_t root) {
     for (uint32_t i = root; i != GLTF_NONE;) {
         const bool before = nodes->nodes[i].shown;

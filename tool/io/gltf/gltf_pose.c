@@ -1,4 +1,4 @@
-/* Where the nodes of a glTF scene are at one moment, and with them its vertices. */
+/* The nodes of a glTF scene at one moment, and with them its vertices. */
 #include "tool/io/gltf/gltf_scene.h"
 
 #include <inttypes.h>

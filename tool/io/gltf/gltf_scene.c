@@ -1,4 +1,5 @@
-/* What the default scene of a glTF file shows: its nodes with meshes, one behind the other, and the skins that move them. */
+/* The default scene of a glTF file: its nodes with meshes, one behind the other, and the skins that move
+ * them. */
 #include "tool/io/gltf/gltf_scene.h"
 
 #include "tool/io/gltf/gltf_document.h"

@@ -1,4 +1,5 @@
-/* The scene of a glTF file: meshes, nodes and skins, the instances that it shows, and where they are at a moment. */
+/* The scene of a glTF file: meshes, nodes and skins, the instances that it shows, and where they are at a
+ * moment. */
 #pragma once
 
 #include "tool/io/gltf/gltf_document.h"
@@ -68,7 +69,8 @@ typedef struct gltf_placement {
 } gltf_placement;
 
 gltf_transform gltf_transform_identity(void);
-/* Scale first, then rotation, then translation. The quaternion need not be of length 1; of length 0 it turns nothing. */
+/* Scale first, then rotation, then translation. The quaternion need not be of length 1; of length 0 it turns
+ * nothing. */
 gltf_transform gltf_transform_of_placement(const gltf_placement *placement);
 /* From 16 numbers, column by column; the last row is taken as 0 0 0 1. */
 gltf_transform gltf_transform_of_columns(const double columns[16]);
@@ -76,7 +78,7 @@ gltf_transform gltf_transform_of_columns(const double columns[16]);
 /* b first, then a. */
 gltf_transform gltf_transform_multiply(const gltf_transform *a, const gltf_transform *b);
 void gltf_transform_apply(const gltf_transform *a, const double x[3], double out[3]);
-/* Whether it turns the inside out. */
+/* True if the transform turns the inside out. */
 int gltf_transform_mirrors(const gltf_transform *a);
 
 typedef struct gltf_node {
@@ -102,14 +104,14 @@ void gltf_nodes_close(gltf_nodes *nodes);
 
 #define GLTF_INSTANCING "EXT_mesh_gpu_instancing"
 
-/* Where the copies of a node's mesh stand, seen from the node. */
+/* The places of the copies of a node's mesh, seen from the node. */
 typedef struct gltf_instancing {
     uint32_t count; /* 0: the node has no such extension, and its mesh is there once */
     bool has_translation, has_rotation, has_scale;
     gltf_accessor translation, rotation, scale; /* of as many elements as there are copies */
 } gltf_instancing;
 
-/* Of the node with this index, which has a mesh. On false the reader's error is set. */
+/* Reads the instancing of the node with this index, which has a mesh. On false the reader's error is set. */
 bool gltf_instancing_open(gltf_document *document, uint32_t node, gltf_instancing *out);
 
 /* The place of a copy below the count. */
@@ -125,7 +127,8 @@ typedef struct gltf_skin {
 
 /* ---- what the default scene shows: its nodes with meshes, one behind the other ------------------------- */
 
-/* A node with a mesh, or one of the copies of it that its instancing makes. Two nodes may have the same mesh. */
+/* A node with a mesh, or one of the copies of it that its instancing makes. Two nodes may have the same
+ * mesh. */
 typedef struct gltf_instance {
     uint32_t node, mesh;
     uint32_t skin; /* GLTF_NONE: the node moves it, else the joints alone do */
@@ -146,8 +149,8 @@ typedef struct gltf_scene {
     uint32_t face_count; /* with those that were dropped */
 } gltf_scene;
 
-/* The reader stays the caller's, and open as long as the scene. On false *out owns nothing, and the reader's error is
- * set. */
+/* The reader stays the caller's, and open as long as the scene. On false *out owns nothing, and the reader's
+ * error is set. */
 bool gltf_scene_open(file_reader *reader, gltf_scene *out);
 void gltf_scene_close(gltf_scene *scene);
 
@@ -163,22 +166,24 @@ typedef struct gltf_pose {
     gltf_transform *joints;
 } gltf_pose;
 
-/* A pose at rest. The scene must outlive it. On false *out owns nothing, and the error of the scene's reader is set. */
+/* A pose at rest. The scene must outlive it. On false *out owns nothing, and the error of the scene's reader
+ * is set. */
 bool gltf_pose_open(const gltf_scene *scene, gltf_pose *out);
 void gltf_pose_close(gltf_pose *pose);
 
 /* The transforms of all nodes follow their placements. */
 void gltf_pose_update(gltf_pose *pose);
-/* Where an instance that no joints move is, after an update. */
+/* The place of an instance that no joints move, after an update. */
 gltf_transform gltf_pose_place(const gltf_pose *pose, const gltf_instance *instance);
 /* Writes the scene's vertices after an update; false, with the node, when one of them is not finite. */
 bool gltf_pose_write(gltf_pose *pose, double *positions);
 
 /* ---- extensions: those that the file requires must be read, and those that it only uses are named ------ */
 
-/* False, with the reader's error, when the file requires an extension that is not read and may change where surfaces are. */
+/* False, with the reader's error, when the file requires an extension that is not read and may change where
+ * surfaces are. */
 bool gltf_extensions_check(const gltf_element *root);
 
-/* Writes a sentence, which the caller frees, about extensions of the nodes, meshes and views that the scene shows, which are not read
- * though they may change where surfaces are; *out is NULL when there are none. */
+/* Writes a sentence, which the caller frees, about extensions of the nodes, meshes and views that the scene
+ * shows, which are not read though they may change where surfaces are; *out is NULL when there are none. */
 bool gltf_extensions_note(const gltf_scene *scene, char **out);
