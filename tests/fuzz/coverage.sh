@@ -1,6 +1,6 @@
 #!/bin/sh
 # Lets libFuzzer make files of each format, guided by the paths that they take through its reader: coverage.sh SECONDS TARGET FOLDER
-# [FORMAT...], SECONDS for each. It begins with the files that are kept in tests/fuzz/corpus, and with the words of tests/fuzz/words.
+# [FORMAT...], SECONDS for each. It begins with the files that are kept (kept.sh), and with the words of tests/fuzz/words.
 # What it finds is left in FOLDER/FORMAT: files that end the program, take too long or too much memory are called crash-*, timeout-* and
 # oom-*. KEEP=1 keeps the files that reach new code, as few and as small as do.
 set -u
@@ -9,8 +9,11 @@ seconds=$1
 target=$2
 found=$3
 shift 3
-kept=tests/fuzz/corpus
-[ $# -gt 0 ] || set -- $(ls $kept)
+kept=$(mktemp -d) || exit 1
+trap 'rm -rf "$kept"' EXIT
+tests/fuzz/kept.sh unpack "$kept" || exit 1
+# shellcheck disable=SC2046
+[ $# -gt 0 ] || set -- $(ls "$kept")
 for format; do
     [ -f "tests/fuzz/words/$format" ] || { echo "coverage.sh: no format is called $format; there are" tests/fuzz/words/* | sed 's: tests/fuzz/words/: :g' >&2; exit 2; }
 done
@@ -35,6 +38,7 @@ for format; do
     if "$target" $options -set_cover_merge=1 -use_counters=0 "$smaller" "$candidates"; then
         rm -f "$kept/$format"/*
         for file in "$smaller"/*; do cp "$file" "$kept/$format/$(sha1sum <"$file" | cut -c 1-12)"; done
+        tests/fuzz/kept.sh pack "$kept" "$format"
     fi
     rm -rf "$candidates" "$smaller"
 done

@@ -26,7 +26,8 @@ try() {
 }
 
 readers=$BUILD/tests/fuzz/fuzz_readers
-try 'kept files' "$readers" --replay tests/fuzz/corpus/*
+tests/fuzz/kept.sh unpack "$corpus/kept" || exit 1
+try 'kept files' "$readers" --replay "$corpus"/kept/*
 tests/fuzz/large.py "$corpus/large" || exit 1
 try 'large files' "$readers" --replay "$corpus"/large/*
 try 'mesh files' "$readers" "$seconds" "$seed" "$corpus"/*.obj "$corpus"/*.off "$corpus"/*.stl "$corpus"/big.ply "$corpus"/little.ply \
