@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Plans by method auto beside one region for each component: prints a table for docs/about/measurements.md. Linux.
+"""Plans by method auto compared with one region for each component: prints a table for docs/about/measurements.md. Linux.
 
 Usage: python3 benchmarks/auto_plans.py [--rounds N] CSCD MODEL.obj...
 
-Beside each model lies its recording, MODEL.pc2. Of each, `preprocess --method auto` makes a plan for the rest and one for the
+The recording of each model is MODEL.pc2 in the same folder. For each model `preprocess --method auto` makes a plan for the rest
+and one for the
 frames, and `replay` runs with them and with one region, by turns: once so that every interval is culled, and once so that each
 component is culled where that pays, with lists of pairs. The table has the mean milliseconds of an interval with one region,
 the least of all rounds, and how many times as fast the plans are. Its last column is the price of the plan for the rest: the time

@@ -1,4 +1,5 @@
-/* What lists of pairs save where little moves from one interval to the next: coherence on and off, side by side. */
+/* The saving by lists of pairs when little moves from one interval to the next: coherence on and off, side by
+ * side. */
 #include "benchmarks/lib/deforming_body.h"
 #include "benchmarks/lib/options.h"
 #include "benchmarks/lib/stages.h"

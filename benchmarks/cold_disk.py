@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""How fast a replay reads from a cold disk, beside dd: prints a table for docs/about/measurements.md. Linux, as root.
+"""The speed at which a replay reads from a cold disk, compared with dd: prints a table for docs/about/measurements.md. Linux, as root.
 
 Usage: python3 benchmarks/cold_disk.py [CSCD]
 
@@ -62,7 +62,7 @@ def write_recordings(folder):
 
 @contextlib.contextmanager
 def disk_speed(folder, speed):
-    """Makes a control group of which the processes read so many MB/s from the disk of the folder; yields its list of tasks."""
+    """Makes a control group whose processes read this number of MB/s from the disk of the folder; yields its list of tasks."""
     if speed is None:
         yield None
         return

@@ -1,4 +1,5 @@
-/* The tool on many meshes, and on tiny ones: beside a process that only reads and checks them, and by threads. */
+/* The tool on many meshes, and on tiny ones, compared with a process that only reads and checks them, and by
+ * threads. */
 #include "benchmarks/lib/options.h"
 #include "cscd/cscd.h"
 #include "src/core/timer.h"
@@ -118,8 +119,9 @@ static cscd_status check_file(cscd_context *context, const mesh_file *file, size
     return status;
 }
 
-/* The process beside which the tool is measured: reads and checks all files. Without the thresholds the C library gives
- * memory back to the system after each tiny mesh, which takes three times as long as all else. */
+/* The process that the tool is compared with: it reads and checks all files. Without the thresholds the C
+ * library gives memory back to the system after each tiny mesh, which takes three times as long as all
+ * else. */
 static bool check_here(char *const *paths, io_error *error) {
     cscd_context *context;
     size_t pairs = 0;
@@ -217,7 +219,7 @@ static double middle_of(double *values, uint32_t count) {
     return values[count / 2];
 }
 
-/* What some ways have taken: the least, and ratios over the first way of the same round. */
+/* The times of some ways: the least, and ratios over the first way of the same round. */
 typedef struct way_times {
     spent_ms least[WAYS];
     double ratios[WAYS][INTERVALS_MAX];

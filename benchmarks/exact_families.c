@@ -1,4 +1,5 @@
-/* How many elementary tests reach exact arithmetic when motions have a structure, and whether they had to. */
+/* The number of elementary tests that reach exact arithmetic when motions have a structure, and of those that
+ * had to. */
 #include "benchmarks/lib/options.h"
 #include "models/shapes/body.h"
 #include "runtime/ccd/ccd.h"
@@ -152,7 +153,7 @@ static void turn_by(double angle, const double axis[3], double p[3]) {
     memcpy(p, q, sizeof q);
 }
 
-/* How far a motion goes differs from scene to scene. */
+/* The length of a motion differs from scene to scene. */
 static void move_point(family_motion motion, double far, double p[3]) {
     static const double z[3] = {0, 0, 1}, slant[3] = {2.0 / 7.0, 3.0 / 7.0, 6.0 / 7.0};
     double turn = motion == MOTION_TURN ? 0.2 * far : 0.3 * far;

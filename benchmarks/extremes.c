@@ -1,4 +1,5 @@
-/* How time, work and memory grow on shapes that tempt a search to compare everything with everything: a table, with exponents. */
+/* The growth of time, work and memory on shapes that tempt a search to compare everything with everything: a
+ * table, with exponents. */
 #include "cscd/cscd.h"
 #include "models/shapes/extreme_shapes.h"
 #include "src/core/system.h"
@@ -36,7 +37,7 @@ typedef struct extremes_options {
     bool commands[COMMANDS], kinds[EXTREME_KINDS];
 } extremes_options;
 
-/* What a command took on one shape. */
+/* The cost of a command on one shape. */
 typedef struct extreme_cost {
     double triangles, found;
     double seconds, bytes;

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What the tool does with very large inputs: prints a table for docs/about/measurements.md. Linux.
+"""The cost of very large inputs to the tool: prints a table for docs/about/measurements.md. Linux.
 
 Usage: python3 benchmarks/extremes.py [CSCD [ROW...]]
 
@@ -56,7 +56,7 @@ def raised(vertices, begin, height):
 # ---- scenes: each returns the mesh and how to make its frames ----
 
 def comb(count, place):
-    """Needles beside each other whose broad ends a spine joins; place(along, across) returns a vertex."""
+    """Needles next to each other whose broad ends a spine joins; place(along, across) returns a vertex."""
     vertices, triangles = array.array("f"), array.array("I")
     for i in range(count):
         for along, across in ((-1.0, i), (count, i + 0.25), (count, i - 0.25), (count + 1.0, i)):
@@ -102,7 +102,7 @@ def torus(triangles, frames=3):
 
 
 def recording(frames):
-    """A torus of 5,000 triangles for so many frames."""
+    """A torus of 5,000 triangles for this number of frames."""
     return torus(5000, frames)
 
 
@@ -120,7 +120,7 @@ def components(count):
 
 
 def intervals(count):
-    """A small pyramid above a large triangle, which it goes through and leaves again, for so many intervals."""
+    """A small pyramid above a large triangle, which it goes through and leaves again, for this number of intervals."""
     vertices = array.array("f", (-9, -9, 0, 9, -9, 0, 0, 9, 0, -1, -1, 1, 1, -1, 1, 0, 1, 1, 0, 0, 0.5))
     triangles = array.array("I", (0, 1, 2, 3, 5, 4, 3, 4, 6, 4, 5, 6, 5, 3, 6))
     return vertices, triangles, count + 1, lambda k: raised(vertices, 3, 0.6 * math.sin(0.1 * k) - 0.3)

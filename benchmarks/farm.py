@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""What a list of jobs costs on one machine, and what that makes of a farm: prints tables for docs/about/measurements.md.
+"""The cost of a list of jobs on one machine and, from that, on a farm: prints tables for docs/about/measurements.md.
 
 Usage: python3 benchmarks/farm.py [CSCD]
 
 It measures the start of a shard by the length of its list, the work and the bytes of a job, and the merge. A model of four numbers
-made of these must foretell runs with one and two processes, and two shards side by side. Then it says what it makes of many machines.
+made of these must foretell runs with one and two processes, and two shards side by side. Then it gives the times of many machines.
 """
 import json
 import math

@@ -1,5 +1,5 @@
-/* What answers about intersections cost beside the plain check: kinds, curves, patches, overlaps, depths, what is
- * cut off, events. */
+/* The cost of answers about intersections, compared with the plain check: kinds, curves, patches, overlaps,
+ * depths, what is cut off, events. */
 #include "benchmarks/lib/crossing_scenes.h"
 #include "benchmarks/lib/deforming_body.h"
 #include "benchmarks/lib/options.h"

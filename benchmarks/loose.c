@@ -1,4 +1,5 @@
-/* The cost of points, wires and a half-space beside a cloth: a step with them, without them, and by brute force. */
+/* The cost of points, wires and a half-space near a cloth: a step with them, without them, and by brute
+ * force. */
 #include "benchmarks/lib/options.h"
 #include "cscd/research.h"
 #include "src/core/timer.h"
@@ -7,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Brute force looks at cloths of so many triangles: more take minutes. */
+/* Brute force looks at cloths of up to this number of triangles: more take minutes. */
 enum { REPEATS = 25, OBJECTS = 4, BRUTE_MOST = 10000 };
 
 static const char help[] =

@@ -17,7 +17,7 @@ static const char help[] =
     "END, the same mesh at other positions, and all pairs of features that their feature_filter leaves, and times\n"
     "the narrow phase on them (one thread's processor time, least of 5).\n";
 
-/* The features of so many pairs of triangles never fill the queue. */
+/* The features of this number of pairs of triangles never fill the queue. */
 enum { REPEATS = 5, CHUNK = 480, TRIANGLE_CHUNK = 32 };
 
 typedef struct recorded_pairs {

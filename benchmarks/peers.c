@@ -1,4 +1,4 @@
-/* Embree's broad phase and CGAL's check beside us, on the same frames and in one run. */
+/* Embree's broad phase and CGAL's check compared with ours, on the same frames and in one run. */
 #include "benchmarks/lib/options.h"
 #include "benchmarks/lib/row_file.h"
 #include "benchmarks/peers/cgal_peer.h"

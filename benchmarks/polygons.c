@@ -1,4 +1,4 @@
-/* How long one face with many corners takes to be cut into triangles. */
+/* The time in which one face with many corners is cut into triangles. */
 #include "tool/io/polygon.h"
 
 #include <math.h>
@@ -50,7 +50,7 @@ static void place_random_star(uint32_t i, uint32_t n, double point[2]) {
     place_around(2.0 * pi * i / n, 0.2 + noise_at(i), point);
 }
 
-/* Outwards in 50 turns, and back beside them. */
+/* Outwards in 50 turns, and back between them. */
 static void place_spiral(uint32_t i, uint32_t n, double point[2]) {
     const uint32_t half = n / 2, along = i < half ? i : n - 1 - i;
     const double turns = 50.0 * along / half;

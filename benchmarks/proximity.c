@@ -1,4 +1,5 @@
-/* Proximity queries, minimum separation, certified steps and line searches, each beside a plain step. */
+/* Proximity queries, minimum separation, certified steps and line searches, each compared with a plain
+ * step. */
 #include "benchmarks/lib/options.h"
 #include "benchmarks/lib/scene_files.h"
 #include "benchmarks/lib/stages.h"

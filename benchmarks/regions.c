@@ -1,4 +1,5 @@
-/* What cuts give at run time: steps with one region, with those of the charge, and with those for the motion, side by side. */
+/* The gain of cuts at run time: steps with one region, with those of the charge, and with those for the
+ * motion, side by side. */
 #include "benchmarks/lib/deforming_body.h"
 #include "benchmarks/lib/options.h"
 
@@ -72,7 +73,7 @@ static double seen_share(const cscd_plan *plan) {
     return seen / area;
 }
 
-/* What the centroid of all sees. */
+/* The share that the centroid of all sees. */
 static cscd_status seen_by_one(const cut_body *c, double *out) {
     cscd_plan_options options = cscd_plan_defaults();
     cscd_plan *plan = NULL;

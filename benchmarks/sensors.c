@@ -1,4 +1,4 @@
-/* What particle sensors are worth: recall, false alarms and time on scenes of many objects, beside the
+/* The worth of particle sensors: recall, false alarms and time on scenes of many objects, compared with the
  * detector. */
 #include "benchmarks/lib/scene_files.h"
 #include "benchmarks/sensors/cost.h"

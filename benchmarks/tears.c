@@ -1,4 +1,5 @@
-/* The cost of a tear: the mesh is changed and the detector moves over, beside what the torn object costs alone. */
+/* The cost of a tear: the mesh is changed and the detector moves over, compared with the cost of the torn
+ * object alone. */
 #include "benchmarks/lib/deforming_body.h"
 #include "benchmarks/lib/options.h"
 #include "src/core/timer.h"
@@ -34,7 +35,7 @@ typedef struct cloth {
     double *x[2][2]; /* whole and torn, at the start and at the end, the body's behind it */
 } cloth;
 
-/* Of one share, the least of all repetitions. */
+/* The least of all repetitions, for one share. */
 typedef struct tear_times {
     double alone[PART_COUNT], change[PART_COUNT], created[PART_COUNT], cloned[PART_COUNT];
 } tear_times;
@@ -131,7 +132,7 @@ static cscd_status step_to(const tear_rig *r, cscd_detector *d, int torn, int fr
     return status;
 }
 
-/* What the next step takes longer than the ones after it, which go to and fro. */
+/* The time that the next step takes longer than the ones after it, which go to and fro. */
 static cscd_status steps_after(const tear_rig *r, cscd_detector *d, int torn, double *longer) {
     double first = 0.0, ms, steady = HUGE_VAL;
     cscd_status status = step_to(r, d, torn, 0, &first);

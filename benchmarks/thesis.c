@@ -1,4 +1,5 @@
-/* Chapters 5 and 6 of the thesis (Yeh 2012) with our recordings in place of its own: its tables, with its numbers beside ours. */
+/* Chapters 5 and 6 of the thesis (Yeh 2012) with our recordings in place of its own: its tables, with its
+ * numbers next to ours. */
 #include "benchmarks/lib/contest.h"
 #include "benchmarks/lib/thesis_numbers.h"
 #include "cscd/research.h"
@@ -14,7 +15,7 @@ enum { RECORDINGS = 3 };
 static const uint64_t detector_steps =
     CSCD_OURS_MOTION | CSCD_OURS_STARTS | CSCD_OURS_REPRESENTATIVES | CSCD_OURS_NEIGHBOURS | CSCD_OURS_TESTS;
 
-/* Who takes part in a table, and what they have shown. */
+/* The methods of a table, and their results. */
 typedef struct thesis_table {
     entrant entrants[ENTRANTS_MAX];
     contest_result results[ENTRANTS_MAX];

@@ -24,7 +24,8 @@ typedef struct figure {
     uint8_t *colours;
 } figure;
 
-/* Writes folder/name-kind.plan.ply. charges NULL: a plan of regions alone. Regions are numbered anew, without gaps. */
+/* Writes folder/name-kind.plan.ply. charges NULL: a plan of regions alone. Regions are numbered again,
+ * without gaps. */
 static bool write_plan(const figure *f, const char *kind, const double *charges, const uint32_t *labels,
                        io_error *error) {
     const uint32_t count = f->mesh->triangle_count;
@@ -81,7 +82,8 @@ static void free_figure(figure *f) {
     cscd_plan_destroy(f->plan);
 }
 
-/* Figure 3.4 b to f: density, equalized density, clusters, the cutting triangles beside the contours, regions. */
+/* Figure 3.4 b to f: density, equalized density, clusters, the cutting triangles along the contours,
+ * regions. */
 static bool write_steps(figure *f, io_error *error) {
     const published_trace trace = {f->clusters, f->cutting, f->contours};
     uint32_t count = 0;

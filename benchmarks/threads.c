@@ -1,4 +1,4 @@
-/* The gain of a second thread, beside its gain on this machine for arithmetic that shares nothing. */
+/* The gain of a second thread, compared with its gain on this machine for arithmetic that shares nothing. */
 #include "benchmarks/lib/fixed_arithmetic.h"
 #include "benchmarks/lib/options.h"
 #include "benchmarks/lib/serial_share.h"

@@ -1,4 +1,5 @@
-/* The cost of new connectivity: a new mesh, plan and detector and the first step, beside a steady step. */
+/* The cost of new connectivity: a new mesh, plan and detector and the first step, compared with a steady
+ * step. */
 #include "benchmarks/lib/options.h"
 #include "benchmarks/lib/stages.h"
 #include "src/core/timer.h"

@@ -29,7 +29,7 @@ enum { METHODS = 3, QUICK_STRIDE = 10 };
 
 static const cscd_method methods[METHODS] = {CSCD_METHOD_NONE, CSCD_METHOD_SINGLE, CSCD_METHOD_CHARGE};
 
-/* What is compared with boxes, over all recordings. */
+/* The volumes that are compared with boxes, over all recordings. */
 typedef enum summed_column {
     SUM_TESTS,
     SUM_PAIRS,

@@ -56,7 +56,7 @@ static bool close_outputs(cloth_files *out, io_error *error) {
     return good;
 }
 
-/* What continuous detection alone has to say. */
+/* Prints the part of the summary that continuous detection alone has. */
 static void print_steps(const cloth_statistics *t) {
     const safe_motion_counts *m = &t->motion;
     printf(

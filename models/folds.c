@@ -126,7 +126,7 @@ static waves make_waves(uint64_t seed, int count, double number) {
     return w;
 }
 
-/* Of mean square 1. */
+/* The mean square is 1. */
 static double height_of(const waves *w, const double p[3]) {
     double sum = 0.0;
     for (int i = 0; i < w->count; i++) {
@@ -165,7 +165,7 @@ static void add_normals(folds *f) {
     }
 }
 
-/* How far a vertex swells, from 0 to 1: a slow wave where it is above 0. */
+/* Returns the swelling of a vertex, from 0 to 1: a slow wave where it is above 0. */
 static void weigh_swelling(folds *f, const icosphere *s) {
     static double shares[FOLDS_VERTICES];
     const waves w = make_waves(11, 8, swelling_wave_number);

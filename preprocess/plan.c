@@ -155,7 +155,7 @@ static cscd_status make_plan(const cscd_mesh *mesh, const double *positions, con
     return CSCD_OK;
 }
 
-/* How a draft was made: words that docs/artist/formats.md explains. */
+/* The origin of a draft, in words that docs/artist/formats.md explains. */
 static void write_origin(const plan_draft *d, char out[PLAN_ORIGIN_SIZE]) {
     static const char *const solvers[] = {"tree", "dense", "coarse"};
     const cscd_plan_options *o = &d->options;

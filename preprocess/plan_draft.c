@@ -49,7 +49,7 @@ void plan_frames_free(cscd_context *context, plan_frames *frames) {
 
 /* ---- one method ---------------------------------------------------------------------------------------- */
 
-/* Of the method PUBLISHED: is this step, a CSCD_OURS_ bit, done as published? */
+/* Returns whether the method is PUBLISHED and does this step, a CSCD_OURS_ bit, as published. */
 static bool as_published(const plan_draft *d, uint64_t step) {
     return d->options.method == CSCD_METHOD_PUBLISHED && (d->options.ours & step) == 0;
 }

@@ -7,7 +7,7 @@
 
 /* ---- charge -------------------------------------------------------------------------------------------- */
 
-/* What a solution took, and by what. */
+/* The time of a solution, and the kernels that made it. */
 typedef struct charge_report {
     charge_timings timings;
     charge_kernels kernels; /* of the BLAS, if a dense system was solved */
@@ -54,7 +54,7 @@ void plan_frames_free(cscd_context *context, plan_frames *frames);
 
 /* ---- drafts -------------------------------------------------------------------------------------------- */
 
-/* What the steps of preprocessing find, before it becomes a plan. */
+/* The results of the steps of preprocessing, before they become a plan. */
 typedef struct plan_draft {
     const cscd_mesh *mesh;
     const double *positions; /* at rest */
@@ -73,11 +73,11 @@ cscd_status plan_draft_make(const cscd_mesh *mesh, const double *positions, cons
                             const cscd_plan_options *options, plan_draft *out);
 void plan_draft_free(plan_draft *d);
 
-/* How the charge is solved for, where the method needs it. */
+/* Returns the solver for the charge, if the method needs it. */
 cscd_charge_solver plan_draft_solver(const plan_draft *d);
 
-/* Makes drafts by charge, by K-means with several numbers of regions and by single ones, and keeps the one that leaves the least to
- * test. options: of method AUTO. Where the charge fails the others are compared, and the list says why. Free the draft also after
- * a failure. */
+/* Makes drafts by charge, by K-means with several numbers of regions and by single ones, and keeps the one
+ * that leaves the least to test. options: of method AUTO. If the charge fails, the others are compared, and
+ * the list says why. Free the draft also after a failure. */
 cscd_status best_draft_make(const cscd_mesh *mesh, const double *positions, const plan_frames *frames,
                             const cscd_plan_options *options, plan_candidates *candidates, plan_draft *out);

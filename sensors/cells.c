@@ -47,7 +47,7 @@ static void settle_largest(const connect_work *work, uint32_t piece_count, uint3
     for (uint32_t p = 0; p < piece_count; p++) work->settled[p] = work->best[work->piece_labels[p]] == p;
 }
 
-/* Returns the label with most edges to this piece among the settled pieces beside it; NO_LABEL without any. */
+/* Returns the label with most edges to this piece among its settled neighbours; NO_LABEL if there is none. */
 static uint32_t most_common(const connect_work *work, uint32_t piece) {
     uint32_t most = NO_LABEL, *edges = work->best, begin = work->piece_offsets[piece];
     for (uint32_t i = begin; i < work->piece_offsets[piece + 1]; i++) {

@@ -1,4 +1,4 @@
-/* How a partition is made: codes of vectors, cells of parts, and how many cells a part gets. */
+/* The making of a partition: codes of vectors, cells of parts, and the number of cells of a part. */
 #pragma once
 
 #include "sensors/partition.h"
@@ -91,10 +91,11 @@ void hand_over_cells(const cell_maker *maker);
 
 /* Takes parts as spheres of their areas: a part gets as many cells as other spheres can touch it at once. */
 
-/* How many spheres of radius `other` can touch one of this radius at once, at most `most` and at least 1. Of
- * equal spheres (within 1 %) it is 12. Of others it is as many as their shadows fit on the sphere by area,
- * which are circles of half angle asin(other / (radius + other)) seen from its centre; for equal spheres that
- * would be 14. External for its test, which compares it with numbers worked out by hand. */
+/* Returns the number of spheres of radius `other` that can touch one of this radius at once, at most `most`
+ * and at least 1. For equal spheres (within 1 %) it is 12. For others it is the number of their shadows that
+ * fit on the sphere by area, which are circles of half angle asin(other / (radius + other)) seen from its
+ * centre; for equal spheres that would be 14. External for its test, which compares it with numbers worked
+ * out by hand. */
 uint32_t kissing_number(double radius, double other, uint32_t most);
 
 /* Writes the radii of spheres that have the areas of the parts. */

@@ -196,7 +196,7 @@ static void test_pivot(exact_check *check, sweep *s, const area_items *pivots, u
     }
 }
 
-/* Of two boxes that overlap, the one that begins first is the pivot. */
+/* The pivot of two boxes that overlap is the one that begins first. */
 static void sweep_items(exact_check *check, sweep *s, pair_test *test) {
     const area_items *first = &check->first, *second = &check->second;
     uint32_t i = 0, j = 0;

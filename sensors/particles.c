@@ -108,7 +108,8 @@ static double potential_of(const particles *p, const double (*others)[3], uint32
     return sum;
 }
 
-/* How good a vertex is for the particle whose surroundings were found last: the larger, the better. */
+/* Returns the quality of a vertex for the particle whose surroundings were found last: the larger, the
+ * better. */
 static double worth_of(particles *p, const double x[3]) {
     p->counters.vertices++;
     p->counters.distances += p->attracting + p->repelling;
@@ -126,8 +127,8 @@ static double worth_of(particles *p, const double x[3]) {
     return 0.0;
 }
 
-/* Returns the best of the vertex where the particle is and those where it can go. Of equally good ones it is
- * the own vertex, or else the smallest. */
+/* Returns the best of the vertex where the particle is and those where it can go. Among equally good ones it
+ * returns the own vertex, or else the smallest. */
 static uint32_t choose_target(particles *p, uint32_t i, const double *x) {
     uint32_t own = p->vertices[i], best = own;
     const double *here = x + (size_t)own * 3;

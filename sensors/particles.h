@@ -3,9 +3,9 @@
 
 #include "sensors/particle_grid.h"
 
-/* Where a particle walks to. All rules use attractions of 1 / r^2 that end at R_eff (3.12, 3.13), and choose
- * the best vertex within the cell; in the thesis the particle stays when a vertex outside is better (3.15 to
- * 3.17).
+/* A rule chooses the vertex that a particle walks to. All rules use attractions of 1 / r^2 that end at R_eff
+ * (3.12, 3.13), and choose the best vertex within the cell; in the thesis the particle stays when a vertex
+ * outside is better (3.15 to 3.17).
  *
  * The thesis adds attractions as vectors. Then two that pull to opposite sides cancel, and many far ones
  * outweigh the one at which there is a contact. With the strongest one alone, particles of two objects that

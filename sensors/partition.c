@@ -158,8 +158,8 @@ static void find_extents(const cscd_mesh *mesh, const double *positions, extent 
     }
 }
 
-/* How far the corners of a triangle, which shares two of them with `plane`, lie outside the plane of that
- * triangle. */
+/* Returns the distance of the corners of a triangle, which shares two of them with `plane`, from the plane of
+ * that triangle. */
 static double distance_outside(const cscd_mesh *mesh, const double *positions, uint32_t triangle,
                                uint32_t plane) {
     double normal[3], farthest = 0.0;

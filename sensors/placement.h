@@ -1,4 +1,5 @@
-/* Where particles begin: one in every cell, also when cells are renewed; or some on every object, at random. */
+/* The places at which particles begin: one in every cell, also when cells are renewed; or some on every
+ * object, at random. */
 #pragma once
 
 #include "sensors/particles.h"

@@ -1,5 +1,5 @@
-/* How near particles have to come for a warning, mu, and how far they feel each other, R_eff. Both are
- * derived in docs/theory/sensors.md, whose lemmas are cited below. */
+/* The distance mu below which particles give a warning, and the distance R_eff within which they feel each
+ * other. Both are derived in docs/theory/sensors.md, whose lemmas are cited below. */
 #include "sensors/reach.h"
 
 #include "src/core/floating.h"

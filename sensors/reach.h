@@ -1,4 +1,5 @@
-/* How near particles have to come for a warning, mu, and how far they feel each other, R_eff. */
+/* The distance mu below which particles give a warning, and the distance R_eff within which they feel each
+ * other. */
 #pragma once
 
 #include "sensors/partition.h"

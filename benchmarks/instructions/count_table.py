@@ -21,7 +21,7 @@ def lines_of(*command):
 
 
 class Program:
-    """Which source file an address of a program comes from."""
+    """The source file that an address of a program comes from."""
 
     def __init__(self, path):
         header = "\n".join(lines_of("readelf", "-hlW", path))

@@ -11,8 +11,9 @@ static const double pi = 0x1.921fb54442d18p+1;
 static const double half_axes[AXIS_COUNT] = {1.5, 1.0, 0.7};
 static const double ring_radius = 1.0, tube_radius = 0.35, cube_edge = 2.0;
 
-/* Of edge 1: Hwang, Mascagni, Electrical capacitance of the unit cube, J. Appl. Phys. 95, 2004; to so many digits Helsing, Perfekt,
- * On the polarizability and capacitance of the cube, Appl. Comput. Harmon. Anal. 34, 2013. */
+/* For edge 1: Hwang, Mascagni, Electrical capacitance of the unit cube, J. Appl. Phys. 95, 2004; to this
+ * number of digits Helsing, Perfekt, On the polarizability and capacitance of the cube, Appl. Comput. Harmon.
+ * Anal. 34, 2013. */
 static const double unit_cube_capacitance = 0.66067815409957;
 
 /* ---- ellipsoid ------------------------------------------------------------------------------------------- */

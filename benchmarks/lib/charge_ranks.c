@@ -1,4 +1,5 @@
-/* The tree's charges beside those of the dense solution: cuts are made of the order of the densities, so that is what must agree. */
+/* The tree's charges compared with those of the dense solution: cuts are made of the order of the densities,
+ * so that is what must agree. */
 #include "benchmarks/lib/charge_tables.h"
 #include "benchmarks/lib/density_ranks.h"
 #include "models/shapes/catalogue.h"
@@ -6,7 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* What is asked of a solver. */
+/* The task of a solver. */
 typedef struct rank_target {
     double correlation, overlap, capacitance; /* NAN: nothing */
 } rank_target;

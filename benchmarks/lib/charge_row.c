@@ -1,4 +1,4 @@
-/* What the rows of all tables of charges have in common in JSON. */
+/* The members that the rows of all tables of charges have in common in JSON. */
 #include "benchmarks/lib/charge_tables.h"
 
 bool charge_row_begin(json *out, const char *table, const char *name, uint32_t triangles,

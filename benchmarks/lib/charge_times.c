@@ -1,10 +1,11 @@
-/* What plans by charge cost: milliseconds of each stage and the greatest memory, from small meshes to large ones. */
+/* The cost of plans by charge: milliseconds of each stage and the greatest memory, from small meshes to large
+ * ones. */
 #include "benchmarks/lib/charge_tables.h"
 #include "models/shapes/catalogue.h"
 
 enum { THREADS_MOST = 2 };
 
-/* What is asked of a solver for so many triangles, charge alone. */
+/* The task of a solver for this number of triangles, charge alone. */
 typedef struct time_target {
     cscd_charge_solver solver;
     uint32_t triangles;

@@ -15,14 +15,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-/* What both processes see. */
+/* Shared by both processes. */
 typedef struct shared_trial {
     bool done;
     charge_trial trial;
     double density[];
 } shared_trial;
 
-/* What the process works with. */
+/* The objects that the process works with. */
 typedef struct trial_work {
     const body *body;
     const charge_request *request;

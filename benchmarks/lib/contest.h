@@ -9,7 +9,7 @@ typedef struct entrant {
     cscd_mode mode;
     cscd_volume volume;
     uint64_t ours;             /* of the published methods */
-    cscd_method plan;          /* CHARGE: that of the recording; KMEANS, PUBLISHED: made anew; others: none */
+    cscd_method plan;          /* CHARGE: that of the recording; KMEANS, PUBLISHED: a new one; others: none */
     uint64_t plan_ours;        /* of a published plan */
     double threshold, growing; /* of a published plan; 0: the defaults */
     uint32_t k, runs;          /* of k-means: with the seeds from 1 to runs */

@@ -59,7 +59,7 @@ static void add_grid(body *b, uint32_t rows, uint32_t columns) {
     }
 }
 
-/* The torus knot (3, 7), laid flat but for a wave. */
+/* The torus knot (3, 7), laid flat with a wave. */
 static void find_middle(double t, double out[3]) {
     double r = 8.0 + 4.5 * cos(7.0 * t);
     out[0] = r * cos(3.0 * t);

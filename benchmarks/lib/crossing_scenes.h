@@ -27,6 +27,6 @@ typedef struct crossing_scene {
     body objects[CROSSING_OBJECTS_MAX]; /* in the same coordinates */
 } crossing_scene;
 
-/* Makes a scene of about so many triangles. */
+/* Makes a scene of about this number of triangles. */
 bool crossing_scene_make(crossing_kind kind, uint32_t triangle_count, crossing_scene *out, io_error *error);
 void crossing_scene_free(crossing_scene *s);

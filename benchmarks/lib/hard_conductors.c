@@ -9,8 +9,8 @@
 
 static const double pi = 0x1.921fb54442d18p+1, nowhere[3] = {0.0, 0.0, 0.0};
 
-/* Of a square sheet of edge 1: Read, Improved extrapolation technique in the boundary element method to find the capacitances of the
- * unit square and cube, J. Comput. Phys. 133, 1997. */
+/* For a square sheet of edge 1: Read, Improved extrapolation technique in the boundary element method to find
+ * the capacitances of the unit square and cube, J. Comput. Phys. 133, 1997. */
 static const double sheet_capacitance = 0.366787;
 
 static void scale_body(body *b, double scale) {

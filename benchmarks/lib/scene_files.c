@@ -1,4 +1,4 @@
-/* Recordings that benchmarks replay: all frames in memory, and a plan by charge, which is made anew. */
+/* Recordings that benchmarks replay: all frames in memory, and a new plan by charge. */
 #include "benchmarks/lib/scene_files.h"
 
 #include "models/softbody/softbody.h"

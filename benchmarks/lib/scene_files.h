@@ -1,4 +1,4 @@
-/* Recordings that benchmarks replay: all frames in memory, and a plan by charge, which is made anew. */
+/* Recordings that benchmarks replay: all frames in memory, and a new plan by charge. */
 #pragma once
 
 #include "cscd/cscd.h"

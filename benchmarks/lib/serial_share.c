@@ -1,4 +1,4 @@
-/* How much of a step no further thread takes over. */
+/* The share of a step that no further thread takes over. */
 #include "benchmarks/lib/serial_share.h"
 
 #include "src/core/timer.h"

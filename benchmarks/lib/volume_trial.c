@@ -139,7 +139,7 @@ static double processor_ms(void) {
     return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
 }
 
-/* What the detector's step has left behind says which pairs are culled, and how pairs are tested. */
+/* The state after the detector's step says which pairs are culled, and how pairs are tested. */
 static void follow_step(volume_trial *t, const double *x0, const double *x1) {
     const cscd_detector *d = t->detector;
     const cscd_mesh *mesh = d->mesh;

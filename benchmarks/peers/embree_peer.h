@@ -10,8 +10,8 @@ typedef struct embree_pairs {
     uint64_t reported, pairs; /* pairs: distinct pairs whose boxes overlap */
 } embree_pairs;
 
-/* refit: the tree is kept, and its boxes follow; else it is built anew for each interval. Returns NULL when Embree gives
- * no device. The scene must outlive it. */
+/* refit: the tree is kept, and its boxes follow; else it is built again for each interval. Returns NULL when
+ * Embree gives no device. The scene must outlive it. */
 embree_peer *embree_peer_open(const peer_scene *scene, bool refit, io_error *error);
 void embree_peer_close(embree_peer *p);
 

@@ -1,4 +1,5 @@
-/* The clock of the programs that are measured beside us: processor time, in which a crowded machine shows less. */
+/* The clock of the programs that we are compared with: processor time, in which a crowded machine shows
+ * less. */
 #pragma once
 
 #include <time.h>

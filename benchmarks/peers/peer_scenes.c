@@ -1,4 +1,5 @@
-/* Scenes for the programs that are measured beside us: one mesh, and the positions at both ends of an interval. */
+/* Scenes for the programs that we are compared with: one mesh, and the positions at both ends of an
+ * interval. */
 #include "benchmarks/peers/peer_scenes.h"
 
 #include "benchmarks/lib/deforming_body.h"

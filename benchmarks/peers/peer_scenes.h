@@ -1,4 +1,5 @@
-/* Scenes for the programs that are measured beside us: one mesh, and the positions at both ends of an interval. */
+/* Scenes for the programs that we are compared with: one mesh, and the positions at both ends of an
+ * interval. */
 #pragma once
 
 #include "tool/io/io.h"
@@ -32,7 +33,7 @@ typedef enum peer_scene_kind {
     PEER_KIND_COUNT
 } peer_scene_kind;
 
-/* Makes a scene of about so many triangles. */
+/* Makes a scene of about this number of triangles. */
 bool peer_scene_make(peer_scene_kind kind, uint32_t triangle_count, peer_scene *out, io_error *error);
 
 void peer_scene_free(peer_scene *s);

@@ -22,7 +22,7 @@ double peer_trial_median(const peer_trial *t, peer_turn turn) {
     return median(t->ms[turn], t->rounds);
 }
 
-/* What lives through all rounds. */
+/* The objects that live through all rounds. */
 typedef struct peer_contestants {
     const peer_scene *scene;
     subject *none, *single, *checker;

@@ -71,7 +71,7 @@ def write_off(path, vertices, triangles):
 
 
 class Verdict:
-    """Where a program differs from us. explained: reason -> how many; wrong: whose -> [(what, triangles)]."""
+    """The places where a program differs from us. explained: reason -> how many; wrong: whose -> [(what, triangles)]."""
 
     def __init__(self):
         self.explained = collections.Counter()
@@ -161,7 +161,7 @@ def count_of(count, what):
 
 
 def clause(program, we, they, verdict):
-    """What a program says where it differs."""
+    """The answers of a program where it differs."""
     what = "pair" if they.pairs is not None else "triangle"
     all_count = len(we.pairs if they.pairs is not None else we.faces)
     parts = []

@@ -1,4 +1,4 @@
-"""What two triangles have in common, in integers: the referee of pairs on which programs differ. It shares no code with
+"""The common points of two triangles, in integers: the referee of pairs on which programs differ. It shares no code with
 the library: one triangle is cut by the planes that bound the other one, and the corners of what is left tell.
 """
 

@@ -68,7 +68,7 @@ def beside(vertices, triangles):
 
 
 def meshes():
-    """What each mesh is -> vertices, triangles."""
+    """Returns each mesh as name -> vertices, triangles."""
     sheet = quads(8, 8, lambda i, j: (i, j, 0.0))
     moved = quads(8, 8, lambda i, j: (i + 0.5, j + 0.5, 0.0))
     turned_sheet = quads(8, 8, lambda i, j: turned(i / 7, j / 7, 0.0))

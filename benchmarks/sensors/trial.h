@@ -30,7 +30,7 @@ typedef struct sensor_rules {
 } sensor_rules;
 
 /* Pairs and particles of all intervals together; rounds and shares of moments with a cycle per moment; ms:
- * the median of a step. Of several trials the sums. */
+ * the median of a step. Several trials are summed up. */
 typedef struct sensor_trial {
     double particles, touching, warned, found, confirmed, rounds, cycles, ms, trees_ms;
     double vertices, pairs; /* walked on, and within R_eff, in all intervals */

@@ -95,8 +95,8 @@ static cscd_status truncate_wanted(bounded_motion *b, const double *x, double re
                                   CSCD_MUTABLE_DOUBLES(b->reached, count), out);
 }
 
-/* One round by planes. Where some vertex of an obstacle may not go all of its way, all of them want less, and then go
- * that far. */
+/* One round by planes. If some vertex of an obstacle may not go all of its way, all of them want less, and
+ * then go that far. */
 static cscd_status go_by_planes(bounded_motion *b, const double *x, double reach, double *obstacle_share) {
     cscd_truncation found;
     cscd_status status = truncate_wanted(b, x, reach, &found);

@@ -105,7 +105,7 @@ void safe_motion_sew(const safe_motion *s, double *positions);
 
 /* ---- motion that displacement bounds or planes allow --------------------------------------------------- */
 
-/* What keeps the motion of a frame free of contact. */
+/* The way in which the motion of a frame is kept free of contact. */
 typedef enum motion_driver {
     DRIVER_STEPS,  /* safe_motion: continuous detection */
     DRIVER_BOUNDS, /* a ball for each vertex, as in Offset Geometric Contact (Chen et al. 2025) */

@@ -127,7 +127,7 @@ static void small_step(cloth_simulation *c, const double *goal, uint32_t which) 
 /* Finds where the solver would move the cloth if nothing were in its way; the result is c->target. */
 static void find_target(cloth_simulation *c) {
     size_t size = (size_t)cscd_mesh_vertex_count(c->mesh) * 3;
-    double *goal = c->positions; /* not needed until the frame's end, but for the start of it */
+    double *goal = c->positions; /* needed only at the start of the frame, and then at its end */
     memcpy(c->target, c->start, size * sizeof *goal);
     place_obstacles(c, c->clock + c->scene->frame_seconds, goal);
     for (uint32_t i = 0; i < c->scene->small_steps; i++) small_step(c, goal, i);

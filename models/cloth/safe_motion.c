@@ -205,7 +205,7 @@ static cscd_status find_contacts(safe_motion *s, const double *x0, const double 
     return CSCD_OK;
 }
 
-/* What comes so near the separation goes nowhere: then the next one is taken. */
+/* A motion that begins this near the separation goes nowhere: then the next one is taken. */
 static const double no_way = 1e-6;
 
 static cscd_status go_as_far(safe_motion *s, const double *x0, const double *x1, cscd_free_step *way) {

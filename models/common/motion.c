@@ -1,4 +1,4 @@
-/* How soft and how fast a recording is, and where it runs into itself. */
+/* Measurements of a recording: its softness, its speed, and its contacts with itself. */
 #include "models/common/motion.h"
 #include "models/common/vec3.h"
 #include "models/shapes/body.h"

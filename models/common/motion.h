@@ -1,4 +1,4 @@
-/* How soft and how fast a recording is, and where it runs into itself. */
+/* Measurements of a recording: its softness, its speed, and its contacts with itself. */
 #pragma once
 
 #include "cscd/cscd.h"

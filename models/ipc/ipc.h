@@ -19,7 +19,7 @@ enum { IPC_OBJECTS_MAX = 8 };
 /* Lengths are in the unit of the models, about a metre; times in seconds; z is up. */
 typedef struct ipc_scene {
     const char *name, *text;
-    uint32_t triangle_count; /* about so many in all objects together, by default */
+    uint32_t triangle_count; /* about this number in all objects together, by default */
     uint32_t (*make)(uint32_t triangle_count,
                      ipc_object objects[IPC_OBJECTS_MAX]); /* returns the number of objects */
     ipc_stuff stuff;

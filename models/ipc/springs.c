@@ -7,7 +7,7 @@
 
 enum { STRUTS = 5 };
 
-/* How far tilted struts lean away from the normal: the tangent of the angle. */
+/* The tangent of the angle between tilted struts and the normal. */
 static const double tilt = 0.7;
 
 static const double *corner_of(const body *b, uint32_t triangle, uint32_t corner) {

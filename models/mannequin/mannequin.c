@@ -8,7 +8,7 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* The arm hangs straight down but for a small angle; these are in metres. */
+/* The arm hangs almost straight down; these are in metres. */
 static const double trunk_radius = 0.17, arm_radius = 0.045, elbow_x = 0.35, elbow_y = 1.34, forearm = 0.3,
                     upper_arm = 0.22, elbow_blend = 0.07, gap_at_rest = 0.13;
 
@@ -153,7 +153,7 @@ typedef struct capsule_shape {
     int bone;
 } capsule_shape;
 
-/* How far along the axis a ring lies, and its radius. */
+/* The place of a ring along the axis, and its radius. */
 static void place_ring(const capsule_shape *s, int ring, double *along, double *radius) {
     const int last = 2 * s->caps + s->rows;
     const int from_end = ring < last - ring ? ring : last - ring;

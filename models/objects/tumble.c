@@ -14,7 +14,7 @@ const char tumble_text[] = "eight soft bodies fall into a tray and tumble togeth
 
 static const double spacing = 0.14, frame_seconds = 1.0 / 50.0;
 
-/* How each body begins: turned about its own middle, and where that is. */
+/* The start of each body: its turn about its own middle, and the place of that. */
 static const struct falling_body {
     body_kind kind;
     uint32_t triangle_count;

@@ -49,7 +49,7 @@ struct particle {
 using triple = std::array<std::uint32_t, 3>;
 using pair = std::array<std::uint32_t, 2>;
 
-/* What one object is made of, by its own vertices. */
+/* The points and triangles of one object, by its own vertices. */
 struct object {
     std::vector<vec3> points;
     std::vector<triple> triangles;
@@ -78,21 +78,21 @@ struct scene {
 /* side: squares along a panel's side. */
 scene make_scene(std::uint32_t side);
 
-/* What a tear has done to a panel. */
+/* The changes that a tear has made to a panel. */
 struct tear {
     std::vector<std::uint32_t> origins; /* which vertex of the panel each one was */
     std::vector<pair> sides;            /* vertices of the panel that were one: towards -y, and towards y */
 };
 
-/* Tears the right panel in its middle, from the seam two thirds of the way to its held side. Its vertices are more then,
- * and the caller places the particles anew. */
+/* Tears the right panel in its middle, from the seam two thirds of the way to its held side. It has more
+ * vertices then, and the caller places the particles again. */
 tear tear_panel(scene &s);
 
 /* Numbers the vertices of all objects, and makes the springs of the panels from the particles' rest. */
 void number_vertices(scene &s);
 void make_springs(scene &s);
 
-/* How far the floor is from its place after so many seconds. */
+/* Returns the displacement of the floor after these seconds. */
 vec3 floor_sway(float seconds);
 
 /* ---- a host's thread pool ------------------------------------------------------------------------------ */
@@ -126,7 +126,7 @@ class thread_pool {
 
 /* ---- the solver ---------------------------------------------------------------------------------------- */
 
-/* What happened since the last report. */
+/* The events since the last report. */
 struct report {
     std::size_t waiting =
         0; /* pairs that have not been apart since their seam was opened, most at one time */

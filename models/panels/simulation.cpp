@@ -60,7 +60,7 @@ namespace {
 constexpr int steps_per_frame = 4, passes = 20, rounds = 6;
 constexpr float step_seconds = 1.0f / 240.0f, damping = 0.998f;
 
-/* How near pairs must be to be kept apart, and how far from each other. */
+/* The distance below which pairs are kept apart, and the distance that they are kept at. */
 constexpr float reach = 3.0f * separation, margin = 1.5f * separation;
 
 const vec3 gravity{0.0f, 0.0f, -9.8f};
@@ -224,7 +224,8 @@ void simulation::add_barrier(const cscd_contact &limit) {
 
 /* ---- steps --------------------------------------------------------------------------------------------- */
 
-/* What limits the motion becomes a barrier, and the motion is wanted anew; the last one goes as far as it may. */
+/* The pair that limits the motion becomes a barrier, and the motion is planned again; the last one goes as
+ * far as it may. */
 double simulation::go_as_far() {
     for (int round = 1;; round++) {
         project();
@@ -265,7 +266,7 @@ void simulation::advance(report &out) {
     for (int i = 0; i < steps_per_frame; i++) take_step(out);
 }
 
-/* What was sewn is drawn apart, along x, until it has parted for good. */
+/* The vertices that were sewn are drawn apart, along x, until they have parted for good. */
 void simulation::open_seam() {
     detector_.set_seams({});
     for (const pair &seam : scene_.seams)

@@ -38,6 +38,6 @@ typedef struct extreme_shape {
     double *x0, *x1;     /* a small motion, in which hardly anything touches */
 } extreme_shape;
 
-/* Makes a shape of about so many triangles, to be freed. Ends the program where there is no memory. */
+/* Makes a shape of about this number of triangles, to be freed. Ends the program where there is no memory. */
 extreme_shape extreme_shape_make(extreme_kind kind, uint32_t triangle_count);
 void extreme_shape_free(extreme_shape *shape);

@@ -30,8 +30,7 @@ void outline_line(outline *o, double radius, double height);
 /* Adds an arc about a point between two angles in degrees, after a line to its start if there is a gap. */
 void outline_arc(outline *o, double centre_radius, double centre_height, double size, double from, double to);
 
-/* Adds an arc that continues the last piece smoothly and turns by so many degrees, to the left where
- * positive. */
+/* Adds an arc that continues the last piece smoothly and turns by these degrees, to the left if positive. */
 void outline_turn(outline *o, double size, double by);
 
 /* Finds the point at a distance along the outline, from 0 to length. */

@@ -139,7 +139,7 @@ bool surface_flip(surface *s, uint32_t h) {
     return true;
 }
 
-/* Whether the two ends have no common neighbours except the two corners beside the edge. */
+/* Whether the two ends have no common neighbours except the two corners opposite the edge. */
 static bool is_link(const surface *s, uint32_t h) {
     uint32_t a = half_edge_from(s, h), b = half_edge_to(s, h), common = 0, i = s->out[a];
     do {
@@ -151,8 +151,8 @@ static bool is_link(const surface *s, uint32_t h) {
     return common == 2 && surface_valence(s, c) > 4 && surface_valence(s, d) > 4;
 }
 
-/* Whether the triangles around vertex v, except the two beside the edge to `other`, keep their sides when
- * v moves, or have the side of `normal`, if it is given: the own normal of a sliver says little. */
+/* Whether the triangles around vertex v, except the two at the edge to `other`, keep their sides when v
+ * moves, or have the side of `normal`, if it is given: the own normal of a sliver says little. */
 static bool can_move(const surface *s, uint32_t v, uint32_t other, const double at[3], const double *normal) {
     const double *x = s->mesh.positions;
     uint32_t h = s->out[v];

@@ -91,7 +91,7 @@ double obstacles_energy(const obstacles *o) {
 
 enum { BALL_TRIANGLES = 1280 };
 
-/* How far ground and steps extend to all sides, and the ground downwards. */
+/* The extent of ground and steps to all sides, and of the ground downwards. */
 static const double reach = 12.0, thickness = 0.5;
 
 /* Walls are drawn this low so that one sees into the tray. */

@@ -1,5 +1,5 @@
-/* What preprocessing compares with: cuts and regions as published (Yeh 2012, section 3.3; docs/theory/thesis.md says where the text
- * leaves a choice), and the dense solution for the charge. */
+/* The baselines of preprocessing: cuts and regions as published (Yeh 2012, section 3.3; docs/theory/thesis.md
+ * says where the text leaves a choice), and the dense solution for the charge. */
 #pragma once
 
 #include "preprocess/charge/charge.h"
@@ -11,7 +11,7 @@ typedef struct published_thresholds {
         growing; /* clusters of more than this share of their component's triangles grow; 1/400 in the thesis (5.3) */
 } published_thresholds;
 
-/* What the steps leave behind for those who look at them; members may be NULL. */
+/* The intermediate results of the steps, for tests and benchmarks; members may be NULL. */
 typedef struct published_trace {
     uint32_t *clusters; /* per triangle: its cluster; UINT32_MAX: none */
     bool *cutting;      /* per triangle: it is a cutting triangle of a cluster that cuts */

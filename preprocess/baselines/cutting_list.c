@@ -32,8 +32,9 @@ void cutting_list_begin(cutting_list *c, const uint32_t *cluster, uint32_t count
 
 /* ---- islands ------------------------------------------------------------------------------------------- */
 
-/* Marks what lies beyond a side, up to `most` triangles and one, which wait in the ring from *end on. True: that is all, so it is
- * an island. What touches triangles that were marked before is a part of a larger piece. */
+/* Marks the triangles beyond a side, up to `most` and one, and puts them into the ring from *end on. True:
+ * these are all, so they are an island. Triangles that touch others which were marked before are a part of a
+ * larger piece. */
 static bool find_island(cutting_list *c, uint32_t first, uint32_t most, uint32_t *end) {
     const uint32_t begin = *end;
     c->seen[first] = true;

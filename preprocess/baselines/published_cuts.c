@@ -10,7 +10,7 @@
 
 enum { BIN_COUNT = 256 };
 
-/* Of one component. */
+/* The densities of one component, counted in bins. */
 typedef struct histogram {
     double low, high;
     uint32_t cumulative[BIN_COUNT]; /* triangles in each bin and those below */

@@ -51,7 +51,7 @@ static inline uint32_t triangle_beyond(const cscd_mesh *mesh, uint32_t triangle,
     return star[0] == triangle ? star[1] : star[0];
 }
 
-/* Which side of this triangle is the edge? */
+/* Returns the side of this triangle that is the edge. */
 static inline uint32_t side_of_edge(const cscd_mesh *mesh, uint32_t triangle, uint32_t edge) {
     const uint32_t *edges = mesh->triangle_edges[triangle];
     return edges[0] == edge ? 0 : edges[1] == edge ? 1 : 2;
@@ -95,8 +95,8 @@ void contour_clear(contour *c);
 /* Adds an edge that is not on the contour yet. */
 void contour_add(contour *c, uint32_t edge);
 
-/* Where two sides of a triangle are on the contour it takes the third, which is shorter than both, until no triangle has two. It
- * passes over each triangle once at most. */
+/* If two sides of a triangle are on the contour, the third one replaces them, which is shorter than both,
+ * until no triangle has two. Each triangle is passed over once at most. */
 void contour_smooth(contour *c);
 
 /* The sum of the lengths of its edges. */

@@ -60,7 +60,7 @@ typedef struct charge_kernels {
     const char *used, *better; /* NULL: unknown; used will do */
 } charge_kernels;
 
-/* Where the time of a solution went, summed over the components. */
+/* The time of a solution by its stages, summed over the components. */
 typedef struct charge_timings {
     double assembly_ms; /* the matrix, or the tree with all that is prepared in it */
     double factor_ms;   /* of the matrix */
@@ -99,14 +99,14 @@ void charge_system_store(const charge_system *system, double *density, double *c
 
 /* ---- another solution ---------------------------------------------------------------------------------- */
 
-/* What a solver to compare with offers, in place of the tree. */
+/* A solver to compare with, which takes the place of the tree. */
 typedef struct charge_solution {
     const void *functions; /* of the solver, for all of these */
     size_t (*memory)(const void *functions,
-                     uint32_t count); /* bytes for so many unknowns; SIZE_MAX: too many */
+                     uint32_t count); /* bytes for this number of unknowns; SIZE_MAX: too many */
     /* Writes system->charges, and adds to the timings. A failure has its sentence. solve NULL: there is no other way. */
     cscd_status (*solve)(const void *functions, cscd_context *context, const charge_system *system,
                          charge_timings *timings);
     charge_kernels (*kernels)(const void *functions);
-    double (*work)(double count); /* for so many unknowns, by estimate: ns on one thread */
+    double (*work)(double count); /* for this number of unknowns, by estimate: ns on one thread */
 } charge_solution;

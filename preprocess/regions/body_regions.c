@@ -20,7 +20,7 @@ typedef struct medial_points {
 
 enum { POINTS_MOST = 256 };
 
-/* The centroid that is nearest to the point, but for that of one tile. */
+/* Returns the tile whose centroid is nearest to the point, except one tile. */
 static uint32_t nearest_tile(const tile_graph *g, const double point[3], uint32_t except) {
     uint32_t nearest = except;
     double least = INFINITY;
@@ -178,7 +178,7 @@ static bool add_candidate(cover_work *w) {
     return true;
 }
 
-/* What is left to see, by the points as they are. */
+/* Finds what the present points leave to see, tile by tile. */
 static void find_left(cover_work *w) {
     const tile_labelling *l = w->l;
     for (uint32_t t = 0; t < l->g->count; t++) w->left[t] = labelling_blindness(l, t, l->of_tile[t]);
@@ -192,14 +192,14 @@ static void settle_cover(cover_work *w, int rounds) {
     }
 }
 
-/* What a region does not see. */
+/* Returns the area of a region that its point does not see. */
 static double unseen_of(tile_labelling *l, uint32_t region) {
     const tile_set set = labelling_tiles(l, region, region);
     const sight_point *point = &l->regions.points[region];
     return tiles_unseen(&set, point) + soft_paths_unseen(&l->paths, region, &set, point);
 }
 
-/* What two regions as one cost. */
+/* Returns the cost of two regions as one. */
 static double cost_of_both(tile_labelling *l, uint32_t a, uint32_t b) {
     const tile_set set = labelling_tiles(l, a, b);
     sight_point point;
@@ -376,7 +376,7 @@ static void destroy_labelling(body_work *w) {
     tiles_destroy(&w->g);
 }
 
-/* Marks the tiles at the borders of regions, and those beside them. */
+/* Marks the tiles at the borders of regions, and their neighbours. */
 static bool mark_borders(body_work *w) {
     const tile_graph *g = &w->g;
     bool *marked = w->room->marked, any = false;

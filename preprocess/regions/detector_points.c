@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-/* Sums over a region, with equal weights beside the areas. */
+/* Sums over a region, weighted by area and with equal weights. */
 typedef struct region_sums {
     double weighted[3], plain[3], area, count;
 } region_sums;

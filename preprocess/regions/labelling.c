@@ -35,7 +35,7 @@ tile_set labelling_tiles(tile_labelling *l, uint32_t a, uint32_t b) {
 
 /* ---- costs --------------------------------------------------------------------------------------------- */
 
-/* Of two points that see a tile as well the nearer one takes it: the price of a square distance. */
+/* If two points see a tile equally well, the nearer one takes it: the price of a square distance. */
 static const double distance_price = 0.01;
 
 static double tile_cost(const tile_labelling *l, uint32_t t, uint32_t region) {
@@ -155,8 +155,9 @@ void labelling_leave_out(tile_labelling *l, uint32_t region) {
 
 /* ---- expansion moves ----------------------------------------------------------------------------------- */
 
-/* Costs become integers: 2^40 is the component's area. What costs twice that, as borders of a body that is long beside the root of its
- * area, is never worth it, so more counts as that, and no sum of them overflows. */
+/* Costs become integers: 2^40 is the component's area. Twice that is never worth its cost, for instance the
+ * borders of a body that is long compared to the root of its area. So higher costs count as that, and no sum
+ * of them overflows. */
 static int64_t whole_cost(const tile_labelling *l, double cost) {
     return (int64_t)(fmin(cost / l->g->area, 2.0) * 0x1p40);
 }
@@ -181,8 +182,8 @@ static void set_links(tile_labelling *l, uint32_t t, uint32_t region, uint64_t b
     }
 }
 
-/* Returns how many tiles may change, those of the regions beside this one; they are the first nodes. *keeping is what they pay if none
- * does. */
+/* Returns the number of tiles that may change, those of the neighbouring regions; they are the first nodes.
+ * *keeping is their cost if none changes. */
 static uint32_t prepare_move(tile_labelling *l, uint32_t region, uint64_t beside, int64_t *keeping) {
     uint32_t count = 0;
     for (uint32_t t = 0; t < l->g->count; t++) {
@@ -223,7 +224,7 @@ static void find_neighbours(const tile_labelling *l, uint64_t neighbours[REGIONS
         if (neighbours[r] == 0) neighbours[r] = UINT64_MAX;
 }
 
-/* Has nothing changed in the region, and in those beside it, since it was last expanded? */
+/* Returns whether nothing has changed in the region and its neighbours since it was last expanded. */
 static bool is_settled(const tile_labelling *l, uint32_t region, uint64_t neighbours) {
     for (uint32_t r = 0; r < l->regions.count; r++)
         if (neighbours >> r & 1 && l->regions.changed[r] > l->regions.expanded[region]) return false;

@@ -35,7 +35,7 @@ typedef struct tile_labelling {
 cscd_status labelling_create(const tile_graph *g, const labelling_prices *prices, tile_labelling *out);
 void labelling_destroy(tile_labelling *l);
 
-/* How little the point of a region sees of a tile. */
+/* Returns the blindness of a region's point for a tile. */
 static inline double labelling_blindness(const tile_labelling *l, uint32_t t, uint32_t region) {
     return soft_paths_blindness(&l->paths, region, t, tile_blindness(l->g, t, &l->regions.points[region]));
 }
@@ -45,7 +45,7 @@ double labelling_cost(const tile_labelling *l);
 /* The tiles of a region, or of two; valid until the next call. */
 tile_set labelling_tiles(tile_labelling *l, uint32_t a, uint32_t b);
 
-/* What the border of two regions costs; -1: they have none. */
+/* Returns the cost of the border of two regions; -1: they have none. */
 double labelling_border(const tile_labelling *l, uint32_t a, uint32_t b);
 
 /* Adds a region with a point and a seat, which has no tiles yet. */

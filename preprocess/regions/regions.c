@@ -62,7 +62,7 @@ cscd_status equalize(const cscd_mesh *mesh, const double *density, double *equal
  * the threshold on: cuts run along creases, and elsewhere they are short. */
 static const double crease = 0.1, crease_ranks = 3.0;
 
-/* The mean of the ranks beside an edge. */
+/* Returns the mean of the ranks of the triangles at an edge. */
 static double rank_beside(const cscd_mesh *mesh, const double *ranks, uint32_t edge) {
     double sum = 0.0;
     for (uint32_t i = mesh->edge_star_offsets[edge]; i < mesh->edge_star_offsets[edge + 1]; i++)

@@ -38,7 +38,7 @@ cscd_status regions_single(const cscd_mesh *mesh, uint32_t *region_of_triangle, 
 
 /* Lloyd's iteration over the vertices of each component from random vertices, at most 200 rounds; a centroid
  * is free and need not be a vertex. Then each triangle goes to the centroid whose anchor, the nearest vertex
- * of its cluster, is fewest edges away; ties go to the first. What that leaves apart joins a neighbour.
+ * of its cluster, is fewest edges away; ties go to the first. Parts that this leaves apart join a neighbour.
  *
  * k is shared out over the components by their vertices, at least one each, at most one per vertex: so
  * *region_count may be more than k (as many components) or less (few vertices; a centroid whose triangles
@@ -97,8 +97,9 @@ typedef struct judged_regions {
     const double (*points)[3]; /* detector points at rest */
 } judged_regions;
 
-/* Predicts how much work regions leave to a step: the share of the triangles, obstacles aside, that it has to look at with others of
- * their component. These are the triangles of components that are not closed, which are not culled; those at the border of
- * their region; and those that its detector point does not see, with those that it hardly sees in part. The share is the mean of
- * the rest and all frames. What lies beyond soft material counts as hardly seen. */
+/* Predicts the work that regions leave to a step: the share of the triangles, obstacles aside, that it has to
+ * look at with others of their component. These are the triangles of components that are not closed, which
+ * are not culled; those at the border of their region; and those that its detector point does not see, with
+ * those that it hardly sees in part. The share is the mean of the rest and all frames. Triangles beyond soft
+ * material count as hardly seen. */
 cscd_status regions_tested_share(const judged_regions *regions, double *out);

@@ -1,4 +1,5 @@
-/* How stiff the material is, and how sight weakens on the way through soft material: over tiles, and over triangles. */
+/* The stiffness of the material, and sight that weakens on its way through soft material: over tiles, and
+ * over triangles. */
 #include "preprocess/regions/tiles.h"
 
 #include "src/core/sort.h"
@@ -105,7 +106,8 @@ void soft_paths_destroy(soft_paths *p) {
     *p = (soft_paths){0};
 }
 
-/* Takes the steps from a tile; returns how many tiles have joined the queue, which begins at first and has so many already. */
+/* Takes the steps from a tile. Returns the number of tiles that have joined the queue, which begins at first
+ * and holds `queued` already. */
 static uint32_t relax_links(soft_paths *p, uint32_t t, double *row, uint32_t first, uint32_t queued) {
     const tile_graph *g = p->g;
     uint32_t joined = 0;

@@ -11,8 +11,8 @@
 #define DUAL_NO_EDGE UINT32_MAX
 
 /* Link i of triangle t lies in [offsets[t], offsets[t + 1]). The triangles of one edge are joined in a chain,
- * in their order. Where patches of one component meet at a vertex only, one link without an edge joins them,
- * so that each component is connected. */
+ * in their order. If patches of one component meet at a vertex only, one link without an edge joins them, so
+ * that each component is connected. */
 typedef struct dual_graph {
     uint32_t triangle_count, link_count; /* each link counts twice, once from either end */
     uint32_t *offsets, *neighbours;
@@ -185,14 +185,14 @@ double tiles_best_point(const tile_set *set, sight_point *point);
 cscd_status stiffness_shares(const cscd_mesh *mesh, const double *positions, const double *given,
                              double *shares);
 
-/* The mean of the shares beside an edge; exactly 1 where all of them are. */
+/* Returns the mean of the shares of the triangles at an edge; exactly 1 if all of them are 1. */
 double stiffness_beside(const cscd_mesh *mesh, const double *shares, uint32_t edge);
 
 /* The blindness for what lies far beyond soft material. More makes more regions than pay. */
 #define BEYOND_BLINDNESS 0.3
 
-/* What a step through material of these shares adds to the blindness: of one share s, 1 / s - 1 times its length, in roots of the
- * component's area. Two places are like two springs, one behind the other. */
+/* Returns the blindness that a step through material of these shares adds: for one share s, 1 / s - 1 times
+ * its length, in roots of the component's area. Two places are like two springs, one behind the other. */
 static inline double soft_step(double share_a, double share_b, double length) {
     return (0.5 * (1.0 / share_a + 1.0 / share_b) - 1.0) * length;
 }
@@ -241,7 +241,7 @@ typedef struct region_scene {
     const double (*points)[3]; /* region_count detector points at rest */
 } region_scene;
 
-/* How a region's point has moved: way is the sum of its triangles' ways, weighted by their areas at rest. */
+/* The motion of a region's point: way is the sum of its triangles' ways, weighted by their areas at rest. */
 typedef struct region_way {
     double way[3], area;
 } region_way;

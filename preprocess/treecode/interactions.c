@@ -8,8 +8,8 @@
 /* The greatest error of an expansion, as a share of the potential. */
 static const double FAR_ERROR = 0.01;
 
-/* Points stand for a triangle from so many of its radii on, measured from the target leaf's ball. Their error there is below
- * 1e-3 of its potential, and a hundredth of that over all. */
+/* Points stand for a triangle from this number of its radii on, measured from the target leaf's ball. Their
+ * error there is below 1e-3 of its potential, and a hundredth of that over all. */
 static const double EXACT_RADII = 3.0;
 
 typedef struct interaction_search {
@@ -73,7 +73,8 @@ static void add_long(const interaction_search *s, uint32_t target, uint32_t sour
     ++*place;
 }
 
-/* Of long triangles only the centroids are apart. Closer ones would have no low rank, and farther ones hardly a lower one. */
+/* For long triangles only the centroids have to be apart. Closer ones would have no low rank, and farther
+ * ones hardly a lower one. */
 static bool centroids_apart(const source_node *a, const source_node *b, double distance) {
     return distance > 1.5 * (a->target_radius + b->target_radius);
 }

@@ -8,7 +8,8 @@ enum { AROUND_MOST = 64, BLOCK_MOST = SOURCES_PER_LEAF + AROUND_MOST };
 
 /* Room of a lane for one leaf at a time. */
 typedef struct block_room {
-    /* The transposed equations of the block, and beside them the unit vectors of the leaf's own; then the solutions. */
+    /* The transposed equations of the block, and on their right the unit vectors of the leaf's own; then the
+     * solutions. */
     double equations[BLOCK_MOST][BLOCK_MOST + SOURCES_PER_LEAF];
     double x[BLOCK_MOST], y[BLOCK_MOST], z[BLOCK_MOST];
 } block_room;
@@ -158,7 +159,7 @@ static void substitute_back(block_room *room, uint32_t count, uint32_t width) {
     }
 }
 
-/* Where the block has no inverse, each triangle is taken alone. */
+/* If the block has no inverse, each triangle is taken alone. */
 static void take_alone(block_room *room, const near_blocks *b, const uint32_t *members, uint32_t count,
                        uint32_t own) {
     set_equations(b, members, count, own, room);

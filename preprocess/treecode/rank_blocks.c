@@ -12,7 +12,8 @@ static const uint32_t row_counts[] = {8, 16, ROWS_MOST};
 _Static_assert(ROWS_MOST * 3 / 5 <= RANK_MOST,
                "there is room for the columns that so many rows can tell apart");
 
-/* What may be left of a column, as a share of the largest: about the residual at which the iterations end. */
+/* The part of a column that may be left, as a share of the largest: about the residual at which the
+ * iterations end. */
 static const double rank_tolerance = 1e-6, check_tolerance = 1e-5;
 
 /* Memory that is needed for one block. */
@@ -158,7 +159,7 @@ static bool rows_agree(const source_tree *tree, const rank_room *room, double mo
     return true;
 }
 
-/* False: no columns give the others, as far as so many rows tell. */
+/* False: no columns give the others, as far as this number of rows tells. */
 static bool choose_columns_by(const source_tree *tree, uint32_t row_count, rank_room *room) {
     const bool all = room->target_count <= row_count;
     const uint32_t rank_most = all ? RANK_MOST : row_count * 3 / 5; /* of ROWS_MOST no more than RANK_MOST */

@@ -64,7 +64,8 @@ static inline const potential_source *triangle_of(const source_tree *tree, uint3
 
 /* ---- interactions -------------------------------------------------------------------------------------- */
 
-/* Which nodes of the tree act on which others by expansions, and which sources on the targets of which leaf one by one. */
+/* Interactions list the pairs of nodes that act by expansions, and the sources that act one by one on the
+ * targets of a leaf. */
 
 /* A source node and the order of the expansion, which are the low 28 and the high 4 bits. */
 typedef uint32_t far_item;
@@ -92,9 +93,10 @@ void interactions_destroy(interactions *lists);
 
 /* ---- blocks of low rank -------------------------------------------------------------------------------- */
 
-/* What long triangles do to targets that are far from their centroids, but not from them: the potentials of two such nodes vary
- * smoothly from triangle to triangle, so few columns of their block give all others (an interpolative decomposition: Cheng, Gimbutas,
- * Martinsson, Rokhlin 2005). Without, every fan of n triangles would have n^2 near pairs. */
+/* The action of long triangles on targets that are far from their centroids, but not from the triangles: the
+ * potentials of two such nodes vary smoothly from triangle to triangle, so few columns of their block give
+ * all others (an interpolative decomposition: Cheng, Gimbutas, Martinsson, Rokhlin 2005). Without, every fan
+ * of n triangles would have n^2 near pairs. */
 
 /* numbers[begin ..]: `rank` columns of the targets' potentials, and as many rows of weights, one for each source; with rank 0 the
  * potentials of all sources. Each is of a charge of 1. */
@@ -122,7 +124,8 @@ double rank_blocks_expected_bytes(const source_tree *tree, const interactions *l
 /* The bytes that they take. */
 double rank_blocks_bytes(const rank_blocks *blocks);
 
-/* Finds the blocks. Where the potentials of one are not smooth it is parted further, and at last all of them are kept. */
+/* Finds the blocks. A block whose potentials are not smooth is parted further, and at last all its potentials
+ * are kept. */
 cscd_status rank_blocks_create(const source_tree *tree, const interactions *lists, rank_blocks *out);
 void rank_blocks_destroy(rank_blocks *blocks);
 
@@ -189,7 +192,8 @@ typedef struct treecode {
 cscd_status treecode_create(cscd_context *context, const charge_system *system, treecode *out);
 void treecode_destroy(treecode *t);
 
-/* The bytes that it takes once it is filled: that depends on how large the triangles are beside their neighbours. */
+/* Returns the bytes that it takes once it is filled, which depends on the sizes of triangles and their
+ * neighbours. */
 double treecode_bytes(const treecode *t);
 
 /* Finds the potentials of sources that are near, which is done once, before all evaluations. */

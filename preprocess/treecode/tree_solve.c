@@ -190,7 +190,7 @@ static array_list list_vectors(gmres *g) {
     return list;
 }
 
-/* The bytes that so many equations take besides what the caller holds. */
+/* Returns the bytes that this number of equations takes in addition to those of the caller. */
 static double gmres_bytes(uint32_t count) {
     return (BASIS_MOST + 2) * sizeof(double) * (double)count; /* the basis, and what is preconditioned */
 }
@@ -295,7 +295,7 @@ static cscd_status find_charges(tree_equations *e, charge_system *system) {
     return status;
 }
 
-/* What has been laid out already counts as well. */
+/* The memory that has been laid out already counts as well. */
 static cscd_status check_limit(const tree_equations *e, const charge_system *system, size_t memory_limit) {
     const double gibibyte = 0x1p30;
     charge_system same;

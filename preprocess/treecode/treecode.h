@@ -10,5 +10,5 @@
 cscd_status tree_solve(cscd_context *context, charge_system *system, size_t memory_limit, double tolerance,
                        charge_timings *timings);
 
-/* Which potential is farthest from 1, the first of equals. */
+/* Returns the potential that is farthest from 1, the first of equals. */
 uint32_t tree_solve_worst(const double *potentials, uint32_t count);

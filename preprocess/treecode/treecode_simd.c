@@ -61,7 +61,7 @@ static void add_far_field(const far_field *field, const double center[3],
 
 /* ---- near field ---------------------------------------------------------------------------------------- */
 
-/* Sums of floats move into those of doubles after so many terms. */
+/* Sums of floats move into those of doubles after this number of terms. */
 enum { TERMS_IN_FLOAT = 64 };
 
 static void move_sums(f32x8 sums[LEAF_VECTORS], f64x8 totals[LEAF_VECTORS]) {

@@ -1,4 +1,4 @@
-"""What a call from Python costs over the same call of the C layer: cost.py [ROUNDS].
+"""The cost of a call from Python over the same call of the C layer: cost.py [ROUNDS].
 
 The C layer is called with everything prepared, so that its time lacks the reading of arrays and the copying of results;
 it has the microsecond of ctypes, which the last row shows. Both take turns; a cell is the least of all rounds.
@@ -53,7 +53,7 @@ def of_pairs(x0: Any, x1: Any, points: Any) -> Call:
 
 
 def rows() -> List[Tuple[str, int, Call, Call]]:
-    """What is measured: its name, how many calls make a round, in Python and in C."""
+    """A measurement: its name, the number of calls in a round, in Python and in C."""
     x, faces = sheets(50, 25, 2, 0.03)
     end = x + np.random.default_rng(2).normal(0.0, 0.02, x.shape)
     detector = cscd.Detector(faces)
@@ -85,7 +85,7 @@ def rows() -> List[Tuple[str, int, Call, Call]]:
 
 
 def time_of(call: Call, count: int) -> float:
-    """Microseconds of one call, of so many."""
+    """Microseconds of one call, the mean of this number."""
     begin = time.perf_counter()
     for _ in range(count):
         call()

@@ -1,6 +1,6 @@
 """Plans at rest, with stiffness, and for frames: pairs and times of a step of recordings in which each is used.
 
-The first recording is made here: a capsule that is rigid but for a soft place off its middle, where it bends by 110 degrees.
+The first recording is made here: a capsule that is rigid except for a soft place off its middle, where it bends by 110 degrees.
 Arguments name further ones, MODEL.obj and MODEL.pc2 side by side. Their stiffness is painted as an artist would: from 1 down
 to 0.1 where edges change their lengths the most, in the tenth of the triangles that do so beyond all others.
 """

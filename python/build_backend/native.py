@@ -20,12 +20,12 @@ from . import requirements, sdist
 from .project import Failure
 from .target import Target
 
-# What make takes from the environment although it means another build, and what another make has left there.
+# Variables that make would take from the environment although they mean another build, or that another make has left there.
 NOT_FOR_MAKE = {"BUILD", "BUILD_ROOT", "GNUMAKEFLAGS", "MAKEFLAGS", "MAKELEVEL", "MAKEOVERRIDES", "MFLAGS", "ONLY"}
 
 
 def baselines_setting(settings: Optional[Dict[str, object]]) -> Optional[bool]:
-    """What `--config-settings baselines=` says: True, False, or None where it says nothing."""
+    """The value of `--config-settings baselines=`: True, False, or None if it is not given."""
     for key in settings or {}:
         if key != "baselines":
             raise Failure(f"the only --config-settings is baselines=0 or baselines=1, and not {key}")

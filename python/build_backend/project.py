@@ -1,4 +1,4 @@
-"""What pyproject.toml and the public header say of the package, and the texts that every archive of it carries."""
+"""The facts of pyproject.toml and the public header about the package, and the texts that every archive of it carries."""
 from __future__ import annotations
 
 import ast
@@ -87,7 +87,7 @@ class Project:
 
     @property
     def stem(self) -> str:
-        """How the names of its archives begin."""
+        """The beginning of the names of its archives."""
         return f"{self.name}-{self.version}"
 
     @classmethod

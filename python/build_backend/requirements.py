@@ -13,7 +13,7 @@ from .target import Target
 
 
 class Parts(NamedTuple):
-    """What the build can do without: libcscd-baselines.so, and the reader of GIFTI surfaces."""
+    """The parts that the build can do without: libcscd-baselines.so, and the reader of GIFTI surfaces."""
 
     baselines: bool
     expat: bool

@@ -12,7 +12,7 @@ from typing import IO, Iterator, List, cast
 from .project import Project, source_time
 from .wheel import whole_file
 
-# What the build, the tests and editors leave in a tree; and pictures, which take as much space as all else and serve
+# Files that the build, the tests and editors leave in a tree; and pictures, which take as much space as all else and serve
 # readers only.
 LEFT_OUT = {".git", "build", "dist", "node_modules", "__pycache__", ".mypy_cache", ".pytest_cache", "PKG-INFO"}
 PICTURES = "docs/images/"
@@ -25,7 +25,7 @@ def source_files(root: Path) -> List[str]:
 
 
 def tracked_files(root: Path) -> List[str]:
-    """What git tracks in the tree; nothing where there is no git, or the tree is a folder in somebody else's."""
+    """The files that git tracks in the tree; nothing if there is no git, or the tree is a folder in somebody else's."""
     def ask(*words: str) -> str:
         return os.fsdecode(subprocess.run(["git", "-C", str(root), *words], check=True, capture_output=True).stdout)
 

@@ -10,9 +10,9 @@ from .project import Failure
 
 
 class Platform(NamedTuple):
-    """What wheels call a platform, how its compiler's tools begin, the ending of the library that Python loads, the
-    libraries that every machine has (the C library, its loader, or what Windows consists of), and where the licences of
-    what the compiler links in stand."""
+    """The name of a platform in wheels, the prefix of its compiler's tools, the ending of the library that Python loads, the
+    libraries that every machine has (the C library, its loader, or what Windows consists of), and the
+    places of the licences of libraries that the compiler links in."""
 
     tag: str
     tools: str
@@ -46,7 +46,7 @@ class Target:
 
     @property
     def platform(self) -> Platform:
-        """What is known of it."""
+        """The facts about it."""
         return OTHERS[self.host] if self.host else HERE
 
     @property
@@ -56,16 +56,16 @@ class Target:
 
     @property
     def settings(self) -> List[str]:
-        """What make is told."""
+        """The arguments of make."""
         sysroot = [] if self.platform.ending == "dll" else [f"SYSROOT={self.libraries}"]
         return [f"HOST={self.host}", *sysroot] if self.host else []
 
     def flags(self) -> List[str]:
-        """What a compiler that does not know the folder of the libraries is told."""
+        """The flags of a compiler that does not know the folder of the libraries."""
         return [f"-I{self.libraries}/include", f"-L{self.libraries}/lib"] if self.platform.ending == "dll" else []
 
     def licences(self) -> Dict[str, bytes]:
-        """Texts that belong into the wheel beside those of the project, by their names in it."""
+        """Texts that belong into the wheel in addition to those of the project, by their names in it."""
         missing = [path for path in self.platform.licences.values() if not Path(path).exists()]
         if missing:
             raise Failure(f"a wheel for {self.host} carries the licences {' and '.join(missing)}, not found on this machine")

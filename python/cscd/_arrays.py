@@ -18,7 +18,7 @@ _LARGEST_EXACT = 2**53
 
 
 def describe(array: Array) -> str:
-    """What a sentence says of an array that does not fit."""
+    """The part of a sentence that describes an array that does not fit."""
     return f"shape {array.shape} of {array.dtype}"
 
 

@@ -1,4 +1,4 @@
-"""Where calls run: a context of the library with its threads, one call at a time, and what failures are raised as."""
+"""The place where calls run: a context of the library with its threads, one call at a time; and the errors of failures."""
 
 from __future__ import annotations
 
@@ -95,7 +95,7 @@ def thread_count_of(threads: Any) -> int:
 
 
 def processor_count() -> int:
-    """How many processors this process may use."""
+    """The number of processors that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
@@ -119,7 +119,7 @@ class Keeper:
 
     @property
     def place(self) -> Any:
-        """Where to put the object."""
+        """The address at which the object is put."""
         return ctypes.byref(self._out)
 
     @property
@@ -160,7 +160,7 @@ class Host:
         _hosts.add(weakref.ref(self, _hosts.discard))
 
     def after_fork(self) -> None:
-        """In a child. What was in the middle of a call is of no use there, and is never destroyed."""
+        """Runs in a child. A host that was in the middle of a call is of no use there, and is never destroyed."""
         self.lock._at_fork_reinit()
         if library.cscdpy_host_is_busy(self.handle):
             self.lost = "this object was in the middle of a call when the process forked"
@@ -195,7 +195,7 @@ class Host:
             library.cscdpy_host_cancel(self.handle)
 
     def live_bytes(self) -> int:
-        """How much memory the context and its objects hold."""
+        """The bytes that the context and its objects hold."""
         return int(library.cscdpy_host_bytes(self.handle))
 
 

@@ -2,8 +2,8 @@
 
 The functions are called through ``ctypes.PyDLL``, with Python's lock held. Calls that may take long give the lock back
 themselves and take it again to look for signals (python/native/host.h), which costs less than a thread for each call,
-and what a signal's handler raises is raised here as if it had been called directly. What these need of Python is handed
-over as addresses, so that the library is built without Python's headers and fits every version.
+and what a signal's handler raises is raised here as if it had been called directly. The functions of Python that
+these need are handed over as addresses, so that the library is built without Python's headers and fits every version.
 """
 
 from __future__ import annotations
@@ -89,7 +89,7 @@ _read_structs()
 
 
 def address_of(array: np.ndarray[Any, Any]) -> int:
-    """Where the first byte of an array is."""
+    """The address of the first byte of an array."""
     # Not by __array_interface__, which loses what a signal's handler raises while it describes the members of records.
     return int(array.ctypes.data)
 
@@ -107,9 +107,9 @@ class _Memory:
 
 
 def items_of(found: np.ndarray[Any, Any], name: str) -> np.ndarray[Any, Any]:
-    """Structs of the library as records. What the library says of an index that there is none, all bits, becomes -1.
+    """Structs of the library as records. An index of which all bits are set, which says that there is none, becomes -1.
 
-    Ctrl-C has its turn every so many items.
+    Ctrl-C has its turn after a fixed number of items.
     """
     struct = structs[name]
     items = np.empty(len(found), records[name])

@@ -79,7 +79,7 @@ class DetectorOptions:
             self._struct["thickness_class_count"] = len(lengths)
 
 
-#: What the sentences of the library call things that have other names here.
+#: The names that sentences of the library have for things that have other names here.
 _PYTHON_NAMES = (("call cscd_detector_set_longest_list", "call set_longest_list"), ("cscd_detector_", ""),
                  ("cscd_line_search_", ""))
 

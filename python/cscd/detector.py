@@ -61,8 +61,8 @@ class Detector(LiveSettings):
     longest_list : int
         Lists that would be longer raise ``ListTooLong``; 0: any length.
     max_memory : int
-        The bytes that what is found at one moment may take beside the pairs: curves, depths, sums by parts. What does not
-        fit is left out, and raises ``MemoryError`` where it is asked for. 0: a quarter of the memory that is free.
+        The bytes that the findings of one moment may take in addition to the pairs: curves, depths, sums by parts.
+        Findings that do not fit are left out, and raise ``MemoryError`` on access. 0: a quarter of the memory that is free.
     max_work : int
         The comparisons of points with parts of triangles that depths may take at one moment, by an estimate; depths that would
         take more are left out like what does not fit ``max_memory``. 0: 2**28, which take some ten seconds.
@@ -74,7 +74,7 @@ class Detector(LiveSettings):
     threads : int
         0: one per processor.
     progress : function (stage, fraction), optional
-        Called every few milliseconds of a long call. What it raises ends the call and is raised by it.
+        Called every few milliseconds of a long call. An exception that it raises ends the call, which raises it.
 
     One call at a time has a detector; a call from another thread waits. Ctrl-C ends a long call. Arrays that are given
     back own their memory. Pickling keeps what a detector was made from, but not ``ignore`` and ``progress``.
@@ -184,14 +184,14 @@ class Detector(LiveSettings):
         return found.view(np.int64).reshape(-1, 2)
 
     def find_intersections(self, x: Any, kinds: Any = None, stop_after: int = 0) -> Intersections:
-        """The pairs of triangles that intersect or touch at positions ``x``, and how.
+        """The pairs of triangles that intersect or touch at positions ``x``, with their kinds.
 
         Parameters
         ----------
         kinds : str or iterable of str, optional
-            Which ones count, of ``INTERSECTION_KINDS``; None: all.
+            The kinds that count, of ``INTERSECTION_KINDS``; None: all.
         stop_after : int
-            Ends the search at so many pairs; 0: never.
+            Ends the search at this number of pairs; 0: never.
         """
         kind_bits = kind_set(kinds)
         options = self._find_options(kind_bits, count_of("stop_after", stop_after), False, False, False)
@@ -277,7 +277,7 @@ class Detector(LiveSettings):
         return reached, found[names].view(np.recarray)[0]
 
     def line_search(self, x0: Any, x1: Any, reach: float = 0.0) -> LineSearch:
-        """One motion that is asked about many times; ``reach``: the largest distance for which ``near`` is asked."""
+        """One motion for many questions; ``reach``: the largest distance for which ``near`` is called."""
         return LineSearch(self, x0, x1, reach)
 
     # ---- while a call runs ----------------------------------------------------------------------------------
@@ -289,7 +289,7 @@ class Detector(LiveSettings):
     # ---- what the last step was like ----------------------------------------------------------------------
 
     def guarantee(self, component: int = 0) -> Dict[str, Any]:
-        """What the last step promises for the contacts of a component with itself: complete, start_embedded, reason."""
+        """The promises of the last step for the contacts of a component with itself: complete, start_embedded, reason."""
         if not 0 <= component < self.mesh.component_count:
             raise IndexError(f"component {component}: the mesh has {self.mesh.component_count}")
         found = self._read("guarantee", library.cscdpy_detector_guarantee, component)
@@ -309,12 +309,12 @@ class Detector(LiveSettings):
 
     @property
     def counters(self) -> Dict[str, int]:
-        """What the last step did, by the members of ``cscd_counters``: the same for any number of threads."""
+        """The work of the last step, by the members of ``cscd_counters``: the same for any number of threads."""
         return self._read("counters", library.cscdpy_detector_counters)
 
     @property
     def live_bytes(self) -> int:
-        """How much memory the detector holds in the library."""
+        """The bytes that the detector holds in the library."""
         return self._host.live_bytes()
 
     # ---- inside -----------------------------------------------------------------------------------------
@@ -346,7 +346,7 @@ class Detector(LiveSettings):
         return intersection_options(kinds, stop_after, any_alone, depths, parts, limits)
 
     def _positions_for(self, name: str, out: Optional[Array], kept: Any) -> Array:
-        """Where positions are written."""
+        """The view into which positions are written."""
         shape = (self.mesh.vertex_count, 3)
         if out is None:
             single = all(array.itemsize == 4 for array in kept)
@@ -381,5 +381,5 @@ def free_step_of(step: Array, reached: Array) -> Tuple[Array, float, Optional[Co
 
 
 def _restore(mesh: Mesh, inputs: Dict[str, Any]) -> Detector:
-    """What pickle calls."""
+    """Called by pickle."""
     return Detector(mesh, **inputs)

@@ -1,4 +1,4 @@
-"""What goes wrong, as exceptions.
+"""Failures as exceptions.
 
 Wrong input (shapes, types, numbers that are not finite, indices out of range) is a ``ValueError`` that says what was
 expected and what was found; a lack of memory is a ``MemoryError``.

@@ -32,7 +32,7 @@ _NO_PART = 2**32 - 1
 
 
 class _Choices(ctypes.Structure):
-    """What the library is told about the files; texts are None where nothing is said."""
+    """The options for reading the files; texts are None if they are not given."""
 
     _fields_ = [("model_path", ctypes.c_char_p), ("frame_paths", ctypes.POINTER(ctypes.c_char_p)),
                 ("frame_path_count", ctypes.c_size_t), ("weld", ctypes.c_char_p), ("animation", ctypes.c_char_p),
@@ -67,7 +67,7 @@ class _OpenRecording:
 
 
 class FrameSequence(Sequence[Array]):
-    """The frames of a recording, each read from its file when it is asked for: (n, 3) float64."""
+    """The frames of a recording, each read from its file on access: (n, 3) float64."""
 
     def __init__(self, opened: _OpenRecording, indices: Sequence[int], vertex_count: int) -> None:
         self._opened = opened
@@ -96,13 +96,13 @@ class Recording:
     mesh : Mesh
         Its faces are those of the file; a ``Scene`` where there are several objects.
     object_names : list of str
-        What the objects are called: the first one as its file.
+        The names of the objects; the first one has the name of its file.
     vertices : (n, 3) float64
         The first frame.
     frames : sequence of (n, 3) float64
-        Each is read when it is asked for.
+        Each is read on access.
     frame_numbers : list of int
-        What the artist calls them.
+        The numbers that the artist knows them by.
     fps : float
         Frames a second; 0: nobody knows.
     part_names : list of str
@@ -110,8 +110,8 @@ class Recording:
     part_labels : (t,) int64
         The part of each triangle of the mesh, -1 for none.
     body_labels : (t,) int64, optional
-        What belongs together, where that is not the parts: the parts that the triangles have without ``parts_by``; all -1 where
-        the files name none, or one for all: then each component is by itself, and a cavity with what is around it. ``by_parts``
+        The bodies of the triangles, if these are not the parts: the parts that the triangles have without ``parts_by``; all -1 if
+        the files name none, or one for all: then each component is by itself, and a cavity with the body around it. ``by_parts``
         and ``replay`` take it as ``bodies``. None: the parts say so.
     file_vertices : (n,) int64
         The number that each vertex has in the file. Formats that store vertices several times, as STL and glTF, have
@@ -299,14 +299,14 @@ def _write_frames(folder: str, frames: Iterable[Any], F: Any, frame_numbers: Opt
 def write_report(path: PathLike, frames: Any, F: Any, *, title: str = "", part_names: Optional[Sequence[str]] = None,
                  part_labels: Any = None, fps: float = 0.0, unit: str = "", up: str = "",
                  frame_numbers: Optional[Sequence[int]] = None) -> str:
-    """Writes the page for a browser: the frames in three dimensions, what intersects in them, contacts and events.
+    """Writes the page for a browser: the frames in three dimensions, their intersections, contacts and events.
 
     It is the page of ``cscd replay --report``, made by the tool in a process of its own.
 
     Parameters
     ----------
     path : path
-        An HTML file, which needs nothing beside it.
+        An HTML file, which needs no other file.
     frames : (B, n, 3), or an iterable of (n, 3)
         Two at least.
     F : (m, 3) or (m, 4) integers, or Mesh
@@ -320,7 +320,7 @@ def write_report(path: PathLike, frames: Any, F: Any, *, title: str = "", part_n
     up : str
         "y" or "z".
     frame_numbers : sequence of int, optional
-        What the frames are called, ascending; by default 0, 1, 2, ...
+        The numbers of the frames, ascending; by default 0, 1, 2, ...
 
     Returns
     -------
@@ -357,7 +357,7 @@ def _write_parts(folder: str, mesh: Mesh, names: Optional[Sequence[str]], labels
 
 
 def _interpreter() -> str:
-    """A Python for the tool. Where a program embeds Python, ``sys.executable`` may be that program, or empty."""
+    """A Python for the tool. If a program embeds Python, ``sys.executable`` may be that program, or empty."""
     if os.name == "nt":
         folders, names = ["", "Scripts", "bin"], ["python.exe"]
     else:

@@ -1,4 +1,4 @@
-"""What intersects at one moment: pairs of triangles with their kinds, curves, what is buried, and how deep."""
+"""Intersections at one moment: pairs of triangles with their kinds, curves, buried patches, and depths."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Array = Any
 _NONE = 2**32 - 1
 _LIST, _ANY = 0, 2
 
-#: What a search may leave out: see ``Intersections.left_out``.
+#: The results that a search may leave out: see ``Intersections.left_out``.
 LEFT_OUT = names_of("CSCD_LEFT_OUTS")
 
 
@@ -91,10 +91,10 @@ class Intersections:
         self._positions = positions
         self._allowed = allowed
         self._surface: Optional[_Surface] = None
-        #: Of a frame of ``replay``: what was found, summed up by pair of parts.
+        #: For a frame of ``replay``: the findings, summed up by pair of parts.
         self.part_pairs: Optional[PartPairs] = None
-        #: Of a frame of ``replay``: what does not fit ``max_memory`` or ``max_work``, as ("depths",); it raises ``MemoryError``
-        #: where it is asked for; ``part_pairs`` is None then. () elsewhere.
+        #: For a frame of ``replay``: results that do not fit ``max_memory`` or ``max_work``, as ("depths",); they raise
+        #: ``MemoryError`` on access; ``part_pairs`` is None then. () elsewhere.
         self.left_out: Tuple[str, ...] = ()
         #: The face that counts as row 0 of each column of ``pairs``.
         self.first_faces: Array = np.zeros(2, np.int64)
@@ -106,7 +106,7 @@ class Intersections:
 
     @classmethod
     def none(cls, mesh: Mesh) -> Intersections:
-        """What is found in a mesh without triangles."""
+        """The findings in a mesh without triangles."""
         found = cls(mesh, None, None, np.empty(0, records["intersection_pair"]), False, True)
         found._surface = _Surface.none(mesh.vertex_count)
         return found
@@ -225,7 +225,7 @@ class _Surface:
         self._lists: Tuple[Array, Array, Array] = (np.empty(0), np.empty(0), np.empty(0))
         self._found_depths: Optional[Tuple[Array, Array, Array]] = None
         self._found_parts: Optional[PartPairs] = None
-        #: What did not fit max_memory or max_work, and how much of it would have been enough to go on.
+        #: The results that did not fit max_memory or max_work, and the amount that would have been enough to go on.
         self.left_out: Tuple[str, ...] = ()
         if len(found) == 0:
             return

@@ -1,4 +1,4 @@
-"""One motion that is asked about many times, as in the line search of an implicit solver (Li et al. 2020)."""
+"""One motion for many questions, as in the line search of an implicit solver (Li et al. 2020)."""
 
 from __future__ import annotations
 

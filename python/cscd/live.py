@@ -18,7 +18,7 @@ Array = Any
 
 
 class LiveSettings:
-    """What can be changed on a live ``Detector`` (include/cscd/live.h)."""
+    """The changes that are possible on a live ``Detector`` (include/cscd/live.h)."""
 
     mesh: Mesh
     _host: Host

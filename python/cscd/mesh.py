@@ -235,7 +235,7 @@ class Mesh:
 
     @property
     def host(self) -> Host:
-        """Where the mesh lives in the library."""
+        """The address of the mesh in the library."""
         assert self._handle is not None
         return self._handle.host
 
@@ -245,7 +245,7 @@ class Mesh:
 
     @property
     def vertex_counts(self) -> List[int]:
-        """How many vertices each object has."""
+        """The number of vertices of each object."""
         return [item.vertex_count for item in self._objects]
 
     @property
@@ -346,7 +346,7 @@ class Scene(Mesh):
 
 
 def _restore(kind: Any, objects: List[Any], obstacles: List[bool]) -> Mesh:
-    """What pickle calls."""
+    """Called by pickle."""
     mesh: Mesh = kind.__new__(kind)
     mesh._begin(objects, obstacles)
     return mesh

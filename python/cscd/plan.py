@@ -27,7 +27,7 @@ class ComparedPlan(NamedTuple):
 
     method: str
     k: Optional[int]
-    """How many regions k-means was asked for."""
+    """The number of regions that k-means was called with."""
     region_count: int
     tested_share: float
     """Predicted: the share of the triangles that a step has to look at with others of their component."""
@@ -87,11 +87,11 @@ class Plan:
         memory_limit : int
             Bytes that the solution may take; 0: what the system has.
         stiffness : (t,) float64, optional
-            How stiff the material is at each triangle, positive and finite, in any unit: borders of regions run in soft
+            The stiffness of the material at each triangle, positive and finite, in any unit: borders of regions run in soft
             places, and a part beyond a soft place is given a detector point of its own.
         frames : (f, n, 3) or a list of (n, 3), optional
-            Positions in a motion that the plan is made for: what the detector points see in them counts as well. Of many
-            some count, evenly spaced.
+            Positions in a motion that the plan is made for: the sight of the detector points in them counts as well. If
+            there are many, some count, evenly spaced.
 
         Warns
         -----
@@ -335,7 +335,7 @@ class Plan:
 
     @property
     def compared(self) -> List[ComparedPlan]:
-        """What ``Plan.auto`` has compared, in the order in which it was tried; of any other plan nothing."""
+        """The plans that ``Plan.auto`` has compared, in the order in which it tried them; empty for any other plan."""
         found = new_struct("compared_plan", int(library.cscd_plan_compared_count(self.pointer)))
         size = structs["compared_plan"].itemsize
         for i in range(len(found)):
@@ -350,7 +350,7 @@ class Plan:
 
     @property
     def better_kernels(self) -> Optional[str]:
-        """What ``OPENBLAS_CORETYPE`` should be set to before Python starts, because OpenBLAS did not know the processor and
+        """The value that ``OPENBLAS_CORETYPE`` should have before Python starts, because OpenBLAS did not know the processor and
         took old kernels, which take about three times as long. None: the kernels will do, or are not known."""
         return self._words("better_kernels")
 
@@ -373,7 +373,7 @@ class Plan:
 
 
 def _restore(mesh: Mesh, rest: Array, *parts: Any) -> Plan:
-    """What pickle calls."""
+    """Called by pickle."""
     regions, points, method, charges, capacitances, origin = parts
     return Plan.from_parts(mesh, rest, regions, points, method=method, charges=charges, capacitances=capacitances,
                            origin=origin)

@@ -153,7 +153,7 @@ def contacts(x0: Any, x1: Any, F: Any, *, min_separation: float = 0.0, threads: 
 
 def self_intersecting_faces(frames: Any, F: Any, kinds: Any = "crossing", *, threads: int = 1,
                             progress: Progress = None) -> Array:
-    """Which faces intersect another one, in each of many frames.
+    """The faces that intersect another one, in each of many frames.
 
     Parameters
     ----------
@@ -161,7 +161,7 @@ def self_intersecting_faces(frames: Any, F: Any, kinds: Any = "crossing", *, thr
         Positions of one mesh. An iterable is read as it comes, and may fill one array again and again.
     F : (m, 3) or (m, 4) integers, or Mesh
     kinds : str or iterable of str
-        Which pairs count. "crossing", the default, is what is published as the share of self-intersecting faces.
+        The pairs that count. Publications give the share of self-intersecting faces by "crossing", the default.
     threads : int
         Frames that are looked at side by side; 0: one per processor.
     progress : function (stage, fraction), optional
@@ -212,7 +212,7 @@ class _FrameQueue:
             self.mesh.face_count = len(F)
 
     def drain(self) -> int:
-        """How many frames there are, none of which needs to be looked at."""
+        """The number of frames; no frame needs to be examined for it."""
         return (self._first is not None) + sum(1 for _ in self._frames)
 
     def _take(self) -> Optional[Tuple[int, Any]]:
@@ -258,7 +258,7 @@ class _FrameQueue:
                 self._failure = self._failure or problem
 
     def run(self, workers: int) -> Array:
-        """Looks at all frames on so many threads."""
+        """Examines all frames on this number of threads."""
         detectors = [Detector(self.mesh) for _ in range(workers)]
         if workers == 1:
             self._work(detectors[0], True)

@@ -29,13 +29,13 @@ _END = object()
 
 
 class Frame(NamedTuple):
-    """What a replay has found in one frame."""
+    """The findings of a replay in one frame."""
 
     #: The number of the frame: its index, or what ``frame_numbers`` says.
     number: int
     #: The contacts of the interval that ends here; of the first frame none.
     contacts: Contacts
-    #: What intersects or touches in this frame.
+    #: The intersections of this frame.
     intersections: Intersections
     #: The events that have ended before this frame, and were not given out yet. ``Replay.events`` lacks those of them
     #: that turn out to follow from others.
@@ -248,7 +248,7 @@ class Replay:
         return frame
 
     def _next(self) -> Optional[Frame]:
-        """What ``__next__`` gives; None after the last frame."""
+        """The next frame, as ``__next__`` gives it; None after the last one."""
         positions = next(self._frames, _END)
         if positions is _END:
             self._finish()

@@ -95,7 +95,7 @@ class Proximities(Records):
 
 
 class PairContacts(Records):
-    """What each pair of ``pairs_step`` does: toi (inf without contact), contact, bounded, u, v, point, normal."""
+    """The contact of each pair of ``pairs_step``: toi (inf without contact), contact, bounded, u, v, point, normal."""
 
     @classmethod
     def record(cls) -> Any:
@@ -103,7 +103,7 @@ class PairContacts(Records):
 
 
 class PairDistances(Records):
-    """How far apart the features of each pair of ``pairs_near`` are: distance (inf beyond the limit), u, v, point,
+    """The distance of the features of each pair of ``pairs_near``: distance (inf beyond the limit), u, v, point,
     normal."""
 
     @classmethod
@@ -145,8 +145,8 @@ class Events(Records):
     def worst_first(self) -> Any:
         """Their indices (k,), the worst first, as the tool has them.
 
-        What is within another part (crossing, deep or a copy) comes before what touches, that before contacts alone, and
-        what a part has with itself without a pair comes last; then by depth, length, pairs and contacts.
+        Intersections with another part (crossing, deep or a copy) come before touches, these before contacts alone, and contacts
+        of a part with itself without a pair come last; then depth, length, pairs and contacts decide.
         """
         events = {name: np.atleast_1d(np.asarray(self[name]))
                   for name in ("a", "b", "kinds", "pairs", "contacts", "depth", "length")}

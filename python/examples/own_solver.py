@@ -42,7 +42,7 @@ def make_scene() -> Tuple[cscd.Scene, Array, Array]:
 
 
 class Solver:
-    """What is minimised in each step of time: inertia, springs and barriers."""
+    """The energy that each time step minimises: inertia, springs and barriers."""
 
     def __init__(self, scene: cscd.Scene, x: Array, springs: Array) -> None:
         self.detector = cscd.Detector(scene, min_separation=1e-3 * REACH, threads=0)

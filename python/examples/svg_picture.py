@@ -1,4 +1,4 @@
-"""Pictures of meshes as SVG, by numpy alone: what the examples beside this file draw."""
+"""Pictures of meshes as SVG, by numpy alone: the examples in this folder draw with it."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ class Picture:
         return self.middle + self.scale * seen[:, :2] * [1.0, -1.0], seen[:, 2]
 
     def surface(self, V: Array, triangles: Array, colours: Array, closed: bool = False, nearer: Any = 0.0) -> None:
-        """Draws triangles from back to front; ``colours`` (t, 3), 0 to 255. What faces away is darker, or left out.
+        """Draws triangles from back to front; ``colours`` (t, 3), 0 to 255. Triangles that face away are darker, or left out.
 
-        Triangles are sorted by their centres, as if these were ``nearer`` by so much.
+        Triangles are sorted by their centres, as if these were ``nearer`` by this length.
         """
         place, far = self.project(V)
         corner = place[triangles]

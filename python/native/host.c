@@ -21,7 +21,7 @@ PYTHON_API void cscdpy_copy(void *to, const void *from, size_t size) {
 
 /* ---- contexts ------------------------------------------------------------------------------------------ */
 
-/* Callbacks and signals have their turn once in so many milliseconds. */
+/* Callbacks and signals have their turn once in this number of milliseconds. */
 enum { LOOK_EVERY_MS = 5 };
 
 static double clock_ms(void) {
@@ -44,7 +44,7 @@ void host_end(host *h) {
     python.restore_thread(thread);
 }
 
-/* What a callable answers; -1: it has raised. Takes the result. */
+/* Returns the answer of a callable; -1: it has raised. Takes the result. */
 static int answer_of(void *result) {
     if (result == NULL) return -1;
     int answer = python.is_true(result);
@@ -52,7 +52,8 @@ static int answer_of(void *result) {
     return answer;
 }
 
-/* The callback of the context. What progress= returns does not matter: who wants to end the call raises. */
+/* The callback of the context. The result of progress= does not matter: a function that wants to end the call
+ * raises. */
 static bool report_progress(void *user, const char *stage, double fraction) {
     host *h = user;
     if (h->thread == NULL) return true;

@@ -1,4 +1,5 @@
-/* What a replay of Python leaves out, by parts and at rest, and which depths and events are left then: as the tool does. */
+/* The pairs that a replay of Python leaves out, by parts and at rest, and the depths and events that it then
+ * shows, as the tool does. */
 #include "python/native/host.h"
 
 #include "tool/answers/answers.h"

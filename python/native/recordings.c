@@ -20,7 +20,7 @@ typedef struct read_recording {
     part_names parts;
 } read_recording;
 
-/* What the tool's options say, as Python gives it. Texts are NULL where nothing is said. */
+/* The tool's options, as Python gives them. Texts that are not given are NULL. */
 typedef struct read_choices {
     const char *model_path;
     const char *const
@@ -150,7 +150,8 @@ PYTHON_API uint32_t cscdpy_recording_object_count(const read_recording *r) {
     return r->recording.object_count;
 }
 
-/* Of an object: its vertices, its triangles, the faces of its file, and whether it is an obstacle. */
+/* Tells the name of an object, and in counts its vertices, its triangles, the faces of its file, and whether
+ * it is an obstacle. */
 PYTHON_API const char *cscdpy_recording_object(const read_recording *r, uint32_t object, uint32_t counts[4]) {
     const recorded_object *o = &r->recording.objects[object];
     counts[0] = o->vertex_count;

@@ -102,9 +102,9 @@ separation separation_limit(double distance, double tolerance);
 /* Pairs within the distance are reported; pairs between it and the tolerance beyond it may be. */
 separation proximity_limit(double distance);
 
-/* Limits the steps from one moment to the next. Of 7.3 million tests in two frames of cloth in heavy contact,
- * with a distance of 1e-3 of the diagonal, five took 16 steps or more and none took 64. Of 20 million tests
- * on other recordings none took 16. */
+/* Limits the steps from one moment to the next. Among 7.3 million tests in two frames of cloth in heavy
+ * contact, with a distance of 1e-3 of the diagonal, five took 16 steps or more and none took 64. None of 20
+ * million tests on other recordings took 16. */
 enum { SEPARATION_STEPS_MAX = 128 };
 
 /* The finest tolerance that separation_vf and separation_ee can promise, as a fraction of the query's extent.

@@ -5,8 +5,8 @@
 
 /* ---- closest points of features at rest: the twin of closest.c ----------------------------------------- */
 
-/* The same operations in the same order, so the same bits. Where closest.c returns early, lanes go on and
- * their results are not taken. */
+/* The same operations in the same order, so the same bits. If closest.c returns early, lanes go on and their
+ * results are not taken. */
 
 enum { PROJECTIONS_MAX = 16 };
 

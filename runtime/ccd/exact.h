@@ -57,8 +57,8 @@ typedef struct algebraic {
  * constant has none. The numbers that out refers to stay in the pool. */
 int algebraic_roots(integer_pool *pool, const polynomial *a, algebraic out[3]);
 
-/* Finds low and high, less than 2^-34 apart; they are equal only if the root is equal to them. How they are
- * found depends on a guess, but the cell does not. Returns false if the root is not in [0,1]. */
+/* Finds low and high, less than 2^-34 apart; they are equal only if the root is equal to them. The way to
+ * them depends on a guess, but the cell does not. Returns false if the root is not in [0,1]. */
 bool algebraic_locate(integer_pool *pool, algebraic *root);
 
 /* Returns the sign of q, of degree 2 at most, at the root: -1, 0 or 1. This is faster once the root is

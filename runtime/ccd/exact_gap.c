@@ -1,8 +1,9 @@
 /* Computes by integers how much farther apart than a length two features at rest are.
  *
- * The distance is the least of finitely many: between two points, between a point and the inside of an edge, between a
- * point and the inside of a face, and between the insides of two edges. Where the foot of the perpendicular is inside,
- * which signs of integers say, the square of such a distance is a fraction n / m of integers, and so is
+ * The distance is the least of finitely many: between two points, between a point and the inside of an edge,
+ * between a point and the inside of a face, and between the insides of two edges. If the foot of the
+ * perpendicular is inside, which signs of integers say, the square of such a distance is a fraction n / m of
+ * integers, and so is
  *     n / m - s^2 = (distance - s) (distance + s)
  * for a length s. Each fraction is rounded at the end only, so that nothing cancels. As every such distance is that of
  * two points of the features, the least rounded result is right. */

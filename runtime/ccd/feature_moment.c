@@ -6,8 +6,8 @@
 
 /* ---- planes -------------------------------------------------------------------------------------------- */
 
-/* When less than this fraction of an edge's length is left beside the direction of another edge, the rest is
- * taken for rounding. */
+/* If less than this fraction of an edge's length is perpendicular to another edge, that part is taken for
+ * rounding. */
 static const double nearly_parallel = 0x1p-40;
 
 /* The rounding of the nearest points may make this of the cosine between an edge and the offset, times the

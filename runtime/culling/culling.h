@@ -94,7 +94,7 @@ typedef struct component_start {
     uint32_t unknown, crossing, clean; /* numbers of triangles in these states */
     uint32_t waiting, backoff;         /* in intervals: until the next check, and between the last two */
 
-    /* Of culling_choice.c, with costs in its unit. In this interval: */
+    /* State of culling_choice.c, with costs in its unit. In this interval: */
     bool moved;          /* its start is not the end of the last one */
     bool chosen;         /* it is culled, if enough of it is clean */
     double proof;        /* what the proof of the start costs, if it is culled */
@@ -105,7 +105,7 @@ typedef struct component_start {
     double regret;                    /* what the other way would have saved */
     double stay;                      /* what culling has saved since it was chosen */
     double kept;                      /* pairs that it keeps, for each triangle */
-    double unproven;                  /* mean share of triangles that an interval has to prove anew */
+    double unproven;                  /* mean share of triangles that an interval has to prove again */
     double touched;                   /* about that share of triangles was tainted in the last interval */
 } component_start;
 
@@ -119,7 +119,7 @@ typedef struct start_states {
     cscd_context *context;
     const cscd_mesh *mesh;
     double *positions;
-    uint64_t revision;        /* so many times positions have been seen */
+    uint64_t revision;        /* the number of times that positions have been seen */
     bool known;               /* positions have been seen */
     bool partly;              /* ... but not those of all vertices; the others are no numbers */
     bool vouched;             /* some triangles are clean only because the caller says so */
@@ -138,8 +138,8 @@ typedef struct start_states {
     double share_worth_it; /* below this share of clean triangles neither culling nor a check pays */
 } start_states;
 
-/* Do so many clean triangles of a component suffice for culling to pay? With fewer, the pairs of all other triangles,
- * their neighbours among them, cost more than all pairs do without culling. */
+/* Returns whether culling pays with this number of clean triangles of a component. With fewer, the pairs of
+ * all other triangles, their neighbours among them, cost more than all pairs do without culling. */
 static inline bool start_states_pay(const start_states *s, uint32_t clean, uint32_t triangle_count) {
     return clean > 0 && (double)clean >= s->share_worth_it * (double)triangle_count;
 }
@@ -255,7 +255,8 @@ uint32_t tainting_triangle(const tainting *t, uint32_t triangle);
 
 /* ---- another mesh -------------------------------------------------------------------------------------- */
 
-/* What becomes of regions: those of untouched components stay in their order; then each other component is one. */
+/* The regions of the new mesh: those of untouched components stay in their order; then each other component
+ * is one. */
 typedef struct region_move {
     uint32_t *to_new;        /* per old region; UINT32_MAX: gone */
     uint32_t *of_components; /* per component of the new mesh its region, UINT32_MAX: it is untouched */

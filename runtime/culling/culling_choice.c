@@ -43,13 +43,14 @@ static double proof_of(const component_start *start) {
     return price_of_proof * (start->unknown + start->crossing);
 }
 
-/* The share of its triangles that an interval like this one has to prove beside those that earlier ones have left. */
+/* Returns the share of its triangles that an interval like this one has to prove in addition to those that
+ * earlier ones have left. */
 static double fresh_share(const component_start *start, double triangles) {
     if (start->moved || start->culls) return (start->unknown + start->crossing) / triangles;
     return smaller_of(start->touched, 1.0);
 }
 
-/* What culling may be hoped to save in each interval, for each triangle, once the start is proven. */
+/* Returns the saving that culling promises in each interval, for each triangle, once the start is proven. */
 static double hope_of(const component_start *start) {
     double kept = smaller_of(start->kept, kept_at_most) + kept_by_taint * start->unproven_now;
     return price_of_pairs - price_of_orientation - price_of_kept * kept -

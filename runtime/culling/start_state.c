@@ -307,7 +307,8 @@ void start_states_checked(start_states *s, const bool *unproven, const bool *cro
     bool *checked = s->component_scratch;
     for (uint32_t c = 0; c < mesh->component_count; c++) checked[c] = false;
     for (uint32_t t = 0; t < mesh->triangle_count; t++) {
-        /* What the caller has vouched for ends with the check; what is not checked can be vouched for again. */
+        /* The check ends the vouching of the caller; triangles that are not checked can be vouched for
+         * again. */
         if (s->vouched && s->triangles[t] == TRIANGLE_CLEAN) s->triangles[t] = TRIANGLE_UNKNOWN;
         if (!unproven[t]) continue;
         checked[mesh->triangle_components[t]] = true;

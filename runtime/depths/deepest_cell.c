@@ -42,7 +42,8 @@ static void measure_between(depth_search *s, uint32_t number, const deep_point *
 
 /* ---- bounds -------------------------------------------------------------------------------------------- */
 
-/* How far the corners of a cell are from the parts of the surface that were found near some three points: [corner][part]. */
+/* The distances of the corners of a cell from the parts of the surface that were found near some three
+ * points: [corner][part]. */
 typedef struct reach_table {
     double from[3][3];
 } reach_table;
@@ -249,8 +250,9 @@ static int split_part(depth_search *s, cell_part *c, const side_plane *plane) {
     return 3;
 }
 
-/* A cell that is wide beside its depth reaches over several triangles of the surface, none of which bounds it as a whole: it is
- * split where the one below its middle ends. Returns how many parts that makes; -1: it is not to be split. */
+/* A cell that is wide compared to its depth reaches over several triangles of the surface, none of which
+ * bounds it as a whole: it is split where the one below its middle ends. Returns the number of parts; -1: it
+ * is not to be split. */
 static int split_wide(depth_search *s, cell_part *c) {
     deep_point middle;
     const int deepest = deepest_corner(c);

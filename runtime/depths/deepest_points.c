@@ -280,8 +280,8 @@ static void begin_with_corners(const deepest_work *w, const buried_group *group,
 
 enum { BANKS_MAX = 16 };
 
-/* What bounds the depth of a triangle that a body cuts: the parts of the body's outer surface that cut it, and those that are
- * nearest to its corners. */
+/* The parts of a surface that bound the depth of a triangle that a body cuts: the parts of the body's outer
+ * surface that cut it, and those that are nearest to its corners. */
 typedef struct cell_banks {
     outer_part parts[BANKS_MAX];
     uint32_t triangles[BANKS_MAX], count;
@@ -375,7 +375,7 @@ static void take_part(void *data, const cut_part *part) {
     }
 }
 
-/* Where rounding could feign the best depth, the area decides whether there is any, and must be known. */
+/* If rounding could feign the best depth, the area decides whether there is any, and must be known. */
 static bool banks_rule_out(const deepest_work *w, const cell_banks *banks, const depth_search *s,
                            buried_triangle *t) {
     depth_cell whole;
@@ -387,7 +387,7 @@ static bool banks_rule_out(const deepest_work *w, const cell_banks *banks, const
     return !depth_search_wants(s, t->left);
 }
 
-/* To take up a line that divides a triangle costs so many comparisons. */
+/* A line that divides a triangle costs this number of comparisons. */
 enum { A_LINE = 4 };
 
 static bool cut_open(deepest_work *w, const depth_search *s, buried_triangle *t) {
@@ -415,7 +415,7 @@ static bool cut_open(deepest_work *w, const depth_search *s, buried_triangle *t)
     return !w->out_of_memory && outer_surface_take_work(w->facts->outer, t->cell_count);
 }
 
-/* Where work does not fit, what all of it would be is reckoned from the triangles so far. */
+/* If the work does not fit, all of it is estimated from the triangles so far. */
 static bool stop_opening(const deepest_work *w, size_t opened) {
     memory_budget *b = w->finder->budget;
     if (b != NULL && b->wanted_work > 0) {

@@ -22,7 +22,7 @@ typedef struct deep_point {
     outer_point nearest;
 } deep_point;
 
-/* What the deepest points of several cells are looked for with. */
+/* A search for the deepest points of several cells. */
 typedef struct depth_search {
     const outer_surface *outer;
     const surface_cuts *found;
@@ -34,7 +34,7 @@ typedef struct depth_search {
     deep_point best; /* begins with depth -1 */
     uint32_t best_cell;
     double bound;      /* no point of the cells so far is deeper; begins with 0 */
-    size_t cells_left; /* so many more may be divided */
+    size_t cells_left; /* the number of cells that may still be divided */
 } depth_search;
 
 /* A cell, or a part of one, that is looked at further. */
@@ -45,8 +45,9 @@ typedef struct cell_part {
     int level;
 } cell_part;
 
-/* The parts of all cells that wait: the one that promises most is looked at first, since the deeper the best point is, the fewer
- * others are wanted. Where it is full, a part is looked at to its end. Begins with no parts. */
+/* The parts of all cells that are still open. The most promising one comes first, since fewer others are
+ * needed the deeper the best point is. If the queue is full, a part is examined to its end. Begins with no
+ * parts. */
 enum { DEPTH_QUEUE_MAX = 12 };
 
 typedef struct depth_queue {
@@ -104,7 +105,7 @@ typedef struct deepest_finder {
 
 void deepest_finder_free(deepest_finder *d);
 
-/* What is known when the deepest points are looked for. */
+/* The facts that a search for the deepest points begins with. */
 typedef struct depth_facts {
     const surface_cuts *found;
     const bvh *bvh;

@@ -1,4 +1,4 @@
-/* How deep what is buried lies below the outer surfaces of bodies. */
+/* The depths of buried vertices, edges and triangles below the outer surfaces of bodies. */
 #include "runtime/depths/depths.h"
 
 #include "runtime/depths/deepest_points.h"
@@ -187,8 +187,8 @@ static bool ask_of_vertex(const depth_work *work, uint32_t vertex) {
     return true;
 }
 
-/* Asks of the parts of an edge that a body contains between two of its passages. Of each body the last passage is
- * kept in `last`, and its number in the corner's numbers. */
+/* Asks for the depths of the parts of an edge that a body contains between two of its passages. `last` keeps
+ * the last passage of each body, and the corner's numbers its number. */
 static bool ask_of_edge(const depth_work *work, const loaded_cut *cut, uint32_t i, cut_border *last) {
     const cscd_mesh *mesh = work->found->surface->mesh;
     uint32_t edge = mesh->triangle_edges[cut->triangle][i];
@@ -214,8 +214,8 @@ static bool ask_of_edge(const depth_work *work, const loaded_cut *cut, uint32_t 
     return true;
 }
 
-/* An edge is asked of in the first of its triangles that has an area; without an area there is no projection, nor does the
- * triangle say anything of the edge that the others do not. */
+/* The first triangle of an edge that has an area asks for the edge. Without an area there is no projection,
+ * and the triangle says nothing of the edge that the others do not. */
 static bool asks_of_edge(const depth_work *work, uint32_t triangle, uint32_t edge) {
     const named_surface *s = work->found->surface;
     for (uint32_t i = s->mesh->edge_star_offsets[edge]; i < s->mesh->edge_star_offsets[edge + 1]; i++) {
@@ -369,8 +369,8 @@ static double rounding_of(const named_surface *s) {
     return largest * 0x1p-46;
 }
 
-/* A search costs so many comparisons. As many as there are vertices are work in proportion to the mesh; vertices that many bodies contain
- * have more. */
+/* A search costs this number of comparisons. One search for each vertex is work in proportion to the mesh;
+ * vertices that many bodies contain have more. */
 enum { A_SEARCH = 256 };
 
 static bool take_searches(const depth_work *work, size_t count) {

@@ -1,4 +1,5 @@
-/* How deep what is buried lies below the outer surfaces of bodies, at one moment: docs/theory/curves.md, Lemmas 8 and 9. */
+/* The depths of buried vertices, edges and triangles below the outer surfaces of bodies, at one moment:
+ * docs/theory/curves.md, Lemmas 8 and 9. */
 #pragma once
 
 #include "runtime/intersections/intersections.h"
@@ -15,7 +16,7 @@ void depth_finder_destroy(depth_finder *d);
 /* Gives back what it keeps from one call to the next. */
 void depth_finder_clear(depth_finder *d);
 
-/* What a call needs to know, beside the cuts. */
+/* The inputs of a call, in addition to the cuts. */
 typedef struct depth_request {
     const bvh *bvh; /* its bounds are those of the surface's positions */
     const part_labels *labels;

@@ -240,14 +240,14 @@ static double share_of_side(double along, double squared) {
     return along <= 0.0 ? 0.0 : along >= squared ? 1.0 : along / squared;
 }
 
-/* What is known of a point of a triangle that is near to x. */
+/* The place of a point near x in its triangle. */
 typedef struct reach_point {
     int sides;        /* which it lies on */
     bool well_shaped; /* the triangle is not thin */
     double size;      /* the sum of two squared sides */
 } reach_point;
 
-/* In a thin triangle rounding chooses, so all three sides are asked. */
+/* In a thin triangle rounding chooses the side, so all three count. */
 static double squared_thin(const double ax[3], const double ab[3], const double ac[3], double inside) {
     const double bb = vec3_dot(ab, ab), cc = vec3_dot(ac, ac), bc = vec3_dot(ab, ac);
     const double xb = vec3_dot(ax, ab), xc = vec3_dot(ax, ac);
@@ -265,9 +265,9 @@ static double squared_thin(const double ax[3], const double ab[3], const double 
 #define REACH_NEAR 0x1p-40
 #define REACH_ON   0x1p-90
 
-/* The squared distance from a point of the triangle: the nearest one, but for rounding. (Ericson, Real-Time Collision
- * Detection, 5.1.5.) Whatever rounding makes of u and v, they lie in the triangle, so the nearest point is no farther; how much
- * nearer it may be in thin triangles, nobody knows. */
+/* Returns the squared distance from a point of the triangle: up to rounding, the nearest one. (Ericson,
+ * Real-Time Collision Detection, 5.1.5.) Rounded u and v still lie in the triangle, so the nearest point is
+ * no farther; in thin triangles it may be nearer by an unknown amount. */
 static double squared_reach(const double x[3], const double p[3][3], reach_point *at) {
     double ab[3], ac[3], ax[3], u, v;
     vec3_subtract(p[1], p[0], ab);
@@ -339,7 +339,8 @@ static bool part_is_far(const nearest_search *s, const double corners[3][3]) {
     return at.well_shaped && squared * (1.0 - 0x1p-20) > s->best.squared + 0x1p-40 * at.size;
 }
 
-/* Of several parts at the same distance, that of the first triangle is the answer, whatever the trees' order is. */
+/* If several parts are at the same distance, that of the first triangle is the answer, whatever the trees'
+ * order is. */
 static void try_part(nearest_search *s, uint32_t triangle, const outer_part *part) {
     double u, v;
     const double(*p)[3] = part->corners;
@@ -462,7 +463,7 @@ static int reach_triangle(nearest_search *s, uint32_t triangle) {
     return at.sides;
 }
 
-/* The same for those beside it. */
+/* The same for its neighbours. */
 static int reach_neighbours(nearest_search *s, uint32_t triangle, int sides, uint32_t before) {
     const cscd_mesh *mesh = s->found->surface->mesh;
     int next = 0;

@@ -24,7 +24,7 @@ enum { OUTER_RUN = 16 };
  * cuts have parts; all others are outer as a whole, or not at all. */
 typedef struct outer_surface {
     cscd_context *context;
-    double scale; /* that of the trees: parts and distances are so many times as large */
+    double scale; /* the scale of the trees, which multiplies parts and distances */
     triangle_cuts cuts;
     outer_part *parts;
     outer_box *part_boxes;
@@ -45,8 +45,8 @@ void outer_surface_free(outer_surface *o);
 /* Finds the parts. False: no memory. */
 bool outer_surface_find(outer_surface *o, const surface_cuts *found, const bvh *hierarchy);
 
-/* Takes the work of comparing so many points with the parts that are near them, of which a triangle that is cut has as many as all of
- * them have in the mean. False: it does not fit. */
+/* Takes the work of comparing this number of points with the parts that are near them, of which a triangle
+ * that is cut has the mean number. False: it does not fit. */
 bool outer_surface_take_work(const outer_surface *o, size_t points);
 
 /* A triangle that is outer as a whole. */
@@ -63,7 +63,7 @@ typedef struct outer_point {
     double x[3];
 } outer_point;
 
-/* The scaled distance of a point from some point of a part: the nearest one, but for rounding. */
+/* Returns the scaled distance of a point from some point of a part: up to rounding, the nearest one. */
 double outer_part_reach(const outer_surface *o, const double x[3], const outer_part *part);
 
 /* The greatest for three points; or, as soon as it is no less than enough, that of some of them. */

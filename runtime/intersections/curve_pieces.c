@@ -25,8 +25,8 @@ static bool load_corners(const named_surface *s, uint32_t triangle, pair_corners
     return p[0].name != p[1].name && p[1].name != p[2].name && p[2].name != p[0].name;
 }
 
-/* How the edge (p, q) passes through the triangle: 1 towards the side of its normal, -1 the other way, 0 not. from and to
- * are the sides on which p and q lie. */
+/* Returns the direction in which the edge (p, q) passes through the triangle: 1 towards the side of its
+ * normal, -1 the other way, 0 not at all. from and to are the sides on which p and q lie. */
 static int ends_pass(symbolic_point p, symbolic_point q, int from, int to, const pair_corners *face) {
     const symbolic_point *f = face->points;
     if (from == to) return 0;
@@ -140,11 +140,11 @@ bool surface_event_happens(const named_surface *s, surface_event event) {
 
 /* ---- where an event is, by doubles --------------------------------------------------------------------- */
 
-/* Numbers are sums of two doubles, high + low, with |low| at most half a unit in the last place of high. Sums and products
- * of such numbers are off by less than 2^-100 of the sum of what they add, or of the product (Joldes, Muller and Popescu
- * 2017: at most 2^-103 for these), and each value has a bound of its error beside it, in which all roundings of the bound
- * itself are a share of 2^-50. Coordinates are 0 or below 2^150, and weights above 2^-500, so nothing overflows, and
- * what underflow loses is below 2^-560 of a result. */
+/* Numbers are sums of two doubles, high + low, with |low| at most half a unit in the last place of high. Sums
+ * and products of such numbers are off by less than 2^-100 of the sum of what they add, or of the product
+ * (Joldes, Muller and Popescu 2017: at most 2^-103 for these), and each value comes with a bound of its
+ * error, in which all roundings of the bound itself are a share of 2^-50. Coordinates are 0 or below 2^150,
+ * and weights above 2^-500, so nothing overflows, and underflow loses less than 2^-560 of a result. */
 
 static const double largest_coordinate = 0x1p150, least_weight = 0x1p-500, lost = 0x1p-560;
 
@@ -190,8 +190,9 @@ static inline pair_sum pair_scale(pair_sum a, double by) {
     return sum_ordered(high.high, high.low + a.low * by);
 }
 
-/* inverse: 1 / b.high, rounded. What the first product leaves is less than 2^-50 of the quotient; it is off by 3 * 2^-103
- * of it, and the second product by 5 * 2^-53 of itself, so that both are off by less than 2^-99 of the quotient. */
+/* inverse: 1 / b.high, rounded. The first product leaves less than 2^-50 of the quotient; it is off by 3 *
+ * 2^-103 of it, and the second product by 5 * 2^-53 of itself, so that both are off by less than 2^-99 of the
+ * quotient. */
 static inline pair_sum pair_divide(pair_sum a, pair_sum b, double inverse) {
     double first = a.high * inverse;
     pair_sum rest = pair_add(a, pair_negate(pair_scale(b, first)));

@@ -83,7 +83,7 @@ static void find_pieces(curve_work *work) {
 /* Ends of pieces at one event are joined. An event is an edge and a triangle, so that joining compares numbers. Edges whose
  * vertices have the same names are one edge. */
 
-/* What an end is joined to, if not to another end. */
+/* The things that an end is joined to, if not to another end. */
 enum {
     LINK_TO_VERTEX = UINT32_MAX,
     LINK_TO_BORDER = UINT32_MAX - 1,
@@ -92,7 +92,7 @@ enum {
     LINKS_MAX = UINT32_MAX - 4
 };
 
-/* What the ends of a call are at. */
+/* The ends of a call, and what they are linked to. */
 typedef struct link_work {
     const named_surface *surface;
     const curve_piece *pieces;
@@ -220,7 +220,7 @@ static void find_links(const named_surface *s, const curve_piece *pieces, size_t
 
 /* ---- tracing ------------------------------------------------------------------------------------------- */
 
-/* Where one is on a curve: in a piece, going towards one of its ends, with the triangle of the first sheet. */
+/* A place on a curve: in a piece, going towards one of its ends, with the triangle of the first sheet. */
 typedef struct curve_place {
     uint32_t piece;
     uint32_t towards; /* 0 or 1 */

@@ -1,4 +1,4 @@
-/* What traces of curves cut off of open surfaces: docs/theory/curves.md, Lemma 11. */
+/* The parts of open surfaces that traces of curves cut off: docs/theory/curves.md, Lemma 11. */
 #include "runtime/intersections/named_surface.h"
 
 #include "src/core/sort.h"
@@ -11,7 +11,8 @@
 /* A trace is crossed on the way from one end of an edge to the other as often as it passes over the edge, and on the way around
  * a corner as often as it ends there. */
 
-/* The number of a trace: twice its curve, plus 1 for that on the second sheet. Of one that is both, that of the first. */
+/* The number of a trace: twice its curve, plus 1 for that on the second sheet. A trace that is both has the
+ * number of the first. */
 typedef uint32_t trace_number;
 
 /* A trace passes between two nodes: over an edge between its ends, or, where it ends at a corner, between the two edges there.
@@ -61,7 +62,7 @@ static void trace_links_free(trace_links *t) {
     *t = (trace_links){.context = t->context};
 }
 
-/* On which sheet the edge of a point is, seen from a piece beside it. */
+/* Returns the sheet on which the edge of a point is, seen from a neighbouring piece. */
 static uint32_t side_of_point(const cscd_curve_point *point, const cscd_curve_piece *piece) {
     return point->triangle == piece->b ? 0 : 1;
 }
@@ -256,12 +257,13 @@ static bool trace_links_find(trace_links *t, const surface_cuts *found) {
 
 /* ---- sides --------------------------------------------------------------------------------------------- */
 
-/* A forest spans the nodes, and the links of a trace that are in it cut ranges out of its order. Every other link has a random
- * number: where the trace divides the surface, its own sum up to the same as those that lead out of the ranges, so sums that
- * differ say at once that it does not. Where they agree, the links are compared. Time for one trace is that of its own links
- * and of the smaller side, since the forest has each side as a few ranges of its order. */
+/* A forest spans the nodes, and the links of a trace that are in it cut ranges out of its order. Every other
+ * link has a random number. If the trace divides the surface, the numbers of its own links have the same sum
+ * as those of the links that lead out of the ranges, so sums that differ say at once that it does not. If
+ * they agree, the links are compared. Time for one trace is that of its own links and of the smaller side,
+ * since the forest has each side as a few ranges of its order. */
 
-/* What a component has: its nodes, which links join, and its patches that no link names. */
+/* An element of a component: a node, which links join, or a patch that no link names. */
 typedef struct side_element {
     uint32_t patch; /* or UINT32_MAX: a corner between two curves that no patch is named by */
     uint32_t component;
@@ -278,7 +280,7 @@ typedef struct trace_sides {
     uint32_t *order;        /* the forest, component by component */
     uint32_t *list;         /* of elements: the side that was listed last */
     size_t *cursors;
-    uint64_t *sums; /* of the numbers of links beside the forest, over what comes before in the order */
+    uint64_t *sums; /* over all elements before in the order, of the numbers of links outside the forest */
     size_t element_count, element_capacity;
     uint32_t *patch_elements; /* UINT32_MAX: the patch is of a closed component */
     size_t patch_capacity;
@@ -499,8 +501,9 @@ static bool trace_sides_load(trace_sides *s, const surface_cuts *found, const tr
 
 /* The links that a trace passes an odd number of times. */
 typedef struct odd_links {
-    uint64_t sum;  /* of the numbers of those beside the forest, and of all that lead out of the ranges */
-    size_t beside; /* so many of them are not in the forest */
+    /* of the numbers of the odd links outside the forest, and of all links that lead out of the ranges */
+    uint64_t sum;
+    size_t beside; /* the number of odd links outside the forest */
 } odd_links;
 
 static void take_odd_link(trace_sides *s, uint32_t link, odd_links *odd) {
@@ -580,7 +583,8 @@ static bool odd_links_lead_out(const trace_sides *s) {
     return true;
 }
 
-/* Whether a trace, which lies in one open component, has two sides. If so, they are those of which the next calls speak. */
+/* Whether a trace, which lies in one open component, has two sides. If so, the next calls are about these
+ * sides. */
 static bool trace_sides_find(trace_sides *s, trace_number trace, uint32_t component) {
     s->trace = trace;
     s->component = component;
@@ -605,7 +609,8 @@ struct cut_off_finder {
     cscd_context *context;
     trace_links links;
     trace_sides sides;
-    /* Per patch the area of its triangles. Of a triangle that curves cut, the patch of the first corner has all. */
+    /* Per patch the area of its triangles. The area of a triangle that curves cut counts for the patch of its
+     * first corner. */
     double *patch_areas;
     size_t patch_capacity;
     double *component_areas;
@@ -784,7 +789,8 @@ static bool divide_triangle(const cut_off_work *work, const trace_piece *pieces,
     return true;
 }
 
-/* What the triangles that the trace divides add to both sides, over what load_patches gives. False: no memory. */
+/* Adds the triangles that the trace divides to both sides, over the areas of load_patches. False: no
+ * memory. */
 static bool divide_triangles(const cut_off_work *work, double areas[2]) {
     cut_off_finder *f = work->finder;
     areas[0] = areas[1] = 0.0;

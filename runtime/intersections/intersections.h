@@ -19,7 +19,7 @@ typedef struct found_pair {
     uint32_t a, b;
 } found_pair;
 
-/* What is known of a pair where the caller asks for kinds. */
+/* The facts about a pair, for callers that ask for kinds. */
 typedef struct pair_note {
     uint8_t kind;   /* a cscd_intersection_kind */
     uint8_t shared; /* corners of the one whose names the other has */
@@ -27,7 +27,7 @@ typedef struct pair_note {
     bool unlisted;
 } pair_note;
 
-/* Where a thread is in its share of the vertices: the pair that comes next is that of two triangles of a star. */
+/* The place of a thread in its share of the vertices: the next pair is that of two triangles of a star. */
 typedef struct star_cursor {
     uint32_t vertex, end, first, second;
 } star_cursor;
@@ -49,7 +49,7 @@ static inline void intersection_lane_move(intersection_lane *lane, size_t from, 
     lane->notes[to] = lane->notes[from];
 }
 
-/* What is known of the triangles around each vertex at one moment. */
+/* The triangles around each vertex at one moment, and what is known of them. */
 typedef struct vertex_stars {
     const cscd_mesh *mesh;
     /* Per vertex: each edge at it belongs to two triangles, which run through it in opposite directions. This does not
@@ -104,7 +104,7 @@ cscd_status static_check_all(static_check *c, traversal *t, bvh *hierarchy, cons
 cscd_status static_check_kinds(static_check *c, traversal *t, bvh *hierarchy, const double *positions,
                                const uint32_t *names);
 
-/* Which pairs count, and how many of them are enough. */
+/* The pairs that count, and the number of them that is enough. */
 typedef struct pair_quest {
     size_t enough; /* 1 or more */
     bool any;      /* it does not matter which ones are found */
@@ -126,7 +126,8 @@ typedef struct component_box {
     double low[3], high[3];
 } component_box;
 
-/* Where the surface is at one moment, which vertices count as one, and which components count as turned around. */
+/* The surface at one moment, with the vertices that count as one and the components that count as turned
+ * around. */
 typedef struct named_surface {
     const cscd_mesh *mesh;
     const double *positions; /* packed */
@@ -198,7 +199,7 @@ typedef struct curve_key {
     uint64_t end; /* 2 piece + 0 or 1 */
 } curve_key;
 
-/* What the last call has found, and the memory of all calls; begins with nothing but the context set. */
+/* The findings of the last call, and the memory of all calls; begins with only the context set. */
 typedef struct curve_joiner {
     cscd_context *context;
     size_t pair_capacity, piece_capacity;
@@ -278,9 +279,9 @@ typedef struct winding_lane {
     bool out_of_memory;
 } winding_lane;
 
-/* What the last call has found, and the memory of all calls. Nodes are connected to patches. The nodes are the vertices, and
- * the ends of edges, whose numbers come behind those of the vertices. A vertex at which curves end is none; the ends of its
- * edges are. */
+/* The findings of the last call, and the memory of all calls. Nodes are connected to patches. The nodes are
+ * the vertices, and the ends of edges, whose numbers come behind those of the vertices. A vertex at which
+ * curves end is none; the ends of its edges are. */
 typedef struct patch_finder {
     const cscd_mesh *mesh;
     const object_set *objects;    /* one for each object, or NULL: there are no rules */
@@ -316,7 +317,7 @@ cscd_status patch_finder_run(patch_finder *p, const named_surface *s, const bvh 
 
 /* ---- what curves cut out of triangles ------------------------------------------------------------------ */
 
-/* What has been found at one moment. */
+/* The findings at one moment. */
 typedef struct surface_cuts {
     const named_surface *surface;
     const curve_joiner *curves;

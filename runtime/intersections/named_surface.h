@@ -1,4 +1,5 @@
-/* What the files of this room share about a surface at one moment: pieces of curves, winding numbers, and cut triangles. */
+/* The surface at one moment, as the files of this room share it: pieces of curves, winding numbers, and cut
+ * triangles. */
 #pragma once
 
 #include "runtime/intersections/intersections.h"
@@ -16,7 +17,7 @@ bool curve_piece_of_pair(const named_surface *s, uint32_t a, uint32_t b, curve_p
 /* Whether an event that is not at a vertex happens, and is an end of pieces. */
 bool surface_event_happens(const named_surface *s, surface_event event);
 
-/* Where an edge passes through a triangle, in the limit of a symbolic perturbation that goes to 0. */
+/* An event: an edge passes through a triangle, in the limit of a symbolic perturbation that goes to 0. */
 typedef struct event_point {
     double s;    /* the point is (1-s) e0 + s e1 on the edge (e0, e1) */
     double u, v; /* and (1-u-v) p0 + u p1 + v p2 on the triangle */
@@ -79,7 +80,8 @@ bool same_solids_have(const same_solids *s, uint32_t a, uint32_t b);
 
 /* ---- cut triangles ------------------------------------------------------------------------------------- */
 
-/* A call begins, with room for so many lines and slots in each of its triangles. False: that does not fit the budget. */
+/* A call begins, with room for this number of lines and slots in each of its triangles. False: that does not
+ * fit the budget. */
 bool cut_memory_begin(cut_memory *m, memory_budget *budget, size_t lines, size_t slots);
 
 /* Makes room; false: no memory. */

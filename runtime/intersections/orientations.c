@@ -1,5 +1,5 @@
-/* Which closed components are inside out at one moment: docs/theory/orientation.md. The signs of volumes tell it, except for
- * objects that have both signs. There rays find which components lie in which. */
+/* Finds the closed components that are inside out at one moment: docs/theory/orientation.md. The signs of
+ * volumes tell it, except for objects that have both signs. There rays find which components lie in which. */
 #include "runtime/intersections/named_surface.h"
 
 #include "src/core/context.h"
@@ -112,7 +112,7 @@ static bool box_has_box(const component_box *box, const component_box *inner) {
 
 /* ---- signs --------------------------------------------------------------------------------------------- */
 
-/* What an object's components are. */
+/* The signs of the volumes of an object's components. */
 enum { OUTWARD = 1, INWARD = 2, MIXED = OUTWARD | INWARD };
 
 typedef struct orientation_work {
@@ -260,7 +260,7 @@ static bool is_larger(const orientation_finder *o, uint32_t a, uint32_t b) {
     return of_a != of_b ? of_a > of_b : a < b;
 }
 
-/* Copies enclose the same, but for rounding, and neither lies in the other. */
+/* Up to rounding, copies enclose the same volume, and neither lies in the other. */
 static bool are_of_one_size(const orientation_finder *o, uint32_t a, uint32_t b) {
     const double of_a = fabs(o->volumes[a].volume), of_b = fabs(o->volumes[b].volume);
     return fabs(of_a - of_b) <= 0x1p-40 * max_of(of_a, of_b);
@@ -279,8 +279,9 @@ static bool is_nearer(uint32_t component, uint32_t a, uint32_t b) {
     return a < component ? a > b : a < b;
 }
 
-/* The one right around a component, among those that it lies in, or itself. Those that do not cross lie in each other, so the smallest is
- * the innermost. Of copies it is the nearest in the file, since files mostly list a cavity behind its body. */
+/* The one right around a component, among those that it lies in, or itself. Those that do not cross lie in
+ * each other, so the smallest is the innermost. Among copies it is the nearest in the file, since files
+ * mostly list a cavity behind its body. */
 static uint32_t find_innermost(const orientation_work *w, uint32_t component) {
     winding_tally *tally = &w->finder->tally;
     uint32_t innermost = component;
@@ -307,7 +308,7 @@ static bool is_sampled(const orientation_finder *o, uint32_t component) {
     return is_of_mixed(o, component) && o->samples[component] != UINT32_MAX;
 }
 
-/* What a component is: its own body, a cavity of the one right around it, or not known yet. */
+/* The role of a component: a body of its own, a cavity of the one right around it, or not known yet. */
 enum { SHELL_UNKNOWN, SHELL_OF_BODY, SHELL_OF_CAVITY };
 
 /* Writes what is right around each component; without anything it is a body. */

@@ -30,8 +30,9 @@ void left_out_pairs_add(left_out_pairs *p, uint32_t a, uint32_t b) {
     p->pairs[p->count++] = (uint64_t)a << 32 | b;
 }
 
-/* Which overlaps have no volume, because a curve that bounds them is left out, wholly or in part: by the pairs of triangles
- * that are left out although they carry a piece, and by curves that end where one is missing. */
+/* Finds the overlaps that have no volume, because a curve that bounds them is left out, wholly or in part: by
+ * the pairs of triangles that are left out although they carry a piece, and by curves that end where one is
+ * missing. */
 typedef struct overlap_gaps {
     cscd_context *context;
     uint64_t *bodies, *spare; /* pairs, the smaller one in the upper half, ascending */
@@ -127,14 +128,14 @@ typedef struct overlap_share {
     uint32_t triangle, patch; /* patch: all its whole triangles, else UINT32_MAX */
 } overlap_share;
 
-/* Of the whole triangles of a patch. */
+/* Sums over the whole triangles of a patch. */
 typedef struct patch_sum {
     double area;
     double normal[3]; /* as long as the area, and of closed components only, as the flux */
     double flux;      /* three times the volume that is behind them as seen from the patch's example */
 } patch_sum;
 
-/* What is measured of one body in a triangle. */
+/* The measures of one body in a triangle. */
 typedef struct cut_share {
     double buried;    /* its number is 1 or more */
     double inverted;  /* its number is below 0 */
@@ -199,7 +200,7 @@ void overlap_finder_destroy(overlap_finder *o) {
     context_free(o->context, o);
 }
 
-/* Makes room for so many items; what was there is lost. */
+/* Makes room for this number of items; the old contents are lost. */
 static bool reserve_list(overlap_finder *o, array_list (*list)(overlap_finder *, size_t), size_t *capacity,
                          size_t count) {
     return context_renew_all(o->context, list(o, room_with_spare(count)), capacity, count);
@@ -236,7 +237,7 @@ static void add_share(overlap_work *work, overlap_share share) {
     o->shares[o->share_count++] = share;
 }
 
-/* Where a share is: a triangle and a point of its plane, or a patch. */
+/* The place of a share: a triangle and a point of its plane, or a patch. */
 typedef struct share_place {
     uint32_t triangle, patch;
     const double *at;
@@ -259,8 +260,9 @@ static void add_own(overlap_work *work, uint32_t body, double area, double inver
                                     place.triangle, place.patch});
 }
 
-/* How often a body contains what it has the number of. What is looked at with itself contains all just once. Of another
- * body no one knows where it buries itself, so its numbers count as they are. */
+/* Returns how often a body contains a place with this winding number. A body that is compared with itself
+ * contains everything just once. For another body it is unknown where it buries itself, so its numbers count
+ * as they are. */
 static double times_within(const overlap_work *work, uint32_t body, int32_t number) {
     if (!patch_bodies_look(work->found->patches, body, body)) return number;
     return number >= 1 ? 1.0 : 0.0;
@@ -536,7 +538,7 @@ static void leave_out_deep(same_solids *s, const named_surface *surface, const c
     s->count = kept;
 }
 
-/* What bodies share that only lie beside each other is a volume by rounding. */
+/* Bodies that only lie next to each other share a volume that comes from rounding. */
 static bool shares_volume(const cscd_overlap *o) {
     return o->volume > 0x1p-40 * pow(o->area_a + o->area_b, 1.5);
 }

@@ -1,5 +1,5 @@
-/* How two triangles intersect: crossing, in one plane, or touching only. An open triangle is one without its edges;
- * docs/theory/static-check.md proves the lemmas that are cited. */
+/* The kind of an intersection of two triangles: crossing, in one plane, or touching only. An open triangle is
+ * one without its edges; docs/theory/static-check.md proves the lemmas that are cited. */
 #include "runtime/intersections/static_check.h"
 
 #include "src/mesh/mesh.h"
@@ -135,7 +135,7 @@ static uint32_t name_of(const uint32_t *names, uint32_t vertex) {
     return names != NULL ? names[vertex] : vertex;
 }
 
-/* How many corners of a have a name that b has? */
+/* Returns the number of corners of a with a name that b has. */
 static uint32_t count_named(const uint32_t a[3], const uint32_t b[3], const uint32_t *names) {
     uint32_t count = 0;
     for (int i = 0; i < 3; i++) {

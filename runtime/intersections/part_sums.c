@@ -1,4 +1,4 @@
-/* What intersections, curves and depths say of each pair of parts. */
+/* Sums of intersections, curves and depths for each pair of parts. */
 #include "runtime/intersections/named_surface.h"
 
 #include "src/core/sort.h"

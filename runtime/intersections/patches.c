@@ -86,8 +86,8 @@ typedef struct patch_work {
     patch_finder *finder;
     const named_surface *surface;
     const bvh *bvh;
-    size_t most_windings;    /* so many fit the budget; all lanes together have */
-    atomic_size_t *windings; /* so many by now */
+    size_t most_windings;    /* the number that fits the budget, for all threads together */
+    atomic_size_t *windings; /* their number by now */
 } patch_work;
 
 static void mark_crossed(patch_finder *p, uint32_t triangle) {
@@ -197,7 +197,7 @@ static bool add_patch(patch_finder *p, uint32_t triangle, uint32_t corner, uint3
     return true;
 }
 
-/* Where the patch of a corner is kept, on the side of the edge that begins there. */
+/* Returns the place that keeps the patch of a corner, on the side of the edge that begins there. */
 static uint32_t *patch_of_corner(patch_finder *p, uint32_t triangle, uint32_t corner) {
     uint32_t component = p->mesh->triangle_components[triangle];
     if (!p->crossed_components[component]) return &p->component_patch[component];

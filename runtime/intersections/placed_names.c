@@ -1,5 +1,5 @@
-/* Which vertices are one at one moment: those that seams unite, and that are at one place. Most are where the vertex of their
- * name is; the others are sorted by their places. */
+/* Finds the vertices that are one at one moment: those that seams unite, and that are at one place. Most are
+ * where the vertex of their name is; the others are sorted by their places. */
 #include "runtime/intersections/intersections.h"
 
 #include "src/core/context.h"

@@ -51,8 +51,9 @@ static void add_noted_pair(cscd_context *context, intersection_lane *lane, trian
         lane->out_of_memory = true;
 }
 
-/* Which lane finds what depends on when threads come for work, so that a lane might need more room in any call. Once a call
- * has found its pairs, each lane has room for all of them, unless they are very many. False: no memory. */
+/* The pairs that a thread finds depend on the moments at which threads come for work, so its lane might need
+ * more room in any call. Once a call has found its pairs, each lane has room for all of them, unless they are
+ * very many. False: no memory. */
 static bool even_out_lanes(cscd_context *context, intersection_lane *lanes, uint32_t count, bool notes) {
     size_t total = 0;
     for (uint32_t i = 0; i < count; i++) total += lanes[i].count;
@@ -251,7 +252,7 @@ static bool star_counts(const check_work *work, uint32_t vertex) {
     return false;
 }
 
-/* What nobody asks for is not listed either. */
+/* Pairs that nobody asks for are not listed either. */
 static void mark_clear_stars(void *data, uint32_t index) {
     const check_work *work = data;
     static_check *check = work->check;
@@ -480,7 +481,7 @@ static void lower_last(pair_hunt *hunt, uint32_t task) {
     }
 }
 
-/* Nothing that is found later can take pairs of this task away, unless they are asked for once more. */
+/* Later findings cannot take pairs of this task away, unless the caller asks for them once more. */
 static bool task_is_enough(const pair_hunt *hunt, size_t count) {
     return hunt->quest->stays == NULL && count >= hunt->quest->enough;
 }

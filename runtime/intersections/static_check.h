@@ -1,4 +1,5 @@
-/* What the static check is made of: kernels that reject most pairs, the exact test of one pair, and the stars of vertices. */
+/* The parts of the static check: kernels that reject most pairs, the exact test of one pair, and the stars of
+ * vertices. */
 #pragma once
 
 #include "runtime/intersections/intersections.h"
@@ -6,9 +7,9 @@
 
 /* ---- kernels ------------------------------------------------------------------------------------------- */
 
-/* What sign_normals says of a triangle: bit 2k of normals is set if its normal is certainly above zero along axis k, bit
- * 2k + 1 if certainly below. Bit i of rises is set if corner i + 1 lies strictly below corner i along z, and corner i + 2
- * does not; bit 3 + i says the same of y. */
+/* The answer of sign_normals for a triangle: bit 2k of normals is set if its normal is certainly above zero
+ * along axis k, bit 2k + 1 if certainly below. Bit i of rises is set if corner i + 1 lies strictly below
+ * corner i along z, and corner i + 2 does not; bit 3 + i says the same of y. */
 enum { NORMAL_SIGNS_X = 3, NORMAL_SIGNS_Y = 12, NORMAL_SIGNS_Z = 48, RISES_ALONG_Y = 3 };
 
 typedef struct intersection_kernels {
@@ -62,7 +63,7 @@ static inline star_cursor star_cursor_over(uint32_t begin, uint32_t end) {
     return (star_cursor){begin, end, 0, 1};
 }
 
-/* Moves on to the next pair of triangles that share a vertex, unless this vertex is clear. Each pair comes once: at the
- * least of its shared vertices. Where very many triangles share all of these, the traversal finds the pair
- * (bvh_skip_all_adjacent). False: there is none left. */
+/* Moves on to the next pair of triangles that share a vertex, unless this vertex is clear. Each pair comes
+ * once: at the least of its shared vertices. If very many triangles share all of these, the traversal finds
+ * the pair (bvh_skip_all_adjacent). False: there is none left. */
 bool vertex_stars_next_pair(const vertex_stars *s, star_cursor *cursor, uint32_t pair[2]);

@@ -1,5 +1,5 @@
-/* What curves cut out of each triangle: from the pieces of all curves to the lines in one triangle's plane, and from these to
- * the parts of the triangle, with how often bodies wind around them. */
+/* The parts that curves cut out of each triangle: from the pieces of all curves to the lines in one
+ * triangle's plane, and from these to the parts of the triangle, with how often bodies wind around them. */
 #include "runtime/intersections/named_surface.h"
 
 #include "src/core/sort.h"
@@ -124,7 +124,7 @@ static bool add_crossing(slab_sweep *s, double x) {
     return true;
 }
 
-/* Where the lines a and b, a below b at begin and above it at end, have one height. */
+/* Returns the place where the lines a and b, a below b at begin and above it at end, have one height. */
 static double crossing_of(const cut_line *a, const cut_line *b, double begin, double end) {
     double before = height_at(b, begin) - height_at(a, begin), behind = height_at(a, end) - height_at(b, end);
     return before + behind > 0.0 ? begin + (end - begin) * (before / (before + behind)) : begin;
@@ -491,7 +491,7 @@ static bool reserve_cut(cut_load *load, size_t pieces) {
     return cut_memory_reserve(c->context, &c->memory, pieces, slots);
 }
 
-/* How far the pieces of some keys reach along a coordinate, all together, in units of the triangle. */
+/* Returns the lengths of the pieces of some keys along a coordinate, summed up, in units of the triangle. */
 static double sum_reaches(const cut_load *load, size_t first, size_t end, int k) {
     const named_surface *s = load->found->surface;
     const curve_joiner *j = load->found->curves;

@@ -1,4 +1,4 @@
-/* How often the surfaces of bodies wind around a point of the mesh: the triangles that a ray along z passes through,
+/* The winding numbers of bodies around a point of the mesh: the triangles that a ray along z passes through,
  * counted with signs. docs/theory/curves.md, lemma 5. */
 #include "runtime/intersections/named_surface.h"
 

@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-/* A lane takes so many vertices at a time. */
+/* A thread takes this number of vertices at a time. */
 enum { VERTICES_AT_ONCE = 1024 };
 
 static void load_pair(const swept_interval *interval, uint32_t vertex, uint32_t object, half_space_query *q) {

@@ -83,8 +83,8 @@ typedef struct loose_search {
     uint32_t lane_count; /* that share the search */
 } loose_search;
 
-/* Puts the lane's share of all pairs that may come within their distance in the lane's queue, and decides them. Which lane
- * has which pair depends on the number of lanes alone. */
+/* Puts the lane's share of all pairs that may come within their distance in the lane's queue, and decides
+ * them. The lane of a pair depends on the number of lanes alone. */
 void loose_search_test(const loose_search *search, uint32_t lane_index, contact_lane *lane);
 
 /* The same for every pair, without a box: the reference. */

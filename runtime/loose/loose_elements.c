@@ -1,4 +1,5 @@
-/* Wires and points, ordered in space anew for each interval, the boxes around them, and pairs of features of which one is loose. */
+/* Wires and points, sorted in space for each interval, the boxes around them, and pairs of features of which
+ * one is loose. */
 #include "runtime/loose/loose.h"
 
 #include "runtime/ccd/ccd.h"
@@ -6,7 +7,7 @@
 
 #include <string.h>
 
-/* One thread encloses so many elements at a time. */
+/* One thread encloses this number of elements at a time. */
 enum { ELEMENTS_PER_TASK = 1024 };
 
 /* ---- the list ------------------------------------------------------------------------------------------ */
@@ -117,7 +118,7 @@ static void find_common_motion(element_motion *m) {
     for (int k = 0; k < 3; k++) e->common[k] = sums[k] / e->count;
 }
 
-/* Along each axis there are so many cells; three numbers of 21 bits fill a code. */
+/* The number of cells along each axis has this many bits; three numbers of 21 bits fill a code. */
 enum { CELL_BITS = 21 };
 
 static uint64_t spread_bits(uint64_t x) {

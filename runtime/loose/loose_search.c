@@ -1,14 +1,16 @@
-/* What wires and points may touch: pairs with triangles, by the trees of these, and with each other; and every pair, the reference. */
+/* The pairs of wires and points that may touch: pairs with triangles, by the trees of these, and with each
+ * other; and every pair, the reference. */
 #include "runtime/loose/loose.h"
 
 #include "src/core/floating.h"
 
-/* A lane takes so many elements at a time, which are neighbours in space. */
+/* A thread takes this number of elements at a time, which are neighbours in space. */
 enum { ELEMENTS_AT_ONCE = 64 };
 
 /* ---- a box in a tree's frame --------------------------------------------------------------------------- */
 
-/* Where an element is at both ends, in the frame of a tree, rounded outward and widened by its half of the distance. */
+/* The box of an element at both ends, in the frame of a tree, rounded outward and widened by its half of the
+ * distance. */
 typedef struct framed_box {
     float low[2][3], high[2][3];
 } framed_box;

@@ -43,7 +43,8 @@ typedef struct contact_lane {
     uint32_t block_count;
     cscd_contact *blocks[LANE_BLOCKS_MAX]; /* no contact moves when there are more: see contact_lane_at */
     size_t settled; /* the first ones, of which it is known that they are in the list */
-    size_t limit;   /* with so many contacts the lane is suspended as soon as it can be; SIZE_MAX: never */
+    /* the number of contacts at which the lane is suspended as soon as possible; SIZE_MAX: never */
+    size_t limit;
     bool suspended; /* it has more to do, from the cursor on, once there is room */
     uint64_t cursor;
     uint64_t feature_pairs;

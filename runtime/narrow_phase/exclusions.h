@@ -17,7 +17,7 @@ typedef struct named_pair {
 typedef struct named_pair_set {
     named_pair *items; /* sorted by (kind, a, b) */
     size_t count, capacity;
-    size_t triangle_pairs; /* so many of them are of the kind TT */
+    size_t triangle_pairs; /* the number of pairs of the kind TT */
 } named_pair_set;
 
 void named_pair_set_free(cscd_context *context, named_pair_set *set);
@@ -140,8 +140,8 @@ cscd_status waiting_pairs_reserve(const cscd_mesh *mesh, waiting_pairs *w);
 
 /* Remembers what has been left out until now, and owns it from then on: the seams and ignored pairs of
  * *before, or the sets of objects. Names are in the numbering of the present mesh: vertices of one name
- * counted as one. Room has been made. What an earlier change leaves out as well is not remembered twice, so
- * changes to and fro take no memory. */
+ * counted as one. Room has been made. Pairs that an earlier change leaves out as well are not remembered
+ * twice, so changes to and fro take no memory. */
 void waiting_pairs_uncover(const cscd_mesh *mesh, waiting_pairs *w, exclusions *before);
 void waiting_pairs_uncover_objects(const cscd_mesh *mesh, waiting_pairs *w, object_set *before);
 
@@ -159,9 +159,9 @@ typedef struct left_out_before {
     const struct pair_rules *rules;
 } left_out_before;
 
-/* A pair that waits becomes all pairs that came from its two features. Neighbours that the change has
- * parted, because their common vertex, or the seam between them, came apart, are added to *out as torn.
- * Where obstacles become free, what they left out is uncovered. mesh: the new one. OUT_OF_MEMORY without a
+/* A pair that waits becomes all pairs that came from its two features. Neighbours that the change has parted,
+ * because their common vertex, or the seam between them, came apart, are added to *out as torn. If obstacles
+ * become free, the pairs that they left out are uncovered. mesh: the new one. OUT_OF_MEMORY without a
  * sentence: *out holds nothing. */
 cscd_status waiting_pairs_move(const waiting_pairs *w, const left_out_before *before, const cscd_mesh *mesh,
                                const cscd_mesh_change *change, waiting_pairs *out);

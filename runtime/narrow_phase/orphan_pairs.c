@@ -29,7 +29,7 @@ typedef struct orphan_search {
     uint8_t *marks;                 /* per vertex, of objects that have changed */
 } orphan_search;
 
-/* Where a vertex has very many triangles, looking takes the square of their number, whatever is found. Then
+/* If a vertex has very many triangles, the search takes the square of their number, whatever it finds. Then
  * it is given up as well: steps test pairs of adjacent triangles instead, of which the traversal leaves out
  * most there. An ordinary mesh takes some twenty looks for each triangle. */
 enum { ORPHANS_PER_TRIANGLE = 8, LOOKS_PER_TRIANGLE = 256 };
@@ -312,7 +312,8 @@ static void add_edges(orphan_search *f, uint32_t a, uint32_t b) {
     orphan_search_add(f, &f->ee, a < b ? a : b, a < b ? b : a);
 }
 
-/* The corners opposite a are the ends of b. Where it is so the other way as well, the pair is found twice. */
+/* The corners opposite a are the ends of b. If the same holds the other way round, the pair is found
+ * twice. */
 static void find_across(orphan_search *f, uint32_t a) {
     const uint32_t *ends = f->mesh->edges[a], *p = f->opposites[a];
     orphan_search_look(f, star_size(f->mesh, p[0]));
@@ -384,7 +385,7 @@ static void orphan_edges_vertices(orphan_search *f, uint32_t t) {
 
 enum { TRIANGLES_PER_ASK = 256, TRIANGLES_PER_TASK = 1 << 14, EDGES_PER_TASK = 3 * TRIANGLES_PER_TASK / 2 };
 
-/* Each task looks at some triangles. What it knows is the same for all tasks, and its lists are its own. */
+/* Each task looks at some triangles. All tasks know the same, and each has lists of its own. */
 typedef struct whole_search {
     const cscd_mesh *mesh;
     orphan_search *tasks;

@@ -76,8 +76,8 @@ void active_set_fill(const cscd_mesh *mesh, const uint32_t *vertices, size_t cou
  * failure. */
 cscd_status active_set_copy(const active_set *s, const cscd_mesh *mesh, active_set *out);
 
-/* The set of a mesh that was made from another one; mesh: the new one. What comes from an active vertex is
- * active, and so is what is new. */
+/* The set of a mesh that was made from another one; mesh: the new one. Vertices that come from an active
+ * vertex are active, and so are new ones. */
 cscd_status active_set_move(const active_set *s, const cscd_mesh *mesh, const cscd_mesh_change *change,
                             active_set *out);
 void active_set_free(cscd_context *context, active_set *s);

@@ -86,7 +86,7 @@ static double point_pair_distance(cscd_contact_kind kind, const double (*x)[3], 
 
 /* ---- a task -------------------------------------------------------------------------------------------- */
 
-/* The pairs of a call. Of the results, one kind is wanted. */
+/* The pairs of a call, which wants one kind of result. */
 typedef struct pair_call {
     cscd_context *context;
     cscd_pairs desc;

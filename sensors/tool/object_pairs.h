@@ -18,7 +18,7 @@ bool object_pairs_add(object_pairs *pairs, uint32_t a, uint32_t b);
 void object_pairs_close(object_pairs *pairs);
 uint32_t object_pairs_count(const object_pairs *pairs);
 
-/* How many pairs both have; both closed. */
+/* Returns the number of pairs that both have; both are closed. */
 uint32_t object_pairs_common(const object_pairs *a, const object_pairs *b);
 
 /* The object and the part of every vertex; UINT32_MAX for a vertex without a triangle. */

@@ -5,7 +5,7 @@
 #include "sensors/tool/sense_options.h"
 #include "tool/io/io.h"
 
-/* Where the particles have been so far. */
+/* The places where the particles have been so far. */
 typedef struct sense_paths {
     uint32_t particle_count;
     uint32_t *places; /* the vertex of each particle after the last interval */

@@ -1,4 +1,4 @@
-/* Which kernels OpenBLAS has chosen, and which it should have. */
+/* The kernels that OpenBLAS has chosen, and those that it should have chosen. */
 #include "preprocess/baselines/dense/blas_choice.h"
 
 #include <stddef.h>

@@ -1,10 +1,12 @@
-/* Which kernels OpenBLAS has chosen, and which it should have. It chooses by the processor's model when it is loaded. On one that it
- * does not know it takes kernels of 2004, with which a plan by charge takes about three times as long, and says nothing. */
+/* The kernels that OpenBLAS has chosen, and those that it should have chosen. It chooses by the processor's
+ * model when it is loaded. On one that it does not know it takes kernels of 2004, with which a plan by charge
+ * takes about three times as long, and says nothing. */
 #pragma once
 
 #include <stdbool.h>
 
-/* What OpenBLAS calls its kernels, such as "SkylakeX"; NULL: another BLAS is linked here, or none. */
+/* Returns the name of the kernels in OpenBLAS, such as "SkylakeX"; NULL: another BLAS is linked here, or
+ * none. */
 const char *blas_choice_name(void);
 
 /* Returns what OPENBLAS_CORETYPE should be set to before OpenBLAS is loaded; NULL: the choice will do, or nobody knows it. */

@@ -8,8 +8,8 @@
 #define DENSE_ENTRY     "cscd_baseline_dense"
 #define DENSE_INTERFACE 4u
 
-/* What the library asks of its caller, each with `context`. run, stage and go_on are parallel_run and the functions of progress.h, and
- * progress is context_progress_status. */
+/* The functions of the caller that the library uses, each with `context`. run, stage and go_on are
+ * parallel_run and the functions of progress.h, and progress is context_progress_status. */
 typedef struct dense_host {
     void *context;
     void *(*allocate)(void *context, size_t size); /* aligned to a cache line; NULL: there is none */
@@ -19,7 +19,7 @@ typedef struct dense_host {
     bool (*go_on)(void *context, double share); /* from any thread, as run's tasks */
     cscd_status (*progress)(void *context);
     void (*explain)(void *context, cscd_status status, const char *sentence); /* of a failure */
-    uint32_t threads; /* so many tasks run at a time, at most */
+    uint32_t threads; /* the largest number of tasks that run at a time */
 } dense_host;
 
 typedef struct dense_functions {

@@ -1,4 +1,4 @@
-/* What libcscd-baselines exports of the dense solution. */
+/* The interface of the dense solution that libcscd-baselines exports. */
 #include "preprocess/baselines/dense/dense.h"
 
 #include "src/core/baseline_library.h"

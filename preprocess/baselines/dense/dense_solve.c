@@ -41,9 +41,9 @@ static pthread_mutex_t blas_lock = PTHREAD_MUTEX_INITIALIZER;
 static uint32_t blas_users;
 static int blas_threads_before;
 
-/* Each thread that computes in OpenBLAS takes a buffer of this size (BUFFER_SIZE of common_x86_64.h; less elsewhere),
- * which OpenBLAS then keeps. Where the system has no room for it, as under `ulimit -v`, OpenBLAS asks again and again,
- * for ever. So we ask first, for those that it has not had room for before. */
+/* Each thread that computes in OpenBLAS takes a buffer of this size (BUFFER_SIZE of common_x86_64.h; less
+ * elsewhere), which OpenBLAS then keeps. If the system has no room for it, as under `ulimit -v`, OpenBLAS
+ * asks again and again, for ever. So we first reserve the buffers that it has not had room for before. */
 static const size_t blas_buffer_size = (size_t)128 << 20;
 static size_t buffers_wanted, buffers_had;
 
@@ -58,7 +58,7 @@ static bool buffers_fit(size_t lanes) {
     return true;
 }
 
-/* lanes: so many threads will compute at a time. False: there is no room for their buffers. */
+/* lanes: the number of threads that will compute at a time. False: there is no room for their buffers. */
 static bool begin_single_thread(size_t lanes) {
     if (openblas_set_num_threads == NULL || openblas_get_num_threads == NULL) return true;
     pthread_mutex_lock(&blas_lock);

@@ -9,8 +9,8 @@
 
 enum { COLUMNS_PER_TASK = 8 };
 
-/* A pivot is what a triangle's potential is not made up of by triangles before it. Where that is a smaller share of the potential,
- * rounding leaves fewer than ten digits of the charge. */
+/* A pivot is the part of a triangle's potential that the triangles before it do not make up. If that is a
+ * smaller share of the potential, rounding leaves fewer than ten digits of the charge. */
 static const double LEAST_PIVOT = 1e-6;
 
 typedef struct dense_system {
