@@ -76,7 +76,7 @@ enum { NO_SEAT = UINT32_MAX };
 static array_list list_of_paths(soft_paths *p) {
     const size_t n = p->g->count;
     return (array_list){{ARRAY(p->steps, p->g->flow.link_count), ARRAY(p->rows, p->row_count * n),
-                         ARRAY(p->seats, p->row_count), ARRAY(p->queue, n), ARRAY(p->waiting, n)}};
+                         ARRAY(p->seats, p->row_count), ARRAY(p->queue, n), ARRAY(p->in_queue, n)}};
 }
 
 static double find_step(const tile_graph *g, uint32_t a, uint32_t b) {
@@ -97,7 +97,7 @@ cscd_status soft_paths_create(const tile_graph *g, uint32_t row_count, soft_path
         for (uint32_t j = g->offsets[t]; j < g->offsets[t + 1]; j++)
             out->steps[j] = find_step(g, t, g->neighbours[j]);
     for (uint32_t row = 0; row < row_count; row++) out->seats[row] = NO_SEAT;
-    memset(out->waiting, 0, g->count * sizeof *out->waiting);
+    memset(out->in_queue, 0, g->count * sizeof *out->in_queue);
     return CSCD_OK;
 }
 
@@ -116,8 +116,8 @@ static uint32_t relax_links(soft_paths *p, uint32_t t, double *row, uint32_t fir
         const double way = row[t] + p->steps[j];
         if (way >= row[other]) continue;
         row[other] = way;
-        if (p->waiting[other]) continue;
-        p->waiting[other] = true;
+        if (p->in_queue[other]) continue;
+        p->in_queue[other] = true;
         p->queue[((size_t)first + queued + joined++) % g->count] = other;
     }
     return joined;
@@ -133,7 +133,7 @@ void soft_paths_set(soft_paths *p, uint32_t row, uint32_t seat) {
     p->queue[0] = seat;
     for (uint32_t first = 0, queued = 1; queued > 0; first = (first + 1) % g->count) {
         const uint32_t t = p->queue[first];
-        p->waiting[t] = false;
+        p->in_queue[t] = false;
         queued += relax_links(p, t, ways, first, queued) - 1;
     }
 }
@@ -158,7 +158,7 @@ typedef struct way_walk {
     uint32_t *seats;       /* of regions */
     double *nearest;       /* of regions: the square of the distance from its point to its seat */
     uint32_t *queue;       /* triangles: a ring */
-    bool *waiting;         /* in the queue */
+    bool *in_queue;        /* in the queue */
 } way_walk;
 
 static array_list list_arrays(way_walk *w) {
@@ -167,7 +167,7 @@ static array_list list_arrays(way_walk *w) {
                  regions = w->scene->region_count;
     return (array_list){{ARRAY(w->shares, triangles), ARRAY(w->areas, components), ARRAY(w->soft, components),
                          ARRAY(w->seats, regions), ARRAY(w->nearest, regions), ARRAY(w->queue, triangles),
-                         ARRAY(w->waiting, triangles)}};
+                         ARRAY(w->in_queue, triangles)}};
 }
 
 /* The square of the distance between a point and the centroid of a triangle. */
@@ -212,8 +212,8 @@ static bool relax_step(way_walk *w, uint32_t from, uint32_t to) {
     const double way = w->ways[from] + step_between(w, from, to);
     if (way >= w->ways[to]) return false;
     w->ways[to] = way;
-    const bool joins = !w->waiting[to];
-    w->waiting[to] = true;
+    const bool joins = !w->in_queue[to];
+    w->in_queue[to] = true;
     return joins;
 }
 
@@ -227,12 +227,12 @@ static void walk_from_seats(way_walk *w) {
         const uint32_t seat = w->seats[r];
         if (seat == NO_SEAT || w->ways[seat] == 0.0) continue;
         w->ways[seat] = 0.0;
-        w->waiting[seat] = true;
+        w->in_queue[seat] = true;
         w->queue[queued++] = seat;
     }
     for (; queued > 0; queued--, first = (first + 1) % count) {
         const uint32_t t = w->queue[first];
-        w->waiting[t] = false;
+        w->in_queue[t] = false;
         for (int i = 0; i < 3; i++) {
             const uint32_t edge = mesh->triangle_edges[t][i];
             for (uint32_t j = mesh->edge_star_offsets[edge]; j < mesh->edge_star_offsets[edge + 1]; j++)

@@ -210,7 +210,7 @@ typedef struct soft_paths {
     double *rows;    /* g->count each; NULL: nothing is soft, and the blindness is 0 */
     uint32_t *seats; /* of rows */
     uint32_t *queue; /* tiles: a ring */
-    bool *waiting;   /* in the queue */
+    bool *in_queue;  /* in the queue */
 } soft_paths;
 
 /* Rows have no seats yet. */

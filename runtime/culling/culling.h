@@ -89,10 +89,10 @@ typedef enum triangle_state {
     TRIANGLE_CLEAN
 } triangle_state;
 
-/* Knowledge about one component at the start of the interval, and how long its next check waits. */
+/* Knowledge about one component at the start of the interval, and the pause before its next check. */
 typedef struct component_start {
     uint32_t unknown, crossing, clean; /* numbers of triangles in these states */
-    uint32_t waiting, backoff;         /* in intervals: until the next check, and between the last two */
+    uint32_t pause, backoff;           /* in intervals: until the next check, and between the last two */
 
     /* State of culling_choice.c, with costs in its unit. In this interval: */
     bool moved;          /* its start is not the end of the last one */
@@ -133,8 +133,8 @@ typedef struct start_states {
     free_patch *largest;      /* scratch, per component */
     bool *component_scratch;
     uint32_t *counts; /* scratch, per component */
-    bool
-        adapts; /* components are culled where it pays (culling_choice.c), and checks wait for nothing else */
+    /* components are culled where it pays (culling_choice.c), and no other pause holds a check back */
+    bool adapts;
     double share_worth_it; /* below this share of clean triangles neither culling nor a check pays */
 } start_states;
 
@@ -160,11 +160,11 @@ bool start_states_hold(start_states *s, const double *x);
  * one of its vertices has moved. */
 void start_states_begin(start_states *s, const double *x);
 
-/* Marks the triangles that a static check has to compare with one another, and returns their number. These are the
- * triangles not known to be free, in closed manifold components that have unknown triangles and need not wait.
- * Components that wait do so for one interval less from now on. After a check that leaves too little of a component
- * clean (start_states_pay), its next check waits for 1 interval, then for 2, 4, 8 and from then on always 16. If the
- * number is 0, unproven is not written. */
+/* Marks the triangles that a static check has to compare with one another, and returns their number. These
+ * are the triangles not known to be free, in closed manifold components that have unknown triangles and no
+ * pause. The pauses of the others become one interval shorter. After a check that leaves too little of a
+ * component clean (start_states_pay), the pause before its next check is 1 interval, then 2, 4, 8 and from
+ * then on always 16. If the number is 0, unproven is not written. */
 uint32_t start_states_mark_unproven(start_states *s, const bool *collapsed, bool *unproven);
 
 /* Takes over the outcome of a static check of the unproven triangles; crossing marks those that intersect another

@@ -73,8 +73,8 @@ void culling_choice_decide(start_states *s, bool proves) {
         start->unproven_now =
             start->seen ? start->unproven + share_of_unproven * (fresh - start->unproven) : 0.0;
         start->chosen = start->culls != changes_over(start, triangles_of(s, c), proves);
-        if (start->chosen && !start->culls) start->waiting = start->backoff = 0;
-        start->proof = proves && start->chosen && start->waiting == 0 ? proof_of(start) : 0.0;
+        if (start->chosen && !start->culls) start->pause = start->backoff = 0;
+        start->proof = proves && start->chosen && start->pause == 0 ? proof_of(start) : 0.0;
     }
 }
 

@@ -278,8 +278,8 @@ uint32_t start_states_mark_unproven(start_states *s, const bool *collapsed, bool
                              !(s->never_culled != NULL && s->never_culled[c]);
         if (s->adapts) may_be_culled &= start->chosen;
         if (collapsed != NULL) may_be_culled &= !collapsed[c];
-        wanted[c] = may_be_culled && start->unknown > 0 && start->waiting == 0;
-        if (start->unknown > 0 && start->waiting > 0) start->waiting--;
+        wanted[c] = may_be_culled && start->unknown > 0 && start->pause == 0;
+        if (start->unknown > 0 && start->pause > 0) start->pause--;
         any |= wanted[c];
     }
     for (uint32_t t = 0; any && t < mesh->triangle_count; t++) {
@@ -293,12 +293,12 @@ uint32_t start_states_mark_unproven(start_states *s, const bool *collapsed, bool
  * pay. */
 static void back_off(const start_states *s, component_start *start, uint32_t triangle_count) {
     if (start_states_pay(s, start->clean, triangle_count)) {
-        start->backoff = start->waiting = 0;
-    } else if (start->waiting == 0) {
+        start->backoff = start->pause = 0;
+    } else if (start->pause == 0) {
         start->backoff = start->backoff == 0            ? 1
                          : start->backoff < BACKOFF_MAX ? start->backoff * 2
                                                         : BACKOFF_MAX;
-        start->waiting = start->backoff;
+        start->pause = start->backoff;
     }
 }
 

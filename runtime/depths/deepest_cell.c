@@ -302,15 +302,15 @@ static void sort_part(cell_part *parts, int count, const cell_part *part) {
 
 /* Looks at a part to its end, at its own parts one after the other. */
 static void finish_part(depth_search *s, const cell_part *whole) {
-    cell_part waiting[(PARTS_OF_ONE - 1) * LEVELS_MAX + 1], parts[PARTS_OF_ONE];
+    cell_part open_parts[(PARTS_OF_ONE - 1) * LEVELS_MAX + 1], parts[PARTS_OF_ONE];
     int count = 1;
-    waiting[0] = *whole;
+    open_parts[0] = *whole;
     while (count > 0) {
-        parts[0] = waiting[--count];
+        parts[0] = open_parts[--count];
         if (!goes_on(s, &parts[0])) continue;
         const int made = divide_part(s, parts), first = count;
         for (int i = 0; i < made; i++)
-            if (goes_on(s, &parts[i])) sort_part(&waiting[first], count++ - first, &parts[i]);
+            if (goes_on(s, &parts[i])) sort_part(&open_parts[first], count++ - first, &parts[i]);
     }
 }
 

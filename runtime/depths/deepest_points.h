@@ -64,7 +64,7 @@ bool depth_search_wants(const depth_search *s, double bound);
 void depth_search_cell(depth_search *s, depth_queue *queue, const depth_cell *cell, uint32_t number,
                        double above, const cscd_depth *const known[3]);
 
-/* Looks at all that waits. */
+/* Examines all open parts. */
 void depth_search_finish(depth_search *s, depth_queue *queue);
 
 /* ---- groups of triangles ------------------------------------------------------------------------------- */

@@ -38,8 +38,8 @@ typedef struct part_taker {
     outer_surface *outer;
     const loaded_cut *cut;
     cut_lift lift;
-    cut_part waiting; /* a part that may go on upwards */
-    bool waits, out_of_memory;
+    cut_part open_part; /* a part that may go on upwards */
+    bool is_open, out_of_memory;
 } part_taker;
 
 static outer_box box_of_part(const outer_part *part) {
@@ -89,12 +89,12 @@ static void scale_point(const outer_surface *o, const double x[3], double out[3]
     for (int k = 0; k < 3; k++) out[k] = x[k] * o->scale;
 }
 
-/* Adds the two triangles of the trapezoid that waits. */
-static void add_waiting(part_taker *taker) {
+/* Adds the two triangles of the open trapezoid. */
+static void add_open(part_taker *taker) {
     outer_part halves[2];
-    if (!taker->waits) return;
-    taker->waits = false;
-    cut_lift_part(&taker->lift, &taker->waiting, halves[0].corners, halves[1].corners);
+    if (!taker->is_open) return;
+    taker->is_open = false;
+    cut_lift_part(&taker->lift, &taker->open_part, halves[0].corners, halves[1].corners);
     for (int i = 0; i < 2; i++) {
         for (int k = 0; k < 3; k++) scale_point(taker->outer, halves[i].corners[k], halves[i].corners[k]);
         taker->out_of_memory |= !add_part(taker->outer, &halves[i]);
@@ -110,13 +110,13 @@ static bool goes_on(const cut_part *below, const cut_part *part) {
 static void take_part(void *data, const cut_part *part) {
     part_taker *taker = data;
     if (part->numbers[0] >= 1 || taker->out_of_memory) return;
-    if (taker->waits && goes_on(&taker->waiting, part)) {
-        memcpy(taker->waiting.high, part->high, sizeof part->high);
+    if (taker->is_open && goes_on(&taker->open_part, part)) {
+        memcpy(taker->open_part.high, part->high, sizeof part->high);
         return;
     }
-    add_waiting(taker);
-    taker->waiting = *part;
-    taker->waits = true;
+    add_open(taker);
+    taker->open_part = *part;
+    taker->is_open = true;
 }
 
 /* Keeps what changes the own number. Says whether a line is left. */
@@ -139,7 +139,7 @@ static bool divide_triangle(outer_surface *o, const surface_cuts *found, loaded_
     o->cut_triangles[o->cut_count] = cut->triangle;
     o->part_begins[o->cut_count++] = o->part_count;
     if (!cut_triangle_divide(o->context, &cut->cut, &o->cuts.memory, take_part, &taker)) return false;
-    add_waiting(&taker);
+    add_open(&taker);
     size_t first = o->part_begins[o->cut_count - 1];
     box_parts(&o->boxes[o->cut_count - 1], o->part_boxes + first, o->part_count - first);
     return !taker.out_of_memory;

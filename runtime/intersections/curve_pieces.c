@@ -43,7 +43,7 @@ static int edge_passes(const pair_corners *t, int i, int from, int to, const pai
 /* Lemma 2: an edge of a that passes towards the normal of b begins the piece, one of b towards that of a ends it. */
 static void set_end(const named_surface *s, const pair_corners *t, int i, const pair_corners *face, int end,
                     curve_piece *piece) {
-    piece->ends[end] = (surface_event){s->mesh->triangle_edges[t->triangle][i], face->triangle};
+    piece->ends[end] = (surface_piercing){s->mesh->triangle_edges[t->triangle][i], face->triangle};
 }
 
 static void find_sides(const pair_corners *t, const pair_corners *face, int sides[3]) {
@@ -90,7 +90,7 @@ static int pass_of_opposite(const pair_corners *t, int corner, const pair_corner
 /* Lemma 3: corner i of a is corner j of b. */
 static bool piece_at_vertex(const named_surface *s, const pair_corners *a, int i, const pair_corners *b,
                             int j, curve_piece *piece) {
-    piece->ends[0] = piece->ends[1] = (surface_event){NO_EDGE, a->vertices[i]};
+    piece->ends[0] = piece->ends[1] = (surface_piercing){NO_EDGE, a->vertices[i]};
     int of_a = pass_of_opposite(a, i, b), of_b = of_a != 0 ? 0 : pass_of_opposite(b, j, a);
     if (of_a != 0) set_end(s, a, (i + 1) % 3, b, of_a > 0 ? 0 : 1, piece);
     if (of_b != 0) set_end(s, b, (j + 1) % 3, a, of_b > 0 ? 1 : 0, piece);
@@ -113,7 +113,7 @@ bool curve_piece_of_pair(const named_surface *s, uint32_t a, uint32_t b, curve_p
     return shared == 1 && piece_at_vertex(s, &of_a, at_a, &of_b, at_b, out);
 }
 
-/* ---- one event ----------------------------------------------------------------------------------------- */
+/* ---- one piercing -------------------------------------------------------------------------------------- */
 
 /* Does the edge have a triangle whose corners are different vertices? Others have no pieces. */
 static bool edge_has_sheet(const named_surface *s, uint32_t edge) {
@@ -125,11 +125,11 @@ static bool edge_has_sheet(const named_surface *s, uint32_t edge) {
     return false;
 }
 
-bool surface_event_happens(const named_surface *s, surface_event event) {
+bool surface_piercing_happens(const named_surface *s, surface_piercing piercing) {
     pair_corners face;
-    if (!load_corners(s, event.triangle, &face) || !edge_has_sheet(s, event.edge)) return false;
+    if (!load_corners(s, piercing.triangle, &face) || !edge_has_sheet(s, piercing.edge)) return false;
     const symbolic_point *f = face.points;
-    const uint32_t *vertices = s->mesh->edges[event.edge];
+    const uint32_t *vertices = s->mesh->edges[piercing.edge];
     symbolic_point p = surface_point(s, vertices[0]), q = surface_point(s, vertices[1]);
     for (int i = 0; i < 3; i++) {
         if (f[i].name == p.name || f[i].name == q.name) return false;
@@ -138,7 +138,7 @@ bool surface_event_happens(const named_surface *s, surface_event event) {
     return ends_pass(p, q, from, to, &face) != 0;
 }
 
-/* ---- where an event is, by doubles --------------------------------------------------------------------- */
+/* ---- where a piercing is, by doubles ------------------------------------------------------------------- */
 
 /* Numbers are sums of two doubles, high + low, with |low| at most half a unit in the last place of high. Sums
  * and products of such numbers are off by less than 2^-100 of the sum of what they add, or of the product
@@ -276,7 +276,7 @@ static bool round_coordinate(const bounded_sum weights[2], const divisor *sum, d
 
 /* The weights of the triangle's corners add up to what those of the edge's ends add up to: the magnitude of the product of
  * the edge and the triangle's normal. So that of the first corner is not needed, and may be 0. */
-bool rounded_point_find(const double *const p[5], event_point *out) {
+bool rounded_point_find(const double *const p[5], piercing_point *out) {
     bounded_sum ends[2], corners[2]; /* of the second and the third corner */
     for (int i = 0; i < 15; i++) {
         if (!(fabs(p[i / 3][i % 3]) < largest_coordinate)) return false;
@@ -295,7 +295,7 @@ bool rounded_point_find(const double *const p[5], event_point *out) {
            round_quotient(corners[1].value, corners[1].error, &below, &out->v);
 }
 
-/* ---- where an event is, by integers -------------------------------------------------------------------- */
+/* ---- where a piercing is, by integers ------------------------------------------------------------------ */
 
 /* Lemma 4: ratios of determinants are ratios of their coefficients where these belong to one power of epsilon, and 0 where
  * not. */
@@ -303,14 +303,15 @@ bool rounded_point_find(const double *const p[5], event_point *out) {
 enum { EDGE_POINTS = 2, ALL_POINTS = 5 };
 
 /* The edge's points, then the triangle's; coordinates are multiples of 2^unit. */
-typedef struct event_corners {
+typedef struct piercing_corners {
     symbolic_point points[ALL_POINTS];
     integer x[ALL_POINTS][3];
     int unit;
-} event_corners;
+} piercing_corners;
 
-static void load_event(const named_surface *s, surface_event event, integer_pool *pool, event_corners *out) {
-    const uint32_t *edge = s->mesh->edges[event.edge], *triangle = s->mesh->triangles[event.triangle];
+static void load_piercing(const named_surface *s, surface_piercing piercing, integer_pool *pool,
+                          piercing_corners *out) {
+    const uint32_t *edge = s->mesh->edges[piercing.edge], *triangle = s->mesh->triangles[piercing.triangle];
     for (int i = 0; i < ALL_POINTS; i++)
         out->points[i] = surface_point(s, i < EDGE_POINTS ? edge[i] : triangle[i - EDGE_POINTS]);
     out->unit = INT32_MAX;
@@ -328,7 +329,7 @@ static integer minor_of_two(integer_pool *pool, const integer u[3], const intege
 }
 
 /* The magnitude of a term's coefficient. corners: the four points of its determinant. */
-static integer find_coefficient(integer_pool *pool, const event_corners *c, const uint8_t corners[4],
+static integer find_coefficient(integer_pool *pool, const piercing_corners *c, const uint8_t corners[4],
                                 const symbolic_term *term) {
     symbolic_minor m = symbolic_minor_of(term);
     int n = m.point_count - 1;
@@ -349,8 +350,8 @@ static integer find_coefficient(integer_pool *pool, const event_corners *c, cons
 
 /* Finds the ratio to which determinants of one sign go: the coefficients of those with the largest power, and 0 for the
  * others. Each determinant is that of four of the corners. */
-static void find_weights(integer_pool *pool, const event_corners *c, const uint8_t (*corners)[4], int count,
-                         integer *weights) {
+static void find_weights(integer_pool *pool, const piercing_corners *c, const uint8_t (*corners)[4],
+                         int count, integer *weights) {
     symbolic_term terms[3];
     symbolic_point points[3][4];
     int largest = 0;
@@ -365,19 +366,19 @@ static void find_weights(integer_pool *pool, const event_corners *c, const uint8
     }
 }
 
-void event_point_find_exactly(const named_surface *s, surface_event event, event_point *out) {
+void piercing_point_find_exactly(const named_surface *s, surface_piercing piercing, piercing_point *out) {
     static const uint8_t OF_ENDS[2][4] = {{2, 3, 4, 1}, {2, 3, 4, 0}};
     static const uint8_t OF_CORNERS[3][4] = {{0, 1, 3, 4}, {0, 1, 4, 2}, {0, 1, 2, 3}};
     integer_pool pool;
-    event_corners c;
+    piercing_corners c;
     integer ends[2], corners[3];
-    *out = (event_point){0};
-    if (event.edge == NO_EDGE) {
-        memcpy(out->x, s->positions + (size_t)event.triangle * 3, sizeof out->x);
+    *out = (piercing_point){0};
+    if (piercing.edge == NO_EDGE) {
+        memcpy(out->x, s->positions + (size_t)piercing.triangle * 3, sizeof out->x);
         return;
     }
     integer_pool_start(&pool);
-    load_event(s, event, &pool, &c);
+    load_piercing(s, piercing, &pool, &c);
     find_weights(&pool, &c, OF_ENDS, 2, ends);
     integer sum = integer_add(&pool, ends[0], ends[1]);
     out->s = integer_nearest_quotient(&pool, ends[1], sum, 0);
@@ -392,13 +393,14 @@ void event_point_find_exactly(const named_surface *s, surface_event event, event
     out->v = integer_nearest_quotient(&pool, corners[2], sum, 0);
 }
 
-void event_point_find(const named_surface *s, surface_event event, event_point *out) {
+void piercing_point_find(const named_surface *s, surface_piercing piercing, piercing_point *out) {
     const double *points[ALL_POINTS];
-    if (event.edge != NO_EDGE) {
-        const uint32_t *edge = s->mesh->edges[event.edge], *triangle = s->mesh->triangles[event.triangle];
+    if (piercing.edge != NO_EDGE) {
+        const uint32_t *edge = s->mesh->edges[piercing.edge],
+                       *triangle = s->mesh->triangles[piercing.triangle];
         for (int i = 0; i < ALL_POINTS; i++)
             points[i] = surface_point(s, i < EDGE_POINTS ? edge[i] : triangle[i - EDGE_POINTS]).x;
         if (rounded_point_find(points, out)) return;
     }
-    event_point_find_exactly(s, event, out);
+    piercing_point_find_exactly(s, piercing, out);
 }

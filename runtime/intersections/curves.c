@@ -16,7 +16,7 @@ static array_list list_of_pairs(curve_joiner *j, size_t count) {
 static array_list list_of_pieces(curve_joiner *j, size_t count) {
     return (array_list){{ARRAY(j->keys, 2 * count), ARRAY(j->spare_keys, 2 * count),
                          ARRAY(j->links, 2 * count), ARRAY(j->piece_curves, count), ARRAY(j->curves, count),
-                         ARRAY(j->pieces, count), ARRAY(j->points, 2 * count), ARRAY(j->events, 2 * count),
+                         ARRAY(j->pieces, count), ARRAY(j->points, 2 * count), ARRAY(j->piercings, 2 * count),
                          ARRAY(j->end_points, 2 * count)}};
 }
 
@@ -80,7 +80,7 @@ static void find_pieces(curve_work *work) {
 
 /* ---- links --------------------------------------------------------------------------------------------- */
 
-/* Ends of pieces at one event are joined. An event is an edge and a triangle, so that joining compares numbers. Edges whose
+/* Ends of pieces at one piercing are joined. A piercing is an edge and a triangle, so that joining compares numbers. Edges whose
  * vertices have the same names are one edge. */
 
 /* The things that an end is joined to, if not to another end. */
@@ -99,7 +99,7 @@ typedef struct link_work {
     uint32_t *links;
 } link_work;
 
-static surface_event event_of(const link_work *work, uint64_t end) {
+static surface_piercing piercing_of(const link_work *work, uint64_t end) {
     return work->pieces[end / 2].ends[end % 2];
 }
 
@@ -133,7 +133,7 @@ static uint32_t link_of_lonely(uint32_t triangles) {
 /* Joins the ends of one triangle and one edge, or of edges that seams have made one. Each end has a triangle of the edge of
  * its own, so three are at a junction. */
 static void link_group(link_work *work, const curve_key *keys, size_t count) {
-    uint32_t first = event_of(work, keys[0].end).edge, last = event_of(work, keys[count - 1].end).edge;
+    uint32_t first = piercing_of(work, keys[0].end).edge, last = piercing_of(work, keys[count - 1].end).edge;
     uint32_t triangles = count_triangles(work->surface, first);
     if (last != first) triangles += count_triangles(work->surface, last);
     if (count > 2) triangles = 3;
@@ -146,17 +146,18 @@ static void link_group(link_work *work, const curve_key *keys, size_t count) {
 static size_t sort_ends(link_work *work, size_t piece_count, curve_key *keys, curve_key *spare_keys) {
     size_t count = 0;
     for (uint64_t end = 0; end < 2 * piece_count; end++) {
-        surface_event event = event_of(work, end);
-        if (event.edge == NO_EDGE)
+        surface_piercing piercing = piercing_of(work, end);
+        if (piercing.edge == NO_EDGE)
             work->links[end] = LINK_TO_VERTEX;
         else
-            keys[count++] = (curve_key){event.triangle, end};
+            keys[count++] = (curve_key){piercing.triangle, end};
     }
     sort_by_number(keys, spare_keys, count, sizeof *keys);
     for (size_t i = 0; i < count; i++)
-        keys[i].number = name_edge(work->surface, event_of(work, keys[i].end).edge);
+        keys[i].number = name_edge(work->surface, piercing_of(work, keys[i].end).edge);
     for (size_t i = 0, begin = 0; i < count; i++) { /* a run has the ends of one triangle, mostly a handful */
-        if (i + 1 < count && event_of(work, keys[i + 1].end).triangle == event_of(work, keys[i].end).triangle)
+        if (i + 1 < count &&
+            piercing_of(work, keys[i + 1].end).triangle == piercing_of(work, keys[i].end).triangle)
             continue;
         sort_by_number(keys + begin, spare_keys, i + 1 - begin, sizeof *keys);
         begin = i + 1;
@@ -183,7 +184,7 @@ static void count_joined_edge(link_work *work, const curve_key *keys, size_t cou
     uint32_t triangles = count_triangles(work->surface, edge);
     for (size_t i = find_key(keys, count, number); i < count && keys[i].number == number; i++) {
         uint32_t *link = &work->links[keys[i].end];
-        if (event_of(work, keys[i].end).edge == edge || triangles == 0) continue;
+        if (piercing_of(work, keys[i].end).edge == edge || triangles == 0) continue;
         *link = *link == LINK_TO_BORDER && triangles == 1 ? LINK_TO_LEFT_OUT : LINK_TO_JUNCTION;
     }
 }
@@ -195,14 +196,14 @@ static void name_ends_at_seams(link_work *work, size_t piece_count, curve_key *k
     size_t count = 0;
     for (uint64_t end = 0; end < 2 * piece_count; end++) {
         if (work->links[end] == LINK_TO_BORDER)
-            keys[count++] = (curve_key){name_edge(work->surface, event_of(work, end).edge), end};
+            keys[count++] = (curve_key){name_edge(work->surface, piercing_of(work, end).edge), end};
     }
     sort_by_number(keys, spare_keys, count, sizeof *keys);
     for (uint32_t edge = 0; edge < mesh->edge_count && count > 0; edge++)
         count_joined_edge(work, keys, count, edge);
 }
 
-/* Fills links with the end, or one of the above, that each end is joined to. Two ends are joined when they are at one event,
+/* Fills links with the end, or one of the above, that each end is joined to. Two ends are joined when they are at one piercing,
  * and no third piece is there. keys and spare_keys have room for two keys per piece; piece_count is at most LINKS_MAX / 2. */
 static void find_links(const named_surface *s, const curve_piece *pieces, size_t piece_count, curve_key *keys,
                        curve_key *spare_keys, uint32_t *links) {
@@ -210,7 +211,7 @@ static void find_links(const named_surface *s, const curve_piece *pieces, size_t
     size_t count = sort_ends(&work, piece_count, keys, spare_keys), begin = 0;
     for (size_t i = 0; i < count; i++) {
         bool last = i + 1 == count || keys[i + 1].number != keys[i].number ||
-                    event_of(&work, keys[i + 1].end).triangle != event_of(&work, keys[i].end).triangle;
+                    piercing_of(&work, keys[i + 1].end).triangle != piercing_of(&work, keys[i].end).triangle;
         if (!last) continue;
         link_group(&work, keys + begin, i + 1 - begin);
         begin = i + 1;
@@ -263,30 +264,30 @@ static cscd_curve_end end_of_link(uint32_t link) {
     }
 }
 
-/* Follows a curve from its start, and adds its pieces and the events of its points. */
+/* Follows a curve from its start, and adds its pieces and the piercings of its points. */
 static void trace_curve(curve_joiner *j, curve_place at, cscd_curve *curve) {
     uint32_t first_piece = at.piece, first_triangle = at.first;
-    surface_event event = j->found[at.piece].ends[1 - at.towards];
+    surface_piercing piercing = j->found[at.piece].ends[1 - at.towards];
     curve->start = end_of_link(j->links[2 * at.piece + 1 - at.towards]);
     curve->closed = false;
     for (bool more = true; more && !curve->closed;) {
         const curve_piece *piece = &j->found[at.piece];
         uint32_t end = 2 * at.piece + at.towards;
         size_t point = curve->first_point + curve->point_count++;
-        j->events[point] = event;
+        j->piercings[point] = piercing;
         j->end_points[end ^ 1] = (uint32_t)point;
         j->end_points[end] = (uint32_t)point + 1;
         j->pieces[curve->first_piece + curve->piece_count++] =
             (cscd_curve_piece){at.first, piece->a == at.first ? piece->b : piece->a};
         j->piece_curves[at.piece] = (uint32_t)j->curve_count;
-        event = piece->ends[at.towards];
+        piercing = piece->ends[at.towards];
         curve->end = end_of_link(j->links[end]);
         more = go_on(j, &at);
         curve->closed = more && at.piece == first_piece;
         if (curve->closed) j->end_points[end] = (uint32_t)curve->first_point;
     }
     curve->swapped = curve->closed && at.first != first_triangle;
-    if (!curve->closed) j->events[curve->first_point + curve->point_count++] = event;
+    if (!curve->closed) j->piercings[curve->first_point + curve->point_count++] = piercing;
 }
 
 static void name_sheets(const curve_joiner *j, const cscd_mesh *mesh, cscd_curve *curve) {
@@ -322,10 +323,10 @@ static void find_some_points(void *data, uint32_t task) {
     size_t begin = (size_t)task * POINTS_A_TASK, end = begin + POINTS_A_TASK;
     if (!progress_go_on(&j->context->progress, 0.5 + 0.5 * (double)begin / (double)j->point_count)) return;
     for (size_t i = begin; i < end && i < j->point_count; i++) {
-        event_point at;
-        event_point_find(work->surface, j->events[i], &at);
-        j->points[i] = (cscd_curve_point){j->events[i].edge,          j->events[i].triangle, at.s, at.u, at.v,
-                                          {at.x[0], at.x[1], at.x[2]}};
+        piercing_point at;
+        piercing_point_find(work->surface, j->piercings[i], &at);
+        j->points[i] = (cscd_curve_point){
+            j->piercings[i].edge, j->piercings[i].triangle, at.s, at.u, at.v, {at.x[0], at.x[1], at.x[2]}};
     }
 }
 

@@ -181,16 +181,16 @@ enum { NO_EDGE = UINT32_MAX };
 
 /* An edge passes through a triangle that has none of its vertices. Or, with NO_EDGE, the surface passes through itself
  * at a vertex, whose number then stands in place of the triangle. */
-typedef struct surface_event {
+typedef struct surface_piercing {
     uint32_t edge, triangle;
-} surface_event;
+} surface_piercing;
 
 /* The piece of a curve that lies in two triangles. It leads from ends[0] to ends[1], in the direction of the normal of a
  * times (cross product) the normal of b: unless components are turned around, the inside of b is to the left of it on a,
  * seen from outside, and the inside of a to the right of it on b. At most one end is at a vertex, which then is that of a. */
 typedef struct curve_piece {
     uint32_t a, b;
-    surface_event ends[2];
+    surface_piercing ends[2];
 } curve_piece;
 
 /* Something that belongs to a piece, with a number by which it is sorted. */
@@ -217,7 +217,7 @@ typedef struct curve_joiner {
     cscd_curve *curves;
     cscd_curve_piece *pieces;
     cscd_curve_point *points;
-    surface_event *events; /* of the points */
+    surface_piercing *piercings; /* of the points */
     size_t pair_count, curve_count, point_count, piece_count;
 } curve_joiner;
 

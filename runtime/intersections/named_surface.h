@@ -14,25 +14,25 @@ static inline symbolic_point surface_point(const named_surface *s, uint32_t vert
 /* Finds the piece of two different triangles, if there is one: docs/theory/curves.md. */
 bool curve_piece_of_pair(const named_surface *s, uint32_t a, uint32_t b, curve_piece *out);
 
-/* Whether an event that is not at a vertex happens, and is an end of pieces. */
-bool surface_event_happens(const named_surface *s, surface_event event);
+/* Whether a piercing that is not at a vertex happens, and is an end of pieces. */
+bool surface_piercing_happens(const named_surface *s, surface_piercing piercing);
 
-/* An event: an edge passes through a triangle, in the limit of a symbolic perturbation that goes to 0. */
-typedef struct event_point {
+/* The point where an edge passes through a triangle, in the limit of a symbolic perturbation that goes to 0. */
+typedef struct piercing_point {
     double s;    /* the point is (1-s) e0 + s e1 on the edge (e0, e1) */
     double u, v; /* and (1-u-v) p0 + u p1 + v p2 on the triangle */
     double x[3];
-} event_point;
+} piercing_point;
 
-/* The event happens. Each number is rounded once, to nearest, from its exact value. An end at a vertex has the parameters 0. */
-void event_point_find(const named_surface *s, surface_event event, event_point *out);
+/* The piercing happens. Each number is rounded once, to nearest, from its exact value. An end at a vertex has the parameters 0. */
+void piercing_point_find(const named_surface *s, surface_piercing piercing, piercing_point *out);
 
 /* The same, by integers alone. */
-void event_point_find_exactly(const named_surface *s, surface_event event, event_point *out);
+void piercing_point_find_exactly(const named_surface *s, surface_piercing piercing, piercing_point *out);
 
-/* The same without integers, where rounding is certain. p: the edge's points, then the triangle's, of an event that happens.
+/* The same without integers, where rounding is certain. p: the edge's points, then the triangle's, of a piercing that happens.
  * False: a determinant may be 0, or a result lies too near to the middle between two doubles; nothing is known then. */
-bool rounded_point_find(const double *const p[5], event_point *out);
+bool rounded_point_find(const double *const p[5], piercing_point *out);
 
 /* ---- winding numbers ----------------------------------------------------------------------------------- */
 

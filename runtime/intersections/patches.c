@@ -109,12 +109,12 @@ static void mark_piece(const patch_work *work, const curve_piece *piece) {
     patch_finder *p = work->finder;
     const uint32_t both[2] = {piece->a, piece->b};
     for (int i = 0; i < 2; i++) {
-        surface_event event = piece->ends[i];
-        if (event.edge != NO_EDGE)
-            p->cut_edges[event.edge] = true;
+        surface_piercing piercing = piece->ends[i];
+        if (piercing.edge != NO_EDGE)
+            p->cut_edges[piercing.edge] = true;
         else
             for (int j = 0; j < 2; j++)
-                split_corner(work, both[j], surface_name(work->surface, event.triangle));
+                split_corner(work, both[j], surface_name(work->surface, piercing.triangle));
         p->triangle_cuts[both[i]] |= CUT_TRIANGLE;
         mark_crossed(p, both[i]);
     }

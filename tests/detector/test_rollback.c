@@ -29,18 +29,18 @@ static bool comes_back(bool cancellable) {
     expect_ok(start_states_create(mesh, &s));
     expect_ok(rollback_create(mesh, &r));
     memset(s.triangles, TRIANGLE_CLEAN, shape.triangle_count);
-    s.of[1].waiting = 4;
+    s.of[1].pause = 4;
     s.vouched = true;
     rollback_save(&r, &s, &trees); /* nothing is counted yet */
 
     start_states_taint(&s, 3);
     start_states_count(&s);
-    s.of[1].waiting = 3;
+    s.of[1].pause = 3;
     s.vouched = false;
     trees.intervals_unmeasured = 8;
     rollback_restore(&r, &s, &trees);
     start_states_count(&s);
-    bool same = s.triangles[3] == TRIANGLE_CLEAN && s.of[1].waiting == 4 && s.vouched &&
+    bool same = s.triangles[3] == TRIANGLE_CLEAN && s.of[1].pause == 4 && s.vouched &&
                 trees.intervals_unmeasured == 7 && s.of[0].unknown == 0 &&
                 s.of[0].clean == mesh->components[0].triangle_count;
     rollback_free(context, &r);

@@ -1,7 +1,7 @@
-/* Intersection curves on grids where everything degenerates: the events are those of polynomials that are written out, each
+/* Intersection curves on grids where everything degenerates: the piercings are those of polynomials that are written out, each
  * has the right number of pieces, and curves close where they must. */
 #include "src/mesh/surface.h"
-#include "tests/support/intersections/event_oracle.h"
+#include "tests/support/intersections/piercing_oracle.h"
 #include "tests/support/intersections/traced_scene.h"
 #include "tests/support/test.h"
 
@@ -20,37 +20,37 @@ static bool edges_are_one(uint32_t a, uint32_t b) {
            (names[p[0]] == names[q[1]] && names[p[1]] == names[q[0]]);
 }
 
-/* How many points of curves are at an event. */
-static size_t count_points(surface_event event) {
+/* How many points of curves are at a piercing. */
+static size_t count_points(surface_piercing piercing) {
     size_t count = 0;
     for (size_t i = 0; i < traced.curves.point_count; i++) {
         const cscd_curve_point *point = &traced.curves.points[i];
-        count += point->edge != UINT32_MAX && edges_are_one(point->edge, event.edge) &&
-                 point->triangle == event.triangle;
+        count += point->edge != UINT32_MAX && edges_are_one(point->edge, piercing.edge) &&
+                 point->triangle == piercing.triangle;
     }
     return count;
 }
 
 static void compare_point(const cscd_curve_point *found) {
-    exact_event_point truth =
-        event_oracle_point(&traced.scene, (surface_event){found->edge, found->triangle});
+    exact_piercing_point truth =
+        piercing_oracle_point(&traced.scene, (surface_piercing){found->edge, found->triangle});
     assert_true(found->s == (double)truth.s / (double)truth.s_sum);
     assert_true(found->u == (double)truth.u / (double)truth.uv_sum);
     assert_true(found->v == (double)truth.v / (double)truth.uv_sum);
     for (int k = 0; k < 3; k++) assert_true(found->x[k] == (double)truth.x[k] / (double)truth.s_sum);
 }
 
-/* Every event is a point of a curve, and the reverse. */
-static size_t compare_events(bool closed) {
+/* Every piercing is a point of a curve, and the reverse. */
+static size_t compare_piercings(bool closed) {
     const cscd_mesh *mesh = traced.scene.mesh;
-    size_t events = 0, points = 0;
+    size_t piercings = 0, points = 0;
     for (uint32_t e = 0; e < mesh->edge_count; e++) {
         for (uint32_t t = 0; t < mesh->triangle_count; t++) {
-            bool happens = event_oracle_happens(&traced.scene, (surface_event){e, t});
-            size_t count = count_points((surface_event){e, t});
+            bool happens = piercing_oracle_happens(&traced.scene, (surface_piercing){e, t});
+            size_t count = count_points((surface_piercing){e, t});
             assert_int_equal(happens, count > 0);
             if (closed) assert_true(count <= 1);
-            events += happens;
+            piercings += happens;
         }
     }
     for (size_t i = 0; i < traced.curves.point_count; i++) {
@@ -58,20 +58,20 @@ static size_t compare_events(bool closed) {
         compare_point(&traced.curves.points[i]);
         points++;
     }
-    if (closed) assert_true(points == events);
-    return events;
+    if (closed) assert_true(points == piercings);
+    return piercings;
 }
 
-TEST(events_are_those_of_polynomials) {
+TEST(piercings_are_those_of_polynomials) {
     for (int family = 0; family < GRID_FAMILIES; family++) {
-        size_t events = 0;
+        size_t piercings = 0;
         for (uint64_t seed = 0; seed < COMPARED; seed++) {
             traced_scene_make((grid_family)family, seed, &traced);
-            events += compare_events(grid_family_is_closed((grid_family)family));
+            piercings += compare_piercings(grid_family_is_closed((grid_family)family));
             traced_scene_free(&traced);
         }
-        print_message("  family %d: %zu events\n", family, events);
-        assert_true(events > 50);
+        print_message("  family %d: %zu piercings\n", family, piercings);
+        assert_true(piercings > 50);
     }
 }
 

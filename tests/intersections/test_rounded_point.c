@@ -39,10 +39,10 @@ static bool compare_point(const point_rig *r) {
     const uint32_t edge = r->mesh->triangle_edges[0][0];
     const double *points[5] = {r->x[r->mesh->edges[edge][0]], r->x[r->mesh->edges[edge][1]], r->x[2], r->x[3],
                                r->x[4]};
-    event_point truth, fast, either;
+    piercing_point truth, fast, either;
     memset(&truth, 0, sizeof truth);
-    event_point_find_exactly(&s, (surface_event){edge, 1}, &truth);
-    event_point_find(&s, (surface_event){edge, 1}, &either);
+    piercing_point_find_exactly(&s, (surface_piercing){edge, 1}, &truth);
+    piercing_point_find(&s, (surface_piercing){edge, 1}, &either);
     assert_memory_equal(&either, &truth, sizeof truth);
     bool found = rounded_point_find(points, &fast);
     if (found) assert_memory_equal(&fast, &truth, sizeof truth);
@@ -56,15 +56,15 @@ static void draw_points(point_rig *r, random_stream *random, double offset, doub
     }
 }
 
-/* Makes events of points that agree in so many leading bits, of so many bits in all; scaled by a power of two. */
+/* Makes piercings of points that agree in so many leading bits, of so many bits in all; scaled by a power of two. */
 static int compare_points(point_rig *r, uint64_t seed, double offset, double grid, double scale) {
-    const surface_event event = {r->mesh->triangle_edges[0][0], 1};
+    const surface_piercing piercing = {r->mesh->triangle_edges[0][0], 1};
     const named_surface s = {.mesh = r->mesh, .positions = r->x[0]};
     random_stream random = stream_start(seed);
     int found = 0;
     for (int i = 0; i < POINTS; i++) {
         do draw_points(r, &random, offset, grid);
-        while (!surface_event_happens(&s, event));
+        while (!surface_piercing_happens(&s, piercing));
         for (int k = 0; k < 15; k++) r->x[k / 3][k % 3] *= scale;
         found += compare_point(r);
     }
@@ -94,9 +94,9 @@ TEST(points_near_the_middle_are_left) {
                             {1.0, 3.0, 0.0}};
     memcpy(r->x, x, sizeof x);
     assert_false(compare_point(r));
-    event_point at;
+    piercing_point at;
     const named_surface s = {.mesh = r->mesh, .positions = r->x[0]};
-    event_point_find(&s, (surface_event){r->mesh->triangle_edges[0][0], 1}, &at);
+    piercing_point_find(&s, (surface_piercing){r->mesh->triangle_edges[0][0], 1}, &at);
     assert_true(at.x[0] == 1.0 + 0x1p-52);
 }
 

@@ -1,4 +1,4 @@
-/* Events, pieces and winding numbers of a small scene by brute force. */
+/* Piercings, pieces and winding numbers of a small scene by brute force. */
 #include "tests/support/intersections/surface_oracle.h"
 
 #include "tests/support/float113.h"
@@ -20,7 +20,7 @@ static int sign_of(surface_oracle *o, uint32_t a, uint32_t b, uint32_t c, uint32
     return leading_sign(leading_orient3d(&o->terms, (const uint32_t[4]){a, b, c, d}));
 }
 
-/* ---- events -------------------------------------------------------------------------------------------- */
+/* ---- piercings ----------------------------------------------------------------------------------------- */
 
 /* The names of an edge's ends, then of a triangle's corners; false if an end is a corner, too. */
 static bool load_names(const surface_oracle *o, uint32_t edge, uint32_t triangle, uint32_t out[5]) {
@@ -74,7 +74,7 @@ static uint32_t add_ends(surface_oracle *o, uint32_t from, uint32_t through, boo
         uint32_t edge = o->scene->mesh->triangle_edges[from][i];
         if (!o->passes[edge][through]) continue;
         bool rises = sign_of(o, n[0], n[1], n[2], name_at(o, from, i + 1)) > 0;
-        out->ends[rises == is_a ? 0 : 1] = (oracle_event){o->edge_names[edge], through};
+        out->ends[rises == is_a ? 0 : 1] = (oracle_piercing){o->edge_names[edge], through};
         found++;
     }
     return found;
@@ -85,7 +85,7 @@ bool surface_oracle_piece(surface_oracle *o, uint32_t a, uint32_t b, oracle_piec
     *out = (oracle_piece){.a = a, .b = b};
     for (uint32_t i = 0; i < 9; i++) {
         if (name_at(o, a, i / 3) != name_at(o, b, i % 3)) continue;
-        out->ends[0] = out->ends[1] = (oracle_event){AT_VERTEX, name_at(o, a, i / 3)};
+        out->ends[0] = out->ends[1] = (oracle_piercing){AT_VERTEX, name_at(o, a, i / 3)};
         shared++;
     }
     uint32_t found = add_ends(o, a, b, true, out) + add_ends(o, b, a, false, out);

@@ -69,7 +69,7 @@ static void count_pieces(surface_trial *t, oracle_piece *pieces, uint32_t *count
     }
 }
 
-/* Pieces are of one curve if they meet at an event that no third one has. */
+/* Pieces are of one curve if they meet at a piercing that no third one has. */
 static void join_pieces(surface_trial *t, const oracle_piece *pieces, uint32_t count) {
     static uint32_t first[ORACLE_EDGES][ORACLE_TRIANGLES];
     memset(first, 0xff, sizeof first);
@@ -77,9 +77,10 @@ static void join_pieces(surface_trial *t, const oracle_piece *pieces, uint32_t c
         uint32_t piece = pieces[i].a * ORACLE_TRIANGLES + pieces[i].b;
         t->parents[piece] = piece;
         for (int k = 0; k < 2; k++) {
-            oracle_event event = pieces[i].ends[k];
-            if (event.edge_name == AT_VERTEX || t->pieces_at[event.edge_name][event.triangle] != 2) continue;
-            uint32_t *before = &first[event.edge_name][event.triangle];
+            oracle_piercing piercing = pieces[i].ends[k];
+            if (piercing.edge_name == AT_VERTEX || t->pieces_at[piercing.edge_name][piercing.triangle] != 2)
+                continue;
+            uint32_t *before = &first[piercing.edge_name][piercing.triangle];
             if (*before == NO_PIECE)
                 *before = piece;
             else
@@ -97,7 +98,7 @@ static uint32_t count_roots(surface_trial *t, const oracle_piece *pieces, uint32
     return roots;
 }
 
-static bool point_is_end(const surface_trial *t, const cscd_curve_point *point, oracle_event end) {
+static bool point_is_end(const surface_trial *t, const cscd_curve_point *point, oracle_piercing end) {
     if (end.edge_name == AT_VERTEX)
         return point->edge == UINT32_MAX && t->traced.scene.names[point->triangle] == end.triangle;
     return point->edge != UINT32_MAX && t->oracle.edge_names[point->edge] == end.edge_name &&
@@ -110,7 +111,7 @@ static const char *compare_piece(surface_trial *t, cscd_curve_piece found, const
     oracle_piece truth;
     bool turned = found.a > found.b;
     uint32_t a = turned ? found.b : found.a, b = turned ? found.a : found.b;
-    if (!surface_oracle_piece(&t->oracle, a, b, &truth)) return "a piece without an event";
+    if (!surface_oracle_piece(&t->oracle, a, b, &truth)) return "a piece without a piercing";
     if (t->piece_seen[a][b]) return "a pair with two pieces";
     t->piece_seen[a][b] = true;
     bool forth = point_is_end(t, from, truth.ends[turned]) && point_is_end(t, to, truth.ends[!turned]);
@@ -153,7 +154,7 @@ static const char *compare_curves(surface_trial *t) {
     return count_roots(t, pieces, count) == found->count ? NULL : "a wrong count of curves";
 }
 
-/* ---- events -------------------------------------------------------------------------------------------- */
+/* ---- piercings ----------------------------------------------------------------------------------------- */
 
 static bool is_same_point(surface_trial *t, const cscd_curve_point *point) {
     double truth[6];
@@ -163,25 +164,25 @@ static bool is_same_point(surface_trial *t, const cscd_curve_point *point) {
            point->x[1] == truth[4] && point->x[2] == truth[5];
 }
 
-/* An event where two pieces meet is one point; else each of its pieces has one of its own. */
-static const char *compare_events(surface_trial *t) {
+/* A piercing where two pieces meet is one point; else each of its pieces has one of its own. */
+static const char *compare_piercings(surface_trial *t) {
     const cscd_curves *found = &t->traced.curves;
     const cscd_mesh *mesh = mesh_of(t);
     memset(t->points_at, 0, sizeof t->points_at);
     for (size_t i = 0; i < found->point_count; i++) {
         const cscd_curve_point *point = &found->points[i];
         if (point->edge == UINT32_MAX) continue;
-        if (!t->oracle.passes[point->edge][point->triangle]) return "an event that is none";
-        if (!is_same_point(t, point)) return "an event at a wrong place";
+        if (!t->oracle.passes[point->edge][point->triangle]) return "a piercing that is none";
+        if (!is_same_point(t, point)) return "a piercing at a wrong place";
         t->points_at[t->oracle.edge_names[point->edge]][point->triangle]++;
     }
     for (uint32_t e = 0; e < mesh->edge_count; e++) {
         for (uint32_t f = 0; f < mesh->triangle_count; f++) {
             uint32_t name = t->oracle.edge_names[e], pieces = t->pieces_at[name][f];
             if (!t->oracle.passes[e][f]) continue;
-            t->totals.events += name == e;
-            if (pieces == 0 || (t->closed && pieces != 2)) return "an event with a wrong count of pieces";
-            if (t->points_at[name][f] != (pieces == 2 ? 1 : pieces)) return "an event that is not a point";
+            t->totals.piercings += name == e;
+            if (pieces == 0 || (t->closed && pieces != 2)) return "a piercing with a wrong count of pieces";
+            if (t->points_at[name][f] != (pieces == 2 ? 1 : pieces)) return "a piercing that is not a point";
         }
     }
     return NULL;
@@ -250,7 +251,7 @@ static const char *compare_patches(surface_trial *t) {
 const char *surface_trial_run(surface_trial *t, grid_family family, trial_spread spread, uint64_t seed) {
     trace_scene(t, family, spread, seed);
     const char *problem = compare_curves(t);
-    if (problem == NULL) problem = compare_events(t);
+    if (problem == NULL) problem = compare_piercings(t);
     if (problem == NULL) problem = compare_patches(t);
     traced_scene_free(&t->traced);
     t->totals.scenes++;

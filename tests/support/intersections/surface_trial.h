@@ -15,7 +15,7 @@ typedef enum trial_spread {
 } trial_spread;
 
 typedef struct trial_totals {
-    uint64_t scenes, events, degenerate, pieces, curves, open_curves, corners, wound, twice, cut;
+    uint64_t scenes, piercings, degenerate, pieces, curves, open_curves, corners, wound, twice, cut;
 } trial_totals;
 
 typedef struct surface_trial {

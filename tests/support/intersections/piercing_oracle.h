@@ -1,16 +1,16 @@
-/* All events of a small scene, by trying each edge with each triangle, in polynomials. */
+/* All piercings of a small scene, by trying each edge with each triangle, in polynomials. */
 #pragma once
 
 #include "tests/support/intersections/grid_scene.h"
 
 /* Does the edge pass through the triangle, without a common vertex? */
-bool event_oracle_happens(const grid_scene *s, surface_event event);
+bool piercing_oracle_happens(const grid_scene *s, surface_piercing piercing);
 
 /* The limits of s, u, v and of the point: numerators and one denominator of each kind. */
-typedef struct exact_event_point {
+typedef struct exact_piercing_point {
     int64_t s, s_sum;     /* s / s_sum */
     int64_t u, v, uv_sum; /* u / uv_sum, v / uv_sum */
     int64_t x[3];         /* x[k] / s_sum */
-} exact_event_point;
+} exact_piercing_point;
 
-exact_event_point event_oracle_point(const grid_scene *s, surface_event event);
+exact_piercing_point piercing_oracle_point(const grid_scene *s, surface_piercing piercing);
