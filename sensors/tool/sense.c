@@ -1,7 +1,6 @@
 /* `cscd sense`: particles that warn where objects come near each other, interval by interval. */
+#include "sensors/tool/sense.h"
 #include "sensors/tool/object_pairs.h"
-#include "sensors/tool/sense_picture.h"
-#include "sensors/tool/sense_result.h"
 #include "tool/common/command.h"
 #include "tool/common/frame_range.h"
 #include "tool/common/options.h"

@@ -1,5 +1,5 @@
 /* The warnings of `cscd sense` as CSV, and its intervals as JSON. */
-#include "sensors/tool/sense_result.h"
+#include "sensors/tool/sense.h"
 #include "tool/common/options.h"
 #include "tool/common/provenance.h"
 #include "tool/io/record.h"

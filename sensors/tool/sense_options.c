@@ -1,5 +1,5 @@
 /* The options of `cscd sense`. */
-#include "sensors/tool/sense_options.h"
+#include "sensors/tool/sense.h"
 
 #include "tool/common/command.h"
 #include "tool/common/options.h"

@@ -1,5 +1,5 @@
 /* A picture of cells, particles and the vertices that these have visited. */
-#include "sensors/tool/sense_picture.h"
+#include "sensors/tool/sense.h"
 
 #include "tool/picture/picture.h"
 

@@ -1,5 +1,5 @@
 /* Sums over the intervals of `cscd sense`, and the table of them. */
-#include "sensors/tool/sense_result.h"
+#include "sensors/tool/sense.h"
 
 #include <math.h>
 #include <stdio.h>

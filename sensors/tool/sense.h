@@ -1,13 +1,70 @@
-/* Results of `cscd sense`, for each interval and in all, as a table and as files. */
+/* The parts of `cscd sense`: its options, its picture, and its results for each interval and in all, as a table and as files. */
 #pragma once
 
 #include "cscd/sensors.h"
-#include "sensors/tool/sense_options.h"
+#include "tool/common/frame_range.h"
+#include "tool/common/options.h"
 #include "tool/common/plans.h"
+#include "tool/common/recording.h"
+#include "tool/io/io.h"
 #include "tool/io/json.h"
 #include "tool/io/output_file.h"
+#include "tool/picture/picture.h"
 
 #include <stdio.h>
+
+/* ---- options ------------------------------------------------------------------------------------------- */
+
+typedef struct sense_options {
+    recording_options source;
+    frame_range frames;
+    cscd_sensor_options sensors;
+    const char *plan_path; /* NULL: as for replay */
+    bool no_plan;
+    bool compare, quiet;
+    const char *json_path, *csv_path, *picture_path; /* NULL: not given */
+    frame_number frame;                              /* of the picture; not given: the last */
+    picture_options picture;
+    up_axis up;
+    int argument_count; /* the command line, for the provenance */
+    char **arguments;
+} sense_options;
+
+extern const option_table sense_table;
+
+/* False: *code is the exit code to end with (0 after --help). */
+bool sense_options_parse(int argument_count, char **arguments, sense_options *out, int *code);
+
+/* ---- a picture of cells, particles and the vertices that these have visited ---------------------------- */
+
+/* The places where the particles have been so far. */
+typedef struct sense_paths {
+    uint32_t particle_count;
+    uint32_t *places; /* the vertex of each particle after the last interval */
+    growable steps;   /* of uint32_t[2]: from a vertex to a vertex */
+} sense_paths;
+
+sense_paths sense_paths_none(void);
+void sense_paths_free(sense_paths *paths);
+
+/* Adds the steps of an interval. False when out of memory. */
+bool sense_paths_follow(sense_paths *paths, const cscd_sensors *sensors);
+
+/* Call it when particles get new numbers; the paths so far stay. */
+void sense_paths_break(sense_paths *paths);
+
+typedef struct sense_view {
+    const recording *recording;
+    const cscd_sensors *sensors;
+    const sense_paths *paths;
+    const double *positions; /* of the frame */
+    int32_t frame;
+    const cscd_warnings *warnings; /* of the interval that ends there; NULL: there is none */
+} sense_view;
+
+bool sense_picture_draw(const sense_view *view, const sense_options *options, io_error *error);
+
+/* ---- results ------------------------------------------------------------------------------------------- */
 
 /* Numbers of object pairs: with warnings, with confirmed warnings, in contact by the detector, and in
  * common. */
