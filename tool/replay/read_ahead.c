@@ -1,5 +1,5 @@
 /* Reads the frames of a recording on a thread of its own, one ahead of those that are asked for. */
-#include "tool/replay/read_ahead.h"
+#include "tool/replay/replay_source.h"
 
 #include "tool/io/io.h"
 

@@ -1,5 +1,5 @@
-/* What other commands use of replay: merging the shards of one recording, and telling their files from
- * others. */
+/* The parts of replay that other commands use: merging the shards of one recording, and telling their files
+ * from others. */
 #pragma once
 
 #include <stdbool.h>
@@ -24,5 +24,5 @@ typedef struct merge_request {
  * its command line. Returns the exit code, that of such a run. */
 int replay_merge(const merge_request *request);
 
-/* Is it the file of a shard of one recording? A file that cannot be read is none. */
+/* True if it is the file of a shard of one recording. A file that cannot be read is none. */
 bool shard_file_recognise(const char *path);

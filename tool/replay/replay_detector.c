@@ -1,5 +1,5 @@
 /* The detector of a replay: steps, checks, and a new one for each chunk. */
-#include "tool/replay/replay_detector.h"
+#include "tool/replay/replay_source.h"
 
 #include "tool/common/command.h"
 #include "tool/common/methods.h"

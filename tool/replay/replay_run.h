@@ -28,8 +28,8 @@ typedef struct replay_totals {
     int32_t first_contact_frame;
     uint32_t contradictions;     /* clean intervals that end in an intersection: contacts that were lost */
     uint32_t intervals_complete; /* every component's contacts are complete, or it is collapsed */
-    uint32_t intervals_unlisted; /* contacts are counted only, */
-    uint64_t contacts_unlisted;  /* so many */
+    uint32_t intervals_unlisted; /* their contacts are counted only */
+    uint64_t contacts_unlisted;  /* of these intervals */
     cscd_timings time_sum, time_max;
     cscd_counters counter_sum, counter_max; /* of the counters that have a row in methods.h */
 } replay_totals;
@@ -37,7 +37,7 @@ typedef struct replay_totals {
 void totals_add(replay_totals *t, const interval_result *result, const cscd_mesh *mesh);
 void totals_print_table(const replay_totals *t, cscd_method method);
 
-/* What is known of a frame. */
+/* The facts of a frame. */
 typedef enum frame_state { FRAME_UNCHECKED, FRAME_EMBEDDED, FRAME_CROSSING } frame_state;
 
 /* The number of outputs that replay_sink.c lists. */
@@ -85,7 +85,7 @@ void replay_print_remarks(replay *r);
  * found again. Without --shard nothing happens. The recording, what is ignored and the plan are there. */
 bool replay_shard_prepare(replay *r, io_error *error);
 
-/* Are the shards that are merged those of this very recording? */
+/* True if the shards that are merged are those of this very recording. */
 bool replay_shard_matches(const replay *r, io_error *error);
 
 bool replay_shard_close(replay *r, io_error *error);

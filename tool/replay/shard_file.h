@@ -11,7 +11,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-/* Which shard, of what. Shards of one replay differ in `shard` and its frames alone. */
+/* The identity of a shard. Shards of one replay differ in `shard` and its frames alone. */
 typedef struct shard_identity {
     uint64_t build, model, plan, options; /* hashes */
     uint32_t first, last;                 /* frames of the whole replay, */
@@ -20,7 +20,7 @@ typedef struct shard_identity {
     uint32_t object_count, component_count, triangle_count, reserved;
 } shard_identity;
 
-/* What the second of two shards is of, if not of the same replay: "another model"; NULL: it is of the
+/* Says what the second of two shards is of, if not of the same replay: "another model"; NULL: it is of the
  * same. */
 const char *shard_identity_difference(const shard_identity *a, const shard_identity *b);
 
@@ -66,11 +66,11 @@ bool shard_file_add(append_file *f, shard_record kind, packed_bytes *bytes, io_e
 /* Begins the bytes of a record. */
 void shard_file_begin(packed_bytes *bytes);
 
-/* A new detector builds its trees anew. At every 32nd interval that took 5 % of a replay's time in the middle
- * of eight cases, and 20 % at most. */
+/* A new detector builds its trees from scratch. At every 32nd interval that took 5 % of a replay's time in
+ * the middle of eight cases, and 20 % at most. */
 enum { CHUNK_INTERVALS = 32 };
 
-/* Does a chunk begin with this frame? first: that of the whole replay. */
+/* True if a chunk begins with this frame. first: that of the whole replay. */
 bool chunk_begins(uint32_t first, uint32_t frame);
 
 /* The frames of a shard, of a replay of the frames first to last: whole chunks. Of more shards than chunks

@@ -1,5 +1,5 @@
 /* Shards of a recording one after the other: the intervals that their files have. */
-#include "tool/replay/shard_series.h"
+#include "tool/replay/replay_source.h"
 
 #include <stdlib.h>
 #include <string.h>

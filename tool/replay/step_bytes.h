@@ -1,10 +1,35 @@
-/* Intervals and frames as bytes, packed and unpacked. */
+/* An interval and a frame of a replay, from the detector or from the file of a shard, and their bytes in such
+ * a file. */
 #pragma once
 
+#include "cscd/cscd.h"
 #include "tool/io/io.h"
-#include "tool/replay/interval_step.h"
+#include "tool/report/report.h"
 
 #include <stdint.h>
+
+/* ---- intervals and frames ------------------------------------------------------------------------------ */
+
+/* The findings of an interval. Pointers lead to what lives until the next interval or frame is read. */
+typedef struct interval_step {
+    cscd_contacts contacts;
+    size_t unlisted; /* contacts, where a list of them does not fit the memory: then nothing else is known */
+    cscd_counters counters;
+    cscd_timings timings;             /* of the step; check_ms is that of an earlier frame */
+    const cscd_guarantee *guarantees; /* per component; NULL: contacts are unlisted */
+    const orientation_row *orientations;
+} interval_step;
+
+/* The findings of a frame. */
+typedef struct frame_check {
+    bool checked; /* else nothing was looked for, and found and ms are 0 */
+    cscd_intersection_pairs found;
+    double ms;
+    const bool *turned;     /* per component, as in cscd_patches; NULL: nothing is */
+    const uint64_t *hashes; /* of the positions, per object (recording_hash_frame) */
+} frame_check;
+
+/* ---- bytes --------------------------------------------------------------------------------------------- */
 
 typedef struct packed_bytes {
     growable bytes; /* of one byte each */
@@ -37,8 +62,8 @@ void step_bytes_add_interval(packed_bytes *out, const interval_step *step, uint3
 void step_bytes_add_frame(packed_bytes *out, const frame_check *check, uint32_t object_count,
                           uint32_t component_count);
 
-/* What an interval and a frame that were taken point to beside the bytes. The triangle count of the
- * orientations is set by the caller. */
+/* The memory, beside the bytes, to which an interval and a frame that were taken point. The triangle count of
+ * the orientations is set by the caller. */
 typedef struct step_place {
     orientation_row orientations;
     cscd_curves curves;
