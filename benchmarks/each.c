@@ -105,7 +105,7 @@ static void remove_folder(mesh_folder *f) {
 static cscd_status check_file(cscd_context *context, const mesh_file *file, size_t *pairs) {
     cscd_mesh *mesh = NULL;
     cscd_detector *detector = NULL;
-    cscd_intersection_pairs found = {.count = 0};
+    cscd_intersections found = {.count = 0};
     cscd_object_desc object =
         cscd_object_of_triangles(file->vertex_count, file->triangle_count, file->triangles);
     cscd_status status = cscd_mesh_create(context, &object, 1, &mesh);

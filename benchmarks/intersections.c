@@ -50,7 +50,7 @@ typedef struct moment {
 
 typedef struct answer_times {
     double ms[QUESTION_COUNT];
-    cscd_intersection_pairs found; /* of all */
+    cscd_intersections found; /* of all */
     size_t buried;                 /* vertices */
     size_t grown;
     double tracker_ms;
@@ -87,7 +87,7 @@ static double processor_ms(void) {
 }
 
 static cscd_status ask_question(cscd_detector *d, const moment *m, question q, double *ms,
-                                cscd_intersection_pairs *found) {
+                                cscd_intersections *found) {
     cscd_intersection_options options = cscd_intersection_defaults();
     options.curves = q >= ASK_CURVES;
     options.patches = q >= ASK_PATCHES;
@@ -162,7 +162,7 @@ static void print_heading(const bench_options *o) {
 }
 
 static void print_row(const moment *m, const answer_times *t) {
-    const cscd_intersection_pairs *f = &t->found;
+    const cscd_intersections *f = &t->found;
     printf("  %-13s %8u %8zu %8zu %7zu %7zu %7zu %7zu", m->name, m->triangle_count, f->count, f->crossing,
            f->curves->count, f->curves->piece_count, f->patches->count, t->buried);
     for (int q = 0; q < FIRST_TABLE_COUNT; q++) printf(" %8.2f", t->ms[q]);
@@ -181,7 +181,7 @@ static void print_later_rows(const row_list *rows) {
 }
 
 static void write_row(json *out, const moment *m, const answer_times *t) {
-    const cscd_intersection_pairs *f = &t->found;
+    const cscd_intersections *f = &t->found;
     if (out->file == NULL) return;
     json_break_line(out);
     json_begin_object(out, NULL);

@@ -76,11 +76,11 @@ static bool convert_mesh(const char *from, const char *to, io_error *error) {
 
 /* ---- pairs --------------------------------------------------------------------------------------------- */
 
-static bool write_pairs(const char *path, const cscd_intersection_pairs *found, io_error *error) {
+static bool write_pairs(const char *path, const cscd_intersections *found, io_error *error) {
     FILE *out = fopen(path, "w");
     if (out == NULL) return io_fail(error, "%s: cannot be written", path);
     for (size_t i = 0; i < found->count; i++) {
-        const cscd_intersection_pair *pair = &found->items[i];
+        const cscd_intersection *pair = &found->items[i];
         fprintf(out, "%u %u %s %u\n", pair->a, pair->b, cscd_intersection_kind_name(pair->kind),
                 pair->shared);
     }
@@ -93,7 +93,7 @@ typedef struct search {
     cscd_context *context;
     cscd_mesh *mesh;
     cscd_detector *detector;
-    cscd_intersection_pairs found;
+    cscd_intersections found;
 } search;
 
 static cscd_status run_search(const mesh_file *file, search *out) {

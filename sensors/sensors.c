@@ -230,17 +230,15 @@ cscd_status cscd_sensors_renew(cscd_sensors *sensors, const cscd_view *positions
     return context_leave(&entry, renew_cells(sensors, positions, part));
 }
 
-uint32_t cscd_sensors_part_count(const cscd_sensors *sensors) {
-    return sensors->partition.part_count;
+cscd_sensor_info cscd_sensors_describe(const cscd_sensors *sensors) {
+    return (cscd_sensor_info){.part_count = sensors->partition.part_count,
+                              .cell_count = sensors->partition.cell_count,
+                              .particle_count = sensors->particles.count};
 }
 
 cscd_sensor_part cscd_sensors_part(const cscd_sensors *sensors, uint32_t part) {
     assert(part < sensors->partition.part_count);
     return sensors->partition.parts[part];
-}
-
-uint32_t cscd_sensors_cell_count(const cscd_sensors *sensors) {
-    return sensors->partition.cell_count;
 }
 
 uint32_t cscd_sensors_vertex_cell(const cscd_sensors *sensors, uint32_t vertex) {
@@ -391,10 +389,6 @@ cscd_status cscd_sensors_step(cscd_sensors *sensors, const cscd_view *x0, const 
 
 cscd_renewal cscd_sensors_renewal(const cscd_sensors *sensors, uint32_t part) {
     return sensors->renewals[part];
-}
-
-uint32_t cscd_sensors_particle_count(const cscd_sensors *sensors) {
-    return sensors->particles.count;
 }
 
 uint32_t cscd_sensors_particle(const cscd_sensors *sensors, uint32_t particle) {

@@ -78,7 +78,7 @@ static bool ask_detector(recording *r, const part_names *parts, const double *po
     const uint32_t components = cscd_mesh_component_count(r->mesh);
     cscd_detector *detector = NULL;
     cscd_intersection_options options = cscd_intersection_defaults();
-    cscd_intersection_pairs found;
+    cscd_intersections found;
     options.patches = true;
     options.orientation = CSCD_ORIENTATION_BY_PART;
     const bool asked =

@@ -113,7 +113,7 @@ static void print_answer(const char *model_path, const cscd_plan *plan) {
 
 /* Prints the methods that method auto has compared. */
 static void print_compared(const cscd_plan *plan) {
-    const uint32_t count = cscd_plan_compared_count(plan);
+    const uint32_t count = cscd_plan_describe(plan).compared_count;
     if (count == 0) return;
     printf("%-10s %8s %30s\n", "method", "regions", "triangles left to test");
     for (uint32_t i = 0; i < count; i++) {
@@ -164,7 +164,7 @@ static void write_origin(json *out, const plan_report *r) {
     json_number(out, "total_ms", t.total_ms);
     json_end_object(out);
     json_begin_object(out, "provenance");
-    provenance_write(out, r->argument_count, r->arguments, cscd_context_thread_count(r->recording->context));
+    provenance_write(out, r->argument_count, r->arguments, cscd_context_describe(r->recording->context).thread_count);
     json_begin_array(out, "inputs");
     provenance_write_input(out, r->model_path, recorded_object_hash_model(&r->recording->objects[0]));
     json_end_array(out);

@@ -305,14 +305,8 @@ class context {
     explicit operator bool() const noexcept {
         return state_ != nullptr;
     }
-    std::uint32_t thread_count() const noexcept {
-        return cscd_context_thread_count(get());
-    }
-    cscd_simd simd() const noexcept {
-        return cscd_context_simd(get());
-    }
-    std::size_t bytes() const noexcept {
-        return cscd_context_bytes(get());
+    cscd_context_info info() const noexcept {
+        return cscd_context_describe(get());
     }
     /* Ends the call that is running, with CSCD_CANCELLED; from another thread. */
     void cancel() const noexcept {

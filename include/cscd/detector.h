@@ -60,10 +60,6 @@ CSCD_API const char *cscd_name(cscd_enumeration of, uint32_t value);
 /* Finds the value with this name. Returns false and leaves *out untouched if there is none. */
 CSCD_API bool cscd_from_name(cscd_enumeration of, const char *name, uint32_t *out);
 
-/* Returns the bytes that a max_memory of 0 stands for: a quarter of the memory that is free now, at least
- * 1. */
-CSCD_API size_t cscd_max_memory_default(void);
-
 /* ---- context: allocator, threads, progress ---------------------------------------------------------- */
 
 /* Everything is created from a context, which holds allocator, threads, instruction set and the last
@@ -167,14 +163,16 @@ CSCD_API const char *cscd_context_detail(const cscd_context *context);
  */
 CSCD_API void cscd_context_cancel(cscd_context *context);
 
-/* Returns the number of threads, or with parallel_for of tasks, that share long work. */
-CSCD_API uint32_t cscd_context_thread_count(const cscd_context *context);
+/* What a context works with. */
+typedef struct cscd_context_info {
+    uint32_t thread_count; /* that share long work; with parallel_for the number of tasks */
+    cscd_simd simd;        /* the instruction set in use, never AUTO */
+    size_t bytes;          /* that the context and its objects hold now through the allocator */
+    size_t memory_share;   /* in bytes, what a max_memory of 0 stands for: a quarter of the free memory */
+} cscd_context_info;
 
-/* Returns the instruction set in use, never AUTO. */
-CSCD_API cscd_simd cscd_context_simd(const cscd_context *context);
-
-/* Returns how many bytes the context and its objects hold now through the allocator. */
-CSCD_API size_t cscd_context_bytes(const cscd_context *context);
+/* Tells what the context works with, and how much memory it holds. */
+CSCD_API cscd_context_info cscd_context_describe(const cscd_context *context);
 
 /* ==== Positions ============================================================================================= */
 
@@ -379,26 +377,32 @@ CSCD_API uint32_t cscd_mesh_vertex_object(const cscd_mesh *mesh, uint32_t vertex
 
 /* ---- its features ------------------------------------------------------------------------------------ */
 
-/* Writes the three vertices of a triangle, in the given order. */
-CSCD_API void cscd_mesh_triangle(const cscd_mesh *mesh, uint32_t triangle, uint32_t vertices[3]);
-
-/* Writes the two vertices of an edge, the smaller one first. */
-CSCD_API void cscd_mesh_edge(const cscd_mesh *mesh, uint32_t edge, uint32_t vertices[2]);
-
-/* Writes the three edges of a triangle: from its vertex 0 to 1, from 1 to 2, from 2 to 0. */
-CSCD_API void cscd_mesh_triangle_edges(const cscd_mesh *mesh, uint32_t triangle, uint32_t edges[3]);
-
 /* The arrays of a mesh. */
 typedef enum cscd_mesh_array_kind {
-    CSCD_TRIANGLE_VERTICES,   /* three for each triangle, as cscd_mesh_triangle writes them */
-    CSCD_TRIANGLE_EDGES,      /* three for each triangle, as cscd_mesh_triangle_edges writes them */
+    CSCD_TRIANGLE_VERTICES,   /* three for each triangle, in the given order */
+    CSCD_TRIANGLE_EDGES,      /* three for each triangle: from its vertex 0 to 1, from 1 to 2, from 2 to 0 */
     CSCD_TRIANGLE_COMPONENTS, /* one for each triangle: labels for cscd_detector_set_parts */
-    CSCD_EDGE_VERTICES,       /* two for each edge, as cscd_mesh_edge writes them */
+    CSCD_EDGE_VERTICES,       /* two for each edge, the smaller one first */
     CSCD_MESH_ARRAY_KIND_MAX_ENUM = 0x7fffffff
 } cscd_mesh_array_kind;
 
 /* Returns one of the mesh's arrays, which lives as long as the mesh. */
 CSCD_API const uint32_t *cscd_mesh_array(const cscd_mesh *mesh, cscd_mesh_array_kind kind);
+static inline void cscd_mesh_triangle(const cscd_mesh *mesh, uint32_t triangle, uint32_t vertices[3]) {
+    const size_t first = triangle;
+    const uint32_t *all = cscd_mesh_array(mesh, CSCD_TRIANGLE_VERTICES) + 3 * first;
+    for (int i = 0; i < 3; i++) vertices[i] = all[i];
+}
+static inline void cscd_mesh_triangle_edges(const cscd_mesh *mesh, uint32_t triangle, uint32_t edges[3]) {
+    const size_t first = triangle;
+    const uint32_t *all = cscd_mesh_array(mesh, CSCD_TRIANGLE_EDGES) + 3 * first;
+    for (int i = 0; i < 3; i++) edges[i] = all[i];
+}
+static inline void cscd_mesh_edge(const cscd_mesh *mesh, uint32_t edge, uint32_t vertices[2]) {
+    const size_t first = edge;
+    const uint32_t *all = cscd_mesh_array(mesh, CSCD_EDGE_VERTICES) + 2 * first;
+    for (int i = 0; i < 2; i++) vertices[i] = all[i];
+}
 
 /* Returns the triangles that contain a vertex or an edge, in ascending order, and their number in *count, 0
  * for loose ones. The array lives as long as the mesh. */
@@ -425,7 +429,9 @@ typedef struct cscd_component {
 CSCD_API cscd_component cscd_mesh_component(const cscd_mesh *mesh, uint32_t component);
 
 /* Returns the component that a triangle belongs to. */
-CSCD_API uint32_t cscd_mesh_triangle_component(const cscd_mesh *mesh, uint32_t triangle);
+static inline uint32_t cscd_mesh_triangle_component(const cscd_mesh *mesh, uint32_t triangle) {
+    return cscd_mesh_array(mesh, CSCD_TRIANGLE_COMPONENTS)[triangle];
+}
 
 /* Returns a hash of vertex count and triangles in their order, and of all objects if some are loose. A saved
  * plan fits a mesh with the same hash. */
@@ -642,8 +648,6 @@ typedef struct cscd_contact {
 typedef struct cscd_contacts {
     const cscd_contact *items;
     size_t count;
-    size_t waiting;               /* pairs of features left out for now: cscd_detector_set_seams */
-    uint32_t collapsed, reserved; /* components collapsed at an end: cscd_detector_collapsed */
 } cscd_contacts;
 
 /* Finds the contacts from positions x0 to positions x1, as the mode promises. The first call is slower. A
@@ -651,30 +655,6 @@ typedef struct cscd_contacts {
  * see longest_list. */
 CSCD_API cscd_status cscd_detector_step(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
                                         cscd_contacts *out);
-
-/* Two triangles a < b that intersect or touch: features of theirs without a common vertex have a common
- * point. */
-typedef struct cscd_intersection {
-    uint32_t a, b;
-} cscd_intersection;
-
-/* The state of the mesh at one moment. The list is sorted by (a, b), and lives until the detector's next
- * call. */
-typedef struct cscd_intersections {
-    const cscd_intersection *items;
-    size_t count; /* 0: the mesh neither intersects nor touches itself, pairs to leave out aside */
-    uint32_t zero_area_triangles; /* triangles with all corners on one line */
-    uint32_t first_zero_area;     /* the first of them; UINT32_MAX if there is none */
-    size_t waiting;               /* pairs of triangles left out for now: cscd_detector_set_seams */
-    uint32_t collapsed, reserved; /* components that are collapsed: cscd_detector_collapsed */
-} cscd_intersections;
-
-/* Lists exactly the pairs of triangles that intersect or touch at the given positions
- * (docs/theory/static-check.md); of points, wires and half-spaces it says nothing. A step that starts there
- * need not check the positions again. Of timings and counters
- * only check_ms changes. CANCELLED: see cscd_progress. LIST_TOO_LONG: see longest_list. */
-CSCD_API cscd_status cscd_detector_check(cscd_detector *detector, const cscd_view *positions,
-                                         cscd_intersections *out);
 
 /* Why the contacts of a component with itself are complete, or why not. */
 typedef enum cscd_reason {
@@ -709,19 +689,10 @@ typedef struct cscd_guarantee {
  * between two components are always complete. */
 CSCD_API cscd_guarantee cscd_detector_guarantee(const cscd_detector *detector, uint32_t component);
 
-/* Returns how a triangle faced the detector point of its region during the whole last step: 1, away (S+); -1,
- * towards it (S-); 0, neither. It is also 0 if the triangle was not clean at the start, or if a list answered
- * (cscd_coherence) and it may change. Without meaning after a failed step. */
-CSCD_API int cscd_detector_orientation(const cscd_detector *detector, uint32_t triangle);
-
-/* Returns the number of regions that the detector culls by: those of its plan, or else the components. It is
- * 0 without culling by orientation, as with min_separation. */
-CSCD_API uint32_t cscd_detector_region_count(const cscd_detector *detector);
-
-/* Writes where the detector point of a region was at the start and the end of the last step, up to rounding.
- * Without meaning before the first step and after a failed one. */
-CSCD_API void cscd_detector_region_point(const cscd_detector *detector, uint32_t region, double p0[3],
-                                         double p1[3]);
+/* Tells whether the component was collapsed in the last cscd_detector_find_intersections, or at an end of the last step: all corners of
+ * each of its triangles were on one line, exactly. docs/solver/guarantees.md says what is not looked for
+ * then. False before the first call, and for a component that the mesh does not have. */
+CSCD_API bool cscd_detector_collapsed(const cscd_detector *detector, uint32_t component);
 
 /* The milliseconds of each stage of the last step. */
 typedef struct cscd_timings {
@@ -732,7 +703,7 @@ typedef struct cscd_timings {
     double contact_ms;     /* from these to sorted contacts */
     double total_ms;       /* the whole step */
     double proof_ms;       /* of the total, the static check of the start */
-    double check_ms;       /* the last cscd_detector_check, apart */
+    double check_ms;       /* the last cscd_detector_find_intersections, apart */
     double reserved[4];    /* 0 */
 } cscd_timings;
 

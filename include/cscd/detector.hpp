@@ -187,11 +187,11 @@ class detector : public detail::owner<cscd_detector, cscd_detector_destroy> {
         return find<intersections>([&](intersections *out) { return cscd_detector_check(get(), at, out); });
     }
     /* By kind; the options are those of C. */
-    intersection_pairs
+    intersections
     find_intersections(const positions &x,
                        const cscd_intersection_options &options = cscd_intersection_defaults()) {
         const cscd_view *at = covering(x);
-        return find<intersection_pairs>([&](intersection_pairs *out) {
+        return find<intersections>([&](intersections *out) {
             return cscd_detector_find_intersections(get(), at, &options, out);
         });
     }
@@ -241,17 +241,9 @@ class detector : public detail::owner<cscd_detector, cscd_detector_destroy> {
     bool collapsed(std::uint32_t component) const noexcept {
         return cscd_detector_collapsed(get(), component);
     }
-    int orientation(std::uint32_t triangle) const noexcept {
-        return cscd_detector_orientation(get(), triangle);
-    }
-    std::uint32_t region_count() const noexcept {
-        return cscd_detector_region_count(get());
-    }
-    /* At the start and at the end. */
-    std::array<std::array<double, 3>, 2> region_point(std::uint32_t region) const noexcept {
-        std::array<std::array<double, 3>, 2> ends;
-        cscd_detector_region_point(get(), region, ends[0].data(), ends[1].data());
-        return ends;
+    /* How many pairs wait: cscd/live.h. */
+    cscd_waiting waiting() const noexcept {
+        return cscd_detector_waiting(get());
     }
     cscd_timings timings() const noexcept {
         return cscd_detector_timings(get());

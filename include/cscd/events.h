@@ -76,7 +76,7 @@ CSCD_API cscd_status cscd_event_tracker_add_contacts(cscd_event_tracker *tracker
  * *found has no list, or it is not of this mesh. LIST_TOO_LONG: this would take more than max_memory, and the
  * frame counts as one in which nothing was looked for, without its contacts. */
 CSCD_API cscd_status cscd_event_tracker_add_frame(cscd_event_tracker *tracker, uint64_t frame,
-                                                  const cscd_intersection_pairs *found);
+                                                  const cscd_intersections *found);
 
 /* ---- what comes out ------------------------------------------------------------------------------------- */
 

@@ -45,7 +45,7 @@ class event_tracker : public detail::owner<cscd_event_tracker, cscd_event_tracke
     void add_contacts(span<const cscd_contact> items) {
         call([&] { return cscd_event_tracker_add_contacts(get(), items.data(), items.size()); });
     }
-    void add_frame(std::uint64_t frame, const cscd_intersection_pairs &found) {
+    void add_frame(std::uint64_t frame, const cscd_intersections &found) {
         call([&] { return cscd_event_tracker_add_frame(get(), frame, &found); });
     }
     /* A frame in which nothing was looked for. */

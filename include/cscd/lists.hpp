@@ -42,48 +42,47 @@ template <class List> struct list : List {
 
 using contacts = list<cscd_contacts>;
 using intersections = list<cscd_intersections>;
-using intersection_pairs = list<cscd_intersection_pairs>;
 using proximities = list<cscd_proximities>;
 using contact_part_pairs = list<cscd_contact_part_pairs>;
 
 /* What cscd_detector_find_intersections finds beside pairs, where the options ask for it; else empty. */
-inline span<const cscd_curve> curves(const cscd_intersection_pairs &found) noexcept {
+inline span<const cscd_curve> curves(const cscd_intersections &found) noexcept {
     if (found.curves == nullptr) return {};
     return {found.curves->items, found.curves->count};
 }
-inline span<const cscd_curve_point> points(const cscd_intersection_pairs &found,
+inline span<const cscd_curve_point> points(const cscd_intersections &found,
                                            const cscd_curve &curve) noexcept {
     return {found.curves->points + curve.first_point, curve.point_count};
 }
-inline span<const cscd_curve_piece> pieces(const cscd_intersection_pairs &found,
+inline span<const cscd_curve_piece> pieces(const cscd_intersections &found,
                                            const cscd_curve &curve) noexcept {
     return {found.curves->pieces + curve.first_piece, curve.piece_count};
 }
-inline span<const cscd_patch> patches(const cscd_intersection_pairs &found) noexcept {
+inline span<const cscd_patch> patches(const cscd_intersections &found) noexcept {
     if (found.patches == nullptr) return {};
     return {found.patches->items, found.patches->count};
 }
-inline span<const cscd_winding> windings(const cscd_intersection_pairs &found,
+inline span<const cscd_winding> windings(const cscd_intersections &found,
                                          const cscd_patch &patch) noexcept {
     return {found.patches->windings + patch.first_winding, patch.winding_count};
 }
-inline span<const cscd_overlap> overlaps(const cscd_intersection_pairs &found) noexcept {
+inline span<const cscd_overlap> overlaps(const cscd_intersections &found) noexcept {
     if (found.overlaps == nullptr) return {};
     return {found.overlaps->items, found.overlaps->count};
 }
-inline span<const cscd_depth> depths(const cscd_intersection_pairs &found) noexcept {
+inline span<const cscd_depth> depths(const cscd_intersections &found) noexcept {
     if (found.depths == nullptr) return {};
     return {found.depths->items, found.depths->count};
 }
-inline span<const cscd_cut_off> cut_offs(const cscd_intersection_pairs &found) noexcept {
+inline span<const cscd_cut_off> cut_offs(const cscd_intersections &found) noexcept {
     if (found.cut_offs == nullptr) return {};
     return {found.cut_offs->items, found.cut_offs->count};
 }
-inline span<const std::uint32_t> patches(const cscd_intersection_pairs &found,
+inline span<const std::uint32_t> patches(const cscd_intersections &found,
                                          const cscd_cut_off &cut_off) noexcept {
     return {found.cut_offs->patches + cut_off.first_patch, cut_off.patch_count};
 }
-inline span<const cscd_part_pair> parts(const cscd_intersection_pairs &found) noexcept {
+inline span<const cscd_part_pair> parts(const cscd_intersections &found) noexcept {
     if (found.parts == nullptr) return {};
     return {found.parts->items, found.parts->count};
 }

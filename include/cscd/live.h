@@ -99,8 +99,7 @@ CSCD_API cscd_status cscd_detector_set_longest_list(cscd_detector *detector, siz
  * it is farther apart than that in x0 of a call or in positions of cscd_detector_check
  * (docs/solver/guarantees.md). The first positions given after the change decide. But cscd_detector_max_step,
  * cscd_line_search_max_step and cscd_detector_truncate leave out only what touches at x0; other waiting pairs
- * keep their floors. In the check, pairs of triangles wait while they intersect or touch. Results count
- * waiting pairs. A pair that a later change leaves out waits no more. If the answers of `ignore` change, no
+ * keep their floors. In the check, pairs of triangles wait while they intersect or touch. A pair that a later change leaves out waits no more. If the answers of `ignore` change, no
  * pair waits. An example, the second sheet on the first one, sewn to it, then torn off, which prints "0
  * contacts, pairs wait":
  *
@@ -115,8 +114,18 @@ CSCD_API cscd_status cscd_detector_set_longest_list(cscd_detector *detector, siz
  *     if (status == CSCD_OK) status = cscd_detector_step(detector, here, here, &contacts);
  *     if (status == CSCD_OK) status = cscd_detector_set_seams(detector, NULL, 0);
  *     if (status == CSCD_OK) status = cscd_detector_step(detector, here, here, &contacts);
- *     printf("%d contacts, %s\n", (int)contacts.count, contacts.waiting > 0 ? "pairs wait" : "no pair waits");
+ *     const bool wait = cscd_detector_waiting(detector).features > 0;
+ *     printf("%d contacts, %s\n", (int)contacts.count, wait ? "pairs wait" : "no pair waits");
  */
+
+/* How many pairs wait. */
+typedef struct cscd_waiting {
+    size_t features;  /* pairs of features, left out of contacts and proximities */
+    size_t triangles; /* pairs of triangles, left out of intersections */
+} cscd_waiting;
+
+/* Returns how many pairs wait since the last call that was given positions. */
+CSCD_API cscd_waiting cscd_detector_waiting(const cscd_detector *detector);
 
 /* Replaces seams (see the options) from the next call on. For them seam_reach holds at the first positions
  * given then. */

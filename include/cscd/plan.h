@@ -111,12 +111,6 @@ static inline cscd_status cscd_plan_create_from_parts(cscd_context *context, con
     return cscd_plan_create_from_parts_sized(context, mesh, positions, parts, sizeof *parts, out);
 }
 
-/* Returns the method that made the regions: CHARGE, KMEANS, SINGLE or PUBLISHED. */
-CSCD_API cscd_method cscd_plan_method(const cscd_plan *plan);
-
-/* Returns the number of regions of all components together. */
-CSCD_API uint32_t cscd_plan_region_count(const cscd_plan *plan);
-
 /* Returns a region of the plan. */
 CSCD_API cscd_region cscd_plan_region(const cscd_plan *plan, uint32_t region);
 
@@ -145,8 +139,12 @@ typedef struct cscd_preprocess_timings {
 /* Returns how long each stage of cscd_plan_create took. */
 CSCD_API cscd_preprocess_timings cscd_plan_timings(const cscd_plan *plan);
 
-/* How a plan was made. The names of kernels live as long as OpenBLAS and the library are loaded. */
+/* What a plan is, and how it was made. The names of kernels live as long as OpenBLAS and the library are loaded. */
 typedef struct cscd_plan_info {
+    cscd_method method;      /* that made the regions: CHARGE, KMEANS, SINGLE or PUBLISHED */
+    uint32_t region_count;   /* of all components together */
+    uint32_t compared_count; /* of cscd_plan_compared; 0 if the method was not AUTO */
+    uint32_t reserved;       /* 0 */
     /* The kernels by which OpenBLAS solved the charge system, such as "SkylakeX". NULL: CSCD_CHARGE_DENSE did
      * not solve it in cscd_plan_create, or the BLAS is another one. */
     const char *charge_kernels;
@@ -158,8 +156,14 @@ typedef struct cscd_plan_info {
     const char *origin;
 } cscd_plan_info;
 
-/* Tells how the plan was made. */
+/* Tells what the plan is, and how it was made. */
 CSCD_API cscd_plan_info cscd_plan_describe(const cscd_plan *plan);
+static inline cscd_method cscd_plan_method(const cscd_plan *plan) {
+    return cscd_plan_describe(plan).method;
+}
+static inline uint32_t cscd_plan_region_count(const cscd_plan *plan) {
+    return cscd_plan_describe(plan).region_count;
+}
 
 /* A plan that CSCD_METHOD_AUTO has compared. */
 typedef struct cscd_compared_plan {
@@ -175,9 +179,7 @@ typedef struct cscd_compared_plan {
     const char *failure;
 } cscd_compared_plan;
 
-/* Returns the number of plans that were compared, or one of them, in the order in which they were tried;
- * there are none if the method was not AUTO. */
-CSCD_API uint32_t cscd_plan_compared_count(const cscd_plan *plan);
+/* Returns one of the compared_count plans that were compared, in the order in which they were tried. */
 CSCD_API cscd_compared_plan cscd_plan_compared(const cscd_plan *plan, uint32_t place);
 
 #ifdef __cplusplus

@@ -86,7 +86,7 @@ class plan : public detail::owner<cscd_plan, cscd_plan_destroy> {
     }
     /* What CSCD_METHOD_AUTO has compared; failure lives as long as the plan. */
     std::vector<cscd_compared_plan> compared() const {
-        std::vector<cscd_compared_plan> found(cscd_plan_compared_count(get()));
+        std::vector<cscd_compared_plan> found(info().compared_count);
         for (std::uint32_t i = 0; i < found.size(); i++) found[i] = cscd_plan_compared(get(), i);
         return found;
     }

@@ -37,6 +37,18 @@
 extern "C" {
 #endif
 
+/* Returns how a triangle faced the detector point of its region during the whole last step: 1, away (S+); -1,
+ * towards it (S-); 0, neither. It is also 0 if the triangle was not clean at the start, or if a list answered
+ * (cscd_coherence) and it may change. Without meaning after a failed step. */
+CSCD_API int cscd_detector_orientation(const cscd_detector *detector, uint32_t triangle);
+
+/* Writes where the detector point of a region was at the start and the end of the last step, up to rounding,
+ * and returns true; without meaning before the first step and after a failed one. Returns false and writes
+ * nothing if the detector does not cull by this region: the regions are those of its plan, or else the
+ * components, and with a distance to keep there are none. */
+CSCD_API bool cscd_detector_region_point(const cscd_detector *detector, uint32_t region, double p0[3],
+                                         double p1[3]);
+
 /* Facts about a method. */
 typedef struct cscd_method_info {
     const char *name;

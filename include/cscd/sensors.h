@@ -72,6 +72,28 @@ CSCD_API cscd_status cscd_sensors_create(cscd_context *context, const cscd_mesh 
 /* Frees the sensors and their lists. */
 CSCD_API void cscd_sensors_destroy(cscd_sensors *sensors);
 
+/* How much there is of all. */
+typedef struct cscd_sensor_info {
+    uint32_t part_count; /* of all objects together */
+    uint32_t cell_count; /* of all parts together */
+    /* With CELLS there is one particle for each cell, in their order; with RANDOM they are numbered object by
+     * object. */
+    uint32_t particle_count;
+    uint32_t reserved; /* 0 */
+} cscd_sensor_info;
+
+/* Tells how many parts, cells and particles there are. */
+CSCD_API cscd_sensor_info cscd_sensors_describe(const cscd_sensors *sensors);
+static inline uint32_t cscd_sensors_part_count(const cscd_sensors *sensors) {
+    return cscd_sensors_describe(sensors).part_count;
+}
+static inline uint32_t cscd_sensors_cell_count(const cscd_sensors *sensors) {
+    return cscd_sensors_describe(sensors).cell_count;
+}
+static inline uint32_t cscd_sensors_particle_count(const cscd_sensors *sensors) {
+    return cscd_sensors_describe(sensors).particle_count;
+}
+
 /* ---- parts and cells ----------------------------------------------------------------------------------- */
 
 /* A part of an object. */
@@ -83,14 +105,8 @@ typedef struct cscd_sensor_part {
     double radius; /* of the sphere with the part's area, when its cells were made */
 } cscd_sensor_part;
 
-/* Returns the number of parts of all objects together. */
-CSCD_API uint32_t cscd_sensors_part_count(const cscd_sensors *sensors);
-
 /* Returns a part by its number. */
 CSCD_API cscd_sensor_part cscd_sensors_part(const cscd_sensors *sensors, uint32_t part);
-
-/* Returns the number of cells of all parts together. */
-CSCD_API uint32_t cscd_sensors_cell_count(const cscd_sensors *sensors);
 
 /* Returns the cell of a vertex; UINT32_MAX: the vertex has no triangle. */
 CSCD_API uint32_t cscd_sensors_vertex_cell(const cscd_sensors *sensors, uint32_t vertex);
@@ -139,10 +155,6 @@ CSCD_API cscd_status cscd_sensors_step(cscd_sensors *sensors, const cscd_view *x
 
 /* Returns why a part should have new cells (cscd_sensors_renew), as of the last step. */
 CSCD_API cscd_renewal cscd_sensors_renewal(const cscd_sensors *sensors, uint32_t part);
-
-/* Returns the number of particles. With CELLS there is one for each cell, in their order; with RANDOM they
- * are numbered object by object. */
-CSCD_API uint32_t cscd_sensors_particle_count(const cscd_sensors *sensors);
 
 /* Returns the vertex at which a particle is. */
 CSCD_API uint32_t cscd_sensors_particle(const cscd_sensors *sensors, uint32_t particle);

@@ -93,7 +93,6 @@ typedef enum cscd_near_form {
 typedef struct cscd_proximities {
     const cscd_proximity *items;
     size_t count;
-    size_t waiting; /* pairs that wait, and are left out: see cscd_detector_set_seams */
 } cscd_proximities;
 
 /* Finds every pair of features that is at most `distance`, a length above 0, apart at `positions`. Listed
@@ -119,7 +118,6 @@ typedef struct cscd_free_step {
     /* A first contact of the whole motion. fraction <= step_factor * limit.toi, unless toi is 0 or so small
      * that rounding decides. */
     cscd_contact limit;
-    size_t waiting; /* pairs that wait, and limit nothing: see cscd_detector_set_seams */
 } cscd_free_step;
 
 /* Finds how far the vertices may go from x0 towards x1 without contact, and certifies it. It writes x0 +
@@ -149,7 +147,6 @@ typedef struct cscd_displacement_bounds {
     double least;      /* of all bounds */
     uint32_t vertex;   /* the first that has it */
     uint32_t limited;  /* the number of vertices with less than half of search_radius */
-    size_t waiting;    /* pairs that wait, and bound nothing: see cscd_detector_set_seams */
 } cscd_displacement_bounds;
 
 /* Finds how far each vertex v may go from x0 on any path: bounds[v] (Offset Geometric Contact, Chen et al.
@@ -192,7 +189,6 @@ typedef struct cscd_truncation {
     size_t near_count;  /* the number of pairs that were looked at */
     bool moved;         /* some vertex is not where it was, bit for bit */
     uint32_t shortened; /* the number of vertices that did not reach x1 */
-    size_t waiting;     /* pairs that wait, and hold nothing: see cscd_detector_set_seams */
 } cscd_truncation;
 
 /* Moves each vertex from x0 towards x1 as far as planes between near pairs allow (Divide and Truncate, Chen

@@ -462,19 +462,18 @@ static inline cscd_intersection_options cscd_intersection_defaults(void) {
 }
 
 /* Two triangles a < b that intersect. */
-typedef struct cscd_intersection_pair {
+typedef struct cscd_intersection {
     uint32_t a, b;
     cscd_intersection_kind kind;
     uint32_t shared;                    /* the number of shared vertices */
     uint32_t components[2], objects[2]; /* those of a, then those of b */
-} cscd_intersection_pair;
+} cscd_intersection;
 
 /* The pairs of the kinds that count, sorted by (a, b). The list lives until the detector's next call. */
-typedef struct cscd_intersection_pairs {
-    const cscd_intersection_pair *items;                    /* NULL, unless the answer is LIST */
+typedef struct cscd_intersections {
+    const cscd_intersection *items;                    /* NULL, unless the answer is LIST */
     size_t count;                                           /* for ANY 1 or 0: yes or no */
     size_t crossing, coplanar, folded, duplicate, touching; /* the number of each kind; for ANY all 0 */
-    size_t waiting;               /* pairs that wait, and are left out: see cscd_detector_set_seams */
     uint32_t zero_area_triangles; /* triangles with all corners on one line */
     uint32_t first_zero_area;     /* the first of them; UINT32_MAX if there is none */
     uint32_t collapsed;           /* the number of collapsed components: see cscd_detector_collapsed */
@@ -501,11 +500,11 @@ typedef struct cscd_intersection_pairs {
 
     /* An estimate of the max_work that depths need; 0 if memory was the limit. */
     uint64_t wanted_work;
-} cscd_intersection_pairs;
+} cscd_intersections;
 
 /* Lists the triangle pairs that intersect or touch at the given positions, and how. options may be NULL. The
- * pairs are those of cscd_detector_check, and duplicates. Pairs are left out as docs/solver/guarantees.md
- * says, but a duplicate whose triangles have the same three indices never waits. Unless the answer is ANY or
+ * pairs are proven in docs/theory/static-check.md; of points, wires and half-spaces they say nothing. Pairs
+ * are left out as docs/solver/guarantees.md says, but a duplicate whose triangles have the same three indices never waits. Unless the answer is ANY or
  * stop_after is set, a step that starts here need not check the positions again. Of the timings only check_ms
  * changes; counters stay. docs/solver/surfaces.md has a program.
  *
@@ -514,12 +513,13 @@ typedef struct cscd_intersection_pairs {
  * lists. CANCELLED: see cscd_progress. */
 CSCD_API cscd_status cscd_detector_find_intersections(cscd_detector *detector, const cscd_view *positions,
                                                       const cscd_intersection_options *options,
-                                                      cscd_intersection_pairs *out);
+                                                      cscd_intersections *out);
 
-/* Tells whether the component was collapsed in the last check, or at an end of the last step: all corners of
- * each of its triangles were on one line, exactly. docs/solver/guarantees.md says what is not looked for
- * then. False before the first call, and for a component that the mesh does not have. */
-CSCD_API bool cscd_detector_collapsed(const cscd_detector *detector, uint32_t component);
+/* Lists the triangle pairs that intersect or touch at the given positions: the same with the defaults. */
+static inline cscd_status cscd_detector_check(cscd_detector *detector, const cscd_view *positions,
+                                              cscd_intersections *out) {
+    return cscd_detector_find_intersections(detector, positions, NULL, out);
+}
 
 #ifdef __cplusplus
 }

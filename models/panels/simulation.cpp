@@ -232,7 +232,7 @@ double simulation::go_as_far() {
         if (!certified_) break;
         const cscd_free_step step = detector_.max_step(positions_of(scene_.particles), positions_of(wanted_),
                                                        cscd::view_of(reached_, &particle::position));
-        waiting_ = step.waiting;
+        waiting_ = detector_.waiting().features;
         if (!step.limited || round == rounds) return step.fraction;
         add_barrier(step.limit);
     }

@@ -31,7 +31,7 @@ _LAYER: Dict[str, Tuple[Any, List[Any]]] = {
     "cscdpy_left_out_create": (c_bool, [_p, _p, _u32, POINTER(c_void_p), _p]),
     "cscdpy_left_out_destroy": (None, [_p]),
     "cscdpy_left_out_add_parts": (c_bool, [_p, _u32, _u32]),
-    "cscdpy_left_out_add_rest": (c_bool, [_p, _p, _size, c_bool]),
+    "cscdpy_left_out_add_rest": (c_bool, [_p, _p, c_bool]),
     "cscdpy_left_out_choose": (None, [_p, _p]),
     "cscdpy_left_out_show": (c_bool, [_p, _p]),
     "cscdpy_choose_events": (c_bool, [_p, _p]),

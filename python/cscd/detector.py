@@ -119,8 +119,8 @@ class Detector(LiveSettings):
                                               pointer, None if plan is None else plan.pointer, options.address)
         self._detector = self._handle.pointer
         self._name = "x"  # what a sentence calls the positions of one moment
-        self._lists = {name: new_struct(name) for name in ("contacts", "intersections", "intersection_pairs",
-                                                           "proximities", "free_step")}
+        self._lists = {name: new_struct(name) for name in ("contacts", "intersections", "proximities",
+                                                           "free_step")}
         self._at = {name: address_of(array) for name, array in self._lists.items()}
 
     # ---- contacts ---------------------------------------------------------------------------------------
@@ -175,13 +175,13 @@ class Detector(LiveSettings):
 
     def check(self, x: Any) -> Array:
         """The pairs of triangles that intersect or touch at positions ``x``: (k, 2) int64, sorted."""
+        options = self._find_options(kind_set(None), 0, False, False, False)
         views, kept = self._views("x", x)
         host = self._host
         with host.lock:
-            self._call(host, "intersections", library.cscdpy_detector_check, self._detector, address_of(views),
-                       self._at["intersections"])
+            self._find(host, views, options)
             found = copy_records(self._lists["intersections"], "intersection")
-        return found.view(np.int64).reshape(-1, 2)
+        return np.stack([found["a"], found["b"]], axis=1).astype(np.int64)
 
     def find_intersections(self, x: Any, kinds: Any = None, stop_after: int = 0) -> Intersections:
         """The pairs of triangles that intersect or touch at positions ``x``, with their kinds.
@@ -199,9 +199,9 @@ class Detector(LiveSettings):
         host = self._host
         with host.lock:
             self._find(host, views, options)
-            pairs = copy_records(self._lists["intersection_pairs"], "intersection_pair")
-            stopped = bool(self._lists["intersection_pairs"]["stopped"][0])
-            collapsed = collapsed_of(self._lists["intersection_pairs"])
+            pairs = copy_records(self._lists["intersections"], "intersection")
+            stopped = bool(self._lists["intersections"]["stopped"][0])
+            collapsed = collapsed_of(self._lists["intersections"])
         found = Intersections(self.mesh, self, [array.copy() for array in kept], pairs, stopped,
                               kinds is None and stop_after == 0)
         found.collapsed = collapsed
@@ -214,7 +214,7 @@ class Detector(LiveSettings):
         host = self._host
         with host.lock:
             self._find(host, views, options)
-            return bool(self._lists["intersection_pairs"]["count"][0])
+            return bool(self._lists["intersections"]["count"][0])
 
     def _surface_answers(self, positions: Any, parts: bool = False) -> _Surface:
         """Curves and depths, or sums by parts, of which they are a part, of positions that were looked at before."""
@@ -223,7 +223,7 @@ class Detector(LiveSettings):
         host = self._host
         with host.lock:
             self._find(host, views, options)
-            return _Surface(self._lists["intersection_pairs"], self.mesh.vertex_count, not parts, parts)
+            return _Surface(self._lists["intersections"], self.mesh.vertex_count, not parts, parts)
 
     def near(self, x: Any, distance: float, unique: bool = False) -> Proximities:
         """Every pair of features whose distance at positions ``x`` is at most ``distance``, a length above 0.
@@ -273,7 +273,7 @@ class Detector(LiveSettings):
         with host.lock:
             host.call(library.cscdpy_detector_truncate, self._detector, address_of(start), address_of(end),
                       number_of("search_radius", search_radius), address_of(target), address_of(found))
-        names = ["fraction", "obstacle_fraction", "near_count", "moved", "shortened", "waiting"]
+        names = ["fraction", "obstacle_fraction", "near_count", "moved", "shortened"]
         return reached, found[names].view(np.recarray)[0]
 
     def line_search(self, x0: Any, x1: Any, reach: float = 0.0) -> LineSearch:
@@ -338,8 +338,8 @@ class Detector(LiveSettings):
             raise
 
     def _find(self, host: Host, views: Array, options: Array) -> None:
-        self._call(host, "intersection_pairs", library.cscdpy_detector_find_intersections, self._detector,
-                   address_of(views), address_of(options), self._at["intersection_pairs"])
+        self._call(host, "intersections", library.cscdpy_detector_find_intersections, self._detector,
+                   address_of(views), address_of(options), self._at["intersections"])
 
     def _find_options(self, kinds: int, stop_after: int, any_alone: bool, depths: bool, parts: bool) -> Array:
         limits = self._inputs["max_memory"], self._inputs["max_work"]

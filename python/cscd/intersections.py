@@ -107,7 +107,7 @@ class Intersections:
     @classmethod
     def none(cls, mesh: Mesh) -> Intersections:
         """The findings in a mesh without triangles."""
-        found = cls(mesh, None, None, np.empty(0, records["intersection_pair"]), False, True)
+        found = cls(mesh, None, None, np.empty(0, records["intersection"]), False, True)
         found._surface = _Surface.none(mesh.vertex_count)
         return found
 

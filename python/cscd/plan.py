@@ -295,11 +295,11 @@ class Plan:
 
     @property
     def method(self) -> str:
-        return str(library.cscd_name(VALUES["CSCD_METHODS"], library.cscd_plan_method(self.pointer)).decode())
+        return str(library.cscd_name(VALUES["CSCD_METHODS"], self._info("method")).decode())
 
     @property
     def region_count(self) -> int:
-        return int(library.cscd_plan_region_count(self.pointer))
+        return self._info("region_count")
 
     @property
     def triangle_regions(self) -> Array:
@@ -336,7 +336,7 @@ class Plan:
     @property
     def compared(self) -> List[ComparedPlan]:
         """The plans that ``Plan.auto`` has compared, in the order in which it tried them; empty for any other plan."""
-        found = new_struct("compared_plan", int(library.cscd_plan_compared_count(self.pointer)))
+        found = new_struct("compared_plan", self._info("compared_count"))
         size = structs["compared_plan"].itemsize
         for i in range(len(found)):
             library.cscdpy_plan_compared(self.pointer, i, address_of(found) + i * size)
@@ -358,10 +358,13 @@ class Plan:
     def origin(self) -> Optional[str]:
         return self._words("origin")
 
-    def _words(self, member: str) -> Optional[str]:
+    def _info(self, member: str) -> int:
         found = new_struct("plan_info")
         library.cscdpy_plan_describe(self.pointer, address_of(found))
-        name = ctypes.c_char_p(int(found[member][0])).value
+        return int(found[member][0])
+
+    def _words(self, member: str) -> Optional[str]:
+        name = ctypes.c_char_p(self._info(member)).value
         return name.decode() if name is not None else None
 
     def __repr__(self) -> str:

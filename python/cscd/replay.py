@@ -13,7 +13,7 @@ from ._host import Handle, new_handle
 from ._library import address_of, copy_list, items_of, library, new_struct, structs
 from .detector import Detector
 from .errors import Error
-from .intersections import Intersections, _Surface, collapsed_of, labels_of
+from .intersections import INTERSECTION_KINDS, Intersections, _Surface, collapsed_of, labels_of
 from .mesh import Mesh
 from .questions import mesh_of
 from .results import Contacts, Events, copy_records
@@ -65,11 +65,9 @@ class LeftOut(Handle):
             if not library.cscdpy_left_out_add_parts(self.pointer, a & _NO_PART, b & _NO_PART):
                 self._fail("ignore_parts")
 
-    def add_rest(self, pairs: Array, by_parts: bool) -> None:
-        """Leaves out what meets at rest, (k, 2) triangles."""
-        packed = np.ascontiguousarray(pairs, np.uint32)
-        if len(packed) and not library.cscdpy_left_out_add_rest(self.pointer, address_of(packed), len(packed),
-                                                                by_parts):
+    def add_rest(self, found: Array, by_parts: bool) -> None:
+        """Leaves out what meets at rest, a list of the library."""
+        if not library.cscdpy_left_out_add_rest(self.pointer, address_of(found), by_parts):
             self._fail("ignore_rest")
 
     def _fail(self, option: str) -> NoReturn:
@@ -214,7 +212,9 @@ class Replay:
         left_out.add_parts(self._ignore_parts)
         if self._ignore_rest is not None:
             options = {name: value for name, value in self._options.items() if name in ("seams", "threads", "rules")}
-            left_out.add_rest(Detector(self.mesh, **options).check(first), self._ignore_rest == "parts")
+            detector = Detector(self.mesh, **options)
+            detector.find_intersections(first, [kind for kind in INTERSECTION_KINDS if kind != "duplicate"])
+            left_out.add_rest(detector._lists["intersections"], self._ignore_rest == "parts")
         return left_out
 
     def _follow_seams(self, tracking: Array) -> None:
@@ -291,11 +291,11 @@ class Replay:
     def _find(self, positions: List[Array]) -> Intersections:
         detector = self._detector
         views, kept = detector._called(f"frames[{self._index}]")._views("frames", _joined(positions))
-        found = detector._lists["intersection_pairs"]
+        found = detector._lists["intersections"]
         host = detector._host
         with host.lock:
             detector._find(host, views, self._found_options)
-            pairs = copy_records(found, "intersection_pair")
+            pairs = copy_records(found, "intersection")
             collapsed = collapsed_of(found)
             if self._left_out is not None and not library.cscdpy_left_out_show(self._left_out.pointer,
                                                                                address_of(found)):

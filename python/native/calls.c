@@ -37,12 +37,9 @@ CALL_OF(tracker_create,
 CALL_OF(detector_step,
         (host * h, cscd_detector *detector, const cscd_view *x0, const cscd_view *x1, cscd_contacts *out),
         cscd_detector_step(detector, x0, x1, out))
-CALL_OF(detector_check,
-        (host * h, cscd_detector *detector, const cscd_view *positions, cscd_intersections *out),
-        cscd_detector_check(detector, positions, out))
 CALL_OF(detector_find_intersections,
         (host * h, cscd_detector *detector, const cscd_view *positions,
-         const cscd_intersection_options *options, cscd_intersection_pairs *out),
+         const cscd_intersection_options *options, cscd_intersections *out),
         cscd_detector_find_intersections(detector, positions, options, out))
 CALL_OF(detector_find_near,
         (host * h, cscd_detector *detector, const cscd_view *positions, double distance, uint32_t form,
@@ -120,7 +117,7 @@ CALL_OF(tracker_add_contacts,
         (host * h, cscd_event_tracker *tracker, const cscd_contact *contacts, size_t contact_count),
         cscd_event_tracker_add_contacts(tracker, contacts, contact_count))
 CALL_OF(tracker_add_frame,
-        (host * h, cscd_event_tracker *tracker, uint64_t frame, const cscd_intersection_pairs *found),
+        (host * h, cscd_event_tracker *tracker, uint64_t frame, const cscd_intersections *found),
         cscd_event_tracker_add_frame(tracker, frame, found))
 CALL_OF(tracker_take, (host * h, cscd_event_tracker *tracker, cscd_events *out),
         cscd_event_tracker_take(tracker, out))

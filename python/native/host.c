@@ -127,11 +127,11 @@ PYTHON_API void cscdpy_host_cancel(const host *h) {
 }
 
 PYTHON_API size_t cscdpy_host_bytes(const host *h) {
-    return cscd_context_bytes(h->context);
+    return cscd_context_describe(h->context).bytes;
 }
 
 PYTHON_API uint32_t cscdpy_host_thread_count(const host *h) {
-    return cscd_context_thread_count(h->context);
+    return cscd_context_describe(h->context).thread_count;
 }
 
 /* Is a call running? */

@@ -89,7 +89,8 @@ FIELDS(region, FIELD(cscd_region, component), FIELD(cscd_region, triangle_count)
 FIELDS(preprocess_timings, FIELD(cscd_preprocess_timings, assembly_ms),
        FIELD(cscd_preprocess_timings, solve_ms), FIELD(cscd_preprocess_timings, regions_ms),
        FIELD(cscd_preprocess_timings, total_ms))
-FIELDS(plan_info, FIELD(cscd_plan_info, charge_kernels), FIELD(cscd_plan_info, better_kernels),
+FIELDS(plan_info, FIELD(cscd_plan_info, method), FIELD(cscd_plan_info, region_count),
+       FIELD(cscd_plan_info, compared_count), FIELD(cscd_plan_info, charge_kernels), FIELD(cscd_plan_info, better_kernels),
        FIELD(cscd_plan_info, origin))
 FIELDS(compared_plan, FIELD(cscd_compared_plan, method), FIELD(cscd_compared_plan, k),
        FIELD(cscd_compared_plan, region_count), FIELD(cscd_compared_plan, kept),
@@ -113,12 +114,7 @@ FIELDS(contact, FIELD(cscd_contact, kind), FIELD(cscd_contact, a), FIELD(cscd_co
        FIELD(cscd_contact, bounded), FIELD(cscd_contact, vertices), FIELD(cscd_contact, toi),
        FIELD(cscd_contact, u), FIELD(cscd_contact, v), FIELD(cscd_contact, point),
        FIELD(cscd_contact, normal))
-FIELDS(contacts, FIELD(cscd_contacts, items), FIELD(cscd_contacts, count), FIELD(cscd_contacts, waiting),
-       FIELD(cscd_contacts, collapsed))
-FIELDS(intersection, FIELD(cscd_intersection, a), FIELD(cscd_intersection, b))
-FIELDS(intersections, FIELD(cscd_intersections, items), FIELD(cscd_intersections, count),
-       FIELD(cscd_intersections, zero_area_triangles), FIELD(cscd_intersections, first_zero_area),
-       FIELD(cscd_intersections, waiting), FIELD(cscd_intersections, collapsed))
+FIELDS(contacts, FIELD(cscd_contacts, items), FIELD(cscd_contacts, count))
 FIELDS(guarantee, FIELD(cscd_guarantee, complete), FIELD(cscd_guarantee, start_embedded),
        FIELD(cscd_guarantee, reason))
 FIELDS(timings, FIELD(cscd_timings, update_ms), FIELD(cscd_timings, orientation_ms),
@@ -140,20 +136,20 @@ FIELDS(intersection_options, FIELD(cscd_intersection_options, struct_size),
        FIELD(cscd_intersection_options, cut_offs), FIELD(cscd_intersection_options, part_bodies),
        FIELD(cscd_intersection_options, orientation), FIELD(cscd_intersection_options, depth_limit),
        FIELD(cscd_intersection_options, max_memory), FIELD(cscd_intersection_options, max_work))
-FIELDS(intersection_pair, FIELD(cscd_intersection_pair, a), FIELD(cscd_intersection_pair, b),
-       FIELD(cscd_intersection_pair, kind), FIELD(cscd_intersection_pair, shared),
-       FIELD(cscd_intersection_pair, components), FIELD(cscd_intersection_pair, objects))
-FIELDS(intersection_pairs, FIELD(cscd_intersection_pairs, items), FIELD(cscd_intersection_pairs, count),
-       FIELD(cscd_intersection_pairs, crossing), FIELD(cscd_intersection_pairs, coplanar),
-       FIELD(cscd_intersection_pairs, folded), FIELD(cscd_intersection_pairs, duplicate),
-       FIELD(cscd_intersection_pairs, touching), FIELD(cscd_intersection_pairs, waiting),
-       FIELD(cscd_intersection_pairs, zero_area_triangles), FIELD(cscd_intersection_pairs, first_zero_area),
-       FIELD(cscd_intersection_pairs, collapsed), FIELD(cscd_intersection_pairs, stopped),
-       FIELD(cscd_intersection_pairs, curves), FIELD(cscd_intersection_pairs, patches),
-       FIELD(cscd_intersection_pairs, overlaps), FIELD(cscd_intersection_pairs, depths),
-       FIELD(cscd_intersection_pairs, cut_offs), FIELD(cscd_intersection_pairs, parts),
-       FIELD(cscd_intersection_pairs, collapsed_components), FIELD(cscd_intersection_pairs, left_out),
-       FIELD(cscd_intersection_pairs, wanted_memory), FIELD(cscd_intersection_pairs, wanted_work))
+FIELDS(intersection, FIELD(cscd_intersection, a), FIELD(cscd_intersection, b),
+       FIELD(cscd_intersection, kind), FIELD(cscd_intersection, shared),
+       FIELD(cscd_intersection, components), FIELD(cscd_intersection, objects))
+FIELDS(intersections, FIELD(cscd_intersections, items), FIELD(cscd_intersections, count),
+       FIELD(cscd_intersections, crossing), FIELD(cscd_intersections, coplanar),
+       FIELD(cscd_intersections, folded), FIELD(cscd_intersections, duplicate),
+       FIELD(cscd_intersections, touching),
+       FIELD(cscd_intersections, zero_area_triangles), FIELD(cscd_intersections, first_zero_area),
+       FIELD(cscd_intersections, collapsed), FIELD(cscd_intersections, stopped),
+       FIELD(cscd_intersections, curves), FIELD(cscd_intersections, patches),
+       FIELD(cscd_intersections, overlaps), FIELD(cscd_intersections, depths),
+       FIELD(cscd_intersections, cut_offs), FIELD(cscd_intersections, parts),
+       FIELD(cscd_intersections, collapsed_components), FIELD(cscd_intersections, left_out),
+       FIELD(cscd_intersections, wanted_memory), FIELD(cscd_intersections, wanted_work))
 FIELDS(curve, FIELD(cscd_curve, first_point), FIELD(cscd_curve, point_count), FIELD(cscd_curve, first_piece),
        FIELD(cscd_curve, piece_count), FIELD(cscd_curve, start), FIELD(cscd_curve, end),
        FIELD(cscd_curve, components), FIELD(cscd_curve, objects), FIELD(cscd_curve, closed),
@@ -207,17 +203,16 @@ FIELDS(proximity, FIELD(cscd_proximity, kind), FIELD(cscd_proximity, a), FIELD(c
        FIELD(cscd_proximity, vertices), FIELD(cscd_proximity, distance), FIELD(cscd_proximity, u),
        FIELD(cscd_proximity, v), FIELD(cscd_proximity, weights), FIELD(cscd_proximity, point),
        FIELD(cscd_proximity, normal), FIELD(cscd_proximity, threshold))
-FIELDS(proximities, FIELD(cscd_proximities, items), FIELD(cscd_proximities, count),
-       FIELD(cscd_proximities, waiting))
+FIELDS(proximities, FIELD(cscd_proximities, items), FIELD(cscd_proximities, count))
 FIELDS(free_step, FIELD(cscd_free_step, fraction), FIELD(cscd_free_step, limited),
-       FIELD(cscd_free_step, moved), FIELD(cscd_free_step, limit), FIELD(cscd_free_step, waiting))
+       FIELD(cscd_free_step, moved), FIELD(cscd_free_step, limit))
 FIELDS(displacement_bounds, FIELD(cscd_displacement_bounds, blocked),
        FIELD(cscd_displacement_bounds, blocked_count), FIELD(cscd_displacement_bounds, near_count),
        FIELD(cscd_displacement_bounds, least), FIELD(cscd_displacement_bounds, vertex),
-       FIELD(cscd_displacement_bounds, limited), FIELD(cscd_displacement_bounds, waiting))
+       FIELD(cscd_displacement_bounds, limited))
 FIELDS(truncation, FIELD(cscd_truncation, fraction), FIELD(cscd_truncation, obstacle_fraction),
        FIELD(cscd_truncation, held), FIELD(cscd_truncation, held_count), FIELD(cscd_truncation, near_count),
-       FIELD(cscd_truncation, moved), FIELD(cscd_truncation, shortened), FIELD(cscd_truncation, waiting))
+       FIELD(cscd_truncation, moved), FIELD(cscd_truncation, shortened))
 FIELDS(pairs, FIELD(cscd_pairs, kind), FIELD(cscd_pairs, point_count), FIELD(cscd_pairs, pair_count),
        FIELD(cscd_pairs, points))
 FIELDS(pair_contact, FIELD(cscd_pair_contact, toi), FIELD(cscd_pair_contact, contact),
@@ -257,8 +252,6 @@ static const struct_layout layouts[] = {LAYOUT(view),
                                         LAYOUT(timings),
                                         LAYOUT(counters),
                                         LAYOUT(intersection_options),
-                                        LAYOUT(intersection_pair),
-                                        LAYOUT(intersection_pairs),
                                         LAYOUT(curve),
                                         LAYOUT(curve_point),
                                         LAYOUT(curve_piece),

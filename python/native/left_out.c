@@ -51,9 +51,8 @@ PYTHON_API bool cscdpy_left_out_add_parts(left_out *l, uint32_t a, uint32_t b) {
 }
 
 /* Leaves out pairs of triangles, or the parts that these are in. */
-PYTHON_API bool cscdpy_left_out_add_rest(left_out *l, const cscd_intersection *found, size_t count,
-                                         bool by_parts) {
-    return ignore_pairs_add_rest(&l->pairs, found, count, by_parts);
+PYTHON_API bool cscdpy_left_out_add_rest(left_out *l, const cscd_intersections *found, bool by_parts) {
+    return ignore_pairs_add_rest(&l->pairs, found, by_parts);
 }
 
 PYTHON_API void cscdpy_left_out_choose(left_out *l, cscd_detector_options *options) {
@@ -61,7 +60,7 @@ PYTHON_API void cscdpy_left_out_choose(left_out *l, cscd_detector_options *optio
 }
 
 /* Leaves out depths of what a detector has found; the list is ours until the next call. */
-PYTHON_API bool cscdpy_left_out_show(left_out *l, cscd_intersection_pairs *found) {
+PYTHON_API bool cscdpy_left_out_show(left_out *l, cscd_intersections *found) {
     return shown_depths_choose(&l->shown, found);
 }
 

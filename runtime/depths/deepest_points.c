@@ -443,7 +443,7 @@ static bool cut_triangles_open(deepest_work *w) {
 
 /* ---- where surfaces lie on each other ------------------------------------------------------------------ */
 
-static bool shares_area(const cscd_intersection_pair *pair) {
+static bool shares_area(const cscd_intersection *pair) {
     return pair->kind == CSCD_INTERSECTION_COPLANAR || pair->kind == CSCD_INTERSECTION_FOLDED ||
            pair->kind == CSCD_INTERSECTION_DUPLICATE;
 }

@@ -112,7 +112,7 @@ typedef struct depth_facts {
     const outer_surface *outer;
     triangle_cuts *cuts; /* sorted */
     const part_labels *labels;
-    const cscd_intersection_pair *pairs;
+    const cscd_intersection *pairs;
     size_t pair_count;
     const cscd_depth *vertices; /* sorted by (vertex, body) */
     size_t vertex_count;

@@ -20,7 +20,7 @@ void depth_finder_clear(depth_finder *d);
 typedef struct depth_request {
     const bvh *bvh; /* its bounds are those of the surface's positions */
     const part_labels *labels;
-    const cscd_intersection_pair *pairs;
+    const cscd_intersection *pairs;
     size_t pair_count;
     double limit; /* see cscd_intersection_options */
 } depth_request;

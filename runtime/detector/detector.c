@@ -147,7 +147,6 @@ void detector_free(cscd_detector *d) {
     rollback_free(context, &d->before);
     result_buffer_free(context, &d->contacts);
     result_buffer_free(context, &d->proximities);
-    result_buffer_free(context, &d->intersections);
     result_buffer_free(context, &d->pairs);
     result_buffer_free(context, &d->names);
     surface_answers_free(context, d->answers);
@@ -377,17 +376,20 @@ const cscd_mesh *cscd_detector_mesh(const cscd_detector *detector) {
     return mesh_of_creator(detector->mesh);
 }
 
-uint32_t cscd_detector_region_count(const cscd_detector *detector) {
-    return detector_region_count(detector);
-}
-
-void cscd_detector_region_point(const cscd_detector *detector, uint32_t region, double p0[3], double p1[3]) {
-    const double(*points)[3] = (const double(*)[3])detector->culling.detector_points[region];
-    memcpy(p0, points[0], sizeof(double[3]));
-    memcpy(p1, points[1], sizeof(double[3]));
-}
-
 int cscd_detector_orientation(const cscd_detector *detector, uint32_t triangle) {
     uint8_t flag = detector->culling.facing[triangle];
     return flag == ORIENTATION_PLUS ? 1 : flag == ORIENTATION_MINUS ? -1 : 0;
+}
+
+bool cscd_detector_region_point(const cscd_detector *detector, uint32_t region, double p0[3], double p1[3]) {
+    if (region >= detector_region_count(detector)) return false;
+    const double(*points)[3] = (const double(*)[3])detector->culling.detector_points[region];
+    memcpy(p0, points[0], sizeof(double[3]));
+    memcpy(p1, points[1], sizeof(double[3]));
+    return true;
+}
+
+cscd_waiting cscd_detector_waiting(const cscd_detector *detector) {
+    return (cscd_waiting){.features = waiting_features(&detector->waiting),
+                          .triangles = detector->waiting.pairs.triangle_pairs};
 }

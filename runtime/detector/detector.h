@@ -52,8 +52,6 @@ struct cscd_detector {
         bool any_tainted;
         size_t beside;  /* so much room has a lane beside its share of the cap */
         int taint;      /* a cap_taint */
-        size_t counted; /* pairs of triangles of the list that found no room; then none is given out */
-        const double *positions; /* of the check */
     } cap;
 
     /* Per component, in the current interval: */
@@ -73,8 +71,8 @@ struct cscd_detector {
     size_t *contacts_seen;      /* per lane: so many of its contacts have tainted triangles */
     cscd_guarantee *guarantees; /* per component, of the last step */
 
-    result_buffer contacts, proximities, intersections;
-    result_buffer pairs;             /* intersections by kind */
+    result_buffer contacts, proximities;
+    result_buffer pairs;             /* intersections */
     result_buffer names;             /* of proximities, while repetitions are found */
     size_t memory_most;              /* what answers may take, where the caller does not say */
     struct surface_answers *answers; /* NULL before the first call that asks for curves, patches and so on */

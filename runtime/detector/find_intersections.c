@@ -67,7 +67,7 @@ static size_t most_memory(const cscd_detector *d, const cscd_intersection_option
 
 /* Before the first call that asks. */
 static void look_at_memory(cscd_detector *d) {
-    d->memory_most = cscd_max_memory_default();
+    d->memory_most = memory_share();
 }
 
 static size_t longest_list(const cscd_detector *d, const cscd_intersection_options *options) {
@@ -205,8 +205,8 @@ typedef struct pair_key {
     uint32_t kind, shared;
 } pair_key;
 
-static cscd_intersection_pair describe_pair(const cscd_mesh *mesh, const pair_key *key) {
-    cscd_intersection_pair pair = {.a = (uint32_t)(key->pair >> 32),
+static cscd_intersection describe_pair(const cscd_mesh *mesh, const pair_key *key) {
+    cscd_intersection pair = {.a = (uint32_t)(key->pair >> 32),
                                    .b = (uint32_t)key->pair,
                                    .kind = (cscd_intersection_kind)key->kind,
                                    .shared = key->shared};
@@ -216,14 +216,14 @@ static cscd_intersection_pair describe_pair(const cscd_mesh *mesh, const pair_ke
     return pair;
 }
 
-_Static_assert(2 * sizeof(pair_key) <= sizeof(cscd_intersection_pair), "pairs are sorted in their own room");
+_Static_assert(2 * sizeof(pair_key) <= sizeof(cscd_intersection), "pairs are sorted in their own room");
 
 /* Room for the list, with little to spare, since lists are long where memory matters. */
 static cscd_status reserve_pairs(cscd_detector *d, size_t count) {
     if (count <= d->pairs.capacity && d->pairs.items != NULL) return CSCD_OK;
     const size_t room = count + count / 8 + 16;
     result_buffer_free(d->context, &d->pairs);
-    d->pairs.items = context_reserve(d->context, room, sizeof(cscd_intersection_pair));
+    d->pairs.items = context_reserve(d->context, room, sizeof(cscd_intersection));
     if (d->pairs.items == NULL) return CSCD_OUT_OF_MEMORY;
     d->pairs.capacity = room;
     return CSCD_OK;
@@ -231,7 +231,7 @@ static cscd_status reserve_pairs(cscd_detector *d, size_t count) {
 
 /* Joins the lists of all lanes, and sorts them. The keys and those to spare lie where the list will be, each half as long as
  * an item; the last items are described first, so that no key is written over before its turn. */
-static cscd_status list_pairs(cscd_detector *d, size_t count, cscd_intersection_pairs *out) {
+static cscd_status list_pairs(cscd_detector *d, size_t count, cscd_intersections *out) {
     cscd_status status = reserve_pairs(d, count);
     if (status != CSCD_OK) return status;
     pair_key *keys = d->pairs.items;
@@ -244,7 +244,7 @@ static cscd_status list_pairs(cscd_detector *d, size_t count, cscd_intersection_
         }
     }
     sort_by_number(keys, keys + count, count, sizeof *keys);
-    cscd_intersection_pair *items = d->pairs.items;
+    cscd_intersection *items = d->pairs.items;
     for (size_t i = count; i-- > 0;) {
         const pair_key key = keys[i];
         items[i] = describe_pair(d->mesh, &key);
@@ -253,7 +253,7 @@ static cscd_status list_pairs(cscd_detector *d, size_t count, cscd_intersection_
     return CSCD_OK;
 }
 
-static void count_zero_area(const static_check *check, cscd_intersection_pairs *out) {
+static void count_zero_area(const static_check *check, cscd_intersections *out) {
     out->first_zero_area = UINT32_MAX;
     for (uint32_t i = 0; i < check->lane_count; i++) {
         const intersection_lane *lane = &check->lanes[i];
@@ -263,7 +263,7 @@ static void count_zero_area(const static_check *check, cscd_intersection_pairs *
 }
 
 /* Nothing is found beside pairs that are not listed. */
-static void leave_out_list(const kind_search *s, cscd_intersection_pairs *out) {
+static void leave_out_list(const kind_search *s, cscd_intersections *out) {
     const size_t longest = s->detector->options.longest_list;
     const bool by_memory = longest == 0 || out->count <= longest;
     if (!by_memory) return;
@@ -271,11 +271,10 @@ static void leave_out_list(const kind_search *s, cscd_intersection_pairs *out) {
     out->wanted_memory = out->count < SIZE_MAX / PAIR_SIZE ? out->count * PAIR_SIZE : SIZE_MAX;
 }
 
-static cscd_status give_result(const kind_search *s, cscd_intersection_pairs *out) {
+static cscd_status give_result(const kind_search *s, cscd_intersections *out) {
     cscd_detector *d = s->detector;
     const size_t *of_kind = s->of_kind;
-    cscd_intersection_pairs result = {.count = count_found(s),
-                                      .waiting = d->waiting.pairs.triangle_pairs,
+    cscd_intersections result = {.count = count_found(s),
                                       .collapsed = d->collapsed.count,
                                       .collapsed_components = collapsed_list(&d->collapsed)};
     count_zero_area(&d->check, &result);
@@ -301,10 +300,10 @@ static cscd_status give_result(const kind_search *s, cscd_intersection_pairs *ou
 
 typedef struct kind_question {
     cscd_intersection_options options;
-    cscd_intersection_pairs *out;
+    cscd_intersections *out;
 } kind_question;
 
-static cscd_status sum_up_parts(cscd_detector *d, memory_budget *budget, cscd_intersection_pairs *found) {
+static cscd_status sum_up_parts(cscd_detector *d, memory_budget *budget, cscd_intersections *found) {
     const same_solids *same = found->depths != NULL ? &d->answers->same_solids : NULL;
     cscd_status status =
         part_sums_run(&d->part_sums, d->mesh, &d->parts, found, same, budget, &d->part_pairs);
@@ -352,12 +351,12 @@ static cscd_status find_kinds(cscd_detector *d, const double *positions, void *d
 }
 
 static cscd_status find_in_views(cscd_detector *d, const cscd_view *positions,
-                                 const cscd_intersection_options *options, cscd_intersection_pairs *out) {
+                                 const cscd_intersection_options *options, cscd_intersections *out) {
     cscd_context *context = d->context;
     if (out == NULL)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_find_intersections: out is NULL");
     const double *x = NULL;
-    cscd_intersection_pairs found;
+    cscd_intersections found;
     kind_question question = {.out = &found};
     cscd_status status = take_options(context, options, &question.options);
     if (status == CSCD_OK) status = views_read(context, d->mesh, positions, "positions", &d->unpacked[0], &x);
@@ -370,7 +369,7 @@ static cscd_status find_in_views(cscd_detector *d, const cscd_view *positions,
 
 cscd_status cscd_detector_find_intersections(cscd_detector *detector, const cscd_view *positions,
                                              const cscd_intersection_options *options,
-                                             cscd_intersection_pairs *out) {
+                                             cscd_intersections *out) {
     if (detector == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!object_enter(detector, &entry)) return entry.status;

@@ -99,36 +99,6 @@ uint32_t list_cap_taint(cscd_detector *d, const tainting *t) {
 
 /* ---- pairs of triangles -------------------------------------------------------------------------------- */
 
-static size_t settle_pairs(const cscd_detector *d, intersection_lane *lane) {
-    const exclusions *e = &d->exclusions;
-    size_t kept = lane->settled;
-    for (size_t i = lane->settled; i < lane->count; i++) {
-        found_pair pair = lane->items[i];
-        if (!exclusions_cover(e, CSCD_CONTACT_TT, pair.a, pair.b, d->cap.positions))
-            lane->items[kept++] = pair;
-    }
-    return lane->settled = lane->count = kept;
-}
-
-static void spill_pairs(void *data) {
-    cscd_detector *d = data;
-    size_t count = d->cap.counted;
-    for (uint32_t i = 0; i < d->check.lane_count; i++) count += settle_pairs(d, &d->check.lanes[i]);
-    if (count <= d->options.longest_list) return;
-    d->cap.counted = count;
-    for (uint32_t i = 0; i < d->check.lane_count; i++)
-        d->check.lanes[i].settled = d->check.lanes[i].count = 0;
-}
-
-void list_cap_begin_check(cscd_detector *d, const double *positions) {
-    d->cap.counted = 0;
-    if (d->options.longest_list == 0) return;
-    d->cap.positions = positions;
-    d->check.limit = list_cap_lane(d);
-    d->check.spill = positions != NULL ? spill_pairs : NULL;
-    d->check.spill_data = d;
-}
-
 void list_cap_begin_pairs(cscd_detector *d, size_t longest, void (*spill)(void *data), void *data) {
     d->check.limit = longest / d->space.traversal.lane_count + d->cap.beside;
     d->check.spill = spill;

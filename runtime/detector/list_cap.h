@@ -24,11 +24,8 @@ uint32_t list_cap_taint(cscd_detector *d, const tainting *t);
 /* LIST_TOO_LONG, with its sentence. */
 cscd_status list_cap_fail(const cscd_detector *d, size_t count);
 
-/* Lets static checks keep no more pairs than the cap allows, until list_cap_end_check. A check for a list has its
- * positions; a proof of the start, NULL, drops pairs once their triangles are marked. */
-void list_cap_begin_check(cscd_detector *d, const double *positions);
-
-/* The same for a check whose pairs the caller takes from the lanes as they fill, to keep no more than the longest of them;
- * 0: no list is made of them, so lanes need room for few. */
+/* Lets static checks keep no more pairs in their lanes than the longest list allows, until list_cap_end_check; 0: no list
+ * is made of them, so lanes need room for few. spill takes pairs from the lanes as they fill; NULL drops them, since their
+ * triangles are marked. */
 void list_cap_begin_pairs(cscd_detector *d, size_t longest, void (*spill)(void *data), void *data);
 void list_cap_end_check(cscd_detector *d);

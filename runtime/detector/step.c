@@ -63,7 +63,8 @@ enum { UNPROVEN_SHARE = 16 };
 static cscd_status check_start(step_work *work) {
     cscd_detector *d = work->detector;
     progress_stage(&d->context->progress, "start", 0.0, 0.3);
-    list_cap_begin_check(d, NULL);
+    const size_t longest = d->options.longest_list;
+    if (longest > 0) list_cap_begin_pairs(d, longest, NULL, NULL);
     cscd_status status =
         static_check_unproven(&d->check, &d->space.traversal, &d->space.bvh, work->search.interval.x0);
     list_cap_end_check(d);
@@ -320,7 +321,6 @@ cscd_status step_find(cscd_detector *d, const double *x0, const double *x1, cscd
                                                      : stages_by_trees,
                         &work);
     d->space.traversal.collapsed = COLLAPSED_FOUND;
-    work.contacts.collapsed = d->leaves_collapsed ? d->collapsed.count : 0;
     if (status == CSCD_LIST_TOO_LONG) out->contacts = work.contacts;
     if (status != CSCD_OK) return status;
     for (uint32_t c = 0; c < d->mesh->component_count; c++) d->guarantees[c] = guarantee_of(d, c);
@@ -359,7 +359,6 @@ static cscd_status step_between(cscd_detector *d, const double *x0, const double
     if (status == CSCD_OK) status = context_progress_status(d->context);
     if (status == CSCD_LIST_TOO_LONG) {
         *out = found.contacts;
-        out->waiting = waiting_features(&d->waiting);
         list_cap_fail(d, out->count);
     }
     if (status != CSCD_OK) return detector_fail_call(d, status);
@@ -369,7 +368,6 @@ static cscd_status step_between(cscd_detector *d, const double *x0, const double
     d->timings = found.timings;
     d->counters = found.counters;
     *out = found.contacts;
-    out->waiting = waiting_features(&d->waiting);
     return CSCD_OK;
 }
 

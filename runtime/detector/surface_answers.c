@@ -53,10 +53,10 @@ static bool make_patch_finder(const cscd_detector *d, surface_answers *a) {
 }
 
 left_out_pairs *surface_answers_begin(cscd_detector *d) {
-    const size_t before = cscd_context_bytes(d->context);
+    const size_t before = memory_bytes(&d->context->memory);
     surface_answers *a = make_answers(d);
     if (a == NULL || !make_patch_finder(d, a)) return NULL;
-    a->kept += cscd_context_bytes(d->context) - before;
+    a->kept += memory_bytes(&d->context->memory) - before;
     a->left_out.count = 0;
     a->left_out.out_of_memory = false;
     return &a->left_out;
@@ -64,7 +64,7 @@ left_out_pairs *surface_answers_begin(cscd_detector *d) {
 
 /* ---- what does not fit --------------------------------------------------------------------------------- */
 
-void surface_answers_leave_out(memory_budget *budget, cscd_left_out what, cscd_intersection_pairs *found) {
+void surface_answers_leave_out(memory_budget *budget, cscd_left_out what, cscd_intersections *found) {
     size_t wanted = budget->wanted < SIZE_MAX / 2 ? budget->wanted + budget->wanted / 3 + 1 : SIZE_MAX;
     if (found->left_out == 0 && budget->wanted_work == 0)
         found->wanted_memory = wanted; /* with the quarter that is for what is kept */
@@ -82,7 +82,7 @@ void surface_answers_shrink(cscd_detector *d, size_t most) {
 
 /* Of what a call asks for; what needs something that is left out is left out with it. */
 static void leave_out_all(const cscd_intersection_options *o, memory_budget *budget,
-                          cscd_intersection_pairs *found) {
+                          cscd_intersections *found) {
     const bool asked[] = {[CSCD_LEFT_OUT_CURVES] = surface_answers_wanted(o) && found->curves == NULL,
                           [CSCD_LEFT_OUT_PATCHES] = patches_wanted(o),
                           [CSCD_LEFT_OUT_OVERLAPS] = o->overlaps,
@@ -94,7 +94,7 @@ static void leave_out_all(const cscd_intersection_options *o, memory_budget *bud
 }
 
 void surface_answers_leave_out_list(const cscd_intersection_options *options,
-                                    cscd_intersection_pairs *found) {
+                                    cscd_intersections *found) {
     memory_budget none = {.most = 0};
     surface_answers_leave_out(&none, CSCD_LEFT_OUT_PAIRS, found);
     leave_out_all(options, &none, found);
@@ -109,7 +109,7 @@ typedef struct answer_search {
     memory_budget *budget;
     named_surface *surface; /* that of the cuts; orientations are found for patches */
     const surface_cuts *cuts;
-    cscd_intersection_pairs *found;
+    cscd_intersections *found;
 } answer_search;
 
 /* What did not fit takes nothing of the budget, nor of memory. */
@@ -240,9 +240,9 @@ static cscd_status find_answers(const answer_search *s) {
 
 cscd_status surface_answers_find(cscd_detector *d, const double *positions,
                                  const cscd_intersection_options *options, memory_budget *budget,
-                                 cscd_intersection_pairs *found) {
+                                 cscd_intersections *found) {
     surface_answers *a = d->answers;
-    const size_t before = cscd_context_bytes(d->context);
+    const size_t before = memory_bytes(&d->context->memory);
     if (a->left_out.out_of_memory) return CSCD_OUT_OF_MEMORY;
     named_surface surface = {.mesh = d->mesh,
                              .positions = positions,
@@ -253,6 +253,6 @@ cscd_status surface_answers_find(cscd_detector *d, const double *positions,
     const surface_cuts cuts = {&surface, &a->joiner, &a->patch_finder, budget};
     const answer_search search = {d, options, budget, &surface, &cuts, found};
     cscd_status status = find_answers(&search);
-    a->kept += cscd_context_bytes(d->context) - before; /* may be fewer than before */
+    a->kept += memory_bytes(&d->context->memory) - before; /* may be fewer than before */
     return status;
 }

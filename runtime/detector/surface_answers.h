@@ -39,13 +39,13 @@ left_out_pairs *surface_answers_begin(cscd_detector *d);
  * OUT_OF_MEMORY and CANCELLED have no sentence. */
 cscd_status surface_answers_find(cscd_detector *d, const double *positions,
                                  const cscd_intersection_options *options, memory_budget *budget,
-                                 cscd_intersection_pairs *found);
+                                 cscd_intersections *found);
 
 /* Something did not fit the budget: says so in *found, and goes on. */
-void surface_answers_leave_out(memory_budget *budget, cscd_left_out what, cscd_intersection_pairs *found);
+void surface_answers_leave_out(memory_budget *budget, cscd_left_out what, cscd_intersections *found);
 
 /* The pairs do not fit, and so is all left out that was asked for. */
-void surface_answers_leave_out_list(const cscd_intersection_options *options, cscd_intersection_pairs *found);
+void surface_answers_leave_out_list(const cscd_intersection_options *options, cscd_intersections *found);
 
 /* Gives back what is kept from one call to the next, if that is more than so many bytes. */
 void surface_answers_shrink(cscd_detector *d, size_t most);

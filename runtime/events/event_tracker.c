@@ -121,7 +121,7 @@ static cscd_status create_tracker(cscd_context *context, const cscd_mesh *mesh,
     if (t == NULL) return context_out_of_memory(context);
     t->context = context;
     t->mesh = seen;
-    t->max_memory = chosen.max_memory > 0 ? chosen.max_memory : cscd_max_memory_default();
+    t->max_memory = chosen.max_memory > 0 ? chosen.max_memory : memory_share();
     mesh_hold(mesh);
     context_add_object(context, &t->references, free_tracker);
     if (create_parts(t, &chosen) != CSCD_OK) {
@@ -147,12 +147,12 @@ void cscd_event_tracker_destroy(cscd_event_tracker *t) {
 
 /* ---- what a frame is given, from anywhere ------------------------------------------------------------------ */
 
-static cscd_status check_pairs(const cscd_mesh *mesh, const cscd_intersection_pairs *found) {
+static cscd_status check_pairs(const cscd_mesh *mesh, const cscd_intersections *found) {
     if (found->items == NULL && found->count > 0)
         return context_fail(mesh->context, CSCD_INVALID_ARGUMENT,
                             "found counts %zu pairs but has no list; ask for CSCD_ANSWER_LIST", found->count);
     for (size_t i = 0; i < found->count; i++) {
-        const cscd_intersection_pair *pair = &found->items[i];
+        const cscd_intersection *pair = &found->items[i];
         if (pair->a < mesh->triangle_count && pair->b < mesh->triangle_count && (unsigned)pair->kind < 64)
             continue;
         return context_fail(mesh->context, CSCD_INVALID_ARGUMENT,
@@ -208,7 +208,7 @@ static cscd_status check_depths(const cscd_mesh *mesh, const cscd_depths *depths
     return CSCD_OK;
 }
 
-static cscd_status check_input(const cscd_mesh *mesh, const cscd_intersection_pairs *found) {
+static cscd_status check_input(const cscd_mesh *mesh, const cscd_intersections *found) {
     if (found == NULL) return CSCD_OK;
     cscd_status status = check_pairs(mesh, found);
     if (status == CSCD_OK) status = check_curves(mesh, found->curves);
@@ -251,7 +251,7 @@ cscd_status cscd_event_tracker_add_contacts(cscd_event_tracker *tracker, const c
     return context_leave(&entry, add_contacts(tracker, contacts, contact_count));
 }
 
-static cscd_status check_frame(cscd_event_tracker *t, uint64_t frame, const cscd_intersection_pairs *found) {
+static cscd_status check_frame(cscd_event_tracker *t, uint64_t frame, const cscd_intersections *found) {
     const event_history *h = &t->history;
     if (h->frame_count > 0 && frame <= h->last_frame)
         return context_fail(t->context, CSCD_INVALID_ARGUMENT,
@@ -289,7 +289,7 @@ static cscd_status append_nothing(cscd_event_tracker *t, const frame_input *inpu
         pairs, contacts, t->max_memory, wanted);
 }
 
-static cscd_status add_frame(cscd_event_tracker *t, uint64_t frame, const cscd_intersection_pairs *found) {
+static cscd_status add_frame(cscd_event_tracker *t, uint64_t frame, const cscd_intersections *found) {
     cscd_status status = check_frame(t, frame, found);
     if (status != CSCD_OK) return status;
     memory_budget budget = {.most = t->max_memory};
@@ -300,7 +300,7 @@ static cscd_status add_frame(cscd_event_tracker *t, uint64_t frame, const cscd_i
 }
 
 cscd_status cscd_event_tracker_add_frame(cscd_event_tracker *tracker, uint64_t frame,
-                                         const cscd_intersection_pairs *found) {
+                                         const cscd_intersections *found) {
     if (tracker == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!object_enter(tracker, &entry)) return entry.status;

@@ -161,7 +161,7 @@ typedef struct tracked_contact {
 
 /* The findings of a frame, checked: all numbers are of the mesh. */
 typedef struct frame_input {
-    const cscd_intersection_pairs *found; /* NULL: nothing */
+    const cscd_intersections *found; /* NULL: nothing */
     const tracked_contact *contacts;
     size_t contact_count;
     uint64_t frame;        /* its number */

@@ -137,7 +137,7 @@ static void add_two_triangles(frame_grouping *w, uint32_t a, uint32_t b) {
 }
 
 static void add_pairs(frame_grouping *w) {
-    const cscd_intersection_pairs *found = w->input->found;
+    const cscd_intersections *found = w->input->found;
     for (size_t i = 0; i < found->count && !w->no_memory; i++)
         add_two_triangles(w, found->items[i].a, found->items[i].b);
 }
@@ -254,7 +254,7 @@ static void place_group(frame_groups *g, uint32_t group, place_rank rank, uint64
     if (x != NULL) memcpy(worst->x, x, sizeof worst->x);
 }
 
-static void sum_pairs(frame_groups *g, const cscd_intersection_pairs *found, const group_thing *things) {
+static void sum_pairs(frame_groups *g, const cscd_intersections *found, const group_thing *things) {
     for (size_t i = 0; i < found->count; i++) {
         uint32_t group = things[i].parent;
         tracked_event *event = &g->groups[group];
@@ -278,7 +278,7 @@ static void sum_pieces(frame_groups *g, const cscd_curves *curves, const group_t
     }
 }
 
-static void sum_depths(frame_groups *g, const cscd_intersection_pairs *found, const group_thing *things) {
+static void sum_depths(frame_groups *g, const cscd_intersections *found, const group_thing *things) {
     const cscd_depths *depths = found->depths;
     for (size_t i = 0; depths != NULL && i < depths->count; i++) {
         uint32_t group = things[i].parent;
@@ -323,7 +323,7 @@ static size_t piece_count_of(const cscd_curves *curves) {
 
 static void sum_things(const frame_grouping *w) {
     frame_groups *g = w->groups;
-    const cscd_intersection_pairs *found = w->input->found;
+    const cscd_intersections *found = w->input->found;
     const group_thing *things = g->things;
     if (found != NULL) {
         sum_pairs(g, found, things);
@@ -341,7 +341,7 @@ static void sum_things(const frame_grouping *w) {
 /* ---- the frame ------------------------------------------------------------------------------------------ */
 
 static size_t count_things(const frame_input *input) {
-    const cscd_intersection_pairs *found = input->found;
+    const cscd_intersections *found = input->found;
     size_t count = input->contact_count;
     if (found == NULL) return count;
     count += found->count + piece_count_of(found->curves);

@@ -49,7 +49,7 @@ static bool reserve_pieces(curve_joiner *j, size_t count) {
 typedef struct curve_work {
     curve_joiner *joiner;
     const named_surface *surface;
-    const cscd_intersection_pair *pairs;
+    const cscd_intersection *pairs;
     size_t pair_count;
 } curve_work;
 
@@ -345,7 +345,7 @@ static void name_curves_of_pairs(const curve_work *work) {
         j->pair_curves[i] = j->pair_pieces[i] == UINT32_MAX ? UINT32_MAX : j->piece_curves[j->pair_pieces[i]];
 }
 
-cscd_status curve_joiner_run(curve_joiner *j, const named_surface *s, const cscd_intersection_pair *pairs,
+cscd_status curve_joiner_run(curve_joiner *j, const named_surface *s, const cscd_intersection *pairs,
                              size_t pair_count, cscd_curves *out) {
     curve_work work = {j, s, pairs, pair_count};
     if (pair_count > LINKS_MAX / 2 || !reserve_pairs(j, pair_count)) return CSCD_OUT_OF_MEMORY;
@@ -433,7 +433,7 @@ static bool point_is_deep(const touching_work *w, const cscd_curve_point *point)
            edge_is_deep(w, point->edge, body);
 }
 
-void touching_curves_mark(curve_joiner *j, const named_surface *s, const cscd_intersection_pair *pairs,
+void touching_curves_mark(curve_joiner *j, const named_surface *s, const cscd_intersection *pairs,
                           const cscd_patches *patches, const cscd_depths *depths) {
     const touching_work work = {s->mesh, s->bodies, patches, depths};
     for (size_t i = 0; i < j->curve_count; i++) j->curves[i].touching = true;

@@ -228,11 +228,11 @@ size_t curve_joiner_size(size_t pair_count);
 
 /* Finds the curves of a list of pairs a < b, sorted by (a, b): all pairs of triangles that intersect or touch, except those
  * that are left out. *out lives until the next call. OUT_OF_MEMORY has no sentence, nor CANCELLED. */
-cscd_status curve_joiner_run(curve_joiner *j, const named_surface *s, const cscd_intersection_pair *pairs,
+cscd_status curve_joiner_run(curve_joiner *j, const named_surface *s, const cscd_intersection *pairs,
                              size_t pair_count, cscd_curves *out);
 
 /* Marks the curves of the last call along which surfaces only touch. pairs: those of that call. */
-void touching_curves_mark(curve_joiner *j, const named_surface *s, const cscd_intersection_pair *pairs,
+void touching_curves_mark(curve_joiner *j, const named_surface *s, const cscd_intersection *pairs,
                           const cscd_patches *patches, const cscd_depths *depths);
 
 /* ---- orientations -------------------------------------------------------------------------------------- */
@@ -251,7 +251,7 @@ typedef struct orientation_request {
         *labels;       /* of triangles: shells of one label belong together; NULL: those of an object do */
     bool by_component; /* each component is a body, or a cavity of one, whatever the surface says */
     bool as_given;     /* nothing is turned around; cavities still belong to what is around them */
-    const cscd_intersection_pair *pairs; /* all pairs of the surface that were found */
+    const cscd_intersection *pairs; /* all pairs of the surface that were found */
     size_t pair_count;
 } orientation_request;
 
@@ -484,7 +484,7 @@ void same_solids_free(same_solids *s);
 
 /* Finds the copies. It runs `overlaps` only where bodies share area and no depth says that one is within the other.
  * OUT_OF_MEMORY has no sentence. */
-cscd_status same_solids_find(same_solids *s, const surface_cuts *found, const cscd_intersection_pair *pairs,
+cscd_status same_solids_find(same_solids *s, const surface_cuts *found, const cscd_intersection *pairs,
                              size_t pair_count, const cscd_depths *depths, overlap_finder *overlaps,
                              const left_out_pairs *left_out);
 
@@ -527,5 +527,5 @@ void part_sums_free(cscd_context *context, part_summer *s);
 /* Sums up what was found. same: the copies among the bodies; NULL: nobody has asked for them. *out lives until the next call.
  * OUT_OF_MEMORY has no sentence, and may mean that the sums do not fit the budget. */
 cscd_status part_sums_run(part_summer *s, const cscd_mesh *mesh, const part_labels *labels,
-                          const cscd_intersection_pairs *found, const same_solids *same,
+                          const cscd_intersections *found, const same_solids *same,
                           memory_budget *budget, cscd_part_pairs *out);

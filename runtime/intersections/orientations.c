@@ -202,7 +202,7 @@ static bool has_key(const component_keys *k, uint64_t key) {
 }
 
 /* Those that share a triangle, as copies do, are neither in the other. */
-static bool list_crossings(orientation_finder *o, const cscd_intersection_pair *pairs, size_t pair_count) {
+static bool list_crossings(orientation_finder *o, const cscd_intersection *pairs, size_t pair_count) {
     if (!reserve_keys(o, &o->crossings, 2 * pair_count)) return false;
     for (size_t i = 0; i < pair_count; i++) {
         if (pairs[i].kind != CSCD_INTERSECTION_CROSSING && pairs[i].kind != CSCD_INTERSECTION_DUPLICATE)
@@ -232,7 +232,7 @@ static bool list_parts(const orientation_work *w) {
 
 /* A triangle of each component, the first one that touches nothing if there is one: at others it is the symbolic motion that says
  * what they lie in. */
-static void find_samples(const orientation_work *w, const cscd_intersection_pair *pairs, size_t pair_count) {
+static void find_samples(const orientation_work *w, const cscd_intersection *pairs, size_t pair_count) {
     orientation_finder *o = w->finder;
     const uint32_t *components = o->mesh->triangle_components;
     memset(o->touching, 0, o->mesh->triangle_count * sizeof *o->touching);

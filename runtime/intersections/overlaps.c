@@ -502,7 +502,7 @@ bool same_solids_have(const same_solids *s, uint32_t a, uint32_t b) {
 
 /* Bodies that share area. */
 static bool list_candidates(same_solids *s, const named_surface *surface, memory_budget *budget,
-                            const cscd_intersection_pair *pairs, size_t count) {
+                            const cscd_intersection *pairs, size_t count) {
     size_t coplanar = 0, kept = 0;
     s->count = 0;
     for (size_t i = 0; i < count; i++) coplanar += pairs[i].kind == CSCD_INTERSECTION_COPLANAR;
@@ -543,7 +543,7 @@ static bool shares_volume(const cscd_overlap *o) {
     return o->volume > 0x1p-40 * pow(o->area_a + o->area_b, 1.5);
 }
 
-cscd_status same_solids_find(same_solids *s, const surface_cuts *found, const cscd_intersection_pair *pairs,
+cscd_status same_solids_find(same_solids *s, const surface_cuts *found, const cscd_intersection *pairs,
                              size_t pair_count, const cscd_depths *depths, overlap_finder *overlaps,
                              const left_out_pairs *left_out) {
     cscd_overlaps shared;

@@ -13,7 +13,7 @@ typedef struct summing {
     part_summer *sums;
     const cscd_mesh *mesh;
     const part_labels *labels;
-    const cscd_intersection_pairs *found;
+    const cscd_intersections *found;
     const same_solids *same;
     memory_budget *budget;
     key_range pairs, pieces, depths;
@@ -55,7 +55,7 @@ static uint64_t key_of_triangles(const summing *w, uint32_t a, uint32_t b) {
 }
 
 static void list_pairs(summing *w) {
-    const cscd_intersection_pairs *found = w->found;
+    const cscd_intersections *found = w->found;
     for (size_t i = 0; i < found->count; i++)
         *w->pairs.end++ = (part_key){key_of_triangles(w, found->items[i].a, found->items[i].b), i};
 }
@@ -86,7 +86,7 @@ static void sort_keys(summing *w, key_range *keys) {
 }
 
 static cscd_status list_keys(summing *w) {
-    const cscd_intersection_pairs *found = w->found;
+    const cscd_intersections *found = w->found;
     size_t pieces = found->curves != NULL ? found->curves->piece_count : 0;
     size_t depths = found->depths != NULL ? found->depths->count : 0;
     cscd_status status = reserve_keys(w, found->count + pieces + depths);
@@ -113,7 +113,7 @@ static key_range take_keys(key_range *keys, uint64_t parts) {
     return taken;
 }
 
-static void count_kind(const cscd_intersection_pair *pair, cscd_part_pair *out) {
+static void count_kind(const cscd_intersection *pair, cscd_part_pair *out) {
     switch (pair->kind) {
     case CSCD_INTERSECTION_CROSSING:
         out->crossing++;
@@ -143,9 +143,9 @@ static double share_of(size_t count, uint32_t all) {
 }
 
 static void sum_pairs(const summing *w, key_range keys, cscd_part_pair *out) {
-    const cscd_intersection_pair *pairs = w->found->items;
+    const cscd_intersection *pairs = w->found->items;
     for (const part_key *k = keys.next; k < keys.end; k++) {
-        const cscd_intersection_pair *pair = &pairs[k->item];
+        const cscd_intersection *pair = &pairs[k->item];
         count_kind(pair, out);
         if (pair->kind == CSCD_INTERSECTION_COPLANAR && w->same != NULL && w->same->count > 0)
             out->same_solid |= same_solids_have(w->same, body_of_triangle(w->same->bodies, w->mesh, pair->a),
@@ -213,7 +213,7 @@ static size_t count_part_pairs(summing w) {
 }
 
 static size_t count_faces(const summing *w) {
-    const cscd_intersection_pairs *found = w->found;
+    const cscd_intersections *found = w->found;
     bool *marks = w->sums->marks;
     size_t count = 0;
     for (size_t i = 0; i < found->count; i++) {
@@ -228,7 +228,7 @@ static size_t count_faces(const summing *w) {
 }
 
 cscd_status part_sums_run(part_summer *s, const cscd_mesh *mesh, const part_labels *labels,
-                          const cscd_intersection_pairs *found, const same_solids *same,
+                          const cscd_intersections *found, const same_solids *same,
                           memory_budget *budget, cscd_part_pairs *out) {
     summing w = {.sums = s, .mesh = mesh, .labels = labels, .found = found, .same = same, .budget = budget};
     cscd_status status = list_keys(&w);

@@ -78,7 +78,7 @@ cscd_status displacement_bounds_find(cscd_detector *d, const double *x0, double 
     cscd_proximities near;
     cscd_status status = near_pairs_find(d, x0, search_radius, &near);
     if (status == CSCD_LIST_TOO_LONG)
-        *out = (cscd_displacement_bounds){.near_count = near.count, .waiting = near.waiting};
+        *out = (cscd_displacement_bounds){.near_count = near.count};
     if (status != CSCD_OK) return status;
     gap_work work = {d, x0, &near, scalar, near_pairs_scratch(d, near.count, sizeof *work.limits)};
     if (work.limits == NULL) return CSCD_OUT_OF_MEMORY;
@@ -89,7 +89,7 @@ cscd_status displacement_bounds_find(cscd_detector *d, const double *x0, double 
     lower_bounds(d->mesh, &near, work.limits, bounds);
     join_seams(d, bounds);
     *out = (cscd_displacement_bounds){
-        .blocked = d->proximities.items, .near_count = near.count, .waiting = near.waiting};
+        .blocked = d->proximities.items, .near_count = near.count};
     out->blocked_count = keep_blocked(d->proximities.items, near.count, work.limits);
     sum_up_bounds(bounds, d->mesh->vertex_count, farthest, out);
     return CSCD_OK;

@@ -220,7 +220,6 @@ cscd_status free_step_find(cscd_detector *d, const straight_motion *m, double lo
     cscd_status status = find_step(d, &t, longest, reached, &found);
     if (status == CSCD_OK) found.moved = is_moved(m, reached);
     if (status == CSCD_OK && !found.moved) memcpy(reached, m->x0, coordinates_of(m) * sizeof *reached);
-    found.waiting = waiting_features(&d->waiting);
     if (status == CSCD_OK || status == CSCD_IN_CONTACT) *out = found;
     return status;
 }

@@ -63,7 +63,7 @@ cscd_status proximity_collect(cscd_detector *d, const double *positions, cscd_ne
     cscd_status status =
         contact_list_gather(&d->space, &d->exclusions, sizeof(cscd_proximity), buffer, &found);
     if (status == CSCD_LIST_TOO_LONG) {
-        *out = (cscd_proximities){.count = found, .waiting = waiting_features(&d->waiting)};
+        *out = (cscd_proximities){.count = found};
         return list_cap_fail(d, found);
     }
     if (status != CSCD_OK) return status;
@@ -72,7 +72,7 @@ cscd_status proximity_collect(cscd_detector *d, const double *positions, cscd_ne
         status = unique_pairs_list(d->context, &scene, buffer->keys, found, &d->names, buffer->items, &count);
     else
         status = describe_pairs(d, &scene, count);
-    if (status == CSCD_OK) *out = (cscd_proximities){buffer->items, count, waiting_features(&d->waiting)};
+    if (status == CSCD_OK) *out = (cscd_proximities){buffer->items, count};
     return status;
 }
 

@@ -218,14 +218,14 @@ cscd_status truncation_find(cscd_detector *d, const wanted_motion *motion, doubl
     cscd_status status = reserve_vertices(d, &work, &first);
     if (status == CSCD_OK) status = near_pairs_find(d, motion->x0, search_radius, &near);
     if (status == CSCD_LIST_TOO_LONG)
-        *out = (cscd_truncation){.near_count = near.count, .waiting = near.waiting};
+        *out = (cscd_truncation){.near_count = near.count};
     if (status == CSCD_OK)
         status = division_planes_find(d, motion->x0, motion->x1, work.farthest, &near, first, &work.planes);
     if (status != CSCD_OK) return status;
     truncate_all(&work, d->context->threads);
     status = context_progress_status(d->context); /* before anything is known of the end */
     if (status != CSCD_OK) return status;
-    *out = (cscd_truncation){.held = d->proximities.items, .near_count = near.count, .waiting = near.waiting};
+    *out = (cscd_truncation){.held = d->proximities.items, .near_count = near.count};
     sum_up_vertices(&work, out);
     out->held_count = keep_held(&work.planes, d->proximities.items);
     if (known) carry_states_over(d, end);

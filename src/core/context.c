@@ -151,16 +151,11 @@ void cscd_context_cancel(cscd_context *context) {
     if (context != NULL) progress_cancel(&context->progress);
 }
 
-uint32_t cscd_context_thread_count(const cscd_context *context) {
-    return parallel_thread_count(context->threads);
-}
-
-cscd_simd cscd_context_simd(const cscd_context *context) {
-    return context->simd;
-}
-
-size_t cscd_context_bytes(const cscd_context *context) {
-    return atomic_load_explicit(&context->memory.bytes, memory_order_relaxed);
+cscd_context_info cscd_context_describe(const cscd_context *context) {
+    return (cscd_context_info){.thread_count = parallel_thread_count(context->threads),
+                               .simd = context->simd,
+                               .bytes = memory_bytes(&context->memory),
+                               .memory_share = memory_share()};
 }
 
 bool context_renew_all(cscd_context *context, array_list list, size_t *capacity, size_t count) {
@@ -183,7 +178,7 @@ cscd_status context_fail(cscd_context *context, cscd_status status, const char *
 cscd_status context_out_of_memory(cscd_context *context) {
     return context_fail(context, CSCD_OUT_OF_MEMORY,
                         "out of memory with %zu bytes in use; nothing was changed",
-                        cscd_context_bytes(context));
+                        memory_bytes(&context->memory));
 }
 
 cscd_status context_loop_status(cscd_context *context) {

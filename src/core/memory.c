@@ -27,7 +27,7 @@ static void system_release(void *user, void *block, size_t size) {
 /* Much else may be on the machine, other objects too. */
 enum { SHARE_OF_MEMORY_LEFT = 4 };
 
-size_t cscd_max_memory_default(void) {
+size_t memory_share(void) {
     const size_t share = system_memory_left() / SHARE_OF_MEMORY_LEFT;
     return share > 0 ? share : 1;
 }

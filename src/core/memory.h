@@ -16,6 +16,14 @@ typedef struct host_memory {
     atomic_size_t bytes;  /* in use, headers included; changed under the lock, read by any thread */
 } host_memory;
 
+/* The bytes that a max_memory of 0 stands for: a quarter of the memory that is free now, at least 1. */
+size_t memory_share(void);
+
+/* The bytes in use. */
+static inline size_t memory_bytes(const host_memory *m) {
+    return atomic_load_explicit(&m->bytes, memory_order_relaxed);
+}
+
 /* The allocator for a host that has none of its own. */
 cscd_allocator memory_system_allocator(void);
 

@@ -306,21 +306,6 @@ const uint32_t *cscd_mesh_array(const cscd_mesh *mesh, cscd_mesh_array_kind kind
                                               : mesh->edges[0];
 }
 
-void cscd_mesh_triangle(const cscd_mesh *mesh, uint32_t triangle, uint32_t vertices[3]) {
-    assert(triangle < mesh->triangle_count);
-    memcpy(vertices, mesh->triangles[triangle], sizeof mesh->triangles[triangle]);
-}
-
-void cscd_mesh_edge(const cscd_mesh *mesh, uint32_t edge, uint32_t vertices[2]) {
-    assert(edge < mesh->edge_count);
-    memcpy(vertices, mesh->edges[edge], sizeof mesh->edges[edge]);
-}
-
-void cscd_mesh_triangle_edges(const cscd_mesh *mesh, uint32_t triangle, uint32_t edges[3]) {
-    assert(triangle < mesh->triangle_count);
-    memcpy(edges, mesh->triangle_edges[triangle], sizeof mesh->triangle_edges[triangle]);
-}
-
 const uint32_t *cscd_mesh_vertex_triangles(const cscd_mesh *mesh, uint32_t vertex, uint32_t *count) {
     assert(vertex < mesh->vertex_count);
     *count = mesh->vertex_star_offsets[vertex + 1] - mesh->vertex_star_offsets[vertex];
@@ -336,11 +321,6 @@ const uint32_t *cscd_mesh_edge_triangles(const cscd_mesh *mesh, uint32_t edge, u
 cscd_component cscd_mesh_component(const cscd_mesh *mesh, uint32_t component) {
     assert(component < mesh->component_count);
     return mesh->components[component];
-}
-
-uint32_t cscd_mesh_triangle_component(const cscd_mesh *mesh, uint32_t triangle) {
-    assert(triangle < mesh->triangle_count);
-    return mesh->triangle_components[triangle];
 }
 
 cscd_object cscd_mesh_object(const cscd_mesh *mesh, uint32_t object) {

@@ -40,7 +40,7 @@ uint32_t part_of_vertex(const part_labels *p, const cscd_mesh *mesh, uint32_t ve
 uint32_t part_of_edge(const part_labels *p, const cscd_mesh *mesh, uint32_t edge);
 
 /* Does the point of a depth lie within another body than its own? Where its patch is not known, others of that patch say so. */
-static inline bool depth_is_in_other_body(const cscd_intersection_pairs *found, const cscd_depth *depth) {
+static inline bool depth_is_in_other_body(const cscd_intersections *found, const cscd_depth *depth) {
     return found->patches != NULL && depth->patch != UINT32_MAX &&
            found->patches->items[depth->patch].body != depth->body;
 }

@@ -90,14 +90,6 @@ void cscd_plan_destroy(cscd_plan *plan) {
     if (plan != NULL) context_destroy_object(plan->context, &plan->references);
 }
 
-cscd_method cscd_plan_method(const cscd_plan *plan) {
-    return plan->method;
-}
-
-uint32_t cscd_plan_region_count(const cscd_plan *plan) {
-    return plan->region_count;
-}
-
 cscd_region cscd_plan_region(const cscd_plan *plan, uint32_t region) {
     assert(region < plan->region_count);
     return plan->regions[region];
@@ -122,11 +114,11 @@ cscd_preprocess_timings cscd_plan_timings(const cscd_plan *plan) {
 }
 
 cscd_plan_info cscd_plan_describe(const cscd_plan *plan) {
-    return plan->info;
-}
-
-uint32_t cscd_plan_compared_count(const cscd_plan *plan) {
-    return plan->candidates.count;
+    cscd_plan_info info = plan->info;
+    info.method = plan->method;
+    info.region_count = plan->region_count;
+    info.compared_count = plan->candidates.count;
+    return info;
 }
 
 cscd_compared_plan cscd_plan_compared(const cscd_plan *plan, uint32_t place) {

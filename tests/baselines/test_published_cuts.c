@@ -69,11 +69,11 @@ static void lower_row(uint32_t row, uint32_t from, uint32_t to) {
 
 static void cut_can(double growing) {
     const published_trace trace = {.cutting = c.cutting};
-    const size_t bytes = cscd_context_bytes(c.mesh->context);
+    const size_t bytes = cscd_context_describe(c.mesh->context).bytes;
     memset(c.cutting, 0, sizeof c.cutting);
     expect_ok(published_cuts(c.mesh, c.shape.positions, c.equalized, (published_thresholds){0.1, growing},
                              &trace, c.regions, &c.region_count));
-    assert_int_equal(cscd_context_bytes(c.mesh->context), bytes);
+    assert_int_equal(cscd_context_describe(c.mesh->context).bytes, bytes);
     check_regions(c.mesh, c.regions, c.region_count);
 }
 

@@ -17,16 +17,16 @@ static cscd_context *make_context(uint32_t threads) {
 
 TEST(what_is_given_back_counts_no_more) {
     cscd_context *context = make_context(1);
-    const size_t before = cscd_context_bytes(context);
+    const size_t before = cscd_context_describe(context).bytes;
     void *one = context_allocate(context, 100, 8), *other = context_reserve(context, 3, 1);
     assert_true(one != NULL && other != NULL);
-    assert_true(cscd_context_bytes(context) >= before + 803);
+    assert_true(cscd_context_describe(context).bytes >= before + 803);
     uint8_t *grown = context_grow(context, one, 100, 200, 8);
     assert_non_null(grown);
-    assert_true(cscd_context_bytes(context) >= before + 1603 && cscd_context_bytes(context) < before + 2403);
+    assert_true(cscd_context_describe(context).bytes >= before + 1603 && cscd_context_describe(context).bytes < before + 2403);
     context_free(context, other);
     context_free(context, grown);
-    assert_int_equal(cscd_context_bytes(context), before);
+    assert_int_equal(cscd_context_describe(context).bytes, before);
     cscd_context_destroy(context);
 }
 
@@ -34,14 +34,14 @@ TEST(what_is_given_back_counts_no_more) {
 TEST(sizes_do_not_overflow) {
     static const size_t sizes[] = {2, 8, 24, SIZE_MAX / 2, SIZE_MAX};
     cscd_context *context = make_context(1);
-    const size_t before = cscd_context_bytes(context);
+    const size_t before = cscd_context_describe(context).bytes;
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
         const size_t wraps = SIZE_MAX / sizes[i] + 2;
         assert_null(context_allocate(context, wraps, sizes[i]));
         assert_null(context_reserve(context, wraps, sizes[i]));
         assert_null(context_allocate(context, sizes[i], wraps));
     }
-    assert_int_equal(cscd_context_bytes(context), before);
+    assert_int_equal(cscd_context_describe(context).bytes, before);
     cscd_context_destroy(context);
 }
 

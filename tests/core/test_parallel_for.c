@@ -131,12 +131,12 @@ TEST(thread_count_is_how_work_is_cut) {
     options.thread_count = 5;
     uint32_t threads = threads_of_process();
     assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
-    assert_int_equal(cscd_context_thread_count(context), 5);
+    assert_int_equal(cscd_context_describe(context).thread_count, 5);
     assert_true(threads_of_process() <= threads);
     cscd_context_destroy(context);
     options.thread_count = 0;
     assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
-    assert_true(cscd_context_thread_count(context) >= 1);
+    assert_true(cscd_context_describe(context).thread_count >= 1);
     cscd_context_destroy(context);
     assert_int_equal(h.runs, 0);
 }

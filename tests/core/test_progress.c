@@ -63,7 +63,7 @@ static bool cancel_later(void *user, cscd_context *context, cscd_status status) 
         next_call(w, 1);
         return false;
     }
-    w->bytes = cscd_context_bytes(context);
+    w->bytes = cscd_context_describe(context).bytes;
     w->cancellations++;
     next_call(w, w->cancel_at + 1 + w->cancel_at / w->every);
     return true;
@@ -116,9 +116,9 @@ static workload_result check_interrupted(uint32_t thread_count, uint32_t every, 
     host.every = every;
     w.again = cancel_later;
     w.user = &host;
-    size_t bytes = cscd_context_bytes(context);
+    size_t bytes = cscd_context_describe(context).bytes;
     found = workload_run(context, &w);
-    assert_int_equal(cscd_context_bytes(context), bytes);
+    assert_int_equal(cscd_context_describe(context).bytes, bytes);
     cscd_context_destroy(context);
     assert_int_equal(counter.live, 0);
     expect_equal(&found, &expected);

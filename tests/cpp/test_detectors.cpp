@@ -1,4 +1,5 @@
 /* Detectors and line searches of the C++ interface against the functions of C that they stand for. */
+#include "cscd/research.h"
 #include "tests/cpp/twin_detectors.hpp"
 
 namespace {
@@ -30,20 +31,20 @@ TEST(kinds) {
         lower[i] = lower[2] + 0.01 * double(i % 7);
     const cscd_view x = cscd::view_of(std::as_const(lower));
     for (std::size_t stop : {0u, 3u}) {
-        cscd_intersection_pairs expected;
+        cscd_intersections expected;
         options.stop_after = stop;
         assert_int_equal(cscd_detector_find_intersections(t.c, &x, &options, &expected), CSCD_OK);
-        const cscd::intersection_pairs found = t.ours.find_intersections(lower, options);
+        const cscd::intersections found = t.ours.find_intersections(lower, options);
         assert_true(found.size() == expected.count && found.size() > 2 &&
                     found.crossing == expected.crossing);
         std::size_t i = 0;
-        for (const cscd_intersection_pair &pair : found)
+        for (const cscd_intersection &pair : found)
             assert_memory_equal(&pair, &expected.items[i++], sizeof pair);
     }
     const std::size_t all = t.ours.find_intersections(lower).size();
     options = cscd_intersection_defaults();
     options.overlaps = options.depths = true;
-    const cscd::intersection_pairs answered = t.ours.find_intersections(lower, options);
+    const cscd::intersections answered = t.ours.find_intersections(lower, options);
     std::size_t pieces = 0, numbers = 0;
     for (const cscd_curve &curve : cscd::curves(answered)) {
         pieces += cscd::pieces(answered, curve).size();
@@ -56,7 +57,7 @@ TEST(kinds) {
     assert_int_equal(cscd::depths(answered).size(), answered.depths->count);
     options = cscd_intersection_defaults();
     options.answer = CSCD_ANSWER_COUNT;
-    const cscd::intersection_pairs counted = t.ours.find_intersections(lower, options);
+    const cscd::intersections counted = t.ours.find_intersections(lower, options);
     assert_true(counted.size() == all && counted.begin() == counted.end());
     options.kinds = 0;
     assert_int_equal(error_of([&] { t.ours.find_intersections(lower, options); }).status(),
@@ -99,9 +100,9 @@ TEST(parts) {
         const cscd::contact_part_pairs ours = t.ours.contact_parts({contacts.data(), contacts.size()});
         assert_true(ours.size() == sums.count && !ours.empty());
         assert_memory_equal(ours.data(), sums.items, sums.count * sizeof *sums.items);
-        cscd_intersection_pairs expected;
+        cscd_intersections expected;
         assert_int_equal(cscd_detector_find_intersections(t.c, &t.v1, &options, &expected), CSCD_OK);
-        const cscd::intersection_pairs found = t.ours.find_intersections(t.x1, options);
+        const cscd::intersections found = t.ours.find_intersections(t.x1, options);
         assert_int_equal(cscd::parts(found).size(), expected.parts->count);
         assert_memory_equal(cscd::parts(found).data(), expected.parts->items,
                             expected.parts->count * sizeof *expected.parts->items);
@@ -124,12 +125,10 @@ TEST(culling) {
     std::vector<double> moved = body_positions;
     for (std::size_t i = 0; i < moved.size(); i += 3) moved[i] += 0.5;
     assert_true(detector.step(body_positions, moved).empty());
-    assert_int_equal(detector.region_count(), cscd_detector_region_count(detector.get()));
-    assert_true(detector.region_count() > 0);
-    const auto ends = detector.region_point(0);
-    assert_true(std::fabs(ends[1][0] - ends[0][0] - 0.5) < 1e-9 && ends[0][1] == ends[1][1]);
-    assert_int_equal(detector.orientation(0), cscd_detector_orientation(detector.get(), 0));
-    assert_true(detector.orientation(0) != 0);
+    double start[3], end[3];
+    assert_true(cscd_detector_region_point(detector.get(), 0, start, end));
+    assert_true(std::fabs(end[0] - start[0] - 0.5) < 1e-9 && start[1] == end[1]);
+    assert_true(cscd_detector_orientation(detector.get(), 0) != 0);
 }
 
 TEST(proximity) {
@@ -222,8 +221,8 @@ TEST(live_changes) {
     assert_true(t.ours.step(t.x0, t.x0).empty());
     t.ours.set_seams({});
     const cscd::contacts none = t.ours.step(t.x0, t.x0);
-    assert_true(none.empty() && none.waiting > 0);
-    assert_true(t.ours.check(t.x0).waiting > 0);
+    assert_true(none.empty() && t.ours.waiting().features > 0);
+    assert_true(t.ours.check(t.x0).empty() && t.ours.waiting().triangles > 0);
     const std::vector<std::array<std::uint32_t, 2>> wrong{{3, 3}};
     assert_int_equal(error_of([&] { t.ours.set_seams(wrong); }).status(), CSCD_INVALID_ARGUMENT);
 }

@@ -37,7 +37,7 @@ TEST(events) {
     cscd::event_tracker whole(t.context, t.mesh), parts(t.context, t.mesh);
     follow(t, [&](std::uint64_t f, const std::vector<float> &before, const std::vector<float> &x) {
         cscd_contacts contacts;
-        cscd_intersection_pairs pairs;
+        cscd_intersections pairs;
         const cscd_view from = cscd::view_of(std::as_const(before)), to = cscd::view_of(std::as_const(x));
         assert_int_equal(cscd_detector_step(t.c, &from, &to, &contacts), CSCD_OK);
         assert_int_equal(cscd_event_tracker_add_contacts(c, contacts.items, contacts.count), CSCD_OK);

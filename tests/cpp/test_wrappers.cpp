@@ -15,16 +15,16 @@ TEST(contexts) {
     options.simd = CSCD_SIMD_SCALAR;
     cscd::context context(options);
     assert_true(static_cast<bool>(context));
-    assert_int_equal(context.thread_count(), 3);
-    assert_int_equal(context.simd(), CSCD_SIMD_SCALAR);
-    assert_int_equal(context.bytes(), cscd_context_bytes(context.get()));
-    assert_true(context.bytes() > 0);
+    assert_int_equal(context.info().thread_count, 3);
+    assert_int_equal(context.info().simd, CSCD_SIMD_SCALAR);
+    assert_int_equal(context.info().bytes, cscd_context_describe(context.get()).bytes);
+    assert_true(context.info().bytes > 0);
     context.cancel();
     cscd::context taken(std::move(context));
     assert_false(static_cast<bool>(context));
     assert_null(context.get());
     context = std::move(taken);
-    assert_int_equal(context.thread_count(), 3);
+    assert_int_equal(context.info().thread_count, 3);
 
     options.thread_count = 1000;
     const cscd::error refused = error_of([&] { cscd::context none(options); });

@@ -23,6 +23,7 @@
  *
  * The third scene is a mouth, in which no edge touches anything: all that happens is of a vertex and the one large triangle f
  * of its floor. */
+#include "cscd/research.h"
 #include "runtime/detector/detector.h"
 #include "tests/support/culling/exact_numbers.h"
 #include "tests/support/oracle.h"

@@ -12,6 +12,13 @@
 #include <math.h>
 #include <string.h>
 
+static uint32_t region_count(const cscd_detector *detector) {
+    uint32_t count = 0;
+    double points[2][3];
+    while (cscd_detector_region_point(detector, count, points[0], points[1])) count++;
+    return count;
+}
+
 static scene interval; /* large; one test at a time */
 
 static void subtract_points(const double a[3], const double b[3], double out[3]) {
@@ -50,7 +57,7 @@ TEST(without_a_plan_points_are_means) {
         cscd_intersections crossing;
         assert_int_equal(check_packed(r.detector, interval.x0, &crossing), CSCD_OK); /* no trace */
         uint32_t count = cscd_mesh_component_count(r.mesh);
-        assert_int_equal(cscd_detector_region_count(r.detector), count);
+        assert_int_equal(region_count(r.detector), count);
         for (uint32_t c = 0; c < count; c++) {
             double start[3], end[3], means[2][3];
             cscd_detector_region_point(r.detector, c, start, end);
@@ -111,7 +118,7 @@ TEST(orientations_are_seen_from_these_points) {
         cscd_detector_destroy(r.detector);
         assert_int_equal(detector_create_here(r.mesh, plan, &options, &r.detector), CSCD_OK);
         assert_int_equal(step_packed(r.detector, interval.x0, interval.x1, &contacts), CSCD_OK);
-        assert_int_equal(cscd_detector_region_count(r.detector), cscd_plan_region_count(plan));
+        assert_int_equal(region_count(r.detector), cscd_plan_region_count(plan));
         for (uint32_t i = 0; i < cscd_plan_region_count(plan); i++) { /* at rest they are those of the plan */
             double start[3], end[3];
             cscd_region region = cscd_plan_region(plan, i);
@@ -133,12 +140,12 @@ TEST(other_methods_have_no_regions) {
     for (int i = 0; i < 3; i++) {
         options.method = method_or_none(methods[i]);
         rig r = rig_create(&interval, 1, &options);
-        assert_int_equal(cscd_detector_region_count(r.detector), 0);
+        assert_int_equal(region_count(r.detector), 0);
         rig_destroy(&r);
     }
     options.method = CSCD_METHOD_SINGLE;
     options.min_separation = 1e-3;
     rig r = rig_create(&interval, 1, &options);
-    assert_int_equal(cscd_detector_region_count(r.detector), 0);
+    assert_int_equal(region_count(r.detector), 0);
     rig_destroy(&r);
 }

@@ -16,7 +16,7 @@ static cscd_depths find_as(uint32_t object_count, const uint32_t *labels, uint32
     if (object_count == 1)
         descs[0] = cscd_object_of_triangles(rig.all.vertex_count, rig.all.triangle_count, rig.all.triangles);
     cscd_intersection_options options = cscd_intersection_defaults();
-    cscd_intersection_pairs found;
+    cscd_intersections found;
     options.depths = options.parts = options.part_bodies = true;
     assert_int_equal(cscd_mesh_create(context, descs, object_count, mesh), CSCD_OK);
     assert_int_equal(cscd_detector_create(context, *mesh, NULL, NULL, detector), CSCD_OK);
@@ -128,7 +128,7 @@ TEST(parts_of_a_patch_have_their_own_points) {
 
 static double depth_of(cscd_detector *detector) {
     cscd_intersection_options options = cscd_intersection_defaults();
-    cscd_intersection_pairs found;
+    cscd_intersections found;
     options.depths = options.parts = options.part_bodies = true;
     assert_int_equal(cscd_detector_find_intersections(
                          detector, CSCD_DOUBLES(rig.all.x0, rig.all.vertex_count), &options, &found),

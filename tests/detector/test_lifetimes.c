@@ -66,7 +66,7 @@ static void member_use(void *const members[KINDS], int kind) {
     cscd_free_step step;
     switch (kind) {
     case CONTEXT:
-        assert_true(cscd_context_bytes(member) > 0);
+        assert_true(cscd_context_describe(member).bytes > 0);
         break;
     case MESH:
         assert_int_equal(cscd_mesh_edge_count(member), 12);

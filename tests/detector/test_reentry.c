@@ -93,7 +93,7 @@ static cscd_status call_again(const panel_scene *p, int what) {
         cscd_contacts contacts;
         cscd_proximities proximities;
         cscd_intersections intersections;
-        cscd_intersection_pairs pairs;
+        cscd_intersections pairs;
         cscd_contact_part_pairs sums;
         cscd_free_step step;
         cscd_displacement_bounds bounds;

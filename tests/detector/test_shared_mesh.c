@@ -145,7 +145,7 @@ static size_t share_once(scene_family family) {
     cscd_mesh_destroy(mesh);
     mesh_user creator = {.failed = false};
     take_steps(&creator, detector);
-    assert_true(cscd_context_bytes(home) > 0);
+    assert_true(cscd_context_describe(home).bytes > 0);
     cscd_context_destroy(home);
     cscd_detector_destroy(detector);
     for (int i = 0; i < USERS; i++) assert_int_equal(pthread_join(users[i].thread, NULL), 0);

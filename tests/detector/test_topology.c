@@ -109,10 +109,10 @@ static size_t tear_once(cscd_context *context, uint64_t seed) {
 TEST(a_sheet_tears_while_the_context_lives) {
     for (uint32_t threads = 1; threads <= 2; threads++) {
         cscd_context *context = context_of(threads, NULL);
-        size_t at_rest = cscd_context_bytes(context), count = 0;
+        size_t at_rest = cscd_context_describe(context).bytes, count = 0;
         for (uint64_t seed = 0; seed < TEARS; seed++) {
             count += tear_once(context, seed);
-            assert_int_equal(cscd_context_bytes(context), at_rest);
+            assert_int_equal(cscd_context_describe(context).bytes, at_rest);
         }
         assert_true(count > TEARS);
         cscd_context_destroy(context);
@@ -245,13 +245,13 @@ static carried carry_once(cscd_context *context, uint64_t seed) {
 
 TEST(regions_carried_over_change_no_contact) {
     cscd_context *context = context_of(1, NULL);
-    size_t at_rest = cscd_context_bytes(context);
+    size_t at_rest = cscd_context_describe(context).bytes;
     carried sum = {0, 0};
     for (uint64_t seed = 0; seed < TEARS; seed++) {
         carried one = carry_once(context, seed);
         sum.contacts += one.contacts;
         sum.oriented += one.oriented;
-        assert_int_equal(cscd_context_bytes(context), at_rest);
+        assert_int_equal(cscd_context_describe(context).bytes, at_rest);
     }
     assert_true(sum.contacts > 0 && sum.oriented > 0);
     cscd_context_destroy(context);

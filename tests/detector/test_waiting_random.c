@@ -123,7 +123,7 @@ static void compare_check(waiting_run *q) {
     see_positions(q, objects_motion.x0, true);
     expect_ok(check_packed(q->s.detector, objects_motion.x0, &found));
     waiting_oracle_intersections(&q->oracle, objects_motion.x0, &q->truth);
-    assert_int_equal(found.waiting, waiting_oracle_triangles(&q->oracle));
+    assert_int_equal(cscd_detector_waiting(q->s.detector).triangles, waiting_oracle_triangles(&q->oracle));
     assert_int_equal(found.count, q->truth.count);
     for (size_t i = 0; i < found.count; i++) {
         assert_int_equal(found.items[i].a, q->truth.items[i].a);
@@ -145,7 +145,7 @@ static void compare_near(waiting_run *q, const double *x, const cscd_proximities
         assert_memory_equal(&found->items[next++], t, sizeof *t);
     }
     assert_int_equal(next, found->count);
-    assert_int_equal(found->waiting, waiting_oracle_features(&q->oracle));
+    assert_int_equal(cscd_detector_waiting(q->s.detector).features, waiting_oracle_features(&q->oracle));
     q->sum->near += found->count;
 }
 
@@ -164,17 +164,16 @@ static void compare_step(waiting_run *q) {
     expect_ok(step_packed(q->s.detector, objects_motion.x0, objects_motion.x1, &found));
     expect_one_number(q->s.detector, "objects at random");
     rules_rig_compare(&q->s, &q->truth, &found, &q->sum->steps);
-    assert_int_equal(found.waiting, waiting_oracle_features(&q->oracle));
+    assert_int_equal(cscd_detector_waiting(q->s.detector).features, waiting_oracle_features(&q->oracle));
     for (uint32_t t = 0; t < objects_joined.triangle_count; t++)
         q->sum->steps.culled += cscd_detector_orientation(q->s.detector, t) != 0;
 }
 
 /* Nothing touches on the way that is not left out; at distance 0 a step is refused where something touches at x0. */
-static void check_free(waiting_run *q, cscd_status status, const cscd_free_step *step,
-                       const double *reached) {
+static void check_free(waiting_run *q, cscd_status status, const double *reached) {
     static scene way;
     assert_true(status == CSCD_OK || status == CSCD_IN_CONTACT);
-    assert_int_equal(step->waiting, waiting_oracle_features(&q->oracle));
+    assert_int_equal(cscd_detector_waiting(q->s.detector).features, waiting_oracle_features(&q->oracle));
     memcpy(&way, &objects_motion, sizeof way);
     memcpy(way.x1, status == CSCD_OK ? reached : way.x0, way.vertex_count * sizeof(double[3]));
     oracle_list touching = {0};
@@ -195,7 +194,7 @@ static void compare_max_step(waiting_run *q) {
     cscd_free_step step;
     see_positions(q, objects_motion.x0, true);
     cscd_status status = max_step_packed(q->s.detector, objects_motion.x0, objects_motion.x1, reached, &step);
-    check_free(q, status, &step, reached);
+    check_free(q, status, reached);
 }
 
 /* Changes between the calls of a line hold at its start, too. */
@@ -213,7 +212,7 @@ static void compare_line(waiting_run *q) {
         see_positions(q, objects_motion.x0, false);
     }
     cscd_status status = line_max_step_packed(line, 1.0, reached, &step);
-    check_free(q, status, &step, reached);
+    check_free(q, status, reached);
     expect_ok(cscd_line_search_find_near(line, 1.0, 0.06, CSCD_NEAR_PAIRS, &found));
     expect_ok(line_positions_packed(line, 1.0, reached));
     compare_near(q, reached, &found);

@@ -84,7 +84,7 @@ static void record_flight(recorded_frames *r, const flight *f) {
     r->frame_count = 12;
     for (uint32_t i = 0; i < r->frame_count; i++) {
         cscd_contacts contacts = {0};
-        cscd_intersection_pairs found;
+        cscd_intersections found;
         recorded_frame *frame = &r->frames[i];
         frame->number = i;
         place_bodies(f, (i - 1.0) / 11.0, x0);

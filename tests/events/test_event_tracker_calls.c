@@ -43,7 +43,7 @@ TEST(options_that_cannot_be) {
     recorded_frames_free(&r);
 }
 
-static void expect_refused_frame(const recorded_frames *r, const cscd_intersection_pairs *found,
+static void expect_refused_frame(const recorded_frames *r, const cscd_intersections *found,
                                  const char *words) {
     cscd_event_tracker *tracker = recorded_tracker(r);
     expect_refused(r, cscd_event_tracker_add_frame(tracker, 0, found), words);
@@ -55,16 +55,16 @@ TEST(frames_of_another_mesh) {
     recorded_frames r;
     random_seed(2);
     recorded_frames_create(&r, NULL, 0);
-    const cscd_intersection_pair far_pair = {.a = 0, .b = 1000};
+    const cscd_intersection far_pair = {.a = 0, .b = 1000};
     cscd_curve curve = {.point_count = 1, .piece_count = 2};
     cscd_curve_point points[2] = {{.edge = 0}};
     cscd_curve_piece pieces[2] = {{0, 1}, {1, 2}};
     cscd_depth depth = {.vertex = 1000};
-    expect_refused_frame(&r, &(cscd_intersection_pairs){.count = 3}, "ask for CSCD_ANSWER_LIST");
-    expect_refused_frame(&r, &(cscd_intersection_pairs){.items = &far_pair, .count = 1}, "pair 0");
+    expect_refused_frame(&r, &(cscd_intersections){.count = 3}, "ask for CSCD_ANSWER_LIST");
+    expect_refused_frame(&r, &(cscd_intersections){.items = &far_pair, .count = 1}, "pair 0");
     cscd_curves curves = {.items = &curve, .count = 1, .points = points, .pieces = pieces};
     curves.point_count = curves.piece_count = 2;
-    const cscd_intersection_pairs with_curve = {.curves = &curves};
+    const cscd_intersections with_curve = {.curves = &curves};
     expect_refused_frame(&r, &with_curve, "curve 0");
     curve.point_count = 3;
     expect_refused_frame(&r, &with_curve, "curve 0");
@@ -75,7 +75,7 @@ TEST(frames_of_another_mesh) {
     points[1].x[2] = NAN;
     expect_refused_frame(&r, &with_curve, "curve 0");
     cscd_depths depths = {.items = &depth, .count = 1};
-    const cscd_intersection_pairs with_depth = {.depths = &depths};
+    const cscd_intersections with_depth = {.depths = &depths};
     expect_refused_frame(&r, &with_depth, "depth 0");
     depth.vertex = 0;
     static const double wrong_depths[] = {NAN, INFINITY, -0.5};
@@ -143,11 +143,11 @@ TEST(copies_are_said_of_pairs) {
     cscd_events events;
     const uint32_t last = cscd_mesh_object(r.mesh, 0).vertex_count - 1,
                    other = cscd_mesh_object(r.mesh, 0).triangle_count;
-    const cscd_intersection_pair pair = {.a = 0, .b = other, .kind = CSCD_INTERSECTION_COPLANAR};
+    const cscd_intersection pair = {.a = 0, .b = other, .kind = CSCD_INTERSECTION_COPLANAR};
     const cscd_contact contact = {.kind = CSCD_CONTACT_VF, .a = last, .b = other + 15};
     const cscd_part_pair copies = {.a = 0, .b = 1, .same_solid = true};
     const cscd_part_pairs parts = {.items = &copies, .count = 1};
-    const cscd_intersection_pairs found = {.items = &pair, .count = 1, .parts = &parts};
+    const cscd_intersections found = {.items = &pair, .count = 1, .parts = &parts};
     options.rings = 0;
     assert_int_equal(cscd_event_tracker_create(r.context, r.mesh, &options, &tracker), CSCD_OK);
     assert_int_equal(cscd_event_tracker_add_contacts(tracker, &contact, 1), CSCD_OK);

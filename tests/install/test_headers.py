@@ -7,7 +7,7 @@ import pytest
 from support.install.built_tree import BUILD, ROOT, functions_of, shell
 
 # Functions that programs in C++ use as they are.
-PLAIN = "cscd_from_name cscd_max_memory_default cscd_mesh_context cscd_mesh_count cscd_name cscd_version_string"
+PLAIN = "cscd_from_name cscd_mesh_context cscd_mesh_count cscd_name cscd_version_string"
 
 
 def test_headers_are_as_frozen():

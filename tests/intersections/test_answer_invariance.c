@@ -63,7 +63,7 @@ TEST(scales_change_no_bit) {
     add_scene(&rig, 1);
     body_rig_create(&rig, NULL, 2);
     body_rig_find(&rig);
-    const cscd_intersection_pairs *a = &rig.found, *b = &other.found;
+    const cscd_intersections *a = &rig.found, *b = &other.found;
     assert_true(a->curves->count > 4 && a->depths->count > 100 && a->depths->count > a->depths->vertex_count);
     for (size_t i = 0; i < sizeof exponents / sizeof *exponents; i++) {
         double scale = ldexp(1.0, exponents[i]);
@@ -196,7 +196,7 @@ TEST(numbers_mean_nothing) {
     for (int i = 0; i < 4; i++) add_shuffled(&random, objects[i]);
     body_rig_create(&other, NULL, 1);
     body_rig_find(&other);
-    const cscd_intersection_pairs *a = &rig.found, *b = &other.found;
+    const cscd_intersections *a = &rig.found, *b = &other.found;
     assert_int_equal(a->curves->count, b->curves->count);
     assert_int_equal(a->patches->count, b->patches->count);
     compare_points(a->curves, b->curves);

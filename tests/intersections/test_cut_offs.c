@@ -6,7 +6,7 @@
 #include <string.h>
 
 static body_rig rig; /* large; one test at a time */
-static cscd_intersection_pairs found;
+static cscd_intersections found;
 
 static cscd_status try_cut_offs(void) {
     cscd_intersection_options options = cscd_intersection_defaults();

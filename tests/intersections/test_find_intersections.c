@@ -12,7 +12,7 @@
 enum { SCENES = NIGHTLY(15, 150) };
 
 static integer_scene s; /* large; one test at a time */
-static cscd_intersection_pair expected[PAIRS_MAX], before[PAIRS_MAX];
+static cscd_intersection expected[PAIRS_MAX], before[PAIRS_MAX];
 
 static rig rig_up(uint32_t threads, cscd_method method) {
     rig r = {NULL};
@@ -24,10 +24,10 @@ static rig rig_up(uint32_t threads, cscd_method method) {
     return r;
 }
 
-static cscd_intersection_pairs find_pairs(const rig *r, cscd_intersection_answer answer, uint64_t kinds,
+static cscd_intersections find_pairs(const rig *r, cscd_intersection_answer answer, uint64_t kinds,
                                           size_t stop_after) {
     cscd_intersection_options options = cscd_intersection_defaults();
-    cscd_intersection_pairs found;
+    cscd_intersections found;
     options.answer = answer;
     options.kinds = kinds;
     options.stop_after = stop_after;
@@ -37,8 +37,8 @@ static cscd_intersection_pairs find_pairs(const rig *r, cscd_intersection_answer
 
 /* ---- one answer ---------------------------------------------------------------------------------------- */
 
-static void expect_pair(const rig *r, const cscd_intersection_pair *is,
-                        const cscd_intersection_pair *wanted) {
+static void expect_pair(const rig *r, const cscd_intersection *is,
+                        const cscd_intersection *wanted) {
     assert_int_equal(is->a, wanted->a);
     assert_int_equal(is->b, wanted->b);
     assert_int_equal(is->kind, wanted->kind);
@@ -48,7 +48,7 @@ static void expect_pair(const rig *r, const cscd_intersection_pair *is,
     assert_int_equal(is->components[1], cscd_mesh_triangle_component(r->mesh, is->b));
 }
 
-static void expect_counts(const cscd_intersection_pairs *found, const cscd_intersection_pair *pairs,
+static void expect_counts(const cscd_intersections *found, const cscd_intersection *pairs,
                           size_t count) {
     size_t of_kind[CSCD_INTERSECTION_TOUCHING + 1] = {0};
     for (size_t i = 0; i < count; i++) of_kind[pairs[i].kind]++;
@@ -61,15 +61,15 @@ static void expect_counts(const cscd_intersection_pairs *found, const cscd_inter
 }
 
 /* The list has exactly the expected pairs. */
-static void expect_list(const rig *r, const cscd_intersection_pairs *found, size_t count) {
+static void expect_list(const rig *r, const cscd_intersections *found, size_t count) {
     expect_counts(found, expected, count);
     for (size_t i = 0; i < count; i++) expect_pair(r, &found->items[i], &expected[i]);
     assert_false(found->stopped);
-    assert_int_equal(found->waiting, 0);
+    assert_int_equal(cscd_detector_waiting(r->detector).triangles, 0);
 }
 
 /* Sorted, and all of them expected. */
-static void expect_some_of(const rig *r, const cscd_intersection_pairs *found, size_t count) {
+static void expect_some_of(const rig *r, const cscd_intersections *found, size_t count) {
     size_t next = 0;
     expect_counts(found, found->items, found->count);
     for (size_t i = 0; i < found->count; i++) {
@@ -83,7 +83,7 @@ static void expect_some_of(const rig *r, const cscd_intersection_pairs *found, s
 
 /* ---- all answers for a set of kinds ---------------------------------------------------------------------- */
 
-/* The plain check has the same pairs but for duplicates. */
+/* A search without duplicates has all other pairs. */
 static void compare_with_check(const rig *r, size_t count) {
     cscd_intersections plain;
     size_t next = 0;
@@ -95,26 +95,26 @@ static void compare_with_check(const rig *r, size_t count) {
         assert_int_equal(plain.items[next++].b, expected[i].b);
     }
     assert_int_equal(next, plain.count);
-    cscd_intersection_pairs found = find_pairs(r, CSCD_ANSWER_COUNT, UINT64_MAX, 0);
+    cscd_intersections found = find_pairs(r, CSCD_ANSWER_COUNT, UINT64_MAX, 0);
     assert_int_equal(found.zero_area_triangles, plain.zero_area_triangles);
     assert_int_equal(found.first_zero_area, plain.first_zero_area);
 }
 
 /* The first call of a size is kept in `before`; those of other thread counts must be the same. */
 static void compare_first_pairs(const rig *r, uint64_t kinds, size_t stop_after, size_t count, bool first) {
-    cscd_intersection_pairs found = find_pairs(r, CSCD_ANSWER_LIST, kinds, stop_after);
+    cscd_intersections found = find_pairs(r, CSCD_ANSWER_LIST, kinds, stop_after);
     assert_int_equal(found.count, stop_after < count ? stop_after : count);
     assert_int_equal(found.stopped, stop_after <= count);
     expect_some_of(r, &found, count);
     if (first) memcpy(before, found.items, found.count * sizeof *before);
     assert_memory_equal(before, found.items, found.count * sizeof *before);
-    cscd_intersection_pairs counted = find_pairs(r, CSCD_ANSWER_COUNT, kinds, stop_after);
+    cscd_intersections counted = find_pairs(r, CSCD_ANSWER_COUNT, kinds, stop_after);
     expect_counts(&counted, before, found.count);
     assert_null(counted.items);
 }
 
 static void compare_answers(const rig *r, uint64_t kinds, size_t count) {
-    cscd_intersection_pairs found = find_pairs(r, CSCD_ANSWER_LIST, kinds, 0);
+    cscd_intersections found = find_pairs(r, CSCD_ANSWER_LIST, kinds, 0);
     expect_list(r, &found, count);
     found = find_pairs(r, CSCD_ANSWER_COUNT, kinds, 0);
     expect_counts(&found, expected, count);

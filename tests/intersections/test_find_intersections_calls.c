@@ -20,7 +20,7 @@ TEST(caps_bound_lists) {
     rig r = rig_create(&s, 2, NULL);
     size_t all = find_kinds_of(&s, r.detector, CSCD_ANSWER_LIST, 0).count;
     for (size_t beside = 0; beside < 200; beside += 50) {
-        cscd_intersection_pairs found = {.count = 0};
+        cscd_intersections found = {.count = 0};
         expect_ok(cscd_detector_set_longest_list(r.detector, all - 1));
         r.detector->cap.beside = beside;
         assert_int_equal(find_intersections_packed(r.detector, s.x0, NULL, &found), CSCD_LIST_TOO_LONG);
@@ -61,7 +61,7 @@ TEST(states_are_known_afterwards) {
         rig checked = rig_create(&s, 2, &options), asked = rig_create(&s, 2, &options);
         cscd_intersection_options all = intersection_options(CSCD_ANSWER_COUNT, kinds, 0);
         cscd_intersection_options some = intersection_options(CSCD_ANSWER_LIST, kinds, SIZE_MAX);
-        cscd_intersection_pairs found;
+        cscd_intersections found;
         expect_ok(find_intersections_packed(asked.detector, s.x0, &some, &found));
         expect_same_knowledge(&checked, &asked);
         expect_ok(check_packed(checked.detector, s.x0, &plain));
@@ -88,11 +88,11 @@ static void make_trio(double height) {
 }
 
 static void expect_trio(cscd_detector *detector, size_t crossing, size_t duplicate, size_t waiting) {
-    cscd_intersection_pairs found = find_kinds_of(&s, detector, CSCD_ANSWER_LIST, 0);
+    cscd_intersections found = find_kinds_of(&s, detector, CSCD_ANSWER_LIST, 0);
     assert_int_equal(found.count, crossing + duplicate);
     assert_int_equal(found.crossing, crossing);
     assert_int_equal(found.duplicate, duplicate);
-    assert_int_equal(found.waiting, waiting);
+    assert_int_equal(cscd_detector_waiting(detector).triangles, waiting);
     for (size_t i = 0; i < found.count; i++)
         assert_int_equal(found.items[i].kind == CSCD_INTERSECTION_DUPLICATE, found.items[i].a == 1);
 }
@@ -113,7 +113,7 @@ TEST(waiting_pairs_are_left_out) {
     rig_destroy(&r);
 }
 
-/* A check knows no duplicates, so what is known afterwards does not depend on them. */
+/* What is known afterwards does not depend on duplicates. */
 TEST(duplicates_mark_nothing) {
     cscd_detector_options options = cscd_detector_defaults();
     cscd_intersections plain;
@@ -138,10 +138,10 @@ TEST(odd_seams_are_taken) {
     options.seam_count = 2;
     options.seam_reach = INFINITY;
     rig r = rig_create(&s, 1, &options);
-    cscd_intersection_pairs found = find_kinds_of(&s, r.detector, CSCD_ANSWER_LIST, 0);
+    cscd_intersections found = find_kinds_of(&s, r.detector, CSCD_ANSWER_LIST, 0);
     assert_int_equal(found.duplicate, 1);
     assert_true(found.items[0].a == 0 && found.items[0].shared == 1); /* corner 0, with two of the other */
-    const cscd_intersection_pair *last = &found.items[found.count - 1];
+    const cscd_intersection *last = &found.items[found.count - 1];
     assert_true(last->a == 1 && last->b == 2 && last->kind == CSCD_INTERSECTION_DUPLICATE &&
                 last->shared == 3);
     cscd_intersections plain;
@@ -153,14 +153,14 @@ TEST(odd_seams_are_taken) {
 /* ---- options --------------------------------------------------------------------------------------------- */
 
 static void expect_refused(cscd_detector *detector, cscd_intersection_options options, const char *sentence) {
-    cscd_intersection_pairs found = {.count = 4711};
+    cscd_intersections found = {.count = 4711};
     assert_int_equal(find_intersections_packed(detector, s.x0, &options, &found), CSCD_INVALID_ARGUMENT);
     assert_non_null(strstr(cscd_context_detail(cscd_mesh_context(cscd_detector_mesh(detector))), sentence));
     assert_int_equal(found.count, 4711);
 }
 
 TEST(wrong_options_are_refused) {
-    cscd_intersection_pairs found;
+    cscd_intersections found;
     make_trio(0.0);
     rig r = rig_create(&s, 1, NULL);
     expect_refused(r.detector, intersection_options((cscd_intersection_answer)3, UINT64_MAX, 0),

@@ -18,7 +18,7 @@ static bool ignore_a_third(void *user, cscd_contact_kind kind, uint32_t a, uint3
 }
 
 static void compare_first_pairs(bool ignores) {
-    static cscd_intersection_pair before[1000];
+    static cscd_intersection before[1000];
     cscd_detector_options options = cscd_detector_defaults();
     options.ignore = ignores ? ignore_a_third : NULL;
     rig rigs[4];
@@ -26,7 +26,7 @@ static void compare_first_pairs(bool ignores) {
     for (size_t stop_after = 1; stop_after <= 1000; stop_after = stop_after * 3 - stop_after / 2) {
         for (uint32_t threads = 1; threads <= 4; threads++) {
             cscd_detector *detector = rigs[threads - 1].detector;
-            cscd_intersection_pairs found = find_kinds_of(&s, detector, CSCD_ANSWER_LIST, stop_after);
+            cscd_intersections found = find_kinds_of(&s, detector, CSCD_ANSWER_LIST, stop_after);
             if (threads == 1) memcpy(before, found.items, found.count * sizeof *before);
             assert_true(found.stopped || stop_after > 300);
             assert_int_equal(found.count == stop_after, found.stopped);
@@ -42,7 +42,7 @@ static void compare_first_pairs(bool ignores) {
 TEST(first_pairs_are_the_same) {
     make_wavy_spheres(0.02, &s);
     rig r = rig_create(&s, 3, NULL);
-    cscd_intersection_pairs found = find_kinds_of(&s, r.detector, CSCD_ANSWER_LIST, 0);
+    cscd_intersections found = find_kinds_of(&s, r.detector, CSCD_ANSWER_LIST, 0);
     assert_true(compare_with_each_pair(&s, &found) > 300);
     rig_destroy(&r);
     compare_first_pairs(false);
@@ -89,11 +89,11 @@ static cscd_detector *make_sheets(cscd_context *context, uint32_t patches, doubl
 TEST(first_pairs_do_not_depend_on_luck) {
     static const size_t stops[] = {1, 30, 100, 300};
     static double x[2 * GRID * 3];
-    static cscd_intersection_pair before[4][300];
+    static cscd_intersection before[4][300];
     for (uint32_t i = 0; i < 4 * REPETITIONS; i++) {
         cscd_context_options context_options = cscd_context_defaults();
         cscd_context *context = NULL;
-        cscd_intersection_pairs found;
+        cscd_intersections found;
         context_options.thread_count = 1 + i % 4;
         expect_ok(cscd_context_create(&context_options, &context));
         cscd_detector *detector = make_sheets(context, i / 4, x);

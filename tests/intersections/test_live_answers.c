@@ -143,7 +143,7 @@ static cscd_detector *new_detector(bool leaves_out) {
     return made;
 }
 
-static void find_everything(cscd_detector *d, const double *x, cscd_intersection_pairs *out) {
+static void find_everything(cscd_detector *d, const double *x, cscd_intersections *out) {
     cscd_intersection_options options = cscd_intersection_defaults();
     options.overlaps = options.depths = options.cut_offs = options.parts = true;
     expect_ok(find_intersections_packed(d, x, &options, out));
@@ -165,13 +165,13 @@ static void expect_same_overlaps(const cscd_overlaps *ours, const cscd_overlaps 
 }
 
 static void compare_at(cscd_detector *fresh, const double *x) {
-    cscd_intersection_pairs ours, theirs, anew;
+    cscd_intersections ours, theirs, anew;
     find_everything(twins.ours, x, &ours);
     find_everything(twins.theirs, x, &theirs);
     find_everything(fresh, x, &anew);
     compare_surfaces(twins.mesh, &ours, &theirs);
     expect_same_overlaps(ours.overlaps, theirs.overlaps);
-    if (theirs.waiting == 0) compare_answers(twins.mesh, &theirs, &anew);
+    if (cscd_detector_waiting(twins.theirs).triangles == 0) compare_answers(twins.mesh, &theirs, &anew);
     for (size_t i = 0; i < ours.curves->count; i++) partly_seen += twins.set && !ours.curves->items[i].closed;
     curves_seen += ours.curves->count;
     depths_seen += ours.depths->count;

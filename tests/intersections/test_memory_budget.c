@@ -38,7 +38,7 @@ static cscd_status find_with(body_rig *r, const cscd_intersection_options *optio
                                             options, &r->found);
 }
 
-static bool leaves_out(const cscd_intersection_pairs *found, cscd_left_out what) {
+static bool leaves_out(const cscd_intersections *found, cscd_left_out what) {
     return (found->left_out >> what & 1) != 0;
 }
 
@@ -60,7 +60,7 @@ static void find_references(void (*add)(body_rig *r)) {
 
 /* What is there is what it is without a limit; what is not there is said to be left out. */
 static void compare_given(const body_rig *r) {
-    const cscd_intersection_pairs *f = &r->found;
+    const cscd_intersections *f = &r->found;
     assert_int_equal(f->count, full.found.count);
     assert_int_equal(f->crossing, full.found.crossing);
     assert_true((f->items == NULL) == leaves_out(f, CSCD_LEFT_OUT_PAIRS));

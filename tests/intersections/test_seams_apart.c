@@ -26,7 +26,7 @@ static void create_with_seams(const uint32_t (*seams)[2], size_t count) {
     body_rig_create(&rig, &options, 1);
 }
 
-static void expect_cubes(const cscd_intersection_pairs *found) {
+static void expect_cubes(const cscd_intersections *found) {
     double x = 0.75, y = 0.5, z = 0.875, faces = x * y + y * z + z * x;
     assert_int_equal(found->curves->count, 1);
     assert_true(found->curves->items[0].closed);

@@ -44,7 +44,7 @@ TEST(methods_and_threads_agree) {
 /* ---- what is left out ------------------------------------------------------------------------------------ */
 
 static bool names_object(uint32_t object) {
-    const cscd_intersection_pairs *f = &rig.found;
+    const cscd_intersections *f = &rig.found;
     for (size_t i = 0; i < f->curves->count; i++) {
         if (f->curves->items[i].objects[0] == object || f->curves->items[i].objects[1] == object) return true;
     }
@@ -101,7 +101,7 @@ TEST(the_list_of_all_pairs_is_needed) {
     body_rig_create(&rig, NULL, 1);
     for (int i = 0; i < 4; i++) {
         cscd_intersection_options options = cscd_intersection_defaults();
-        cscd_intersection_pairs found;
+        cscd_intersections found;
         *(i == 0   ? &options.curves
           : i == 1 ? &options.patches
           : i == 2 ? &options.overlaps
@@ -119,7 +119,7 @@ TEST(the_list_of_all_pairs_is_needed) {
 /* The caller's function, which is asked while pairs are found, asks the detector. */
 static bool ask_again(void *user, cscd_contact_kind kind, uint32_t a, uint32_t b) {
     size_t *asked = user;
-    cscd_intersection_pairs kept = rig.found;
+    cscd_intersections kept = rig.found;
     assert_true(kind == CSCD_CONTACT_TT && a < b);
     assert_int_equal(body_rig_try(&rig), CSCD_BUSY);
     assert_memory_equal(&kept, &rig.found, sizeof kept);

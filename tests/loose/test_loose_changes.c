@@ -138,14 +138,14 @@ TEST(cut_rope) {
     expect_ok(cscd_mesh_change_create(scene.context, mesh, changes, 2, &change));
     expect_ok(cscd_detector_change_mesh(detector, change));
     expect_ok(step_packed(detector, x, x, &found));
-    assert_true(found.count == 0 && found.waiting == 2);
+    assert_true(found.count == 0 && cscd_detector_waiting(detector).features == 2);
     memcpy(parted, x, sizeof parted);
     parted[9] = 1.5;  /* the second half of the rope begins farther on */
     parted[16] = 5.5; /* and the twin is away */
     expect_ok(max_step_packed(detector, x, parted, parted, &step));
-    assert_true(step.fraction == 1.0 && step.waiting == 2);
+    assert_true(step.fraction == 1.0 && cscd_detector_waiting(detector).features == 2);
     expect_ok(step_packed(detector, parted, x, &found));
-    assert_true(found.count == 2 && found.waiting == 0);
+    assert_true(found.count == 2 && cscd_detector_waiting(detector).features == 0);
     assert_true(found.items[0].kind == CSCD_CONTACT_EE || found.items[1].kind == CSCD_CONTACT_EE);
     assert_true(found.items[0].kind == CSCD_CONTACT_VV || found.items[1].kind == CSCD_CONTACT_VV);
     cscd_detector_destroy(detector);
@@ -197,14 +197,14 @@ TEST(tear_where_all_is_sewn) {
     expect_ok(step_packed(fresh, now, now, &expected));
     expect_ok(step_packed(detector, now, now, &found));
     assert_int_equal(found.count, 0);
-    assert_int_equal(found.waiting, expected.count);
+    assert_int_equal(cscd_detector_waiting(detector).features, expected.count);
     uint32_t kinds = 0;
     for (size_t i = 0; i < expected.count; i++) kinds |= 1u << expected.items[i].kind;
     assert_int_equal(kinds, 1u << CSCD_CONTACT_VF | 1u << CSCD_CONTACT_EE | 1u << CSCD_CONTACT_EV |
                                 1u << CSCD_CONTACT_VH);
     expect_ok(step_packed(detector, parted, now, &found));
     expect_ok(step_packed(fresh, parted, now, &expected));
-    assert_int_equal(found.waiting, 0);
+    assert_int_equal(cscd_detector_waiting(detector).features, 0);
     expect_same(&found, &expected);
     cscd_detector_destroy(fresh);
     cscd_detector_destroy(detector);
@@ -243,15 +243,15 @@ TEST(vertices_of_nothing_wait_no_more) {
         assert_int_equal(found.count, 0);
         expect_ok(cscd_detector_set_seams(detector, NULL, 0));
         if (seen) expect_ok(step_packed(detector, x, x, &found));
-        const size_t before = found.waiting;
+        const size_t before = cscd_detector_waiting(detector).features;
         expect_ok(cscd_mesh_change_create(scene.context, mesh, losses, 2, &change));
         expect_ok(cscd_detector_change_mesh(detector, change));
         expect_ok(detector_create_here(cscd_mesh_change_mesh(change), NULL, NULL, &fresh));
         expect_ok(step_packed(fresh, x, x, &expected));
         expect_ok(step_packed(detector, x, x, &found));
         assert_true(found.count == 0 && expected.count > 0);
-        assert_int_equal(found.waiting, expected.count);
-        if (seen) assert_true(before > found.waiting + 2);
+        assert_int_equal(cscd_detector_waiting(detector).features, expected.count);
+        if (seen) assert_true(before > cscd_detector_waiting(detector).features + 2);
         cscd_detector_destroy(fresh);
         cscd_detector_destroy(detector);
         cscd_mesh_change_destroy(change);

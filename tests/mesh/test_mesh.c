@@ -264,12 +264,12 @@ TEST(doubled_triangle) {
 
 static void check_refused(cscd_context *context, const cscd_object_desc *desc, cscd_status expected,
                           const char *detail) {
-    size_t bytes = cscd_context_bytes(context);
+    size_t bytes = cscd_context_describe(context).bytes;
     cscd_mesh *const untouched = (cscd_mesh *)&bytes;
     cscd_mesh *mesh = untouched;
     assert_int_equal(cscd_mesh_create(context, desc, 1, &mesh), expected);
     assert_ptr_equal(mesh, untouched);
-    assert_int_equal(cscd_context_bytes(context), bytes);
+    assert_int_equal(cscd_context_describe(context).bytes, bytes);
     if (strstr(cscd_context_detail(context), detail) == NULL)
         fail_msg("no '%s' in '%s'", detail, cscd_context_detail(context));
 }

@@ -156,12 +156,12 @@ TEST(equal_new_meshes) {
 
 static void check_refused(cscd_context *context, const cscd_mesh *old, const cscd_object_change *changes,
                           uint32_t count, cscd_status expected, const char *detail) {
-    size_t bytes = cscd_context_bytes(context);
+    size_t bytes = cscd_context_describe(context).bytes;
     cscd_mesh_change *const untouched = (cscd_mesh_change *)&bytes;
     cscd_mesh_change *made = untouched;
     assert_int_equal(cscd_mesh_change_create(context, old, changes, count, &made), expected);
     assert_ptr_equal(made, untouched);
-    assert_int_equal(cscd_context_bytes(context), bytes);
+    assert_int_equal(cscd_context_describe(context).bytes, bytes);
     if (strstr(cscd_context_detail(context), detail) == NULL)
         fail_msg("no '%s' in '%s'", detail, cscd_context_detail(context));
 }

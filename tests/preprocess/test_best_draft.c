@@ -1,4 +1,5 @@
 /* Method auto compares plans, and keeps the one that leaves the least to test. */
+#include "cscd/research.h"
 #include "tests/support/preprocess/bending.h"
 #include "tests/support/test.h"
 
@@ -14,7 +15,7 @@ TEST(keeps_the_best) {
         const uint32_t triangles = kinds[i] == BODY_GENUS2 ? body_nearest_count(BODY_GENUS2, 800) : 1500;
         bending b = bending_of(kinds[i], triangles, 0.0, 1);
         cscd_plan *best = bending_plan(&b, CSCD_METHOD_AUTO, NULL, 0);
-        const uint32_t count = cscd_plan_compared_count(best);
+        const uint32_t count = cscd_plan_describe(best).compared_count;
         double kept = 2.0, least = 2.0;
         assert_int_equal(count, 5);
         for (uint32_t c = 0; c < count; c++) {
@@ -93,7 +94,7 @@ TEST(predicts_what_a_detector_does) {
     enum { TAKEN = 4 };
     bending b = bending_of(BODY_HAND, 3000, 1.5, 1);
     cscd_plan *best = bending_plan(&b, CSCD_METHOD_AUTO, bending_frames(&b), TAKEN);
-    for (uint32_t i = 0; i < cscd_plan_compared_count(best); i++) {
+    for (uint32_t i = 0; i < cscd_plan_describe(best).compared_count; i++) {
         const cscd_compared_plan found = cscd_plan_compared(best, i);
         cscd_plan *plan = plan_again(&b, &found, bending_frames(&b), TAKEN);
         double tested = tested_in(&b, plan, b.shape.positions);
@@ -172,7 +173,7 @@ TEST(threads_change_nothing) {
     cscd_plan *a = bending_plan(&one, CSCD_METHOD_AUTO, bending_frames(&one), BENDING_FRAMES),
               *b = bending_plan(&four, CSCD_METHOD_AUTO, bending_frames(&four), BENDING_FRAMES);
     bending_expect_same(a, b, one.shape.triangle_count);
-    for (uint32_t i = 0; i < cscd_plan_compared_count(a); i++)
+    for (uint32_t i = 0; i < cscd_plan_describe(a).compared_count; i++)
         assert_true(cscd_plan_compared(a, i).tested_share == cscd_plan_compared(b, i).tested_share);
     cscd_plan_destroy(a);
     cscd_plan_destroy(b);

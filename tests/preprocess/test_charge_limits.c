@@ -155,12 +155,12 @@ TEST(coincident_triangles_share) {
 
 static void assert_refused(const conductor *s, const char *words) {
     charge_rig r = charge_rig_create(s, 2, NULL);
-    size_t bytes = cscd_context_bytes(r.context);
+    size_t bytes = cscd_context_describe(r.context).bytes;
     assert_int_equal(charge_solve(r.mesh, s->positions, &by_dense_system, r.density, r.capacitance, NULL),
                      CSCD_INVALID_ARGUMENT);
     assert_says(&r, words);
     assert_true(charge_rig_untouched(&r));
-    assert_int_equal(cscd_context_bytes(r.context), bytes);
+    assert_int_equal(cscd_context_describe(r.context).bytes, bytes);
     charge_rig_destroy(&r);
 }
 
@@ -254,14 +254,14 @@ TEST(takes_what_it_estimates) {
     const cscd_allocator allocator = {watching_allocate, watching_free, &watcher};
     conductor s = conductor_cube(2);
     charge_rig r = charge_rig_create(&s, 2, &allocator);
-    size_t needed = charge_memory(r.mesh), held = cscd_context_bytes(r.context);
+    size_t needed = charge_memory(r.mesh), held = cscd_context_describe(r.context).bytes;
     assert_true(needed > 192 * 192 * 8 && needed < 192 * 192 * 8 + 192 * 1000);
     watcher.held = watcher.most = 0;
     expect_ok(charge_solve(r.mesh, s.positions, &by_dense_system, r.density, r.capacitance, NULL));
     const size_t lists =
         192 * (2 * sizeof(uint32_t) + 2 * sizeof(double)) + 8 * 128; /* with the blocks' headers */
     assert_true(watcher.most >= needed && watcher.most <= needed + lists);
-    assert_int_equal(cscd_context_bytes(r.context), held);
+    assert_int_equal(cscd_context_describe(r.context).bytes, held);
 
     double density = r.density[7];
     for (uint32_t t = 0; t < s.triangle_count; t++) r.density[t] = -1.0;
@@ -271,7 +271,7 @@ TEST(takes_what_it_estimates) {
                      CSCD_OUT_OF_MEMORY);
     assert_says(&r, "out of memory");
     assert_true(charge_rig_untouched(&r));
-    assert_int_equal(cscd_context_bytes(r.context), held);
+    assert_int_equal(cscd_context_describe(r.context).bytes, held);
     watcher.refuse = false;
     expect_ok(charge_solve(r.mesh, s.positions, &by_dense_system, r.density, r.capacitance, NULL));
     assert_true(r.density[7] == density);

@@ -252,7 +252,7 @@ TEST(keeps_to_the_limit) {
     counting_allocator counter = counting_allocator_start();
     const cscd_allocator allocator = counting_allocator_interface(&counter);
     charge_rig r = charge_rig_create(&s, 2, &allocator);
-    const size_t held = cscd_context_bytes(r.context), bytes = counter.bytes;
+    const size_t held = cscd_context_describe(r.context).bytes, bytes = counter.bytes;
     expect_ok(charge_solve(r.mesh, s.positions, &by_tree, r.density, r.capacitance, NULL));
     const size_t taken = counter.peak - bytes;
     const charge_options enough = {CSCD_CHARGE_TREE, taken + taken / 8};
@@ -264,7 +264,7 @@ TEST(keeps_to_the_limit) {
                      CSCD_OUT_OF_MEMORY);
     assert_non_null(strstr(cscd_context_detail(r.context), "a component of 1280 triangles takes"));
     assert_true(charge_rig_untouched(&r));
-    assert_int_equal(cscd_context_bytes(r.context), held);
+    assert_int_equal(cscd_context_describe(r.context).bytes, held);
     charge_rig_destroy(&r);
     conductor_free(&s);
 }

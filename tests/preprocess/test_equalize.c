@@ -14,13 +14,13 @@ static size_t bytes_at_start;
 static int open_context(void **state) {
     (void)state;
     if (cscd_context_create(NULL, &context) != CSCD_OK) return -1;
-    bytes_at_start = cscd_context_bytes(context);
+    bytes_at_start = cscd_context_describe(context).bytes;
     return 0;
 }
 
 static int close_context(void **state) {
     (void)state;
-    bool leaked = cscd_context_bytes(context) != bytes_at_start;
+    bool leaked = cscd_context_describe(context).bytes != bytes_at_start;
     cscd_context_destroy(context);
     return leaked ? -1 : 0;
 }

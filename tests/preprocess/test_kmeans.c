@@ -18,11 +18,11 @@ static kmeans_division found, other;
 
 static void divide_body(const body *b, uint32_t k, uint32_t seed, kmeans_division *out) {
     cscd_mesh *mesh = body_mesh(b, 1);
-    size_t bytes = cscd_context_bytes(mesh->context);
+    size_t bytes = cscd_context_describe(mesh->context).bytes;
     memset(out, 0xff, sizeof *out);
     assert_true(b->triangle_count <= TRIANGLES_MAX && kmeans_capacity(mesh, k) <= REGIONS_MAX);
     expect_ok(regions_kmeans(mesh, b->positions, k, seed, out->regions, &out->count, out->points));
-    assert_int_equal(cscd_context_bytes(mesh->context), bytes);
+    assert_int_equal(cscd_context_describe(mesh->context).bytes, bytes);
     assert_true(out->count <= kmeans_capacity(mesh, k));
     check_regions(mesh, out->regions, out->count);
     for (uint32_t i = 0; i < out->count * 3; i++) assert_true(isfinite(out->points[i]));

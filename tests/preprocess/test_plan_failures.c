@@ -99,7 +99,7 @@ TEST(every_allocation_may_fail) {
     options.allocator = counting_allocator_interface(&counter);
     options.thread_count = 1;
     plan_scene *s = make_scene(&options, 1.0);
-    const size_t bytes = cscd_context_bytes(s->context);
+    const size_t bytes = cscd_context_describe(s->context).bytes;
     size_t refused = 0, without_charge = 0;
     for (bool reached = true; reached;) {
         cscd_plan *plan = NULL;
@@ -117,7 +117,7 @@ TEST(every_allocation_may_fail) {
             refused++;
         }
         cscd_plan_destroy(plan);
-        assert_int_equal(cscd_context_bytes(s->context), bytes);
+        assert_int_equal(cscd_context_describe(s->context).bytes, bytes);
     }
     assert_true(refused > PACED(20, 4) && without_charge > PACED(40, 8));
     free_scene(s);
@@ -145,7 +145,7 @@ TEST(every_report_may_cancel) {
     plan_scene *s = make_scene(&options, 1.0);
     s->context->progress.interval_ms =
         0.0; /* asks as often as it can, so that the machine's speed does not matter */
-    const size_t bytes = cscd_context_bytes(s->context);
+    const size_t bytes = cscd_context_describe(s->context).bytes;
     cscd_status status = CSCD_CANCELLED;
     size_t rounds = 0;
     for (size_t refused = 0; status != CSCD_OK; rounds++, refused += 1 + refused / PACED(8, 2)) {
@@ -155,7 +155,7 @@ TEST(every_report_may_cancel) {
         assert_int_equal(status, count.reports > refused ? CSCD_CANCELLED : CSCD_OK);
         assert_int_equal(plan != NULL, status == CSCD_OK);
         cscd_plan_destroy(plan);
-        assert_int_equal(cscd_context_bytes(s->context), bytes);
+        assert_int_equal(cscd_context_describe(s->context).bytes, bytes);
     }
     assert_true(rounds > PACED(20, 8));
     free_scene(s);
@@ -172,10 +172,10 @@ TEST(sizes_change_nothing) {
         if (make_plan(scenes[i], &plans[i]) != CSCD_OK)
             fail_msg("%s", cscd_context_detail(scenes[i]->context));
         assert_int_equal(cscd_plan_region_count(plans[i]), cscd_plan_region_count(plans[0]));
-        assert_int_equal(cscd_plan_compared_count(plans[i]), cscd_plan_compared_count(plans[0]));
+        assert_int_equal(cscd_plan_describe(plans[i]).compared_count, cscd_plan_describe(plans[0]).compared_count);
         for (uint32_t t = 0; t < cscd_mesh_triangle_count(scenes[0]->mesh); t++)
             assert_int_equal(cscd_plan_triangle_region(plans[i], t), cscd_plan_triangle_region(plans[0], t));
-        for (uint32_t c = 0; c < cscd_plan_compared_count(plans[0]); c++)
+        for (uint32_t c = 0; c < cscd_plan_describe(plans[0]).compared_count; c++)
             assert_true(cscd_plan_compared(plans[i], c).tested_share ==
                         cscd_plan_compared(plans[0], c).tested_share);
     }

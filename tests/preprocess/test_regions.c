@@ -69,7 +69,7 @@ static double single_share(const cscd_mesh *mesh, const double *positions) {
 
 static void divide_with(const body *b, const double *density, const region_options *options, division *out) {
     cscd_mesh *mesh = body_mesh(b, 1);
-    size_t bytes = cscd_context_bytes(mesh->context);
+    size_t bytes = cscd_context_describe(mesh->context).bytes;
     memset(out, 0xff, sizeof *out);
     assert_true(b->triangle_count <= TRIANGLES_MAX);
     double *points = NULL;
@@ -80,7 +80,7 @@ static void divide_with(const body *b, const double *density, const region_optio
     memcpy(out->points, points, out->count * sizeof(double[3]));
     out->share = visible_share(mesh, b->positions, out->regions, points);
     context_free(mesh->context, points);
-    assert_int_equal(cscd_context_bytes(mesh->context), bytes);
+    assert_int_equal(cscd_context_describe(mesh->context).bytes, bytes);
     check_regions(mesh, out->regions, out->count);
     assert_true(out->share >= single_share(mesh, b->positions));
     body_mesh_destroy(mesh);

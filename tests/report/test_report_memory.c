@@ -58,12 +58,12 @@ static const char *name_of_part(void *user, uint32_t part, char buffer[REPORT_PA
 
 /* The interval with its contacts and orientations, answers of the first frame, and events. */
 static bool fill_report(report *page, io_error *error) {
-    const cscd_intersection_pair pair = {.a = 0, .b = 5, .kind = CSCD_INTERSECTION_CROSSING};
+    const cscd_intersection pair = {.a = 0, .b = 5, .kind = CSCD_INTERSECTION_CROSSING};
     const cscd_curve curve = {.point_count = POINTS, .piece_count = POINTS, .closed = true};
     const cscd_depth depth = {.vertex = 3, .depth = 0.5};
     const cscd_curves curves = {.items = &curve, .count = 1, .points = points, .point_count = POINTS};
     const cscd_depths depths = {.items = &depth, .count = 1, .vertex_count = 1};
-    const cscd_intersection_pairs found = {.items = &pair, .count = 1, .curves = &curves, .depths = &depths};
+    const cscd_intersections found = {.items = &pair, .count = 1, .curves = &curves, .depths = &depths};
     orientation_row row;
     if (!orientation_row_create(r.detector, r.mesh, &row)) return io_fail(error, "out of memory");
     orientation_row_take(&row, r.detector);

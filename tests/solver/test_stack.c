@@ -21,7 +21,7 @@ static void plan_and_step(rig *r, const scene *s) {
 static void ask_of_a_moment(rig *r, const scene *s) {
     const cscd_view *x1 = CSCD_DOUBLES(s->x1, s->vertex_count);
     cscd_intersection_options options = cscd_intersection_defaults();
-    cscd_intersection_pairs found;
+    cscd_intersections found;
     cscd_event_tracker *tracker;
     cscd_events events;
     cscd_proximities near_pairs;

@@ -57,13 +57,13 @@ cscd_status step_packed(cscd_detector *detector, const double *x0, const double 
 }
 
 cscd_status check_packed(cscd_detector *detector, const double *positions, cscd_intersections *out) {
-    cscd_view x;
-    return cscd_detector_check(detector, view_of(mesh_of(detector), positions, &x), out);
+    cscd_intersection_options options = cscd_intersection_defaults();
+    options.kinds = ~cscd_intersection_set(CSCD_INTERSECTION_DUPLICATE);
+    return find_intersections_packed(detector, positions, &options, out);
 }
 
 cscd_status find_intersections_packed(cscd_detector *detector, const double *positions,
-                                      const cscd_intersection_options *options,
-                                      cscd_intersection_pairs *out) {
+                                      const cscd_intersection_options *options, cscd_intersections *out) {
     cscd_view x;
     return cscd_detector_find_intersections(detector, view_of(mesh_of(detector), positions, &x), options,
                                             out);

@@ -13,9 +13,10 @@ cscd_status detector_create_here(const cscd_mesh *mesh, const cscd_plan *plan,
                                  const cscd_detector_options *options, cscd_detector **out);
 
 cscd_status step_packed(cscd_detector *detector, const double *x0, const double *x1, cscd_contacts *out);
+/* What meets, as oracles know it: without duplicates. */
 cscd_status check_packed(cscd_detector *detector, const double *positions, cscd_intersections *out);
 cscd_status find_intersections_packed(cscd_detector *detector, const double *positions,
-                                      const cscd_intersection_options *options, cscd_intersection_pairs *out);
+                                      const cscd_intersection_options *options, cscd_intersections *out);
 cscd_status find_near_packed(cscd_detector *detector, const double *positions, double distance,
                              cscd_proximities *out);
 cscd_status find_unique_packed(cscd_detector *detector, const double *positions, double distance,

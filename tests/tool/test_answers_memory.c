@@ -86,7 +86,7 @@ static bool prepare_rules(io_error *error) {
 
 static bool add_frames(answers *a, cscd_detector *detector, io_error *error) {
     double positions[24];
-    cscd_intersection_pairs found;
+    cscd_intersections found;
     for (uint32_t frame = 0; frame < 8; frame++) {
         if (!recording_read(&scene, frame, positions, error) ||
             !answers_find(a, detector, positions, &found, error) ||

@@ -44,7 +44,7 @@ static bool keep_patch(shown_depths *s, const cscd_depth *face, size_t place) {
     return kept != NULL;
 }
 
-bool shown_depths_choose(shown_depths *s, cscd_intersection_pairs *found) {
+bool shown_depths_choose(shown_depths *s, cscd_intersections *found) {
     const cscd_depths *all = found->depths;
     if (all == NULL || !ignore_pairs_any(s->ignored)) return true;
     s->items.count = s->patches.count = 0;
@@ -70,7 +70,7 @@ bool shown_depths_choose(shown_depths *s, cscd_intersection_pairs *found) {
 
 /* A pair of parts comes with the deepest of all its depths. If some are left out, others may still be there:
  * of a vertex between two parts, only one of which is left out. */
-static void shown_depths_of_parts(const shown_depths *s, const cscd_intersection_pairs *found,
+static void shown_depths_of_parts(const shown_depths *s, const cscd_intersections *found,
                                   cscd_part_pair *pair) {
     if (found->depths != &s->list || pair->deepest == SIZE_MAX) return;
     pair->depth = pair->bound = 0.0;
@@ -205,7 +205,7 @@ static frame_answer *push_frame(answers *a, uint32_t frame, io_error *error) {
     return added;
 }
 
-static void count_faces(answers *a, const cscd_intersection_pairs *found, frame_answer *frame) {
+static void count_faces(answers *a, const cscd_intersections *found, frame_answer *frame) {
     const uint32_t mark = (uint32_t)a->frames.count;
     for (size_t i = 0; i < found->count; i++) {
         if (found->items[i].kind != CSCD_INTERSECTION_CROSSING) continue;
@@ -263,7 +263,7 @@ static int compare_part_pairs(const void *left, const void *right) {
 }
 
 /* Of two parts, the one that has the buried points is inside. A part inside of several counts once. */
-static void count_inside(answers *a, const cscd_intersection_pairs *found, frame_answer *frame) {
+static void count_inside(answers *a, const cscd_intersections *found, frame_answer *frame) {
     const uint32_t *labels = a->parts->labels;
     for (size_t i = 0; i < found->depths->count; i++) {
         const cscd_depth *depth = &found->depths->items[i];
@@ -277,7 +277,7 @@ static void count_inside(answers *a, const cscd_intersection_pairs *found, frame
 }
 
 /* A part that only lies in itself follows from something else in the frame, if there is anything else. */
-static void find_worst(answers *a, const cscd_intersection_pairs *found, frame_answer *frame) {
+static void find_worst(answers *a, const cscd_intersections *found, frame_answer *frame) {
     cscd_part_pair worst = {.a = NO_PART, .b = NO_PART};
     bool worst_of_none = true, any_inside = false;
     size_t in_itself = 0;
@@ -300,7 +300,7 @@ static void find_worst(answers *a, const cscd_intersection_pairs *found, frame_a
 }
 
 bool answers_find(const answers *a, cscd_detector *detector, const double *positions,
-                  cscd_intersection_pairs *found, io_error *error) {
+                  cscd_intersections *found, io_error *error) {
     cscd_intersection_options options = cscd_intersection_defaults();
     options.parts = true;
     options.curves = options.patches = options.depths = a->depths;
@@ -341,7 +341,7 @@ static void name_left_out(uint64_t left_out, char text[NAMES_SIZE]) {
 }
 
 /* Values to try, in binary millions, upwards, as --max-memory and --max-work take them. */
-static const char *size_text(const cscd_intersection_pairs *found, char text[SIZE_TEXT_SIZE]) {
+static const char *size_text(const cscd_intersections *found, char text[SIZE_TEXT_SIZE]) {
     const bool large = found->wanted_work >> 20 > 0;
     if (found->wanted_work > 0)
         snprintf(text, SIZE_TEXT_SIZE, " (some %" PRIu64 "%c)", (found->wanted_work >> (large ? 20 : 10)) + 1,
@@ -351,7 +351,7 @@ static const char *size_text(const cscd_intersection_pairs *found, char text[SIZ
     return text;
 }
 
-static void leave_out(answers *a, uint32_t frame, const cscd_intersection_pairs *found, const char *names,
+static void leave_out(answers *a, uint32_t frame, const cscd_intersections *found, const char *names,
                       const char *option, const char *size) {
     const size_t pairs =
         found->crossing + found->coplanar + found->folded + found->touching + found->duplicate;
@@ -363,7 +363,7 @@ static void leave_out(answers *a, uint32_t frame, const cscd_intersection_pairs 
         tangled ? "; does the file list its vertices in another order than the model?" : "");
 }
 
-static void tell_left_out(answers *a, uint32_t frame, const cscd_intersection_pairs *found) {
+static void tell_left_out(answers *a, uint32_t frame, const cscd_intersections *found) {
     char names[NAMES_SIZE], size[SIZE_TEXT_SIZE];
     if (found->left_out == 0) return;
     name_left_out(found->left_out, names);
@@ -380,7 +380,7 @@ void answers_leave_out_contacts(answers *a, uint32_t frame, size_t count) {
         answers_frame_number(a, frame), count);
 }
 
-static bool track_frame(answers *a, uint32_t frame, const cscd_intersection_pairs *found, io_error *error) {
+static bool track_frame(answers *a, uint32_t frame, const cscd_intersections *found, io_error *error) {
     const cscd_status status = cscd_event_tracker_add_frame(a->tracker, frame, found);
     if (status == CSCD_LIST_TOO_LONG) leave_out(a, frame, found, "events", "--max-memory", "");
     return status == CSCD_OK || status == CSCD_LIST_TOO_LONG || api_failed(a, error);
@@ -388,7 +388,7 @@ static bool track_frame(answers *a, uint32_t frame, const cscd_intersection_pair
 
 /* ---- frames ---------------------------------------------------------------------------------------------- */
 
-bool answers_add_found(answers *a, uint32_t frame, cscd_intersection_pairs *found, double ms,
+bool answers_add_found(answers *a, uint32_t frame, cscd_intersections *found, double ms,
                        io_error *error) {
     if (!shown_depths_choose(&a->shown, found)) return io_fail(error, "out of memory");
     frame_answer *added = push_frame(a, frame, error);

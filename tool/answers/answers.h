@@ -75,7 +75,7 @@ void shown_depths_free(shown_depths *s);
 
 /* Leaves out what ignored pairs say of a frame: found->depths is this list from now on, until the next call.
  * False when out of memory. */
-bool shown_depths_choose(shown_depths *s, cscd_intersection_pairs *found);
+bool shown_depths_choose(shown_depths *s, cscd_intersections *found);
 
 /* ---- parts that are inside out, or have no surface ----------------------------------------------------- */
 
@@ -127,7 +127,7 @@ collapsed_parts collapsed_parts_of(const recording *r, const part_names *names);
 void collapsed_parts_free(collapsed_parts *c);
 
 /* Adds what was found in a frame. frame: a number of the caller's, above those before. False: no memory. */
-bool collapsed_parts_add(collapsed_parts *c, uint32_t frame, const cscd_intersection_pairs *found);
+bool collapsed_parts_add(collapsed_parts *c, uint32_t frame, const cscd_intersections *found);
 
 /* The frames of a part; NULL: it always had a surface. */
 const collapsed_part *collapsed_parts_at(const collapsed_parts *c, uint32_t part);
@@ -224,12 +224,12 @@ void answers_leave_out_contacts(answers *a, uint32_t frame, size_t count);
  * than fit the memory, it counts those of each kind, and has no list: count is 0. The error does not name the
  * frame. */
 bool answers_find(const answers *a, cscd_detector *detector, const double *positions,
-                  cscd_intersection_pairs *found, io_error *error);
+                  cscd_intersections *found, io_error *error);
 
 /* Adds what was found in a frame, which comes after those before, and how long that took. *found is the
  * detector's and ours from then on, until the next call: what is not looked at with each other is left
  * out. */
-bool answers_add_found(answers *a, uint32_t frame, cscd_intersection_pairs *found, double ms,
+bool answers_add_found(answers *a, uint32_t frame, cscd_intersections *found, double ms,
                        io_error *error);
 
 /* Adds what of a frame that was added is inside out, as cscd_patches says; NULL: nothing is, or nobody

@@ -173,7 +173,7 @@ static bool make_room(collapsed_parts *c) {
     return c->parts != NULL;
 }
 
-static void count_without(collapsed_parts *c, const cscd_intersection_pairs *found) {
+static void count_without(collapsed_parts *c, const cscd_intersections *found) {
     const cscd_mesh *mesh = c->recording->mesh;
     memset(c->without, 0, c->names->count * sizeof *c->without);
     memset(c->components, 0, cscd_mesh_component_count(mesh) * sizeof *c->components);
@@ -184,7 +184,7 @@ static void count_without(collapsed_parts *c, const cscd_intersection_pairs *fou
     }
 }
 
-bool collapsed_parts_add(collapsed_parts *c, uint32_t frame, const cscd_intersection_pairs *found) {
+bool collapsed_parts_add(collapsed_parts *c, uint32_t frame, const cscd_intersections *found) {
     if (found->collapsed == 0) return true;
     if (!make_room(c)) return false;
     count_without(c, found);

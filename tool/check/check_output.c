@@ -50,7 +50,7 @@ typedef uint32_t number_of_triangle(const recording *r, uint32_t triangle);
 
 /* Pairs of numbers, of all pairs of triangles but duplicates. */
 static void write_numbers(json *out, const char *member, const recording *r,
-                          const cscd_intersection_pairs *found, number_of_triangle *number) {
+                          const cscd_intersections *found, number_of_triangle *number) {
     json_begin_array(out, member);
     for (size_t i = 0; i < found->count; i++) {
         if (found->items[i].kind == CSCD_INTERSECTION_DUPLICATE) continue;
@@ -62,7 +62,7 @@ static void write_numbers(json *out, const char *member, const recording *r,
     json_end_array(out);
 }
 
-static void write_kinds(json *out, const cscd_intersection_pairs *found) {
+static void write_kinds(json *out, const cscd_intersections *found) {
     json_begin_array(out, "kinds");
     for (size_t i = 0; i < found->count; i++)
         if (found->items[i].kind != CSCD_INTERSECTION_DUPLICATE)
@@ -74,7 +74,7 @@ static const char *object_name(const recording *r, uint32_t triangle) {
     return r->objects[recording_object_of_triangle(r, triangle)].source.name;
 }
 
-static void write_objects(json *out, const recording *r, const cscd_intersection_pairs *found) {
+static void write_objects(json *out, const recording *r, const cscd_intersections *found) {
     json_begin_array(out, "objects");
     for (size_t i = 0; i < found->count; i++) {
         if (found->items[i].kind == CSCD_INTERSECTION_DUPLICATE) continue;
@@ -93,7 +93,7 @@ static bool has_polygons(const recording *r) {
 }
 
 static void write_json(json *out, const answers *a, const frame_answer *frame,
-                       const cscd_intersection_pairs *found) {
+                       const cscd_intersections *found) {
     const recording *r = a->recording;
     json_break_line(out);
     json_begin_object(out, NULL);
@@ -108,10 +108,10 @@ static void write_json(json *out, const answers *a, const frame_answer *frame,
 }
 
 static void write_csv(FILE *file, const answers *a, const frame_answer *frame,
-                      const cscd_intersection_pairs *found) {
+                      const cscd_intersections *found) {
     const recording *r = a->recording;
     for (size_t i = 0; i < found->count; i++) {
-        const cscd_intersection_pair *pair = &found->items[i];
+        const cscd_intersection *pair = &found->items[i];
         if (pair->kind == CSCD_INTERSECTION_DUPLICATE) continue;
         const pair_row row = {.frame = answers_frame_number(a, frame->frame),
                               .kind = cscd_intersection_kind_name(pair->kind),
@@ -126,7 +126,7 @@ static void write_csv(FILE *file, const answers *a, const frame_answer *frame,
     }
 }
 
-bool check_output_add(check_output *out, const answers *a, const cscd_intersection_pairs *found,
+bool check_output_add(check_output *out, const answers *a, const cscd_intersections *found,
                       io_error *error) {
     const frame_answer *frame = &answers_frames(a)[answers_frame_count(a) - 1];
     if (out->json_path != NULL) {

@@ -34,7 +34,7 @@ static size_t frames_done(const check_run *c) {
 }
 
 static bool check_frame(check_run *c, uint32_t frame, io_error *error) {
-    cscd_intersection_pairs found;
+    cscd_intersections found;
     io_error reason;
     if (!recording_read(&c->recording, frame, c->positions, error)) return false;
     c->progress.may_stop = true; /* nothing of the frame is written yet */

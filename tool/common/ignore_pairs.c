@@ -148,20 +148,20 @@ static bool rules_leave_out(const part_rules *rules, const uint32_t *a, uint32_t
 
 /* ---- pairs of triangles -------------------------------------------------------------------------------- */
 
-static bool append_pair(cscd_intersection **items, size_t *count, size_t *capacity, uint32_t a, uint32_t b) {
+static bool append_pair(triangle_pair **items, size_t *count, size_t *capacity, uint32_t a, uint32_t b) {
     if (*count == *capacity) {
         size_t wider = *capacity == 0 ? 64 : *capacity * 2;
-        cscd_intersection *grown = io_realloc(*items, wider * sizeof *grown);
+        triangle_pair *grown = io_realloc(*items, wider * sizeof *grown);
         if (grown == NULL) return false;
         *items = grown;
         *capacity = wider;
     }
-    (*items)[(*count)++] = a < b ? (cscd_intersection){a, b} : (cscd_intersection){b, a};
+    (*items)[(*count)++] = a < b ? (triangle_pair){a, b} : (triangle_pair){b, a};
     return true;
 }
 
 static int compare_pairs(const void *left, const void *right) {
-    const cscd_intersection *l = left, *r = right;
+    const triangle_pair *l = left, *r = right;
     if (l->a != r->a) return l->a < r->a ? -1 : 1;
     return l->b < r->b ? -1 : l->b > r->b;
 }
@@ -272,15 +272,15 @@ static bool read_list(ignore_pairs *pairs, const recording *r, const char *path,
 }
 
 /* Leaves out a pair of triangles that intersect or touch at rest, or the parts that these are in. */
-static bool add_rest_pair(ignore_pairs *pairs, bool by_parts, cscd_intersection found) {
-    const uint32_t a = pairs->parts.labels[found.a], b = pairs->parts.labels[found.b];
+static bool add_rest_pair(ignore_pairs *pairs, bool by_parts, const cscd_intersection *found) {
+    const uint32_t a = pairs->parts.labels[found->a], b = pairs->parts.labels[found->b];
     pairs->rest_pairs++;
     if (by_parts && a != b) return part_rules_ignore(&pairs->rules, a, b);
-    return append_pair(&pairs->triangles, &pairs->triangle_count, &pairs->triangle_capacity, found.a,
-                       found.b);
+    return append_pair(&pairs->triangles, &pairs->triangle_count, &pairs->triangle_capacity, found->a,
+                       found->b);
 }
 
-static bool list_contains(const cscd_intersection *list, size_t count, uint32_t c, uint32_t d) {
+static bool list_contains(const triangle_pair *list, size_t count, uint32_t c, uint32_t d) {
     for (size_t i = 0; i < count; i++)
         if ((list[i].a == c && list[i].b == d) || (list[i].a == d && list[i].b == c)) return true;
     return false;
@@ -298,20 +298,23 @@ static bool separate_components(ignore_pairs *pairs) {
     return true;
 }
 
-bool ignore_pairs_add_rest(ignore_pairs *pairs, const cscd_intersection *found, size_t count, bool by_parts) {
-    for (size_t i = 0; i < count; i++)
-        if (!add_rest_pair(pairs, by_parts, found[i])) return false;
+bool ignore_pairs_add_rest(ignore_pairs *pairs, const cscd_intersections *found, bool by_parts) {
+    for (size_t i = 0; i < found->count; i++)
+        if (!add_rest_pair(pairs, by_parts, &found->items[i])) return false;
     sort_pairs(pairs);
     return separate_components(pairs);
 }
 
+/* What is there twice is no pair at rest: it stays to be reported. */
 static bool check_rest(ignore_pairs *pairs, bool by_parts, recording *r, cscd_detector *detector,
                        const double *positions, io_error *error) {
+    const cscd_view at = cscd_view_doubles(positions, cscd_mesh_vertex_count(r->mesh));
+    cscd_intersection_options options = cscd_intersection_defaults();
+    options.kinds = ~cscd_intersection_set(CSCD_INTERSECTION_DUPLICATE);
     cscd_intersections found;
-    if (cscd_detector_check(detector, CSCD_DOUBLES(positions, cscd_mesh_vertex_count(r->mesh)), &found) !=
-        CSCD_OK)
+    if (cscd_detector_find_intersections(detector, &at, &options, &found) != CSCD_OK)
         return io_fail(error, "frame %d: %s", r->frame_numbers[0], cscd_context_detail(r->context));
-    if (ignore_pairs_add_rest(pairs, found.items, found.count, by_parts)) return true;
+    if (ignore_pairs_add_rest(pairs, &found, by_parts)) return true;
     return (!by_parts || check_part_count(&pairs->parts, "--ignore-rest=parts takes", error)) &&
            io_fail(error, "frame %d: out of memory for what intersects or touches at rest",
                    r->frame_numbers[0]);
@@ -418,7 +421,7 @@ bool ignore_pairs_any(const ignore_pairs *pairs) {
     return pairs->triangle_count > 0 || pairs->component_count > 0 || rules_leave_out_any(&pairs->rules);
 }
 
-static size_t count_different(const cscd_intersection *sorted, size_t count) {
+static size_t count_different(const triangle_pair *sorted, size_t count) {
     size_t different = 0;
     for (size_t i = 0; i < count; i++) different += i == 0 || compare_pairs(&sorted[i - 1], &sorted[i]) != 0;
     return different;

@@ -38,16 +38,21 @@ typedef struct ignore_options {
 /* True if the options leave out anything. */
 bool ignore_options_any(const ignore_options *options);
 
+/* Two triangles, or two components. */
+typedef struct triangle_pair {
+    uint32_t a, b;
+} triangle_pair;
+
 typedef struct ignore_pairs {
     const cscd_mesh *mesh;
     part_names parts;
     part_rules rules;
-    size_t rest_pairs; /* of triangles that intersect or touch in the first frame, if that was asked */
-    cscd_intersection *triangles; /* sorted by (a, b) */
+    size_t rest_pairs;        /* of triangles that intersect or touch in the first frame, if that was asked */
+    triangle_pair *triangles; /* sorted by (a, b) */
     size_t triangle_count, triangle_capacity;
-    cscd_intersection *components; /* a <= b; few; sorted */
+    triangle_pair *components; /* a <= b; few; sorted */
     size_t component_count, component_capacity;
-    cscd_intersection *separated; /* a < b: different components of which pairs of triangles are left out */
+    triangle_pair *separated; /* a < b: different components of which pairs of triangles are left out */
     size_t separated_count, separated_capacity;
 } ignore_pairs;
 
@@ -65,7 +70,7 @@ bool ignore_pairs_of(const cscd_mesh *mesh, part_names *parts, ignore_pairs *out
 
 /* Leaves out pairs that intersect or touch at rest; by_parts: all pairs of the two parts, unless both
  * triangles are in one. False when there are too many parts for that, or when out of memory. */
-bool ignore_pairs_add_rest(ignore_pairs *pairs, const cscd_intersection *found, size_t count, bool by_parts);
+bool ignore_pairs_add_rest(ignore_pairs *pairs, const cscd_intersections *found, bool by_parts);
 
 /* Makes a detector leave out the pairs, which live until it has been destroyed. */
 void ignore_pairs_choose(ignore_pairs *pairs, cscd_detector_options *options);

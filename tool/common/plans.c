@@ -121,7 +121,7 @@ static void try_model_plan(const plan_request *request, const recording *r, plan
 
 /* Method auto goes on without the charge where that fails. */
 static void remark_failure(plan_choice *choice, const cscd_plan *plan) {
-    for (uint32_t i = 0; i < cscd_plan_compared_count(plan); i++) {
+    for (uint32_t i = 0; i < cscd_plan_describe(plan).compared_count; i++) {
         const char *failure = cscd_plan_compared(plan, i).failure;
         if (failure != NULL) add_remark(choice, failure);
     }

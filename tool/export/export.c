@@ -107,7 +107,7 @@ void exports_add_contacts(exports *e, const cscd_contacts *contacts) {
 }
 
 bool exports_add_frame(exports *e, uint32_t frame, const double *positions,
-                       const cscd_intersection_pairs *found, io_error *error) {
+                       const cscd_intersections *found, io_error *error) {
     export_run *run = e->run;
     if (run == NULL) return true;
     const int32_t number = run->recording->frame_numbers[frame];

@@ -94,12 +94,12 @@ bool export_values_open(const recording *r, const part_names *parts, const cscd_
     return true;
 }
 
-static void count_pairs(export_values *v, const cscd_intersection_pairs *found) {
+static void count_pairs(export_values *v, const cscd_intersections *found) {
     const size_t count = v->triangles.count;
     for (int kind = 0; kind < 5; kind++) memset(v->kinds[kind], 0, count * sizeof *v->kinds[kind]);
     memset(v->intersecting, 0, count);
     for (size_t i = 0; i < found->count; i++) {
-        const cscd_intersection_pair *pair = &found->items[i];
+        const cscd_intersection *pair = &found->items[i];
         const uint32_t sides[2] = {pair->a, pair->b};
         const uint8_t meeting = (uint8_t)export_meeting_of(pair);
         for (int k = 0; k < 2; k++) {
@@ -146,7 +146,7 @@ void export_values_add_contacts(export_values *v, const cscd_contacts *contacts)
         for (int k = 0; k < 4; k++) v->contacts[contacts->items[i].vertices[k]]++;
 }
 
-void export_values_set_frame(export_values *v, const cscd_intersection_pairs *found) {
+void export_values_set_frame(export_values *v, const cscd_intersections *found) {
     count_pairs(v, found);
     if (v->depth == NULL) return;
     find_buried(v, found->patches);

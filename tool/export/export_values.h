@@ -29,7 +29,7 @@ typedef struct export_table {
 /* The way a triangle meets others: not; only otherwise than by crossing them; it crosses one. */
 typedef enum export_meeting { EXPORT_MEETS_NONE, EXPORT_TOUCHES, EXPORT_CROSSES } export_meeting;
 
-static inline export_meeting export_meeting_of(const cscd_intersection_pair *pair) {
+static inline export_meeting export_meeting_of(const cscd_intersection *pair) {
     return pair->kind == CSCD_INTERSECTION_CROSSING ? EXPORT_CROSSES : EXPORT_TOUCHES;
 }
 
@@ -61,7 +61,7 @@ void export_values_add_contacts(export_values *values, const cscd_contacts *cont
 void export_values_clear_contacts(export_values *values);
 
 /* Fills the others. */
-void export_values_set_frame(export_values *values, const cscd_intersection_pairs *found);
+void export_values_set_frame(export_values *values, const cscd_intersections *found);
 
 size_t export_type_size(export_type type);
 
@@ -132,7 +132,7 @@ typedef struct selection_output {
 /* Opens the file, and writes what its numbers refer to. On false *out holds nothing to close. */
 bool selection_output_open(const char *path, recording *r, const part_names *parts, selection_output *out,
                            io_error *error);
-bool selection_output_add_frame(selection_output *s, int32_t number, const cscd_intersection_pairs *found,
+bool selection_output_add_frame(selection_output *s, int32_t number, const cscd_intersections *found,
                                 io_error *error);
 
 /* Writes the union of all frames, and puts the file in its place, if it is to be kept. */

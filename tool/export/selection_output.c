@@ -193,10 +193,10 @@ static void write_groups(selection_output *s, const char *key, size_t count, con
 }
 
 /* Marks the triangles of the pairs; each is listed once. */
-static size_t mark_pairs(selection_output *s, const cscd_intersection_pairs *found) {
+static size_t mark_pairs(selection_output *s, const cscd_intersections *found) {
     size_t count = 0;
     for (size_t i = 0; i < found->count; i++) {
-        const cscd_intersection_pair *pair = &found->items[i];
+        const cscd_intersection *pair = &found->items[i];
         const uint32_t sides[2] = {pair->a, pair->b};
         const uint8_t mark = pair->kind == CSCD_INTERSECTION_CROSSING ? LISTED_CROSSING : LISTED_TOUCHING;
         for (int k = 0; k < 2; k++) {
@@ -208,7 +208,7 @@ static size_t mark_pairs(selection_output *s, const cscd_intersection_pairs *fou
     return count;
 }
 
-bool selection_output_add_frame(selection_output *s, int32_t number, const cscd_intersection_pairs *found,
+bool selection_output_add_frame(selection_output *s, int32_t number, const cscd_intersections *found,
                                 io_error *error) {
     const size_t count = mark_pairs(s, found);
     if (count == 0) return true;

@@ -182,7 +182,7 @@ static bool prepare_check(mesh_check *c, io_error *error) {
 }
 
 static bool check_frame(mesh_check *c, uint32_t frame, io_error *error) {
-    cscd_intersection_pairs found;
+    cscd_intersections found;
     mesh_answer *out = c->out;
     if (!recording_read(c->recording, frame, c->positions, error) ||
         !answers_find(&c->answers, c->detector, c->positions, &found, error))

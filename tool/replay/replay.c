@@ -85,7 +85,7 @@ static bool begin_replay(replay *r, io_error *error) {
            prepare_answers(r, error) && prepare_source(r, error) && open_outputs(r, error);
 }
 
-static void warn_of_zero_area(const replay *r, uint32_t frame, const cscd_intersection_pairs *found) {
+static void warn_of_zero_area(const replay *r, uint32_t frame, const cscd_intersections *found) {
     if (frame == r->first && found->zero_area_triangles > 0 && !r->options->quiet)
         warn("frame %d has %u triangles of zero area (the first is %u)", r->recording.frame_numbers[frame],
              found->zero_area_triangles, recording_file_triangle(&r->recording, found->first_zero_area));
@@ -98,7 +98,7 @@ static bool take_frame(replay *r, uint32_t frame, frame_check *check, frame_stat
     if (!check->checked)
         return answers_skip_frame(&r->answers, frame, error) && sinks_add_frame(r, frame, NULL, error);
     io_error reason;
-    cscd_intersection_pairs found = check->found;
+    cscd_intersections found = check->found;
     if (!answers_add_found(&r->answers, frame, &found, check->ms, &reason))
         return io_fail(error, "frame %d: %s", r->recording.frame_numbers[frame], reason.text);
     answers_add_turned(&r->answers, frame, check->turned);

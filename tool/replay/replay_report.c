@@ -94,7 +94,7 @@ static bool add_interval(void *state, uint32_t k, const interval_step *step, io_
     return true;
 }
 
-static bool add_frame(void *state, uint32_t frame, const cscd_intersection_pairs *found, io_error *error) {
+static bool add_frame(void *state, uint32_t frame, const cscd_intersections *found, io_error *error) {
     replay_report *r = state;
     (void)error;
     const answers *a = &r->replay->answers;

@@ -107,7 +107,7 @@ static bool export_contacts(void *state, uint32_t k, const interval_step *step, 
     return true;
 }
 
-static bool export_frame(void *state, uint32_t frame, const cscd_intersection_pairs *found, io_error *error) {
+static bool export_frame(void *state, uint32_t frame, const cscd_intersections *found, io_error *error) {
     export_output *out = state;
     return found == NULL || exports_add_frame(&out->exports, frame, out->replay->source.x0, found, error);
 }
@@ -145,7 +145,7 @@ bool sinks_add_interval(replay *r, uint32_t k, const interval_step *step, io_err
     return true;
 }
 
-bool sinks_add_frame(replay *r, uint32_t frame, const cscd_intersection_pairs *found, io_error *error) {
+bool sinks_add_frame(replay *r, uint32_t frame, const cscd_intersections *found, io_error *error) {
     for (size_t i = 0; i < REPLAY_SINKS; i++)
         if (r->sinks[i] != NULL && sinks[i]->add_frame != NULL &&
             !sinks[i]->add_frame(r->sinks[i], frame, found, error))

@@ -13,7 +13,7 @@ typedef struct replay_sink {
     bool (*add_interval)(void *state, uint32_t k, const interval_step *step, io_error *error);
     /* Takes a frame, whose positions the source has in x0. Its answer is the last of the answers. found is
      * NULL if nothing was looked for. */
-    bool (*add_frame)(void *state, uint32_t frame, const cscd_intersection_pairs *found, io_error *error);
+    bool (*add_frame)(void *state, uint32_t frame, const cscd_intersections *found, io_error *error);
     /* Takes the results of an interval, after the frame at its end. */
     bool (*end_interval)(void *state, const interval_result *result, io_error *error);
     /* Writes what is left and frees the state. whole is false if the replay could not begin: then older files
@@ -26,7 +26,7 @@ extern const replay_sink summary_sink, report_sink;
 /* Opens all outputs. Whatever it returns, sinks_close is due. */
 bool sinks_open(replay *r, io_error *error);
 bool sinks_add_interval(replay *r, uint32_t k, const interval_step *step, io_error *error);
-bool sinks_add_frame(replay *r, uint32_t frame, const cscd_intersection_pairs *found, io_error *error);
+bool sinks_add_frame(replay *r, uint32_t frame, const cscd_intersections *found, io_error *error);
 bool sinks_end_interval(replay *r, const interval_result *result, io_error *error);
 /* Closes all outputs, also after an error. The first error is reported. */
 bool sinks_close(replay *r, io_error *error);

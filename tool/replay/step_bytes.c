@@ -11,8 +11,8 @@ uint64_t step_bytes_layout(void) {
                             sizeof(cscd_counters),
                             sizeof(cscd_timings),
                             sizeof(cscd_guarantee),
-                            sizeof(cscd_intersection_pairs),
-                            sizeof(cscd_intersection_pair),
+                            sizeof(cscd_intersections),
+                            sizeof(cscd_intersection),
                             sizeof(cscd_curves),
                             sizeof(cscd_curve),
                             sizeof(cscd_curve_point),
@@ -32,8 +32,8 @@ uint64_t step_bytes_layout(void) {
 
 void step_bytes_add_interval(packed_bytes *out, const interval_step *step, uint32_t component_count) {
     const orientation_row *row = step->orientations;
-    const uint64_t counts[2] = {step->contacts.waiting, step->unlisted};
-    packed_bytes_add(out, counts, sizeof counts);
+    const uint64_t unlisted = step->unlisted;
+    packed_bytes_add(out, &unlisted, sizeof unlisted);
     packed_bytes_add_array(out, step->contacts.items, step->contacts.count, sizeof *step->contacts.items);
     packed_bytes_add(out, &step->counters, sizeof step->counters);
     packed_bytes_add(out, &step->timings, sizeof step->timings);
@@ -46,12 +46,11 @@ void step_bytes_add_interval(packed_bytes *out, const interval_step *step, uint3
 
 bool step_bytes_take_interval(packed_reader *in, step_place *place, interval_step *out,
                               uint32_t component_count) {
-    uint64_t counts[2] = {0, 0};
+    uint64_t unlisted = 0;
     size_t guarantees, regions, facing;
     *out = (interval_step){.orientations = &place->orientations};
-    packed_reader_copy(in, counts, sizeof counts);
-    out->contacts.waiting = (size_t)counts[0];
-    out->unlisted = (size_t)counts[1];
+    packed_reader_copy(in, &unlisted, sizeof unlisted);
+    out->unlisted = (size_t)unlisted;
     out->contacts.items = packed_reader_take_array(in, &out->contacts.count, sizeof *out->contacts.items);
     packed_reader_copy(in, &out->counters, sizeof out->counters);
     packed_reader_copy(in, &out->timings, sizeof out->timings);
@@ -113,7 +112,7 @@ enum { HAS_CHECK = 1, HAS_CURVES = 2, HAS_DEPTHS = 4, HAS_PARTS = 8, HAS_TURNED 
 
 void step_bytes_add_frame(packed_bytes *out, const frame_check *check, uint32_t object_count,
                           uint32_t component_count) {
-    const cscd_intersection_pairs *f = &check->found;
+    const cscd_intersections *f = &check->found;
     const uint64_t has = (check->checked ? HAS_CHECK : 0) | (f->curves != NULL ? HAS_CURVES : 0) |
                          (f->depths != NULL ? HAS_DEPTHS : 0) | (f->parts != NULL ? HAS_PARTS : 0) |
                          (check->turned != NULL ? HAS_TURNED : 0);
@@ -131,7 +130,7 @@ void step_bytes_add_frame(packed_bytes *out, const frame_check *check, uint32_t 
         packed_bytes_add_array(out, check->turned, component_count, sizeof *check->turned);
 }
 
-static void take_found(packed_reader *in, uint64_t has, step_place *place, cscd_intersection_pairs *f) {
+static void take_found(packed_reader *in, uint64_t has, step_place *place, cscd_intersections *f) {
     size_t collapsed;
     packed_reader_copy(in, f, sizeof *f);
     f->patches = NULL;

@@ -23,7 +23,7 @@ typedef struct interval_step {
 /* The findings of a frame. */
 typedef struct frame_check {
     bool checked; /* else nothing was looked for, and found and ms are 0 */
-    cscd_intersection_pairs found;
+    cscd_intersections found;
     double ms;
     const bool *turned;     /* per component, as in cscd_patches; NULL: nothing is */
     const uint64_t *hashes; /* of the positions, per object (recording_hash_frame) */

@@ -250,7 +250,7 @@ static void write_summary(summary_writer *w, const replay *r) {
     json_string(out, "mode", cscd_name(CSCD_MODES, o->mode));
     json_string(out, "volume", cscd_name(CSCD_VOLUMES, o->volume));
     if (!o->reproducible)
-        json_string(out, "simd", cscd_name(CSCD_SIMDS, cscd_context_simd(r->recording.context)));
+        json_string(out, "simd", cscd_name(CSCD_SIMDS, cscd_context_describe(r->recording.context).simd));
     json_number(out, "min_separation", o->min_separation);
     write_plan(out, &r->plan, w->times);
     json_integer(out, "vertices", cscd_mesh_vertex_count(w->mesh));
@@ -280,7 +280,7 @@ static void write_provenance(json *out, const replay_options *o, const recording
     if (o->reproducible)
         provenance_write_build(out);
     else
-        provenance_write(out, o->argument_count, o->arguments, cscd_context_thread_count(r->context));
+        provenance_write(out, o->argument_count, o->arguments, cscd_context_describe(r->context).thread_count);
     json_begin_array(out, "inputs");
     for (uint32_t i = 0; i < r->object_count; i++) {
         const recorded_object *object = &r->objects[i];

@@ -110,7 +110,7 @@ void answer_arrays_free(answer_arrays *arrays); /* a zeroed struct is fine */
 
 /* Depths are stored times scale. False: out of memory. */
 bool answer_arrays_add(answer_arrays *arrays, const report_options *options, uint32_t frame,
-                       const cscd_intersection_pairs *found, double scale);
+                       const cscd_intersections *found, double scale);
 
 /* ---- orientations -------------------------------------------------------------------------------------- */
 

@@ -2,6 +2,7 @@
  * triangles face their detector points. */
 #include "tool/report/collected.h"
 
+#include "cscd/research.h"
 #include "tool/io/io.h"
 #include "tool/report/report.h"
 
@@ -128,9 +129,9 @@ static uint32_t room_of(uint32_t most, uint32_t kept, const report_options *opti
 }
 
 /* Marks the triangles with the kinds of their pairs. */
-static void mark_kinds(answer_arrays *a, const cscd_intersection_pairs *found, answer_counts *counts) {
+static void mark_kinds(answer_arrays *a, const cscd_intersections *found, answer_counts *counts) {
     for (size_t i = 0; i < found->count; i++) {
-        const cscd_intersection_pair *pair = &found->items[i];
+        const cscd_intersection *pair = &found->items[i];
         a->kinds[pair->a] |= (uint8_t)cscd_intersection_set(pair->kind);
         a->kinds[pair->b] |= (uint8_t)cscd_intersection_set(pair->kind);
         if (pair->kind == CSCD_INTERSECTION_CROSSING)
@@ -141,7 +142,7 @@ static void mark_kinds(answer_arrays *a, const cscd_intersection_pairs *found, a
 }
 
 /* Keeps the marked triangles, each once, and takes the marks away. */
-static bool keep_triangles(answer_arrays *a, const cscd_intersection_pairs *found, uint32_t room,
+static bool keep_triangles(answer_arrays *a, const cscd_intersections *found, uint32_t room,
                            answer_counts *counts) {
     bool added = true;
     for (size_t i = 0; i < 2 * found->count; i++) {
@@ -209,7 +210,7 @@ static void sum_up(answer_arrays *a, const answer_counts *counts) {
 }
 
 bool answer_arrays_add(answer_arrays *a, const report_options *options, uint32_t frame,
-                       const cscd_intersection_pairs *found, double scale) {
+                       const cscd_intersections *found, double scale) {
     uint32_t place = frame - options->first;
     answer_counts counts = {0};
     a->frames_checked++;
@@ -232,9 +233,16 @@ bool answer_arrays_add(answer_arrays *a, const report_options *options, uint32_t
 
 /* ---- the orientations of an interval ------------------------------------------------------------------- */
 
+static uint32_t count_regions(const cscd_detector *detector) {
+    uint32_t count = 0;
+    double points[2][3];
+    while (cscd_detector_region_point(detector, count, points[0], points[1])) count++;
+    return count;
+}
+
 bool orientation_row_create(const cscd_detector *detector, const cscd_mesh *mesh, orientation_row *out) {
     orientation_row row = {.triangle_count = cscd_mesh_triangle_count(mesh),
-                           .region_count = cscd_detector_region_count(detector)};
+                           .region_count = count_regions(detector)};
     if (row.region_count > 0) {
         row.points = io_realloc(NULL, row.region_count * sizeof *row.points);
         row.facing = io_realloc(NULL, orientation_row_size(row.triangle_count));

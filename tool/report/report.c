@@ -119,7 +119,7 @@ bool report_add_interval(report *r, const orientation_row *orientations, const c
     return (added && add_frame(r, r->last + 1, end)) || out_of_memory(error);
 }
 
-bool report_add_answers(report *r, uint32_t frame, const cscd_intersection_pairs *found, io_error *error) {
+bool report_add_answers(report *r, uint32_t frame, const cscd_intersections *found, io_error *error) {
     return answer_arrays_add(&r->answers, &r->options, frame, found, 1.0 / r->unit) || out_of_memory(error);
 }
 

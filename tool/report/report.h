@@ -113,7 +113,7 @@ bool report_add_interval(report *r, const orientation_row *orientations, const c
 
 /* Adds what intersects in a frame: pairs and, if they were asked for, curves and depths of vertices. Frames
  * come in their order, those that were not checked are left out. */
-bool report_add_answers(report *r, uint32_t frame, const cscd_intersection_pairs *found, io_error *error);
+bool report_add_answers(report *r, uint32_t frame, const cscd_intersections *found, io_error *error);
 
 /* The name of a part, in the buffer or elsewhere; UINT32_MAX stands for what is in no part. */
 typedef const char *(*report_part_name)(void *user, uint32_t part, char buffer[REPORT_PART_NAME_SIZE]);

@@ -144,7 +144,7 @@ static void create_detector(caller_state *s) {
 
 static void ask_detector(caller_state *s) {
     const cscd_view *x0 = CSCD_DOUBLES(start, VERTEX_COUNT);
-    cscd_intersection_pairs pairs;
+    cscd_intersections pairs;
     OPTIONS(cscd_intersection_options, cscd_intersection_defaults_sized, options);
     REFUSE(cscd_intersection_options, options.value,
            cscd_detector_find_intersections(s->detector, x0, &options.value, &pairs),

@@ -55,7 +55,7 @@ static void *new_items(size_t count, size_t size) {
 static void make_pairs(const recorded_frames *r, recorded_frame *f, int most) {
     uint32_t triangles = cscd_mesh_triangle_count(r->mesh);
     f->found.count = (size_t)random_integer(0, most);
-    cscd_intersection_pair *items = new_items(f->found.count, sizeof *items);
+    cscd_intersection *items = new_items(f->found.count, sizeof *items);
     for (size_t i = 0; i < f->found.count; i++) {
         items[i].a = random_below(triangles);
         items[i].b = random_below(triangles);
@@ -206,7 +206,7 @@ static void *copy_items(const void *items, size_t count, size_t size) {
     return copy;
 }
 
-static void copy_found(recorded_frame *to, const cscd_intersection_pairs *found) {
+static void copy_found(recorded_frame *to, const cscd_intersections *found) {
     to->looked = true;
     to->found.count = found->count;
     to->found.items = copy_items(found->items, found->count, sizeof *found->items);
@@ -225,7 +225,7 @@ static void copy_found(recorded_frame *to, const cscd_intersection_pairs *found)
     }
 }
 
-void recorded_frames_copy(recorded_frame *to, const cscd_intersection_pairs *found,
+void recorded_frames_copy(recorded_frame *to, const cscd_intersections *found,
                           const cscd_contacts *contacts) {
     if (found != NULL) copy_found(to, found);
     to->contact_count = contacts != NULL ? contacts->count : 0;

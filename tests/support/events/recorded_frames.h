@@ -8,7 +8,7 @@ enum { RECORDED_FRAMES_MAX = 64 };
 typedef struct recorded_frame {
     uint64_t number;
     bool looked; /* found is given to the tracker */
-    cscd_intersection_pairs found;
+    cscd_intersections found;
     cscd_curves curves;
     cscd_depths depths;
     cscd_contact *contacts;
@@ -29,7 +29,7 @@ typedef struct recorded_frames {
 void recorded_frames_create(recorded_frames *r, const cscd_allocator *allocator, uint32_t frame_count);
 
 /* Copies what was found, and contacts of the interval before, to a frame that has nothing yet. found may be NULL. */
-void recorded_frames_copy(recorded_frame *to, const cscd_intersection_pairs *found,
+void recorded_frames_copy(recorded_frame *to, const cscd_intersections *found,
                           const cscd_contacts *contacts);
 
 /* Frees everything; of one that was not created, what was copied. */

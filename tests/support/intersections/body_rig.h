@@ -23,7 +23,7 @@ typedef struct body_rig {
     cscd_context *context;
     cscd_mesh *mesh;
     cscd_detector *detector;
-    cscd_intersection_pairs found;
+    cscd_intersections found;
 } body_rig;
 
 /* Begins without a body. */

@@ -33,15 +33,15 @@ cscd_intersection_options intersection_options(cscd_intersection_answer answer, 
     return options;
 }
 
-cscd_intersection_pairs find_kinds_of(const scene *s, cscd_detector *detector,
+cscd_intersections find_kinds_of(const scene *s, cscd_detector *detector,
                                       cscd_intersection_answer answer, size_t stop_after) {
     cscd_intersection_options options = intersection_options(answer, UINT64_MAX, stop_after);
-    cscd_intersection_pairs found;
+    cscd_intersections found;
     expect_ok(find_intersections_packed(detector, s->x0, &options, &found));
     return found;
 }
 
-size_t compare_with_each_pair(const scene *s, const cscd_intersection_pairs *found) {
+size_t compare_with_each_pair(const scene *s, const cscd_intersections *found) {
     size_t next = 0;
     for (uint32_t a = 0; a < s->triangle_count; a++) {
         for (uint32_t b = a + 1; b < s->triangle_count; b++) {
@@ -50,7 +50,7 @@ size_t compare_with_each_pair(const scene *s, const cscd_intersection_pairs *fou
                                 &kind))
                 continue;
             assert_true(next < found->count);
-            const cscd_intersection_pair *pair = &found->items[next++];
+            const cscd_intersection *pair = &found->items[next++];
             assert_true(pair->a == a && pair->b == b && pair->kind == kind.kind &&
                         pair->shared == kind.shared);
         }

@@ -139,7 +139,7 @@ grid_point grid_scene_point(const grid_scene *s, uint32_t vertex) {
     return (grid_point){{(int)x[0], (int)x[1], (int)x[2]}, s->names[vertex]};
 }
 
-size_t grid_scene_pairs(const grid_scene *s, cscd_intersection_pair *out) {
+size_t grid_scene_pairs(const grid_scene *s, cscd_intersection *out) {
     size_t count = 0;
     for (uint32_t a = 0; a < s->mesh->triangle_count; a++) {
         for (uint32_t b = a + 1; b < s->mesh->triangle_count; b++) {
@@ -147,7 +147,7 @@ size_t grid_scene_pairs(const grid_scene *s, cscd_intersection_pair *out) {
             bool intersect = s->surface.names == NULL
                                  ? triangles_intersect(p, q, s->positions)
                                  : triangles_intersect_by_names(p, q, s->names, s->positions);
-            if (intersect) out[count++] = (cscd_intersection_pair){.a = a, .b = b};
+            if (intersect) out[count++] = (cscd_intersection){.a = a, .b = b};
         }
     }
     return count;

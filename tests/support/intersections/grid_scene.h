@@ -47,4 +47,4 @@ void grid_scene_free(grid_scene *s);
 grid_point grid_scene_point(const grid_scene *s, uint32_t vertex);
 
 /* Writes all pairs of triangles that intersect, by trying each; room for as many as there are. Returns their number. */
-size_t grid_scene_pairs(const grid_scene *s, cscd_intersection_pair *out);
+size_t grid_scene_pairs(const grid_scene *s, cscd_intersection *out);

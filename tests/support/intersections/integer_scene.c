@@ -191,7 +191,7 @@ static bool is_left_out(const integer_scene *s, uint32_t a, uint32_t b) {
 }
 
 /* The component of a triangle, as it is in the mesh, is asked of the mesh; the object is known. */
-size_t integer_scene_pairs(const integer_scene *s, uint64_t kinds, cscd_intersection_pair out[PAIRS_MAX]) {
+size_t integer_scene_pairs(const integer_scene *s, uint64_t kinds, cscd_intersection out[PAIRS_MAX]) {
     size_t count = 0;
     for (uint32_t a = 0; a < ALL_TRIANGLES; a++) {
         for (uint32_t b = a + 1; b < ALL_TRIANGLES; b++) {
@@ -199,7 +199,7 @@ size_t integer_scene_pairs(const integer_scene *s, uint64_t kinds, cscd_intersec
             int kind = oracle_kind(s->triangles[a], s->triangles[b], s->names, false, s->points);
             if (kind < 0 || (kinds >> kind & 1) == 0) continue;
             out[count++] =
-                (cscd_intersection_pair){.a = a,
+                (cscd_intersection){.a = a,
                                          .b = b,
                                          .kind = (cscd_intersection_kind)kind,
                                          .shared = oracle_shared(s->triangles[a], s->triangles[b], s->names),

@@ -39,4 +39,4 @@ cscd_mesh *integer_scene_mesh(const integer_scene *s, cscd_context *context);
 cscd_detector *integer_scene_detector(const integer_scene *s, const cscd_mesh *mesh, cscd_method method);
 
 /* All pairs of the kinds, in order; returns how many. */
-size_t integer_scene_pairs(const integer_scene *s, uint64_t kinds, cscd_intersection_pair out[PAIRS_MAX]);
+size_t integer_scene_pairs(const integer_scene *s, uint64_t kinds, cscd_intersection out[PAIRS_MAX]);

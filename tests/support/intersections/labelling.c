@@ -93,7 +93,7 @@ static size_t count_faces(const labelling *l, const body_rig *r, uint32_t a, uin
     size_t count = 0;
     memset(seen, 0, sizeof seen);
     for (size_t i = 0; i < r->found.count; i++) {
-        const cscd_intersection_pair *pair = &r->found.items[i];
+        const cscd_intersection *pair = &r->found.items[i];
         if (are_the_two(l->items[pair->a], l->items[pair->b], a, b)) seen[pair->a] = seen[pair->b] = true;
     }
     for (uint32_t t = 0; t < r->all.triangle_count; t++) count += seen[t] && l->items[t] == side;
@@ -104,7 +104,7 @@ static size_t expect_triangles(const labelling *l, const body_rig *r, uint32_t a
                                cscd_part_pair *out) {
     size_t count = 0;
     for (size_t i = 0; i < r->found.count; i++) {
-        const cscd_intersection_pair *pair = &r->found.items[i];
+        const cscd_intersection *pair = &r->found.items[i];
         if (!are_the_two(l->items[pair->a], l->items[pair->b], a, b)) continue;
         out->crossing += pair->kind == CSCD_INTERSECTION_CROSSING;
         out->coplanar += pair->kind == CSCD_INTERSECTION_COPLANAR;

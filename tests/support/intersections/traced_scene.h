@@ -9,7 +9,7 @@ enum { TRACED_PAIRS_MAX = 32 * 32 };
 typedef struct traced_scene {
     grid_scene scene;
     curve_joiner joiner;
-    cscd_intersection_pair pairs[TRACED_PAIRS_MAX];
+    cscd_intersection pairs[TRACED_PAIRS_MAX];
     cscd_curves curves;
 } traced_scene;
 

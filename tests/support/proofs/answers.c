@@ -5,10 +5,15 @@
 
 #include <math.h>
 
+static void add_waiting(proof *p) {
+    const cscd_waiting waiting = cscd_detector_waiting(p->detector);
+    proof_add(p, &waiting, sizeof waiting);
+}
+
 void read_contacts(proof *p) {
     const cscd_contacts *c = &p->answer.contacts;
     proof_add_items(p, c->items, c->count, sizeof *c->items);
-    proof_add(p, &c->waiting, sizeof c->waiting);
+    add_waiting(p);
     for (uint32_t i = 0; i < cscd_mesh_component_count(p->mesh); i++) {
         const cscd_guarantee g = cscd_detector_guarantee(p->detector, i);
         proof_add(p, &g.complete, sizeof g.complete);
@@ -64,10 +69,10 @@ static void read_overlaps(proof *p, const cscd_overlaps *c) {
 }
 
 void read_pairs(proof *p) {
-    const cscd_intersection_pairs *c = &p->answer.pairs;
+    const cscd_intersections *c = &p->answer.pairs;
     proof_add_items(p, c->items, c->count, sizeof *c->items);
     proof_add(p, &c->zero_area_triangles, sizeof c->zero_area_triangles);
-    proof_add(p, &c->waiting, sizeof c->waiting);
+    add_waiting(p);
     if (c->curves != NULL) read_curves(p, c->curves);
     if (c->patches != NULL) read_patches(p, c->patches);
     if (c->overlaps != NULL) read_overlaps(p, c->overlaps);

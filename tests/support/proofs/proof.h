@@ -78,7 +78,7 @@ typedef struct proof {
         cscd_event_tracker *tracker;
         cscd_contacts contacts;
         cscd_intersections intersections;
-        cscd_intersection_pairs pairs;
+        cscd_intersections pairs;
         cscd_proximities near;
         cscd_free_step step;
         cscd_displacement_bounds bounds;
